@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The triangles cover the kept faces of the arrangement: all of them, and nothing else.
+//
+// Triangles connected across unlisted edges form a patch. With no overlap (overlap.h) and all
+// chains in place (chains.h), a patch is one face of the arrangement, but for what the rounding of
+// vertices moves; which face is decided exactly, by locating the centre of the patch's roundest
+// triangle. The area covered in each face must be that face's, to within
+//     1e-12 of it + 4 d (its perimeter + d),  d the tolerance of tolerance.h,
+// and a patch in a face that is not kept may have no more area than its own boundary explains so.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "checker/arrangement.h"
+#include "checker/domain.h"
+#include "checker/fill.h"
+#include "checker/half_edges.h"
+#include "checker/listed_edges.h"
+#include "checker/mesh.h"
+#include "checker/report.h"
+
+namespace weft::check {
+
+// Adds violations of kCoverage and kRegions. Returns the face of each triangle.
+// REQUIRES: no overlap.
+std::vector<std::uint32_t> judge_coverage(const Domain& domain, const Arrangement& arrangement,
+                                          const std::vector<FaceRole>& roles, const Mesh& mesh,
+                                          const HalfEdges& half_edges, const ListedEdges& listed,
+                                          Findings& findings);
+
+}  // namespace weft::check

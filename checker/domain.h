@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// What was asked to be meshed, as the checker sees it: a planar straight-line graph with seeds.
+// Coordinates are in one unit of the caller's choice; indices count from 0.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace weft::check {
+
+struct Vec2 {
+  double x = 0;
+  double y = 0;
+  friend bool operator==(const Vec2&, const Vec2&) = default;
+};
+
+// The order in which the checker numbers and sorts points: by x, then by y.
+inline bool lexicographically_less(Vec2 p, Vec2 q) {
+  return p.x < q.x || (p.x == q.x && p.y < q.y);
+}
+
+// Floods the face that `at` lies in, up to the segments; where seeds share a face the last wins.
+struct RegionSeed {
+  Vec2 at;
+  std::int32_t id = 0;
+  std::optional<double> max_area;  // squared units
+};
+
+// Which faces of the segments' arrangement are meshed.
+enum class Fill : std::uint8_t {
+  kSeeds,    // every bounded face but those that hold a hole seed
+  kEvenOdd,  // those an odd number of segments away from infinity, but those that hold a hole seed
+};
+
+struct Domain {
+  std::vector<Vec2> points;
+  std::vector<std::array<std::uint32_t, 2>> segments;  // indices into points
+  std::vector<std::int32_t> markers;                   // one per segment, or empty: all 0
+  std::vector<Vec2> holes;
+  std::vector<RegionSeed> regions;
+  Fill fill = Fill::kSeeds;
+};
+
+}  // namespace weft::check

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Small angles that the input forces. A triangle below the angle bound is excused only if
+//   - corner: its smallest angle is between two of its edges that are listed, and below 60 degrees:
+//     the segments themselves meet at that angle; or
+//   - shell: the two ends of its shortest edge lie on two different segments that meet in a vertex
+//   V
+//     of the arrangement, see each other from V at less than 60 degrees, and are at the same
+//     distance from V to within 1e-3 of it (concentric shells: G. L. Miller, S. E. Pav and N. J.
+//     Walkington, "When and why Ruppert's algorithm works", 2003). The 60 degrees are exceeded by
+//     no more than rounding: 1e-9 in the cosine.
+#pragma once
+
+#include <cstdint>
+
+#include "checker/chains.h"
+#include "checker/domain.h"
+#include "checker/listed_edges.h"
+#include "checker/mesh.h"
+
+namespace weft::check {
+
+enum class Excuse : std::uint8_t { kNone, kCorner, kShell };
+
+class SmallInputAngles {
+ public:
+  SmallInputAngles(const Mesh& mesh, const ListedEdges& listed, SegmentsOfVertices segments);
+
+  // `corner` is that of the smallest angle, 0 to 2; the edge opposite is the shortest.
+  Excuse excuse(std::uint32_t triangle, std::uint32_t corner) const;
+
+ private:
+  bool on_shell(std::uint32_t p, std::uint32_t q) const;
+
+  const Mesh& mesh_;
+  const ListedEdges& listed_;
+  SegmentsOfVertices segments_;
+  SegmentsOfVertices vertices_;  // the other way round: (segment, vertex)
+};
+
+}  // namespace weft::check

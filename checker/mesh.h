@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mesh that is judged. Nothing is assumed of it: indices may be out of range and coordinates
+// NaN; that is for `check` to say.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "checker/domain.h"
+
+namespace weft::check {
+
+struct Mesh {
+  // An edge of the mesh that lies on an input segment.
+  struct Edge {
+    std::uint32_t a = 0;  // index into vertices
+    std::uint32_t b = 0;
+    std::int32_t marker = 0;
+  };
+
+  std::vector<Vec2> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise
+  std::vector<std::int32_t> regions;                    // one per triangle, or empty: all 0
+  std::vector<Edge> edges;                              // each once, in either direction
+};
+
+}  // namespace weft::check

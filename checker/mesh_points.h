@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the points of the domain, and the vertices of its arrangement, are in the mesh.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "checker/arrangement.h"
+#include "checker/domain.h"
+#include "checker/listed_edges.h"
+#include "checker/mesh.h"
+
+namespace weft::check {
+
+// Finds mesh vertices by the exact coordinates of input points.
+class InputPoints {
+ public:
+  InputPoints(const Domain& domain, const Mesh& mesh);
+  // Whether an input point has these coordinates, and the mesh vertex that has them then.
+  bool has(Vec2 p) const;
+  std::optional<std::uint32_t> vertex_at(Vec2 input_point) const;
+
+ private:
+  std::vector<Vec2> points_;                            // sorted, distinct
+  std::vector<std::optional<std::uint32_t>> vertices_;  // for each
+};
+
+// Per vertex of the arrangement, the mesh vertex that stands for it: for an input point the one
+// with its coordinates, for any other the nearest end of a listed edge within the tolerance.
+std::vector<std::optional<std::uint32_t>> vertices_of_arrangement(const Arrangement& arrangement,
+                                                                  const InputPoints& input_points,
+                                                                  const Mesh& mesh,
+                                                                  const ListedEdges& listed,
+                                                                  double tolerance);
+
+}  // namespace weft::check

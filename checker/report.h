@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the checker found: violations, each a sentence that names its offender, and measured facts.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace weft::check {
+
+enum class Rule : std::uint8_t {
+  kDomain,       // the domain itself is well formed, so that a mesh of it can be judged
+  kSize,         // the size expression parses, and is positive and finite at every centroid
+  kStructure,    // indices in range, three distinct corners, usable coordinates, no idle vertex
+  kOrientation,  // every triangle is strictly counter-clockwise
+  kConformity,   // an edge has at most two triangles, one on each side
+  kOverlap,      // no point of the plane is covered twice
+  kEdges,     // the edges listed are those mesh edges that lie on segments, the boundary among them
+  kChains,    // every segment that borders or lies in the domain is a chain of listed edges
+  kPoints,    // every input point in the domain is a vertex
+  kMarkers,   // a listed edge carries the marker of its segment
+  kCoverage,  // the triangles cover the domain, all of it and nothing else
+  kRegions,   // a triangle carries the id of the region that it lies in
+  kDelaunay,  // across every unlisted edge, no corner lies inside the other circumcircle
+  kAngle,     // no angle is below the bound, but those that small input angles excuse
+  kArea,      // no triangle is larger than the size field, or its region, allows
+};
+inline constexpr std::size_t kRules = 15;
+
+std::string_view rule_name(Rule rule);  // "coverage"
+
+struct Violation {
+  Rule rule = Rule::kDomain;
+  std::string sentence;
+};
+
+// What was measured. Angles and area are meaningful when no triangle is degenerate.
+struct Facts {
+  std::uint64_t vertices = 0;
+  std::uint64_t triangles = 0;
+  std::uint64_t edges = 0;  // listed
+  double min_angle_deg = 0;
+  double max_angle_deg = 0;
+  double area = 0;
+  std::optional<double> worst_area_ratio;  // of area to its bound; none where nothing bounds it
+  // Triangles below the angle bound that a small input angle excuses: those that have the corner
+  // itself, and those whose shortest edge joins its two segments at equal distance from it.
+  std::uint64_t excused_corner = 0;
+  std::uint64_t excused_shell = 0;
+  std::uint64_t unrefined = 0;  // triangles that miss the angle or area bound without excuse
+};
+
+struct Report {
+  std::vector<Violation> violations;           // the first few of each rule, in rule order
+  std::array<std::uint64_t, kRules> totals{};  // of all violations, by rule
+  std::vector<Rule> not_judged;                // because of what the violations say
+  Facts facts;
+
+  bool ok() const { return violations.empty(); }
+  std::uint64_t total(Rule rule) const { return totals[static_cast<std::size_t>(rule)]; }
+};
+
+// The facts, then one line per violation ("coverage: ..."), then what was not judged. Ends with a
+// line feed.
+std::string to_text(const Report& report);
+
+// Collects violations: counts all, writes out the first `listed` of each rule.
+class Findings {
+ public:
+  explicit Findings(std::uint64_t listed) : listed_(listed) {}
+
+  // `sentence` is called only for those that are written out.
+  template <class Sentence>
+  void add(Rule rule, Sentence&& sentence) {
+    if (totals_[static_cast<std::size_t>(rule)]++ < listed_)
+      violations_.push_back({rule, sentence()});
+  }
+  std::uint64_t total(Rule rule) const { return totals_[static_cast<std::size_t>(rule)]; }
+  // Adds what the other found, within the same limits.
+  void merge(const Findings& other);
+  void write_to(Report& report) const;
+
+ private:
+  std::uint64_t listed_;
+  std::array<std::uint64_t, kRules> totals_{};
+  std::vector<Violation> violations_;
+};
+
+}  // namespace weft::check

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// The grading function, evaluated by muParser: independent of the engine's evaluator.
+//
+// The grammar is the service's: cond ? a : b, ||, &&, comparisons, + -, * /, unary - + !, ^ (to the
+// right), from loose to tight, so that -x^2 is -(x^2) and 2^-1 is 0.5; numbers, x, y, pi, e; sqrt
+// abs exp log (natural) sin cos tan floor ceil, pow atan2 hypot, min max (two or more), clamp(v,
+// lo, hi). Whatever else muParser knows (assignment, strings, lists, its own names) is refused.
+//
+//   auto size = SizeExpression::parse("0.01 + x^2");
+//   if (!size) return size.error();
+//   double bound = (*size)({1, 2});
+//
+// muParser's own limit holds: expressions below 20000 bytes. Values agree with the engine's to
+// rounding. Not thread-safe: one object per thread. Does not throw.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+
+#include "checker/domain.h"
+
+namespace weft::check {
+
+class SizeExpression {
+ public:
+  static constexpr std::size_t kMaxLength = 19999;
+
+  // Errors: a sentence that says what was not understood, and where.
+  static tl::expected<SizeExpression, std::string> parse(std::string_view source);
+
+  SizeExpression(SizeExpression&&) noexcept;
+  SizeExpression& operator=(SizeExpression&&) noexcept;
+  ~SizeExpression();
+
+  // NaN if muParser refuses to evaluate.
+  double operator()(Vec2 p) const noexcept;
+
+ private:
+  struct Evaluator;
+  explicit SizeExpression(std::unique_ptr<Evaluator> evaluator);
+  std::unique_ptr<Evaluator> evaluator_;
+};
+
+}  // namespace weft::check

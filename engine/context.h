@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The one thing that travels with a job: cancellation, deadline, budgets, progress, and where it
+// computes.
+//
+// Thread-safety: `cancel` and `progress` may be called from any thread at any time; the setters
+// only before the job starts. Code at work calls `poll` at least every few milliseconds (the
+// kernel: every 512 insertions, about 0.1 ms), so a stop is noticed within 50 ms. Where both a
+// cancellation and the deadline hold, the cancellation wins.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "engine/arena.h"
+#include "engine/error.h"
+
+namespace weft {
+
+enum class Stage : std::uint8_t { kQueued, kTriangulate, kSize, kRefine, kEmit, kDone };
+
+// A snapshot for whoever watches. `expected_triangles` is an estimate from the size field.
+struct Progress {
+  Stage stage = Stage::kQueued;
+  std::uint64_t triangles = 0;
+  std::uint64_t expected_triangles = 0;
+};
+
+// What a job may use. DEFAULT: unbounded.
+struct Budget {
+  // Triangles of the mesh. Refinement stops there and returns the mesh that it has; what still
+  // misses its bounds is counted as `budget` in the summary.
+  std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();
+  // A job whose estimate is over this is refused before refinement, and one that grows past it
+  // stops with kLimitExceeded. This is the operator's cap, max_triangles the client's wish.
+  std::uint64_t triangle_limit = std::numeric_limits<std::uint64_t>::max();
+  // Bytes of engine memory. Over it the job stops with kBudgetExceeded.
+  std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
+};
+
+class ExecutionContext {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  ExecutionContext() = default;
+  explicit ExecutionContext(const Budget& budget) : budget_(budget) {}
+  ExecutionContext(const ExecutionContext&) = delete;
+  ExecutionContext& operator=(const ExecutionContext&) = delete;
+
+  void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
+  void set_deadline(Clock::time_point deadline) noexcept { deadline_ = deadline; }
+  // Where the job computes; the caller's own thread without one. The arena outlives the job.
+  void set_arena(Arena& arena) noexcept { arena_ = &arena; }
+  const Budget& budget() const noexcept { return budget_; }
+
+  // Nothing while the job may go on, otherwise the error to stop with.
+  std::optional<Error> poll() const {
+    if (cancelled_.load(std::memory_order_relaxed))
+      return Error{ErrorCode::kCancelled, "", "the job was cancelled"};
+    if (deadline_ && Clock::now() >= *deadline_)
+      return Error{ErrorCode::kDeadlineExceeded, "", "the job's deadline passed"};
+    return std::nullopt;
+  }
+
+  Progress progress() const noexcept {
+    return {stage_.load(std::memory_order_relaxed), triangles_.load(std::memory_order_relaxed),
+            expected_.load(std::memory_order_relaxed)};
+  }
+
+  // For the engine at work.
+  template <class F>
+  auto compute(F&& f) const {
+    return arena_ ? arena_->run(std::forward<F>(f)) : f();
+  }
+  void enter(Stage stage) noexcept { stage_.store(stage, std::memory_order_relaxed); }
+  void report_triangles(std::uint64_t n) noexcept {
+    triangles_.store(n, std::memory_order_relaxed);
+  }
+  void report_expected(std::uint64_t n) noexcept { expected_.store(n, std::memory_order_relaxed); }
+
+ private:
+  Budget budget_;
+  std::optional<Clock::time_point> deadline_;
+  Arena* arena_ = nullptr;
+  std::atomic<bool> cancelled_{false};
+  std::atomic<Stage> stage_{Stage::kQueued};
+  std::atomic<std::uint64_t> triangles_{0};
+  std::atomic<std::uint64_t> expected_{0};
+};
+
+}  // namespace weft

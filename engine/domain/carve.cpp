@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/domain/carve.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <deque>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "engine/domain/locate.h"
+
+namespace weft {
+namespace {
+
+// The faces of the arrangement, numbered from 0; kUnbounded is face 0.
+struct Faces {
+  static constexpr std::uint32_t kUnbounded = 0;
+  std::vector<std::uint32_t> of_triangle;
+  std::uint32_t count = 1;
+};
+
+// Floods from `start` across edges without a constraint.
+void flood(const Arrangement& a, std::uint32_t start, std::uint32_t face, Faces& faces,
+           std::vector<std::uint32_t>& stack, Pacer& pacer) {
+  faces.of_triangle[start] = face;
+  stack.push_back(start);
+  while (!stack.empty()) {
+    pacer.step();
+    const Arrangement::Triangle& t = a.triangles[stack.back()];
+    stack.pop_back();
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t n = t.neighbor[i];
+      if (n == kNone || t.constraint[i] != kNone || faces.of_triangle[n] != kNone) continue;
+      faces.of_triangle[n] = face;
+      stack.push_back(n);
+    }
+  }
+}
+
+Faces find_faces(const Arrangement& a, Pacer& pacer) {
+  Faces faces;
+  faces.of_triangle.assign(a.triangles.size(), kNone);
+  std::vector<std::uint32_t> stack;
+  const auto open_to_the_outside = [](const Arrangement::Triangle& t) {
+    for (int i = 0; i < 3; ++i)
+      if (t.neighbor[i] == kNone && t.constraint[i] == kNone) return true;
+    return false;
+  };
+  for (std::uint32_t t = 0; t < a.triangles.size(); ++t)
+    if (faces.of_triangle[t] == kNone && open_to_the_outside(a.triangles[t]))
+      flood(a, t, Faces::kUnbounded, faces, stack, pacer);
+  for (std::uint32_t t = 0; t < a.triangles.size(); ++t)
+    if (faces.of_triangle[t] == kNone) flood(a, t, faces.count++, faces, stack, pacer);
+  return faces;
+}
+
+// Per face: whether the fewest segments between it and infinity are an odd number. Coincident
+// segments count once each, so an even stack of them may be passed for nothing.
+std::vector<bool> find_odd_faces(const Arrangement& a, const Faces& faces, Pacer& pacer) {
+  struct Step {
+    std::uint32_t from, to;
+    bool odd;
+  };
+  // The dual graph in compressed rows: steps from face f lie at first[f] .. first[f + 1].
+  std::vector<Step> steps;
+  const auto for_each_step = [&](auto&& visit) {
+    for (std::size_t t = 0; t < a.triangles.size(); ++t) {
+      pacer.step();
+      for (int i = 0; i < 3; ++i) {
+        const std::uint32_t c = a.triangles[t].constraint[i];
+        if (c == kNone) continue;
+        const std::uint32_t n = a.triangles[t].neighbor[i];
+        const std::uint32_t from = faces.of_triangle[t];
+        const std::uint32_t to = n == kNone ? Faces::kUnbounded : faces.of_triangle[n];
+        if (from == to) continue;
+        visit(Step{from, to, a.constraints[c].odd});
+        // The unbounded face has no triangle behind the hull to visit this edge from.
+        if (n == kNone) visit(Step{to, from, a.constraints[c].odd});
+      }
+    }
+  };
+  std::vector<std::size_t> first(faces.count + 1, 0);
+  for_each_step([&](const Step& s) { ++first[s.from + 1]; });
+  for (std::size_t f = 0; f < faces.count; ++f) first[f + 1] += first[f];
+  steps.resize(first.back());
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
+  for_each_step([&](const Step& s) { steps[next[s.from]++] = s; });
+
+  // Breadth first, where a step of length 0 goes to the front of the queue.
+  std::vector<std::uint32_t> depth(faces.count, kNone);
+  std::vector<bool> done(faces.count, false);
+  std::deque<std::uint32_t> queue{Faces::kUnbounded};
+  depth[Faces::kUnbounded] = 0;
+  while (!queue.empty()) {
+    pacer.step();
+    const std::uint32_t f = queue.front();
+    queue.pop_front();
+    if (done[f]) continue;
+    done[f] = true;
+    for (std::size_t k = first[f]; k < first[f + 1]; ++k) {
+      const Step& s = steps[k];
+      const std::uint32_t d = depth[f] + (s.odd ? 1 : 0);
+      if (d >= depth[s.to]) continue;
+      depth[s.to] = d;
+      s.odd ? queue.push_back(s.to) : queue.push_front(s.to);
+    }
+  }
+  std::vector<bool> odd(faces.count);
+  for (std::size_t f = 0; f < odd.size(); ++f) odd[f] = depth[f] % 2 == 1;
+  return odd;
+}
+
+std::string coordinates(Point p) {
+  std::ostringstream out;
+  out.precision(17);
+  out << "(" << p.x << ", " << p.y << ")";
+  return out.str();
+}
+
+// The bounded face that a seed lies in.
+class SeedLocator {
+ public:
+  SeedLocator(const Arrangement& arrangement, const Faces& faces, Pacer& pacer)
+      : arrangement_(arrangement), faces_(faces), pacer_(pacer) {}
+
+  Result<std::uint32_t> face(Point seed, const std::string& field) {
+    const Location location = locate(arrangement_, seed, start_, pacer_);
+    if (location.on_segment || location.on_vertex)
+      return fail(ErrorCode::kSeedOnSegment, field,
+                  "the seed " + coordinates(seed) + " lies on a " +
+                      (location.on_vertex ? "point" : "segment") +
+                      ", so it does not tell which face it means");
+    if (location.triangle == kNone || faces_.of_triangle[location.triangle] == Faces::kUnbounded)
+      return fail(ErrorCode::kSeedOutsideDomain, field,
+                  "the seed " + coordinates(seed) + " lies outside: no segments enclose it");
+    start_ = location.triangle;
+    return faces_.of_triangle[location.triangle];
+  }
+
+ private:
+  const Arrangement& arrangement_;
+  const Faces& faces_;
+  Pacer& pacer_;
+  std::uint32_t start_ = 0;  // seeds come in clusters: search on from the last one
+};
+
+Error empty_domain(const Pslg& pslg, const Faces& faces) {
+  if (faces.count == 1)
+    return {ErrorCode::kEmptyDomain, "domain.segments",
+            "no face is enclosed by segments (" + std::to_string(pslg.segments.size()) +
+                " given), so there is nothing to mesh"};
+  if (pslg.holes.empty())
+    return {ErrorCode::kEmptyDomain, "domain.segments",
+            "by the even-odd rule nothing is inside: every face is enclosed an even number of "
+            "times"};
+  return {ErrorCode::kEmptyDomain, "domain.holes",
+          "the holes carve everything away (" + std::to_string(pslg.holes.size()) + " given)"};
+}
+
+}  // namespace
+
+Result<Carving> carve(const Arrangement& arrangement, const Pslg& pslg, Pacer& pacer) {
+  const Faces faces = find_faces(arrangement, pacer);
+  std::vector<bool> inside(faces.count, true);
+  if (pslg.fill == Fill::kEvenOdd) inside = find_odd_faces(arrangement, faces, pacer);
+  inside[Faces::kUnbounded] = false;
+
+  SeedLocator locator(arrangement, faces, pacer);
+  for (std::size_t i = 0; i < pslg.holes.size(); ++i) {
+    const auto face = locator.face(pslg.holes[i], "domain.holes[" + std::to_string(i) + "]");
+    if (!face) return tl::unexpected(face.error());
+    inside[*face] = false;
+  }
+  if (std::find(inside.begin(), inside.end(), true) == inside.end())
+    return tl::unexpected(empty_domain(pslg, faces));
+
+  Carving carving{.region = {}, .regions = {Region{}}};
+  std::vector<std::uint32_t> region_of_face(faces.count, 0);
+  for (std::size_t i = 0; i < pslg.regions.size(); ++i) {
+    const RegionSeed& seed = pslg.regions[i];
+    const std::string field = "domain.regions[" + std::to_string(i) + "]";
+    const auto face = locator.face(seed.at, field);
+    if (!face) return tl::unexpected(face.error());
+    if (!inside[*face])
+      return fail(ErrorCode::kSeedOutsideDomain, field,
+                  "the seed " + coordinates(seed.at) + " lies in a hole");
+    region_of_face[*face] = static_cast<std::uint32_t>(carving.regions.size());
+    carving.regions.push_back({seed.id, seed.max_area.value_or(Region{}.max_area)});
+  }
+
+  carving.region.resize(arrangement.triangles.size());
+  for (std::size_t t = 0; t < carving.region.size(); ++t) {
+    pacer.step();
+    const std::uint32_t face = faces.of_triangle[t];
+    carving.region[t] = inside[face] ? region_of_face[face] : kNone;
+  }
+  return carving;
+}
+
+}  // namespace weft

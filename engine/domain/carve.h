@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which faces of an arrangement belong to the domain, and to which region.
+//
+// A face is a maximal set of triangles connected across edges without a constraint. What is outside
+// the convex hull belongs to the unbounded face.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/domain/arrangement.h"
+#include "engine/domain/domain.h"
+#include "engine/domain/pacer.h"
+#include "engine/domain/pslg.h"
+#include "engine/error.h"
+
+namespace weft {
+
+struct Carving {
+  // Per triangle of the arrangement: an index into `regions`, or kNone where it is carved away.
+  std::vector<std::uint32_t> region;
+  std::vector<Region> regions;  // regions[0] is the default
+};
+
+// Errors: kSeedOutsideDomain, kSeedOnSegment, kEmptyDomain. Throws Stopped.
+Result<Carving> carve(const Arrangement& arrangement, const Pslg& pslg, Pacer& pacer);
+
+}  // namespace weft

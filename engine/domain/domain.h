@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The domain: the constrained Delaunay triangulation (CDT) of a PSLG, holes carved, regions
+// flooded, the outside removed. It is what refinement starts from.
+//
+//   Result<Domain> domain = triangulate(pslg, context);
+//
+// Crossings and near misses. Predicates are exact on doubles; the crossing of two input segments
+// is computed exactly and rounded once, and both are led through the rounded point. A segment is
+// also led through every vertex within 4 ulps (of its largest coordinate) that it passes, so a
+// T-junction whose end was rounded still is a junction, and several segments that nearly meet in
+// one point do meet in one. So "lies on" below means: within a few ulps (4, rarely up to 15 where
+// dozens of segments nearly meet in one point).
+//
+// Laws that a Domain obeys (checked by tests):
+//   - every triangle is counter-clockwise and refers to three distinct vertices;
+//   - triangles[t].neighbor[i] shares the edge opposite vertex[i], and names t back;
+//   - an edge carries a subsegment iff it lies on an input segment; every edge without a neighbour
+//     carries one;
+//   - every edge without a subsegment is Delaunay;
+//   - every input segment inside is a chain of subsegments;
+//   - every vertex belongs to a triangle; no two vertices coincide; those that are input points
+//     come first, in their order, then the crossings;
+//   - the vertices of triangles with near numbers are near: triangles follow a Hilbert curve;
+//   - the result depends on the PSLG alone: the same bits on every run and machine.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "engine/context.h"
+#include "engine/domain/pslg.h"
+#include "engine/error.h"
+#include "engine/geometry.h"
+
+namespace weft {
+
+// A piece of an input segment between two vertices of the CDT.
+struct Subsegment {
+  std::uint32_t a = 0;  // index into Domain::vertices
+  std::uint32_t b = 0;
+  std::uint32_t segment = 0;  // index into Pslg::segments; the lowest where several overlap
+  std::int32_t marker = 0;  // that segment's marker; the first that is not 0 where several overlap
+};
+
+// A face of the arrangement that a region seed flooded. Region 0 is the rest: id 0, no bound.
+struct Region {
+  std::int32_t id = 0;
+  double max_area = std::numeric_limits<double>::infinity();
+};
+
+struct Domain {
+  struct Triangle {
+    std::uint32_t vertex[3];      // counter-clockwise
+    std::uint32_t neighbor[3];    // across the edge opposite vertex[i]; kNone outside
+    std::uint32_t subsegment[3];  // on the edge opposite vertex[i], or kNone
+    std::uint32_t region;         // index into Domain::regions
+  };
+
+  std::vector<Point> vertices;
+  std::vector<std::uint32_t> input_point;  // per vertex: its index in Pslg::points (the lowest of
+                                           // the coincident ones), or kNone where segments cross
+  std::vector<Triangle> triangles;
+  std::vector<Subsegment> subsegments;
+  std::vector<Region> regions;  // regions[0] is the default region
+
+  std::uint64_t bytes() const {
+    return vertices.capacity() * sizeof(Point) + input_point.capacity() * sizeof(std::uint32_t) +
+           triangles.capacity() * sizeof(Triangle) + subsegments.capacity() * sizeof(Subsegment);
+  }
+};
+
+// Validates the PSLG and triangulates it. Seeds that flood the same face: the last one wins.
+// regions[i + 1] is the face of pslg.regions[i].
+//
+// Errors, each naming the first offender:
+//   kBadCoordinate      domain.points[i].x or .y, the same of domain.holes[i], domain.regions[i]
+//   kIndexOutOfRange    domain.segments[i].a or .b
+//   kZeroLengthSegment  domain.segments[i]
+//   kBadOption          domain.regions[i].max_area: not finite or not above 0
+//   kTooFewPoints, kCollinearPoints                domain.points
+//   kSeedOutsideDomain, kSeedOnSegment             domain.holes[i], domain.regions[i]
+//   kEmptyDomain        domain.segments where no face is enclosed, domain.holes where they carve
+//                       everything away
+//   kLimitExceeded      domain.points, domain.segments: more than can be numbered, or more than
+//                       2^25 crossings, overlaps and touchings (arrangement.h)
+//   kBudgetExceeded     300 bytes a vertex and 120 a subsegment, about the peak, are over
+//                       Budget::max_bytes
+//   kCancelled, kDeadlineExceeded  noticed within 50 ms; to free what a million points have taken
+//                       takes some 20 ms more
+//
+// Never throws. Thread-safe: calls share nothing.
+//
+// About 1.6 s for a million random points, 20 ms for a coast line of 9,370 (one core of 2023).
+Result<Domain> triangulate(const Pslg& pslg, const ExecutionContext& context);
+
+}  // namespace weft

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/domain/locate.h"
+
+#include "engine/domain/predicates.h"
+
+namespace weft {
+namespace {
+
+// The triangle contains p, boundary included; `side[i]` is p's side of the edge opposite vertex[i].
+Location settle(const Arrangement& a, Point p, std::uint32_t triangle, const int (&side)[3]) {
+  const Arrangement::Triangle& t = a.triangles[triangle];
+  Location location{.triangle = triangle};
+  for (int i = 0; i < 3; ++i) {
+    if (a.vertices[t.vertex[i]] == p) location.on_vertex = true;
+    if (side[i] == 0 && t.constraint[i] != kNone) location.on_segment = true;
+  }
+  return location;
+}
+
+}  // namespace
+
+// The stochastic visibility walk of O. Devillers, S. Pion and M. Teillaud, "Walking in a
+// triangulation", 2002: in a constrained triangulation only a random choice among the edges that
+// face p keeps a walk from going in circles. The generator is seeded alike in every call.
+Location locate(const Arrangement& a, Point p, std::uint32_t start, Pacer& pacer) {
+  std::uint32_t random = 2463534242u;  // G. Marsaglia's xorshift
+  std::uint32_t triangle = start;
+  for (;;) {
+    pacer.step();
+    random ^= random << 13;
+    random ^= random >> 17;
+    random ^= random << 5;
+    const Arrangement::Triangle& t = a.triangles[triangle];
+    int side[3];
+    for (int i = 0; i < 3; ++i)
+      side[i] = orientation_exact(a.vertices[t.vertex[(i + 1) % 3]],
+                                  a.vertices[t.vertex[(i + 2) % 3]], p);
+    unsigned tried = 0;
+    unsigned i = random % 3;
+    while (tried < 3 && side[i] >= 0) {
+      ++tried;
+      i = (i + 1) % 3;
+    }
+    if (tried == 3) return settle(a, p, triangle, side);
+    if (t.neighbor[i] == kNone) return {};  // the hull is convex
+    triangle = t.neighbor[i];
+  }
+}
+
+}  // namespace weft

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a point lies in an arrangement.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/domain/arrangement.h"
+#include "engine/domain/pacer.h"
+#include "engine/geometry.h"
+
+namespace weft {
+
+struct Location {
+  std::uint32_t triangle = kNone;  // that contains the point, kNone outside the convex hull
+  bool on_segment = false;         // on a constrained edge, decided exactly
+  bool on_vertex = false;
+};
+
+// Walks from triangle `start`. Exact predicates; throws Stopped.
+Location locate(const Arrangement& arrangement, Point p, std::uint32_t start, Pacer& pacer);
+
+}  // namespace weft

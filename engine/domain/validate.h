@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The checks of a PSLG that need no triangulation.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "engine/domain/pacer.h"
+#include "engine/domain/pslg.h"
+#include "engine/error.h"
+#include "engine/geometry.h"
+
+namespace weft {
+
+// Magnitudes of coordinates other than 0, so that products of four of them stay in range.
+inline constexpr double kMinMagnitude = 1e-100;
+inline constexpr double kMaxMagnitude = 1e100;
+
+// Points of one PSLG, so that vertices and triangles can be numbered in 32 bits.
+inline constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 28;
+inline constexpr std::uint64_t kMaxSegments = std::uint64_t{1} << 30;
+
+// The first offender, in the order: points, segments, holes, regions, then the points as a whole.
+// Nothing where the PSLG is sound. Throws Stopped.
+std::optional<Error> validate(const Pslg& pslg, Pacer& pacer);
+
+// The first points that are distinct (2) and not on a line (3); fewer where there are none.
+struct Span {
+  std::array<std::uint32_t, 3> point{};
+  unsigned size = 0;
+};
+Span spanning_points(const std::vector<Point>& points, Pacer& pacer);
+
+}  // namespace weft

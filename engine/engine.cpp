@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/engine.h"
+
+#include <charconv>
+#include <cmath>
+#include <exception>
+#include <memory>
+#include <new>
+
+#include "engine/domain/domain.h"
+#include "engine/emit.h"
+#include "engine/refine/acute_corners.h"
+#include "engine/refine/area_bound.h"
+#include "engine/refine/mapped_area.h"
+#include "engine/refine/mesh.h"
+#include "engine/refine/refiner.h"
+#include "engine/size/expression.h"
+#include "engine/size/size_map.h"
+
+namespace weft {
+namespace {
+
+std::string text(double value) {
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value);
+  return {buffer, end.ptr};
+}
+
+// Wall time since the last call.
+class StageClock {
+ public:
+  double lap() {
+    const auto now = ExecutionContext::Clock::now();
+    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
+  }
+
+ private:
+  ExecutionContext::Clock::time_point start_ = ExecutionContext::Clock::now();
+};
+
+std::optional<Error> check_options(const MeshRequest& request) {
+  const auto bad = [](const char* field, std::string message) {
+    return Error{ErrorCode::kBadOption, field, std::move(message)};
+  };
+  if (!(request.min_angle_deg >= 0 && request.min_angle_deg <= kMaxMinAngleDeg)) {
+    return bad("quality.min_angle_deg", "the minimum angle is " + text(request.min_angle_deg) +
+                                            " degrees, but must be from 0 to " +
+                                            text(kMaxMinAngleDeg));
+  }
+  if (!(request.min_edge >= 0 && std::isfinite(request.min_edge))) {
+    return bad("quality.min_edge", "the shortest edge is " + text(request.min_edge) +
+                                       ", but must be 0 or more, and finite");
+  }
+  if (request.size.constant && request.size.expression) {
+    return bad("size", "the size is both a constant and an expression");
+  }
+  if (const auto& constant = request.size.constant;
+      constant && !(*constant > 0 && std::isfinite(*constant))) {
+    return Error{ErrorCode::kBadSizeValue, "size.constant",
+                 "the size is " + text(*constant) + ", but must be positive and finite"};
+  }
+  return std::nullopt;
+}
+
+// Where double precision ends: edges below this fraction of the largest coordinate are not made.
+// Leaves the predicates and the Steiner points 2^17 units in the last place to work in.
+double edge_floor(const Domain& domain, double min_edge) {
+  constexpr double kPrecision = 0x1p-36;
+  double largest = 0;
+  for (Point p : domain.vertices) {
+    largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
+  }
+  return std::max(min_edge, kPrecision * largest);
+}
+
+double area_of(const Domain& domain) {
+  double doubled = 0;
+  for (const Domain::Triangle& t : domain.triangles) {
+    const Point a = domain.vertices[t.vertex[0]];
+    const Point b = domain.vertices[t.vertex[1]];
+    const Point c = domain.vertices[t.vertex[2]];
+    doubled += (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  }
+  return 0.5 * doubled;
+}
+
+// How many triangles the size asks for: a lower bound, and what it comes to.
+struct Estimate {
+  double least;
+  double likely;
+};
+
+class Job {
+ public:
+  Job(const MeshRequest& request, ChunkSink& sink, ExecutionContext& context)
+      : request_(request), sink_(sink), context_(context) {}
+
+  Result<Summary> run() {
+    if (auto error = check_options(request_)) return tl::unexpected(*error);
+    if (request_.size.expression) {
+      auto parsed = Expression::parse(*request_.size.expression);
+      if (!parsed) return tl::unexpected(parsed.error());
+      expression_.emplace(std::move(*parsed));
+    }
+    context_.enter(Stage::kTriangulate);
+    auto domain = context_.compute([&] { return triangulate(request_.pslg, context_); });
+    if (!domain) return tl::unexpected(domain.error());
+    domain_ = std::move(*domain);
+    for (Point p : domain_.vertices) summary_.box.add(p);
+    summary_.triangulate_seconds = clock_.lap();
+
+    context_.enter(Stage::kSize);
+    if (expression_ && !expression_->is_constant()) {
+      auto map = context_.compute([&] { return SizeMap::build(*expression_, domain_, context_); });
+      if (!map) return tl::unexpected(map.error());
+      MappedArea area(*expression_, *map);
+      return mesh(area, {map->least_triangles(), map->likely_triangles()}, map->bytes());
+    }
+    const auto bound = constant_bound();
+    if (!bound) return tl::unexpected(bound.error());
+    ConstantArea area(*bound);
+    const double triangles = area_of(domain_) / *bound;
+    return mesh(area, {triangles, triangles}, 0);
+  }
+
+ private:
+  // The bound when it is the same everywhere; infinity for none.
+  Result<double> constant_bound() const {
+    if (request_.size.constant) return *request_.size.constant;
+    if (!expression_) return std::numeric_limits<double>::infinity();
+    const Point somewhere = domain_.vertices[0];
+    const double bound = (*expression_)(somewhere);
+    if (bound > 0 && std::isfinite(bound)) return bound;
+    return fail(ErrorCode::kBadSizeValue, "size.expression", bad_size_message({somewhere, bound}));
+  }
+
+  template <class AreaBound>
+  Result<Summary> mesh(AreaBound& area, Estimate estimate, std::uint64_t size_bytes) {
+    const Budget& budget = context_.budget();
+    if (!wants_cap() && estimate.least > static_cast<double>(budget.triangle_limit)) {
+      return fail(ErrorCode::kLimitExceeded, "size",
+                  "the size asks for at least " + text(std::ceil(estimate.least)) +
+                      " triangles, more than the limit of " +
+                      std::to_string(budget.triangle_limit));
+    }
+    // Triangles come out at 0.64 of their bound on average.
+    expected_ = std::max(1.55 * estimate.likely, static_cast<double>(domain_.triangles.size()));
+    context_.report_expected(static_cast<std::uint64_t>(std::min(expected_, 1e18)));
+    summary_.size_seconds = clock_.lap();
+
+    context_.enter(Stage::kRefine);
+    auto refined = context_.compute([&] { return refine(area); });
+    if (!refined) return tl::unexpected(refined.error());
+    summary_.refine_seconds = clock_.lap();
+
+    context_.enter(Stage::kEmit);
+    auto emitted = emit(refined->mesh, domain_, refined->corners, area, sink_, context_, summary_);
+    if (!emitted) return tl::unexpected(emitted.error());
+    summary_.emit_seconds = clock_.lap() - emitted->sink_seconds;
+    summary_.engine_seconds = summary_.triangulate_seconds + summary_.size_seconds +
+                              summary_.refine_seconds + summary_.emit_seconds;
+    summary_.peak_bytes = refined->mesh.bytes() + domain_.bytes() + refined->corners.bytes() +
+                          size_bytes + std::max(refined->peak_bytes, emitted->peak_bytes);
+    context_.enter(Stage::kDone);
+    return summary_;
+  }
+
+  struct Refined {
+    Mesh mesh;
+    AcuteCorners corners;
+    std::uint64_t peak_bytes;  // of what refinement needed beside the two
+  };
+
+  template <class AreaBound>
+  Result<Refined> refine(AreaBound& area) {
+    const Budget& budget = context_.budget();
+    auto mesh = Mesh::from(domain_, std::min(budget.max_triangles, budget.triangle_limit),
+                           expected_, context_);
+    if (!mesh) return tl::unexpected(mesh.error());
+    auto corners = AcuteCorners::build(domain_, context_);
+    if (!corners) return tl::unexpected(corners.error());
+    Refiner<OwnsAll, AreaBound> refiner(
+        *mesh, *corners, domain_.regions,
+        QualityBounds::from(request_.min_angle_deg, edge_floor(domain_, request_.min_edge)),
+        order(), area, context_);
+    if (auto error = refiner.queue_all()) return tl::unexpected(*error);
+    if (auto error = refiner.run()) return tl::unexpected(*error);
+    if (!wants_cap() && refiner.full()) {
+      return fail(ErrorCode::kLimitExceeded, "size",
+                  "the mesh needs more than the limit of " + std::to_string(budget.triangle_limit) +
+                      " triangles");
+    }
+    summary_.insertions = refiner.insertions();
+    summary_.exact_predicates = refiner.exact_predicates();
+    return Refined{std::move(*mesh), std::move(*corners), refiner.bytes()};
+  }
+
+  // Whether the client asked for a cap of its own: then reaching it is no error.
+  bool wants_cap() const {
+    return context_.budget().max_triangles < context_.budget().triangle_limit;
+  }
+
+  // Where the size makes few triangles beyond the domain's own, quality makes most of them.
+  Order order() const {
+    const bool quality_rules = expected_ < 8.0 * static_cast<double>(domain_.triangles.size());
+    return quality_rules || request_.min_angle_deg > 30 ? Order::kShortestFirst
+                                                        : Order::kLastInFirstOut;
+  }
+
+  const MeshRequest& request_;
+  ChunkSink& sink_;
+  ExecutionContext& context_;
+  StageClock clock_;
+  std::optional<Expression> expression_;
+  Domain domain_;
+  double expected_ = 0;  // triangles
+  Summary summary_;
+};
+
+}  // namespace
+
+Result<Summary> generate_mesh(const MeshRequest& request, ChunkSink& sink,
+                              ExecutionContext& context) {
+  try {
+    return Job(request, sink, context).run();
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::kBudgetExceeded, "", "memory ran out");
+  } catch (const std::exception& e) {
+    return fail(ErrorCode::kInternal, "", e.what());
+  }
+}
+
+}  // namespace weft

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The engine's face: a PSLG and a size field go in, a guaranteed-quality Delaunay mesh comes out
+// in chunks. A. N. Chernikov and N. P. Chrisochoides, "Parallel 2D Graded Guaranteed Quality
+// Delaunay Mesh Refinement", 2006.
+//
+//   ExecutionContext context;
+//   MeshRequest request{.pslg = square, .size = {.expression = "0.01 + x^2"}};
+//   Result<Summary> summary = generate_mesh(request, sink, context);
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/chunk.h"
+#include "engine/context.h"
+#include "engine/domain/pslg.h"
+#include "engine/error.h"
+#include "engine/summary.h"
+
+namespace weft {
+
+// Changes whenever the same request may give other bytes.
+inline constexpr std::string_view kEngineVersion = "1";
+
+// The grading function: an upper bound on a triangle's area at its centroid, squared units.
+// At most one of the two is set; none means no bound on the area.
+struct SizeSpec {
+  std::optional<double> constant = std::nullopt;         // > 0
+  std::optional<std::string> expression = std::nullopt;  // of x and y, see size/expression.h
+};
+
+inline constexpr double kMaxMinAngleDeg = 34;
+
+struct MeshRequest {
+  Pslg pslg = {};
+  SizeSpec size = {};
+  // Lower bound on every angle. REQUIRES: 0 <= min_angle_deg <= kMaxMinAngleDeg.
+  double min_angle_deg = 20;
+  // No edge shorter than this is made, in units. 0: only the floor of double precision.
+  double min_edge = 0;
+};
+
+// Computes in the context's arena; calls the sink on the calling thread. Errors carry the field
+// path of the request as the wire spells it. Never throws.
+Result<Summary> generate_mesh(const MeshRequest& request, ChunkSink& sink,
+                              ExecutionContext& context);
+
+}  // namespace weft

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What can go wrong in the engine, and the one table of what it is called.
+//
+// No exception leaves the engine: every public function that can fail returns a Result<T>. An
+// Error names the offender twice: `field` is a path in the request as the wire spells it
+// ("domain.segments[17].b", empty when no field is at fault), `message` is a sentence with the
+// value, the index and the limit.
+//
+//   Result<Domain> domain = triangulate(pslg, context);
+//   if (!domain) return tl::unexpected(domain.error());
+#pragma once
+
+#include <string>
+#include <tl/expected.hpp>
+#include <utility>
+
+namespace weft {
+
+enum class ErrorCode {
+  // The request is wrong; the same request fails again.
+  kBadCoordinate,         // NaN, infinite, or a magnitude outside [1e-100, 1e100] and not 0
+  kIndexOutOfRange,       // a segment names a point that does not exist
+  kTooFewPoints,          // fewer than 3 distinct points
+  kCollinearPoints,       // every point lies on one line
+  kZeroLengthSegment,     // a segment whose ends are the same point
+  kSeedOutsideDomain,     // a hole or region seed that lies in no bounded face
+  kSeedOnSegment,         // a hole or region seed on a segment or point: its face is ambiguous
+  kEmptyDomain,           // nothing is left after carving
+  kBadOption,             // an option outside its documented range
+  kExpressionSyntax,      // the size expression does not parse (column and caret in the message)
+  kExpressionTooComplex,  // the size expression is too long or too deep
+  kBadSizeValue,          // the size field is not finite or not positive at a point of the domain
+  // The request is larger than what it may use.
+  kLimitExceeded,   // refused before work: an input or an estimate is over a limit
+  kBudgetExceeded,  // stopped at work: bytes ran out
+  // The request was stopped from outside.
+  kDeadlineExceeded,
+  kCancelled,
+  // The engine is wrong.
+  kInternal,
+};
+
+struct Error {
+  ErrorCode code = ErrorCode::kInternal;
+  std::string field;
+  std::string message;
+};
+
+template <class T>
+using Result = tl::expected<T, Error>;
+
+inline tl::unexpected<Error> fail(ErrorCode code, std::string field, std::string message) {
+  return tl::unexpected<Error>(Error{code, std::move(field), std::move(message)});
+}
+
+}  // namespace weft

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/refine/area_bound.h"
+
+#include <charconv>
+
+namespace weft {
+
+std::string bad_size_message(const BadSize& bad) {
+  const auto text = [](double value) {
+    char buffer[32];
+    const auto end = std::to_chars(buffer, buffer + sizeof buffer, value);
+    return std::string(buffer, end.ptr);
+  };
+  return "the size at (" + text(bad.at.x) + ", " + text(bad.at.y) + ") is " + text(bad.value) +
+         ", but must be positive and finite";
+}
+
+}  // namespace weft

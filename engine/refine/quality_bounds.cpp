@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/refine/quality_bounds.h"
+
+#include <sleef.h>
+
+namespace weft {
+
+QualityBounds QualityBounds::from(double min_angle_deg, double min_length) {
+  // The C library's sine may differ in its last bit from machine to machine; this one does not.
+  constexpr double kRadians = 3.14159265358979323846 / 180;
+  const double sine = Sleef_cinz_sind1_u10purec(min_angle_deg * kRadians);
+  const double cosine = std::sqrt(1 - sine * sine);
+  QualityBounds bounds;
+  bounds.sin2 = sine * sine;
+  // Üngör's off-centre: the apex over the shortest edge whose angle is the bound, a little inside.
+  bounds.off_centre = min_angle_deg > 0 ? 0.475 * std::sqrt((1 + cosine) / (1 - cosine)) : 0;
+  bounds.min_length2 = min_length * min_length;
+  return bounds;
+}
+
+}  // namespace weft

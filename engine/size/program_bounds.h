@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs a program on intervals instead of numbers.
+#pragma once
+
+#include "engine/geometry.h"
+#include "engine/size/interval.h"
+#include "engine/size/program.h"
+
+namespace weft::expr {
+
+// Bounds over the box of what the threaded code of the same program computes, bit for bit.
+// REQUIRES: at most kMaxRegisters registers. No allocation.
+Interval bounds(const Program& program, const Box& box) noexcept;
+
+}  // namespace weft::expr

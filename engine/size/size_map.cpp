@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/size/size_map.h"
+
+#include <array>
+#include <cmath>
+
+namespace weft {
+namespace {
+
+using Corners = std::array<Point, 3>;
+
+Corners corners_of(const Domain& domain, std::uint32_t t) {
+  const auto& v = domain.triangles[t].vertex;
+  return {domain.vertices[v[0]], domain.vertices[v[1]], domain.vertices[v[2]]};
+}
+
+Point middle(const Box& box) {
+  return {box.min_x + 0.5 * (box.max_x - box.min_x), box.min_y + 0.5 * (box.max_y - box.min_y)};
+}
+
+Box child_box(const Box& box, unsigned child) {
+  const Point m = middle(box);
+  return {child & 1 ? m.x : box.min_x, child & 2 ? m.y : box.min_y, child & 1 ? box.max_x : m.x,
+          child & 2 ? box.max_y : m.y};
+}
+
+// Whether the open box and the counter-clockwise triangle have a point in common, by separating
+// axes.
+bool overlap(const Box& box, const Corners& c) {
+  Box around;
+  for (Point p : c) around.add(p);
+  if (around.min_x >= box.max_x || around.max_x <= box.min_x || around.min_y >= box.max_y ||
+      around.max_y <= box.min_y) {
+    return false;
+  }
+  for (unsigned i = 0; i < 3; ++i) {
+    const Point a = c[i];
+    const double dx = c[(i + 1) % 3].x - a.x;
+    const double dy = c[(i + 1) % 3].y - a.y;
+    // The box's corner that is farthest to the left of a -> b.
+    const double x = dy > 0 ? box.min_x : box.max_x;
+    const double y = dx > 0 ? box.max_y : box.min_y;
+    if (dx * (y - a.y) - dy * (x - a.x) <= 0) return false;
+  }
+  return true;
+}
+
+// Area of the part of a triangle that lies in a box: Sutherland-Hodgman clipping.
+double common_area(const Box& box, const Corners& c) {
+  std::array<Point, 8> polygon{c[0], c[1], c[2]};
+  std::size_t n = 3;
+  const auto clip = [&](auto inside) {
+    std::array<Point, 8> result;
+    std::size_t m = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Point a = polygon[i];
+      const Point b = polygon[(i + 1) % n];
+      const double da = inside(a);
+      const double db = inside(b);
+      if (da >= 0) result[m++] = a;
+      if ((da >= 0) != (db >= 0)) {
+        const double t = da / (da - db);
+        result[m++] = {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
+      }
+    }
+    polygon = result;
+    n = m;
+  };
+  clip([&](Point p) { return p.x - box.min_x; });
+  clip([&](Point p) { return box.max_x - p.x; });
+  clip([&](Point p) { return p.y - box.min_y; });
+  clip([&](Point p) { return box.max_y - p.y; });
+  double doubled = 0;
+  for (std::size_t i = 2; i < n; ++i) {
+    doubled += (polygon[i - 1].x - polygon[0].x) * (polygon[i].y - polygon[0].y) -
+               (polygon[i - 1].y - polygon[0].y) * (polygon[i].x - polygon[0].x);
+  }
+  return 0.5 * doubled;
+}
+
+bool contains(const Box& outer, const Box& inner) {
+  return inner.min_x >= outer.min_x && inner.max_x <= outer.max_x && inner.min_y >= outer.min_y &&
+         inner.max_y <= outer.max_y;
+}
+
+// A node whose fate is to be decided, with the triangles of the domain that it overlaps.
+struct Pending {
+  std::uint32_t node;
+  Box box;
+  std::vector<std::uint32_t> triangles;
+};
+
+}  // namespace
+
+Result<SizeMap> SizeMap::build(const Expression& size, const Domain& domain,
+                               const ExecutionContext& context) {
+  constexpr int kMaxLevels = 48;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  SizeMap map;
+  for (Point p : domain.vertices) map.root_.add(p);
+  map.nodes_.push_back({-kInfinity, kInfinity, kInfinity, 0, true});
+
+  std::vector<Pending> level(1);
+  level[0] = {0, map.root_, std::vector<std::uint32_t>(domain.triangles.size())};
+  for (std::uint32_t t = 0; t < domain.triangles.size(); ++t) level[0].triangles[t] = t;
+
+  for (int depth = 0; !level.empty(); ++depth) {
+    std::vector<Pending> next;
+    for (const Pending& pending : level) {
+      if (auto error = context.poll()) return tl::unexpected(*error);
+      if (pending.triangles.empty()) continue;
+      const Interval bounds = size.bounds(pending.box);
+      {
+        Node& node = map.nodes_[pending.node];
+        node.lo = bounds.lo;
+        node.hi = bounds.hi;
+        node.lowest_hi = bounds.hi;
+        node.may_be_nan = bounds.may_be_nan;
+      }
+      const bool resolved =
+          !bounds.may_be_nan && bounds.lo > 0 && bounds.hi <= kResolved * bounds.lo;
+      // About as small as the triangles there: nothing smaller can hide between their centroids.
+      const double box_area = pending.box.width() * pending.box.height();
+      const bool small = box_area <= 4 * bounds.lo;
+      if (!resolved && !small && depth < kMaxLevels && map.nodes_.size() + 4 <= kMaxNodes) {
+        const auto first = static_cast<std::uint32_t>(map.nodes_.size());
+        map.nodes_[pending.node].first_child = first;
+        for (unsigned child = 0; child < 4; ++child) {
+          map.nodes_.push_back({-kInfinity, kInfinity, kInfinity, 0, true});
+          next.push_back({first + child, child_box(pending.box, child), {}});
+          for (std::uint32_t t : pending.triangles) {
+            if (overlap(next.back().box, corners_of(domain, t))) {
+              next.back().triangles.push_back(t);
+            }
+          }
+        }
+        continue;
+      }
+      double area = 0;
+      for (std::uint32_t t : pending.triangles) {
+        area += common_area(pending.box, corners_of(domain, t));
+      }
+      if (bounds.hi > 0) map.least_triangles_ += area / bounds.hi;
+      const double guess = bounds.lo > 0 ? std::sqrt(bounds.lo) * std::sqrt(bounds.hi) : bounds.hi;
+      if (guess > 0) map.likely_triangles_ += area / guess;
+    }
+    level = std::move(next);
+  }
+  // Children come after their parents.
+  for (std::size_t i = map.nodes_.size(); i-- > 0;) {
+    Node& node = map.nodes_[i];
+    if (node.leaf()) continue;
+    node.lowest_hi = kInfinity;
+    for (unsigned child = 0; child < 4; ++child) {
+      node.lowest_hi = std::min(node.lowest_hi, map.nodes_[node.first_child + child].lowest_hi);
+    }
+  }
+  return map;
+}
+
+SizeMap::Place SizeMap::locate(const Box& box) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const Box wanted{std::max(box.min_x, root_.min_x), std::max(box.min_y, root_.min_y),
+                   std::min(box.max_x, root_.max_x), std::min(box.max_y, root_.max_y)};
+  const Node* node = nodes_.data();
+  Box at = root_;
+  while (!node->leaf()) {
+    const Point m = middle(at);
+    const unsigned child = (wanted.min_x >= m.x ? 1 : 0) | (wanted.min_y >= m.y ? 2 : 0);
+    const Box smaller = child_box(at, child);
+    if (!contains(smaller, wanted)) break;
+    at = smaller;
+    node = &nodes_[node->first_child + child];
+  }
+  if (at.min_x == root_.min_x) at.min_x = -kInfinity;
+  if (at.min_y == root_.min_y) at.min_y = -kInfinity;
+  if (at.max_x == root_.max_x) at.max_x = kInfinity;
+  if (at.max_y == root_.max_y) at.max_y = kInfinity;
+  return {node, at};
+}
+
+bool SizeMap::covers_finer(const Place& place, const Point corners[3], double area) const {
+  struct Visit {
+    const Node* node;
+    Box box;
+  };
+  const Corners triangle{corners[0], corners[1], corners[2]};
+  std::array<Visit, 4 * 48> stack;
+  std::size_t depth = 0;
+  stack[depth++] = {
+      place.node,
+      {std::max(place.box.min_x, root_.min_x), std::max(place.box.min_y, root_.min_y),
+       std::min(place.box.max_x, root_.max_x), std::min(place.box.max_y, root_.max_y)}};
+  while (depth > 0) {
+    const Visit visit = stack[--depth];
+    if (!(area > kFeatureFactor * visit.node->lowest_hi)) continue;
+    if (!overlap(visit.box, triangle)) continue;
+    if (visit.node->leaf()) return true;
+    for (unsigned child = 0; child < 4; ++child) {
+      stack[depth++] = {&nodes_[visit.node->first_child + child], child_box(visit.box, child)};
+    }
+  }
+  return false;
+}
+
+}  // namespace weft

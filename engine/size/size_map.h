@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A quadtree of boxes over the domain, with bounds of the grading function in each.
+//
+// It serves twice:
+//   - No feature of the grading function is missed. A triangle's centroid may miss a fine spot
+//     that the triangle covers; the map knows the spot. A box is split until the function is known
+//     in it to a factor kResolved, or the box is about as small as the triangles there. A triangle
+//     is too large, too, when it is larger than kFeatureFactor times the function's upper bound in
+//     any box that it overlaps.
+//   - Where the bounds agree, the function need not be evaluated. A step function costs next to
+//   nothing on the
+//     hot path: 2 to 3 % of the refinement instead of 25 %.
+//
+// Bounds hold bit for bit for what Expression::evaluate returns (interval arithmetic), so the map
+// saves evaluations and changes no decision of the rest.
+//
+// Boxes that do not meet the domain are not looked at: a function that reaches 0 in a hole does no
+// harm. Thread-safety: immutable once built.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/context.h"
+#include "engine/domain/domain.h"
+#include "engine/error.h"
+#include "engine/geometry.h"
+#include "engine/size/expression.h"
+
+namespace weft {
+
+class SizeMap {
+ public:
+  static constexpr double kResolved = 2;
+  static constexpr double kFeatureFactor = 4;
+  static constexpr std::size_t kMaxNodes = std::size_t{1} << 16;
+
+  struct Node {
+    double lo;  // the function's bounds in the box
+    double hi;
+    double lowest_hi;           // least `hi` of the leaves below that meet the domain
+    std::uint32_t first_child;  // of four, in Morton order; 0 for a leaf
+    bool may_be_nan;
+
+    bool leaf() const { return first_child == 0; }
+    bool constant() const { return lo == hi && !may_be_nan; }
+  };
+
+  // A node and its box, the outer sides stretched to infinity.
+  struct Place {
+    const Node* node;
+    Box box;
+  };
+
+  // Errors: kCancelled, kDeadlineExceeded.
+  static Result<SizeMap> build(const Expression& size, const Domain& domain,
+                               const ExecutionContext& context);
+
+  // The smallest node whose box holds `box`.
+  Place locate(const Box& box) const;
+
+  // Whether a triangle of this area overlaps a box below `place` where the function is less than
+  // area / kFeatureFactor for certain.
+  bool covers_finer(const Place& place, const Point corners[3], double area) const;
+
+  // Integral of 1 / size over the domain: from below with the upper bounds, and a best guess.
+  double least_triangles() const { return least_triangles_; }
+  double likely_triangles() const { return likely_triangles_; }
+
+  std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
+
+ private:
+  Box root_;
+  std::vector<Node> nodes_;
+  double least_triangles_ = 0;
+  double likely_triangles_ = 0;
+};
+
+}  // namespace weft

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the engine says of a finished mesh.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "engine/chunk.h"
+
+namespace weft {
+
+// Triangles that miss a bound, by the reason why. Each triangle counts once, under the first
+// reason that holds.
+struct Unrefined {
+  std::uint64_t small_input_angle = 0;  // its smallest angle is forced by two segments that meet
+  std::uint64_t edge_floor = 0;         // splitting it would make edges below the floor
+  std::uint64_t budget = 0;             // max_triangles was reached
+  std::uint64_t total() const { return small_input_angle + edge_floor + budget; }
+};
+
+struct Summary {
+  std::uint64_t vertices = 0;
+  std::uint64_t triangles = 0;
+  std::uint64_t edges = 0;  // on input segments
+  std::uint32_t chunks = 0;
+  double area = 0;  // sum over the triangles, squared units
+  Box box;
+
+  double min_angle_deg = 0;
+  double max_angle_deg = 0;
+  std::array<std::uint64_t, 18> angle_histogram{};  // all angles, 10 degrees a bin
+  // Aspect ratio = longest edge / (2 sqrt(3) inradius), 1 for equilateral; bins end at
+  // 1.1, 1.25, 1.5, 2, 3, 5, 10, 100, infinity.
+  std::array<std::uint64_t, 9> aspect_histogram{};
+  // Area over its bound, ten bins of 0.1; the last also holds what exceeds the bound. All 0 where
+  // there is no bound.
+  std::array<std::uint64_t, 10> size_histogram{};
+  Unrefined unrefined;
+
+  // Seconds of wall time a stage.
+  double triangulate_seconds = 0;
+  double size_seconds = 0;  // the boxes of the size field
+  double refine_seconds = 0;
+  double emit_seconds = 0;  // numbering, quality, digests; time spent blocked in the sink left out
+  double engine_seconds = 0;  // their sum
+
+  std::uint64_t peak_bytes = 0;  // engine memory of this job, not counting the request
+  std::uint64_t insertions = 0;
+  std::uint64_t exact_predicates = 0;  // filter failures
+
+  Digest digest{};  // SHA-256 over the digests of the chunks, in order
+};
+
+}  // namespace weft

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Judges a Domain by the laws of engine/domain/domain.h, in rational arithmetic of its own.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "engine/domain/domain.h"
+#include "engine/domain/pslg.h"
+
+namespace weft {
+
+// The first law that the domain breaks, in words; nothing where it keeps all of them:
+// counter-clockwise, neighbours, subsegments, Delaunay, vertices and their input points.
+std::optional<std::string> broken_law(const Pslg& pslg, const Domain& domain);
+
+// For domains that carve no segment away: every input segment is a chain of subsegments within
+// `ulps` ulps of it.
+std::optional<std::string> broken_chain(const Pslg& pslg, const Domain& domain, double ulps = 6);
+
+// For domains whose segments are either apart or within rounding: every subsegment lies on a
+// segment, and names the lowest of them and the first marker that is not 0.
+std::optional<std::string> broken_origin(const Pslg& pslg, const Domain& domain);
+
+// Exactly the sum of the triangles' areas, rounded once.
+double area(const Domain& domain);
+
+// How many triangles contain p in their interior.
+int cover(const Domain& domain, Point p);
+
+// Whether a ray from p crosses the segments an odd number of times. REQUIRES: p is not level with
+// any of their ends.
+bool odd(const Pslg& pslg, Point p);
+
+}  // namespace weft

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small PSLGs put together by hand.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/domain/pslg.h"
+
+namespace weft {
+
+inline void add_segment(Pslg& pslg, Point a, Point b, std::int32_t marker = 0) {
+  const auto n = static_cast<std::uint32_t>(pslg.points.size());
+  pslg.points.insert(pslg.points.end(), {a, b});
+  pslg.segments.push_back({n, n + 1, marker});
+}
+
+inline void add_ring(Pslg& pslg, const std::vector<Point>& ring, std::int32_t marker = 0) {
+  const auto n = static_cast<std::uint32_t>(pslg.points.size());
+  const auto size = static_cast<std::uint32_t>(ring.size());
+  pslg.points.insert(pslg.points.end(), ring.begin(), ring.end());
+  for (std::uint32_t i = 0; i < size; ++i)
+    pslg.segments.push_back({n + i, n + (i + 1) % size, marker});
+}
+
+inline void add_box(Pslg& pslg, Point low, Point high, std::int32_t marker = 0) {
+  add_ring(pslg, {low, {high.x, low.y}, high, {low.x, high.y}}, marker);
+}
+
+inline Pslg square(double side = 1) {
+  Pslg pslg;
+  add_box(pslg, {0, 0}, {side, side});
+  return pslg;
+}
+
+}  // namespace weft

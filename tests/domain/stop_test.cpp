@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cancellation, deadline, budgets, limits.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <ctime>
+#include <random>
+
+#include "engine/domain/domain.h"
+#include "tests/domain/shapes.h"
+
+namespace weft {
+namespace {
+
+#ifdef WEFT_SANITIZED
+constexpr int kPromptly = 500;  // ms; sanitizers slow the release of memory most
+#else
+constexpr int kPromptly = 50;  // ms
+#endif
+
+using std::chrono::duration_cast;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+
+// Processor time, which a busy machine does not stretch.
+nanoseconds processor_time() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return std::chrono::seconds(t.tv_sec) + nanoseconds(t.tv_nsec);
+}
+
+Pslg random_points(int n) {
+  std::mt19937 random(7);
+  Pslg pslg;
+  add_box(pslg, {-1, -1}, {2, 2});
+  for (int i = 0; i < n; ++i) {
+    const double x = random() / 4294967296.0;
+    pslg.points.push_back({x, random() / 4294967296.0});
+  }
+  return pslg;
+}
+
+Pslg hash(int n) {
+  Pslg pslg = square(n + 1);
+  for (int i = 1; i <= n; ++i) {
+    add_segment(pslg, {0.5, i * 1.0}, {n + 0.5, i * 1.0});
+    add_segment(pslg, {i * 1.0, 0.5}, {i * 1.0, n + 0.5});
+  }
+  return pslg;
+}
+
+ErrorCode stopped(const Pslg& pslg, const ExecutionContext& context) {
+  const Result<Domain> domain = triangulate(pslg, context);
+  return domain ? ErrorCode::kInternal : domain.error().code;
+}
+
+TEST(Stop, ACancelledJobDoesNoWork) {
+  ExecutionContext context;
+  context.cancel();
+  EXPECT_EQ(stopped(square(), context), ErrorCode::kCancelled);
+}
+
+void expect_prompt_stops(const Pslg& pslg) {
+  for (int ms = 5; ms <= 80; ms *= 2) {
+    SCOPED_TRACE(ms);
+    ExecutionContext context;
+    const nanoseconds start = processor_time();
+    context.set_deadline(ExecutionContext::Clock::now() + milliseconds(ms));
+    EXPECT_EQ(stopped(pslg, context), ErrorCode::kDeadlineExceeded);
+    EXPECT_LE(duration_cast<milliseconds>(processor_time() - start).count(), ms + kPromptly);
+  }
+}
+
+TEST(Stop, TheDeadlineEndsTheInsertionOfPointsInTime) {
+  expect_prompt_stops(random_points(500000));
+}
+
+TEST(Stop, TheDeadlineEndsTheInsertionOfSegmentsInTime) {
+  expect_prompt_stops(hash(400));
+}
+
+TEST(Stop, PointsOverTheByteBudgetAreRefusedBeforeWork) {
+  const ExecutionContext context(Budget{.max_bytes = 1000});
+  const Result<Domain> domain = triangulate(square(), context);
+  ASSERT_FALSE(domain);
+  EXPECT_EQ(domain.error().code, ErrorCode::kBudgetExceeded);
+  EXPECT_EQ(domain.error().message,
+            "triangulating the domain takes about 1680 bytes, the limit is 1000");
+}
+
+TEST(Stop, CrossingsOverTheByteBudgetAreRefused) {
+  // 2,500 crossings of 104 segments.
+  const ExecutionContext context(Budget{.max_bytes = 500000});
+  EXPECT_EQ(stopped(hash(50), context), ErrorCode::kBudgetExceeded);
+}
+
+}  // namespace
+}  // namespace weft

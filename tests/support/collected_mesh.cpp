@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/support/collected_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft {
+
+bool CollectedMesh::accept(Chunk&& chunk) {
+  must(chunk.index == chunks, "chunks come in order");
+  must(chunk.first_vertex == mesh.vertices.size(), "vertices are numbered without gaps");
+  must(chunk.first_triangle == mesh.triangles.size(), "triangles are numbered without gaps");
+  must(chunk.digest == chunk_digest(chunk), "the digest is that of the chunk");
+  must(chunk.coordinates.size() * 8 + chunk.triangles.size() * 4 + chunk.regions.size() * 4 +
+               chunk.edges.size() * 16 + chunk.input_points.size() * 8 <=
+           kMaxChunkBytes,
+       "a chunk is at most kMaxChunkBytes");
+  ++chunks;
+  for (std::size_t i = 0; i + 1 < chunk.coordinates.size(); i += 2) {
+    mesh.vertices.push_back({chunk.coordinates[i], chunk.coordinates[i + 1]});
+  }
+  const auto known = [&](std::uint32_t v) { return v < mesh.vertices.size(); };
+  for (std::size_t i = 0; i + 2 < chunk.triangles.size(); i += 3) {
+    const auto* t = &chunk.triangles[i];
+    must(known(t[0]) && known(t[1]) && known(t[2]), "triangles do not refer ahead");
+    mesh.triangles.push_back({t[0], t[1], t[2]});
+    for (int k = 0; k < 3 && known(t[k]); ++k) {
+      const check::Vec2 p = mesh.vertices[t[k]];
+      must(p.x >= chunk.box.min_x && p.x <= chunk.box.max_x && p.y >= chunk.box.min_y &&
+               p.y <= chunk.box.max_y,
+           "the box holds the chunk's triangles");
+    }
+  }
+  mesh.regions.resize(chunk.first_triangle, 0);
+  mesh.regions.insert(mesh.regions.end(), chunk.regions.begin(), chunk.regions.end());
+  mesh.regions.resize(mesh.triangles.size(), 0);
+  for (const Chunk::Edge& e : chunk.edges) {
+    must(known(e.a) && known(e.b), "edges do not refer ahead");
+    mesh.edges.push_back({e.a, e.b, e.marker});
+  }
+  for (const auto& pair : chunk.input_points) input_points.push_back(pair);
+  return true;
+}
+
+void CollectedMesh::must(bool holds, const char* law) {
+  if (!holds && broken_law.empty()) broken_law = law;
+}
+
+check::Domain domain_of(const Pslg& pslg) {
+  check::Domain domain;
+  for (Point p : pslg.points) domain.points.push_back({p.x, p.y});
+  for (const Segment& s : pslg.segments) {
+    domain.segments.push_back({s.a, s.b});
+    domain.markers.push_back(s.marker);
+  }
+  for (Point p : pslg.holes) domain.holes.push_back({p.x, p.y});
+  for (const RegionSeed& r : pslg.regions) {
+    domain.regions.push_back({{r.at.x, r.at.y}, r.id, r.max_area});
+  }
+  domain.fill = pslg.fill == Fill::kEvenOdd ? check::Fill::kEvenOdd : check::Fill::kSeeds;
+  return domain;
+}
+
+std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
+                    const Summary& summary) {
+  if (!collected.broken_law.empty()) return "broken law: " + collected.broken_law;
+  check::Requirements requirements;
+  requirements.max_area = request.size.constant;
+  requirements.size = request.size.expression;
+  requirements.min_angle_deg = request.min_angle_deg;
+  // What the engine declares it could not refine may miss its bounds, no more.
+  requirements.allowed_unrefined = summary.unrefined.edge_floor + summary.unrefined.budget;
+  const check::Report report = check::check(domain_of(request.pslg), collected.mesh, requirements);
+  if (!report.ok()) return check::to_text(report);
+  if (summary.triangles != report.facts.triangles) return "the summary miscounts triangles";
+  if (summary.vertices != report.facts.vertices) return "the summary miscounts vertices";
+  if (summary.edges != report.facts.edges) return "the summary miscounts edges";
+  if (std::fabs(summary.min_angle_deg - report.facts.min_angle_deg) > 1e-6)
+    return "the summary has another smallest angle";
+  if (std::fabs(summary.max_angle_deg - report.facts.max_angle_deg) > 1e-6)
+    return "the summary has another largest angle";
+  if (std::fabs(summary.area - report.facts.area) > 1e-9 * report.facts.area)
+    return "the summary has another area";
+  for (const auto& [vertex, point] : collected.input_points) {
+    if (vertex >= collected.mesh.vertices.size() || point >= request.pslg.points.size())
+      return "an input point is out of range";
+    const check::Vec2 v = collected.mesh.vertices[vertex];
+    if (v.x != request.pslg.points[point].x || v.y != request.pslg.points[point].y)
+      return "an input point is not where it was";
+  }
+  return "";
+}
+
+}  // namespace weft

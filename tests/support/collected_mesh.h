@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A mesh as its chunks bring it, in the checker's terms, and the checker's verdict on it.
+//
+//   CollectedMesh mesh;
+//   Result<Summary> summary = generate_mesh(request, mesh, context);
+//   EXPECT_EQ(verdict(request, mesh, *summary), "");
+#pragma once
+
+#include <string>
+
+#include "checker/check.h"
+#include "engine/chunk.h"
+#include "engine/engine.h"
+
+namespace weft {
+
+// Takes chunks and holds them to their laws: index, first_vertex and first_triangle go on where
+// the last chunk ended, nothing refers ahead, the digest is right, at most kMaxChunkBytes.
+class CollectedMesh : public ChunkSink {
+ public:
+  bool accept(Chunk&& chunk) override;
+
+  check::Mesh mesh;
+  std::uint32_t chunks = 0;
+  std::string broken_law;  // the first one that did not hold
+  // Pairs of mesh vertex and input point.
+  std::vector<std::array<std::uint32_t, 2>> input_points;
+
+ private:
+  void must(bool holds, const char* law);
+};
+
+check::Domain domain_of(const Pslg& pslg);
+
+// "" when the chunks were lawful, the checker finds nothing, and the summary agrees with the mesh;
+// otherwise what is wrong.
+std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
+                    const Summary& summary);
+
+}  // namespace weft
