@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/chunk_queue.h"
+
+#include <utility>
+
+namespace weft::server {
+
+bool ChunkQueue::push(grpc::ByteBuffer message) {
+  const std::size_t bytes = message.Length();
+  std::unique_lock lock(mutex_);
+  room_.wait(lock, [&] { return closed_ || !full_for(bytes); });
+  if (closed_) return false;
+  bytes_ += bytes;
+  messages_.push_back(std::move(message));
+  return true;
+}
+
+std::optional<grpc::ByteBuffer> ChunkQueue::try_pop() {
+  std::lock_guard lock(mutex_);
+  if (messages_.empty()) return std::nullopt;
+  grpc::ByteBuffer message = std::move(messages_.front());
+  messages_.pop_front();
+  bytes_ -= message.Length();
+  room_.notify_one();
+  return message;
+}
+
+bool ChunkQueue::empty() const {
+  std::lock_guard lock(mutex_);
+  return messages_.empty();
+}
+
+void ChunkQueue::close() {
+  std::deque<grpc::ByteBuffer> dropped;
+  std::lock_guard lock(mutex_);
+  closed_ = true;
+  dropped.swap(messages_);
+  bytes_ = 0;
+  room_.notify_all();
+}
+
+}  // namespace weft::server

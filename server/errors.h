@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The one table of what can go wrong with a call, and what each is called everywhere: the reason
+// in ErrorInfo, the gRPC code, whether the same request may succeed later, the exit code of the
+// command line (64 + gRPC code) and the metric label.
+//
+// Example:
+//   Failure failure{Reason::kQueueFull, "", "64 jobs wait already; the limit is 64"};
+//   reactor->Finish(to_status(failure, job_id));
+#pragma once
+
+#include <grpcpp/support/status.h>
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "engine/error.h"
+
+namespace weft::server {
+
+// The engine's codes come first, in their order, then the server's own.
+enum class Reason {
+  kBadCoordinate,
+  kIndexOutOfRange,
+  kTooFewPoints,
+  kCollinearPoints,
+  kZeroLengthSegment,
+  kSeedOutsideDomain,
+  kSeedOnSegment,
+  kEmptyDomain,
+  kBadOption,
+  kExpressionSyntax,
+  kExpressionTooComplex,
+  kBadSizeValue,
+  kLimitExceeded,
+  kBudgetExceeded,
+  kDeadlineExceeded,
+  kCancelled,
+  kInternal,
+  kMalformedRequest,  // bytes that are no GenerateMeshRequest
+  kBadArray,          // an array whose length makes no sense
+  kQueueFull,         // too many jobs wait
+  kStopping,          // the server drains
+  kReaderStalled,     // the client read nothing for too long
+};
+
+struct ErrorRow {
+  Reason reason;
+  std::string_view name;  // ErrorInfo.reason
+  grpc::StatusCode code;
+  bool retryable;  // the same request may succeed later; the status then carries a RetryInfo
+  int exit_code;
+  std::string_view metric;
+};
+
+// Indexed by Reason.
+std::span<const ErrorRow> error_table();
+const ErrorRow& row_of(Reason reason);
+Reason reason_of(ErrorCode code);
+
+// "INVALID_ARGUMENT" and so on.
+std::string_view code_name(grpc::StatusCode code);
+
+// Why a call failed. `field` is the path of the field at fault, empty when none is.
+struct Failure {
+  Reason reason = Reason::kInternal;
+  std::string field;
+  std::string message;
+};
+
+Failure failure_of(const Error& error);
+
+// A status whose details are a google.rpc.Status: an ErrorInfo, with the job's id in its metadata
+// unless that is empty, a BadRequest where a field is at fault, a RetryInfo where a retry makes
+// sense. Long messages are cut: a client refuses trailers of more than 8 KiB.
+grpc::Status to_status(const Failure& failure, std::string_view job_id);
+
+}  // namespace weft::server

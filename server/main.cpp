@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// weftd: the process around the server. Exit codes: 0 drained, 1 failed, 2 wrong flags, 3 cannot
+// listen, 128 + signal where a second signal cut the draining short.
+#include <fmt/format.h>
+#include <grpc/grpc.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <thread>
+
+#include "engine/engine.h"
+#include "server/log.h"
+#include "server/machine.h"
+#include "server/options.h"
+#include "server/server.h"
+#include "server/stop_events.h"
+#include "server/version.h"
+
+namespace weft::server {
+namespace {
+
+constexpr int kExitFailed = 1;
+constexpr int kExitCannotListen = 3;
+
+// Whoever waits for the file never sees half of it.
+bool write_port_file(const std::filesystem::path& path, const std::vector<std::string>& addresses) {
+  const std::filesystem::path draft = path.string() + ".tmp";
+  {
+    std::ofstream out(draft);
+    for (const std::string& address : addresses) out << address << '\n';
+    if (!out.flush()) return false;
+  }
+  std::error_code error;
+  std::filesystem::rename(draft, path, error);
+  return !error;
+}
+
+const char* name_of(const StopEvents::Event& event) {
+  if (event.kind == StopEvents::Kind::kInputEnded) return "end-of-input";
+  return event.signal == SIGINT ? "SIGINT" : "SIGTERM";
+}
+
+// Drains on a thread of its own, so that a second signal is heard meanwhile.
+void drain(Server& server, StopEvents& events, const Options& options, const Logger& log) {
+  std::thread drainer([&] {
+    server.drain(std::chrono::duration_cast<std::chrono::steady_clock::duration>(options.drain));
+    events.notify();
+  });
+  while (true) {
+    const StopEvents::Event event = events.wait();
+    if (event.kind == StopEvents::Kind::kNotified) break;
+    if (event.kind != StopEvents::Kind::kSignal) continue;
+    log->warn("event=exit_now cause={}", name_of(event));
+    server.remove_socket_files();
+    std::_Exit(128 + event.signal);
+  }
+  drainer.join();
+}
+
+int serve(Options options) {
+  std::signal(SIGPIPE, SIG_IGN);               // a log that nobody reads must not end the server
+  StopEvents events(options.exit_with_stdin);  // before any thread: gRPC's inherit its mask
+  // Never undone: the clean-up that follows the last user of gRPC 1.51 may wait 10 s for its backup
+  // poller. The end of the process does it at once.
+  grpc_init();
+  adopt_grpc_logs();
+  const Logger log = make_logger(options.log_level);
+  ServiceOptions& service = options.server.service;
+  service.instance = fmt::format("{:08x}", std::random_device{}());
+  log->info("event=starting version={} engine={} threads={} jobs={} queue={} instance={}", kVersion,
+            kEngineVersion, service.threads, service.jobs, service.queue, service.instance);
+
+  auto started = Server::start(options.server, generate_mesh, log);
+  if (!started) {
+    log->error("event=cannot_listen message={}", log_value(started.error()));
+    return kExitCannotListen;
+  }
+  Server& server = **started;
+  if (!options.port_file.empty() && !write_port_file(options.port_file, server.addresses())) {
+    log->error("event=cannot_write_port_file path={}", log_value(options.port_file));
+    return kExitFailed;
+  }
+  log->info("event=draining cause={} seconds={}", name_of(events.wait()), options.drain.count());
+  drain(server, events, options, log);
+  log->info("event=stopped");
+  return 0;
+}
+
+}  // namespace
+}  // namespace weft::server
+
+int main(int argc, char** argv) {
+  using namespace weft::server;
+  try {
+    auto parsed = parse_options(argc, argv, this_machine());
+    if (const Exit* exit = std::get_if<Exit>(&parsed)) return exit->code;
+    return serve(std::move(std::get<Options>(parsed)));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "weftd: {}\n", error.what());
+    return kExitFailed;
+  }
+}

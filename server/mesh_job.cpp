@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/mesh_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <utility>
+
+#include "server/translate.h"
+
+namespace weft::server {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+grpc::ByteBuffer accepted_message(const std::string& id) {
+  v1::GenerateMeshResponse message;
+  v1::Accepted& accepted = *message.mutable_accepted();
+  accepted.set_job_id(id);
+  accepted.set_engine_version(std::string(kEngineVersion));
+  accepted.set_threads(kThreadsPerJob);
+  return serialize(message);
+}
+
+// The point in time that many seconds from now; far ones are brought near enough for the clock.
+MeshJob::Clock::time_point after(Seconds span) {
+  constexpr Seconds kDecades{1e9};
+  return MeshJob::Clock::now() +
+         std::chrono::duration_cast<MeshJob::Clock::duration>(std::min(span, kDecades));
+}
+
+}  // namespace
+
+MeshJob::MeshJob(const JobEnvironment& environment, grpc::CallbackServerContext* context,
+                 std::string id, std::unique_ptr<v1::GenerateMeshRequest> request,
+                 DrainGate::Pass pass)
+    : MessageStream(context, accepted_message(id)),
+      environment_(environment),
+      id_(std::move(id)),
+      peer_(context->peer()),
+      call_deadline_(context->deadline()),
+      max_seconds_(to_seconds(request->budget(), environment.limits)),
+      pass_(std::move(pass)),
+      context_(to_budget(request->budget(), environment.limits)),
+      request_(std::move(request)) {}
+
+void MeshJob::start() noexcept {
+  const v1::Domain& domain = request_->domain();
+  environment_.log->info(
+      "event=job_queued job={} peer={} method=GenerateMesh points={} segments={} seeds={}", id_,
+      log_value(peer_), domain.points_size() / 2, domain.segments_size() / 2,
+      domain.holes_size() / 2 + domain.regions_size());
+  if (environment_.queue.push(shared_from_this())) {
+    pump();
+  } else {
+    fail({Reason::kQueueFull, "",
+          fmt::format("{} jobs wait already; this server's limit is {}",
+                      environment_.queue.capacity(), environment_.queue.capacity())});
+  }
+}
+
+void MeshJob::stop(StopCause cause) {
+  context_.cancel();
+  environment_.queue.remove(*this);
+  fail(failure_of_cause(cause));
+  if (cause == StopCause::kReaderStalled) kill();
+}
+
+void MeshJob::tick(Clock::time_point now) {
+  std::optional<Clock::time_point> deadline;
+  {
+    std::lock_guard lock(mutex_);
+    deadline = work_deadline_;
+  }
+  if (waiting_for_client(now) >= environment_.stall_timeout) {
+    stop(StopCause::kReaderStalled);
+  } else if (deadline && now >= *deadline) {
+    stop(StopCause::kTimeUp);
+  } else {
+    offer(progress_message(now));
+  }
+}
+
+void MeshJob::run() noexcept {
+  if (context_.poll()) return;  // stopped meanwhile, and the call ended by that
+  const tl::expected<Summary, Failure> outcome = work();
+  if (outcome) {
+    succeed(*outcome);
+  } else if (outcome.error().reason == Reason::kDeadlineExceeded) {
+    fail(failure_of_cause(StopCause::kTimeUp));
+  } else {
+    fail(outcome.error());
+  }
+}
+
+tl::expected<Summary, Failure> MeshJob::work() {
+  const Seconds until_call_deadline = call_deadline_ - std::chrono::system_clock::now();
+  const Clock::time_point deadline = after(std::min(Seconds(max_seconds_), until_call_deadline));
+  context_.set_deadline(deadline);
+  context_.set_arena(environment_.arena);
+  {
+    std::lock_guard lock(mutex_);
+    work_deadline_ = deadline;
+  }
+  environment_.log->info("event=job_started job={} waited_seconds={:.3f}", id_,
+                         Seconds(Clock::now() - admitted_).count());
+  try {
+    const MeshRequest request = to_engine(*request_);
+    request_.reset();
+    const Result<Summary> summary = environment_.engine(request, *this, context_);
+    if (!summary) return tl::unexpected(failure_of(summary.error()));
+    return *summary;
+  } catch (const std::bad_alloc&) {
+    return tl::unexpected(Failure{Reason::kBudgetExceeded, "", "the server is out of memory"});
+  } catch (const std::exception& error) {
+    return tl::unexpected(
+        Failure{Reason::kInternal, "", fmt::format("the engine failed: {}", error.what())});
+  } catch (...) {
+    return tl::unexpected(Failure{Reason::kInternal, "", "the engine failed"});
+  }
+}
+
+void MeshJob::succeed(const Summary& summary) {
+  v1::GenerateMeshResponse message;
+  *message.mutable_summary() = to_wire(summary);
+  if (finish(serialize(message))) log_end("OK", "-");
+}
+
+void MeshJob::fail(const Failure& failure) {
+  if (abort(to_status(failure, id_)))
+    log_end(code_name(row_of(failure.reason).code), row_of(failure.reason).name);
+}
+
+Failure MeshJob::failure_of_cause(StopCause cause) const {
+  const bool call_is_late = std::chrono::system_clock::now() >= call_deadline_;
+  switch (cause) {
+    case StopCause::kClientGone:
+      if (call_is_late) break;
+      return {Reason::kCancelled, "", "the client cancelled the call"};
+    case StopCause::kTimeUp:
+      if (call_is_late) break;
+      return {Reason::kDeadlineExceeded, "",
+              fmt::format("the job worked for {} s, which is its limit", max_seconds_)};
+    case StopCause::kReaderStalled:
+      return {Reason::kReaderStalled, "",
+              fmt::format("the client read nothing for {} s",
+                          Seconds(environment_.stall_timeout).count())};
+    case StopCause::kStopping:
+      return {Reason::kStopping, "", "the server is stopping"};
+  }
+  return {Reason::kDeadlineExceeded, "", "the call's deadline passed"};
+}
+
+bool MeshJob::accept(Chunk&& chunk) {
+  to_wire(chunk, *chunk_message_.mutable_chunk());
+  grpc::ByteBuffer bytes = serialize(chunk_message_);
+  const std::size_t length = bytes.Length();
+  if (!send(std::move(bytes))) return false;
+  ++chunks_;
+  bytes_ += length;
+  return true;
+}
+
+grpc::ByteBuffer MeshJob::progress_message(Clock::time_point now) {
+  const Progress progress = context_.progress();
+  v1::Stage stage = to_wire(progress.stage);
+  {
+    std::lock_guard lock(mutex_);
+    if (work_deadline_) stage = std::max(stage, v1::STAGE_TRIANGULATE);  // no longer queued
+  }
+  told_.set_stage(std::max(told_.stage(), stage));
+  told_.set_triangles(std::max<std::uint64_t>(told_.triangles(), progress.triangles));
+  told_.set_expected_triangles(progress.expected_triangles);
+  told_.set_elapsed_seconds(Seconds(now - admitted_).count());
+  v1::GenerateMeshResponse message;
+  *message.mutable_progress() = told_;
+  return serialize(message);
+}
+
+void MeshJob::log_end(std::string_view status, std::string_view reason) const {
+  environment_.log->info(
+      "event=job_ended job={} peer={} method=GenerateMesh status={} reason={} triangles={} "
+      "chunks={} bytes={} seconds={:.3f}",
+      id_, log_value(peer_), status, reason, context_.progress().triangles, chunks_.load(),
+      bytes_.load(), Seconds(Clock::now() - admitted_).count());
+}
+
+}  // namespace weft::server

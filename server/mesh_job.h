@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One GenerateMesh call that was admitted: it waits in the job queue, runs the engine on a worker
+// thread, hands the chunks to its stream, and ends exactly once, whatever stops it.
+//
+// What can stop it, and what its call then ends with: see StopCause. The first cause wins, and the
+// call ends at once; the engine notices within 50 ms.
+//
+// Thread-safety: `stop` and `tick` may be called from any thread at any time.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/arena.h"
+#include "engine/engine.h"
+#include "server/drain.h"
+#include "server/errors.h"
+#include "server/job_queue.h"
+#include "server/limits.h"
+#include "server/log.h"
+#include "server/message_stream.h"
+#include "weft/v1/mesh_service.pb.h"
+
+namespace weft::server {
+
+// `generate_mesh`, or what a test puts in its place. Called on worker threads, several at once.
+using EngineFn = std::function<Result<Summary>(const MeshRequest&, ChunkSink&, ExecutionContext&)>;
+
+enum class StopCause {
+  kClientGone,     // CANCELLED, or DEADLINE_EXCEEDED where the call's deadline has passed
+  kTimeUp,         // DEADLINE_EXCEEDED
+  kReaderStalled,  // CANCELLED
+  kStopping,       // UNAVAILABLE
+};
+
+// What all jobs share; outlives them.
+struct JobEnvironment {
+  EngineFn engine;
+  Arena& arena;  // where they compute
+  Limits limits;
+  std::chrono::steady_clock::duration stall_timeout;
+  Logger log;
+  JobQueue& queue;
+  std::function<void(MessageStream&)> forget;  // drops the owner's pointer to the job
+};
+
+class MeshJob final : public MessageStream,
+                      public JobQueue::Job,
+                      public std::enable_shared_from_this<MeshJob>,
+                      private ChunkSink {
+ public:
+  MeshJob(const JobEnvironment& environment, grpc::CallbackServerContext* context, std::string id,
+          std::unique_ptr<v1::GenerateMeshRequest> request, DrainGate::Pass pass);
+
+  // Joins the queue, or ends with QUEUE_FULL. Call once.
+  void start() noexcept;
+
+  void stop(StopCause cause);
+
+  // Called a few times a second: sends progress, ends the job at its deadline, cuts off a client
+  // that reads nothing.
+  void tick(Clock::time_point now);
+
+ private:
+  void run() noexcept override;
+  tl::expected<Summary, Failure> work();
+  // Of these, the first decides how the call ends, and logs it.
+  void succeed(const Summary& summary);
+  void fail(const Failure& failure);
+
+  Failure failure_of_cause(StopCause cause) const;
+  grpc::ByteBuffer progress_message(Clock::time_point now);
+  void log_end(std::string_view status, std::string_view reason) const;
+
+  bool accept(Chunk&& chunk) override;
+  void client_gone() override { stop(StopCause::kClientGone); }
+  void done() override { environment_.forget(*this); }
+
+  const JobEnvironment& environment_;
+  const std::string id_;
+  const std::string peer_;
+  const std::chrono::system_clock::time_point call_deadline_;
+  const double max_seconds_;  // of work
+  const Clock::time_point admitted_ = Clock::now();
+  const DrainGate::Pass pass_;
+  ExecutionContext context_;
+  std::atomic<std::uint64_t> chunks_{0};  // handed to the stream
+  std::atomic<std::uint64_t> bytes_{0};
+
+  // The worker's own.
+  std::unique_ptr<v1::GenerateMeshRequest> request_;
+  v1::GenerateMeshResponse chunk_message_;  // kept for the memory of its arrays
+
+  // The ticking thread's own: what was last told, since progress never goes back.
+  v1::Progress told_;
+
+  mutable std::mutex mutex_;                        // guards the one below
+  std::optional<Clock::time_point> work_deadline_;  // set when the job begins
+};
+
+}  // namespace weft::server

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/mesh_service.h"
+
+#include <fmt/format.h>
+#include <grpcpp/impl/codegen/proto_utils.h>
+
+#include <exception>
+#include <utility>
+
+#include "server/translate.h"
+#include "server/version.h"
+#include "server/wire_scan.h"
+
+namespace weft::server {
+namespace {
+
+using Reactor = grpc::ServerWriteReactor<grpc::ByteBuffer>;
+
+// Ends a call before it began.
+class Refusal final : public Reactor {
+ public:
+  explicit Refusal(grpc::Status status) { Finish(std::move(status)); }
+  void OnDone() override { delete this; }
+};
+
+}  // namespace
+
+MeshService::MeshService(const ServiceOptions& options, EngineFn engine, Logger log)
+    : options_(options),
+      log_(std::move(log)),
+      arena_(static_cast<int>(options.threads)),
+      environment_{std::move(engine),
+                   arena_,
+                   options.limits,
+                   options.stall_timeout,
+                   log_,
+                   queue_,
+                   [this](MessageStream& stream) { forget(stream); }},
+      queue_(options.jobs, options.queue),
+      ticker_([this] { tick_until_stopped(); }) {}
+
+MeshService::~MeshService() {
+  {
+    std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  ticker_.join();
+}
+
+void MeshService::stop_all() {
+  for (const auto& job : open_jobs()) job->stop(StopCause::kStopping);
+}
+
+Reactor* MeshService::GenerateMesh(grpc::CallbackServerContext* context,
+                                   const grpc::ByteBuffer* request) {
+  auto pass = gate_.enter();
+  if (!pass) return refuse(context, {Reason::kStopping, "", "the server is stopping"});
+  try {
+    // gRPC made this buffer for the call and keeps it to the end: parsing frees its memory early.
+    return admit(context, const_cast<grpc::ByteBuffer&>(*request), std::move(*pass));
+  } catch (const std::exception& error) {
+    return refuse(context, {Reason::kInternal, "", error.what()});
+  }
+}
+
+Reactor* MeshService::admit(grpc::CallbackServerContext* context, grpc::ByteBuffer& bytes,
+                            DrainGate::Pass pass) {
+  auto request = read(bytes);
+  if (!request) return refuse(context, request.error());
+  std::shared_ptr<MeshJob> job;
+  {
+    std::lock_guard lock(mutex_);
+    job = std::make_shared<MeshJob>(environment_, context,
+                                    fmt::format("{}-{}", options_.instance, ++last_number_),
+                                    std::move(*request), std::move(pass));
+    jobs_.emplace(job.get(), job);
+  }
+  changed_.notify_all();
+  job->start();
+  return job.get();
+}
+
+tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure> MeshService::read(
+    grpc::ByteBuffer& bytes) {
+  if (auto failure = check_seed_count(count_regions(bytes), options_.limits))
+    return tl::unexpected(*failure);
+  auto request = std::make_unique<v1::GenerateMeshRequest>();
+  const grpc::Status parsed =
+      grpc::SerializationTraits<v1::GenerateMeshRequest>::Deserialize(&bytes, request.get());
+  if (!parsed.ok())
+    return tl::unexpected(
+        Failure{Reason::kMalformedRequest, "", "the bytes are not a weft.v1.GenerateMeshRequest"});
+  if (auto failure = check_shape(*request)) return tl::unexpected(*failure);
+  if (auto failure = check_limits(*request, options_.limits)) return tl::unexpected(*failure);
+  return request;
+}
+
+Reactor* MeshService::refuse(grpc::CallbackServerContext* context, const Failure& failure) {
+  const ErrorRow& row = row_of(failure.reason);
+  log_->info("event=call_refused peer={} method=GenerateMesh status={} reason={} field={}",
+             log_value(context->peer()), code_name(row.code), row.name,
+             log_value(failure.field.empty() ? "-" : failure.field));
+  return new Refusal(to_status(failure, ""));
+}
+
+grpc::ServerUnaryReactor* MeshService::GetServerInfo(grpc::CallbackServerContext* context,
+                                                     const v1::GetServerInfoRequest*,
+                                                     v1::GetServerInfoResponse* response) {
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  if (!gate_.enter()) {
+    reactor->Finish(to_status({Reason::kStopping, "", "the server is stopping"}, ""));
+    return reactor;
+  }
+  response->set_version(std::string(kVersion));
+  response->set_engine_version(std::string(kEngineVersion));
+  response->set_threads(options_.threads);
+  v1::ServerLimits& limits = *response->mutable_limits();
+  limits.set_max_points(options_.limits.max_points);
+  limits.set_max_segments(options_.limits.max_segments);
+  limits.set_max_seeds(options_.limits.max_seeds);
+  limits.set_max_expression_bytes(options_.limits.max_expression_bytes);
+  limits.set_max_triangles(options_.limits.max_triangles);
+  limits.set_max_bytes(options_.limits.max_bytes);
+  limits.set_max_seconds(options_.limits.max_seconds);
+  limits.set_max_request_bytes(options_.limits.max_request_bytes);
+  limits.set_max_concurrent_jobs(options_.jobs);
+  limits.set_max_min_angle_deg(kMaxMinAngleDeg);
+  reactor->Finish(grpc::Status::OK);
+  return reactor;
+}
+
+void MeshService::forget(MessageStream& stream) {
+  std::shared_ptr<MeshJob> last;  // destroyed without the lock
+  std::lock_guard lock(mutex_);
+  const auto found = jobs_.find(&stream);
+  last = std::move(found->second);
+  jobs_.erase(found);
+}
+
+std::vector<std::shared_ptr<MeshJob>> MeshService::open_jobs() {
+  std::vector<std::shared_ptr<MeshJob>> jobs;
+  std::lock_guard lock(mutex_);
+  jobs.reserve(jobs_.size());
+  for (const auto& [stream, job] : jobs_) jobs.push_back(job);
+  return jobs;
+}
+
+void MeshService::tick_until_stopped() {
+  std::unique_lock lock(mutex_);
+  while (!stopping_) {
+    if (jobs_.empty()) {
+      changed_.wait(lock, [this] { return stopping_ || !jobs_.empty(); });
+      continue;
+    }
+    changed_.wait_for(lock, options_.tick, [this] { return stopping_; });
+    lock.unlock();
+    const auto now = MessageStream::Clock::now();
+    for (const auto& job : open_jobs()) job->tick(now);
+    lock.lock();
+  }
+}
+
+}  // namespace weft::server

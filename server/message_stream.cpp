@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/message_stream.h"
+
+#include <utility>
+
+namespace weft::server {
+
+MessageStream::MessageStream(grpc::CallbackServerContext* context, grpc::ByteBuffer first)
+    : queue_(ChunkQueue::Bounds{}), context_(context) {
+  queue_.push(std::move(first));
+}
+
+bool MessageStream::send(grpc::ByteBuffer message) {
+  if (!queue_.push(std::move(message))) return false;
+  pump();
+  return true;
+}
+
+void MessageStream::offer(const grpc::ByteBuffer& message) {
+  {
+    std::lock_guard lock(mutex_);
+    if (writing_ || finished_ || last_queued_ || status_ || !queue_.empty()) return;
+    writing_ = true;
+    write_started_ = Clock::now();
+  }
+  write(message);
+}
+
+bool MessageStream::finish(grpc::ByteBuffer last) {
+  {
+    std::lock_guard lock(mutex_);
+    last_queued_ = true;  // no offer may come after the last message
+  }
+  if (!queue_.push(std::move(last))) return false;
+  return settle(grpc::Status::OK);
+}
+
+bool MessageStream::abort(grpc::Status status) {
+  queue_.close();
+  return settle(std::move(status));
+}
+
+bool MessageStream::settle(grpc::Status status) {
+  bool first = false;
+  {
+    std::lock_guard lock(mutex_);
+    first = !status_;
+    if (first) status_ = std::move(status);
+  }
+  pump();
+  return first;
+}
+
+void MessageStream::kill() {
+  queue_.close();
+  std::lock_guard lock(context_mutex_);
+  if (context_ != nullptr) context_->TryCancel();
+}
+
+MessageStream::Clock::duration MessageStream::waiting_for_client(Clock::time_point now) const {
+  std::lock_guard lock(mutex_);
+  return writing_ ? now - write_started_ : Clock::duration::zero();
+}
+
+// gRPC is called without the lock: it may call back on this thread. `writing_` and `finished_` make
+// the call exclusive all the same.
+void MessageStream::pump() {
+  std::optional<grpc::ByteBuffer> next;
+  grpc::Status status;
+  {
+    std::lock_guard lock(mutex_);
+    if (writing_ || finished_) return;
+    next = queue_.try_pop();
+    if (next) {
+      writing_ = true;
+      write_started_ = Clock::now();
+    } else if (status_) {
+      finished_ = true;
+      status = *status_;
+    } else {
+      return;
+    }
+  }
+  if (next) {
+    write(std::move(*next));
+  } else {
+    Finish(std::move(status));
+  }
+}
+
+void MessageStream::write(grpc::ByteBuffer message) {
+  outgoing_ = std::move(message);
+  StartWrite(&outgoing_);
+}
+
+void MessageStream::OnWriteDone(bool ok) {
+  {
+    std::lock_guard lock(mutex_);
+    writing_ = false;
+  }
+  if (!ok) {
+    queue_.close();
+    client_gone();
+  }
+  pump();
+}
+
+void MessageStream::OnDone() {
+  {
+    std::lock_guard lock(context_mutex_);
+    context_ = nullptr;
+  }
+  done();
+}
+
+}  // namespace weft::server

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+
+#include "server/version.h"
+
+namespace weft::server {
+namespace {
+
+std::string environment_name(std::string flag) {
+  std::string name = "WEFT_" + flag.substr(2);
+  for (char& c : name)
+    c = c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return name;
+}
+
+// CLI::Range lets NaN pass.
+CLI::Validator is_a_number() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        double value = 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && !std::isnan(value);
+        return good ? std::string() : text + " is not a number";
+      },
+      "");
+}
+
+// Adds flags that all have an environment variable.
+class Flags {
+ public:
+  explicit Flags(CLI::App& app) : app_(app) {}
+
+  template <class T>
+  CLI::Option* value(const std::string& flag, T& target, const std::string& help) {
+    return app_.add_option(flag, target, help)
+        ->envname(environment_name(flag))
+        ->capture_default_str();
+  }
+  void count(const std::string& flag, std::uint64_t& target, const std::string& help) {
+    value(flag, target, help)->check(CLI::PositiveNumber);
+  }
+  CLI::Option* bytes(const std::string& flag, std::uint64_t& target, const std::string& help) {
+    return value(flag, target, help + ", such as 256MiB")
+        ->transform(CLI::AsSizeValue(false))
+        ->check(CLI::PositiveNumber);
+  }
+  void seconds(const std::string& flag, double& target, const std::string& help) {
+    value(flag, target, help + ", in seconds")->check(CLI::Range(0.0, 1e9))->check(is_a_number());
+  }
+
+ private:
+  CLI::App& app_;
+};
+
+std::chrono::steady_clock::duration to_duration(double seconds) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(seconds));
+}
+
+}  // namespace
+
+std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
+                                          const Machine& machine) {
+  Options options;
+  ServiceOptions& service = options.server.service;
+  Limits& limits = service.limits;
+  options.server.listen = {"127.0.0.1:7421"};
+  service.threads = machine.threads;
+  if (machine.memory != 0) limits.max_bytes = machine.memory / 2;
+  std::uint32_t jobs = 0;
+  double drain = 30;
+  double stall_timeout = 60;
+
+  CLI::App app("weftd: graded, guaranteed-quality Delaunay meshes over gRPC", "weftd");
+  app.set_version_flag("--version", "weftd " + std::string(kVersion));
+  Flags flags(app);
+  flags
+      .value("--listen", options.server.listen,
+             "HOST:PORT (0: any free port) or unix:PATH; may be repeated, or separated by commas")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  flags.value("--port-file", options.port_file, "File for the bound addresses, one a line");
+  flags
+      .value("--threads", service.threads, "Threads that refine; default: what the machine grants")
+      ->check(CLI::Range(1u, 4096u));
+  flags.value("--jobs", jobs, "Jobs that run at once; default: as many as threads")
+      ->check(CLI::Range(1u, 4096u))
+      ->default_str("");
+  flags.value("--queue", service.queue, "Jobs that wait; more are refused")
+      ->check(CLI::Range(0u, 1'000'000u));
+  flags.count("--max-points", limits.max_points, "Points a request");
+  flags.count("--max-segments", limits.max_segments, "Segments a request");
+  flags.count("--max-seeds", limits.max_seeds, "Hole and region seeds a request");
+  flags.count("--max-triangles", limits.max_triangles, "Triangles a mesh");
+  flags.bytes("--max-bytes", limits.max_bytes, "Engine memory a job; default: half of the memory");
+  flags.bytes("--max-request-bytes", limits.max_request_bytes, "Request message")
+      ->check(CLI::Range(1.0, double{std::numeric_limits<int>::max()}));  // gRPC's own range
+  flags.seconds("--max-seconds", limits.max_seconds, "Work a job");
+  flags.seconds("--stall-timeout", stall_timeout, "Patience with a client that reads nothing");
+  flags.seconds("--drain", drain, "After SIGTERM, time for open calls to finish");
+  flags.value("--log-level", options.log_level, "Least level of the log, on stderr")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}));
+  app.add_flag("--exit-with-stdin", options.exit_with_stdin,
+               "Drain at the end of standard input, too")
+      ->envname(environment_name("--exit-with-stdin"));
+  app.footer("Every flag is also read from the environment: --max-points is WEFT_MAX_POINTS.");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return Exit{app.exit(error) == 0 ? 0 : kExitUsage};
+  }
+  service.jobs = jobs != 0 ? jobs : service.threads;
+  service.stall_timeout = to_duration(stall_timeout);
+  options.drain = std::chrono::duration<double>(drain);
+  return options;
+}
+
+}  // namespace weft::server

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The flags of weftd. Every flag is also read from the environment, as WEFT_ and its name in
+// capitals: --max-points is WEFT_MAX_POINTS. A flag wins over the environment.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <variant>
+
+#include "server/machine.h"
+#include "server/server.h"
+
+namespace weft::server {
+
+struct Options {
+  ServerOptions server;
+  std::chrono::duration<double> drain{30};
+  std::string log_level = "info";
+  std::string port_file;  // empty: none
+  bool exit_with_stdin = false;
+};
+
+// The command line needs no server: it asked for help, or it is wrong.
+struct Exit {
+  int code = 0;
+};
+
+inline constexpr int kExitUsage = 2;
+
+// Defaults that depend on the machine come from `machine`. Prints help to stdout, and what is wrong
+// to stderr.
+std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
+                                          const Machine& machine);
+
+}  // namespace weft::server

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/server.h"
+
+#include <fmt/format.h>
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/resource_quota.h>
+#include <grpcpp/security/server_credentials.h>
+#include <grpcpp/server_builder.h>
+
+#include <utility>
+
+#include "server/listen.h"
+
+namespace weft::server {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr const char* kServiceName = "weft.v1.MeshService";
+
+// Ended calls still have to tell their clients so.
+constexpr seconds kLastWords{1};
+// Streams of other services, such as Health.Watch, do not end by themselves.
+constexpr milliseconds kOthersGrace{100};
+
+void configure(grpc::ServerBuilder& builder, const Limits& limits) {
+  builder.SetMaxReceiveMessageSize(static_cast<int>(limits.max_request_bytes));
+  // Two servers must not share a port unnoticed.
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  // A client that vanished without a word is noticed.
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 30'000);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10'000);
+  // The limit on message bytes holds before decompression: 256 MiB of gzip could be 256 GiB.
+  builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_GZIP, false);
+  builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_DEFLATE, false);
+  // Reflection is a synchronous service, whose threads are otherwise as many as its calls.
+  builder.SetSyncServerOption(grpc::ServerBuilder::NUM_CQS, 1);
+  builder.SetSyncServerOption(grpc::ServerBuilder::MAX_POLLERS, 2);
+  grpc::ResourceQuota quota("weftd");
+  quota.SetMaxThreads(16);
+  builder.SetResourceQuota(quota);
+}
+
+}  // namespace
+
+Server::Server(const ServiceOptions& options, EngineFn engine, Logger log)
+    : log_(log), service_(options, std::move(engine), std::move(log)) {}
+
+tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOptions& options,
+                                                                 EngineFn engine, Logger log) {
+  for (const std::string& address : options.listen)
+    if (const auto claimed = claim(address); !claimed)
+      return tl::unexpected(fmt::format("cannot listen on {}: {}", address, claimed.error()));
+
+  // The default health service and reflection are switched on for all builders of the process.
+  grpc::EnableDefaultHealthCheckService(true);
+  grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+
+  std::unique_ptr<Server> server(new Server(options.service, std::move(engine), std::move(log)));
+  grpc::ServerBuilder builder;
+  configure(builder, options.service.limits);
+  std::vector<int> ports(options.listen.size());
+  for (std::size_t i = 0; i < ports.size(); ++i)
+    builder.AddListeningPort(options.listen[i], grpc::InsecureServerCredentials(), &ports[i]);
+  builder.RegisterService(&server->service_);
+  server->server_ = builder.BuildAndStart();
+  for (std::size_t i = 0; i < ports.size(); ++i) {
+    if (ports[i] == 0) return tl::unexpected(fmt::format("cannot listen on {}", options.listen[i]));
+    server->addresses_.push_back(bound_address(options.listen[i], ports[i]));
+  }
+  server->server_->GetHealthCheckService()->SetServingStatus(kServiceName, true);
+  for (const std::string& address : server->addresses_)
+    server->log_->info("event=listening address={}", log_value(address));
+  return server;
+}
+
+void Server::drain(std::chrono::steady_clock::duration at_most) {
+  server_->GetHealthCheckService()->SetServingStatus(false);
+  service_.gate().close();
+  if (!service_.gate().wait_empty(at_most)) {
+    service_.stop_all();
+    service_.gate().wait_empty(kLastWords);
+  }
+  server_->Shutdown(std::chrono::system_clock::now() + kOthersGrace);
+  server_->Wait();
+  server_.reset();
+  remove_socket_files();
+}
+
+void Server::remove_socket_files() {
+  for (const std::string& address : addresses_) release(address);
+}
+
+Server::~Server() {
+  if (server_ != nullptr) drain(seconds(0));
+}
+
+}  // namespace weft::server

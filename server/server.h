@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The whole server but the process around it: MeshService, grpc.health.v1 and reflection on their
+// addresses.
+//
+//   auto server = Server::start({.listen = {"127.0.0.1:0"}}, generate_mesh, make_logger("info"));
+//   if (!server) return complain(server.error());
+//   ... (*server)->addresses() ...
+//   (*server)->drain(std::chrono::seconds(30));
+#pragma once
+
+#include <grpcpp/server.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "server/mesh_service.h"
+
+namespace weft::server {
+
+struct ServerOptions {
+  std::vector<std::string> listen;  // see listen.h
+  ServiceOptions service;
+};
+
+class Server {
+ public:
+  // Binds every address or none. The error names the address and why it is not to be had.
+  static tl::expected<std::unique_ptr<Server>, std::string> start(const ServerOptions& options,
+                                                                  EngineFn engine, Logger log);
+  // Ends what is open at once.
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  // As bound: port 0 is replaced.
+  const std::vector<std::string>& addresses() const { return addresses_; }
+
+  // Health says NOT_SERVING, new calls get UNAVAILABLE, open ones may finish; those that do not
+  // within `at_most` are ended with UNAVAILABLE. Then closes all connections and removes the socket
+  // files. Call at most once.
+  void drain(std::chrono::steady_clock::duration at_most);
+
+  // For a process that exits without draining.
+  void remove_socket_files();
+
+ private:
+  Server(const ServiceOptions& options, EngineFn engine, Logger log);
+
+  const Logger log_;
+  MeshService service_;
+  std::unique_ptr<grpc::Server> server_;
+  std::vector<std::string> addresses_;
+};
+
+}  // namespace weft::server

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/translate.h"
+
+#include <fmt/format.h>
+#include <grpcpp/impl/codegen/proto_utils.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace weft::server {
+namespace {
+
+Failure bad_option(std::string field, std::string message) {
+  return {Reason::kBadOption, std::move(field), std::move(message)};
+}
+
+std::optional<Failure> check_pairs(std::string_view field, int size, std::string_view what) {
+  if (size % 2 == 0) return std::nullopt;
+  return Failure{Reason::kBadArray, std::string(field),
+                 fmt::format("{} holds {} numbers; {} come in pairs", field, size, what)};
+}
+
+bool positive(double value) {
+  return std::isfinite(value) && value > 0;
+}
+bool not_negative(double value) {
+  return std::isfinite(value) && value >= 0;
+}
+
+std::optional<Failure> check_domain(const v1::Domain& domain) {
+  if (auto f = check_pairs("domain.points", domain.points_size(), "coordinates")) return f;
+  if (auto f = check_pairs("domain.segments", domain.segments_size(), "point indices")) return f;
+  if (auto f = check_pairs("domain.holes", domain.holes_size(), "coordinates")) return f;
+  const int segments = domain.segments_size() / 2;
+  const int markers = domain.segment_markers_size();
+  if (markers != 0 && markers != segments)
+    return Failure{Reason::kBadArray, "domain.segment_markers",
+                   fmt::format("domain.segment_markers holds {} markers for {} segments; give one "
+                               "per segment, or none",
+                               markers, segments)};
+  for (int i = 0; i < domain.regions_size(); ++i) {
+    const v1::Region& region = domain.regions(i);
+    if (region.has_max_area() && !positive(region.max_area()))
+      return bad_option(fmt::format("domain.regions[{}].max_area", i),
+                        fmt::format("domain.regions[{}].max_area is {}; it must be positive and "
+                                    "finite",
+                                    i, region.max_area()));
+  }
+  if (!v1::Fill_IsValid(domain.fill()))
+    return bad_option("domain.fill", fmt::format("domain.fill is {}, which is no Fill",
+                                                 static_cast<int>(domain.fill())));
+  return std::nullopt;
+}
+
+std::vector<Point> to_points(const google::protobuf::RepeatedField<double>& pairs) {
+  std::vector<Point> points(static_cast<std::size_t>(pairs.size() / 2));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double* pair = pairs.data() + 2 * i;
+    points[i] = {pair[0], pair[1]};
+  }
+  return points;
+}
+
+template <class Array, class Values>
+void assign(Array& array, const Values& values) {
+  array.Clear();
+  array.Add(values.data(), values.data() + values.size());
+}
+
+template <class Bytes>
+std::string to_string(const Bytes& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+}  // namespace
+
+std::optional<Failure> check_shape(const v1::GenerateMeshRequest& request) {
+  if (!request.has_domain()) return bad_option("domain", "domain is missing; it is required");
+  if (auto f = check_domain(request.domain())) return f;
+
+  const v1::SizeField& size = request.size();
+  if (size.has_constant() && !positive(size.constant()))
+    return bad_option(
+        "size.constant",
+        fmt::format("size.constant is {}; it must be positive and finite", size.constant()));
+  const v1::Quality& quality = request.quality();
+  const double angle = quality.min_angle_deg();
+  if (quality.has_min_angle_deg() && !(angle >= 0 && angle <= kMaxMinAngleDeg))
+    return bad_option("quality.min_angle_deg",
+                      fmt::format("quality.min_angle_deg is {}; it must be from 0 to {} degrees",
+                                  angle, kMaxMinAngleDeg));
+  if (!not_negative(quality.min_edge()))
+    return bad_option("quality.min_edge",
+                      fmt::format("quality.min_edge is {}; it must be 0 or more, and finite",
+                                  quality.min_edge()));
+  if (!not_negative(request.budget().max_seconds()))
+    return bad_option("budget.max_seconds",
+                      fmt::format("budget.max_seconds is {}; it must be 0 or more, and finite",
+                                  request.budget().max_seconds()));
+  return std::nullopt;
+}
+
+MeshRequest to_engine(const v1::GenerateMeshRequest& request) {
+  const v1::Domain& domain = request.domain();
+  MeshRequest out;
+  out.pslg.points = to_points(domain.points());
+  out.pslg.holes = to_points(domain.holes());
+  out.pslg.segments.resize(static_cast<std::size_t>(domain.segments_size() / 2));
+  const bool marked = domain.segment_markers_size() != 0;
+  for (std::size_t i = 0; i < out.pslg.segments.size(); ++i) {
+    const std::uint32_t* ends = domain.segments().data() + 2 * i;
+    out.pslg.segments[i] = {ends[0], ends[1], marked ? domain.segment_markers().data()[i] : 0};
+  }
+  out.pslg.regions.reserve(static_cast<std::size_t>(domain.regions_size()));
+  for (const v1::Region& region : domain.regions())
+    out.pslg.regions.push_back(
+        {{region.x(), region.y()},
+         region.id(),
+         region.has_max_area() ? std::optional(region.max_area()) : std::nullopt});
+  out.pslg.fill = domain.fill() == v1::FILL_EVEN_ODD ? Fill::kEvenOdd : Fill::kSeeds;
+
+  if (request.size().has_constant()) out.size.constant = request.size().constant();
+  if (request.size().has_expression()) out.size.expression = request.size().expression();
+  if (request.quality().has_min_angle_deg()) out.min_angle_deg = request.quality().min_angle_deg();
+  out.min_edge = request.quality().min_edge();
+  return out;
+}
+
+Budget to_budget(const v1::Budget& budget, const Limits& limits) {
+  Budget out;
+  if (budget.max_triangles() != 0) out.max_triangles = budget.max_triangles();
+  out.triangle_limit = limits.max_triangles;
+  out.max_bytes = budget.max_bytes() != 0 ? budget.max_bytes() : limits.max_bytes;
+  return out;
+}
+
+double to_seconds(const v1::Budget& budget, const Limits& limits) {
+  return budget.max_seconds() != 0 ? budget.max_seconds() : limits.max_seconds;
+}
+
+void to_wire(const Chunk& chunk, v1::Chunk& message) {
+  message.set_index(chunk.index);
+  message.set_first_vertex(chunk.first_vertex);
+  message.set_first_triangle(chunk.first_triangle);
+  assign(*message.mutable_coordinates(), chunk.coordinates);
+  assign(*message.mutable_triangles(), chunk.triangles);
+  assign(*message.mutable_regions(), chunk.regions);
+
+  auto& ends = *message.mutable_edges();
+  auto& markers = *message.mutable_edge_markers();
+  auto& segments = *message.mutable_edge_segments();
+  ends.Clear();
+  markers.Clear();
+  segments.Clear();
+  const int edges = static_cast<int>(chunk.edges.size());
+  ends.Reserve(2 * edges);
+  segments.Reserve(edges);
+  const bool marked = std::any_of(chunk.edges.begin(), chunk.edges.end(),
+                                  [](const Chunk::Edge& edge) { return edge.marker != 0; });
+  if (marked) markers.Reserve(edges);
+  for (const Chunk::Edge& edge : chunk.edges) {
+    ends.AddAlreadyReserved(edge.a);
+    ends.AddAlreadyReserved(edge.b);
+    segments.AddAlreadyReserved(edge.segment);
+    if (marked) markers.AddAlreadyReserved(edge.marker);
+  }
+
+  auto& input_points = *message.mutable_input_points();
+  input_points.Clear();
+  input_points.Reserve(2 * static_cast<int>(chunk.input_points.size()));
+  for (const auto& [vertex, point] : chunk.input_points) {
+    input_points.AddAlreadyReserved(vertex);
+    input_points.AddAlreadyReserved(point);
+  }
+  assign(*message.mutable_box(),
+         std::array{chunk.box.min_x, chunk.box.min_y, chunk.box.max_x, chunk.box.max_y});
+  message.set_sha256(to_string(chunk.digest));
+}
+
+v1::Summary to_wire(const Summary& summary) {
+  v1::Summary message;
+  message.set_vertices(summary.vertices);
+  message.set_triangles(summary.triangles);
+  message.set_edges(summary.edges);
+  message.set_chunks(summary.chunks);
+  message.set_area(summary.area);
+  message.set_min_angle_deg(summary.min_angle_deg);
+  message.set_max_angle_deg(summary.max_angle_deg);
+  assign(*message.mutable_angle_histogram(), summary.angle_histogram);
+  assign(*message.mutable_aspect_histogram(), summary.aspect_histogram);
+  assign(*message.mutable_size_histogram(), summary.size_histogram);
+  message.mutable_unrefined()->set_small_input_angle(summary.unrefined.small_input_angle);
+  message.mutable_unrefined()->set_edge_floor(summary.unrefined.edge_floor);
+  message.mutable_unrefined()->set_budget(summary.unrefined.budget);
+  v1::Timings& timings = *message.mutable_timings();
+  timings.set_triangulate_seconds(summary.triangulate_seconds);
+  timings.set_size_seconds(summary.size_seconds);
+  timings.set_refine_seconds(summary.refine_seconds);
+  timings.set_emit_seconds(summary.emit_seconds);
+  timings.set_engine_seconds(summary.engine_seconds);
+  message.set_peak_engine_bytes(summary.peak_bytes);
+  message.set_insertions(summary.insertions);
+  message.set_exact_predicates(summary.exact_predicates);
+  message.set_sha256(to_string(summary.digest));
+  message.set_threads(kThreadsPerJob);
+  return message;
+}
+
+v1::Stage to_wire(Stage stage) {
+  switch (stage) {
+    case Stage::kQueued:
+      return v1::STAGE_QUEUED;
+    case Stage::kTriangulate:
+      return v1::STAGE_TRIANGULATE;
+    case Stage::kSize:
+      return v1::STAGE_SIZE;
+    case Stage::kRefine:
+      return v1::STAGE_REFINE;
+    case Stage::kEmit:
+    case Stage::kDone:
+      return v1::STAGE_EMIT;
+  }
+  return v1::STAGE_UNSPECIFIED;
+}
+
+grpc::ByteBuffer serialize(const v1::GenerateMeshResponse& message) {
+  grpc::ByteBuffer bytes;
+  bool own_buffer = false;
+  const grpc::Status status =
+      grpc::SerializationTraits<v1::GenerateMeshResponse>::Serialize(message, &bytes, &own_buffer);
+  // Only a message of more than 2 GiB does not serialize, and none here comes near.
+  if (!status.ok()) throw std::length_error(status.error_message());
+  return bytes;
+}
+
+}  // namespace weft::server

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Between the wire and the engine: the only place that knows both.
+//
+// What an array's length or an option's range can tell is checked here, before a job is admitted;
+// what needs the coordinates (a NaN, an index, a seed) is the engine's to find. Errors carry the
+// path of the field as the wire spells it.
+#pragma once
+
+#include <grpcpp/support/byte_buffer.h>
+
+#include <optional>
+
+#include "engine/engine.h"
+#include "server/errors.h"
+#include "server/limits.h"
+#include "weft/v1/mesh_service.pb.h"
+
+namespace weft::server {
+
+// Threads that one job refines on. The engine is sequential.
+inline constexpr std::uint32_t kThreadsPerJob = 1;
+
+// Refuses arrays of impossible lengths and options outside their ranges, in constant time but for
+// the regions.
+std::optional<Failure> check_shape(const v1::GenerateMeshRequest& request);
+
+// REQUIRES: check_shape(request) and check_limits(request, limits) found nothing.
+MeshRequest to_engine(const v1::GenerateMeshRequest& request);
+Budget to_budget(const v1::Budget& budget, const Limits& limits);
+double to_seconds(const v1::Budget& budget, const Limits& limits);
+
+// Writes over what `message` holds; its arrays keep their memory for the next chunk.
+void to_wire(const Chunk& chunk, v1::Chunk& message);
+v1::Summary to_wire(const Summary& summary);
+v1::Stage to_wire(Stage stage);
+
+// The bytes of a message, as one gRPC buffer.
+grpc::ByteBuffer serialize(const v1::GenerateMeshResponse& message);
+
+}  // namespace weft::server

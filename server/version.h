@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The version of the server, from the project's CMakeLists.txt.
+#pragma once
+
+#include <string_view>
+
+namespace weft::server {
+
+inline constexpr std::string_view kVersion = WEFT_VERSION;
+
+}  // namespace weft::server

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Looks at a request without parsing it.
+//
+// Arrays of numbers take at most four times their wire bytes in memory, so the limit on request
+// bytes bounds them. Regions are messages: two bytes of wire become about 80 in memory, and a
+// hostile request of 256 MiB would take 10 GiB before any limit could be checked.
+#pragma once
+
+#include <grpcpp/support/byte_buffer.h>
+
+#include <cstdint>
+
+namespace weft::server {
+
+// The number of domain.regions in the bytes of a GenerateMeshRequest. Of malformed bytes, the
+// number before the fault: parsing then refuses them.
+std::uint64_t count_regions(const grpc::ByteBuffer& bytes);
+
+}  // namespace weft::server

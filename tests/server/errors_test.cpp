@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/errors.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace weft::server {
+namespace {
+
+TEST(ErrorTable, NamesAndMetricLabelsAreUnique) {
+  std::set<std::string_view> names;
+  std::set<std::string_view> metrics;
+  for (const ErrorRow& row : error_table()) {
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+    EXPECT_TRUE(metrics.insert(row.metric).second) << row.metric;
+  }
+}
+
+TEST(ErrorTable, ExitCodesAre64PlusTheGrpcCode) {
+  for (const ErrorRow& row : error_table()) EXPECT_EQ(row.exit_code, 64 + row.code) << row.name;
+}
+
+TEST(ErrorTable, TellsBadRequestsFromLimitsAndFromOurOwnFaults) {
+  EXPECT_EQ(row_of(reason_of(ErrorCode::kBadCoordinate)).code, grpc::INVALID_ARGUMENT);
+  EXPECT_EQ(row_of(reason_of(ErrorCode::kBadSizeValue)).code, grpc::INVALID_ARGUMENT);
+  EXPECT_EQ(row_of(reason_of(ErrorCode::kLimitExceeded)).code, grpc::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(row_of(reason_of(ErrorCode::kBudgetExceeded)).code, grpc::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(row_of(reason_of(ErrorCode::kDeadlineExceeded)).code, grpc::DEADLINE_EXCEEDED);
+  EXPECT_EQ(row_of(reason_of(ErrorCode::kCancelled)).code, grpc::CANCELLED);
+  EXPECT_EQ(row_of(reason_of(ErrorCode::kInternal)).code, grpc::INTERNAL);
+}
+
+TEST(CodeName, IsTheNameThatGrpcGivesTheCode) {
+  EXPECT_EQ(code_name(grpc::OK), "OK");
+  EXPECT_EQ(code_name(grpc::RESOURCE_EXHAUSTED), "RESOURCE_EXHAUSTED");
+  EXPECT_EQ(code_name(grpc::UNAVAILABLE), "UNAVAILABLE");
+  EXPECT_EQ(code_name(grpc::UNAUTHENTICATED), "UNAUTHENTICATED");
+}
+
+}  // namespace
+}  // namespace weft::server

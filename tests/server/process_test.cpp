@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The real program: flags, signals, exit codes, the port file.
+#include <fcntl.h>
+#include <grpcpp/create_channel.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/server/harness.h"
+
+namespace weft::server {
+namespace {
+
+namespace fs = std::filesystem;
+using Environment = std::map<std::string, std::string>;
+
+// A running weftd with pipes on its standard input, output and error.
+class Weftd {
+ public:
+  explicit Weftd(std::vector<std::string> flags, const Environment& environment = {}) {
+    int in[2];
+    int out[2];
+    if (::pipe2(in, O_CLOEXEC) != 0 || ::pipe2(out, O_CLOEXEC) != 0) std::abort();
+    flags.insert(flags.begin(), "weftd");
+    std::vector<char*> argv;
+    for (std::string& flag : flags) argv.push_back(flag.data());
+    argv.push_back(nullptr);
+    std::vector<std::string> settings;
+    for (const auto& [name, value] : environment) settings.push_back(name + "=" + value);
+    for (char** each = environ; *each != nullptr; ++each) settings.emplace_back(*each);
+    std::vector<char*> envp;
+    for (std::string& setting : settings) envp.push_back(setting.data());
+    envp.push_back(nullptr);
+    pid_ = ::fork();
+    if (pid_ == 0) {
+      ::dup2(in[0], STDIN_FILENO);
+      ::dup2(out[1], STDOUT_FILENO);
+      ::dup2(out[1], STDERR_FILENO);
+      ::alarm(30);  // a server that should have ended fails the test instead of hanging it
+      ::execve(WEFTD_PATH, argv.data(), envp.data());
+      ::_exit(127);
+    }
+    ::close(in[0]);
+    ::close(out[1]);
+    input_ = in[1];
+    output_ = ::fdopen(out[0], "r");
+  }
+  ~Weftd() {
+    if (pid_ > 0) {
+      ::kill(pid_, SIGKILL);
+      ::waitpid(pid_, nullptr, 0);
+    }
+    close_input();
+    std::fclose(output_);
+  }
+
+  // Reads the log up to a line that contains the text, and returns that line; empty where the
+  // output ends before.
+  std::string read_until(const std::string& text) {
+    char* line = nullptr;
+    std::size_t size = 0;
+    std::string found;
+    while (found.empty() && ::getline(&line, &size, output_) > 0) {
+      log_ += line;
+      if (std::string(line).find(text) != std::string::npos) found = line;
+    }
+    std::free(line);
+    return found;
+  }
+  std::string address() {
+    const std::string line = read_until("event=listening");
+    const auto start = line.find("address=") + 8;
+    return line.substr(start, line.find_last_not_of('\n') - start + 1);
+  }
+  void signal(int number) { ::kill(pid_, number); }
+  void close_input() {
+    if (input_ >= 0) ::close(input_);
+    input_ = -1;
+  }
+  // The exit code, 1000 + signal where one killed it.
+  int wait() {
+    while (!read_until("\n").empty()) {
+    }
+    int status = 0;
+    ::waitpid(pid_, &status, 0);
+    pid_ = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+  }
+  const std::string& log() const { return log_; }
+
+ private:
+  pid_t pid_ = 0;
+  int input_ = -1;
+  std::FILE* output_ = nullptr;
+  std::string log_;
+};
+
+std::unique_ptr<v1::MeshService::Stub> connect(const std::string& address) {
+  return v1::MeshService::NewStub(grpc::CreateChannel(address, grpc::InsecureChannelCredentials()));
+}
+
+v1::GetServerInfoResponse info_of(const std::string& address) {
+  grpc::ClientContext context;
+  v1::GetServerInfoResponse info;
+  const grpc::Status status = connect(address)->GetServerInfo(&context, {}, &info);
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  return info;
+}
+
+class TemporaryFolder : public ::testing::Test {
+ protected:
+  TemporaryFolder() {
+    std::string pattern = (fs::temp_directory_path() / "weft-process-XXXXXX").string();
+    folder_ = ::mkdtemp(pattern.data());
+  }
+  ~TemporaryFolder() override { fs::remove_all(folder_); }
+  fs::path folder_;
+};
+
+const std::vector<std::string> kAnyPort = {"--listen", "127.0.0.1:0"};
+
+TEST(Process, ServesAMeshOfARealDomain) {
+  Weftd weftd(kAnyPort);
+  const testing::Outcome outcome =
+      testing::call(*connect(weftd.address()), testing::valid_request());
+  ASSERT_TRUE(outcome.status.ok()) << outcome.status.error_message();
+  EXPECT_DOUBLE_EQ(outcome.messages.back().summary().area(), 16);
+  weftd.signal(SIGTERM);
+  EXPECT_EQ(weftd.wait(), 0);
+  EXPECT_NE(weftd.log().find("event=job_ended"), std::string::npos);
+  EXPECT_NE(weftd.log().find("status=OK"), std::string::npos);
+}
+
+TEST(Process, EndsWithZeroOnSigtermAndOnSigint) {
+  for (const int signal : {SIGTERM, SIGINT}) {
+    Weftd weftd(kAnyPort);
+    weftd.address();
+    weftd.signal(signal);
+    EXPECT_EQ(weftd.wait(), 0);
+  }
+}
+
+TEST_F(TemporaryFolder, ASecondSignalEndsItAtOnceAndLeavesNoSocketFile) {
+  const std::string address = "unix:" + (folder_ / "s").string();
+  Weftd weftd({"--listen", address, "--drain", "1000"});
+  weftd.address();
+  v1::GenerateMeshRequest request = testing::valid_request();
+  request.mutable_size()->set_constant(1e-5);  // more than fits between it and an idle reader
+  auto stub = connect(address);
+  grpc::ClientContext context;
+  auto reader = stub->GenerateMesh(&context, request);
+  v1::GenerateMeshResponse accepted;
+  ASSERT_TRUE(reader->Read(&accepted));
+  weftd.signal(SIGTERM);
+  EXPECT_NE(weftd.read_until("event=draining"), "");
+  weftd.signal(SIGTERM);
+  EXPECT_EQ(weftd.wait(), 128 + SIGTERM);
+  EXPECT_FALSE(fs::exists(folder_ / "s"));
+}
+
+TEST(Process, EndsWithStandardInputWhereAsked) {
+  Weftd weftd({"--listen", "127.0.0.1:0", "--exit-with-stdin"});
+  weftd.address();
+  weftd.close_input();
+  EXPECT_EQ(weftd.wait(), 0);
+}
+
+TEST(Process, OutlivesStandardInputWhereNotAsked) {
+  Weftd weftd(kAnyPort);
+  const std::string address = weftd.address();
+  weftd.close_input();
+  EXPECT_FALSE(info_of(address).version().empty());
+}
+
+TEST_F(TemporaryFolder, WritesTheBoundAddressesToThePortFile) {
+  const fs::path file = folder_ / "ports";
+  const std::string socket = "unix:" + (folder_ / "s").string();
+  Weftd weftd({"--listen", "127.0.0.1:0", "--listen", socket, "--port-file", file.string()});
+  const std::string tcp = weftd.address();
+  EXPECT_EQ(weftd.address(), socket);
+  weftd.signal(SIGTERM);  // the file is written by the time signals are heard
+  EXPECT_EQ(weftd.wait(), 0);
+  std::ifstream in(file);
+  std::string first;
+  std::string second;
+  std::getline(in, first);
+  std::getline(in, second);
+  EXPECT_EQ(first, tcp);
+  EXPECT_EQ(second, socket);
+}
+
+TEST(Process, ReadsFlagsFromTheEnvironmentAndFlagsWin) {
+  Weftd weftd({"--max-segments", "11"}, {{"WEFT_LISTEN", "127.0.0.1:0"},
+                                         {"WEFT_MAX_POINTS", "10"},
+                                         {"WEFT_MAX_SEGMENTS", "99"},
+                                         {"WEFT_MAX_REQUEST_BYTES", "2MiB"},
+                                         {"WEFT_THREADS", "3"}});
+  const v1::GetServerInfoResponse info = info_of(weftd.address());
+  EXPECT_EQ(info.limits().max_points(), 10u);
+  EXPECT_EQ(info.limits().max_segments(), 11u);
+  EXPECT_EQ(info.limits().max_request_bytes(), 2u << 20);
+  EXPECT_EQ(info.threads(), 3u);
+  EXPECT_EQ(info.limits().max_concurrent_jobs(), 3u);
+}
+
+TEST(Process, EndsWith3WhereItCannotListenAndSaysWhy) {
+  Weftd first(kAnyPort);
+  const std::string address = first.address();
+  Weftd second({"--listen", address});
+  EXPECT_EQ(second.wait(), 3);
+  EXPECT_NE(second.log().find(address), std::string::npos) << second.log();
+  EXPECT_NE(second.log().find("in use"), std::string::npos) << second.log();
+}
+
+TEST(Process, EndsWith2OnWrongFlags) {
+  for (const std::vector<std::string>& flags : {std::vector<std::string>{"--no-such-flag"},
+                                                {"--queue", "-1"},
+                                                {"--max-bytes", "many"},
+                                                {"--threads", "0"},
+                                                {"--log-level", "loud"},
+                                                {"--max-seconds", "nan"}})
+    EXPECT_EQ(Weftd(flags, {{"WEFT_LISTEN", "127.0.0.1:0"}}).wait(), 2) << flags.front();
+}
+
+TEST(Process, TellsItsVersion) {
+  Weftd weftd({"--version"});
+  EXPECT_EQ(weftd.wait(), 0);
+  EXPECT_EQ(weftd.log().find("weftd " WEFT_VERSION), 0u) << weftd.log();
+}
+
+}  // namespace
+}  // namespace weft::server

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Calls of any method with any bytes.
+#pragma once
+
+#include <grpcpp/channel.h>
+#include <grpcpp/impl/codegen/client_unary_call.h>
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/sync_stream.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace weft::server::testing {
+
+inline grpc::ByteBuffer to_buffer(const std::string& bytes) {
+  const grpc::Slice slice(bytes);
+  return {&slice, 1};
+}
+
+inline std::string to_string(const grpc::ByteBuffer& buffer) {
+  grpc::Slice slice;
+  if (!buffer.Valid() || !buffer.DumpToSingleSlice(&slice).ok()) return {};
+  return {reinterpret_cast<const char*>(slice.begin()), slice.size()};
+}
+
+// A unary call.
+inline std::pair<grpc::Status, std::string> raw_unary(const std::shared_ptr<grpc::Channel>& channel,
+                                                      const char* method,
+                                                      const std::string& request) {
+  grpc::ClientContext context;
+  grpc::ByteBuffer response;
+  const grpc::internal::RpcMethod rpc(method, grpc::internal::RpcMethod::NORMAL_RPC, channel);
+  grpc::Status status = grpc::internal::BlockingUnaryCall<grpc::ByteBuffer, grpc::ByteBuffer>(
+      channel.get(), rpc, &context, to_buffer(request), &response);
+  return {std::move(status), to_string(response)};
+}
+
+// GenerateMesh, read to its end.
+inline grpc::Status raw_generate_mesh(const std::shared_ptr<grpc::Channel>& channel,
+                                      const std::string& request) {
+  grpc::ClientContext context;
+  const grpc::internal::RpcMethod rpc("/weft.v1.MeshService/GenerateMesh",
+                                      grpc::internal::RpcMethod::SERVER_STREAMING, channel);
+  const std::unique_ptr<grpc::ClientReader<grpc::ByteBuffer>> reader(
+      grpc::internal::ClientReaderFactory<grpc::ByteBuffer>::Create(channel.get(), rpc, &context,
+                                                                    to_buffer(request)));
+  grpc::ByteBuffer response;
+  while (reader->Read(&response)) {
+  }
+  return reader->Finish();
+}
+
+}  // namespace weft::server::testing
