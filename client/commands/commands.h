@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// The commands of `weft`. Each prints its result on stdout and returns how the process should end;
+// an error is for the caller to print.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "client/drawing/draw.h"
+#include "client/error.h"
+#include "client/mesh_call.h"
+
+namespace weft::client {
+
+struct MeshOptions {
+  std::filesystem::path input;
+  std::vector<std::filesystem::path> outputs;
+  std::vector<std::filesystem::path> drawings;
+  DrawColor color = DrawColor::kNone;
+  MeshWishes wishes;
+  std::string server;  // empty: a private one
+  std::optional<double> timeout_seconds;
+  bool json = false;
+  bool quiet = false;
+};
+Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop);
+
+struct CheckOptions {
+  std::filesystem::path mesh;
+  std::filesystem::path domain;
+  std::string size;
+  double min_angle_deg = 20;
+  std::uint64_t max_unrefined = 0;
+};
+Result<ExitCode> run_check(const CheckOptions& options);
+
+Result<ExitCode> run_info(const std::filesystem::path& file);
+
+struct ServerOptions {
+  std::string server;  // empty: a private one
+  double timeout_seconds = 10;
+};
+Result<ExitCode> run_health(const ServerOptions& options, std::stop_token stop);
+Result<ExitCode> run_server_info(const ServerOptions& options, std::stop_token stop);
+
+// Writes to stdout; an error when that fails.
+Result<ExitCode> print(const std::string& text);
+
+}  // namespace weft::client

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// `weft info`: what a mesh or a domain holds.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <span>
+
+#include "client/commands/commands.h"
+#include "client/formats/mesh_formats.h"
+#include "client/mesh_angles.h"
+#include "client/text.h"
+
+namespace weft::client {
+namespace {
+
+std::string row(const char* name, const std::string& value) {
+  char label[32];
+  std::snprintf(label, sizeof label, "%-10s ", name);
+  return label + value + "\n";
+}
+
+// "0 (1,200), 3 (17)": each value and how often it occurs.
+std::string tally(const std::map<std::int32_t, std::uint64_t>& counts) {
+  constexpr std::size_t kMostListed = 20;
+  std::string text;
+  std::size_t listed = 0;
+  for (const auto& [value, count] : counts) {
+    if (listed++ == kMostListed)
+      return text + " and " + std::to_string(counts.size() - kMostListed) + " more";
+    if (!text.empty()) text += ", ";
+    text += std::to_string(value) + " (" + with_separators(count) + ")";
+  }
+  return text.empty() ? "none" : text;
+}
+
+std::map<std::int32_t, std::uint64_t> count_values(std::span<const std::int32_t> values) {
+  std::map<std::int32_t, std::uint64_t> counts;
+  auto last = counts.end();
+  for (const std::int32_t value : values) {  // runs are long
+    if (last == counts.end() || last->first != value) last = counts.try_emplace(value, 0).first;
+    ++last->second;
+  }
+  return counts;
+}
+
+class BoundingBox {
+ public:
+  void add(double x, double y) {
+    low_ = empty_ ? Point{x, y} : Point{std::min(low_.x, x), std::min(low_.y, y)};
+    high_ = empty_ ? Point{x, y} : Point{std::max(high_.x, x), std::max(high_.y, y)};
+    empty_ = false;
+  }
+  std::string text() const {
+    return empty_ ? "empty" : coordinates(low_.x, low_.y) + " to " + coordinates(high_.x, high_.y);
+  }
+
+ private:
+  Point low_;
+  Point high_;
+  bool empty_ = true;
+};
+
+std::string describe(const Domain& domain) {
+  BoundingBox box;
+  for (const Point& point : domain.points) box.add(point.x, point.y);
+  std::vector<std::int32_t> markers;
+  for (const auto& segment : domain.segments) markers.push_back(segment.marker);
+  std::vector<std::int32_t> regions;
+  for (const auto& region : domain.regions) regions.push_back(region.id);
+  return row("points", with_separators(domain.points.size())) +
+         row("segments", with_separators(domain.segments.size())) +
+         row("holes", with_separators(domain.holes.size())) +
+         row("regions", tally(count_values(regions))) +
+         row("markers", tally(count_values(markers))) +
+         row("filling", domain.fill == Domain::Fill::kEvenOdd ? "even-odd" : "seeds") +
+         row("box", box.text());
+}
+
+std::string describe(const Mesh& mesh) {
+  const MeshView view = mesh.view();
+  BoundingBox box;
+  for (std::size_t i = 0; i < mesh.coordinates.size(); i += 2)
+    box.add(mesh.coordinates[i], mesh.coordinates[i + 1]);
+  double area = 0;
+  for (std::size_t t = 0; t < view.triangle_count(); ++t) {
+    const double* a = &mesh.coordinates[2 * std::size_t{mesh.triangles[3 * t]}];
+    const double* b = &mesh.coordinates[2 * std::size_t{mesh.triangles[3 * t + 1]}];
+    const double* c = &mesh.coordinates[2 * std::size_t{mesh.triangles[3 * t + 2]}];
+    area += ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
+  }
+  const AngleRange angles = mesh_angles(view);
+  char range[64];
+  std::snprintf(range, sizeof range, "%.4f to %.4f degrees", angles.min_deg, angles.max_deg);
+  return row("vertices", with_separators(view.vertex_count())) +
+         row("triangles", with_separators(view.triangle_count())) +
+         row("edges", with_separators(view.edge_count()) + " on input segments") +
+         row("angles", view.triangle_count() > 0 ? range : "none") + row("area", shortest(area)) +
+         row("regions", tally(count_values(view.regions))) +
+         row("markers", tally(count_values(view.edge_markers))) + row("box", box.text());
+}
+
+}  // namespace
+
+Result<ExitCode> run_info(const std::filesystem::path& file) {
+  if (is_domain_path(file)) {
+    const auto domain = read_domain(file);
+    if (!domain) return tl::unexpected(domain.error());
+    return print(row("domain", file.string()) + describe(*domain));
+  }
+  if (!mesh_format(file))
+    return fail(ExitCode::kUsage,
+                file.string() + ": the extension " + in_quotes(file.extension().string()) +
+                    " is neither that of a domain (.poly, .geojson, .json) nor of a mesh (.vtu, "
+                    ".msh, .node)");
+  const auto mesh = read_mesh(file);
+  if (!mesh) return tl::unexpected(mesh.error());
+  return print(row("mesh", file.string()) + describe(*mesh));
+}
+
+}  // namespace weft::client

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// `weft server-info`: what the server is and what it admits.
+#include <grpcpp/client_context.h>
+
+#include <chrono>
+#include <cstdio>
+
+#include "client/commands/commands.h"
+#include "client/connection.h"
+#include "client/server_error.h"
+#include "client/text.h"
+#include "weft/v1/mesh_service.grpc.pb.h"
+
+namespace weft::client {
+
+Result<ExitCode> run_server_info(const ServerOptions& options, std::stop_token stop) {
+  const auto connection = connect(options.server, stop);
+  if (!connection) return tl::unexpected(connection.error());
+  const auto stub = v1::MeshService::NewStub(connection->channel);
+  grpc::ClientContext context;
+  context.set_deadline(
+      std::chrono::system_clock::now() +
+      std::chrono::milliseconds(static_cast<std::int64_t>(options.timeout_seconds * 1000)));
+  const std::stop_callback cancel(stop, [&context] { context.TryCancel(); });
+  v1::GetServerInfoResponse info;
+  const grpc::Status status = stub->GetServerInfo(&context, {}, &info);
+  if (!status.ok()) return tl::unexpected(error_of(status, connection->address, nullptr));
+
+  std::string text;
+  const auto row = [&text](const char* name, const std::string& value) {
+    char label[40];
+    std::snprintf(label, sizeof label, "%-22s ", name);
+    text += label + value + "\n";
+  };
+  const v1::ServerLimits& limits = info.limits();
+  row("version", info.version());
+  row("engine version", info.engine_version());
+  row("threads", std::to_string(info.threads()));
+  row("most points", with_separators(limits.max_points()));
+  row("most segments", with_separators(limits.max_segments()));
+  row("most seeds", with_separators(limits.max_seeds()));
+  row("longest expression", with_separators(limits.max_expression_bytes()) + " bytes");
+  row("most triangles", with_separators(limits.max_triangles()));
+  row("most engine memory", with_separators(limits.max_bytes()) + " bytes");
+  row("longest job", shortest(limits.max_seconds()) + " s");
+  row("largest request", with_separators(limits.max_request_bytes()) + " bytes");
+  row("jobs at a time", std::to_string(limits.max_concurrent_jobs()));
+  row("largest minimum angle", shortest(limits.max_min_angle_deg()) + " degrees");
+  return print(text);
+}
+
+}  // namespace weft::client

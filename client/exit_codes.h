@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `weft` says to the shell. `weft --help` prints this table.
+//
+//   0        all went well
+//   1        a fault of weft itself
+//   2        the command line is wrong
+//   3        `weft check` ran, and the mesh fails
+//   4        the input is missing, unreadable or malformed
+//   5        the output cannot be written (nothing is left behind)
+//   6        the private weftd could not be found or started
+//   64 + n   the call to the server ended with gRPC status n: 67 the request is wrong, 68 a
+//   deadline
+//            passed, 72 a limit or budget was exceeded, 78 the server is absent or went away, 79
+//            the stream was damaged
+//   128 + n  stopped by signal n
+#pragma once
+
+namespace weft::client {
+
+enum class ExitCode : int {
+  kOk = 0,
+  kInternal = 1,
+  kUsage = 2,
+  kCheckFailed = 3,
+  kUnreadableInput = 4,
+  kUnwritableOutput = 5,
+  kServerNotStarted = 6,
+  kFirstServerStatus = 64,
+  kDataLoss = 64 + 15,
+};
+
+// REQUIRES: a gRPC status code, 1 to 16.
+constexpr ExitCode exit_code_of_status(int grpc_code) {
+  return static_cast<ExitCode>(static_cast<int>(ExitCode::kFirstServerStatus) + grpc_code);
+}
+
+}  // namespace weft::client

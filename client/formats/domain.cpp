@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/formats/domain.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace weft::client {
+
+void Provenance::add(std::size_t first, std::string prefix, std::uint64_t number,
+                     std::string suffix) {
+  runs_.push_back({first, std::move(prefix), number, std::move(suffix)});
+}
+
+void Provenance::extend(std::size_t first, const std::string& prefix, std::uint64_t number) {
+  if (!runs_.empty()) {
+    const Run& last = runs_.back();
+    if (last.number + (first - last.first) == number && last.prefix == prefix) return;
+  }
+  add(first, prefix, number, "");
+}
+
+std::string Provenance::locate(std::size_t i) const {
+  const auto after = std::upper_bound(
+      runs_.begin(), runs_.end(), i, [](std::size_t at, const Run& run) { return at < run.first; });
+  if (after == runs_.begin()) return "";
+  const Run& run = *std::prev(after);
+  return run.prefix + std::to_string(run.number + (i - run.first)) + run.suffix;
+}
+
+}  // namespace weft::client

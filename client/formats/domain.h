@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// A domain as a file describes it: a planar straight-line graph with seeds, and where in the file
+// each part was found. Indices count from 0 whatever the file counts from.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace weft::client {
+
+struct Point {
+  double x = 0;
+  double y = 0;
+  friend bool operator==(const Point&, const Point&) = default;
+};
+
+// Where the elements of a list stand in a file, run-length coded: element i of a run that starts at
+// `first` is at prefix + (number + i - first) + suffix, as in "coast.poly:" 17 "" or
+// "coast.geojson: features[3].geometry.coordinates[0][" 17 "]".
+class Provenance {
+ public:
+  // REQUIRES: `first` does not decrease from call to call.
+  void add(std::size_t first, std::string prefix, std::uint64_t number, std::string suffix);
+  // As `add`, unless the last run goes on through (first, number).
+  void extend(std::size_t first, const std::string& prefix, std::uint64_t number);
+  // Empty when the element has no known place.
+  std::string locate(std::size_t i) const;
+
+ private:
+  struct Run {
+    std::size_t first = 0;
+    std::string prefix;
+    std::uint64_t number = 0;
+    std::string suffix;
+  };
+  std::vector<Run> runs_;
+};
+
+struct Domain {
+  struct Segment {
+    std::uint32_t a = 0;  // index into points
+    std::uint32_t b = 0;
+    std::int32_t marker = 0;
+    friend bool operator==(const Segment&, const Segment&) = default;
+  };
+  struct Region {
+    Point at;
+    std::int32_t id = 0;
+    std::optional<double> max_area;  // > 0
+    friend bool operator==(const Region&, const Region&) = default;
+  };
+  // Which faces are meshed: all bounded ones less the holes, or those inside an odd number of
+  // rings.
+  enum class Fill { kSeeds, kEvenOdd };
+
+  std::vector<Point> points;
+  std::vector<std::int32_t> point_markers;  // one per point, or empty: all 0
+  std::vector<Segment> segments;
+  std::vector<Point> holes;
+  std::vector<Region> regions;
+  Fill fill = Fill::kSeeds;
+
+  Provenance point_places;
+  Provenance segment_places;
+  Provenance hole_places;
+  Provenance region_places;
+};
+
+}  // namespace weft::client

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parses JSON that nobody vouches for. Errors (kUnreadableInput) carry file:line:column.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "client/error.h"
+
+namespace weft::client {
+
+// Refuses text nested deeper than `max_depth` before anything is built from it.
+Result<nlohmann::json> parse_json(const std::string& name, std::string_view text, int max_depth);
+
+}  // namespace weft::client

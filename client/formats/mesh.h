@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// A triangle mesh as files hold it. Vertices are numbered from 0; triangles are counter-clockwise.
+//
+// Writers take a MeshView: spans over arrays that somebody else keeps (vectors, or files mapped
+// into memory), so a mesh larger than memory can be written.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace weft::client {
+
+struct MeshView {
+  std::span<const double> coordinates;         // x0, y0, x1, y1, ...
+  std::span<const std::uint32_t> triangles;    // three vertices each
+  std::span<const std::int32_t> regions;       // one per triangle
+  std::span<const std::uint32_t> edges;        // two vertices each: the edges on input segments
+  std::span<const std::int32_t> edge_markers;  // one per edge
+  // (vertex, index of the input point) for the vertices that are input points, and the markers of
+  // the input points; either may be empty.
+  std::span<const std::uint32_t> input_points;
+  std::span<const std::int32_t> input_point_markers;
+
+  std::size_t vertex_count() const { return coordinates.size() / 2; }
+  std::size_t triangle_count() const { return triangles.size() / 3; }
+  std::size_t edge_count() const { return edges.size() / 2; }
+};
+
+struct Mesh {
+  std::vector<double> coordinates;
+  std::vector<std::uint32_t> triangles;
+  std::vector<std::int32_t> regions;
+  std::vector<std::uint32_t> edges;
+  std::vector<std::int32_t> edge_markers;
+
+  MeshView view() const { return {coordinates, triangles, regions, edges, edge_markers, {}, {}}; }
+  friend bool operator==(const Mesh&, const Mesh&) = default;
+};
+
+}  // namespace weft::client

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// The exact sign of the area that three points span: J. R. Shewchuk, "Adaptive Precision
+// Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997, as a filter with an exact
+// fallback. Exact unless products of coordinates overflow or underflow.
+#pragma once
+
+#include "client/formats/domain.h"
+
+namespace weft::client {
+
+// 1 when a, b, c turn counter-clockwise, -1 when clockwise, 0 when they are collinear.
+int orientation(Point a, Point b, Point c);
+
+}  // namespace weft::client

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/formats/triangle_mesh.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/formats/file_contents.h"
+#include "client/formats/line_scanner.h"
+#include "client/formats/mesh_formats.h"
+#include "client/formats/triangle_points.h"
+#include "client/text.h"
+
+namespace weft::client {
+namespace {
+
+std::vector<std::int32_t> vertex_markers(const MeshView& mesh) {
+  std::vector<std::int32_t> markers(mesh.vertex_count(), 0);
+  std::vector<bool> on_edge(mesh.vertex_count(), false);
+  if (!mesh.input_point_markers.empty())
+    for (std::size_t i = 0; i + 1 < mesh.input_points.size(); i += 2)
+      markers[mesh.input_points[i]] = mesh.input_point_markers[mesh.input_points[i + 1]];
+  for (std::size_t i = 0; i < mesh.edges.size(); ++i) {
+    const std::uint32_t v = mesh.edges[i];
+    on_edge[v] = true;
+    if (markers[v] == 0) markers[v] = mesh.edge_markers[i / 2];
+  }
+  for (std::size_t v = 0; v < markers.size(); ++v)
+    if (markers[v] == 0 && on_edge[v]) markers[v] = 1;
+  return markers;
+}
+
+void put_fields(OutputFile& file, std::initializer_list<std::int64_t> fields) {
+  char separator = 0;
+  for (const std::int64_t field : fields) {
+    if (separator) file.put(separator);
+    file.number(field);
+    separator = ' ';
+  }
+  file.put('\n');
+}
+
+Result<void> read_triangles(const std::filesystem::path& path, std::int64_t base, Mesh& mesh) {
+  const auto contents = read_file(path, kMaxTextBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  LineScanner scanner(path.string(), contents->text());
+  if (auto line = scanner.next_line("the triangle count"); !line) return line;
+  const auto count = scanner.count("the triangle count");
+  if (!count) return tl::unexpected(count.error());
+  std::int64_t attributes = 0;
+  if (!scanner.at_line_end()) {
+    const auto corners = scanner.integer("the corners per triangle");
+    if (!corners) return tl::unexpected(corners.error());
+    if (*corners != 3)
+      return scanner.error("the corners per triangle are " + std::to_string(*corners) +
+                           ", only 3 are read");
+    if (!scanner.at_line_end()) {
+      const auto value = scanner.integer("the attribute count");
+      if (!value) return tl::unexpected(value.error());
+      attributes = *value;
+    }
+  }
+  const std::size_t vertices = mesh.coordinates.size() / 2;
+  mesh.triangles.reserve(*count * 3);
+  mesh.regions.reserve(*count);
+  for (std::uint64_t i = 0; i < *count; ++i) {
+    if (auto line = scanner.next_line("a triangle"); !line) return line;
+    if (auto number = scanner.integer("the triangle number"); !number)
+      return tl::unexpected(number.error());
+    for (int corner = 0; corner < 3; ++corner) {
+      const auto v = read_index(scanner, "a corner", base, vertices);
+      if (!v) return tl::unexpected(v.error());
+      mesh.triangles.push_back(*v);
+    }
+    std::int32_t region = 0;
+    if (attributes > 0) {
+      const auto value = scanner.real("the triangle's attribute");
+      if (!value) return tl::unexpected(value.error());
+      if (*value != std::nearbyint(*value) ||
+          std::abs(*value) > std::numeric_limits<std::int32_t>::max())
+        return scanner.error("the triangle's attribute is " + shortest(*value) +
+                             ", it must be an integer of 32 bits: it is the region's id");
+      region = static_cast<std::int32_t>(*value);
+    }
+    mesh.regions.push_back(region);
+  }
+  return {};
+}
+
+Result<void> read_edges(const std::filesystem::path& path, std::int64_t base, Mesh& mesh) {
+  const auto contents = read_file(path, kMaxTextBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  LineScanner scanner(path.string(), contents->text());
+  if (auto points = read_triangle_points(scanner); !points) return tl::unexpected(points.error());
+  if (auto line = scanner.next_line("the segment count"); !line) return line;
+  const auto count = scanner.count("the segment count");
+  if (!count) return tl::unexpected(count.error());
+  bool has_markers = false;
+  if (!scanner.at_line_end()) {
+    const auto markers = scanner.integer("the marker count");
+    if (!markers) return tl::unexpected(markers.error());
+    has_markers = *markers == 1;
+  }
+  const std::size_t vertices = mesh.coordinates.size() / 2;
+  for (std::uint64_t i = 0; i < *count; ++i) {
+    if (auto line = scanner.next_line("a segment"); !line) return line;
+    if (auto number = scanner.integer("the segment number"); !number)
+      return tl::unexpected(number.error());
+    for (int end = 0; end < 2; ++end) {
+      const auto v = read_index(scanner, "the segment's end", base, vertices);
+      if (!v) return tl::unexpected(v.error());
+      mesh.edges.push_back(*v);
+    }
+    std::int32_t marker = 0;
+    if (has_markers) {
+      const auto value = scanner.marker("the segment marker");
+      if (!value) return tl::unexpected(value.error());
+      marker = *value;
+    }
+    mesh.edge_markers.push_back(marker);
+  }
+  return {};
+}
+
+}  // namespace
+
+void write_triangle_mesh(const MeshView& mesh, OutputFile& node, OutputFile& ele,
+                         OutputFile& poly) {
+  const auto as_number = [](std::size_t value) { return static_cast<std::int64_t>(value); };
+  const std::vector<std::int32_t> markers = vertex_markers(mesh);
+  put_fields(node, {as_number(mesh.vertex_count()), 2, 0, 1});
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    node.number(as_number(v + 1));
+    node.put(' ');
+    node.number(mesh.coordinates[2 * v]);
+    node.put(' ');
+    node.number(mesh.coordinates[2 * v + 1]);
+    node.put(' ');
+    node.number(std::int64_t{markers[v]});
+    node.put('\n');
+  }
+  put_fields(ele, {as_number(mesh.triangle_count()), 3, 1});
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const std::uint32_t* corner = &mesh.triangles[3 * t];
+    put_fields(ele, {as_number(t + 1), corner[0] + std::int64_t{1}, corner[1] + std::int64_t{1},
+                     corner[2] + std::int64_t{1}, mesh.regions[t]});
+  }
+  put_fields(poly, {0, 2, 0, 1});
+  put_fields(poly, {as_number(mesh.edge_count()), 1});
+  for (std::size_t e = 0; e < mesh.edge_count(); ++e)
+    put_fields(poly, {as_number(e + 1), mesh.edges[2 * e] + std::int64_t{1},
+                      mesh.edges[2 * e + 1] + std::int64_t{1}, mesh.edge_markers[e]});
+  put_fields(poly, {0});
+}
+
+Result<Mesh> read_triangle_mesh(const std::filesystem::path& path) {
+  std::filesystem::path base = path;
+  auto points = read_node_file(base.replace_extension(".node"));
+  if (!points) return tl::unexpected(points.error());
+  Mesh mesh;
+  mesh.coordinates.reserve(points->points.size() * 2);
+  for (const Point& point : points->points) {
+    mesh.coordinates.push_back(point.x);
+    mesh.coordinates.push_back(point.y);
+  }
+  if (auto read = read_triangles(base.replace_extension(".ele"), points->base, mesh); !read)
+    return tl::unexpected(read.error());
+  std::error_code ignored;
+  if (std::filesystem::exists(base.replace_extension(".poly"), ignored))
+    if (auto read = read_edges(base, points->base, mesh); !read)
+      return tl::unexpected(read.error());
+  return validated(path, std::move(mesh));
+}
+
+}  // namespace weft::client

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/formats/triangle_poly.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "client/formats/file_contents.h"
+#include "client/formats/line_scanner.h"
+#include "client/formats/triangle_points.h"
+#include "client/text.h"
+
+namespace weft::client {
+namespace {
+
+Result<void> read_segments(LineScanner& scanner, std::int64_t base, Domain& domain) {
+  if (auto line = scanner.next_line("the segment count"); !line) return line;
+  const auto count = scanner.count("the segment count");
+  if (!count) return tl::unexpected(count.error());
+  bool has_markers = false;
+  if (!scanner.at_line_end()) {
+    const auto markers = scanner.integer("the marker count");
+    if (!markers) return tl::unexpected(markers.error());
+    if (*markers != 0 && *markers != 1)
+      return scanner.error("the marker count is " + std::to_string(*markers) +
+                           ", it must be 0 or 1");
+    has_markers = *markers == 1;
+  }
+  domain.segments.reserve(*count);
+  for (std::uint64_t i = 0; i < *count; ++i) {
+    if (auto line = scanner.next_line("a segment"); !line) return line;
+    if (auto number = scanner.integer("the segment number"); !number)
+      return tl::unexpected(number.error());
+    const auto a = read_index(scanner, "the segment's first point", base, domain.points.size());
+    if (!a) return tl::unexpected(a.error());
+    const auto b = read_index(scanner, "the segment's second point", base, domain.points.size());
+    if (!b) return tl::unexpected(b.error());
+    std::int32_t marker = 0;
+    if (has_markers) {
+      const auto value = scanner.marker("the segment marker");
+      if (!value) return tl::unexpected(value.error());
+      marker = *value;
+    }
+    domain.segment_places.extend(i, scanner.name() + ":", scanner.line());
+    domain.segments.push_back({*a, *b, marker});
+  }
+  return {};
+}
+
+Result<Point> read_seed(LineScanner& scanner) {
+  if (auto number = scanner.integer("the seed number"); !number)
+    return tl::unexpected(number.error());
+  const auto x = scanner.real("the x coordinate");
+  if (!x) return tl::unexpected(x.error());
+  const auto y = scanner.real("the y coordinate");
+  if (!y) return tl::unexpected(y.error());
+  return Point{*x, *y};
+}
+
+Result<void> read_holes(LineScanner& scanner, Domain& domain) {
+  if (auto line = scanner.next_line("the hole count"); !line) return line;
+  const auto count = scanner.count("the hole count");
+  if (!count) return tl::unexpected(count.error());
+  for (std::uint64_t i = 0; i < *count; ++i) {
+    if (auto line = scanner.next_line("a hole"); !line) return line;
+    const auto seed = read_seed(scanner);
+    if (!seed) return tl::unexpected(seed.error());
+    domain.hole_places.extend(i, scanner.name() + ":", scanner.line());
+    domain.holes.push_back(*seed);
+  }
+  return {};
+}
+
+// The optional last section.
+Result<void> read_regions(LineScanner& scanner, Domain& domain) {
+  if (!scanner.try_next_line()) return {};
+  const auto count = scanner.count("the region count");
+  if (!count) return tl::unexpected(count.error());
+  for (std::uint64_t i = 0; i < *count; ++i) {
+    if (auto line = scanner.next_line("a region"); !line) return line;
+    const auto seed = read_seed(scanner);
+    if (!seed) return tl::unexpected(seed.error());
+    const auto attribute = scanner.real("the region's attribute");
+    if (!attribute) return tl::unexpected(attribute.error());
+    if (*attribute != std::nearbyint(*attribute) ||
+        std::abs(*attribute) > std::numeric_limits<std::int32_t>::max())
+      return scanner.error("the region's attribute is " + shortest(*attribute) +
+                           ", it must be an integer of 32 bits: it is the region's id");
+    Domain::Region region{*seed, static_cast<std::int32_t>(*attribute), std::nullopt};
+    if (!scanner.at_line_end()) {
+      const auto area = scanner.real("the region's maximum area");
+      if (!area) return tl::unexpected(area.error());
+      if (*area > 0) region.max_area = *area;
+    }
+    domain.region_places.extend(i, scanner.name() + ":", scanner.line());
+    domain.regions.push_back(region);
+  }
+  if (scanner.try_next_line()) return scanner.error("the file goes on after its last region");
+  return {};
+}
+
+}  // namespace
+
+Result<Domain> read_triangle_poly(const std::filesystem::path& path) {
+  const auto contents = read_file(path, kMaxTextBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  LineScanner scanner(path.string(), contents->text());
+
+  auto points = read_triangle_points(scanner);
+  if (!points) return tl::unexpected(points.error());
+  if (points->points.empty()) {
+    points = read_node_file(std::filesystem::path(path).replace_extension(".node"));
+    if (!points) return tl::unexpected(points.error());
+  }
+  Domain domain;
+  domain.points = std::move(points->points);
+  domain.point_markers = std::move(points->markers);
+  domain.point_places = std::move(points->places);
+
+  if (auto read = read_segments(scanner, points->base, domain); !read)
+    return tl::unexpected(read.error());
+  if (auto read = read_holes(scanner, domain); !read) return tl::unexpected(read.error());
+  if (auto read = read_regions(scanner, domain); !read) return tl::unexpected(read.error());
+  return domain;
+}
+
+}  // namespace weft::client

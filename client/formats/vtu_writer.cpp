@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "client/formats/vtu.h"
+
+namespace weft::client {
+namespace {
+
+constexpr std::uint8_t kLine = 3;
+constexpr std::uint8_t kTriangle = 5;
+constexpr std::size_t kBlock = 1 << 14;  // values that are converted at a time
+
+// One array of the appended section: its element and its place.
+struct Section {
+  const char* tag;
+  std::uint64_t bytes;
+};
+
+template <class T>
+void put_zeros(OutputFile& file, std::size_t count) {
+  const std::vector<T> zeros(std::min(count, kBlock));
+  for (; count > 0; count -= std::min(count, kBlock))
+    file.put_array(std::span<const T>(zeros).first(std::min(count, kBlock)));
+}
+
+void put_points(OutputFile& file, std::span<const double> coordinates) {
+  std::vector<double> block;
+  block.reserve(3 * kBlock);
+  for (std::size_t i = 0; i < coordinates.size(); i += 2) {
+    block.insert(block.end(), {coordinates[i], coordinates[i + 1], 0.0});
+    if (block.size() == 3 * kBlock) {
+      file.put_array(std::span<const double>(block));
+      block.clear();
+    }
+  }
+  file.put_array(std::span<const double>(block));
+}
+
+// Where each cell ends in the connectivity: triangles first.
+void put_offsets(OutputFile& file, std::size_t triangles, std::size_t edges) {
+  std::vector<std::int64_t> block;
+  block.reserve(kBlock);
+  std::int64_t end = 0;
+  for (std::size_t cell = 0; cell < triangles + edges; ++cell) {
+    block.push_back(end += cell < triangles ? 3 : 2);
+    if (block.size() == kBlock) {
+      file.put_array(std::span<const std::int64_t>(block));
+      block.clear();
+    }
+  }
+  file.put_array(std::span<const std::int64_t>(block));
+}
+
+void put_types(OutputFile& file, std::size_t triangles, std::size_t edges) {
+  std::vector<std::uint8_t> types(triangles + edges, kTriangle);
+  std::fill(types.begin() + static_cast<std::ptrdiff_t>(triangles), types.end(), kLine);
+  file.put_array(std::span<const std::uint8_t>(types));
+}
+
+}  // namespace
+
+void write_vtu(const MeshView& mesh, OutputFile& file) {
+  const std::size_t triangles = mesh.triangle_count();
+  const std::size_t edges = mesh.edge_count();
+  const std::size_t cells = triangles + edges;
+  const Section sections[] = {
+      {"<Points><DataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"",
+       mesh.vertex_count() * 3 * sizeof(double)},
+      {"</Points><Cells><DataArray type=\"UInt32\" Name=\"connectivity\"",
+       mesh.triangles.size_bytes() + mesh.edges.size_bytes()},
+      {"<DataArray type=\"Int64\" Name=\"offsets\"", cells * sizeof(std::int64_t)},
+      {"<DataArray type=\"UInt8\" Name=\"types\"", cells},
+      {"</Cells><CellData><DataArray type=\"Int32\" Name=\"region\"", cells * sizeof(std::int32_t)},
+      {"<DataArray type=\"Int32\" Name=\"marker\"", cells * sizeof(std::int32_t)},
+  };
+  std::string header =
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n"
+      "<UnstructuredGrid><Piece NumberOfPoints=\"" +
+      std::to_string(mesh.vertex_count()) + "\" NumberOfCells=\"" + std::to_string(cells) + "\">\n";
+  std::uint64_t offset = 0;
+  for (const Section& section : sections) {
+    header += section.tag;
+    header += " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
+    offset += sizeof(std::uint64_t) + section.bytes;
+  }
+  header += "</CellData></Piece></UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
+  file.put(header);
+
+  const Section* section = sections;
+  file.put_raw((section++)->bytes);
+  put_points(file, mesh.coordinates);
+  file.put_raw((section++)->bytes);
+  file.put_array(mesh.triangles);
+  file.put_array(mesh.edges);
+  file.put_raw((section++)->bytes);
+  put_offsets(file, triangles, edges);
+  file.put_raw((section++)->bytes);
+  put_types(file, triangles, edges);
+  file.put_raw((section++)->bytes);
+  file.put_array(mesh.regions);
+  put_zeros<std::int32_t>(file, edges);
+  file.put_raw((section++)->bytes);
+  put_zeros<std::int32_t>(file, triangles);
+  file.put_array(mesh.edge_markers);
+  file.put("\n</AppendedData>\n</VTKFile>\n");
+}
+
+}  // namespace weft::client

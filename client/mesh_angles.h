@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Angles of triangles.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "client/formats/mesh.h"
+
+namespace weft::client {
+
+struct AngleRange {
+  double min_deg = 180;
+  double max_deg = 0;
+};
+
+// Of one triangle. A degenerate one has 0 and 180.
+AngleRange triangle_angles(const MeshView& mesh, std::size_t triangle);
+
+// Of all triangles.
+AngleRange mesh_angles(const MeshView& mesh);
+
+}  // namespace weft::client

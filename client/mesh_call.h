@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The call GenerateMesh: sends a domain and what its mesh must satisfy, and receives the mesh into
+// a spool.
+//
+// Errors: 64 + gRPC status for a refusal or a lost server, kDataLoss for a stream that lies,
+// kUnwritableOutput when the spool fails; after any of them the call is cancelled. A stop that is
+// asked for cancels the call, too.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "client/connection.h"
+#include "client/error.h"
+#include "client/formats/domain.h"
+#include "client/mesh_spool.h"
+#include "weft/v1/mesh_service.pb.h"
+
+namespace weft::client {
+
+// What the mesh must satisfy. DEFAULT of all that is optional: the server's.
+struct MeshWishes {
+  std::string size{};  // a number or an expression in x and y; empty: no bound
+  std::optional<double> min_angle_deg{};
+  std::optional<double> min_edge{};
+  std::optional<std::uint64_t> max_triangles{};
+  std::optional<double> max_seconds{};
+  std::optional<std::uint32_t> threads{};
+};
+
+struct MeshReport {
+  v1::Accepted accepted;
+  v1::Summary summary;
+  double first_chunk_seconds = 0;  // from sending the request
+  double stream_seconds = 0;       // from sending the request to the end of the stream
+  std::uint64_t bytes_received = 0;
+};
+
+v1::GenerateMeshRequest make_request(const Domain& domain, const MeshWishes& wishes);
+
+struct MeshCallOptions {
+  std::optional<double> timeout_seconds{};                 // deadline of the call
+  std::function<void(const v1::Progress&)> on_progress{};  // on the calling thread; may be empty
+};
+
+Result<MeshReport> call_generate_mesh(const Connection& connection, const Domain& domain,
+                                      const MeshWishes& wishes, const MeshCallOptions& options,
+                                      MeshSpool& spool, std::stop_token stop);
+
+}  // namespace weft::client

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/progress_bar.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "client/text.h"
+
+namespace weft::client {
+namespace {
+
+const char* stage_name(v1::Stage stage) {
+  switch (stage) {
+    case v1::STAGE_QUEUED:
+      return "waiting";
+    case v1::STAGE_TRIANGULATE:
+      return "triangulating";
+    case v1::STAGE_SIZE:
+      return "sizing";
+    case v1::STAGE_REFINE:
+      return "refining";
+    case v1::STAGE_EMIT:
+      return "receiving";
+    default:
+      return "working";
+  }
+}
+
+}  // namespace
+
+ProgressStyle progress_style_of(std::FILE* stream) {
+  return ::isatty(::fileno(stream)) ? ProgressStyle::kBar : ProgressStyle::kLines;
+}
+
+std::string progress_text(const v1::Progress& progress, bool with_bar) {
+  std::string text = stage_name(progress.stage());
+  const bool estimated = progress.expected_triangles() > 0;
+  if (with_bar && estimated) {
+    constexpr std::size_t kWidth = 30;
+    const double part = static_cast<double>(progress.triangles()) /
+                        static_cast<double>(progress.expected_triangles());
+    const auto filled = static_cast<std::size_t>(std::min(part, 1.0) * kWidth);
+    text.append(" [").append(filled, '#').append(kWidth - filled, '.').append("]");
+  }
+  if (progress.triangles() > 0 || estimated) {
+    text.append(" ").append(with_separators(progress.triangles()));
+    if (estimated) text.append(" of about ").append(with_separators(progress.expected_triangles()));
+    text += " triangles";
+  }
+  return text;
+}
+
+void ProgressBar::update(const v1::Progress& progress) {
+  constexpr auto kBetweenLines = std::chrono::seconds(5);
+  const bool new_stage = progress.stage() != stage_;
+  stage_ = progress.stage();
+  if (style_ == ProgressStyle::kBar) {
+    std::fprintf(stream_, "\r\033[K%s", progress_text(progress, true).c_str());
+    std::fflush(stream_);
+    shown_ = true;
+  } else if (style_ == ProgressStyle::kLines &&
+             (new_stage || Clock::now() - last_line_ >= kBetweenLines)) {
+    last_line_ = Clock::now();
+    std::fprintf(stream_, "weft: %s\n", progress_text(progress, false).c_str());
+  }
+}
+
+void ProgressBar::say(const std::string& what) {
+  if (style_ == ProgressStyle::kBar) {
+    std::fprintf(stream_, "\r\033[K%s", what.c_str());
+    std::fflush(stream_);
+    shown_ = true;
+  } else if (style_ == ProgressStyle::kLines) {
+    std::fprintf(stream_, "weft: %s\n", what.c_str());
+  }
+}
+
+void ProgressBar::clear() {
+  if (!shown_) return;
+  std::fputs("\r\033[K", stream_);
+  std::fflush(stream_);
+  shown_ = false;
+}
+
+}  // namespace weft::client

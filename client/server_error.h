@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a server's status means to the user: the exit code 64 + gRPC code, and a message with the
+// reason (google.rpc.ErrorInfo), the field at fault (BadRequest) and, where that field came from a
+// file, the place in the file.
+#pragma once
+
+#include <grpcpp/support/status.h>
+
+#include <string>
+
+#include "client/error.h"
+#include "client/formats/domain.h"
+
+namespace weft::client {
+
+// REQUIRES: the status is not OK. `domain` may be null.
+Error error_of(const grpc::Status& status, const std::string& address, const Domain* domain);
+
+// Where the file has what `field` names, as in "domain.segments[17].b"; empty when it does not say.
+std::string locate_field(const std::string& field, const Domain& domain);
+
+}  // namespace weft::client

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers and strings as people read them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace weft::client {
+
+// 'text', shortened to 32 bytes, what is not printable ASCII as \xNN.
+std::string in_quotes(std::string_view text);
+
+// The shortest text that reads back as the same number.
+std::string shortest(double value);
+
+// "(x, y)" in shortest numbers.
+std::string coordinates(double x, double y);
+
+// 1234567 as "1,234,567".
+std::string with_separators(std::uint64_t value);
+
+// Seconds as "0.083 s", bytes as "39.7 MB".
+std::string seconds_text(double seconds);
+std::string bytes_text(std::uint64_t bytes);
+
+// Lower-case hexadecimal.
+std::string hex(std::string_view bytes);
+
+}  // namespace weft::client

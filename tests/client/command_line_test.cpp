@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+// The binary as a user runs it, against a weftd that does what the test wants (support/fake_weftd).
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "client/formats/mesh_formats.h"
+#include "tests/client/support/sample_mesh.h"
+#include "tests/client/support/temp_folder.h"
+
+namespace weft::client {
+namespace {
+
+using Words = std::vector<std::string>;
+
+constexpr char kSquare[] =
+    "4 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n4 1\n1 1 2 1\n2 2 3 2\n3 3 4 3\n4 4 1 4\n0\n";
+
+class CommandLine : public testing::Test {
+ protected:
+  CommandLine() {
+    std::filesystem::create_directory(folder_ / "tmp");
+    std::filesystem::create_directory(folder_ / "out");
+    folder_.write("in.poly", kSquare);
+  }
+
+  pid_t start(const Words& words, const Words& variables = {}) {
+    Words arguments = {WEFT_BINARY};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    Words environment = {"WEFT_WEFTD=" WEFT_FAKE_WEFTD, "TMPDIR=" + (folder_ / "tmp").string(),
+                         "WEFT_FAKE_PID=" + (folder_ / "pid").string()};
+    environment.insert(environment.end(), variables.begin(), variables.end());
+    const auto pointers = [](Words& list) {
+      std::vector<char*> out;
+      for (std::string& word : list) out.push_back(word.data());
+      out.push_back(nullptr);
+      return out;
+    };
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, 1, (folder_ / "stdout").c_str(),
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&actions, 2, (folder_ / "stderr").c_str(),
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    pid_t pid = 0;
+    EXPECT_EQ(::posix_spawn(&pid, WEFT_BINARY, &actions, nullptr, pointers(arguments).data(),
+                            pointers(environment).data()),
+              0);
+    posix_spawn_file_actions_destroy(&actions);
+    return pid;
+  }
+  // The exit code, or 128 + the signal.
+  static int end_of(pid_t pid) {
+    int status = 0;
+    ::waitpid(pid, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+  int run(const Words& words, const Words& variables = {}) {
+    return end_of(start(words, variables));
+  }
+  Words mesh_to(const std::string& name) const {
+    return {"mesh", (folder_ / "in.poly").string(), "-o", (folder_ / "out" / name).string()};
+  }
+  std::string out() const { return contents_of(folder_ / "stdout"); }
+  std::string err() const { return contents_of(folder_ / "stderr"); }
+  Words left_in(const std::string& name) const {
+    Words names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / name))
+      names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+  // No output, no temporary folder, no server.
+  void expect_nothing_left() const {
+    EXPECT_EQ(left_in("out"), Words{});
+    EXPECT_EQ(left_in("tmp"), Words{});
+    if (std::filesystem::exists(folder_ / "pid")) {
+      EXPECT_NE(::kill(std::stoi(contents_of(folder_ / "pid")), 0), 0);
+    }
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(CommandLine, MeshesThroughAPrivateServerAndEndsIt) {
+  Words words = mesh_to("m.vtu");
+  for (const char* word : {"-o", "n.node", "-o", "g.msh", "--draw", "d.png", "--draw", "d.svg"})
+    words.push_back(word[0] == '-' ? word : (folder_ / "out" / word).string());
+  EXPECT_EQ(run(words), 0) << err();
+  EXPECT_EQ(left_in("out"),
+            (Words{"d.png", "d.svg", "g.msh", "m.vtu", "n.ele", "n.node", "n.poly"}));
+  EXPECT_EQ(left_in("tmp"), Words{});
+  EXPECT_NE(::kill(std::stoi(contents_of(folder_ / "pid")), 0), 0);
+  EXPECT_EQ(read_mesh(folder_ / "out" / "m.vtu").value(), square_mesh(4));
+  EXPECT_TRUE(out().starts_with("32 triangles, 25 vertices, angles 45.00 to 90.00 degrees\n"))
+      << out();
+  EXPECT_EQ(err(), "weft: refining 10 of about 100 triangles\nweft: drawing\n");
+}
+
+TEST_F(CommandLine, PrintsOneJsonObject) {
+  Words words = mesh_to("m.vtu");
+  words.insert(words.end(), {"--json", "--quiet"});
+  EXPECT_EQ(run(words), 0) << err();
+  const auto json = nlohmann::json::parse(out());
+  EXPECT_EQ(json["vertices"], 25);
+  EXPECT_EQ(json["triangles"], 32);
+  EXPECT_EQ(json["unrefined"],
+            (nlohmann::json{{"small_input_angle", 0}, {"edge_floor", 0}, {"budget", 0}}));
+  EXPECT_EQ(json["digest"].get<std::string>().size(), 64u);
+  EXPECT_EQ(json["threads"], 2);
+  EXPECT_EQ(json["engine_seconds"], 0.5);
+  for (const char* key : {"min_angle_deg", "max_angle_deg", "first_chunk_seconds", "total_seconds",
+                          "peak_engine_bytes", "bytes_received"})
+    EXPECT_TRUE(json[key].is_number()) << key;
+  EXPECT_EQ(err(), "");
+}
+
+TEST_F(CommandLine, IsSilentWhenQuiet) {
+  Words words = mesh_to("m.vtu");
+  words.push_back("-q");
+  EXPECT_EQ(run(words), 0);
+  EXPECT_EQ(out() + err(), "");
+}
+
+TEST_F(CommandLine, RefusesUnknownExtensionsBeforeAnyWork) {
+  EXPECT_EQ(run(mesh_to("m.stl")), 2);
+  EXPECT_NE(err().find("'.stl' is not that of a mesh format: .vtu, .msh, .node"),
+            std::string::npos);
+  EXPECT_EQ(run({"mesh", "in.shp", "-o", "m.vtu"}), 2);
+  EXPECT_EQ(run({"mesh", "in.poly", "--draw", "m.gif"}), 2);
+  EXPECT_EQ(run({"mesh", "in.poly"}), 2);
+  EXPECT_EQ(run({"mesh"}), 2);
+  EXPECT_EQ(run({"mush"}), 2);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "pid"));
+}
+
+TEST_F(CommandLine, RefusesToReplaceItsInput) {
+  EXPECT_EQ(run({"mesh", folder_ / "in.poly", "-o", folder_ / "in.node"}), 2);
+  EXPECT_NE(err().find("in.poly: would replace the input"), std::string::npos) << err();
+  EXPECT_EQ(contents_of(folder_ / "in.poly"), kSquare);
+}
+
+TEST_F(CommandLine, RefusesOneFileTwice) {
+  Words words = mesh_to("m.vtu");
+  words.insert(words.end(), {"-o", (folder_ / "out/../out/m.vtu").string()});
+  EXPECT_EQ(run(words), 2);
+}
+
+TEST_F(CommandLine, NamesUnreadableInput) {
+  EXPECT_EQ(run({"mesh", folder_ / "none.poly", "-o", folder_ / "out" / "m.vtu"}), 4);
+  EXPECT_NE(err().find("none.poly: No such file or directory"), std::string::npos);
+  expect_nothing_left();
+}
+
+TEST_F(CommandLine, NamesAMissingOutputFolderBeforeAnyWork) {
+  EXPECT_EQ(run(mesh_to("no/m.vtu")), 5);
+  EXPECT_NE(err().find("No such file or directory"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "pid"));
+}
+
+TEST_F(CommandLine, SaysThatTheServerIsAbsent) {
+  Words words = mesh_to("m.vtu");
+  words.insert(words.end(), {"--server", "unix:" + (folder_ / "nobody").string()});
+  EXPECT_EQ(run(words), 78);
+  EXPECT_NE(err().find("UNAVAILABLE"), std::string::npos) << err();
+  expect_nothing_left();
+}
+
+TEST_F(CommandLine, TakesTheServerFromTheEnvironment) {
+  EXPECT_EQ(run(mesh_to("m.vtu"), {"WEFT_SERVER=unix:" + (folder_ / "nobody").string()}), 78);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "pid"));
+}
+
+TEST_F(CommandLine, ShowsWhyThePrivateServerDidNotStart) {
+  EXPECT_EQ(run(mesh_to("m.vtu"), {"WEFT_FAKE=die"}), 6);
+  EXPECT_NE(err().find("no luck today"), std::string::npos);
+  expect_nothing_left();
+}
+
+TEST_F(CommandLine, WritesNothingWhenTheServerIsKilledMidStream) {
+  EXPECT_EQ(run(mesh_to("m.vtu"), {"WEFT_FAKE=vanish"}), 78) << err();
+  expect_nothing_left();
+}
+
+TEST_F(CommandLine, WritesNothingWhenTheStreamIsDamaged) {
+  EXPECT_EQ(run(mesh_to("m.vtu"), {"WEFT_FAKE=damage"}), 79);
+  EXPECT_NE(err().find("chunk 1 does not match its SHA-256"), std::string::npos);
+  expect_nothing_left();
+}
+
+TEST_F(CommandLine, GivesUpAfterItsTimeout) {
+  Words words = mesh_to("m.vtu");
+  words.insert(words.end(), {"--timeout", "0.2"});
+  EXPECT_EQ(run(words, {"WEFT_FAKE=hang"}), 68);
+  expect_nothing_left();
+}
+
+// Waits until the private server has started.
+void wait_for_file(const std::filesystem::path& path) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (contents_of(path).empty() && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::yield();
+}
+
+TEST_F(CommandLine, EndsItsServerWhenInterrupted) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    std::filesystem::remove(folder_ / "pid");
+    const pid_t pid = start(mesh_to("m.vtu"), {"WEFT_FAKE=hang"});
+    wait_for_file(folder_ / "pid");
+    ::kill(pid, signal);
+    EXPECT_EQ(end_of(pid), 128 + signal);
+    EXPECT_NE(err().find("interrupted"), std::string::npos);
+    expect_nothing_left();
+  }
+}
+
+TEST_F(CommandLine, LeavesNothingWhenTheDiskIsFull) {
+  rlimit old{};
+  ::getrlimit(RLIMIT_FSIZE, &old);
+  const rlimit small{100'000, old.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &small);
+  const pid_t pid = start(mesh_to("m.vtu"), {"WEFT_FAKE=large"});
+  ::setrlimit(RLIMIT_FSIZE, &old);
+  EXPECT_EQ(end_of(pid), 5);
+  EXPECT_NE(err().find("File too large"), std::string::npos) << err();
+  expect_nothing_left();
+}
+
+TEST_F(CommandLine, ChecksAMesh) {
+  ASSERT_EQ(run(mesh_to("m.vtu")), 0);
+  const Words check = {"check", folder_ / "out" / "m.vtu", "--domain", folder_ / "in.poly"};
+  // The right half claims a region that the domain does not have.
+  EXPECT_EQ(run(check), 3);
+  EXPECT_NE(out().find("regions"), std::string::npos) << out();
+  Words strict = check;
+  strict.insert(strict.end(), {"--min-angle", "50"});
+  EXPECT_EQ(run(strict), 3);
+  EXPECT_NE(out().find("angle"), std::string::npos) << out();
+}
+
+TEST_F(CommandLine, DescribesMeshesAndDomains) {
+  ASSERT_EQ(run(mesh_to("m.vtu")), 0);
+  EXPECT_EQ(run({"info", folder_ / "out" / "m.vtu"}), 0);
+  EXPECT_NE(out().find("triangles  32\n"), std::string::npos) << out();
+  EXPECT_NE(out().find("angles     45.0000 to 90.0000 degrees\n"), std::string::npos) << out();
+  EXPECT_NE(out().find("regions    0 (16), 7 (16)\n"), std::string::npos) << out();
+  EXPECT_NE(out().find("box        (0, 0) to (4, 4)\n"), std::string::npos) << out();
+  EXPECT_EQ(run({"info", folder_ / "in.poly"}), 0);
+  EXPECT_NE(out().find("markers    1 (1), 2 (1), 3 (1), 4 (1)\n"), std::string::npos) << out();
+  EXPECT_EQ(run({"info", "a.stl"}), 2);
+}
+
+TEST_F(CommandLine, AsksForHealthAndServerInfo) {
+  EXPECT_EQ(run({"health"}), 0) << err();
+  EXPECT_EQ(out(), "serving\n");
+  EXPECT_EQ(run({"server-info"}), 0) << err();
+  EXPECT_NE(out().find("most points            1,234,567\n"), std::string::npos) << out();
+  EXPECT_EQ(run({"health", "--server", "unix:" + (folder_ / "nobody").string()}), 78);
+}
+
+TEST_F(CommandLine, ExplainsItself) {
+  EXPECT_EQ(run({"--version"}), 0);
+  EXPECT_TRUE(out().starts_with("weft ")) << out();
+  EXPECT_EQ(run({"--help"}), 0);
+  EXPECT_NE(out().find("Exit codes:"), std::string::npos);
+  EXPECT_EQ(run({"mesh", "--help"}), 0);
+  EXPECT_NE(out().find("Examples:"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace weft::client

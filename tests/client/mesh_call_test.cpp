@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/mesh_call.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "tests/client/support/fake_service.h"
+#include "tests/client/support/sample_mesh.h"
+#include "tests/client/support/temp_folder.h"
+
+namespace weft::client {
+namespace {
+
+class MeshCall : public testing::Test {
+ protected:
+  Result<MeshReport> call(Script script, const MeshCallOptions& options = {},
+                          std::stop_token stop = {}) {
+    FakeServer server(std::move(script), address_);
+    EXPECT_TRUE(server.listens());
+    auto report = call_server(options, std::move(stop));
+    return report;
+  }
+  Result<MeshReport> call_server(const MeshCallOptions& options, std::stop_token stop) {
+    const auto connection = connect(address_, {}).value();
+    spool_ = MeshSpool::create(folder_.path()).value();
+    return call_generate_mesh(connection, square_domain(4), {}, options, *spool_, std::move(stop));
+  }
+  static int exit_of(const Result<MeshReport>& report) {
+    return report ? 0 : static_cast<int>(report.error().exit);
+  }
+
+  TempFolder folder_;
+  std::string address_ = "unix:" + (folder_ / "s").string();
+  std::unique_ptr<MeshSpool> spool_;
+};
+
+TEST_F(MeshCall, BringsTheMeshAndTheReport) {
+  std::vector<std::uint64_t> progress;
+  const auto report = call(
+      {stream_of(square_mesh(4), 3)},
+      {.on_progress = [&progress](const v1::Progress& p) { progress.push_back(p.triangles()); }});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->summary.triangles(), 32u);
+  EXPECT_EQ(report->accepted.job_id(), "job-1");
+  EXPECT_EQ(spool_->triangles(), 32u);
+  EXPECT_EQ(progress, std::vector<std::uint64_t>{10});
+  EXPECT_GT(report->first_chunk_seconds, 0);
+  EXPECT_LE(report->first_chunk_seconds, report->stream_seconds);
+  EXPECT_GT(report->bytes_received, 0u);
+}
+
+TEST_F(MeshCall, RefusesADamagedStream) {
+  Script script{stream_of(square_mesh(4), 3)};
+  script.messages[3].mutable_chunk()->set_coordinates(0, 0.5);
+  const auto report = call(std::move(script));
+  EXPECT_EQ(exit_of(report), 79);
+  EXPECT_EQ(report.error().message, "the stream is damaged: chunk 1 does not match its SHA-256");
+}
+
+TEST_F(MeshCall, RefusesAStreamThatEndsEarly) {
+  Script script{stream_of(square_mesh(4), 3)};
+  script.messages.pop_back();
+  EXPECT_EQ(exit_of(call(std::move(script))), 79);
+}
+
+TEST_F(MeshCall, GivesTheStatusOfARefusal) {
+  const auto report = call({{}, [](grpc::ServerContext&) {
+                              return grpc::Status(grpc::StatusCode::INVALID_ARGUMENT, "no");
+                            }});
+  EXPECT_EQ(exit_of(report), 67);
+}
+
+TEST_F(MeshCall, SaysThatTheServerIsAbsent) {
+  const auto report = call_server({}, {});
+  EXPECT_EQ(exit_of(report), 78);
+  EXPECT_NE(report.error().message.find(address_), std::string::npos);
+}
+
+TEST_F(MeshCall, EndsAtItsDeadline) {
+  const auto report = call({{},
+                            [](grpc::ServerContext& context) {
+                              while (!context.IsCancelled()) std::this_thread::yield();
+                              return grpc::Status::CANCELLED;
+                            }},
+                           {.timeout_seconds = 0.1});
+  EXPECT_EQ(exit_of(report), 68);
+}
+
+TEST_F(MeshCall, EndsWhenAskedToStop) {
+  std::stop_source stop;
+  const auto report = call({{},
+                            [&stop](grpc::ServerContext& context) {
+                              stop.request_stop();
+                              while (!context.IsCancelled()) std::this_thread::yield();
+                              return grpc::Status::CANCELLED;
+                            }},
+                           {}, stop.get_token());
+  EXPECT_EQ(exit_of(report), 65);
+}
+
+TEST(MeshRequest, CarriesTheDomainAndTheWishes) {
+  Domain domain = square_domain(2);
+  domain.holes = {{1, 1.5}};
+  domain.regions = {{{0.5, 0.25}, -3, 0.125}, {{1, 1}, 4, std::nullopt}};
+  domain.fill = Domain::Fill::kEvenOdd;
+  const auto request = make_request(domain, {.size = "x + 1",
+                                             .min_angle_deg = 0,
+                                             .min_edge = 0.5,
+                                             .max_triangles = 7,
+                                             .max_seconds = 2,
+                                             .threads = 3});
+  EXPECT_EQ(request.domain().points_size(), 8);
+  EXPECT_EQ(request.domain().points(4), 2);
+  EXPECT_EQ(request.domain().segments(7), 0u);
+  EXPECT_EQ(request.domain().segment_markers(3), 4);
+  EXPECT_EQ(request.domain().holes(1), 1.5);
+  EXPECT_EQ(request.domain().regions(0).id(), -3);
+  EXPECT_EQ(request.domain().regions(0).max_area(), 0.125);
+  EXPECT_FALSE(request.domain().regions(1).has_max_area());
+  EXPECT_EQ(request.domain().fill(), v1::FILL_EVEN_ODD);
+  EXPECT_EQ(request.size().expression(), "x + 1");
+  EXPECT_TRUE(request.quality().has_min_angle_deg());
+  EXPECT_EQ(request.quality().min_edge(), 0.5);
+  EXPECT_EQ(request.budget().max_triangles(), 7u);
+  EXPECT_EQ(request.budget().max_seconds(), 2);
+  EXPECT_EQ(request.threads(), 3u);
+}
+
+TEST(MeshRequest, TakesANumberAsAConstantSizeAndLeavesDefaultsToTheServer) {
+  const auto request = make_request(square_domain(1), {.size = "-1e-3"});
+  EXPECT_EQ(request.size().constant(), -1e-3);
+  EXPECT_FALSE(request.has_quality());
+  EXPECT_FALSE(request.has_budget());
+  EXPECT_FALSE(make_request(square_domain(1), {}).has_size());
+  EXPECT_EQ(make_request(square_domain(1), {.size = "nan"}).size().expression(), "nan");
+}
+
+}  // namespace
+}  // namespace weft::client

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/progress_bar.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace weft::client {
+namespace {
+
+v1::Progress at(v1::Stage stage, std::uint64_t triangles, std::uint64_t expected) {
+  v1::Progress progress;
+  progress.set_stage(stage);
+  progress.set_triangles(triangles);
+  progress.set_expected_triangles(expected);
+  return progress;
+}
+
+std::string shown(ProgressStyle style) {
+  char* text = nullptr;
+  std::size_t size = 0;
+  std::FILE* stream = ::open_memstream(&text, &size);
+  {
+    ProgressBar bar(stream, style);
+    bar.update(at(v1::STAGE_QUEUED, 0, 0));
+    bar.update(at(v1::STAGE_REFINE, 1000, 4000));
+    bar.update(at(v1::STAGE_REFINE, 2000, 4000));
+  }
+  std::fclose(stream);
+  std::string out = text;
+  std::free(text);
+  return out;
+}
+
+TEST(ProgressBar, PrintsOneLinePerStageWhereThereIsNoTerminal) {
+  EXPECT_EQ(shown(ProgressStyle::kLines),
+            "weft: waiting\nweft: refining 1,000 of about 4,000 triangles\n");
+}
+
+TEST(ProgressBar, RedrawsItselfOnATerminalAndGoesAway) {
+  const std::string out = shown(ProgressStyle::kBar);
+  EXPECT_NE(out.find("\r\033[Krefining [#######.......................] 1,000 of about 4,000"),
+            std::string::npos);
+  EXPECT_TRUE(out.ends_with("\r\033[K"));
+}
+
+TEST(ProgressBar, IsSilentWhenToldSo) {
+  EXPECT_EQ(shown(ProgressStyle::kNone), "");
+}
+
+TEST(ProgressBar, DoesNotOverflowWhenTheEstimateWasLow) {
+  EXPECT_EQ(progress_text(at(v1::STAGE_EMIT, 9, 3), true),
+            "receiving [##############################] 9 of about 3 triangles");
+}
+
+}  // namespace
+}  // namespace weft::client

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/server_error.h"
+
+#include <gtest/gtest.h>
+
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+
+namespace weft::client {
+namespace {
+
+grpc::Status refusal(const std::string& field, const std::string& message) {
+  google::rpc::Status details;
+  google::rpc::ErrorInfo info;
+  info.set_reason("ZERO_LENGTH_SEGMENT");
+  details.add_details()->PackFrom(info);
+  google::rpc::BadRequest bad;
+  bad.add_field_violations()->set_field(field);
+  details.add_details()->PackFrom(bad);
+  return {grpc::StatusCode::INVALID_ARGUMENT, message, details.SerializeAsString()};
+}
+
+Domain domain_with_places() {
+  Domain domain;
+  domain.points.resize(3);
+  domain.segments.resize(3);
+  domain.point_places.add(0, "coast.poly:", 2, "");
+  domain.segment_places.add(0, "coast.poly:", 6, "");
+  domain.segment_places.add(2, "coast.poly:", 10, "");
+  return domain;
+}
+
+TEST(ServerError, NamesReasonFieldAndPlaceInTheFile) {
+  const Domain domain = domain_with_places();
+  const Error error = error_of(refusal("domain.segments[2].b", "segment 2 joins point 1 to itself"),
+                               "unix:/s", &domain);
+  EXPECT_EQ(static_cast<int>(error.exit), 67);
+  EXPECT_EQ(error.message,
+            "the server unix:/s answers INVALID_ARGUMENT (ZERO_LENGTH_SEGMENT)\n"
+            "  field domain.segments[2].b, at coast.poly:10\n"
+            "  segment 2 joins point 1 to itself");
+}
+
+TEST(ServerError, KeepsACaretUnderItsColumn) {
+  const Error error =
+      error_of(refusal("size.expression", "unexpected ')'\nx + )\n    ^"), "a", nullptr);
+  EXPECT_TRUE(error.message.ends_with("\n  unexpected ')'\n  x + )\n      ^"));
+}
+
+TEST(ServerError, LetsNoControlCharactersReachTheTerminal) {
+  const Error error = error_of({grpc::StatusCode::UNKNOWN, "\x1b[2Jboo"}, "a", nullptr);
+  EXPECT_EQ(error.message, "the server a answers UNKNOWN\n  ?[2Jboo");
+}
+
+TEST(ServerError, LivesWithDetailsThatAreGarbage) {
+  const Error error =
+      error_of({grpc::StatusCode::UNAVAILABLE, "gone", "\xff\xff garbage"}, "a", nullptr);
+  EXPECT_EQ(static_cast<int>(error.exit), 78);
+}
+
+TEST(ServerError, LocatesNothingWhereTheFieldIsNotOfAList) {
+  const Domain domain = domain_with_places();
+  EXPECT_EQ(locate_field("domain.points[1].x", domain), "coast.poly:3");
+  EXPECT_EQ(locate_field("size.constant", domain), "");
+  EXPECT_EQ(locate_field("domain.points[", domain), "");
+  EXPECT_EQ(locate_field("domain.points[-1]", domain), "");
+  EXPECT_EQ(locate_field("domain.holes[0]", domain), "");
+}
+
+}  // namespace
+}  // namespace weft::client
