@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The whole path on the models: weft mesh, through weftd, to a file; then weft check on that file.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/e2e/programs.h"
+
+namespace weft::e2e {
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+Arguments operator+(Arguments a, const Arguments& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+// Meshes and checks; returns the --json object.
+nlohmann::json mesh_and_check(const Server& server, const std::string& input,
+                              const std::string& output, const Arguments& bounds) {
+  const Folder folder;
+  const std::string path = folder / output;
+  const Outcome mesh = run_weft(
+      Arguments{"mesh", input, "-o", path, "--json", "--quiet", "--server", server.address()} +
+      bounds);
+  EXPECT_EQ(mesh.exit_code, 0) << mesh.err;
+  if (mesh.exit_code != 0) return {};
+  const Outcome check = run_weft(Arguments{"check", path, "--domain", input} + bounds);
+  EXPECT_EQ(check.exit_code, 0) << check.out << check.err;
+  return nlohmann::json::parse(mesh.out);
+}
+
+const std::string kCylinderSize = "(x>=0 && abs(y)<5) || (x<0 && x^2+y^2<25) ? 1.2e-3 : 1e-2";
+
+TEST(Models, ThroughTheServerHoldTheirBoundsAndCounts) {
+  const Server server;
+  const auto triangles = [&](const std::string& name, const std::string& output,
+                             const Arguments& bounds) {
+    return mesh_and_check(server, model(name), output, bounds).value("triangles", 0);
+  };
+  EXPECT_LE(triangles("pipe.poly", "pipe.vtu", {"--size", "0.4*sqrt((x-200)^2+(y-200)^2)+1"}),
+            3'750);
+  EXPECT_LE(triangles("key.poly", "key.msh", {"--size", "0.02*abs(y-46)+0.1"}), 7'200);
+  EXPECT_LE(triangles("cylinder.poly", "cylinder.vtu", {"--size", kCylinderSize}), 970'000);
+  EXPECT_LE(triangles("us-east-coast.poly", "coast.node", {"--min-angle", "20"}), 20'000);
+  EXPECT_LE(triangles("us-east-coast.geojson", "coast.vtu", {"--min-angle", "30"}), 40'000);
+  EXPECT_LE(triangles("us-east-coast.poly", "coast.vtu", {"--size", "1e-3"}), 500'000);
+}
+
+TEST(Models, GiveTheSameDigestThroughAPrivateServerAndASharedOne) {
+  const Server server;
+  const auto digest = [](const Arguments& where) {
+    const Folder folder;
+    const Outcome mesh = run_weft(Arguments{"mesh", model("key.poly"), "-o", folder / "key.vtu",
+                                            "--size", "0.1", "--json", "--quiet"} +
+                                  where);
+    EXPECT_EQ(mesh.exit_code, 0) << mesh.err;
+    return nlohmann::json::parse(mesh.out)["digest"].get<std::string>();
+  };
+  EXPECT_EQ(digest({}), digest({"--server", server.address()}));
+}
+
+TEST(Drawing, OfAMeshIsWrittenBesideIt) {
+  const Folder folder;
+  const Outcome mesh =
+      run_weft({"mesh", model("key.poly"), "-o", folder / "key.vtu", "--draw", folder / "key.png",
+                "--draw", folder / "key.svg", "--draw", folder / "key.pdf", "--quiet"});
+  EXPECT_EQ(mesh.exit_code, 0) << mesh.err;
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"key.pdf", "key.png", "key.svg", "key.vtu"}));
+}
+
+TEST(Check, FindsAMeshThatMissesItsBounds) {
+  const Folder folder;
+  const std::string path = folder / "key.vtu";
+  ASSERT_EQ(run_weft({"mesh", model("key.poly"), "-o", path, "--quiet"}).exit_code, 0);
+  const Outcome check = run_weft({"check", path, "--domain", model("key.poly"), "--size", "0.01"});
+  EXPECT_EQ(check.exit_code, 3);
+  EXPECT_NE((check.out + check.err).find("area"), std::string::npos) << check.out << check.err;
+}
+
+}  // namespace
+}  // namespace weft::e2e

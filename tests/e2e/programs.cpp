@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/e2e/programs.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+extern char** environ;
+
+namespace weft::e2e {
+namespace {
+
+std::string contents(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// Starts a program with its output in files; stdin is empty.
+pid_t start(const std::string& program, const std::vector<std::string>& arguments,
+            const std::string& out, const std::string& err) {
+  std::vector<char*> argv{const_cast<char*>(program.c_str())};
+  for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  constexpr int kWrite = O_WRONLY | O_CREAT | O_TRUNC;
+  posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), kWrite, 0600);
+  posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), kWrite, 0600);
+  pid_t pid = -1;
+  const int error = posix_spawn(&pid, program.c_str(), &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) throw std::runtime_error("cannot start " + program);
+  return pid;
+}
+
+int wait_for(pid_t pid) {
+  int status = 0;
+  waitpid(pid, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+}  // namespace
+
+Outcome run_weft(const std::vector<std::string>& arguments) {
+  const Folder folder;
+  Outcome outcome;
+  outcome.exit_code = wait_for(start(WEFT_BINARY, arguments, folder / "out", folder / "err"));
+  outcome.out = contents(folder / "out");
+  outcome.err = contents(folder / "err");
+  return outcome;
+}
+
+Server::Server(const std::vector<std::string>& arguments) {
+  address_ = "unix:" + (folder_ / "weftd.sock").string();
+  const std::string port_file = folder_ / "address";
+  std::vector<std::string> all{"--listen", address_, "--port-file", port_file};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  pid_ = start(WEFTD_BINARY, all, folder_ / "out", folder_ / "err");
+  while (!std::filesystem::exists(port_file)) {
+    if (waitpid(pid_, nullptr, WNOHANG) != 0) {
+      pid_ = -1;
+      throw std::runtime_error("weftd did not start:\n" + contents(folder_ / "err"));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
+
+Server::~Server() {
+  if (pid_ < 0) return;
+  ::kill(pid_, SIGTERM);
+  wait_for(pid_);
+}
+
+void Server::kill() {
+  ::kill(pid_, SIGKILL);
+  wait_for(pid_);
+  pid_ = -1;
+}
+
+std::uint64_t Server::resident_bytes() const {
+  std::ifstream statm("/proc/" + std::to_string(pid_) + "/statm");
+  std::uint64_t total = 0;
+  std::uint64_t resident = 0;
+  statm >> total >> resident;
+  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+std::string model(const std::string& name) {
+  return std::string(WEFT_MODELS) + "/" + name;
+}
+
+}  // namespace weft::e2e

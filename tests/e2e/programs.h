@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The real programs, run as a user runs them.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/client/support/temp_folder.h"
+
+namespace weft::e2e {
+
+using Folder = client::TempFolder;
+
+struct Outcome {
+  int exit_code = -1;  // 128 + n for a signal
+  std::string out;
+  std::string err;
+};
+
+// Runs build/.../weft with these arguments and waits.
+Outcome run_weft(const std::vector<std::string>& arguments);
+
+// A weftd on a unix socket; SIGTERM at the end.
+class Server {
+ public:
+  explicit Server(const std::vector<std::string>& arguments = {});
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  const std::string& address() const { return address_; }
+  void kill();  // SIGKILL, and waits
+  std::uint64_t resident_bytes() const;
+
+ private:
+  Folder folder_;
+  std::string address_;
+  pid_t pid_ = -1;
+};
+
+// The path of a file in tests/models.
+std::string model(const std::string& name);
+
+}  // namespace weft::e2e
