@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Installs the Debian 12 packages that weft needs; says nothing and changes nothing where they are.
+#
+#   deploy/install-deps.sh [GROUP...]
+#     build    compiles everything
+#     runtime  runs weftd and weft
+#     test     what tests/run.sh needs beyond build
+#     all      build and test, the default
+set -euo pipefail
+
+build=(
+  ca-certificates git g++ cmake ninja-build ccache pkg-config
+  libgrpc++-dev libprotobuf-dev protobuf-compiler protobuf-compiler-grpc # the wire
+  libcgal-dev libgmp-dev libmpfr-dev libboost-dev                        # exact geometry
+  libtbb-dev libsleef-dev libexpected-dev                                # the engine
+  libspdlog-dev libfmt-dev libssl-dev                                    # the server
+  libcli11-dev nlohmann-json3-dev libcairo2-dev fonts-dejavu-core        # the command line
+  libmuparser-dev                                                        # the checker
+  libgtest-dev libgmock-dev librapidcheck-dev                            # tests
+)
+runtime=(
+  libgrpc++1.51 libprotobuf32 libgmp10 libmpfr6 libtbb12 libsleef3 libspdlog1.10 libfmt9
+  libssl3 libcairo2 libmuparser2v5 fonts-dejavu-core
+)
+test=(clang clang-format clang-tidy shellcheck gmsh python3 python3-meshio)
+# Some machines bring a newer node; Debian's npm would be in its way.
+command -v npm >/dev/null || test+=(nodejs npm)
+
+wanted=()
+for group in "${@:-all}"; do
+  case $group in
+    build) wanted+=("${build[@]}") ;;
+    runtime) wanted+=("${runtime[@]}") ;;
+    test) wanted+=("${test[@]}") ;;
+    all) wanted+=("${build[@]}" "${test[@]}") ;;
+    *)
+      echo "install-deps.sh: unknown group '$group'; there are build, runtime, test, all" >&2
+      exit 2
+      ;;
+  esac
+done
+
+installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' | sed -n 's/^installed //p')
+mapfile -t missing < <(printf '%s\n' "${wanted[@]}" | sort -u | grep -vxF -f <(echo "$installed"))
+((${#missing[@]})) || exit 0
+
+as_root=()
+if ((EUID != 0)); then
+  command -v sudo >/dev/null || {
+    echo "install-deps.sh: neither root nor sudo; install these as root: ${missing[*]}" >&2
+    exit 1
+  }
+  as_root=(sudo)
+fi
+echo "installing ${#missing[@]} packages: ${missing[*]}"
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+  apt-get install -y -qq --no-install-recommends "${missing[@]}"

@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# From a fresh Debian 12 machine to all tests run: installs what is missing, builds with warnings as
+# errors, runs every test, then those labelled `sanitize` again under AddressSanitizer and
+# UndefinedBehaviorSanitizer, and checks formatting, licences, protocol and scripts. Prints each
+# step with its seconds, and the closing lines of ctest last. Fails when any step failed.
+#
+#   tests/run.sh [--quick]     --quick leaves the sanitizers out
+set -uo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
+
+case "$#:${1-}" in
+  0:) sanitize=yes ;;
+  1:--quick) sanitize= ;;
+  *)
+    echo "usage: tests/run.sh [--quick]" >&2
+    exit 2
+    ;;
+esac
+
+report=()            # a line for each step
+declare -A tested=() # by preset: ctest ran and left its log
+failed=0
+
+# step NAME COMMAND...
+step() {
+  local name=$1 start=$EPOCHREALTIME outcome=ok status=0
+  shift
+  printf '\n==> %s\n' "$name"
+  "$@" </dev/null || { status=$? outcome=FAILED failed=1; }
+  report+=("$(awk -v a="$start" -v b="$EPOCHREALTIME" -v name="$name" -v outcome="$outcome" \
+    'BEGIN { printf "%-34s %7.1f s  %s", name, b - a, outcome }')")
+  echo "==> ${report[-1]}"
+  return $status
+}
+
+# needed NAME COMMAND...: a step without which the rest makes no sense
+needed() {
+  step "$@" || finish
+}
+
+finish() {
+  printf '\n--- steps ---\n'
+  printf '%s\n' "${report[@]}"
+  local preset log
+  for preset in asan release; do
+    log=build/$preset/ctest.log
+    [[ ${tested[$preset]-} ]] || continue
+    printf '\n--- ctest, %s ---\n' "$preset"
+    sed -n '/% tests passed/,$p' "$log"
+  done
+  exit $failed
+}
+
+# run_ctest PRESET ARGUMENT...
+run_ctest() {
+  local preset=$1
+  shift
+  tested[$preset]=yes
+  ctest --preset "$preset" -j "$(nproc)" --no-tests=error --no-label-summary "$@" \
+    2>&1 | tee "build/$preset/ctest.log"
+}
+
+ours() {
+  git ls-files --cached --others --exclude-standard -- "$@"
+}
+
+check_format() {
+  ours '*.h' '*.cpp' | xargs clang-format --dry-run -Werror
+}
+
+check_shell() {
+  ours '*.sh' .ci/run | xargs shellcheck --severity=warning
+}
+
+check_protocol() (
+  cd deploy || exit
+  if [[ ! node_modules/.package-lock.json -nt package-lock.json ]]; then
+    npm ci --ignore-scripts --no-audit --no-fund || exit
+  fi
+  node_modules/.bin/buf lint ../proto
+)
+
+export UBSAN_OPTIONS=print_stacktrace=1
+
+needed "install packages" deploy/install-deps.sh
+step "formatting" check_format
+step "shell scripts" check_shell
+step "protocol" check_protocol
+needed "configure" cmake --preset release -DWEFT_WERROR=ON
+needed "build" cmake --build --preset release
+step "licences" tests/licences.sh
+step "tests" run_ctest release --timeout 300
+if [[ $sanitize ]]; then
+  needed "configure, sanitizers" cmake --preset asan -DWEFT_WERROR=ON
+  needed "build, sanitizers" cmake --build --preset asan --target sanitize-tests
+  step "tests, sanitizers" run_ctest asan -L sanitize --timeout 600
+fi
+finish
