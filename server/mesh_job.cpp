@@ -62,9 +62,9 @@ void MeshJob::start() noexcept {
 }
 
 void MeshJob::stop(StopCause cause) {
+  fail(failure_of_cause(cause));  // before the engine learns of it, and calls itself cancelled
   context_.cancel();
   environment_.queue.remove(*this);
-  fail(failure_of_cause(cause));
   if (cause == StopCause::kReaderStalled) kill();
 }
 

@@ -32,23 +32,25 @@ bool MessageStream::finish(grpc::ByteBuffer last) {
     last_queued_ = true;  // no offer may come after the last message
   }
   if (!queue_.push(std::move(last))) return false;
-  return settle(grpc::Status::OK);
+  const bool first = settle(grpc::Status::OK);
+  pump();
+  return first;
 }
 
+// The status is settled before the queue is closed: closing wakes a thread that waits for room, and
+// what that thread makes of it must come second.
 bool MessageStream::abort(grpc::Status status) {
+  const bool first = settle(std::move(status));
   queue_.close();
-  return settle(std::move(status));
+  pump();
+  return first;
 }
 
 bool MessageStream::settle(grpc::Status status) {
-  bool first = false;
-  {
-    std::lock_guard lock(mutex_);
-    first = !status_;
-    if (first) status_ = std::move(status);
-  }
-  pump();
-  return first;
+  std::lock_guard lock(mutex_);
+  if (status_) return false;
+  status_ = std::move(status);
+  return true;
 }
 
 void MessageStream::kill() {

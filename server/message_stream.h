@@ -65,7 +65,7 @@ class MessageStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   void OnWriteDone(bool ok) final;
   void OnCancel() final { client_gone(); }
   void OnDone() final;
-  bool settle(grpc::Status status);
+  bool settle(grpc::Status status);      // false where it was settled before
   void write(grpc::ByteBuffer message);  // REQUIRES: the caller has set writing_ just before
 
   ChunkQueue queue_;

@@ -35,7 +35,8 @@ class ConstantArea {
   RingVerdict judge(const Ring& ring, std::uint32_t first, std::uint32_t last, Point,
                     double region_bound, const QualityBounds& quality, std::uint32_t* badness) {
     return judge_ring(ring, first, last, quality,
-                      UniformAreaBound{std::min(doubled_, 2 * region_bound)}, badness);
+                      UniformAreaBound{std::min(doubled_, 2 * region_bound)},
+                      std::numeric_limits<double>::infinity(), badness);
   }
 
   // Insertions that take about 0.1 ms, see ExecutionContext.

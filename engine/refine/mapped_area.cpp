@@ -1,24 +1,41 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/refine/mapped_area.h"
 
+#include <array>
 #include <cmath>
 
 namespace weft {
 
-void MappedArea::find_place(const Ring& ring, std::uint32_t first, std::uint32_t last, Point p) {
+RingVerdict MappedArea::judge_elsewhere(const Ring& ring, std::uint32_t first, std::uint32_t last,
+                                        Point p, double region_bound, const QualityBounds& quality,
+                                        std::uint32_t* badness) {
   double reach2 = 0;
   for (std::uint32_t i = first; i <= last; ++i) reach2 = std::max(reach2, ring.length2[i]);
   const double reach = std::sqrt(reach2);
-  const Box around{p.x - reach, p.y - reach, p.x + reach, p.y + reach};
-  const bool same = place_.node != nullptr && place_.node->leaf() &&
-                    around.min_x >= place_.box.min_x && around.max_x <= place_.box.max_x &&
-                    around.min_y >= place_.box.min_y && around.max_y <= place_.box.max_y;
-  if (!same) [[unlikely]]
-    place_ = map_.locate(around);
+  const auto around = [&](double radius) {
+    return Box{p.x - radius, p.y - radius, p.x + radius, p.y + radius};
+  };
+  // The larger the box, the longer it serves; 30 % of the rings would leave the map's own boxes.
+  bool found = false;
+  for (const double factor : {1, 6, 36}) {
+    const Box box = around(factor * reach);
+    const auto size = map_.uniform_size(box);
+    if (!size) break;
+    found = true;
+    box_ = box;
+    size_ = *size;
+  }
+  if (!found) {
+    return judge_evaluated(map_.locate(around(reach)), ring, first, last, p, region_bound, quality,
+                           badness);
+  }
+  return judge_ring(ring, first, last, quality, UniformAreaBound{2 * std::min(size_, region_bound)},
+                    std::numeric_limits<double>::infinity(), badness);
 }
 
-RingVerdict MappedArea::judge_evaluated(const Ring& ring, std::uint32_t first, std::uint32_t last,
-                                        Point p, double region_bound, const QualityBounds& quality,
+RingVerdict MappedArea::judge_evaluated(const SizeMap::Place& place, const Ring& ring,
+                                        std::uint32_t first, std::uint32_t last, Point p,
+                                        double region_bound, const QualityBounds& quality,
                                         std::uint32_t* badness) {
   const std::uint32_t n = last - first;
   const std::size_t lanes = (n + Expression::kLanes - 1) / Expression::kLanes;
@@ -39,9 +56,9 @@ RingVerdict MappedArea::judge_evaluated(const Ring& ring, std::uint32_t first, s
     x[i] = x[0];
     y[i] = y[0];
   }
-  size_.evaluate(n, x, y, bound);
+  expression_.evaluate(n, x, y, bound);
 
-  const SizeMap::Node& node = *place_.node;
+  const SizeMap::Node& node = *place.node;
   if (node.may_be_nan || !(node.lo > 0) || !(node.hi < std::numeric_limits<double>::infinity())) {
     for (std::uint32_t i = 0; i < n; ++i) {
       if (!(bound[i] > 0 && bound[i] < std::numeric_limits<double>::infinity()) && !bad_size_) {
@@ -56,8 +73,8 @@ RingVerdict MappedArea::judge_evaluated(const Ring& ring, std::uint32_t first, s
     std::uint32_t first;
     double operator[](std::uint32_t i) const { return doubled[i - first]; }
   };
-  const RingVerdict verdict =
-      judge_ring(ring, first, last, quality, EvaluatedBound{bound, first}, badness);
+  const RingVerdict verdict = judge_ring(ring, first, last, quality, EvaluatedBound{bound, first},
+                                         std::numeric_limits<double>::infinity(), badness);
   if (node.leaf()) return verdict;
   for (std::uint32_t i = first; i < last; ++i) {
     const double area = 0.5 * ring.cross[i];
@@ -65,9 +82,9 @@ RingVerdict MappedArea::judge_evaluated(const Ring& ring, std::uint32_t first, s
         !(area > SizeMap::kFeatureFactor * node.lowest_hi)) {
       continue;
     }
-    const Point corners[3] = {
-        p, {p.x + ring.x[i], p.y + ring.y[i]}, {p.x + ring.x[i + 1], p.y + ring.y[i + 1]}};
-    if (map_.covers_finer(place_, corners, area)) {
+    const std::array<Point, 3> corners{p, Point{p.x + ring.x[i], p.y + ring.y[i]},
+                                       Point{p.x + ring.x[i + 1], p.y + ring.y[i + 1]}};
+    if (map_.covers_finer(place, corners, area)) {
       badness[i] = static_cast<std::uint32_t>(Badness::kLarge);
     }
   }
@@ -77,11 +94,10 @@ RingVerdict MappedArea::judge_evaluated(const Ring& ring, std::uint32_t first, s
 void MappedArea::bounds_at(std::size_t n, const double* x, const double* y, double* bound) {
   Box around;
   for (std::size_t i = 0; i < n; ++i) around.add({x[i], y[i]});
-  const SizeMap::Node& node = *map_.locate(around).node;
-  if (node.constant()) {
-    std::fill_n(bound, n, node.lo);
+  if (const auto size = map_.uniform_size(around)) {
+    std::fill_n(bound, n, *size);
   } else {
-    size_.evaluate(n, x, y, bound);
+    expression_.evaluate(n, x, y, bound);
   }
 }
 

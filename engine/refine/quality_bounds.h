@@ -29,6 +29,7 @@ struct QualityBounds {
 struct RingVerdict {
   bool flat = false;       // a triangle may not be counter-clockwise: ask the exact predicate
   bool too_close = false;  // p is nearer to a point of the ring than the floor
+  bool beyond = false;     // a point of the ring is farther from p than `reach2` allows
 };
 
 // An area bound for every triangle of a ring.
@@ -38,11 +39,11 @@ struct UniformAreaBound {
 };
 
 // badness[i] of the triangles first <= i < last. `doubled_bound[i]` is twice the upper bound on
-// the area of triangle i.
+// the area of triangle i, and holds for rings that reach no farther than the root of `reach2`.
 template <class AreaBound>
 inline RingVerdict judge_ring(const Ring& ring, std::uint32_t first, std::uint32_t last,
                               const QualityBounds& quality, const AreaBound& doubled_bound,
-                              std::uint32_t* __restrict badness) {
+                              double reach2, std::uint32_t* __restrict badness) {
   const double* __restrict x = ring.x.data();
   const double* __restrict y = ring.y.data();
   const double* __restrict length2 = ring.length2.data();
@@ -52,6 +53,7 @@ inline RingVerdict judge_ring(const Ring& ring, std::uint32_t first, std::uint32
   constexpr double kOrientationError = 4 * 0x1p-53;
   std::uint64_t flat = 0;
   std::uint64_t close = 0;
+  std::uint64_t beyond = 0;
   for (std::uint32_t i = first; i < last; ++i) {
     const double ex = x[i + 1] - x[i];
     const double ey = y[i + 1] - y[i];
@@ -64,10 +66,11 @@ inline RingVerdict judge_ring(const Ring& ring, std::uint32_t first, std::uint32
     const bool large = area2 > doubled_bound[i];
     flat |= static_cast<std::uint64_t>(area2 <= kOrientationError * (a2 + b2));
     close |= static_cast<std::uint64_t>(std::min(a2, b2) < min_length2);
+    beyond |= static_cast<std::uint64_t>(std::max(a2, b2) > reach2);
     badness[i] =
         large ? static_cast<std::uint32_t>(Badness::kLarge) : static_cast<std::uint32_t>(skinny);
   }
-  return {flat != 0, close != 0};
+  return {flat != 0, close != 0, beyond != 0};
 }
 
 }  // namespace weft

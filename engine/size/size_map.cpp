@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <span>
 
 namespace weft {
 namespace {
@@ -83,10 +85,17 @@ bool contains(const Box& outer, const Box& inner) {
          inner.max_y <= outer.max_y;
 }
 
-// A node whose fate is to be decided, with the triangles of the domain that it overlaps.
+// A node whose fate is to be decided, with the triangles of the domain that it overlaps: a range of
+// Level::triangles.
 struct Pending {
   std::uint32_t node;
   Box box;
+  std::size_t first;
+  std::size_t last;
+};
+
+struct Level {
+  std::vector<Pending> nodes;
   std::vector<std::uint32_t> triangles;
 };
 
@@ -98,17 +107,20 @@ Result<SizeMap> SizeMap::build(const Expression& size, const Domain& domain,
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   SizeMap map;
   for (Point p : domain.vertices) map.root_.add(p);
-  map.nodes_.push_back({-kInfinity, kInfinity, kInfinity, 0, true});
+  map.nodes_.push_back({-kInfinity, kInfinity, kInfinity, 0, true, false});
 
-  std::vector<Pending> level(1);
-  level[0] = {0, map.root_, std::vector<std::uint32_t>(domain.triangles.size())};
-  for (std::uint32_t t = 0; t < domain.triangles.size(); ++t) level[0].triangles[t] = t;
+  Level level;
+  level.nodes.push_back({0, map.root_, 0, domain.triangles.size()});
+  level.triangles.resize(domain.triangles.size());
+  std::iota(level.triangles.begin(), level.triangles.end(), 0u);
 
-  for (int depth = 0; !level.empty(); ++depth) {
-    std::vector<Pending> next;
-    for (const Pending& pending : level) {
+  for (int depth = 0; !level.nodes.empty(); ++depth) {
+    Level next;
+    for (const Pending& pending : level.nodes) {
       if (auto error = context.poll()) return tl::unexpected(*error);
-      if (pending.triangles.empty()) continue;
+      const std::span triangles(level.triangles.data() + pending.first,
+                                pending.last - pending.first);
+      if (triangles.empty()) continue;
       const Interval bounds = size.bounds(pending.box);
       {
         Node& node = map.nodes_[pending.node];
@@ -116,28 +128,28 @@ Result<SizeMap> SizeMap::build(const Expression& size, const Domain& domain,
         node.hi = bounds.hi;
         node.lowest_hi = bounds.hi;
         node.may_be_nan = bounds.may_be_nan;
+        node.meets_domain = true;
       }
       const bool resolved =
           !bounds.may_be_nan && bounds.lo > 0 && bounds.hi <= kResolved * bounds.lo;
-      // About as small as the triangles there: nothing smaller can hide between their centroids.
       const double box_area = pending.box.width() * pending.box.height();
-      const bool small = box_area <= 4 * bounds.lo;
+      const bool small = box_area <= kSmallBox * bounds.lo;
       if (!resolved && !small && depth < kMaxLevels && map.nodes_.size() + 4 <= kMaxNodes) {
         const auto first = static_cast<std::uint32_t>(map.nodes_.size());
         map.nodes_[pending.node].first_child = first;
         for (unsigned child = 0; child < 4; ++child) {
-          map.nodes_.push_back({-kInfinity, kInfinity, kInfinity, 0, true});
-          next.push_back({first + child, child_box(pending.box, child), {}});
-          for (std::uint32_t t : pending.triangles) {
-            if (overlap(next.back().box, corners_of(domain, t))) {
-              next.back().triangles.push_back(t);
-            }
+          map.nodes_.push_back({-kInfinity, kInfinity, kInfinity, 0, true, false});
+          const Box box = child_box(pending.box, child);
+          const std::size_t begin = next.triangles.size();
+          for (std::uint32_t t : triangles) {
+            if (overlap(box, corners_of(domain, t))) next.triangles.push_back(t);
           }
+          next.nodes.push_back({first + child, box, begin, next.triangles.size()});
         }
         continue;
       }
       double area = 0;
-      for (std::uint32_t t : pending.triangles) {
+      for (std::uint32_t t : triangles) {
         area += common_area(pending.box, corners_of(domain, t));
       }
       if (bounds.hi > 0) map.least_triangles_ += area / bounds.hi;
@@ -160,8 +172,7 @@ Result<SizeMap> SizeMap::build(const Expression& size, const Domain& domain,
 
 SizeMap::Place SizeMap::locate(const Box& box) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const Box wanted{std::max(box.min_x, root_.min_x), std::max(box.min_y, root_.min_y),
-                   std::min(box.max_x, root_.max_x), std::min(box.max_y, root_.max_y)};
+  const Box wanted = inside_root(box);
   const Node* node = nodes_.data();
   Box at = root_;
   while (!node->leaf()) {
@@ -179,26 +190,46 @@ SizeMap::Place SizeMap::locate(const Box& box) const {
   return {node, at};
 }
 
-bool SizeMap::covers_finer(const Place& place, const Point corners[3], double area) const {
-  struct Visit {
-    const Node* node;
-    Box box;
-  };
-  const Corners triangle{corners[0], corners[1], corners[2]};
-  std::array<Visit, 4 * 48> stack;
-  std::size_t depth = 0;
-  stack[depth++] = {
-      place.node,
-      {std::max(place.box.min_x, root_.min_x), std::max(place.box.min_y, root_.min_y),
-       std::min(place.box.max_x, root_.max_x), std::min(place.box.max_y, root_.max_y)}};
-  while (depth > 0) {
-    const Visit visit = stack[--depth];
-    if (!(area > kFeatureFactor * visit.node->lowest_hi)) continue;
-    if (!overlap(visit.box, triangle)) continue;
-    if (visit.node->leaf()) return true;
-    for (unsigned child = 0; child < 4; ++child) {
-      stack[depth++] = {&nodes_[visit.node->first_child + child], child_box(visit.box, child)};
-    }
+Box SizeMap::inside_root(const Box& box) const {
+  return {std::max(box.min_x, root_.min_x), std::max(box.min_y, root_.min_y),
+          std::min(box.max_x, root_.max_x), std::min(box.max_y, root_.max_y)};
+}
+
+std::optional<double> SizeMap::uniform_size(const Box& box) const {
+  double size = 0;
+  if (!uniform_below(nodes_[0], root_, box, size) || size == 0) return std::nullopt;
+  return size;
+}
+
+bool SizeMap::uniform_below(const Node& node, const Box& at, const Box& box, double& size) const {
+  if (node.leaf()) {
+    if (!node.meets_domain) return true;
+    if (!node.constant() || !(node.lo > 0) || (size != 0 && size != node.lo)) return false;
+    size = node.lo;
+    return true;
+  }
+  const Point m = middle(at);
+  for (unsigned child = 0; child < 4; ++child) {
+    const bool meets = (child & 1 ? box.max_x >= m.x : box.min_x <= m.x) &&
+                       (child & 2 ? box.max_y >= m.y : box.min_y <= m.y);
+    if (meets && !uniform_below(nodes_[node.first_child + child], child_box(at, child), box, size))
+      return false;
+  }
+  return true;
+}
+
+bool SizeMap::covers_finer(const Place& place, const std::array<Point, 3>& corners,
+                           double area) const {
+  return finer_below(*place.node, inside_root(place.box), corners, area);
+}
+
+bool SizeMap::finer_below(const Node& node, const Box& at, const std::array<Point, 3>& corners,
+                          double area) const {
+  if (!(area > kFeatureFactor * node.lowest_hi) || !overlap(at, corners)) return false;
+  if (node.leaf()) return true;
+  for (unsigned child = 0; child < 4; ++child) {
+    if (finer_below(nodes_[node.first_child + child], child_box(at, child), corners, area))
+      return true;
   }
   return false;
 }

@@ -18,8 +18,10 @@
 // harm. Thread-safety: immutable once built.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/context.h"
@@ -34,6 +36,9 @@ class SizeMap {
  public:
   static constexpr double kResolved = 2;
   static constexpr double kFeatureFactor = 4;
+  // A box is not split below this many times the area of the triangles there: a spot that spans
+  // five of their edges holds a whole box.
+  static constexpr double kSmallBox = 8;
   static constexpr std::size_t kMaxNodes = std::size_t{1} << 16;
 
   struct Node {
@@ -42,6 +47,7 @@ class SizeMap {
     double lowest_hi;           // least `hi` of the leaves below that meet the domain
     std::uint32_t first_child;  // of four, in Morton order; 0 for a leaf
     bool may_be_nan;
+    bool meets_domain;
 
     bool leaf() const { return first_child == 0; }
     bool constant() const { return lo == hi && !may_be_nan; }
@@ -60,9 +66,12 @@ class SizeMap {
   // The smallest node whose box holds `box`.
   Place locate(const Box& box) const;
 
+  // The function's value where it is the same, and positive, in all of the box.
+  std::optional<double> uniform_size(const Box& box) const;
+
   // Whether a triangle of this area overlaps a box below `place` where the function is less than
   // area / kFeatureFactor for certain.
-  bool covers_finer(const Place& place, const Point corners[3], double area) const;
+  bool covers_finer(const Place& place, const std::array<Point, 3>& corners, double area) const;
 
   // Integral of 1 / size over the domain: from below with the upper bounds, and a best guess.
   double least_triangles() const { return least_triangles_; }
@@ -71,6 +80,13 @@ class SizeMap {
   std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
 
  private:
+  Box inside_root(const Box& box) const;
+  // Whether the leaves below `node`, whose box is `at`, that meet `box` all have the value `size`;
+  // 0 stands for any and becomes the first one's.
+  bool uniform_below(const Node& node, const Box& at, const Box& box, double& size) const;
+  bool finer_below(const Node& node, const Box& at, const std::array<Point, 3>& corners,
+                   double area) const;
+
   Box root_;
   std::vector<Node> nodes_;
   double least_triangles_ = 0;

@@ -135,6 +135,7 @@ TEST(GenerateMesh, RunsWaitingJobsFirstComeFirstServed) {
   }
   release.set();
   for (auto& reader : readers) EXPECT_TRUE(read_all(*reader).status.ok());
+  std::lock_guard lock(mutex);
   EXPECT_EQ(order, (std::vector<std::size_t>{1, 2, 3, 4, 5}));
 }
 
