@@ -62,6 +62,26 @@ std::optional<Error> check_options(const MeshRequest& request) {
   return std::nullopt;
 }
 
+// Within this range the sixth powers of edges, which the angle test multiplies, are normal numbers.
+std::optional<Error> check_range(const Box& box) {
+  constexpr double kLargestCoordinate = 1e50;
+  constexpr double kSmallestExtent = 1e-40;
+  const double largest = std::max(
+      {std::fabs(box.min_x), std::fabs(box.min_y), std::fabs(box.max_x), std::fabs(box.max_y)});
+  if (largest > kLargestCoordinate) {
+    return Error{ErrorCode::kBadCoordinate, "domain.points",
+                 "a coordinate of the domain is " + text(largest) + ", the limit is " +
+                     text(kLargestCoordinate)};
+  }
+  const double extent = std::max(box.width(), box.height());
+  if (extent < kSmallestExtent) {
+    return Error{ErrorCode::kBadCoordinate, "domain.points",
+                 "the domain is " + text(extent) + " wide and high, it must be at least " +
+                     text(kSmallestExtent)};
+  }
+  return std::nullopt;
+}
+
 // Where double precision ends: edges below this fraction of the largest coordinate are not made.
 // Leaves the predicates and the Steiner points 2^17 units in the last place to work in.
 double edge_floor(const Domain& domain, double min_edge) {
@@ -107,6 +127,7 @@ class Job {
     if (!domain) return tl::unexpected(domain.error());
     domain_ = std::move(*domain);
     for (Point p : domain_.vertices) summary_.box.add(p);
+    if (auto error = check_range(summary_.box)) return tl::unexpected(*error);
     summary_.triangulate_seconds = clock_.lap();
 
     context_.enter(Stage::kSize);

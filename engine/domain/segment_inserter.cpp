@@ -62,6 +62,12 @@ void SegmentInserter::insert(const Piece& piece) {
         break;
       case LineProbe::Sees::kEdge: {
         const Cdt::Edge mirror = cdt_.mirror_edge(probe.edge());
+        // The edge is there, but may pass by a vertex within the snapping distance, a corner of
+        // the needle beside it.
+        for (const Cdt::Edge& side : {probe.edge(), mirror}) {
+          const Vertex apex = side.first->vertex(side.second);
+          if (!cdt_.is_infinite(apex) && touches(apex, piece)) return push_through(apex, piece);
+        }
         probe.edge().first->set_constraint(probe.edge().second, true);
         mirror.first->set_constraint(mirror.second, true);
         return remember(piece);
@@ -78,17 +84,11 @@ void SegmentInserter::insert(const Piece& piece) {
 void SegmentInserter::walk(const LineProbe& probe, const Piece& piece) {
   const Point a = at(probe.from());
   const Point b = at(probe.to());
-  const auto [start, end] = segment(piece.constraint);
-  const double snap = snap_distance(start, end);
-  const auto touches = [&, start = start, end = end](Vertex w) {
-    return distance_to_line(at(w), start, end) <= snap &&
-           advances(at(w), piece.u, piece.v, piece.constraint);
-  };
 
   auto [face, i] = probe.edge();
   auto [right, left] = ends({face, i});
-  if (touches(right)) return push_through(right, piece);
-  if (touches(left)) return push_through(left, piece);
+  if (touches(right, piece)) return push_through(right, piece);
+  if (touches(left, piece)) return push_through(left, piece);
   for (;;) {
     pacer_.step();
     if (face->is_constrained(i)) return cross({face, i}, piece);
@@ -99,7 +99,7 @@ void SegmentInserter::walk(const LineProbe& probe, const Piece& piece) {
       return remember(piece);
     }
     const int side = orientation_exact(a, b, at(w));
-    if (side == 0 || touches(w)) return push_through(w, piece);
+    if (side == 0 || touches(w, piece)) return push_through(w, piece);
     // w replaces the end on its side; the next edge crossed is opposite to the one replaced.
     Vertex& replaced = side > 0 ? left : right;
     face = next;
@@ -221,6 +221,12 @@ void SegmentInserter::count_split() {
     throw Stopped{{ErrorCode::kLimitExceeded, "domain.segments",
                    "the segments cross and overlap more than " + std::to_string(max_splits_) +
                        " times, which is the limit"}};
+}
+
+bool SegmentInserter::touches(Vertex w, const Piece& piece) const {
+  const auto [a, b] = segment(piece.constraint);
+  return distance_to_line(at(w), a, b) <= snap_distance(a, b) &&
+         advances(at(w), piece.u, piece.v, piece.constraint);
 }
 
 bool SegmentInserter::advances(Point p, Vertex u, Vertex v, const Constraint& constraint) const {

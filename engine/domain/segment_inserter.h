@@ -57,6 +57,9 @@ class SegmentInserter {
   Vertex insert_crossing(Point p, std::uint32_t id, Cdt::Face_handle hint);
   void count_split();
 
+  // Whether w counts as on the piece.
+  bool touches(Vertex w, const Piece& piece) const;
+
   // Whether p would advance the chain of the constraint's segment between its vertices u and v.
   bool advances(Point p, Vertex u, Vertex v, const Constraint& constraint) const;
 

@@ -116,7 +116,10 @@ TEST(NearMisses, OnAGridOfAFewUlpsEndLawfully) {
     const int grid = 2 + random.below(40);
     const double scale = std::ldexp(1, -52 + random.below(8));
     Pslg pslg;
-    add_box(pslg, {1.5 - scale, 1.5 - scale}, {1.5 + (grid + 1) * scale, 1.5 + (grid + 1) * scale});
+    // Farther from the grid than the snapping distance, so that no point ends up outside.
+    const double margin = scale + std::ldexp(1, -48);
+    const double high = 1.5 + grid * scale + margin;
+    add_box(pslg, {1.5 - margin, 1.5 - margin}, {high, high});
     const int segments = random.below(60);
     for (int i = 0; i < segments; ++i) {
       const Point a{1.5 + random.below(grid) * scale, 1.5 + random.below(grid) * scale};

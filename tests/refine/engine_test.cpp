@@ -44,6 +44,13 @@ TEST(Options, OfANegativeShortestEdgeAreRefused) {
   EXPECT_EQ(error_of({.pslg = square(), .min_edge = -1}).field, "quality.min_edge");
 }
 
+TEST(Range, OfCoordinatesIsKeptAtBothEnds) {
+  EXPECT_EQ(error_of({.pslg = square(1e60)}).code, ErrorCode::kBadCoordinate);
+  EXPECT_EQ(error_of({.pslg = square(1e-60)}).code, ErrorCode::kBadCoordinate);
+  EXPECT_TRUE(mesh_of({.pslg = square(1e49), .size = {.constant = 1e95}}));
+  EXPECT_TRUE(mesh_of({.pslg = square(1e-39), .size = {.constant = 1e-81}}));
+}
+
 TEST(Size, OfZeroIsRefused) {
   const Error error = error_of({.pslg = square(), .size = {.constant = 0}});
   EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);

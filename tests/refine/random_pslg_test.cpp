@@ -36,6 +36,16 @@ Pslg dirty_grid(Random& random) {
   return pslg;
 }
 
+// The same, turned: what met exactly meets within rounding only.
+Pslg turned_grid(Random& random) {
+  Pslg pslg = dirty_grid(random);
+  const double angle = random.unit();
+  const double cosine = std::cos(angle);
+  const double sine = std::sin(angle);
+  for (Point& p : pslg.points) p = {cosine * p.x - sine * p.y, sine * p.x + cosine * p.y};
+  return pslg;
+}
+
 // Rays from one point, so that all angles between them are acute, many tiny.
 Pslg star(Random& random) {
   Pslg pslg = square(8);
@@ -159,9 +169,10 @@ TEST_P(RandomPslg, IsMeshedWithinBounds) {
 
 INSTANTIATE_TEST_SUITE_P(
     Of, RandomPslg,
-    testing::Values(Kind{"DirtyGrid", dirty_grid}, Kind{"Star", star}, Kind{"Wedge", wedge},
-                    Kind{"TouchingHoles", touching_holes}, Kind{"Clusters", clusters},
-                    Kind{"TangledRing", tangled_ring}, Kind{"Islands", islands}),
+    testing::Values(Kind{"DirtyGrid", dirty_grid}, Kind{"TurnedGrid", turned_grid},
+                    Kind{"Star", star}, Kind{"Wedge", wedge}, Kind{"TouchingHoles", touching_holes},
+                    Kind{"Clusters", clusters}, Kind{"TangledRing", tangled_ring},
+                    Kind{"Islands", islands}),
     [](const auto& info) { return info.param.name; });
 
 }  // namespace
