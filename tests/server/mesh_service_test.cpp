@@ -51,6 +51,7 @@ TEST(GenerateMesh, CarriesLargeChunksWhole) {
 
 TEST(GenerateMesh, TellsProgressThatNeverGoesBack) {
   Event seen;
+  Event seen_after;
   ServiceOptions options;
   options.tick = std::chrono::milliseconds(5);
   TestServer server(
@@ -61,6 +62,7 @@ TEST(GenerateMesh, TellsProgressThatNeverGoesBack) {
         EXPECT_TRUE(seen.wait());
         context.enter(Stage::kTriangulate);  // an engine that errs
         context.report_triangles(10);
+        EXPECT_TRUE(seen_after.wait());
         return send_chunks(sink, 50);
       },
       options);
@@ -70,6 +72,7 @@ TEST(GenerateMesh, TellsProgressThatNeverGoesBack) {
   v1::Progress last;
   v1::GenerateMeshResponse message;
   bool summary_is_last = false;
+  int told_at_500 = 0;
   while (reader->Read(&message)) {
     summary_is_last = message.has_summary();
     if (!message.has_progress()) continue;
@@ -78,7 +81,9 @@ TEST(GenerateMesh, TellsProgressThatNeverGoesBack) {
     EXPECT_GE(now.triangles(), last.triangles());
     EXPECT_GE(now.elapsed_seconds(), last.elapsed_seconds());
     last = now;
-    if (now.stage() == v1::STAGE_REFINE && now.triangles() == 500) seen.set();
+    if (now.stage() != v1::STAGE_REFINE || now.triangles() != 500) continue;
+    seen.set();
+    if (++told_at_500 == 10) seen_after.set();
   }
   EXPECT_TRUE(reader->Finish().ok());
   EXPECT_EQ(last.expected_triangles(), 1000u);
