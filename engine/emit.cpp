@@ -170,7 +170,6 @@ Result<Emitted> emit(const Mesh& mesh, const Domain& domain, const AcuteCorners&
   ChunkBuilder chunks(mesh, domain, corners);
   Figures<AreaBound> figures(mesh, domain.regions, area);
   const auto send = [&]() -> std::optional<Error> {
-    if (auto error = context.poll()) return error;
     Chunk chunk = chunks.take();
     const auto start = Clock::now();
     const bool accepted = sink.accept(std::move(chunk));
@@ -180,6 +179,9 @@ Result<Emitted> emit(const Mesh& mesh, const Domain& domain, const AcuteCorners&
     return Error{ErrorCode::kCancelled, "", "nobody takes the mesh any more"};
   };
   for (std::uint32_t t = 0; t < mesh.triangle_count; ++t) {
+    if (t % TriangleBlock::kSize == 0) {
+      if (auto error = context.poll()) return tl::unexpected(*error);
+    }
     if (chunks.full()) {
       if (auto error = send()) return tl::unexpected(*error);
     }

@@ -76,7 +76,7 @@ std::optional<Error> check_range(const Box& box) {
   const double extent = std::max(box.width(), box.height());
   if (extent < kSmallestExtent) {
     return Error{ErrorCode::kBadCoordinate, "domain.points",
-                 "the domain is " + text(extent) + " wide and high, it must be at least " +
+                 "the domain is at most " + text(extent) + " wide and high, it must be at least " +
                      text(kSmallestExtent)};
   }
   return std::nullopt;
@@ -84,24 +84,26 @@ std::optional<Error> check_range(const Box& box) {
 
 // Where double precision ends: edges below this fraction of the largest coordinate are not made.
 // Leaves the predicates and the Steiner points 2^17 units in the last place to work in.
-double edge_floor(const Domain& domain, double min_edge) {
+double precision_of(const Domain& domain) {
   constexpr double kPrecision = 0x1p-36;
   double largest = 0;
   for (Point p : domain.vertices) {
     largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
   }
-  return std::max(min_edge, kPrecision * largest);
+  return kPrecision * largest;
 }
 
-double area_of(const Domain& domain) {
-  double doubled = 0;
+// The least number of triangles for an area of at most `bound`, and of what each region allows.
+double triangles_asked(const Domain& domain, double bound) {
+  double sum = 0;
   for (const Domain::Triangle& t : domain.triangles) {
     const Point a = domain.vertices[t.vertex[0]];
     const Point b = domain.vertices[t.vertex[1]];
     const Point c = domain.vertices[t.vertex[2]];
-    doubled += (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    const double area = 0.5 * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+    sum += area / std::min(bound, domain.regions[t.region].max_area);
   }
-  return 0.5 * doubled;
+  return sum;
 }
 
 // How many triangles the size asks for: a lower bound, and what it comes to.
@@ -135,13 +137,13 @@ class Job {
       auto map = context_.compute([&] { return SizeMap::build(*expression_, domain_, context_); });
       if (!map) return tl::unexpected(map.error());
       MappedArea area(*expression_, *map);
-      return mesh(area, {map->least_triangles(), map->likely_triangles()}, map->bytes());
+      return mesh(area, {map->least_triangles(), map->likely_triangles()},
+                  std::numeric_limits<double>::infinity(), map->bytes());
     }
     const auto bound = constant_bound();
     if (!bound) return tl::unexpected(bound.error());
     ConstantArea area(*bound);
-    const double triangles = area_of(domain_) / *bound;
-    return mesh(area, {triangles, triangles}, 0);
+    return mesh(area, {0, 0}, *bound, 0);
   }
 
  private:
@@ -155,9 +157,18 @@ class Job {
     return fail(ErrorCode::kBadSizeValue, "size.expression", bad_size_message({somewhere, bound}));
   }
 
+  // `by_map` is what the size map asks for, `bound` holds everywhere.
   template <class AreaBound>
-  Result<Summary> mesh(AreaBound& area, Estimate estimate, std::uint64_t size_bytes) {
+  Result<Summary> mesh(AreaBound& area, Estimate by_map, double bound, std::uint64_t size_bytes) {
     const Budget& budget = context_.budget();
+    const double by_bounds = triangles_asked(domain_, bound);
+    const Estimate estimate{std::max(by_map.least, by_bounds), std::max(by_map.likely, by_bounds)};
+    if (domain_.triangles.size() > budget.triangle_limit) {
+      return fail(ErrorCode::kLimitExceeded, "domain",
+                  "the domain itself has " + std::to_string(domain_.triangles.size()) +
+                      " triangles, more than the limit of " +
+                      std::to_string(budget.triangle_limit));
+    }
     if (!wants_cap() && estimate.least > static_cast<double>(budget.triangle_limit)) {
       return fail(ErrorCode::kLimitExceeded, "size",
                   "the size asks for at least " + text(std::ceil(estimate.least)) +
@@ -170,7 +181,7 @@ class Job {
     summary_.size_seconds = clock_.lap();
 
     context_.enter(Stage::kRefine);
-    auto refined = context_.compute([&] { return refine(area); });
+    auto refined = context_.compute([&] { return refine(area, size_bytes); });
     if (!refined) return tl::unexpected(refined.error());
     summary_.refine_seconds = clock_.lap();
 
@@ -193,7 +204,7 @@ class Job {
   };
 
   template <class AreaBound>
-  Result<Refined> refine(AreaBound& area) {
+  Result<Refined> refine(AreaBound& area, std::uint64_t size_bytes) {
     const Budget& budget = context_.budget();
     auto mesh = Mesh::from(domain_, std::min(budget.max_triangles, budget.triangle_limit),
                            expected_, context_);
@@ -202,11 +213,11 @@ class Job {
     if (!corners) return tl::unexpected(corners.error());
     Refiner<OwnsAll, AreaBound> refiner(
         *mesh, *corners, domain_.regions,
-        QualityBounds::from(request_.min_angle_deg, edge_floor(domain_, request_.min_edge)),
-        order(), area, context_);
+        QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(domain_)),
+        order(), area, domain_.bytes() + corners->bytes() + size_bytes, context_);
     if (auto error = refiner.queue_all()) return tl::unexpected(*error);
     if (auto error = refiner.run()) return tl::unexpected(*error);
-    if (!wants_cap() && refiner.full()) {
+    if (!wants_cap() && refiner.full() && refiner.has_work()) {
       return fail(ErrorCode::kLimitExceeded, "size",
                   "the mesh needs more than the limit of " + std::to_string(budget.triangle_limit) +
                       " triangles");
@@ -218,7 +229,8 @@ class Job {
 
   // Whether the client asked for a cap of its own: then reaching it is no error.
   bool wants_cap() const {
-    return context_.budget().max_triangles < context_.budget().triangle_limit;
+    const std::uint64_t wish = context_.budget().max_triangles;
+    return wish <= context_.budget().triangle_limit && wish != Budget{}.max_triangles;
   }
 
   // Where the size makes few triangles beyond the domain's own, quality makes most of them.

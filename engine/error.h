@@ -18,7 +18,7 @@ namespace weft {
 
 enum class ErrorCode {
   // The request is wrong; the same request fails again.
-  kBadCoordinate,         // NaN, infinite, or a magnitude outside [1e-100, 1e100] and not 0
+  kBadCoordinate,         // NaN, infinite, or out of the range that the API documents
   kIndexOutOfRange,       // a segment names a point that does not exist
   kTooFewPoints,          // fewer than 3 distinct points
   kCollinearPoints,       // every point lies on one line

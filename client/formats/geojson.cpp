@@ -156,9 +156,9 @@ class Reader {
       return bad(path, "is not a position [x, y]");
     const Point at{json[0].get<double>(), json[1].get<double>()};
     // The limit of the service, and what keeps the predicates from overflow.
-    constexpr double kLargest = 1e100;
+    constexpr double kLargest = 1e50;
     if (!(std::abs(at.x) <= kLargest && std::abs(at.y) <= kLargest))
-      return bad(path, "is " + coordinates(at.x, at.y) + ", magnitudes go up to 1e100");
+      return bad(path, "is " + coordinates(at.x, at.y) + ", magnitudes go up to 1e50");
     return at;
   }
 

@@ -9,15 +9,15 @@
 //
 // Shared arithmetic: everything is relative to p. The cross products and squared lengths that the
 // walk needs are those of the in-circle filter, and then of the area and angle tests of the new
-// triangles (ring_quality.h).
+// triangles (quality_bounds.h).
 //
 // The in-circle test of d against the ring edge a-b is the sign of
 //     |a|^2 (d x b) + |b|^2 (a x d) - |d|^2 (a x b),
 // whose rounding error is below 12 u (|a|^2 |b|^2 + (|a|^2 + |b|^2) |d|^2), u = 2^-53: the
-// differences are exact to u, a cross product to 4 u |a||d|, a product with a squared length to 9
-// u, the two sums add 2 u, and |a||d| <= (|a|^2 + |d|^2) / 2. Below the bound the exact predicate
-// decides: 8 to 140 times in 480,000 insertions. Deciding each with CGAL's filtered predicate
-// instead costs 25 % (g++) to 105 % (clang++).
+// differences are exact to u, a cross product to 4 u |a||d|, a product with a squared length to
+// 9 u, the two sums add 2 u, and |a||d| <= (|a|^2 + |d|^2) / 2. Below the bound the exact
+// predicate decides: 8 to 140 times in 480,000 insertions. Deciding each with CGAL's filtered
+// predicate instead costs 25 % (g++) to 105 % (clang++).
 //
 // Nothing of the mesh is modified while a cavity grows. With a restricted Ownership a triangle that
 // must join but has a vertex that is not owned abandons the insertion (ownership.h).

@@ -5,7 +5,7 @@
 
 namespace weft {
 
-QualityBounds QualityBounds::from(double min_angle_deg, double min_length) {
+QualityBounds QualityBounds::from(double min_angle_deg, double min_length, double precision) {
   // The C library's sine may differ in its last bit from machine to machine; this one does not.
   constexpr double kRadians = 3.14159265358979323846 / 180;
   const double sine = Sleef_cinz_sind1_u10purec(min_angle_deg * kRadians);
@@ -14,7 +14,8 @@ QualityBounds QualityBounds::from(double min_angle_deg, double min_length) {
   bounds.sin2 = sine * sine;
   // Üngör's off-centre: the apex over the shortest edge whose angle is the bound, a little inside.
   bounds.off_centre = min_angle_deg > 0 ? 0.475 * std::sqrt((1 + cosine) / (1 - cosine)) : 0;
-  bounds.min_length2 = min_length * min_length;
+  bounds.precision2 = precision * precision;
+  bounds.min_length2 = std::max(min_length * min_length, bounds.precision2);
   return bounds;
 }
 

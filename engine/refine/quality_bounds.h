@@ -20,9 +20,11 @@ struct QualityBounds {
   double sin2 = 0;         // of the minimum angle
   double off_centre = 0;   // see steiner_point.h
   double min_length2 = 0;  // squared floor on the length of new edges
+  double precision2 = 0;   // squared length below which double precision ends
 
-  // REQUIRES: 0 <= min_angle_deg <= kMaxMinAngleDeg.
-  static QualityBounds from(double min_angle_deg, double min_length);
+  // No edge below min_length, nor below `precision`, is made. REQUIRES: 0 <= min_angle_deg <=
+  // kMaxMinAngleDeg.
+  static QualityBounds from(double min_angle_deg, double min_length, double precision);
 };
 
 // What one look at a ring of new triangles tells. Badness is per triangle, the rest for the ring.

@@ -3,15 +3,16 @@
 // is bad (too large or too skinny), insert its Steiner point by Bowyer-Watson; if the point would
 // encroach upon a segment, split the segment instead.
 //
-//   Refiner<OwnsAll, ConstantArea> refiner(mesh, corners, quality, area, context);
+//   Refiner<OwnsAll, ConstantArea> refiner(mesh, corners, domain.regions, quality,
+//                                          Order::kLastInFirstOut, area, context);
 //   refiner.queue_all();                              // segments first, then bad triangles
 //   std::optional<Error> stopped = refiner.run();     // nothing: all is refined or excused
 //
 // What makes it fast, each with its cost measured at 1 M triangles: no point location (a bad
 // triangle belongs to the cavity of its own Steiner point); the cavity's slots are reused; queue
 // entries are 4 bytes, and the triangle's own badness tells whether one is stale (two thirds are);
-// the order is last in, first out, so that work stays in the cache (first in, first out costs 50
-// %).
+// the order is last in, first out, so that work stays in the cache (first in, first out costs
+// 50 %).
 //
 // Ownership is a compile-time parameter (ownership.h). A task that meets what it does not own
 // leaves the mesh as it was and keeps the triangle in `deferred()`.
@@ -41,8 +42,8 @@ namespace weft {
 // Which bad triangle comes next.
 //   kLastInFirstOut: the fastest where the size field makes most of the triangles.
 //   kShortestFirst: too large ones first, then skinny ones by their shortest edge. Where quality
-//     makes most of the triangles it makes fewer, and above 33 degrees it ends where the other does
-//     not:
+//     makes most of the triangles it makes fewer, and it ends at angles where the other does not
+//     (though not always: 360 rays from one point at 34 degrees go on to the triangle limit):
 //
 //       us-east-coast, no size    20 deg    30 deg    33 deg     34 deg
 //       kLastInFirstOut           20,350    48,068    384,465    (does not end)
@@ -61,13 +62,15 @@ class Refiner {
   };
 
   Refiner(Mesh& mesh, const AcuteCorners& corners, const std::vector<Region>& regions,
-          const QualityBounds& quality, Order order, AreaBound& area, ExecutionContext& context)
+          const QualityBounds& quality, Order order, AreaBound& area, std::uint64_t other_bytes,
+          ExecutionContext& context)
       : mesh_(mesh),
         corners_(corners),
         regions_(regions),
         quality_(quality),
         area_(area),
         context_(context),
+        other_bytes_(other_bytes),
         poll_interval_(area.poll_interval()),
         cavity_(mesh),
         order_(order) {
@@ -118,12 +121,28 @@ class Refiner {
   // No room for another insertion: what is still queued stays bad.
   bool full() const { return mesh_.triangle_count + kMaxGrowth > mesh_.triangle_capacity; }
 
+  // Whether a bad triangle or an encroached segment is left. Drops stale entries on the way.
+  bool has_work() {
+    while (!queue_.empty()) {
+      const std::uint32_t t = queue_.pop();
+      if (mesh_.triangles[t].badness() == Badness::kGood) continue;
+      queue_.push(t);
+      return true;
+    }
+    while (!shortest_first_.empty()) {
+      if (mesh_.triangles[shortest_first_.top().triangle].badness() != Badness::kGood) return true;
+      shortest_first_.pop();
+    }
+    return !segments_.empty();
+  }
+
   const std::vector<Deferred>& deferred() const { return deferred_; }
   std::uint64_t insertions() const { return insertions_; }
   std::uint64_t exact_predicates() const { return cavity_.exact_predicates() + exact_; }
   std::uint64_t bytes() const {
     return cavity_.bytes() + queue_.peak_bytes() + segments_.capacity() * sizeof(segments_[0]) +
-           deferred_.capacity() * sizeof(deferred_[0]);
+           deferred_.capacity() * sizeof(deferred_[0]) + peak_skinny_ * sizeof(Skinny) +
+           star_.capacity() * sizeof(star_[0]) + judged_.capacity() * sizeof(judged_[0]);
   }
 
  private:
@@ -212,6 +231,19 @@ class Refiner {
     return Outcome::kInserted;
   }
 
+  // Whether the vertex opposite is nearer to the edge's line than double precision can mend: two
+  // segments that almost coincide would split each other down to the floor.
+  bool too_thin(HalfEdge h) const {
+    const Triangle& triangle = mesh_.triangles[triangle_of(h)];
+    const Point apex = mesh_.vertices[triangle.vertex[edge_of(h)]];
+    const Point a = mesh_.vertices[triangle.vertex[kNext[edge_of(h)]]];
+    const Point b = mesh_.vertices[triangle.vertex[kPrevious[edge_of(h)]]];
+    const double x = b.x - a.x;
+    const double y = b.y - a.y;
+    const double cross = x * (apex.y - a.y) - y * (apex.x - a.x);
+    return cross * cross < quality_.precision2 * (x * x + y * y);
+  }
+
   // Splits edge `edge` of triangle t, which lies on a segment.
   Outcome split_segment(std::uint32_t t, std::uint32_t edge) {
     const Triangle& triangle = mesh_.triangles[t];
@@ -225,6 +257,7 @@ class Refiner {
     const Ring& ring = cavity_.ring();
     const HalfEdge across = triangle.neighbor[edge];
     const bool closed = across != kNone;
+    if (too_thin(half_edge(t, edge)) || (closed && too_thin(across))) return Outcome::kTooClose;
     const std::uint32_t near_side = closed ? cavity_.far_end() : ring.size;
     RingVerdict verdict =
         area_.judge(ring, 0, near_side, p, region_bound(t), quality_, judged_.data());
@@ -380,6 +413,7 @@ class Refiner {
       queue_.push(t);
     } else {
       shortest_first_.push({t, static_cast<float>(shortest_edge2(t))});
+      peak_skinny_ = std::max(peak_skinny_, shortest_first_.size());
     }
   }
 
@@ -431,7 +465,7 @@ class Refiner {
     if (const auto& bad = area_.bad_size()) {
       return Error{ErrorCode::kBadSizeValue, "size", bad_size_message(*bad)};
     }
-    if (mesh_.bytes() + bytes() > context_.budget().max_bytes) {
+    if (mesh_.bytes() + bytes() + other_bytes_ > context_.budget().max_bytes) {
       return Error{ErrorCode::kBudgetExceeded, "budget.max_bytes",
                    "the mesh needs more than the budget of " +
                        std::to_string(context_.budget().max_bytes) + " bytes, at " +
@@ -446,6 +480,7 @@ class Refiner {
   const QualityBounds quality_;
   AreaBound& area_;
   ExecutionContext& context_;
+  const std::uint64_t other_bytes_;    // that the job holds besides the mesh
   const std::uint32_t poll_interval_;  // insertions
   Ownership ownership_{};
   Cavity<Ownership> cavity_;
@@ -454,7 +489,8 @@ class Refiner {
   BlockStack<std::uint32_t> queue_;  // bad triangles, the last first; entries may be stale
   const Order order_;
   std::priority_queue<Skinny> shortest_first_;  // the skinny ones, for kShortestFirst
-  std::vector<SegmentEdge> segments_;           // encroached upon; entries may be stale
+  std::size_t peak_skinny_ = 0;
+  std::vector<SegmentEdge> segments_;  // encroached upon; entries may be stale
   std::vector<Deferred> deferred_;
   std::vector<std::uint32_t> star_;    // triangle of each ring edge
   std::vector<std::uint32_t> judged_;  // badness of each

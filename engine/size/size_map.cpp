@@ -109,6 +109,13 @@ Result<SizeMap> SizeMap::build(const Expression& size, const Domain& domain,
   for (Point p : domain.vertices) map.root_.add(p);
   map.nodes_.push_back({-kInfinity, kInfinity, kInfinity, 0, true, false});
 
+  // Polls now and then: one box may overlap millions of triangles.
+  std::uint32_t looked_at = 0;
+  const auto stop = [&]() -> std::optional<Error> {
+    constexpr std::uint32_t kPollInterval = 1 << 14;
+    return ++looked_at % kPollInterval == 0 ? context.poll() : std::nullopt;
+  };
+
   Level level;
   level.nodes.push_back({0, map.root_, 0, domain.triangles.size()});
   level.triangles.resize(domain.triangles.size());
@@ -142,6 +149,7 @@ Result<SizeMap> SizeMap::build(const Expression& size, const Domain& domain,
           const Box box = child_box(pending.box, child);
           const std::size_t begin = next.triangles.size();
           for (std::uint32_t t : triangles) {
+            if (auto error = stop()) return tl::unexpected(*error);
             if (overlap(box, corners_of(domain, t))) next.triangles.push_back(t);
           }
           next.nodes.push_back({first + child, box, begin, next.triangles.size()});
@@ -150,9 +158,10 @@ Result<SizeMap> SizeMap::build(const Expression& size, const Domain& domain,
       }
       double area = 0;
       for (std::uint32_t t : triangles) {
+        if (auto error = stop()) return tl::unexpected(*error);
         area += common_area(pending.box, corners_of(domain, t));
       }
-      if (bounds.hi > 0) map.least_triangles_ += area / bounds.hi;
+      if (bounds.lo > 0 && !bounds.may_be_nan) map.least_triangles_ += area / bounds.hi;
       const double guess = bounds.lo > 0 ? std::sqrt(bounds.lo) * std::sqrt(bounds.hi) : bounds.hi;
       if (guess > 0) map.likely_triangles_ += area / guess;
     }

@@ -8,8 +8,7 @@
 //     is too large, too, when it is larger than kFeatureFactor times the function's upper bound in
 //     any box that it overlaps.
 //   - Where the bounds agree, the function need not be evaluated. A step function costs next to
-//   nothing on the
-//     hot path: 2 to 3 % of the refinement instead of 25 %.
+//     nothing on the hot path: 2 to 3 % of the refinement instead of 25 %.
 //
 // Bounds hold bit for bit for what Expression::evaluate returns (interval arithmetic), so the map
 // saves evaluations and changes no decision of the rest.

@@ -169,7 +169,7 @@ TEST_F(GeoJson, RefusesGiantNumbers) {
   EXPECT_TRUE(refusal(R"({"type": "Point", "coordinates": [1e999, 2]})")
                   .find("number overflow parsing '1e999'") != std::string::npos);
   EXPECT_EQ(refusal(R"({"type": "Point", "coordinates": [1e200, 2]})"),
-            "map.geojson: coordinates is (1e+200, 2), magnitudes go up to 1e100");
+            "map.geojson: coordinates is (1e+200, 2), magnitudes go up to 1e50");
 }
 
 }  // namespace

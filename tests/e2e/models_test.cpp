@@ -37,7 +37,7 @@ TEST(Models, ThroughTheServerHoldTheirBoundsAndCounts) {
   const Server server;
   const auto triangles = [&](const std::string& name, const std::string& output,
                              const Arguments& bounds) {
-    return mesh_and_check(server, model(name), output, bounds).value("triangles", 0);
+    return mesh_and_check(server, model(name), output, bounds).at("triangles").get<int>();
   };
   EXPECT_LE(triangles("pipe.poly", "pipe.vtu", {"--size", "0.4*sqrt((x-200)^2+(y-200)^2)+1"}),
             3'750);

@@ -85,6 +85,18 @@ TEST(Size, ThatNeedsATrillionTrianglesIsRefusedByEstimate) {
   EXPECT_EQ(graded.code, ErrorCode::kLimitExceeded);
 }
 
+TEST(Size, OfARegionThatNeedsATrillionTrianglesIsRefusedByEstimate) {
+  MeshRequest request{.pslg = square()};
+  request.pslg.regions.push_back({{0.5, 0.5}, 1, 1e-12});
+  EXPECT_EQ(error_of(request, {.triangle_limit = 1'000'000}).code, ErrorCode::kLimitExceeded);
+}
+
+TEST(Size, ThatIsNowherePositiveIsABadSizeAndNoLimit) {
+  const Error error =
+      error_of({.pslg = square(), .size = {.expression = "log(x)"}}, {.triangle_limit = 1'000'000});
+  EXPECT_EQ(error.code, ErrorCode::kBadSizeValue) << error.message;
+}
+
 TEST(Size, WithASpotFinerThanOneHugeTriangleIsFollowed) {
   // The box has two triangles; no centroid of theirs is near the disc.
   MeshRequest request;
@@ -124,6 +136,22 @@ TEST(Budget, OfTrianglesGivesTheMeshThatThereIs) {
   ASSERT_TRUE(summary) << summary.error().message;
   EXPECT_LE(summary->triangles, 1000u);
   EXPECT_GT(summary->triangles, 900u);
+  EXPECT_GT(summary->unrefined.budget, 0u);
+}
+
+TEST(Budget, ThatAMeshFitsExactlyIsNoError) {
+  // The square has two triangles and needs no more.
+  EXPECT_TRUE(mesh_of({.pslg = square()}, {.triangle_limit = 2}));
+  const auto summary = mesh_of({.pslg = square(), .size = {.constant = 0.01}});
+  ASSERT_TRUE(summary);
+  EXPECT_TRUE(mesh_of({.pslg = square(), .size = {.constant = 0.01}},
+                      {.triangle_limit = summary->triangles + 1}));
+}
+
+TEST(Budget, OfTrianglesMayBeTheLimitItself) {
+  const auto summary = mesh_of({.pslg = square(), .size = {.constant = 0.01}},
+                               {.max_triangles = 100, .triangle_limit = 100});
+  ASSERT_TRUE(summary);
   EXPECT_GT(summary->unrefined.budget, 0u);
 }
 

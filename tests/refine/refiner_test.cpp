@@ -27,8 +27,8 @@ struct RefinedSquare {
                                                                           double area) {
     ConstantArea bound(area);
     Refiner<Ownership, ConstantArea> refiner(mesh, corners, domain.regions,
-                                             QualityBounds::from(20, 1e-9), Order::kLastInFirstOut,
-                                             bound, context);
+                                             QualityBounds::from(20, 0, 1e-9),
+                                             Order::kLastInFirstOut, bound, 0, context);
     refiner.set_ownership(ownership);
     EXPECT_FALSE(refiner.queue_all());
     EXPECT_FALSE(refiner.run());
@@ -89,6 +89,18 @@ TEST(Ownership, OfHalvesOneAfterTheOtherAndThenAllLeavesNothingBad) {
   EXPECT_TRUE(square.refine(OwnsAll{}, 1e-5).empty());
   for (std::uint32_t t = 0; t < square.mesh.triangle_count; ++t)
     ASSERT_LE(square.area(square.mesh.triangles[t]), 1e-5);
+}
+
+TEST(Segments, ThatAlmostCoincideDoNotSplitEachOtherDownToTheFloor) {
+  MeshRequest request{.pslg = square(20)};
+  add_segment(request.pslg, {1, 1}, {19, 7});
+  add_segment(request.pslg, {1, 1}, {10, 4 + 3e-13});
+  add_segment(request.pslg, {10, 4 + 3e-13}, {19, 7});
+  CollectedMesh mesh;
+  ExecutionContext context(Budget{.triangle_limit = 100'000});
+  const auto summary = generate_mesh(request, mesh, context);
+  ASSERT_TRUE(summary) << summary.error().message;
+  EXPECT_GT(summary->unrefined.edge_floor, 0u);
 }
 
 TEST(Cavity, OfThousandsOfTrianglesFits) {
