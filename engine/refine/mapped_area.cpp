@@ -15,19 +15,17 @@ RingVerdict MappedArea::judge_elsewhere(const Ring& ring, std::uint32_t first, s
   const auto around = [&](double radius) {
     return Box{p.x - radius, p.y - radius, p.x + radius, p.y + radius};
   };
-  // The larger the box, the longer it serves; 30 % of the rings would leave the map's own boxes.
-  bool found = false;
-  for (const double factor : {1, 6, 36}) {
-    const Box box = around(factor * reach);
-    const auto size = map_.uniform_size(box);
-    if (!size) break;
-    found = true;
-    box_ = box;
-    size_ = *size;
+  const SizeMap::Place place = map_.locate(around(reach));
+  const auto size = map_.uniform_size(place, around(reach));
+  if (!size) {
+    return judge_evaluated(place, ring, first, last, p, region_bound, quality, badness);
   }
-  if (!found) {
-    return judge_evaluated(map_.locate(around(reach)), ring, first, last, p, region_bound, quality,
-                           badness);
+  // The larger the box, the longer it serves; 30 % of the rings would leave the map's own boxes.
+  size_ = *size;
+  box_ = around(reach);
+  for (const double factor : {6, 36}) {
+    if (!map_.uniform_size(around(factor * reach))) break;
+    box_ = around(factor * reach);
   }
   return judge_ring(ring, first, last, quality, UniformAreaBound{2 * std::min(size_, region_bound)},
                     std::numeric_limits<double>::infinity(), badness);

@@ -204,9 +204,11 @@ Box SizeMap::inside_root(const Box& box) const {
           std::min(box.max_x, root_.max_x), std::min(box.max_y, root_.max_y)};
 }
 
-std::optional<double> SizeMap::uniform_size(const Box& box) const {
+std::optional<double> SizeMap::uniform_size(const Place& place, const Box& box) const {
   double size = 0;
-  if (!uniform_below(nodes_[0], root_, box, size) || size == 0) return std::nullopt;
+  if (!uniform_below(*place.node, inside_root(place.box), box, size) || size == 0) {
+    return std::nullopt;
+  }
   return size;
 }
 

@@ -36,8 +36,8 @@ class SizeMap {
   static constexpr double kResolved = 2;
   static constexpr double kFeatureFactor = 4;
   // A box is not split below this many times the area of the triangles there: a spot that spans
-  // five of their edges holds a whole box.
-  static constexpr double kSmallBox = 8;
+  // seven of their edges holds a whole box.
+  static constexpr double kSmallBox = 16;
   static constexpr std::size_t kMaxNodes = std::size_t{1} << 16;
 
   struct Node {
@@ -65,8 +65,12 @@ class SizeMap {
   // The smallest node whose box holds `box`.
   Place locate(const Box& box) const;
 
-  // The function's value where it is the same, and positive, in all of the box.
-  std::optional<double> uniform_size(const Box& box) const;
+  // The function's value where it is the same, and positive, in all of the box. `place` is
+  // locate(box).
+  std::optional<double> uniform_size(const Place& place, const Box& box) const;
+  std::optional<double> uniform_size(const Box& box) const {
+    return uniform_size(locate(box), box);
+  }
 
   // Whether a triangle of this area overlaps a box below `place` where the function is less than
   // area / kFeatureFactor for certain.
