@@ -4,7 +4,7 @@
 // encroach upon a segment, split the segment instead.
 //
 //   Refiner<OwnsAll, ConstantArea> refiner(mesh, corners, domain.regions, quality,
-//                                          Order::kLastInFirstOut, area, context);
+//                                          Order::kLastInFirstOut, area, 0, context);
 //   refiner.queue_all();                              // segments first, then bad triangles
 //   std::optional<Error> stopped = refiner.run();     // nothing: all is refined or excused
 //
@@ -20,9 +20,7 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <optional>
-#include <queue>
 #include <string>
 #include <vector>
 
@@ -30,7 +28,7 @@
 #include "engine/domain/predicates.h"
 #include "engine/refine/acute_corners.h"
 #include "engine/refine/area_bound.h"
-#include "engine/refine/block_stack.h"
+#include "engine/refine/bad_triangles.h"
 #include "engine/refine/cavity.h"
 #include "engine/refine/mesh.h"
 #include "engine/refine/ownership.h"
@@ -38,19 +36,6 @@
 #include "engine/refine/steiner_point.h"
 
 namespace weft {
-
-// Which bad triangle comes next.
-//   kLastInFirstOut: the fastest where the size field makes most of the triangles.
-//   kShortestFirst: too large ones first, then skinny ones by their shortest edge. Where quality
-//     makes most of the triangles it makes fewer, and it ends at angles where the other does not
-//     (though not always: 360 rays from one point at 34 degrees go on to the triangle limit):
-//
-//       us-east-coast, no size    20 deg    30 deg    33 deg     34 deg
-//       kLastInFirstOut           20,350    48,068    384,465    (does not end)
-//       kShortestFirst            18,803    37,053     72,617    102,864
-//
-//     It costs 4 % at 20 degrees and 27 % at 30 on cylinder with its size (960,000 triangles).
-enum class Order : std::uint8_t { kLastInFirstOut, kShortestFirst };
 
 template <class Ownership, class AreaBound>
 class Refiner {
@@ -73,7 +58,7 @@ class Refiner {
         other_bytes_(other_bytes),
         poll_interval_(area.poll_interval()),
         cavity_(mesh),
-        order_(order) {
+        bad_(mesh, order) {
     reserve_ring_buffers(kInitialRing);
   }
 
@@ -100,18 +85,9 @@ class Refiner {
   // Refines until the queue is empty, the triangle budget is used up, or the context says stop.
   std::optional<Error> run() {
     while (!full() && !stopped_) {
-      std::uint32_t t;
-      if (!queue_.empty()) [[likely]] {
-        t = queue_.pop();
-      } else if (!shortest_first_.empty()) {
-        t = shortest_first_.top().triangle;
-        shortest_first_.pop();
-      } else {
-        break;
-      }
-      const Badness badness = mesh_.triangles[t].badness();
-      if (badness == Badness::kGood) continue;
-      refine(t, badness);
+      const std::uint32_t t = bad_.pop();
+      if (t == kNone) break;
+      refine(t);
       tick();
     }
     if (!stopped_) stopped_ = poll();
@@ -121,40 +97,25 @@ class Refiner {
   // No room for another insertion: what is still queued stays bad.
   bool full() const { return mesh_.triangle_count + kMaxGrowth > mesh_.triangle_capacity; }
 
-  // Whether a bad triangle or an encroached segment is left. Drops stale entries on the way.
+  // Whether a bad triangle or an encroached segment is left.
   bool has_work() {
-    while (!queue_.empty()) {
-      const std::uint32_t t = queue_.pop();
-      if (mesh_.triangles[t].badness() == Badness::kGood) continue;
-      queue_.push(t);
-      return true;
-    }
-    while (!shortest_first_.empty()) {
-      if (mesh_.triangles[shortest_first_.top().triangle].badness() != Badness::kGood) return true;
-      shortest_first_.pop();
-    }
-    return !segments_.empty();
+    const std::uint32_t t = bad_.pop();
+    if (t != kNone) bad_.push(t);
+    return t != kNone || !segments_.empty();
   }
 
   const std::vector<Deferred>& deferred() const { return deferred_; }
   std::uint64_t insertions() const { return insertions_; }
   std::uint64_t exact_predicates() const { return cavity_.exact_predicates() + exact_; }
   std::uint64_t bytes() const {
-    return cavity_.bytes() + queue_.peak_bytes() + segments_.capacity() * sizeof(segments_[0]) +
-           deferred_.capacity() * sizeof(deferred_[0]) + peak_skinny_ * sizeof(Skinny) +
-           star_.capacity() * sizeof(star_[0]) + judged_.capacity() * sizeof(judged_[0]);
+    return cavity_.bytes() + bad_.peak_bytes() + segments_.capacity() * sizeof(segments_[0]) +
+           deferred_.capacity() * sizeof(deferred_[0]) + star_.capacity() * sizeof(star_[0]) +
+           judged_.capacity() * sizeof(judged_[0]);
   }
 
  private:
   using Growth = typename Cavity<Ownership>::Growth;
   using SegmentEdge = typename Cavity<Ownership>::SegmentEdge;
-
-  // A skinny triangle by its shortest edge.
-  struct Skinny {
-    std::uint32_t triangle;
-    float shortest2;
-    bool operator<(const Skinny& other) const { return shortest2 > other.shortest2; }
-  };
 
   static constexpr std::uint32_t kMaxGrowth = 2;  // triangles that an insertion adds
   static constexpr std::size_t kInitialRing = 1024;
@@ -166,9 +127,9 @@ class Refiner {
     kTooClose,  // an edge would be below the floor, or double precision ends
   };
 
-  void refine(std::uint32_t t, Badness badness) {
+  void refine(std::uint32_t t) {
     Triangle& triangle = mesh_.triangles[t];
-    if (badness == Badness::kSkinny && corners_.excuses(mesh_, triangle)) {
+    if (triangle.badness() == Badness::kSkinny && corners_.excuses(mesh_, triangle)) {
       triangle.set_excuse(Excuse::kSmallInputAngle);
       return;
     }
@@ -199,7 +160,7 @@ class Refiner {
     const bool same = std::equal(before.vertex, before.vertex + 3, after.vertex);
     if (after.badness() == Badness::kGood) return;
     if (split || !same || full()) {
-      enqueue(t);
+      bad_.push(t);
     } else if (segments_deferred_) {
       defer(t);
     } else {
@@ -312,7 +273,7 @@ class Refiner {
       triangles[star[n - 1]].neighbor[1] = kNone;
     }
     for (std::uint32_t i = 0; i < n; ++i) {
-      if (judged_[i]) enqueue(star[i]);
+      if (judged_[i]) bad_.push(star[i]);
     }
     ++insertions_;
   }
@@ -404,28 +365,7 @@ class Refiner {
     single_.cross[0] = single_.x[0] * single_.y[1] - single_.y[0] * single_.x[1];
     area_.judge(single_, 0, 1, p, region_bound(t), quality_, judged_.data());
     triangle.set_badness(static_cast<Badness>(judged_[0]));
-    if (judged_[0]) enqueue(t);
-  }
-
-  void enqueue(std::uint32_t t) {
-    if (order_ == Order::kLastInFirstOut || mesh_.triangles[t].badness() == Badness::kLarge)
-        [[likely]] {
-      queue_.push(t);
-    } else {
-      shortest_first_.push({t, static_cast<float>(shortest_edge2(t))});
-      peak_skinny_ = std::max(peak_skinny_, shortest_first_.size());
-    }
-  }
-
-  double shortest_edge2(std::uint32_t t) const {
-    const Triangle& triangle = mesh_.triangles[t];
-    double shortest2 = std::numeric_limits<double>::infinity();
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      const Point a = mesh_.vertices[triangle.vertex[i]];
-      const Point b = mesh_.vertices[triangle.vertex[kNext[i]]];
-      shortest2 = std::min(shortest2, (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
-    }
-    return shortest2;
+    if (judged_[0]) bad_.push(t);
   }
 
   void defer(std::uint32_t t) {
@@ -486,10 +426,7 @@ class Refiner {
   Cavity<Ownership> cavity_;
   Ring single_{1};
 
-  BlockStack<std::uint32_t> queue_;  // bad triangles, the last first; entries may be stale
-  const Order order_;
-  std::priority_queue<Skinny> shortest_first_;  // the skinny ones, for kShortestFirst
-  std::size_t peak_skinny_ = 0;
+  BadTriangles bad_;
   std::vector<SegmentEdge> segments_;  // encroached upon; entries may be stale
   std::vector<Deferred> deferred_;
   std::vector<std::uint32_t> star_;    // triangle of each ring edge
