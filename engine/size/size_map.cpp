@@ -215,7 +215,7 @@ std::optional<double> SizeMap::uniform_size(const Place& place, const Box& box) 
 bool SizeMap::uniform_below(const Node& node, const Box& at, const Box& box, double& size) const {
   if (node.leaf()) {
     if (!node.meets_domain) return true;
-    if (!node.constant() || !(node.lo > 0) || (size != 0 && size != node.lo)) return false;
+    if (!node.constant() || (size != 0 && size != node.lo)) return false;
     size = node.lo;
     return true;
   }

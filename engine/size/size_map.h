@@ -7,8 +7,8 @@
 //     in it to a factor kResolved, or the box is about as small as the triangles there. A triangle
 //     is too large, too, when it is larger than kFeatureFactor times the function's upper bound in
 //     any box that it overlaps.
-//   - Where the bounds agree, the function need not be evaluated. A step function costs next to
-//     nothing on the hot path: 2 to 3 % of the refinement instead of 25 %.
+//   - Where the bounds agree, the function need not be evaluated. With the step function of the
+//     cylinder model, 6 % of the rings are evaluated (bench/README.md).
 //
 // Bounds hold bit for bit for what Expression::evaluate returns (interval arithmetic), so the map
 // saves evaluations and changes no decision of the rest.
@@ -20,6 +20,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -49,7 +50,10 @@ class SizeMap {
     bool meets_domain;
 
     bool leaf() const { return first_child == 0; }
-    bool constant() const { return lo == hi && !may_be_nan; }
+    // Everywhere the same value, and one that a size may have.
+    bool constant() const {
+      return lo == hi && lo > 0 && hi < std::numeric_limits<double>::infinity() && !may_be_nan;
+    }
   };
 
   // A node and its box, the outer sides stretched to infinity.
@@ -65,7 +69,7 @@ class SizeMap {
   // The smallest node whose box holds `box`.
   Place locate(const Box& box) const;
 
-  // The function's value where it is the same, and positive, in all of the box. `place` is
+  // The function's value where it is constant in all of the box. `place` is
   // locate(box).
   std::optional<double> uniform_size(const Place& place, const Box& box) const;
   std::optional<double> uniform_size(const Box& box) const {

@@ -75,6 +75,15 @@ TEST(Size, ThatIsNegativeInAPartOfTheDomainIsFoundThere) {
   EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
 }
 
+TEST(Size, ThatIsInfiniteInAPartOfTheDomainNamesThePoint) {
+  MeshRequest request{.pslg = square()};
+  add_box(request.pslg, {8, 0}, {9, 1});  // no triangle straddles the step
+  request.size.expression = "x > 5 ? 1/0 : 0.01";
+  const Error error = error_of(request);
+  EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
+  EXPECT_NE(error.message.find("is inf"), std::string::npos) << error.message;
+}
+
 TEST(Size, ThatNeedsATrillionTrianglesIsRefusedByEstimate) {
   const Error error =
       error_of({.pslg = square(), .size = {.constant = 1e-12}}, {.triangle_limit = 1'000'000});
