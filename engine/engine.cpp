@@ -62,35 +62,23 @@ std::optional<Error> check_options(const MeshRequest& request) {
   return std::nullopt;
 }
 
-// Within this range the sixth powers of edges, which the angle test multiplies, are normal numbers.
-std::optional<Error> check_range(const Box& box) {
-  constexpr double kLargestCoordinate = 1e50;
+// From this extent on the sixth powers of edges, which the angle test multiplies, are normal
+// numbers; kMaxMagnitude (domain/validate.h) keeps them finite.
+std::optional<Error> check_extent(const Box& box) {
   constexpr double kSmallestExtent = 1e-40;
-  const double largest = std::max(
-      {std::fabs(box.min_x), std::fabs(box.min_y), std::fabs(box.max_x), std::fabs(box.max_y)});
-  if (largest > kLargestCoordinate) {
-    return Error{ErrorCode::kBadCoordinate, "domain.points",
-                 "a coordinate of the domain is " + text(largest) + ", the limit is " +
-                     text(kLargestCoordinate)};
-  }
   const double extent = std::max(box.width(), box.height());
-  if (extent < kSmallestExtent) {
-    return Error{ErrorCode::kBadCoordinate, "domain.points",
-                 "the domain is at most " + text(extent) + " wide and high, it must be at least " +
-                     text(kSmallestExtent)};
-  }
-  return std::nullopt;
+  if (extent >= kSmallestExtent) return std::nullopt;
+  return Error{ErrorCode::kBadCoordinate, "domain.points",
+               "the domain is at most " + text(extent) + " wide and high, it must be at least " +
+                   text(kSmallestExtent)};
 }
 
 // Where double precision ends: edges below this fraction of the largest coordinate are not made.
 // Leaves the predicates and the Steiner points 2^17 units in the last place to work in.
-double precision_of(const Domain& domain) {
+double precision_of(const Box& box) {
   constexpr double kPrecision = 0x1p-36;
-  double largest = 0;
-  for (Point p : domain.vertices) {
-    largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
-  }
-  return kPrecision * largest;
+  return kPrecision * std::max({std::fabs(box.min_x), std::fabs(box.min_y), std::fabs(box.max_x),
+                                std::fabs(box.max_y)});
 }
 
 // The least number of triangles for an area of at most `bound`, and of what each region allows.
@@ -129,7 +117,7 @@ class Job {
     if (!domain) return tl::unexpected(domain.error());
     domain_ = std::move(*domain);
     for (Point p : domain_.vertices) summary_.box.add(p);
-    if (auto error = check_range(summary_.box)) return tl::unexpected(*error);
+    if (auto error = check_extent(summary_.box)) return tl::unexpected(*error);
     summary_.triangulate_seconds = clock_.lap();
 
     context_.enter(Stage::kSize);
@@ -213,7 +201,7 @@ class Job {
     if (!corners) return tl::unexpected(corners.error());
     Refiner<OwnsAll, AreaBound> refiner(
         *mesh, *corners, domain_.regions,
-        QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(domain_)),
+        QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(summary_.box)),
         order(), area, domain_.bytes() + corners->bytes() + size_bytes, context_);
     if (auto error = refiner.queue_all()) return tl::unexpected(*error);
     if (auto error = refiner.run()) return tl::unexpected(*error);

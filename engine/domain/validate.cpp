@@ -28,7 +28,7 @@ std::optional<Error> check_coordinate(double value, const char* axis, std::strin
                                       std::size_t i) {
   const double magnitude = std::fabs(value);
   if (value == 0 || (magnitude >= kMinMagnitude && magnitude <= kMaxMagnitude)) return {};
-  const char* why = std::isfinite(value) ? "; magnitudes must be 0 or from 1e-100 to 1e100"
+  const char* why = std::isfinite(value) ? "; magnitudes must be 0 or from 1e-100 to 1e50"
                                          : "; coordinates must be finite";
   return Error{ErrorCode::kBadCoordinate, element(list, i) + "." + axis,
                text("the ", axis, " coordinate is ", value, why)};

@@ -16,7 +16,7 @@ namespace weft {
 
 // Magnitudes of coordinates other than 0, so that products of four of them stay in range.
 inline constexpr double kMinMagnitude = 1e-100;
-inline constexpr double kMaxMagnitude = 1e100;
+inline constexpr double kMaxMagnitude = 1e50;
 
 // Points of one PSLG, so that vertices and triangles can be numbered in 32 bits.
 inline constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 28;

@@ -40,9 +40,10 @@ TEST(Validate, NamesTheCoordinateThatIsInfinite) {
 
 TEST(Validate, RefusesMagnitudesWhoseProductsOverflow) {
   Pslg pslg = square();
-  pslg.points[1].x = 2e100;
-  expect_error(pslg, ErrorCode::kBadCoordinate, "domain.points[1].x",
-               "the x coordinate is 2e+100; magnitudes must be 0 or from 1e-100 to 1e100");
+  pslg.points[1].x = 2e50;
+  expect_error(
+      pslg, ErrorCode::kBadCoordinate, "domain.points[1].x",
+      "the x coordinate is 2.0000000000000002e+50; magnitudes must be 0 or from 1e-100 to 1e50");
 }
 
 TEST(Validate, RefusesMagnitudesWhoseProductsUnderflow) {
@@ -50,12 +51,12 @@ TEST(Validate, RefusesMagnitudesWhoseProductsUnderflow) {
   pslg.points[1].y = -1e-101;
   expect_error(
       pslg, ErrorCode::kBadCoordinate, "domain.points[1].y",
-      "the y coordinate is -1.0000000000000001e-101; magnitudes must be 0 or from 1e-100 to 1e100");
+      "the y coordinate is -1.0000000000000001e-101; magnitudes must be 0 or from 1e-100 to 1e50");
 }
 
 TEST(Validate, TakesTheLimitsThemselves) {
   const ExecutionContext context;
-  EXPECT_TRUE(triangulate(square(1e100), context));
+  EXPECT_TRUE(triangulate(square(1e50), context));
   EXPECT_TRUE(triangulate(square(1e-100), context));
 }
 
