@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The figures of a mesh: angles, aspect ratios, areas over their bounds. They are gathered while
-// the mesh is sent, a block of triangles at a time, in loops that the compiler vectorises: about
-// 25 ns a triangle.
+// the mesh is sent, a block of triangles at a time, in loops that the compiler vectorises.
 #pragma once
 
 #include <array>
