@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string_view>
 
+#include "google/rpc/code.pb.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 
@@ -13,25 +14,8 @@ namespace weft::client {
 namespace {
 
 std::string code_name(int code) {
-  constexpr std::array<std::string_view, 17> kNames = {"OK",
-                                                       "CANCELLED",
-                                                       "UNKNOWN",
-                                                       "INVALID_ARGUMENT",
-                                                       "DEADLINE_EXCEEDED",
-                                                       "NOT_FOUND",
-                                                       "ALREADY_EXISTS",
-                                                       "PERMISSION_DENIED",
-                                                       "RESOURCE_EXHAUSTED",
-                                                       "FAILED_PRECONDITION",
-                                                       "ABORTED",
-                                                       "OUT_OF_RANGE",
-                                                       "UNIMPLEMENTED",
-                                                       "INTERNAL",
-                                                       "UNAVAILABLE",
-                                                       "DATA_LOSS",
-                                                       "UNAUTHENTICATED"};
-  const auto i = static_cast<std::size_t>(code);
-  return i < kNames.size() ? std::string(kNames[i]) : "status " + std::to_string(code);
+  const std::string& name = google::rpc::Code_Name(static_cast<google::rpc::Code>(code));
+  return name.empty() ? "status " + std::to_string(code) : name;
 }
 
 // A server's text goes to a terminal: no control characters but line feeds.

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/client/support/temp_folder.h"
 #include "tests/server/harness.h"
 
 namespace weft::server {
@@ -22,12 +23,9 @@ namespace fs = std::filesystem;
 class ListenOnUnixSocket : public ::testing::Test {
  protected:
   ListenOnUnixSocket() {
-    std::string pattern = (fs::temp_directory_path() / "weft-listen-XXXXXX").string();
-    folder_ = ::mkdtemp(pattern.data());
     path_ = folder_ / "s";
     address_ = "unix:" + path_.string();
   }
-  ~ListenOnUnixSocket() override { fs::remove_all(folder_); }
 
   auto start() const {
     return Server::start(
@@ -36,7 +34,7 @@ class ListenOnUnixSocket : public ::testing::Test {
         make_logger("off"));
   }
 
-  fs::path folder_;
+  client::TempFolder folder_;
   fs::path path_;
   std::string address_;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/machine.h"
+#include "tests/client/support/temp_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -15,21 +16,16 @@ namespace fs = std::filesystem;
 // A folder with what the kernel would show.
 class Kernel {
  public:
-  Kernel() {
-    std::string pattern = (fs::temp_directory_path() / "weft-machine-XXXXXX").string();
-    root_ = ::mkdtemp(pattern.data());
-    file("proc/meminfo", "MemTotal:       1000 kB\nMemFree: 10 kB\n");
-  }
-  ~Kernel() { fs::remove_all(root_); }
+  Kernel() { file("proc/meminfo", "MemTotal:       1000 kB\nMemFree: 10 kB\n"); }
   Kernel& file(const std::string& path, const std::string& text) {
     fs::create_directories((root_ / path).parent_path());
     std::ofstream(root_ / path) << text;
     return *this;
   }
-  Machine read(std::uint32_t allowed) const { return read_machine(root_, allowed); }
+  Machine read(std::uint32_t allowed) const { return read_machine(root_.path(), allowed); }
 
  private:
-  fs::path root_;
+  client::TempFolder root_;
 };
 
 TEST(Machine, WithoutCgroupsGrantsTheAffinityMaskAndAllMemory) {

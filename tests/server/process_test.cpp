@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/client/support/temp_folder.h"
 #include "tests/server/harness.h"
 
 namespace weft::server {
@@ -116,12 +117,7 @@ v1::GetServerInfoResponse info_of(const std::string& address) {
 
 class TemporaryFolder : public ::testing::Test {
  protected:
-  TemporaryFolder() {
-    std::string pattern = (fs::temp_directory_path() / "weft-process-XXXXXX").string();
-    folder_ = ::mkdtemp(pattern.data());
-  }
-  ~TemporaryFolder() override { fs::remove_all(folder_); }
-  fs::path folder_;
+  client::TempFolder folder_;
 };
 
 const std::vector<std::string> kAnyPort = {"--listen", "127.0.0.1:0"};
