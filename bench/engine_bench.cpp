@@ -103,7 +103,7 @@ int run_engine_bench(const EngineBenchOptions& options) {
       }
       summary = *result;
       if (run == 0) continue;
-      refine.push_back(summary.size_seconds + summary.refine_seconds);
+      refine.push_back(summary.size_seconds + summary.prelude_seconds + summary.refine_seconds);
       engine.push_back(summary.engine_seconds);
     }
     for (int run = 0; options.with_cgal && run <= options.runs; ++run) {

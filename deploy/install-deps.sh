@@ -10,7 +10,7 @@
 set -euo pipefail
 
 build=(
-  ca-certificates git g++ cmake ninja-build ccache pkg-config
+  ca-certificates git clang cmake ninja-build ccache pkg-config
   libgrpc++-dev libprotobuf-dev protobuf-compiler protobuf-compiler-grpc # the wire
   libcgal-dev libgmp-dev libmpfr-dev libboost-dev                        # exact geometry
   libtbb-dev libsleef-dev libexpected-dev                                # the engine
@@ -23,7 +23,7 @@ runtime=(
   libgrpc++1.51 libprotobuf32 libgmp10 libmpfr6 libtbb12 libsleef3 libspdlog1.10 libfmt9
   libssl3 libcairo2 libmuparser2v5 fonts-dejavu-core
 )
-test=(clang clang-format clang-tidy shellcheck gmsh python3 python3-meshio)
+test=(g++ clang-format clang-tidy shellcheck gmsh python3 python3-meshio)
 # Some machines bring a newer node; Debian's npm would be in its way.
 command -v npm >/dev/null || test+=(nodejs npm)
 

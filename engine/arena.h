@@ -5,11 +5,14 @@
 // the same time, so a container's CPU quota is kept. Thread-safe.
 //
 //   Arena arena(4);
-//   arena.run([&] { refine(); });   // on one of the four, the caller waits
+//   arena.run([&] { refine(); });     // on one of the four, the caller waits
+//   arena.start([&] { refine(); });   // the caller goes on
 #pragma once
 
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <cstddef>
 #include <utility>
 
 namespace weft {
@@ -17,7 +20,10 @@ namespace weft {
 class Arena {
  public:
   // REQUIRES: threads >= 1.
-  explicit Arena(int threads) : arena_(threads) {}
+  explicit Arena(int threads)
+      : workers_(tbb::global_control::max_allowed_parallelism,
+                 static_cast<std::size_t>(threads) + 1),
+        arena_(threads, kReservedForCallers) {}
 
   int threads() const { return arena_.max_concurrency(); }
 
@@ -28,7 +34,18 @@ class Arena {
     return arena_.execute(std::forward<F>(f));
   }
 
+  // Runs f in the arena once a slot is free: first come, first served.
+  template <class F>
+  void start(F&& f) {
+    arena_.enqueue(std::forward<F>(f));
+  }
+
  private:
+  static constexpr unsigned kReservedForCallers = 0;
+
+  // TBB counts the calling thread in, which here only waits; and by itself it makes no more threads
+  // than the machine has.
+  tbb::global_control workers_;
   tbb::task_arena arena_;
 };
 

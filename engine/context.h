@@ -8,6 +8,7 @@
 // cancellation and the deadline hold, the cancellation wins.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -27,6 +28,7 @@ struct Progress {
   Stage stage = Stage::kQueued;
   std::uint64_t triangles = 0;
   std::uint64_t expected_triangles = 0;
+  double fraction = 0;  // of the work that is done, 0 to 1; never falls
 };
 
 // What a job may use. DEFAULT: unbounded.
@@ -52,8 +54,12 @@ class ExecutionContext {
 
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
   void set_deadline(Clock::time_point deadline) noexcept { deadline_ = deadline; }
-  // Where the job computes; the caller's own thread without one. The arena outlives the job.
-  void set_arena(Arena& arena) noexcept { arena_ = &arena; }
+  // Where the job computes; the caller's own thread without one. The arena outlives the job. The
+  // job takes at most `threads` of it at a time; 0 is all.
+  void set_arena(Arena& arena, int threads = 0) noexcept {
+    arena_ = &arena;
+    threads_ = threads > 0 ? std::min(threads, arena.threads()) : arena.threads();
+  }
   const Budget& budget() const noexcept { return budget_; }
 
   // Nothing while the job may go on, otherwise the error to stop with.
@@ -67,28 +73,38 @@ class ExecutionContext {
 
   Progress progress() const noexcept {
     return {stage_.load(std::memory_order_relaxed), triangles_.load(std::memory_order_relaxed),
-            expected_.load(std::memory_order_relaxed)};
+            expected_.load(std::memory_order_relaxed),
+            std::min(1.0, fraction_.load(std::memory_order_relaxed))};
   }
 
   // For the engine at work.
+  Arena* arena() const noexcept { return arena_; }
+  int threads() const noexcept { return threads_; }
   template <class F>
   auto compute(F&& f) const {
     return arena_ ? arena_->run(std::forward<F>(f)) : f();
   }
   void enter(Stage stage) noexcept { stage_.store(stage, std::memory_order_relaxed); }
-  void report_triangles(std::uint64_t n) noexcept {
-    triangles_.store(n, std::memory_order_relaxed);
+  // Returns how many there are now. Thread-safe.
+  std::uint64_t add_triangles(std::int64_t n) noexcept {
+    const auto delta = static_cast<std::uint64_t>(n);
+    return triangles_.fetch_add(delta, std::memory_order_relaxed) + delta;
   }
+  std::uint64_t triangles() const noexcept { return triangles_.load(std::memory_order_relaxed); }
+  // Thread-safe.
+  void add_fraction(double f) noexcept { fraction_.fetch_add(f, std::memory_order_relaxed); }
   void report_expected(std::uint64_t n) noexcept { expected_.store(n, std::memory_order_relaxed); }
 
  private:
   Budget budget_;
   std::optional<Clock::time_point> deadline_;
   Arena* arena_ = nullptr;
+  int threads_ = 1;
   std::atomic<bool> cancelled_{false};
   std::atomic<Stage> stage_{Stage::kQueued};
   std::atomic<std::uint64_t> triangles_{0};
   std::atomic<std::uint64_t> expected_{0};
+  std::atomic<double> fraction_{0};
 };
 
 }  // namespace weft

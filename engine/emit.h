@@ -1,29 +1,84 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the refined mesh to the chunks that leave: numbering, figures, digests.
+// From the refined mesh to the chunks that leave: part by part, each on any thread.
+//
+// Vertices are numbered by owner and then in the order in which the owner made them
+// (Slots::number_vertices). A triangle goes with the last of its vertices: the part of the owner
+// whose number is the highest among them. So a chunk refers only to vertices of itself and of
+// earlier ones, no two parts have to agree on anything, and there is no table of numbers. As a slot
+// only ever holds triangles with a vertex of the slot's owner, most triangles stay where they are;
+// 2 % are handed on, to a neighbour (`handed_on`).
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
 
 #include "engine/chunk.h"
 #include "engine/context.h"
 #include "engine/domain/domain.h"
 #include "engine/error.h"
+#include "engine/quality_statistics.h"
 #include "engine/refine/acute_corners.h"
 #include "engine/refine/mesh.h"
+#include "engine/refine/slots.h"
 #include "engine/summary.h"
 
 namespace weft {
 
-struct Emitted {
-  double sink_seconds = 0;       // spent in the sink
-  std::uint64_t peak_bytes = 0;  // of the numbering and the chunk at work
+// Chunks without their place in the mesh: `index`, `first_vertex` and `first_triangle` are for
+// whoever puts the parts in order.
+struct Part {
+  std::vector<Chunk> chunks;
+  QualityStatistics statistics;
+  Unrefined unrefined;
+  std::uint64_t edges = 0;
 };
 
-// Sends the mesh in the order of its triangles; vertices are numbered as they are first used. Fills
-// the counts, figures and digest of the summary. `area` gives the bounds for the size histogram: it
-// has bounds_at, as ConstantArea and MappedArea do.
+// A triangle that goes with the part of another owner.
+struct HandedOn {
+  std::uint32_t owner;
+  std::uint32_t triangle;
+};
+
+// Builds one part. `AreaBound` gives the bounds for the size histogram: it has bounds_at, as
+// ConstantArea and MappedArea do. REQUIRES: what is added is final, and all vertices of triangles
+// have their numbers.
 template <class AreaBound>
-Result<Emitted> emit(const Mesh& mesh, const Domain& domain, const AcuteCorners& corners,
-                     AreaBound& area, ChunkSink& sink, ExecutionContext& context, Summary& summary);
+class PartBuilder {
+ public:
+  PartBuilder(const Mesh& mesh, const Domain& domain, const AcuteCorners& corners, AreaBound area,
+              const ExecutionContext& context);
+
+  void add_vertices(const Slots& slots);
+  // The triangles of one owner from slot `first` to before `last` that do not go elsewhere; those
+  // are appended to `handed_on`.
+  void add_triangles(std::uint32_t first, std::uint32_t last, std::vector<HandedOn>& handed_on);
+  void add_triangle(std::uint32_t t);
+
+  // Nothing where the context says stop.
+  std::optional<Part> finish();
+
+ private:
+  static constexpr std::uint32_t kPollInterval = 1024;  // triangles
+
+  void make_room();
+  void close_chunk();
+  void measure(const Triangle& triangle);
+  void measure_block();
+
+  const Mesh& mesh_;
+  const Domain& domain_;
+  const AcuteCorners& corners_;
+  const bool has_regions_;
+  AreaBound area_;
+  const ExecutionContext& context_;
+  bool stopped_ = false;
+  std::uint32_t until_poll_ = kPollInterval;
+  Part part_;
+  Chunk chunk_;
+  std::unique_ptr<TriangleBlock> block_ = std::make_unique<TriangleBlock>();
+  double region_bound_[TriangleBlock::kSize];
+};
 
 }  // namespace weft

@@ -8,12 +8,9 @@
 #include <new>
 
 #include "engine/domain/domain.h"
-#include "engine/emit.h"
-#include "engine/refine/acute_corners.h"
+#include "engine/mesh_run.h"
 #include "engine/refine/area_bound.h"
 #include "engine/refine/mapped_area.h"
-#include "engine/refine/mesh.h"
-#include "engine/refine/refiner.h"
 #include "engine/size/expression.h"
 #include "engine/size/size_map.h"
 
@@ -169,50 +166,19 @@ class Job {
     summary_.size_seconds = clock_.lap();
 
     context_.enter(Stage::kRefine);
-    auto refined = context_.compute([&] { return refine(area, size_bytes); });
-    if (!refined) return tl::unexpected(refined.error());
-    summary_.refine_seconds = clock_.lap();
-
-    context_.enter(Stage::kEmit);
-    auto emitted = emit(refined->mesh, domain_, refined->corners, area, sink_, context_, summary_);
-    if (!emitted) return tl::unexpected(emitted.error());
-    summary_.emit_seconds = clock_.lap() - emitted->sink_seconds;
-    summary_.engine_seconds = summary_.triangulate_seconds + summary_.size_seconds +
-                              summary_.refine_seconds + summary_.emit_seconds;
-    summary_.peak_bytes = refined->mesh.bytes() + domain_.bytes() + refined->corners.bytes() +
-                          size_bytes + std::max(refined->peak_bytes, emitted->peak_bytes);
+    MeshPlan plan{.domain = domain_,
+                  .box = summary_.box,
+                  .quality = QualityBounds::from(request_.min_angle_deg, request_.min_edge,
+                                                 precision_of(summary_.box)),
+                  .order = order(),
+                  .expected_triangles = expected_,
+                  .leaf_triangles = request_.leaf_triangles,
+                  .other_bytes = size_bytes};
+    if (wants_cap()) plan.max_triangles = budget.max_triangles;
+    if (auto error = run_mesh(plan, area, sink_, context_, summary_)) return tl::unexpected(*error);
+    summary_.engine_seconds += summary_.triangulate_seconds + summary_.size_seconds;
     context_.enter(Stage::kDone);
     return summary_;
-  }
-
-  struct Refined {
-    Mesh mesh;
-    AcuteCorners corners;
-    std::uint64_t peak_bytes;  // of what refinement needed beside the two
-  };
-
-  template <class AreaBound>
-  Result<Refined> refine(AreaBound& area, std::uint64_t size_bytes) {
-    const Budget& budget = context_.budget();
-    auto mesh = Mesh::from(domain_, std::min(budget.max_triangles, budget.triangle_limit),
-                           expected_, context_);
-    if (!mesh) return tl::unexpected(mesh.error());
-    auto corners = AcuteCorners::build(domain_, context_);
-    if (!corners) return tl::unexpected(corners.error());
-    Refiner<OwnsAll, AreaBound> refiner(
-        *mesh, *corners, domain_.regions,
-        QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(summary_.box)),
-        order(), area, domain_.bytes() + corners->bytes() + size_bytes, context_);
-    if (auto error = refiner.queue_all()) return tl::unexpected(*error);
-    if (auto error = refiner.run()) return tl::unexpected(*error);
-    if (!wants_cap() && refiner.full() && refiner.has_work()) {
-      return fail(ErrorCode::kLimitExceeded, "size",
-                  "the mesh needs more than the limit of " + std::to_string(budget.triangle_limit) +
-                      " triangles");
-    }
-    summary_.insertions = refiner.insertions();
-    summary_.exact_predicates = refiner.exact_predicates();
-    return Refined{std::move(*mesh), std::move(*corners), refiner.bytes()};
   }
 
   // Whether the client asked for a cap of its own: then reaching it is no error.

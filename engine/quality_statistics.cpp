@@ -110,6 +110,18 @@ void QualityStatistics::add(const TriangleBlock& block) {
   }
 }
 
+void QualityStatistics::add(const QualityStatistics& other) {
+  const auto add_each = [](auto& to, const auto& from) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
+  };
+  area_ += other.area_;
+  smallest_angle_ = std::max(smallest_angle_, other.smallest_angle_);
+  largest_angle_ = std::min(largest_angle_, other.largest_angle_);
+  add_each(angles_, other.angles_);
+  add_each(aspects_, other.aspects_);
+  add_each(sizes_, other.sizes_);
+}
+
 void QualityStatistics::write(Summary& summary) const {
   summary.area = area_;
   summary.min_angle_deg = degrees(smallest_angle_);

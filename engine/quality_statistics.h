@@ -38,7 +38,8 @@ struct TriangleBlock {
 class QualityStatistics {
  public:
   void add(const TriangleBlock& block);
-  // Angles, histograms and area into the summary.
+  void add(const QualityStatistics& other);
+  // Angles, histograms and area into the summary. REQUIRES: there is a triangle.
   void write(Summary& summary) const;
 
  private:

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "engine/chunk.h"
 
@@ -15,6 +16,13 @@ struct Unrefined {
   std::uint64_t small_input_angle = 0;  // its smallest angle is forced by two segments that meet
   std::uint64_t edge_floor = 0;         // splitting it would make edges below the floor
   std::uint64_t budget = 0;             // max_triangles was reached
+
+  Unrefined& operator+=(const Unrefined& other) {
+    small_input_angle += other.small_input_angle;
+    edge_floor += other.edge_floor;
+    budget += other.budget;
+    return *this;
+  }
   std::uint64_t total() const { return small_input_angle + edge_floor + budget; }
 };
 
@@ -37,16 +45,22 @@ struct Summary {
   std::array<std::uint64_t, 10> size_histogram{};
   Unrefined unrefined;
 
-  // Seconds of wall time a stage.
+  // Seconds of wall time, one stage after the other.
   double triangulate_seconds = 0;
-  double size_seconds = 0;  // the boxes of the size field
+  double size_seconds = 0;     // the boxes of the size field
+  double prelude_seconds = 0;  // the coarse mesh and the quadtree; all of a mesh of one leaf
+  double engine_seconds = 0;   // all of it; time spent blocked in the sink left out
+  // Seconds of work, summed over the threads; the two overlap.
   double refine_seconds = 0;
-  double emit_seconds = 0;  // numbering, quality, digests; time spent blocked in the sink left out
-  double engine_seconds = 0;  // their sum
+  double emit_seconds = 0;  // numbering, quality, digests
 
   std::uint64_t peak_bytes = 0;  // engine memory of this job, not counting the request
   std::uint64_t insertions = 0;
+  std::uint64_t deferred = 0;          // insertions that waited for another round
   std::uint64_t exact_predicates = 0;  // filter failures
+
+  std::vector<Box> leaves;   // of the quadtree, in Morton order; none where it was not needed
+  std::uint32_t rounds = 0;  // of the leaves' tasks that found work
 
   Digest digest{};  // SHA-256 over the digests of the chunks, in order
 };

@@ -28,14 +28,22 @@ std::string bad_size_message(const BadSize& bad);
 // The same bound everywhere; infinity is no bound.
 class ConstantArea {
  public:
-  explicit ConstantArea(double bound) : doubled_(2 * bound) {}
+  // Bounds are multiplied by `coarseness`.
+  explicit ConstantArea(double bound, double coarseness = 1)
+      : bound_(bound), coarseness_(coarseness) {}
+
+  // The same, for another thread or another coarseness.
+  ConstantArea again(double coarseness = 1) const { return ConstantArea(bound_, coarseness); }
+
+  // A task begins whose rings lie in `box`, most of them.
+  void begin(const Box&) {}
 
   // Judges the triangles first <= i < last of the ring around p, none of which may exceed
   // `region_bound`.
   RingVerdict judge(const Ring& ring, std::uint32_t first, std::uint32_t last, Point,
-                    double region_bound, const QualityBounds& quality, std::uint32_t* badness) {
+                    double region_bound, const QualityBounds& quality, Badness* badness) {
     return judge_ring(ring, first, last, quality,
-                      UniformAreaBound{std::min(doubled_, 2 * region_bound)},
+                      UniformAreaBound{2 * coarseness_ * std::min(bound_, region_bound)},
                       std::numeric_limits<double>::infinity(), badness);
   }
 
@@ -44,13 +52,14 @@ class ConstantArea {
 
   // The bound at n points.
   void bounds_at(std::size_t n, const double*, const double*, double* bound) const {
-    std::fill_n(bound, n, 0.5 * doubled_);
+    std::fill_n(bound, n, bound_);
   }
 
   const std::optional<BadSize>& bad_size() const { return bad_size_; }
 
  private:
-  double doubled_;
+  double bound_;
+  double coarseness_;
   std::optional<BadSize> bad_size_;
 };
 

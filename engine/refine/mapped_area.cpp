@@ -6,35 +6,57 @@
 
 namespace weft {
 
-RingVerdict MappedArea::judge_elsewhere(const Ring& ring, std::uint32_t first, std::uint32_t last,
-                                        Point p, double region_bound, const QualityBounds& quality,
-                                        std::uint32_t* badness) {
+void MappedArea::begin(const Box& box) {
+  box_ = Box{};
+  if (const auto size = map_.uniform_size(box)) {
+    box_ = box;
+    size_ = *size;
+  }
+  grid_ = box;
+  cells_per_x_ = kGrid / box.width();
+  cells_per_y_ = kGrid / box.height();
+  for (Cell& cell : cells_) cell.known = false;
+}
+
+RingVerdict MappedArea::judge_by_cell(const Ring& ring, std::uint32_t first, std::uint32_t last,
+                                      Point p, double region_bound, const QualityBounds& quality,
+                                      Badness* badness) {
+  constexpr double kLast = kGrid - 1;
+  const auto column =
+      static_cast<std::size_t>(std::clamp((p.x - grid_.min_x) * cells_per_x_, 0.0, kLast));
+  const auto row =
+      static_cast<std::size_t>(std::clamp((p.y - grid_.min_y) * cells_per_y_, 0.0, kLast));
+  const double width = 1 / cells_per_x_;
+  const double height = 1 / cells_per_y_;
+  const double x = grid_.min_x + static_cast<double>(column) * width;
+  const double y = grid_.min_y + static_cast<double>(row) * height;
+  const Box around{x - width, y - height, x + 2 * width, y + 2 * height};
+  Cell& cell = cells_[row * kGrid + column];
+  if (!cell.known) {
+    cell.place = map_.locate(around);
+    cell.size = map_.uniform_size(cell.place, around).value_or(0);
+    cell.known = true;
+  }
   double reach2 = 0;
   for (std::uint32_t i = first; i <= last; ++i) reach2 = std::max(reach2, ring.length2[i]);
+  if (const double room = room_in(around, p); room > 0 && reach2 <= room * room) [[likely]] {
+    if (cell.size == 0)
+      return judge_evaluated(cell.place, ring, first, last, p, region_bound, quality, badness);
+    box_ = around;
+    size_ = cell.size;
+    return judge_ring(ring, first, last, quality, uniform(region_bound),
+                      std::numeric_limits<double>::infinity(), badness);
+  }
   const double reach = std::sqrt(reach2);
-  const auto around = [&](double radius) {
-    return Box{p.x - radius, p.y - radius, p.x + radius, p.y + radius};
-  };
-  const SizeMap::Place place = map_.locate(around(reach));
-  const auto size = map_.uniform_size(place, around(reach));
-  if (!size) {
-    return judge_evaluated(place, ring, first, last, p, region_bound, quality, badness);
-  }
-  // The larger the box, the longer it serves; 30 % of the rings would leave the map's own boxes.
-  size_ = *size;
-  box_ = around(reach);
-  for (const double factor : {6, 36}) {
-    if (!map_.uniform_size(around(factor * reach))) break;
-    box_ = around(factor * reach);
-  }
-  return judge_ring(ring, first, last, quality, UniformAreaBound{2 * std::min(size_, region_bound)},
-                    std::numeric_limits<double>::infinity(), badness);
+  const Box ring_box{p.x - reach, p.y - reach, p.x + reach, p.y + reach};
+  return judge_evaluated(map_.locate(ring_box), ring, first, last, p, region_bound, quality,
+                         badness);
 }
 
 RingVerdict MappedArea::judge_evaluated(const SizeMap::Place& place, const Ring& ring,
                                         std::uint32_t first, std::uint32_t last, Point p,
                                         double region_bound, const QualityBounds& quality,
-                                        std::uint32_t* badness) {
+                                        Badness* badness) {
   const std::uint32_t n = last - first;
   const std::size_t lanes = (n + Expression::kLanes - 1) / Expression::kLanes;
   if (lanes > x_.size()) {
@@ -64,7 +86,8 @@ RingVerdict MappedArea::judge_evaluated(const SizeMap::Place& place, const Ring&
       }
     }
   }
-  for (std::uint32_t i = 0; i < n; ++i) bound[i] = 2 * std::min(bound[i], region_bound);
+  for (std::uint32_t i = 0; i < n; ++i)
+    bound[i] = 2 * coarseness_ * std::min(bound[i], region_bound);
 
   struct EvaluatedBound {
     const double* doubled;
@@ -76,14 +99,13 @@ RingVerdict MappedArea::judge_evaluated(const SizeMap::Place& place, const Ring&
   if (node.leaf()) return verdict;
   for (std::uint32_t i = first; i < last; ++i) {
     const double area = 0.5 * ring.cross[i];
-    if (badness[i] == static_cast<std::uint32_t>(Badness::kLarge) ||
-        !(area > SizeMap::kFeatureFactor * node.lowest_hi)) {
+    if (badness[i] >= kLarge || !(area > SizeMap::kFeatureFactor * coarseness_ * node.lowest_hi)) {
       continue;
     }
     const std::array<Point, 3> corners{p, Point{p.x + ring.x[i], p.y + ring.y[i]},
                                        Point{p.x + ring.x[i + 1], p.y + ring.y[i + 1]}};
-    if (map_.covers_finer(place, corners, area)) {
-      badness[i] = static_cast<std::uint32_t>(Badness::kLarge);
+    if (map_.covers_finer(place, corners, area / coarseness_)) {
+      badness[i] = badness_of_size(area, SizeMap::kFeatureFactor * coarseness_ * node.lowest_hi);
     }
   }
   return verdict;

@@ -2,60 +2,113 @@
 #include "engine/refine/mesh.h"
 
 #include <algorithm>
+#include <new>
 
 namespace weft {
+namespace {
+
+constexpr std::uint32_t blocks_for(std::uint64_t count, std::uint32_t block) {
+  return static_cast<std::uint32_t>((count + block - 1) / block);
+}
+
+// The next block of `count`; several threads may ask at the same time.
+std::uint32_t take_block(std::uint32_t& count, std::uint32_t capacity) {
+  const std::uint32_t block = std::atomic_ref(count).fetch_add(1, std::memory_order_relaxed);
+  if (block >= capacity) throw std::bad_alloc();
+  return block;
+}
+
+// From the domain's triangle to the mesh's.
+Triangle linked(const Domain& domain, const Domain::Triangle& from) {
+  Triangle to{};
+  to.region = from.region;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    to.vertex[i] = from.vertex[i];
+    to.neighbor[i] = kNone;
+    if (from.subsegment[i] != kNone) to.flags |= 1u << i;
+    if (from.neighbor[i] == kNone) continue;
+    const Domain::Triangle& across = domain.triangles[from.neighbor[i]];
+    for (std::uint32_t j = 0; j < 3; ++j) {
+      if (across.vertex[kNext[j]] == from.vertex[kPrevious[i]] &&
+          across.vertex[kPrevious[j]] == from.vertex[kNext[i]]) {
+        to.neighbor[i] = half_edge(from.neighbor[i], j);
+      }
+    }
+  }
+  return to;
+}
+
+}  // namespace
 
 Result<Mesh> Mesh::from(const Domain& domain, std::uint64_t max_triangles,
                         double expected_triangles, const ExecutionContext& context) {
   constexpr double kWorthHugePages = 100'000;
   constexpr std::uint32_t kPollInterval = 1 << 16;
+  constexpr std::uint64_t kSlack = 1 << 22;  // slots that tasks leave unused, at the least
   const std::uint64_t initial = domain.triangles.size();
   if (initial > kMaxTriangles) {
     return fail(ErrorCode::kLimitExceeded, "domain",
                 "the triangulation of the domain has " + std::to_string(initial) +
                     " triangles, more than " + std::to_string(kMaxTriangles));
   }
-  Mesh mesh;
-  mesh.triangle_capacity =
-      static_cast<std::uint32_t>(std::clamp<std::uint64_t>(max_triangles, initial, kMaxTriangles));
-  // Each insertion adds one vertex and one or two triangles (one only on the outer boundary).
-  mesh.vertex_capacity =
-      static_cast<std::uint32_t>(domain.vertices.size() + (mesh.triangle_capacity - initial) + 1);
+  // Address space is all that the room takes: twice the limit is far more than tasks leave dead.
+  const std::uint64_t slots = std::min<std::uint64_t>(
+      kMaxTriangles, 2 * std::clamp<std::uint64_t>(max_triangles, initial, kMaxTriangles) + kSlack);
   const bool huge_pages = expected_triangles > kWorthHugePages;
+  Mesh mesh;
+  mesh.triangle_block_capacity = static_cast<std::uint32_t>(slots >> kTriangleShift);
+  // Each insertion adds one vertex and one or two triangles (one only on the outer boundary).
+  mesh.vertex_block_capacity = static_cast<std::uint32_t>(slots >> kVertexShift) +
+                               blocks_for(domain.vertices.size(), kVertexBlock);
+  const auto reserve = [](auto& array, std::size_t count, bool huge) -> std::optional<Error> {
+    auto reserved = std::remove_reference_t<decltype(array)>::reserve(count, huge);
+    if (!reserved) return reserved.error();
+    array = std::move(*reserved);
+    return std::nullopt;
+  };
+  const std::size_t vertex_slots = std::size_t{mesh.vertex_block_capacity} * kVertexBlock;
+  for (const auto& error :
+       {reserve(mesh.triangles, std::size_t{mesh.triangle_block_capacity} * kTriangleBlock,
+                huge_pages),
+        reserve(mesh.vertices, vertex_slots, huge_pages),
+        reserve(mesh.triangle_owner, mesh.triangle_block_capacity, false),
+        reserve(mesh.vertex_blocks, mesh.vertex_block_capacity, false),
+        reserve(mesh.subsegments, vertex_slots, false)}) {
+    if (error) return tl::unexpected(*error);
+  }
 
-  auto triangles = VirtualArray<Triangle>::reserve(mesh.triangle_capacity, huge_pages);
-  if (!triangles) return tl::unexpected(triangles.error());
-  auto vertices = VirtualArray<Point>::reserve(mesh.vertex_capacity, huge_pages);
-  if (!vertices) return tl::unexpected(vertices.error());
-  mesh.triangles = std::move(*triangles);
-  mesh.vertices = std::move(*vertices);
-
+  // The blocks of owner 0: all bytes are zero already.
+  mesh.triangle_block_count = blocks_for(initial, kTriangleBlock);
+  mesh.vertex_block_count = blocks_for(domain.vertices.size(), kVertexBlock);
   std::copy(domain.vertices.begin(), domain.vertices.end(), mesh.vertices.data());
-  mesh.vertex_count = static_cast<std::uint32_t>(domain.vertices.size());
   for (std::uint32_t t = 0; t < initial; ++t) {
     if (t % kPollInterval == 0) {
       if (auto error = context.poll()) return tl::unexpected(*error);
     }
-    const Domain::Triangle& from = domain.triangles[t];
-    Triangle& to = mesh.triangles[t];
-    to.flags = 0;
-    to.region = from.region;
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      to.vertex[i] = from.vertex[i];
-      to.neighbor[i] = kNone;
-      if (from.subsegment[i] != kNone) to.flags |= 1u << i;
-      if (from.neighbor[i] == kNone) continue;
-      const Domain::Triangle& across = domain.triangles[from.neighbor[i]];
-      for (std::uint32_t j = 0; j < 3; ++j) {
-        if (across.vertex[kNext[j]] == from.vertex[kPrevious[i]] &&
-            across.vertex[kPrevious[j]] == from.vertex[kNext[i]]) {
-          to.neighbor[i] = half_edge(from.neighbor[i], j);
-        }
-      }
-    }
+    mesh.triangles[t] = linked(domain, domain.triangles[t]);
   }
-  mesh.triangle_count = static_cast<std::uint32_t>(initial);
   return mesh;
+}
+
+std::uint32_t Mesh::take_triangle_block(std::uint32_t owner) {
+  const std::uint32_t block = take_block(triangle_block_count, triangle_block_capacity);
+  triangle_owner[block] = owner;
+  return block << kTriangleShift;
+}
+
+std::uint32_t Mesh::take_vertex_block(std::uint32_t owner, bool on_segment) {
+  const std::uint32_t block = take_block(vertex_block_count, vertex_block_capacity);
+  vertex_blocks[block] = {owner, 0, on_segment};
+  return block << kVertexShift;
+}
+
+std::uint64_t Mesh::bytes() const {
+  const auto taken = [](const std::uint32_t& count) {
+    return std::uint64_t{
+        std::atomic_ref(const_cast<std::uint32_t&>(count)).load(std::memory_order_relaxed)};
+  };
+  return taken(triangle_block_count) * (kTriangleBlock * sizeof(Triangle) + sizeof(std::uint32_t)) +
+         taken(vertex_block_count) * (kVertexBlock * sizeof(Point) + sizeof(VertexBlock));
 }
 
 }  // namespace weft

@@ -3,17 +3,18 @@
 // triangle.
 //
 // Triangles are counter-clockwise; edge i is opposite vertex[i], from vertex[i+1] to vertex[i+2].
-// A half-edge names a triangle and one of its edges in one word. There is no free list and no dead
-// triangle: the slots of a cavity are taken by the triangles that replace it.
+// A half-edge names a triangle and one of its edges in one word.
 //
-// Vertices that refinement puts on segments are numbered down from the top of the array, all
-// others up from the bottom: so what a vertex is shows in its number, and the few on segments can
-// remember their subsegment without costing the many anything.
+// Slots come in blocks, and a block has one owner: the task that took it (slots.h). Only the owner
+// writes triangles into its slots. It takes the slots of a cavity again for the triangles that
+// replace it; another owner's slot in the cavity is only marked dead. So the slots of a task are
+// final once nobody can reach into its region, and a slot's first vertex tells whether the
+// triangle in it is still the same. 3 to 5 % of the slots end dead.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 #include "engine/context.h"
 #include "engine/domain/domain.h"
@@ -39,75 +40,86 @@ inline constexpr std::uint32_t edge_of(HalfEdge h) {
 inline constexpr std::uint8_t kNext[4] = {1, 2, 0, 0};
 inline constexpr std::uint8_t kPrevious[4] = {2, 0, 1, 0};
 
-// What a triangle misses. A triangle with a badness other than kGood has an entry in a queue.
-enum class Badness : std::uint32_t { kGood = 0, kSkinny = 1, kLarge = 2 };
+// What a triangle misses, and how urgently: kGood, kSkinny, or from kLarge on too large, the more
+// the larger. A triangle that is not good has an entry in a queue.
+using Badness = std::uint32_t;
+inline constexpr Badness kGood = 0;
+inline constexpr Badness kSkinny = 1;
+inline constexpr Badness kLarge = 2;
+inline constexpr Badness kWorst = 255;
 
 // Why a triangle stays bad.
 enum class Excuse : std::uint32_t { kNone = 0, kSmallInputAngle = 1, kEdgeFloor = 2 };
 
 struct alignas(32) Triangle {
   std::uint32_t vertex[3];
-  std::uint32_t flags;  // bits 0-2: edge i lies on a segment; 4-5: Excuse; 8-15: Badness
+  std::uint32_t flags;  // bits 0-2: edge i lies on a segment; 3: dead; 4-5: Excuse; 8-15: Badness
   HalfEdge neighbor[3];
   std::uint32_t region;  // index into Domain::regions
 
   bool on_segment(std::uint32_t edge) const { return flags >> edge & 1; }
   std::uint32_t segment_bits() const { return flags & 7; }
-  Badness badness() const { return static_cast<Badness>(flags >> 8); }
+  bool dead() const { return flags >> 3 & 1; }
+  Badness badness() const { return flags >> 8; }
   Excuse excuse() const { return static_cast<Excuse>(flags >> 4 & 3); }
-  void set_badness(Badness b) { flags = (flags & 0xff) | static_cast<std::uint32_t>(b) << 8; }
-  // An excused triangle is no longer to be refined.
+  // Each forgets what the other said: an excused triangle is no longer to be refined.
+  void set_badness(Badness b) { flags = (flags & 7) | b << 8; }
   void set_excuse(Excuse e) { flags = (flags & 7) | static_cast<std::uint32_t>(e) << 4; }
+  void die() { flags = 1u << 3; }
 };
 static_assert(sizeof(Triangle) == 32);
 
 struct Mesh {
   static constexpr std::uint32_t kMaxTriangles = (1u << 30) - 1;  // half-edges have 32 bits
+  static constexpr std::uint32_t kTriangleShift = 8;              // 256 triangles a block
+  static constexpr std::uint32_t kVertexShift = 7;                // 128 vertices a block
+  static constexpr std::uint32_t kTriangleBlock = 1u << kTriangleShift;
+  static constexpr std::uint32_t kVertexBlock = 1u << kVertexShift;
+
+  struct VertexBlock {
+    std::uint32_t owner;
+    std::uint32_t number;      // of its first vertex in the mesh that is sent
+    std::uint32_t on_segment;  // whether `subsegments` has its vertices
+  };
 
   VirtualArray<Triangle> triangles;
   VirtualArray<Point> vertices;
-  std::uint32_t triangle_count = 0;
-  std::uint32_t triangle_capacity = 0;
-  std::uint32_t vertex_count = 0;  // at the bottom
-  std::uint32_t vertex_capacity = 0;
-  // Index into Domain::subsegments of vertex vertex_capacity - 1 - k, for each k.
-  std::vector<std::uint32_t> subsegments;
+  VirtualArray<std::uint32_t> triangle_owner;  // per block
+  VirtualArray<VertexBlock> vertex_blocks;
+  VirtualArray<std::uint32_t> subsegments;  // per vertex, see subsegment_of
+  std::uint32_t triangle_block_count = 0;   // taken; from several threads while tasks run
+  std::uint32_t vertex_block_count = 0;
+  std::uint32_t triangle_block_capacity = 0;
+  std::uint32_t vertex_block_capacity = 0;
 
-  // The domain's triangulation, with room for `max_triangles` in all. `expected_triangles` decides
-  // whether huge pages are worth it. Errors: kBudgetExceeded, kLimitExceeded, kCancelled,
+  // The domain's triangulation, in blocks of owner 0, with room for at least `max_triangles` in
+  // all, and for the slots that tasks leave dead or unused. `expected_triangles` decides whether
+  // huge pages are worth it. Errors: kBudgetExceeded, kLimitExceeded, kCancelled,
   // kDeadlineExceeded.
   static Result<Mesh> from(const Domain& domain, std::uint64_t max_triangles,
                            double expected_triangles, const ExecutionContext& context);
 
-  std::uint32_t add_vertex(Point p) {
-    vertices[vertex_count] = p;
-    return vertex_count++;
+  std::uint32_t owner_of_triangle(std::uint32_t t) const {
+    return triangle_owner[t >> kTriangleShift];
   }
-  std::uint32_t add_segment_vertex(Point p, std::uint32_t subsegment) {
-    subsegments.push_back(subsegment);
-    const auto v = static_cast<std::uint32_t>(vertex_capacity - subsegments.size());
-    vertices[v] = p;
-    return v;
+  const VertexBlock& block_of_vertex(std::uint32_t v) const {
+    return vertex_blocks[v >> kVertexShift];
   }
   // The subsegment that refinement put this vertex on, or kNone.
-  std::uint32_t subsegment_of(std::uint32_t vertex) const {
-    const std::size_t from_top = vertex_capacity - 1 - vertex;
-    return from_top < subsegments.size() ? subsegments[from_top] : kNone;
+  std::uint32_t subsegment_of(std::uint32_t v) const {
+    return block_of_vertex(v).on_segment ? subsegments[v] : kNone;
+  }
+  // The number of a vertex in the mesh that is sent, once its block has one.
+  std::uint32_t number_of(std::uint32_t v) const {
+    return block_of_vertex(v).number + (v & (kVertexBlock - 1));
   }
 
-  std::uint32_t total_vertices() const {
-    return vertex_count + static_cast<std::uint32_t>(subsegments.size());
-  }
-  // The vertices in one row without the gap: 0 to total_vertices() - 1.
-  std::uint32_t dense_index(std::uint32_t vertex) const {
-    return vertex < vertex_count ? vertex : vertex_count + (vertex_capacity - 1 - vertex);
-  }
+  // Takes the next block. Thread-safe. Throws std::bad_alloc where the address space ends, which
+  // is far beyond what `from` was asked for.
+  std::uint32_t take_triangle_block(std::uint32_t owner);
+  std::uint32_t take_vertex_block(std::uint32_t owner, bool on_segment);
 
-  std::uint64_t bytes() const {
-    return std::uint64_t{triangle_count} * sizeof(Triangle) +
-           std::uint64_t{total_vertices()} * sizeof(Point) +
-           subsegments.capacity() * sizeof(subsegments[0]);
-  }
+  std::uint64_t bytes() const;
 };
 
 }  // namespace weft

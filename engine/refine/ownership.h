@@ -12,18 +12,25 @@
 
 namespace weft {
 
-// One task has all: the sequential engine. Costs nothing.
+// One task has all, and all slots are its own: the sequential engine. Costs nothing.
 struct OwnsAll {
   static constexpr bool kRestricted = false;
   constexpr bool owns(Point) const { return true; }
+  constexpr bool in_core(double, double) const { return true; }
 };
 
-// A task has the vertices of a half-open box.
+// A task has the vertices of a half-open box, beside others. It refines what has its centroid in
+// the core, and hands the rest over.
 struct OwnsBox {
   static constexpr bool kRestricted = true;
   Box box;
-  bool owns(Point p) const {
-    return p.x >= box.min_x && p.x < box.max_x && p.y >= box.min_y && p.y < box.max_y;
+  Box core;  // lies in `box`
+
+  bool owns(Point p) const { return contains(box, p.x, p.y); }
+  bool in_core(double x, double y) const { return contains(core, x, y); }
+
+  static bool contains(const Box& b, double x, double y) {
+    return x >= b.min_x && x < b.max_x && y >= b.min_y && y < b.max_y;
   }
 };
 

@@ -3,25 +3,31 @@
 // is bad (too large or too skinny), insert its Steiner point by Bowyer-Watson; if the point would
 // encroach upon a segment, split the segment instead.
 //
-//   Refiner<OwnsAll, ConstantArea> refiner(mesh, corners, domain.regions, quality,
-//                                          Order::kLastInFirstOut, area, 0, context);
+//   Refiner<OwnsAll, ConstantArea> refiner(setting, quality, ConstantArea(1e-3));
+//   refiner.begin(slots, OwnsAll{}, box);
 //   refiner.queue_all();                              // segments first, then bad triangles
 //   std::optional<Error> stopped = refiner.run();     // nothing: all is refined or excused
 //
 // What makes it fast, each with its cost measured at 1 M triangles: no point location (a bad
 // triangle belongs to the cavity of its own Steiner point); the cavity's slots are reused; queue
 // entries are 4 bytes, and the triangle's own badness tells whether one is stale (two thirds are);
-// the order is last in, first out, so that work stays in the cache (first in, first out costs
-// 50 %).
+// the worst comes first, and of these the last in (bad_triangles.h).
 //
 // Ownership is a compile-time parameter (ownership.h). A task that meets what it does not own
-// leaves the mesh as it was and keeps the triangle in `deferred()`.
+// leaves the mesh as it was and keeps the triangle in `deferred()`; what it makes outside its core
+// goes to `handed_over()`. One Refiner serves many tasks, one after the other.
+//
+// A triangle is named across tasks by its slot and first vertex: only the slot's owner writes
+// vertices, each time another first one. So a task may look whether a triangle is still there
+// before it knows that it owns it (flags are read after that).
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/context.h"
@@ -33,57 +39,87 @@
 #include "engine/refine/mesh.h"
 #include "engine/refine/ownership.h"
 #include "engine/refine/quality_bounds.h"
+#include "engine/refine/slots.h"
 #include "engine/refine/steiner_point.h"
 
 namespace weft {
 
+// What all tasks of a job share.
+struct Setting {
+  Mesh& mesh;
+  const AcuteCorners& corners;
+  const std::vector<Region>& regions;
+  ExecutionContext& context;
+  Order order;
+  std::uint64_t other_bytes;  // that the job holds besides the mesh
+};
+
+// A bad triangle as tasks hand it on: gone if the slot has another first vertex.
+struct BadTriangle {
+  std::uint32_t triangle;
+  std::uint32_t first_vertex;
+};
+
 template <class Ownership, class AreaBound>
 class Refiner {
  public:
-  // A bad triangle that another task must refine; the vertices tell whether it is still the same.
-  struct Deferred {
-    std::uint32_t triangle;
-    std::uint32_t vertex[3];
-  };
+  // Edge `edge` of `triangle`, on a segment that is encroached upon; gone if the ends differ.
+  using SegmentEdge = typename Cavity<Ownership>::SegmentEdge;
 
-  Refiner(Mesh& mesh, const AcuteCorners& corners, const std::vector<Region>& regions,
-          const QualityBounds& quality, Order order, AreaBound& area, std::uint64_t other_bytes,
-          ExecutionContext& context)
-      : mesh_(mesh),
-        corners_(corners),
-        regions_(regions),
+  // Stops with what it has once `max_triangles` are reached.
+  Refiner(const Setting& setting, const QualityBounds& quality, AreaBound area,
+          std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max())
+      : mesh_(setting.mesh),
+        corners_(setting.corners),
+        regions_(setting.regions),
         quality_(quality),
-        area_(area),
-        context_(context),
-        other_bytes_(other_bytes),
-        poll_interval_(area.poll_interval()),
-        cavity_(mesh),
-        bad_(mesh, order) {
+        area_(std::move(area)),
+        context_(setting.context),
+        other_bytes_(setting.other_bytes),
+        poll_interval_(area_.poll_interval()),
+        max_triangles_(max_triangles),
+        cavity_(setting.mesh),
+        bad_(setting.mesh, setting.order) {
     reserve_ring_buffers(kInitialRing);
   }
 
-  void set_ownership(const Ownership& ownership) {
+  // Begins a task in `box`: new triangles and vertices go to `slots`.
+  void begin(Slots& slots, const Ownership& ownership, const Box& box) {
+    slots_ = &slots;
+    area_.begin(box);
     ownership_ = ownership;
     cavity_.set_ownership(ownership);
+    bad_.clear();
+    segments_.clear();
+    deferred_.clear();
+    deferred_segments_.clear();
+    handed_over_.clear();
   }
 
-  // Splits the segments that are encroached upon, then queues every bad triangle that is owned.
+  // Queues what another task has left, where it is still there; what is not owned is deferred.
+  void queue(const BadTriangle& left) {
+    const Triangle& t = mesh_.triangles[left.triangle];
+    if (t.vertex[0] != left.first_vertex) return;
+    if (!owns(t)) {
+      deferred_.push_back(left);
+    } else if (t.badness() != kGood) {
+      bad_.push(left.triangle, t.badness());
+    }
+  }
+  void queue_segment(const SegmentEdge& left) { segments_.push_back(left); }
+
+  // Splits the segments that are encroached upon, then judges every triangle and queues the bad
+  // ones. REQUIRES: all triangles lie in the slots of this task.
   std::optional<Error> queue_all() {
-    for (std::uint32_t t = 0; t < mesh_.triangle_count && !stopped_; ++t) {
-      if (owns(mesh_.triangles[t])) queue_encroached_segments(t);
-      tick();
-    }
+    for_all_triangles([&](std::uint32_t t) { queue_encroached_segments(t); });
     split_queued_segments();
-    const std::uint32_t count = mesh_.triangle_count;
-    for (std::uint32_t t = 0; t < count && !stopped_; ++t) {
-      if (owns(mesh_.triangles[t])) judge(t);
-      tick();
-    }
+    for_all_triangles([&](std::uint32_t t) { judge(t); });
     return stopped_;
   }
 
-  // Refines until the queue is empty, the triangle budget is used up, or the context says stop.
+  // Refines until the queue is empty, `max_triangles` are reached, or the context says stop.
   std::optional<Error> run() {
+    split_queued_segments();
     while (!full() && !stopped_) {
       const std::uint32_t t = bad_.pop();
       if (t == kNone) break;
@@ -95,27 +131,26 @@ class Refiner {
   }
 
   // No room for another insertion: what is still queued stays bad.
-  bool full() const { return mesh_.triangle_count + kMaxGrowth > mesh_.triangle_capacity; }
-
-  // Whether a bad triangle or an encroached segment is left.
-  bool has_work() {
-    const std::uint32_t t = bad_.pop();
-    if (t != kNone) bad_.push(t);
-    return t != kNone || !segments_.empty();
+  bool full() const {
+    return max_triangles_ != std::numeric_limits<std::uint64_t>::max() &&
+           context_.triangles() + static_cast<std::uint64_t>(added_) + kMaxGrowth > max_triangles_;
   }
 
-  const std::vector<Deferred>& deferred() const { return deferred_; }
+  const std::vector<BadTriangle>& deferred() const { return deferred_; }
+  const std::vector<SegmentEdge>& deferred_segments() const { return deferred_segments_; }
+  // Some of these are gone meanwhile.
+  const std::vector<BadTriangle>& handed_over() const { return handed_over_; }
+
   std::uint64_t insertions() const { return insertions_; }
   std::uint64_t exact_predicates() const { return cavity_.exact_predicates() + exact_; }
   std::uint64_t bytes() const {
-    return cavity_.bytes() + bad_.peak_bytes() + segments_.capacity() * sizeof(segments_[0]) +
+    return cavity_.bytes() + bad_.bytes() + segments_.capacity() * sizeof(segments_[0]) +
            deferred_.capacity() * sizeof(deferred_[0]) + star_.capacity() * sizeof(star_[0]) +
            judged_.capacity() * sizeof(judged_[0]);
   }
 
  private:
   using Growth = typename Cavity<Ownership>::Growth;
-  using SegmentEdge = typename Cavity<Ownership>::SegmentEdge;
 
   static constexpr std::uint32_t kMaxGrowth = 2;  // triangles that an insertion adds
   static constexpr std::size_t kInitialRing = 1024;
@@ -129,7 +164,7 @@ class Refiner {
 
   void refine(std::uint32_t t) {
     Triangle& triangle = mesh_.triangles[t];
-    if (triangle.badness() == Badness::kSkinny && corners_.excuses(mesh_, triangle)) {
+    if (triangle.badness() == kSkinny && corners_.excuses(mesh_, triangle)) {
       triangle.set_excuse(Excuse::kSmallInputAngle);
       return;
     }
@@ -153,14 +188,13 @@ class Refiner {
   // The Steiner point of t encroaches upon segments: split them and let t try again, if it is
   // still there; when none could be split, t stays as it is.
   void split_encroached(std::uint32_t t) {
-    const Triangle before = mesh_.triangles[t];
+    const std::uint32_t first_vertex = mesh_.triangles[t].vertex[0];
     segments_.insert(segments_.end(), cavity_.encroached().begin(), cavity_.encroached().end());
     const bool split = split_queued_segments();
     Triangle& after = mesh_.triangles[t];
-    const bool same = std::equal(before.vertex, before.vertex + 3, after.vertex);
-    if (after.badness() == Badness::kGood) return;
-    if (split || !same || full()) {
-      bad_.push(t);
+    if (after.badness() == kGood || after.vertex[0] != first_vertex) return;
+    if (split || full()) {
+      bad_.push(t, after.badness());
     } else if (segments_deferred_) {
       defer(t);
     } else {
@@ -188,7 +222,7 @@ class Refiner {
         area_.judge(ring, 0, ring.size, p, region_bound(t), quality_, judged_.data());
     if (!acceptable(verdict, p)) [[unlikely]]
       return Outcome::kTooClose;
-    retriangulate(mesh_.add_vertex(p), true);
+    retriangulate(slots_->add_vertex(mesh_, p), p, true);
     return Outcome::kInserted;
   }
 
@@ -234,21 +268,43 @@ class Refiner {
     const std::uint32_t near_region = triangle.region;
     const std::uint32_t far_region = closed ? mesh_.triangles[triangle_of(across)].region : 0;
     const std::uint32_t subsegment = corners_.subsegment(mesh_, a, b);
-    retriangulate(mesh_.add_segment_vertex(p, subsegment), closed);
+    retriangulate(slots_->add_segment_vertex(mesh_, p, subsegment), p, closed);
     mark_segment(near_side, closed, near_region, far_region);
     return Outcome::kInserted;
   }
 
-  // Replaces the cavity by the star of its point, now a vertex.
-  void retriangulate(std::uint32_t vertex, bool closed) {
+  // The slots for the star of a point: those of the cavity, as far as they are this task's, then
+  // new ones.
+  void take_star_slots() {
+    const std::uint32_t n = cavity_.ring().size;
+    const std::uint32_t* const __restrict cavity = cavity_.triangles();
+    std::uint32_t* const __restrict star = star_.data();
+    std::uint32_t taken = 0;
+    if constexpr (Ownership::kRestricted) {
+      const std::uint32_t owner = slots_->owner();
+      for (std::uint32_t i = 0; i < cavity_.size(); ++i) {
+        star[taken] = cavity[i];
+        if (mesh_.owner_of_triangle(cavity[i]) == owner) [[likely]] {
+          ++taken;
+        } else {
+          mesh_.triangles[cavity[i]].die();
+        }
+      }
+    } else {
+      taken = cavity_.size();
+      std::copy_n(cavity, taken, star);
+    }
+    while (taken < n) star[taken++] = slots_->add_triangle(mesh_);
+  }
+
+  // Replaces the cavity by the star of its point p, now a vertex.
+  void retriangulate(std::uint32_t vertex, Point p, bool closed) {
     Triangle* const __restrict triangles = mesh_.triangles.data();
     const Ring& ring = cavity_.ring();
     const std::uint32_t n = ring.size;
     const std::uint32_t region = triangles[cavity_.triangles()[0]].region;
-    std::uint32_t* const __restrict star = star_.data();
-    const std::uint32_t reused = std::min(cavity_.size(), n);
-    std::copy_n(cavity_.triangles(), reused, star);
-    for (std::uint32_t i = reused; i < n; ++i) star[i] = mesh_.triangle_count++;
+    take_star_slots();
+    const std::uint32_t* const __restrict star = star_.data();
 
     std::uint32_t previous = star[n - 1];
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -273,8 +329,15 @@ class Refiner {
       triangles[star[n - 1]].neighbor[1] = kNone;
     }
     for (std::uint32_t i = 0; i < n; ++i) {
-      if (judged_[i]) bad_.push(star[i]);
+      if (judged_[i] == kGood) continue;
+      if (ownership_.in_core(p.x + (ring.x[i] + ring.x[i + 1]) * (1.0 / 3),
+                             p.y + (ring.y[i] + ring.y[i + 1]) * (1.0 / 3))) [[likely]] {
+        bad_.push(star[i], judged_[i]);
+      } else {
+        handed_over_.push_back({star[i], vertex});
+      }
     }
+    added_ += static_cast<std::int64_t>(n) - cavity_.size();
     ++insertions_;
   }
 
@@ -320,6 +383,10 @@ class Refiner {
       tick();
       const SegmentEdge s = segments_.back();
       segments_.pop_back();
+      if (!ownership_.owns(mesh_.vertices[s.a]) || !ownership_.owns(mesh_.vertices[s.b])) {
+        defer_segment(s);
+        continue;
+      }
       const Triangle& t = mesh_.triangles[s.triangle];
       const bool current = t.vertex[kNext[s.edge]] == s.a && t.vertex[kPrevious[s.edge]] == s.b &&
                            t.on_segment(s.edge);
@@ -329,7 +396,7 @@ class Refiner {
       }
       const Outcome outcome = split_segment(s.triangle, s.edge);
       any |= outcome == Outcome::kInserted;
-      segments_deferred_ |= outcome == Outcome::kNotOwned;
+      if (outcome == Outcome::kNotOwned) defer_segment(s);
     }
     return any;
   }
@@ -364,13 +431,24 @@ class Refiner {
     }
     single_.cross[0] = single_.x[0] * single_.y[1] - single_.y[0] * single_.x[1];
     area_.judge(single_, 0, 1, p, region_bound(t), quality_, judged_.data());
-    triangle.set_badness(static_cast<Badness>(judged_[0]));
-    if (judged_[0]) bad_.push(t);
+    triangle.set_badness(judged_[0]);
+    if (judged_[0] != kGood) bad_.push(t, judged_[0]);
   }
 
-  void defer(std::uint32_t t) {
-    const Triangle& triangle = mesh_.triangles[t];
-    deferred_.push_back({t, {triangle.vertex[0], triangle.vertex[1], triangle.vertex[2]}});
+  template <class F>
+  void for_all_triangles(F&& f) {
+    slots_->for_triangles([&](std::uint32_t first, std::uint32_t last) {
+      for (std::uint32_t t = first; t < last && !stopped_; ++t) {
+        f(t);
+        tick();
+      }
+    });
+  }
+
+  void defer(std::uint32_t t) { deferred_.push_back({t, mesh_.triangles[t].vertex[0]}); }
+  void defer_segment(const SegmentEdge& s) {
+    deferred_segments_.push_back(s);
+    segments_deferred_ = true;
   }
 
   bool owns(const Triangle& t) const {
@@ -401,7 +479,7 @@ class Refiner {
   }
 
   std::optional<Error> poll() {
-    context_.report_triangles(mesh_.triangle_count);
+    const std::uint64_t triangles = context_.add_triangles(std::exchange(added_, 0));
     if (const auto& bad = area_.bad_size()) {
       return Error{ErrorCode::kBadSizeValue, "size", bad_size_message(*bad)};
     }
@@ -409,7 +487,12 @@ class Refiner {
       return Error{ErrorCode::kBudgetExceeded, "budget.max_bytes",
                    "the mesh needs more than the budget of " +
                        std::to_string(context_.budget().max_bytes) + " bytes, at " +
-                       std::to_string(mesh_.triangle_count) + " triangles"};
+                       std::to_string(triangles) + " triangles"};
+    }
+    if (triangles > context_.budget().triangle_limit) {
+      return Error{ErrorCode::kLimitExceeded, "size",
+                   "the mesh needs more than the limit of " +
+                       std::to_string(context_.budget().triangle_limit) + " triangles"};
     }
     return context_.poll();
   }
@@ -418,22 +501,27 @@ class Refiner {
   const AcuteCorners& corners_;
   const std::vector<Region>& regions_;
   const QualityBounds quality_;
-  AreaBound& area_;
+  AreaBound area_;
   ExecutionContext& context_;
   const std::uint64_t other_bytes_;    // that the job holds besides the mesh
   const std::uint32_t poll_interval_;  // insertions
+  const std::uint64_t max_triangles_;
+  Slots* slots_ = nullptr;
   Ownership ownership_{};
   Cavity<Ownership> cavity_;
   Ring single_{1};
 
   BadTriangles bad_;
   std::vector<SegmentEdge> segments_;  // encroached upon; entries may be stale
-  std::vector<Deferred> deferred_;
-  std::vector<std::uint32_t> star_;    // triangle of each ring edge
-  std::vector<std::uint32_t> judged_;  // badness of each
+  std::vector<BadTriangle> deferred_;
+  std::vector<SegmentEdge> deferred_segments_;
+  std::vector<BadTriangle> handed_over_;
+  std::vector<std::uint32_t> star_;  // triangle of each ring edge
+  std::vector<Badness> judged_;      // of each
   bool segments_deferred_ = false;
   std::optional<Error> stopped_;
   std::uint32_t until_poll_ = 1;
+  std::int64_t added_ = 0;  // triangles that the context does not know of
   std::uint64_t insertions_ = 0;
   std::uint64_t exact_ = 0;
 };

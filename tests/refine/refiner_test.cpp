@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
+#include <vector>
 
 #include "engine/engine.h"
 #include "tests/domain/shapes.h"
@@ -13,82 +16,121 @@
 namespace weft {
 namespace {
 
-// A square that has been refined to triangles of at most `area`.
+constexpr Box kEverywhere{-2, -2, 3, 3};
+
+// A square that has been refined to triangles of at most `area`, by owner 0.
 struct RefinedSquare {
   explicit RefinedSquare(double area)
       : domain(*triangulate(square(), context)),
         corners(*AcuteCorners::build(domain, context)),
-        mesh(*Mesh::from(domain, 1'000'000, 0, context)) {
-    refine<OwnsAll>({}, area);
+        mesh(*Mesh::from(domain, 1'000'000, 0, context)),
+        slots({Slots::of_domain(domain)}) {
+    Refiner<OwnsAll, ConstantArea> refiner(setting(), kQuality, ConstantArea(area));
+    refiner.begin(slots[0], OwnsAll{}, kEverywhere);
+    EXPECT_FALSE(refiner.queue_all());
+    EXPECT_FALSE(refiner.run());
+    EXPECT_TRUE(refiner.deferred().empty());
   }
 
-  template <class Ownership>
-  std::vector<typename Refiner<Ownership, ConstantArea>::Deferred> refine(Ownership ownership,
-                                                                          double area) {
-    ConstantArea bound(area);
-    Refiner<Ownership, ConstantArea> refiner(mesh, corners, domain.regions,
-                                             QualityBounds::from(20, 0, 1e-9),
-                                             Order::kLastInFirstOut, bound, 0, context);
-    refiner.set_ownership(ownership);
-    EXPECT_FALSE(refiner.queue_all());
+  Setting setting() { return {mesh, corners, domain.regions, context, Order::kLastInFirstOut, 0}; }
+
+  // Refines what the box owns, as the next owner; returns what was deferred.
+  std::vector<BadTriangle> refine(const Box& box, double area) {
+    slots.emplace_back(static_cast<std::uint32_t>(slots.size()));
+    Refiner<OwnsBox, ConstantArea> refiner(setting(), kQuality, ConstantArea(area));
+    refiner.begin(slots.back(), OwnsBox{box, box}, box);
+    for_alive([&](std::uint32_t t) {
+      if (this->area(t) <= area) return;
+      mesh.triangles[t].set_badness(kLarge);
+      refiner.queue({t, mesh.triangles[t].vertex[0]});
+    });
     EXPECT_FALSE(refiner.run());
     return refiner.deferred();
   }
 
-  double area(const Triangle& t) const {
-    const Point a = mesh.vertices[t.vertex[0]];
-    const Point b = mesh.vertices[t.vertex[1]];
-    const Point c = mesh.vertices[t.vertex[2]];
+  template <class F>
+  void for_alive(F&& f) const {
+    for (const Slots& owned : slots) {
+      owned.for_triangles([&](std::uint32_t first, std::uint32_t last) {
+        for (std::uint32_t t = first; t < last; ++t) {
+          if (!mesh.triangles[t].dead()) f(t);
+        }
+      });
+    }
+  }
+
+  bool owns(const Box& box, std::uint32_t t) const {
+    const auto& v = mesh.triangles[t].vertex;
+    return std::all_of(v, v + 3, [&](std::uint32_t i) {
+      return OwnsBox{box, box}.owns(mesh.vertices[i]);
+    });
+  }
+
+  double area(std::uint32_t t) const {
+    const auto& v = mesh.triangles[t].vertex;
+    const Point a = mesh.vertices[v[0]];
+    const Point b = mesh.vertices[v[1]];
+    const Point c = mesh.vertices[v[2]];
     return 0.5 * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
   }
 
+  inline static const QualityBounds kQuality = QualityBounds::from(20, 0, 1e-9);
   ExecutionContext context;
   Domain domain;
   AcuteCorners corners;
   Mesh mesh;
+  std::vector<Slots> slots;  // by owner
 };
+
+constexpr Box kLeft{-1, -1, 0.5, 2};
+constexpr Box kRight{0.5, -1, 2, 2};
 
 TEST(Ownership, KeepsATaskFromTouchingWhatItDoesNotOwn) {
   RefinedSquare square(1e-3);
-  const OwnsBox left{{-1, -1, 0.5, 2}};
-  const auto owned = [&](const Triangle& t) {
-    return left.owns(square.mesh.vertices[t.vertex[0]]) &&
-           left.owns(square.mesh.vertices[t.vertex[1]]) &&
-           left.owns(square.mesh.vertices[t.vertex[2]]);
-  };
-  const std::vector<Triangle> before(square.mesh.triangles.data(),
-                                     square.mesh.triangles.data() + square.mesh.triangle_count);
-  const auto deferred = square.refine(left, 1e-5);
-  for (std::size_t t = 0; t < before.size(); ++t) {
-    if (owned(before[t])) continue;
-    EXPECT_EQ(std::memcmp(before[t].vertex, square.mesh.triangles[t].vertex, 12), 0) << t;
-    EXPECT_EQ(before[t].flags, square.mesh.triangles[t].flags) << t;
+  std::vector<std::pair<std::uint32_t, Triangle>> foreign;
+  square.for_alive([&](std::uint32_t t) {
+    if (!square.owns(kLeft, t)) foreign.push_back({t, square.mesh.triangles[t]});
+  });
+  EXPECT_FALSE(square.refine(kLeft, 1e-5).empty());
+  for (const auto& [t, before] : foreign) {
+    EXPECT_EQ(std::memcmp(before.vertex, square.mesh.triangles[t].vertex, 12), 0) << t;
+    EXPECT_EQ(before.segment_bits(), square.mesh.triangles[t].segment_bits()) << t;
+    EXPECT_FALSE(square.mesh.triangles[t].dead()) << t;
   }
-  EXPECT_FALSE(deferred.empty());
 }
 
 TEST(Ownership, LeavesOnlyDeferredTrianglesBad) {
   RefinedSquare square(1e-3);
-  const OwnsBox left{{-1, -1, 0.5, 2}};
-  const auto deferred = square.refine(left, 1e-5);
+  const auto deferred = square.refine(kLeft, 1e-5);
   std::size_t bad_and_owned = 0;
-  for (std::uint32_t t = 0; t < square.mesh.triangle_count; ++t) {
-    bool inside = true;
-    for (std::uint32_t v : square.mesh.triangles[t].vertex)
-      inside = inside && left.owns(square.mesh.vertices[v]);
-    bad_and_owned += inside && square.area(square.mesh.triangles[t]) > 1e-5 ? 1 : 0;
-  }
+  std::size_t alive = 0;
+  square.for_alive([&](std::uint32_t t) {
+    ++alive;
+    bad_and_owned += square.owns(kLeft, t) && square.area(t) > 1e-5 ? 1 : 0;
+  });
   EXPECT_LE(bad_and_owned, deferred.size());
-  EXPECT_GT(square.mesh.triangle_count, 40'000u);
+  EXPECT_GT(alive, 40'000u);
 }
 
 TEST(Ownership, OfHalvesOneAfterTheOtherAndThenAllLeavesNothingBad) {
   RefinedSquare square(1e-3);
-  square.refine(OwnsBox{{-1, -1, 0.5, 2}}, 1e-5);
-  square.refine(OwnsBox{{0.5, -1, 2, 2}}, 1e-5);
-  EXPECT_TRUE(square.refine(OwnsAll{}, 1e-5).empty());
-  for (std::uint32_t t = 0; t < square.mesh.triangle_count; ++t)
-    ASSERT_LE(square.area(square.mesh.triangles[t]), 1e-5);
+  square.refine(kLeft, 1e-5);
+  square.refine(kRight, 1e-5);
+  EXPECT_TRUE(square.refine(kEverywhere, 1e-5).empty());
+  square.for_alive([&](std::uint32_t t) { ASSERT_LE(square.area(t), 1e-5); });
+}
+
+TEST(Slots, AreWrittenByTheirOwnerAlone) {
+  RefinedSquare square(1e-3);
+  square.refine(kLeft, 1e-5);
+  square.refine(kRight, 1e-5);
+  square.for_alive([&](std::uint32_t t) {
+    const std::uint32_t owner = square.mesh.owner_of_triangle(t);
+    bool has_own_vertex = false;
+    for (const std::uint32_t v : square.mesh.triangles[t].vertex)
+      has_own_vertex |= square.mesh.block_of_vertex(v).owner == owner;
+    ASSERT_TRUE(has_own_vertex) << t;
+  });
 }
 
 TEST(Segments, ThatAlmostCoincideDoNotSplitEachOtherDownToTheFloor) {
@@ -120,13 +162,17 @@ TEST(Cavity, OfThousandsOfTrianglesFits) {
   EXPECT_EQ(verdict(request, mesh, *summary), "");
 }
 
-TEST(BlockStack, GivesBackInReverseAcrossBlocks) {
-  BlockStack<std::uint32_t> stack;
-  constexpr std::uint32_t kCount = 20'000;
-  for (std::uint32_t i = 0; i < kCount; ++i) stack.push(i);
-  for (std::uint32_t i = kCount; i-- > 0;) ASSERT_EQ(stack.pop(), i);
-  EXPECT_TRUE(stack.empty());
-  EXPECT_LT(stack.peak_bytes(), kCount * 4 + (1 << 15));
+TEST(BadTriangles, ComeWorstFirstAndLastInFirst) {
+  RefinedSquare square(1e-2);
+  BadTriangles bad(square.mesh, Order::kLastInFirstOut);
+  const std::vector<std::pair<std::uint32_t, Badness>> pushed = {
+      {0, kSkinny}, {1, 7}, {2, 200}, {3, 7}, {4, kSkinny}, {5, 64}};
+  for (const auto& [t, badness] : pushed) {
+    square.mesh.triangles[t].set_badness(badness);
+    bad.push(t, badness);
+  }
+  square.mesh.triangles[5].set_badness(kGood);
+  for (const std::uint32_t t : {2u, 3u, 1u, 4u, 0u, kNone}) EXPECT_EQ(bad.pop(), t);
 }
 
 }  // namespace

@@ -58,10 +58,10 @@ TEST(GenerateMesh, TellsProgressThatNeverGoesBack) {
       [&](const auto&, ChunkSink& sink, ExecutionContext& context) {
         context.enter(Stage::kRefine);
         context.report_expected(1000);
-        context.report_triangles(500);
+        context.add_triangles(500);
         EXPECT_TRUE(seen.wait());
         context.enter(Stage::kTriangulate);  // an engine that errs
-        context.report_triangles(10);
+        context.add_triangles(-490);
         EXPECT_TRUE(seen_after.wait());
         return send_chunks(sink, 50);
       },

@@ -1,0 +1,503 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/mesh_run.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "engine/digest.h"
+#include "engine/emit.h"
+#include "engine/refine/area_bound.h"
+#include "engine/refine/mapped_area.h"
+#include "engine/refine/refiner.h"
+#include "engine/schedule/leaf_radius.h"
+#include "engine/schedule/leaf_tasks.h"
+#include "engine/schedule/quadtree.h"
+#include "engine/schedule/task_graph.h"
+
+namespace weft {
+namespace {
+
+using Clock = ExecutionContext::Clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// Seconds that several threads add up.
+class WorkTime {
+ public:
+  template <class F>
+  auto measure(F&& f) {
+    struct Stop {
+      WorkTime& work;
+      Clock::time_point start = Clock::now();
+      ~Stop() { work.nanoseconds_.fetch_add((Clock::now() - start).count()); }
+    } stop{*this};
+    return f();
+  }
+  double seconds() const { return 1e-9 * static_cast<double>(nanoseconds_.load()); }
+
+ private:
+  std::atomic<std::int64_t> nanoseconds_{0};
+};
+
+// Sends parts in their order, and adds up what they tell.
+class Delivery {
+ public:
+  Delivery(ChunkSink& sink, const ExecutionContext& context, Summary& summary)
+      : sink_(sink), context_(context), summary_(summary) {}
+
+  std::optional<Error> send(Part&& part) {
+    statistics_.add(part.statistics);
+    summary_.unrefined += part.unrefined;
+    summary_.edges += part.edges;
+    for (Chunk& chunk : part.chunks) {
+      chunk.index = summary_.chunks++;
+      chunk.first_vertex = static_cast<std::uint32_t>(summary_.vertices);
+      chunk.first_triangle = static_cast<std::uint32_t>(summary_.triangles);
+      summary_.vertices += chunk.coordinates.size() / 2;
+      summary_.triangles += chunk.triangles.size() / 3;
+      digest_.add(chunk.digest.data(), chunk.digest.size());
+      const auto start = Clock::now();
+      const bool accepted = sink_.accept(std::move(chunk));
+      blocked_seconds_ += seconds_since(start);
+      if (accepted) continue;
+      if (auto error = context_.poll()) return error;
+      return Error{ErrorCode::kCancelled, "", "nobody takes the mesh any more"};
+    }
+    return std::nullopt;
+  }
+
+  double blocked_seconds() const { return blocked_seconds_; }
+
+  void finish() {
+    statistics_.write(summary_);
+    summary_.digest = digest_.finish();
+  }
+
+ private:
+  ChunkSink& sink_;
+  const ExecutionContext& context_;
+  Summary& summary_;
+  QualityStatistics statistics_;
+  Sha256 digest_;
+  double blocked_seconds_ = 0;
+};
+
+template <class AreaBound>
+class MeshRun {
+ public:
+  MeshRun(const MeshPlan& plan, const AreaBound& area, ChunkSink& sink, ExecutionContext& context,
+          Summary& summary, Mesh& mesh, const AcuteCorners& corners)
+      : plan_(plan),
+        area_(area),
+        context_(context),
+        summary_(summary),
+        mesh_(mesh),
+        corners_(corners),
+        setting_{mesh,    corners,    plan.domain.regions,
+                 context, plan.order, plan.other_bytes + corners.bytes()},
+        root_(Slots::of_domain(plan.domain)),
+        delivery_(sink, context, summary) {}
+
+  std::optional<Error> run() {
+    context_.add_triangles(static_cast<std::int64_t>(plan_.domain.triangles.size()));
+    const auto start = Clock::now();
+    auto error = context_.compute([&] { return prelude(); });
+    summary_.prelude_seconds = seconds_since(start);
+    if (!error) error = leaves_ ? run_leaves() : run_alone();
+    if (error) return error;
+    delivery_.finish();
+    summary_.engine_seconds = seconds_since(start) - delivery_.blocked_seconds();
+    summary_.refine_seconds += refine_time_.seconds();
+    summary_.emit_seconds = emit_time_.seconds();
+    if (leaves_) {
+      for (const Quadtree::Leaf& leaf : tree_.leaves()) summary_.leaves.push_back(leaf.box);
+      summary_.rounds = leaves_->rounds();
+      summary_.insertions += leaves_->insertions();
+      summary_.exact_predicates += leaves_->exact_predicates();
+      summary_.deferred = leaves_->deferred();
+    }
+    summary_.peak_bytes = plan_.domain.bytes() + plan_.other_bytes + corners_.bytes() +
+                          mesh_.bytes() + root_.bytes() + peak_bytes_ +
+                          (leaves_ ? leaves_->bytes() + tree_.bytes() : 0);
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr std::uint32_t kRounds = LeafTasks<AreaBound>::kRounds;
+  // A coarse triangle stands for about so many of a leaf: it takes a few dozen of them to place
+  // the leaves' borders well.
+  static constexpr double kCoarseTrianglesPerLeaf = 16;
+  // From so many leaves on, parts leave while others are refined. A smaller mesh is done at once,
+  // and keeps the right to a clean-up.
+  static constexpr std::uint32_t kStreamingLeaves = 64;
+
+  static constexpr double kRefining = 0.65;  // of the work; the rest is building parts
+
+  // Refines with owner 0's slots and all of the mesh.
+  template <class Area>
+  std::optional<Error> refine_root(const QualityBounds& quality, const Area& area,
+                                   std::uint64_t max_triangles) {
+    Refiner<OwnsAll, Area> refiner(setting_, quality, area, max_triangles);
+    refiner.begin(root_, OwnsAll{}, plan_.box);
+    auto error = refiner.queue_all();
+    if (!error) error = refiner.run();
+    summary_.insertions += refiner.insertions();
+    summary_.exact_predicates += refiner.exact_predicates();
+    peak_bytes_ = std::max(peak_bytes_, refiner.bytes());
+    return error;
+  }
+
+  // A coarse mesh, the quadtree from it, circumradii that fit the leaves, and the leaves' first
+  // bad triangles; or everything, where the mesh is small or to be cut off at max_triangles.
+  std::optional<Error> prelude() {
+    const bool alone = plan_.expected_triangles <= plan_.leaf_triangles ||
+                       plan_.max_triangles != std::numeric_limits<std::uint64_t>::max();
+    if (!alone) {
+      QualityBounds no_angles = plan_.quality;
+      no_angles.sin2 = 0;
+      no_angles.off_centre = 0;
+      const double coarseness = plan_.leaf_triangles / kCoarseTrianglesPerLeaf;
+      if (auto error = refine_root(no_angles, area_.again(coarseness),
+                                   std::numeric_limits<std::uint64_t>::max()))
+        return error;
+      tree_ = Quadtree::build(plan_.box, samples(), plan_.leaf_triangles);
+      if (tree_.leaves().size() > 1) {
+        if (auto error = refine_root(no_angles, LeafRadius(tree_),
+                                     std::numeric_limits<std::uint64_t>::max()))
+          return error;
+        leaves_.emplace(setting_, plan_.quality, area_, tree_);
+        return seed_leaves();
+      }
+    }
+    return refine_time_.measure(
+        [&] { return refine_root(plan_.quality, area_, plan_.max_triangles); });
+  }
+
+  // The coarse triangles, each with the number that it will be split into.
+  std::vector<Quadtree::Sample> samples() {
+    // Triangles come out at 0.64 of their bound on average.
+    constexpr double kPerBound = 1.55;
+    std::vector<Quadtree::Sample> result;
+    AreaBound area = area_.again();
+    TriangleBlock block;
+    std::vector<double> own_bound;
+    const auto flush = [&] {
+      block.find_centroids();
+      area.bounds_at(block.size, block.centroid_x, block.centroid_y, block.bound);
+      for (std::size_t i = 0; i < block.size; ++i) {
+        const double size =
+            0.5 * ((block.x[1][i] - block.x[0][i]) * (block.y[2][i] - block.y[0][i]) -
+                   (block.y[1][i] - block.y[0][i]) * (block.x[2][i] - block.x[0][i]));
+        const double bound = std::min(block.bound[i], own_bound[i]);
+        const double asked = bound > 0 ? kPerBound * size / bound : 1;
+        result.push_back({{block.centroid_x[i], block.centroid_y[i]}, std::max(asked, 1.0)});
+      }
+      block.size = 0;
+      own_bound.clear();
+    };
+    root_.for_triangles([&](std::uint32_t first, std::uint32_t last) {
+      for (std::uint32_t t = first; t < last; ++t) {
+        const Triangle& triangle = mesh_.triangles[t];
+        own_bound.push_back(plan_.domain.regions[triangle.region].max_area);
+        block.add(mesh_.vertices[triangle.vertex[0]], mesh_.vertices[triangle.vertex[1]],
+                  mesh_.vertices[triangle.vertex[2]]);
+        if (block.size == TriangleBlock::kSize) flush();
+      }
+    });
+    if (block.size > 0) flush();
+    return result;
+  }
+
+  std::optional<Error> seed_leaves() {
+    Refiner<OwnsAll, AreaBound> judge(setting_, plan_.quality, area_);
+    judge.begin(root_, OwnsAll{}, plan_.box);
+    if (auto error = judge.queue_all()) return error;
+    bool all_fit = true;
+    root_.for_triangles([&](std::uint32_t first, std::uint32_t last) {
+      for (std::uint32_t t = first; t < last; ++t) {
+        if (mesh_.triangles[t].badness() != kGood) leaves_->seed(t);
+        all_fit = all_fit && leaves_->fits(t);
+      }
+    });
+    for (const Quadtree::Leaf& leaf : tree_.leaves()) total_weight_ += leaf.weight;
+    streams_ = all_fit && leaves_->size() >= kStreamingLeaves;
+    return std::nullopt;
+  }
+
+  // The mesh is refined already.
+  std::optional<Error> run_alone() {
+    root_.number_vertices(mesh_, 0);
+    auto part = context_.compute([&] {
+      return build([&](PartBuilder<AreaBound>& builder) {
+        std::vector<HandedOn> none;
+        builder.add_vertices(root_);
+        root_.for_triangles([&](std::uint32_t first, std::uint32_t last) {
+          builder.add_triangles(first, last, none);
+        });
+      });
+    });
+    if (!part) return context_.poll();
+    return delivery_.send(std::move(*part));
+  }
+
+  // Tasks of leaf l: kRounds rounds of refinement, its numbers, its part. By leaf, so that the
+  // first leaves are finished first.
+  static constexpr std::uint32_t kTasks = kRounds + 2;
+  static std::uint32_t round_task(std::uint32_t leaf, std::uint32_t round) {
+    return leaf * kTasks + round;
+  }
+  static std::uint32_t number_task(std::uint32_t leaf) { return leaf * kTasks + kRounds; }
+  static std::uint32_t part_task(std::uint32_t leaf) { return leaf * kTasks + kRounds + 1; }
+
+  void add_refinement(TaskGraph& graph) const {
+    for (std::uint32_t l = 0; l < leaves_->size(); ++l) {
+      for (std::uint32_t round = 0; round < kRounds; ++round) {
+        if (round > 0) graph.add_dependency(round_task(l, round - 1), round_task(l, round));
+        for (const std::uint32_t other : leaves_->conflicts(l)) {
+          if (leaves_->before(other, l)) {
+            graph.add_dependency(round_task(other, round), round_task(l, round));
+          } else if (round > 0) {
+            graph.add_dependency(round_task(other, round - 1), round_task(l, round));
+          }
+        }
+      }
+    }
+  }
+
+  // A leaf is final once all that own a part of its grown box are done.
+  void add_parts(TaskGraph& graph) const {
+    for (std::uint32_t l = 0; l < leaves_->size(); ++l) {
+      graph.add_dependency(round_task(l, kRounds - 1), number_task(l));
+      for (const std::uint32_t other : leaves_->conflicts(l))
+        graph.add_dependency(round_task(other, kRounds - 1), number_task(l));
+      if (l > 0) graph.add_dependency(number_task(l - 1), number_task(l));
+      graph.add_dependency(number_task(l), part_task(l));
+      for (const std::uint32_t other : leaves_->conflicts(l)) {
+        if (other < l) graph.add_dependency(part_task(other), part_task(l));
+      }
+    }
+  }
+
+  std::optional<Error> run_leaves() {
+    numbers_ = root_.number_vertices(mesh_, 0);
+    handed_on_.resize(leaves_->size());
+    if (auto error = send_opening()) return error;
+    const std::uint32_t tasks = leaves_->size() * kTasks;
+    if (streams_) {
+      TaskGraph graph(tasks);
+      add_refinement(graph);
+      add_parts(graph);
+      run_graph(graph, leaves_->size(), part_task,
+                [this](std::uint32_t task) { refine_task(task), part_of_leaf(task); });
+    } else {
+      TaskGraph refinement(tasks);
+      add_refinement(refinement);
+      run_graph(refinement, 0, part_task, [this](std::uint32_t task) { refine_task(task); });
+      if (!stopped_) clean_up();
+      TaskGraph parts(tasks);
+      add_parts(parts);
+      if (!stopped_)
+        run_graph(parts, leaves_->size(), part_task,
+                  [this](std::uint32_t task) { part_of_leaf(task); });
+    }
+    if (!stopped_) send_closing();
+    return error_;
+  }
+
+  // What a leaf is of the work.
+  double share_of(std::uint32_t leaf) const { return tree_.leaves()[leaf].weight / total_weight_; }
+
+  void refine_task(std::uint32_t task) {
+    const std::uint32_t leaf = task / kTasks;
+    const std::uint32_t round = task % kTasks;
+    if (round >= kRounds) return;
+    if (auto error = refine_time_.measure([&] { return leaves_->refine(leaf, round); }))
+      stop(*error);
+    if (round == 0) context_.add_fraction(kRefining * share_of(leaf));
+    if (round == 0 || leaves_->has_left(leaf)) return;
+    for (std::uint32_t later = kRounds; --later > round;) run_->skip(round_task(leaf, later));
+  }
+
+  void part_of_leaf(std::uint32_t task) {
+    const std::uint32_t leaf = task / kTasks;
+    if (task == number_task(leaf)) numbers_ = leaves_->slots(leaf).number_vertices(mesh_, numbers_);
+    if (task != part_task(leaf)) return;
+    const Slots& slots = leaves_->slots(leaf);
+    context_.add_fraction((1 - kRefining) * share_of(leaf));
+    finish_part(leaf, build([&](PartBuilder<AreaBound>& builder) {
+                  builder.add_vertices(slots);
+                  slots.for_triangles([&](std::uint32_t first, std::uint32_t last) {
+                    builder.add_triangles(first, last, handed_on_[leaf]);
+                  });
+                  for (const std::uint32_t other : leaves_->conflicts(leaf)) {
+                    if (other > leaf) break;
+                    for (const HandedOn& h : handed_on_[other]) {
+                      if (h.owner == slots.owner()) builder.add_triangle(h.triangle);
+                    }
+                  }
+                }));
+  }
+
+  void clean_up() {
+    auto error =
+        context_.compute([&] { return refine_time_.measure([&] { return leaves_->clean_up(); }); });
+    if (error) stop(*error);
+  }
+
+  // Owner 0's vertices, which any leaf may refer to.
+  std::optional<Error> send_opening() {
+    auto part = context_.compute([&] {
+      return build([&](PartBuilder<AreaBound>& builder) { builder.add_vertices(root_); });
+    });
+    return part ? delivery_.send(std::move(*part)) : context_.poll();
+  }
+
+  // The clean-up's part, and those of owner 0's triangles that no leaf has touched.
+  void send_closing() {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> runs;
+    root_.for_triangles([&](std::uint32_t first, std::uint32_t last) {
+      runs.push_back({first, last});
+    });
+    constexpr std::size_t kRunsPerPart = 32;
+    const auto parts =
+        static_cast<std::uint32_t>(1 + (runs.size() + kRunsPerPart - 1) / kRunsPerPart);
+    leaves_->clean_up_slots().number_vertices(mesh_, numbers_);
+    run_graph(
+        TaskGraph(parts), parts, [](std::uint32_t part) { return part; },
+        [&](std::uint32_t part) {
+          std::vector<HandedOn> none;
+          finish_part(part, build([&](PartBuilder<AreaBound>& builder) {
+                        if (part == 0) {
+                          const Slots& slots = leaves_->clean_up_slots();
+                          builder.add_vertices(slots);
+                          slots.for_triangles([&](std::uint32_t first, std::uint32_t last) {
+                            builder.add_triangles(first, last, none);
+                          });
+                          return;
+                        }
+                        const std::size_t end = std::min(part * kRunsPerPart, runs.size());
+                        for (std::size_t r = (part - 1) * kRunsPerPart; r < end; ++r)
+                          builder.add_triangles(runs[r].first, runs[r].second, none);
+                      }));
+        });
+  }
+
+  template <class F>
+  std::optional<Part> build(F&& fill) {
+    return emit_time_.measure([&] {
+      PartBuilder<AreaBound> builder(mesh_, plan_.domain, corners_, area_.again(), context_);
+      fill(builder);
+      return builder.finish();
+    });
+  }
+
+  // Runs the tasks, and sends parts 0 to `count` - 1 in order as they are finished.
+  template <class TaskOfPart, class Task>
+  void run_graph(TaskGraph graph, std::uint32_t count, TaskOfPart task_of_part, Task task) {
+    // Parts that may be built ahead of the one to be sent next: a slow reader holds back no more.
+    const std::uint32_t ahead = 32 + 4 * static_cast<std::uint32_t>(context_.threads());
+    for (std::uint32_t part = ahead; part < count; ++part) graph.hold(task_of_part(part));
+    parts_ = std::vector<PendingPart>(count);
+    GraphRun run(graph, context_.arena(), context_.threads(), [&](std::uint32_t t) {
+      if (stopped_.load(std::memory_order_relaxed)) return;
+      try {
+        task(t);
+      } catch (const std::bad_alloc&) {
+        stop({ErrorCode::kBudgetExceeded, "", "memory ran out"});
+      } catch (const std::exception& e) {
+        stop({ErrorCode::kInternal, "", e.what()});
+      }
+    });
+    run_ = &run;
+    run.start();
+    std::uint32_t next = 0;
+    const auto ready = [&] { return next < count && parts_[next].ready.load() && !stopped_; };
+    do {
+      for (; ready(); ++next) {
+        if (next + ahead < count) run.release(task_of_part(next + ahead));
+        if (auto error = delivery_.send(std::move(parts_[next].part))) stop(*error);
+        parts_[next].part = {};
+      }
+    } while (run.step() || ready());
+  }
+
+  void finish_part(std::uint32_t index, std::optional<Part>&& part) {
+    if (!part) {
+      if (auto error = context_.poll()) stop(*error);
+      return;
+    }
+    parts_[index].part = std::move(*part);
+    parts_[index].ready.store(true);
+    run_->notify();
+  }
+
+  void stop(const Error& error) {
+    const std::lock_guard lock(mutex_);
+    if (!error_) error_ = error;
+    stopped_ = true;
+  }
+
+  struct PendingPart {
+    std::atomic<bool> ready{false};
+    Part part;
+  };
+
+  const MeshPlan& plan_;
+  const AreaBound& area_;
+  ExecutionContext& context_;
+  Summary& summary_;
+  Mesh& mesh_;
+  const AcuteCorners& corners_;
+  const Setting setting_;
+  Slots root_;
+  Delivery delivery_;
+  Quadtree tree_;
+  std::optional<LeafTasks<AreaBound>> leaves_;
+  bool streams_ = false;
+  double total_weight_ = 0;
+  std::uint64_t peak_bytes_ = 0;  // of the prelude's refiners
+  WorkTime refine_time_;
+  WorkTime emit_time_;
+
+  std::uint32_t numbers_ = 0;                     // of vertices, given so far
+  std::vector<std::vector<HandedOn>> handed_on_;  // per leaf
+  std::vector<PendingPart> parts_;
+  GraphRun* run_ = nullptr;  // the one at work
+
+  std::atomic<bool> stopped_{false};
+  std::mutex mutex_;  // guards the one below
+  std::optional<Error> error_;
+};
+
+}  // namespace
+
+template <class AreaBound>
+std::optional<Error> run_mesh(const MeshPlan& plan, const AreaBound& area, ChunkSink& sink,
+                              ExecutionContext& context, Summary& summary) {
+  auto mesh = context.compute([&] {
+    return Mesh::from(plan.domain, std::min(plan.max_triangles, context.budget().triangle_limit),
+                      plan.expected_triangles, context);
+  });
+  if (!mesh) return mesh.error();
+  auto corners = context.compute([&] { return AcuteCorners::build(plan.domain, context); });
+  if (!corners) return corners.error();
+  return MeshRun<AreaBound>(plan, area, sink, context, summary, *mesh, *corners).run();
+}
+
+template std::optional<Error> run_mesh(const MeshPlan&, const ConstantArea&, ChunkSink&,
+                                       ExecutionContext&, Summary&);
+template std::optional<Error> run_mesh(const MeshPlan&, const MappedArea&, ChunkSink&,
+                                       ExecutionContext&, Summary&);
+
+}  // namespace weft

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From the domain to the chunks: prelude, quadtree, the leaves' tasks, and the parts of finished
+// leaves that leave while others are refined.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "engine/chunk.h"
+#include "engine/context.h"
+#include "engine/domain/domain.h"
+#include "engine/error.h"
+#include "engine/refine/bad_triangles.h"
+#include "engine/refine/quality_bounds.h"
+#include "engine/summary.h"
+
+namespace weft {
+
+struct MeshPlan {
+  const Domain& domain;
+  Box box;  // of the domain
+  QualityBounds quality;
+  Order order;
+  double expected_triangles;
+  double leaf_triangles;  // of the final mesh, in a leaf of the quadtree at most
+  // Stop with what there is at so many.
+  std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t other_bytes = 0;  // that the job holds besides
+};
+
+// Refines and sends the mesh; fills the summary but for the stages before. The bytes sent depend on
+// the plan and the area bound alone. Computes in the context's arena, calls the sink on the
+// caller's thread. Errors: those of refinement (refine/refiner.h).
+template <class AreaBound>
+std::optional<Error> run_mesh(const MeshPlan& plan, const AreaBound& area, ChunkSink& sink,
+                              ExecutionContext& context, Summary& summary);
+
+}  // namespace weft

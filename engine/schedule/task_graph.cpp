@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/schedule/task_graph.h"
+
+#include <numeric>
+
+namespace weft {
+
+GraphRun::GraphRun(const TaskGraph& graph, Arena* arena, int threads, Task task)
+    : arena_(arena),
+      threads_(threads),
+      task_(std::move(task)),
+      first_successor_(graph.size() + 1, 0),
+      successors_(graph.edges_.size()),
+      waits_for_(graph.size()),
+      skipped_(graph.size(), 0) {
+  for (const auto& e : graph.edges_) ++first_successor_[e.before + 1];
+  std::partial_sum(first_successor_.begin(), first_successor_.end(), first_successor_.begin());
+  std::vector<std::uint32_t> next(first_successor_.begin(), first_successor_.end() - 1);
+  for (const auto& e : graph.edges_) successors_[next[e.before]++] = e.after;
+  std::vector<std::uint32_t> ready;
+  for (std::uint32_t t = 0; t < graph.size(); ++t) {
+    waits_for_[t].store(graph.waits_for_[t], std::memory_order_relaxed);
+    if (graph.waits_for_[t] == 0) ready.push_back(t);
+  }
+  ready_ = Ready(std::greater<>(), std::move(ready));
+}
+
+void GraphRun::start() {
+  std::unique_lock lock(mutex_);
+  start_threads(lock);
+}
+
+GraphRun::~GraphRun() {
+  std::unique_lock lock(mutex_);
+  stopping_ = true;
+  changed_.wait(lock, [&] { return running_ == 0; });
+}
+
+void GraphRun::release(std::uint32_t task) {
+  if (!satisfied(task)) return;
+  std::unique_lock lock(mutex_);
+  ready_.push(task);
+  start_threads(lock);
+}
+
+void GraphRun::notify() {
+  std::lock_guard lock(mutex_);
+  notified_ = true;
+  changed_.notify_all();
+}
+
+bool GraphRun::step() {
+  std::unique_lock lock(mutex_);
+  if (arena_) {
+    changed_.wait(lock, [&] { return notified_ || running_ == 0; });
+    return std::exchange(notified_, false) || running_ != 0;
+  }
+  if (ready_.empty()) return std::exchange(notified_, false);
+  const std::uint32_t task = ready_.top();
+  ready_.pop();
+  lock.unlock();
+  run(task);
+  return true;
+}
+
+// Queues for as many slots as there is work for.
+void GraphRun::start_threads(std::unique_lock<std::mutex>& lock) {
+  if (!arena_ || stopping_) return;
+  int wanted = 0;
+  while (running_ < threads_ && static_cast<std::size_t>(wanted) < ready_.size()) {
+    ++running_;
+    ++wanted;
+  }
+  lock.unlock();
+  for (; wanted > 0; --wanted) arena_->start([this] { work(); });
+  lock.lock();
+}
+
+// A thread's slice.
+void GraphRun::work() {
+  const auto end = std::chrono::steady_clock::now() + kSlice;
+  do {
+    std::unique_lock lock(mutex_);
+    if (ready_.empty() || stopping_) {
+      if (--running_ == 0) changed_.notify_all();
+      return;
+    }
+    const std::uint32_t task = ready_.top();
+    ready_.pop();
+    lock.unlock();
+    run(task);
+  } while (std::chrono::steady_clock::now() < end);
+  arena_->start([this] { work(); });
+}
+
+void GraphRun::skip(std::uint32_t task) {
+  skipped_[task] = 1;
+  finish(task);
+}
+
+void GraphRun::run(std::uint32_t task) {
+  task_(task);
+  finish(task);
+}
+
+void GraphRun::finish(std::uint32_t task) {
+  std::unique_lock lock(mutex_, std::defer_lock);
+  for (std::uint32_t i = first_successor_[task]; i < first_successor_[task + 1]; ++i) {
+    const std::uint32_t next = successors_[i];
+    if (!satisfied(next) || skipped_[next]) continue;
+    if (!lock.owns_lock()) lock.lock();
+    ready_.push(next);
+  }
+  if (lock.owns_lock()) start_threads(lock);
+}
+
+}  // namespace weft
