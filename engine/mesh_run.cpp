@@ -251,14 +251,15 @@ class MeshRun {
     return delivery_.send(std::move(*part));
   }
 
-  // Tasks of leaf l: kRounds rounds of refinement, its numbers, its part. By leaf, so that the
-  // first leaves are finished first.
-  static constexpr std::uint32_t kTasks = kRounds + 2;
+  // Tasks of leaf l: kRounds rounds of refinement, whether that settled it, its numbers, its part.
+  // By leaf, so that the first leaves are finished first.
+  static constexpr std::uint32_t kTasks = kRounds + 3;
   static std::uint32_t round_task(std::uint32_t leaf, std::uint32_t round) {
     return leaf * kTasks + round;
   }
-  static std::uint32_t number_task(std::uint32_t leaf) { return leaf * kTasks + kRounds; }
-  static std::uint32_t part_task(std::uint32_t leaf) { return leaf * kTasks + kRounds + 1; }
+  static std::uint32_t settle_task(std::uint32_t leaf) { return leaf * kTasks + kRounds; }
+  static std::uint32_t number_task(std::uint32_t leaf) { return leaf * kTasks + kRounds + 1; }
+  static std::uint32_t part_task(std::uint32_t leaf) { return leaf * kTasks + kRounds + 2; }
 
   void add_refinement(TaskGraph& graph) const {
     for (std::uint32_t l = 0; l < leaves_->size(); ++l) {
@@ -275,41 +276,55 @@ class MeshRun {
     }
   }
 
-  // A leaf is final once all that own a part of its grown box are done.
+  // A leaf is final once all that own a part of its grown box are done, and none of them, nor of
+  // their own conflicts, has left anything to the clean-up: that must have room to work.
   void add_parts(TaskGraph& graph) const {
     for (std::uint32_t l = 0; l < leaves_->size(); ++l) {
-      graph.add_dependency(round_task(l, kRounds - 1), number_task(l));
-      for (const std::uint32_t other : leaves_->conflicts(l))
-        graph.add_dependency(round_task(other, kRounds - 1), number_task(l));
+      graph.add_dependency(round_task(l, kRounds - 1), settle_task(l));
+      graph.add_dependency(settle_task(l), number_task(l));
       if (l > 0) graph.add_dependency(number_task(l - 1), number_task(l));
       graph.add_dependency(number_task(l), part_task(l));
       for (const std::uint32_t other : leaves_->conflicts(l)) {
+        graph.add_dependency(round_task(other, kRounds - 1), settle_task(l));
+        graph.add_dependency(settle_task(other), number_task(l));
         if (other < l) graph.add_dependency(part_task(other), part_task(l));
       }
     }
   }
 
+  // Refines and sends at the same time up to the first leaf that is near something left over, then
+  // cleans up, and sends the rest. Where nothing is left over, that is all.
   std::optional<Error> run_leaves() {
+    const std::uint32_t n = leaves_->size();
     numbers_ = root_.number_vertices(mesh_, 0);
-    handed_on_.resize(leaves_->size());
+    handed_on_.resize(n);
+    settled_.resize(n);
+    final_leaves_ = streams_ ? n : 0;
     if (auto error = send_opening()) return error;
-    const std::uint32_t tasks = leaves_->size() * kTasks;
-    if (streams_) {
-      TaskGraph graph(tasks);
+    {
+      TaskGraph graph(n * kTasks);
       add_refinement(graph);
+      if (streams_) add_parts(graph);
+      run_graph(std::move(graph), 0, final_leaves_, part_task, [this](std::uint32_t task) {
+        const std::uint32_t leaf = task / kTasks;
+        const std::uint32_t step = task % kTasks;
+        if (step < kRounds) refine(leaf, step);
+        if (task == settle_task(leaf)) settled_[leaf] = is_settled(leaf);
+        if (task == number_task(leaf) && !may_be_final(leaf))
+          final_leaves_ = std::min(final_leaves_.load(), leaf);
+        if (leaf < final_leaves_) send_leaf(task, leaf);
+      });
+    }
+    if (!stopped_ && final_leaves_ < n) {
+      if (leaves_->left() > 0) clean_up();
+      const std::uint32_t first = final_leaves_.exchange(n);
+      TaskGraph graph(n * kTasks);
       add_parts(graph);
-      run_graph(graph, leaves_->size(), part_task,
-                [this](std::uint32_t task) { refine_task(task), part_of_leaf(task); });
-    } else {
-      TaskGraph refinement(tasks);
-      add_refinement(refinement);
-      run_graph(refinement, 0, part_task, [this](std::uint32_t task) { refine_task(task); });
-      if (!stopped_) clean_up();
-      TaskGraph parts(tasks);
-      add_parts(parts);
-      if (!stopped_)
-        run_graph(parts, leaves_->size(), part_task,
-                  [this](std::uint32_t task) { part_of_leaf(task); });
+      if (!stopped_) {
+        run_graph(std::move(graph), first, n, part_task, [this, first](std::uint32_t task) {
+          if (task / kTasks >= first) send_leaf(task, task / kTasks);
+        });
+      }
     }
     if (!stopped_) send_closing();
     return error_;
@@ -318,10 +333,7 @@ class MeshRun {
   // What a leaf is of the work.
   double share_of(std::uint32_t leaf) const { return tree_.leaves()[leaf].weight / total_weight_; }
 
-  void refine_task(std::uint32_t task) {
-    const std::uint32_t leaf = task / kTasks;
-    const std::uint32_t round = task % kTasks;
-    if (round >= kRounds) return;
+  void refine(std::uint32_t leaf, std::uint32_t round) {
     if (auto error = refine_time_.measure([&] { return leaves_->refine(leaf, round); }))
       stop(*error);
     if (round == 0) context_.add_fraction(kRefining * share_of(leaf));
@@ -329,11 +341,23 @@ class MeshRun {
     for (std::uint32_t later = kRounds; --later > round;) run_->skip(round_task(leaf, later));
   }
 
-  void part_of_leaf(std::uint32_t task) {
-    const std::uint32_t leaf = task / kTasks;
-    if (task == number_task(leaf)) numbers_ = leaves_->slots(leaf).number_vertices(mesh_, numbers_);
-    if (task != part_task(leaf)) return;
+  bool is_settled(std::uint32_t leaf) const {
+    const auto& conflicts = leaves_->conflicts(leaf);
+    return !leaves_->has_left(leaf) &&
+           std::none_of(conflicts.begin(), conflicts.end(),
+                        [&](std::uint32_t other) { return leaves_->has_left(other); });
+  }
+  bool may_be_final(std::uint32_t leaf) const {
+    const auto& conflicts = leaves_->conflicts(leaf);
+    return settled_[leaf] && std::all_of(conflicts.begin(), conflicts.end(),
+                                         [&](std::uint32_t other) { return settled_[other]; });
+  }
+
+  // Numbers the vertices of a final leaf, or builds its part.
+  void send_leaf(std::uint32_t task, std::uint32_t leaf) {
     const Slots& slots = leaves_->slots(leaf);
+    if (task == number_task(leaf)) numbers_ = slots.number_vertices(mesh_, numbers_);
+    if (task != part_task(leaf)) return;
     context_.add_fraction((1 - kRefining) * share_of(leaf));
     finish_part(leaf, build([&](PartBuilder<AreaBound>& builder) {
                   builder.add_vertices(slots);
@@ -350,8 +374,8 @@ class MeshRun {
   }
 
   void clean_up() {
-    auto error =
-        context_.compute([&] { return refine_time_.measure([&] { return leaves_->clean_up(); }); });
+    auto error = context_.compute(
+        [&] { return refine_time_.measure([&] { return leaves_->clean_up(final_leaves_); }); });
     if (error) stop(*error);
   }
 
@@ -374,7 +398,7 @@ class MeshRun {
         static_cast<std::uint32_t>(1 + (runs.size() + kRunsPerPart - 1) / kRunsPerPart);
     leaves_->clean_up_slots().number_vertices(mesh_, numbers_);
     run_graph(
-        TaskGraph(parts), parts, [](std::uint32_t part) { return part; },
+        TaskGraph(parts), 0, parts, [](std::uint32_t part) { return part; },
         [&](std::uint32_t part) {
           std::vector<HandedOn> none;
           finish_part(part, build([&](PartBuilder<AreaBound>& builder) {
@@ -402,13 +426,14 @@ class MeshRun {
     });
   }
 
-  // Runs the tasks, and sends parts 0 to `count` - 1 in order as they are finished.
+  // Runs the tasks, and sends parts `first` to `last` - 1 in order as they are finished.
   template <class TaskOfPart, class Task>
-  void run_graph(TaskGraph graph, std::uint32_t count, TaskOfPart task_of_part, Task task) {
+  void run_graph(TaskGraph graph, std::uint32_t first, std::uint32_t last, TaskOfPart task_of_part,
+                 Task task) {
     // Parts that may be built ahead of the one to be sent next: a slow reader holds back no more.
     const std::uint32_t ahead = 32 + 4 * static_cast<std::uint32_t>(context_.threads());
-    for (std::uint32_t part = ahead; part < count; ++part) graph.hold(task_of_part(part));
-    parts_ = std::vector<PendingPart>(count);
+    for (std::uint32_t part = first + ahead; part < last; ++part) graph.hold(task_of_part(part));
+    parts_ = std::vector<PendingPart>(last);
     GraphRun run(graph, context_.arena(), context_.threads(), [&](std::uint32_t t) {
       if (stopped_.load(std::memory_order_relaxed)) return;
       try {
@@ -421,15 +446,17 @@ class MeshRun {
     });
     run_ = &run;
     run.start();
-    std::uint32_t next = 0;
-    const auto ready = [&] { return next < count && parts_[next].ready.load() && !stopped_; };
+    std::uint32_t next = first;
+    const auto ready = [&] { return next < last && parts_[next].ready.load() && !stopped_; };
     do {
       for (; ready(); ++next) {
-        if (next + ahead < count) run.release(task_of_part(next + ahead));
+        if (next + ahead < last) run.release(task_of_part(next + ahead));
         if (auto error = delivery_.send(std::move(parts_[next].part))) stop(*error);
         parts_[next].part = {};
       }
     } while (run.step() || ready());
+    if (run.starved() && !stopped_)
+      stop({ErrorCode::kBudgetExceeded, "", "memory ran out: no thread could be started"});
   }
 
   void finish_part(std::uint32_t index, std::optional<Part>&& part) {
@@ -472,6 +499,9 @@ class MeshRun {
 
   std::uint32_t numbers_ = 0;                     // of vertices, given so far
   std::vector<std::vector<HandedOn>> handed_on_;  // per leaf
+  std::vector<char> settled_;  // per leaf: it and its conflicts have nothing left
+  // How many leaves may be sent before the clean-up.
+  std::atomic<std::uint32_t> final_leaves_ = 0;
   std::vector<PendingPart> parts_;
   GraphRun* run_ = nullptr;  // the one at work
 

@@ -58,6 +58,11 @@ struct Ring {
   std::vector<double> cross;          // point i x point i + 1: twice the area of the new triangle
 };
 
+// Edge `edge` of `triangle`, on a segment, with its end points to tell whether it is still there.
+struct SegmentEdge {
+  std::uint32_t triangle, edge, a, b;
+};
+
 template <class Ownership>
 class Cavity {
  public:
@@ -66,11 +71,6 @@ class Cavity {
     kEncroaches,  // p encroaches upon, or lies behind, the segments in `encroached()`
     kNotOwned,    // the cavity reaches into what the task does not own
     kOverflow,    // out of room: call `enlarge` and try again
-  };
-
-  // Edge `edge` of `triangle`, on a segment, with its end points to tell whether it is still there.
-  struct SegmentEdge {
-    std::uint32_t triangle, edge, a, b;
   };
 
   explicit Cavity(const Mesh& mesh)

@@ -63,9 +63,6 @@ struct BadTriangle {
 template <class Ownership, class AreaBound>
 class Refiner {
  public:
-  // Edge `edge` of `triangle`, on a segment that is encroached upon; gone if the ends differ.
-  using SegmentEdge = typename Cavity<Ownership>::SegmentEdge;
-
   // Stops with what it has once `max_triangles` are reached.
   Refiner(const Setting& setting, const QualityBounds& quality, AreaBound area,
           std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max())
@@ -106,7 +103,7 @@ class Refiner {
       bad_.push(left.triangle, t.badness());
     }
   }
-  void queue_segment(const SegmentEdge& left) { segments_.push_back(left); }
+  void queue(const SegmentEdge& left) { segments_.push_back(left); }
 
   // Splits the segments that are encroached upon, then judges every triangle and queues the bad
   // ones. REQUIRES: all triangles lie in the slots of this task.

@@ -14,6 +14,9 @@
 // of the insertions are handed over, 0.5 % wait. A leaf with nothing left has no further rounds, so
 // most end after the second.
 //
+// What is left after the rounds is cleaned up by one task that owns all but what has been sent: the
+// leaves before `frozen`, and what lies in their grown boxes.
+//
 // Thread-safety: `refine` may run at the same time for leaves that are not in conflict.
 #pragma once
 
@@ -33,6 +36,15 @@
 #include "engine/schedule/quadtree.h"
 
 namespace weft {
+
+// The clean-up's ownership: the leaves that are not in conflict with a frozen one.
+struct OwnsLeaves {
+  static constexpr bool kRestricted = true;
+  const Quadtree* tree = nullptr;
+  const std::vector<char>* owned = nullptr;  // per leaf
+  bool owns(Point p) const { return (*owned)[tree->leaf_at(p)]; }
+  constexpr bool in_core(double, double) const { return true; }
+};
 
 template <class AreaBound>
 class LeafTasks {
@@ -89,31 +101,43 @@ class LeafTasks {
     const Quadtree::Leaf& place = tree_.leaves()[leaf];
     refiner.begin(l.slots, OwnsBox{place.grown, round == 0 ? place.box : place.grown}, place.grown);
     for (const BadTriangle& t : l.left) refiner.queue(t);
-    for_handed_to(leaf, round, [&](const BadTriangle& t) {
-      refiner.queue(t);
+    for (const SegmentEdge& s : l.segments_left) refiner.queue(s);
+    for_handed_to(leaf, round, [&](const auto& what) {
+      refiner.queue(what);
       return true;
     });
-    for (const auto& s : l.segments_left) refiner.queue_segment(s);
     auto error = refiner.run();
-    l.left = refiner.deferred();
-    l.segments_left = refiner.deferred_segments();
-    deferred_.fetch_add(l.left.size() + l.segments_left.size(), std::memory_order_relaxed);
-    for (const BadTriangle& t : refiner.handed_over()) hand_over(leaf, round, t);
+    l.left.clear();
+    l.segments_left.clear();
+    for (const BadTriangle& t : refiner.deferred()) hand_on(leaf, round, t, steiner_point_of(t));
+    for (const SegmentEdge& s : refiner.deferred_segments()) hand_on(leaf, round, s);
+    for (const BadTriangle& t : refiner.handed_over()) {
+      if (setting_.mesh.triangles[t.triangle].vertex[0] == t.first_vertex)
+        hand_on(leaf, round, t, centroid(t.triangle));
+    }
+    deferred_.fetch_add(refiner.deferred().size() + refiner.deferred_segments().size(),
+                        std::memory_order_relaxed);
     return error;
   }
 
-  // Refines, with all of the mesh, what is left after the last round.
-  std::optional<Error> clean_up() {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    constexpr Box kEverywhere{-kInfinity, -kInfinity, kInfinity, kInfinity};
-    const Lease worker(*this);
-    auto& refiner = worker->refiner;
-    refiner.begin(clean_up_slots_, OwnsBox{kEverywhere, kEverywhere}, tree_.box());
+  // Refines what is left after the last round, without touching what the leaves before `frozen`
+  // have made. What lies too near to these stays as it is.
+  std::optional<Error> clean_up(std::uint32_t frozen) {
+    std::vector<char> owned(leaves_.size());
+    for (std::uint32_t l = 0; l < leaves_.size(); ++l) {
+      // Conflicts come in order.
+      const auto& conflicts = leaves_[l].conflicts;
+      owned[l] = l >= frozen && (conflicts.empty() || conflicts.front() >= frozen);
+    }
+    Refiner<OwnsLeaves, AreaBound> refiner(setting_, quality_, area_.again());
+    refiner.begin(clean_up_slots_, OwnsLeaves{&tree_, &owned}, tree_.box());
     for (const Leaf& l : leaves_) {
       for (const BadTriangle& t : l.left) refiner.queue(t);
-      for (const auto& s : l.segments_left) refiner.queue_segment(s);
+      for (const SegmentEdge& s : l.segments_left) refiner.queue(s);
     }
-    return refiner.run();
+    auto error = refiner.run();
+    clean_up_insertions_ = refiner.insertions();
+    return error;
   }
 
   // Whether `leaf` has anything left for the rounds after the second.
@@ -134,7 +158,7 @@ class LeafTasks {
     return static_cast<std::uint32_t>(std::count(rounds_.begin(), rounds_.end(), true));
   }
   std::uint64_t insertions() const {
-    std::uint64_t count = 0;
+    std::uint64_t count = clean_up_insertions_;
     for (const auto& w : workers_) count += w->refiner.insertions();
     return count;
   }
@@ -149,26 +173,29 @@ class LeafTasks {
     for (const Leaf& l : leaves_) {
       bytes += l.slots.bytes() + l.conflicts.capacity() * sizeof(std::uint32_t) +
                l.left.capacity() * sizeof(BadTriangle) +
-               l.handed_over.capacity() * sizeof(HandedOver);
+               l.handed_over.capacity() * sizeof(l.handed_over[0]);
     }
     return bytes;
   }
 
  private:
+  using LeafRefiner = Refiner<OwnsBox, AreaBound>;
+
+  template <class What>
   struct HandedOver {
     std::uint32_t leaf;
-    BadTriangle triangle;
+    What what;
   };
-
-  using LeafRefiner = Refiner<OwnsBox, AreaBound>;
 
   struct Leaf {
     Slots slots;
     std::vector<std::uint32_t> conflicts;
     std::uint32_t colour = 0;
     std::vector<BadTriangle> left;
-    std::vector<typename LeafRefiner::SegmentEdge> segments_left;
-    std::vector<HandedOver> handed_over;  // in the first round
+    std::vector<SegmentEdge> segments_left;
+    // In the first round.
+    std::vector<HandedOver<BadTriangle>> handed_over;
+    std::vector<HandedOver<SegmentEdge>> segments_handed_over;
   };
 
   // The buffers of a thread at work.
@@ -184,6 +211,7 @@ class LeafTasks {
       if (tasks_.idle_.empty()) {
         tasks_.workers_.push_back(std::make_unique<Worker>(
             Worker{LeafRefiner(tasks_.setting_, tasks_.quality_, tasks_.area_.again())}));
+        tasks_.idle_.reserve(tasks_.workers_.size());  // so that giving back cannot fail
         tasks_.idle_.push_back(tasks_.workers_.back().get());
       }
       worker_ = tasks_.idle_.back();
@@ -219,34 +247,55 @@ class LeafTasks {
     if (round > 1) return;
     for (const std::uint32_t other : leaves_[leaf].conflicts) {
       if (before(other, leaf) != (round == 0)) continue;
-      for (const HandedOver& h : leaves_[other].handed_over) {
-        if (h.leaf == leaf && !f(h.triangle)) return;
+      for (const auto& h : leaves_[other].handed_over) {
+        if (h.leaf == leaf && !f(h.what)) return;
+      }
+      for (const auto& h : leaves_[other].segments_handed_over) {
+        if (h.leaf == leaf && !f(h.what)) return;
       }
     }
   }
 
   bool has_work(std::uint32_t leaf, std::uint32_t round) const {
     bool any = has_left(leaf);
-    for_handed_to(leaf, round, [&](const BadTriangle&) {
+    for_handed_to(leaf, round, [&](const auto&) {
       any = true;
       return false;
     });
     return any;
   }
 
-  void hand_over(std::uint32_t from, std::uint32_t round, const BadTriangle& bad) {
-    const Triangle& t = setting_.mesh.triangles[bad.triangle];
-    if (t.vertex[0] != bad.first_vertex || t.badness() == kGood) return;
-    // Rounding may leave a centroid on the wrong side of a border: then it stays here.
+  // To the leaf where the next vertex goes, whose task owns what is around it.
+  void hand_on(std::uint32_t from, std::uint32_t round, const BadTriangle& bad, Point next) {
     Leaf& l = leaves_[from];
-    const std::uint32_t to = tree_.leaf_at(centroid(bad.triangle));
-    if (round == 0 && std::binary_search(l.conflicts.begin(), l.conflicts.end(), to)) {
+    const std::uint32_t to = tree_.leaf_at(next);
+    if (may_hand_over(from, round, to)) {
       l.handed_over.push_back({to, bad});
     } else {
       l.left.push_back(bad);
     }
   }
+  void hand_on(std::uint32_t from, std::uint32_t round, const SegmentEdge& s) {
+    Leaf& l = leaves_[from];
+    const Point a = setting_.mesh.vertices[s.a];
+    const Point b = setting_.mesh.vertices[s.b];
+    const std::uint32_t to = tree_.leaf_at({a.x + 0.5 * (b.x - a.x), a.y + 0.5 * (b.y - a.y)});
+    if (may_hand_over(from, round, to)) {
+      l.segments_handed_over.push_back({to, s});
+    } else {
+      l.segments_left.push_back(s);
+    }
+  }
+  bool may_hand_over(std::uint32_t from, std::uint32_t round, std::uint32_t to) const {
+    const auto& conflicts = leaves_[from].conflicts;
+    return round == 0 && std::binary_search(conflicts.begin(), conflicts.end(), to);
+  }
 
+  Point steiner_point_of(const BadTriangle& bad) const {
+    const Triangle& t = setting_.mesh.triangles[bad.triangle];
+    return steiner_point(setting_.mesh.vertices[t.vertex[0]], setting_.mesh.vertices[t.vertex[1]],
+                         setting_.mesh.vertices[t.vertex[2]], quality_);
+  }
   Point centroid(std::uint32_t triangle) const {
     const Triangle& t = setting_.mesh.triangles[triangle];
     const Point a = setting_.mesh.vertices[t.vertex[0]];
@@ -263,6 +312,7 @@ class LeafTasks {
   std::vector<Leaf> leaves_;
   Slots clean_up_slots_;
   std::atomic<std::uint64_t> deferred_{0};
+  std::uint64_t clean_up_insertions_ = 0;
   std::array<std::atomic<bool>, kRounds> rounds_{};  // those that found work
 
   std::mutex mutex_;  // guards the two below while tasks run

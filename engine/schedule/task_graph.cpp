@@ -18,6 +18,7 @@ GraphRun::GraphRun(const TaskGraph& graph, Arena* arena, int threads, Task task)
   std::vector<std::uint32_t> next(first_successor_.begin(), first_successor_.end() - 1);
   for (const auto& e : graph.edges_) successors_[next[e.before]++] = e.after;
   std::vector<std::uint32_t> ready;
+  ready.reserve(graph.size());  // so that nothing is allocated while tasks run
   for (std::uint32_t t = 0; t < graph.size(); ++t) {
     waits_for_[t].store(graph.waits_for_[t], std::memory_order_relaxed);
     if (graph.waits_for_[t] == 0) ready.push_back(t);
@@ -72,8 +73,19 @@ void GraphRun::start_threads(std::unique_lock<std::mutex>& lock) {
     ++wanted;
   }
   lock.unlock();
-  for (; wanted > 0; --wanted) arena_->start([this] { work(); });
+  for (; wanted > 0; --wanted) start_thread();
   lock.lock();
+}
+
+// The one thing here that may run out of memory.
+void GraphRun::start_thread() {
+  try {
+    arena_->start([this] { work(); });
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    starved_ = true;
+    if (--running_ == 0) changed_.notify_all();
+  }
 }
 
 // A thread's slice.
@@ -90,7 +102,7 @@ void GraphRun::work() {
     lock.unlock();
     run(task);
   } while (std::chrono::steady_clock::now() < end);
-  arena_->start([this] { work(); });
+  start_thread();
 }
 
 void GraphRun::skip(std::uint32_t task) {

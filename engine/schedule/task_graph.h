@@ -82,6 +82,8 @@ class GraphRun {
   // Goes on until something was done, or `notify` was called: without an arena, runs a task. False
   // once all tasks are done, or nothing runs that could make another one ready.
   bool step();
+  // Whether ready tasks were given up because no thread could be started for them.
+  bool starved() const { return starved_; }
   // Wakes `step`. Thread-safe.
   void notify();
 
@@ -90,6 +92,7 @@ class GraphRun {
   static constexpr std::chrono::milliseconds kSlice{2};
 
   void start_threads(std::unique_lock<std::mutex>& lock);
+  void start_thread();
   void work();
   void run(std::uint32_t task);
   void finish(std::uint32_t task);
@@ -109,6 +112,7 @@ class GraphRun {
   std::condition_variable changed_;
   Ready ready_;
   int running_ = 0;  // threads that work, or are queued for
+  bool starved_ = false;
   bool notified_ = false;
   bool stopping_ = false;
 };

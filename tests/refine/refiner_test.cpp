@@ -42,7 +42,7 @@ struct RefinedSquare {
     for_alive([&](std::uint32_t t) {
       if (this->area(t) <= area) return;
       mesh.triangles[t].set_badness(kLarge);
-      refiner.queue({t, mesh.triangles[t].vertex[0]});
+      refiner.queue(BadTriangle{t, mesh.triangles[t].vertex[0]});
     });
     EXPECT_FALSE(refiner.run());
     return refiner.deferred();
