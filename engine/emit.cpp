@@ -58,20 +58,19 @@ void PartBuilder<AreaBound>::add_triangles(std::uint32_t first, std::uint32_t la
     for (const std::uint32_t v : triangle.vertex)
       goes_with = std::max(goes_with, mesh_.block_of_vertex(v).owner);
     if (goes_with == owner) [[likely]] {
-      add_triangle(t);
+      add_triangle(triangle);
     } else {
-      handed_on.push_back({goes_with, t});
+      handed_on.push_back({goes_with, triangle});
     }
   }
 }
 
 template <class AreaBound>
-void PartBuilder<AreaBound>::add_triangle(std::uint32_t t) {
+void PartBuilder<AreaBound>::add_triangle(const Triangle& triangle) {
   if (--until_poll_ == 0) {
     until_poll_ = kPollInterval;
     stopped_ = stopped_ || context_.poll();
   }
-  const Triangle& triangle = mesh_.triangles[t];
   make_room();
   for (const std::uint32_t v : triangle.vertex) {
     chunk_.triangles.push_back(mesh_.number_of(v));

@@ -38,7 +38,7 @@ struct Part {
 // A triangle that goes with the part of another owner.
 struct HandedOn {
   std::uint32_t owner;
-  std::uint32_t triangle;
+  Triangle triangle;
 };
 
 // Builds one part. `AreaBound` gives the bounds for the size histogram: it has bounds_at, as
@@ -54,7 +54,7 @@ class PartBuilder {
   // The triangles of one owner from slot `first` to before `last` that do not go elsewhere; those
   // are appended to `handed_on`.
   void add_triangles(std::uint32_t first, std::uint32_t last, std::vector<HandedOn>& handed_on);
-  void add_triangle(std::uint32_t t);
+  void add_triangle(const Triangle& triangle);
 
   // Nothing where the context says stop.
   std::optional<Part> finish();

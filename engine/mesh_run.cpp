@@ -371,6 +371,7 @@ class MeshRun {
                     }
                   }
                 }));
+    leaves_->give_back_triangles(leaf);
   }
 
   void clean_up() {

@@ -2,20 +2,12 @@
 #include "engine/refine/mesh.h"
 
 #include <algorithm>
-#include <new>
 
 namespace weft {
 namespace {
 
 constexpr std::uint32_t blocks_for(std::uint64_t count, std::uint32_t block) {
   return static_cast<std::uint32_t>((count + block - 1) / block);
-}
-
-// The next block of `count`; several threads may ask at the same time.
-std::uint32_t take_block(std::uint32_t& count, std::uint32_t capacity) {
-  const std::uint32_t block = std::atomic_ref(count).fetch_add(1, std::memory_order_relaxed);
-  if (block >= capacity) throw std::bad_alloc();
-  return block;
 }
 
 // From the domain's triangle to the mesh's.
@@ -56,30 +48,31 @@ Result<Mesh> Mesh::from(const Domain& domain, std::uint64_t max_triangles,
       kMaxTriangles, 2 * std::clamp<std::uint64_t>(max_triangles, initial, kMaxTriangles) + kSlack);
   const bool huge_pages = expected_triangles > kWorthHugePages;
   Mesh mesh;
-  mesh.triangle_block_capacity = static_cast<std::uint32_t>(slots >> kTriangleShift);
+  const auto triangle_blocks = static_cast<std::uint32_t>(slots >> kTriangleShift);
   // Each insertion adds one vertex and one or two triangles (one only on the outer boundary).
-  mesh.vertex_block_capacity = static_cast<std::uint32_t>(slots >> kVertexShift) +
-                               blocks_for(domain.vertices.size(), kVertexBlock);
+  const auto vertex_blocks = static_cast<std::uint32_t>(slots >> kVertexShift) +
+                             blocks_for(domain.vertices.size(), kVertexBlock);
   const auto reserve = [](auto& array, std::size_t count, bool huge) -> std::optional<Error> {
     auto reserved = std::remove_reference_t<decltype(array)>::reserve(count, huge);
     if (!reserved) return reserved.error();
     array = std::move(*reserved);
     return std::nullopt;
   };
-  const std::size_t vertex_slots = std::size_t{mesh.vertex_block_capacity} * kVertexBlock;
+  const std::size_t vertex_slots = std::size_t{vertex_blocks} * kVertexBlock;
   for (const auto& error :
-       {reserve(mesh.triangles, std::size_t{mesh.triangle_block_capacity} * kTriangleBlock,
-                huge_pages),
+       {reserve(mesh.triangles, std::size_t{triangle_blocks} * kTriangleBlock, huge_pages),
         reserve(mesh.vertices, vertex_slots, huge_pages),
-        reserve(mesh.triangle_owner, mesh.triangle_block_capacity, false),
-        reserve(mesh.vertex_blocks, mesh.vertex_block_capacity, false),
+        reserve(mesh.triangle_owner, triangle_blocks, false),
+        reserve(mesh.vertex_blocks, vertex_blocks, false),
         reserve(mesh.subsegments, vertex_slots, false)}) {
     if (error) return tl::unexpected(*error);
   }
 
   // The blocks of owner 0: all bytes are zero already.
-  mesh.triangle_block_count = blocks_for(initial, kTriangleBlock);
-  mesh.vertex_block_count = blocks_for(domain.vertices.size(), kVertexBlock);
+  mesh.triangle_pool =
+      std::make_unique<BlockPool>(blocks_for(initial, kTriangleBlock), triangle_blocks);
+  mesh.vertex_pool =
+      std::make_unique<BlockPool>(blocks_for(domain.vertices.size(), kVertexBlock), vertex_blocks);
   std::copy(domain.vertices.begin(), domain.vertices.end(), mesh.vertices.data());
   for (std::uint32_t t = 0; t < initial; ++t) {
     if (t % kPollInterval == 0) {
@@ -91,24 +84,25 @@ Result<Mesh> Mesh::from(const Domain& domain, std::uint64_t max_triangles,
 }
 
 std::uint32_t Mesh::take_triangle_block(std::uint32_t owner) {
-  const std::uint32_t block = take_block(triangle_block_count, triangle_block_capacity);
+  const std::uint32_t block = triangle_pool->take();
   triangle_owner[block] = owner;
   return block << kTriangleShift;
 }
 
 std::uint32_t Mesh::take_vertex_block(std::uint32_t owner, bool on_segment) {
-  const std::uint32_t block = take_block(vertex_block_count, vertex_block_capacity);
+  const std::uint32_t block = vertex_pool->take();
   vertex_blocks[block] = {owner, 0, on_segment};
   return block << kVertexShift;
 }
 
+void Mesh::give_back_triangles(const std::vector<std::uint32_t>& first_slots) {
+  for (const std::uint32_t first : first_slots) triangle_pool->give_back(first >> kTriangleShift);
+}
+
 std::uint64_t Mesh::bytes() const {
-  const auto taken = [](const std::uint32_t& count) {
-    return std::uint64_t{
-        std::atomic_ref(const_cast<std::uint32_t&>(count)).load(std::memory_order_relaxed)};
-  };
-  return taken(triangle_block_count) * (kTriangleBlock * sizeof(Triangle) + sizeof(std::uint32_t)) +
-         taken(vertex_block_count) * (kVertexBlock * sizeof(Point) + sizeof(VertexBlock));
+  constexpr std::uint64_t kTriangles = kTriangleBlock * sizeof(Triangle) + sizeof(std::uint32_t);
+  constexpr std::uint64_t kVertices = kVertexBlock * sizeof(Point) + sizeof(VertexBlock);
+  return triangle_pool->peak() * kTriangles + vertex_pool->peak() * kVertices;
 }
 
 }  // namespace weft

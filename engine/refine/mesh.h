@@ -9,17 +9,20 @@
 // writes triangles into its slots. It takes the slots of a cavity again for the triangles that
 // replace it; another owner's slot in the cavity is only marked dead. So the slots of a task are
 // final once nobody can reach into its region, and a slot's first vertex tells whether the
-// triangle in it is still the same. 3 to 5 % of the slots end dead.
+// triangle in it is still the same. 3 to 5 % of the slots end dead. Blocks that have been sent are
+// given back and taken again: 12 % of the memory at 10 M triangles, more where the mesh is larger
+// against the leaves that one depends on.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
-#include <limits>
+#include <memory>
+#include <vector>
 
 #include "engine/context.h"
 #include "engine/domain/domain.h"
 #include "engine/error.h"
 #include "engine/geometry.h"
+#include "engine/refine/block_pool.h"
 #include "engine/refine/virtual_array.h"
 
 namespace weft {
@@ -87,10 +90,8 @@ struct Mesh {
   VirtualArray<std::uint32_t> triangle_owner;  // per block
   VirtualArray<VertexBlock> vertex_blocks;
   VirtualArray<std::uint32_t> subsegments;  // per vertex, see subsegment_of
-  std::uint32_t triangle_block_count = 0;   // taken; from several threads while tasks run
-  std::uint32_t vertex_block_count = 0;
-  std::uint32_t triangle_block_capacity = 0;
-  std::uint32_t vertex_block_capacity = 0;
+  std::unique_ptr<BlockPool> triangle_pool;
+  std::unique_ptr<BlockPool> vertex_pool;
 
   // The domain's triangulation, in blocks of owner 0, with room for at least `max_triangles` in
   // all, and for the slots that tasks leave dead or unused. `expected_triangles` decides whether
@@ -114,11 +115,14 @@ struct Mesh {
     return block_of_vertex(v).number + (v & (kVertexBlock - 1));
   }
 
-  // Takes the next block. Thread-safe. Throws std::bad_alloc where the address space ends, which
-  // is far beyond what `from` was asked for.
+  // The first slot of a block. Thread-safe. Throws std::bad_alloc where the address space ends,
+  // which is far beyond what `from` was asked for.
   std::uint32_t take_triangle_block(std::uint32_t owner);
   std::uint32_t take_vertex_block(std::uint32_t owner, bool on_segment);
+  // Blocks by their first slots, which nobody reads any more. Thread-safe.
+  void give_back_triangles(const std::vector<std::uint32_t>& first_slots);
 
+  // At the peak.
   std::uint64_t bytes() const;
 };
 

@@ -62,6 +62,13 @@ class Slots {
   // Numbers the vertices in their order, from `first` on; returns the number after the last.
   std::uint32_t number_vertices(Mesh& mesh, std::uint32_t first) const;
 
+  // The triangles have been sent, and nobody reads them any more.
+  void give_back_triangles(Mesh& mesh) {
+    mesh.give_back_triangles(triangle_blocks_);
+    triangle_blocks_ = {};
+    triangles_ = {};
+  }
+
   std::uint64_t bytes() const {
     return (triangle_blocks_.capacity() + vertex_blocks_.capacity()) * sizeof(std::uint32_t);
   }

@@ -74,6 +74,9 @@ class LeafTasks {
     return leaves_[leaf].colour < leaves_[other].colour;
   }
   const Slots& slots(std::uint32_t leaf) const { return leaves_[leaf].slots; }
+  void give_back_triangles(std::uint32_t leaf) {
+    leaves_[leaf].slots.give_back_triangles(setting_.mesh);
+  }
   const Slots& clean_up_slots() const { return clean_up_slots_; }
 
   // A bad triangle of the prelude, for the leaf where its centroid lies.
