@@ -10,9 +10,10 @@
 namespace weft {
 namespace {
 
-// What an entry adds to a chunk at most: a triangle, its region and three edges, or a vertex that
-// is an input point.
-constexpr std::size_t kMaxEntryBytes = 12 + 4 + 3 * sizeof(Chunk::Edge);
+// What a vertex and a triangle add to a chunk at most: the vertex as an input point, the triangle
+// with its region and three edges.
+constexpr std::size_t kMaxVertexBytes = 16 + 8;
+constexpr std::size_t kMaxTriangleBytes = 12 + 4 + 3 * sizeof(Chunk::Edge);
 
 // An edge with triangles on both sides goes with the one that it passes from its lesser end.
 bool leads_upward(Point a, Point b) {
@@ -38,11 +39,14 @@ void PartBuilder<AreaBound>::add_vertices(const Slots& slots) {
   slots.for_vertices([&](std::uint32_t first, std::uint32_t last) {
     stopped_ = stopped_ || context_.poll();
     for (std::uint32_t v = first; v < last && !stopped_; ++v) {
-      make_room();
+      make_room(kMaxVertexBytes);
+      bytes_ += 16;
       chunk_.coordinates.push_back(mesh_.vertices[v].x);
       chunk_.coordinates.push_back(mesh_.vertices[v].y);
-      if (v < domain_.vertices.size() && domain_.input_point[v] != kNone)
+      if (v < domain_.vertices.size() && domain_.input_point[v] != kNone) {
         chunk_.input_points.push_back({mesh_.number_of(v), domain_.input_point[v]});
+        bytes_ += 8;
+      }
     }
   });
 }
@@ -71,7 +75,8 @@ void PartBuilder<AreaBound>::add_triangle(const Triangle& triangle) {
     until_poll_ = kPollInterval;
     stopped_ = stopped_ || context_.poll();
   }
-  make_room();
+  make_room(kMaxTriangleBytes);
+  bytes_ += has_regions_ ? 16 : 12;
   for (const std::uint32_t v : triangle.vertex) {
     chunk_.triangles.push_back(mesh_.number_of(v));
     chunk_.box.add(mesh_.vertices[v]);
@@ -88,6 +93,7 @@ void PartBuilder<AreaBound>::add_triangle(const Triangle& triangle) {
       continue;
     const Subsegment& s = domain_.subsegments[corners_.subsegment(mesh_, a, b)];
     chunk_.edges.push_back({mesh_.number_of(a), mesh_.number_of(b), s.segment, s.marker});
+    bytes_ += sizeof(Chunk::Edge);
     ++part_.edges;
   }
 }
@@ -101,12 +107,9 @@ std::optional<Part> PartBuilder<AreaBound>::finish() {
 }
 
 template <class AreaBound>
-void PartBuilder<AreaBound>::make_room() {
-  const std::size_t bytes = chunk_.coordinates.size() * sizeof(double) +
-                            chunk_.triangles.size() * 4 + chunk_.regions.size() * 4 +
-                            chunk_.edges.size() * sizeof(Chunk::Edge) +
-                            chunk_.input_points.size() * 8;
-  if (bytes + kMaxEntryBytes > kMaxChunkBytes) close_chunk();
+void PartBuilder<AreaBound>::make_room(std::size_t bytes) {
+  if (bytes_ + bytes > kMaxChunkBytes) [[unlikely]]
+    close_chunk();
 }
 
 template <class AreaBound>
@@ -115,6 +118,7 @@ void PartBuilder<AreaBound>::close_chunk() {
   if (std::all_of(chunk_.regions.begin(), chunk_.regions.end(), is_zero)) chunk_.regions.clear();
   chunk_.digest = chunk_digest(chunk_);
   part_.chunks.push_back(std::exchange(chunk_, Chunk{}));
+  bytes_ = 0;
 }
 
 // The figures are gathered in blocks.

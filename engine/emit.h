@@ -62,7 +62,7 @@ class PartBuilder {
  private:
   static constexpr std::uint32_t kPollInterval = 1024;  // triangles
 
-  void make_room();
+  void make_room(std::size_t bytes);
   void close_chunk();
   void measure(const Triangle& triangle);
   void measure_block();
@@ -77,6 +77,7 @@ class PartBuilder {
   std::uint32_t until_poll_ = kPollInterval;
   Part part_;
   Chunk chunk_;
+  std::size_t bytes_ = 0;  // in chunk_
   std::unique_ptr<TriangleBlock> block_ = std::make_unique<TriangleBlock>();
   double region_bound_[TriangleBlock::kSize];
 };

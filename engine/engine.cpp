@@ -173,6 +173,7 @@ class Job {
                   .order = order(),
                   .expected_triangles = expected_,
                   .leaf_triangles = request_.leaf_triangles,
+                  .least_triangles = estimate.least,
                   .other_bytes = size_bytes};
     if (wants_cap()) plan.max_triangles = budget.max_triangles;
     if (auto error = run_mesh(plan, area, sink_, context_, summary_)) return tl::unexpected(*error);

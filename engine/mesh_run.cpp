@@ -97,15 +97,21 @@ template <class AreaBound>
 class MeshRun {
  public:
   MeshRun(const MeshPlan& plan, const AreaBound& area, ChunkSink& sink, ExecutionContext& context,
-          Summary& summary, Mesh& mesh, const AcuteCorners& corners)
+          Summary& summary, Mesh& mesh, const AcuteCorners& corners, bool cut_off)
       : plan_(plan),
         area_(area),
         context_(context),
         summary_(summary),
         mesh_(mesh),
         corners_(corners),
-        setting_{mesh,    corners,    plan.domain.regions,
-                 context, plan.order, plan.other_bytes + corners.bytes()},
+        cut_off_(cut_off),
+        setting_{mesh,
+                 corners,
+                 plan.domain.regions,
+                 context,
+                 plan.order,
+                 plan.other_bytes + corners.bytes(),
+                 cut_off ? context.budget().triangle_limit : limit(plan, context)},
         root_(Slots::of_domain(plan.domain)),
         delivery_(sink, context, summary) {}
 
@@ -134,6 +140,7 @@ class MeshRun {
   }
 
  private:
+  static constexpr std::uint64_t kNoCap = std::numeric_limits<std::uint64_t>::max();
   static constexpr std::uint32_t kRounds = LeafTasks<AreaBound>::kRounds;
   // A coarse triangle stands for about so many of a leaf: it takes a few dozen of them to place
   // the leaves' borders well.
@@ -144,10 +151,15 @@ class MeshRun {
 
   static constexpr double kRefining = 0.65;  // of the work; the rest is building parts
 
+  // Of triangles, in the first attempt: the client's wish stands in for the server's limit.
+  static std::uint64_t limit(const MeshPlan& plan, const ExecutionContext& context) {
+    return std::min(plan.max_triangles.value_or(kNoCap), context.budget().triangle_limit);
+  }
+
   // Refines with owner 0's slots and all of the mesh.
   template <class Area>
   std::optional<Error> refine_root(const QualityBounds& quality, const Area& area,
-                                   std::uint64_t max_triangles) {
+                                   std::uint64_t max_triangles = kNoCap) {
     Refiner<OwnsAll, Area> refiner(setting_, quality, area, max_triangles);
     refiner.begin(root_, OwnsAll{}, plan_.box);
     auto error = refiner.queue_all();
@@ -161,27 +173,22 @@ class MeshRun {
   // A coarse mesh, the quadtree from it, circumradii that fit the leaves, and the leaves' first
   // bad triangles; or everything, where the mesh is small or to be cut off at max_triangles.
   std::optional<Error> prelude() {
-    const bool alone = plan_.expected_triangles <= plan_.leaf_triangles ||
-                       plan_.max_triangles != std::numeric_limits<std::uint64_t>::max();
-    if (!alone) {
+    if (!cut_off_ && plan_.expected_triangles > plan_.leaf_triangles) {
       QualityBounds no_angles = plan_.quality;
       no_angles.sin2 = 0;
       no_angles.off_centre = 0;
       const double coarseness = plan_.leaf_triangles / kCoarseTrianglesPerLeaf;
-      if (auto error = refine_root(no_angles, area_.again(coarseness),
-                                   std::numeric_limits<std::uint64_t>::max()))
-        return error;
+      if (auto error = refine_root(no_angles, area_.again(coarseness))) return error;
       tree_ = Quadtree::build(plan_.box, samples(), plan_.leaf_triangles);
       if (tree_.leaves().size() > 1) {
-        if (auto error = refine_root(no_angles, LeafRadius(tree_),
-                                     std::numeric_limits<std::uint64_t>::max()))
-          return error;
+        if (auto error = refine_root(no_angles, LeafRadius(tree_))) return error;
         leaves_.emplace(setting_, plan_.quality, area_, tree_);
         return seed_leaves();
       }
     }
-    return refine_time_.measure(
-        [&] { return refine_root(plan_.quality, area_, plan_.max_triangles); });
+    return refine_time_.measure([&] {
+      return refine_root(plan_.quality, area_, cut_off_ ? *plan_.max_triangles : kNoCap);
+    });
   }
 
   // The coarse triangles, each with the number that it will be split into.
@@ -231,7 +238,7 @@ class MeshRun {
       }
     });
     for (const Quadtree::Leaf& leaf : tree_.leaves()) total_weight_ += leaf.weight;
-    streams_ = all_fit && leaves_->size() >= kStreamingLeaves;
+    streams_ = all_fit && leaves_->size() >= kStreamingLeaves && !plan_.max_triangles;
     return std::nullopt;
   }
 
@@ -300,7 +307,7 @@ class MeshRun {
     handed_on_.resize(n);
     settled_.resize(n);
     final_leaves_ = streams_ ? n : 0;
-    if (auto error = send_opening()) return error;
+    if (streams_) send_opening();
     {
       TaskGraph graph(n * kTasks);
       add_refinement(graph);
@@ -317,6 +324,7 @@ class MeshRun {
     }
     if (!stopped_ && final_leaves_ < n) {
       if (leaves_->left() > 0) clean_up();
+      if (!streams_ && !stopped_) send_opening();
       const std::uint32_t first = final_leaves_.exchange(n);
       TaskGraph graph(n * kTasks);
       add_parts(graph);
@@ -381,11 +389,12 @@ class MeshRun {
   }
 
   // Owner 0's vertices, which any leaf may refer to.
-  std::optional<Error> send_opening() {
+  void send_opening() {
     auto part = context_.compute([&] {
       return build([&](PartBuilder<AreaBound>& builder) { builder.add_vertices(root_); });
     });
-    return part ? delivery_.send(std::move(*part)) : context_.poll();
+    const auto error = part ? delivery_.send(std::move(*part)) : context_.poll();
+    if (error) stop(*error);
   }
 
   // The clean-up's part, and those of owner 0's triangles that no leaf has touched.
@@ -487,6 +496,7 @@ class MeshRun {
   Summary& summary_;
   Mesh& mesh_;
   const AcuteCorners& corners_;
+  const bool cut_off_;
   const Setting setting_;
   Slots root_;
   Delivery delivery_;
@@ -516,14 +526,26 @@ class MeshRun {
 template <class AreaBound>
 std::optional<Error> run_mesh(const MeshPlan& plan, const AreaBound& area, ChunkSink& sink,
                               ExecutionContext& context, Summary& summary) {
-  auto mesh = context.compute([&] {
-    return Mesh::from(plan.domain, std::min(plan.max_triangles, context.budget().triangle_limit),
-                      plan.expected_triangles, context);
-  });
-  if (!mesh) return mesh.error();
-  auto corners = context.compute([&] { return AcuteCorners::build(plan.domain, context); });
-  if (!corners) return corners.error();
-  return MeshRun<AreaBound>(plan, area, sink, context, summary, *mesh, *corners).run();
+  const auto attempt = [&](bool cut_off) -> std::optional<Error> {
+    auto mesh = context.compute([&] {
+      return Mesh::from(plan.domain, context.budget().triangle_limit, plan.expected_triangles,
+                        context);
+    });
+    if (!mesh) return mesh.error();
+    auto corners = context.compute([&] { return AcuteCorners::build(plan.domain, context); });
+    if (!corners) return corners.error();
+    return MeshRun<AreaBound>(plan, area, sink, context, summary, *mesh, *corners, cut_off).run();
+  };
+  const double cap = static_cast<double>(plan.max_triangles.value_or(0));
+  if (plan.max_triangles && plan.least_triangles > cap) return attempt(true);
+  const Summary before = summary;
+  auto error = attempt(false);
+  const bool reached = error && error->code == ErrorCode::kLimitExceeded && plan.max_triangles &&
+                       *plan.max_triangles <= context.budget().triangle_limit;
+  if (!reached) return error;
+  summary = before;
+  context.add_triangles(-static_cast<std::int64_t>(context.triangles()));
+  return attempt(true);
 }
 
 template std::optional<Error> run_mesh(const MeshPlan&, const ConstantArea&, ChunkSink&,

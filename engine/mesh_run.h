@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
+#include <optional>
 
 #include "engine/chunk.h"
 #include "engine/context.h"
@@ -22,9 +22,11 @@ struct MeshPlan {
   QualityBounds quality;
   Order order;
   double expected_triangles;
-  double leaf_triangles;  // of the final mesh, in a leaf of the quadtree at most
-  // Stop with what there is at so many.
-  std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();
+  double leaf_triangles;   // of the final mesh, in a leaf of the quadtree at most
+  double least_triangles;  // for certain
+  // Stop with what there is at so many: one task refines in order, then. Where fewer are enough,
+  // the mesh is the same as without; nothing is sent before that is known.
+  std::optional<std::uint64_t> max_triangles = std::nullopt;
   std::uint64_t other_bytes = 0;  // that the job holds besides
 };
 

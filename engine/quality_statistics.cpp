@@ -17,13 +17,14 @@ constexpr double squeeze(double c) {
 }
 
 // t at 10 k degrees for k = 1 to 17: an angle's bin is the number of these that its t is at most.
-constexpr std::array<double, 17> kBorders = {
+// No t is at most the last one.
+constexpr std::array<double, 18> kBorders = {
     squeeze(5.671281819617709),    squeeze(2.7474774194546216),   squeeze(1.7320508075688774),
     squeeze(1.19175359259421),     squeeze(0.8390996311772800),   squeeze(0.5773502691896257),
     squeeze(0.36397023426620234),  squeeze(0.17632698070846498),  0,
     squeeze(-0.17632698070846498), squeeze(-0.36397023426620234), squeeze(-0.5773502691896257),
     squeeze(-0.8390996311772800),  squeeze(-1.19175359259421),    squeeze(-1.7320508075688774),
-    squeeze(-2.7474774194546216),  squeeze(-5.671281819617709)};
+    squeeze(-2.7474774194546216),  squeeze(-5.671281819617709),   -2};
 
 // The borders are at least 0.08 apart: so a cell of a table of 64 holds one at most, and one
 // comparison decides.
@@ -40,7 +41,7 @@ constexpr auto kFirstBinOfCell = [] {
 std::size_t angle_bin(double t) {
   const auto cell = static_cast<std::size_t>((t + 1) * (kCells / 2.0));
   const std::size_t bin = kFirstBinOfCell[cell];
-  return bin + (bin < 17 && t <= kBorders[bin] ? 1 : 0);
+  return bin + (t <= kBorders[bin] ? 1 : 0);
 }
 
 constexpr std::array<double, 8> kAspects = {1.1, 1.25, 1.5, 2, 3, 5, 10, 100};
@@ -66,7 +67,7 @@ void TriangleBlock::find_centroids() {
 void QualityStatistics::add(const TriangleBlock& block) {
   constexpr std::size_t kSize = TriangleBlock::kSize;
   double angle[3][kSize];
-  double aspect[kSize];
+  std::int64_t aspect[kSize];  // its bin
   double ratio[kSize];
   double area[kSize];
   const std::size_t n = block.size;
@@ -89,7 +90,9 @@ void QualityStatistics::add(const TriangleBlock& block) {
     const double l1 = std::sqrt(ex1 * ex1 + ey1 * ey1);
     const double l2 = std::sqrt(ex2 * ex2 + ey2 * ey2);
     const double longest = std::max(l0, std::max(l1, l2));
-    aspect[i] = longest * (l0 + l1 + l2) / doubled * (0.5 / 1.7320508075688772);
+    const double scaled = longest * (l0 + l1 + l2) * (0.5 / 1.7320508075688772);
+    aspect[i] = 0;
+    for (const double end : kAspects) aspect[i] += scaled > end * doubled ? 1 : 0;
     area[i] = 0.5 * doubled;
     ratio[i] = area[i] / block.bound[i] * 10;
   }
@@ -100,9 +103,7 @@ void QualityStatistics::add(const TriangleBlock& block) {
       smallest_angle_ = std::max(smallest_angle_, t[i]);
       largest_angle_ = std::min(largest_angle_, t[i]);
     }
-    std::size_t bin = 0;
-    for (double end : kAspects) bin += aspect[i] > end ? 1 : 0;
-    ++aspects_[bin];
+    ++aspects_[static_cast<std::size_t>(aspect[i])];
     if (block.bound[i] < std::numeric_limits<double>::infinity()) {
       // Not a number, where the size field is bad, counts as exceeding.
       ++sizes_[ratio[i] < 9 ? static_cast<std::size_t>(ratio[i]) : 9];

@@ -51,7 +51,8 @@ struct Setting {
   const std::vector<Region>& regions;
   ExecutionContext& context;
   Order order;
-  std::uint64_t other_bytes;  // that the job holds besides the mesh
+  std::uint64_t other_bytes;     // that the job holds besides the mesh
+  std::uint64_t triangle_limit;  // an error beyond
 };
 
 // A bad triangle as tasks hand it on: gone if the slot has another first vertex.
@@ -63,7 +64,7 @@ struct BadTriangle {
 template <class Ownership, class AreaBound>
 class Refiner {
  public:
-  // Stops with what it has once `max_triangles` are reached.
+  // Stops with what it has once `max_triangles` are reached. REQUIRES: nobody else refines, then.
   Refiner(const Setting& setting, const QualityBounds& quality, AreaBound area,
           std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max())
       : mesh_(setting.mesh),
@@ -73,6 +74,7 @@ class Refiner {
         area_(std::move(area)),
         context_(setting.context),
         other_bytes_(setting.other_bytes),
+        triangle_limit_(setting.triangle_limit),
         poll_interval_(area_.poll_interval()),
         max_triangles_(max_triangles),
         cavity_(setting.mesh),
@@ -486,10 +488,10 @@ class Refiner {
                        std::to_string(context_.budget().max_bytes) + " bytes, at " +
                        std::to_string(triangles) + " triangles"};
     }
-    if (triangles > context_.budget().triangle_limit) {
+    if (triangles > triangle_limit_) {
       return Error{ErrorCode::kLimitExceeded, "size",
-                   "the mesh needs more than the limit of " +
-                       std::to_string(context_.budget().triangle_limit) + " triangles"};
+                   "the mesh needs more than the limit of " + std::to_string(triangle_limit_) +
+                       " triangles"};
     }
     return context_.poll();
   }
@@ -500,7 +502,8 @@ class Refiner {
   const QualityBounds quality_;
   AreaBound area_;
   ExecutionContext& context_;
-  const std::uint64_t other_bytes_;    // that the job holds besides the mesh
+  const std::uint64_t other_bytes_;  // that the job holds besides the mesh
+  const std::uint64_t triangle_limit_;
   const std::uint32_t poll_interval_;  // insertions
   const std::uint64_t max_triangles_;
   Slots* slots_ = nullptr;

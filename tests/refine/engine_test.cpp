@@ -165,6 +165,18 @@ TEST(Budget, OfTrianglesMayBeTheLimitItself) {
   EXPECT_GT(summary->unrefined.budget, 0u);
 }
 
+TEST(Budget, OfTrianglesThatIsNotReachedChangesNothing) {
+  const MeshRequest request{.pslg = square(), .size = {.constant = 1e-4}, .leaf_triangles = 500};
+  const auto uncapped = mesh_of(request);
+  ASSERT_TRUE(uncapped);
+  const auto capped = mesh_of(request, {.max_triangles = uncapped->triangles});
+  ASSERT_TRUE(capped);
+  EXPECT_EQ(capped->digest, uncapped->digest);
+  const auto cut_off = mesh_of(request, {.max_triangles = uncapped->triangles - 1});
+  ASSERT_TRUE(cut_off);
+  EXPECT_LT(cut_off->triangles, uncapped->triangles);
+}
+
 TEST(Budget, OfBytesIsNamedWhenItRunsOut) {
   const Error error =
       error_of({.pslg = square(), .size = {.constant = 1e-6}}, {.max_bytes = 4 << 20});

@@ -32,7 +32,9 @@ struct RefinedSquare {
     EXPECT_TRUE(refiner.deferred().empty());
   }
 
-  Setting setting() { return {mesh, corners, domain.regions, context, Order::kLastInFirstOut, 0}; }
+  Setting setting() {
+    return {mesh, corners, domain.regions, context, Order::kLastInFirstOut, 0, 10'000'000};
+  }
 
   // Refines what the box owns, as the next owner; returns what was deferred.
   std::vector<BadTriangle> refine(const Box& box, double area) {
