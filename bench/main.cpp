@@ -3,24 +3,56 @@
 #include <CLI/CLI.hpp>
 
 #include "bench/engine_bench.h"
+#include "bench/scaling_bench.h"
+
+namespace {
+
+void add_models(CLI::App* command, std::string& models) {
+  command->add_option("--models", models, "Folder of the models")
+      ->default_str("tests/models")
+      ->default_val("tests/models");
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"Benchmarks of weft; the tables are in bench/README.md."};
   app.require_subcommand(1);
-  app.footer("Example:\n  weft-bench engine --models tests/models --only cylinder");
+  app.footer(
+      "Examples:\n  weft-bench engine --only cylinder --threads 1,2\n"
+      "  weft-bench scaling --triangles 1e6,1e7");
+  int exit_code = 0;
 
   weft::bench::EngineBenchOptions engine;
   CLI::App* const engine_command =
       app.add_subcommand("engine", "Our refinement beside CGAL Mesh_2 on the models");
-  engine_command->add_option("--models", engine.models, "Folder of the models")
-      ->default_str("tests/models")
-      ->default_val("tests/models");
+  add_models(engine_command, engine.models);
   engine_command->add_option("--only", engine.only, "Only rows with this in their name");
   engine_command->add_option("--runs", engine.runs, "Runs after the warm-up; the median counts")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   engine_command->add_flag("!--no-cgal", engine.with_cgal, "Leave CGAL out");
+  engine_command->callback([&] { exit_code = weft::bench::run_engine_bench(engine); });
+
+  weft::bench::ScalingBenchOptions scaling;
+  CLI::App* const scaling_command = app.add_subcommand(
+      "scaling", "Tasks recorded on one thread, and what they would take on up to 128");
+  add_models(scaling_command, scaling.models);
+  scaling_command->add_option("--triangles", scaling.triangles, "Sizes of the meshes")
+      ->delimiter(',')
+      ->check(CLI::Range(1e4, 1e9))
+      ->default_str("1e6,1e7");
+  scaling_command
+      ->add_option("--runs", scaling.runs,
+                   "Runs after the warm-up; of each task the fastest counts")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  scaling_command
+      ->add_option("--extrapolate-to", scaling.extrapolate_to,
+                   "Triangles, from the last two of the sizes; 0 leaves it out")
+      ->default_str("1e8");
+  scaling_command->callback([&] { exit_code = weft::bench::run_scaling_bench(scaling); });
 
   CLI11_PARSE(app, argc, argv);
-  return weft::bench::run_engine_bench(engine);
+  return exit_code;
 }

@@ -18,6 +18,7 @@
 
 #include "engine/arena.h"
 #include "engine/error.h"
+#include "engine/schedule/trace.h"
 
 namespace weft {
 
@@ -60,6 +61,8 @@ class ExecutionContext {
     arena_ = &arena;
     threads_ = threads > 0 ? std::min(threads, arena.threads()) : arena.threads();
   }
+  // Where the job notes what it did when. The trace outlives the job.
+  void set_trace(Trace& trace) noexcept { trace_ = &trace; }
   const Budget& budget() const noexcept { return budget_; }
 
   // Nothing while the job may go on, otherwise the error to stop with.
@@ -80,6 +83,10 @@ class ExecutionContext {
   // For the engine at work.
   Arena* arena() const noexcept { return arena_; }
   int threads() const noexcept { return threads_; }
+  Trace* trace() const noexcept { return trace_; }
+  void end_stage(const char* name) const {
+    if (trace_) trace_->end_stage(name);
+  }
   template <class F>
   auto compute(F&& f) const {
     return arena_ ? arena_->run(std::forward<F>(f)) : f();
@@ -100,6 +107,7 @@ class ExecutionContext {
   std::optional<Clock::time_point> deadline_;
   Arena* arena_ = nullptr;
   int threads_ = 1;
+  Trace* trace_ = nullptr;
   std::atomic<bool> cancelled_{false};
   std::atomic<Stage> stage_{Stage::kQueued};
   std::atomic<std::uint64_t> triangles_{0};

@@ -109,6 +109,7 @@ class Job {
       if (!parsed) return tl::unexpected(parsed.error());
       expression_.emplace(std::move(*parsed));
     }
+    if (Trace* const trace = context_.trace()) trace->start();
     context_.enter(Stage::kTriangulate);
     auto domain = context_.compute([&] { return triangulate(request_.pslg, context_); });
     if (!domain) return tl::unexpected(domain.error());
@@ -116,6 +117,7 @@ class Job {
     for (Point p : domain_.vertices) summary_.box.add(p);
     if (auto error = check_extent(summary_.box)) return tl::unexpected(*error);
     summary_.triangulate_seconds = clock_.lap();
+    context_.end_stage("triangulation");
 
     context_.enter(Stage::kSize);
     if (expression_ && !expression_->is_constant()) {
@@ -164,6 +166,7 @@ class Job {
     expected_ = std::max(1.55 * estimate.likely, static_cast<double>(domain_.triangles.size()));
     context_.report_expected(static_cast<std::uint64_t>(std::min(expected_, 1e18)));
     summary_.size_seconds = clock_.lap();
+    context_.end_stage("size map");
 
     context_.enter(Stage::kRefine);
     MeshPlan plan{.domain = domain_,

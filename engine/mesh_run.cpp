@@ -22,6 +22,7 @@
 #include "engine/schedule/leaf_tasks.h"
 #include "engine/schedule/quadtree.h"
 #include "engine/schedule/task_graph.h"
+#include "engine/schedule/trace.h"
 
 namespace weft {
 namespace {
@@ -117,12 +118,14 @@ class MeshRun {
 
   std::optional<Error> run() {
     context_.add_triangles(static_cast<std::int64_t>(plan_.domain.triangles.size()));
+    context_.end_stage("mesh set-up");
     const auto start = Clock::now();
     auto error = context_.compute([&] { return prelude(); });
     summary_.prelude_seconds = seconds_since(start);
     if (!error) error = leaves_ ? run_leaves() : run_alone();
     if (error) return error;
     delivery_.finish();
+    context_.end_stage("closing");
     summary_.engine_seconds = seconds_since(start) - delivery_.blocked_seconds();
     summary_.refine_seconds += refine_time_.seconds();
     summary_.emit_seconds = emit_time_.seconds();
@@ -179,11 +182,17 @@ class MeshRun {
       no_angles.off_centre = 0;
       const double coarseness = plan_.leaf_triangles / kCoarseTrianglesPerLeaf;
       if (auto error = refine_root(no_angles, area_.again(coarseness))) return error;
+      context_.end_stage("coarse mesh");
       tree_ = Quadtree::build(plan_.box, samples(), plan_.leaf_triangles);
+      context_.end_stage("quadtree");
       if (tree_.leaves().size() > 1) {
         if (auto error = refine_root(no_angles, LeafRadius(tree_))) return error;
+        context_.end_stage("leaf radius");
         leaves_.emplace(setting_, plan_.quality, area_, tree_);
-        return seed_leaves();
+        context_.end_stage("conflicts");
+        auto error = seed_leaves();
+        context_.end_stage("seeding");
+        return error;
       }
     }
     return refine_time_.measure([&] {
@@ -261,6 +270,9 @@ class MeshRun {
   // Tasks of leaf l: kRounds rounds of refinement, whether that settled it, its numbers, its part.
   // By leaf, so that the first leaves are finished first.
   static constexpr std::uint32_t kTasks = kRounds + 3;
+  static constexpr Trace::GraphName kLeafGraph{
+      "leaves", {"round 1", "round 2", "round 3", "round 4", "settle", "number", "part"}};
+  static constexpr Trace::GraphName kClosingGraph{"closing parts", {"closing part"}};
   static std::uint32_t round_task(std::uint32_t leaf, std::uint32_t round) {
     return leaf * kTasks + round;
   }
@@ -308,19 +320,21 @@ class MeshRun {
     settled_.resize(n);
     final_leaves_ = streams_ ? n : 0;
     if (streams_) send_opening();
+    context_.end_stage("opening part");
     {
       TaskGraph graph(n * kTasks);
       add_refinement(graph);
       if (streams_) add_parts(graph);
-      run_graph(std::move(graph), 0, final_leaves_, part_task, [this](std::uint32_t task) {
-        const std::uint32_t leaf = task / kTasks;
-        const std::uint32_t step = task % kTasks;
-        if (step < kRounds) refine(leaf, step);
-        if (task == settle_task(leaf)) settled_[leaf] = is_settled(leaf);
-        if (task == number_task(leaf) && !may_be_final(leaf))
-          final_leaves_ = std::min(final_leaves_.load(), leaf);
-        if (leaf < final_leaves_) send_leaf(task, leaf);
-      });
+      run_graph(kLeafGraph, std::move(graph), 0, final_leaves_, part_task,
+                [this](std::uint32_t task) {
+                  const std::uint32_t leaf = task / kTasks;
+                  const std::uint32_t step = task % kTasks;
+                  if (step < kRounds) refine(leaf, step);
+                  if (task == settle_task(leaf)) settled_[leaf] = is_settled(leaf);
+                  if (task == number_task(leaf) && !may_be_final(leaf))
+                    final_leaves_ = std::min(final_leaves_.load(), leaf);
+                  if (leaf < final_leaves_) send_leaf(task, leaf);
+                });
     }
     if (!stopped_ && final_leaves_ < n) {
       if (leaves_->left() > 0) clean_up();
@@ -329,9 +343,10 @@ class MeshRun {
       TaskGraph graph(n * kTasks);
       add_parts(graph);
       if (!stopped_) {
-        run_graph(std::move(graph), first, n, part_task, [this, first](std::uint32_t task) {
-          if (task / kTasks >= first) send_leaf(task, task / kTasks);
-        });
+        run_graph(kLeafGraph, std::move(graph), first, n, part_task,
+                  [this, first](std::uint32_t task) {
+                    if (task / kTasks >= first) send_leaf(task, task / kTasks);
+                  });
       }
     }
     if (!stopped_) send_closing();
@@ -346,7 +361,11 @@ class MeshRun {
       stop(*error);
     if (round == 0) context_.add_fraction(kRefining * share_of(leaf));
     if (round == 0 || leaves_->has_left(leaf)) return;
-    for (std::uint32_t later = kRounds; --later > round;) run_->skip(round_task(leaf, later));
+    for (std::uint32_t later = kRounds; --later > round;) {
+      if (Trace* const trace = context_.trace())
+        trace->skip(round_task(leaf, later), round_task(leaf, round));
+      run_->skip(round_task(leaf, later));
+    }
   }
 
   bool is_settled(std::uint32_t leaf) const {
@@ -386,6 +405,7 @@ class MeshRun {
     auto error = context_.compute(
         [&] { return refine_time_.measure([&] { return leaves_->clean_up(final_leaves_); }); });
     if (error) stop(*error);
+    context_.end_stage("clean-up");
   }
 
   // Owner 0's vertices, which any leaf may refer to.
@@ -408,7 +428,7 @@ class MeshRun {
         static_cast<std::uint32_t>(1 + (runs.size() + kRunsPerPart - 1) / kRunsPerPart);
     leaves_->clean_up_slots().number_vertices(mesh_, numbers_);
     run_graph(
-        TaskGraph(parts), 0, parts, [](std::uint32_t part) { return part; },
+        kClosingGraph, TaskGraph(parts), 0, parts, [](std::uint32_t part) { return part; },
         [&](std::uint32_t part) {
           std::vector<HandedOn> none;
           finish_part(part, build([&](PartBuilder<AreaBound>& builder) {
@@ -438,16 +458,20 @@ class MeshRun {
 
   // Runs the tasks, and sends parts `first` to `last` - 1 in order as they are finished.
   template <class TaskOfPart, class Task>
-  void run_graph(TaskGraph graph, std::uint32_t first, std::uint32_t last, TaskOfPart task_of_part,
-                 Task task) {
-    // Parts that may be built ahead of the one to be sent next: a slow reader holds back no more.
-    const std::uint32_t ahead = 32 + 4 * static_cast<std::uint32_t>(context_.threads());
+  void run_graph(const Trace::GraphName& name, TaskGraph graph, std::uint32_t first,
+                 std::uint32_t last, TaskOfPart task_of_part, Task task) {
+    Trace* const trace = context_.trace();
+    const std::uint32_t ahead = parts_ahead(context_.threads());
     for (std::uint32_t part = first + ahead; part < last; ++part) graph.hold(task_of_part(part));
     parts_ = std::vector<PendingPart>(last);
     GraphRun run(graph, context_.arena(), context_.threads(), [&](std::uint32_t t) {
       if (stopped_.load(std::memory_order_relaxed)) return;
       try {
-        task(t);
+        if (trace) {
+          trace->time(t, [&] { task(t); });
+        } else {
+          task(t);
+        }
       } catch (const std::bad_alloc&) {
         stop({ErrorCode::kBudgetExceeded, "", "memory ran out"});
       } catch (const std::exception& e) {
@@ -455,6 +479,11 @@ class MeshRun {
       }
     });
     run_ = &run;
+    if (trace) {
+      trace->end_stage("graph building");
+      trace->begin_graph(name, graph);
+      for (std::uint32_t part = first; part < last; ++part) trace->add_part(task_of_part(part));
+    }
     run.start();
     std::uint32_t next = first;
     const auto ready = [&] { return next < last && parts_[next].ready.load() && !stopped_; };
@@ -465,6 +494,7 @@ class MeshRun {
         parts_[next].part = {};
       }
     } while (run.step() || ready());
+    if (trace) trace->end_stage(name.stage);
     if (run.starved() && !stopped_)
       stop({ErrorCode::kBudgetExceeded, "", "memory ran out: no thread could be started"});
   }

@@ -43,14 +43,15 @@ class TaskGraph {
   // `task` also waits for a call of GraphRun::release.
   void hold(std::uint32_t task) { ++waits_for_[task]; }
 
+  struct Edge {
+    std::uint32_t before, after;
+  };
   std::uint32_t size() const { return static_cast<std::uint32_t>(waits_for_.size()); }
+  const std::vector<Edge>& edges() const { return edges_; }
 
  private:
   friend class GraphRun;
 
-  struct Edge {
-    std::uint32_t before, after;
-  };
   std::vector<std::uint32_t> waits_for_;
   std::vector<Edge> edges_;
 };

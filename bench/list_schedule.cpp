@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/list_schedule.h"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <queue>
+#include <utility>
+
+namespace weft::bench {
+namespace {
+
+constexpr std::uint32_t kNone = Trace::kNone;
+
+class ListScheduling {
+ public:
+  ListScheduling(const Trace::Graph& graph, int threads, double send_seconds)
+      : graph_(graph),
+        threads_(threads),
+        send_seconds_(send_seconds),
+        successors_(graph.seconds.size()),
+        skips_(graph.seconds.size()),
+        part_of_(graph.seconds.size(), kNone),
+        waits_for_(graph.seconds.size(), 0),
+        released_by_(graph.seconds.size(), kNone),
+        done_(graph.seconds.size(), 0) {
+    for (const auto& e : graph.edges) {
+      successors_[e.before].push_back(e.after);
+      ++waits_for_[e.after];
+    }
+    for (std::uint32_t t = 0; t < size(); ++t) {
+      if (graph.skipped_by[t] != kNone) skips_[graph.skipped_by[t]].push_back(t);
+    }
+    // Beyond this many threads the window no longer binds.
+    const auto parts = static_cast<std::uint32_t>(graph.part_tasks.size());
+    ahead_ = parts_ahead(std::min(threads, 1 << 20));
+    for (std::uint32_t part = 0; part < parts; ++part) part_of_[graph.part_tasks[part]] = part;
+    for (std::uint32_t part = ahead_; part < parts; ++part) ++waits_for_[graph.part_tasks[part]];
+  }
+
+  Schedule run() {
+    for (std::uint32_t t = 0; t < size(); ++t) {
+      if (waits_for_[t] == 0 && !skipped(t)) ready_.push(t);
+    }
+    std::uint32_t last = kNone;
+    start_tasks();
+    while (!events_.empty()) {
+      const Event event = events_.top();
+      events_.pop();
+      now_ = event.time;
+      if (event.is_sent) {
+        sent();
+      } else {
+        --running_;
+        last = event.task;
+        finish(event.task, event.task);
+        for (const std::uint32_t t : skips_[event.task]) finish(t, event.task);
+        if (part_of_[event.task] != kNone) send_next();
+      }
+      start_tasks();
+    }
+    Schedule result{now_, {}};
+    for (std::uint32_t t = last; t != kNone; t = released_by_[t]) result.chain.push_back(t);
+    std::reverse(result.chain.begin(), result.chain.end());
+    return result;
+  }
+
+ private:
+  struct Event {
+    double time;
+    std::uint32_t task;
+    bool is_sent;  // the next part was, instead of a task's end
+    bool operator>(const Event& other) const {
+      return std::pair(time, task) > std::pair(other.time, other.task);
+    }
+  };
+
+  std::uint32_t size() const { return static_cast<std::uint32_t>(graph_.seconds.size()); }
+  bool skipped(std::uint32_t task) const { return graph_.skipped_by[task] != kNone; }
+
+  void start_tasks() {
+    for (; running_ < threads_ && !ready_.empty(); ++running_) {
+      events_.push({now_ + graph_.seconds[ready_.top()], ready_.top(), false});
+      ready_.pop();
+    }
+  }
+
+  void finish(std::uint32_t task, std::uint32_t by) {
+    done_[task] = 1;
+    for (const std::uint32_t next : successors_[task]) release(next, by);
+  }
+
+  void release(std::uint32_t task, std::uint32_t by) {
+    if (--waits_for_[task] > 0 || skipped(task)) return;
+    released_by_[task] = by;
+    ready_.push(task);
+  }
+
+  void send_next() {
+    if (sending_ || next_part_ >= graph_.part_tasks.size()) return;
+    if (!done_[graph_.part_tasks[next_part_]]) return;
+    sending_ = true;
+    events_.push({now_ + send_seconds_, graph_.part_tasks[next_part_], true});
+  }
+
+  void sent() {
+    sending_ = false;
+    const std::uint32_t by = graph_.part_tasks[next_part_++];
+    const std::size_t freed = next_part_ - 1 + std::size_t{ahead_};
+    if (freed < graph_.part_tasks.size()) release(graph_.part_tasks[freed], by);
+    send_next();
+  }
+
+  const Trace::Graph& graph_;
+  const int threads_;
+  const double send_seconds_;
+  std::vector<std::vector<std::uint32_t>> successors_;
+  std::vector<std::vector<std::uint32_t>> skips_;
+  std::vector<std::uint32_t> part_of_;
+  std::vector<std::uint32_t> waits_for_;
+  std::vector<std::uint32_t> released_by_;
+  std::vector<char> done_;
+  std::uint32_t ahead_ = 0;
+
+  double now_ = 0;
+  int running_ = 0;
+  std::uint32_t next_part_ = 0;
+  bool sending_ = false;
+  std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> ready_;
+  std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
+};
+
+}  // namespace
+
+Schedule schedule(const Trace::Graph& graph, int threads, double send_seconds) {
+  return ListScheduling(graph, threads, send_seconds).run();
+}
+
+double work_of(const Trace::Graph& graph) {
+  return std::accumulate(graph.seconds.begin(), graph.seconds.end(), 0.0);
+}
+
+std::map<std::string, double> seconds_by_kind(const Trace::Graph& graph,
+                                              const std::vector<std::uint32_t>& tasks) {
+  std::map<std::string, double> result;
+  for (const std::uint32_t t : tasks)
+    result[graph.name.kinds[t % graph.name.period()]] += graph.seconds[t];
+  return result;
+}
+
+}  // namespace weft::bench

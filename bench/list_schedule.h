@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the recorded tasks of a stage would go on other numbers of threads.
+//
+// The rules are those of GraphRun (engine/schedule/task_graph.h): a task is ready when all that it
+// waits for are done; a free thread takes the ready task with the lowest number; what waits for a
+// skipped task waits for the one that skipped it; parts wait for room as parts_ahead says. A task
+// takes the seconds that were recorded, so what threads do to each other (memory bandwidth, caches,
+// clock rates, the scheduler's lock) is not seen.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/schedule/trace.h"
+
+namespace weft::bench {
+
+// As many as there is work for.
+inline constexpr int kUnboundedThreads = std::numeric_limits<int>::max();
+
+struct Schedule {
+  double seconds = 0;  // until the last task is done and the last part sent
+  // A chain of tasks, each begun when the one before ended, that ends with the last task: with
+  // unbounded threads, the critical path.
+  std::vector<std::uint32_t> chain;
+};
+
+// `send_seconds` go by between a part's being next and its having been sent, on a thread of its
+// own. REQUIRES: threads >= 1.
+Schedule schedule(const Trace::Graph& graph, int threads, double send_seconds);
+
+// The seconds of all tasks.
+double work_of(const Trace::Graph& graph);
+
+// The seconds of tasks, by kind.
+std::map<std::string, double> seconds_by_kind(const Trace::Graph& graph,
+                                              const std::vector<std::uint32_t>& tasks);
+
+}  // namespace weft::bench
