@@ -22,6 +22,21 @@ bool leads_upward(Point a, Point b) {
 
 }  // namespace
 
+std::vector<HandedOn> triangles_handed_on(const Mesh& mesh, const Slots& slots) {
+  std::vector<HandedOn> result;
+  slots.for_triangles([&](std::uint32_t first, std::uint32_t last) {
+    for (std::uint32_t t = first; t < last; ++t) {
+      const Triangle& triangle = mesh.triangles[t];
+      if (triangle.dead()) continue;
+      const std::uint32_t owner = std::max({mesh.block_of_vertex(triangle.vertex[0]).owner,
+                                            mesh.block_of_vertex(triangle.vertex[1]).owner,
+                                            mesh.block_of_vertex(triangle.vertex[2]).owner});
+      if (owner != slots.owner()) result.push_back({owner, t, triangle});
+    }
+  });
+  return result;
+}
+
 template <class AreaBound>
 PartBuilder<AreaBound>::PartBuilder(const Mesh& mesh, const Domain& domain,
                                     const AcuteCorners& corners, AreaBound area,
@@ -52,20 +67,9 @@ void PartBuilder<AreaBound>::add_vertices(const Slots& slots) {
 }
 
 template <class AreaBound>
-void PartBuilder<AreaBound>::add_triangles(std::uint32_t first, std::uint32_t last,
-                                           std::vector<HandedOn>& handed_on) {
-  const std::uint32_t owner = mesh_.owner_of_triangle(first);
+void PartBuilder<AreaBound>::add_triangles(std::uint32_t first, std::uint32_t last) {
   for (std::uint32_t t = first; t < last && !stopped_; ++t) {
-    const Triangle& triangle = mesh_.triangles[t];
-    if (triangle.dead()) continue;
-    std::uint32_t goes_with = owner;
-    for (const std::uint32_t v : triangle.vertex)
-      goes_with = std::max(goes_with, mesh_.block_of_vertex(v).owner);
-    if (goes_with == owner) [[likely]] {
-      add_triangle(triangle);
-    } else {
-      handed_on.push_back({goes_with, triangle});
-    }
+    if (!mesh_.triangles[t].dead()) add_triangle(mesh_.triangles[t]);
   }
 }
 

@@ -38,8 +38,12 @@ struct Part {
 // A triangle that goes with the part of another owner.
 struct HandedOn {
   std::uint32_t owner;
+  std::uint32_t slot;
   Triangle triangle;
 };
+
+// Those of an owner's triangles, in the order of its slots. REQUIRES: they are final.
+std::vector<HandedOn> triangles_handed_on(const Mesh& mesh, const Slots& slots);
 
 // Builds one part. `AreaBound` gives the bounds for the size histogram: it has bounds_at, as
 // ConstantArea and MappedArea do. REQUIRES: what is added is final, and all vertices of triangles
@@ -51,9 +55,8 @@ class PartBuilder {
               const ExecutionContext& context);
 
   void add_vertices(const Slots& slots);
-  // The triangles of one owner from slot `first` to before `last` that do not go elsewhere; those
-  // are appended to `handed_on`.
-  void add_triangles(std::uint32_t first, std::uint32_t last, std::vector<HandedOn>& handed_on);
+  // The triangles in slots `first` to before `last`.
+  void add_triangles(std::uint32_t first, std::uint32_t last);
   void add_triangle(const Triangle& triangle);
 
   // Nothing where the context says stop.

@@ -256,29 +256,29 @@ class MeshRun {
     root_.number_vertices(mesh_, 0);
     auto part = context_.compute([&] {
       return build([&](PartBuilder<AreaBound>& builder) {
-        std::vector<HandedOn> none;
         builder.add_vertices(root_);
-        root_.for_triangles([&](std::uint32_t first, std::uint32_t last) {
-          builder.add_triangles(first, last, none);
-        });
+        root_.for_triangles(
+            [&](std::uint32_t first, std::uint32_t last) { builder.add_triangles(first, last); });
       });
     });
     if (!part) return context_.poll();
     return delivery_.send(std::move(*part));
   }
 
-  // Tasks of leaf l: kRounds rounds of refinement, whether that settled it, its numbers, its part.
-  // By leaf, so that the first leaves are finished first.
-  static constexpr std::uint32_t kTasks = kRounds + 3;
+  // Tasks of leaf l: kRounds rounds of refinement, whether that settled it, its numbers, what it
+  // hands on, its part. By leaf, so that the first leaves are finished first.
+  static constexpr std::uint32_t kTasks = kRounds + 4;
   static constexpr Trace::GraphName kLeafGraph{
-      "leaves", {"round 1", "round 2", "round 3", "round 4", "settle", "number", "part"}};
+      "leaves",
+      {"round 1", "round 2", "round 3", "round 4", "settle", "number", "hand on", "part"}};
   static constexpr Trace::GraphName kClosingGraph{"closing parts", {"closing part"}};
   static std::uint32_t round_task(std::uint32_t leaf, std::uint32_t round) {
     return leaf * kTasks + round;
   }
   static std::uint32_t settle_task(std::uint32_t leaf) { return leaf * kTasks + kRounds; }
   static std::uint32_t number_task(std::uint32_t leaf) { return leaf * kTasks + kRounds + 1; }
-  static std::uint32_t part_task(std::uint32_t leaf) { return leaf * kTasks + kRounds + 2; }
+  static std::uint32_t hand_on_task(std::uint32_t leaf) { return leaf * kTasks + kRounds + 2; }
+  static std::uint32_t part_task(std::uint32_t leaf) { return leaf * kTasks + kRounds + 3; }
 
   void add_refinement(TaskGraph& graph) const {
     for (std::uint32_t l = 0; l < leaves_->size(); ++l) {
@@ -302,11 +302,12 @@ class MeshRun {
       graph.add_dependency(round_task(l, kRounds - 1), settle_task(l));
       graph.add_dependency(settle_task(l), number_task(l));
       if (l > 0) graph.add_dependency(number_task(l - 1), number_task(l));
-      graph.add_dependency(number_task(l), part_task(l));
+      graph.add_dependency(number_task(l), hand_on_task(l));
+      graph.add_dependency(hand_on_task(l), part_task(l));
       for (const std::uint32_t other : leaves_->conflicts(l)) {
         graph.add_dependency(round_task(other, kRounds - 1), settle_task(l));
         graph.add_dependency(settle_task(other), number_task(l));
-        if (other < l) graph.add_dependency(part_task(other), part_task(l));
+        if (other < l) graph.add_dependency(hand_on_task(other), part_task(l));
       }
     }
   }
@@ -380,24 +381,33 @@ class MeshRun {
                                          [&](std::uint32_t other) { return settled_[other]; });
   }
 
-  // Numbers the vertices of a final leaf, or builds its part.
+  // Numbers the vertices of a final leaf, finds the triangles that go with other parts, or builds
+  // its part.
   void send_leaf(std::uint32_t task, std::uint32_t leaf) {
     const Slots& slots = leaves_->slots(leaf);
     if (task == number_task(leaf)) numbers_ = slots.number_vertices(mesh_, numbers_);
+    if (task == hand_on_task(leaf)) handed_on_[leaf] = triangles_handed_on(mesh_, slots);
     if (task != part_task(leaf)) return;
     context_.add_fraction((1 - kRefining) * share_of(leaf));
-    finish_part(leaf, build([&](PartBuilder<AreaBound>& builder) {
-                  builder.add_vertices(slots);
-                  slots.for_triangles([&](std::uint32_t first, std::uint32_t last) {
-                    builder.add_triangles(first, last, handed_on_[leaf]);
-                  });
-                  for (const std::uint32_t other : leaves_->conflicts(leaf)) {
-                    if (other > leaf) break;
-                    for (const HandedOn& h : handed_on_[other]) {
-                      if (h.owner == slots.owner()) builder.add_triangle(h.triangle);
-                    }
-                  }
-                }));
+    finish_part(
+        leaf, build([&](PartBuilder<AreaBound>& builder) {
+          builder.add_vertices(slots);
+          auto gone = handed_on_[leaf].cbegin();
+          slots.for_triangles([&](std::uint32_t first, std::uint32_t last) {
+            for (; gone != handed_on_[leaf].cend() && first <= gone->slot && gone->slot < last;
+                 ++gone) {
+              builder.add_triangles(first, gone->slot);
+              first = gone->slot + 1;
+            }
+            builder.add_triangles(first, last);
+          });
+          for (const std::uint32_t other : leaves_->conflicts(leaf)) {
+            if (other > leaf) break;
+            for (const HandedOn& h : handed_on_[other]) {
+              if (h.owner == slots.owner()) builder.add_triangle(h.triangle);
+            }
+          }
+        }));
     leaves_->give_back_triangles(leaf);
   }
 
@@ -430,19 +440,18 @@ class MeshRun {
     run_graph(
         kClosingGraph, TaskGraph(parts), 0, parts, [](std::uint32_t part) { return part; },
         [&](std::uint32_t part) {
-          std::vector<HandedOn> none;
           finish_part(part, build([&](PartBuilder<AreaBound>& builder) {
                         if (part == 0) {
                           const Slots& slots = leaves_->clean_up_slots();
                           builder.add_vertices(slots);
                           slots.for_triangles([&](std::uint32_t first, std::uint32_t last) {
-                            builder.add_triangles(first, last, none);
+                            builder.add_triangles(first, last);
                           });
                           return;
                         }
                         const std::size_t end = std::min(part * kRunsPerPart, runs.size());
                         for (std::size_t r = (part - 1) * kRunsPerPart; r < end; ++r)
-                          builder.add_triangles(runs[r].first, runs[r].second, none);
+                          builder.add_triangles(runs[r].first, runs[r].second);
                       }));
         });
   }
