@@ -7,11 +7,14 @@
 //   Arena arena(4);
 //   arena.run([&] { refine(); });     // on one of the four, the caller waits
 //   arena.start([&] { refine(); });   // the caller goes on
+//   arena.for_each(9, 2, [&](int i) { refine(i); });   // on two, the caller waits
 #pragma once
 
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <atomic>
 #include <cstddef>
 #include <utility>
 
@@ -32,6 +35,21 @@ class Arena {
   template <class F>
   auto run(F&& f) {
     return arena_.execute(std::forward<F>(f));
+  }
+
+  // Calls f(0) to f(n - 1) in any order, at most `threads` at the same time. What f throws, this
+  // throws.
+  template <class F>
+  void for_each(std::size_t n, int threads, F&& f) {
+    std::atomic<std::size_t> next{0};
+    run([&] {
+      tbb::parallel_for(
+          0, threads,
+          [&](int) {
+            for (std::size_t i = next++; i < n; i = next++) f(i);
+          },
+          tbb::simple_partitioner());
+    });
   }
 
   // Runs f in the arena once a slot is free: first come, first served.

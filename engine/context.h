@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -90,6 +91,15 @@ class ExecutionContext {
   template <class F>
   auto compute(F&& f) const {
     return arena_ ? arena_->run(std::forward<F>(f)) : f();
+  }
+  // Calls f(0) to f(n - 1), on as many threads as the job may take.
+  template <class F>
+  void for_each(std::size_t n, F&& f) const {
+    if (arena_ && threads_ > 1) {
+      arena_->for_each(n, threads_, std::forward<F>(f));
+    } else {
+      for (std::size_t i = 0; i < n; ++i) f(i);
+    }
   }
   void enter(Stage stage) noexcept { stage_.store(stage, std::memory_order_relaxed); }
   // Returns how many there are now. Thread-safe.

@@ -15,6 +15,11 @@ struct Point {
   friend bool operator==(const Point&, const Point&) = default;
 };
 
+inline Point centroid(Point a, Point b, Point c) {
+  return {a.x + ((b.x - a.x) + (c.x - a.x)) * (1.0 / 3),
+          a.y + ((b.y - a.y) + (c.y - a.y)) * (1.0 / 3)};
+}
+
 // A closed axis-parallel box. The default box is empty; `add` grows it.
 struct Box {
   double min_x = std::numeric_limits<double>::infinity();

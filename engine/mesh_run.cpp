@@ -13,13 +13,13 @@
 #include <utility>
 #include <vector>
 
-#include "engine/digest.h"
+#include "engine/delivery.h"
 #include "engine/emit.h"
 #include "engine/refine/area_bound.h"
 #include "engine/refine/mapped_area.h"
 #include "engine/refine/refiner.h"
-#include "engine/schedule/leaf_radius.h"
 #include "engine/schedule/leaf_tasks.h"
+#include "engine/schedule/prelude.h"
 #include "engine/schedule/quadtree.h"
 #include "engine/schedule/task_graph.h"
 #include "engine/schedule/trace.h"
@@ -51,49 +51,6 @@ class WorkTime {
   std::atomic<std::int64_t> nanoseconds_{0};
 };
 
-// Sends parts in their order, and adds up what they tell.
-class Delivery {
- public:
-  Delivery(ChunkSink& sink, const ExecutionContext& context, Summary& summary)
-      : sink_(sink), context_(context), summary_(summary) {}
-
-  std::optional<Error> send(Part&& part) {
-    statistics_.add(part.statistics);
-    summary_.unrefined += part.unrefined;
-    summary_.edges += part.edges;
-    for (Chunk& chunk : part.chunks) {
-      chunk.index = summary_.chunks++;
-      chunk.first_vertex = static_cast<std::uint32_t>(summary_.vertices);
-      chunk.first_triangle = static_cast<std::uint32_t>(summary_.triangles);
-      summary_.vertices += chunk.coordinates.size() / 2;
-      summary_.triangles += chunk.triangles.size() / 3;
-      digest_.add(chunk.digest.data(), chunk.digest.size());
-      const auto start = Clock::now();
-      const bool accepted = sink_.accept(std::move(chunk));
-      blocked_seconds_ += seconds_since(start);
-      if (accepted) continue;
-      if (auto error = context_.poll()) return error;
-      return Error{ErrorCode::kCancelled, "", "nobody takes the mesh any more"};
-    }
-    return std::nullopt;
-  }
-
-  double blocked_seconds() const { return blocked_seconds_; }
-
-  void finish() {
-    statistics_.write(summary_);
-    summary_.digest = digest_.finish();
-  }
-
- private:
-  ChunkSink& sink_;
-  const ExecutionContext& context_;
-  Summary& summary_;
-  QualityStatistics statistics_;
-  Sha256 digest_;
-  double blocked_seconds_ = 0;
-};
-
 template <class AreaBound>
 class MeshRun {
  public:
@@ -116,28 +73,27 @@ class MeshRun {
         root_(Slots::of_domain(plan.domain)),
         delivery_(sink, context, summary) {}
 
-  std::optional<Error> run() {
+  // `start` is when the work on the mesh began.
+  std::optional<Error> run(Clock::time_point start) {
     context_.add_triangles(static_cast<std::int64_t>(plan_.domain.triangles.size()));
     context_.end_stage("mesh set-up");
-    const auto start = Clock::now();
     auto error = context_.compute([&] { return prelude(); });
     summary_.prelude_seconds = seconds_since(start);
     if (!error) error = leaves_ ? run_leaves() : run_alone();
     if (error) return error;
     delivery_.finish();
     context_.end_stage("closing");
-    summary_.engine_seconds = seconds_since(start) - delivery_.blocked_seconds();
+    summary_.engine_seconds = seconds_since(start) - blocked_seconds_;
     summary_.refine_seconds += refine_time_.seconds();
     summary_.emit_seconds = emit_time_.seconds();
     if (leaves_) {
       for (const Quadtree::Leaf& leaf : tree_.leaves()) summary_.leaves.push_back(leaf.box);
       summary_.rounds = leaves_->rounds();
-      summary_.insertions += leaves_->insertions();
-      summary_.exact_predicates += leaves_->exact_predicates();
+      add(leaves_->figures());
       summary_.deferred = leaves_->deferred();
     }
     summary_.peak_bytes = plan_.domain.bytes() + plan_.other_bytes + corners_.bytes() +
-                          mesh_.bytes() + root_.bytes() + peak_bytes_ +
+                          mesh_.bytes() + root_.bytes() + root_bytes_ +
                           (leaves_ ? leaves_->bytes() + tree_.bytes() : 0);
     return std::nullopt;
   }
@@ -145,9 +101,6 @@ class MeshRun {
  private:
   static constexpr std::uint64_t kNoCap = std::numeric_limits<std::uint64_t>::max();
   static constexpr std::uint32_t kRounds = LeafTasks<AreaBound>::kRounds;
-  // A coarse triangle stands for about so many of a leaf: it takes a few dozen of them to place
-  // the leaves' borders well.
-  static constexpr double kCoarseTrianglesPerLeaf = 16;
   // From so many leaves on, parts leave while others are refined. A smaller mesh is done at once,
   // and keeps the right to a clean-up.
   static constexpr std::uint32_t kStreamingLeaves = 64;
@@ -159,96 +112,36 @@ class MeshRun {
     return std::min(plan.max_triangles.value_or(kNoCap), context.budget().triangle_limit);
   }
 
-  // Refines with owner 0's slots and all of the mesh.
-  template <class Area>
-  std::optional<Error> refine_root(const QualityBounds& quality, const Area& area,
-                                   std::uint64_t max_triangles = kNoCap) {
-    Refiner<OwnsAll, Area> refiner(setting_, quality, area, max_triangles);
-    refiner.begin(root_, OwnsAll{}, plan_.box);
-    auto error = refiner.queue_all();
-    if (!error) error = refiner.run();
-    summary_.insertions += refiner.insertions();
-    summary_.exact_predicates += refiner.exact_predicates();
-    peak_bytes_ = std::max(peak_bytes_, refiner.bytes());
-    return error;
-  }
-
-  // A coarse mesh, the quadtree from it, circumradii that fit the leaves, and the leaves' first
-  // bad triangles; or everything, where the mesh is small or to be cut off at max_triangles.
   std::optional<Error> prelude() {
     if (!cut_off_ && plan_.expected_triangles > plan_.leaf_triangles) {
-      QualityBounds no_angles = plan_.quality;
-      no_angles.sin2 = 0;
-      no_angles.off_centre = 0;
-      const double coarseness = plan_.leaf_triangles / kCoarseTrianglesPerLeaf;
-      if (auto error = refine_root(no_angles, area_.again(coarseness))) return error;
-      context_.end_stage("coarse mesh");
-      tree_ = Quadtree::build(plan_.box, samples(), plan_.leaf_triangles);
-      context_.end_stage("quadtree");
+      Prelude<AreaBound> prelude(setting_, plan_.quality, area_, plan_.leaf_triangles, root_);
+      auto error = prelude.run(plan_.box);
+      add(prelude.figures());
+      if (error) return error;
+      tree_ = prelude.take_tree();
       if (tree_.leaves().size() > 1) {
-        if (auto error = refine_root(no_angles, LeafRadius(tree_))) return error;
-        context_.end_stage("leaf radius");
-        leaves_.emplace(setting_, plan_.quality, area_, tree_);
+        leaves_.emplace(setting_, plan_.quality, area_, tree_, prelude.bad_triangles());
         context_.end_stage("conflicts");
-        auto error = seed_leaves();
-        context_.end_stage("seeding");
-        return error;
+        for (const Quadtree::Leaf& leaf : tree_.leaves()) total_weight_ += leaf.weight;
+        streams_ = prelude.fits() && leaves_->size() >= kStreamingLeaves && !plan_.max_triangles;
+        return std::nullopt;
       }
     }
     return refine_time_.measure([&] {
-      return refine_root(plan_.quality, area_, cut_off_ ? *plan_.max_triangles : kNoCap);
+      Refiner<OwnsAll, AreaBound> refiner(setting_, plan_.quality, area_,
+                                          cut_off_ ? *plan_.max_triangles : kNoCap);
+      refiner.begin(root_, OwnsAll{}, plan_.box);
+      auto error = refiner.queue_all();
+      if (!error) error = refiner.run();
+      add(refiner.figures());
+      return error;
     });
   }
 
-  // The coarse triangles, each with the number that it will be split into.
-  std::vector<Quadtree::Sample> samples() {
-    // Triangles come out at 0.64 of their bound on average.
-    constexpr double kPerBound = 1.55;
-    std::vector<Quadtree::Sample> result;
-    AreaBound area = area_.again();
-    TriangleBlock block;
-    std::vector<double> own_bound;
-    const auto flush = [&] {
-      block.find_centroids();
-      area.bounds_at(block.size, block.centroid_x, block.centroid_y, block.bound);
-      for (std::size_t i = 0; i < block.size; ++i) {
-        const double size =
-            0.5 * ((block.x[1][i] - block.x[0][i]) * (block.y[2][i] - block.y[0][i]) -
-                   (block.y[1][i] - block.y[0][i]) * (block.x[2][i] - block.x[0][i]));
-        const double bound = std::min(block.bound[i], own_bound[i]);
-        const double asked = bound > 0 ? kPerBound * size / bound : 1;
-        result.push_back({{block.centroid_x[i], block.centroid_y[i]}, std::max(asked, 1.0)});
-      }
-      block.size = 0;
-      own_bound.clear();
-    };
-    root_.for_triangles([&](std::uint32_t first, std::uint32_t last) {
-      for (std::uint32_t t = first; t < last; ++t) {
-        const Triangle& triangle = mesh_.triangles[t];
-        own_bound.push_back(plan_.domain.regions[triangle.region].max_area);
-        block.add(mesh_.vertices[triangle.vertex[0]], mesh_.vertices[triangle.vertex[1]],
-                  mesh_.vertices[triangle.vertex[2]]);
-        if (block.size == TriangleBlock::kSize) flush();
-      }
-    });
-    if (block.size > 0) flush();
-    return result;
-  }
-
-  std::optional<Error> seed_leaves() {
-    Refiner<OwnsAll, AreaBound> judge(setting_, plan_.quality, area_);
-    judge.begin(root_, OwnsAll{}, plan_.box);
-    if (auto error = judge.queue_all()) return error;
-    bool all_fit = true;
-    root_.for_triangles([&](std::uint32_t first, std::uint32_t last) {
-      for (std::uint32_t t = first; t < last; ++t) {
-        if (mesh_.triangles[t].badness() != kGood) leaves_->seed(t);
-        all_fit = all_fit && leaves_->fits(t);
-      }
-    });
-    for (const Quadtree::Leaf& leaf : tree_.leaves()) total_weight_ += leaf.weight;
-    streams_ = all_fit && leaves_->size() >= kStreamingLeaves && !plan_.max_triangles;
-    return std::nullopt;
+  void add(const RefinerFigures& figures) {
+    summary_.insertions += figures.insertions;
+    summary_.exact_predicates += figures.exact_predicates;
+    root_bytes_ = std::max(root_bytes_, figures.bytes);
   }
 
   // The mesh is refined already.
@@ -499,8 +392,12 @@ class MeshRun {
     do {
       for (; ready(); ++next) {
         if (next + ahead < last) run.release(task_of_part(next + ahead));
+        const auto before = Clock::now();
         if (auto error = delivery_.send(std::move(parts_[next].part))) stop(*error);
         parts_[next].part = {};
+        const auto after = Clock::now();
+        const auto idle_since = std::max(before, run.idle_since().value_or(after));
+        blocked_seconds_ += std::chrono::duration<double>(after - idle_since).count();
       }
     } while (run.step() || ready());
     if (trace) trace->end_stage(name.stage);
@@ -543,7 +440,8 @@ class MeshRun {
   std::optional<LeafTasks<AreaBound>> leaves_;
   bool streams_ = false;
   double total_weight_ = 0;
-  std::uint64_t peak_bytes_ = 0;  // of the prelude's refiners
+  double blocked_seconds_ = 0;    // in the sink, while there was nothing else to do
+  std::uint64_t root_bytes_ = 0;  // of owner 0's refiners
   WorkTime refine_time_;
   WorkTime emit_time_;
 
@@ -566,6 +464,7 @@ template <class AreaBound>
 std::optional<Error> run_mesh(const MeshPlan& plan, const AreaBound& area, ChunkSink& sink,
                               ExecutionContext& context, Summary& summary) {
   const auto attempt = [&](bool cut_off) -> std::optional<Error> {
+    const auto start = Clock::now();
     auto mesh = context.compute([&] {
       return Mesh::from(plan.domain, context.budget().triangle_limit, plan.expected_triangles,
                         context);
@@ -573,7 +472,8 @@ std::optional<Error> run_mesh(const MeshPlan& plan, const AreaBound& area, Chunk
     if (!mesh) return mesh.error();
     auto corners = context.compute([&] { return AcuteCorners::build(plan.domain, context); });
     if (!corners) return corners.error();
-    return MeshRun<AreaBound>(plan, area, sink, context, summary, *mesh, *corners, cut_off).run();
+    return MeshRun<AreaBound>(plan, area, sink, context, summary, *mesh, *corners, cut_off)
+        .run(start);
   };
   const double cap = static_cast<double>(plan.max_triangles.value_or(0));
   if (plan.max_triangles && plan.least_triangles > cap) return attempt(true);

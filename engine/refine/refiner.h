@@ -41,6 +41,7 @@
 #include "engine/refine/quality_bounds.h"
 #include "engine/refine/slots.h"
 #include "engine/refine/steiner_point.h"
+#include "engine/refine/triangle_judge.h"
 
 namespace weft {
 
@@ -53,6 +54,20 @@ struct Setting {
   Order order;
   std::uint64_t other_bytes;     // that the job holds besides the mesh
   std::uint64_t triangle_limit;  // an error beyond
+};
+
+// What refiners have done.
+struct RefinerFigures {
+  std::uint64_t insertions = 0;
+  std::uint64_t exact_predicates = 0;
+  std::uint64_t bytes = 0;  // of one refiner, at the peak
+
+  RefinerFigures& operator+=(const RefinerFigures& other) {
+    insertions += other.insertions;
+    exact_predicates += other.exact_predicates;
+    bytes = std::max(bytes, other.bytes);
+    return *this;
+  }
 };
 
 // A bad triangle as tasks hand it on: gone if the slot has another first vertex.
@@ -140,8 +155,9 @@ class Refiner {
   // Some of these are gone meanwhile.
   const std::vector<BadTriangle>& handed_over() const { return handed_over_; }
 
-  std::uint64_t insertions() const { return insertions_; }
-  std::uint64_t exact_predicates() const { return cavity_.exact_predicates() + exact_; }
+  RefinerFigures figures() const {
+    return {insertions_, cavity_.exact_predicates() + exact_, bytes()};
+  }
   std::uint64_t bytes() const {
     return cavity_.bytes() + bad_.bytes() + segments_.capacity() * sizeof(segments_[0]) +
            deferred_.capacity() * sizeof(deferred_[0]) + star_.capacity() * sizeof(star_[0]) +
@@ -419,19 +435,9 @@ class Refiner {
 
   // Judges a triangle that was not made by an insertion here, and queues it if it is bad.
   void judge(std::uint32_t t) {
-    Triangle& triangle = mesh_.triangles[t];
-    const Point p = mesh_.vertices[triangle.vertex[0]];
-    single_.size = 1;
-    for (std::uint32_t i = 0; i < 2; ++i) {
-      const Point q = mesh_.vertices[triangle.vertex[i + 1]];
-      single_.x[i] = q.x - p.x;
-      single_.y[i] = q.y - p.y;
-      single_.length2[i] = single_.x[i] * single_.x[i] + single_.y[i] * single_.y[i];
-    }
-    single_.cross[0] = single_.x[0] * single_.y[1] - single_.y[0] * single_.x[1];
-    area_.judge(single_, 0, 1, p, region_bound(t), quality_, judged_.data());
-    triangle.set_badness(judged_[0]);
-    if (judged_[0] != kGood) bad_.push(t, judged_[0]);
+    const Badness badness = judge_(mesh_, t, region_bound(t), quality_, area_);
+    mesh_.triangles[t].set_badness(badness);
+    if (badness != kGood) bad_.push(t, badness);
   }
 
   template <class F>
@@ -509,7 +515,7 @@ class Refiner {
   Slots* slots_ = nullptr;
   Ownership ownership_{};
   Cavity<Ownership> cavity_;
-  Ring single_{1};
+  TriangleJudge judge_;
 
   BadTriangles bad_;
   std::vector<SegmentEdge> segments_;  // encroached upon; entries may be stale

@@ -51,9 +51,10 @@ class LeafTasks {
  public:
   static constexpr std::uint32_t kRounds = 4;
 
-  // Leaf l is owner l + 1 of slots; the clean-up is the owner after the last leaf.
+  // Leaf l is owner l + 1 of slots; the clean-up is the owner after the last leaf. `seeds` are the
+  // bad triangles to begin with.
   LeafTasks(const Setting& setting, const QualityBounds& quality, const AreaBound& area,
-            const Quadtree& tree)
+            const Quadtree& tree, const std::vector<BadTriangle>& seeds)
       : setting_(setting), quality_(quality), area_(area), tree_(tree) {
     auto conflicts = tree.conflicts();
     leaves_.resize(conflicts.size());
@@ -62,6 +63,8 @@ class LeafTasks {
       leaves_[l].conflicts = std::move(conflicts[l]);
     }
     colour();
+    for (const BadTriangle& t : seeds)
+      leaves_[tree_.leaf_at(centroid_of(t.triangle))].left.push_back(t);
     clean_up_slots_ = Slots(static_cast<std::uint32_t>(leaves_.size()) + 1);
   }
 
@@ -78,22 +81,6 @@ class LeafTasks {
     leaves_[leaf].slots.give_back_triangles(setting_.mesh);
   }
   const Slots& clean_up_slots() const { return clean_up_slots_; }
-
-  // A bad triangle of the prelude, for the leaf where its centroid lies.
-  void seed(std::uint32_t triangle) {
-    leaves_[tree_.leaf_at(centroid(triangle))].left.push_back(
-        {triangle, setting_.mesh.triangles[triangle].vertex[0]});
-  }
-
-  // Whether a triangle's circumradius is below a quarter of the side of its leaf (leaf_radius.h).
-  bool fits(std::uint32_t triangle) const {
-    const Triangle& t = setting_.mesh.triangles[triangle];
-    const Point a = setting_.mesh.vertices[t.vertex[0]];
-    const Point b = setting_.mesh.vertices[t.vertex[1]];
-    const Point c = setting_.mesh.vertices[t.vertex[2]];
-    const double side = tree_.leaves()[tree_.leaf_at(centroid(triangle))].side();
-    return circumradius2(a, b, c) <= side * side / 16;
-  }
 
   std::optional<Error> refine(std::uint32_t leaf, std::uint32_t round) {
     Leaf& l = leaves_[leaf];
@@ -116,7 +103,7 @@ class LeafTasks {
     for (const SegmentEdge& s : refiner.deferred_segments()) hand_on(leaf, round, s);
     for (const BadTriangle& t : refiner.handed_over()) {
       if (setting_.mesh.triangles[t.triangle].vertex[0] == t.first_vertex)
-        hand_on(leaf, round, t, centroid(t.triangle));
+        hand_on(leaf, round, t, centroid_of(t.triangle));
     }
     deferred_.fetch_add(refiner.deferred().size() + refiner.deferred_segments().size(),
                         std::memory_order_relaxed);
@@ -139,7 +126,7 @@ class LeafTasks {
       for (const SegmentEdge& s : l.segments_left) refiner.queue(s);
     }
     auto error = refiner.run();
-    clean_up_insertions_ = refiner.insertions();
+    clean_up_figures_ = refiner.figures();
     return error;
   }
 
@@ -160,15 +147,10 @@ class LeafTasks {
   std::uint32_t rounds() const {
     return static_cast<std::uint32_t>(std::count(rounds_.begin(), rounds_.end(), true));
   }
-  std::uint64_t insertions() const {
-    std::uint64_t count = clean_up_insertions_;
-    for (const auto& w : workers_) count += w->refiner.insertions();
-    return count;
-  }
-  std::uint64_t exact_predicates() const {
-    std::uint64_t count = 0;
-    for (const auto& w : workers_) count += w->refiner.exact_predicates();
-    return count;
+  RefinerFigures figures() const {
+    RefinerFigures sum = clean_up_figures_;
+    for (const auto& w : workers_) sum += w->refiner.figures();
+    return sum;
   }
   std::uint64_t bytes() const {
     std::uint64_t bytes = leaves_.capacity() * sizeof(Leaf);
@@ -299,13 +281,10 @@ class LeafTasks {
     return steiner_point(setting_.mesh.vertices[t.vertex[0]], setting_.mesh.vertices[t.vertex[1]],
                          setting_.mesh.vertices[t.vertex[2]], quality_);
   }
-  Point centroid(std::uint32_t triangle) const {
+  Point centroid_of(std::uint32_t triangle) const {
     const Triangle& t = setting_.mesh.triangles[triangle];
-    const Point a = setting_.mesh.vertices[t.vertex[0]];
-    const Point b = setting_.mesh.vertices[t.vertex[1]];
-    const Point c = setting_.mesh.vertices[t.vertex[2]];
-    return {a.x + ((b.x - a.x) + (c.x - a.x)) * (1.0 / 3),
-            a.y + ((b.y - a.y) + (c.y - a.y)) * (1.0 / 3)};
+    return centroid(setting_.mesh.vertices[t.vertex[0]], setting_.mesh.vertices[t.vertex[1]],
+                    setting_.mesh.vertices[t.vertex[2]]);
   }
 
   const Setting setting_;
@@ -315,7 +294,7 @@ class LeafTasks {
   std::vector<Leaf> leaves_;
   Slots clean_up_slots_;
   std::atomic<std::uint64_t> deferred_{0};
-  std::uint64_t clean_up_insertions_ = 0;
+  RefinerFigures clean_up_figures_;
   std::array<std::atomic<bool>, kRounds> rounds_{};  // those that found work
 
   std::mutex mutex_;  // guards the two below while tasks run

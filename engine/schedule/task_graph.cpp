@@ -84,8 +84,20 @@ void GraphRun::start_thread() {
   } catch (...) {
     const std::lock_guard lock(mutex_);
     starved_ = true;
-    if (--running_ == 0) changed_.notify_all();
+    end_thread();
   }
+}
+
+// REQUIRES: the mutex is held.
+void GraphRun::end_thread() {
+  if (--running_ > 0) return;
+  idle_since_ = std::chrono::steady_clock::now();
+  changed_.notify_all();
+}
+
+std::optional<std::chrono::steady_clock::time_point> GraphRun::idle_since() {
+  const std::lock_guard lock(mutex_);
+  return running_ == 0 ? std::optional(idle_since_) : std::nullopt;
 }
 
 // A thread's slice.
@@ -94,7 +106,7 @@ void GraphRun::work() {
   do {
     std::unique_lock lock(mutex_);
     if (ready_.empty() || stopping_) {
-      if (--running_ == 0) changed_.notify_all();
+      end_thread();
       return;
     }
     const std::uint32_t task = ready_.top();

@@ -23,6 +23,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <queue>
 #include <utility>
 #include <vector>
@@ -85,6 +86,8 @@ class GraphRun {
   bool step();
   // Whether ready tasks were given up because no thread could be started for them.
   bool starved() const { return starved_; }
+  // Since when no thread works, if none does; always, without an arena.
+  std::optional<std::chrono::steady_clock::time_point> idle_since();
   // Wakes `step`. Thread-safe.
   void notify();
 
@@ -94,6 +97,7 @@ class GraphRun {
 
   void start_threads(std::unique_lock<std::mutex>& lock);
   void start_thread();
+  void end_thread();
   void work();
   void run(std::uint32_t task);
   void finish(std::uint32_t task);
@@ -113,6 +117,7 @@ class GraphRun {
   std::condition_variable changed_;
   Ready ready_;
   int running_ = 0;  // threads that work, or are queued for
+  std::chrono::steady_clock::time_point idle_since_;
   bool starved_ = false;
   bool notified_ = false;
   bool stopping_ = false;

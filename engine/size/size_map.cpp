@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <span>
+#include <utility>
 
 namespace weft {
 namespace {
@@ -85,82 +85,110 @@ bool contains(const Box& outer, const Box& inner) {
          inner.max_y <= outer.max_y;
 }
 
-// A node whose fate is to be decided, with the triangles of the domain that it overlaps: a range of
-// Level::triangles.
+// A node whose fate is to be decided, with the triangles of the domain that it overlaps.
 struct Pending {
-  std::uint32_t node;
+  std::uint32_t node = 0;
   Box box;
-  std::size_t first;
-  std::size_t last;
-};
-
-struct Level {
-  std::vector<Pending> nodes;
   std::vector<std::uint32_t> triangles;
 };
+
+// What a look at a node tells.
+struct Look {
+  Interval bounds;
+  bool split = false;                                 // it is to be split
+  std::array<std::vector<std::uint32_t>, 4> overlap;  // the triangles of each child, then
+  double area = 0;                                    // common with the domain, otherwise
+  std::optional<Error> stopped;
+};
+
+// Polls now and then: one box may overlap millions of triangles.
+class Poll {
+ public:
+  explicit Poll(const ExecutionContext& context) : context_(context) {}
+  std::optional<Error> operator()() {
+    constexpr std::uint32_t kInterval = 1 << 14;
+    return ++count_ % kInterval == 0 ? context_.poll() : std::nullopt;
+  }
+
+ private:
+  const ExecutionContext& context_;
+  std::uint32_t count_ = 0;
+};
+
+double common_area(const Pending& pending, const Domain& domain) {
+  double area = 0;
+  for (const std::uint32_t t : pending.triangles)
+    area += common_area(pending.box, corners_of(domain, t));
+  return area;
+}
+
+Look look_at(const Pending& pending, const Expression& size, const Domain& domain, bool may_split,
+             Poll& poll) {
+  Look look;
+  if (pending.triangles.empty()) return look;
+  look.bounds = size.bounds(pending.box);
+  const bool resolved = !look.bounds.may_be_nan && look.bounds.lo > 0 &&
+                        look.bounds.hi <= SizeMap::kResolved * look.bounds.lo;
+  const double box_area = pending.box.width() * pending.box.height();
+  const bool small = box_area <= SizeMap::kSmallBox * look.bounds.lo;
+  look.split = !resolved && !small && may_split;
+  for (const std::uint32_t t : pending.triangles) {
+    if ((look.stopped = poll())) return look;
+    const Corners corners = corners_of(domain, t);
+    if (!look.split) {
+      look.area += common_area(pending.box, corners);
+      continue;
+    }
+    for (unsigned child = 0; child < 4; ++child) {
+      if (overlap(child_box(pending.box, child), corners)) look.overlap[child].push_back(t);
+    }
+  }
+  return look;
+}
 
 }  // namespace
 
 Result<SizeMap> SizeMap::build(const Expression& size, const Domain& domain,
                                const ExecutionContext& context) {
   constexpr int kMaxLevels = 48;
+  constexpr std::size_t kAtATime = 64;  // nodes
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   SizeMap map;
   for (Point p : domain.vertices) map.root_.add(p);
   map.nodes_.push_back({-kInfinity, kInfinity, kInfinity, 0, true, false});
 
-  // Polls now and then: one box may overlap millions of triangles.
-  std::uint32_t looked_at = 0;
-  const auto stop = [&]() -> std::optional<Error> {
-    constexpr std::uint32_t kPollInterval = 1 << 14;
-    return ++looked_at % kPollInterval == 0 ? context.poll() : std::nullopt;
-  };
-
-  Level level;
-  level.nodes.push_back({0, map.root_, 0, domain.triangles.size()});
-  level.triangles.resize(domain.triangles.size());
-  std::iota(level.triangles.begin(), level.triangles.end(), 0u);
-
-  for (int depth = 0; !level.nodes.empty(); ++depth) {
-    Level next;
-    for (const Pending& pending : level.nodes) {
-      if (auto error = context.poll()) return tl::unexpected(*error);
-      const std::span triangles(level.triangles.data() + pending.first,
-                                pending.last - pending.first);
-      if (triangles.empty()) continue;
-      const Interval bounds = size.bounds(pending.box);
-      {
-        Node& node = map.nodes_[pending.node];
-        node.lo = bounds.lo;
-        node.hi = bounds.hi;
-        node.lowest_hi = bounds.hi;
-        node.may_be_nan = bounds.may_be_nan;
-        node.meets_domain = true;
-      }
-      const bool resolved =
-          !bounds.may_be_nan && bounds.lo > 0 && bounds.hi <= kResolved * bounds.lo;
-      const double box_area = pending.box.width() * pending.box.height();
-      const bool small = box_area <= kSmallBox * bounds.lo;
-      if (!resolved && !small && depth < kMaxLevels && map.nodes_.size() + 4 <= kMaxNodes) {
+  std::vector<Pending> level{{0, map.root_, {}}};
+  level[0].triangles.resize(domain.triangles.size());
+  std::iota(level[0].triangles.begin(), level[0].triangles.end(), 0u);
+  for (int depth = 0; !level.empty(); ++depth) {
+    if (auto error = context.poll()) return tl::unexpected(*error);
+    // The looks on many threads; what comes of them in order.
+    std::vector<Look> looks(level.size());
+    context.for_each((level.size() + kAtATime - 1) / kAtATime, [&](std::size_t group) {
+      Poll poll(context);
+      const std::size_t end = std::min((group + 1) * kAtATime, level.size());
+      for (std::size_t i = group * kAtATime; i < end; ++i)
+        looks[i] = look_at(level[i], size, domain, depth < kMaxLevels, poll);
+    });
+    std::vector<Pending> next;
+    for (std::size_t i = 0; i < level.size(); ++i) {
+      Look& look = looks[i];
+      if (look.stopped) return tl::unexpected(*look.stopped);
+      if (level[i].triangles.empty()) continue;
+      const Interval& bounds = look.bounds;
+      Node& node = map.nodes_[level[i].node];
+      node = {bounds.lo, bounds.hi, bounds.hi, 0, bounds.may_be_nan, true};
+      if (look.split && map.nodes_.size() + 4 <= kMaxNodes) {
         const auto first = static_cast<std::uint32_t>(map.nodes_.size());
-        map.nodes_[pending.node].first_child = first;
+        node.first_child = first;
         for (unsigned child = 0; child < 4; ++child) {
           map.nodes_.push_back({-kInfinity, kInfinity, kInfinity, 0, true, false});
-          const Box box = child_box(pending.box, child);
-          const std::size_t begin = next.triangles.size();
-          for (std::uint32_t t : triangles) {
-            if (auto error = stop()) return tl::unexpected(*error);
-            if (overlap(box, corners_of(domain, t))) next.triangles.push_back(t);
-          }
-          next.nodes.push_back({first + child, box, begin, next.triangles.size()});
+          next.push_back(
+              {first + child, child_box(level[i].box, child), std::move(look.overlap[child])});
         }
         continue;
       }
-      double area = 0;
-      for (std::uint32_t t : triangles) {
-        if (auto error = stop()) return tl::unexpected(*error);
-        area += common_area(pending.box, corners_of(domain, t));
-      }
+      const double area = look.split ? common_area(level[i], domain) : look.area;
       if (bounds.lo > 0 && !bounds.may_be_nan) map.least_triangles_ += area / bounds.hi;
       const double guess = bounds.lo > 0 ? std::sqrt(bounds.lo) * std::sqrt(bounds.hi) : bounds.hi;
       if (guess > 0) map.likely_triangles_ += area / guess;

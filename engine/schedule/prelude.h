@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What comes before the leaves' tasks: a coarse mesh, the quadtree from it, circumradii that fit
+// the leaves (the paper's eq. 5), and the bad triangles to begin with.
+//
+//   Prelude<ConstantArea> prelude(setting, quality, area, 16'000, slots);
+//   if (auto error = prelude.run(box)) return error;
+//   Quadtree tree = prelude.take_tree();
+//
+// The coarse mesh obeys the grading function, multiplied, and no bound on angles. So it follows the
+// grading wherever the domain is, and misses none of its features.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "engine/context.h"
+#include "engine/quality_statistics.h"
+#include "engine/refine/refiner.h"
+#include "engine/refine/slots.h"
+#include "engine/refine/triangle_judge.h"
+#include "engine/schedule/leaf_radius.h"
+#include "engine/schedule/quadtree.h"
+
+namespace weft {
+
+template <class AreaBound>
+class Prelude {
+ public:
+  // `slots` has all triangles of the mesh, and takes those that are made.
+  Prelude(const Setting& setting, const QualityBounds& quality, const AreaBound& area,
+          double leaf_triangles, Slots& slots)
+      : setting_(setting),
+        quality_(quality),
+        area_(area),
+        leaf_triangles_(leaf_triangles),
+        slots_(slots) {}
+
+  // `box` holds the domain. Ends with the coarse mesh where one leaf is enough.
+  std::optional<Error> run(const Box& box) {
+    QualityBounds no_angles = quality_;
+    no_angles.sin2 = 0;
+    no_angles.off_centre = 0;
+    const double coarseness = leaf_triangles_ / kCoarseTrianglesPerLeaf;
+    if (auto error = refine(no_angles, area_.again(coarseness), box)) return error;
+    setting_.context.end_stage("coarse mesh");
+    tree_ = Quadtree::build(box, samples(), leaf_triangles_);
+    setting_.context.end_stage("quadtree");
+    if (tree_.leaves().size() == 1) return std::nullopt;
+    if (auto error = refine(no_angles, LeafRadius(tree_), box)) return error;
+    setting_.context.end_stage("leaf radius");
+    auto error = judge(box);
+    setting_.context.end_stage("seeding");
+    return error;
+  }
+
+  Quadtree take_tree() { return std::move(tree_); }
+  // In the order of the slots.
+  const std::vector<BadTriangle>& bad_triangles() const { return bad_; }
+  // Whether every circumradius fits its leaf.
+  bool fits() const { return fits_; }
+  const RefinerFigures& figures() const { return figures_; }
+
+ private:
+  // A coarse triangle stands for one in so many of a leaf: it takes a dozen of them to place the
+  // leaves' borders well.
+  static constexpr double kCoarseTrianglesPerLeaf = 16;
+
+  using Run = std::pair<std::uint32_t, std::uint32_t>;  // of slots: first, and one past the last
+
+  // What one thread found in some of the slots.
+  struct Found {
+    std::vector<BadTriangle> bad;
+    bool fits = true;
+    std::optional<BadSize> bad_size;
+  };
+
+  template <class Area>
+  std::optional<Error> refine(const QualityBounds& quality, const Area& area, const Box& box) {
+    Refiner<OwnsAll, Area> refiner(setting_, quality, area);
+    refiner.begin(slots_, OwnsAll{}, box);
+    auto error = refiner.queue_all();
+    if (!error) error = refiner.run();
+    figures_ += refiner.figures();
+    return error;
+  }
+
+  std::vector<Run> runs() const {
+    std::vector<Run> result;
+    slots_.for_triangles([&](std::uint32_t first, std::uint32_t last) {
+      result.push_back({first, last});
+    });
+    return result;
+  }
+
+  // The coarse triangles, each with the number that it will be split into.
+  std::vector<Quadtree::Sample> samples() const {
+    const std::vector<Run> all = runs();
+    std::vector<std::vector<Quadtree::Sample>> found(all.size());
+    setting_.context.for_each(all.size(), [&](std::size_t r) { found[r] = samples(all[r]); });
+    std::vector<Quadtree::Sample> result;
+    for (const auto& samples : found) result.insert(result.end(), samples.begin(), samples.end());
+    return result;
+  }
+
+  std::vector<Quadtree::Sample> samples(const Run& run) const {
+    // Triangles come out at 0.64 of their bound on average.
+    constexpr double kPerBound = 1.55;
+    static_assert(Mesh::kTriangleBlock <= TriangleBlock::kSize);
+    const Mesh& mesh = setting_.mesh;
+    TriangleBlock block;
+    for (std::uint32_t t = run.first; t < run.second; ++t) {
+      const auto& v = mesh.triangles[t].vertex;
+      block.add(mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]);
+    }
+    block.find_centroids();
+    AreaBound area = area_.again();
+    area.bounds_at(block.size, block.centroid_x, block.centroid_y, block.bound);
+    std::vector<Quadtree::Sample> result;
+    for (std::size_t i = 0; i < block.size; ++i) {
+      const double size = 0.5 * ((block.x[1][i] - block.x[0][i]) * (block.y[2][i] - block.y[0][i]) -
+                                 (block.y[1][i] - block.y[0][i]) * (block.x[2][i] - block.x[0][i]));
+      const double bound =
+          std::min(block.bound[i], region_bound(run.first + static_cast<std::uint32_t>(i)));
+      const double asked = bound > 0 ? kPerBound * size / bound : 1;
+      result.push_back({{block.centroid_x[i], block.centroid_y[i]}, std::max(asked, 1.0)});
+    }
+    return result;
+  }
+
+  // Judges all triangles by the bounds of the mesh that is asked for.
+  std::optional<Error> judge(const Box& box) {
+    const std::vector<Run> all = runs();
+    std::vector<Found> found(all.size());
+    setting_.context.for_each(all.size(), [&](std::size_t r) { found[r] = judge(all[r], box); });
+    for (const Found& f : found) {
+      if (f.bad_size) return Error{ErrorCode::kBadSizeValue, "size", bad_size_message(*f.bad_size)};
+      bad_.insert(bad_.end(), f.bad.begin(), f.bad.end());
+      fits_ = fits_ && f.fits;
+    }
+    return setting_.context.poll();
+  }
+
+  Found judge(const Run& run, const Box& box) const {
+    const Mesh& mesh = setting_.mesh;
+    Found found;
+    AreaBound area = area_.again();
+    area.begin(box);
+    TriangleJudge judge;
+    for (std::uint32_t t = run.first; t < run.second; ++t) {
+      Triangle& triangle = mesh.triangles[t];
+      const Badness badness = judge(mesh, t, region_bound(t), quality_, area);
+      triangle.set_badness(badness);
+      if (badness != kGood) found.bad.push_back({t, triangle.vertex[0]});
+      found.fits = found.fits && fits(triangle);
+    }
+    found.bad_size = area.bad_size();
+    return found;
+  }
+
+  bool fits(const Triangle& t) const {
+    const Point a = setting_.mesh.vertices[t.vertex[0]];
+    const Point b = setting_.mesh.vertices[t.vertex[1]];
+    const Point c = setting_.mesh.vertices[t.vertex[2]];
+    const double side = tree_.leaves()[tree_.leaf_at(centroid(a, b, c))].side();
+    const double limit = side / LeafRadius::kFraction;
+    return circumradius2(a, b, c) <= limit * limit;
+  }
+
+  double region_bound(std::uint32_t t) const {
+    return setting_.regions[setting_.mesh.triangles[t].region].max_area;
+  }
+
+  const Setting setting_;
+  const QualityBounds quality_;
+  const AreaBound& area_;
+  const double leaf_triangles_;
+  Slots& slots_;
+  Quadtree tree_;
+  std::vector<BadTriangle> bad_;
+  bool fits_ = true;
+  RefinerFigures figures_;
+};
+
+}  // namespace weft
