@@ -23,7 +23,7 @@
 
 namespace weft {
 
-enum class Stage : std::uint8_t { kQueued, kTriangulate, kSize, kRefine, kEmit, kDone };
+enum class Stage : std::uint8_t { kQueued, kTriangulate, kSize, kRefine, kDone };
 
 // A snapshot for whoever watches. `expected_triangles` is an estimate from the size field.
 struct Progress {
@@ -76,9 +76,15 @@ class ExecutionContext {
   }
 
   Progress progress() const noexcept {
-    return {stage_.load(std::memory_order_relaxed), triangles_.load(std::memory_order_relaxed),
-            expected_.load(std::memory_order_relaxed),
-            std::min(1.0, fraction_.load(std::memory_order_relaxed))};
+    Progress now{stage_.load(std::memory_order_relaxed), triangles_.load(std::memory_order_relaxed),
+                 expected_.load(std::memory_order_relaxed),
+                 fraction_.load(std::memory_order_relaxed)};
+    now.fraction +=
+        share_of_triangles_.load(std::memory_order_relaxed) *
+        std::min(1.0, static_cast<double>(now.triangles) /
+                          static_cast<double>(std::max<std::uint64_t>(now.expected_triangles, 1)));
+    now.fraction = std::min(1.0, now.fraction);
+    return now;
   }
 
   // For the engine at work.
@@ -110,6 +116,10 @@ class ExecutionContext {
   std::uint64_t triangles() const noexcept { return triangles_.load(std::memory_order_relaxed); }
   // Thread-safe.
   void add_fraction(double f) noexcept { fraction_.fetch_add(f, std::memory_order_relaxed); }
+  // To this part, work is done as triangles are made.
+  void count_triangles_as(double part) noexcept {
+    share_of_triangles_.store(part, std::memory_order_relaxed);
+  }
   void report_expected(std::uint64_t n) noexcept { expected_.store(n, std::memory_order_relaxed); }
 
  private:
@@ -123,6 +133,7 @@ class ExecutionContext {
   std::atomic<std::uint64_t> triangles_{0};
   std::atomic<std::uint64_t> expected_{0};
   std::atomic<double> fraction_{0};
+  std::atomic<double> share_of_triangles_{0};
 };
 
 }  // namespace weft

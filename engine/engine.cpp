@@ -134,6 +134,8 @@ class Job {
   }
 
  private:
+  static constexpr std::uint64_t kUncountable = 1'000'000'000'000'000'000;
+
   // The bound when it is the same everywhere; infinity for none.
   Result<double> constant_bound() const {
     if (request_.size.constant) return *request_.size.constant;
@@ -164,7 +166,8 @@ class Job {
     }
     // Triangles come out at 0.64 of their bound on average.
     expected_ = std::max(1.55 * estimate.likely, static_cast<double>(domain_.triangles.size()));
-    context_.report_expected(static_cast<std::uint64_t>(std::min(expected_, 1e18)));
+    const double most = static_cast<double>(wants_cap() ? budget.max_triangles : kUncountable);
+    context_.report_expected(static_cast<std::uint64_t>(std::min(expected_, most)));
     summary_.size_seconds = clock_.lap();
     context_.end_stage("size map");
 

@@ -127,6 +127,7 @@ class MeshRun {
         return std::nullopt;
       }
     }
+    context_.count_triangles_as(kRefining);
     return refine_time_.measure([&] {
       Refiner<OwnsAll, AreaBound> refiner(setting_, plan_.quality, area_,
                                           cut_off_ ? *plan_.max_triangles : kNoCap);
@@ -155,6 +156,7 @@ class MeshRun {
       });
     });
     if (!part) return context_.poll();
+    context_.add_fraction(1);
     return delivery_.send(std::move(*part));
   }
 

@@ -25,11 +25,6 @@ std::optional<grpc::ByteBuffer> ChunkQueue::try_pop() {
   return message;
 }
 
-bool ChunkQueue::empty() const {
-  std::lock_guard lock(mutex_);
-  return messages_.empty();
-}
-
 void ChunkQueue::close() {
   std::deque<grpc::ByteBuffer> dropped;
   std::lock_guard lock(mutex_);

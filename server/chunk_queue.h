@@ -33,8 +33,6 @@ class ChunkQueue {
   // Nothing where the queue is empty.
   std::optional<grpc::ByteBuffer> try_pop();
 
-  bool empty() const;
-
   // Drops what is queued, wakes whoever waits and refuses what comes.
   void close();
 
@@ -45,7 +43,7 @@ class ChunkQueue {
   }
 
   const Bounds bounds_;
-  mutable std::mutex mutex_;  // guards all below
+  std::mutex mutex_;  // guards all below
   std::condition_variable room_;
   std::deque<grpc::ByteBuffer> messages_;
   std::size_t bytes_ = 0;

@@ -46,6 +46,7 @@ constexpr std::array kTable = {
     row(kQueueFull, "QUEUE_FULL", RESOURCE_EXHAUSTED, kRetry, "queue_full"),
     row(kStopping, "STOPPING", UNAVAILABLE, kRetry, "stopping"),
     row(kReaderStalled, "READER_STALLED", CANCELLED, kFinal, "reader_stalled"),
+    row(kChunkOutOfRange, "CHUNK_OUT_OF_RANGE", OUT_OF_RANGE, kFinal, "chunk_out_of_range"),
 };
 
 constexpr bool indexed_by_reason() {

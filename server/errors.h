@@ -42,6 +42,7 @@ enum class Reason {
   kQueueFull,         // too many jobs wait
   kStopping,          // the server drains
   kReaderStalled,     // the client read nothing for too long
+  kChunkOutOfRange,   // first_chunk is beyond the mesh
 };
 
 struct ErrorRow {

@@ -15,12 +15,12 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-grpc::ByteBuffer accepted_message(const std::string& id) {
+grpc::ByteBuffer accepted_message(const std::string& id, std::uint32_t threads) {
   v1::GenerateMeshResponse message;
   v1::Accepted& accepted = *message.mutable_accepted();
   accepted.set_job_id(id);
   accepted.set_engine_version(std::string(kEngineVersion));
-  accepted.set_threads(kThreadsPerJob);
+  accepted.set_threads(threads);
   return serialize(message);
 }
 
@@ -36,12 +36,16 @@ MeshJob::Clock::time_point after(Seconds span) {
 MeshJob::MeshJob(const JobEnvironment& environment, grpc::CallbackServerContext* context,
                  std::string id, std::unique_ptr<v1::GenerateMeshRequest> request,
                  DrainGate::Pass pass)
-    : MessageStream(context, accepted_message(id)),
+    : MessageStream(context, accepted_message(
+                                 id, to_threads(request->threads(), environment.arena.threads()))),
       environment_(environment),
       id_(std::move(id)),
       peer_(context->peer()),
       call_deadline_(context->deadline()),
       max_seconds_(to_seconds(request->budget(), environment.limits)),
+      threads_(to_threads(request->threads(), environment.arena.threads())),
+      first_chunk_(request->first_chunk()),
+      wants_quadtree_(request->want_quadtree()),
       pass_(std::move(pass)),
       context_(to_budget(request->budget(), environment.limits)),
       request_(std::move(request)) {}
@@ -99,7 +103,7 @@ tl::expected<Summary, Failure> MeshJob::work() {
   const Seconds until_call_deadline = call_deadline_ - std::chrono::system_clock::now();
   const Clock::time_point deadline = after(std::min(Seconds(max_seconds_), until_call_deadline));
   context_.set_deadline(deadline);
-  context_.set_arena(environment_.arena);
+  context_.set_arena(environment_.arena, static_cast<int>(threads_));
   {
     std::lock_guard lock(mutex_);
     work_deadline_ = deadline;
@@ -111,6 +115,7 @@ tl::expected<Summary, Failure> MeshJob::work() {
     request_.reset();
     const Result<Summary> summary = environment_.engine(request, *this, context_);
     if (!summary) return tl::unexpected(failure_of(summary.error()));
+    if (auto failure = check_first_chunk(*summary)) return tl::unexpected(*failure);
     return *summary;
   } catch (const std::bad_alloc&) {
     return tl::unexpected(Failure{Reason::kBudgetExceeded, "", "the server is out of memory"});
@@ -122,9 +127,17 @@ tl::expected<Summary, Failure> MeshJob::work() {
   }
 }
 
+std::optional<Failure> MeshJob::check_first_chunk(const Summary& summary) const {
+  if (first_chunk_ <= summary.chunks) return std::nullopt;
+  return Failure{
+      Reason::kChunkOutOfRange, "first_chunk",
+      fmt::format("first_chunk is {}, but the mesh has {} chunks", first_chunk_, summary.chunks)};
+}
+
 void MeshJob::succeed(const Summary& summary) {
   v1::GenerateMeshResponse message;
-  *message.mutable_summary() = to_wire(summary);
+  *message.mutable_summary() = to_wire(summary, threads_);
+  if (wants_quadtree_) add_quadtree(summary, *message.mutable_summary());
   if (finish(serialize(message))) log_end("OK", "-");
 }
 
@@ -154,6 +167,7 @@ Failure MeshJob::failure_of_cause(StopCause cause) const {
 }
 
 bool MeshJob::accept(Chunk&& chunk) {
+  if (chunk.index < first_chunk_) return true;
   to_wire(chunk, *chunk_message_.mutable_chunk());
   grpc::ByteBuffer bytes = serialize(chunk_message_);
   const std::size_t length = bytes.Length();
@@ -173,6 +187,7 @@ grpc::ByteBuffer MeshJob::progress_message(Clock::time_point now) {
   told_.set_stage(std::max(told_.stage(), stage));
   told_.set_triangles(std::max<std::uint64_t>(told_.triangles(), progress.triangles));
   told_.set_expected_triangles(progress.expected_triangles);
+  told_.set_fraction(std::max(told_.fraction(), progress.fraction));
   told_.set_elapsed_seconds(Seconds(now - admitted_).count());
   v1::GenerateMeshResponse message;
   *message.mutable_progress() = told_;

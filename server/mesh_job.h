@@ -71,6 +71,7 @@ class MeshJob final : public MessageStream,
  private:
   void run() noexcept override;
   tl::expected<Summary, Failure> work();
+  std::optional<Failure> check_first_chunk(const Summary& summary) const;
   // Of these, the first decides how the call ends, and logs it.
   void succeed(const Summary& summary);
   void fail(const Failure& failure);
@@ -88,6 +89,9 @@ class MeshJob final : public MessageStream,
   const std::string peer_;
   const std::chrono::system_clock::time_point call_deadline_;
   const double max_seconds_;  // of work
+  const std::uint32_t threads_;
+  const std::uint32_t first_chunk_;  // those before it are not sent
+  const bool wants_quadtree_;
   const Clock::time_point admitted_ = Clock::now();
   const DrainGate::Pass pass_;
   ExecutionContext context_;

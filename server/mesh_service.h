@@ -32,7 +32,7 @@
 namespace weft::server {
 
 struct ServiceOptions {
-  // Threads that refine, in one arena for all jobs. REQUIRES: >= 1.
+  // Threads that compute, in one arena for all jobs. REQUIRES: >= 1.
   std::uint32_t threads = 1;
   // Jobs that run at once, and that wait for their turn. REQUIRES: jobs >= 1.
   std::uint32_t jobs = 1;

@@ -16,20 +16,20 @@ bool MessageStream::send(grpc::ByteBuffer message) {
   return true;
 }
 
-void MessageStream::offer(const grpc::ByteBuffer& message) {
+void MessageStream::offer(grpc::ByteBuffer message) {
   {
     std::lock_guard lock(mutex_);
-    if (writing_ || finished_ || last_queued_ || status_ || !queue_.empty()) return;
-    writing_ = true;
-    write_started_ = Clock::now();
+    if (!first_sent_ || last_queued_ || status_) return;
+    offered_ = std::move(message);
   }
-  write(message);
+  pump();
 }
 
 bool MessageStream::finish(grpc::ByteBuffer last) {
   {
     std::lock_guard lock(mutex_);
     last_queued_ = true;  // no offer may come after the last message
+    offered_.reset();
   }
   if (!queue_.push(std::move(last))) return false;
   const bool first = settle(grpc::Status::OK);
@@ -50,6 +50,7 @@ bool MessageStream::settle(grpc::Status status) {
   std::lock_guard lock(mutex_);
   if (status_) return false;
   status_ = std::move(status);
+  offered_.reset();
   return true;
 }
 
@@ -72,8 +73,9 @@ void MessageStream::pump() {
   {
     std::lock_guard lock(mutex_);
     if (writing_ || finished_) return;
-    next = queue_.try_pop();
+    next = offered_ ? std::exchange(offered_, std::nullopt) : queue_.try_pop();
     if (next) {
+      first_sent_ = true;
       writing_ = true;
       write_started_ = Clock::now();
     } else if (status_) {

@@ -31,8 +31,9 @@ class MessageStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   // Puts a message in the queue and waits where that is full. False once the stream has ended.
   bool send(grpc::ByteBuffer message);
 
-  // Sends a message if the stream is idle, and drops it if anything else waits to be sent.
-  void offer(const grpc::ByteBuffer& message);
+  // Sends a message before all that is queued. Of several offered while a write is outstanding the
+  // latest is sent; none is before the first message or after the last one.
+  void offer(grpc::ByteBuffer message);
 
   // Sends `last` after all that is queued, then finishes the call with OK. Waits where the queue is
   // full. False where an `abort` came first.
@@ -72,6 +73,8 @@ class MessageStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   grpc::ByteBuffer outgoing_;  // belongs to whoever has set writing_
 
   mutable std::mutex mutex_;  // guards all below
+  std::optional<grpc::ByteBuffer> offered_;
+  bool first_sent_ = false;
   bool writing_ = false;
   bool finished_ = false;  // Finish was called
   bool last_queued_ = false;

@@ -86,9 +86,11 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
       ->allow_extra_args(false);
   flags.value("--port-file", options.port_file, "File for the bound addresses, one a line");
   flags
-      .value("--threads", service.threads, "Threads that refine; default: what the machine grants")
+      .value("--threads", service.threads, "Threads that compute; default: what the machine grants")
       ->check(CLI::Range(1u, 4096u));
-  flags.value("--jobs", jobs, "Jobs that run at once; default: as many as threads")
+  flags
+      .value("--jobs", jobs,
+             "Jobs that run at once and share the threads; default: as many as threads, at least 4")
       ->check(CLI::Range(1u, 4096u))
       ->default_str("");
   flags.value("--queue", service.queue, "Jobs that wait; more are refused")
@@ -115,7 +117,9 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
   } catch (const CLI::ParseError& error) {
     return Exit{app.exit(error) == 0 ? 0 : kExitUsage};
   }
-  service.jobs = jobs != 0 ? jobs : service.threads;
+  // A small job must not wait for one huge job to end.
+  constexpr std::uint32_t kFewestJobs = 4;
+  service.jobs = jobs != 0 ? jobs : std::max(service.threads, kFewestJobs);
   service.stall_timeout = to_duration(stall_timeout);
   options.drain = std::chrono::duration<double>(drain);
   return options;

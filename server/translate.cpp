@@ -140,6 +140,11 @@ double to_seconds(const v1::Budget& budget, const Limits& limits) {
   return budget.max_seconds() != 0 ? budget.max_seconds() : limits.max_seconds;
 }
 
+std::uint32_t to_threads(std::uint32_t wanted, int available) {
+  const auto all = static_cast<std::uint32_t>(available);
+  return wanted == 0 ? all : std::min(wanted, all);
+}
+
 void to_wire(const Chunk& chunk, v1::Chunk& message) {
   message.set_index(chunk.index);
   message.set_first_vertex(chunk.first_vertex);
@@ -179,7 +184,7 @@ void to_wire(const Chunk& chunk, v1::Chunk& message) {
   message.set_sha256(to_string(chunk.digest));
 }
 
-v1::Summary to_wire(const Summary& summary) {
+v1::Summary to_wire(const Summary& summary, std::uint32_t threads) {
   v1::Summary message;
   message.set_vertices(summary.vertices);
   message.set_triangles(summary.triangles);
@@ -197,6 +202,7 @@ v1::Summary to_wire(const Summary& summary) {
   v1::Timings& timings = *message.mutable_timings();
   timings.set_triangulate_seconds(summary.triangulate_seconds);
   timings.set_size_seconds(summary.size_seconds);
+  timings.set_prelude_seconds(summary.prelude_seconds);
   timings.set_refine_seconds(summary.refine_seconds);
   timings.set_emit_seconds(summary.emit_seconds);
   timings.set_engine_seconds(summary.engine_seconds);
@@ -204,8 +210,20 @@ v1::Summary to_wire(const Summary& summary) {
   message.set_insertions(summary.insertions);
   message.set_exact_predicates(summary.exact_predicates);
   message.set_sha256(to_string(summary.digest));
-  message.set_threads(kThreadsPerJob);
+  message.set_threads(threads);
+  message.set_deferred(summary.deferred);
+  message.set_rounds(summary.rounds);
+  message.set_leaves(static_cast<std::uint32_t>(summary.leaves.size()));
   return message;
+}
+
+void add_quadtree(const Summary& summary, v1::Summary& message) {
+  if (summary.leaves.size() > kMaxLeafBoxes) return;
+  auto& boxes = *message.mutable_leaf_boxes();
+  boxes.Reserve(4 * static_cast<int>(summary.leaves.size()));
+  for (const Box& box : summary.leaves)
+    for (const double side : {box.min_x, box.min_y, box.max_x, box.max_y})
+      boxes.AddAlreadyReserved(side);
 }
 
 v1::Stage to_wire(Stage stage) {
@@ -218,7 +236,6 @@ v1::Stage to_wire(Stage stage) {
       return v1::STAGE_SIZE;
     case Stage::kRefine:
       return v1::STAGE_REFINE;
-    case Stage::kEmit:
     case Stage::kDone:
       return v1::STAGE_EMIT;
   }

@@ -17,8 +17,12 @@
 
 namespace weft::server {
 
-// Threads that one job refines on. The engine is sequential.
-inline constexpr std::uint32_t kThreadsPerJob = 1;
+// Leaves of a quadtree whose boxes are sent, at most: 2 MiB, half of what a client of gRPC takes in
+// a message by default.
+inline constexpr std::size_t kMaxLeafBoxes = 65'536;
+
+// Threads of `available` that a job takes at most, of which `wanted` are asked for; 0 is all.
+std::uint32_t to_threads(std::uint32_t wanted, int available);
 
 // Refuses arrays of impossible lengths and options outside their ranges, in constant time but for
 // the regions.
@@ -31,7 +35,10 @@ double to_seconds(const v1::Budget& budget, const Limits& limits);
 
 // Writes over what `message` holds; its arrays keep their memory for the next chunk.
 void to_wire(const Chunk& chunk, v1::Chunk& message);
-v1::Summary to_wire(const Summary& summary);
+// The summary of a job on so many threads, without the boxes of the quadtree's leaves.
+v1::Summary to_wire(const Summary& summary, std::uint32_t threads);
+// Adds those boxes, unless there are more than kMaxLeafBoxes.
+void add_quadtree(const Summary& summary, v1::Summary& message);
 v1::Stage to_wire(Stage stage);
 
 // The bytes of a message, as one gRPC buffer.

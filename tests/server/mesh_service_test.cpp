@@ -2,8 +2,6 @@
 // GenerateMesh and GetServerInfo as a client sees them.
 #include "server/mesh_service.h"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
@@ -299,20 +297,6 @@ TEST(GenerateMesh, HandsTheWholeRequestToTheEngine) {
   });
   EXPECT_TRUE(call(*server.stub(), request).status.ok());
   EXPECT_TRUE(called.wait());
-}
-
-TEST(GenerateMesh, ComputesInAnArenaOfTheServersThreads) {
-  ServiceOptions options;
-  options.threads = 3;
-  std::atomic<int> threads{0};
-  TestServer server(
-      [&](const auto&, ChunkSink& sink, ExecutionContext& context) {
-        threads = context.compute([] { return tbb::this_task_arena::max_concurrency(); });
-        return send_chunks(sink, 1);
-      },
-      options);
-  EXPECT_TRUE(call(*server.stub(), valid_request()).status.ok());
-  EXPECT_EQ(threads, 3);
 }
 
 TEST(GetServerInfo, TellsVersionsThreadsAndLimits) {

@@ -203,7 +203,16 @@ TEST(Process, ReadsFlagsFromTheEnvironmentAndFlagsWin) {
   EXPECT_EQ(info.limits().max_segments(), 11u);
   EXPECT_EQ(info.limits().max_request_bytes(), 2u << 20);
   EXPECT_EQ(info.threads(), 3u);
-  EXPECT_EQ(info.limits().max_concurrent_jobs(), 3u);
+  EXPECT_EQ(info.limits().max_concurrent_jobs(), 4u);
+}
+
+TEST(Process, RunsAsManyJobsAtOnceAsThreadsButAtLeastFour) {
+  const auto jobs = [](const char* threads) {
+    Weftd weftd({"--listen", "127.0.0.1:0", "--threads", threads});
+    return info_of(weftd.address()).limits().max_concurrent_jobs();
+  };
+  EXPECT_EQ(jobs("1"), 4u);
+  EXPECT_EQ(jobs("6"), 6u);
 }
 
 TEST(Process, EndsWith3WhereItCannotListenAndSaysWhy) {

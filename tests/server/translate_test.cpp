@@ -78,6 +78,7 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   summary.unrefined = {11, 12, 13};
   summary.triangulate_seconds = 14;
   summary.size_seconds = 15;
+  summary.prelude_seconds = 15.5;
   summary.refine_seconds = 16;
   summary.emit_seconds = 17;
   summary.engine_seconds = 18;
@@ -85,7 +86,10 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   summary.insertions = 20;
   summary.exact_predicates = 21;
   summary.digest.fill(22);
-  const v1::Summary message = to_wire(summary);
+  summary.deferred = 23;
+  summary.rounds = 24;
+  summary.leaves.resize(25);
+  const v1::Summary message = to_wire(summary, 26);
   EXPECT_EQ(message.vertices(), 1u);
   EXPECT_EQ(message.triangles(), 2u);
   EXPECT_EQ(message.edges(), 3u);
@@ -104,6 +108,7 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   EXPECT_EQ(message.unrefined().budget(), 13u);
   EXPECT_EQ(message.timings().triangulate_seconds(), 14);
   EXPECT_EQ(message.timings().size_seconds(), 15);
+  EXPECT_EQ(message.timings().prelude_seconds(), 15.5);
   EXPECT_EQ(message.timings().refine_seconds(), 16);
   EXPECT_EQ(message.timings().emit_seconds(), 17);
   EXPECT_EQ(message.timings().engine_seconds(), 18);
@@ -111,7 +116,34 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   EXPECT_EQ(message.insertions(), 20u);
   EXPECT_EQ(message.exact_predicates(), 21u);
   EXPECT_EQ(message.sha256(), std::string(32, '\x16'));
-  EXPECT_EQ(message.threads(), 1u);
+  EXPECT_EQ(message.deferred(), 23u);
+  EXPECT_EQ(message.rounds(), 24u);
+  EXPECT_EQ(message.leaves(), 25u);
+  EXPECT_EQ(message.leaf_boxes_size(), 0);
+  EXPECT_EQ(message.threads(), 26u);
+}
+
+TEST(SummaryToWire, CarriesTheBoxesOfTheQuadtreeInOrder) {
+  Summary summary;
+  summary.leaves = {{1, 2, 3, 4}, {5, 6, 7, 8}};
+  v1::Summary message;
+  add_quadtree(summary, message);
+  EXPECT_EQ(vector_of(message.leaf_boxes()), (std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8}));
+}
+
+TEST(SummaryToWire, LeavesBoxesOutWhereAClientMightNotTakeThem) {
+  constexpr std::size_t kMostOfAClient = std::size_t{4} << 20;
+  Summary summary;
+  summary.leaves.resize(kMaxLeafBoxes);
+  v1::Summary message = to_wire(summary, 1);
+  add_quadtree(summary, message);
+  EXPECT_EQ(static_cast<std::size_t>(message.leaf_boxes_size()), 4 * kMaxLeafBoxes);
+  EXPECT_LT(message.ByteSizeLong(), kMostOfAClient);
+  summary.leaves.resize(kMaxLeafBoxes + 1);
+  message = to_wire(summary, 1);
+  add_quadtree(summary, message);
+  EXPECT_EQ(message.leaf_boxes_size(), 0);
+  EXPECT_EQ(message.leaves(), kMaxLeafBoxes + 1);
 }
 
 TEST(BudgetFromWire, ZeroMeansTheServersLimits) {
