@@ -38,6 +38,7 @@ Examples:
   weft mesh coast.geojson -o coast.vtu --size 0.001
   weft mesh pipe.poly -o pipe.msh --size '0.4*hypot(x-200, y-200) + 1' --min-angle 30
   weft mesh key.poly -o key.vtu -o key.node --draw key.png --color angle
+  weft mesh cylinder.poly --size 1e-2 --draw cylinder.png --draw-quadtree
   weft mesh key.poly -o key.vtu --server mesh.example.org:7421 --json)";
 
 constexpr char kCheckExamples[] = R"(Give the bounds that the mesh was made with.
@@ -84,8 +85,9 @@ void add_mesh(CLI::App& app, MeshOptions& options) {
       ->envname("WEFT_MAX_SECONDS")
       ->check(kSeconds)
       ->type_name("S");
-  mesh.add_option("--threads", options.wishes.threads,
-                  "Threads that refine; the mesh does not depend on it. Default: all of the server")
+  mesh.add_option(
+          "--threads", options.wishes.threads,
+          "Threads that compute; the mesh does not depend on it. Default: all of the server")
       ->envname("WEFT_THREADS")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
@@ -105,6 +107,9 @@ void add_mesh(CLI::App& app, MeshOptions& options) {
       ->envname("WEFT_COLOR")
       ->transform(CLI::CheckedTransformer(kColors).description(""))
       ->type_name("angle|region|none");
+  mesh.add_flag("--draw-quadtree", options.wishes.quadtree,
+                "Draw the leaves of the quadtree that guided refinement over the mesh")
+      ->envname("WEFT_DRAW_QUADTREE");
   mesh.add_flag("--json", options.json, "Print one JSON object on standard output");
   mesh.add_flag("--quiet,-q", options.quiet, "No progress and no summary")->envname("WEFT_QUIET");
 }

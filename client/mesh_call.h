@@ -5,6 +5,10 @@
 // Errors: 64 + gRPC status for a refusal or a lost server, kDataLoss for a stream that lies,
 // kUnwritableOutput when the spool fails; after any of them the call is cancelled. A stop that is
 // asked for cancels the call, too.
+//
+// Where a server that the user named goes away (UNAVAILABLE) in the middle of the mesh, the call is
+// made once more, for the chunks that are missing, as soon as the server is back, within 10 s. It
+// must be of the same engine version.
 #pragma once
 
 #include <chrono>
@@ -30,6 +34,7 @@ struct MeshWishes {
   std::optional<std::uint64_t> max_triangles{};
   std::optional<double> max_seconds{};
   std::optional<std::uint32_t> threads{};
+  bool quadtree = false;  // of the summary, to draw it
 };
 
 struct MeshReport {

@@ -41,13 +41,11 @@ std::optional<std::uint32_t> out_of_range(std::span<const std::uint32_t> indices
 Result<void> MeshReceiver::receive(const v1::GenerateMeshResponse& message) {
   bytes_ += message.ByteSizeLong();
   if (summary_) return damaged("a message follows the summary");
-  if (!accepted_ && message.message_case() != v1::GenerateMeshResponse::kAccepted)
+  if ((!accepted_ || resuming_) && !message.has_accepted())
     return damaged("its first message is not `accepted`");
   switch (message.message_case()) {
     case v1::GenerateMeshResponse::kAccepted:
-      if (accepted_) return damaged("`accepted` came twice");
-      accepted_ = message.accepted();
-      return {};
+      return receive(message.accepted());
     case v1::GenerateMeshResponse::kProgress:
       return {};
     case v1::GenerateMeshResponse::kChunk:
@@ -58,6 +56,17 @@ Result<void> MeshReceiver::receive(const v1::GenerateMeshResponse& message) {
       break;
   }
   return damaged("a message is empty or of an unknown kind");
+}
+
+Result<void> MeshReceiver::receive(const v1::Accepted& accepted) {
+  if (accepted_ && !resuming_) return damaged("`accepted` came twice");
+  // The mesh at hand is of the engine that began it: another one's may go on differently.
+  if (accepted_ && accepted_->engine_version() != accepted.engine_version())
+    return damaged("it was resumed by engine " + accepted.engine_version() + ", engine " +
+                   accepted_->engine_version() + " had begun it");
+  accepted_ = accepted;
+  resuming_ = false;
+  return {};
 }
 
 Result<void> MeshReceiver::check_shape(const v1::Chunk& chunk) const {
@@ -167,6 +176,13 @@ Result<void> MeshReceiver::receive(const v1::Summary& summary) {
     if (received != announced)
       return damaged(std::to_string(received) + " " + what + " came, the summary says " +
                      std::to_string(announced));
+  const auto sides = static_cast<std::uint64_t>(summary.leaf_boxes_size());
+  if (sides != 0 && sides != 4 * std::uint64_t{summary.leaves()})
+    return damaged(std::to_string(sides) + " sides of boxes came for " +
+                   std::to_string(summary.leaves()) + " leaves");
+  if (!std::all_of(summary.leaf_boxes().begin(), summary.leaf_boxes().end(),
+                   [](double side) { return std::isfinite(side); }))
+    return damaged("a leaf's box is not finite");
   if (mesh_hash_.finish() != summary.sha256())
     return damaged("the mesh does not match the SHA-256 of the summary");
   summary_ = summary;

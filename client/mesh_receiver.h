@@ -36,6 +36,9 @@ class MeshReceiver {
   MeshReceiver(MeshSpool& spool, DomainCounts domain) : spool_(spool), domain_(domain) {}
 
   Result<void> receive(const v1::GenerateMeshResponse& message);
+  // From here on the messages are those of another call, which asked for the chunks that are
+  // missing: a first_chunk of `chunks()`.
+  void resume() { resuming_ = true; }
   // REQUIRES: the stream ended with OK. An error when no summary came.
   Result<void> finish() const;
 
@@ -45,6 +48,7 @@ class MeshReceiver {
   std::uint64_t bytes() const { return bytes_; }
 
  private:
+  Result<void> receive(const v1::Accepted& accepted);
   Result<void> receive(const v1::Chunk& chunk);
   Result<void> receive(const v1::Summary& summary);
   Result<void> check_shape(const v1::Chunk& chunk) const;
@@ -54,6 +58,7 @@ class MeshReceiver {
   MeshSpool& spool_;
   DomainCounts domain_;
   std::optional<v1::Accepted> accepted_;
+  bool resuming_ = false;  // another `accepted` is to come
   std::optional<v1::Summary> summary_;
   std::uint32_t chunks_ = 0;
   std::uint64_t bytes_ = 0;

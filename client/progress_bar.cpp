@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "client/text.h"
 
@@ -36,11 +37,10 @@ ProgressStyle progress_style_of(std::FILE* stream) {
 std::string progress_text(const v1::Progress& progress, bool with_bar) {
   std::string text = stage_name(progress.stage());
   const bool estimated = progress.expected_triangles() > 0;
+  const double done = std::clamp(progress.fraction(), 0.0, 1.0);
   if (with_bar && estimated) {
     constexpr std::size_t kWidth = 30;
-    const double part = static_cast<double>(progress.triangles()) /
-                        static_cast<double>(progress.expected_triangles());
-    const auto filled = static_cast<std::size_t>(std::min(part, 1.0) * kWidth);
+    const auto filled = static_cast<std::size_t>(done * kWidth);
     text.append(" [").append(filled, '#').append(kWidth - filled, '.').append("]");
   }
   if (progress.triangles() > 0 || estimated) {
@@ -48,6 +48,7 @@ std::string progress_text(const v1::Progress& progress, bool with_bar) {
     if (estimated) text.append(" of about ").append(with_separators(progress.expected_triangles()));
     text += " triangles";
   }
+  if (!with_bar && done > 0) text += ", " + std::to_string(std::lround(100 * done)) + " % done";
   return text;
 }
 

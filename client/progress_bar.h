@@ -39,7 +39,9 @@ class ProgressBar {
   bool shown_ = false;
 };
 
-// "refining   [#####.....]  480,000 of about 960,000 triangles".
+// "refining [#####.....] 480,000 of about 960,000 triangles", or without a bar "refining 480,000 of
+// about 960,000 triangles, 50 % done". Bar and percentage tell the work, which is not just the
+// triangles.
 std::string progress_text(const v1::Progress& progress, bool with_bar);
 
 }  // namespace weft::client

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "client/commands/commands.h"
@@ -34,6 +35,8 @@ struct Times {
 Result<void> check_names(const MeshOptions& options) {
   if (options.outputs.empty() && options.drawings.empty())
     return fail(ExitCode::kUsage, "nothing to write: give -o FILE or --draw FILE");
+  if (options.wishes.quadtree && options.drawings.empty())
+    return fail(ExitCode::kUsage, "--draw-quadtree needs a drawing: give --draw FILE, too");
   if (!is_domain_path(options.input)) return unknown_domain_format(options.input);
   std::vector<std::filesystem::path> files;
   for (const auto& output : options.outputs) {
@@ -75,15 +78,19 @@ Result<std::vector<OutputFile>> open_files(const MeshOptions& options,
 }
 
 Result<void> write_files(const MeshOptions& options, const MeshView& mesh,
-                         std::vector<OutputFile>& files) {
+                         const v1::Summary& summary, std::vector<OutputFile>& files) {
   std::span<OutputFile> rest = files;
   for (const auto& output : options.outputs) {
     const std::size_t count = mesh_files(output).size();
     write_mesh(*mesh_format(output), mesh, rest.first(count));
     rest = rest.subspan(count);
   }
+  std::span<const double> leaves;
+  if (options.wishes.quadtree)
+    leaves = {summary.leaf_boxes().data(), static_cast<std::size_t>(summary.leaf_boxes_size())};
   for (std::size_t i = 0; i < options.drawings.size(); ++i) {
-    const DrawOptions how{.format = *draw_format(options.drawings[i]), .color = options.color};
+    const DrawOptions how{
+        .format = *draw_format(options.drawings[i]), .color = options.color, .boxes = leaves};
     if (auto drawn = draw(mesh, how, rest[i]); !drawn) return drawn;
   }
   return commit(files);
@@ -115,6 +122,16 @@ std::string json_report(const MeshReport& report, const Times& times) {
       {"bytes_received", report.bytes_received},
       {"insertions", summary.insertions()},
       {"exact_predicates", summary.exact_predicates()},
+      {"leaves", summary.leaves()},
+      {"deferred", summary.deferred()},
+      {"rounds", summary.rounds()},
+      {"seconds",
+       {{"triangulate", timings.triangulate_seconds()},
+        {"size", timings.size_seconds()},
+        {"prelude", timings.prelude_seconds()},
+        {"refine", timings.refine_seconds()},
+        {"emit", timings.emit_seconds()},
+        {"engine", timings.engine_seconds()}}},
       {"timings",
        {{"triangulate_seconds", timings.triangulate_seconds()},
         {"size_seconds", timings.size_seconds()},
@@ -127,7 +144,15 @@ std::string json_report(const MeshReport& report, const Times& times) {
   return json.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-std::string text_report(const MeshReport& report, const Times& times,
+// What a drawing of the quadtree shows, or why it shows none.
+std::string quadtree_text(const v1::Summary& summary) {
+  if (summary.leaves() == 0) return "no quadtree to draw: one task refined the mesh\n";
+  const std::string leaves = "quadtree of " + with_separators(summary.leaves()) +
+                             (summary.leaves() == 1 ? " leaf" : " leaves");
+  return leaves + (summary.leaf_boxes().empty() ? ", too many to be drawn\n" : "\n");
+}
+
+std::string text_report(const MeshReport& report, bool wants_quadtree, const Times& times,
                         const std::vector<OutputFile>& files) {
   const v1::Summary& summary = report.summary;
   const v1::Unrefined& unrefined = summary.unrefined();
@@ -146,6 +171,7 @@ std::string text_report(const MeshReport& report, const Times& times,
           std::to_string(summary.threads()) + (summary.threads() == 1 ? " thread" : " threads") +
           ", total " + seconds_text(seconds_between(times.start, times.written)) + ", received " +
           bytes_text(report.bytes_received) + "\n";
+  if (wants_quadtree) text += quadtree_text(summary);
   for (const OutputFile& file : files) {
     std::error_code ignored;
     text += "wrote " + file.target().string() + ", " +
@@ -190,13 +216,14 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   if (!mesh) return tl::unexpected(mesh.error());
   mesh->input_point_markers = domain->point_markers;
   if (!options.drawings.empty()) progress.say("drawing");
-  if (auto written = write_files(options, *mesh, *files); !written)
+  if (auto written = write_files(options, *mesh, report->summary, *files); !written)
     return tl::unexpected(written.error());
   times.written = Clock::now();
   progress.clear();
 
   if (options.json) return print(json_report(*report, times));
-  return options.quiet ? ExitCode::kOk : print(text_report(*report, times, *files));
+  return options.quiet ? ExitCode::kOk
+                       : print(text_report(*report, options.wishes.quadtree, times, *files));
 }
 
 }  // namespace weft::client

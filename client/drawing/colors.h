@@ -16,6 +16,7 @@ struct Color {
 inline constexpr Color kPaper{1, 1, 1};
 inline constexpr Color kEdgeInk{0.16, 0.22, 0.34};
 inline constexpr Color kBoundaryInk{0.04, 0.07, 0.16};
+inline constexpr Color kBoxInk{0.84, 0.15, 0.10};
 
 // The perceptually uniform map viridis (S. van der Walt and N. Smith, 2015, CC0), t from 0 to 1.
 Color viridis(double t);

@@ -28,6 +28,7 @@ using Surface = std::unique_ptr<cairo_surface_t, DestroySurface>;
 using Context = std::unique_ptr<cairo_t, DestroyContext>;
 
 constexpr double kMarginsPerSide = 60;
+constexpr double kBoxLine = 1.5;  // pixels
 // Long paths slow cairo down.
 constexpr std::size_t kEdgesPerPath = 1000;
 
@@ -159,6 +160,15 @@ void stroke_boundary(cairo_t* cairo, const MeshView& mesh, const Canvas& canvas)
   cairo_stroke(cairo);
 }
 
+void stroke_boxes(cairo_t* cairo, std::span<const double> boxes, const Canvas& canvas) {
+  for (std::size_t i = 0; i + 3 < boxes.size(); i += 4) {
+    const PagePoint low = canvas.at(boxes[i], boxes[i + 1]);
+    const PagePoint high = canvas.at(boxes[i + 2], boxes[i + 3]);
+    cairo_rectangle(cairo, low.x, high.y, high.x - low.x, low.y - high.y);
+    cairo_stroke(cairo);
+  }
+}
+
 }  // namespace
 
 std::optional<DrawFormat> draw_format(const std::filesystem::path& path) {
@@ -196,6 +206,9 @@ Result<void> draw(const MeshView& mesh, const DrawOptions& options, OutputFile& 
   set_color(cairo, kBoundaryInk);
   cairo_set_line_width(cairo, pixel * std::clamp(0.15 * edge, 1.3, 2.6));
   stroke_boundary(cairo, mesh, canvas);
+  set_color(cairo, kBoxInk);
+  cairo_set_line_width(cairo, pixel * kBoxLine);
+  stroke_boxes(cairo, options.boxes, canvas);
 
   cairo_status_t status = cairo_status(cairo);
   if (status == CAIRO_STATUS_SUCCESS && options.format == DrawFormat::kPng)

@@ -117,6 +117,15 @@ TEST_F(CommandLine, PrintsOneJsonObject) {
   EXPECT_EQ(json["digest"].get<std::string>().size(), 64u);
   EXPECT_EQ(json["threads"], 2);
   EXPECT_EQ(json["engine_seconds"], 0.5);
+  EXPECT_EQ(json["seconds"], (nlohmann::json{{"triangulate", 0.0625},
+                                             {"size", 0.125},
+                                             {"prelude", 0.25},
+                                             {"refine", 0.75},
+                                             {"emit", 0.375},
+                                             {"engine", 0.5}}));
+  EXPECT_EQ(json["leaves"], 1);
+  EXPECT_EQ(json["deferred"], 3);
+  EXPECT_EQ(json["rounds"], 2);
   for (const char* key : {"min_angle_deg", "max_angle_deg", "first_chunk_seconds", "total_seconds",
                           "peak_engine_bytes", "bytes_received"})
     EXPECT_TRUE(json[key].is_number()) << key;
@@ -139,6 +148,27 @@ TEST_F(CommandLine, RefusesUnknownExtensionsBeforeAnyWork) {
   EXPECT_EQ(run({"mesh", "in.poly"}), 2);
   EXPECT_EQ(run({"mesh"}), 2);
   EXPECT_EQ(run({"mush"}), 2);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "pid"));
+}
+
+TEST_F(CommandLine, DrawsTheQuadtreeAndSaysOfHowManyLeaves) {
+  const Words words = {"mesh", folder_ / "in.poly", "--draw", folder_ / "out" / "d.svg"};
+  ASSERT_EQ(run(words), 0) << err();
+  const std::string without = contents_of(folder_ / "out" / "d.svg");
+  EXPECT_EQ(out().find("quadtree"), std::string::npos) << out();
+  Words with = words;
+  with.push_back("--draw-quadtree");
+  ASSERT_EQ(run(with), 0) << err();
+  EXPECT_GT(contents_of(folder_ / "out" / "d.svg").size(), without.size());
+  EXPECT_NE(out().find("\nquadtree of 1 leaf\n"), std::string::npos) << out();
+}
+
+TEST_F(CommandLine, RefusesToDrawTheQuadtreeWithoutADrawing) {
+  Words words = mesh_to("m.vtu");
+  words.push_back("--draw-quadtree");
+  EXPECT_EQ(run(words), 2);
+  EXPECT_NE(err().find("--draw-quadtree needs a drawing: give --draw FILE, too"), std::string::npos)
+      << err();
   EXPECT_FALSE(std::filesystem::exists(folder_ / "pid"));
 }
 

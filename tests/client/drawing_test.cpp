@@ -78,6 +78,23 @@ TEST_F(Drawing, PutsTheBoundaryAndTheEdgesWhereTheyBelong) {
   EXPECT_EQ(image.brightness(110, 517), 255);
 }
 
+TEST_F(Drawing, PutsBoxesOverTheMeshAndCutsThemOffAtThePage) {
+  const std::vector<double> boxes = {1.3, 1.3, 2.7, 9};
+  const Image image(draw_to("m.png", square_mesh(4), {.long_side = 600, .boxes = boxes}));
+  EXPECT_EQ(image.width(), 600);
+  EXPECT_EQ(image.height(), 600);
+  const auto is_box_ink = [&](int x, int y) {
+    const Color c = image.color(x, y);
+    return c.red > 0.6 && c.red - c.blue > 0.3;
+  };
+  EXPECT_TRUE(is_box_ink(198, 358));   // left side, at y = 1.6
+  EXPECT_TRUE(is_box_ink(401, 358));   // right side
+  EXPECT_TRUE(is_box_ink(280, 401));   // lower side
+  EXPECT_TRUE(is_box_ink(198, 3));     // in the margin above the mesh
+  EXPECT_FALSE(is_box_ink(100, 358));  // outside
+  EXPECT_FALSE(is_box_ink(240, 340));  // inside
+}
+
 TEST_F(Drawing, ColorsByRegion) {
   const Image image(
       draw_to("m.png", square_mesh(4), {.color = DrawColor::kRegion, .long_side = 600}));

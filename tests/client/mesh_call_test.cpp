@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "tests/client/support/fake_service.h"
@@ -97,6 +98,59 @@ TEST_F(MeshCall, EndsWhenAskedToStop) {
                             }},
                            {}, stop.get_token());
   EXPECT_EQ(exit_of(report), 65);
+}
+
+// A server that goes away in the middle of the mesh.
+Script broken_script() {
+  Script script{stream_of(square_mesh(4), 3)};
+  script.messages.resize(4);  // accepted, progress, two chunks
+  script.end = [](grpc::ServerContext&) {
+    return grpc::Status(grpc::StatusCode::UNAVAILABLE, "gone");
+  };
+  return script;
+}
+
+TEST_F(MeshCall, AsksOnceForTheChunksThatAreMissingWhereTheServerWentAway) {
+  FakeServer server(std::vector{broken_script(), Script{stream_of(square_mesh(4), 3)}}, address_);
+  const auto report = call_server({}, {});
+  ASSERT_TRUE(report) << report.error().message;
+  const auto view = spool_->view();
+  ASSERT_TRUE(view);
+  const Mesh whole = square_mesh(4);
+  EXPECT_TRUE(std::ranges::equal(view->triangles, whole.triangles));
+  EXPECT_TRUE(std::ranges::equal(view->coordinates, whole.coordinates));
+  ASSERT_EQ(server.service().requests().size(), 2u);
+  EXPECT_EQ(server.service().requests()[0].first_chunk(), 0u);
+  EXPECT_EQ(server.service().requests()[1].first_chunk(), 2u);
+}
+
+TEST_F(MeshCall, GivesUpWhereTheServerGoesAwayTwice) {
+  FakeServer server(broken_script(), address_);
+  EXPECT_EQ(exit_of(call_server({}, {})), 78);
+  EXPECT_EQ(server.service().requests().size(), 2u);
+}
+
+TEST_F(MeshCall, DoesNotAskAgainWhereNothingHadCome) {
+  Script script = broken_script();
+  script.messages.resize(2);
+  FakeServer server(std::move(script), address_);
+  EXPECT_EQ(exit_of(call_server({}, {})), 78);
+  EXPECT_EQ(server.service().requests().size(), 1u);
+}
+
+TEST_F(MeshCall, DoesNotGoOnWithAnotherEngine) {
+  Script other{stream_of(square_mesh(4), 3)};
+  other.messages[0].mutable_accepted()->set_engine_version("2");
+  FakeServer server(std::vector{broken_script(), std::move(other)}, address_);
+  const auto report = call_server({}, {});
+  EXPECT_EQ(exit_of(report), 79);
+  EXPECT_EQ(report.error().message,
+            "the stream is damaged: it was resumed by engine 2, engine 1 had begun it");
+}
+
+TEST(MeshRequest, AsksForTheQuadtreeWhereItIsWished) {
+  EXPECT_FALSE(make_request(square_domain(1), {}).want_quadtree());
+  EXPECT_TRUE(make_request(square_domain(1), {.quadtree = true}).want_quadtree());
 }
 
 TEST(MeshRequest, CarriesTheDomainAndTheWishes) {

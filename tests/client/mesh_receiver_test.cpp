@@ -41,6 +41,40 @@ class Receiver : public testing::Test {
   TempFolder folder_;
 };
 
+TEST_F(Receiver, TakesTheBoxesOfAllLeavesOrOfNone) {
+  const auto with_sides = [this](int sides) {
+    return verdict_after([sides](Stream& stream) {
+      stream.back().mutable_summary()->set_leaves(2);
+      stream.back().mutable_summary()->clear_leaf_boxes();
+      for (int i = 0; i < sides; ++i) stream.back().mutable_summary()->add_leaf_boxes(i);
+    });
+  };
+  EXPECT_EQ(with_sides(0), "");
+  EXPECT_EQ(with_sides(8), "");
+  EXPECT_EQ(with_sides(7), "the stream is damaged: 7 sides of boxes came for 2 leaves");
+}
+
+TEST_F(Receiver, RefusesABoxThatIsNotFinite) {
+  EXPECT_EQ(verdict_after([](Stream& stream) {
+              stream.back().mutable_summary()->set_leaf_boxes(
+                  3, std::numeric_limits<double>::quiet_NaN());
+            }),
+            "the stream is damaged: a leaf's box is not finite");
+}
+
+TEST_F(Receiver, RefusesASecondAcceptedUnlessItResumes) {
+  EXPECT_NE(verdict_after([](Stream& stream) { stream.insert(stream.begin(), stream[0]); }), "");
+  const auto spool = MeshSpool::create(folder_.path()).value();
+  MeshReceiver receiver(*spool, {4, 4});
+  const Stream stream = stream_of(square_mesh(6), 3);
+  for (std::size_t i = 0; i < 3; ++i) ASSERT_TRUE(receiver.receive(stream[i]));
+  receiver.resume();
+  EXPECT_FALSE(receiver.receive(stream[3])) << "no `accepted` came first";
+  ASSERT_TRUE(receiver.receive(stream[0]));
+  for (std::size_t i = 3; i < stream.size(); ++i) ASSERT_TRUE(receiver.receive(stream[i]));
+  EXPECT_TRUE(receiver.finish());
+}
+
 TEST_F(Receiver, KeepsTheMeshAsItWasSent) {
   const Mesh mesh = square_mesh(20);
   const auto spool = MeshSpool::create(folder_.path()).value();

@@ -8,11 +8,13 @@
 namespace weft::client {
 namespace {
 
-v1::Progress at(v1::Stage stage, std::uint64_t triangles, std::uint64_t expected) {
+v1::Progress at(v1::Stage stage, std::uint64_t triangles, std::uint64_t expected,
+                double fraction = 0) {
   v1::Progress progress;
   progress.set_stage(stage);
   progress.set_triangles(triangles);
   progress.set_expected_triangles(expected);
+  progress.set_fraction(fraction);
   return progress;
 }
 
@@ -23,8 +25,8 @@ std::string shown(ProgressStyle style) {
   {
     ProgressBar bar(stream, style);
     bar.update(at(v1::STAGE_QUEUED, 0, 0));
-    bar.update(at(v1::STAGE_REFINE, 1000, 4000));
-    bar.update(at(v1::STAGE_REFINE, 2000, 4000));
+    bar.update(at(v1::STAGE_REFINE, 1000, 4000, 0.125));
+    bar.update(at(v1::STAGE_REFINE, 2000, 4000, 0.25));
   }
   std::fclose(stream);
   std::string out = text;
@@ -34,13 +36,15 @@ std::string shown(ProgressStyle style) {
 
 TEST(ProgressBar, PrintsOneLinePerStageWhereThereIsNoTerminal) {
   EXPECT_EQ(shown(ProgressStyle::kLines),
-            "weft: waiting\nweft: refining 1,000 of about 4,000 triangles\n");
+            "weft: waiting\nweft: refining 1,000 of about 4,000 triangles, 13 % done\n");
 }
 
 TEST(ProgressBar, RedrawsItselfOnATerminalAndGoesAway) {
   const std::string out = shown(ProgressStyle::kBar);
-  EXPECT_NE(out.find("\r\033[Krefining [#######.......................] 1,000 of about 4,000"),
-            std::string::npos);
+  EXPECT_NE(
+      out.find(
+          "\r\033[Krefining [###...........................] 1,000 of about 4,000 triangles\r"),
+      std::string::npos);
   EXPECT_TRUE(out.ends_with("\r\033[K"));
 }
 
@@ -49,7 +53,7 @@ TEST(ProgressBar, IsSilentWhenToldSo) {
 }
 
 TEST(ProgressBar, DoesNotOverflowWhenTheEstimateWasLow) {
-  EXPECT_EQ(progress_text(at(v1::STAGE_EMIT, 9, 3), true),
+  EXPECT_EQ(progress_text(at(v1::STAGE_EMIT, 9, 3, 1.5), true),
             "receiving [##############################] 9 of about 3 triangles");
 }
 

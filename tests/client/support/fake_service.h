@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A MeshService that streams what it is told to, and then ends as it is told to.
+// A MeshService that streams what it is told to, less the chunks that the client has, and then ends
+// as it is told to.
 #pragma once
 
 #include <grpcpp/server.h>
 #include <grpcpp/server_builder.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
@@ -25,14 +27,18 @@ struct Script {
 
 class FakeService final : public v1::MeshService::Service {
  public:
-  explicit FakeService(Script script) : script_(std::move(script)) {}
+  // One script a call; the last one serves all that follow.
+  explicit FakeService(std::vector<Script> scripts) : scripts_(std::move(scripts)) {}
 
   grpc::Status GenerateMesh(grpc::ServerContext* context, const v1::GenerateMeshRequest* request,
                             grpc::ServerWriter<v1::GenerateMeshResponse>* writer) override {
-    request_ = *request;
-    for (const auto& message : script_.messages)
+    const Script& script = scripts_[std::min(requests_.size(), scripts_.size() - 1)];
+    requests_.push_back(*request);
+    for (const auto& message : script.messages) {
+      if (message.has_chunk() && message.chunk().index() < request->first_chunk()) continue;
       if (!writer->Write(message)) return grpc::Status::CANCELLED;
-    return script_.end(*context);
+    }
+    return script.end(*context);
   }
   grpc::Status GetServerInfo(grpc::ServerContext*, const v1::GetServerInfoRequest*,
                              v1::GetServerInfoResponse* response) override {
@@ -41,17 +47,20 @@ class FakeService final : public v1::MeshService::Service {
     response->mutable_limits()->set_max_points(1234567);
     return grpc::Status::OK;
   }
-  // The last one. REQUIRES: its call has ended.
-  const v1::GenerateMeshRequest& request() const { return request_; }
+  // One a call. REQUIRES: no call is open.
+  const std::vector<v1::GenerateMeshRequest>& requests() const { return requests_; }
 
  private:
-  Script script_;
-  v1::GenerateMeshRequest request_;
+  const std::vector<Script> scripts_;
+  std::vector<v1::GenerateMeshRequest> requests_;
 };
 
 class FakeServer {
  public:
-  FakeServer(Script script, const std::string& address) : service_(std::move(script)) {
+  FakeServer(Script script, const std::string& address)
+      : FakeServer(std::vector<Script>{std::move(script)}, address) {}
+  FakeServer(std::vector<Script> scripts, const std::string& address)
+      : service_(std::move(scripts)) {
     grpc::EnableDefaultHealthCheckService(true);
     grpc::ServerBuilder builder;
     builder.AddListeningPort(address, grpc::InsecureServerCredentials());

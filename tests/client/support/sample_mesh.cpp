@@ -136,7 +136,17 @@ std::vector<v1::GenerateMeshResponse> stream_of(const Mesh& mesh, std::size_t ch
   summary.set_min_angle_deg(angles.min_deg);
   summary.set_max_angle_deg(angles.max_deg);
   summary.set_threads(2);
-  summary.mutable_timings()->set_engine_seconds(0.5);
+  v1::Timings& timings = *summary.mutable_timings();
+  timings.set_triangulate_seconds(0.0625);
+  timings.set_size_seconds(0.125);
+  timings.set_prelude_seconds(0.25);
+  timings.set_refine_seconds(0.75);
+  timings.set_emit_seconds(0.375);
+  timings.set_engine_seconds(0.5);
+  summary.set_deferred(3);
+  summary.set_rounds(2);
+  summary.set_leaves(1);
+  for (const double side : {0, 0, 1, 1}) summary.add_leaf_boxes(side);
   seal(stream);
   return stream;
 }
