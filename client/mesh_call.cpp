@@ -63,7 +63,7 @@ void fill(const Domain& domain, v1::Domain& out) {
 
 // False where the server stays away, or the user wants to stop.
 bool wait_until_connected(grpc::Channel& channel, const std::stop_token& stop) {
-  constexpr auto kPatience = std::chrono::seconds(10);
+  constexpr auto kPatience = std::chrono::seconds(5);
   constexpr auto kBetweenLooks = std::chrono::milliseconds(100);
   const auto end = std::chrono::system_clock::now() + kPatience;
   while (!stop.stop_requested() && std::chrono::system_clock::now() < end)

@@ -7,7 +7,7 @@
 // asked for cancels the call, too.
 //
 // Where a server that the user named goes away (UNAVAILABLE) in the middle of the mesh, the call is
-// made once more, for the chunks that are missing, as soon as the server is back, within 10 s. It
+// made once more, for the chunks that are missing, as soon as the server is back, within 5 s. It
 // must be of the same engine version.
 #pragma once
 

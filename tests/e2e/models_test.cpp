@@ -70,6 +70,30 @@ TEST(Drawing, OfAMeshIsWrittenBesideIt) {
   EXPECT_EQ(folder.names(), (std::vector<std::string>{"key.pdf", "key.png", "key.svg", "key.vtu"}));
 }
 
+TEST(Drawing, OfTheQuadtreeIsOfItsLeavesAndTheJsonTellsTheStages) {
+  const Folder folder;
+  const auto mesh = [&](const std::string& drawing, const Arguments& more) {
+    const Outcome outcome =
+        run_weft(Arguments{"mesh", model("us-east-coast.poly"), "--size", "1e-3", "--draw",
+                           folder / drawing, "--json", "--quiet", "--threads", "1"} +
+                 more);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  };
+  const auto plain = mesh("plain.svg", {});
+  const auto drawn = mesh("drawn.svg", {"--draw-quadtree"});
+  EXPECT_EQ(plain["digest"], drawn["digest"]);
+  EXPECT_GT(std::filesystem::file_size(folder / "drawn.svg"),
+            std::filesystem::file_size(folder / "plain.svg"));
+  EXPECT_GT(drawn["leaves"], 20);
+  EXPECT_GE(drawn["rounds"], 1);
+  EXPECT_GE(drawn["deferred"], 0);
+  EXPECT_EQ(drawn["threads"], 1);
+  for (const char* stage : {"triangulate", "size", "prelude", "refine", "emit", "engine"})
+    EXPECT_GE(drawn["seconds"][stage], 0) << stage;
+  EXPECT_GT(drawn["seconds"]["refine"], 0);
+}
+
 TEST(Check, FindsAMeshThatMissesItsBounds) {
   const Folder folder;
   const std::string path = folder / "key.vtu";
