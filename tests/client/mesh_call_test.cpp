@@ -143,7 +143,7 @@ TEST_F(MeshCall, DoesNotGoOnWithAnotherEngine) {
   other.messages[0].mutable_accepted()->set_engine_version("2");
   FakeServer server(std::vector{broken_script(), std::move(other)}, address_);
   const auto report = call_server({}, {});
-  EXPECT_EQ(exit_of(report), 79);
+  ASSERT_EQ(exit_of(report), 79);
   EXPECT_EQ(report.error().message,
             "the stream is damaged: it was resumed by engine 2, engine 1 had begun it");
 }

@@ -2,6 +2,8 @@
 // What a job gets of the server's threads, and of the stream while it works.
 #include <tbb/task_arena.h>
 
+#include <thread>
+
 #include "tests/server/harness.h"
 
 namespace weft::server::testing {
@@ -99,36 +101,50 @@ TEST(Progress, TellsAFractionThatNeverFalls) {
   EXPECT_EQ(last, 0.5);
 }
 
-TEST(Progress, IsToldWhileTheStreamIsNeverIdle) {
-  std::atomic<bool> enough{false};
+TEST(Progress, GoesBeforeTheChunksThatWaitForASlowReader) {
+  std::atomic<bool> first{true};
+  std::atomic<std::uint32_t> sent{0};
+  std::atomic<ExecutionContext*> job{nullptr};
+  Event release;
   ServiceOptions options;
-  options.tick = std::chrono::milliseconds(5);
+  options.jobs = 2;
+  options.tick = std::chrono::milliseconds(50);
   TestServer server(
-      [&](const auto&, ChunkSink& sink, auto&) -> Result<Summary> {
-        std::uint32_t sent = 0;
-        while (!enough)
-          if (!sink.accept(make_chunk(sent++, kMaxChunkBytes)))
-            return fail(ErrorCode::kCancelled, "", "refused");
-        Summary summary;
-        summary.chunks = sent;
-        return summary;
+      [&](const auto&, ChunkSink& sink, ExecutionContext& context) -> Result<Summary> {
+        if (!first.exchange(false)) {
+          release.wait();
+          return send_chunks(sink, 1);
+        }
+        job = &context;
+        return send_until_refused(sink, sent);
       },
       options);
-  auto stub = server.stub();
-  grpc::ClientContext context;
-  auto reader = stub->GenerateMesh(&context, valid_request());
+  auto slow_stub = server.stub();
+  grpc::ClientContext slow_context;
+  auto slow = slow_stub->GenerateMesh(&slow_context, valid_request());
   v1::GenerateMeshResponse message;
-  int told = 0;
-  bool summary_is_last = false;
-  for (int chunks = 0; reader->Read(&message);) {
-    summary_is_last = message.has_summary();
-    chunks += message.has_chunk();
-    told += chunks > 0 && message.has_progress();
-    enough = told >= 20 || chunks >= 20'000;
-  }
-  EXPECT_TRUE(reader->Finish().ok());
-  EXPECT_GE(told, 20);
-  EXPECT_TRUE(summary_is_last);
+  do ASSERT_TRUE(slow->Read(&message));
+  while (!message.has_chunk());
+  while (sent < 10) std::this_thread::yield();  // more than the hand-over holds
+
+  constexpr std::uint64_t kMark = 777;
+  job.load()->add_triangles(kMark);
+  auto other_stub = server.stub();
+  grpc::ClientContext other_context;
+  auto other = other_stub->GenerateMesh(&other_context, valid_request());
+  for (int ticks = 0; ticks < 3; ticks += message.has_progress())
+    ASSERT_TRUE(other->Read(&message));
+
+  const std::uint32_t waiting = sent;
+  std::uint32_t last_chunk = 0;
+  do {
+    ASSERT_TRUE(slow->Read(&message));
+    if (message.has_chunk()) last_chunk = message.chunk().index();
+  } while (message.progress().triangles() != kMark && last_chunk < 10'000);
+  EXPECT_LT(last_chunk, waiting);
+  slow_context.TryCancel();
+  release.set();
+  EXPECT_TRUE(read_all(*other).status.ok());
 }
 
 }  // namespace
