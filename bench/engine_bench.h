@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// weft-bench engine: our refinement beside CGAL's, on the models.
+// weft-bench engine: our refinement on several threads beside CGAL's, on the models.
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace weft::bench {
 
 struct EngineBenchOptions {
   std::string models;  // the folder of the .poly files
   std::string only;    // part of a row's name; empty runs all
-  int runs = 5;        // after one warm-up; the median is printed
+  std::vector<int> threads{1, 2};
+  bool with_kernel = false;  // also the kernel by itself: one leaf, no schedule
+  int runs = 5;              // after one warm-up; the median is printed
   bool with_cgal = true;
 };
 

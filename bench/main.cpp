@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // weft-bench: figures, not tests. Their tables are in bench/README.md.
 #include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
 
 #include "bench/engine_bench.h"
 #include "bench/scaling_bench.h"
+#include "bench/stream_bench.h"
 
 namespace {
 
@@ -20,7 +23,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "Examples:\n  weft-bench engine --only cylinder --threads 1,2\n"
-      "  weft-bench scaling --triangles 1e6,1e7");
+      "  weft-bench scaling --triangles 1e6,1e7\n"
+      "  weft-bench stream");
   int exit_code = 0;
 
   weft::bench::EngineBenchOptions engine;
@@ -31,6 +35,12 @@ int main(int argc, char** argv) {
   engine_command->add_option("--runs", engine.runs, "Runs after the warm-up; the median counts")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
+  engine_command->add_option("--threads", engine.threads, "Numbers of threads")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1024))
+      ->default_str("1,2");
+  engine_command->add_flag("--kernel", engine.with_kernel,
+                           "Also the kernel alone: one leaf, no schedule");
   engine_command->add_flag("!--no-cgal", engine.with_cgal, "Leave CGAL out");
   engine_command->callback([&] { exit_code = weft::bench::run_engine_bench(engine); });
 
@@ -52,6 +62,24 @@ int main(int argc, char** argv) {
                    "Triangles, from the last two of the sizes; 0 leaves it out")
       ->default_str("1e8");
   scaling_command->callback([&] { exit_code = weft::bench::run_scaling_bench(scaling); });
+
+  weft::bench::StreamBenchOptions stream;
+  stream.weftd = (std::filesystem::path(argv[0]).parent_path() / "weftd").string();
+  CLI::App* const stream_command =
+      app.add_subcommand("stream", "From a weftd over a unix socket and TCP");
+  add_models(stream_command, stream.models);
+  stream_command->add_option("--weftd", stream.weftd, "The server; default: beside weft-bench");
+  stream_command->add_option("--triangles", stream.triangles, "Sizes of the meshes")
+      ->delimiter(',')
+      ->check(CLI::Range(1e4, 1e9))
+      ->default_str("1e6,1e7");
+  stream_command->add_option("--threads", stream.threads, "Of the server")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  stream_command->add_option("--runs", stream.runs, "Runs after the warm-up; the median counts")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  stream_command->callback([&] { exit_code = weft::bench::run_stream_bench(stream); });
 
   CLI11_PARSE(app, argc, argv);
   return exit_code;

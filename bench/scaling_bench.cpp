@@ -9,6 +9,8 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <string>
+#include <thread>
 #include <vector>
 
 #include "bench/list_schedule.h"
@@ -51,6 +53,26 @@ std::optional<Recorded> record(const MeshRequest& request) {
     return std::nullopt;
   }
   result.triangles = summary->triangles;
+  return result;
+}
+
+// Seconds of the whole run, the median, per number of threads up to what this machine has.
+std::optional<std::map<int, double>> measure(const MeshRequest& request, int runs) {
+  std::map<int, double> result;
+  const auto processors = static_cast<int>(std::thread::hardware_concurrency());
+  for (int threads = 1; threads <= processors; threads *= 2) {
+    Arena arena(threads);
+    std::vector<double> seconds;
+    for (int run = 0; run <= runs; ++run) {
+      Discard sink;
+      ExecutionContext context;
+      context.set_arena(arena);
+      const auto summary = generate_mesh(request, sink, context);
+      if (!summary) return std::nullopt;
+      if (run > 0) seconds.push_back(summary->engine_seconds);
+    }
+    result[threads] = median(seconds);
+  }
   return result;
 }
 
@@ -146,18 +168,29 @@ void print_graphs(const Recorded& run) {
   }
 }
 
-void print_speed_up(const Stages& stages) {
+// `measured`: seconds per number of threads, where they could be measured.
+void print_speed_up(const Stages& stages, const std::map<int, double>& measured) {
   std::printf(
-      "\n| threads (simulated) | serial ms | parallel ms | threads busy | whole run ms "
-      "| speed-up |\n|---|---|---|---|---|---|\n");
+      "\n| threads | serial ms | tasks ms | threads busy | whole run ms "
+      "| simulated speed-up | measured here, ms | measured speed-up |\n"
+      "|---|---|---|---|---|---|---|---|\n");
+  const auto print_measured = [&](int threads) {
+    if (const auto found = measured.find(threads); found != measured.end()) {
+      std::printf(" %.2f | %.2f |\n", milli(found->second), measured.at(1) / found->second);
+    } else {
+      std::printf(" | |\n");
+    }
+  };
   const double serial = stages.serial_seconds();
-  std::printf("| 1 (recorded) | %.2f | %.2f | | %.2f | 1 |\n", milli(serial), milli(stages.work),
+  std::printf("| 1, recorded | %.2f | %.2f | | %.2f | 1 |", milli(serial), milli(stages.work),
               milli(stages.one_thread()));
+  print_measured(1);
   for (const int threads : kThreads) {
     const double parallel = stages.parallel.at(threads);
-    std::printf("| %d | %.2f | %.2f | %.0f %% | %.2f | %.1f |\n", threads, milli(serial),
+    std::printf("| %d | %.2f | %.2f | %.0f %% | %.2f | %.1f |", threads, milli(serial),
                 milli(parallel), 100 * stages.work / (parallel * threads),
                 milli(stages.on(threads)), stages.one_thread() / stages.on(threads));
+    print_measured(threads);
   }
 }
 
@@ -212,7 +245,9 @@ int run_scaling_bench(const ScalingBenchOptions& options) {
     std::printf(
         "\nSimulated from these task times by list scheduling; the serial stages as "
         "measured. Not seen: what threads do to each other's memory and clocks.\n");
-    print_speed_up(stages_of(*best));
+    const auto measured = measure(request, options.runs);
+    if (!measured) return 1;
+    print_speed_up(stages_of(*best), *measured);
     std::fflush(stdout);
     recorded.push_back(std::move(*best));
   }
@@ -225,7 +260,7 @@ int run_scaling_bench(const ScalingBenchOptions& options) {
         "they grew from %llu to %llu; the threads as busy as there.\n",
         options.extrapolate_to, static_cast<unsigned long long>(small.triangles),
         static_cast<unsigned long long>(large.triangles));
-    print_speed_up(extrapolate(small, large, options.extrapolate_to));
+    print_speed_up(extrapolate(small, large, options.extrapolate_to), {});
   }
   return 0;
 }
