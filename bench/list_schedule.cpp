@@ -136,6 +136,21 @@ Schedule schedule(const Trace::Graph& graph, int threads, double send_seconds) {
   return ListScheduling(graph, threads, send_seconds).run();
 }
 
+double schedule(const std::vector<double>& loop, int threads) {
+  std::priority_queue<double, std::vector<double>, std::greater<>> free_at;
+  double end = 0;
+  for (const double seconds : loop) {
+    double start = 0;
+    if (free_at.size() == static_cast<std::size_t>(threads)) {
+      start = free_at.top();
+      free_at.pop();
+    }
+    free_at.push(start + seconds);
+    end = std::max(end, start + seconds);
+  }
+  return end;
+}
+
 double work_of(const Trace::Graph& graph) {
   return std::accumulate(graph.seconds.begin(), graph.seconds.end(), 0.0);
 }

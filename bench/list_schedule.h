@@ -32,6 +32,9 @@ struct Schedule {
 // own. REQUIRES: threads >= 1.
 Schedule schedule(const Trace::Graph& graph, int threads, double send_seconds);
 
+// Seconds of a loop whose steps go to the next free thread in order.
+double schedule(const std::vector<double>& loop, int threads);
+
 // The seconds of all tasks.
 double work_of(const Trace::Graph& graph);
 

@@ -103,6 +103,8 @@ class ExecutionContext {
   void for_each(std::size_t n, F&& f) const {
     if (arena_ && threads_ > 1) {
       arena_->for_each(n, threads_, std::forward<F>(f));
+    } else if (trace_) {
+      trace_->time_loop(n, std::forward<F>(f));
     } else {
       for (std::size_t i = 0; i < n; ++i) f(i);
     }

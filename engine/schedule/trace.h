@@ -60,7 +60,9 @@ struct Trace {
   struct Stage {
     const char* name;
     double seconds;              // of wall time
-    std::optional<Graph> graph;  // nothing where the stage is serial
+    std::optional<Graph> graph;  // nothing where the stage has no tasks
+    // The seconds of the steps of each loop that may run on many threads, from a run on one.
+    std::vector<std::vector<double>> loops = {};
   };
 
   // In the order in which they ended.
@@ -72,7 +74,18 @@ struct Trace {
   void end_stage(const char* name) {
     const auto now = Clock::now();
     stages.push_back({name, std::chrono::duration<double>(now - std::exchange(last_, now)).count(),
-                      std::exchange(graph_, std::nullopt)});
+                      std::exchange(graph_, std::nullopt), std::exchange(loops_, {})});
+  }
+
+  // A loop of the stage at work, of so many steps; f(i) does one.
+  template <class F>
+  void time_loop(std::size_t n, F&& f) {
+    std::vector<double>& seconds = loops_.emplace_back(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto start = Clock::now();
+      f(i);
+      seconds[i] = std::chrono::duration<double>(Clock::now() - start).count();
+    }
   }
 
   // The stage that begins is a graph. What the trace costs here is left out.
@@ -95,6 +108,7 @@ struct Trace {
 
  private:
   Clock::time_point last_ = Clock::now();
+  std::vector<std::vector<double>> loops_;
   std::optional<Graph> graph_;
 };
 
