@@ -18,6 +18,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "engine/handover.h"
+
 namespace weft {
 
 class Arena {
@@ -34,7 +36,9 @@ class Arena {
   // takes the slot when it can.
   template <class F>
   auto run(F&& f) {
-    return arena_.execute(std::forward<F>(f));
+    return run_handed_over(std::forward<F>(f), [this](auto&& g) -> decltype(auto) {
+      return arena_.execute(std::forward<decltype(g)>(g));
+    });
   }
 
   // Calls f(0) to f(n - 1) in any order, at most `threads` at the same time. What f throws, this
@@ -55,7 +59,7 @@ class Arena {
   // Runs f in the arena once a slot is free: first come, first served.
   template <class F>
   void start(F&& f) {
-    arena_.enqueue(std::forward<F>(f));
+    arena_.enqueue(handed_over(std::forward<F>(f)));
   }
 
  private:

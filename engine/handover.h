@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tells ThreadSanitizer what TBB guarantees: what a thread wrote before it gave a function to the
+// arena is seen by the thread that runs it, and what that one wrote by whoever waited for it.
+// Debian builds libtbb without ThreadSanitizer, which therefore does not see it. In other builds
+// nothing is left of this.
+//
+//   arena.enqueue(handed_over(f));
+//   return run_handed_over(f, [&](auto&& g) { arena.execute(g); });
+//
+// Each hand-over is told of by its own address, so nothing is told that TBB does not guarantee.
+#pragma once
+
+#include <utility>
+
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define WEFT_THREAD_SANITIZER
+#endif
+#elif defined(__SANITIZE_THREAD__)
+#define WEFT_THREAD_SANITIZER
+#endif
+
+#ifdef WEFT_THREAD_SANITIZER
+
+#include <sanitizer/tsan_interface.h>
+
+#include <memory>
+#include <optional>
+#include <type_traits>
+
+namespace weft {
+
+template <class F>
+class HandedOver {
+ public:
+  explicit HandedOver(F&& f) : f_(new std::decay_t<F>(std::forward<F>(f))) { __tsan_release(f_); }
+  // The pointer itself travels through TBB.
+  __attribute__((no_sanitize("thread"))) void operator()() const { run(f_); }
+
+ private:
+  static void run(std::decay_t<F>* f) {
+    __tsan_acquire(f);
+    const std::unique_ptr<std::decay_t<F>> owner(f);
+    (*owner)();
+  }
+  std::decay_t<F>* f_;
+};
+
+template <class F>
+auto handed_over(F&& f) {
+  return HandedOver<F>(std::forward<F>(f));
+}
+
+template <class F, class Execute>
+auto run_handed_over(F&& f, Execute&& execute) {
+  using R = decltype(f());
+  struct Call {
+    std::decay_t<F>& f;
+    std::conditional_t<std::is_void_v<R>, bool, std::optional<R>> result{};
+    void run() {
+      __tsan_acquire(this);
+      struct Release {
+        Call* call;
+        ~Release() { __tsan_release(call); }
+      } release{this};
+      if constexpr (std::is_void_v<R>) {
+        f();
+      } else {
+        result.emplace(f());
+      }
+    }
+  } call{f};
+  __tsan_release(&call);
+  struct Acquire {
+    Call* call;
+    ~Acquire() { __tsan_acquire(call); }
+  };
+  {
+    const Acquire acquire{&call};
+    execute([&call]() __attribute__((no_sanitize("thread"))) { call.run(); });
+  }
+  if constexpr (!std::is_void_v<R>) return std::move(*call.result);
+}
+
+}  // namespace weft
+
+#else
+
+namespace weft {
+
+template <class F>
+F&& handed_over(F&& f) {
+  return std::forward<F>(f);
+}
+
+template <class F, class Execute>
+auto run_handed_over(F&& f, Execute&& execute) {
+  return execute(std::forward<F>(f));
+}
+
+}  // namespace weft
+
+#endif
