@@ -37,12 +37,18 @@
 
 namespace weft {
 
-// The clean-up's ownership: the leaves that are not in conflict with a frozen one.
-struct OwnsLeaves {
+// The clean-up's ownership: all but the grown boxes of the frozen leaves, the first ones.
+struct OwnsUnfrozen {
   static constexpr bool kRestricted = true;
   const Quadtree* tree = nullptr;
-  const std::vector<char>* owned = nullptr;  // per leaf
-  bool owns(Point p) const { return (*owned)[tree->leaf_at(p)]; }
+  // Per leaf, those that are frozen and in conflict with it, or itself.
+  const std::vector<std::vector<std::uint32_t>>* frozen = nullptr;
+  bool owns(Point p) const {
+    const auto& near = (*frozen)[tree->leaf_at(p)];
+    return std::none_of(near.begin(), near.end(), [&](std::uint32_t l) {
+      return OwnsBox::contains(tree->leaves()[l].grown, p.x, p.y);
+    });
+  }
   constexpr bool in_core(double, double) const { return true; }
 };
 
@@ -113,14 +119,15 @@ class LeafTasks {
   // Refines what is left after the last round, without touching what the leaves before `frozen`
   // have made. What lies too near to these stays as it is.
   std::optional<Error> clean_up(std::uint32_t frozen) {
-    std::vector<char> owned(leaves_.size());
+    std::vector<std::vector<std::uint32_t>> frozen_near(leaves_.size());
     for (std::uint32_t l = 0; l < leaves_.size(); ++l) {
-      // Conflicts come in order.
-      const auto& conflicts = leaves_[l].conflicts;
-      owned[l] = l >= frozen && (conflicts.empty() || conflicts.front() >= frozen);
+      if (l < frozen) frozen_near[l].push_back(l);
+      for (const std::uint32_t other : leaves_[l].conflicts) {
+        if (other < frozen) frozen_near[l].push_back(other);
+      }
     }
-    Refiner<OwnsLeaves, AreaBound> refiner(setting_, quality_, area_.again());
-    refiner.begin(clean_up_slots_, OwnsLeaves{&tree_, &owned}, tree_.box());
+    Refiner<OwnsUnfrozen, AreaBound> refiner(setting_, quality_, area_.again());
+    refiner.begin(clean_up_slots_, OwnsUnfrozen{&tree_, &frozen_near}, tree_.box());
     for (const Leaf& l : leaves_) {
       for (const BadTriangle& t : l.left) refiner.queue(t);
       for (const SegmentEdge& s : l.segments_left) refiner.queue(s);
@@ -254,7 +261,7 @@ class LeafTasks {
   void hand_on(std::uint32_t from, std::uint32_t round, const BadTriangle& bad, Point next) {
     Leaf& l = leaves_[from];
     const std::uint32_t to = tree_.leaf_at(next);
-    if (may_hand_over(from, round, to)) {
+    if (may_hand_over(from, round, to) && may_look_at(to, bad)) {
       l.handed_over.push_back({to, bad});
     } else {
       l.left.push_back(bad);
@@ -274,6 +281,15 @@ class LeafTasks {
   bool may_hand_over(std::uint32_t from, std::uint32_t round, std::uint32_t to) const {
     const auto& conflicts = leaves_[from].conflicts;
     return round == 0 && std::binary_search(conflicts.begin(), conflicts.end(), to);
+  }
+
+  // Whether a leaf may tell at any time if a triangle is still there: nobody writes the slots of
+  // owner 0, and those of a leaf only its task.
+  bool may_look_at(std::uint32_t leaf, const BadTriangle& bad) const {
+    const std::uint32_t owner = setting_.mesh.owner_of_triangle(bad.triangle);
+    const auto& conflicts = leaves_[leaf].conflicts;
+    return owner == 0 || owner == leaf + 1 ||
+           std::binary_search(conflicts.begin(), conflicts.end(), owner - 1);
   }
 
   Point steiner_point_of(const BadTriangle& bad) const {
