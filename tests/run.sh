@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # From a fresh Debian 12 machine to all tests run: installs what is missing, builds with warnings as
 # errors, runs every test, then those labelled `sanitize` again under AddressSanitizer and
-# UndefinedBehaviorSanitizer, and checks formatting, licences, protocol and scripts. Prints each
-# step with its seconds, and the closing lines of ctest last. Fails when any step failed.
+# UndefinedBehaviorSanitizer and those labelled `threads` under ThreadSanitizer, and checks
+# formatting, licences, protocol and scripts. Prints each step with its seconds, and the closing
+# lines of ctest last. Fails when any step failed.
 #
 #   tests/run.sh [--quick]     --quick leaves the sanitizers out
 set -uo pipefail
@@ -43,7 +44,7 @@ finish() {
   printf '\n--- steps ---\n'
   printf '%s\n' "${report[@]}"
   local preset log
-  for preset in asan release; do
+  for preset in tsan asan release; do
     log=build/$preset/ctest.log
     [[ ${tested[$preset]-} ]] || continue
     printf '\n--- ctest, %s ---\n' "$preset"
@@ -82,6 +83,7 @@ check_protocol() (
 )
 
 export UBSAN_OPTIONS=print_stacktrace=1
+export TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp
 
 needed "install packages" deploy/install-deps.sh
 step "formatting" check_format
@@ -95,5 +97,8 @@ if [[ $sanitize ]]; then
   needed "configure, sanitizers" cmake --preset asan -DWEFT_WERROR=ON
   needed "build, sanitizers" cmake --build --preset asan --target sanitize-tests
   step "tests, sanitizers" run_ctest asan -L sanitize --timeout 600
+  needed "configure, threads" cmake --preset tsan -DWEFT_WERROR=ON
+  needed "build, threads" cmake --build --preset tsan --target threads-tests
+  step "tests, threads" run_ctest tsan -L threads --timeout 600
 fi
 finish

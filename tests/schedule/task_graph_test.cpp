@@ -11,30 +11,10 @@
 #include <random>
 #include <thread>
 
+#include "tests/support/event.h"
+
 namespace weft {
 namespace {
-
-// Long enough for any machine; nothing here waits as long unless it is broken.
-constexpr std::chrono::seconds kPatience{60};
-
-// Something that happens once, for threads to wait for.
-class Event {
- public:
-  void set() {
-    const std::lock_guard lock(mutex_);
-    happened_ = true;
-    changed_.notify_all();
-  }
-  bool wait() {
-    std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, kPatience, [&] { return happened_; });
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool happened_ = false;
-};
 
 using Edges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
