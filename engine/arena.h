@@ -46,14 +46,13 @@ class Arena {
   template <class F>
   void for_each(std::size_t n, int threads, F&& f) {
     std::atomic<std::size_t> next{0};
-    run([&] {
-      tbb::parallel_for(
-          0, threads,
-          [&](int) {
-            for (std::size_t i = next++; i < n; i = next++) f(i);
-          },
-          tbb::simple_partitioner());
-    });
+    run_handed_over<int>(
+        [&](int) {
+          for (std::size_t i = next++; i < n; i = next++) f(i);
+        },
+        [&](auto&& work) {
+          run([&] { tbb::parallel_for(0, threads, work, tbb::simple_partitioner()); });
+        });
   }
 
   // Runs f in the arena once a slot is free: first come, first served.

@@ -51,22 +51,32 @@ auto handed_over(F&& f) {
   return HandedOver<F>(std::forward<F>(f));
 }
 
-template <class F, class Execute>
+// What travels through TBB: pointers alone, and a short name, for the symbolizer.
+template <class... Args>
+struct Trampoline {
+  void* call;
+  void (*run)(void*, Args...);
+  __attribute__((no_sanitize("thread"))) void operator()(Args... args) const { run(call, args...); }
+};
+
+// `execute` may call what it gets with Args, several times, on any threads.
+template <class... Args, class F, class Execute>
 auto run_handed_over(F&& f, Execute&& execute) {
-  using R = decltype(f());
+  using R = decltype(f(std::declval<Args>()...));
   struct Call {
     std::decay_t<F>& f;
     std::conditional_t<std::is_void_v<R>, bool, std::optional<R>> result{};
-    void run() {
+    static void run_on(void* self, Args... args) { static_cast<Call*>(self)->run(args...); }
+    void run(Args... args) {
       __tsan_acquire(this);
       struct Release {
         Call* call;
         ~Release() { __tsan_release(call); }
       } release{this};
       if constexpr (std::is_void_v<R>) {
-        f();
+        f(args...);
       } else {
-        result.emplace(f());
+        result.emplace(f(args...));
       }
     }
   } call{f};
@@ -77,7 +87,7 @@ auto run_handed_over(F&& f, Execute&& execute) {
   };
   {
     const Acquire acquire{&call};
-    execute([&call]() __attribute__((no_sanitize("thread"))) { call.run(); });
+    execute(Trampoline<Args...>{&call, &Call::run_on});
   }
   if constexpr (!std::is_void_v<R>) return std::move(*call.result);
 }
@@ -93,7 +103,7 @@ F&& handed_over(F&& f) {
   return std::forward<F>(f);
 }
 
-template <class F, class Execute>
+template <class... Args, class F, class Execute>
 auto run_handed_over(F&& f, Execute&& execute) {
   return execute(std::forward<F>(f));
 }
