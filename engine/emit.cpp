@@ -22,6 +22,16 @@ bool leads_upward(Point a, Point b) {
 
 }  // namespace
 
+std::uint64_t Part::bytes() const {
+  std::uint64_t bytes = 0;
+  for (const Chunk& chunk : chunks) {
+    bytes += chunk.coordinates.capacity() * sizeof(double) + chunk.triangles.capacity() * 4 +
+             chunk.regions.capacity() * 4 + chunk.edges.capacity() * sizeof(Chunk::Edge) +
+             chunk.input_points.capacity() * 8;
+  }
+  return bytes;
+}
+
 std::vector<HandedOn> triangles_handed_on(const Mesh& mesh, const Slots& slots) {
   std::vector<HandedOn> result;
   slots.for_triangles([&](std::uint32_t first, std::uint32_t last) {
@@ -50,20 +60,18 @@ PartBuilder<AreaBound>::PartBuilder(const Mesh& mesh, const Domain& domain,
       context_(context) {}
 
 template <class AreaBound>
-void PartBuilder<AreaBound>::add_vertices(const Slots& slots) {
-  slots.for_vertices([&](std::uint32_t first, std::uint32_t last) {
-    stopped_ = stopped_ || context_.poll();
-    for (std::uint32_t v = first; v < last && !stopped_; ++v) {
-      make_room(kMaxVertexBytes);
-      bytes_ += 16;
-      chunk_.coordinates.push_back(mesh_.vertices[v].x);
-      chunk_.coordinates.push_back(mesh_.vertices[v].y);
-      if (v < domain_.vertices.size() && domain_.input_point[v] != kNone) {
-        chunk_.input_points.push_back({mesh_.number_of(v), domain_.input_point[v]});
-        bytes_ += 8;
-      }
+void PartBuilder<AreaBound>::add_vertices(std::uint32_t first, std::uint32_t last) {
+  stopped_ = stopped_ || context_.poll();
+  for (std::uint32_t v = first; v < last && !stopped_; ++v) {
+    make_room(kMaxVertexBytes);
+    bytes_ += 16;
+    chunk_.coordinates.push_back(mesh_.vertices[v].x);
+    chunk_.coordinates.push_back(mesh_.vertices[v].y);
+    if (v < domain_.vertices.size() && domain_.input_point[v] != kNone) {
+      chunk_.input_points.push_back({mesh_.number_of(v), domain_.input_point[v]});
+      bytes_ += 8;
     }
-  });
+  }
 }
 
 template <class AreaBound>

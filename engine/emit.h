@@ -33,6 +33,8 @@ struct Part {
   QualityStatistics statistics;
   Unrefined unrefined;
   std::uint64_t edges = 0;
+
+  std::uint64_t bytes() const;
 };
 
 // A triangle that goes with the part of another owner.
@@ -54,7 +56,8 @@ class PartBuilder {
   PartBuilder(const Mesh& mesh, const Domain& domain, const AcuteCorners& corners, AreaBound area,
               const ExecutionContext& context);
 
-  void add_vertices(const Slots& slots);
+  // The vertices in slots `first` to before `last`.
+  void add_vertices(std::uint32_t first, std::uint32_t last);
   // The triangles in slots `first` to before `last`.
   void add_triangles(std::uint32_t first, std::uint32_t last);
   void add_triangle(const Triangle& triangle);

@@ -93,7 +93,7 @@ class MeshRun {
       summary_.deferred = leaves_->deferred();
     }
     summary_.peak_bytes = plan_.domain.bytes() + plan_.other_bytes + corners_.bytes() +
-                          mesh_.bytes() + root_.bytes() + root_bytes_ +
+                          mesh_.bytes() + root_.bytes() + root_bytes_ + peak_part_bytes_ +
                           (leaves_ ? leaves_->bytes() + tree_.bytes() : 0);
     return std::nullopt;
   }
@@ -151,19 +151,55 @@ class MeshRun {
     root_bytes_ = std::max(root_bytes_, figures.bytes);
   }
 
+  // A piece of an owner's slots.
+  struct Section {
+    std::uint32_t first;
+    std::uint32_t last;
+    bool vertices;  // not triangles
+  };
+
+  static void add_vertices(const Slots& slots, std::vector<Section>& sections) {
+    slots.for_vertices([&](std::uint32_t first, std::uint32_t last) {
+      sections.push_back({first, last, true});
+    });
+  }
+  static void add_triangles(const Slots& slots, std::vector<Section>& sections) {
+    slots.for_triangles([&](std::uint32_t first, std::uint32_t last) {
+      sections.push_back({first, last, false});
+    });
+  }
+  static void build(PartBuilder<AreaBound>& builder, const Section& section) {
+    if (section.vertices) {
+      builder.add_vertices(section.first, section.last);
+    } else {
+      builder.add_triangles(section.first, section.last);
+    }
+  }
+
+  // Builds the parts of what is final, so many sections each, and sends them.
+  void send(const std::vector<Section>& sections) {
+    constexpr std::size_t kPerPart = 48;  // about 10,000 vertices or triangles
+    const auto parts = static_cast<std::uint32_t>((sections.size() + kPerPart - 1) / kPerPart);
+    run_graph(
+        kClosingGraph, TaskGraph(parts), 0, parts, [](std::uint32_t part) { return part; },
+        [&](std::uint32_t part) {
+          finish_part(part, build_part([&](PartBuilder<AreaBound>& builder) {
+                        const std::size_t end = std::min((part + 1) * kPerPart, sections.size());
+                        for (std::size_t s = part * kPerPart; s < end; ++s)
+                          build(builder, sections[s]);
+                      }));
+        });
+  }
+
   // The mesh is refined already.
   std::optional<Error> run_alone() {
     root_.number_vertices(mesh_, 0);
-    auto part = context_.compute([&] {
-      return build([&](PartBuilder<AreaBound>& builder) {
-        builder.add_vertices(root_);
-        root_.for_triangles(
-            [&](std::uint32_t first, std::uint32_t last) { builder.add_triangles(first, last); });
-      });
-    });
-    if (!part) return context_.poll();
+    std::vector<Section> sections;
+    add_vertices(root_, sections);
+    add_triangles(root_, sections);
+    send(sections);
     context_.add_fraction(1);
-    return delivery_.send(std::move(*part));
+    return error_;
   }
 
   // Tasks of leaf l: kRounds rounds of refinement, whether that settled it, its numbers, what it
@@ -292,8 +328,9 @@ class MeshRun {
     if (task != part_task(leaf)) return;
     context_.add_fraction((1 - kRefining) * share_of(leaf));
     finish_part(
-        leaf, build([&](PartBuilder<AreaBound>& builder) {
-          builder.add_vertices(slots);
+        leaf, build_part([&](PartBuilder<AreaBound>& builder) {
+          slots.for_vertices(
+              [&](std::uint32_t first, std::uint32_t last) { builder.add_vertices(first, last); });
           auto gone = handed_on_[leaf].cbegin();
           slots.for_triangles([&](std::uint32_t first, std::uint32_t last) {
             for (; gone != handed_on_[leaf].cend() && first <= gone->slot && gone->slot < last;
@@ -323,43 +360,28 @@ class MeshRun {
   // Owner 0's vertices, which any leaf may refer to.
   void send_opening() {
     auto part = context_.compute([&] {
-      return build([&](PartBuilder<AreaBound>& builder) { builder.add_vertices(root_); });
+      return build_part([&](PartBuilder<AreaBound>& builder) {
+        root_.for_vertices(
+            [&](std::uint32_t first, std::uint32_t last) { builder.add_vertices(first, last); });
+      });
     });
     const auto error = part ? delivery_.send(std::move(*part)) : context_.poll();
     if (error) stop(*error);
   }
 
-  // The clean-up's part, and those of owner 0's triangles that no leaf has touched.
+  // What the clean-up has made, and those of owner 0's triangles that no leaf has touched.
   void send_closing() {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> runs;
-    root_.for_triangles([&](std::uint32_t first, std::uint32_t last) {
-      runs.push_back({first, last});
-    });
-    constexpr std::size_t kRunsPerPart = 32;
-    const auto parts =
-        static_cast<std::uint32_t>(1 + (runs.size() + kRunsPerPart - 1) / kRunsPerPart);
-    leaves_->clean_up_slots().number_vertices(mesh_, numbers_);
-    run_graph(
-        kClosingGraph, TaskGraph(parts), 0, parts, [](std::uint32_t part) { return part; },
-        [&](std::uint32_t part) {
-          finish_part(part, build([&](PartBuilder<AreaBound>& builder) {
-                        if (part == 0) {
-                          const Slots& slots = leaves_->clean_up_slots();
-                          builder.add_vertices(slots);
-                          slots.for_triangles([&](std::uint32_t first, std::uint32_t last) {
-                            builder.add_triangles(first, last);
-                          });
-                          return;
-                        }
-                        const std::size_t end = std::min(part * kRunsPerPart, runs.size());
-                        for (std::size_t r = (part - 1) * kRunsPerPart; r < end; ++r)
-                          builder.add_triangles(runs[r].first, runs[r].second);
-                      }));
-        });
+    const Slots& cleaned_up = leaves_->clean_up_slots();
+    cleaned_up.number_vertices(mesh_, numbers_);
+    std::vector<Section> sections;
+    add_vertices(cleaned_up, sections);
+    add_triangles(cleaned_up, sections);
+    add_triangles(root_, sections);
+    send(sections);
   }
 
   template <class F>
-  std::optional<Part> build(F&& fill) {
+  std::optional<Part> build_part(F&& fill) {
     return emit_time_.measure([&] {
       PartBuilder<AreaBound> builder(mesh_, plan_.domain, corners_, area_.again(), context_);
       fill(builder);
@@ -402,6 +424,7 @@ class MeshRun {
       for (; ready(); ++next) {
         if (next + ahead < last) run.release(task_of_part(next + ahead));
         const auto before = Clock::now();
+        part_bytes_ -= parts_[next].part.bytes();
         if (auto error = delivery_.send(std::move(parts_[next].part))) stop(*error);
         parts_[next].part = {};
         const auto after = Clock::now();
@@ -418,6 +441,10 @@ class MeshRun {
     if (!part) {
       if (auto error = context_.poll()) stop(*error);
       return;
+    }
+    const std::uint64_t waiting = part_bytes_ += part->bytes();
+    for (std::uint64_t peak = peak_part_bytes_; peak < waiting;) {
+      if (peak_part_bytes_.compare_exchange_weak(peak, waiting)) break;
     }
     parts_[index].part = std::move(*part);
     parts_[index].ready.store(true);
@@ -460,6 +487,8 @@ class MeshRun {
   // How many leaves may be sent before the clean-up.
   std::atomic<std::uint32_t> final_leaves_ = 0;
   std::vector<PendingPart> parts_;
+  std::atomic<std::uint64_t> part_bytes_{0};  // of parts that wait to be sent
+  std::atomic<std::uint64_t> peak_part_bytes_{0};
   GraphRun* run_ = nullptr;  // the one at work
 
   std::atomic<bool> stopped_{false};
