@@ -103,7 +103,9 @@ TEST_P(Faults, InATaskEndTheJobWithATypedErrorAndLeaveTheArenaSound) {
       ++failed;
       EXPECT_EQ(summary.error().code, ErrorCode::kBudgetExceeded) << summary.error().message;
     }
-    if (i % 10 == 0) ASSERT_EQ(outcome(mesh_on(&arena, request)), outcome(whole));
+    if (i % 10 == 0) {
+      ASSERT_EQ(outcome(mesh_on(&arena, request)), outcome(whole));
+    }
   }
   EXPECT_GT(failed, kFaults / 2);
 }
