@@ -60,6 +60,12 @@ PartBuilder<AreaBound>::PartBuilder(const Mesh& mesh, const Domain& domain,
       context_(context) {}
 
 template <class AreaBound>
+void PartBuilder<AreaBound>::expect(std::size_t vertices, std::size_t triangles) {
+  chunk_.coordinates.reserve(std::min(2 * vertices, kMaxChunkBytes / sizeof(double)));
+  chunk_.triangles.reserve(std::min(3 * triangles, kMaxChunkBytes / sizeof(std::uint32_t)));
+}
+
+template <class AreaBound>
 void PartBuilder<AreaBound>::add_vertices(std::uint32_t first, std::uint32_t last) {
   stopped_ = stopped_ || context_.poll();
   for (std::uint32_t v = first; v < last && !stopped_; ++v) {

@@ -56,6 +56,8 @@ class PartBuilder {
   PartBuilder(const Mesh& mesh, const Domain& domain, const AcuteCorners& corners, AreaBound area,
               const ExecutionContext& context);
 
+  // About so many will be added: without it, vectors take up to twice what they need.
+  void expect(std::size_t vertices, std::size_t triangles);
   // The vertices in slots `first` to before `last`.
   void add_vertices(std::uint32_t first, std::uint32_t last);
   // The triangles in slots `first` to before `last`.

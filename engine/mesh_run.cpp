@@ -329,6 +329,7 @@ class MeshRun {
     context_.add_fraction((1 - kRefining) * share_of(leaf));
     finish_part(
         leaf, build_part([&](PartBuilder<AreaBound>& builder) {
+          builder.expect(slots.vertex_count(), slots.triangle_slots());
           slots.for_vertices(
               [&](std::uint32_t first, std::uint32_t last) { builder.add_vertices(first, last); });
           auto gone = handed_on_[leaf].cbegin();

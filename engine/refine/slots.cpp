@@ -27,6 +27,12 @@ std::uint32_t Slots::vertex_count() const {
   return count;
 }
 
+std::uint32_t Slots::triangle_slots() const {
+  std::uint32_t count = 0;
+  for_triangles([&](std::uint32_t first, std::uint32_t last) { count += last - first; });
+  return count;
+}
+
 std::uint32_t Slots::number_vertices(Mesh& mesh, std::uint32_t first_number) const {
   std::uint32_t number = first_number;
   for_vertices([&](std::uint32_t first, std::uint32_t last) {

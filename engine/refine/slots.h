@@ -59,6 +59,8 @@ class Slots {
   }
 
   std::uint32_t vertex_count() const;
+  // Slots in use, of which some are dead.
+  std::uint32_t triangle_slots() const;
   // Numbers the vertices in their order, from `first` on; returns the number after the last.
   std::uint32_t number_vertices(Mesh& mesh, std::uint32_t first) const;
 

@@ -106,8 +106,11 @@ class Prelude {
   }
 
   std::vector<Quadtree::Sample> samples(const Run& run) const {
-    // Triangles come out at 0.64 of their bound on average.
+    // Triangles come out at 0.64 of their bound on average, and no smaller than the floor on their
+    // edges allows.
     constexpr double kPerBound = 1.55;
+    constexpr double kEquilateral = 0.433;  // area over squared edge
+    const double floor = kEquilateral * quality_.min_length2;
     static_assert(Mesh::kTriangleBlock <= TriangleBlock::kSize);
     const Mesh& mesh = setting_.mesh;
     TriangleBlock block;
@@ -124,7 +127,7 @@ class Prelude {
                                  (block.y[1][i] - block.y[0][i]) * (block.x[2][i] - block.x[0][i]));
       const double bound =
           std::min(block.bound[i], region_bound(run.first + static_cast<std::uint32_t>(i)));
-      const double asked = bound > 0 ? kPerBound * size / bound : 1;
+      const double asked = bound > 0 ? size / std::max(bound / kPerBound, floor) : 1;
       result.push_back({{block.centroid_x[i], block.centroid_y[i]}, std::max(asked, 1.0)});
     }
     return result;

@@ -64,7 +64,7 @@ void split_by_weight(Splits& splits, const Keyed* first, const Keyed* last, unsi
                      double target) {
   double weight = 0;
   for (const Keyed* s = first; s != last; ++s) weight += s->weight;
-  if (weight <= target || depth == kMaxDepth) return;
+  if (weight <= target || last - first == 1 || depth == kMaxDepth) return;
   const unsigned shift = 2 * (kMaxDepth - depth);
   splits[depth].insert(first->code >> shift);
   for (unsigned child = 0; first != last; ++child) {

@@ -32,8 +32,8 @@ class Quadtree {
     double side() const { return box.max_x - box.min_x; }
   };
 
-  // Over a square that holds `domain`. A leaf weighs at most `target`, unless it is 2^20 times
-  // smaller than the square.
+  // Over a square that holds `domain`. A leaf weighs at most `target`, unless it has one sample
+  // alone or is 2^20 times smaller than the square.
   static Quadtree build(const Box& domain, std::vector<Sample> samples, double target);
 
   // In Morton order.

@@ -177,6 +177,15 @@ TEST(Budget, OfTrianglesThatIsNotReachedChangesNothing) {
   EXPECT_LT(cut_off->triangles, uncapped->triangles);
 }
 
+TEST(Budget, OfTheShortestEdgeFarAboveTheSizeMakesASmallMesh) {
+  const MeshRequest request{.pslg = square(), .size = {.constant = 5e-9}, .min_edge = 0.01};
+  const auto summary = mesh_of(request);
+  ASSERT_TRUE(summary);
+  EXPECT_LT(summary->triangles, 40'000u);
+  EXPECT_LT(summary->leaves.size(), 64u);
+  EXPECT_GT(summary->unrefined.edge_floor, 0u);
+}
+
 TEST(Budget, OfBytesIsNamedWhenItRunsOut) {
   const Error error =
       error_of({.pslg = square(), .size = {.constant = 1e-6}}, {.max_bytes = 4 << 20});

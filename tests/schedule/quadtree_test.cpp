@@ -218,11 +218,18 @@ TEST(Quadtree, OfLittleIsOneLeaf) {
   EXPECT_TRUE(tree.conflicts()[0].empty());
 }
 
-TEST(Quadtree, EndsWhereOneSampleOutweighsTheTarget) {
+TEST(Quadtree, DoesNotSplitForOneSampleAlone) {
   const Quadtree tree = Quadtree::build({0, 0, 1, 1}, {{{0.3, 0.7}, 1e9}}, kTarget);
+  ASSERT_EQ(tree.leaves().size(), 1u);
+  EXPECT_EQ(tree.leaves()[0].weight, 1e9);
+}
+
+TEST(Quadtree, EndsWhereSamplesInOnePlaceOutweighTheTarget) {
+  const Quadtree tree =
+      Quadtree::build({0, 0, 1, 1}, {{{0.3, 0.7}, 1e9}, {{0.3, 0.7}, 1e9}}, kTarget);
   const Quadtree::Leaf& leaf = tree.leaves()[tree.leaf_at({0.3, 0.7})];
   EXPECT_NEAR(leaf.side(), kDeepest, 0.01 * kDeepest);
-  EXPECT_EQ(leaf.weight, 1e9);
+  EXPECT_EQ(leaf.weight, 2e9);
 }
 
 TEST(Quadtree, DoesNotDependOnTheOrderOfSamplesApart) {
