@@ -23,7 +23,10 @@ runtime=(
   libgrpc++1.51 libprotobuf32 libgmp10 libmpfr6 libtbb12 libsleef3 libspdlog1.10 libfmt9
   libssl3 libcairo2 libmuparser2v5 fonts-dejavu-core
 )
-test=(g++ clang-format clang-tidy shellcheck gmsh python3 python3-meshio)
+test=(
+  g++ libclang-rt-dev llvm # sanitizers, and the names in their reports
+  clang-format clang-tidy shellcheck gmsh python3 python3-meshio
+)
 # Some machines bring a newer node; Debian's npm would be in its way.
 command -v npm >/dev/null || test+=(nodejs npm)
 

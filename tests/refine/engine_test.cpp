@@ -29,7 +29,9 @@ Error error_of(const MeshRequest& request, const Budget& budget = {}) {
   const auto summary = generate_mesh(request, mesh, context);
   EXPECT_FALSE(summary);
   // What refinement runs into may show when chunks have left already.
-  if (!summary && summary.error().code != ErrorCode::kBudgetExceeded) EXPECT_EQ(mesh.chunks, 0u);
+  if (!summary && summary.error().code != ErrorCode::kBudgetExceeded) {
+    EXPECT_EQ(mesh.chunks, 0u);
+  }
   return summary ? Error{} : summary.error();
 }
 
