@@ -24,6 +24,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -195,7 +196,8 @@ class LeafTasks {
     LeafRefiner refiner;
   };
 
-  // Lends a worker for the time of a task.
+  // Lends a worker for the time of a task. One whose task threw is lent no more: its buffers may be
+  // half grown.
   class Lease {
    public:
     explicit Lease(LeafTasks& tasks) : tasks_(tasks) {
@@ -210,6 +212,7 @@ class LeafTasks {
       tasks_.idle_.pop_back();
     }
     ~Lease() {
+      if (std::uncaught_exceptions() > exceptions_) return;
       const std::lock_guard lock(tasks_.mutex_);
       tasks_.idle_.push_back(worker_);
     }
@@ -219,6 +222,7 @@ class LeafTasks {
 
    private:
     LeafTasks& tasks_;
+    const int exceptions_ = std::uncaught_exceptions();
     Worker* worker_;
   };
 
