@@ -10,9 +10,10 @@
 #include <sys/types.h>
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
+
+#include "tests/client/support/temp_folder.h"
 
 namespace weft::bench {
 
@@ -34,7 +35,7 @@ class WeftdProcess {
   bool spawn(const std::string& weftd, int threads);
   bool wait_until_ready();
 
-  std::filesystem::path folder_;
+  client::TempFolder folder_;  // outlives the process
   std::string unix_address_;
   std::string tcp_address_;
   pid_t pid_ = 0;

@@ -265,7 +265,7 @@ class LeafTasks {
   void hand_on(std::uint32_t from, std::uint32_t round, const BadTriangle& bad, Point next) {
     Leaf& l = leaves_[from];
     const std::uint32_t to = tree_.leaf_at(next);
-    if (may_hand_over(from, round, to) && may_look_at(to, bad)) {
+    if (may_hand_over(from, round, to) && may_look_at(to, bad.triangle)) {
       l.handed_over.push_back({to, bad});
     } else {
       l.left.push_back(bad);
@@ -276,7 +276,7 @@ class LeafTasks {
     const Point a = setting_.mesh.vertices[s.a];
     const Point b = setting_.mesh.vertices[s.b];
     const std::uint32_t to = tree_.leaf_at({a.x + 0.5 * (b.x - a.x), a.y + 0.5 * (b.y - a.y)});
-    if (may_hand_over(from, round, to)) {
+    if (may_hand_over(from, round, to) && may_look_at(to, s.triangle)) {
       l.segments_handed_over.push_back({to, s});
     } else {
       l.segments_left.push_back(s);
@@ -287,10 +287,10 @@ class LeafTasks {
     return round == 0 && std::binary_search(conflicts.begin(), conflicts.end(), to);
   }
 
-  // Whether a leaf may tell at any time if a triangle is still there: nobody writes the slots of
-  // owner 0, and those of a leaf only its task.
-  bool may_look_at(std::uint32_t leaf, const BadTriangle& bad) const {
-    const std::uint32_t owner = setting_.mesh.owner_of_triangle(bad.triangle);
+  // Whether a leaf's task may read the vertices in a slot at any time: nobody writes those of owner
+  // 0, and those of a leaf only its task.
+  bool may_look_at(std::uint32_t leaf, std::uint32_t slot) const {
+    const std::uint32_t owner = setting_.mesh.owner_of_triangle(slot);
     const auto& conflicts = leaves_[leaf].conflicts;
     return owner == 0 || owner == leaf + 1 ||
            std::binary_search(conflicts.begin(), conflicts.end(), owner - 1);
