@@ -134,8 +134,9 @@ TEST(ParallelStop, AThousandCancelledJobsLeaveNothingBehind) {
   std::mt19937_64 random(3);
   Memory early{};
   int cancelled = 0;
-  for (int job = 0; job < kJobs; ++job) {
-    if (job == kJobs / 5) early = memory();
+  // On a busy machine many a mesh is done before its canceller gets a turn: those do not count.
+  while (cancelled < kJobs) {
+    if (cancelled == kJobs / 5) early = memory();
     ExecutionContext context;
     context.set_arena(arena);
     std::atomic<bool> done{false};
@@ -155,7 +156,6 @@ TEST(ParallelStop, AThousandCancelledJobsLeaveNothingBehind) {
       ++cancelled;
     }
   }
-  EXPECT_GT(cancelled, kJobs / 2);
   const Memory late = memory();
   if (!kSanitized) {
     // One leaked mesh in a hundred would be more.
