@@ -15,16 +15,19 @@ build=(
   libcgal-dev libgmp-dev libmpfr-dev libboost-dev                        # exact geometry
   libtbb-dev libsleef-dev libexpected-dev                                # the engine
   libspdlog-dev libfmt-dev libssl-dev                                    # the server
+  libsqlite3-dev libpq-dev prometheus-cpp-dev                            # its jobs and its metrics
   libcli11-dev nlohmann-json3-dev libcairo2-dev fonts-dejavu-core        # the command line
   libmuparser-dev                                                        # the checker
   libgtest-dev libgmock-dev librapidcheck-dev                            # tests
 )
 runtime=(
   libgrpc++1.51 libprotobuf32 libgmp10 libmpfr6 libtbb12 libsleef3 libspdlog1.10 libfmt9
-  libssl3 libcairo2 libmuparser2v5 fonts-dejavu-core
+  libssl3 libsqlite3-0 libpq5 libprometheus-cpp-core1.0 libprometheus-cpp-pull1.0
+  libcairo2 libmuparser2v5 fonts-dejavu-core
 )
 test=(
   g++ libclang-rt-dev llvm # sanitizers, and the names in their reports
+  postgresql-15            # the real database
   clang-format clang-tidy shellcheck gmsh python3 python3-meshio
 )
 # Some machines bring a newer node; Debian's npm would be in its way.
