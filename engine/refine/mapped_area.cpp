@@ -38,7 +38,7 @@ RingVerdict MappedArea::judge_by_cell(const Ring& ring, std::uint32_t first, std
     cell.known = true;
   }
   double reach2 = 0;
-  for (std::uint32_t i = first; i <= last; ++i) reach2 = std::max(reach2, ring.length2[i]);
+  for (std::uint32_t i = first; i <= last; ++i) reach2 = std::max(reach2, ring.points[i].length2);
   if (const double room = room_in(around, p); room > 0 && reach2 <= room * room) [[likely]] {
     if (cell.size == 0)
       return judge_evaluated(cell.place, ring, first, last, p, region_bound, quality, badness);
@@ -68,8 +68,8 @@ RingVerdict MappedArea::judge_evaluated(const SizeMap::Place& place, const Ring&
   double* const y = y_.data()->values;
   double* const bound = bound_.data()->values;
   for (std::uint32_t i = 0; i < n; ++i) {
-    x[i] = p.x + (ring.x[first + i] + ring.x[first + i + 1]) * (1.0 / 3);
-    y[i] = p.y + (ring.y[first + i] + ring.y[first + i + 1]) * (1.0 / 3);
+    x[i] = p.x + (ring.points[first + i].x + ring.points[first + i + 1].x) * (1.0 / 3);
+    y[i] = p.y + (ring.points[first + i].y + ring.points[first + i + 1].y) * (1.0 / 3);
   }
   // Lanes beyond n are evaluated, too: give them a point of the domain.
   for (std::uint32_t i = n; i % Expression::kLanes != 0; ++i) {
@@ -92,18 +92,19 @@ RingVerdict MappedArea::judge_evaluated(const SizeMap::Place& place, const Ring&
   struct EvaluatedBound {
     const double* doubled;
     std::uint32_t first;
-    double operator[](std::uint32_t i) const { return doubled[i - first]; }
+    __m128d two_from(std::uint32_t i) const { return _mm_loadu_pd(doubled + (i - first)); }
   };
   const RingVerdict verdict = judge_ring(ring, first, last, quality, EvaluatedBound{bound, first},
                                          std::numeric_limits<double>::infinity(), badness);
   if (node.leaf()) return verdict;
   for (std::uint32_t i = first; i < last; ++i) {
-    const double area = 0.5 * ring.cross[i];
+    const double area = 0.5 * ring.points[i + 1].cross;
     if (badness[i] >= kLarge || !(area > SizeMap::kFeatureFactor * coarseness_ * node.lowest_hi)) {
       continue;
     }
-    const std::array<Point, 3> corners{p, Point{p.x + ring.x[i], p.y + ring.y[i]},
-                                       Point{p.x + ring.x[i + 1], p.y + ring.y[i + 1]}};
+    const std::array<Point, 3> corners{
+        p, Point{p.x + ring.points[i].x, p.y + ring.points[i].y},
+        Point{p.x + ring.points[i + 1].x, p.y + ring.points[i + 1].y}};
     if (map_.covers_finer(place, corners, area / coarseness_)) {
       badness[i] = badness_of_size(area, SizeMap::kFeatureFactor * coarseness_ * node.lowest_hi);
     }

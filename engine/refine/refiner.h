@@ -324,18 +324,18 @@ class Refiner {
     std::uint32_t previous = star[n - 1];
     for (std::uint32_t i = 0; i < n; ++i) {
       const std::uint32_t next = star[i + 1 < n ? i + 1 : 0];
+      const RingPoint& end = ring.points[i + 1];
       Triangle& t = triangles[star[i]];
       t.vertex[0] = vertex;
-      t.vertex[1] = ring.vertex[i];
-      t.vertex[2] = ring.vertex[i + 1];
-      t.flags = ring.constrained[i] | judged_[i] << 8;
-      t.neighbor[0] = ring.outside[i];
+      t.vertex[1] = ring.points[i].vertex;
+      t.vertex[2] = end.vertex;
+      t.flags = end.constrained | judged_[i] << 8;
+      t.neighbor[0] = end.outside;
       t.neighbor[1] = half_edge(next, 2);
       t.neighbor[2] = half_edge(previous, 1);
       t.region = region;
-      if (ring.outside[i] != kNone) {
-        triangles[triangle_of(ring.outside[i])].neighbor[edge_of(ring.outside[i])] =
-            half_edge(star[i], 0);
+      if (end.outside != kNone) {
+        triangles[triangle_of(end.outside)].neighbor[edge_of(end.outside)] = half_edge(star[i], 0);
       }
       previous = star[i];
     }
@@ -345,8 +345,9 @@ class Refiner {
     }
     for (std::uint32_t i = 0; i < n; ++i) {
       if (judged_[i] == kGood) continue;
-      if (ownership_.in_core(p.x + (ring.x[i] + ring.x[i + 1]) * (1.0 / 3),
-                             p.y + (ring.y[i] + ring.y[i + 1]) * (1.0 / 3))) [[likely]] {
+      if (ownership_.in_core(p.x + (ring.points[i].x + ring.points[i + 1].x) * (1.0 / 3),
+                             p.y + (ring.points[i].y + ring.points[i + 1].y) * (1.0 / 3)))
+          [[likely]] {
         bad_.push(star[i], judged_[i]);
       } else {
         handed_over_.push_back({star[i], vertex});
@@ -425,8 +426,8 @@ class Refiner {
     const Ring& ring = cavity_.ring();
     for (std::uint32_t i = 0; i < ring.size; ++i) {
       ++exact_;
-      if (orientation_exact(p, mesh_.vertices[ring.vertex[i]],
-                            mesh_.vertices[ring.vertex[i + 1]]) <= 0) {
+      if (orientation_exact(p, mesh_.vertices[ring.points[i].vertex],
+                            mesh_.vertices[ring.points[i + 1].vertex]) <= 0) {
         return false;
       }
     }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The badness of a triangle that no insertion here has made: as a ring of one edge around its first
-// vertex.
+// The badness of a triangle that no insertion here has made: as a ring around its first vertex, of
+// its edge there and back, for rings are judged two triangles at a time (quality_bounds.h).
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "engine/refine/cavity.h"
@@ -19,21 +20,26 @@ class TriangleJudge {
                      const QualityBounds& quality, AreaBound& area) {
     const Triangle& triangle = mesh.triangles[t];
     const Point p = mesh.vertices[triangle.vertex[0]];
-    ring_.size = 1;
+    ring_.size = 2;
     for (std::uint32_t i = 0; i < 2; ++i) {
       const Point q = mesh.vertices[triangle.vertex[i + 1]];
-      ring_.x[i] = q.x - p.x;
-      ring_.y[i] = q.y - p.y;
-      ring_.length2[i] = ring_.x[i] * ring_.x[i] + ring_.y[i] * ring_.y[i];
+      RingPoint& point = ring_.points[i];
+      point.x = q.x - p.x;
+      point.y = q.y - p.y;
+      point.length2 = point.x * point.x + point.y * point.y;
     }
-    ring_.cross[0] = ring_.x[0] * ring_.y[1] - ring_.y[0] * ring_.x[1];
-    Badness badness = kGood;
-    area.judge(ring_, 0, 1, p, region_bound, quality, &badness);
-    return badness;
+    const RingPoint& a = ring_.points[0];
+    RingPoint& b = ring_.points[1];
+    b.cross = a.x * b.y - a.y * b.x;
+    ring_.points[2] = a;
+    ring_.points[2].cross = b.cross;
+    std::array<Badness, 2> badness{};
+    area.judge(ring_, 0, 2, p, region_bound, quality, badness.data());
+    return badness[0];
   }
 
  private:
-  Ring ring_{1};
+  Ring ring_{2};
 };
 
 }  // namespace weft

@@ -26,14 +26,15 @@ class LeafRadius {
         ring, first, last, quality, UniformAreaBound{std::numeric_limits<double>::infinity()},
         std::numeric_limits<double>::infinity(), badness);
     for (std::uint32_t i = first; i < last; ++i) {
-      const double ex = ring.x[i + 1] - ring.x[i];
-      const double ey = ring.y[i + 1] - ring.y[i];
-      const Point centroid{p.x + (ring.x[i] + ring.x[i + 1]) * (1.0 / 3),
-                           p.y + (ring.y[i] + ring.y[i + 1]) * (1.0 / 3)};
+      const RingPoint& a = ring.points[i];
+      const RingPoint& b = ring.points[i + 1];
+      const double ex = b.x - a.x;
+      const double ey = b.y - a.y;
+      const Point centroid{p.x + (a.x + b.x) * (1.0 / 3), p.y + (a.y + b.y) * (1.0 / 3)};
       // R = |a| |b| |e| / (2 a x b)
-      const double product = ring.length2[i] * ring.length2[i + 1] * (ex * ex + ey * ey);
+      const double product = a.length2 * b.length2 * (ex * ex + ey * ey);
       const double limit = 2 / kFraction * tree_->leaves()[tree_->leaf_at(centroid)].side();
-      const double allowed = limit * ring.cross[i] * (limit * ring.cross[i]);
+      const double allowed = limit * b.cross * (limit * b.cross);
       badness[i] = product > allowed ? badness_of_size(product, allowed) : kGood;
     }
     return verdict;
