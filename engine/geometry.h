@@ -37,6 +37,12 @@ struct Box {
   double height() const { return max_y - min_y; }
 };
 
+// How far p is from the border of a box; negative outside.
+inline double room_in(const Box& box, Point p) {
+  return std::min(std::min(p.x - box.min_x, box.max_x - p.x),
+                  std::min(p.y - box.min_y, box.max_y - p.y));
+}
+
 // No vertex, no triangle, no segment.
 inline constexpr std::uint32_t kNone = 0xffffffffu;
 

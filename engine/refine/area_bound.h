@@ -43,8 +43,7 @@ class ConstantArea {
   RingVerdict judge(const Ring& ring, std::uint32_t first, std::uint32_t last, Point,
                     double region_bound, const QualityBounds& quality, Badness* badness) {
     return judge_ring(ring, first, last, quality,
-                      UniformAreaBound{2 * coarseness_ * std::min(bound_, region_bound)},
-                      std::numeric_limits<double>::infinity(), badness);
+                      UniformAreaBound{2 * coarseness_ * std::min(bound_, region_bound)}, badness);
   }
 
   // Insertions that take about 0.1 ms, see ExecutionContext.

@@ -81,11 +81,16 @@ class Cavity {
   explicit Cavity(const Mesh& mesh)
       : triangles_(mesh.triangles.data()),
         vertices_(mesh.vertices.data()),
+        owners_(mesh.triangle_owner.data()),
         ring_(kInitialCapacity) {
     resize(kInitialCapacity);
   }
 
-  void set_ownership(const Ownership& ownership) { ownership_ = ownership; }
+  // A task begins, which owns the slots of `owner`.
+  void begin(const Ownership& ownership, std::uint32_t owner) {
+    ownership_ = ownership;
+    owner_ = owner;
+  }
 
   // The cavity of `p`, which must lie in the circumdisk of `seed`. REQUIRES: the seed's vertices
   // are owned.
@@ -96,8 +101,7 @@ class Cavity {
     const End b = end_at(t.vertex[1], origin);
     const End c = end_at(t.vertex[2], origin);
     const double cross_ab = cross(a, b);
-    cavity_[0] = seed;
-    cavity_size_ = 1;
+    begin_with(seed);
     begin_ring(a);
     Frame* const frames = stack_.data();
     _mm_store_pd(&frames[1].end.x, c.at);
@@ -116,8 +120,7 @@ class Cavity {
     const __m128d origin = _mm_set_pd(p.y, p.x);
     const End a = end_at(t.vertex[kNext[edge]], origin);
     const End b = end_at(t.vertex[kPrevious[edge]], origin);
-    cavity_[0] = triangle;
-    cavity_size_ = 1;
+    begin_with(triangle);
     std::uint32_t depth = 0;
     const HalfEdge across = t.neighbor[edge];
     if (across != kNone) {
@@ -125,6 +128,7 @@ class Cavity {
       const std::uint32_t j = edge_of(across);
       if (!owns(triangles_[u].vertex[j])) return Growth::kNotOwned;
       cavity_[cavity_size_++] = u;
+      foreign_ |= foreign(u);
       begin_side(u, j, a, b, origin, &stack_[depth]);
       depth += 2;
     }
@@ -143,8 +147,11 @@ class Cavity {
   const Ring& ring() const { return ring_; }
   std::uint32_t far_end() const { return far_end_; }
   const std::vector<SegmentEdge>& encroached() const { return encroached_; }
-  const std::uint32_t* triangles() const { return cavity_.data(); }
+  // In the order of the walk. There is room for all triangles of the star, and one more.
+  std::uint32_t* triangles() { return cavity_.data(); }
   std::uint32_t size() const { return cavity_size_; }
+  // Whether all triangles of the cavity lie in slots of the task.
+  bool in_own_slots() const { return foreign_ == 0; }
   std::uint64_t exact_predicates() const { return exact_predicates_; }
 
   void enlarge() {
@@ -192,6 +199,17 @@ class Cavity {
     return true;
   }
 
+  // 0 for a triangle in a slot of the task.
+  std::uint32_t foreign(std::uint32_t triangle) const {
+    if constexpr (Ownership::kRestricted) return owners_[triangle >> Mesh::kTriangleShift] ^ owner_;
+    return 0;
+  }
+
+  void begin_with(std::uint32_t triangle) {
+    cavity_[0] = triangle;
+    cavity_size_ = 1;
+    foreign_ = foreign(triangle);
+  }
   End end_at(std::uint32_t vertex, __m128d origin) const {
     const __m128d at = _mm_sub_pd(_mm_loadu_pd(&vertices_[vertex].x), origin);
     const __m128d squares = _mm_mul_pd(at, at);
@@ -205,7 +223,7 @@ class Cavity {
   void begin_ring(const End& first) {
     RingPoint& point = ring_.points[0];
     _mm_store_pd(&point.x, first.at);
-    point.length2 = first.length2;
+    _mm_store_pd(&point.length2, _mm_set_sd(first.length2));
     point.vertex = first.vertex;
   }
 
@@ -329,6 +347,7 @@ class Cavity {
     std::uint32_t* const cavity = cavity_.data();
     encroached_.clear();
     std::uint32_t size = cavity_size_;
+    std::uint32_t foreign_slots = foreign_;
     do {
       Frame& frame = above[-1];
       if (frame.end.constrained != kJoins) {
@@ -346,6 +365,7 @@ class Cavity {
       if (size + kSlack > capacity_) [[unlikely]]
         return Growth::kOverflow;
       cavity[size++] = u;
+      foreign_slots |= foreign(u);
       const End a{_mm_load_pd(&last->x), last->length2, last->vertex};
       const End apex{_mm_load_pd(&frame.apex_x), frame.apex_length2, d};
       const End b{_mm_load_pd(&frame.end.x), frame.end.length2, frame.end.vertex};
@@ -354,16 +374,20 @@ class Cavity {
     } while (above != bottom);
     ring_.size = static_cast<std::uint32_t>(last - ring_.points.data());
     cavity_size_ = size;
+    foreign_ = foreign_slots;
     return encroached_.empty() ? Growth::kComplete : Growth::kEncroaches;
   }
 
   const Triangle* triangles_;
   const Point* vertices_;
+  const std::uint32_t* owners_;  // of the slots
   Ownership ownership_{};
+  std::uint32_t owner_ = 0;
   std::size_t capacity_ = 0;
   std::vector<Frame> stack_;
   std::vector<std::uint32_t> cavity_;
   std::uint32_t cavity_size_ = 0;
+  std::uint32_t foreign_ = 0;  // not 0 where the cavity has slots of other owners
   Ring ring_;
   std::uint32_t far_end_ = 0;
   std::vector<SegmentEdge> encroached_;

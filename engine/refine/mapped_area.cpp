@@ -44,8 +44,7 @@ RingVerdict MappedArea::judge_by_cell(const Ring& ring, std::uint32_t first, std
       return judge_evaluated(cell.place, ring, first, last, p, region_bound, quality, badness);
     box_ = around;
     size_ = cell.size;
-    return judge_ring(ring, first, last, quality, uniform(region_bound),
-                      std::numeric_limits<double>::infinity(), badness);
+    return judge_ring(ring, first, last, quality, uniform(region_bound), badness);
   }
   const double reach = std::sqrt(reach2);
   const Box ring_box{p.x - reach, p.y - reach, p.x + reach, p.y + reach};
@@ -94,8 +93,8 @@ RingVerdict MappedArea::judge_evaluated(const SizeMap::Place& place, const Ring&
     std::uint32_t first;
     __m128d two_from(std::uint32_t i) const { return _mm_loadu_pd(doubled + (i - first)); }
   };
-  const RingVerdict verdict = judge_ring(ring, first, last, quality, EvaluatedBound{bound, first},
-                                         std::numeric_limits<double>::infinity(), badness);
+  const RingVerdict verdict =
+      judge_ring(ring, first, last, quality, EvaluatedBound{bound, first}, badness);
   if (node.leaf()) return verdict;
   for (std::uint32_t i = first; i < last; ++i) {
     const double area = 0.5 * ring.points[i + 1].cross;

@@ -35,8 +35,8 @@ class MappedArea {
                     double region_bound, const QualityBounds& quality, Badness* badness) {
     if (const double room = room_in(box_, p); room > 0) [[likely]] {
       const RingVerdict verdict =
-          judge_ring(ring, first, last, quality, uniform(region_bound), room * room, badness);
-      if (!verdict.beyond) [[likely]]
+          judge_ring(ring, first, last, quality, uniform(region_bound), badness);
+      if (verdict.reach2 <= room * room) [[likely]]
         return verdict;
     }
     return judge_by_cell(ring, first, last, p, region_bound, quality, badness);
@@ -67,11 +67,6 @@ class MappedArea {
     SizeMap::Place place{};
   };
 
-  // How far p is from the border of a box; negative outside.
-  static double room_in(const Box& box, Point p) {
-    return std::min(std::min(p.x - box.min_x, box.max_x - p.x),
-                    std::min(p.y - box.min_y, box.max_y - p.y));
-  }
   UniformAreaBound uniform(double region_bound) const {
     return {2 * coarseness_ * std::min(size_, region_bound)};
   }

@@ -17,6 +17,7 @@ struct OwnsAll {
   static constexpr bool kRestricted = false;
   constexpr bool owns(Point) const { return true; }
   constexpr bool in_core(double, double) const { return true; }
+  constexpr bool core_holds(Point, double) const { return true; }
 };
 
 // A task has the vertices of a half-open box, beside others. It refines what has its centroid in
@@ -28,6 +29,11 @@ struct OwnsBox {
 
   bool owns(Point p) const { return contains(box, p.x, p.y); }
   bool in_core(double x, double y) const { return contains(core, x, y); }
+  // Whether all within the root of `reach2` of p lies in the core.
+  bool core_holds(Point p, double reach2) const {
+    const double room = room_in(core, p);
+    return room > 0 && reach2 <= room * room;
+  }
 
   static bool contains(const Box& b, double x, double y) {
     return x >= b.min_x && x < b.max_x && y >= b.min_y && y < b.max_y;

@@ -45,7 +45,7 @@ inline double circumradius2(Point a, Point b, Point c) {
 struct RingVerdict {
   bool flat = false;       // a triangle may not be counter-clockwise: ask the exact predicate
   bool too_close = false;  // p is nearer to a point of the ring than the floor
-  bool beyond = false;     // a point of the ring is farther from p than `reach2` allows
+  double reach2 = 0;       // squared distance from p to the farthest point of the ring
 };
 
 // An area bound for every triangle of a ring. Two at once: those of triangles i and i + 1.
@@ -63,14 +63,13 @@ inline Badness badness_of_size(double area, double bound) {
 }
 
 // badness[i] of the triangles first <= i < last. `doubled_bound` has twice the upper bound on the
-// area of each, and holds for rings that reach no farther than the root of `reach2`. REQUIRES: at
-// least two triangles.
+// area of each. REQUIRES: at least two triangles.
 //
 // Two triangles a step; of an odd number, the last step judges one again.
 template <class AreaBound>
 inline RingVerdict judge_ring(const Ring& ring, std::uint32_t first, std::uint32_t last,
                               const QualityBounds& quality, const AreaBound& doubled_bound,
-                              double reach2, Badness* __restrict badness) {
+                              Badness* __restrict badness) {
   constexpr double kOrientationError = 4 * 0x1p-53;
   const RingPoint* const __restrict points = ring.points.data();
   const __m128d sin2 = _mm_set1_pd(quality.sin2);
@@ -115,7 +114,7 @@ inline RingVerdict judge_ring(const Ring& ring, std::uint32_t first, std::uint32
   }
   const auto any = [](__m128d mask) { return _mm_movemask_pd(mask) != 0; };
   return {any(flat), any(_mm_cmplt_pd(nearest2, _mm_set1_pd(quality.min_length2))),
-          any(_mm_cmpgt_pd(farthest2, _mm_set1_pd(reach2)))};
+          _mm_cvtsd_f64(_mm_max_sd(farthest2, _mm_unpackhi_pd(farthest2, farthest2)))};
 }
 
 }  // namespace weft

@@ -6,6 +6,8 @@
 // lie elsewhere: what is numbered or sent by that order is deterministic.
 #pragma once
 
+#include <emmintrin.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -31,15 +33,24 @@ class Slots {
     }
     return triangles_.next++;
   }
+  // Slots for `count` triangles.
+  void add_triangles(Mesh& mesh, std::uint32_t count, std::uint32_t* slots) {
+    if (count == 2 && triangles_.end - triangles_.next >= 2) [[likely]] {
+      slots[0] = triangles_.next++;
+      slots[1] = triangles_.next++;
+      return;
+    }
+    for (std::uint32_t i = 0; i < count; ++i) slots[i] = add_triangle(mesh);
+  }
   std::uint32_t add_vertex(Mesh& mesh, Point p) {
     if (vertices_.next == vertices_.end) [[unlikely]]
       take_vertices(mesh, vertices_, false);
-    mesh.vertices[vertices_.next] = p;
+    store(mesh, vertices_.next, p);
     return vertices_.next++;
   }
   std::uint32_t add_segment_vertex(Mesh& mesh, Point p, std::uint32_t subsegment) {
     if (on_segments_.next == on_segments_.end) take_vertices(mesh, on_segments_, true);
-    mesh.vertices[on_segments_.next] = p;
+    store(mesh, on_segments_.next, p);
     mesh.subsegments[on_segments_.next] = subsegment;
     return on_segments_.next++;
   }
@@ -84,6 +95,10 @@ class Slots {
 
   static std::uint32_t used(std::uint32_t first, std::uint32_t block, const Free& free) {
     return first + block == free.end ? free.next : first + block;
+  }
+  // In one piece, as the cavity reads it back.
+  static void store(Mesh& mesh, std::uint32_t vertex, Point p) {
+    _mm_storeu_pd(&mesh.vertices[vertex].x, _mm_set_pd(p.y, p.x));
   }
   void take_vertices(Mesh& mesh, Free& free, bool on_segment);
 

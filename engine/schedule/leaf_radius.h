@@ -22,9 +22,9 @@ class LeafRadius {
   void begin(const Box&) {}
   RingVerdict judge(const Ring& ring, std::uint32_t first, std::uint32_t last, Point p, double,
                     const QualityBounds& quality, Badness* badness) const {
-    const RingVerdict verdict = judge_ring(
-        ring, first, last, quality, UniformAreaBound{std::numeric_limits<double>::infinity()},
-        std::numeric_limits<double>::infinity(), badness);
+    const RingVerdict verdict =
+        judge_ring(ring, first, last, quality,
+                   UniformAreaBound{std::numeric_limits<double>::infinity()}, badness);
     for (std::uint32_t i = first; i < last; ++i) {
       const RingPoint& a = ring.points[i];
       const RingPoint& b = ring.points[i + 1];

@@ -51,6 +51,7 @@ struct OwnsUnfrozen {
     });
   }
   constexpr bool in_core(double, double) const { return true; }
+  constexpr bool core_holds(Point, double) const { return true; }
 };
 
 template <class AreaBound>
