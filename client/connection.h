@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // A channel to the server that the user named, or to a private one.
+//
+// Every call on the channel carries the token, if there is one. Certificates, keys and tokens are
+// read when connecting.
+//
+// Errors: kUnreadableInput names the file that is missing or malformed; kUsage says that the token
+// would travel unencrypted; kServerNotStarted as private_server.h says. An encrypted connection
+// that the two sides do not agree on ends the first call with UNAVAILABLE.
 #pragma once
 
 #include <grpcpp/channel.h>
@@ -8,6 +15,7 @@
 #include <stop_token>
 #include <string>
 
+#include "client/connect_options.h"
 #include "client/error.h"
 #include "client/private_server.h"
 
@@ -19,8 +27,7 @@ struct Connection {
   std::string address;
 };
 
-// `address` as gRPC takes it ("host:port", "unix:/path"); empty: a private server is started. Does
-// not wait for a named server: the first call finds out.
-Result<Connection> connect(const std::string& address, std::stop_token stop);
+// Does not wait for a named server: the first call finds out.
+Result<Connection> connect(const ConnectOptions& options, std::stop_token stop);
 
 }  // namespace weft::client

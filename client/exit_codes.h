@@ -9,9 +9,8 @@
 //   5        the output cannot be written (nothing is left behind)
 //   6        the private weftd could not be found or started
 //   64 + n   the call to the server ended with gRPC status n: 67 the request is wrong, 68 a
-//   deadline
-//            passed, 72 a limit or budget was exceeded, 78 the server is absent or went away, 79
-//            the stream was damaged
+//            deadline passed, 72 a limit or budget was exceeded, 78 the server is absent or went
+//            away, 79 the stream was damaged, 80 the token is missing or wrong
 //   128 + n  stopped by signal n
 #pragma once
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "client/commands/commands.h"
+#include "client/connect_flags.h"
 #include "client/signals.h"
 
 namespace {
@@ -25,7 +26,8 @@ constexpr char kExitCodes[] = R"(Exit codes:
   6        the private weftd could not be found or started
   64 + n   the call to the server ended with gRPC status n: 67 the request is
            wrong, 68 a deadline passed, 72 a limit was exceeded, 78 the server is
-           absent or went away, 79 the stream was damaged
+           absent or went away, 79 the stream was damaged, 80 the token is
+           missing or wrong
   128 + n  stopped by signal n
 
 Flags that name a variable in their help, such as (Env:WEFT_SERVER), are also read
@@ -47,15 +49,6 @@ Example:
   weft check pipe.msh --domain pipe.poly --size '0.4*hypot(x-200, y-200) + 1' --min-angle 30)";
 
 const CLI::Range kSeconds(0.001, 1e9);
-
-void add_server(CLI::App& command, std::string& server) {
-  command
-      .add_option(
-          "--server", server,
-          "Server to use, as HOST:PORT or unix:PATH. Without one a private weftd is started")
-      ->envname("WEFT_SERVER")
-      ->type_name("ADDR");
-}
 
 void add_mesh(CLI::App& app, MeshOptions& options) {
   CLI::App& mesh = *app.add_subcommand("mesh", "Mesh a domain and write the mesh to files");
@@ -91,7 +84,7 @@ void add_mesh(CLI::App& app, MeshOptions& options) {
       ->envname("WEFT_THREADS")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
-  add_server(mesh, options.server);
+  add_server_flags(mesh, options.server);
   mesh.add_option("--timeout", options.timeout_seconds,
                   "Give up when the whole call takes longer. Default: never")
       ->envname("WEFT_TIMEOUT")
@@ -138,7 +131,7 @@ void add_check(CLI::App& app, CheckOptions& options) {
 
 void add_server_command(CLI::App& app, const char* name, const char* help, ServerOptions& options) {
   CLI::App& command = *app.add_subcommand(name, help);
-  add_server(command, options.server);
+  add_server_flags(command, options.server);
   command.add_option("--timeout", options.timeout_seconds, "Give up after this many seconds")
       ->envname("WEFT_TIMEOUT")
       ->check(kSeconds)

@@ -17,8 +17,11 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
+#include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "client/formats/file_contents.h"
 
@@ -55,6 +58,22 @@ Result<std::filesystem::path> find_weftd(const PrivateServerOptions& options) {
   }
   return not_started(
       "weftd is neither beside weft nor in the PATH; give --server ADDR, or WEFT_WEFTD");
+}
+
+// Our environment, less what concerns servers that others use, too: this one has no certificate,
+// asks for no token and shows no metrics.
+std::vector<char*> its_environment() {
+  constexpr std::string_view kNotForIt[] = {
+      "WEFT_TLS_CERT=", "WEFT_TLS_KEY=", "WEFT_TLS_CLIENT_CA=",
+      "WEFT_TOKENS=",   "WEFT_TOKEN=",   "WEFT_METRICS="};
+  std::vector<char*> variables;
+  for (char** each = environ; *each != nullptr; ++each)
+    if (std::none_of(std::begin(kNotForIt), std::end(kNotForIt), [each](std::string_view name) {
+          return std::string_view(*each).starts_with(name);
+        }))
+      variables.push_back(*each);
+  variables.push_back(nullptr);
+  return variables;
 }
 
 // Milliseconds until then, as poll takes them.
@@ -120,8 +139,8 @@ Result<void> PrivateServer::spawn(const std::filesystem::path& weftd) {
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
-  const int problem =
-      ::posix_spawn(&pid_, weftd.c_str(), &actions, &attributes, argv.data(), environ);
+  const int problem = ::posix_spawn(&pid_, weftd.c_str(), &actions, &attributes, argv.data(),
+                                    its_environment().data());
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (problem != 0) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "client/connect_options.h"
 #include "client/drawing/draw.h"
 #include "client/error.h"
 #include "client/mesh_call.h"
@@ -22,7 +23,7 @@ struct MeshOptions {
   std::vector<std::filesystem::path> drawings;
   DrawColor color = DrawColor::kNone;
   MeshWishes wishes;
-  std::string server;  // empty: a private one
+  ConnectOptions server;
   std::optional<double> timeout_seconds;
   bool json = false;
   bool quiet = false;
@@ -41,7 +42,7 @@ Result<ExitCode> run_check(const CheckOptions& options);
 Result<ExitCode> run_info(const std::filesystem::path& file);
 
 struct ServerOptions {
-  std::string server;  // empty: a private one
+  ConnectOptions server;
   double timeout_seconds = 10;
 };
 Result<ExitCode> run_health(const ServerOptions& options, std::stop_token stop);

@@ -23,7 +23,7 @@ class MeshCall : public testing::Test {
     return report;
   }
   Result<MeshReport> call_server(const MeshCallOptions& options, std::stop_token stop) {
-    const auto connection = connect(address_, {}).value();
+    const auto connection = connect({.server = address_}, {}).value();
     spool_ = MeshSpool::create(folder_.path()).value();
     return call_generate_mesh(connection, square_domain(4), {}, options, *spool_, std::move(stop));
   }

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// The flags of every command that speaks to a server.
+#pragma once
+
+#include <CLI/App.hpp>
+
+#include "client/connect_options.h"
+
+namespace weft::client {
+
+// `options` outlives the parsing.
+void add_server_flags(CLI::App& command, ConnectOptions& options);
+
+}  // namespace weft::client
