@@ -47,6 +47,7 @@ constexpr std::array kTable = {
     row(kStopping, "STOPPING", UNAVAILABLE, kRetry, "stopping"),
     row(kReaderStalled, "READER_STALLED", CANCELLED, kFinal, "reader_stalled"),
     row(kChunkOutOfRange, "CHUNK_OUT_OF_RANGE", OUT_OF_RANGE, kFinal, "chunk_out_of_range"),
+    row(kUnauthenticated, "UNAUTHENTICATED", UNAUTHENTICATED, kFinal, "unauthenticated"),
 };
 
 constexpr bool indexed_by_reason() {

@@ -43,6 +43,7 @@ enum class Reason {
   kStopping,          // the server drains
   kReaderStalled,     // the client read nothing for too long
   kChunkOutOfRange,   // first_chunk is beyond the mesh
+  kUnauthenticated,   // no token, or none that the server knows
 };
 
 struct ErrorRow {

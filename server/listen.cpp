@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <netdb.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -18,10 +19,6 @@ namespace weft::server {
 namespace {
 
 constexpr std::string_view kUnix = "unix:";
-
-bool is_unix(std::string_view address) {
-  return address.substr(0, kUnix.size()) == kUnix;
-}
 
 class Socket {
  public:
@@ -86,17 +83,33 @@ std::optional<HostPort> split(const std::string& address) {
   return out;
 }
 
-tl::expected<void, std::string> claim_tcp(const HostPort& where) {
+using Addresses = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
+
+tl::expected<Addresses, std::string> look_up(const HostPort& where) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   hints.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
   addrinfo* found = nullptr;
   const int error = ::getaddrinfo(where.host.c_str(), where.port.c_str(), &hints, &found);
   if (error != 0) return refuse(::gai_strerror(error));
-  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, &::freeaddrinfo);
+  return Addresses(found, &::freeaddrinfo);
+}
+
+bool is_loopback(const sockaddr& address) {
+  if (address.sa_family == AF_INET) {
+    const auto& v4 = reinterpret_cast<const sockaddr_in&>(address);
+    return ntohl(v4.sin_addr.s_addr) >> 24 == 127;
+  }
+  const auto& v6 = reinterpret_cast<const sockaddr_in6&>(address);
+  return address.sa_family == AF_INET6 && IN6_IS_ADDR_LOOPBACK(&v6.sin6_addr);
+}
+
+tl::expected<void, std::string> claim_tcp(const HostPort& where) {
+  const auto found = look_up(where);
+  if (!found) return refuse(found.error());
   // gRPC listens on every address of the host that it can; one is enough.
   int reason = EADDRNOTAVAIL;
-  for (const addrinfo* each = found; each != nullptr; each = each->ai_next) {
+  for (const addrinfo* each = found->get(); each != nullptr; each = each->ai_next) {
     const Socket probe(each->ai_family);
     const int on = 1;
     ::setsockopt(probe.fd(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
@@ -108,10 +121,25 @@ tl::expected<void, std::string> claim_tcp(const HostPort& where) {
 
 }  // namespace
 
+bool is_unix(std::string_view address) {
+  return address.starts_with(kUnix);
+}
+
 tl::expected<void, std::string> claim(const std::string& address) {
   if (is_unix(address)) return claim_unix(address.substr(kUnix.size()));
   if (const auto where = split(address)) return claim_tcp(*where);
   return refuse("not of the form HOST:PORT or unix:PATH");
+}
+
+bool is_local(const std::string& address) {
+  if (is_unix(address)) return true;
+  const auto where = split(address);
+  if (!where) return false;
+  const auto found = look_up(*where);
+  if (!found) return false;
+  for (const addrinfo* each = found->get(); each != nullptr; each = each->ai_next)
+    if (!is_loopback(*each->ai_addr)) return false;
+  return true;
 }
 
 std::string bound_address(const std::string& address, int port) {

@@ -16,6 +16,12 @@ namespace weft::server {
 // file that no server listens on is removed; any other file is left alone.
 tl::expected<void, std::string> claim(const std::string& address);
 
+bool is_unix(std::string_view address);
+
+// Whether what travels there stays on this machine: a unix: address, or a host all of whose
+// addresses are loopback's. False where the host is not to be found.
+bool is_local(const std::string& address);
+
 // The address with its port filled in.
 std::string bound_address(const std::string& address, int port);
 

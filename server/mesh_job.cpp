@@ -34,13 +34,13 @@ MeshJob::Clock::time_point after(Seconds span) {
 }  // namespace
 
 MeshJob::MeshJob(const JobEnvironment& environment, grpc::CallbackServerContext* context,
-                 std::string id, std::unique_ptr<v1::GenerateMeshRequest> request,
+                 Caller caller, std::string id, std::unique_ptr<v1::GenerateMeshRequest> request,
                  DrainGate::Pass pass)
     : MessageStream(context, accepted_message(
                                  id, to_threads(request->threads(), environment.arena.threads()))),
       environment_(environment),
       id_(std::move(id)),
-      peer_(context->peer()),
+      caller_(log_fields(caller)),
       call_deadline_(context->deadline()),
       max_seconds_(to_seconds(request->budget(), environment.limits)),
       threads_(to_threads(request->threads(), environment.arena.threads())),
@@ -53,8 +53,8 @@ MeshJob::MeshJob(const JobEnvironment& environment, grpc::CallbackServerContext*
 void MeshJob::start() noexcept {
   const v1::Domain& domain = request_->domain();
   environment_.log->info(
-      "event=job_queued job={} peer={} method=GenerateMesh points={} segments={} seeds={}", id_,
-      log_value(peer_), domain.points_size() / 2, domain.segments_size() / 2,
+      "event=job_queued job={} {} method=GenerateMesh points={} segments={} seeds={}", id_, caller_,
+      domain.points_size() / 2, domain.segments_size() / 2,
       domain.holes_size() / 2 + domain.regions_size());
   if (environment_.queue.push(shared_from_this())) {
     pump();
@@ -108,7 +108,7 @@ tl::expected<Summary, Failure> MeshJob::work() {
     std::lock_guard lock(mutex_);
     work_deadline_ = deadline;
   }
-  environment_.log->info("event=job_started job={} waited_seconds={:.3f}", id_,
+  environment_.log->info("event=job_started job={} {} waited_seconds={:.3f}", id_, caller_,
                          Seconds(Clock::now() - admitted_).count());
   try {
     const MeshRequest request = to_engine(*request_);
@@ -196,10 +196,10 @@ grpc::ByteBuffer MeshJob::progress_message(Clock::time_point now) {
 
 void MeshJob::log_end(std::string_view status, std::string_view reason) const {
   environment_.log->info(
-      "event=job_ended job={} peer={} method=GenerateMesh status={} reason={} triangles={} "
+      "event=job_ended job={} {} method=GenerateMesh status={} reason={} triangles={} "
       "chunks={} bytes={} seconds={:.3f}",
-      id_, log_value(peer_), status, reason, context_.progress().triangles, chunks_.load(),
-      bytes_.load(), Seconds(Clock::now() - admitted_).count());
+      id_, caller_, status, reason, context_.progress().triangles, chunks_.load(), bytes_.load(),
+      Seconds(Clock::now() - admitted_).count());
 }
 
 }  // namespace weft::server

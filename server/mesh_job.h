@@ -20,6 +20,7 @@
 
 #include "engine/arena.h"
 #include "engine/engine.h"
+#include "server/caller.h"
 #include "server/drain.h"
 #include "server/errors.h"
 #include "server/job_queue.h"
@@ -56,8 +57,8 @@ class MeshJob final : public MessageStream,
                       public std::enable_shared_from_this<MeshJob>,
                       private ChunkSink {
  public:
-  MeshJob(const JobEnvironment& environment, grpc::CallbackServerContext* context, std::string id,
-          std::unique_ptr<v1::GenerateMeshRequest> request, DrainGate::Pass pass);
+  MeshJob(const JobEnvironment& environment, grpc::CallbackServerContext* context, Caller caller,
+          std::string id, std::unique_ptr<v1::GenerateMeshRequest> request, DrainGate::Pass pass);
 
   // Joins the queue, or ends with QUEUE_FULL. Call once.
   void start() noexcept;
@@ -86,7 +87,7 @@ class MeshJob final : public MessageStream,
 
   const JobEnvironment& environment_;
   const std::string id_;
-  const std::string peer_;
+  const std::string caller_;  // as a line of the log tells it
   const std::chrono::system_clock::time_point call_deadline_;
   const double max_seconds_;  // of work
   const std::uint32_t threads_;

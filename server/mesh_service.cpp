@@ -25,8 +25,10 @@ class Refusal final : public Reactor {
 
 }  // namespace
 
-MeshService::MeshService(const ServiceOptions& options, EngineFn engine, Logger log)
+MeshService::MeshService(const ServiceOptions& options, const Authenticator& authenticator,
+                         EngineFn engine, Logger log)
     : options_(options),
+      authenticator_(authenticator),
       log_(std::move(log)),
       arena_(static_cast<int>(options.threads)),
       environment_{std::move(engine),
@@ -54,24 +56,26 @@ void MeshService::stop_all() {
 
 Reactor* MeshService::GenerateMesh(grpc::CallbackServerContext* context,
                                    const grpc::ByteBuffer* request) {
+  auto caller = authenticator_.identify(*context);
+  if (!caller) return refuse(Authenticator::unverified(*context), caller.error());
   auto pass = gate_.enter();
-  if (!pass) return refuse(context, {Reason::kStopping, "", "the server is stopping"});
+  if (!pass) return refuse(*caller, {Reason::kStopping, "", "the server is stopping"});
   try {
     // gRPC made this buffer for the call and keeps it to the end: parsing frees its memory early.
-    return admit(context, const_cast<grpc::ByteBuffer&>(*request), std::move(*pass));
+    return admit(context, const_cast<grpc::ByteBuffer&>(*request), *caller, std::move(*pass));
   } catch (const std::exception& error) {
-    return refuse(context, {Reason::kInternal, "", error.what()});
+    return refuse(*caller, {Reason::kInternal, "", error.what()});
   }
 }
 
 Reactor* MeshService::admit(grpc::CallbackServerContext* context, grpc::ByteBuffer& bytes,
-                            DrainGate::Pass pass) {
+                            Caller caller, DrainGate::Pass pass) {
   auto request = read(bytes);
-  if (!request) return refuse(context, request.error());
+  if (!request) return refuse(caller, request.error());
   std::shared_ptr<MeshJob> job;
   {
     std::lock_guard lock(mutex_);
-    job = std::make_shared<MeshJob>(environment_, context,
+    job = std::make_shared<MeshJob>(environment_, context, std::move(caller),
                                     fmt::format("{}-{}", options_.instance, ++last_number_),
                                     std::move(*request), std::move(pass));
     jobs_.emplace(job.get(), job);
@@ -96,10 +100,10 @@ tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure> MeshService::rea
   return request;
 }
 
-Reactor* MeshService::refuse(grpc::CallbackServerContext* context, const Failure& failure) {
+Reactor* MeshService::refuse(const Caller& caller, const Failure& failure) {
   const ErrorRow& row = row_of(failure.reason);
-  log_->info("event=call_refused peer={} method=GenerateMesh status={} reason={} field={}",
-             log_value(context->peer()), code_name(row.code), row.name,
+  log_->info("event=call_refused {} method=GenerateMesh status={} reason={} field={}",
+             log_fields(caller), code_name(row.code), row.name,
              log_value(failure.field.empty() ? "-" : failure.field));
   return new Refusal(to_status(failure, ""));
 }
@@ -108,6 +112,10 @@ grpc::ServerUnaryReactor* MeshService::GetServerInfo(grpc::CallbackServerContext
                                                      const v1::GetServerInfoRequest*,
                                                      v1::GetServerInfoResponse* response) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  if (const auto caller = authenticator_.identify(*context); !caller) {
+    reactor->Finish(to_status(caller.error(), ""));
+    return reactor;
+  }
   if (!gate_.enter()) {
     reactor->Finish(to_status({Reason::kStopping, "", "the server is stopping"}, ""));
     return reactor;

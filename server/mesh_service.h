@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "engine/arena.h"
+#include "server/caller.h"
 #include "server/drain.h"
 #include "server/job_queue.h"
 #include "server/limits.h"
@@ -50,7 +51,9 @@ class MeshService final
     : public v1::MeshService::WithRawCallbackMethod_GenerateMesh<
           v1::MeshService::WithCallbackMethod_GetServerInfo<v1::MeshService::Service>> {
  public:
-  MeshService(const ServiceOptions& options, EngineFn engine, Logger log);
+  // `authenticator` outlives the service.
+  MeshService(const ServiceOptions& options, const Authenticator& authenticator, EngineFn engine,
+              Logger log);
   // REQUIRES: no call is open.
   ~MeshService() override;
 
@@ -69,14 +72,15 @@ class MeshService final
 
   tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure> read(grpc::ByteBuffer& bytes);
   grpc::ServerWriteReactor<grpc::ByteBuffer>* admit(grpc::CallbackServerContext* context,
-                                                    grpc::ByteBuffer& bytes, DrainGate::Pass pass);
-  grpc::ServerWriteReactor<grpc::ByteBuffer>* refuse(grpc::CallbackServerContext* context,
-                                                     const Failure& failure);
+                                                    grpc::ByteBuffer& bytes, Caller caller,
+                                                    DrainGate::Pass pass);
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* refuse(const Caller& caller, const Failure& failure);
   void forget(MessageStream& stream);
   std::vector<std::shared_ptr<MeshJob>> open_jobs();
   void tick_until_stopped();
 
   const ServiceOptions options_;
+  const Authenticator& authenticator_;
   const Logger log_;
   DrainGate gate_;
   Arena arena_;

@@ -84,6 +84,22 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
              "HOST:PORT (0: any free port) or unix:PATH; may be repeated, or separated by commas")
       ->delimiter(',')
       ->allow_extra_args(false);
+  CLI::Option* tls_cert =
+      flags.value("--tls-cert", options.server.tls.certificate,
+                  "Encrypt TCP addresses; own certificate and those up to its CA, PEM");
+  CLI::Option* tls_key =
+      flags.value("--tls-key", options.server.tls.key, "Private key of --tls-cert, PEM");
+  tls_cert->needs(tls_key);
+  tls_key->needs(tls_cert);
+  flags
+      .value("--tls-client-ca", options.server.tls.client_ca,
+             "Want of clients a certificate of one of these CAs, PEM")
+      ->needs(tls_cert);
+  flags.value("--tokens", options.server.tokens,
+              "Want of callers a bearer token of this file, lines of NAME TOKEN");
+  app.add_flag("--insecure", options.server.insecure,
+               "Listen unencrypted where other machines can connect")
+      ->envname(environment_name("--insecure"));
   flags.value("--port-file", options.port_file, "File for the bound addresses, one a line");
   flags
       .value("--threads", service.threads, "Threads that compute; default: what the machine grants")

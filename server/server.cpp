@@ -10,6 +10,7 @@
 
 #include <utility>
 
+#include "server/connections.h"
 #include "server/listen.h"
 
 namespace weft::server {
@@ -29,9 +30,6 @@ void configure(grpc::ServerBuilder& builder, const Limits& limits) {
   builder.SetMaxReceiveMessageSize(static_cast<int>(limits.max_request_bytes));
   // Two servers must not share a port unnoticed.
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
-  // A client that vanished without a word is noticed.
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 30'000);
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10'000);
   // The limit on message bytes holds before decompression: 256 MiB of gzip could be 256 GiB.
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_GZIP, false);
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_DEFLATE, false);
@@ -45,8 +43,12 @@ void configure(grpc::ServerBuilder& builder, const Limits& limits) {
 
 }  // namespace
 
-Server::Server(const ServiceOptions& options, EngineFn engine, Logger log)
-    : log_(log), service_(options, std::move(engine), std::move(log)) {}
+Server::Server(const ServiceOptions& options, std::unique_ptr<TokenFile> tokens, EngineFn engine,
+               Logger log)
+    : log_(log),
+      tokens_(std::move(tokens)),
+      authenticator_(tokens_.get()),
+      service_(options, authenticator_, std::move(engine), std::move(log)) {}
 
 tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOptions& options,
                                                                  EngineFn engine, Logger log) {
@@ -54,16 +56,28 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
     if (const auto claimed = claim(address); !claimed)
       return tl::unexpected(fmt::format("cannot listen on {}: {}", address, claimed.error()));
 
+  auto credentials = credentials_for(options.listen, options.tls, options.insecure);
+  if (!credentials) return tl::unexpected(credentials.error());
+  std::unique_ptr<TokenFile> tokens;
+  if (!options.tokens.empty()) {
+    auto opened = TokenFile::open(options.tokens, log);
+    if (!opened) return tl::unexpected(opened.error());
+    tokens = std::move(*opened);
+  }
+
   // The default health service and reflection are switched on for all builders of the process.
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
 
-  std::unique_ptr<Server> server(new Server(options.service, std::move(engine), std::move(log)));
+  std::unique_ptr<Server> server(
+      new Server(options.service, std::move(tokens), std::move(engine), std::move(log)));
   grpc::ServerBuilder builder;
   configure(builder, options.service.limits);
+  limit_connections(builder);
+  if (server->tokens_ != nullptr) leave_out_reflection(builder);
   std::vector<int> ports(options.listen.size());
   for (std::size_t i = 0; i < ports.size(); ++i)
-    builder.AddListeningPort(options.listen[i], grpc::InsecureServerCredentials(), &ports[i]);
+    builder.AddListeningPort(options.listen[i], (*credentials)[i], &ports[i]);
   builder.RegisterService(&server->service_);
   server->server_ = builder.BuildAndStart();
   for (std::size_t i = 0; i < ports.size(); ++i) {
@@ -72,7 +86,9 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
   }
   server->server_->GetHealthCheckService()->SetServingStatus(kServiceName, true);
   for (const std::string& address : server->addresses_)
-    server->log_->info("event=listening address={}", log_value(address));
+    server->log_->info("event=listening security={} tokens={} address={}",
+                       security_of(address, options.tls), server->tokens_ ? "yes" : "no",
+                       log_value(address));
   return server;
 }
 

@@ -16,18 +16,25 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "server/caller.h"
 #include "server/mesh_service.h"
+#include "server/tls.h"
+#include "server/tokens.h"
 
 namespace weft::server {
 
 struct ServerOptions {
   std::vector<std::string> listen;  // see listen.h
   ServiceOptions service;
+  TlsOptions tls{};      // of TCP addresses; a unix socket is guarded by its folder
+  std::string tokens{};  // the file, see tokens.h; empty: whoever can connect may call
+  // Listen unencrypted even where other machines can connect.
+  bool insecure = false;
 };
 
 class Server {
  public:
-  // Binds every address or none. The error names the address and why it is not to be had.
+  // Binds every address or none. The error names the address or file and what is wrong with it.
   static tl::expected<std::unique_ptr<Server>, std::string> start(const ServerOptions& options,
                                                                   EngineFn engine, Logger log);
   // Ends what is open at once.
@@ -47,9 +54,12 @@ class Server {
   void remove_socket_files();
 
  private:
-  Server(const ServiceOptions& options, EngineFn engine, Logger log);
+  Server(const ServiceOptions& options, std::unique_ptr<TokenFile> tokens, EngineFn engine,
+         Logger log);
 
   const Logger log_;
+  const std::unique_ptr<TokenFile> tokens_;  // may be null
+  const Authenticator authenticator_;
   MeshService service_;
   std::unique_ptr<grpc::Server> server_;
   std::vector<std::string> addresses_;

@@ -78,6 +78,13 @@ Server::Server(const std::vector<std::string>& arguments) {
   }
 }
 
+std::vector<std::string> Server::addresses() const {
+  std::ifstream in(folder_ / "address");
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
 Server::~Server() {
   if (pid_ < 0) return;
   ::kill(pid_, SIGTERM);

@@ -32,6 +32,8 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   const std::string& address() const { return address_; }
+  // All of them, as its port file tells.
+  std::vector<std::string> addresses() const;
   void kill();  // SIGKILL, and waits
   std::uint64_t resident_bytes() const;
 

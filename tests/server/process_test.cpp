@@ -224,12 +224,21 @@ TEST(Process, EndsWith3WhereItCannotListenAndSaysWhy) {
   EXPECT_NE(second.log().find("in use"), std::string::npos) << second.log();
 }
 
+TEST(Process, EndsWith3WhereItWouldListenToOtherMachinesUnencrypted) {
+  Weftd weftd({"--listen", "0.0.0.0:0"});
+  EXPECT_EQ(weftd.wait(), 3);
+  EXPECT_NE(weftd.log().find("--insecure"), std::string::npos) << weftd.log();
+}
+
 TEST(Process, EndsWith2OnWrongFlags) {
   for (const std::vector<std::string>& flags : {std::vector<std::string>{"--no-such-flag"},
                                                 {"--queue", "-1"},
                                                 {"--max-bytes", "many"},
                                                 {"--threads", "0"},
                                                 {"--log-level", "loud"},
+                                                {"--tls-cert", "a.pem"},
+                                                {"--tls-key", "a.key"},
+                                                {"--tls-client-ca", "ca.pem"},
                                                 {"--max-seconds", "nan"}})
     EXPECT_EQ(Weftd(flags, {{"WEFT_LISTEN", "127.0.0.1:0"}}).wait(), 2) << flags.front();
 }

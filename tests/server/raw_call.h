@@ -27,8 +27,10 @@ inline std::string to_string(const grpc::ByteBuffer& buffer) {
 // A unary call.
 inline std::pair<grpc::Status, std::string> raw_unary(const std::shared_ptr<grpc::Channel>& channel,
                                                       const char* method,
-                                                      const std::string& request) {
+                                                      const std::string& request,
+                                                      const std::string& authorization = "") {
   grpc::ClientContext context;
+  if (!authorization.empty()) context.AddMetadata("authorization", authorization);
   grpc::ByteBuffer response;
   const grpc::internal::RpcMethod rpc(method, grpc::internal::RpcMethod::NORMAL_RPC, channel);
   grpc::Status status = grpc::internal::BlockingUnaryCall<grpc::ByteBuffer, grpc::ByteBuffer>(

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Encryption of TCP addresses: TLS 1.2 and 1.3, and client certificates where a CA for them is
+// named.
+//
+// The files are read again when they change, within two seconds: a renewed certificate needs no
+// restart, and connections that are open stay open. Rename new files into place, the key first or
+// both at once by a link to their folder. Files that are missing or unreadable change nothing;
+// while certificate and key do not match, new connections are refused.
+//
+//   auto credentials = tls_credentials({.certificate = "server.pem", .key = "server.key"});
+//   if (!credentials) return complain(credentials.error());
+//   builder.AddListeningPort("0.0.0.0:7421", *credentials);
+#pragma once
+
+#include <grpcpp/security/server_credentials.h>
+
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+
+namespace weft::server {
+
+// All are names of PEM files.
+struct TlsOptions {
+  std::string certificate{};  // ours, then those between it and its CA; empty: no encryption
+  std::string key{};          // of the first
+  std::string client_ca{};    // clients need a certificate of one of these; empty: they need none
+};
+
+// REQUIRES: certificate and key are named. The error names the file at fault.
+tl::expected<std::shared_ptr<grpc::ServerCredentials>, std::string> tls_credentials(
+    const TlsOptions& options);
+
+}  // namespace weft::server

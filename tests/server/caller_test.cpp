@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who may call, and by which name he is known.
+#include "server/caller.h"
+
+#include <google/protobuf/descriptor.h>
+
+#include "tests/client/support/temp_folder.h"
+#include "tests/server/logged_server.h"
+#include "tests/server/raw_call.h"
+#include "weft/v1/job_service.grpc.pb.h"
+
+namespace weft::server::testing {
+namespace {
+
+using grpc::StatusCode;
+
+// A server that knows the tokens of ann and bob.
+class Tokens : public ::testing::Test {
+ protected:
+  const client::TempFolder folder_;
+  LoggedServer server_{
+      {.listen = {"127.0.0.1:0"},
+       .service = {},
+       .tokens = folder_.write("tokens", "ann secret-a\nbob secret-b\n").string()}};
+  const std::shared_ptr<grpc::Channel> channel_ =
+      channel_to(server_.address(), grpc::InsecureChannelCredentials());
+};
+
+// "/package.Service/Method" of all that weft.v1 declares.
+std::vector<std::string> all_methods() {
+  v1::SubmitJobRequest::descriptor();  // registers the files
+  std::vector<std::string> methods;
+  for (const auto* file :
+       {v1::GenerateMeshRequest::descriptor()->file(), v1::SubmitJobRequest::descriptor()->file()})
+    for (int s = 0; s < file->service_count(); ++s)
+      for (int m = 0; m < file->service(s)->method_count(); ++m)
+        methods.push_back("/" + file->service(s)->full_name() + "/" +
+                          file->service(s)->method(m)->name());
+  return methods;
+}
+
+TEST_F(Tokens, AreWantedByEveryMethod) {
+  int served = 0;
+  for (const std::string& method : all_methods()) {
+    const auto code = [&](const char* authorization) {
+      return raw_unary(channel_, method.c_str(), "", authorization).first.error_code();
+    };
+    // A service that this server does not have is no secret.
+    if (code("Bearer secret-a") == StatusCode::UNIMPLEMENTED) {
+      EXPECT_EQ(code(""), StatusCode::UNIMPLEMENTED) << method;
+      continue;
+    }
+    ++served;
+    EXPECT_NE(code("Bearer secret-a"), StatusCode::UNAUTHENTICATED) << method;
+    EXPECT_EQ(code(""), StatusCode::UNAUTHENTICATED) << method;
+    EXPECT_EQ(code("Bearer secret-c"), StatusCode::UNAUTHENTICATED) << method;
+  }
+  EXPECT_GE(served, 2);
+}
+
+TEST_F(Tokens, AreTakenFromABearerHeaderOnly) {
+  EXPECT_TRUE(ask(channel_, "Bearer secret-a").ok());
+  EXPECT_TRUE(ask(channel_, "bearer secret-b").ok());
+  for (const char* wrong : {"secret-a", "Bearer", "Bearer ", "Bearersecret-a", "Basic secret-a",
+                            "Bearer  secret-a", "Bearer secret-a,Bearer secret-b"})
+    EXPECT_EQ(ask(channel_, wrong).error_code(), StatusCode::UNAUTHENTICATED) << wrong;
+}
+
+TEST_F(Tokens, AreNotTriedOneAfterTheOther) {
+  grpc::ClientContext context;
+  context.AddMetadata("authorization", "Bearer wrong");
+  context.AddMetadata("authorization", "Bearer secret-a");
+  v1::GetServerInfoResponse info;
+  EXPECT_EQ(v1::MeshService::NewStub(channel_)->GetServerInfo(&context, {}, &info).error_code(),
+            StatusCode::UNAUTHENTICATED);
+}
+
+TEST_F(Tokens, ThatAreMissingGiveAReasonForMachines) {
+  const grpc::Status status = ask(channel_);
+  EXPECT_EQ(details_of(status).error_info.reason(), "UNAUTHENTICATED");
+  EXPECT_FALSE(details_of(status).retry_info);
+  EXPECT_NE(status.error_message().find("authorization: Bearer"), std::string::npos);
+}
+
+TEST_F(Tokens, AreNotWantedByHealth) {
+  const auto [status, answer] = raw_unary(channel_, "/grpc.health.v1.Health/Check", "");
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(answer, std::string("\x08\x01", 2));
+}
+
+TEST_F(Tokens, LeaveReflectionOut) {
+  EXPECT_EQ(raw_unary(channel_, "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo",
+                      std::string("\x3a\x00", 2))
+                .first.error_code(),
+            StatusCode::UNIMPLEMENTED);
+}
+
+TEST_F(Tokens, LeaveMethodsThatNobodyHasUnimplemented) {
+  for (const char* method : {"/weft.v1.MeshService/None", "/none.Service/None", "/", "none"})
+    EXPECT_EQ(raw_unary(channel_, method, "").first.error_code(), StatusCode::UNIMPLEMENTED)
+        << method;
+}
+
+TEST_F(Tokens, NameTheClientInTheLogAndNeverAppearThere) {
+  grpc::ClientContext context;
+  context.AddMetadata("authorization", "Bearer secret-a");
+  context.AddMetadata("traceparent", "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01");
+  const auto stub = v1::MeshService::NewStub(channel_);
+  EXPECT_TRUE(read_all(*stub->GenerateMesh(&context, valid_request())).status.ok());
+  for (const char* event : {"event=job_queued", "event=job_started", "event=job_ended"}) {
+    const std::string log = server_.log().text();
+    const std::string line = log.substr(log.find(event), log.find('\n', log.find(event)));
+    EXPECT_NE(line.find(" client=ann "), std::string::npos) << line;
+    EXPECT_NE(line.find(" trace=4bf92f3577b34da6a3ce929d0e0e4736 "), std::string::npos) << line;
+  }
+  EXPECT_EQ(raw_generate_mesh(channel_, "").error_code(), StatusCode::UNAUTHENTICATED);
+  EXPECT_TRUE(server_.log().contains("reason=UNAUTHENTICATED")) << server_.log().text();
+  EXPECT_FALSE(server_.log().contains("secret")) << server_.log().text();
+}
+
+TEST(Callers, AreNotToldApartWithoutTokensAndCertificates) {
+  LoggedServer server({.listen = {"127.0.0.1:0"}, .service = {}});
+  const auto channel = channel_to(server.address(), grpc::InsecureChannelCredentials());
+  EXPECT_TRUE(ask(channel, "Bearer whatever").ok());
+  EXPECT_EQ(raw_generate_mesh(channel, "").error_code(), StatusCode::INVALID_ARGUMENT);
+  EXPECT_FALSE(server.log().contains("client=")) << server.log().text();
+}
+
+TEST(TraceId, IsThatOfAWellFormedHeader) {
+  const std::string trace = "4bf92f3577b34da6a3ce929d0e0e4736";
+  EXPECT_EQ(trace_id("00-" + trace + "-00f067aa0ba902b7-01"), trace);
+  EXPECT_EQ(trace_id("cc-" + trace + "-00f067aa0ba902b7-01"), trace);
+  EXPECT_EQ(trace_id("cc-" + trace + "-00f067aa0ba902b7-01-what-comes-later"), trace);
+}
+
+TEST(TraceId, IsEmptyWhereTheHeaderIsMalformed) {
+  const std::string zeros(32, '0');
+  const std::string trace = "4bf92f3577b34da6a3ce929d0e0e4736";
+  for (const std::string& header : std::vector<std::string>{
+           "", "00", trace, "ff-" + trace + "-00f067aa0ba902b7-01",
+           "00-" + zeros + "-00f067aa0ba902b7-01", "00-" + trace + "-0000000000000000-01",
+           "00-" + trace + "-00f067aa0ba902b7-0x", "00-" + trace + "-00f067aa0ba902b7-01-more",
+           "cc-" + trace + "-00f067aa0ba902b7-01more", "00_" + trace + "-00f067aa0ba902b7-01",
+           "00-4BF92F3577B34DA6A3CE929D0E0E4736-00f067aa0ba902b7-01",
+           "00-" + trace + "-00f067aa0ba902b7"})
+    EXPECT_EQ(trace_id(header), "") << header;
+}
+
+}  // namespace
+}  // namespace weft::server::testing
