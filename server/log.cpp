@@ -4,35 +4,63 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <grpc/support/log.h>
-#include <spdlog/pattern_formatter.h>
+#include <spdlog/formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 
+#include "server/log_json.h"
+
 namespace weft::server {
 namespace {
 
+std::string line_of(std::chrono::system_clock::time_point time, std::string_view level,
+                    std::string_view fields) {
+  const auto milliseconds = std::chrono::floor<std::chrono::milliseconds>(time);
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(milliseconds);
+  return fmt::format("time={:%FT%T}.{:03}Z level={} {}", seconds, (milliseconds - seconds).count(),
+                     level, fields);
+}
+
+class Formatter final : public spdlog::formatter {
+ public:
+  explicit Formatter(LogFormat format) : format_(format) {}
+  void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& out) override {
+    const auto level = spdlog::level::to_string_view(message.level);
+    std::string line = line_of(message.time, {level.data(), level.size()},
+                               {message.payload.data(), message.payload.size()});
+    if (format_ == LogFormat::kJson) line = json_of_fields(line);
+    line += '\n';
+    out.append(line.data(), line.data() + line.size());
+  }
+  std::unique_ptr<spdlog::formatter> clone() const override {
+    return std::make_unique<Formatter>(format_);
+  }
+
+ private:
+  const LogFormat format_;
+};
+
+// gRPC calls a function that knows nothing but the message.
+template <LogFormat kFormat>
 void log_grpc(gpr_log_func_args* args) {
   if (args->severity == GPR_LOG_SEVERITY_DEBUG) return;
-  const char* level = args->severity == GPR_LOG_SEVERITY_ERROR ? "error" : "info";
-  const auto now =
-      std::chrono::time_point_cast<std::chrono::milliseconds>(std::chrono::system_clock::now());
-  const std::string line =
-      fmt::format("time={:%FT%T}.{:03}Z level={} event=grpc message={}\n",
-                  std::chrono::time_point_cast<std::chrono::seconds>(now),
-                  now.time_since_epoch().count() % 1000, level, log_value(args->message));
+  std::string line = line_of(std::chrono::system_clock::now(),
+                             args->severity == GPR_LOG_SEVERITY_ERROR ? "error" : "info",
+                             "event=grpc message=" + log_value(args->message));
+  if (kFormat == LogFormat::kJson) line = json_of_fields(line);
+  line += '\n';
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
 }  // namespace
 
-Logger make_logger(std::string_view level) {
+Logger make_logger(std::string_view level, LogFormat format) {
   auto logger =
       std::make_shared<spdlog::logger>("weftd", std::make_shared<spdlog::sinks::stderr_sink_mt>());
-  logger->set_formatter(std::make_unique<spdlog::pattern_formatter>(
-      "time=%Y-%m-%dT%H:%M:%S.%eZ level=%l %v", spdlog::pattern_time_type::utc));
+  logger->set_formatter(std::make_unique<Formatter>(format));
   logger->set_level(spdlog::level::from_str(std::string(level)));
   return logger;
 }
@@ -41,7 +69,7 @@ std::string log_value(std::string_view value) {
   const auto special = [](char c) {
     return static_cast<unsigned char>(c) <= ' ' || c == '"' || c == '=' || c == '\\' || c == 0x7f;
   };
-  if (!value.empty() && std::none_of(value.begin(), value.end(), special))
+  if (!value.empty() && !is_number(value) && std::none_of(value.begin(), value.end(), special))
     return std::string(value);
   std::string out;
   out += '"';
@@ -61,8 +89,9 @@ std::string log_value(std::string_view value) {
   return out;
 }
 
-void adopt_grpc_logs() {
-  gpr_set_log_function(log_grpc);
+void adopt_grpc_logs(LogFormat format) {
+  gpr_set_log_function(format == LogFormat::kJson ? log_grpc<LogFormat::kJson>
+                                                  : log_grpc<LogFormat::kText>);
 }
 
 }  // namespace weft::server

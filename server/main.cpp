@@ -68,12 +68,13 @@ int serve(Options options) {
   // Never undone: the clean-up that follows the last user of gRPC 1.51 may wait 10 s for its backup
   // poller. The end of the process does it at once.
   grpc_init();
-  adopt_grpc_logs();
-  const Logger log = make_logger(options.log_level);
+  adopt_grpc_logs(options.log_format);
+  const Logger log = make_logger(options.log_level, options.log_format);
   ServiceOptions& service = options.server.service;
   service.instance = fmt::format("{:08x}", std::random_device{}());
-  log->info("event=starting version={} engine={} threads={} jobs={} queue={} instance={}", kVersion,
-            kEngineVersion, service.threads, service.jobs, service.queue, service.instance);
+  log->info("event=starting version={} engine={} threads={} jobs={} queue={} instance={}",
+            log_value(kVersion), log_value(kEngineVersion), service.threads, service.jobs,
+            service.queue, log_value(service.instance));
 
   auto started = Server::start(options.server, generate_mesh, log);
   if (!started) {

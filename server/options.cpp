@@ -75,6 +75,7 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
   std::uint32_t jobs = 0;
   double drain = 30;
   double stall_timeout = 60;
+  std::string log_format = "text";
 
   CLI::App app("weftd: graded, guaranteed-quality Delaunay meshes over gRPC", "weftd");
   app.set_version_flag("--version", "weftd " + std::string(kVersion));
@@ -123,6 +124,8 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
   flags.seconds("--drain", drain, "After SIGTERM, time for open calls to finish");
   flags.value("--log-level", options.log_level, "Least level of the log, on stderr")
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}));
+  flags.value("--log-format", log_format, "Form of its lines")
+      ->check(CLI::IsMember({"text", "json"}));
   app.add_flag("--exit-with-stdin", options.exit_with_stdin,
                "Drain at the end of standard input, too")
       ->envname(environment_name("--exit-with-stdin"));
@@ -137,6 +140,7 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
   constexpr std::uint32_t kFewestJobs = 4;
   service.jobs = jobs != 0 ? jobs : std::max(service.threads, kFewestJobs);
   service.stall_timeout = to_duration(stall_timeout);
+  options.log_format = log_format == "json" ? LogFormat::kJson : LogFormat::kText;
   options.drain = std::chrono::duration<double>(drain);
   return options;
 }

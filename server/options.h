@@ -16,6 +16,7 @@ struct Options {
   ServerOptions server;
   std::chrono::duration<double> drain{30};
   std::string log_level = "info";
+  LogFormat log_format = LogFormat::kText;
   std::string port_file;  // empty: none
   bool exit_with_stdin = false;
 };

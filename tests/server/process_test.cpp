@@ -10,6 +10,9 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -134,6 +137,29 @@ TEST(Process, ServesAMeshOfARealDomain) {
   EXPECT_NE(weftd.log().find("status=OK"), std::string::npos);
 }
 
+TEST(Process, LogsLinesOfJsonWhereAsked) {
+  Weftd weftd({"--listen", "127.0.0.1:0", "--log-format", "json"});
+  const auto listening = nlohmann::json::parse(weftd.read_until("listening"));
+  EXPECT_TRUE(
+      testing::call(*connect(listening.at("address")), testing::valid_request()).status.ok());
+  weftd.signal(SIGTERM);
+  EXPECT_EQ(weftd.wait(), 0);
+  std::istringstream lines(weftd.log());
+  std::set<std::string> events;
+  for (std::string line; std::getline(lines, line);) {
+    const auto json = nlohmann::json::parse(line);
+    EXPECT_EQ(json.at("level"), "info") << line;
+    EXPECT_EQ(json.at("time").get<std::string>().size(), 24u) << line;
+    events.insert(json.at("event"));
+    if (json.at("event") == "job_ended") {
+      EXPECT_GT(json.at("triangles"), 0) << line;
+    }
+  }
+  for (const char* event :
+       {"starting", "listening", "job_queued", "job_started", "job_ended", "draining", "stopped"})
+    EXPECT_TRUE(events.contains(event)) << event;
+}
+
 TEST(Process, EndsWithZeroOnSigtermAndOnSigint) {
   for (const int signal : {SIGTERM, SIGINT}) {
     Weftd weftd(kAnyPort);
@@ -236,6 +262,7 @@ TEST(Process, EndsWith2OnWrongFlags) {
                                                 {"--max-bytes", "many"},
                                                 {"--threads", "0"},
                                                 {"--log-level", "loud"},
+                                                {"--log-format", "xml"},
                                                 {"--tls-cert", "a.pem"},
                                                 {"--tls-key", "a.key"},
                                                 {"--tls-client-ca", "ca.pem"},
