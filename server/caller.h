@@ -17,6 +17,7 @@
 
 #include <grpcpp/server_context.h>
 
+#include <chrono>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
@@ -32,6 +33,11 @@ struct Caller {
   std::string name{};
   std::string peer{};   // the address, as gRPC writes it
   std::string trace{};  // W3C trace id, 32 hexadecimal digits; empty where the caller sent none
+  std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();  // of the call
+
+  double seconds_since() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
+  }
 };
 
 // `client=`, `peer=` and `trace=` for a line of the log, without those that are empty.

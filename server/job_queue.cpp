@@ -41,6 +41,16 @@ bool JobQueue::remove(const Job& job) {
   return true;
 }
 
+std::size_t JobQueue::waiting() {
+  std::lock_guard lock(mutex_);
+  return waiting_.size();
+}
+
+std::size_t JobQueue::running() {
+  std::lock_guard lock(mutex_);
+  return workers_.size() - idle_;
+}
+
 void JobQueue::work() {
   std::unique_lock lock(mutex_);
   while (true) {

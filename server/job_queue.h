@@ -37,6 +37,10 @@ class JobQueue {
 
   std::size_t capacity() const { return capacity_; }
 
+  // At this moment.
+  std::size_t waiting();
+  std::size_t running();
+
  private:
   void work();
 

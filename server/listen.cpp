@@ -63,26 +63,6 @@ tl::expected<void, std::string> claim_unix(const std::string& path) {
   return {};
 }
 
-struct HostPort {
-  std::string host;
-  std::string port;
-};
-
-std::optional<HostPort> split(const std::string& address) {
-  const auto colon = address.rfind(':');
-  if (colon == std::string::npos || colon == 0) return std::nullopt;
-  HostPort out{address.substr(0, colon), address.substr(colon + 1)};
-  const bool bracketed = out.host.front() == '[' && out.host.back() == ']';
-  if (bracketed) out.host = out.host.substr(1, out.host.size() - 2);
-  if (out.host.empty() || (!bracketed && out.host.find(':') != std::string::npos))
-    return std::nullopt;
-  std::uint16_t number = 0;
-  const char* end = out.port.data() + out.port.size();
-  const auto [stop, error] = std::from_chars(out.port.data(), end, number);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return out;
-}
-
 using Addresses = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
 tl::expected<Addresses, std::string> look_up(const HostPort& where) {
@@ -125,15 +105,30 @@ bool is_unix(std::string_view address) {
   return address.starts_with(kUnix);
 }
 
+std::optional<HostPort> split_host_port(const std::string& address) {
+  const auto colon = address.rfind(':');
+  if (colon == std::string::npos || colon == 0) return std::nullopt;
+  HostPort out{address.substr(0, colon), address.substr(colon + 1)};
+  const bool bracketed = out.host.front() == '[' && out.host.back() == ']';
+  if (bracketed) out.host = out.host.substr(1, out.host.size() - 2);
+  if (out.host.empty() || (!bracketed && out.host.find(':') != std::string::npos))
+    return std::nullopt;
+  std::uint16_t number = 0;
+  const char* end = out.port.data() + out.port.size();
+  const auto [stop, error] = std::from_chars(out.port.data(), end, number);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return out;
+}
+
 tl::expected<void, std::string> claim(const std::string& address) {
   if (is_unix(address)) return claim_unix(address.substr(kUnix.size()));
-  if (const auto where = split(address)) return claim_tcp(*where);
+  if (const auto where = split_host_port(address)) return claim_tcp(*where);
   return refuse("not of the form HOST:PORT or unix:PATH");
 }
 
 bool is_local(const std::string& address) {
   if (is_unix(address)) return true;
-  const auto where = split(address);
+  const auto where = split_host_port(address);
   if (!where) return false;
   const auto found = look_up(*where);
   if (!found) return false;

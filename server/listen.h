@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
@@ -17,6 +18,12 @@ namespace weft::server {
 tl::expected<void, std::string> claim(const std::string& address);
 
 bool is_unix(std::string_view address);
+
+struct HostPort {
+  std::string host;  // without brackets
+  std::string port;  // a number
+};
+std::optional<HostPort> split_host_port(const std::string& address);
 
 // Whether what travels there stays on this machine: a unix: address, or a host all of whose
 // addresses are loopback's. False where the host is not to be found.

@@ -28,11 +28,12 @@ constexpr int kExitFailed = 1;
 constexpr int kExitCannotListen = 3;
 
 // Whoever waits for the file never sees half of it.
-bool write_port_file(const std::filesystem::path& path, const std::vector<std::string>& addresses) {
+bool write_port_file(const std::filesystem::path& path, const Server& server) {
   const std::filesystem::path draft = path.string() + ".tmp";
   {
     std::ofstream out(draft);
-    for (const std::string& address : addresses) out << address << '\n';
+    for (const std::string& address : server.addresses()) out << address << '\n';
+    if (!server.metrics_address().empty()) out << "metrics=" << server.metrics_address() << '\n';
     if (!out.flush()) return false;
   }
   std::error_code error;
@@ -82,7 +83,7 @@ int serve(Options options) {
     return kExitCannotListen;
   }
   Server& server = **started;
-  if (!options.port_file.empty() && !write_port_file(options.port_file, server.addresses())) {
+  if (!options.port_file.empty() && !write_port_file(options.port_file, server)) {
     log->error("event=cannot_write_port_file path={}", log_value(options.port_file));
     return kExitFailed;
   }

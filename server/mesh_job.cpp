@@ -108,13 +108,15 @@ tl::expected<Summary, Failure> MeshJob::work() {
     std::lock_guard lock(mutex_);
     work_deadline_ = deadline;
   }
-  environment_.log->info("event=job_started job={} {} waited_seconds={:.3f}", id_, caller_,
-                         Seconds(Clock::now() - admitted_).count());
+  const double waited = Seconds(Clock::now() - admitted_).count();
+  environment_.metrics.waited(waited);
+  environment_.log->info("event=job_started job={} {} waited_seconds={:.3f}", id_, caller_, waited);
   try {
     const MeshRequest request = to_engine(*request_);
     request_.reset();
     const Result<Summary> summary = environment_.engine(request, *this, context_);
     if (!summary) return tl::unexpected(failure_of(summary.error()));
+    environment_.metrics.refined(summary->engine_seconds);
     if (auto failure = check_first_chunk(*summary)) return tl::unexpected(*failure);
     return *summary;
   } catch (const std::bad_alloc&) {
@@ -138,12 +140,12 @@ void MeshJob::succeed(const Summary& summary) {
   v1::GenerateMeshResponse message;
   *message.mutable_summary() = to_wire(summary, threads_);
   if (wants_quadtree_) add_quadtree(summary, *message.mutable_summary());
-  if (finish(serialize(message))) log_end("OK", "-");
+  if (finish(serialize(message))) tell_end(grpc::StatusCode::OK, "-");
 }
 
 void MeshJob::fail(const Failure& failure) {
-  if (abort(to_status(failure, id_)))
-    log_end(code_name(row_of(failure.reason).code), row_of(failure.reason).name);
+  const ErrorRow& row = row_of(failure.reason);
+  if (abort(to_status(failure, id_))) tell_end(row.code, row.name);
 }
 
 Failure MeshJob::failure_of_cause(StopCause cause) const {
@@ -172,7 +174,8 @@ bool MeshJob::accept(Chunk&& chunk) {
   grpc::ByteBuffer bytes = serialize(chunk_message_);
   const std::size_t length = bytes.Length();
   if (!send(std::move(bytes))) return false;
-  ++chunks_;
+  environment_.metrics.chunk_sent(length, chunk.triangles.size() / 3);
+  if (chunks_++ == 0) environment_.metrics.first_chunk(Seconds(Clock::now() - admitted_).count());
   bytes_ += length;
   return true;
 }
@@ -194,12 +197,14 @@ grpc::ByteBuffer MeshJob::progress_message(Clock::time_point now) {
   return serialize(message);
 }
 
-void MeshJob::log_end(std::string_view status, std::string_view reason) const {
+void MeshJob::tell_end(grpc::StatusCode code, std::string_view reason) const {
+  const double seconds = Seconds(Clock::now() - admitted_).count();
+  environment_.metrics.call_ended("GenerateMesh", code, seconds);
   environment_.log->info(
       "event=job_ended job={} {} method=GenerateMesh status={} reason={} triangles={} "
       "chunks={} bytes={} seconds={:.3f}",
-      id_, caller_, status, reason, context_.progress().triangles, chunks_.load(), bytes_.load(),
-      Seconds(Clock::now() - admitted_).count());
+      id_, caller_, code_name(code), reason, context_.progress().triangles, chunks_.load(),
+      bytes_.load(), seconds);
 }
 
 }  // namespace weft::server

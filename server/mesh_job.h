@@ -27,6 +27,7 @@
 #include "server/limits.h"
 #include "server/log.h"
 #include "server/message_stream.h"
+#include "server/metrics.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::server {
@@ -49,6 +50,7 @@ struct JobEnvironment {
   std::chrono::steady_clock::duration stall_timeout;
   Logger log;
   JobQueue& queue;
+  Metrics& metrics;
   std::function<void(MessageStream&)> forget;  // drops the owner's pointer to the job
 };
 
@@ -79,7 +81,7 @@ class MeshJob final : public MessageStream,
 
   Failure failure_of_cause(StopCause cause) const;
   grpc::ByteBuffer progress_message(Clock::time_point now);
-  void log_end(std::string_view status, std::string_view reason) const;
+  void tell_end(grpc::StatusCode code, std::string_view reason) const;
 
   bool accept(Chunk&& chunk) override;
   void client_gone() override { stop(StopCause::kClientGone); }

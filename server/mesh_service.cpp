@@ -26,9 +26,10 @@ class Refusal final : public Reactor {
 }  // namespace
 
 MeshService::MeshService(const ServiceOptions& options, const Authenticator& authenticator,
-                         EngineFn engine, Logger log)
+                         Metrics& metrics, EngineFn engine, Logger log)
     : options_(options),
       authenticator_(authenticator),
+      metrics_(metrics),
       log_(std::move(log)),
       arena_(static_cast<int>(options.threads)),
       environment_{std::move(engine),
@@ -37,6 +38,7 @@ MeshService::MeshService(const ServiceOptions& options, const Authenticator& aut
                    options.stall_timeout,
                    log_,
                    queue_,
+                   metrics_,
                    [this](MessageStream& stream) { forget(stream); }},
       queue_(options.jobs, options.queue),
       ticker_([this] { tick_until_stopped(); }) {}
@@ -52,6 +54,11 @@ MeshService::~MeshService() {
 
 void MeshService::stop_all() {
   for (const auto& job : open_jobs()) job->stop(StopCause::kStopping);
+}
+
+QueueFigures MeshService::figures() {
+  return {.waiting = static_cast<double>(queue_.waiting()),
+          .running = static_cast<double>(queue_.running())};
 }
 
 Reactor* MeshService::GenerateMesh(grpc::CallbackServerContext* context,
@@ -102,6 +109,7 @@ tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure> MeshService::rea
 
 Reactor* MeshService::refuse(const Caller& caller, const Failure& failure) {
   const ErrorRow& row = row_of(failure.reason);
+  metrics_.call_ended("GenerateMesh", row.code, caller.seconds_since());
   log_->info("event=call_refused {} method=GenerateMesh status={} reason={} field={}",
              log_fields(caller), code_name(row.code), row.name,
              log_value(failure.field.empty() ? "-" : failure.field));
@@ -112,14 +120,15 @@ grpc::ServerUnaryReactor* MeshService::GetServerInfo(grpc::CallbackServerContext
                                                      const v1::GetServerInfoRequest*,
                                                      v1::GetServerInfoResponse* response) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  if (const auto caller = authenticator_.identify(*context); !caller) {
-    reactor->Finish(to_status(caller.error(), ""));
+  const auto caller = authenticator_.identify(*context);
+  const auto finish = [&](const grpc::Status& status) {
+    metrics_.call_ended("GetServerInfo", status.error_code(), caller ? caller->seconds_since() : 0);
+    reactor->Finish(status);
     return reactor;
-  }
-  if (!gate_.enter()) {
-    reactor->Finish(to_status({Reason::kStopping, "", "the server is stopping"}, ""));
-    return reactor;
-  }
+  };
+  if (!caller) return finish(to_status(caller.error(), ""));
+  if (!gate_.enter())
+    return finish(to_status({Reason::kStopping, "", "the server is stopping"}, ""));
   response->set_version(std::string(kVersion));
   response->set_engine_version(std::string(kEngineVersion));
   response->set_threads(options_.threads);
@@ -134,8 +143,7 @@ grpc::ServerUnaryReactor* MeshService::GetServerInfo(grpc::CallbackServerContext
   limits.set_max_request_bytes(options_.limits.max_request_bytes);
   limits.set_max_concurrent_jobs(options_.jobs);
   limits.set_max_min_angle_deg(kMaxMinAngleDeg);
-  reactor->Finish(grpc::Status::OK);
-  return reactor;
+  return finish(grpc::Status::OK);
 }
 
 void MeshService::forget(MessageStream& stream) {

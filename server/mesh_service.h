@@ -51,9 +51,9 @@ class MeshService final
     : public v1::MeshService::WithRawCallbackMethod_GenerateMesh<
           v1::MeshService::WithCallbackMethod_GetServerInfo<v1::MeshService::Service>> {
  public:
-  // `authenticator` outlives the service.
-  MeshService(const ServiceOptions& options, const Authenticator& authenticator, EngineFn engine,
-              Logger log);
+  // `authenticator` and `metrics` outlive the service.
+  MeshService(const ServiceOptions& options, const Authenticator& authenticator, Metrics& metrics,
+              EngineFn engine, Logger log);
   // REQUIRES: no call is open.
   ~MeshService() override;
 
@@ -62,6 +62,8 @@ class MeshService final
 
   // Ends every open call with UNAVAILABLE.
   void stop_all();
+
+  QueueFigures figures();
 
  private:
   grpc::ServerWriteReactor<grpc::ByteBuffer>* GenerateMesh(
@@ -81,6 +83,7 @@ class MeshService final
 
   const ServiceOptions options_;
   const Authenticator& authenticator_;
+  Metrics& metrics_;
   const Logger log_;
   DrainGate gate_;
   Arena arena_;

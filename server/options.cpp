@@ -101,7 +101,10 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
   app.add_flag("--insecure", options.server.insecure,
                "Listen unencrypted where other machines can connect")
       ->envname(environment_name("--insecure"));
-  flags.value("--port-file", options.port_file, "File for the bound addresses, one a line");
+  flags.value("--port-file", options.port_file,
+              "File for the bound addresses, one a line; that of --metrics as metrics=HOST:PORT");
+  flags.value("--metrics", options.server.metrics,
+              "HOST:PORT for /metrics of Prometheus and /healthz, over HTTP and to everyone");
   flags
       .value("--threads", service.threads, "Threads that compute; default: what the machine grants")
       ->check(CLI::Range(1u, 4096u));

@@ -12,6 +12,7 @@
 
 #include "server/connections.h"
 #include "server/listen.h"
+#include "server/version.h"
 
 namespace weft::server {
 namespace {
@@ -48,7 +49,10 @@ Server::Server(const ServiceOptions& options, std::unique_ptr<TokenFile> tokens,
     : log_(log),
       tokens_(std::move(tokens)),
       authenticator_(tokens_.get()),
-      service_(options, authenticator_, std::move(engine), std::move(log)) {}
+      metrics_(kVersion, kEngineVersion),
+      service_(options, authenticator_, metrics_, std::move(engine), std::move(log)) {
+  metrics_.add_queue("calls", [this] { return service_.figures(); });
+}
 
 tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOptions& options,
                                                                  EngineFn engine, Logger log) {
@@ -85,6 +89,15 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
     server->addresses_.push_back(bound_address(options.listen[i], ports[i]));
   }
   server->server_->GetHealthCheckService()->SetServingStatus(kServiceName, true);
+  server->serving_ = true;
+  if (!options.metrics.empty()) {
+    auto endpoint = MetricsEndpoint::start(
+        options.metrics, {.metrics = [self = server.get()] { return self->metrics_.text(); },
+                          .healthy = [self = server.get()] { return self->serving_.load(); }});
+    if (!endpoint) return tl::unexpected(endpoint.error());
+    server->endpoint_ = std::move(*endpoint);
+    server->log_->info("event=showing_metrics address={}", log_value(server->metrics_address()));
+  }
   for (const std::string& address : server->addresses_)
     server->log_->info("event=listening security={} tokens={} address={}",
                        security_of(address, options.tls), server->tokens_ ? "yes" : "no",
@@ -94,6 +107,7 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
 
 void Server::drain(std::chrono::steady_clock::duration at_most) {
   server_->GetHealthCheckService()->SetServingStatus(false);
+  serving_ = false;
   service_.gate().close();
   if (!service_.gate().wait_empty(at_most)) {
     service_.stop_all();

@@ -10,6 +10,7 @@
 
 #include <grpcpp/server.h>
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <string>
@@ -18,6 +19,8 @@
 
 #include "server/caller.h"
 #include "server/mesh_service.h"
+#include "server/metrics.h"
+#include "server/metrics_endpoint.h"
 #include "server/tls.h"
 #include "server/tokens.h"
 
@@ -30,6 +33,7 @@ struct ServerOptions {
   std::string tokens{};  // the file, see tokens.h; empty: whoever can connect may call
   // Listen unencrypted even where other machines can connect.
   bool insecure = false;
+  std::string metrics{};  // HOST:PORT to show them on, see metrics_endpoint.h; empty: nowhere
 };
 
 class Server {
@@ -44,6 +48,8 @@ class Server {
 
   // As bound: port 0 is replaced.
   const std::vector<std::string>& addresses() const { return addresses_; }
+  // Where metrics are shown, as bound; empty: nowhere.
+  std::string metrics_address() const { return endpoint_ ? endpoint_->address() : ""; }
 
   // Health says NOT_SERVING, new calls get UNAVAILABLE, open ones may finish; those that do not
   // within `at_most` are ended with UNAVAILABLE. Then closes all connections and removes the socket
@@ -60,9 +66,12 @@ class Server {
   const Logger log_;
   const std::unique_ptr<TokenFile> tokens_;  // may be null
   const Authenticator authenticator_;
+  Metrics metrics_;
   MeshService service_;
   std::unique_ptr<grpc::Server> server_;
   std::vector<std::string> addresses_;
+  std::atomic<bool> serving_{false};
+  std::unique_ptr<MetricsEndpoint> endpoint_;  // destroyed first: it asks all of the above
 };
 
 }  // namespace weft::server

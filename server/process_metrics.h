@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What every program tells Prometheus of itself, under the usual names: process_cpu_seconds_total,
+// process_resident_memory_bytes, process_open_fds and so on. What /proc does not tell is left out.
+#pragma once
+
+#include <prometheus/metric_family.h>
+
+#include <vector>
+
+namespace weft::server {
+
+std::vector<prometheus::MetricFamily> process_metrics();
+
+}  // namespace weft::server
