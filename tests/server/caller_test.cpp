@@ -107,6 +107,8 @@ TEST_F(Tokens, NameTheClientInTheLogAndNeverAppearThere) {
   context.AddMetadata("traceparent", "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01");
   const auto stub = v1::MeshService::NewStub(channel_);
   EXPECT_TRUE(read_all(*stub->GenerateMesh(&context, valid_request())).status.ok());
+  // The last line may come after the answer.
+  EXPECT_TRUE(eventually([&] { return server_.log().contains("event=job_ended"); }));
   for (const char* event : {"event=job_queued", "event=job_started", "event=job_ended"}) {
     const std::string log = server_.log().text();
     const std::string line = log.substr(log.find(event), log.find('\n', log.find(event)));
