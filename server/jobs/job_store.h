@@ -16,7 +16,9 @@
 //   1. A job whose submission was answered is there, and reaches exactly one final state.
 //   2. A task is held by at most one claim. A claim is a lease: when it was not renewed in time,
 //      `reap` takes it away, and the next claim has a higher attempt. Whoever holds an older one
-//      changes nothing any more: `renew`, `finish`, `fail` and `release` answer kLost.
+//      changes nothing any more: `renew`, `finish`, `fail` and `release` answer kLost. A claim that
+//      has settled its task may settle it the same way again, and is told kHeld: whoever got no
+//      answer asks once more.
 //   3. A mesh is whole: `finish` settles the mesh, the task and all jobs in one transaction, and
 //      only where every chunk is there.
 //   4. No transaction is open between two calls.
@@ -31,30 +33,19 @@
 //   ... (*store)->put_chunk(sha256, chunk) ... (*store)->finish(claim->ref, mesh) ...
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <tl/expected.hpp>
 #include <vector>
 
+#include "server/jobs/store_error.h"
+
 namespace weft::server {
-
-enum class StoreErrorKind {
-  kUnavailable,  // no connection, a time-out, a restart: the same call may succeed later
-  kFull,         // the disk is full
-  kBroken,       // what is stored is not what was stored, or of a version that is not ours
-};
-
-struct StoreError {
-  StoreErrorKind kind = StoreErrorKind::kUnavailable;
-  std::string message;
-};
-
-template <class T>
-using StoreResult = tl::expected<T, StoreError>;
 
 enum class JobState { kQueued, kRunning, kSucceeded, kFailed, kCancelled };
 
@@ -90,8 +81,8 @@ struct Submission {
   bool no_cache = false;
   // Tasks that wait, of all and of this owner; at these numbers no further one is taken. Jobs that
   // join a task or find a mesh are always taken.
-  std::uint64_t max_queued = 0;
-  std::uint64_t max_queued_of_owner = 0;
+  std::uint64_t max_queued = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t max_queued_of_owner = std::numeric_limits<std::uint64_t>::max();
 };
 
 enum class SubmitOutcome {
@@ -148,8 +139,16 @@ struct ListQuery {
 struct RetryPolicy {
   std::uint32_t max_attempts = 3;
   std::chrono::milliseconds first_delay{1000};  // doubled with every attempt, at most a minute
-  std::string error;                            // of the jobs whose task has used up its attempts
+  std::string error{};                          // of the jobs whose task has used up its attempts
 };
+
+// From the end of this attempt to the next.
+constexpr std::chrono::milliseconds delay_after(const RetryPolicy& policy, std::uint32_t attempt) {
+  constexpr std::chrono::milliseconds kMinute{60'000};
+  constexpr std::uint32_t kMostDoublings = 16;
+  const std::uint32_t doublings = std::min(std::max(attempt, 1u) - 1, kMostDoublings);
+  return std::min(policy.first_delay * (std::int64_t{1} << doublings), kMinute);
+}
 
 struct Reaped {
   std::uint64_t requeued = 0;
@@ -188,7 +187,7 @@ class JobStore {
   // Nothing where the owner has no such job; the same below.
   virtual StoreResult<std::optional<JobRecord>> get(const std::string& owner,
                                                     const std::string& id) = 0;
-  // The youngest first, without progress and errors.
+  // The youngest first.
   virtual StoreResult<std::vector<JobRecord>> list(const ListQuery& query) = 0;
   // As it is afterwards: cancelled, or as it had ended. The last job of a task takes the task
   // along.
