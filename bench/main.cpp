@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bench/engine_bench.h"
+#include "bench/load_bench.h"
 #include "bench/scaling_bench.h"
 #include "bench/stream_bench.h"
 
@@ -24,7 +25,8 @@ int main(int argc, char** argv) {
   app.footer(
       "Examples:\n  weft-bench engine --only cylinder --threads 1,2\n"
       "  weft-bench scaling --triangles 1e6,1e7\n"
-      "  weft-bench stream");
+      "  weft-bench stream\n"
+      "  weft-bench load --connections 16");
   int exit_code = 0;
 
   weft::bench::EngineBenchOptions engine;
@@ -80,6 +82,23 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   stream_command->callback([&] { exit_code = weft::bench::run_stream_bench(stream); });
+
+  weft::bench::LoadBenchOptions load;
+  load.weftd = stream.weftd;
+  CLI::App* const load_command =
+      app.add_subcommand("load", "Many small requests at once, and a mesh from the store");
+  add_models(load_command, load.models);
+  load_command->add_option("--weftd", load.weftd, "The server; default: beside weft-bench");
+  load_command->add_option("--threads", load.threads, "Of the server")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  load_command->add_option("--connections", load.connections, "At once")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  load_command->add_option("--seconds", load.seconds, "Of each row")
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
+  load_command->callback([&] { exit_code = weft::bench::run_load_bench(load); });
 
   CLI11_PARSE(app, argc, argv);
   return exit_code;

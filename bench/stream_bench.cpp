@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "bench/models.h"
+#include "bench/requests.h"
 #include "bench/weftd_process.h"
 #include "tests/support/poly.h"
 #include "weft/v1/mesh_service.grpc.pb.h"
@@ -19,25 +20,6 @@ namespace weft::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-v1::GenerateMeshRequest make_request(const Pslg& pslg, const std::string& size) {
-  v1::GenerateMeshRequest request;
-  v1::Domain& domain = *request.mutable_domain();
-  for (const Point p : pslg.points) {
-    domain.add_points(p.x);
-    domain.add_points(p.y);
-  }
-  for (const Segment& s : pslg.segments) {
-    domain.add_segments(s.a);
-    domain.add_segments(s.b);
-  }
-  for (const Point p : pslg.holes) {
-    domain.add_holes(p.x);
-    domain.add_holes(p.y);
-  }
-  request.mutable_size()->set_expression(size);
-  return request;
-}
 
 struct Received {
   double first_triangles_seconds = 0;  // from sending the request
@@ -48,12 +30,7 @@ struct Received {
 
 std::optional<Received> receive(const std::string& address,
                                 const v1::GenerateMeshRequest& request) {
-  grpc::ChannelArguments arguments;
-  arguments.SetMaxReceiveMessageSize(std::numeric_limits<int>::max());
-  const auto channel =
-      grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), arguments);
-  channel->WaitForConnected(std::chrono::system_clock::now() + std::chrono::seconds(10));
-  const auto stub = v1::MeshService::NewStub(channel);
+  const auto stub = v1::MeshService::NewStub(connect(address));
   grpc::ClientContext context;
   Received received;
   const auto start = Clock::now();

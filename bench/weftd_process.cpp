@@ -44,6 +44,8 @@ bool WeftdProcess::spawn(const std::string& weftd, int threads) {
                              folder_ / "ready",
                              "--threads",
                              std::to_string(threads),
+                             "--data",
+                             folder_ / "data",
                              "--log-level",
                              "warning",
                              "--exit-with-stdin"};

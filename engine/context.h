@@ -68,12 +68,16 @@ class ExecutionContext {
 
   // Nothing while the job may go on, otherwise the error to stop with.
   std::optional<Error> poll() const {
+    pulse_.store(pulse_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     if (cancelled_.load(std::memory_order_relaxed))
       return Error{ErrorCode::kCancelled, "", "the job was cancelled"};
     if (deadline_ && Clock::now() >= *deadline_)
       return Error{ErrorCode::kDeadlineExceeded, "", "the job's deadline passed"};
     return std::nullopt;
   }
+
+  // Another number than before says that the job is at work, and not stuck. Thread-safe.
+  std::uint64_t pulse() const noexcept { return pulse_.load(std::memory_order_relaxed); }
 
   Progress progress() const noexcept {
     Progress now{stage_.load(std::memory_order_relaxed), triangles_.load(std::memory_order_relaxed),
@@ -131,6 +135,7 @@ class ExecutionContext {
   int threads_ = 1;
   Trace* trace_ = nullptr;
   std::atomic<bool> cancelled_{false};
+  mutable std::atomic<std::uint64_t> pulse_{0};  // about one for every poll
   std::atomic<Stage> stage_{Stage::kQueued};
   std::atomic<std::uint64_t> triangles_{0};
   std::atomic<std::uint64_t> expected_{0};

@@ -15,6 +15,11 @@ bool ChunkQueue::push(grpc::ByteBuffer message) {
   return true;
 }
 
+bool ChunkQueue::has_room(std::size_t bytes) {
+  std::lock_guard lock(mutex_);
+  return closed_ || !full_for(bytes);
+}
+
 std::optional<grpc::ByteBuffer> ChunkQueue::try_pop() {
   std::lock_guard lock(mutex_);
   if (messages_.empty()) return std::nullopt;

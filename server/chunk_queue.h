@@ -30,6 +30,9 @@ class ChunkQueue {
   // is dropped.
   bool push(grpc::ByteBuffer message);
 
+  // Whether a message of so many bytes would not wait.
+  bool has_room(std::size_t bytes);
+
   // Nothing where the queue is empty.
   std::optional<grpc::ByteBuffer> try_pop();
 

@@ -48,6 +48,14 @@ constexpr std::array kTable = {
     row(kReaderStalled, "READER_STALLED", CANCELLED, kFinal, "reader_stalled"),
     row(kChunkOutOfRange, "CHUNK_OUT_OF_RANGE", OUT_OF_RANGE, kFinal, "chunk_out_of_range"),
     row(kUnauthenticated, "UNAUTHENTICATED", UNAUTHENTICATED, kFinal, "unauthenticated"),
+    row(kNoSuchJob, "NO_SUCH_JOB", NOT_FOUND, kFinal, "no_such_job"),
+    row(kMeshGone, "MESH_GONE", NOT_FOUND, kFinal, "mesh_gone"),
+    row(kJobNotDone, "JOB_NOT_DONE", FAILED_PRECONDITION, kFinal, "job_not_done"),
+    row(kRequestIdReused, "REQUEST_ID_REUSED", ALREADY_EXISTS, kFinal, "request_id_reused"),
+    row(kStoreUnavailable, "STORE_UNAVAILABLE", UNAVAILABLE, kRetry, "store_unavailable"),
+    row(kStoreFull, "STORE_FULL", RESOURCE_EXHAUSTED, kRetry, "store_full"),
+    row(kStoreBroken, "STORE_BROKEN", DATA_LOSS, kFinal, "store_broken"),
+    row(kWorkersLost, "WORKERS_LOST", ABORTED, kFinal, "workers_lost"),
 };
 
 constexpr bool indexed_by_reason() {

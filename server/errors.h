@@ -44,6 +44,14 @@ enum class Reason {
   kReaderStalled,     // the client read nothing for too long
   kChunkOutOfRange,   // first_chunk is beyond the mesh
   kUnauthenticated,   // no token, or none that the server knows
+  kNoSuchJob,         // none of this id, or another caller's
+  kMeshGone,          // made, and no longer kept
+  kJobNotDone,        // what is asked for needs a job that has ended, or succeeded
+  kRequestIdReused,   // for another mesh
+  kStoreUnavailable,  // the store does not answer
+  kStoreFull,         // the store's disk is full
+  kStoreBroken,       // the store holds what it was not given
+  kWorkersLost,       // every worker that took the job was lost
 };
 
 struct ErrorRow {

@@ -5,65 +5,128 @@
 #include <utility>
 
 namespace weft::server {
+namespace {
 
-JobQueue::JobQueue(std::size_t workers, std::size_t capacity)
-    : capacity_(capacity), idle_(workers) {
-  workers_.reserve(workers);
-  for (std::size_t i = 0; i < workers; ++i) workers_.emplace_back([this] { work(); });
+constexpr int kMostPasses = 64;
+
+}  // namespace
+
+JobQueue::JobQueue(const Options& options) : options_(options), idle_(options.workers) {
+  workers_.reserve(options.workers + options.workers_for_light);
+  for (std::size_t i = 0; i < options.workers; ++i)
+    workers_.emplace_back([this] { work(Lane::kMain); });
+  for (std::size_t i = 0; i < options.workers_for_light; ++i)
+    workers_.emplace_back([this] { work(Lane::kLight); });
 }
 
 JobQueue::~JobQueue() {
   {
     std::lock_guard lock(mutex_);
     stopping_ = true;
-    waiting_.clear();
+    turns_.clear();
   }
   changed_.notify_all();
   for (std::thread& worker : workers_) worker.join();
 }
 
-bool JobQueue::push(std::shared_ptr<Job> job) {
+bool JobQueue::push(std::shared_ptr<Job> job, Ticket ticket) {
   {
     std::lock_guard lock(mutex_);
-    if (waiting_.size() >= idle_ + capacity_) return false;
-    waiting_.push_back(std::move(job));
+    if (waiting_ >= idle_ + options_.capacity) return false;
+    auto client = std::find_if(turns_.begin(), turns_.end(),
+                               [&](const Client& c) { return c.name == ticket.client; });
+    if (client == turns_.end())
+      client = turns_.insert(turns_.end(), Client{std::move(ticket.client), {}});
+    client->jobs.push_back({std::move(job), ticket.weight});
+    ++waiting_;
   }
-  changed_.notify_one();
+  // Not one alone: it might be a worker for light jobs, and this a heavy one.
+  options_.workers_for_light == 0 ? changed_.notify_one() : changed_.notify_all();
   return true;
 }
 
 bool JobQueue::remove(const Job& job) {
   std::lock_guard lock(mutex_);
-  const auto found = std::find_if(waiting_.begin(), waiting_.end(),
-                                  [&](const auto& waiting) { return waiting.get() == &job; });
-  if (found == waiting_.end()) return false;
-  waiting_.erase(found);
-  return true;
+  for (auto client = turns_.begin(); client != turns_.end(); ++client) {
+    const auto found =
+        std::find_if(client->jobs.begin(), client->jobs.end(),
+                     [&](const Waiting& waiting) { return waiting.job.get() == &job; });
+    if (found == client->jobs.end()) continue;
+    client->jobs.erase(found);
+    --waiting_;
+    if (client->jobs.empty()) turns_.erase(client);
+    return true;
+  }
+  return false;
 }
 
-std::size_t JobQueue::waiting() {
+void JobQueue::notify() {
+  { std::lock_guard lock(mutex_); }  // no worker is between looking and waiting
+  changed_.notify_all();
+}
+
+std::size_t JobQueue::waiting() const {
   std::lock_guard lock(mutex_);
-  return waiting_.size();
+  return waiting_;
 }
 
-std::size_t JobQueue::running() {
+std::size_t JobQueue::running() const {
   std::lock_guard lock(mutex_);
-  return workers_.size() - idle_;
+  return running_;
 }
 
-void JobQueue::work() {
+// REQUIRES: mutex_ is held.
+JobQueue::Turn JobQueue::next(Lane lane) {
+  for (auto client = turns_.begin(); client != turns_.end(); ++client) {
+    std::size_t place = 0;
+    if (lane == Lane::kLight) {
+      const auto light =
+          std::find_if(client->jobs.begin(), client->jobs.end(),
+                       [this](const Waiting& w) { return w.weight <= options_.light; });
+      if (light == client->jobs.end()) continue;
+      place = static_cast<std::size_t>(light - client->jobs.begin());
+    }
+    if (Turn turn = take(client, place); turn.job) return turn;
+    if (++client->jobs[place].passed_over > kMostPasses) break;
+  }
+  return {};
+}
+
+// The job at this place of the client's, where there is memory for it; the client's next turn is
+// the last one then.
+JobQueue::Turn JobQueue::take(std::list<Client>::iterator client, std::size_t place) {
+  Turn turn;
+  if (options_.gate != nullptr) {
+    auto share = options_.gate->take(client->jobs[place].weight);
+    if (!share) return {};
+    turn.share = std::move(*share);
+  }
+  turn.job = std::move(client->jobs[place].job);
+  client->jobs.erase(client->jobs.begin() + static_cast<std::ptrdiff_t>(place));
+  --waiting_;
+  if (client->jobs.empty())
+    turns_.erase(client);
+  else
+    turns_.splice(turns_.end(), turns_, client);
+  return turn;
+}
+
+void JobQueue::work(Lane lane) {
   std::unique_lock lock(mutex_);
-  while (true) {
-    changed_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
-    if (stopping_) return;
-    std::shared_ptr<Job> job = std::move(waiting_.front());
-    waiting_.pop_front();
-    --idle_;
+  while (!stopping_) {
+    Turn turn = next(lane);
+    if (!turn.job) {
+      changed_.wait(lock);
+      continue;
+    }
+    if (lane == Lane::kMain) --idle_;
+    ++running_;
     lock.unlock();
-    job->run();
-    job.reset();
+    turn.job->run(lane);
+    turn = {};
     lock.lock();
-    ++idle_;
+    if (lane == Lane::kMain) ++idle_;
+    --running_;
   }
 }
 

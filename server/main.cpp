@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // weftd: the process around the server. Exit codes: 0 drained, 1 failed, 2 wrong flags, 3 cannot
-// listen, 128 + signal where a second signal cut the draining short.
+// listen, 4 cannot open the store, 128 + signal where a second signal cut the draining short.
 #include <fmt/format.h>
 #include <grpc/grpc.h>
 
@@ -14,6 +14,8 @@
 #include <thread>
 
 #include "engine/engine.h"
+#include "server/jobs/postgres_store.h"
+#include "server/jobs/sqlite_store.h"
 #include "server/log.h"
 #include "server/machine.h"
 #include "server/options.h"
@@ -26,6 +28,7 @@ namespace {
 
 constexpr int kExitFailed = 1;
 constexpr int kExitCannotListen = 3;
+constexpr int kExitNoStore = 4;
 
 // Whoever waits for the file never sees half of it.
 bool write_port_file(const std::filesystem::path& path, const Server& server) {
@@ -39,6 +42,13 @@ bool write_port_file(const std::filesystem::path& path, const Server& server) {
   std::error_code error;
   std::filesystem::rename(draft, path, error);
   return !error;
+}
+
+// Null where jobs are kept nowhere.
+StoreResult<std::unique_ptr<JobStore>> open_store(const Options& options) {
+  if (!options.data.empty()) return SqliteStore::open({.folder = options.data});
+  if (!options.store.empty()) return PostgresStore::open({.uri = options.store});
+  return nullptr;
 }
 
 const char* name_of(const StopEvents::Event& event) {
@@ -77,7 +87,12 @@ int serve(Options options) {
             log_value(kVersion), log_value(kEngineVersion), service.threads, service.jobs,
             service.queue, log_value(service.instance));
 
-  auto started = Server::start(options.server, generate_mesh, log);
+  auto store = open_store(options);
+  if (!store) {
+    log->error("event=cannot_open_store message={}", log_value(store.error().message));
+    return kExitNoStore;
+  }
+  auto started = Server::start(options.server, generate_mesh, log, std::move(*store));
   if (!started) {
     log->error("event=cannot_listen message={}", log_value(started.error()));
     return kExitCannotListen;

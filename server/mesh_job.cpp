@@ -4,11 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
-#include <new>
 #include <utility>
 
 #include "server/translate.h"
+#include "server/weight.h"
 
 namespace weft::server {
 namespace {
@@ -24,11 +23,10 @@ grpc::ByteBuffer accepted_message(const std::string& id, std::uint32_t threads) 
   return serialize(message);
 }
 
-// The point in time that many seconds from now; far ones are brought near enough for the clock.
-MeshJob::Clock::time_point after(Seconds span) {
-  constexpr Seconds kDecades{1e9};
-  return MeshJob::Clock::now() +
-         std::chrono::duration_cast<MeshJob::Clock::duration>(std::min(span, kDecades));
+// Who is to have turns of his own: a caller with a name, or else a host.
+std::string client_of(const Caller& caller) {
+  if (!caller.name.empty()) return caller.name;
+  return caller.peer.substr(0, caller.peer.rfind(':'));  // of ipv4:HOST:PORT and the like
 }
 
 }  // namespace
@@ -41,6 +39,7 @@ MeshJob::MeshJob(const JobEnvironment& environment, grpc::CallbackServerContext*
       environment_(environment),
       id_(std::move(id)),
       caller_(log_fields(caller)),
+      client_(client_of(caller)),
       call_deadline_(context->deadline()),
       max_seconds_(to_seconds(request->budget(), environment.limits)),
       threads_(to_threads(request->threads(), environment.arena.threads())),
@@ -56,7 +55,8 @@ void MeshJob::start() noexcept {
       "event=job_queued job={} {} method=GenerateMesh points={} segments={} seeds={}", id_, caller_,
       domain.points_size() / 2, domain.segments_size() / 2,
       domain.holes_size() / 2 + domain.regions_size());
-  if (environment_.queue.push(shared_from_this())) {
+  if (environment_.queue.push(shared_from_this(),
+                              {client_, expected_bytes(*request_, environment_.limits)})) {
     pump();
   } else {
     fail({Reason::kQueueFull, "",
@@ -87,9 +87,9 @@ void MeshJob::tick(Clock::time_point now) {
   }
 }
 
-void MeshJob::run() noexcept {
+void MeshJob::run(JobQueue::Lane lane) noexcept {
   if (context_.poll()) return;  // stopped meanwhile, and the call ended by that
-  const tl::expected<Summary, Failure> outcome = work();
+  const tl::expected<Summary, Failure> outcome = work(lane);
   if (outcome) {
     succeed(*outcome);
   } else if (outcome.error().reason == Reason::kDeadlineExceeded) {
@@ -99,11 +99,14 @@ void MeshJob::run() noexcept {
   }
 }
 
-tl::expected<Summary, Failure> MeshJob::work() {
+tl::expected<Summary, Failure> MeshJob::work(JobQueue::Lane lane) {
   const Seconds until_call_deadline = call_deadline_ - std::chrono::system_clock::now();
-  const Clock::time_point deadline = after(std::min(Seconds(max_seconds_), until_call_deadline));
+  const Clock::time_point deadline =
+      seconds_from_now(std::min(max_seconds_, until_call_deadline.count()));
   context_.set_deadline(deadline);
-  context_.set_arena(environment_.arena, static_cast<int>(threads_));
+  // A light job would wait in the arena for the turns of heavy ones, longer than it takes itself.
+  if (lane == JobQueue::Lane::kMain)
+    context_.set_arena(environment_.arena, static_cast<int>(threads_));
   {
     std::lock_guard lock(mutex_);
     work_deadline_ = deadline;
@@ -111,22 +114,11 @@ tl::expected<Summary, Failure> MeshJob::work() {
   const double waited = Seconds(Clock::now() - admitted_).count();
   environment_.metrics.waited(waited);
   environment_.log->info("event=job_started job={} {} waited_seconds={:.3f}", id_, caller_, waited);
-  try {
-    const MeshRequest request = to_engine(*request_);
-    request_.reset();
-    const Result<Summary> summary = environment_.engine(request, *this, context_);
-    if (!summary) return tl::unexpected(failure_of(summary.error()));
-    environment_.metrics.refined(summary->engine_seconds);
-    if (auto failure = check_first_chunk(*summary)) return tl::unexpected(*failure);
-    return *summary;
-  } catch (const std::bad_alloc&) {
-    return tl::unexpected(Failure{Reason::kBudgetExceeded, "", "the server is out of memory"});
-  } catch (const std::exception& error) {
-    return tl::unexpected(
-        Failure{Reason::kInternal, "", fmt::format("the engine failed: {}", error.what())});
-  } catch (...) {
-    return tl::unexpected(Failure{Reason::kInternal, "", "the engine failed"});
-  }
+  auto summary = call_engine(environment_.engine, std::move(request_), *this, context_);
+  if (!summary) return summary;
+  environment_.metrics.refined(summary->engine_seconds);
+  if (auto failure = check_first_chunk(*summary)) return tl::unexpected(*failure);
+  return summary;
 }
 
 std::optional<Failure> MeshJob::check_first_chunk(const Summary& summary) const {
@@ -181,17 +173,11 @@ bool MeshJob::accept(Chunk&& chunk) {
 }
 
 grpc::ByteBuffer MeshJob::progress_message(Clock::time_point now) {
-  const Progress progress = context_.progress();
-  v1::Stage stage = to_wire(progress.stage);
   {
     std::lock_guard lock(mutex_);
-    if (work_deadline_) stage = std::max(stage, v1::STAGE_TRIANGULATE);  // no longer queued
+    if (work_deadline_) told_.set_stage(std::max(told_.stage(), v1::STAGE_TRIANGULATE));
   }
-  told_.set_stage(std::max(told_.stage(), stage));
-  told_.set_triangles(std::max<std::uint64_t>(told_.triangles(), progress.triangles));
-  told_.set_expected_triangles(progress.expected_triangles);
-  told_.set_fraction(std::max(told_.fraction(), progress.fraction));
-  told_.set_elapsed_seconds(Seconds(now - admitted_).count());
+  tell_progress(context_.progress(), Seconds(now - admitted_).count(), told_);
   v1::GenerateMeshResponse message;
   *message.mutable_progress() = told_;
   return serialize(message);

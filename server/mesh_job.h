@@ -19,9 +19,9 @@
 #include <string_view>
 
 #include "engine/arena.h"
-#include "engine/engine.h"
 #include "server/caller.h"
 #include "server/drain.h"
+#include "server/engine_call.h"
 #include "server/errors.h"
 #include "server/job_queue.h"
 #include "server/limits.h"
@@ -31,9 +31,6 @@
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::server {
-
-// `generate_mesh`, or what a test puts in its place. Called on worker threads, several at once.
-using EngineFn = std::function<Result<Summary>(const MeshRequest&, ChunkSink&, ExecutionContext&)>;
 
 enum class StopCause {
   kClientGone,     // CANCELLED, or DEADLINE_EXCEEDED where the call's deadline has passed
@@ -72,8 +69,8 @@ class MeshJob final : public MessageStream,
   void tick(Clock::time_point now);
 
  private:
-  void run() noexcept override;
-  tl::expected<Summary, Failure> work();
+  void run(JobQueue::Lane lane) noexcept override;
+  tl::expected<Summary, Failure> work(JobQueue::Lane lane);
   std::optional<Failure> check_first_chunk(const Summary& summary) const;
   // Of these, the first decides how the call ends, and logs it.
   void succeed(const Summary& summary);
@@ -90,6 +87,7 @@ class MeshJob final : public MessageStream,
   const JobEnvironment& environment_;
   const std::string id_;
   const std::string caller_;  // as a line of the log tells it
+  const std::string client_;  // has turns of its own
   const std::chrono::system_clock::time_point call_deadline_;
   const double max_seconds_;  // of work
   const std::uint32_t threads_;

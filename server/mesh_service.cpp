@@ -7,6 +7,8 @@
 #include <exception>
 #include <utility>
 
+#include "server/caller.h"
+#include "server/refusal.h"
 #include "server/translate.h"
 #include "server/version.h"
 #include "server/wire_scan.h"
@@ -16,31 +18,31 @@ namespace {
 
 using Reactor = grpc::ServerWriteReactor<grpc::ByteBuffer>;
 
-// Ends a call before it began.
-class Refusal final : public Reactor {
- public:
-  explicit Refusal(grpc::Status status) { Finish(std::move(status)); }
-  void OnDone() override { delete this; }
-};
+// A mesh of 100,000 triangles takes 10 ms.
+constexpr std::uint64_t kLightBytes = std::uint64_t{24} << 20;
 
 }  // namespace
 
 MeshService::MeshService(const ServiceOptions& options, const Authenticator& authenticator,
-                         Metrics& metrics, EngineFn engine, Logger log)
+                         Metrics& metrics, EngineFn engine, Arena& arena, MemoryGate& gate,
+                         Logger log)
     : options_(options),
       authenticator_(authenticator),
       metrics_(metrics),
       log_(std::move(log)),
-      arena_(static_cast<int>(options.threads)),
       environment_{std::move(engine),
-                   arena_,
+                   arena,
                    options.limits,
                    options.stall_timeout,
                    log_,
                    queue_,
                    metrics_,
                    [this](MessageStream& stream) { forget(stream); }},
-      queue_(options.jobs, options.queue),
+      queue_({.workers = options.jobs,
+              .workers_for_light = options.light_jobs,
+              .capacity = options.queue,
+              .light = kLightBytes,
+              .gate = &gate}),
       ticker_([this] { tick_until_stopped(); }) {}
 
 MeshService::~MeshService() {
@@ -56,7 +58,7 @@ void MeshService::stop_all() {
   for (const auto& job : open_jobs()) job->stop(StopCause::kStopping);
 }
 
-QueueFigures MeshService::figures() {
+QueueFigures MeshService::figures() const {
   return {.waiting = static_cast<double>(queue_.waiting()),
           .running = static_cast<double>(queue_.running())};
 }

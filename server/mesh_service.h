@@ -27,6 +27,7 @@
 #include "server/job_queue.h"
 #include "server/limits.h"
 #include "server/log.h"
+#include "server/memory_gate.h"
 #include "server/mesh_job.h"
 #include "weft/v1/mesh_service.grpc.pb.h"
 
@@ -38,7 +39,10 @@ struct ServiceOptions {
   // Jobs that run at once, and that wait for their turn. REQUIRES: jobs >= 1.
   std::uint32_t jobs = 1;
   std::uint32_t queue = 64;
-  Limits limits;
+  // Jobs on top of these that are light (weight.h), so that they do not wait for the others. Each
+  // computes on a thread of its own.
+  std::uint32_t light_jobs = 0;
+  Limits limits{};
   // A client that takes nothing for so long is cut off.
   std::chrono::steady_clock::duration stall_timeout = std::chrono::seconds(60);
   // Between progress messages.
@@ -51,19 +55,22 @@ class MeshService final
     : public v1::MeshService::WithRawCallbackMethod_GenerateMesh<
           v1::MeshService::WithCallbackMethod_GetServerInfo<v1::MeshService::Service>> {
  public:
-  // `authenticator` and `metrics` outlive the service.
+  // The authenticator, the metrics, the arena and the gate outlive the service.
   MeshService(const ServiceOptions& options, const Authenticator& authenticator, Metrics& metrics,
-              EngineFn engine, Logger log);
+              EngineFn engine, Arena& arena, MemoryGate& gate, Logger log);
   // REQUIRES: no call is open.
   ~MeshService() override;
 
   // Refuses new calls from now on; `gate().wait_empty` tells when the old ones have ended.
   DrainGate& gate() { return gate_; }
 
+  // The gate has room again.
+  void notify() { queue_.notify(); }
+
   // Ends every open call with UNAVAILABLE.
   void stop_all();
 
-  QueueFigures figures();
+  QueueFigures figures() const;
 
  private:
   grpc::ServerWriteReactor<grpc::ByteBuffer>* GenerateMesh(
@@ -86,7 +93,6 @@ class MeshService final
   Metrics& metrics_;
   const Logger log_;
   DrainGate gate_;
-  Arena arena_;
   const JobEnvironment environment_;
   JobQueue queue_;  // destroyed first: it waits for the workers, who use all of the above
 

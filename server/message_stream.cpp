@@ -10,6 +10,9 @@ MessageStream::MessageStream(grpc::CallbackServerContext* context, grpc::ByteBuf
   queue_.push(std::move(first));
 }
 
+MessageStream::MessageStream(grpc::CallbackServerContext* context, ChunkQueue::Bounds bounds)
+    : queue_(bounds), context_(context) {}
+
 bool MessageStream::send(grpc::ByteBuffer message) {
   if (!queue_.push(std::move(message))) return false;
   pump();
@@ -106,7 +109,8 @@ void MessageStream::OnWriteDone(bool ok) {
     queue_.close();
     client_gone();
   }
-  pump();
+  wrote();
+  pump();  // last: it may finish the call, after which the stream may be gone
 }
 
 void MessageStream::OnDone() {

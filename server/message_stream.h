@@ -52,9 +52,17 @@ class MessageStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
  protected:
   // Nothing is sent before `pump` or `send`.
   MessageStream(grpc::CallbackServerContext* context, grpc::ByteBuffer first);
+  // The first message comes by `send`; at most so much is queued.
+  MessageStream(grpc::CallbackServerContext* context, ChunkQueue::Bounds bounds);
 
   // Starts the next write, or finishes the call, if either is due.
   void pump();
+
+  // Whether `send` or `finish` of so many bytes would not wait.
+  bool has_room(std::size_t bytes) { return queue_.has_room(bytes); }
+
+  // A write has ended, so there may be room. On a thread of gRPC: must not wait.
+  virtual void wrote() {}
 
   // The client cancelled, went away, or its deadline passed. May be called more than once.
   virtual void client_gone() = 0;

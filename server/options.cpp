@@ -30,6 +30,15 @@ CLI::Validator is_a_number() {
       "");
 }
 
+CLI::Validator is_postgres_uri() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        const bool good = text.starts_with("postgres://") || text.starts_with("postgresql://");
+        return good ? std::string() : text + " does not begin with postgres://";
+      },
+      "");
+}
+
 // Adds flags that all have an environment variable.
 class Flags {
  public:
@@ -75,6 +84,12 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
   std::uint32_t jobs = 0;
   double drain = 30;
   double stall_timeout = 60;
+  options.server.memory = machine.memory != 0 ? machine.memory / 4 * 3 : options.server.memory;
+  std::vector<std::string> roles{"api", "worker"};
+  JobOptions& kept = options.server.jobs;
+  double lease = 30;
+  double keep = 7 * 24 * 3600.0;
+  kept.runner.keep.bytes = std::uint64_t{16} << 30;
   std::string log_format = "text";
 
   CLI::App app("weftd: graded, guaranteed-quality Delaunay meshes over gRPC", "weftd");
@@ -115,6 +130,28 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
       ->default_str("");
   flags.value("--queue", service.queue, "Jobs that wait; more are refused")
       ->check(CLI::Range(0u, 1'000'000u));
+  flags.bytes("--memory", options.server.memory,
+              "Memory promised to jobs at the same time; default: three quarters of the memory");
+  flags.value("--data", options.data, "Folder that keeps jobs and their meshes")->type_name("DIR");
+  flags
+      .value("--store", options.store,
+             "PostgreSQL server that keeps jobs and their meshes, as postgres://...")
+      ->check(is_postgres_uri())
+      ->excludes("--data");
+  flags
+      .value("--role", roles,
+             "With a store: api takes and shows jobs, worker does them; separated by commas")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"api", "worker"}));
+  flags.count("--max-queued", kept.service.max_queued, "Meshes that wait in the store");
+  flags.count("--max-queued-per-client", kept.service.max_queued_of_owner,
+              "Meshes of one client that wait in the store");
+  flags
+      .value("--max-attempts", kept.retry.max_attempts, "Attempts at a job whose workers are lost")
+      ->check(CLI::Range(1u, 100u));
+  flags.seconds("--lease", lease, "Silence after which a worker counts as lost");
+  flags.seconds("--keep", keep, "How long ended jobs and meshes that nobody asks for are kept");
+  flags.bytes("--keep-bytes", kept.runner.keep.bytes, "Meshes that are kept");
   flags.count("--max-points", limits.max_points, "Points a request");
   flags.count("--max-segments", limits.max_segments, "Segments a request");
   flags.count("--max-seeds", limits.max_seeds, "Hole and region seeds a request");
@@ -142,7 +179,14 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
   // A small job must not wait for one huge job to end.
   constexpr std::uint32_t kFewestJobs = 4;
   service.jobs = jobs != 0 ? jobs : std::max(service.threads, kFewestJobs);
+  service.light_jobs = 2;
   service.stall_timeout = to_duration(stall_timeout);
+  kept.serves = std::find(roles.begin(), roles.end(), "api") != roles.end();
+  kept.works = std::find(roles.begin(), roles.end(), "worker") != roles.end();
+  kept.runner.lease =
+      std::chrono::milliseconds(std::max<std::int64_t>(1, std::llround(lease * 1000)));
+  kept.runner.renewal = std::min(kept.runner.renewal, kept.runner.lease / 3);
+  kept.runner.keep.age = std::chrono::seconds(std::llround(keep));
   options.log_format = log_format == "json" ? LogFormat::kJson : LogFormat::kText;
   options.drain = std::chrono::duration<double>(drain);
   return options;

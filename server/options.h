@@ -14,6 +14,9 @@ namespace weft::server {
 
 struct Options {
   ServerOptions server;
+  // Where jobs are kept: a folder, or a PostgreSQL server; both empty: nowhere.
+  std::string data;
+  std::string store;
   std::chrono::duration<double> drain{30};
   std::string log_level = "info";
   LogFormat log_format = LogFormat::kText;

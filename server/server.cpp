@@ -20,7 +20,8 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr const char* kServiceName = "weft.v1.MeshService";
+constexpr const char* kMeshServiceName = "weft.v1.MeshService";
+constexpr const char* kJobServiceName = "weft.v1.JobService";
 
 // Ended calls still have to tell their clients so.
 constexpr seconds kLastWords{1};
@@ -44,18 +45,35 @@ void configure(grpc::ServerBuilder& builder, const Limits& limits) {
 
 }  // namespace
 
-Server::Server(const ServiceOptions& options, std::unique_ptr<TokenFile> tokens, EngineFn engine,
-               Logger log)
-    : log_(log),
+Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, EngineFn engine,
+               Logger log, std::unique_ptr<JobStore> store)
+    : log_(std::move(log)),
       tokens_(std::move(tokens)),
       authenticator_(tokens_.get()),
       metrics_(kVersion, kEngineVersion),
-      service_(options, authenticator_, metrics_, std::move(engine), std::move(log)) {
-  metrics_.add_queue("calls", [this] { return service_.figures(); });
+      arena_(static_cast<int>(options.service.threads)),
+      gate_(options.memory, [this] { service_.notify(); }),
+      service_(options.service, authenticator_, metrics_, engine, arena_, gate_, log_) {
+  metrics_.add_queue("calls", [this] {
+    QueueFigures figures = service_.figures();
+    const double of_jobs = jobs_ ? jobs_->figures().admitted_bytes : 0;
+    figures.admitted_bytes = std::max(0.0, static_cast<double>(gate_.taken()) - of_jobs);
+    return figures;
+  });
+  if (!store) return;
+  JobOptions jobs = options.jobs;
+  jobs.service.limits = options.service.limits;
+  jobs.service.stall_timeout = options.service.stall_timeout;
+  jobs.runner.worker = options.service.instance;
+  jobs.runner.slots = options.service.jobs;
+  jobs_.emplace(std::move(store), std::move(jobs), authenticator_, metrics_, engine, arena_, gate_,
+                log_);
+  metrics_.add_queue("jobs", [this] { return jobs_->figures(); });
 }
 
 tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOptions& options,
-                                                                 EngineFn engine, Logger log) {
+                                                                 EngineFn engine, Logger log,
+                                                                 std::unique_ptr<JobStore> store) {
   for (const std::string& address : options.listen)
     if (const auto claimed = claim(address); !claimed)
       return tl::unexpected(fmt::format("cannot listen on {}: {}", address, claimed.error()));
@@ -74,7 +92,7 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
 
   std::unique_ptr<Server> server(
-      new Server(options.service, std::move(tokens), std::move(engine), std::move(log)));
+      new Server(options, std::move(tokens), std::move(engine), std::move(log), std::move(store)));
   grpc::ServerBuilder builder;
   configure(builder, options.service.limits);
   limit_connections(builder);
@@ -83,12 +101,16 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
   for (std::size_t i = 0; i < ports.size(); ++i)
     builder.AddListeningPort(options.listen[i], (*credentials)[i], &ports[i]);
   builder.RegisterService(&server->service_);
+  JobService* const job_service = server->job_service();
+  if (job_service != nullptr) builder.RegisterService(job_service);
   server->server_ = builder.BuildAndStart();
   for (std::size_t i = 0; i < ports.size(); ++i) {
     if (ports[i] == 0) return tl::unexpected(fmt::format("cannot listen on {}", options.listen[i]));
     server->addresses_.push_back(bound_address(options.listen[i], ports[i]));
   }
-  server->server_->GetHealthCheckService()->SetServingStatus(kServiceName, true);
+  grpc::HealthCheckServiceInterface& health = *server->server_->GetHealthCheckService();
+  health.SetServingStatus(kMeshServiceName, true);
+  if (job_service != nullptr) health.SetServingStatus(kJobServiceName, true);
   server->serving_ = true;
   if (!options.metrics.empty()) {
     auto endpoint = MetricsEndpoint::start(
@@ -106,17 +128,29 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
 }
 
 void Server::drain(std::chrono::steady_clock::duration at_most) {
+  const auto end = std::chrono::steady_clock::now() + at_most;
   server_->GetHealthCheckService()->SetServingStatus(false);
   serving_ = false;
   service_.gate().close();
-  if (!service_.gate().wait_empty(at_most)) {
+  if (jobs_) jobs_->close();
+  const auto empty_by = [&](std::chrono::steady_clock::time_point when) {
+    const auto left = [&] { return when - std::chrono::steady_clock::now(); };
+    return service_.gate().wait_empty(left()) &&
+           (job_service() == nullptr || job_service()->gate().wait_empty(left()));
+  };
+  if (!empty_by(end)) {
     service_.stop_all();
-    service_.gate().wait_empty(kLastWords);
+    if (job_service() != nullptr) job_service()->stop_all();
+    empty_by(std::chrono::steady_clock::now() + kLastWords);
   }
   server_->Shutdown(std::chrono::system_clock::now() + kOthersGrace);
   server_->Wait();
   server_.reset();
   remove_socket_files();
+}
+
+JobService* Server::job_service() {
+  return jobs_ ? jobs_->service() : nullptr;
 }
 
 void Server::remove_socket_files() {

@@ -13,11 +13,13 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
 
 #include "server/caller.h"
+#include "server/jobs/job_system.h"
 #include "server/mesh_service.h"
 #include "server/metrics.h"
 #include "server/metrics_endpoint.h"
@@ -28,7 +30,11 @@ namespace weft::server {
 
 struct ServerOptions {
   std::vector<std::string> listen;  // see listen.h
-  ServiceOptions service;
+  ServiceOptions service{};
+  // Bytes that are promised to jobs at the same time.
+  std::uint64_t memory = std::uint64_t{8} << 30;
+  // Where there is a store. Their limits are those of `service`.
+  JobOptions jobs{};
   TlsOptions tls{};      // of TCP addresses; a unix socket is guarded by its folder
   std::string tokens{};  // the file, see tokens.h; empty: whoever can connect may call
   // Listen unencrypted even where other machines can connect.
@@ -39,8 +45,10 @@ struct ServerOptions {
 class Server {
  public:
   // Binds every address or none. The error names the address or file and what is wrong with it.
-  static tl::expected<std::unique_ptr<Server>, std::string> start(const ServerOptions& options,
-                                                                  EngineFn engine, Logger log);
+  // Without a store there is no JobService.
+  static tl::expected<std::unique_ptr<Server>, std::string> start(
+      const ServerOptions& options, EngineFn engine, Logger log,
+      std::unique_ptr<JobStore> store = nullptr);
   // Ends what is open at once.
   ~Server();
   Server(const Server&) = delete;
@@ -60,14 +68,18 @@ class Server {
   void remove_socket_files();
 
  private:
-  Server(const ServiceOptions& options, std::unique_ptr<TokenFile> tokens, EngineFn engine,
-         Logger log);
+  Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, EngineFn engine,
+         Logger log, std::unique_ptr<JobStore> store);
+  JobService* job_service();  // null where there is none
 
   const Logger log_;
   const std::unique_ptr<TokenFile> tokens_;  // may be null
   const Authenticator authenticator_;
   Metrics metrics_;
+  Arena arena_;
+  MemoryGate gate_;
   MeshService service_;
+  std::optional<JobSystem> jobs_;
   std::unique_ptr<grpc::Server> server_;
   std::vector<std::string> addresses_;
   std::atomic<bool> serving_{false};

@@ -191,6 +191,7 @@ v1::Summary to_wire(const Summary& summary, std::uint32_t threads) {
   message.set_edges(summary.edges);
   message.set_chunks(summary.chunks);
   message.set_area(summary.area);
+  message.set_engine_version(std::string(kEngineVersion));
   message.set_min_angle_deg(summary.min_angle_deg);
   message.set_max_angle_deg(summary.max_angle_deg);
   assign(*message.mutable_angle_histogram(), summary.angle_histogram);
@@ -242,11 +243,20 @@ v1::Stage to_wire(Stage stage) {
   return v1::STAGE_UNSPECIFIED;
 }
 
-grpc::ByteBuffer serialize(const v1::GenerateMeshResponse& message) {
+void tell_progress(const Progress& now, double elapsed_seconds, v1::Progress& told) {
+  told.set_stage(std::max(told.stage(), to_wire(now.stage)));
+  told.set_triangles(std::max<std::uint64_t>(told.triangles(), now.triangles));
+  told.set_expected_triangles(now.expected_triangles);
+  told.set_fraction(std::max(told.fraction(), now.fraction));
+  told.set_elapsed_seconds(elapsed_seconds);
+}
+
+grpc::ByteBuffer serialize(const google::protobuf::MessageLite& message) {
   grpc::ByteBuffer bytes;
   bool own_buffer = false;
   const grpc::Status status =
-      grpc::SerializationTraits<v1::GenerateMeshResponse>::Serialize(message, &bytes, &own_buffer);
+      grpc::GenericSerialize<grpc::ProtoBufferWriter, google::protobuf::MessageLite>(
+          message, &bytes, &own_buffer);
   // Only a message of more than 2 GiB does not serialize, and none here comes near.
   if (!status.ok()) throw std::length_error(status.error_message());
   return bytes;

@@ -40,8 +40,10 @@ v1::Summary to_wire(const Summary& summary, std::uint32_t threads);
 // Adds those boxes, unless there are more than kMaxLeafBoxes.
 void add_quadtree(const Summary& summary, v1::Summary& message);
 v1::Stage to_wire(Stage stage);
+// Writes what is new over what was told before: nothing goes back.
+void tell_progress(const Progress& now, double elapsed_seconds, v1::Progress& told);
 
 // The bytes of a message, as one gRPC buffer.
-grpc::ByteBuffer serialize(const v1::GenerateMeshResponse& message);
+grpc::ByteBuffer serialize(const google::protobuf::MessageLite& message);
 
 }  // namespace weft::server

@@ -5,7 +5,10 @@
 #include <google/protobuf/wire_format_lite.h>
 #include <grpcpp/support/proto_buffer_reader.h>
 
-#include "weft/v1/mesh_service.pb.h"
+#include <array>
+#include <span>
+
+#include "weft/v1/job_service.pb.h"
 
 namespace weft::server {
 namespace {
@@ -16,37 +19,44 @@ using google::protobuf::io::CodedInputStream;
 constexpr std::uint32_t message_tag(int field) {
   return WireFormatLite::MakeTag(field, WireFormatLite::WIRETYPE_LENGTH_DELIMITED);
 }
-constexpr std::uint32_t kDomainTag = message_tag(v1::GenerateMeshRequest::kDomainFieldNumber);
-constexpr std::uint32_t kRegionTag = message_tag(v1::Domain::kRegionsFieldNumber);
-
-// False where the bytes are malformed.
-bool count_in_domain(CodedInputStream& in, std::uint64_t& regions) {
+// Counts the messages at the end of a path of fields. False where the bytes are malformed.
+bool count(CodedInputStream& in, std::span<const std::uint32_t> path, std::uint64_t& found) {
   while (const std::uint32_t tag = in.ReadTag()) {
-    if (tag == kRegionTag) ++regions;
-    if (!WireFormatLite::SkipField(&in, tag)) return false;
+    if (tag != path.front() || path.size() == 1) {
+      if (tag == path.front()) ++found;
+      if (!WireFormatLite::SkipField(&in, tag)) return false;
+      continue;
+    }
+    int length = 0;
+    if (!in.ReadVarintSizeAsInt(&length)) return false;
+    const auto outer = in.PushLimit(length);
+    if (!count(in, path.subspan(1), found)) return false;
+    in.PopLimit(outer);
   }
   return in.ConsumedEntireMessage();
+}
+
+constexpr std::array kToRegions = {message_tag(v1::SubmitJobRequest::kMeshFieldNumber),
+                                   message_tag(v1::GenerateMeshRequest::kDomainFieldNumber),
+                                   message_tag(v1::Domain::kRegionsFieldNumber)};
+
+std::uint64_t count(const grpc::ByteBuffer& bytes, std::span<const std::uint32_t> path) {
+  grpc::ByteBuffer shared = bytes;  // the reader wants a mutable one; slices are shared
+  grpc::ProtoBufferReader reader(&shared);
+  CodedInputStream in(&reader);
+  std::uint64_t found = 0;
+  count(in, path, found);
+  return found;
 }
 
 }  // namespace
 
 std::uint64_t count_regions(const grpc::ByteBuffer& bytes) {
-  grpc::ByteBuffer shared = bytes;  // the reader wants a mutable one; slices are shared
-  grpc::ProtoBufferReader reader(&shared);
-  CodedInputStream in(&reader);
-  std::uint64_t regions = 0;
-  while (const std::uint32_t tag = in.ReadTag()) {
-    if (tag != kDomainTag) {
-      if (!WireFormatLite::SkipField(&in, tag)) break;
-      continue;
-    }
-    int length = 0;
-    if (!in.ReadVarintSizeAsInt(&length)) break;
-    const auto outer = in.PushLimit(length);
-    if (!count_in_domain(in, regions)) break;
-    in.PopLimit(outer);
-  }
-  return regions;
+  return count(bytes, std::span(kToRegions).subspan(1));
+}
+
+std::uint64_t count_submitted_regions(const grpc::ByteBuffer& bytes) {
+  return count(bytes, kToRegions);
 }
 
 }  // namespace weft::server

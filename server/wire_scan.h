@@ -12,8 +12,10 @@
 
 namespace weft::server {
 
-// The number of domain.regions in the bytes of a GenerateMeshRequest. Of malformed bytes, the
-// number before the fault: parsing then refuses them.
+// The number of domain.regions in the bytes of a GenerateMeshRequest, and of mesh.domain.regions in
+// those of a SubmitJobRequest. Of malformed bytes, the number before the fault: parsing then
+// refuses them.
 std::uint64_t count_regions(const grpc::ByteBuffer& bytes);
+std::uint64_t count_submitted_regions(const grpc::ByteBuffer& bytes);
 
 }  // namespace weft::server

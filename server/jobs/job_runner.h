@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The worker half of a server: takes tasks from the store while there is room for them, runs them,
+// renews their leases, and keeps the store in order: tasks whose workers were lost are queued
+// again, and what is kept too long is collected. Every server of a store does all of it.
+//
+//   JobRunner runner(environment, gate, {.worker = "weftd-1", .slots = 4});
+//   store.on_change([&] { runner.wake(); });
+//   ... runner.stop();
+//
+// Thread-safety: `wake`, `stop` and `figures` may be called from any thread.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "server/jobs/task_run.h"
+#include "server/memory_gate.h"
+
+namespace weft::server {
+
+struct RunnerOptions {
+  std::string worker{};     // of its tasks' records; tells the servers of a store apart
+  std::uint32_t slots = 1;  // tasks at once. REQUIRES: >= 1
+  std::chrono::milliseconds lease{30'000};
+  // Between two renewals, which carry the progress.
+  std::chrono::milliseconds renewal{1'000};
+  // Between two looks for a task where nothing says that there is one.
+  std::chrono::milliseconds poll{1'000};
+  KeepPolicy keep{};
+  std::chrono::milliseconds between_collections{60'000};
+};
+
+class JobRunner {
+ public:
+  JobRunner(const RunEnvironment& environment, MemoryGate& gate, RunnerOptions options);
+  // Stops.
+  ~JobRunner();
+  JobRunner(const JobRunner&) = delete;
+  JobRunner& operator=(const JobRunner&) = delete;
+
+  // There may be a task.
+  void wake();
+
+  // Takes no more, puts back what runs, and waits for that.
+  void stop();
+
+  // What runs here, and the memory that it was admitted with.
+  QueueFigures figures() const;
+
+ private:
+  void work();
+  bool work_once();
+  void run(Claim claim);
+  void renew_and_reap();
+  void collect();
+  // Returns at the next `wake`; `seen` counts those that the caller knows of. False once the runner
+  // stops.
+  bool wait_for_wake(std::uint64_t& seen);
+  // False once the runner stops.
+  bool wait(std::chrono::milliseconds span);
+
+  const RunEnvironment environment_;
+  MemoryGate& gate_;
+  const RunnerOptions options_;
+
+  mutable std::mutex mutex_;  // guards the three below
+  std::set<std::shared_ptr<TaskRun>> runs_;
+  std::uint64_t wakes_ = 0;
+  bool stopping_ = false;
+  std::condition_variable changed_;
+  std::mutex claiming_;  // from asking how much room there is to taking it
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace weft::server

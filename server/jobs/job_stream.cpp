@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/jobs/job_stream.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "server/jobs/job_wire.h"
+#include "server/translate.h"
+#include "server/work.h"
+
+namespace weft::server {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+// Of a mesh that is fetched: two chunks wait while the third is on its way.
+constexpr ChunkQueue::Bounds kReadAhead{.bytes = std::size_t{3} << 20, .count = 32};
+constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
+
+// The bytes go to gRPC as they are, and are freed by it.
+grpc::ByteBuffer to_buffer(std::string bytes) {
+  auto* kept = new std::string(std::move(bytes));
+  const grpc::Slice slice(
+      kept->data(), kept->size(), [](void* string) { delete static_cast<std::string*>(string); },
+      kept);
+  return {&slice, 1};
+}
+
+}  // namespace
+
+JobStream::JobStream(const StreamEnvironment& environment, grpc::CallbackServerContext* context,
+                     const char* method, StreamedJob job, DrainGate::Pass pass)
+    : MessageStream(context, kReadAhead),
+      environment_(environment),
+      job_(std::move(job)),
+      method_(method),
+      pass_(std::move(pass)) {}
+
+void JobStream::start() {
+  soon([this] { begin(); });
+}
+
+void JobStream::tick(Clock::time_point now) {
+  if (waiting_for_client(now) < environment_.stall_timeout) return;
+  fail({Reason::kReaderStalled, "",
+        fmt::format("the client read nothing for {} s",
+                    Seconds(environment_.stall_timeout).count())});
+  kill();
+}
+
+void JobStream::soon(std::function<void()> function) {
+  auto self = shared_from_this();
+  const auto work = [self = std::move(self), function = std::move(function)] {
+    try {
+      function();
+    } catch (const std::exception& error) {
+      self->fail({Reason::kInternal, "", error.what()});
+    }
+  };
+  if (!push(environment_.threads, work))
+    fail({Reason::kQueueFull, "", "too many calls wait for the store"});
+}
+
+void JobStream::fail(const Failure& failure) {
+  if (abort(to_status(failure, job_.id)))
+    log_end(row_of(failure.reason).code, row_of(failure.reason).name);
+}
+
+void JobStream::log_end(grpc::StatusCode status, std::string_view reason) const {
+  const double seconds = Seconds(Clock::now() - began_).count();
+  environment_.metrics.call_ended(method_, status, seconds);
+  environment_.log->info(
+      "event=call_ended job={} {} method={} status={} reason={} bytes={} "
+      "seconds={:.3f}",
+      log_value(job_.id), log_fields(job_.caller), method_, code_name(status), reason,
+      bytes_.load(), Seconds(Clock::now() - began_).count());
+}
+
+tl::expected<JobRecord, Failure> JobStream::look_up() {
+  auto job = environment_.store.get(job_.caller.name, job_.id);
+  if (!job) return tl::unexpected(failure_of(job.error()));
+  if (!*job) return tl::unexpected(no_such_job(job_.id));
+  return std::move(**job);
+}
+
+// --- WatchStream ---
+
+void WatchStream::begin() {
+  look();
+  begun_ = true;
+}
+
+void WatchStream::tick(Clock::time_point now) {
+  JobStream::tick(now);
+  if (begun_) look();
+}
+
+void WatchStream::look() {
+  const auto record = look_up();
+  if (!record && record.error().reason == Reason::kStoreUnavailable && !told_.empty())
+    return;  // it comes back, or the client's patience ends
+  if (!record) return fail(record.error());
+  v1::WatchJobResponse message;
+  const auto job = whole_job(environment_.store, *record);
+  if (!job) return fail(job.error());
+  *message.mutable_job() = *job;
+  std::string bytes = message.SerializeAsString();
+  if (is_final(record->state)) {
+    bytes_ += bytes.size();
+    if (finish(to_buffer(std::move(bytes)))) log_end(grpc::OK, "-");
+  } else if (told_.empty()) {
+    told_ = bytes;
+    send(to_buffer(std::move(bytes)));
+  } else if (bytes != told_) {
+    told_ = bytes;
+    offer(to_buffer(std::move(bytes)));
+  }
+}
+
+// --- FetchStream ---
+
+void FetchStream::begin() {
+  const auto record = look_up();
+  if (!record) return fail(record.error());
+  if (record->state != JobState::kSucceeded)
+    return fail(
+        {Reason::kJobNotDone, "",
+         fmt::format("the job {} is {}, so it has no mesh", job_.id, state_name(record->state))});
+  auto mesh = environment_.store.mesh(record->key);
+  if (!mesh) return fail(failure_of(mesh.error()));
+  if (!*mesh) return fail(mesh_gone(job_.id));
+  mesh_ = std::move(**mesh);
+  if (next_ > mesh_.chunks.size())
+    return fail(
+        {Reason::kChunkOutOfRange, "first_chunk",
+         fmt::format("first_chunk is {}, but the mesh has {} chunks", next_, mesh_.chunks.size())});
+  v1::FetchMeshResponse accepted;
+  v1::Summary summary;
+  summary.ParseFromString(mesh_.summary);
+  accepted.mutable_accepted()->set_job_id(job_.id);
+  accepted.mutable_accepted()->set_engine_version(summary.engine_version());
+  accepted.mutable_accepted()->set_threads(summary.threads());
+  send(serialize(accepted));
+  send_what_fits();
+}
+
+// Whoever finds busy_ unset goes on; so no message is sent twice, and none is left behind.
+void FetchStream::wrote() {
+  if (!busy_.exchange(true)) soon([this] { send_what_fits(); });
+}
+
+void FetchStream::send_what_fits() {
+  while (has_room(kChunkBytes)) {
+    if (next_ == mesh_.chunks.size()) {
+      v1::FetchMeshResponse last;
+      last.mutable_summary()->ParseFromString(mesh_.summary);
+      if (finish(serialize(last))) log_end(grpc::OK, "-");
+      return;  // and stays busy
+    }
+    if (!send_chunk(mesh_.chunks[next_].sha256)) return;
+    ++next_;
+  }
+  busy_ = false;
+  if (has_room(kChunkBytes)) wrote();  // a write may have ended between the two
+}
+
+bool FetchStream::send_chunk(const std::string& sha256) {
+  auto chunk = environment_.store.chunk(sha256);
+  if (!chunk) return fail(failure_of(chunk.error())), false;
+  if (!*chunk) return fail(mesh_gone(job_.id)), false;
+  bytes_ += (*chunk)->size();
+  environment_.metrics.chunk_sent((*chunk)->size(), 0);
+  return send(to_buffer(std::move(**chunk)));
+}
+
+}  // namespace weft::server

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/jobs/job_system.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace weft::server {
+namespace {
+
+std::string lost_workers(const RetryPolicy& policy) {
+  return to_status({Reason::kWorkersLost, "",
+                    fmt::format("{} workers took the job, and all were lost", policy.max_attempts)},
+                   "")
+      .error_details();
+}
+
+}  // namespace
+
+JobSystem::JobSystem(std::unique_ptr<JobStore> store, JobOptions options,
+                     const Authenticator& authenticator, Metrics& metrics, const EngineFn& engine,
+                     Arena& arena, MemoryGate& gate, const Logger& log)
+    : store_(std::move(store)) {
+  options.retry.error = lost_workers(options.retry);
+  const RunEnvironment environment{engine,        arena,   *store_, options.service.limits,
+                                   options.retry, metrics, log};
+  store_->on_change([this] { tell_of_change(); });
+  if (options.serves) service_.emplace(options.service, authenticator, metrics, *store_, log);
+  if (options.works) runner_.emplace(environment, gate, options.runner);
+  std::lock_guard lock(mutex_);
+  listening_ = true;
+}
+
+// The store, and threads of its own, live longer than those that listen to it.
+JobSystem::~JobSystem() {
+  std::lock_guard lock(mutex_);
+  listening_ = false;
+}
+
+void JobSystem::tell_of_change() {
+  std::lock_guard lock(mutex_);
+  if (!listening_) return;
+  if (service_) service_->wake();
+  if (runner_) runner_->wake();
+}
+
+QueueFigures JobSystem::figures() {
+  QueueFigures figures;
+  if (runner_) figures = runner_->figures();
+  if (const auto stored = store_->figures()) figures.waiting = static_cast<double>(stored->queued);
+  return figures;
+}
+
+void JobSystem::close() {
+  if (service_) service_->close();
+  if (runner_) runner_->stop();
+}
+
+}  // namespace weft::server

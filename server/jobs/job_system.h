@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All of a server that has to do with jobs that outlive it: the store, the service that takes and
+// shows jobs, and the workers that do them. A server may have the service, the workers, or both;
+// any number of servers share a PostgreSQL store.
+//
+// The gRPC server that `service()` is registered with is shut down before this is destroyed.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "engine/arena.h"
+#include "server/engine_call.h"
+#include "server/jobs/job_runner.h"
+#include "server/jobs/job_service.h"
+#include "server/jobs/job_store.h"
+#include "server/log.h"
+#include "server/memory_gate.h"
+
+namespace weft::server {
+
+struct JobOptions {
+  JobServiceOptions service{};
+  RunnerOptions runner{};
+  RetryPolicy retry{};  // its error is filled in
+  bool serves = true;
+  bool works = true;
+};
+
+class JobSystem {
+ public:
+  JobSystem(std::unique_ptr<JobStore> store, JobOptions options, const Authenticator& authenticator,
+            Metrics& metrics, const EngineFn& engine, Arena& arena, MemoryGate& gate,
+            const Logger& log);
+  ~JobSystem();
+
+  // Null where this server does not serve.
+  JobService* service() { return service_ ? &*service_ : nullptr; }
+  JobStore& store() { return *store_; }
+
+  // Asks the store.
+  QueueFigures figures();
+
+  // Refuses new calls and puts back what is at work. Calls go on.
+  void close();
+
+ private:
+  void tell_of_change();
+
+  std::unique_ptr<JobStore> store_;
+  std::optional<JobService> service_;
+  std::optional<JobRunner> runner_;
+  std::mutex mutex_;        // guards the one below
+  bool listening_ = false;  // the two above are there
+};
+
+}  // namespace weft::server

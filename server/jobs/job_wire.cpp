@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/jobs/job_wire.h"
+
+#include <fmt/format.h>
+#include <google/protobuf/util/time_util.h>
+
+namespace weft::server {
+namespace {
+
+google::protobuf::Timestamp to_wire(WallTime time) {
+  return google::protobuf::util::TimeUtil::MicrosecondsToTimestamp(
+      std::chrono::duration_cast<std::chrono::microseconds>(time.time_since_epoch()).count());
+}
+
+Reason reason_of(StoreErrorKind kind) {
+  switch (kind) {
+    case StoreErrorKind::kUnavailable:
+      return Reason::kStoreUnavailable;
+    case StoreErrorKind::kFull:
+      return Reason::kStoreFull;
+    case StoreErrorKind::kBroken:
+      return Reason::kStoreBroken;
+  }
+  return Reason::kInternal;
+}
+
+}  // namespace
+
+Failure failure_of(const StoreError& error) {
+  return {reason_of(error.kind), "", error.message};
+}
+
+Failure no_such_job(std::string_view id) {
+  return {Reason::kNoSuchJob, "id", fmt::format("there is no job '{}'", id)};
+}
+
+Failure mesh_gone(std::string_view id) {
+  return {Reason::kMeshGone, "", fmt::format("the mesh of job {} is no longer kept", id)};
+}
+
+v1::Job to_wire(const JobRecord& record) {
+  v1::Job job;
+  job.set_id(record.id);
+  job.set_request_id(record.request_id);
+  job.set_state(to_wire(record.state));
+  *job.mutable_create_time() = to_wire(record.created);
+  if (record.started) *job.mutable_start_time() = to_wire(*record.started);
+  if (record.ended) *job.mutable_end_time() = to_wire(*record.ended);
+  job.set_attempts(record.attempts);
+  job.set_worker(record.worker);
+  if (!record.progress.empty()) job.mutable_progress()->ParseFromString(record.progress);
+  if (!record.error.empty()) job.mutable_error()->ParseFromString(record.error);
+  job.set_from_store(record.from_store);
+  return job;
+}
+
+tl::expected<v1::Job, Failure> whole_job(JobStore& store, const JobRecord& record) {
+  v1::Job job = to_wire(record);
+  if (record.state != JobState::kSucceeded) return job;
+  const auto mesh = store.mesh(record.key);
+  if (!mesh) return tl::unexpected(failure_of(mesh.error()));
+  if (*mesh) {
+    job.mutable_summary()->ParseFromString((*mesh)->summary);
+    job.mutable_summary()->clear_leaf_boxes();
+  }
+  return job;
+}
+
+std::string_view state_name(JobState state) {
+  switch (state) {
+    case JobState::kQueued:
+      return "queued";
+    case JobState::kRunning:
+      return "running";
+    case JobState::kSucceeded:
+      return "succeeded";
+    case JobState::kFailed:
+      return "failed";
+    case JobState::kCancelled:
+      return "cancelled";
+  }
+  return "unknown";
+}
+
+v1::JobState to_wire(JobState state) {
+  switch (state) {
+    case JobState::kQueued:
+      return v1::JOB_STATE_QUEUED;
+    case JobState::kRunning:
+      return v1::JOB_STATE_RUNNING;
+    case JobState::kSucceeded:
+      return v1::JOB_STATE_SUCCEEDED;
+    case JobState::kFailed:
+      return v1::JOB_STATE_FAILED;
+    case JobState::kCancelled:
+      return v1::JOB_STATE_CANCELLED;
+  }
+  return v1::JOB_STATE_UNSPECIFIED;
+}
+
+std::optional<JobState> from_wire(v1::JobState state) {
+  for (const JobState known : {JobState::kQueued, JobState::kRunning, JobState::kSucceeded,
+                               JobState::kFailed, JobState::kCancelled})
+    if (to_wire(known) == state) return known;
+  return std::nullopt;
+}
+
+}  // namespace weft::server

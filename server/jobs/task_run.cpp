@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/jobs/task_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "server/jobs/job_wire.h"
+#include "server/jobs/mesh_key.h"
+#include "server/translate.h"
+
+namespace weft::server {
+namespace {
+
+using std::chrono::milliseconds;
+using Seconds = std::chrono::duration<double>;
+
+// A store that is away for longer loses the run: its lease has run out meanwhile.
+constexpr std::chrono::seconds kPatience{60};
+constexpr milliseconds kFirstPause{50};
+constexpr milliseconds kLongestPause{2000};
+
+std::unique_ptr<v1::GenerateMeshRequest> parse(const std::string& bytes) {
+  auto request = std::make_unique<v1::GenerateMeshRequest>();
+  request->ParseFromString(bytes);
+  return request;
+}
+
+// Of these the same task may be done another time, or elsewhere: they are of the machine, not of
+// the request.
+bool is_of_the_machine(Reason reason) {
+  return reason == Reason::kInternal || row_of(reason).retryable;
+}
+
+}  // namespace
+
+TaskRun::TaskRun(const RunEnvironment& environment, Claim claim)
+    : environment_(environment),
+      claim_(std::move(claim)),
+      request_(parse(claim_.request)),
+      max_seconds_(to_seconds(request_->budget(), environment.limits)),
+      threads_(to_threads(request_->threads(), environment.arena.threads())),
+      context_(to_budget(request_->budget(), environment.limits)) {
+  claim_.request = {};
+  context_.set_deadline(seconds_from_now(max_seconds_));
+  context_.set_arena(environment.arena, static_cast<int>(threads_));
+}
+
+void TaskRun::run() {
+  environment_.log->info("event=task_started job={} client={} attempt={}", claim_.job_id,
+                         log_value(claim_.owner), claim_.ref.attempt);
+  environment_.metrics.job_became("running");
+  if (const auto made = make_mesh(); !made) return settle(made.error());
+  const auto held = insist([&] { return environment_.store.finish(claim_.ref, mesh_); });
+  if (!held) return settle(failure_of(held.error()));
+  if (*held == Held::kHeld) environment_.metrics.job_became("succeeded");
+  log_end(*held == Held::kHeld ? "succeeded" : "lost", "-");
+}
+
+tl::expected<void, Failure> TaskRun::make_mesh() {
+  auto summary = call_engine(environment_.engine, std::move(request_), *this, context_);
+  if (store_error_) return tl::unexpected(failure_of(*store_error_));
+  if (!summary && summary.error().reason == Reason::kDeadlineExceeded)
+    summary.error().message =
+        fmt::format("the job worked for {} s, which is its limit", max_seconds_);
+  if (!summary) return tl::unexpected(summary.error());
+  environment_.metrics.refined(summary->engine_seconds);
+  v1::Summary message = to_wire(*summary, threads_);
+  add_quadtree(*summary, message);
+  mesh_.summary = message.SerializeAsString();
+  return {};
+}
+
+// What is stored is what FetchMesh sends.
+bool TaskRun::accept(Chunk&& chunk) {
+  to_wire(chunk, *chunk_message_.mutable_chunk());
+  const std::string bytes = chunk_message_.SerializeAsString();
+  StoredChunk stored{sha256(bytes), bytes.size()};
+  const auto put = insist([&] { return environment_.store.put_chunk(stored.sha256, bytes); });
+  if (!put) {
+    store_error_ = put.error();
+    return false;
+  }
+  bytes_ += bytes.size();
+  mesh_.chunks.push_back(std::move(stored));
+  ++chunks_stored_;
+  return true;
+}
+
+void TaskRun::settle(const Failure& failure) {
+  bool stopping = false;
+  {
+    std::lock_guard lock(mutex_);
+    if (lost_) return log_end("lost", "-");
+    stopping = stopping_;
+  }
+  const std::string_view reason = row_of(failure.reason).name;
+  if (stopping) {
+    // Where this fails, the lease runs out, and the task is taken up all the same.
+    (void)environment_.store.release(claim_.ref, milliseconds(0), false);
+    return log_end("requeued", "-");
+  }
+  if (is_of_the_machine(failure.reason) && claim_.ref.attempt < environment_.retry.max_attempts) {
+    (void)insist([&] {
+      return environment_.store.release(claim_.ref,
+                                        delay_after(environment_.retry, claim_.ref.attempt), true);
+    });
+    return log_end("requeued", reason);
+  }
+  (void)insist([&] {
+    return environment_.store.fail(claim_.ref, to_status(failure, claim_.job_id).error_details());
+  });
+  environment_.metrics.job_became("failed");
+  log_end("failed", reason);
+}
+
+void TaskRun::stop() {
+  {
+    std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  ended_.notify_all();
+  context_.cancel();
+}
+
+void TaskRun::lose() {
+  {
+    std::lock_guard lock(mutex_);
+    if (std::exchange(lost_, true)) return;
+  }
+  environment_.metrics.lease_lost();
+  ended_.notify_all();
+  context_.cancel();
+}
+
+void TaskRun::renew(milliseconds lease) {
+  const Clock::time_point now = Clock::now();
+  const std::uint64_t pulse = context_.pulse() + chunks_stored_;
+  // A job that waits for a thread of the arena is not stuck.
+  if (pulse != last_pulse_ || context_.progress().stage == Stage::kQueued) {
+    last_pulse_ = pulse;
+    last_moved_ = now;
+  }
+  if (now - last_moved_ > lease) return;
+  tell_progress(context_.progress(), Seconds(now - began_).count(), told_);
+  const auto held = environment_.store.renew(claim_.ref, lease, told_.SerializeAsString());
+  if (held && *held == Held::kLost) lose();
+}
+
+template <class F>
+std::invoke_result_t<F> TaskRun::insist(F&& call) {
+  const Clock::time_point end = Clock::now() + kPatience;
+  milliseconds wait = kFirstPause;
+  while (true) {
+    auto answer = call();
+    if (answer || answer.error().kind != StoreErrorKind::kUnavailable) return answer;
+    if (Clock::now() >= end || !pause(wait)) return answer;
+    wait = std::min(2 * wait, kLongestPause);
+  }
+}
+
+// False where the run is to end.
+bool TaskRun::pause(milliseconds at_most) {
+  std::unique_lock lock(mutex_);
+  return !ended_.wait_for(lock, at_most, [this] { return lost_ || stopping_; });
+}
+
+void TaskRun::log_end(std::string_view outcome, std::string_view reason) const {
+  environment_.log->info(
+      "event=task_ended job={} client={} attempt={} outcome={} reason={} triangles={} chunks={} "
+      "bytes={} seconds={:.3f}",
+      claim_.job_id, log_value(claim_.owner), claim_.ref.attempt, outcome, reason,
+      context_.progress().triangles, chunks_stored_.load(), bytes_,
+      Seconds(Clock::now() - began_).count());
+}
+
+}  // namespace weft::server

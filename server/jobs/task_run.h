@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One task at work: the engine makes the mesh, its chunks go to the store one by one, and the store
+// settles what became of it. Whatever happens, the claim ends in one of three ways: settled
+// (finished or failed), released for another try, or lost to whoever has it now.
+//
+// Thread-safety: `run` is for one thread; all the others may be called from any thread meanwhile.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "engine/arena.h"
+#include "server/engine_call.h"
+#include "server/jobs/job_store.h"
+#include "server/limits.h"
+#include "server/log.h"
+#include "server/metrics.h"
+#include "weft/v1/mesh_service.pb.h"
+
+namespace weft::server {
+
+// What all runs of a server share; outlives them.
+struct RunEnvironment {
+  EngineFn engine;
+  Arena& arena;  // where they compute
+  JobStore& store;
+  Limits limits;
+  RetryPolicy retry;
+  Metrics& metrics;
+  Logger log;
+};
+
+class TaskRun final : private ChunkSink {
+ public:
+  // REQUIRES: claim.request is a GenerateMeshRequest that was checked.
+  TaskRun(const RunEnvironment& environment, Claim claim);
+
+  // Returns once the claim has ended.
+  void run();
+
+  // Bytes that the task was admitted with.
+  std::uint64_t weight() const { return claim_.weight; }
+
+  // The server stops: the task goes back into the queue, as if it had not been begun.
+  void stop();
+
+  // Renews the lease, with the progress. For a run that has not moved for as long as a lease it
+  // does nothing: what hangs is left to another worker. Of one thread at a time.
+  void renew(std::chrono::milliseconds lease);
+
+ private:
+  using Clock = ExecutionContext::Clock;
+
+  tl::expected<void, Failure> make_mesh();
+  bool accept(Chunk&& chunk) override;
+  void settle(const Failure& failure);
+  void lose();
+  // Calls the store again while it is unavailable, until the run is to end or patience does.
+  template <class F>
+  std::invoke_result_t<F> insist(F&& call);
+  bool pause(std::chrono::milliseconds at_most);
+  void log_end(std::string_view outcome, std::string_view reason) const;
+
+  const RunEnvironment& environment_;
+  Claim claim_;  // its request is parsed, and empty, once this is made
+  std::unique_ptr<v1::GenerateMeshRequest> request_;
+  const Clock::time_point began_ = Clock::now();
+  const double max_seconds_;  // of work
+  const std::uint32_t threads_;
+  ExecutionContext context_;
+  std::atomic<std::uint64_t> chunks_stored_{0};
+
+  // The running thread's own.
+  v1::GenerateMeshResponse chunk_message_;  // kept for the memory of its arrays
+  StoredMesh mesh_;
+  std::uint64_t bytes_ = 0;
+  std::optional<StoreError> store_error_;  // that stopped the engine
+
+  // The renewing thread's own.
+  std::uint64_t last_pulse_ = 0;
+  Clock::time_point last_moved_ = began_;
+  v1::Progress told_;
+
+  std::mutex mutex_;  // guards the two below
+  bool lost_ = false;
+  bool stopping_ = false;
+  std::condition_variable ended_;
+};
+
+}  // namespace weft::server
