@@ -2,14 +2,17 @@
 #include "client/connect_flags.h"
 
 #include <CLI/CLI.hpp>
+#include <string>
 
 namespace weft::client {
 
-void add_server_flags(CLI::App& command, ConnectOptions& options) {
+void add_server_flags(CLI::App& command, ConnectOptions& options, WithoutServer without) {
   command
       .add_option(
           "--server", options.server,
-          "Server to use, as HOST:PORT or unix:PATH. Without one a private weftd is started")
+          std::string("Server to use, as HOST:PORT or unix:PATH. ") +
+              (without == WithoutServer::kPrivate ? "Without one a private weftd is started"
+                                                  : "Needed: a private weftd keeps no jobs"))
       ->envname("WEFT_SERVER")
       ->type_name("ADDR");
 

@@ -8,7 +8,12 @@
 
 namespace weft::client {
 
+enum class WithoutServer {
+  kPrivate,  // a weftd is started
+  kRefused,  // the command needs one that stays
+};
+
 // `options` outlives the parsing.
-void add_server_flags(CLI::App& command, ConnectOptions& options);
+void add_server_flags(CLI::App& command, ConnectOptions& options, WithoutServer without);
 
 }  // namespace weft::client

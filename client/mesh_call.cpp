@@ -3,8 +3,7 @@
 
 #include <grpcpp/client_context.h>
 
-#include <charconv>
-#include <cmath>
+#include <chrono>
 #include <memory>
 #include <utility>
 
@@ -19,46 +18,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// The value of a text that is nothing but a finite number.
-std::optional<double> as_number(const std::string& text) {
-  double value = 0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
-}
-
-void fill(const Domain& domain, v1::Domain& out) {
-  auto* points = out.mutable_points();
-  points->Reserve(static_cast<int>(2 * domain.points.size()));
-  for (const Point& point : domain.points) {
-    points->AddAlreadyReserved(point.x);
-    points->AddAlreadyReserved(point.y);
-  }
-  bool marked = false;
-  auto* segments = out.mutable_segments();
-  segments->Reserve(static_cast<int>(2 * domain.segments.size()));
-  for (const Domain::Segment& segment : domain.segments) {
-    segments->AddAlreadyReserved(segment.a);
-    segments->AddAlreadyReserved(segment.b);
-    marked |= segment.marker != 0;
-  }
-  if (marked)
-    for (const Domain::Segment& segment : domain.segments) out.add_segment_markers(segment.marker);
-  for (const Point& hole : domain.holes) {
-    out.add_holes(hole.x);
-    out.add_holes(hole.y);
-  }
-  for (const Domain::Region& region : domain.regions) {
-    v1::Region& seed = *out.add_regions();
-    seed.set_x(region.at.x);
-    seed.set_y(region.at.y);
-    seed.set_id(region.id);
-    if (region.max_area) seed.set_max_area(*region.max_area);
-  }
-  out.set_fill(domain.fill == Domain::Fill::kEvenOdd ? v1::FILL_EVEN_ODD : v1::FILL_SEEDS);
 }
 
 // False where the server stays away, or the user wants to stop.
@@ -81,7 +40,7 @@ class MeshCall {
         stop_(std::move(stop)),
         stub_(v1::MeshService::NewStub(connection.channel)),
         request_(make_request(domain, wishes)),
-        receiver_(spool, {domain.points.size(), domain.segments.size()}) {}
+        receiver_(spool, DomainCounts{domain.points.size(), domain.segments.size()}) {}
 
   // The status with which the call ended; an error where its stream was not sound.
   Result<grpc::Status> attempt() {
@@ -143,33 +102,10 @@ class MeshCall {
 
 }  // namespace
 
-v1::GenerateMeshRequest make_request(const Domain& domain, const MeshWishes& wishes) {
-  v1::GenerateMeshRequest request;
-  fill(domain, *request.mutable_domain());
-  if (const auto constant = as_number(wishes.size)) {
-    request.mutable_size()->set_constant(*constant);
-  } else if (!wishes.size.empty()) {
-    request.mutable_size()->set_expression(wishes.size);
-  }
-  if (wishes.min_angle_deg) request.mutable_quality()->set_min_angle_deg(*wishes.min_angle_deg);
-  if (wishes.min_edge) request.mutable_quality()->set_min_edge(*wishes.min_edge);
-  if (wishes.max_triangles) request.mutable_budget()->set_max_triangles(*wishes.max_triangles);
-  if (wishes.max_seconds) request.mutable_budget()->set_max_seconds(*wishes.max_seconds);
-  if (wishes.threads) request.set_threads(*wishes.threads);
-  request.set_want_quadtree(wishes.quadtree);
-  return request;
-}
-
 Result<MeshReport> call_generate_mesh(const Connection& connection, const Domain& domain,
                                       const MeshWishes& wishes, const MeshCallOptions& options,
                                       MeshSpool& spool, std::stop_token stop) {
-  // A message of gRPC ends at 2 GiB.
-  constexpr std::size_t kMostPoints = std::size_t{1} << 26;
-  if (domain.points.size() > kMostPoints || domain.segments.size() > kMostPoints)
-    return fail(ExitCode::kUnreadableInput,
-                "the domain has " + std::to_string(domain.points.size()) + " points and " +
-                    std::to_string(domain.segments.size()) + " segments, a request takes " +
-                    std::to_string(kMostPoints) + " of each");
+  if (auto ok = check_sendable(domain); !ok) return tl::unexpected(ok.error());
   MeshCall call(connection, domain, wishes, options, spool, stop);
   Result<grpc::Status> status = call.attempt();
   if (status && call.can_resume(*status) && wait_until_connected(*connection.channel, stop))

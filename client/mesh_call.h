@@ -11,8 +11,6 @@
 // must be of the same engine version.
 #pragma once
 
-#include <chrono>
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <stop_token>
@@ -21,31 +19,12 @@
 #include "client/connection.h"
 #include "client/error.h"
 #include "client/formats/domain.h"
+#include "client/mesh_report.h"
+#include "client/mesh_request.h"
 #include "client/mesh_spool.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {
-
-// What the mesh must satisfy. DEFAULT of all that is optional: the server's.
-struct MeshWishes {
-  std::string size{};  // a number or an expression in x and y; empty: no bound
-  std::optional<double> min_angle_deg{};
-  std::optional<double> min_edge{};
-  std::optional<std::uint64_t> max_triangles{};
-  std::optional<double> max_seconds{};
-  std::optional<std::uint32_t> threads{};
-  bool quadtree = false;  // of the summary, to draw it
-};
-
-struct MeshReport {
-  v1::Accepted accepted;
-  v1::Summary summary;
-  double first_chunk_seconds = 0;  // from sending the request
-  double stream_seconds = 0;       // from sending the request to the end of the stream
-  std::uint64_t bytes_received = 0;
-};
-
-v1::GenerateMeshRequest make_request(const Domain& domain, const MeshWishes& wishes);
 
 struct MeshCallOptions {
   std::optional<double> timeout_seconds{};                 // deadline of the call

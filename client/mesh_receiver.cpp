@@ -38,24 +38,26 @@ std::optional<std::uint32_t> out_of_range(std::span<const std::uint32_t> indices
 
 }  // namespace
 
-Result<void> MeshReceiver::receive(const v1::GenerateMeshResponse& message) {
+template <class Message>
+Result<void> MeshReceiver::receive_either(const Message& message) {
   bytes_ += message.ByteSizeLong();
   if (summary_) return damaged("a message follows the summary");
   if ((!accepted_ || resuming_) && !message.has_accepted())
     return damaged("its first message is not `accepted`");
-  switch (message.message_case()) {
-    case v1::GenerateMeshResponse::kAccepted:
-      return receive(message.accepted());
-    case v1::GenerateMeshResponse::kProgress:
-      return {};
-    case v1::GenerateMeshResponse::kChunk:
-      return receive(message.chunk());
-    case v1::GenerateMeshResponse::kSummary:
-      return receive(message.summary());
-    case v1::GenerateMeshResponse::MESSAGE_NOT_SET:
-      break;
-  }
+  if (message.has_accepted()) return receive(message.accepted());
+  if (message.has_chunk()) return receive(message.chunk());
+  if (message.has_summary()) return receive(message.summary());
+  if constexpr (requires { message.has_progress(); })
+    if (message.has_progress()) return {};
   return damaged("a message is empty or of an unknown kind");
+}
+
+Result<void> MeshReceiver::receive(const v1::GenerateMeshResponse& message) {
+  return receive_either(message);
+}
+
+Result<void> MeshReceiver::receive(const v1::FetchMeshResponse& message) {
+  return receive_either(message);
 }
 
 Result<void> MeshReceiver::receive(const v1::Accepted& accepted) {
@@ -102,12 +104,13 @@ Result<void> MeshReceiver::check_indices(const v1::Chunk& chunk) const {
     return refuse("vertex", *bad, vertices);
   if (const auto bad = out_of_range(span_of(chunk.edges()), vertices))
     return refuse("vertex", *bad, vertices);
-  if (const auto bad = out_of_range(span_of(chunk.edge_segments()), domain_.segments))
-    return refuse("segment", *bad, domain_.segments);
+  if (domain_)
+    if (const auto bad = out_of_range(span_of(chunk.edge_segments()), domain_->segments))
+      return refuse("segment", *bad, domain_->segments);
   for (int i = 0; i < chunk.input_points_size(); i += 2) {
     if (chunk.input_points(i) >= vertices) return refuse("vertex", chunk.input_points(i), vertices);
-    if (chunk.input_points(i + 1) >= domain_.points)
-      return refuse("input point", chunk.input_points(i + 1), domain_.points);
+    if (domain_ && chunk.input_points(i + 1) >= domain_->points)
+      return refuse("input point", chunk.input_points(i + 1), domain_->points);
   }
   double finite = 0;  // NaN as soon as one is not
   for (const double c : chunk.coordinates()) finite += c * 0;

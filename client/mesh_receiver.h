@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes the messages of a GenerateMesh stream, one by one, and believes none: the order of
-// messages, the numbering of chunks, the shape of their arrays, the range of every index, the
-// digest of every chunk, and at the end the counts and the digest of the whole. What holds is
+// Takes the messages of a GenerateMesh or FetchMesh stream, one by one, and believes none: the
+// order of messages, the numbering of chunks, the shape of their arrays, the range of every index,
+// the digest of every chunk, and at the end the counts and the digest of the whole. What holds is
 // appended to the spool.
 //
 // Errors: kDataLoss names the chunk and what is wrong with it; kUnwritableOutput comes from the
 // spool.
 //
-//   MeshReceiver receiver(*spool, {.points = 4, .segments = 4});
+//   MeshReceiver receiver(*spool, DomainCounts{.points = 4, .segments = 4});
 //   while (reader->Read(&message))
 //     if (auto ok = receiver.receive(message); !ok) return ok;
 //   Result<void> complete = receiver.finish();
@@ -21,11 +21,12 @@
 #include "client/error.h"
 #include "client/mesh_spool.h"
 #include "client/sha256.h"
+#include "weft/v1/job_service.pb.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {
 
-// What was sent: the range of the indices that come back.
+// What was submitted: the range of the indices that come back.
 struct DomainCounts {
   std::uint64_t points = 0;
   std::uint64_t segments = 0;
@@ -33,9 +34,12 @@ struct DomainCounts {
 
 class MeshReceiver {
  public:
-  MeshReceiver(MeshSpool& spool, DomainCounts domain) : spool_(spool), domain_(domain) {}
+  // Where `domain` is not known, what refers to it is not checked.
+  MeshReceiver(MeshSpool& spool, std::optional<DomainCounts> domain)
+      : spool_(spool), domain_(domain) {}
 
   Result<void> receive(const v1::GenerateMeshResponse& message);
+  Result<void> receive(const v1::FetchMeshResponse& message);
   // From here on the messages are those of another call, which asked for the chunks that are
   // missing: a first_chunk of `chunks()`.
   void resume() { resuming_ = true; }
@@ -48,6 +52,8 @@ class MeshReceiver {
   std::uint64_t bytes() const { return bytes_; }
 
  private:
+  template <class Message>
+  Result<void> receive_either(const Message& message);
   Result<void> receive(const v1::Accepted& accepted);
   Result<void> receive(const v1::Chunk& chunk);
   Result<void> receive(const v1::Summary& summary);
@@ -56,7 +62,7 @@ class MeshReceiver {
   std::string digest_of(const v1::Chunk& chunk);
 
   MeshSpool& spool_;
-  DomainCounts domain_;
+  std::optional<DomainCounts> domain_;
   std::optional<v1::Accepted> accepted_;
   bool resuming_ = false;  // another `accepted` is to come
   std::optional<v1::Summary> summary_;

@@ -34,10 +34,14 @@ ProgressStyle progress_style_of(std::FILE* stream) {
   return ::isatty(::fileno(stream)) ? ProgressStyle::kBar : ProgressStyle::kLines;
 }
 
+double done_of(const v1::Progress& progress) {
+  return progress.fraction() > 0 ? std::min(progress.fraction(), 1.0) : 0;
+}
+
 std::string progress_text(const v1::Progress& progress, bool with_bar) {
   std::string text = stage_name(progress.stage());
   const bool estimated = progress.expected_triangles() > 0;
-  const double done = std::clamp(progress.fraction(), 0.0, 1.0);
+  const double done = done_of(progress);
   if (with_bar && estimated) {
     constexpr std::size_t kWidth = 30;
     const auto filled = static_cast<std::size_t>(done * kWidth);

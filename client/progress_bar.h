@@ -39,6 +39,9 @@ class ProgressBar {
   bool shown_ = false;
 };
 
+// Progress.fraction as a server should send it: from 0 to 1, a number.
+double done_of(const v1::Progress& progress);
+
 // "refining [#####.....] 480,000 of about 960,000 triangles", or without a bar "refining 480,000 of
 // about 960,000 triangles, 50 % done". Bar and percentage tell the work, which is not just the
 // triangles.

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/server_error.h"
 
-#include <array>
 #include <charconv>
 #include <cstddef>
 #include <string_view>
 
+#include "client/text.h"
 #include "google/rpc/code.pb.h"
 #include "google/rpc/error_details.pb.h"
-#include "google/rpc/status.pb.h"
 
 namespace weft::client {
 namespace {
@@ -16,16 +15,6 @@ namespace {
 std::string code_name(int code) {
   const std::string& name = google::rpc::Code_Name(static_cast<google::rpc::Code>(code));
   return name.empty() ? "status " + std::to_string(code) : name;
-}
-
-// A server's text goes to a terminal: no control characters but line feeds.
-std::string harmless(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    out += (byte < 0x20 && c != '\n') || byte == 0x7f ? '?' : c;
-  }
-  return out;
 }
 
 }  // namespace
@@ -49,35 +38,50 @@ std::string locate_field(const std::string& field, const Domain& domain) {
   return "";
 }
 
-Error error_of(const grpc::Status& status, const std::string& address, const Domain* domain) {
-  const int code = static_cast<int>(status.error_code());
-  google::rpc::Status details;
+std::string reason_of(const google::rpc::Status& status) {
   google::rpc::ErrorInfo info;
+  for (const auto& detail : status.details())
+    if (detail.Is<google::rpc::ErrorInfo>()) detail.UnpackTo(&info);
+  std::string text = code_name(status.code());
+  if (!info.reason().empty()) text += " (" + harmless(info.reason()) + ")";
+  return text;
+}
+
+google::rpc::Status rich_status(const grpc::Status& status) {
+  google::rpc::Status rich;
+  // Details that are garbage say nothing.
+  if (!rich.ParseFromString(status.error_details())) rich.Clear();
+  rich.set_code(status.error_code());
+  rich.set_message(status.error_message());
+  return rich;
+}
+
+Error error_of(const google::rpc::Status& status, const std::string& subject,
+               const Domain* domain) {
+  std::string message = subject + " " + reason_of(status);
   google::rpc::BadRequest bad_request;
-  if (details.ParseFromString(status.error_details())) {
-    for (const auto& detail : details.details()) {
-      if (detail.Is<google::rpc::ErrorInfo>()) detail.UnpackTo(&info);
-      if (detail.Is<google::rpc::BadRequest>()) detail.UnpackTo(&bad_request);
-    }
-  }
-  std::string message = "the server " + address + " answers " + code_name(code);
-  if (!info.reason().empty()) message += " (" + harmless(info.reason()) + ")";
+  for (const auto& detail : status.details())
+    if (detail.Is<google::rpc::BadRequest>()) detail.UnpackTo(&bad_request);
   for (const auto& violation : bad_request.field_violations()) {
     message += "\n  field " + harmless(violation.field());
     if (domain != nullptr)
       if (const std::string place = locate_field(violation.field(), *domain); !place.empty())
         message += ", at " + place;
   }
-  if (!status.error_message().empty()) {
+  if (!status.message().empty()) {
     // On lines of its own, so that a caret under an expression stays where it points.
     message += "\n  ";
-    for (const char c : harmless(status.error_message())) {
+    for (const char c : harmless(status.message())) {
       message += c;
       if (c == '\n') message += "  ";
     }
   }
-  const bool valid = code >= 1 && code <= 16;
-  return {valid ? exit_code_of_status(code) : ExitCode::kInternal, std::move(message)};
+  const bool valid = status.code() >= 1 && status.code() <= 16;
+  return {valid ? exit_code_of_status(status.code()) : ExitCode::kInternal, std::move(message)};
+}
+
+Error error_of(const grpc::Status& status, const std::string& address, const Domain* domain) {
+  return error_of(rich_status(status), "the server " + address + " answers", domain);
 }
 
 }  // namespace weft::client

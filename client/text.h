@@ -11,6 +11,9 @@ namespace weft::client {
 // 'text', shortened to 32 bytes, what is not printable ASCII as \xNN.
 std::string in_quotes(std::string_view text);
 
+// A server's text, fit for a terminal: '?' for control characters but line feeds.
+std::string harmless(std::string_view text);
+
 // The shortest text that reads back as the same number.
 std::string shortest(double value);
 

@@ -8,20 +8,17 @@
 #include <optional>
 #include <stop_token>
 #include <string>
-#include <vector>
 
 #include "client/connect_options.h"
-#include "client/drawing/draw.h"
 #include "client/error.h"
 #include "client/mesh_call.h"
+#include "client/mesh_output.h"
 
 namespace weft::client {
 
 struct MeshOptions {
   std::filesystem::path input;
-  std::vector<std::filesystem::path> outputs;
-  std::vector<std::filesystem::path> drawings;
-  DrawColor color = DrawColor::kNone;
+  MeshOutputOptions output;
   MeshWishes wishes;
   ConnectOptions server;
   std::optional<double> timeout_seconds;

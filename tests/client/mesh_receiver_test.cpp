@@ -19,7 +19,7 @@ class Receiver : public testing::Test {
   // What is said of the stream; empty when it is accepted to the end.
   std::string verdict(const Stream& stream) {
     const auto spool = MeshSpool::create(folder_.path()).value();
-    MeshReceiver receiver(*spool, {4, 4});
+    MeshReceiver receiver(*spool, DomainCounts{4, 4});
     Result<void> sound;
     for (const auto& message : stream) {
       sound = receiver.receive(message);
@@ -65,7 +65,7 @@ TEST_F(Receiver, RefusesABoxThatIsNotFinite) {
 TEST_F(Receiver, RefusesASecondAcceptedUnlessItResumes) {
   EXPECT_NE(verdict_after([](Stream& stream) { stream.insert(stream.begin(), stream[0]); }), "");
   const auto spool = MeshSpool::create(folder_.path()).value();
-  MeshReceiver receiver(*spool, {4, 4});
+  MeshReceiver receiver(*spool, DomainCounts{4, 4});
   const Stream stream = stream_of(square_mesh(6), 3);
   for (std::size_t i = 0; i < 3; ++i) ASSERT_TRUE(receiver.receive(stream[i]));
   receiver.resume();
@@ -78,7 +78,7 @@ TEST_F(Receiver, RefusesASecondAcceptedUnlessItResumes) {
 TEST_F(Receiver, KeepsTheMeshAsItWasSent) {
   const Mesh mesh = square_mesh(20);
   const auto spool = MeshSpool::create(folder_.path()).value();
-  MeshReceiver receiver(*spool, {4, 4});
+  MeshReceiver receiver(*spool, DomainCounts{4, 4});
   for (const auto& message : stream_of(mesh, 7)) ASSERT_TRUE(receiver.receive(message));
   ASSERT_TRUE(receiver.finish());
   const auto view = spool->view();

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 
 namespace weft::client {
@@ -55,6 +56,12 @@ TEST(ProgressBar, IsSilentWhenToldSo) {
 TEST(ProgressBar, DoesNotOverflowWhenTheEstimateWasLow) {
   EXPECT_EQ(progress_text(at(v1::STAGE_EMIT, 9, 3, 1.5), true),
             "receiving [##############################] 9 of about 3 triangles");
+}
+
+TEST(ProgressBar, LivesWithAFractionThatIsNoNumber) {
+  EXPECT_EQ(progress_text(at(v1::STAGE_REFINE, 1, 3, std::nan("")), true),
+            "refining [..............................] 1 of about 3 triangles");
+  EXPECT_EQ(done_of(at(v1::STAGE_REFINE, 1, 3, -5)), 0);
 }
 
 }  // namespace

@@ -63,12 +63,17 @@ Outcome run_weft(const std::vector<std::string>& arguments) {
   return outcome;
 }
 
-Server::Server(const std::vector<std::string>& arguments) {
-  address_ = "unix:" + (folder_ / "weftd.sock").string();
+Server::Server(const std::vector<std::string>& arguments)
+    : arguments_(arguments), address_("unix:" + (folder_ / "weftd.sock").string()) {
+  start();
+}
+
+void Server::start() {
   const std::string port_file = folder_ / "address";
+  std::filesystem::remove(port_file);
   std::vector<std::string> all{"--listen", address_, "--port-file", port_file};
-  all.insert(all.end(), arguments.begin(), arguments.end());
-  pid_ = start(WEFTD_BINARY, all, folder_ / "out", folder_ / "err");
+  all.insert(all.end(), arguments_.begin(), arguments_.end());
+  pid_ = e2e::start(WEFTD_BINARY, all, folder_ / "out", folder_ / "err");
   while (!std::filesystem::exists(port_file)) {
     if (waitpid(pid_, nullptr, WNOHANG) != 0) {
       pid_ = -1;
@@ -95,6 +100,14 @@ void Server::kill() {
   ::kill(pid_, SIGKILL);
   wait_for(pid_);
   pid_ = -1;
+}
+
+void Server::freeze() {
+  ::kill(pid_, SIGSTOP);
+}
+
+void Server::thaw() {
+  ::kill(pid_, SIGCONT);
 }
 
 std::uint64_t Server::resident_bytes() const {

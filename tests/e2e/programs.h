@@ -35,9 +35,14 @@ class Server {
   // All of them, as its port file tells.
   std::vector<std::string> addresses() const;
   void kill();  // SIGKILL, and waits
+  void freeze();
+  void thaw();
+  // Starts it again, where it was and as it was. REQUIRES: killed.
+  void start();
   std::uint64_t resident_bytes() const;
 
  private:
+  const std::vector<std::string> arguments_;
   Folder folder_;
   std::string address_;
   pid_t pid_ = -1;

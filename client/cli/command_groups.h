@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// The commands of `weft` with their flags, in groups. Each of these functions adds a group to the
+// command line; when one of its commands is given, `chosen` becomes what it does.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <stop_token>
+#include <string>
+
+#include "client/error.h"
+
+namespace weft::client {
+
+struct Chosen {
+  std::function<Result<ExitCode>(std::stop_token)> run;
+  // What to tell whoever interrupts it; empty: nothing.
+  std::string when_interrupted = "interrupted, nothing was written";
+};
+
+void add_mesh_commands(CLI::App& app, Chosen& chosen);    // mesh, check, info
+void add_server_commands(CLI::App& app, Chosen& chosen);  // health, server-info
+void add_job_commands(CLI::App& app, Chosen& chosen);     // submit, get, list, watch, cancel, ...
+
+}  // namespace weft::client

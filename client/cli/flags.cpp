@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/flags.h"
+
+#include <map>
+
+namespace weft::client {
+
+CLI::Range seconds_range() {
+  return {0.001, 1e9};
+}
+
+void add_timeout(CLI::App& command, std::optional<double>& seconds, const std::string& help) {
+  command.add_option("--timeout", seconds, help)
+      ->envname("WEFT_TIMEOUT")
+      ->check(seconds_range())
+      ->type_name("S");
+}
+
+void add_domain_and_wishes(CLI::App& command, std::filesystem::path& input, MeshWishes& wishes) {
+  command.add_option("INPUT", input, "Domain: .poly, .geojson or .json")->required();
+  command
+      .add_option("--size", wishes.size,
+                  "Upper bound on the area of a triangle at its centroid: a number or an "
+                  "expression in x and y. Default: no bound")
+      ->type_name("EXPR");
+  command
+      .add_option("--min-angle", wishes.min_angle_deg,
+                  "Lower bound on every angle, in degrees, 0 to 34. Default: 20")
+      ->envname("WEFT_MIN_ANGLE")
+      ->type_name("DEG");
+  command.add_option("--min-edge", wishes.min_edge, "Make no edge shorter than this")
+      ->envname("WEFT_MIN_EDGE")
+      ->type_name("LEN");
+  command
+      .add_option("--max-triangles", wishes.max_triangles,
+                  "Stop refining at this number of triangles")
+      ->envname("WEFT_MAX_TRIANGLES")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  command.add_option("--max-seconds", wishes.max_seconds, "Give up when the work takes longer")
+      ->envname("WEFT_MAX_SECONDS")
+      ->check(seconds_range())
+      ->type_name("S");
+  command
+      .add_option(
+          "--threads", wishes.threads,
+          "Threads that compute; the mesh does not depend on it. Default: all of the server")
+      ->envname("WEFT_THREADS")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+}
+
+void add_output(CLI::App& command, MeshOutputOptions& output) {
+  command
+      .add_option("-o,--output", output.files,
+                  "File to write: .vtu, .msh or .node; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  command
+      .add_option("--draw", output.drawings,
+                  "Drawing to write: .png, .svg or .pdf; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  static const std::map<std::string, DrawColor> kColors = {
+      {"angle", DrawColor::kAngle}, {"region", DrawColor::kRegion}, {"none", DrawColor::kNone}};
+  command
+      .add_option("--color", output.color, "Colour triangles of drawings by angle, region or none")
+      ->envname("WEFT_COLOR")
+      ->transform(CLI::CheckedTransformer(kColors).description(""))
+      ->type_name("angle|region|none");
+  command
+      .add_flag("--draw-quadtree", output.draw_quadtree,
+                "Draw the leaves of the quadtree that guided refinement over the mesh")
+      ->envname("WEFT_DRAW_QUADTREE");
+}
+
+void add_json(CLI::App& command, bool& json, const std::string& help) {
+  command.add_flag("--json", json, help);
+}
+
+void add_quiet(CLI::App& command, bool& quiet) {
+  command.add_flag("--quiet,-q", quiet, "No progress and no summary")->envname("WEFT_QUIET");
+}
+
+}  // namespace weft::client

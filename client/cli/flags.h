@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Flags that several commands share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "client/mesh_output.h"
+#include "client/mesh_request.h"
+
+namespace weft::client {
+
+// A number of seconds that makes sense as a time-out.
+CLI::Range seconds_range();
+
+void add_timeout(CLI::App& command, std::optional<double>& seconds, const std::string& help);
+
+// INPUT, and what its mesh must satisfy.
+void add_domain_and_wishes(CLI::App& command, std::filesystem::path& input, MeshWishes& wishes);
+
+// Files to write, and drawings.
+void add_output(CLI::App& command, MeshOutputOptions& output);
+
+void add_json(CLI::App& command, bool& json, const std::string& help);
+void add_quiet(CLI::App& command, bool& quiet);
+
+}  // namespace weft::client

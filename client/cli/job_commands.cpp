@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// The flags of the commands on jobs that a server keeps.
+#include "client/commands/job_commands.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include "client/cli/command_groups.h"
+#include "client/cli/flags.h"
+#include "client/connect_flags.h"
+
+namespace weft::client {
+namespace {
+
+constexpr char kSubmitExamples[] = R"(Examples:
+  weft submit coast.geojson --size 1e-6 --server mesh.example.org:7421
+  id=$(weft submit key.poly --request-id nightly-2026-11-20)
+  weft submit key.poly --min-angle 30 --wait -o key.vtu)";
+
+constexpr char kGetExamples[] = R"(Example:
+  weft get 01JCZ3V5K2M7Q8R9S0T1V2W3X4 --json | jq -r .state)";
+
+constexpr char kListExamples[] = R"(Examples:
+  weft list --state queued --state running
+  weft list --limit 20 --json | jq -r '.jobs[].id')";
+
+constexpr char kWatchExamples[] =
+    R"(Ends as the job does: 0 where it succeeded, 64 + the gRPC code of its error where it
+failed, 65 where it was cancelled.
+
+Examples:
+  weft watch 01JCZ3V5K2M7Q8R9S0T1V2W3X4 && weft fetch 01JCZ3V5K2M7Q8R9S0T1V2W3X4 -o coast.vtu
+  weft watch 01JCZ3V5K2M7Q8R9S0T1V2W3X4 --json | jq .progress.fraction)";
+
+constexpr char kCancelExamples[] = R"(Example:
+  weft list --state queued --json | jq -r '.jobs[].id' | xargs weft cancel)";
+
+constexpr char kDeleteExamples[] = R"(Example:
+  weft list --state failed --json | jq -r '.jobs[].id' | xargs weft delete)";
+
+constexpr char kFetchExamples[] = R"(A download that breaks goes on where it broke.
+
+Examples:
+  weft fetch 01JCZ3V5K2M7Q8R9S0T1V2W3X4 -o coast.vtu --draw coast.png --color angle
+  weft fetch 01JCZ3V5K2M7Q8R9S0T1V2W3X4 -o key.node --domain key.poly --wait)";
+
+constexpr char kTopExamples[] = R"(On a terminal, q ends it. Elsewhere it looks once.
+
+Examples:
+  weft top --server mesh.example.org:7421
+  weft top --once)";
+
+CLI::App& add_command(CLI::App& app, const char* name, const char* help, const char* examples) {
+  CLI::App& command = *app.add_subcommand(name, help);
+  command.group("Jobs that a server keeps");
+  command.footer(examples);
+  return command;
+}
+
+void add_calls(CLI::App& command, JobServerOptions& calls, const std::string& timeout_help) {
+  add_server_flags(command, calls.server, WithoutServer::kRefused);
+  add_timeout(command, calls.timeout_seconds, timeout_help);
+  command
+      .add_option("--retries", calls.retries,
+                  "Times to try again, with growing waits, while the server is away and nothing "
+                  "new comes")
+      ->envname("WEFT_RETRIES")
+      ->capture_default_str()
+      ->type_name("N");
+}
+
+constexpr char kWholeTimeout[] = "Give up when all of it takes longer. Default: never";
+constexpr double kShortTimeout = 30;
+constexpr char kCallTimeout[] = "Give up when it takes longer. Default: 30";
+
+// Has the command run so with its options.
+template <class Options>
+void bind(CLI::App& command, Result<ExitCode> (*run)(const Options&, std::stop_token),
+          const std::shared_ptr<Options>& options, const char* when_interrupted, Chosen& chosen) {
+  command.callback([=, &chosen] {
+    chosen = {[=](std::stop_token stop) { return run(*options, std::move(stop)); },
+              when_interrupted};
+  });
+}
+
+// What a server takes as a request id.
+std::string check_request_id(const std::string& id) {
+  constexpr std::size_t kLongest = 128;
+  const bool printable = std::ranges::all_of(id, [](char c) { return c >= 0x20 && c < 0x7f; });
+  if (!id.empty() && id.size() <= kLongest && printable) return "";
+  return "is not 1 to 128 bytes of printable ASCII";
+}
+
+void add_submit(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<SubmitOptions>();
+  CLI::App& command = add_command(
+      app, "submit", "Have a server mesh a domain, and print the id of the job", kSubmitExamples);
+  add_domain_and_wishes(command, options->input, options->wishes);
+  add_calls(command, options->calls, kWholeTimeout);
+  command
+      .add_option(
+          "--request-id", options->request_id,
+          "Name of the submission: sent again, it finds the same job. Default: a random one")
+      ->envname("WEFT_REQUEST_ID")
+      ->check(CLI::Validator(check_request_id, "", ""))
+      ->type_name("ID");
+  command
+      .add_flag("--no-cache", options->no_cache, "Make the mesh anew, even if the server keeps it")
+      ->envname("WEFT_NO_CACHE");
+  command
+      .add_flag("--wait", options->wait,
+                "Wait for the job to end; with -o and --draw, write its mesh")
+      ->envname("WEFT_WAIT");
+  add_output(command, options->output);
+  add_json(command, options->json,
+           "Print the job as one JSON object, or the mesh where it is written");
+  add_quiet(command, options->quiet);
+  bind(command, run_submit, options,
+       "interrupted; a job that was accepted goes on, see `weft list`", chosen);
+}
+
+void add_get(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<JobOptions>();
+  options->calls.timeout_seconds = kShortTimeout;
+  CLI::App& command = add_command(app, "get", "Say where a job is", kGetExamples);
+  command.add_option("ID", options->id, "Job")->required();
+  add_calls(command, options->calls, kCallTimeout);
+  add_json(command, options->json, "Print the job as one JSON object");
+  bind(command, run_get, options, "interrupted", chosen);
+}
+
+void add_list(CLI::App& app, Chosen& chosen) {
+  static const std::map<std::string, v1::JobState> kStates = {
+      {"queued", v1::JOB_STATE_QUEUED},
+      {"running", v1::JOB_STATE_RUNNING},
+      {"succeeded", v1::JOB_STATE_SUCCEEDED},
+      {"failed", v1::JOB_STATE_FAILED},
+      {"cancelled", v1::JOB_STATE_CANCELLED}};
+  const auto options = std::make_shared<ListOptions>();
+  options->calls.timeout_seconds = kShortTimeout;
+  CLI::App& command = add_command(app, "list", "List your jobs, the youngest first", kListExamples);
+  command
+      .add_option(
+          "--state", options->states,
+          "Only jobs in this state: queued, running, succeeded, failed or cancelled; may be "
+          "repeated")
+      ->allow_extra_args(false)
+      ->transform(CLI::CheckedTransformer(kStates).description(""))
+      ->type_name("STATE");
+  command.add_option("--limit", options->limit, "Only so many. Default: all")
+      ->envname("WEFT_LIMIT")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  add_calls(command, options->calls, kCallTimeout);
+  add_json(command, options->json, "Print one JSON object, with the jobs in `jobs`");
+  bind(command, run_list, options, "interrupted", chosen);
+}
+
+void add_watch(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<JobOptions>();
+  CLI::App& command = add_command(app, "watch", "Follow a job to its end", kWatchExamples);
+  command.add_option("ID", options->id, "Job")->required();
+  add_calls(command, options->calls, kWholeTimeout);
+  add_json(command, options->json, "Print the job as a JSON object, on a line for every change");
+  bind(command, run_watch, options, "interrupted; the job goes on", chosen);
+}
+
+void add_of_several(CLI::App& app, const char* name, const char* help, const char* examples,
+                    Result<ExitCode> (*run)(const JobsOptions&, std::stop_token), Chosen& chosen) {
+  const auto options = std::make_shared<JobsOptions>();
+  options->calls.timeout_seconds = kShortTimeout;
+  CLI::App& command = add_command(app, name, help, examples);
+  command.add_option("ID", options->ids, "Jobs")->required();
+  add_calls(command, options->calls, kCallTimeout);
+  add_json(command, options->json, "Print one JSON object");
+  bind(command, run, options, "interrupted", chosen);
+}
+
+void add_fetch(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<FetchOptions>();
+  CLI::App& command = add_command(app, "fetch", "Write the mesh of a job to files", kFetchExamples);
+  command.add_option("ID", options->id, "Job that succeeded")->required();
+  add_output(command, options->output);
+  command
+      .add_option("--domain", options->domain,
+                  "Domain that was submitted: its markers of points go into .node, and what the "
+                  "mesh says of it is checked")
+      ->type_name("INPUT");
+  command.add_flag("--wait", options->wait, "Wait for the job to end")->envname("WEFT_WAIT");
+  add_calls(command, options->calls, kWholeTimeout);
+  add_json(command, options->json, "Print one JSON object on standard output");
+  add_quiet(command, options->quiet);
+  bind(command, run_fetch, options, "interrupted, nothing was written", chosen);
+}
+
+void add_top(CLI::App& app, Chosen& chosen) {
+  const auto options = std::make_shared<TopOptions>();
+  options->calls.timeout_seconds = 10;
+  CLI::App& command =
+      add_command(app, "top", "Show your jobs and the throughput, live", kTopExamples);
+  add_calls(command, options->calls, "Give up when a look at the server takes longer. Default: 10");
+  command.add_option("--interval", options->interval_seconds, "Seconds between two looks")
+      ->envname("WEFT_INTERVAL")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str()
+      ->type_name("S");
+  command.add_flag("--once", options->once, "Look once, and print it");
+  bind(command, run_top, options, "", chosen);
+}
+
+}  // namespace
+
+void add_job_commands(CLI::App& app, Chosen& chosen) {
+  add_submit(app, chosen);
+  add_get(app, chosen);
+  add_list(app, chosen);
+  add_watch(app, chosen);
+  add_fetch(app, chosen);
+  add_of_several(app, "cancel", "End jobs that have not ended", kCancelExamples, run_cancel,
+                 chosen);
+  add_of_several(app, "delete", "Forget jobs that have ended", kDeleteExamples, run_delete, chosen);
+  add_top(app, chosen);
+}
+
+}  // namespace weft::client

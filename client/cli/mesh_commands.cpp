@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// The flags of `weft mesh`, `weft check` and `weft info`.
+#include <memory>
+
+#include "client/cli/command_groups.h"
+#include "client/cli/flags.h"
+#include "client/commands/commands.h"
+#include "client/commands/job_commands.h"
+#include "client/connect_flags.h"
+
+namespace weft::client {
+namespace {
+
+constexpr char kMeshExamples[] = R"(Input:  .poly (Triangle), .geojson, .json
+Output: .vtu, .msh (Gmsh 4.1), .node (Triangle's .node, .ele and .poly)
+
+Examples:
+  weft mesh coast.geojson -o coast.vtu --size 0.001
+  weft mesh pipe.poly -o pipe.msh --size '0.4*hypot(x-200, y-200) + 1' --min-angle 30
+  weft mesh key.poly -o key.vtu -o key.node --draw key.png --color angle
+  weft mesh cylinder.poly --size 1e-2 --draw cylinder.png --draw-quadtree
+  weft mesh key.poly -o key.vtu --server mesh.example.org:7421 --json
+  weft mesh coast.geojson --size 1e-6 --server mesh.example.org:7421 --detach)";
+
+constexpr char kCheckExamples[] = R"(Give the bounds that the mesh was made with.
+
+Example:
+  weft check pipe.msh --domain pipe.poly --size '0.4*hypot(x-200, y-200) + 1' --min-angle 30)";
+
+// As `weft submit` does; what is written later is for `weft fetch` to say.
+Result<ExitCode> detach(const MeshOptions& options, std::stop_token stop) {
+  if (!options.output.empty() || options.output.draw_quadtree)
+    return fail(ExitCode::kUsage,
+                "--detach leaves before there is a mesh to write: leave out -o and --draw, and "
+                "fetch it later with `weft fetch ID -o FILE`");
+  SubmitOptions submit;
+  submit.input = options.input;
+  submit.wishes = options.wishes;
+  submit.calls.server = options.server;
+  submit.calls.timeout_seconds = options.timeout_seconds;
+  submit.json = options.json;
+  submit.quiet = options.quiet;
+  return run_submit(submit, std::move(stop));
+}
+
+void add_mesh(CLI::App& app, Chosen& chosen) {
+  struct Kept {
+    MeshOptions options;
+    bool detach = false;
+  };
+  const auto kept = std::make_shared<Kept>();
+  MeshOptions& options = kept->options;
+  CLI::App& mesh = *app.add_subcommand("mesh", "Mesh a domain and write the mesh to files");
+  mesh.footer(kMeshExamples);
+  add_domain_and_wishes(mesh, options.input, options.wishes);
+  add_server_flags(mesh, options.server, WithoutServer::kPrivate);
+  add_timeout(mesh, options.timeout_seconds,
+              "Give up when the whole call takes longer. Default: never");
+  add_output(mesh, options.output);
+  mesh.add_flag("--detach", kept->detach,
+                "Leave the work to the server, print the id of its job and end, as `weft submit` "
+                "does; needs --server");
+  add_json(mesh, options.json, "Print one JSON object on standard output");
+  add_quiet(mesh, options.quiet);
+  mesh.callback([kept, &chosen] {
+    chosen.run = [kept](std::stop_token stop) {
+      return kept->detach ? detach(kept->options, std::move(stop))
+                          : run_mesh(kept->options, std::move(stop));
+    };
+  });
+}
+
+void add_check(CLI::App& app, Chosen& chosen) {
+  const auto kept = std::make_shared<CheckOptions>();
+  CheckOptions& options = *kept;
+  CLI::App& check = *app.add_subcommand("check", "Judge a mesh by the independent checker");
+  check.footer(kCheckExamples);
+  check.add_option("MESH", options.mesh, "Mesh: .vtu, .msh or .node")->required();
+  check.add_option("--domain", options.domain, "Domain that was meshed: .poly, .geojson or .json")
+      ->required()
+      ->type_name("INPUT");
+  check.add_option("--size", options.size, "Bound on the area, as given to `weft mesh`")
+      ->type_name("EXPR");
+  check.add_option("--min-angle", options.min_angle_deg, "Bound on the angles, in degrees")
+      ->envname("WEFT_MIN_ANGLE")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str()
+      ->type_name("DEG");
+  check
+      .add_option("--max-unrefined", options.max_unrefined,
+                  "Triangles that may miss a bound, as `weft mesh` counted them (edge floor and "
+                  "budget; small input angles are excused anyway)")
+      ->capture_default_str()
+      ->type_name("N");
+  check.callback(
+      [kept, &chosen] { chosen.run = [kept](std::stop_token) { return run_check(*kept); }; });
+}
+
+void add_info(CLI::App& app, Chosen& chosen) {
+  const auto file = std::make_shared<std::filesystem::path>();
+  CLI::App& info = *app.add_subcommand("info", "Say what a mesh or a domain holds");
+  info.add_option("FILE", *file, "Mesh or domain")->required();
+  info.callback(
+      [file, &chosen] { chosen.run = [file](std::stop_token) { return run_info(*file); }; });
+}
+
+}  // namespace
+
+void add_mesh_commands(CLI::App& app, Chosen& chosen) {
+  add_mesh(app, chosen);
+  add_check(app, chosen);
+  add_info(app, chosen);
+}
+
+}  // namespace weft::client

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The flags of `weft health` and `weft server-info`.
+#include <memory>
+
+#include "client/cli/command_groups.h"
+#include "client/cli/flags.h"
+#include "client/commands/commands.h"
+#include "client/connect_flags.h"
+
+namespace weft::client {
+namespace {
+
+using Run = Result<ExitCode> (*)(const ServerOptions&, std::stop_token);
+
+void add(CLI::App& app, const char* name, const char* help, Run run, Chosen& chosen) {
+  const auto options = std::make_shared<ServerOptions>();
+  CLI::App& command = *app.add_subcommand(name, help);
+  add_server_flags(command, options->server, WithoutServer::kPrivate);
+  command.add_option("--timeout", options->timeout_seconds, "Give up after this many seconds")
+      ->envname("WEFT_TIMEOUT")
+      ->check(seconds_range())
+      ->capture_default_str()
+      ->type_name("S");
+  command.callback([options, run, &chosen] {
+    chosen.run = [options, run](std::stop_token stop) { return run(*options, std::move(stop)); };
+  });
+}
+
+}  // namespace
+
+void add_server_commands(CLI::App& app, Chosen& chosen) {
+  add(app, "health", "Ask whether the server takes work", run_health, chosen);
+  add(app, "server-info", "Say what the server is and what it admits", run_server_info, chosen);
+}
+
+}  // namespace weft::client

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/commands/download.h"
+
+#include <optional>
+
+#include "client/jobs/fetch_mesh.h"
+#include "client/jobs/job_text.h"
+#include "client/jobs/watch_job.h"
+
+namespace weft::client {
+
+Result<v1::Job> wait_for_job(JobServer& server, const std::string& id, ProgressBar& progress) {
+  return watch_job(server, id, [&progress](const v1::Job& job) {
+    if (!is_final(job.state())) progress.update(progress_of(job));
+  });
+}
+
+Result<MeshReport> download(JobServer& server, const v1::Job& job, const Domain* domain,
+                            MeshOutput& output, ProgressBar& progress, MeshTimes& times) {
+  const auto spool = MeshSpool::create(output.folder());
+  if (!spool) return tl::unexpected(spool.error());
+  FetchMeshOptions options;
+  if (domain != nullptr)
+    options.domain = DomainCounts{domain->points.size(), domain->segments.size()};
+  options.on_triangles = [&](std::uint64_t triangles) {
+    v1::Progress arrived;
+    arrived.set_stage(v1::STAGE_EMIT);
+    arrived.set_triangles(triangles);
+    if (const std::uint64_t all = job.summary().triangles(); all > 0) {
+      arrived.set_expected_triangles(all);
+      arrived.set_fraction(static_cast<double>(triangles) / static_cast<double>(all));
+    }
+    progress.update(arrived);
+  };
+  auto report = fetch_mesh(server, job.id(), **spool, options);
+  if (!report) return report;
+  times.received = MeshTimes::Clock::now();
+
+  auto mesh = (*spool)->view();
+  if (!mesh) return tl::unexpected(mesh.error());
+  if (domain != nullptr) mesh->input_point_markers = domain->point_markers;
+  if (output.draws()) progress.say("drawing");
+  if (auto written = output.write(*mesh, report->summary); !written)
+    return tl::unexpected(written.error());
+  times.written = MeshTimes::Clock::now();
+  progress.clear();
+  return report;
+}
+
+Json download_json(const v1::Job& job, const MeshReport& report, const MeshTimes& times) {
+  Json json = {{"id", job.id()}};
+  json.update(mesh_json(report, times));
+  return json;
+}
+
+}  // namespace weft::client

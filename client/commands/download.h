@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `weft submit --wait` and `weft fetch` share: to wait for a job, and to bring its mesh into
+// files.
+#pragma once
+
+#include <string>
+
+#include "client/error.h"
+#include "client/formats/domain.h"
+#include "client/jobs/job_server.h"
+#include "client/mesh_output.h"
+#include "client/mesh_report.h"
+#include "client/progress_bar.h"
+
+namespace weft::client {
+
+// The job as it ended.
+Result<v1::Job> wait_for_job(JobServer& server, const std::string& id, ProgressBar& progress);
+
+// `domain` may be null. Sets `times.received` and `times.written`. REQUIRES: the job succeeded.
+Result<MeshReport> download(JobServer& server, const v1::Job& job, const Domain* domain,
+                            MeshOutput& output, ProgressBar& progress, MeshTimes& times);
+
+// mesh_json, after the job's id.
+Json download_json(const v1::Job& job, const MeshReport& report, const MeshTimes& times);
+
+}  // namespace weft::client

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// `weft fetch`: brings the mesh of a job that succeeded into files and drawings.
+#include <optional>
+
+#include "client/commands/commands.h"
+#include "client/commands/download.h"
+#include "client/commands/job_commands.h"
+#include "client/formats/mesh_formats.h"
+#include "client/jobs/job_text.h"
+
+namespace weft::client {
+namespace {
+
+Result<std::optional<Domain>> read_submitted(const FetchOptions& options) {
+  if (!options.domain) return std::nullopt;
+  if (!is_domain_path(*options.domain)) return unknown_domain_format(*options.domain);
+  auto domain = read_domain(*options.domain);
+  if (!domain) return tl::unexpected(domain.error());
+  return std::move(*domain);
+}
+
+}  // namespace
+
+Result<ExitCode> run_fetch(const FetchOptions& options, std::stop_token stop) {
+  MeshTimes times;
+  auto output = MeshOutput::open(options.output, options.domain, stop);
+  if (!output) return tl::unexpected(output.error());
+  auto server = JobServer::connect(options.calls, stop);
+  if (!server) return tl::unexpected(server.error());
+  const auto submitted = read_submitted(options);
+  if (!submitted) return tl::unexpected(submitted.error());
+  const Domain* domain = *submitted ? &**submitted : nullptr;
+  times.read = times.connected = MeshTimes::Clock::now();
+
+  ProgressBar progress(stderr, options.quiet ? ProgressStyle::kNone : progress_style_of(stderr));
+  server->on_away([&progress](const std::string& what) { progress.say(what); });
+  const auto job =
+      options.wait ? wait_for_job(*server, options.id, progress) : server->get(options.id);
+  if (!job) return tl::unexpected(job.error());
+  if (auto error = job_error(*job, domain)) {
+    if (!is_final(job->state())) error->message += ". --wait waits for it";
+    return tl::unexpected(*error);
+  }
+  const auto report = download(*server, *job, domain, *output, progress, times);
+  if (!report) return tl::unexpected(report.error());
+  if (options.json) return print(json_line(download_json(*job, *report, times)));
+  return options.quiet ? ExitCode::kOk
+                       : print(mesh_text(*report, times) + output->text(report->summary));
+}
+
+}  // namespace weft::client

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// The commands of `weft` on jobs that a server keeps. As commands.h says of the others; all of them
+// need a server that is named.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "client/error.h"
+#include "client/jobs/job_server.h"
+#include "client/mesh_output.h"
+#include "client/mesh_request.h"
+
+namespace weft::client {
+
+struct SubmitOptions {
+  std::filesystem::path input;
+  MeshWishes wishes;
+  MeshOutputOptions output;  // needs `wait`
+  std::string request_id;    // empty: one is made up
+  bool no_cache = false;
+  bool wait = false;
+  JobServerOptions calls;
+  bool json = false;
+  bool quiet = false;
+};
+Result<ExitCode> run_submit(const SubmitOptions& options, std::stop_token stop);
+
+struct FetchOptions {
+  std::string id;
+  MeshOutputOptions output;
+  std::optional<std::filesystem::path> domain;  // that was submitted
+  bool wait = false;
+  JobServerOptions calls;
+  bool json = false;
+  bool quiet = false;
+};
+Result<ExitCode> run_fetch(const FetchOptions& options, std::stop_token stop);
+
+struct JobOptions {
+  std::string id;
+  JobServerOptions calls;
+  bool json = false;
+};
+Result<ExitCode> run_get(const JobOptions& options, std::stop_token stop);
+Result<ExitCode> run_watch(const JobOptions& options, std::stop_token stop);
+
+struct JobsOptions {
+  std::vector<std::string> ids;
+  JobServerOptions calls;
+  bool json = false;
+};
+// All are tried; the exit code is that of the first that fails.
+Result<ExitCode> run_cancel(const JobsOptions& options, std::stop_token stop);
+Result<ExitCode> run_delete(const JobsOptions& options, std::stop_token stop);
+
+struct ListOptions {
+  std::vector<v1::JobState> states;    // empty: all
+  std::optional<std::uint64_t> limit;  // DEFAULT: all
+  JobServerOptions calls;
+  bool json = false;
+};
+Result<ExitCode> run_list(const ListOptions& options, std::stop_token stop);
+
+struct TopOptions {
+  double interval_seconds = 1;
+  bool once = false;
+  JobServerOptions calls;  // the time-out is that of each look at the server
+};
+Result<ExitCode> run_top(const TopOptions& options, std::stop_token stop);
+
+}  // namespace weft::client

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// `weft submit`, and `weft mesh --detach`: has a server make a mesh while nobody waits. Prints the
+// job's id alone, so that a script can take it.
+#include <cstdio>
+#include <optional>
+#include <random>
+
+#include "client/commands/commands.h"
+#include "client/commands/download.h"
+#include "client/commands/job_commands.h"
+#include "client/formats/mesh_formats.h"
+#include "client/jobs/job_text.h"
+#include "client/text.h"
+
+namespace weft::client {
+namespace {
+
+// With it a submission whose answer was lost can be sent again.
+std::string random_request_id() {
+  std::random_device random;
+  char id[48];
+  std::snprintf(id, sizeof id, "weft-%08x%08x%08x%08x", random(), random(), random(), random());
+  return id;
+}
+
+Result<std::optional<MeshOutput>> open_output(const SubmitOptions& options,
+                                              const std::stop_token& stop) {
+  const MeshOutputOptions& output = options.output;
+  if (output.empty() && !output.draw_quadtree) return std::nullopt;
+  if (!options.wait)
+    return fail(ExitCode::kUsage,
+                "nothing is written before the job has ended: give --wait, or fetch the mesh later "
+                "with `weft fetch`");
+  auto opened = MeshOutput::open(output, options.input, stop);
+  if (!opened) return tl::unexpected(opened.error());
+  return std::move(*opened);
+}
+
+Result<v1::Job> submit(JobServer& server, const Domain& domain, const SubmitOptions& options) {
+  if (auto ok = check_sendable(domain); !ok) return tl::unexpected(ok.error());
+  MeshWishes wishes = options.wishes;
+  wishes.quadtree = options.output.draw_quadtree;
+  v1::SubmitJobRequest request;
+  *request.mutable_mesh() = make_request(domain, wishes);
+  request.set_request_id(options.request_id.empty() ? random_request_id() : options.request_id);
+  request.set_no_cache(options.no_cache);
+  auto job = server.submit(request, &domain);
+  if (job) return job;
+  Error error = job.error();
+  constexpr int kUnavailable = 14;
+  if (error.exit == exit_code_of_status(kUnavailable))
+    error.message += "\n  it may have been accepted nevertheless; with --request-id " +
+                     in_quotes(request.request_id()) + " it is not made twice";
+  return tl::unexpected(error);
+}
+
+}  // namespace
+
+Result<ExitCode> run_submit(const SubmitOptions& options, std::stop_token stop) {
+  MeshTimes times;
+  if (!is_domain_path(options.input)) return unknown_domain_format(options.input);
+  auto output = open_output(options, stop);
+  if (!output) return tl::unexpected(output.error());
+  auto server = JobServer::connect(options.calls, stop);
+  if (!server) return tl::unexpected(server.error());
+  const auto domain = read_domain(options.input);
+  if (!domain) return tl::unexpected(domain.error());
+  times.read = times.connected = MeshTimes::Clock::now();
+
+  auto job = submit(*server, *domain, options);
+  if (!job) return tl::unexpected(job.error());
+  const auto print_id = [&] { return print(harmless(job->id()) + "\n"); };
+  if (!options.wait) return options.json ? print(json_line(job_json(*job))) : print_id();
+  if (!options.json)
+    if (auto printed = print_id(); !printed) return printed;
+
+  ProgressBar progress(stderr, options.quiet ? ProgressStyle::kNone : progress_style_of(stderr));
+  server->on_away([&progress](const std::string& what) { progress.say(what); });
+  if (!is_final(job->state())) {
+    job = wait_for_job(*server, job->id(), progress);
+    if (!job) return tl::unexpected(job.error());
+  }
+  const auto failed = job_error(*job, &*domain);
+  if (failed || !*output) {
+    progress.clear();
+    if (options.json)
+      if (auto printed = print(json_line(job_json(*job))); !printed) return printed;
+    if (failed) return tl::unexpected(*failed);
+    if (!options.quiet) std::fputs(summary_text(job->summary()).c_str(), stderr);
+    return ExitCode::kOk;
+  }
+  const auto report = download(*server, *job, &*domain, **output, progress, times);
+  if (!report) return tl::unexpected(report.error());
+  if (options.json) return print(json_line(download_json(*job, *report, times)));
+  if (!options.quiet)
+    std::fputs((mesh_text(*report, times) + (*output)->text(report->summary)).c_str(), stderr);
+  return ExitCode::kOk;
+}
+
+}  // namespace weft::client

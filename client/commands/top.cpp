@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// `weft top`: the caller's jobs and the server's throughput, live where there is a terminal.
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <iterator>
+#include <utility>
+
+#include "client/commands/commands.h"
+#include "client/commands/job_commands.h"
+#include "client/jobs/top_view.h"
+#include "client/terminal_screen.h"
+
+namespace weft::client {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+Result<TopSample> look(JobServer& server) {
+  constexpr std::size_t kMostEnded = 500;
+  auto info = server.info();
+  if (!info) return tl::unexpected(info.error());
+  auto open = server.list({v1::JOB_STATE_QUEUED, v1::JOB_STATE_RUNNING}, std::nullopt);
+  if (!open) return tl::unexpected(open.error());
+  auto ended = server.list({v1::JOB_STATE_SUCCEEDED, v1::JOB_STATE_FAILED, v1::JOB_STATE_CANCELLED},
+                           kMostEnded);
+  if (!ended) return tl::unexpected(ended.error());
+  const bool left_out = ended->size() == kMostEnded;
+  const double now = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+  TopSample sample = top_sample(now, std::move(*info), std::move(*open), std::move(*ended));
+  sample.ended_left_out = left_out;
+  return sample;
+}
+
+// The server is away, or slow: it may be back at the next look.
+bool may_pass(const Error& error) {
+  constexpr int kDeadlineExceeded = 4;
+  constexpr int kUnavailable = 14;
+  return error.exit == exit_code_of_status(kDeadlineExceeded) ||
+         error.exit == exit_code_of_status(kUnavailable);
+}
+
+}  // namespace
+
+Result<ExitCode> run_top(const TopOptions& options, std::stop_token stop) {
+  auto server = JobServer::connect(options.calls, stop);
+  if (!server) return tl::unexpected(server.error());
+  TopView view(server->connection().address);
+  auto sample = look(*server);
+  if (!sample) return tl::unexpected(sample.error());
+  view.add(std::move(*sample));
+  if (options.once || ::isatty(STDOUT_FILENO) == 0) return print(view.text(std::nullopt));
+
+  TerminalScreen screen;
+  server->on_away([](const std::string&) {});
+  const auto interval = std::chrono::ceil<std::chrono::milliseconds>(
+      std::chrono::duration<double>(options.interval_seconds));
+  while (screen.show(view.text(screen.size())) && screen.wait(interval, stop)) {
+    server->set_limits(1, options.calls.timeout_seconds);
+    sample = look(*server);
+    if (stop.stop_requested()) break;
+    if (!sample && !may_pass(sample.error())) return tl::unexpected(sample.error());
+    view.set_problem(sample ? "" : sample.error().message);
+    if (sample) view.add(std::move(*sample));
+  }
+  return ExitCode::kOk;
+}
+
+}  // namespace weft::client

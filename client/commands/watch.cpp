@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// `weft watch`: follows a job to its end, which is also that of the command.
+#include "client/commands/commands.h"
+#include "client/commands/download.h"
+#include "client/commands/job_commands.h"
+#include "client/jobs/job_text.h"
+#include "client/jobs/watch_job.h"
+#include "client/mesh_report.h"
+
+namespace weft::client {
+
+Result<ExitCode> run_watch(const JobOptions& options, std::stop_token stop) {
+  std::stop_source unreadable;  // stdout is gone: there is nobody to watch for
+  const std::stop_callback stopped(stop, [&unreadable] { unreadable.request_stop(); });
+  auto server = JobServer::connect(options.calls, unreadable.get_token());
+  if (!server) return tl::unexpected(server.error());
+
+  Result<v1::Job> job;
+  if (options.json) {
+    Result<ExitCode> printed = ExitCode::kOk;
+    job = watch_job(*server, options.id, [&](const v1::Job& now) {
+      if (printed) printed = print(json_line(job_json(now)));
+      if (!printed) unreadable.request_stop();
+    });
+    if (!printed) return printed;
+  } else {
+    ProgressBar progress(stdout, progress_style_of(stdout));
+    server->on_away([&progress](const std::string& what) { progress.say(what); });
+    job = wait_for_job(*server, options.id, progress);
+  }
+  if (!job) return tl::unexpected(job.error());
+  if (const auto error = job_error(*job, nullptr)) return tl::unexpected(*error);
+  if (options.json) return ExitCode::kOk;
+  return print(job->has_summary() ? summary_text(job->summary()) : "succeeded\n");
+}
+
+}  // namespace weft::client

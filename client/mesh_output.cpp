@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/mesh_output.h"
+
+#include <set>
+#include <span>
+#include <utility>
+
+#include "client/formats/mesh_formats.h"
+#include "client/text.h"
+
+namespace weft::client {
+namespace {
+
+// Refuses unknown extensions, names given twice, and outputs that would replace the input.
+Result<void> check_names(const MeshOutputOptions& options,
+                         const std::optional<std::filesystem::path>& input) {
+  if (options.empty())
+    return fail(ExitCode::kUsage, "nothing to write: give -o FILE or --draw FILE");
+  if (options.draw_quadtree && options.drawings.empty())
+    return fail(ExitCode::kUsage, "--draw-quadtree needs a drawing: give --draw FILE, too");
+  std::vector<std::filesystem::path> files;
+  for (const auto& output : options.files) {
+    if (!mesh_format(output) || output.extension() == ".ele") return unknown_mesh_format(output);
+    for (auto& file : mesh_files(output)) files.push_back(std::move(file));
+  }
+  for (const auto& drawing : options.drawings) {
+    if (!draw_format(drawing))
+      return fail(ExitCode::kUsage, drawing.string() + ": the extension " +
+                                        in_quotes(drawing.extension().string()) +
+                                        " is not that of a drawing: .png, .svg, .pdf");
+    files.push_back(drawing);
+  }
+  std::set<std::filesystem::path> seen;
+  for (const auto& file : files) {
+    std::error_code ignored;
+    if (input && std::filesystem::equivalent(file, *input, ignored))
+      return fail(ExitCode::kUsage, file.string() + ": would replace the input");
+    if (!seen.insert(std::filesystem::absolute(file, ignored).lexically_normal()).second)
+      return fail(ExitCode::kUsage, file.string() + ": would be written twice");
+  }
+  return {};
+}
+
+// All files of the outputs, then the drawings, in the order of the options.
+Result<std::vector<OutputFile>> open_files(const MeshOutputOptions& options,
+                                           const std::stop_token& stop) {
+  std::vector<std::filesystem::path> names;
+  for (const auto& output : options.files)
+    for (auto& file : mesh_files(output)) names.push_back(std::move(file));
+  names.insert(names.end(), options.drawings.begin(), options.drawings.end());
+  std::vector<OutputFile> files;
+  for (const auto& name : names) {
+    auto file = OutputFile::create(name, stop);
+    if (!file) return tl::unexpected(file.error());
+    files.push_back(std::move(*file));
+  }
+  return files;
+}
+
+// What a drawing of the quadtree shows, or why it shows none.
+std::string quadtree_text(const v1::Summary& summary) {
+  if (summary.leaves() == 0) return "no quadtree to draw: one task refined the mesh\n";
+  const std::string leaves = "quadtree of " + with_separators(summary.leaves()) +
+                             (summary.leaves() == 1 ? " leaf" : " leaves");
+  return leaves + (summary.leaf_boxes().empty() ? ", too many to be drawn\n" : "\n");
+}
+
+}  // namespace
+
+Result<MeshOutput> MeshOutput::open(const MeshOutputOptions& options,
+                                    const std::optional<std::filesystem::path>& input,
+                                    const std::stop_token& stop) {
+  if (auto ok = check_names(options, input); !ok) return tl::unexpected(ok.error());
+  auto files = open_files(options, stop);
+  if (!files) return tl::unexpected(files.error());
+  return MeshOutput(options, std::move(*files));
+}
+
+std::filesystem::path MeshOutput::folder() const {
+  const auto folder = files_.front().target().parent_path();
+  return folder.empty() ? "." : folder;
+}
+
+Result<void> MeshOutput::write(const MeshView& mesh, const v1::Summary& summary) {
+  std::span<OutputFile> rest = files_;
+  for (const auto& name : options_.files) {
+    const std::size_t count = mesh_files(name).size();
+    write_mesh(*mesh_format(name), mesh, rest.first(count));
+    rest = rest.subspan(count);
+  }
+  std::span<const double> leaves;
+  if (options_.draw_quadtree)
+    leaves = {summary.leaf_boxes().data(), static_cast<std::size_t>(summary.leaf_boxes_size())};
+  for (std::size_t i = 0; i < options_.drawings.size(); ++i) {
+    const DrawOptions how{
+        .format = *draw_format(options_.drawings[i]), .color = options_.color, .boxes = leaves};
+    if (auto drawn = draw(mesh, how, rest[i]); !drawn) return drawn;
+  }
+  return commit(files_);
+}
+
+std::string MeshOutput::text(const v1::Summary& summary) const {
+  std::string text = options_.draw_quadtree ? quadtree_text(summary) : "";
+  for (const OutputFile& file : files_) {
+    std::error_code ignored;
+    text += "wrote " + file.target().string() + ", " +
+            bytes_text(std::filesystem::file_size(file.target(), ignored)) + "\n";
+  }
+  return text;
+}
+
+}  // namespace weft::client

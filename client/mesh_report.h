@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is said of a mesh that came from a server, for people and for programs.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "client/json_line.h"
+#include "weft/v1/mesh_service.pb.h"
+
+namespace weft::client {
+
+// What came with a mesh.
+struct MeshReport {
+  v1::Accepted accepted;
+  v1::Summary summary;
+  double first_chunk_seconds = 0;  // from sending the request
+  double stream_seconds = 0;       // from sending the request to the end of the stream
+  std::uint64_t bytes_received = 0;
+};
+
+// When each step of a command was done.
+struct MeshTimes {
+  using Clock = std::chrono::steady_clock;
+
+  Clock::time_point start = Clock::now();
+  Clock::time_point read = start;       // the input
+  Clock::time_point connected = start;  // to the server
+  Clock::time_point received = start;   // the mesh
+  Clock::time_point written = start;    // the files
+};
+
+// The figures of the mesh alone.
+Json summary_json(const v1::Summary& summary);
+
+// Those, and what the client measured.
+Json mesh_json(const MeshReport& report, const MeshTimes& times);
+
+// "943,075 triangles, 472,520 vertices, angles 20.04 to 139.72 degrees\n", and a line for each
+// reason why triangles miss a bound.
+std::string summary_text(const v1::Summary& summary);
+
+// summary_text, and a line on where the time went.
+std::string mesh_text(const MeshReport& report, const MeshTimes& times);
+
+}  // namespace weft::client

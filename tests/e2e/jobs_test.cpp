@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Jobs through the real weft and the real weftd: submitted, left alone, found again, fetched.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <future>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "client/jobs/fetch_mesh.h"
+#include "tests/client/support/torn_relay.h"
+#include "tests/e2e/programs.h"
+
+namespace weft::e2e {
+namespace {
+
+using nlohmann::json;
+using Words = std::vector<std::string>;
+
+class Jobs : public testing::Test {
+ protected:
+  Outcome weft(Words words) const {
+    words.insert(words.end(), {"--server", server_.address()});
+    return run_weft(words);
+  }
+  // The id of the job.
+  std::string submit(const Words& more) const {
+    Words words = {"submit"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = weft(words);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.out.substr(0, outcome.out.find('\n'));
+  }
+  json get(const std::string& id) const { return json::parse(weft({"get", id, "--json"}).out); }
+  // Looks until the job is in this state.
+  void wait_until(const std::string& id, const std::string& state) const {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+    while (get(id)["state"] != state) {
+      ASSERT_LT(std::chrono::steady_clock::now(), end) << get(id).dump();
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+
+  Folder folder_;
+  const std::string data_ = folder_ / "data";
+  // A worker that is killed counts as lost soon.
+  Server server_{{"--data", data_, "--lease", "2"}};
+  const std::string pipe_ = model("pipe.poly");
+  const Words large_ = {model("us-east-coast.poly"), "--size", "1e-5"};
+};
+
+TEST_F(Jobs, MadeWhileNobodyWaitsAreTheFilesThatMeshWrites) {
+  const Words wishes = {"--size", "0.4*hypot(x-200, y-200) + 1"};
+  Words words = {pipe_};
+  words.insert(words.end(), wishes.begin(), wishes.end());
+  const std::string id = submit(words);
+  const Outcome fetched = weft({"fetch", id, "--wait", "--domain", pipe_, "-o", folder_ / "f.vtu",
+                                "-o", folder_ / "f.node"});
+  ASSERT_EQ(fetched.exit_code, 0) << fetched.err;
+  Words mesh = {"mesh", pipe_, "-o", folder_ / "m.vtu", "-o", folder_ / "m.node"};
+  mesh.insert(mesh.end(), wishes.begin(), wishes.end());
+  ASSERT_EQ(weft(mesh).exit_code, 0);
+  for (const char* extension : {".vtu", ".node", ".ele", ".poly"}) {
+    const std::string made = client::contents_of(folder_ / (std::string("m") + extension));
+    EXPECT_FALSE(made.empty());
+    EXPECT_EQ(client::contents_of(folder_ / (std::string("f") + extension)), made) << extension;
+  }
+}
+
+TEST_F(Jobs, AskedForTwiceAreMadeOnce) {
+  const Outcome first = weft({"submit", pipe_, "--wait", "--json"});
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  const Outcome second = weft({"submit", pipe_, "--json"});
+  const json made = json::parse(first.out);
+  const json kept = json::parse(second.out);
+  EXPECT_NE(made["id"], kept["id"]);
+  EXPECT_FALSE(made["from_store"]);
+  EXPECT_TRUE(kept["from_store"]);
+  EXPECT_EQ(kept["state"], "succeeded");
+  EXPECT_EQ(kept["summary"]["digest"], made["summary"]["digest"]);
+  const Outcome anew = weft({"submit", pipe_, "--no-cache", "--wait", "--json"});
+  EXPECT_FALSE(json::parse(anew.out)["from_store"]);
+  EXPECT_EQ(json::parse(anew.out)["summary"]["digest"], made["summary"]["digest"]);
+}
+
+TEST_F(Jobs, SubmittedAgainByARequestIdAreTheSameJob) {
+  const std::string id = submit({pipe_, "--request-id", "nightly"});
+  EXPECT_EQ(submit({pipe_, "--request-id", "nightly"}), id);
+  EXPECT_EQ(weft({"submit", pipe_, "--request-id", "nightly", "--size", "9"}).exit_code, 70);
+}
+
+TEST_F(Jobs, ThatFailSayWhyWhereverTheyAreAskedFor) {
+  const Outcome waited = weft({"submit", pipe_, "--size", "x - 1000", "--wait"});
+  EXPECT_EQ(waited.exit_code, 67) << waited.err;
+  const std::string id = waited.out.substr(0, waited.out.find('\n'));
+  EXPECT_NE(waited.err.find("the job " + id + " failed with INVALID_ARGUMENT (BAD_SIZE_VALUE)"),
+            std::string::npos)
+      << waited.err;
+  EXPECT_EQ(weft({"watch", id}).exit_code, 67);
+  EXPECT_EQ(get(id)["error"]["reason"], "BAD_SIZE_VALUE");
+  EXPECT_EQ(weft({"fetch", id, "-o", folder_ / "f.vtu"}).exit_code, 67);
+  const Outcome list = weft({"list", "--state", "failed"});
+  EXPECT_NE(list.out.find("INVALID_ARGUMENT (BAD_SIZE_VALUE)"), std::string::npos) << list.out;
+}
+
+TEST_F(Jobs, ThatAreCancelledEndAndAreForgottenWhenDeleted) {
+  const std::string id = submit(large_);
+  wait_until(id, "running");
+  EXPECT_EQ(weft({"delete", id}).exit_code, 73);
+  EXPECT_EQ(weft({"cancel", id}).out, id + " cancelled\n");
+  EXPECT_EQ(weft({"watch", id}).exit_code, 65);
+  EXPECT_EQ(weft({"delete", id}).out, id + " deleted\n");
+  EXPECT_EQ(weft({"get", id}).exit_code, 69);
+  EXPECT_EQ(weft({"list", "--json"}).out, "{\"jobs\":[]}\n");
+}
+
+TEST_F(Jobs, AreWatchedThroughTheDeathOfTheServer) {
+  const std::string id = submit({model("us-east-coast.poly"), "--size", "1e-4", "--threads", "1"});
+  auto watched = std::async(std::launch::async, [&] { return weft({"watch", id, "--json"}); });
+  wait_until(id, "running");
+  server_.kill();
+  server_.start();
+  const Outcome outcome = watched.get();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::istringstream lines(outcome.out);
+  json last;
+  for (std::string line; std::getline(lines, line);) last = json::parse(line);
+  EXPECT_EQ(last["state"], "succeeded");
+  EXPECT_EQ(last["attempts"], 2);
+}
+
+TEST_F(Jobs, AreListedOverAllPages) {
+  Words ids;
+  for (int i = 0; i < 5; ++i) ids.push_back(submit({pipe_}));
+  std::ranges::reverse(ids);
+  const json jobs = json::parse(weft({"list", "--json"}).out)["jobs"];
+  ASSERT_EQ(jobs.size(), ids.size());
+  for (std::size_t i = 0; i < ids.size(); ++i) EXPECT_EQ(jobs[i]["id"], ids[i]);
+  EXPECT_EQ(json::parse(weft({"list", "--limit", "2", "--json"}).out)["jobs"].size(), 2u);
+}
+
+TEST_F(Jobs, ShowThemselvesAtWork) {
+  const std::string id = submit(large_);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+  Outcome top = weft({"top"});
+  while (top.out.find("AT WORK\n" + id + "  refining [") == std::string::npos) {
+    ASSERT_LT(std::chrono::steady_clock::now(), end) << top.out << top.err;
+    top = weft({"top"});
+  }
+  EXPECT_NE(top.out.find("queued 0  running 1  "), std::string::npos) << top.out;
+  EXPECT_EQ(weft({"cancel", id}).exit_code, 0);
+  EXPECT_NE(weft({"top"}).out.find("ENDED\n" + id + "  cancelled"), std::string::npos);
+}
+
+// Every connection brings a chunk or two before it tears, in the middle of a message.
+TEST_F(Jobs, ArriveWholeOverAWireThatTearsAgainAndAgain) {
+  const std::string id = submit({model("cylinder.poly"), "--size", "0.004", "--wait"});
+  const auto arrive = [&](const std::string& address) {
+    auto server = client::JobServer::connect({.server = {.server = address}}, {});
+    server->on_away([](const std::string&) {});
+    auto spool = client::MeshSpool::create(folder_.path()).value();
+    const auto report = client::fetch_mesh(*server, id, *spool, {});
+    EXPECT_TRUE(report) << report.error().message;
+    const client::MeshView mesh = spool->view().value();
+    return std::tuple(report ? report->summary.chunks() : 0,
+                      std::vector(mesh.coordinates.begin(), mesh.coordinates.end()),
+                      std::vector(mesh.triangles.begin(), mesh.triangles.end()),
+                      std::vector(mesh.edges.begin(), mesh.edges.end()));
+  };
+  const std::string address = server_.address();
+  const auto whole = arrive(address);
+  const std::size_t chunks = std::get<0>(whole);
+  EXPECT_GE(chunks, 4u);
+  std::vector<std::size_t> tears(chunks);
+  for (std::size_t i = 0; i < chunks; ++i) tears[i] = 1'150'000 + 10'007 * i;
+  const client::TornRelay relay(folder_ / "wire", address.substr(std::string("unix:").size()),
+                                tears);
+  EXPECT_EQ(arrive(relay.address()), whole);
+  EXPECT_GE(relay.torn(), 2u);
+}
+
+TEST(JobsOfAServerWithoutAStore, AreRefused) {
+  const Server server;
+  const Outcome outcome = run_weft({"submit", model("pipe.poly"), "--server", server.address()});
+  EXPECT_EQ(outcome.exit_code, 76);
+  EXPECT_NE(outcome.err.find("UNIMPLEMENTED"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+}  // namespace weft::e2e
