@@ -64,7 +64,6 @@ class MemoryGate {
     std::lock_guard lock(mutex_);
     return taken_;
   }
-  std::uint64_t capacity() const { return capacity_; }
 
  private:
   std::uint64_t room_now() const {

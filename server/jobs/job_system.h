@@ -37,7 +37,6 @@ class JobSystem {
 
   // Null where this server does not serve.
   JobService* service() { return service_ ? &*service_ : nullptr; }
-  JobStore& store() { return *store_; }
 
   // Asks the store.
   QueueFigures figures();
