@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <exception>
 #include <memory>
 #include <utility>
 
@@ -73,7 +74,13 @@ bool JobRunner::work_once() {
     (void)environment_.store.release((*claim)->ref, options_.poll, false);
     return false;
   }
-  run(std::move(**claim));
+  const ClaimRef ref = (*claim)->ref;
+  try {
+    run(std::move(**claim));
+  } catch (const std::exception& error) {  // no memory for the request itself
+    environment_.log->error("event=task_not_begun message={}", log_value(error.what()));
+    (void)environment_.store.release(ref, options_.poll, true);
+  }
   return true;
 }
 

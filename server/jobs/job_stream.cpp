@@ -74,7 +74,7 @@ void JobStream::log_end(grpc::StatusCode status, std::string_view reason) const 
       "event=call_ended job={} {} method={} status={} reason={} bytes={} "
       "seconds={:.3f}",
       log_value(job_.id), log_fields(job_.caller), method_, code_name(status), reason,
-      bytes_.load(), Seconds(Clock::now() - began_).count());
+      bytes_.load(), seconds);
 }
 
 tl::expected<JobRecord, Failure> JobStream::look_up() {
