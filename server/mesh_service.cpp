@@ -10,7 +10,6 @@
 #include "server/caller.h"
 #include "server/refusal.h"
 #include "server/translate.h"
-#include "server/version.h"
 #include "server/wire_scan.h"
 
 namespace weft::server {
@@ -131,20 +130,7 @@ grpc::ServerUnaryReactor* MeshService::GetServerInfo(grpc::CallbackServerContext
   if (!caller) return finish(to_status(caller.error(), ""));
   if (!gate_.enter())
     return finish(to_status({Reason::kStopping, "", "the server is stopping"}, ""));
-  response->set_version(std::string(kVersion));
-  response->set_engine_version(std::string(kEngineVersion));
-  response->set_threads(options_.threads);
-  v1::ServerLimits& limits = *response->mutable_limits();
-  limits.set_max_points(options_.limits.max_points);
-  limits.set_max_segments(options_.limits.max_segments);
-  limits.set_max_seeds(options_.limits.max_seeds);
-  limits.set_max_expression_bytes(options_.limits.max_expression_bytes);
-  limits.set_max_triangles(options_.limits.max_triangles);
-  limits.set_max_bytes(options_.limits.max_bytes);
-  limits.set_max_seconds(options_.limits.max_seconds);
-  limits.set_max_request_bytes(options_.limits.max_request_bytes);
-  limits.set_max_concurrent_jobs(options_.jobs);
-  limits.set_max_min_angle_deg(kMaxMinAngleDeg);
+  *response = options_.info;
   return finish(grpc::Status::OK);
 }
 

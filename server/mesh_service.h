@@ -49,6 +49,7 @@ struct ServiceOptions {
   std::chrono::steady_clock::duration tick = std::chrono::milliseconds(250);
   // Tells this process's jobs from another's: job ids are INSTANCE-NUMBER.
   std::string instance = "0";
+  v1::GetServerInfoResponse info{};  // what GetServerInfo answers
 };
 
 class MeshService final

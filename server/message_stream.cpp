@@ -57,6 +57,11 @@ bool MessageStream::settle(grpc::Status status) {
   return true;
 }
 
+bool MessageStream::ended() const {
+  std::lock_guard lock(mutex_);
+  return status_.has_value();
+}
+
 void MessageStream::kill() {
   queue_.close();
   std::lock_guard lock(context_mutex_);

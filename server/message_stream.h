@@ -46,6 +46,9 @@ class MessageStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   // Ends the call even where a write is outstanding that the client will never read.
   void kill();
 
+  // The status is settled: whatever else is sent is lost.
+  bool ended() const;
+
   // How long the client has taken nothing of the outstanding write.
   Clock::duration waiting_for_client(Clock::time_point now) const;
 

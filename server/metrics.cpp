@@ -56,7 +56,10 @@ Metrics::Metrics(std::string_view version, std::string_view engine_version)
     : requests_(counters(registry_, "weft_requests_total", "Calls that have ended")),
       request_seconds_(
           histograms(registry_, "weft_request_seconds", "From a call to the end of its answer")),
-      jobs_(counters(registry_, "weft_jobs_total", "Times that a job came into a state")),
+      jobs_(
+          counters(registry_, "weft_jobs_total",
+                   "Times that jobs came into a state; of those that share a mesh, the mesh counts "
+                   "once it is worked on")),
       queue_seconds_(
           histogram(registry_, "weft_queue_seconds", "From being accepted to being worked on")),
       refine_seconds_(histogram(registry_, "weft_refine_seconds",

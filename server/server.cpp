@@ -12,6 +12,7 @@
 
 #include "server/connections.h"
 #include "server/listen.h"
+#include "server/server_info.h"
 #include "server/version.h"
 
 namespace weft::server {
@@ -43,6 +44,12 @@ void configure(grpc::ServerBuilder& builder, const Limits& limits) {
   builder.SetResourceQuota(quota);
 }
 
+ServiceOptions with_info(const ServerOptions& options, bool has_store) {
+  ServiceOptions service = options.service;
+  service.info = server_info(options, has_store);
+  return service;
+}
+
 }  // namespace
 
 Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, EngineFn engine,
@@ -53,7 +60,8 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
       metrics_(kVersion, kEngineVersion),
       arena_(static_cast<int>(options.service.threads)),
       gate_(options.memory, [this] { service_.notify(); }),
-      service_(options.service, authenticator_, metrics_, engine, arena_, gate_, log_) {
+      service_(with_info(options, store != nullptr), authenticator_, metrics_, engine, arena_,
+               gate_, log_) {
   metrics_.add_queue("calls", [this] {
     QueueFigures figures = service_.figures();
     const double of_jobs = jobs_ ? jobs_->figures().admitted_bytes : 0;

@@ -5,9 +5,30 @@
 
 #include <exception>
 #include <memory>
+#include <new>
 #include <utility>
 
 namespace weft::server {
+
+// A run is among those at work for as long as this lives.
+class JobRunner::Listed {
+ public:
+  Listed(JobRunner& runner, std::shared_ptr<TaskRun> run) : runner_(runner), run_(std::move(run)) {
+    std::lock_guard lock(runner_.mutex_);
+    runner_.runs_.insert(run_);
+    if (runner_.stopping_) run_->stop();
+  }
+  ~Listed() {
+    std::lock_guard lock(runner_.mutex_);
+    runner_.runs_.erase(run_);
+  }
+  Listed(const Listed&) = delete;
+  Listed& operator=(const Listed&) = delete;
+
+ private:
+  JobRunner& runner_;
+  const std::shared_ptr<TaskRun> run_;
+};
 
 JobRunner::JobRunner(const RunEnvironment& environment, MemoryGate& gate, RunnerOptions options)
     : environment_(environment), gate_(gate), options_(std::move(options)) {
@@ -48,10 +69,21 @@ QueueFigures JobRunner::figures() const {
   return figures;
 }
 
+// What is thrown here, for want of memory, must not end the server: it is tried again.
+template <class F>
+bool JobRunner::guarded(F&& step) {
+  try {
+    return step();
+  } catch (const std::exception& error) {
+    environment_.log->error("event=worker_failed message={}", log_value(error.what()));
+    return false;
+  }
+}
+
 void JobRunner::work() {
   std::uint64_t seen = 0;
   do {
-    while (work_once()) continue;
+    while (guarded([this] { return work_once(); })) continue;
   } while (wait_for_wake(seen));
 }
 
@@ -74,54 +106,72 @@ bool JobRunner::work_once() {
     (void)environment_.store.release((*claim)->ref, options_.poll, false);
     return false;
   }
-  const ClaimRef ref = (*claim)->ref;
+  const Claim name{.ref = (*claim)->ref, .job_id = (*claim)->job_id, .tries = (*claim)->tries};
   try {
-    run(std::move(**claim));
-  } catch (const std::exception& error) {  // no memory for the request itself
-    environment_.log->error("event=task_not_begun message={}", log_value(error.what()));
-    (void)environment_.store.release(ref, options_.poll, true);
+    const auto run = std::make_shared<TaskRun>(environment_, std::move(**claim));
+    const Listed listed(*this, run);
+    run->run();
+  } catch (const std::bad_alloc&) {  // none for the request, or for what came of it
+    give_up(name, {Reason::kBudgetExceeded, "", "the server is out of memory"});
+  } catch (const std::exception& error) {
+    give_up(name, {Reason::kInternal, "", error.what()});
   }
   return true;
 }
 
-void JobRunner::run(Claim claim) {
-  const auto run = std::make_shared<TaskRun>(environment_, std::move(claim));
-  {
-    std::lock_guard lock(mutex_);
-    runs_.insert(run);
-    if (stopping_) run->stop();
+void JobRunner::give_up(const Claim& claim, const Failure& failure) {
+  environment_.log->error("event=task_broken_off task={} job={} attempt={} message={}",
+                          claim.ref.task, claim.job_id, claim.ref.attempt,
+                          log_value(failure.message));
+  const RetryPolicy& retry = environment_.retry;
+  if (claim.tries < retry.max_attempts) {
+    (void)environment_.store.release(claim.ref, delay_after(retry, claim.tries), true);
+  } else {
+    (void)environment_.store.fail(claim.ref, to_status(failure, claim.job_id).error_details());
+    environment_.metrics.job_became("failed");
   }
-  run->run();
-  std::lock_guard lock(mutex_);
-  runs_.erase(run);
 }
 
 void JobRunner::renew_and_reap() {
   while (wait(options_.renewal)) {
-    std::vector<std::shared_ptr<TaskRun>> runs;
-    {
-      std::lock_guard lock(mutex_);
-      runs.assign(runs_.begin(), runs_.end());
-    }
-    for (const auto& run : runs) run->renew(options_.lease);
-    const auto reaped = environment_.store.reap(environment_.retry);
-    if (reaped && reaped->requeued + reaped->failed > 0)
-      environment_.log->warn("event=leases_lost requeued={} failed={}", reaped->requeued,
-                             reaped->failed);
+    guarded([this] { return renew(); });
+    guarded([this] { return reap(); });
   }
 }
 
-void JobRunner::collect() {
-  while (wait(options_.between_collections)) {
-    const auto collected = environment_.store.collect(options_.keep);
-    if (!collected)
-      environment_.log->warn("event=collect_failed message={}",
-                             log_value(collected.error().message));
-    else if (collected->jobs + collected->meshes + collected->chunks > 0)
-      environment_.log->info("event=collected jobs={} meshes={} chunks={} bytes={}",
-                             collected->jobs, collected->meshes, collected->chunks,
-                             collected->bytes);
+bool JobRunner::renew() {
+  std::vector<std::shared_ptr<TaskRun>> runs;
+  {
+    std::lock_guard lock(mutex_);
+    runs.assign(runs_.begin(), runs_.end());
   }
+  for (const auto& run : runs) run->renew(options_.lease);
+  return true;
+}
+
+bool JobRunner::reap() {
+  const auto reaped = environment_.store.reap(environment_.retry);
+  if (!reaped || reaped->requeued + reaped->failed == 0) return false;
+  for (std::uint64_t i = 0; i < reaped->failed; ++i) environment_.metrics.job_became("failed");
+  environment_.log->warn("event=leases_lost requeued={} failed={}", reaped->requeued,
+                         reaped->failed);
+  return true;
+}
+
+void JobRunner::collect() {
+  while (wait(options_.between_collections)) guarded([this] { return collect_once(); });
+}
+
+bool JobRunner::collect_once() {
+  const auto collected = environment_.store.collect(options_.keep);
+  if (!collected) {
+    environment_.log->warn("event=collect_failed message={}", log_value(collected.error().message));
+    return false;
+  }
+  if (collected->jobs + collected->meshes + collected->chunks > 0)
+    environment_.log->info("event=collected jobs={} meshes={} chunks={} bytes={}", collected->jobs,
+                           collected->meshes, collected->chunks, collected->bytes);
+  return true;
 }
 
 bool JobRunner::wait_for_wake(std::uint64_t& seen) {

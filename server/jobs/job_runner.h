@@ -55,11 +55,21 @@ class JobRunner {
   QueueFigures figures() const;
 
  private:
+  class Listed;
+
+  // What the threads do again and again; false where there was nothing to do, or it failed.
   void work();
   bool work_once();
-  void run(Claim claim);
   void renew_and_reap();
+  bool renew();
+  bool reap();
   void collect();
+  bool collect_once();
+  // The step's answer; false where it throws.
+  template <class F>
+  bool guarded(F&& step);
+  // Ends a claim whose run has thrown.
+  void give_up(const Claim& claim, const Failure& failure);
   // Returns at the next `wake`; `seen` counts those that the caller knows of. False once the runner
   // stops.
   bool wait_for_wake(std::uint64_t& seen);

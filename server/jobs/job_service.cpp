@@ -155,6 +155,7 @@ JobService::Answer JobService::submit(const Caller& caller, const grpc::ByteBuff
                         .request_id = request->request_id(),
                         .request = request->mesh().SerializeAsString(),
                         .weight = expected_bytes(request->mesh(), options_.limits),
+                        .trace = caller.trace,
                         .no_cache = request->no_cache(),
                         .max_queued = options_.max_queued,
                         .max_queued_of_owner = options_.max_queued_of_owner};
@@ -177,17 +178,18 @@ JobService::Answer JobService::submit(const Caller& caller, const grpc::ByteBuff
     case SubmitOutcome::kAccepted:
       submitted->job.from_store ? metrics_.cache_hit() : metrics_.cache_missed();
       metrics_.job_became(state_name(submitted->job.state));
-      log_->info("event=job_submitted job={} {} state={} from_store={} points={} bytes={}",
-                 submitted->job.id, log_fields(caller), state_name(submitted->job.state),
-                 submitted->job.from_store, points, bytes.Length());
+      log_->info(
+          "event=job_submitted job={} {} state={} from_store={} task={} points={} "
+          "bytes={}",
+          submitted->job.id, log_fields(caller), state_name(submitted->job.state),
+          submitted->job.from_store,
+          submitted->job.task ? fmt::to_string(*submitted->job.task) : "-", points, bytes.Length());
       break;
     case SubmitOutcome::kFound:
       break;
   }
-  auto job = whole_job(store_, submitted->job);
-  if (!job) return job.error();
   v1::SubmitJobResponse message;
-  *message.mutable_job() = std::move(*job);
+  *message.mutable_job() = to_wire(submitted->job);
   response = serialize(message);
   return std::nullopt;
 }
@@ -202,7 +204,14 @@ JobService::Unary* JobService::GetJob(Context* context, const v1::GetJobRequest*
 JobService::Unary* JobService::CancelJob(Context* context, const v1::CancelJobRequest* request,
                                          v1::CancelJobResponse* response) {
   return answer(context, "CancelJob", [=, this](const Caller& caller) -> Answer {
-    return tell(store_.cancel(caller.name, request->id()), request->id(), *response->mutable_job());
+    const auto before = store_.get(caller.name, request->id());
+    const auto job = store_.cancel(caller.name, request->id());
+    if (before && *before && !is_final((*before)->state) && job && *job &&
+        (*job)->state == JobState::kCancelled) {
+      metrics_.job_became("cancelled");
+      log_->info("event=job_cancelled job={} {}", (*job)->id, log_fields(caller));
+    }
+    return tell(job, request->id(), *response->mutable_job());
   });
 }
 
@@ -223,9 +232,7 @@ JobService::Answer JobService::tell(const StoreResult<std::optional<JobRecord>>&
                                     const std::string& id, v1::Job& out) {
   if (!record) return failure_of(record.error());
   if (!*record) return no_such_job(id);
-  auto job = whole_job(store_, **record);
-  if (!job) return job.error();
-  out = std::move(*job);
+  out = to_wire(**record);
   return std::nullopt;
 }
 

@@ -94,8 +94,8 @@ class JobService final : public JobServiceBase {
   Answer submit(const Caller& caller, const grpc::ByteBuffer& bytes, grpc::ByteBuffer& response);
   tl::expected<v1::SubmitJobRequest, Failure> read_submission(const grpc::ByteBuffer& bytes) const;
   // A job as the store has it, or why there is none.
-  Answer tell(const StoreResult<std::optional<JobRecord>>& record, const std::string& id,
-              v1::Job& out);
+  static Answer tell(const StoreResult<std::optional<JobRecord>>& record, const std::string& id,
+                     v1::Job& out);
   // Opens the stream that `make` makes of a StreamedJob, the request and a pass through the gate.
   template <class Request, class Make>
   Stream* open(Context* context, const grpc::ByteBuffer& bytes, const char* method,

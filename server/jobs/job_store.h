@@ -69,6 +69,8 @@ struct JobRecord {
   std::string progress;  // as last renewed; empty unless running
   std::string error;     // empty unless failed
   bool from_store = false;
+  std::optional<std::int64_t> task;  // that it waits for; nothing once it has ended
+  std::string brief;                 // of its mesh; empty unless succeeded, and the mesh is kept
 };
 
 struct Submission {
@@ -77,6 +79,7 @@ struct Submission {
   std::string key{};
   std::string request{};     // what a worker needs
   std::uint64_t weight = 0;  // bytes of memory that the work is expected to take
+  std::string trace{};       // of the call, for the log of whoever does the work
   // Make a mesh even where one is kept, and share no task. What comes of it replaces what is kept.
   bool no_cache = false;
   // Tasks that wait, of all and of this owner; at these numbers no further one is taken. Jobs that
@@ -110,7 +113,9 @@ struct Claim {
   std::string owner;  // of the job that made the task
   std::string request;
   std::uint64_t weight = 0;
-  std::string job_id;  // of the job that made the task
+  std::string job_id;       // of the job that made the task
+  std::string trace;        // of its submission
+  std::uint32_t tries = 0;  // attempts that count, this one included
 };
 
 enum class Held {
@@ -125,6 +130,7 @@ struct StoredChunk {
 
 struct StoredMesh {
   std::string summary;
+  std::string brief;                // what every look at a job shows of the summary; short
   std::vector<StoredChunk> chunks;  // in order
 };
 

@@ -52,14 +52,19 @@ void JobStream::tick(Clock::time_point now) {
 void JobStream::soon(std::function<void()> function) {
   auto self = shared_from_this();
   const auto work = [self = std::move(self), function = std::move(function)] {
-    try {
-      function();
-    } catch (const std::exception& error) {
-      self->fail({Reason::kInternal, "", error.what()});
-    }
+    self->guarded(function);
   };
   if (!push(environment_.threads, work))
     fail({Reason::kQueueFull, "", "too many calls wait for the store"});
+}
+
+template <class F>
+void JobStream::guarded(F&& function) {
+  try {
+    function();
+  } catch (const std::exception& error) {
+    fail({Reason::kInternal, "", error.what()});
+  }
 }
 
 void JobStream::fail(const Failure& failure) {
@@ -93,7 +98,7 @@ void WatchStream::begin() {
 
 void WatchStream::tick(Clock::time_point now) {
   JobStream::tick(now);
-  if (begun_) look();
+  if (begun_ && !ended()) guarded([this] { look(); });
 }
 
 void WatchStream::look() {
@@ -102,9 +107,7 @@ void WatchStream::look() {
     return;  // it comes back, or the client's patience ends
   if (!record) return fail(record.error());
   v1::WatchJobResponse message;
-  const auto job = whole_job(environment_.store, *record);
-  if (!job) return fail(job.error());
-  *message.mutable_job() = *job;
+  *message.mutable_job() = to_wire(*record);
   std::string bytes = message.SerializeAsString();
   if (is_final(record->state)) {
     bytes_ += bytes.size();

@@ -65,6 +65,9 @@ class JobStream : public MessageStream, public std::enable_shared_from_this<JobS
   tl::expected<JobRecord, Failure> look_up();
   // Runs on one of the service's threads, and keeps the stream alive meanwhile.
   void soon(std::function<void()> function);
+  // Ends the call with what is thrown.
+  template <class F>
+  void guarded(F&& function);
 
   const StreamEnvironment& environment_;
   const StreamedJob job_;

@@ -51,17 +51,9 @@ v1::Job to_wire(const JobRecord& record) {
   if (!record.progress.empty()) job.mutable_progress()->ParseFromString(record.progress);
   if (!record.error.empty()) job.mutable_error()->ParseFromString(record.error);
   job.set_from_store(record.from_store);
-  return job;
-}
-
-tl::expected<v1::Job, Failure> whole_job(JobStore& store, const JobRecord& record) {
-  v1::Job job = to_wire(record);
-  if (record.state != JobState::kSucceeded) return job;
-  const auto mesh = store.mesh(record.key);
-  if (!mesh) return tl::unexpected(failure_of(mesh.error()));
-  if (*mesh) {
-    job.mutable_summary()->ParseFromString((*mesh)->summary);
-    job.mutable_summary()->clear_leaf_boxes();
+  if (!record.brief.empty()) {
+    job.mutable_summary()->ParseFromString(record.brief);
+    job.mutable_summary()->clear_leaf_boxes();  // of meshes that older servers made
   }
   return job;
 }

@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <string_view>
-#include <tl/expected.hpp>
 
 #include "server/errors.h"
 #include "server/jobs/job_store.h"
@@ -17,10 +16,7 @@ Failure failure_of(const StoreError& error);
 Failure no_such_job(std::string_view id);
 Failure mesh_gone(std::string_view id);
 
-// Without the summary, which is the mesh's.
 v1::Job to_wire(const JobRecord& record);
-// With it, where the job has succeeded and the mesh is still kept.
-tl::expected<v1::Job, Failure> whole_job(JobStore& store, const JobRecord& record);
 
 // "queued" and so on.
 std::string_view state_name(JobState state);

@@ -17,13 +17,13 @@ constexpr std::int64_t kQueueLock = 0x77656674'0002;
 
 constexpr const char* kJobById =
     "SELECT id, owner, request_id, key, state, created, started, ended, attempts, from_store, "
-    "worker, progress, error FROM weft_job_now WHERE owner = $1 AND id = $2";
+    "worker, progress, error, task, brief FROM weft_job_now WHERE owner = $1 AND id = $2";
 constexpr const char* kJobByRequestId =
     "SELECT id, owner, request_id, key, state, created, started, ended, attempts, from_store, "
-    "worker, progress, error FROM weft_job_now WHERE owner = $1 AND request_id = $2";
+    "worker, progress, error, task, brief FROM weft_job_now WHERE owner = $1 AND request_id = $2";
 constexpr const char* kJobsOfOwner =
     "SELECT id, owner, request_id, key, state, created, started, ended, attempts, from_store, "
-    "worker, progress, error FROM weft_job_now "
+    "worker, progress, error, task, brief FROM weft_job_now "
     "WHERE owner = $1 AND id < $2 AND (1 << state::int) & $3 <> 0 ORDER BY id DESC LIMIT $4";
 
 std::optional<JobRecord> find_job(Transaction& transaction, const std::string& owner,
@@ -135,10 +135,10 @@ Submitted PostgresJobs::submit_in(Transaction& transaction, const Submission& su
         }
       }
       Rows made = transaction.run(
-          "INSERT INTO weft_task (key, shared, owner, job, weight, request) "
-          "VALUES ($1, $2, $3, $4, $5, $6) RETURNING id",
+          "INSERT INTO weft_task (key, shared, owner, job, weight, request, trace) "
+          "VALUES ($1, $2, $3, $4, $5, $6, $7) RETURNING id",
           Blob{submission.key}, !submission.no_cache, submission.owner, id,
-          to_sql(submission.weight), Blob{submission.request});
+          to_sql(submission.weight), Blob{submission.request}, submission.trace);
       if (made.next()) task = made.integer(0);
     }
   }
@@ -222,13 +222,15 @@ StoreResult<std::optional<StoredMesh>> PostgresJobs::mesh(const std::string& key
         std::optional<StoredMesh> mesh;
         // The chunks as one value: their digests in order, each followed by its size.
         Rows rows = transaction.run(
-            "SELECT summary, (SELECT string_agg(sha256 || int8send(size), ''::bytea ORDER BY place)"
+            "SELECT summary, brief, (SELECT string_agg(sha256 || int8send(size), ''::bytea ORDER "
+            "BY place)"
             " FROM weft_mesh_chunk JOIN weft_chunk ON sha256 = chunk WHERE mesh = weft_mesh.id) "
             "FROM weft_mesh WHERE key = $1",
             Blob{key});
         if (!rows.next()) return mesh;
         mesh.emplace().summary = rows.bytes(0);
-        mesh->chunks = read_chunks(rows.bytes(1));
+        mesh->brief = rows.bytes(1);
+        mesh->chunks = read_chunks(rows.bytes(2));
         return mesh;
       });
   if (found && *found) {

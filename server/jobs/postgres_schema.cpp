@@ -114,8 +114,34 @@ CREATE TABLE weft_mesh_chunk (
 CREATE INDEX weft_mesh_chunk_of ON weft_mesh_chunk (chunk);
 )sql";
 
+// What lists show of a mesh stands apart from its summary, which may be of some MiB. Servers of
+// version 1 that are still at work go on.
+constexpr const char* kVersion2 = R"sql(
+ALTER TABLE weft_task ADD COLUMN trace text NOT NULL DEFAULT '';
+
+ALTER TABLE weft_mesh ADD COLUMN brief bytea NOT NULL DEFAULT '';
+UPDATE weft_mesh SET brief = summary;
+
+CREATE OR REPLACE VIEW weft_job_now AS
+SELECT job.id, job.owner, job.request_id, job.key,
+       coalesce(job.state, task.state) AS state,
+       weft_micros(job.created) AS created,
+       weft_micros(CASE WHEN task.started IS NULL THEN job.started
+                        ELSE greatest(job.created, task.started) END) AS started,
+       weft_micros(job.ended) AS ended,
+       coalesce(task.tries, job.attempts) AS attempts,
+       job.from_store,
+       coalesce(task.worker, job.worker) AS worker,
+       coalesce(task.progress, '') AS progress,
+       job.error,
+       job.task,
+       coalesce(CASE WHEN job.state = 2 THEN
+                (SELECT brief FROM weft_mesh AS mesh WHERE mesh.key = job.key) END, '') AS brief
+FROM weft_job AS job LEFT JOIN weft_task AS task ON task.id = job.task;
+)sql";
+
 // The n-th brings version n to version n + 1.
-constexpr std::array kMigrations{kVersion1};
+constexpr std::array kMigrations{kVersion1, kVersion2};
 
 // Any number that other programs are unlikely to lock.
 constexpr std::int64_t kMigrationLock = 0x77656674'0001;

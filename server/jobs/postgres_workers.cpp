@@ -38,12 +38,12 @@ WITH owner_of_due AS (
       started = coalesce(started, clock_timestamp()),
       lease_end = clock_timestamp() + $2 * interval '1 microsecond'
   FROM next WHERE task.id = next.id
-  RETURNING task.id, attempt, key, owner, weight, job, request
+  RETURNING task.id, attempt, key, owner, weight, job, trace, tries, request
 ), served AS (
   INSERT INTO weft_served (owner, turn) SELECT owner, nextval('weft_turn') FROM claimed
   ON CONFLICT (owner) DO UPDATE SET turn = excluded.turn
 )
-SELECT id, attempt, key, owner, weight, job, request FROM claimed)sql";
+SELECT id, attempt, key, owner, weight, job, trace, tries, request FROM claimed)sql";
 
 // The key of the task that the claim holds; nobody else changes the task from then on.
 std::optional<std::string> lock_held(Transaction& transaction, const ClaimRef& claim) {
@@ -81,9 +81,10 @@ bool insert_mesh(Transaction& transaction, const std::string& key, const StoredM
   std::int64_t id = 0;
   {
     Rows rows = transaction.run(
-        "INSERT INTO weft_mesh (key, summary) VALUES ($1, $2) ON CONFLICT (key) DO UPDATE "
-        "SET summary = excluded.summary, asked = clock_timestamp() RETURNING id",
-        Blob{key}, Blob{mesh.summary});
+        "INSERT INTO weft_mesh (key, summary, brief) VALUES ($1, $2, $3) "
+        "ON CONFLICT (key) DO UPDATE SET summary = excluded.summary, brief = excluded.brief, "
+        "asked = clock_timestamp() RETURNING id",
+        Blob{key}, Blob{mesh.summary}, Blob{mesh.brief});
     if (rows.next()) id = rows.integer(0);
   }
   transaction.change("DELETE FROM weft_mesh_chunk WHERE mesh = $1", id);
@@ -113,7 +114,9 @@ StoreResult<std::optional<Claim>> PostgresJobs::claim(const std::string& worker,
     claim->owner = rows.bytes(3);
     claim->weight = to_unsigned(rows.integer(4));
     claim->job_id = rows.bytes(5);
-    claim->request = rows.bytes(6);
+    claim->trace = rows.bytes(6);
+    claim->tries = static_cast<std::uint32_t>(rows.integer(7));
+    claim->request = rows.bytes(8);
     core_->announce(transaction);
     return claim;
   });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the stores write in SQL what the rest of the server has in types of its own. Both give a job
-// as the same thirteen columns, in the order in which `read_job` reads them.
+// as the same fifteen columns, in the order in which `read_job` reads them.
 #pragma once
 
 #include <algorithm>
@@ -61,6 +61,8 @@ JobRecord read_job(const Rows& rows) {
   job.worker = rows.bytes(10);
   job.progress = rows.bytes(11);
   job.error = rows.bytes(12);
+  if (!rows.null(13)) job.task = rows.integer(13);
+  job.brief = rows.bytes(14);
   return job;
 }
 

@@ -13,13 +13,14 @@ namespace {
 
 constexpr std::string_view kJobById =
     "SELECT id, owner, request_id, key, state, created, started, ended, attempts, from_store, "
-    "worker, progress, error FROM job_now WHERE owner = ?1 AND id = ?2";
+    "worker, progress, error, task, brief FROM job_now WHERE owner = ?1 AND id = ?2";
 constexpr std::string_view kJobByRequestId =
     "SELECT id, owner, request_id, key, state, created, started, ended, attempts, from_store, "
-    "worker, progress, error FROM job_now WHERE owner = ?1 AND request_id = ?2";
+    "worker, progress, error, task, brief FROM job_now WHERE owner = ?1 AND request_id = ?2";
 constexpr std::string_view kJobsOfOwner =
     "SELECT id, owner, request_id, key, state, created, started, ended, attempts, from_store, "
-    "worker, progress, error FROM job_now WHERE owner = ?1 AND id < ?2 AND (1 << state) & ?3 "
+    "worker, progress, error, task, brief FROM job_now WHERE owner = ?1 AND id < ?2 AND (1 << "
+    "state) & ?3 "
     "ORDER BY id DESC LIMIT ?4";
 
 // The number of tasks that wait: of all, and of this owner.
@@ -90,9 +91,10 @@ Submitted SqliteJobs::submit_in(Transaction& transaction, const Submission& subm
     if (queued >= submission.max_queued) return {SubmitOutcome::kQueueFull, {}};
     if (own >= submission.max_queued_of_owner) return {SubmitOutcome::kOwnQueueFull, {}};
     Rows rows = transaction.run(
-        "INSERT INTO task (key, shared, owner, job, weight, created, due) "
-        "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?6) RETURNING id",
-        key, !submission.no_cache, submission.owner, fresh.id, to_sql(submission.weight), now);
+        "INSERT INTO task (key, shared, owner, job, weight, created, due, trace) "
+        "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?6, ?7) RETURNING id",
+        key, !submission.no_cache, submission.owner, fresh.id, to_sql(submission.weight), now,
+        submission.trace);
     if (rows.next()) task = rows.integer(0);
     transaction.change("INSERT INTO task_request (task, request) VALUES (?1, ?2)", task,
                        Blob{submission.request});
@@ -154,9 +156,12 @@ StoreResult<std::optional<JobRecord>> SqliteJobs::remove(const std::string& owne
 StoreResult<std::optional<StoredMesh>> SqliteJobs::mesh(const std::string& key) {
   auto found = core_->read([&](Transaction& transaction) {
     std::optional<StoredMesh> mesh;
-    Rows rows = transaction.run("SELECT id, summary FROM mesh WHERE key = ?1", Blob{key});
+    Rows rows = transaction.run(
+        "SELECT id, bytes, brief FROM mesh JOIN mesh_summary ON mesh = id WHERE key = ?1",
+        Blob{key});
     if (!rows.next()) return mesh;
     mesh.emplace().summary = rows.bytes(1);
+    mesh->brief = rows.bytes(2);
     Rows chunks = transaction.run(
         "SELECT sha256, size FROM mesh_chunk JOIN chunk ON chunk.id = chunk WHERE mesh = ?1 "
         "ORDER BY place",

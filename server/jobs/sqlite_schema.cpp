@@ -114,8 +114,37 @@ CREATE TABLE mesh_chunk (
 CREATE INDEX mesh_chunk_of ON mesh_chunk (chunk);
 )sql";
 
+// What lists show of a mesh stands apart from its summary, which may be of some MiB.
+constexpr const char* kVersion2 = R"sql(
+ALTER TABLE task ADD COLUMN trace TEXT NOT NULL DEFAULT '';
+
+ALTER TABLE mesh RENAME COLUMN summary TO brief;
+CREATE TABLE mesh_summary (
+  mesh  INTEGER PRIMARY KEY REFERENCES mesh ON DELETE CASCADE,
+  bytes BLOB    NOT NULL
+);
+INSERT INTO mesh_summary (mesh, bytes) SELECT id, brief FROM mesh;
+
+DROP VIEW job_now;
+CREATE VIEW job_now AS
+SELECT job.id, job.owner, job.request_id, job.key,
+       coalesce(job.state, task.state) AS state,
+       job.created,
+       CASE WHEN task.id IS NULL THEN job.started ELSE max(job.created, task.started) END AS started,
+       job.ended,
+       coalesce(task.tries, job.attempts) AS attempts,
+       job.from_store,
+       coalesce(task.worker, job.worker) AS worker,
+       coalesce(task.progress, x'') AS progress,
+       job.error,
+       job.task,
+       coalesce(CASE WHEN job.state = 2 THEN (SELECT brief FROM mesh WHERE mesh.key = job.key) END,
+                x'') AS brief
+FROM job LEFT JOIN task ON task.id = job.task;
+)sql";
+
 // The n-th brings version n to version n + 1.
-constexpr std::array kMigrations{kVersion1};
+constexpr std::array kMigrations{kVersion1, kVersion2};
 
 }  // namespace
 

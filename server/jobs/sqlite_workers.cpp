@@ -52,10 +52,12 @@ bool insert_mesh(Transaction& transaction, const std::string& key, const StoredM
   std::int64_t id = 0;
   {
     Rows rows =
-        transaction.run("INSERT INTO mesh (key, asked, summary) VALUES (?1, ?2, ?3) RETURNING id",
-                        Blob{key}, to_micros(now), Blob{mesh.summary});
+        transaction.run("INSERT INTO mesh (key, asked, brief) VALUES (?1, ?2, ?3) RETURNING id",
+                        Blob{key}, to_micros(now), Blob{mesh.brief});
     if (rows.next()) id = rows.integer(0);
   }
+  transaction.change("INSERT INTO mesh_summary (mesh, bytes) VALUES (?1, ?2)", id,
+                     Blob{mesh.summary});
   std::int64_t place = 0;
   for (const StoredChunk& chunk : mesh.chunks) {
     const std::int64_t inserted = transaction.change(
@@ -84,7 +86,7 @@ StoreResult<std::optional<Claim>> SqliteJobs::claim(const std::string& worker,
     Rows rows = transaction.run(
         "UPDATE task SET state = 1, attempt = attempt + 1, tries = tries + 1, worker = ?2, "
         "started = coalesce(started, ?3), lease_end = ?3 + ?4 WHERE id = ?1 "
-        "RETURNING attempt, key, owner, weight, job, "
+        "RETURNING attempt, key, owner, weight, job, trace, tries, "
         "(SELECT request FROM task_request WHERE task = ?1)",
         *task, worker, now, to_micros(lease));
     if (!rows.next()) return claim;
@@ -94,7 +96,9 @@ StoreResult<std::optional<Claim>> SqliteJobs::claim(const std::string& worker,
     claim->owner = rows.bytes(2);
     claim->weight = to_unsigned(rows.integer(3));
     claim->job_id = rows.bytes(4);
-    claim->request = rows.bytes(5);
+    claim->trace = rows.bytes(5);
+    claim->tries = static_cast<std::uint32_t>(rows.integer(6));
+    claim->request = rows.bytes(7);
     transaction.change(
         "INSERT OR REPLACE INTO served (owner, turn) "
         "VALUES (?1, (SELECT coalesce(max(turn), 0) + 1 FROM served))",

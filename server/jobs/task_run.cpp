@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/caller.h"
 #include "server/jobs/job_wire.h"
 #include "server/jobs/mesh_key.h"
 #include "server/translate.h"
@@ -27,6 +28,12 @@ std::unique_ptr<v1::GenerateMeshRequest> parse(const std::string& bytes) {
   return request;
 }
 
+std::string label_of(const Claim& claim) {
+  const std::string who = log_fields({.name = claim.owner, .trace = claim.trace});
+  return fmt::format("task={} job={} attempt={}{}{}", claim.ref.task, claim.job_id,
+                     claim.ref.attempt, who.empty() ? "" : " ", who);
+}
+
 // Of these the same task may be done another time, or elsewhere: they are of the machine, not of
 // the request.
 bool is_of_the_machine(Reason reason) {
@@ -38,6 +45,7 @@ bool is_of_the_machine(Reason reason) {
 TaskRun::TaskRun(const RunEnvironment& environment, Claim claim)
     : environment_(environment),
       claim_(std::move(claim)),
+      label_(label_of(claim_)),
       request_(parse(claim_.request)),
       max_seconds_(to_seconds(request_->budget(), environment.limits)),
       threads_(to_threads(request_->threads(), environment.arena.threads())),
@@ -48,8 +56,7 @@ TaskRun::TaskRun(const RunEnvironment& environment, Claim claim)
 }
 
 void TaskRun::run() {
-  environment_.log->info("event=task_started job={} client={} attempt={}", claim_.job_id,
-                         log_value(claim_.owner), claim_.ref.attempt);
+  environment_.log->info("event=task_started {}", label_);
   environment_.metrics.job_became("running");
   if (const auto made = make_mesh(); !made) return settle(made.error());
   const auto held = insist([&] { return environment_.store.finish(claim_.ref, mesh_); });
@@ -67,6 +74,7 @@ tl::expected<void, Failure> TaskRun::make_mesh() {
   if (!summary) return tl::unexpected(summary.error());
   environment_.metrics.refined(summary->engine_seconds);
   v1::Summary message = to_wire(*summary, threads_);
+  mesh_.brief = message.SerializeAsString();
   add_quadtree(*summary, message);
   mesh_.summary = message.SerializeAsString();
   return {};
@@ -101,10 +109,10 @@ void TaskRun::settle(const Failure& failure) {
     (void)environment_.store.release(claim_.ref, milliseconds(0), false);
     return log_end("requeued", "-");
   }
-  if (is_of_the_machine(failure.reason) && claim_.ref.attempt < environment_.retry.max_attempts) {
+  if (is_of_the_machine(failure.reason) && claim_.tries < environment_.retry.max_attempts) {
     (void)insist([&] {
-      return environment_.store.release(claim_.ref,
-                                        delay_after(environment_.retry, claim_.ref.attempt), true);
+      return environment_.store.release(claim_.ref, delay_after(environment_.retry, claim_.tries),
+                                        true);
     });
     return log_end("requeued", reason);
   }
@@ -168,10 +176,8 @@ bool TaskRun::pause(milliseconds at_most) {
 
 void TaskRun::log_end(std::string_view outcome, std::string_view reason) const {
   environment_.log->info(
-      "event=task_ended job={} client={} attempt={} outcome={} reason={} triangles={} chunks={} "
-      "bytes={} seconds={:.3f}",
-      claim_.job_id, log_value(claim_.owner), claim_.ref.attempt, outcome, reason,
-      context_.progress().triangles, chunks_stored_.load(), bytes_,
+      "event=task_ended {} outcome={} reason={} triangles={} chunks={} bytes={} seconds={:.3f}",
+      label_, outcome, reason, context_.progress().triangles, chunks_stored_.load(), bytes_,
       Seconds(Clock::now() - began_).count());
 }
 

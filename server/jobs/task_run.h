@@ -70,7 +70,8 @@ class TaskRun final : private ChunkSink {
   void log_end(std::string_view outcome, std::string_view reason) const;
 
   const RunEnvironment& environment_;
-  Claim claim_;  // its request is parsed, and empty, once this is made
+  Claim claim_;              // its request is parsed, and empty, once this is made
+  const std::string label_;  // of its lines in the log
   std::unique_ptr<v1::GenerateMeshRequest> request_;
   const Clock::time_point began_ = Clock::now();
   const double max_seconds_;  // of work

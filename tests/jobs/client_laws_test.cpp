@@ -286,6 +286,34 @@ TEST_P(StoreTest, AListTellsProgressAndErrors) {
   for (const JobRecord& job : *jobs) EXPECT_EQ(job.worker, "worker");
 }
 
+TEST_P(StoreTest, AJobShowsTheBriefOfItsMeshForAsLongAsThatIsKept) {
+  const JobRecord first = made("k", {"a"});
+  const JobRecord found = submit("ann", "k");
+  EXPECT_EQ(first.brief, "brief");
+  EXPECT_EQ(found.brief, "brief");
+  for (const JobRecord& job : *store_->list({.owner = "ann"})) EXPECT_EQ(job.brief, "brief");
+  EXPECT_EQ(store_->collect({.age = hours(1), .bytes = 0})->meshes, 1U);
+  EXPECT_EQ(get(first).brief, "");
+}
+
+TEST_P(StoreTest, AJobThatDidNotSucceedShowsNoMesh) {
+  const JobRecord cancelled = submit("ann", "k");
+  store_->cancel("ann", cancelled.id);
+  made("k", {"a"});
+  const JobRecord queued = submit({.owner = "ann", .key = key_of("k"), .no_cache = true});
+  EXPECT_EQ(get(cancelled).brief, "");
+  EXPECT_EQ(get(queued).brief, "");
+}
+
+TEST_P(StoreTest, AJobNamesItsTaskWhileItWaitsForIt) {
+  const JobRecord first = submit("ann", "k");
+  const JobRecord second = submit("bob", "k");
+  ASSERT_TRUE(first.task);
+  EXPECT_EQ(second.task, first.task);
+  ASSERT_EQ(store_->finish(claim().ref, put({"a"})), Held::kHeld);
+  EXPECT_FALSE(get(first).task);
+}
+
 TEST_P(StoreTest, BeforeWhatIsNoIdThereAreNoJobs) {
   submit("ann", "k");
   EXPECT_TRUE(list({.owner = "ann", .before = std::string("\0\xff", 2)}).empty());

@@ -40,7 +40,28 @@ TEST_F(PostgresTest, ADatabaseOfANewerVersionIsRefused) {
   const auto opened = PostgresStore::open({.uri = uri_});
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().kind, StoreErrorKind::kBroken);
-  EXPECT_EQ(opened.error().message, "the database is of version 99; this weftd knows none after 1");
+  EXPECT_EQ(opened.error().message, "the database is of version 99; this weftd knows none after 2");
+}
+
+TEST_F(PostgresTest, ADatabaseOfVersion1KeepsItsJobsAndMeshes) {
+  std::string id;
+  {
+    const auto store = open();
+    id = store->submit({.owner = "ann", .key = key_of("k")})->job.id;
+    const Claim claim = store->claim("worker", hours(1), 1)->value();
+    ASSERT_EQ(store->finish(claim.ref, {.summary = "all of it", .brief = "", .chunks = {}}),
+              Held::kHeld);
+    store->submit({.owner = "ann", .key = key_of("other"), .request = "make it"});
+  }
+  postgres_server().execute(uri_,
+                            "DROP VIEW weft_job_now; ALTER TABLE weft_mesh DROP COLUMN brief;"
+                            "ALTER TABLE weft_task DROP COLUMN trace;"
+                            "DELETE FROM weft_schema WHERE version = 2");
+  const auto store = open();
+  ASSERT_TRUE(store);
+  EXPECT_EQ(store->mesh(key_of("k")).value()->summary, "all of it");
+  EXPECT_EQ(store->get("ann", id).value()->brief, "all of it");
+  EXPECT_EQ(store->claim("worker", hours(1), 1).value()->request, "make it");
 }
 
 TEST_F(PostgresTest, ADatabaseThatIsNotThereIsUnavailable) {

@@ -67,9 +67,37 @@ TEST_F(SqliteTest, AFileOfANewerVersionIsRefusedAndLeftAlone) {
   const auto opened = open();
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().kind, StoreErrorKind::kBroken);
-  EXPECT_EQ(opened.error().message, file + " is of version 99; this weftd knows none after 1");
+  EXPECT_EQ(opened.error().message, file + " is of version 99; this weftd knows none after 2");
   auto connection = sqlite::Connection::open(file, sqlite::Access::kWrite);
   EXPECT_EQ((*connection)->pragma("PRAGMA user_version"), 99);
+}
+
+TEST_F(SqliteTest, AFileOfVersion1KeepsItsJobsAndMeshes) {
+  std::string id;
+  {
+    const auto store = open();
+    id = (*store)->submit({.owner = "ann", .key = key_of("k")})->job.id;
+    const Claim claim = (*store)->claim("worker", hours(1), 1)->value();
+    ASSERT_EQ((*store)->finish(claim.ref, {.summary = "all of it", .brief = "", .chunks = {}}),
+              Held::kHeld);
+    (*store)->submit({.owner = "ann", .key = key_of("other"), .request = "make it"});
+  }
+  {
+    auto connection = sqlite::Connection::open(path() + "/weft.db", sqlite::Access::kWrite);
+    ASSERT_TRUE((*connection)
+                    ->execute("DROP VIEW job_now;"
+                              "UPDATE mesh SET brief = (SELECT bytes FROM mesh_summary);"
+                              "DROP TABLE mesh_summary;"
+                              "ALTER TABLE mesh RENAME COLUMN brief TO summary;"
+                              "ALTER TABLE task DROP COLUMN trace;"
+                              "CREATE VIEW job_now AS SELECT 1;"
+                              "PRAGMA user_version = 1"));
+  }
+  const auto store = open();
+  ASSERT_TRUE(store) << store.error().message;
+  EXPECT_EQ((*store)->mesh(key_of("k")).value()->summary, "all of it");
+  EXPECT_EQ((*store)->get("ann", id).value()->brief, "all of it");
+  EXPECT_EQ((*store)->claim("worker", hours(1), 1).value()->request, "make it");
 }
 
 TEST_F(SqliteTest, AFileThatIsNoDatabaseIsBroken) {

@@ -74,7 +74,7 @@ Claim StoreTest::claim(milliseconds lease) {
 }
 
 StoredMesh StoreTest::put(const std::vector<std::string>& chunks) {
-  StoredMesh mesh{.summary = "summary", .chunks = {}};
+  StoredMesh mesh{.summary = "summary", .brief = "brief", .chunks = {}};
   for (const std::string& chunk : chunks) {
     mesh.chunks.push_back({sha256_of(chunk), chunk.size()});
     const auto done = store_->put_chunk(mesh.chunks.back().sha256, chunk);

@@ -10,7 +10,7 @@ namespace {
 
 TEST_P(StoreTest, AClaimHoldsWhatWasSubmitted) {
   const JobRecord job =
-      submit({.owner = "ann", .key = key_of("k"), .request = "make it", .weight = 7});
+      submit({.owner = "ann", .key = key_of("k"), .request = "make it", .weight = 7, .trace = "t"});
   const auto claimed = store_->claim("w-1", hours(1), 7);
   ASSERT_TRUE(claimed && *claimed);
   EXPECT_EQ((*claimed)->ref.attempt, 1U);
@@ -19,12 +19,25 @@ TEST_P(StoreTest, AClaimHoldsWhatWasSubmitted) {
   EXPECT_EQ((*claimed)->request, "make it");
   EXPECT_EQ((*claimed)->weight, 7U);
   EXPECT_EQ((*claimed)->job_id, job.id);
+  EXPECT_EQ((*claimed)->trace, "t");
+  EXPECT_EQ((*claimed)->tries, 1U);
+  EXPECT_EQ((*claimed)->ref.task, job.task);
   const JobRecord running = get(job);
   EXPECT_EQ(running.state, JobState::kRunning);
   EXPECT_EQ(running.worker, "w-1");
   EXPECT_EQ(running.attempts, 1U);
   EXPECT_TRUE(running.started);
   EXPECT_FALSE(running.ended);
+}
+
+TEST_P(StoreTest, OnlyTriesThatCountAreTold) {
+  submit("ann", "k");
+  ASSERT_EQ(store_->release(claim().ref, milliseconds(0), false), Held::kHeld);
+  const Claim second = claim();
+  EXPECT_EQ(second.ref.attempt, 2U);
+  EXPECT_EQ(second.tries, 1U);
+  ASSERT_EQ(store_->release(second.ref, milliseconds(0), true), Held::kHeld);
+  EXPECT_EQ(claim().tries, 2U);
 }
 
 TEST_P(StoreTest, ATaskIsClaimedOnce) {

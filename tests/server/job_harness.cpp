@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 
+#include "tests/support/http.h"
+
 namespace weft::server::testing {
 namespace {
 
@@ -13,9 +15,11 @@ std::unique_ptr<JobStore> open_store(const std::string& folder) {
 }
 
 std::unique_ptr<Server> start(EngineFn engine, const JobOptions& jobs,
-                              const ServiceOptions& service, std::unique_ptr<JobStore> store) {
-  auto started = Server::start({.listen = {"127.0.0.1:0"}, .service = service, .jobs = jobs},
-                               std::move(engine), make_logger("off"), std::move(store));
+                              const ServiceOptions& service, const Log& log,
+                              std::unique_ptr<JobStore> store) {
+  auto started = Server::start(
+      {.listen = {"127.0.0.1:0"}, .service = service, .jobs = jobs, .metrics = "127.0.0.1:0"},
+      std::move(engine), log.logger(), std::move(store));
   if (!started) throw std::runtime_error(started.error());
   return std::move(*started);
 }
@@ -126,12 +130,21 @@ JobOptions quick_jobs() {
 
 JobServer::JobServer(EngineFn engine, const JobOptions& jobs, const std::string& folder,
                      const ServiceOptions& service)
-    : server_(start(std::move(engine), jobs, service,
+    : server_(start(std::move(engine), jobs, service, log_,
                     open_store(folder.empty() ? own_folder_.path().string() : folder))) {}
 
 JobServer::JobServer(EngineFn engine, const JobOptions& jobs, const Wrap& wrap)
-    : server_(start(std::move(engine), jobs, {.jobs = 2},
+    : JobServer(std::move(engine), jobs, ServiceOptions{.jobs = 2}, wrap) {}
+
+JobServer::JobServer(EngineFn engine, const JobOptions& jobs, const ServiceOptions& service,
+                     const Wrap& wrap)
+    : server_(start(std::move(engine), jobs, service, log_,
                     wrap(open_store(own_folder_.path().string())))) {}
+
+double JobServer::metric(const std::string& series) const {
+  return weft::testing::value_of(weft::testing::http(server_->metrics_address(), "GET", "/metrics"),
+                                 series);
+}
 
 std::shared_ptr<grpc::Channel> JobServer::channel() const {
   grpc::ChannelArguments arguments;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A real server with a real store in a folder, and the calls of JobService.
+// A real server with a real store in a folder, its log and metrics, and the calls of JobService.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 #include "server/jobs/sqlite_store.h"
 #include "tests/client/support/temp_folder.h"
-#include "tests/server/harness.h"
+#include "tests/server/logged_server.h"
 #include "weft/v1/job_service.grpc.pb.h"
 
 namespace weft::server::testing {
@@ -66,15 +66,21 @@ class JobServer {
   // Puts another store in front of the one in the folder.
   using Wrap = std::function<std::unique_ptr<JobStore>(std::unique_ptr<JobStore>)>;
   JobServer(EngineFn engine, const JobOptions& jobs, const Wrap& wrap);
+  JobServer(EngineFn engine, const JobOptions& jobs, const ServiceOptions& service,
+            const Wrap& wrap);
 
   Server& operator*() { return *server_; }
   Server* operator->() { return server_.get(); }
   std::shared_ptr<grpc::Channel> channel() const;
   JobClient client() const { return JobClient(channel()); }
+  const Log& log() const { return log_; }
+  // The value of a metric, see value_of.
+  double metric(const std::string& series) const;
   void stop() { server_.reset(); }
 
  private:
   client::TempFolder own_folder_;
+  Log log_;
   std::unique_ptr<Server> server_;
 };
 

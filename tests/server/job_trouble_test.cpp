@@ -230,6 +230,35 @@ TEST(JobTrouble, AReaderThatReadsNothingIsCutOff) {
   EXPECT_LT(chunks, 24);
 }
 
+TEST(JobTrouble, AWatchThatHasEndedAsksTheStoreNoMoreWhetherItIsReadOrNot) {
+  std::string id;
+  std::atomic<int> looks{0};
+  ServiceOptions service{.jobs = 2};
+  service.stall_timeout = milliseconds(400);
+  // A job whose last message is more than a client takes that does not read.
+  JobServer server(
+      engine_of_chunks(1), quick_jobs(), service,
+      [&](std::unique_ptr<JobStore> store) -> std::unique_ptr<JobStore> {
+        id = store->submit({.key = std::string(32, 'k')})->job.id;
+        google::rpc::Status error;
+        error.set_message(std::string(std::size_t{16} << 20, 'x'));
+        const auto claim = store->claim("test", std::chrono::hours(1), 1).value().value();
+        EXPECT_EQ(store->fail(claim.ref, error.SerializeAsString()), Held::kHeld);
+        return std::make_unique<FaultyStore>(std::move(store), [&](std::string_view call) {
+          if (call == "get") ++looks;
+          return std::optional<StoreError>();
+        });
+      });
+  JobClient client = server.client();
+  grpc::ClientContext context;
+  v1::WatchJobRequest request;
+  request.set_id(id);
+  const auto reader = client.stub().WatchJob(&context, request);
+  EXPECT_TRUE(eventually([&] { return server.log().contains("method=WatchJob status=OK"); }));
+  server->drain(std::chrono::seconds(30));  // returns once the reader was cut off
+  EXPECT_EQ(looks, 1);
+}
+
 TEST(JobTrouble, AMeshThatIsNoLongerKeptIsGoneByThatName) {
   JobOptions jobs = quick_jobs();
   jobs.runner.keep = {.age = std::chrono::hours(1), .bytes = 1};

@@ -18,13 +18,7 @@ namespace weft::server::testing {
 namespace {
 
 using weft::testing::http;
-
-// The value of a series, written as in a scrape: `name{label="value"}`; -1 where there is none.
-double value_of(const std::string& scrape, const std::string& series) {
-  const std::string line = "\n" + series + " ";
-  const std::size_t start = ("\n" + scrape).find(line);
-  return start == std::string::npos ? -1 : std::stod(scrape.substr(start + line.size() - 1));
-}
+using weft::testing::value_of;
 
 TEST(Metrics, CountCallsByMethodAndCode) {
   Metrics metrics("v", "e");

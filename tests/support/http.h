@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plainest of web clients, which can misbehave.
+// The plainest of web clients, which can misbehave, and a reader of what it gets.
 #pragma once
 
 #include <arpa/inet.h>
@@ -57,6 +57,14 @@ inline std::string http(const std::string& address, const std::string& method,
   HttpConnection connection(address);
   connection.send(method + " " + path + " HTTP/1.1\r\nHost: test\r\n\r\n");
   return connection.read_all();
+}
+
+// The value of a series in a scrape of Prometheus, written as there: `name{label="value"}`; -1
+// where there is none.
+inline double value_of(const std::string& scrape, const std::string& series) {
+  const std::string line = "\n" + series + " ";
+  const std::size_t start = ("\n" + scrape).find(line);
+  return start == std::string::npos ? -1 : std::stod(scrape.substr(start + line.size() - 1));
 }
 
 }  // namespace weft::testing

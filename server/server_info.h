@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What GetServerInfo answers, for as long as the server runs.
+#pragma once
+
+#include "server/server.h"
+#include "weft/v1/mesh_service.pb.h"
+
+namespace weft::server {
+
+v1::GetServerInfoResponse server_info(const ServerOptions& options, bool has_store);
+
+}  // namespace weft::server
