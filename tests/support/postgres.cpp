@@ -187,14 +187,23 @@ void PostgresServer::drop_database(const std::string& dropped) {
 }
 
 void PostgresServer::execute(const std::string& database, const std::string& sql) {
-  const std::unique_ptr<PGconn, void (*)(PGconn*)> connection(PQconnectdb(database.c_str()),
-                                                              PQfinish);
-  const std::unique_ptr<PGresult, void (*)(PGresult*)> result(PQexec(connection.get(), sql.c_str()),
-                                                              PQclear);
-  const ExecStatusType status = PQresultStatus(result.get());
-  if (status != PGRES_COMMAND_OK && status != PGRES_TUPLES_OK) {
-    fail(sql + ": " + PQerrorMessage(connection.get()));
+  try {
+    PostgresSession(database).run(sql);
+  } catch (const std::runtime_error& error) {
+    fail(error.what());
   }
+}
+
+PostgresSession::PostgresSession(const std::string& uri)
+    : connection_(PQconnectdb(uri.c_str()), PQfinish) {}
+
+std::string PostgresSession::run(const std::string& sql) {
+  const std::unique_ptr<PGresult, void (*)(PGresult*)> result(
+      PQexec(connection_.get(), sql.c_str()), PQclear);
+  const ExecStatusType status = PQresultStatus(result.get());
+  if (status != PGRES_COMMAND_OK && status != PGRES_TUPLES_OK)
+    throw std::runtime_error(sql + ": " + PQerrorMessage(connection_.get()));
+  return PQntuples(result.get()) > 0 ? PQgetvalue(result.get(), 0, 0) : "";
 }
 
 }  // namespace weft

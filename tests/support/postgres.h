@@ -16,10 +16,13 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "tests/client/support/temp_folder.h"
+
+typedef struct pg_conn PGconn;  // of libpq-fe.h
 
 namespace weft {
 
@@ -63,6 +66,17 @@ class PostgresServer {
   int alive_ = -1;  // the end of a pipe: it closes when this program ends
   pid_t pid_ = -1;  // -1: it does not run
   int databases_ = 0;
+};
+
+// A connection that keeps its transaction from one statement to the next.
+class PostgresSession {
+ public:
+  explicit PostgresSession(const std::string& uri);
+  // The first value of the answer, as text; empty where there is none. Throws where it fails.
+  std::string run(const std::string& sql);
+
+ private:
+  const std::unique_ptr<PGconn, void (*)(PGconn*)> connection_;
 };
 
 }  // namespace weft

@@ -69,11 +69,23 @@ void TornRelay::run() {
     if (fds[1].revents != 0) return;
     FileDescriptor client(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
     if (!client.is_open()) continue;
-    if (pass(std::move(client), torn_ < tears_.size() ? tears_[torn_] : kHolds)) ++torn_;
+    hold(client.get());
+    if (pass(client, torn_ < tears_.size() ? tears_[torn_] : kHolds)) ++torn_;
+    hold(-1);
   }
 }
 
-bool TornRelay::pass(FileDescriptor client, std::size_t limit) {
+void TornRelay::hold(int client) {
+  std::lock_guard lock(mutex_);
+  client_ = client;
+}
+
+void TornRelay::tear() {
+  std::lock_guard lock(mutex_);
+  if (client_ >= 0) ::shutdown(client_, SHUT_RDWR);
+}
+
+bool TornRelay::pass(const FileDescriptor& client, std::size_t limit) {
   FileDescriptor server(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const sockaddr_un name = name_of(server_);
   if (::connect(server.get(), reinterpret_cast<const sockaddr*>(&name), sizeof name) != 0)

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cstddef>
 #include <filesystem>
+#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -27,14 +28,17 @@ class TornRelay {
   TornRelay& operator=(const TornRelay&) = delete;
 
   const std::string& address() const { return address_; }
-  // Connections that were closed, so far.
+  // Closes the connection at hand, if there is one.
+  void tear();
+  // Connections that were closed at their tear, so far.
   std::size_t torn() const { return torn_; }
 
  private:
   void run();
   // Passes bytes both ways until an end closes, `limit` bytes were answered, or all is over. True:
   // the limit was reached.
-  bool pass(FileDescriptor client, std::size_t limit);
+  bool pass(const FileDescriptor& client, std::size_t limit);
+  void hold(int client);
 
   const std::string address_;
   const std::filesystem::path server_;
@@ -42,6 +46,8 @@ class TornRelay {
   FileDescriptor listener_;
   FileDescriptor end_;  // readable: all is over
   std::atomic<std::size_t> torn_{0};
+  std::mutex mutex_;  // guards the one below
+  int client_ = -1;   // of the connection at hand
   std::thread thread_;
 };
 
