@@ -16,21 +16,6 @@
 namespace weft::e2e {
 namespace {
 
-std::optional<v1::Job> wait(v1::JobService::Stub& stub, const std::string& id) {
-  v1::WatchJobRequest request;
-  request.set_id(id);
-  v1::WatchJobResponse message;
-  grpc::Status status;
-  do {
-    grpc::ClientContext context;
-    const auto reader = stub.WatchJob(&context, request);
-    while (reader->Read(&message)) continue;
-    status = reader->Finish();
-  } while (status.error_code() == grpc::UNAVAILABLE);
-  if (!status.ok()) return std::nullopt;
-  return message.job();
-}
-
 std::string digest_of_mesh(v1::JobService::Stub& stub, const std::string& id) {
   v1::FetchMeshRequest request;
   request.set_id(id);
@@ -100,6 +85,21 @@ v1::Summary Reference::summary(const v1::GenerateMeshRequest& request) {
   return summary = message.summary();
 }
 
+std::optional<v1::Job> wait_for_job(v1::JobService::Stub& stub, const std::string& id) {
+  v1::WatchJobRequest request;
+  request.set_id(id);
+  v1::WatchJobResponse message;
+  grpc::Status status;
+  do {
+    grpc::ClientContext context;
+    const auto reader = stub.WatchJob(&context, request);
+    while (reader->Read(&message)) continue;
+    status = reader->Finish();
+  } while (status.error_code() == grpc::UNAVAILABLE);
+  if (!status.ok()) return std::nullopt;
+  return message.job();
+}
+
 std::string sha256(const std::string& bytes) {
   std::string digest(32, '\0');
   EVP_Digest(bytes.data(), bytes.size(), reinterpret_cast<unsigned char*>(digest.data()), nullptr,
@@ -138,7 +138,7 @@ Tally Jobs::settle(const std::string& address, Reference& reference) {
   Tally tally;
   tally.accepted = static_cast<int>(ids_.size());
   for (const auto& [number, id] : ids_) {
-    const std::optional<v1::Job> job = wait(*stub, id);
+    const std::optional<v1::Job> job = wait_for_job(*stub, id);
     if (!job || job->state() != v1::JOB_STATE_SUCCEEDED) {
       ADD_FAILURE() << "job " << number << ": " << (job ? job->DebugString() : "is not there");
       ++tally.lost;

@@ -49,6 +49,9 @@ class Reference {
   std::map<std::string, v1::Summary> summaries_;  // by the request's bytes
 };
 
+// The job once it has ended, through deaths of the server; nothing where there is no such job.
+std::optional<v1::Job> wait_for_job(v1::JobService::Stub& stub, const std::string& id);
+
 // The digest of the mesh that a stream carried, from its chunks: so what arrived is judged, and not
 // what is said of it. Empty where the two disagree.
 template <class Reader, class Message>

@@ -11,9 +11,12 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
+
+#include "tests/support/http.h"
 
 extern char** environ;
 
@@ -116,6 +119,26 @@ std::uint64_t Server::resident_bytes() const {
   std::uint64_t resident = 0;
   statm >> total >> resident;
   return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+std::size_t Server::open_files() const {
+  const std::filesystem::directory_iterator files("/proc/" + std::to_string(pid_) + "/fd");
+  return static_cast<std::size_t>(std::distance(begin(files), end(files)));
+}
+
+double Server::metric(const std::string& series) const {
+  const std::string last = addresses().back();
+  return weft::testing::value_of(
+      weft::testing::http(last.substr(last.find('=') + 1), "GET", "/metrics"), series);
+}
+
+bool Server::shows(const std::string& series, double value) const {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (metric(series) != value) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return true;
 }
 
 std::string model(const std::string& name) {

@@ -40,6 +40,11 @@ class Server {
   // Starts it again, where it was and as it was. REQUIRES: killed.
   void start();
   std::uint64_t resident_bytes() const;
+  std::size_t open_files() const;
+  // The value of a metric, see value_of. REQUIRES: --metrics.
+  double metric(const std::string& series) const;
+  // Whether it comes to be this value; looks for a minute.
+  bool shows(const std::string& series, double value) const;
 
  private:
   const std::vector<std::string> arguments_;

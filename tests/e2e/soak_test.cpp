@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a server holds on to: nothing of the jobs that are over, little of those who read slowly.
+#include <grpcpp/client_context.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <thread>
+#include <vector>
+
+#include "client/formats/mesh_formats.h"
+#include "client/mesh_call.h"
+#include "tests/e2e/fleet.h"
+#include "tests/e2e/programs.h"
+
+namespace weft::e2e {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+
+// The pipe at its coarsest, and no two the same.
+v1::GenerateMeshRequest small_request(int number) {
+  static const auto domain = client::read_domain(model("pipe.poly")).value();
+  client::MeshWishes wishes;
+  wishes.size = std::to_string(500 + number);
+  return client::make_request(domain, wishes);
+}
+
+// Every second one as a job that nobody waits for, the others by GenerateMesh; on a few connections
+// at once.
+void make_small_meshes(const Server& server, int first, int end) {
+  constexpr int kConnections = 8;
+  std::atomic<int> next{first};
+  std::vector<std::thread> clients;
+  for (int c = 0; c < kConnections; ++c)
+    clients.emplace_back([&] {
+      const auto channel = connect(server.address());
+      const auto jobs = v1::JobService::NewStub(channel);
+      const auto meshes = v1::MeshService::NewStub(channel);
+      for (int number = next++; number < end; number = next++) {
+        grpc::ClientContext context;
+        if (number % 2 == 0) {
+          v1::SubmitJobRequest request;
+          *request.mutable_mesh() = small_request(number);
+          v1::SubmitJobResponse response;
+          EXPECT_TRUE(jobs->SubmitJob(&context, request, &response).ok());
+        } else {
+          v1::GenerateMeshResponse message;
+          const auto reader = meshes->GenerateMesh(&context, small_request(number));
+          EXPECT_NE(digest_of_stream(*reader, message), "");
+          EXPECT_TRUE(reader->Finish().ok());
+        }
+      }
+    });
+  for (std::thread& client : clients) client.join();
+  EXPECT_TRUE(server.shows("weft_queue_length{queue=\"jobs\"}", 0));
+  EXPECT_TRUE(server.shows("weft_running_jobs{queue=\"jobs\"}", 0));
+}
+
+TEST(Soak, MemoryAndDescriptorsDoNotGrowWithTheNumberOfJobs) {
+  const Folder folder;
+  const Server server({"--data", folder / "data", "--metrics", "127.0.0.1:0"});
+  // What is allocated once is there after the first mark.
+  const std::vector<int> marks = {few_or_many(150, 1000), few_or_many(300, 5000),
+                                  few_or_many(600, 10000)};
+  std::vector<std::uint64_t> bytes;
+  std::vector<std::size_t> files;
+  int made = 0;
+  for (const int mark : marks) {
+    make_small_meshes(server, made, mark);
+    made = mark;
+    bytes.push_back(server.resident_bytes());
+    files.push_back(server.open_files());
+    std::printf("after %d meshes: %.1f MiB, %zu descriptors\n", mark,
+                static_cast<double>(bytes.back()) / kMiB, files.back());
+  }
+  EXPECT_EQ(server.metric("weft_jobs_total{state=\"succeeded\"}"), marks.back() / 2);
+  EXPECT_LT(bytes.back(), bytes.front() + 32 * kMiB);
+  EXPECT_LE(files.back(), files.front() + 8);
+}
+
+// Reads the resident memory again and again, and keeps the most.
+class PeakMemory {
+ public:
+  explicit PeakMemory(const Server& server)
+      : thread_([this, &server] {
+          while (!stop_) {
+            peak_ = std::max(peak_.load(), server.resident_bytes());
+            std::this_thread::sleep_for(milliseconds(2));
+          }
+        }) {}
+  ~PeakMemory() {
+    stop_ = true;
+    thread_.join();
+  }
+  std::uint64_t bytes() const { return peak_; }
+
+ private:
+  std::atomic<bool> stop_{false};
+  std::atomic<std::uint64_t> peak_{0};
+  std::thread thread_;
+};
+
+TEST(Soak, SlowReadersHoldLittleOfTheirMeshesInTheServersMemory) {
+  constexpr int kReaders = 50;
+  const Folder folder;
+  const Server server({"--data", folder / "data"});
+  const auto stub = v1::JobService::NewStub(connect(server.address()));
+  v1::SubmitJobRequest submission;
+  const auto domain = client::read_domain(model("cylinder.poly")).value();
+  const std::string size = "0.006 / " + std::to_string(few_or_many(1, 10));
+  *submission.mutable_mesh() = client::make_request(domain, {.size = size});
+  v1::SubmitJobResponse submitted;
+  grpc::ClientContext submitting;
+  ASSERT_TRUE(stub->SubmitJob(&submitting, submission, &submitted).ok());
+  ASSERT_TRUE(wait_for_job(*stub, submitted.job().id()));
+  v1::FetchMeshRequest fetch;
+  fetch.set_id(submitted.job().id());
+
+  std::uint64_t mesh_bytes = 0;
+  {
+    grpc::ClientContext context;
+    const auto reader = stub->FetchMesh(&context, fetch);
+    v1::FetchMeshResponse message;
+    while (reader->Read(&message)) mesh_bytes += message.ByteSizeLong();
+    ASSERT_TRUE(reader->Finish().ok());
+  }
+  const std::uint64_t before = server.resident_bytes();
+  const PeakMemory peak(server);
+  struct Slow {
+    grpc::ClientContext context;
+    std::unique_ptr<grpc::ClientReader<v1::FetchMeshResponse>> reader;
+    std::string digests;
+    std::string digest;
+  };
+  std::vector<Slow> readers(kReaders);
+  for (Slow& slow : readers)
+    slow.reader =
+        v1::JobService::NewStub(connect(server.address()))->FetchMesh(&slow.context, fetch);
+  // One message each, again and again.
+  for (int reading = kReaders; reading > 0;) {
+    std::this_thread::sleep_for(milliseconds(few_or_many(10, 100)));
+    for (Slow& slow : readers) {
+      if (slow.reader == nullptr) continue;
+      v1::FetchMeshResponse message;
+      if (slow.reader->Read(&message)) {
+        if (message.has_chunk()) slow.digests += message.chunk().sha256();
+        if (message.has_summary()) slow.digest = message.summary().sha256();
+        continue;
+      }
+      EXPECT_TRUE(slow.reader->Finish().ok());
+      slow.reader.reset();
+      --reading;
+    }
+  }
+  for (const Slow& slow : readers) EXPECT_EQ(sha256(slow.digests), slow.digest);
+  const std::uint64_t grown = peak.bytes() - std::min(before, peak.bytes());
+  std::printf("%d readers of %.1f MiB each: %.1f MiB before, %.1f MiB at most\n", kReaders,
+              static_cast<double>(mesh_bytes) / kMiB, static_cast<double>(before) / kMiB,
+              static_cast<double>(peak.bytes()) / kMiB);
+  EXPECT_LT(grown, kReaders * mesh_bytes / 2);
+  EXPECT_LT(grown, kReaders * 8 * kMiB);
+}
+
+}  // namespace
+}  // namespace weft::e2e
