@@ -6,12 +6,15 @@
 #include <gtest/gtest.h>
 #include <openssl/evp.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdlib>
 
 #include "client/formats/mesh_formats.h"
 #include "client/mesh_call.h"
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
 
 namespace weft::e2e {
 namespace {
@@ -83,6 +86,16 @@ v1::Summary Reference::summary(const v1::GenerateMeshRequest& request) {
   EXPECT_TRUE(reader->Finish().ok());
   EXPECT_FALSE(digest.empty());
   return summary = message.summary();
+}
+
+bool is_full(const grpc::Status& status) {
+  google::rpc::Status details;
+  if (status.error_code() != grpc::RESOURCE_EXHAUSTED ||
+      !details.ParseFromString(status.error_details()))
+    return false;
+  return std::any_of(
+      details.details().begin(), details.details().end(),
+      [](const google::protobuf::Any& detail) { return detail.Is<google::rpc::RetryInfo>(); });
 }
 
 std::optional<v1::Job> wait_for_job(v1::JobService::Stub& stub, const std::string& id) {

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <grpcpp/channel.h>
+#include <grpcpp/support/status.h>
 
 #include <map>
 #include <memory>
@@ -34,7 +35,7 @@ std::shared_ptr<grpc::Channel> connect(const std::string& address);
 using Requests = v1::GenerateMeshRequest (*)(int);
 // Meshes of 30,000 to 600,000 triangles; those whose numbers are equal modulo 20 are the same.
 v1::GenerateMeshRequest repeated_request(int number);
-// All models, 3,000 to 300,000 triangles, and no two the same.
+// All models, 4,000 to 250,000 triangles, and no two the same.
 v1::GenerateMeshRequest mixed_request(int number);
 
 // What an undisturbed server answers; each request is made once. Thread-safe.
@@ -48,6 +49,9 @@ class Reference {
   std::mutex mutex_;
   std::map<std::string, v1::Summary> summaries_;  // by the request's bytes
 };
+
+// A refusal by a server that is full, which says when to come again.
+bool is_full(const grpc::Status& status);
 
 // The job once it has ended, through deaths of the server; nothing where there is no such job.
 std::optional<v1::Job> wait_for_job(v1::JobService::Stub& stub, const std::string& id);

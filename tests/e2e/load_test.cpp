@@ -4,14 +4,11 @@
 #include <grpcpp/client_context.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <random>
 #include <thread>
 
-#include "google/rpc/error_details.pb.h"
-#include "google/rpc/status.pb.h"
 #include "tests/e2e/fleet.h"
 #include "tests/e2e/programs.h"
 
@@ -34,17 +31,6 @@ struct Tally {
   std::atomic<int> refused{0};
   std::atomic<int> wrong{0};
 };
-
-// A refusal that says when to come again.
-bool is_full(const grpc::Status& status) {
-  google::rpc::Status details;
-  if (status.error_code() != grpc::RESOURCE_EXHAUSTED ||
-      !details.ParseFromString(status.error_details()))
-    return false;
-  return std::any_of(details.details().begin(), details.details().end(), [](const auto& detail) {
-    return detail.template Is<google::rpc::RetryInfo>();
-  });
-}
 
 // A client of its own connection that wants one mesh, by one of the ways there are.
 class Client {

@@ -29,6 +29,18 @@ v1::GenerateMeshRequest small_request(int number) {
   return client::make_request(domain, wishes);
 }
 
+void submit(v1::JobService::Stub& stub, const v1::GenerateMeshRequest& mesh) {
+  v1::SubmitJobRequest request;
+  *request.mutable_mesh() = mesh;
+  v1::SubmitJobResponse response;
+  grpc::Status status;
+  do {
+    grpc::ClientContext context;
+    status = stub.SubmitJob(&context, request, &response);
+  } while (is_full(status));
+  EXPECT_TRUE(status.ok()) << status.error_message();
+}
+
 // Every second one as a job that nobody waits for, the others by GenerateMesh; on a few connections
 // at once.
 void make_small_meshes(const Server& server, int first, int end) {
@@ -41,13 +53,10 @@ void make_small_meshes(const Server& server, int first, int end) {
       const auto jobs = v1::JobService::NewStub(channel);
       const auto meshes = v1::MeshService::NewStub(channel);
       for (int number = next++; number < end; number = next++) {
-        grpc::ClientContext context;
         if (number % 2 == 0) {
-          v1::SubmitJobRequest request;
-          *request.mutable_mesh() = small_request(number);
-          v1::SubmitJobResponse response;
-          EXPECT_TRUE(jobs->SubmitJob(&context, request, &response).ok());
+          submit(*jobs, small_request(number));
         } else {
+          grpc::ClientContext context;
           v1::GenerateMeshResponse message;
           const auto reader = meshes->GenerateMesh(&context, small_request(number));
           EXPECT_NE(digest_of_stream(*reader, message), "");

@@ -7,6 +7,7 @@
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/sync_stream.h>
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <utility>
@@ -38,12 +39,12 @@ inline std::pair<grpc::Status, std::string> raw_unary(const std::shared_ptr<grpc
   return {std::move(status), to_string(response)};
 }
 
-// GenerateMesh, read to its end.
-inline grpc::Status raw_generate_mesh(const std::shared_ptr<grpc::Channel>& channel,
-                                      const std::string& request) {
+// A call that may answer with any number of messages, read to its end; its deadline is a minute.
+inline grpc::Status raw_stream(const std::shared_ptr<grpc::Channel>& channel, const char* method,
+                               const std::string& request) {
   grpc::ClientContext context;
-  const grpc::internal::RpcMethod rpc("/weft.v1.MeshService/GenerateMesh",
-                                      grpc::internal::RpcMethod::SERVER_STREAMING, channel);
+  context.set_deadline(std::chrono::system_clock::now() + std::chrono::minutes(1));
+  const grpc::internal::RpcMethod rpc(method, grpc::internal::RpcMethod::SERVER_STREAMING, channel);
   const std::unique_ptr<grpc::ClientReader<grpc::ByteBuffer>> reader(
       grpc::internal::ClientReaderFactory<grpc::ByteBuffer>::Create(channel.get(), rpc, &context,
                                                                     to_buffer(request)));
@@ -51,6 +52,12 @@ inline grpc::Status raw_generate_mesh(const std::shared_ptr<grpc::Channel>& chan
   while (reader->Read(&response)) {
   }
   return reader->Finish();
+}
+
+// GenerateMesh, read to its end.
+inline grpc::Status raw_generate_mesh(const std::shared_ptr<grpc::Channel>& channel,
+                                      const std::string& request) {
+  return raw_stream(channel, "/weft.v1.MeshService/GenerateMesh", request);
 }
 
 }  // namespace weft::server::testing
