@@ -108,13 +108,13 @@ struct ClaimRef {
 };
 
 struct Claim {
-  ClaimRef ref;
-  std::string key;
-  std::string owner;  // of the job that made the task
-  std::string request;
+  ClaimRef ref{};
+  std::string key{};
+  std::string owner{};  // of the job that made the task
+  std::string request{};
   std::uint64_t weight = 0;
-  std::string job_id;       // of the job that made the task
-  std::string trace;        // of its submission
+  std::string job_id{};     // of the job that made the task
+  std::string trace{};      // of its submission
   std::uint32_t tries = 0;  // attempts that count, this one included
 };
 

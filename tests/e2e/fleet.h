@@ -28,6 +28,13 @@ namespace weft::e2e {
 // environment variable WEFT_SOAK is set.
 int few_or_many(int few, int many);
 
+// Sanitizers keep what was freed for a while: then the memory of a server tells nothing of it.
+#ifdef WEFT_SANITIZED
+inline constexpr bool kMemoryTells = false;
+#else
+inline constexpr bool kMemoryTells = true;
+#endif
+
 // A connection of its own.
 std::shared_ptr<grpc::Channel> connect(const std::string& address);
 

@@ -73,7 +73,7 @@ TEST(Soak, MemoryAndDescriptorsDoNotGrowWithTheNumberOfJobs) {
   const Folder folder;
   const Server server({"--data", folder / "data", "--metrics", "127.0.0.1:0"});
   // What is allocated once is there after the first mark.
-  const std::vector<int> marks = {few_or_many(150, 1000), few_or_many(300, 5000),
+  const std::vector<int> marks = {few_or_many(100, 1000), few_or_many(300, 5000),
                                   few_or_many(600, 10000)};
   std::vector<std::uint64_t> bytes;
   std::vector<std::size_t> files;
@@ -87,7 +87,7 @@ TEST(Soak, MemoryAndDescriptorsDoNotGrowWithTheNumberOfJobs) {
                 static_cast<double>(bytes.back()) / kMiB, files.back());
   }
   EXPECT_EQ(server.metric("weft_jobs_total{state=\"succeeded\"}"), marks.back() / 2);
-  EXPECT_LT(bytes.back(), bytes.front() + 32 * kMiB);
+  if (kMemoryTells) EXPECT_LT(bytes.back(), bytes.front() + 16 * kMiB);
   EXPECT_LE(files.back(), files.front() + 8);
 }
 
@@ -112,6 +112,17 @@ class PeakMemory {
   std::atomic<std::uint64_t> peak_{0};
   std::thread thread_;
 };
+
+// Until it takes no more memory.
+void let_settle(const Server& server) {
+  std::uint64_t before = 0;
+  std::uint64_t now = server.resident_bytes();
+  do {
+    before = now;
+    std::this_thread::sleep_for(milliseconds(200));
+    now = server.resident_bytes();
+  } while (now > before);
+}
 
 TEST(Soak, SlowReadersHoldLittleOfTheirMeshesInTheServersMemory) {
   constexpr int kReaders = 50;
@@ -149,9 +160,10 @@ TEST(Soak, SlowReadersHoldLittleOfTheirMeshesInTheServersMemory) {
   for (Slow& slow : readers)
     slow.reader =
         v1::JobService::NewStub(connect(server.address()))->FetchMesh(&slow.context, fetch);
+  let_settle(server);  // nobody reads yet: it has all the time to read ahead
   // One message each, again and again.
   for (int reading = kReaders; reading > 0;) {
-    std::this_thread::sleep_for(milliseconds(few_or_many(10, 100)));
+    std::this_thread::sleep_for(milliseconds(few_or_many(2, 100)));
     for (Slow& slow : readers) {
       if (slow.reader == nullptr) continue;
       v1::FetchMeshResponse message;
@@ -170,8 +182,9 @@ TEST(Soak, SlowReadersHoldLittleOfTheirMeshesInTheServersMemory) {
   std::printf("%d readers of %.1f MiB each: %.1f MiB before, %.1f MiB at most\n", kReaders,
               static_cast<double>(mesh_bytes) / kMiB, static_cast<double>(before) / kMiB,
               static_cast<double>(peak.bytes()) / kMiB);
+  if (!kMemoryTells) return;
   EXPECT_LT(grown, kReaders * mesh_bytes / 2);
-  EXPECT_LT(grown, kReaders * 8 * kMiB);
+  EXPECT_LT(grown, kReaders * 6 * kMiB);
 }
 
 }  // namespace
