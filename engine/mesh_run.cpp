@@ -419,7 +419,8 @@ class MeshRun {
       for (std::uint32_t part = first; part < last; ++part) trace->add_part(task_of_part(part));
     }
     run.start();
-    std::uint32_t next = first;
+    std::atomic<std::uint32_t>& next = next_part_;
+    next = first;
     const auto ready = [&] { return next < last && parts_[next].ready.load() && !stopped_; };
     do {
       for (; ready(); ++next) {
@@ -449,7 +450,7 @@ class MeshRun {
     }
     parts_[index].part = std::move(*part);
     parts_[index].ready.store(true);
-    run_->notify();
+    if (index == next_part_) run_->notify();  // later ones are found ready
   }
 
   void stop(const Error& error) {
@@ -488,6 +489,7 @@ class MeshRun {
   // How many leaves may be sent before the clean-up.
   std::atomic<std::uint32_t> final_leaves_ = 0;
   std::vector<PendingPart> parts_;
+  std::atomic<std::uint32_t> next_part_{0};   // to be sent
   std::atomic<std::uint64_t> part_bytes_{0};  // of parts that wait to be sent
   std::atomic<std::uint64_t> peak_part_bytes_{0};
   GraphRun* run_ = nullptr;  // the one at work
