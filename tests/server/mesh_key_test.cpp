@@ -13,6 +13,7 @@ TEST(MeshKey, LeavesOutWhatDoesNotChangeTheMesh) {
   request.set_threads(3);
   request.set_first_chunk(2);
   request.set_want_quadtree(true);
+  request.set_no_cache(true);
   request.mutable_budget()->set_max_bytes(1 << 30);
   request.mutable_budget()->set_max_seconds(5);
   EXPECT_EQ(mesh_key(request), key);
