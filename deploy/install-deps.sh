@@ -29,6 +29,8 @@ test=(
   g++ libclang-rt-dev llvm # sanitizers, and the names in their reports
   postgresql-15            # the real database
   clang-format clang-tidy shellcheck gmsh python3 python3-meshio
+  buildah debootstrap      # the container, without a daemon
+  docker-compose           # its compose.yaml
 )
 # Some machines bring a newer node; Debian's npm would be in its way.
 command -v npm >/dev/null || test+=(nodejs npm)
