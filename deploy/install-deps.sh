@@ -17,13 +17,14 @@ build=(
   libspdlog-dev libfmt-dev libssl-dev                                    # the server
   libsqlite3-dev libpq-dev prometheus-cpp-dev                            # its jobs and its metrics
   libcli11-dev nlohmann-json3-dev libcairo2-dev fonts-dejavu-core        # the command line
+  libyaml-cpp-dev libpugixml-dev                                         # its batches
   libmuparser-dev                                                        # the checker
   libgtest-dev libgmock-dev librapidcheck-dev                            # tests
 )
 runtime=(
   libgrpc++1.51 libprotobuf32 libgmp10 libmpfr6 libtbb12 libsleef3 libspdlog1.10 libfmt9
-  libssl3 libsqlite3-0 libpq5 libprometheus-cpp-core1.0 libprometheus-cpp-pull1.0
-  libcairo2 libmuparser2v5 fonts-dejavu-core
+  libatomic1 libssl3 libsqlite3-0 libpq5 libprometheus-cpp-core1.0 libprometheus-cpp-pull1.0
+  libcairo2 libmuparser2v5 libyaml-cpp0.7 libpugixml1v5 fonts-dejavu-core
 )
 test=(
   g++ libclang-rt-dev llvm # sanitizers, and the names in their reports
