@@ -30,6 +30,7 @@ test=(
   g++ libclang-rt-dev llvm # sanitizers, and the names in their reports
   postgresql-15            # the real database
   clang-format clang-tidy shellcheck gmsh python3 python3-meshio
+  python3-protobuf         # docs/generate.py
   buildah debootstrap      # the container, without a daemon
   docker-compose           # its compose.yaml
 )

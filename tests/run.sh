@@ -111,6 +111,7 @@ step "deployment" check_deployment
 needed "configure" cmake --preset release -DWEFT_WERROR=ON
 needed "build" cmake --build --preset release
 step "licences" tests/licences.sh
+step "documents" docs/generate.py build/release --check
 step "tests" run_ctest release --timeout 300
 if [[ $sanitize ]]; then
   needed "configure, sanitizers" cmake --preset asan -DWEFT_WERROR=ON
