@@ -27,11 +27,14 @@ def test_a_feature_collection_means_what_it_means_to_the_command_line(client, di
         feature("MultiPolygon", [[[[5, 0], [6, 0], [6, 1], [5, 0]]], [[[5, 2], [6, 2], [6, 3], [5, 2]]]],
                 region=-2),
         feature("LineString", [[0.5, 3], [0.5, 3], [3, 3.5]], marker=9),
+        feature("Polygon", [[[10, 0], [12, 0], [12, 2], [10, 2], [10, 0]]]),
+        feature("LineString", [[9, 1], [13, 1]], marker=9),  # through and out again
+        feature("LineString", [[10.5, 0.2], [11.5, 0.2], [11, 0.8], [10.5, 0.2]]),  # no hole
         feature("MultiPoint", [[3, 1], [3, 2]]),
         {"type": "Feature", "properties": None, "geometry": None}]}))
     mesh = client.mesh(path)
     assert mesh.digest == digest_of(path)
-    assert set(mesh.regions) == {7, -2}
+    assert set(mesh.regions) == {7, -2, 0}
     assert set(mesh.edge_markers) == {0, 5, 9}
 
 
@@ -70,6 +73,14 @@ def test_a_region_of_a_polygon_with_a_hole_is_outside_the_hole(client):
     json = {"type": "Feature", "properties": {"region": 3}, "geometry": {
         "type": "Polygon", "coordinates": [SQUARE, [[0.1, 0.5], [3, 0.5], [3, 3.5], [0.1, 3.5], [0.1, 0.5]]]}}
     mesh = client.mesh(json)
+    assert set(mesh.regions) == {3}
+
+
+def test_a_region_keeps_off_the_lines_inside_it(client):
+    mesh = client.mesh({"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": {"region": 3},
+         "geometry": {"type": "Polygon", "coordinates": [SQUARE]}},
+        {"type": "Feature", "geometry": {"type": "LineString", "coordinates": [[2, 1], [2, 3]]}}]})
     assert set(mesh.regions) == {3}
 
 

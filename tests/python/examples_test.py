@@ -33,3 +33,11 @@ def test_the_coast_is_meshed_and_drawn(tmp_path):
 def test_poisson_converges_with_order_two():
     said = run("poisson.py")
     assert said.count("triangles") == 4, said
+
+
+def test_what_the_readme_shows_is_what_it_prints():
+    root = pathlib.Path(os.environ["WEFT_SOURCE"])
+    code, printed = re.search(r"## From Python\n\n```python\n(.*?)```\n\n```\n(.*?)```",
+                              (root / "README.md").read_text(), re.DOTALL).groups()
+    done = subprocess.run([sys.executable, "-B", "-c", code], cwd=root, capture_output=True, text=True)
+    assert done.stdout == printed, done.stderr
