@@ -46,7 +46,7 @@ async def through_aio(target, domain, size):
         took = []
         for _ in range(RUNS):
             start = time.perf_counter()
-            mesh = await client.mesh(domain, size=size)
+            mesh = await client.mesh(domain, size=size, no_cache=True)
             took.append((mesh, time.perf_counter() - start))
         return took
 
@@ -60,10 +60,10 @@ def main():
         with server, weft.Client(tcp) as client, weft.Client(server.target) as local:
             for name, factor in (("1 M", 0.95), ("10 M", 0.095)):
                 size = SIZE.format(factor)
-                client.mesh(domain, size=size)  # the server's first pages
-                row(f"TCP, {name}", [timed(lambda: client.mesh(domain, size=size)) for _ in range(RUNS)])
+                client.mesh(domain, size=size, no_cache=True)  # the server's first pages
+                row(f"TCP, {name}", [timed(lambda: client.mesh(domain, size=size, no_cache=True)) for _ in range(RUNS)])
                 row(f"unix socket, {name}",
-                    [timed(lambda: local.mesh(domain, size=size)) for _ in range(RUNS)])
+                    [timed(lambda: local.mesh(domain, size=size, no_cache=True)) for _ in range(RUNS)])
                 row(f"TCP, asyncio, {name}", asyncio.run(through_aio(tcp, domain, size)))
                 job = client.wait(client.submit(domain, size=size))
                 fetched = [timed(lambda: client.fetch(job)) for _ in range(RUNS)]

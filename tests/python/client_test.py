@@ -5,6 +5,7 @@ import threading
 
 import numpy as np
 import pytest
+import scipy.interpolate
 import weft
 from conftest import KEY, KEY_SIZE, MODELS
 from cutting_proxy import CuttingProxy
@@ -18,6 +19,49 @@ def test_a_mesh_is_the_one_that_the_command_line_gets(client, digest_of):
     assert mesh.quality().min_angle >= 30
 
 
+def interpolated(raster, p):
+    """A raster at points (n, 2), by scipy."""
+    rows, columns = raster.values.shape
+    axes = [raster.origin[k] + raster.spacing[k] * np.arange(n) for k, n in ((1, rows), (0, columns))]
+    inside = [np.clip(p[:, k], axes[1 - k][0], axes[1 - k][-1]) for k in (1, 0)]
+    return scipy.interpolate.RegularGridInterpolator(axes, raster.values)(np.stack(inside, axis=-1))
+
+
+def test_a_raster_bounds_all_areas_at_their_centroids(client, run_weft, tmp_path):
+    values = np.random.default_rng(5).uniform(0.02, 2, (7, 9))
+    raster = weft.Raster(values, origin=(-20, 30), spacing=(14, 5))
+    mesh = client.mesh(KEY, size=raster)
+    bounds = interpolated(raster, mesh.points[mesh.triangles].mean(axis=1))
+    assert (mesh.quality().areas <= bounds * (1 + 1e-9)).all()
+    mesh.write(tmp_path / "key.vtu")
+    assert "the mesh holds" in run_weft("check", tmp_path / "key.vtu", "--domain", KEY)
+
+
+def test_a_function_is_almost_the_expression_that_it_spells(client):
+    by_function = client.mesh(KEY, size=lambda x, y: 0.1 + 0.02 * np.abs(y - 46))
+    by_expression = client.mesh(KEY, size=KEY_SIZE)
+    assert by_function.summary.triangles == pytest.approx(by_expression.summary.triangles, rel=0.02)
+
+
+def test_a_function_is_sampled_over_the_domain():
+    box = (2, 10, 6, 11)
+    raster = weft.Raster.sample(lambda x, y: x + 100 * y, box, samples=9)
+    assert raster.values.shape == (3, 9)
+    assert (raster.values[0, 0], raster.values[-1, -1]) == (1002, 1106)
+    assert weft.Raster.sample(lambda x, y: 7, box).values.shape == (129, 513)
+
+
+@pytest.mark.parametrize("function, words", [
+    (lambda x, y: x - 1e9, r"the size at \(.*\) is -"),
+    (lambda x, y: np.sqrt(-x - 1e9), "is nan"),
+    (lambda x, y: x[:, :3], "does not give such an array"),
+    (lambda x, y: "none", "does not give such an array"),
+])
+def test_a_function_that_gives_no_size_is_refused(client, function, words):
+    with np.errstate(invalid="ignore"), pytest.raises(weft.DomainError, match=words):
+        client.mesh(KEY, size=function)
+
+
 @pytest.mark.parametrize("size", [0.1, "0.1", 1 / 10])
 def test_a_number_as_size_bounds_all_areas(client, size):
     mesh = client.mesh(KEY, size=size)
@@ -29,7 +73,7 @@ def test_options_reach_the_server(client):
     assert client.mesh(KEY, size=0.01, max_triangles=1000).summary.unrefined.budget > 0
     assert client.mesh(KEY, size=0.01, min_edge=5).summary.unrefined.edge_floor > 0
     assert client.mesh(KEY, size=0.001, quadtree=True).summary.leaf_boxes.shape[1:] == (4,)
-    assert client.mesh(KEY, threads=1).summary.threads == 1
+    assert client.mesh(KEY, threads=1, no_cache=True).summary.threads == 1
     with pytest.raises(weft.DeadlineExceeded):
         client.mesh(CYLINDER, size=1e-4, max_seconds=1e-3)
 

@@ -12,7 +12,7 @@ Lengths are in the unit of the domain, areas in its square, angles in degrees, t
 """
 
 from . import aio
-from ._requests import MeshOptions, Size
+from ._requests import MeshOptions
 from ._target import TLS
 from ._wire import Chunk
 from .client import Client, MeshStream
@@ -26,12 +26,13 @@ from .mesh import Mesh
 from .quality import Quality
 from .results import (Accepted, Job, JobState, Progress, ServerInfo, ServerLimits, Summary, Timings,
                       Unrefined)
+from .size import Raster, Size
 
 __all__ = [
     "Accepted", "AlreadyExists", "Cancelled", "Chunk", "Client", "DamagedStream", "DeadlineExceeded",
     "Domain", "DomainError", "DomainLike", "FailedPrecondition", "FieldViolation", "InvalidRequest",
     "Job", "JobState", "LimitExceeded", "LocalServer", "LocalServerError", "Mesh", "MeshFileError",
-    "MeshOptions", "MeshStream", "MissingPackage", "NotFound", "Progress", "Quality", "Region",
+    "MeshOptions", "MeshStream", "MissingPackage", "NotFound", "Progress", "Quality", "Raster", "Region",
     "ServerError", "ServerInfo", "ServerLimits", "Size", "Summary", "TLS", "Timings",
     "Unauthenticated", "Unavailable", "Unrefined", "WeftError", "aio", "local",
 ]

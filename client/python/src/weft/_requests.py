@@ -4,15 +4,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any, TypedDict, Union
+from typing import Any, TypedDict
 
 from . import _protocol
 from .domain import Domain
 from .errors import DomainError
-
-Size = Union[float, str, None]
-"""Upper bound on the area of a triangle at its centroid, in squared units of the domain: a number,
-an expression in x and y, or None for no bound."""
+from .size import Raster, Size
 
 
 class MeshOptions(TypedDict, total=False):
@@ -28,6 +25,8 @@ class MeshOptions(TypedDict, total=False):
     """That compute, at most; the mesh does not depend on it. Default: all of the server."""
     quadtree: bool
     """Whether `summary.leaf_boxes` is filled."""
+    no_cache: bool
+    """Make the mesh anew, even if the server has it at hand."""
 
 
 _Request = _protocol.message("weft.v1.GenerateMeshRequest")
@@ -42,7 +41,7 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
                         f"{', '.join(MeshOptions.__annotations__)}")
     request = _Request()
     _fill_domain(domain, request.domain)
-    _fill_size(size, request.size)
+    _fill_size(size, domain, request.size)
     request.quality.min_angle_deg = min_angle
     if "min_edge" in options:
         request.quality.min_edge = options["min_edge"]
@@ -52,6 +51,7 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
         request.budget.max_seconds = options["max_seconds"]
     request.threads = options.get("threads", 0)
     request.want_quadtree = options.get("quadtree", False)
+    request.no_cache = options.get("no_cache", False)
     return request
 
 
@@ -66,8 +66,20 @@ def _fill_domain(domain: Domain, message: Any) -> None:
     message.fill = _FILLS[domain.fill]
 
 
-def _fill_size(size: Size, message: Any) -> None:
+def _fill_size(size: Size, domain: Domain, message: Any) -> None:
     if size is None:
+        return
+    if callable(size):
+        if not len(domain.points):
+            raise DomainError("the domain has no points")
+        (left, bottom), (right, top) = domain.points.min(axis=0), domain.points.max(axis=0)
+        size = Raster.sample(size, (left, bottom, right, top))
+    if isinstance(size, Raster):
+        raster = message.raster
+        raster.x, raster.y = size.origin
+        raster.dx, raster.dy = size.spacing
+        raster.rows, raster.columns = size.values.shape
+        raster.values.extend(size.values.ravel().tolist())
         return
     if isinstance(size, str):
         try:
@@ -76,5 +88,5 @@ def _fill_size(size: Size, message: Any) -> None:
             message.expression = size
             return
     if not (isinstance(size, (int, float)) and math.isfinite(size)):
-        raise DomainError(f"size is {size!r}; it is a number or an expression in x and y")
+        raise DomainError(f"size is {size!r}; see weft.Size")
     message.constant = size

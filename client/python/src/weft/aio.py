@@ -20,13 +20,14 @@ import grpc
 
 from . import _jobs, _protocol, _target, errors, results
 from ._receiver import MeshReceiver
-from ._requests import MeshOptions, Size, mesh_request
+from ._requests import MeshOptions, mesh_request
 from ._retry import Retry
 from ._wire import Chunk
 from .domain import DomainLike, as_domain
 from .local import LocalServer
 from .mesh import Mesh
 from .results import Job, JobState, Progress, ServerInfo
+from .size import Size
 
 
 class Client:
@@ -77,11 +78,11 @@ class Client:
         return results.server_info(await self._call(_protocol.GET_SERVER_INFO))
 
     async def submit(self, domain: DomainLike, size: Size = None, min_angle: float = 20, *,
-                     request_id: str | None = None, no_cache: bool = False,
-                     timeout: float | None = None, **options: Unpack[MeshOptions]) -> Job:
+                     request_id: str | None = None, timeout: float | None = None,
+                     **options: Unpack[MeshOptions]) -> Job:
         """See weft.Client.submit."""
         mesh = mesh_request(as_domain(domain), size, min_angle, options)
-        answer = await self._call(_protocol.SUBMIT_JOB, timeout, mesh=mesh, no_cache=no_cache,
+        answer = await self._call(_protocol.SUBMIT_JOB, timeout, mesh=mesh, no_cache=mesh.no_cache,
                                   request_id=_jobs.request_id(request_id))
         return results.job(answer.job)
 

@@ -12,12 +12,13 @@ import grpc
 
 from . import _jobs, _protocol, _target, errors, results
 from ._receiver import MeshReceiver
-from ._requests import MeshOptions, Size, mesh_request
+from ._requests import MeshOptions, mesh_request
 from ._retry import Retry
 from ._wire import Chunk
 from .domain import DomainLike, as_domain
 from .mesh import Mesh
 from .results import Job, JobState, Progress, ServerInfo
+from .size import Size
 
 
 class Client:
@@ -90,15 +91,15 @@ class Client:
         return results.server_info(self._call(_protocol.GET_SERVER_INFO))
 
     def submit(self, domain: DomainLike, size: Size = None, min_angle: float = 20, *,
-               request_id: str | None = None, no_cache: bool = False,
-               timeout: float | None = None, **options: Unpack[MeshOptions]) -> Job:
+               request_id: str | None = None, timeout: float | None = None,
+               **options: Unpack[MeshOptions]) -> Job:
         """Has the mesh made while nobody waits; the server must keep jobs.
 
         `request_id`: a submission that is repeated with the same one finds the same job; default:
-        one by chance. `no_cache`: makes the mesh anew, even if it is kept. The rest is as in `mesh`.
+        one by chance. The rest is as in `mesh`.
         """
         mesh = mesh_request(as_domain(domain), size, min_angle, options)
-        answer = self._call(_protocol.SUBMIT_JOB, timeout, mesh=mesh, no_cache=no_cache,
+        answer = self._call(_protocol.SUBMIT_JOB, timeout, mesh=mesh, no_cache=mesh.no_cache,
                             request_id=_jobs.request_id(request_id))
         return results.job(answer.job)
 

@@ -110,6 +110,9 @@ class Summary:
     leaf_boxes: npt.NDArray[np.float64]
     """(leaves, 4): min x, min y, max x, max y; empty unless `quadtree=True` asked for them."""
     engine_version: str
+    cached: bool
+    """Whether the server had the mesh at hand: timings, peak and threads are those of the call that
+    made it."""
     digest: str
     """SHA-256 in hexadecimal: the name of the mesh."""
 
@@ -128,6 +131,7 @@ class ServerLimits:
     max_request_bytes: int
     max_concurrent_jobs: int
     max_min_angle_deg: float
+    max_raster_values: int
 
 
 @dataclasses.dataclass(frozen=True)
