@@ -33,6 +33,9 @@ test=(
   python3-protobuf         # docs/generate.py
   buildah debootstrap      # the container, without a daemon
   docker-compose           # its compose.yaml
+  python3-grpcio python3-protobuf python3-numpy                               # weft for Python
+  python3-matplotlib python3-scipy python3-shapely                            # its plots and examples
+  python3-pytest python3-pip python3-setuptools python3-wheel mypy openssl    # its tests
 )
 # Some machines bring a newer node; Debian's npm would be in its way.
 command -v npm >/dev/null || test+=(nodejs npm)

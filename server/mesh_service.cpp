@@ -156,6 +156,7 @@ grpc::ServerUnaryReactor* MeshService::GetServerInfo(grpc::CallbackServerContext
   limits.set_max_segments(options_.limits.max_segments);
   limits.set_max_seeds(options_.limits.max_seeds);
   limits.set_max_expression_bytes(options_.limits.max_expression_bytes);
+  limits.set_max_raster_values(options_.limits.max_raster_values);
   limits.set_max_triangles(options_.limits.max_triangles);
   limits.set_max_bytes(options_.limits.max_bytes);
   limits.set_max_seconds(options_.limits.max_seconds);

@@ -148,7 +148,7 @@ double common_area(const Level& level, const Pending& pending, const Domain& dom
   return area;
 }
 
-Look look_at(const Level& level, const Pending& pending, const Expression& size,
+Look look_at(const Level& level, const Pending& pending, const SizeFunction& size,
              const Domain& domain, bool may_split, Poll& poll, Group& group) {
   const std::uint32_t* const triangles = level.triangles.data() + pending.first;
   Look look;
@@ -181,7 +181,7 @@ Look look_at(const Level& level, const Pending& pending, const Expression& size,
 
 }  // namespace
 
-Result<SizeMap> SizeMap::build(const Expression& size, const Domain& domain,
+Result<SizeMap> SizeMap::build(const SizeFunction& size, const Domain& domain,
                                const ExecutionContext& context) {
   constexpr int kMaxLevels = 48;
   constexpr std::size_t kAtATime = 256;  // nodes: 20 us at least
