@@ -13,8 +13,10 @@
 
 namespace weft::bench {
 
+// To be meshed anew each time.
 inline v1::GenerateMeshRequest make_request(const Pslg& pslg, const std::string& size) {
   v1::GenerateMeshRequest request;
+  request.set_no_cache(true);
   v1::Domain& domain = *request.mutable_domain();
   for (const Point p : pslg.points) {
     domain.add_points(p.x);

@@ -123,8 +123,8 @@ class QualityJudge {
     if (!context_.faces.empty())
       fixed = std::min(fixed, context_.roles[context_.faces[t]].max_area);
     double bound = fixed;
-    if (size_) {
-      const double size = (*size_)(shape.centroid);
+    if (size_ || requirements_.raster) {
+      const double size = size_at(shape.centroid);
       if (!(size > 0) || std::isinf(size)) {
         findings_.add(Rule::kSize, [&] {
           return say("the size is ", size, " at ", shape.centroid, ", the centroid of triangle ",
@@ -146,6 +146,15 @@ class QualityJudge {
     return false;
   }
 
+  // REQUIRES: there is a size. NaN where one of the two is.
+  double size_at(Vec2 p) const {
+    const double by_raster =
+        requirements_.raster ? (*requirements_.raster)(p) : std::numeric_limits<double>::infinity();
+    if (!size_) return by_raster;
+    const double size = (*size_)(p);
+    return by_raster < size ? by_raster : size;
+  }
+
   double largest_size_nearby(Vec2 centroid, const std::array<Vec2, 3>& corners) const {
     double magnitude = 0;
     for (const Vec2 p : corners) magnitude = std::max({magnitude, std::fabs(p.x), std::fabs(p.y)});
@@ -153,7 +162,7 @@ class QualityJudge {
     double largest = 0;
     for (const double dx : {-step, 0.0, step})
       for (const double dy : {-step, 0.0, step})
-        largest = std::max(largest, (*size_)({centroid.x + dx, centroid.y + dy}));
+        largest = std::max(largest, size_at({centroid.x + dx, centroid.y + dy}));
     return largest;
   }
 

@@ -11,6 +11,7 @@
 #include "checker/fill.h"
 #include "checker/mesh.h"
 #include "checker/report.h"
+#include "checker/size_raster.h"
 
 namespace weft::check {
 
@@ -20,6 +21,8 @@ struct Requirements {
   // Upper bound on a triangle's area at its centroid, of x and y (size_expression.h). Default:
   // none.
   std::optional<std::string> size;
+  // The same, of values on a grid; with `size`, both bounds hold. Default: none.
+  std::optional<SizeRaster> raster;
   // Lower bound on every angle, degrees. Default: none.
   std::optional<double> min_angle_deg;
   // Whether small input angles excuse (excuse.h).

@@ -15,7 +15,7 @@ constexpr char kExitCodes[] = R"(Exit codes:
   0        all went well
   1        a fault of weft itself
   2        the command line is wrong
-  3        `weft check` ran, and the mesh fails
+  3        `weft check` or `weft batch` ran, and a mesh fails
   4        the input is missing, unreadable or malformed
   5        the output cannot be written; nothing is left behind
   6        the private weftd could not be found or started
@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
   app.footer(kExitCodes);
   Chosen chosen;
   add_mesh_commands(app, chosen);
+  add_batch_command(app, chosen);
   add_job_commands(app, chosen);
   add_server_commands(app, chosen);
   try {

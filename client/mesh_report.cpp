@@ -31,6 +31,7 @@ Json summary_json(const v1::Summary& summary) {
           {"digest", hex(summary.sha256())},
           {"engine_version", summary.engine_version()},
           {"threads", summary.threads()},
+          {"cached", summary.cached()},
           {"engine_seconds", timings.engine_seconds()},
           {"peak_engine_bytes", summary.peak_engine_bytes()},
           {"insertions", summary.insertions()},
@@ -83,10 +84,11 @@ std::string summary_text(const v1::Summary& summary) {
 
 std::string mesh_text(const MeshReport& report, const MeshTimes& times) {
   const v1::Summary& summary = report.summary;
-  return summary_text(summary) + "engine " + seconds_text(summary.timings().engine_seconds()) +
-         " on " + std::to_string(summary.threads()) +
-         (summary.threads() == 1 ? " thread" : " threads") + ", total " +
-         seconds_text(seconds_between(times.start, times.written)) + ", received " +
+  return summary_text(summary) +
+         (summary.cached() ? "at hand on the server, made before: engine " : "engine ") +
+         seconds_text(summary.timings().engine_seconds()) + " on " +
+         std::to_string(summary.threads()) + (summary.threads() == 1 ? " thread" : " threads") +
+         ", total " + seconds_text(seconds_between(times.start, times.written)) + ", received " +
          bytes_text(report.bytes_received) + "\n";
 }
 

@@ -74,6 +74,7 @@ v1::GenerateMeshRequest make_request(const Domain& domain, const MeshWishes& wis
   if (wishes.max_seconds) request.mutable_budget()->set_max_seconds(*wishes.max_seconds);
   if (wishes.threads) request.set_threads(*wishes.threads);
   request.set_want_quadtree(wishes.quadtree);
+  request.set_no_cache(wishes.no_cache);
   return request;
 }
 

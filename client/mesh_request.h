@@ -24,6 +24,7 @@ struct MeshWishes {
   std::optional<double> max_seconds{};
   std::optional<std::uint32_t> threads{};
   bool quadtree = false;  // of the summary, to draw it
+  bool no_cache = false;  // made anew, even if the server has it at hand
 };
 
 // An error (kUnreadableInput) where the domain is too large for any message.

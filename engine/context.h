@@ -106,7 +106,7 @@ class ExecutionContext {
   template <class F>
   void for_each(std::size_t n, F&& f) const {
     if (arena_ && threads_ > 1) {
-      arena_->for_each(n, threads_, std::forward<F>(f));
+      arena_->for_each(n, static_cast<int>(std::min<std::size_t>(n, threads_)), std::forward<F>(f));
     } else if (trace_) {
       trace_->time_loop(n, std::forward<F>(f));
     } else {

@@ -48,8 +48,10 @@ std::optional<Error> check_options(const MeshRequest& request) {
     return bad("quality.min_edge", "the shortest edge is " + text(request.min_edge) +
                                        ", but must be 0 or more, and finite");
   }
-  if (request.size.constant && request.size.expression) {
-    return bad("size", "the size is both a constant and an expression");
+  if (request.size.constant.has_value() + request.size.expression.has_value() +
+          request.size.raster.has_value() >
+      1) {
+    return bad("size", "the size is more than one of a constant, an expression and a raster");
   }
   if (const auto& constant = request.size.constant;
       constant && !(*constant > 0 && std::isfinite(*constant))) {
@@ -109,6 +111,11 @@ class Job {
       if (!parsed) return tl::unexpected(parsed.error());
       expression_.emplace(std::move(*parsed));
     }
+    if (request_.size.raster) {
+      auto raster = RasterSize::make(*request_.size.raster);
+      if (!raster) return tl::unexpected(raster.error());
+      raster_.emplace(std::move(*raster));
+    }
     if (Trace* const trace = context_.trace()) trace->start();
     context_.enter(Stage::kTriangulate);
     auto domain = context_.compute([&] { return triangulate(request_.pslg, context_); });
@@ -120,12 +127,12 @@ class Job {
     context_.end_stage("triangulation");
 
     context_.enter(Stage::kSize);
-    if (expression_ && !expression_->is_constant()) {
-      auto map = context_.compute([&] { return SizeMap::build(*expression_, domain_, context_); });
+    if (const SizeFunction* const size = varying_size()) {
+      auto map = context_.compute([&] { return SizeMap::build(*size, domain_, context_); });
       if (!map) return tl::unexpected(map.error());
-      MappedArea area(*expression_, *map);
+      MappedArea area(*size, *map);
       return mesh(area, {map->least_triangles(), map->likely_triangles()},
-                  std::numeric_limits<double>::infinity(), map->bytes());
+                  std::numeric_limits<double>::infinity(), map->bytes() + raster_bytes());
     }
     const auto bound = constant_bound();
     if (!bound) return tl::unexpected(bound.error());
@@ -135,6 +142,17 @@ class Job {
 
  private:
   static constexpr std::uint64_t kUncountable = 1'000'000'000'000'000'000;
+
+  // The size where it is not the same everywhere; null where it is.
+  const SizeFunction* varying_size() const {
+    if (raster_) return &*raster_;
+    return expression_ && !expression_->is_constant() ? &*expression_ : nullptr;
+  }
+
+  std::uint64_t raster_bytes() const {
+    if (!raster_) return 0;
+    return request_.size.raster->values.capacity() * sizeof(double) + raster_->bytes();
+  }
 
   // The bound when it is the same everywhere; infinity for none.
   Result<double> constant_bound() const {
@@ -206,6 +224,7 @@ class Job {
   ExecutionContext& context_;
   StageClock clock_;
   std::optional<Expression> expression_;
+  std::optional<RasterSize> raster_;
   Domain domain_;
   double expected_ = 0;  // triangles
   Summary summary_;

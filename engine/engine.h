@@ -16,6 +16,7 @@
 #include "engine/context.h"
 #include "engine/domain/pslg.h"
 #include "engine/error.h"
+#include "engine/size/raster.h"
 #include "engine/summary.h"
 
 namespace weft {
@@ -24,10 +25,13 @@ namespace weft {
 inline constexpr std::string_view kEngineVersion = "2";
 
 // The grading function: an upper bound on a triangle's area at its centroid, squared units.
-// At most one of the two is set; none means no bound on the area.
+// At most one of the three is set; none means no bound on the area.
 struct SizeSpec {
   std::optional<double> constant = std::nullopt;         // > 0
   std::optional<std::string> expression = std::nullopt;  // of x and y, see size/expression.h
+  // See size/raster.h. REQUIRES: its spacing is positive and finite, its origin finite, it has
+  // columns * rows values, one at least.
+  std::optional<Raster> raster = std::nullopt;
 };
 
 inline constexpr double kMaxMinAngleDeg = 34;

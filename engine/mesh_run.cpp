@@ -4,20 +4,18 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <exception>
-#include <functional>
-#include <memory>
-#include <mutex>
-#include <new>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "engine/delivery.h"
 #include "engine/emit.h"
+#include "engine/part_run.h"
 #include "engine/refine/area_bound.h"
 #include "engine/refine/mapped_area.h"
 #include "engine/refine/refiner.h"
+#include "engine/schedule/leaf_graph.h"
 #include "engine/schedule/leaf_tasks.h"
 #include "engine/schedule/prelude.h"
 #include "engine/schedule/quadtree.h"
@@ -71,7 +69,8 @@ class MeshRun {
                  plan.other_bytes + corners.bytes(),
                  cut_off ? context.budget().triangle_limit : limit(plan, context)},
         root_(Slots::of_domain(plan.domain)),
-        delivery_(sink, context, summary) {}
+        delivery_(sink, context, summary),
+        parts_(delivery_, context) {}
 
   // `start` is when the work on the mesh began.
   std::optional<Error> run(Clock::time_point start) {
@@ -83,7 +82,7 @@ class MeshRun {
     if (error) return error;
     delivery_.finish();
     context_.end_stage("closing");
-    summary_.engine_seconds = seconds_since(start) - blocked_seconds_;
+    summary_.engine_seconds = seconds_since(start) - parts_.blocked_seconds();
     summary_.refine_seconds += refine_time_.seconds();
     summary_.emit_seconds = emit_time_.seconds();
     if (leaves_) {
@@ -93,7 +92,7 @@ class MeshRun {
       summary_.deferred = leaves_->deferred();
     }
     summary_.peak_bytes = plan_.domain.bytes() + plan_.other_bytes + corners_.bytes() +
-                          mesh_.bytes() + root_.bytes() + root_bytes_ + peak_part_bytes_ +
+                          mesh_.bytes() + root_.bytes() + root_bytes_ + parts_.peak_bytes() +
                           (leaves_ ? leaves_->bytes() + tree_.bytes() : 0);
     return std::nullopt;
   }
@@ -180,14 +179,14 @@ class MeshRun {
   void send(const std::vector<Section>& sections) {
     constexpr std::size_t kPerPart = 48;  // about 10,000 vertices or triangles
     const auto parts = static_cast<std::uint32_t>((sections.size() + kPerPart - 1) / kPerPart);
-    run_graph(
+    parts_.run(
         kClosingGraph, TaskGraph(parts), 0, parts, [](std::uint32_t part) { return part; },
         [&](std::uint32_t part) {
-          finish_part(part, build_part([&](PartBuilder<AreaBound>& builder) {
-                        const std::size_t end = std::min((part + 1) * kPerPart, sections.size());
-                        for (std::size_t s = part * kPerPart; s < end; ++s)
-                          build(builder, sections[s]);
-                      }));
+          parts_.finish(part, build_part([&](PartBuilder<AreaBound>& builder) {
+                          const std::size_t end = std::min((part + 1) * kPerPart, sections.size());
+                          for (std::size_t s = part * kPerPart; s < end; ++s)
+                            build(builder, sections[s]);
+                        }));
         });
   }
 
@@ -199,55 +198,11 @@ class MeshRun {
     add_triangles(root_, sections);
     send(sections);
     context_.add_fraction(1);
-    return error_;
+    return parts_.error();
   }
 
-  // Tasks of leaf l: kRounds rounds of refinement, whether that settled it, its numbers, what it
-  // hands on, its part. By leaf, so that the first leaves are finished first.
-  static constexpr std::uint32_t kTasks = kRounds + 4;
-  static constexpr Trace::GraphName kLeafGraph{
-      "leaves",
-      {"round 1", "round 2", "round 3", "round 4", "settle", "number", "hand on", "part"}};
+  using Graph = LeafGraph<LeafTasks<AreaBound>>;
   static constexpr Trace::GraphName kClosingGraph{"closing parts", {"closing part"}};
-  static std::uint32_t round_task(std::uint32_t leaf, std::uint32_t round) {
-    return leaf * kTasks + round;
-  }
-  static std::uint32_t settle_task(std::uint32_t leaf) { return leaf * kTasks + kRounds; }
-  static std::uint32_t number_task(std::uint32_t leaf) { return leaf * kTasks + kRounds + 1; }
-  static std::uint32_t hand_on_task(std::uint32_t leaf) { return leaf * kTasks + kRounds + 2; }
-  static std::uint32_t part_task(std::uint32_t leaf) { return leaf * kTasks + kRounds + 3; }
-
-  void add_refinement(TaskGraph& graph) const {
-    for (std::uint32_t l = 0; l < leaves_->size(); ++l) {
-      for (std::uint32_t round = 0; round < kRounds; ++round) {
-        if (round > 0) graph.add_dependency(round_task(l, round - 1), round_task(l, round));
-        for (const std::uint32_t other : leaves_->conflicts(l)) {
-          if (leaves_->before(other, l)) {
-            graph.add_dependency(round_task(other, round), round_task(l, round));
-          } else if (round > 0) {
-            graph.add_dependency(round_task(other, round - 1), round_task(l, round));
-          }
-        }
-      }
-    }
-  }
-
-  // A leaf is final once all that own a part of its grown box are done, and none of them, nor of
-  // their own conflicts, has left anything to the clean-up: that must have room to work.
-  void add_parts(TaskGraph& graph) const {
-    for (std::uint32_t l = 0; l < leaves_->size(); ++l) {
-      graph.add_dependency(round_task(l, kRounds - 1), settle_task(l));
-      graph.add_dependency(settle_task(l), number_task(l));
-      if (l > 0) graph.add_dependency(number_task(l - 1), number_task(l));
-      graph.add_dependency(number_task(l), hand_on_task(l));
-      graph.add_dependency(hand_on_task(l), part_task(l));
-      for (const std::uint32_t other : leaves_->conflicts(l)) {
-        graph.add_dependency(round_task(other, kRounds - 1), settle_task(l));
-        graph.add_dependency(settle_task(other), number_task(l));
-        if (other < l) graph.add_dependency(hand_on_task(other), part_task(l));
-      }
-    }
-  }
 
   // Refines and sends at the same time up to the first leaf that is near something left over, then
   // cleans up, and sends the rest. Where nothing is left over, that is all.
@@ -260,36 +215,36 @@ class MeshRun {
     if (streams_) send_opening();
     context_.end_stage("opening part");
     {
-      TaskGraph graph(n * kTasks);
-      add_refinement(graph);
-      if (streams_) add_parts(graph);
-      run_graph(kLeafGraph, std::move(graph), 0, final_leaves_, part_task,
-                [this](std::uint32_t task) {
-                  const std::uint32_t leaf = task / kTasks;
-                  const std::uint32_t step = task % kTasks;
-                  if (step < kRounds) refine(leaf, step);
-                  if (!streams_) return;  // nothing to settle yet
-                  if (task == settle_task(leaf)) settled_[leaf] = is_settled(leaf);
-                  if (task == number_task(leaf) && !may_be_final(leaf))
-                    final_leaves_ = std::min(final_leaves_.load(), leaf);
-                  if (leaf < final_leaves_) send_leaf(task, leaf);
-                });
+      TaskGraph graph(n * Graph::kTasks);
+      Graph::add_refinement(*leaves_, graph);
+      if (streams_) Graph::add_parts(*leaves_, graph);
+      parts_.run(Graph::kName, std::move(graph), 0, final_leaves_, Graph::part,
+                 [this](std::uint32_t task) {
+                   const std::uint32_t leaf = task / Graph::kTasks;
+                   const std::uint32_t step = task % Graph::kTasks;
+                   if (step < kRounds) refine(leaf, step);
+                   if (!streams_) return;  // nothing to settle yet
+                   if (task == Graph::settle(leaf)) settled_[leaf] = is_settled(leaf);
+                   if (task == Graph::number(leaf) && !may_be_final(leaf))
+                     final_leaves_ = std::min(final_leaves_.load(), leaf);
+                   if (leaf < final_leaves_) send_leaf(task, leaf);
+                 });
     }
-    if (!stopped_ && final_leaves_ < n) {
+    if (!parts_.stopped() && final_leaves_ < n) {
       if (leaves_->left() > 0) clean_up();
-      if (!streams_ && !stopped_) send_opening();
+      if (!streams_ && !parts_.stopped()) send_opening();
       const std::uint32_t first = final_leaves_.exchange(n);
-      TaskGraph graph(n * kTasks);
-      add_parts(graph);
-      if (!stopped_) {
-        run_graph(kLeafGraph, std::move(graph), first, n, part_task,
-                  [this, first](std::uint32_t task) {
-                    if (task / kTasks >= first) send_leaf(task, task / kTasks);
-                  });
+      TaskGraph graph(n * Graph::kTasks);
+      Graph::add_parts(*leaves_, graph);
+      if (!parts_.stopped()) {
+        parts_.run(Graph::kName, std::move(graph), first, n, Graph::part,
+                   [this, first](std::uint32_t task) {
+                     if (task / Graph::kTasks >= first) send_leaf(task, task / Graph::kTasks);
+                   });
       }
     }
-    if (!stopped_) send_closing();
-    return error_;
+    if (!parts_.stopped()) send_closing();
+    return parts_.error();
   }
 
   // What a leaf is of the work.
@@ -297,13 +252,13 @@ class MeshRun {
 
   void refine(std::uint32_t leaf, std::uint32_t round) {
     if (auto error = refine_time_.measure([&] { return leaves_->refine(leaf, round); }))
-      stop(*error);
+      parts_.stop(*error);
     if (round == 0) context_.add_fraction(kRefining * share_of(leaf));
     if (round == 0 || leaves_->has_left(leaf)) return;
     for (std::uint32_t later = kRounds; --later > round;) {
       if (Trace* const trace = context_.trace())
-        trace->skip(round_task(leaf, later), round_task(leaf, round));
-      run_->skip(round_task(leaf, later));
+        trace->skip(Graph::round(leaf, later), Graph::round(leaf, round));
+      parts_.skip(Graph::round(leaf, later));
     }
   }
 
@@ -323,11 +278,11 @@ class MeshRun {
   // its part.
   void send_leaf(std::uint32_t task, std::uint32_t leaf) {
     const Slots& slots = leaves_->slots(leaf);
-    if (task == number_task(leaf)) numbers_ = slots.number_vertices(mesh_, numbers_);
-    if (task == hand_on_task(leaf)) handed_on_[leaf] = triangles_handed_on(mesh_, slots);
-    if (task != part_task(leaf)) return;
+    if (task == Graph::number(leaf)) numbers_ = slots.number_vertices(mesh_, numbers_);
+    if (task == Graph::hand_on(leaf)) handed_on_[leaf] = triangles_handed_on(mesh_, slots);
+    if (task != Graph::part(leaf)) return;
     context_.add_fraction((1 - kRefining) * share_of(leaf));
-    finish_part(
+    parts_.finish(
         leaf, build_part([&](PartBuilder<AreaBound>& builder) {
           builder.expect(slots.vertex_count(), slots.triangle_slots());
           slots.for_vertices(
@@ -354,7 +309,7 @@ class MeshRun {
   void clean_up() {
     auto error = context_.compute(
         [&] { return refine_time_.measure([&] { return leaves_->clean_up(final_leaves_); }); });
-    if (error) stop(*error);
+    if (error) parts_.stop(*error);
     context_.end_stage("clean-up");
   }
 
@@ -367,7 +322,7 @@ class MeshRun {
       });
     });
     const auto error = part ? delivery_.send(std::move(*part)) : context_.poll();
-    if (error) stop(*error);
+    if (error) parts_.stop(*error);
   }
 
   // What the clean-up has made, and those of owner 0's triangles that no leaf has touched.
@@ -390,79 +345,6 @@ class MeshRun {
     });
   }
 
-  // Runs the tasks, and sends parts `first` to `last` - 1 in order as they are finished.
-  template <class TaskOfPart, class Task>
-  void run_graph(const Trace::GraphName& name, TaskGraph graph, std::uint32_t first,
-                 std::uint32_t last, TaskOfPart task_of_part, Task task) {
-    Trace* const trace = context_.trace();
-    const std::uint32_t ahead = parts_ahead(context_.threads());
-    for (std::uint32_t part = first + ahead; part < last; ++part) graph.hold(task_of_part(part));
-    parts_ = std::vector<PendingPart>(last);
-    GraphRun run(graph, context_.arena(), context_.threads(), [&](std::uint32_t t) {
-      if (stopped_.load(std::memory_order_relaxed)) return;
-      try {
-        if (trace) {
-          trace->time(t, [&] { task(t); });
-        } else {
-          task(t);
-        }
-      } catch (const std::bad_alloc&) {
-        stop({ErrorCode::kBudgetExceeded, "", "memory ran out"});
-      } catch (const std::exception& e) {
-        stop({ErrorCode::kInternal, "", e.what()});
-      }
-    });
-    run_ = &run;
-    if (trace) {
-      trace->end_stage("graph building");
-      trace->begin_graph(name, graph);
-      for (std::uint32_t part = first; part < last; ++part) trace->add_part(task_of_part(part));
-    }
-    run.start();
-    std::uint32_t next = first;
-    const auto ready = [&] { return next < last && parts_[next].ready.load() && !stopped_; };
-    do {
-      for (; ready(); ++next) {
-        if (next + ahead < last) run.release(task_of_part(next + ahead));
-        const auto before = Clock::now();
-        part_bytes_ -= parts_[next].part.bytes();
-        if (auto error = delivery_.send(std::move(parts_[next].part))) stop(*error);
-        parts_[next].part = {};
-        const auto after = Clock::now();
-        const auto idle_since = std::max(before, run.idle_since().value_or(after));
-        blocked_seconds_ += std::chrono::duration<double>(after - idle_since).count();
-      }
-    } while (run.step() || ready());
-    if (trace) trace->end_stage(name.stage);
-    if (run.starved() && !stopped_)
-      stop({ErrorCode::kBudgetExceeded, "", "memory ran out: no thread could be started"});
-  }
-
-  void finish_part(std::uint32_t index, std::optional<Part>&& part) {
-    if (!part) {
-      if (auto error = context_.poll()) stop(*error);
-      return;
-    }
-    const std::uint64_t waiting = part_bytes_ += part->bytes();
-    for (std::uint64_t peak = peak_part_bytes_; peak < waiting;) {
-      if (peak_part_bytes_.compare_exchange_weak(peak, waiting)) break;
-    }
-    parts_[index].part = std::move(*part);
-    parts_[index].ready.store(true);
-    run_->notify();
-  }
-
-  void stop(const Error& error) {
-    const std::lock_guard lock(mutex_);
-    if (!error_) error_ = error;
-    stopped_ = true;
-  }
-
-  struct PendingPart {
-    std::atomic<bool> ready{false};
-    Part part;
-  };
-
   const MeshPlan& plan_;
   const AreaBound& area_;
   ExecutionContext& context_;
@@ -473,11 +355,11 @@ class MeshRun {
   const Setting setting_;
   Slots root_;
   Delivery delivery_;
+  PartRun parts_;
   Quadtree tree_;
   std::optional<LeafTasks<AreaBound>> leaves_;
   bool streams_ = false;
   double total_weight_ = 0;
-  double blocked_seconds_ = 0;    // in the sink, while there was nothing else to do
   std::uint64_t root_bytes_ = 0;  // of owner 0's refiners
   WorkTime refine_time_;
   WorkTime emit_time_;
@@ -487,14 +369,6 @@ class MeshRun {
   std::vector<char> settled_;  // per leaf: it and its conflicts have nothing left
   // How many leaves may be sent before the clean-up.
   std::atomic<std::uint32_t> final_leaves_ = 0;
-  std::vector<PendingPart> parts_;
-  std::atomic<std::uint64_t> part_bytes_{0};  // of parts that wait to be sent
-  std::atomic<std::uint64_t> peak_part_bytes_{0};
-  GraphRun* run_ = nullptr;  // the one at work
-
-  std::atomic<bool> stopped_{false};
-  std::mutex mutex_;  // guards the one below
-  std::optional<Error> error_;
 };
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace weft {
 
 // Corners of up to kSize triangles, as arrays.
 struct TriangleBlock {
-  static constexpr std::size_t kSize = 256;  // a multiple of Expression::kLanes
+  static constexpr std::size_t kSize = 256;  // a multiple of SizeFunction::kLanes
 
   std::size_t size = 0;
   alignas(64) double x[3][kSize];
@@ -31,7 +31,7 @@ struct TriangleBlock {
     }
     ++size;
   }
-  // Fills the centroids, also those of the lanes up to the next multiple of Expression::kLanes.
+  // Fills the centroids, also those of the lanes up to the next multiple of SizeFunction::kLanes.
   void find_centroids();
 };
 

@@ -41,6 +41,9 @@ std::optional<Failure> check_limits(const v1::GenerateMeshRequest& request, cons
   if (auto f = over("size.expression", "bytes", std::uint64_t{request.size().expression().size()},
                     limits.max_expression_bytes))
     return f;
+  if (auto f = over("size.raster.values", "values", count(request.size().raster().values_size(), 1),
+                    limits.max_raster_values))
+    return f;
   if (auto f = over("budget.max_triangles", "triangles", std::uint64_t{budget.max_triangles()},
                     limits.max_triangles))
     return f;

@@ -17,6 +17,7 @@ struct Limits {
   std::uint64_t max_segments = 5'000'000;
   std::uint64_t max_seeds = 100'000;  // holes and regions together
   std::uint64_t max_expression_bytes = Expression::kMaxLength;
+  std::uint64_t max_raster_values = std::uint64_t{1} << 24;
   std::uint64_t max_triangles = 200'000'000;
   std::uint64_t max_bytes = std::uint64_t{4} << 30;            // of engine memory a job
   double max_seconds = 3600;                                   // of work a job

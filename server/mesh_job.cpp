@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "server/translate.h"
@@ -23,6 +24,10 @@ grpc::ByteBuffer accepted_message(const std::string& id, std::uint32_t threads) 
   return serialize(message);
 }
 
+// Messages of a mesh at hand share its bytes, and so may all be queued.
+constexpr ChunkQueue::Bounds kNoBounds{std::numeric_limits<std::size_t>::max(),
+                                       std::numeric_limits<std::size_t>::max()};
+
 // Who is to have turns of his own: a caller with a name, or else a host.
 std::string client_of(const Caller& caller) {
   if (!caller.name.empty()) return caller.name;
@@ -33,9 +38,11 @@ std::string client_of(const Caller& caller) {
 
 MeshJob::MeshJob(const JobEnvironment& environment, grpc::CallbackServerContext* context,
                  Caller caller, std::string id, std::unique_ptr<v1::GenerateMeshRequest> request,
-                 DrainGate::Pass pass)
-    : MessageStream(context, accepted_message(
-                                 id, to_threads(request->threads(), environment.arena.threads()))),
+                 DrainGate::Pass pass, Origin origin)
+    : MessageStream(
+          context,
+          accepted_message(id, to_threads(request->threads(), environment.arena.threads())),
+          origin.at_hand ? kNoBounds : ChunkQueue::Bounds{}),
       environment_(environment),
       id_(std::move(id)),
       caller_(log_fields(caller)),
@@ -45,6 +52,7 @@ MeshJob::MeshJob(const JobEnvironment& environment, grpc::CallbackServerContext*
       threads_(to_threads(request->threads(), environment.arena.threads())),
       first_chunk_(request->first_chunk()),
       wants_quadtree_(request->want_quadtree()),
+      origin_(std::move(origin)),
       pass_(std::move(pass)),
       context_(to_budget(request->budget(), environment.limits)),
       request_(std::move(request)) {}
@@ -55,6 +63,10 @@ void MeshJob::start() noexcept {
       "event=job_queued job={} {} method=GenerateMesh points={} segments={} seeds={}", id_, caller_,
       domain.points_size() / 2, domain.segments_size() / 2,
       domain.holes_size() / 2 + domain.regions_size());
+  if (origin_.at_hand) {
+    send_what_is_at_hand();
+    return;
+  }
   if (environment_.queue.push(shared_from_this(),
                               {client_, expected_bytes(*request_, environment_.limits)})) {
     pump();
@@ -63,6 +75,18 @@ void MeshJob::start() noexcept {
           fmt::format("{} jobs wait already; this server's limit is {}",
                       environment_.queue.capacity(), environment_.queue.capacity())});
   }
+}
+
+void MeshJob::send_what_is_at_hand() {
+  const FinishedMesh& mesh = *origin_.at_hand;
+  request_.reset();
+  if (auto failure = check_first_chunk(mesh.summary)) return fail(*failure);
+  context_.add_triangles(static_cast<std::int64_t>(mesh.summary.triangles));
+  for (std::size_t i = first_chunk_; i < mesh.chunks.size(); ++i) {
+    if (!send(mesh.chunks[i].message)) return;
+    sent(mesh.chunks[i].message.Length(), mesh.chunks[i].triangles);
+  }
+  succeed(mesh.summary);
 }
 
 void MeshJob::stop(StopCause cause) {
@@ -82,7 +106,7 @@ void MeshJob::tick(Clock::time_point now) {
     stop(StopCause::kReaderStalled);
   } else if (deadline && now >= *deadline) {
     stop(StopCause::kTimeUp);
-  } else {
+  } else if (!origin_.at_hand) {
     offer(progress_message(now));
   }
 }
@@ -114,8 +138,10 @@ tl::expected<Summary, Failure> MeshJob::work(JobQueue::Lane lane) {
   const double waited = Seconds(Clock::now() - admitted_).count();
   environment_.metrics.waited(waited);
   environment_.log->info("event=job_started job={} {} waited_seconds={:.3f}", id_, caller_, waited);
+  if (!origin_.key.empty() && first_chunk_ == 0) recording_.emplace(environment_.cache.largest());
   auto summary = call_engine(environment_.engine, std::move(request_), *this, context_);
   if (!summary) return summary;
+  if (recording_) environment_.cache.keep(origin_.key, std::move(*recording_).finish(*summary));
   environment_.metrics.refined(summary->engine_seconds);
   if (auto failure = check_first_chunk(*summary)) return tl::unexpected(*failure);
   return summary;
@@ -131,6 +157,7 @@ std::optional<Failure> MeshJob::check_first_chunk(const Summary& summary) const 
 void MeshJob::succeed(const Summary& summary) {
   v1::GenerateMeshResponse message;
   *message.mutable_summary() = to_wire(summary, threads_);
+  message.mutable_summary()->set_cached(origin_.at_hand != nullptr);
   if (wants_quadtree_) add_quadtree(summary, *message.mutable_summary());
   if (finish(serialize(message))) tell_end(grpc::StatusCode::OK, "-");
 }
@@ -165,11 +192,16 @@ bool MeshJob::accept(Chunk&& chunk) {
   to_wire(chunk, *chunk_message_.mutable_chunk());
   grpc::ByteBuffer bytes = serialize(chunk_message_);
   const std::size_t length = bytes.Length();
+  if (recording_) recording_->add(bytes, chunk.triangles.size() / 3);
   if (!send(std::move(bytes))) return false;
-  environment_.metrics.chunk_sent(length, chunk.triangles.size() / 3);
-  if (chunks_++ == 0) environment_.metrics.first_chunk(Seconds(Clock::now() - admitted_).count());
-  bytes_ += length;
+  sent(length, chunk.triangles.size() / 3);
   return true;
+}
+
+void MeshJob::sent(std::size_t bytes, std::size_t triangles) {
+  environment_.metrics.chunk_sent(bytes, triangles);
+  if (chunks_++ == 0) environment_.metrics.first_chunk(Seconds(Clock::now() - admitted_).count());
+  bytes_ += bytes;
 }
 
 grpc::ByteBuffer MeshJob::progress_message(Clock::time_point now) {
@@ -187,10 +219,10 @@ void MeshJob::tell_end(grpc::StatusCode code, std::string_view reason) const {
   const double seconds = Seconds(Clock::now() - admitted_).count();
   environment_.metrics.call_ended("GenerateMesh", code, seconds);
   environment_.log->info(
-      "event=job_ended job={} {} method=GenerateMesh status={} reason={} triangles={} "
-      "chunks={} bytes={} seconds={:.3f}",
-      id_, caller_, code_name(code), reason, context_.progress().triangles, chunks_.load(),
-      bytes_.load(), seconds);
+      "event=job_ended job={} {} method=GenerateMesh status={} reason={} cached={} "
+      "triangles={} chunks={} bytes={} seconds={:.3f}",
+      id_, caller_, code_name(code), reason, origin_.at_hand ? "yes" : "no",
+      context_.progress().triangles, chunks_.load(), bytes_.load(), seconds);
 }
 
 }  // namespace weft::server

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One GenerateMesh call that was admitted: it waits in the job queue, runs the engine on a worker
-// thread, hands the chunks to its stream, and ends exactly once, whatever stops it.
+// thread, hands the chunks to its stream, and ends exactly once, whatever stops it. One whose mesh
+// is at hand does none of that but the last.
 //
 // What can stop it, and what its call then ends with: see StopCause. The first cause wins, and the
 // call ends at once; the engine notices within 50 ms.
@@ -26,6 +27,7 @@
 #include "server/job_queue.h"
 #include "server/limits.h"
 #include "server/log.h"
+#include "server/mesh_cache.h"
 #include "server/message_stream.h"
 #include "server/metrics.h"
 #include "weft/v1/mesh_service.pb.h"
@@ -48,7 +50,14 @@ struct JobEnvironment {
   Logger log;
   JobQueue& queue;
   Metrics& metrics;
+  MeshCache& cache;
   std::function<void(MessageStream&)> forget;  // drops the owner's pointer to the job
+};
+
+// Where a job's mesh comes from and goes to: the cache, by its key.
+struct Origin {
+  std::string key{};                              // empty: it is not to be kept
+  std::shared_ptr<const FinishedMesh> at_hand{};  // null: it is to be made
 };
 
 class MeshJob final : public MessageStream,
@@ -57,9 +66,10 @@ class MeshJob final : public MessageStream,
                       private ChunkSink {
  public:
   MeshJob(const JobEnvironment& environment, grpc::CallbackServerContext* context, Caller caller,
-          std::string id, std::unique_ptr<v1::GenerateMeshRequest> request, DrainGate::Pass pass);
+          std::string id, std::unique_ptr<v1::GenerateMeshRequest> request, DrainGate::Pass pass,
+          Origin origin);
 
-  // Joins the queue, or ends with QUEUE_FULL. Call once.
+  // Joins the queue, or ends with QUEUE_FULL; sends what is at hand. Call once.
   void start() noexcept;
 
   void stop(StopCause cause);
@@ -70,8 +80,11 @@ class MeshJob final : public MessageStream,
 
  private:
   void run(JobQueue::Lane lane) noexcept override;
+  void send_what_is_at_hand();
   tl::expected<Summary, Failure> work(JobQueue::Lane lane);
   std::optional<Failure> check_first_chunk(const Summary& summary) const;
+  // Counts a chunk whose message was taken by the stream.
+  void sent(std::size_t bytes, std::size_t triangles);
   // Of these, the first decides how the call ends, and logs it.
   void succeed(const Summary& summary);
   void fail(const Failure& failure);
@@ -93,6 +106,7 @@ class MeshJob final : public MessageStream,
   const std::uint32_t threads_;
   const std::uint32_t first_chunk_;  // those before it are not sent
   const bool wants_quadtree_;
+  const Origin origin_;
   const Clock::time_point admitted_ = Clock::now();
   const DrainGate::Pass pass_;
   ExecutionContext context_;
@@ -102,6 +116,7 @@ class MeshJob final : public MessageStream,
   // The worker's own.
   std::unique_ptr<v1::GenerateMeshRequest> request_;
   v1::GenerateMeshResponse chunk_message_;  // kept for the memory of its arrays
+  std::optional<MeshRecording> recording_;
 
   // The ticking thread's own: what was last told, since progress never goes back.
   v1::Progress told_;

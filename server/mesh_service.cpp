@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "server/caller.h"
+#include "server/jobs/mesh_key.h"
 #include "server/refusal.h"
 #include "server/translate.h"
 #include "server/wire_scan.h"
@@ -19,6 +20,9 @@ using Reactor = grpc::ServerWriteReactor<grpc::ByteBuffer>;
 
 // A mesh of 100,000 triangles takes 10 ms.
 constexpr std::uint64_t kLightBytes = std::uint64_t{24} << 20;
+// Requests up to here are looked up in the cache: the key of a larger one costs gRPC's thread over
+// a millisecond.
+constexpr std::size_t kMostKeyedBytes = std::size_t{1} << 20;
 
 }  // namespace
 
@@ -29,6 +33,7 @@ MeshService::MeshService(const ServiceOptions& options, const Authenticator& aut
       authenticator_(authenticator),
       metrics_(metrics),
       log_(std::move(log)),
+      cache_(options.cache_bytes),
       environment_{std::move(engine),
                    arena,
                    options.limits,
@@ -36,6 +41,7 @@ MeshService::MeshService(const ServiceOptions& options, const Authenticator& aut
                    log_,
                    queue_,
                    metrics_,
+                   cache_,
                    [this](MessageStream& stream) { forget(stream); }},
       queue_({.workers = options.jobs,
               .workers_for_light = options.light_jobs,
@@ -78,14 +84,16 @@ Reactor* MeshService::GenerateMesh(grpc::CallbackServerContext* context,
 
 Reactor* MeshService::admit(grpc::CallbackServerContext* context, grpc::ByteBuffer& bytes,
                             Caller caller, DrainGate::Pass pass) {
+  const std::size_t size = bytes.Length();
   auto request = read(bytes);
   if (!request) return refuse(caller, request.error());
+  Origin origin = origin_of(**request, size);
   std::shared_ptr<MeshJob> job;
   {
     std::lock_guard lock(mutex_);
     job = std::make_shared<MeshJob>(environment_, context, std::move(caller),
                                     fmt::format("{}-{}", options_.instance, ++last_number_),
-                                    std::move(*request), std::move(pass));
+                                    std::move(*request), std::move(pass), std::move(origin));
     jobs_.emplace(job.get(), job);
   }
   changed_.notify_all();
@@ -106,6 +114,15 @@ tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure> MeshService::rea
   if (auto failure = check_shape(*request)) return tl::unexpected(*failure);
   if (auto failure = check_limits(*request, options_.limits)) return tl::unexpected(*failure);
   return request;
+}
+
+Origin MeshService::origin_of(const v1::GenerateMeshRequest& request, std::size_t bytes) {
+  Origin origin;
+  if (request.no_cache() || bytes > kMostKeyedBytes || cache_.largest() == 0) return origin;
+  origin.key = mesh_key(request);
+  origin.at_hand = cache_.find(origin.key);
+  origin.at_hand ? metrics_.cache_hit() : metrics_.cache_missed();
+  return origin;
 }
 
 Reactor* MeshService::refuse(const Caller& caller, const Failure& failure) {

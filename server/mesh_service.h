@@ -28,6 +28,7 @@
 #include "server/limits.h"
 #include "server/log.h"
 #include "server/memory_gate.h"
+#include "server/mesh_cache.h"
 #include "server/mesh_job.h"
 #include "weft/v1/mesh_service.grpc.pb.h"
 
@@ -43,6 +44,8 @@ struct ServiceOptions {
   // computes on a thread of its own.
   std::uint32_t light_jobs = 0;
   Limits limits{};
+  // Finished meshes that are kept in memory to answer the same request again (mesh_cache.h).
+  std::uint64_t cache_bytes = 0;
   // A client that takes nothing for so long is cut off.
   std::chrono::steady_clock::duration stall_timeout = std::chrono::seconds(60);
   // Between progress messages.
@@ -85,6 +88,7 @@ class MeshService final
                                                     grpc::ByteBuffer& bytes, Caller caller,
                                                     DrainGate::Pass pass);
   grpc::ServerWriteReactor<grpc::ByteBuffer>* refuse(const Caller& caller, const Failure& failure);
+  Origin origin_of(const v1::GenerateMeshRequest& request, std::size_t bytes);
   void forget(MessageStream& stream);
   std::vector<std::shared_ptr<MeshJob>> open_jobs();
   void tick_until_stopped();
@@ -94,6 +98,7 @@ class MeshService final
   Metrics& metrics_;
   const Logger log_;
   DrainGate gate_;
+  MeshCache cache_;
   const JobEnvironment environment_;
   JobQueue queue_;  // destroyed first: it waits for the workers, who use all of the above
 

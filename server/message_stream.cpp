@@ -5,8 +5,9 @@
 
 namespace weft::server {
 
-MessageStream::MessageStream(grpc::CallbackServerContext* context, grpc::ByteBuffer first)
-    : queue_(ChunkQueue::Bounds{}), context_(context) {
+MessageStream::MessageStream(grpc::CallbackServerContext* context, grpc::ByteBuffer first,
+                             ChunkQueue::Bounds bounds)
+    : MessageStream(context, bounds) {
   queue_.push(std::move(first));
 }
 

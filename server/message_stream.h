@@ -53,9 +53,10 @@ class MessageStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   Clock::duration waiting_for_client(Clock::time_point now) const;
 
  protected:
-  // Nothing is sent before `pump` or `send`.
-  MessageStream(grpc::CallbackServerContext* context, grpc::ByteBuffer first);
-  // The first message comes by `send`; at most so much is queued.
+  // At most so much is queued. Nothing is sent before `pump` or `send`.
+  MessageStream(grpc::CallbackServerContext* context, grpc::ByteBuffer first,
+                ChunkQueue::Bounds bounds);
+  // The first message comes by `send`.
   MessageStream(grpc::CallbackServerContext* context, ChunkQueue::Bounds bounds);
 
   // Starts the next write, or finishes the call, if either is due.

@@ -70,9 +70,9 @@ Metrics::Metrics(std::string_view version, std::string_view engine_version)
       streamed_bytes_(counter(registry_, "weft_streamed_bytes_total",
                               "Bytes of messages with chunks handed to streams")),
       cache_hits_(counter(registry_, "weft_cache_hits_total",
-                          "Jobs answered with a mesh that was kept, or is being made")),
+                          "Requests answered with a mesh that was kept, or is being made")),
       cache_misses_(
-          counter(registry_, "weft_cache_misses_total", "Jobs whose mesh had to be made")),
+          counter(registry_, "weft_cache_misses_total", "Requests whose mesh had to be made")),
       leases_lost_(counter(registry_, "weft_leases_lost_total",
                            "Attempts at a mesh that were given up, for another had taken over")) {
   // So that the first of a kind shows as an increase, too.

@@ -79,6 +79,7 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
   ServiceOptions& service = options.server.service;
   Limits& limits = service.limits;
   options.server.listen = {"127.0.0.1:7421"};
+  service.cache_bytes = std::uint64_t{64} << 20;
   service.threads = machine.threads;
   if (machine.memory != 0) limits.max_bytes = machine.memory / 2;
   std::uint32_t jobs = 0;
@@ -152,6 +153,11 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
   flags.seconds("--lease", lease, "Silence after which a worker counts as lost");
   flags.seconds("--keep", keep, "How long ended jobs and meshes that nobody asks for are kept");
   flags.bytes("--keep-bytes", kept.runner.keep.bytes, "Meshes that are kept");
+  flags
+      .value("--cache-bytes", service.cache_bytes,
+             "Meshes of calls kept in memory for the same request, such as 64MiB; 0: none")
+      ->transform(CLI::AsSizeValue(false))
+      ->check(CLI::NonNegativeNumber);
   flags.count("--max-points", limits.max_points, "Points a request");
   flags.count("--max-segments", limits.max_segments, "Segments a request");
   flags.count("--max-seeds", limits.max_seeds, "Hole and region seeds a request");

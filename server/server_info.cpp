@@ -22,6 +22,7 @@ void add_limits(const ServerOptions& options, v1::ServerLimits& out) {
   out.set_max_segments(limits.max_segments);
   out.set_max_seeds(limits.max_seeds);
   out.set_max_expression_bytes(limits.max_expression_bytes);
+  out.set_max_raster_values(limits.max_raster_values);
   out.set_max_triangles(limits.max_triangles);
   out.set_max_bytes(limits.max_bytes);
   out.set_max_seconds(limits.max_seconds);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
 namespace weft::server {
@@ -54,6 +55,25 @@ std::optional<Failure> check_domain(const v1::Domain& domain) {
   return std::nullopt;
 }
 
+std::optional<Failure> check_raster(const v1::Raster& raster) {
+  for (const auto& [name, value] : {std::pair{"x", raster.x()}, std::pair{"y", raster.y()}})
+    if (!std::isfinite(value))
+      return bad_option(fmt::format("size.raster.{}", name),
+                        fmt::format("size.raster.{} is {}; it must be finite", name, value));
+  for (const auto& [name, value] : {std::pair{"dx", raster.dx()}, std::pair{"dy", raster.dy()}})
+    if (!positive(value))
+      return bad_option(
+          fmt::format("size.raster.{}", name),
+          fmt::format("size.raster.{} is {}; it must be positive and finite", name, value));
+  const std::uint64_t nodes = std::uint64_t{raster.columns()} * raster.rows();
+  if (nodes == 0 || nodes != static_cast<std::uint64_t>(raster.values_size()))
+    return Failure{Reason::kBadArray, "size.raster.values",
+                   fmt::format("size.raster.values holds {} values for {} columns and {} rows; it "
+                               "takes one a node, and one node at least",
+                               raster.values_size(), raster.columns(), raster.rows())};
+  return std::nullopt;
+}
+
 std::vector<Point> to_points(const google::protobuf::RepeatedField<double>& pairs) {
   std::vector<Point> points(static_cast<std::size_t>(pairs.size() / 2));
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -85,6 +105,8 @@ std::optional<Failure> check_shape(const v1::GenerateMeshRequest& request) {
     return bad_option(
         "size.constant",
         fmt::format("size.constant is {}; it must be positive and finite", size.constant()));
+  if (size.has_raster())
+    if (auto f = check_raster(size.raster())) return f;
   const v1::Quality& quality = request.quality();
   const double angle = quality.min_angle_deg();
   if (quality.has_min_angle_deg() && !(angle >= 0 && angle <= kMaxMinAngleDeg))
@@ -123,6 +145,12 @@ MeshRequest to_engine(const v1::GenerateMeshRequest& request) {
 
   if (request.size().has_constant()) out.size.constant = request.size().constant();
   if (request.size().has_expression()) out.size.expression = request.size().expression();
+  if (request.size().has_raster()) {
+    const v1::Raster& raster = request.size().raster();
+    out.size.raster = Raster{
+        {raster.x(), raster.y()}, raster.dx(),   raster.dy(),
+        raster.columns(),         raster.rows(), {raster.values().begin(), raster.values().end()}};
+  }
   if (request.quality().has_min_angle_deg()) out.min_angle_deg = request.quality().min_angle_deg();
   out.min_edge = request.quality().min_edge();
   return out;

@@ -16,6 +16,8 @@ namespace {
 constexpr double kBytesPerTriangle = 48;
 constexpr double kBytesPerPoint = 300;
 constexpr double kBytesPerJob = 16 << 20;
+// A size raster's own, and those of its blocks (engine/size/raster.h).
+constexpr double kBytesPerRasterValue = 16;
 // Triangles of a uniform mesh times the bound over the area; angles alone ask for about ten
 // triangles a point.
 constexpr double kTrianglesPerArea = 1.55;
@@ -55,6 +57,16 @@ double mean_inverse(const Expression& size, const Box& box) {
   return sum / (kSamples * kSamples);
 }
 
+// The raster stands for the domain.
+double mean_inverse(const v1::Raster& raster) {
+  constexpr int kSamples = 1024;
+  const int step = 1 + raster.values_size() / kSamples;
+  double sum = 0;
+  int count = 0;
+  for (int i = 0; i < raster.values_size(); i += step, ++count) sum += inverse(raster.values(i));
+  return sum / count;
+}
+
 double expected_triangles(const v1::GenerateMeshRequest& request) {
   const auto& points = request.domain().points();
   double per_area = 0;
@@ -64,6 +76,8 @@ double expected_triangles(const v1::GenerateMeshRequest& request) {
   } else if (request.size().has_expression()) {
     const auto size = Expression::parse(request.size().expression());
     if (size) per_area = mean_inverse(*size, box);
+  } else if (request.size().has_raster()) {
+    per_area = mean_inverse(request.size().raster());
   }
   const double area = (box.max_x - box.min_x) * (box.max_y - box.min_y);
   return kTrianglesPerPoint * points.size() / 2 + kTrianglesPerArea * per_area * area;
@@ -80,6 +94,7 @@ std::uint64_t expected_bytes(const v1::GenerateMeshRequest& request, const Limit
   const double triangles =
       std::min(expected_triangles(request), static_cast<double>(most_triangles));
   const double bytes = kBytesPerJob + kBytesPerPoint * request.domain().points_size() / 2 +
+                       kBytesPerRasterValue * request.size().raster().values_size() +
                        kBytesPerTriangle * triangles;
   // Not `min` alone: coordinates that are not finite make it NaN.
   return bytes < static_cast<double>(most) ? static_cast<std::uint64_t>(bytes) : most;

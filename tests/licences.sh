@@ -16,7 +16,7 @@ complain() {
 
 while read -r file; do
   case $file in
-    tests/client/* | tests/checker/*) licence=Apache-2.0 ;;
+    tests/client/* | tests/checker/* | tests/python/*) licence=Apache-2.0 ;;
     engine/* | server/* | bench/* | tests/*) licence=GPL-3.0-or-later ;;
     *) licence=Apache-2.0 ;;
   esac

@@ -74,13 +74,30 @@ check_shell() {
   ours '*.sh' .ci/run | xargs shellcheck --severity=warning
 }
 
-check_protocol() (
+install_linters() (
   cd deploy || exit
-  if [[ ! node_modules/.package-lock.json -nt package-lock.json ]]; then
-    npm ci --ignore-scripts --no-audit --no-fund || exit
-  fi
-  node_modules/.bin/buf lint ../proto
+  [[ node_modules/.package-lock.json -nt package-lock.json ]] ||
+    npm ci --ignore-scripts --no-audit --no-fund
 )
+
+check_protocol() {
+  deploy/node_modules/.bin/buf lint proto
+}
+
+# By the schemas of what reads them. Debian 12 has no kustomize that knows resources in other
+# folders; what kubectl has since 1.21 does.
+check_deployment() {
+  local overlay
+  docker-compose -f deploy/compose.yaml config --quiet || return
+  docker-compose -f deploy/compose.yaml --profile cluster config --quiet || return
+  if ! kubectl version --client 2>/dev/null | grep -q '^Kustomize Version: v[4-9]'; then
+    echo "deploy/kubernetes: not checked, for want of kubectl 1.21 or later"
+    return
+  fi
+  for overlay in deploy/kubernetes/overlays/*; do
+    kubectl kustomize "$overlay" | node deploy/check-kubernetes.mjs || return
+  done
+}
 
 export UBSAN_OPTIONS=print_stacktrace=1
 export TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp
@@ -88,10 +105,13 @@ export TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp
 needed "install packages" deploy/install-deps.sh
 step "formatting" check_format
 step "shell scripts" check_shell
+needed "install linters" install_linters
 step "protocol" check_protocol
+step "deployment" check_deployment
 needed "configure" cmake --preset release -DWEFT_WERROR=ON
 needed "build" cmake --build --preset release
 step "licences" tests/licences.sh
+step "documents" docs/generate.py build/release --check
 step "tests" run_ctest release --timeout 300
 if [[ $sanitize ]]; then
   needed "configure, sanitizers" cmake --preset asan -DWEFT_WERROR=ON

@@ -57,6 +57,9 @@ void add_mesh(CLI::App& app, Chosen& chosen) {
   add_timeout(mesh, options.timeout_seconds,
               "Give up when the whole call takes longer. Default: never");
   add_output(mesh, options.output);
+  mesh.add_flag("--no-cache", options.wishes.no_cache,
+                "Make the mesh anew, even if the server has it at hand")
+      ->envname("WEFT_NO_CACHE");
   mesh.add_flag("--detach", kept->detach,
                 "Leave the work to the server, print the id of its job and end, as `weft submit` "
                 "does; needs --server");

@@ -8,7 +8,9 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
+#include "client/batch/quality_gate.h"
 #include "client/connect_options.h"
 #include "client/error.h"
 #include "client/mesh_call.h"
@@ -26,6 +28,21 @@ struct MeshOptions {
   bool quiet = false;
 };
 Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop);
+
+struct BatchOptions {
+  std::filesystem::path manifest;
+  ConnectOptions server;
+  std::optional<double> timeout_seconds;  // of each call
+  std::uint32_t jobs = 4;                 // meshes at a time
+  std::vector<QualityGate> gates;         // of all meshes, on top of their own
+  std::filesystem::path lock;             // empty: beside the manifest
+  bool locked = false;                    // the lock file is held to, not written
+  std::filesystem::path junit;            // empty: none
+  std::filesystem::path summary;          // empty: none
+  bool quiet = false;
+};
+// kCheckFailed where a mesh fails a gate or is not the locked one.
+Result<ExitCode> run_batch(const BatchOptions& options, std::stop_token stop);
 
 struct CheckOptions {
   std::filesystem::path mesh;

@@ -2,6 +2,7 @@
 // `weft mesh`: reads a domain, has it meshed, writes files and drawings.
 #include "client/commands/commands.h"
 #include "client/formats/mesh_formats.h"
+#include "client/mesh_into.h"
 #include "client/progress_bar.h"
 
 namespace weft::client {
@@ -19,30 +20,18 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   if (!connection) return tl::unexpected(connection.error());
   times.connected = MeshTimes::Clock::now();
 
-  const auto spool = MeshSpool::create(output->folder());
-  if (!spool) return tl::unexpected(spool.error());
   ProgressBar progress(stderr, options.quiet ? ProgressStyle::kNone : progress_style_of(stderr));
   const MeshCallOptions call{
       .timeout_seconds = options.timeout_seconds,
       .on_progress = [&progress](const v1::Progress& p) { progress.update(p); }};
   MeshWishes wishes = options.wishes;
   wishes.quadtree = options.output.draw_quadtree;
-  const auto report = call_generate_mesh(*connection, *domain, wishes, call, **spool, stop);
-  if (!report) {
-    Error error = report.error();
-    constexpr int kUnavailable = 14;
-    if (connection->server && error.exit == exit_code_of_status(kUnavailable))
-      error.message += "\n  its last lines:\n" + connection->server->last_log_lines();
-    return tl::unexpected(error);
-  }
-  times.received = MeshTimes::Clock::now();
-
-  auto mesh = (*spool)->view();
-  if (!mesh) return tl::unexpected(mesh.error());
-  mesh->input_point_markers = domain->point_markers;
-  if (output->draws()) progress.say("drawing");
-  if (auto written = output->write(*mesh, report->summary); !written)
-    return tl::unexpected(written.error());
+  const auto received = [&] {
+    times.received = MeshTimes::Clock::now();
+    if (output->draws()) progress.say("drawing");
+  };
+  const auto report = mesh_into(*connection, *domain, wishes, call, &*output, received, stop);
+  if (!report) return tl::unexpected(report.error());
   times.written = MeshTimes::Clock::now();
   progress.clear();
 

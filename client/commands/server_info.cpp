@@ -40,6 +40,7 @@ Result<ExitCode> run_server_info(const ServerOptions& options, std::stop_token s
   row("most segments", with_separators(limits.max_segments()));
   row("most seeds", with_separators(limits.max_seeds()));
   row("longest expression", with_separators(limits.max_expression_bytes()) + " bytes");
+  row("largest size raster", with_separators(limits.max_raster_values()) + " values");
   row("most triangles", with_separators(limits.max_triangles()));
   row("most engine memory", with_separators(limits.max_bytes()) + " bytes");
   row("longest job", shortest(limits.max_seconds()) + " s");

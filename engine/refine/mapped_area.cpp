@@ -57,7 +57,7 @@ RingVerdict MappedArea::judge_evaluated(const SizeMap::Place& place, const Ring&
                                         double region_bound, const QualityBounds& quality,
                                         Badness* badness) {
   const std::uint32_t n = last - first;
-  const std::size_t lanes = (n + Expression::kLanes - 1) / Expression::kLanes;
+  const std::size_t lanes = (n + SizeFunction::kLanes - 1) / SizeFunction::kLanes;
   if (lanes > x_.size()) {
     x_.resize(lanes);
     y_.resize(lanes);
@@ -71,11 +71,11 @@ RingVerdict MappedArea::judge_evaluated(const SizeMap::Place& place, const Ring&
     y[i] = p.y + (ring.points[first + i].y + ring.points[first + i + 1].y) * (1.0 / 3);
   }
   // Lanes beyond n are evaluated, too: give them a point of the domain.
-  for (std::uint32_t i = n; i % Expression::kLanes != 0; ++i) {
+  for (std::uint32_t i = n; i % SizeFunction::kLanes != 0; ++i) {
     x[i] = x[0];
     y[i] = y[0];
   }
-  expression_.evaluate(n, x, y, bound);
+  function_.evaluate(n, x, y, bound);
 
   const SizeMap::Node& node = *place.node;
   if (node.may_be_nan || !(node.lo > 0) || !(node.hi < std::numeric_limits<double>::infinity())) {
@@ -117,7 +117,7 @@ void MappedArea::bounds_at(std::size_t n, const double* x, const double* y, doub
   if (const auto size = map_.uniform_size(around)) {
     std::fill_n(bound, n, *size);
   } else {
-    expression_.evaluate(n, x, y, bound);
+    function_.evaluate(n, x, y, bound);
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A grading function that is an expression: evaluated for a ring of triangles at a time, and only
-// where the size map's bounds leave a doubt (size/size_map.h).
+// A grading function that is not the same everywhere: evaluated for a ring of triangles at a time,
+// and only where the size map's bounds leave a doubt (size/size_map.h).
 #pragma once
 
 #include <algorithm>
@@ -22,11 +22,11 @@ namespace weft {
 class MappedArea {
  public:
   // Bounds are multiplied by `coarseness`.
-  MappedArea(const Expression& expression, const SizeMap& map, double coarseness = 1)
-      : expression_(expression), map_(map), coarseness_(coarseness) {}
+  MappedArea(const SizeFunction& function, const SizeMap& map, double coarseness = 1)
+      : function_(function), map_(map), coarseness_(coarseness) {}
 
   // The same, for another thread or another coarseness.
-  MappedArea again(double coarseness = 1) const { return {expression_, map_, coarseness}; }
+  MappedArea again(double coarseness = 1) const { return {function_, map_, coarseness}; }
 
   // A task begins whose rings lie in `box`, most of them.
   void begin(const Box& box);
@@ -42,12 +42,12 @@ class MappedArea {
     return judge_by_cell(ring, first, last, p, region_bound, quality, badness);
   }
 
-  // Insertions between polls: fewer where the expression is long (4,096 powers take 1 ms a ring).
+  // Insertions between polls: fewer where the function is costly (4,096 powers take 1 ms a ring).
   std::uint32_t poll_interval() const {
-    return 1 + static_cast<std::uint32_t>(512 / (1 + expression_.operations() / 16));
+    return 1 + static_cast<std::uint32_t>(512 / (1 + function_.operations() / 16));
   }
 
-  // The grading function at n points. REQUIRES: as Expression::evaluate.
+  // The grading function at n points. REQUIRES: as SizeFunction::evaluate.
   void bounds_at(std::size_t n, const double* x, const double* y, double* bound);
 
   const std::optional<BadSize>& bad_size() const { return bad_size_; }
@@ -55,9 +55,9 @@ class MappedArea {
  private:
   static constexpr std::size_t kGrid = 16;  // cells each way
 
-  // The vectors that hold an expression's batches.
+  // The vectors that hold a function's batches.
   struct alignas(64) Lanes {
-    double values[Expression::kLanes];
+    double values[SizeFunction::kLanes];
   };
 
   // A cell and those around it.
@@ -78,7 +78,7 @@ class MappedArea {
                               std::uint32_t last, Point p, double region_bound,
                               const QualityBounds& quality, Badness* badness);
 
-  const Expression& expression_;
+  const SizeFunction& function_;
   const SizeMap& map_;
   const double coarseness_;
   Box box_;          // where the function is constant; empty at first

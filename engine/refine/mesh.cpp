@@ -86,12 +86,14 @@ Result<Mesh> Mesh::from(const Domain& domain, std::uint64_t max_triangles,
 std::uint32_t Mesh::take_triangle_block(std::uint32_t owner) {
   const std::uint32_t block = triangle_pool->take();
   triangle_owner[block] = owner;
+  triangles.commit_ahead(block << kTriangleShift);
   return block << kTriangleShift;
 }
 
 std::uint32_t Mesh::take_vertex_block(std::uint32_t owner, bool on_segment) {
   const std::uint32_t block = vertex_pool->take();
   vertex_blocks[block] = {owner, 0, on_segment};
+  vertices.commit_ahead(block << kVertexShift);
   return block << kVertexShift;
 }
 

@@ -44,18 +44,6 @@ void Expression::evaluate(std::size_t n, const double* x, const double* y,
   for (std::size_t i = 0; i < n; i += kLanes) program_->threaded.run(x + i, y + i, out + i);
 }
 
-double Expression::operator()(Point p) const noexcept {
-  alignas(64) double x[kLanes];
-  alignas(64) double y[kLanes];
-  alignas(64) double out[kLanes];
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    x[i] = p.x;
-    y[i] = p.y;
-  }
-  evaluate(kLanes, x, y, out);
-  return out[0];
-}
-
 Interval Expression::bounds(const Box& box) const noexcept {
   return expr::bounds(program_->code, box);
 }

@@ -36,10 +36,11 @@
 #include "engine/error.h"
 #include "engine/geometry.h"
 #include "engine/size/interval.h"
+#include "engine/size/size_function.h"
 
 namespace weft {
 
-class Expression {
+class Expression final : public SizeFunction {
  public:
   static constexpr std::size_t kMaxLength = 65536;  // bytes of source
   // Nesting of parentheses, arguments, unary operators, exponents, and what is between ? and :.
@@ -47,7 +48,6 @@ class Expression {
   static constexpr std::size_t kMaxDepth = 256;
   static constexpr std::size_t kMaxOperations = 4096;  // after folding; equal ones count once
   static constexpr std::size_t kMaxRegisters = 256;    // values alive at once, x and y included
-  static constexpr std::size_t kLanes = 8;             // points are evaluated this many at a time
 
   // Errors: kExpressionSyntax with "line, column" and a caret under the offender in the message,
   // kExpressionTooComplex with the limit; the field is "size.expression". Any bytes are safe.
@@ -55,27 +55,23 @@ class Expression {
 
   Expression(Expression&&) noexcept;
   Expression& operator=(Expression&&) noexcept;
-  ~Expression();
+  ~Expression() override;
 
-  // out[i] = value at (x[i], y[i]) for i < n. REQUIRES: all three arrays hold n rounded up to a
-  // multiple of kLanes doubles (the excess is read and written), are aligned to 64 bytes and do not
-  // overlap. Thread-safe; no allocation; does not throw. Cost of 8 lanes: about 1 ns an operation,
-  // 3 a division or sqrt, 14 to 60 a transcendental function, 220 a pow (lanes.h, threaded_code.h).
-  void evaluate(std::size_t n, const double* x, const double* y, double* out) const noexcept;
+  // Cost of 8 lanes: about 1 ns an operation, 3 a division or sqrt, 14 to 60 a transcendental
+  // function, 220 a pow (lanes.h, threaded_code.h).
+  void evaluate(std::size_t n, const double* x, const double* y,
+                double* out) const noexcept override;
 
-  double operator()(Point p) const noexcept;
-
-  // Bounds over the box of what `evaluate` returns, bit for bit: rounding included. Without
-  // transcendental functions nothing is widened, so where the expression is piecewise constant and
-  // the box lies in one piece, lo == hi. A box that is empty or NaN gives anything.
-  Interval bounds(const Box& box) const noexcept;
+  // Without transcendental functions nothing is widened, so where the expression is piecewise
+  // constant and the box lies in one piece, lo == hi.
+  Interval bounds(const Box& box) const noexcept override;
 
   // Whether the value is the same everywhere by the look of the expression: no x and y are left
   // after folding.
   bool is_constant() const noexcept;
 
-  // At most kMaxOperations. For callers that pace their polling by what an evaluation costs.
-  std::size_t operations() const noexcept;
+  // At most kMaxOperations.
+  std::size_t operations() const noexcept override;
 
  private:
   struct Program;

@@ -8,17 +8,27 @@
 
 namespace weft::expr {
 
+namespace {
+
+// Without a value at first: to give all of them one took most of the time of a short program.
+union Register {
+  Register() {}
+  Interval value;
+};
+
+}  // namespace
+
 Interval bounds(const Program& program, const Box& box) noexcept {
-  std::array<Interval, kMaxRegisters> registers;
-  registers[kRegisterX] = coordinate_bounds(box.min_x, box.max_x);
-  registers[kRegisterY] = coordinate_bounds(box.min_y, box.max_y);
+  std::array<Register, kMaxRegisters> registers;
+  registers[kRegisterX].value = coordinate_bounds(box.min_x, box.max_x);
+  registers[kRegisterY].value = coordinate_bounds(box.min_y, box.max_y);
   Interval accumulator;
   const auto read = [&](const Operand& operand) -> Interval {
     switch (operand.from) {
       case Operand::From::kAccumulator:
         return accumulator;
       case Operand::From::kRegister:
-        return registers[operand.reg];
+        return registers[operand.reg].value;
       default:
         return constant_bounds(operand.value);
     }
@@ -35,7 +45,7 @@ Interval bounds(const Program& program, const Box& box) noexcept {
       default:
         accumulator = select_bounds(read(operands[0]), read(operands[1]), read(operands[2]));
     }
-    if (instruction.store) registers[*instruction.store] = accumulator;
+    if (instruction.store) registers[*instruction.store].value = accumulator;
   }
   return accumulator;
 }

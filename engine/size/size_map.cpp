@@ -26,6 +26,16 @@ Box child_box(const Box& box, unsigned child) {
           child & 2 ? box.max_y : m.y};
 }
 
+// Twice the area that the edge from a to b spans with the box's corner farthest to its left, or,
+// `nearest`, to its right.
+double reach(const Box& box, Point a, Point b, bool nearest) {
+  const double dx = b.x - a.x;
+  const double dy = b.y - a.y;
+  const double x = (dy > 0) != nearest ? box.min_x : box.max_x;
+  const double y = (dx > 0) != nearest ? box.max_y : box.min_y;
+  return dx * (y - a.y) - dy * (x - a.x);
+}
+
 // Whether the open box and the counter-clockwise triangle have a point in common, by separating
 // axes.
 bool overlap(const Box& box, const Corners& c) {
@@ -36,13 +46,14 @@ bool overlap(const Box& box, const Corners& c) {
     return false;
   }
   for (unsigned i = 0; i < 3; ++i) {
-    const Point a = c[i];
-    const double dx = c[(i + 1) % 3].x - a.x;
-    const double dy = c[(i + 1) % 3].y - a.y;
-    // The box's corner that is farthest to the left of a -> b.
-    const double x = dy > 0 ? box.min_x : box.max_x;
-    const double y = dx > 0 ? box.max_y : box.min_y;
-    if (dx * (y - a.y) - dy * (x - a.x) <= 0) return false;
+    if (reach(box, c[i], c[(i + 1) % 3], false) <= 0) return false;
+  }
+  return true;
+}
+
+bool inside(const Box& box, const Corners& c) {
+  for (unsigned i = 0; i < 3; ++i) {
+    if (reach(box, c[i], c[(i + 1) % 3], true) <= 0) return false;
   }
   return true;
 }
@@ -85,19 +96,34 @@ bool contains(const Box& outer, const Box& inner) {
          inner.max_y <= outer.max_y;
 }
 
-// A node whose fate is to be decided, with the triangles of the domain that it overlaps.
+// A node whose fate is to be decided, with the triangles of the domain that it overlaps: one at
+// least.
 struct Pending {
   std::uint32_t node = 0;
-  Box box;
+  std::uint32_t first = 0;  // of Level::triangles
+  std::uint32_t count = 0;
+  bool inside = false;  // the only one
+  Box box{};
+};
+
+struct Level {
+  std::vector<Pending> nodes;
   std::vector<std::uint32_t> triangles;
 };
 
 // What a look at a node tells.
 struct Look {
-  Interval bounds;
-  bool split = false;                                 // it is to be split
-  std::array<std::vector<std::uint32_t>, 4> overlap;  // the triangles of each child, then
-  double area = 0;                                    // common with the domain, otherwise
+  Interval bounds{};
+  bool split = false;  // it is to be split
+  bool inside = false;
+  std::array<std::uint32_t, 4> overlaps{};  // how many triangles each child does, then
+  double area = 0;                          // common with the domain, otherwise
+};
+
+// Nodes that one thread looks at.
+struct Group {
+  std::vector<Look> looks;
+  std::vector<std::uint32_t> triangles;  // those of the children, one after the other
   std::optional<Error> stopped;
 };
 
@@ -115,32 +141,39 @@ class Poll {
   std::uint32_t count_ = 0;
 };
 
-double common_area(const Pending& pending, const Domain& domain) {
+double common_area(const Level& level, const Pending& pending, const Domain& domain) {
   double area = 0;
-  for (const std::uint32_t t : pending.triangles)
-    area += common_area(pending.box, corners_of(domain, t));
+  for (std::uint32_t i = 0; i < pending.count; ++i)
+    area += common_area(pending.box, corners_of(domain, level.triangles[pending.first + i]));
   return area;
 }
 
-Look look_at(const Pending& pending, const Expression& size, const Domain& domain, bool may_split,
-             Poll& poll) {
+Look look_at(const Level& level, const Pending& pending, const SizeFunction& size,
+             const Domain& domain, bool may_split, Poll& poll, Group& group) {
+  const std::uint32_t* const triangles = level.triangles.data() + pending.first;
   Look look;
-  if (pending.triangles.empty()) return look;
   look.bounds = size.bounds(pending.box);
   const bool resolved = !look.bounds.may_be_nan && look.bounds.lo > 0 &&
                         look.bounds.hi <= SizeMap::kResolved * look.bounds.lo;
   const double box_area = pending.box.width() * pending.box.height();
   const bool small = box_area <= SizeMap::kSmallBox * look.bounds.lo;
   look.split = !resolved && !small && may_split;
-  for (const std::uint32_t t : pending.triangles) {
-    if ((look.stopped = poll())) return look;
-    const Corners corners = corners_of(domain, t);
-    if (!look.split) {
-      look.area += common_area(pending.box, corners);
-      continue;
+  if (!look.split) {
+    for (std::uint32_t i = 0; i < pending.count; ++i) {
+      if ((group.stopped = poll())) return look;
+      look.area += common_area(pending.box, corners_of(domain, triangles[i]));
     }
-    for (unsigned child = 0; child < 4; ++child) {
-      if (overlap(child_box(pending.box, child), corners)) look.overlap[child].push_back(t);
+    return look;
+  }
+  look.inside = pending.inside ||
+                (pending.count == 1 && inside(pending.box, corners_of(domain, triangles[0])));
+  for (unsigned child = 0; child < 4; ++child) {
+    const Box box = child_box(pending.box, child);
+    for (std::uint32_t i = 0; i < pending.count; ++i) {
+      if ((group.stopped = poll())) return look;
+      if (!look.inside && !overlap(box, corners_of(domain, triangles[i]))) continue;
+      group.triangles.push_back(triangles[i]);
+      ++look.overlaps[child];
     }
   }
   return look;
@@ -148,50 +181,69 @@ Look look_at(const Pending& pending, const Expression& size, const Domain& domai
 
 }  // namespace
 
-Result<SizeMap> SizeMap::build(const Expression& size, const Domain& domain,
+Result<SizeMap> SizeMap::build(const SizeFunction& size, const Domain& domain,
                                const ExecutionContext& context) {
   constexpr int kMaxLevels = 48;
-  constexpr std::size_t kAtATime = 64;  // nodes
+  constexpr std::size_t kAtATime = 256;  // nodes: 20 us at least
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr Node kOutside{-kInfinity, kInfinity, kInfinity, 0, true, false};
   SizeMap map;
   for (Point p : domain.vertices) map.root_.add(p);
-  map.nodes_.push_back({-kInfinity, kInfinity, kInfinity, 0, true, false});
+  map.nodes_.push_back(kOutside);
 
-  std::vector<Pending> level{{0, map.root_, {}}};
-  level[0].triangles.resize(domain.triangles.size());
-  std::iota(level[0].triangles.begin(), level[0].triangles.end(), 0u);
-  for (int depth = 0; !level.empty(); ++depth) {
+  Level level;
+  level.triangles.resize(domain.triangles.size());
+  std::iota(level.triangles.begin(), level.triangles.end(), 0u);
+  if (!level.triangles.empty())
+    level.nodes.push_back(
+        {.count = static_cast<std::uint32_t>(level.triangles.size()), .box = map.root_});
+  std::vector<Group> groups;
+  for (int depth = 0; !level.nodes.empty(); ++depth) {
     if (auto error = context.poll()) return tl::unexpected(*error);
     // The looks on many threads; what comes of them in order.
-    std::vector<Look> looks(level.size());
-    context.for_each((level.size() + kAtATime - 1) / kAtATime, [&](std::size_t group) {
+    groups.resize((level.nodes.size() + kAtATime - 1) / kAtATime);
+    context.for_each(groups.size(), [&](std::size_t g) {
+      Group& group = groups[g];
+      group.looks.clear();
+      group.triangles.clear();
       Poll poll(context);
-      const std::size_t end = std::min((group + 1) * kAtATime, level.size());
-      for (std::size_t i = group * kAtATime; i < end; ++i)
-        looks[i] = look_at(level[i], size, domain, depth < kMaxLevels, poll);
-    });
-    std::vector<Pending> next;
-    for (std::size_t i = 0; i < level.size(); ++i) {
-      Look& look = looks[i];
-      if (look.stopped) return tl::unexpected(*look.stopped);
-      if (level[i].triangles.empty()) continue;
-      const Interval& bounds = look.bounds;
-      Node& node = map.nodes_[level[i].node];
-      node = {bounds.lo, bounds.hi, bounds.hi, 0, bounds.may_be_nan, true};
-      if (look.split && map.nodes_.size() + 4 <= kMaxNodes) {
-        const auto first = static_cast<std::uint32_t>(map.nodes_.size());
-        node.first_child = first;
-        for (unsigned child = 0; child < 4; ++child) {
-          map.nodes_.push_back({-kInfinity, kInfinity, kInfinity, 0, true, false});
-          next.push_back(
-              {first + child, child_box(level[i].box, child), std::move(look.overlap[child])});
-        }
-        continue;
+      const std::size_t end = std::min((g + 1) * kAtATime, level.nodes.size());
+      for (std::size_t i = g * kAtATime; i < end && !group.stopped; ++i) {
+        group.looks.push_back(
+            look_at(level, level.nodes[i], size, domain, depth < kMaxLevels, poll, group));
       }
-      const double area = look.split ? common_area(level[i], domain) : look.area;
-      if (bounds.lo > 0 && !bounds.may_be_nan) map.least_triangles_ += area / bounds.hi;
-      const double guess = bounds.lo > 0 ? std::sqrt(bounds.lo) * std::sqrt(bounds.hi) : bounds.hi;
-      if (guess > 0) map.likely_triangles_ += area / guess;
+    });
+    Level next;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const Group& group = groups[g];
+      if (group.stopped) return tl::unexpected(*group.stopped);
+      auto first = static_cast<std::uint32_t>(next.triangles.size());
+      next.triangles.insert(next.triangles.end(), group.triangles.begin(), group.triangles.end());
+      for (std::size_t i = 0; i < group.looks.size(); ++i) {
+        const Pending& pending = level.nodes[g * kAtATime + i];
+        const Look& look = group.looks[i];
+        const Interval& bounds = look.bounds;
+        const bool split = look.split && map.nodes_.size() + 4 <= kMaxNodes;
+        Node& node = map.nodes_[pending.node];
+        node = {bounds.lo, bounds.hi, bounds.hi, 0, bounds.may_be_nan, true};
+        if (split) {
+          const auto child = node.first_child = static_cast<std::uint32_t>(map.nodes_.size());
+          map.nodes_.resize(child + 4, kOutside);
+          for (unsigned c = 0; c < 4; ++c) {
+            if (look.overlaps[c] == 0) continue;
+            next.nodes.push_back(
+                {child + c, first, look.overlaps[c], look.inside, child_box(pending.box, c)});
+            first += look.overlaps[c];
+          }
+          continue;
+        }
+        first += std::accumulate(look.overlaps.begin(), look.overlaps.end(), 0u);
+        const double area = look.split ? common_area(level, pending, domain) : look.area;
+        if (bounds.lo > 0 && !bounds.may_be_nan) map.least_triangles_ += area / bounds.hi;
+        const double guess =
+            bounds.lo > 0 ? std::sqrt(bounds.lo) * std::sqrt(bounds.hi) : bounds.hi;
+        if (guess > 0) map.likely_triangles_ += area / guess;
+      }
     }
     level = std::move(next);
   }

@@ -10,7 +10,7 @@
 //   - Where the bounds agree, the function need not be evaluated. With the step function of the
 //     cylinder model, 6 % of the rings are evaluated (bench/README.md).
 //
-// Bounds hold bit for bit for what Expression::evaluate returns (interval arithmetic), so the map
+// Bounds hold bit for bit for what SizeFunction::evaluate returns (interval arithmetic), so the map
 // saves evaluations and changes no decision of the rest.
 //
 // Boxes that do not meet the domain are not looked at: a function that reaches 0 in a hole does no
@@ -28,7 +28,7 @@
 #include "engine/domain/domain.h"
 #include "engine/error.h"
 #include "engine/geometry.h"
-#include "engine/size/expression.h"
+#include "engine/size/size_function.h"
 
 namespace weft {
 
@@ -63,7 +63,7 @@ class SizeMap {
   };
 
   // Errors: kCancelled, kDeadlineExceeded.
-  static Result<SizeMap> build(const Expression& size, const Domain& domain,
+  static Result<SizeMap> build(const SizeFunction& size, const Domain& domain,
                                const ExecutionContext& context);
 
   // The smallest node whose box holds `box`.

@@ -156,7 +156,7 @@ JobService::Answer JobService::submit(const Caller& caller, const grpc::ByteBuff
                         .request = request->mesh().SerializeAsString(),
                         .weight = expected_bytes(request->mesh(), options_.limits),
                         .trace = caller.trace,
-                        .no_cache = request->no_cache(),
+                        .no_cache = request->no_cache() || request->mesh().no_cache(),
                         .max_queued = options_.max_queued,
                         .max_queued_of_owner = options_.max_queued_of_owner};
   submission.key = mesh_key(std::move(*request->mutable_mesh()));  // not a third copy of it

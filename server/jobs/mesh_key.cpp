@@ -17,6 +17,7 @@ void make_canonical(v1::GenerateMeshRequest& request) {
   request.clear_threads();
   request.clear_first_chunk();
   request.clear_want_quadtree();
+  request.clear_no_cache();
   const std::uint64_t max_triangles = request.budget().max_triangles();
   request.clear_budget();
   if (max_triangles != 0) request.mutable_budget()->set_max_triangles(max_triangles);

@@ -4,7 +4,7 @@
 //
 // Law: what is spelled differently and means the same has one key: a default that is written out,
 // markers that are all 0. What does not change the mesh is left out: threads, first_chunk,
-// want_quadtree, and of the budget all but max_triangles.
+// want_quadtree, no_cache, and of the budget all but max_triangles.
 #pragma once
 
 #include <string>

@@ -126,5 +126,16 @@ TEST(Unrefined, AsManyAsAreAllowedAreNoViolation) {
   EXPECT_EQ(report.total(Rule::kArea), 8u);
 }
 
+TEST(Area, OfARasterIsBoundAtTheCentroids) {
+  Problem problem = block(4);  // triangles of area 0.5 on [0, 4] x [0, 4]
+  problem.requirements = {.raster = SizeRaster{{0, 0}, 4, 4, 2, 2, {0.5, 0.5, 0.5, 0.5}}};
+  EXPECT_TRUE(problem.check().ok());
+  problem.requirements.raster->values = {0.5, 0.4, 0.5, 0.5};
+  EXPECT_EQ(violated(problem.check()), Rules{Rule::kArea});
+  problem.requirements.raster->values[1] = 0;
+  problem.requirements.raster->values[3] = -1;
+  EXPECT_TRUE(violated(problem.check()).contains(Rule::kSize));
+}
+
 }  // namespace
 }  // namespace weft::check::testing

@@ -94,17 +94,24 @@ void expect_the_same_in_pieces(const Server& server, Open open) {
   EXPECT_GE(torn.torn(), whole.chunks.size() / 2) << "the wire hardly ever tore in time";
 }
 
-TEST(TornAfterEachChunk, GenerateMeshIsResumedByteForByte) {
+// Whether the work is repeated, or the mesh still in the server's memory.
+class TornAfterEachChunk : public testing::TestWithParam<bool> {};
+
+TEST_P(TornAfterEachChunk, GenerateMeshIsResumedByteForByte) {
   const Server server;
   expect_the_same_in_pieces(server, [](const std::string& address, grpc::ClientContext& context,
                                        std::uint32_t first_chunk) {
     v1::GenerateMeshRequest mesh = request();
+    mesh.set_no_cache(GetParam());
     mesh.set_first_chunk(first_chunk);
     return v1::MeshService::NewStub(connect(address))->GenerateMesh(&context, mesh);
   });
 }
 
-TEST(TornAfterEachChunk, FetchMeshIsResumedByteForByte) {
+INSTANTIATE_TEST_SUITE_P(From, TornAfterEachChunk, testing::Values(true, false),
+                         [](const auto& info) { return info.param ? "TheEngine" : "Memory"; });
+
+TEST(TornWire, FetchMeshIsResumedByteForByte) {
   const Folder folder;
   const Server server({"--data", folder / "data"});
   const auto stub = v1::JobService::NewStub(connect(server.address()));

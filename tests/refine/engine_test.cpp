@@ -120,6 +120,49 @@ TEST(Size, WithASpotFinerThanOneHugeTriangleIsFollowed) {
   EXPECT_GT(summary->triangles, 3141u);
 }
 
+// Over the box [0, 65] x [0, 40]: 1, but finer towards the nodes around (50, 11).
+Raster raster_with_a_spot() {
+  Raster raster{{0, 0}, 1, 1, 66, 41, std::vector<double>(66 * 41, 1)};
+  for (const std::size_t j : {11, 12})
+    for (const std::size_t i : {50, 51}) raster.values[j * 66 + i] = 1e-3;
+  return raster;
+}
+
+TEST(Size, OfARasterIsKeptAndFollowed) {
+  MeshRequest request;
+  add_box(request.pslg, {0, 0}, {65, 40});
+  request.size.raster = raster_with_a_spot();
+  const auto summary = mesh_of(request);
+  ASSERT_TRUE(summary);
+  // The spot alone is a square of area 1.
+  EXPECT_GT(summary->triangles, 1'000u + 2'600u);
+  EXPECT_LT(summary->triangles, 15'000u);
+}
+
+TEST(Size, OfARasterThatEndsInsideTheDomainGoesOnAsItEnds) {
+  MeshRequest request;
+  add_box(request.pslg, {-10, -10}, {10, 10});
+  request.size.raster = Raster{{0, 0}, 1, 1, 2, 1, {0.01, 1}};
+  const auto summary = mesh_of(request);
+  ASSERT_TRUE(summary);
+  EXPECT_GT(summary->triangles, 20'000u);  // the left half
+}
+
+TEST(Size, OfARasterBesideAConstantIsRefused) {
+  MeshRequest request{.pslg = square(), .size = {.constant = 1}};
+  request.size.raster = raster_with_a_spot();
+  EXPECT_EQ(error_of(request).field, "size");
+}
+
+TEST(Size, OfARasterWithAValueThatIsNoneNamesIt) {
+  MeshRequest request{.pslg = square()};
+  request.size.raster = raster_with_a_spot();
+  request.size.raster->values[17] = 0;
+  const Error error = error_of(request);
+  EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
+  EXPECT_EQ(error.field, "size.raster.values[17]");
+}
+
 TEST(Size, ThatReachesZeroInAHoleDoesNoHarm) {
   MeshRequest request;
   add_box(request.pslg, {-4, -4}, {4, 4});

@@ -305,5 +305,17 @@ TEST(Streaming, OfFewLeavesBeginsAfterTheCleanUp) {
   EXPECT_LT(leaves, 64u);
 }
 
+TEST(Parallel, OfARasterIsOneMesh) {
+  Raster raster{{0, 0}, 5, 5, 79, 79, {}};
+  for (int j = 0; j < 79; ++j)
+    for (int i = 0; i < 79; ++i) raster.values.push_back(0.2 + (i * 37 + j * 11) % 10 * 0.2);
+  MeshRequest request{.pslg = read_poly(model("pipe.poly"))};
+  request.size.raster = raster;
+  request.leaf_triangles = 2'000;
+  const auto summary = expect_one_mesh(request);
+  ASSERT_TRUE(summary);
+  EXPECT_GT(summary->leaves.size(), 10u);
+}
+
 }  // namespace
 }  // namespace weft

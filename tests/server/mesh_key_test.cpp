@@ -13,6 +13,7 @@ TEST(MeshKey, LeavesOutWhatDoesNotChangeTheMesh) {
   request.set_threads(3);
   request.set_first_chunk(2);
   request.set_want_quadtree(true);
+  request.set_no_cache(true);
   request.mutable_budget()->set_max_bytes(1 << 30);
   request.mutable_budget()->set_max_seconds(5);
   EXPECT_EQ(mesh_key(request), key);
@@ -53,6 +54,7 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"Fill", [](auto& r) { r.mutable_domain()->set_fill(v1::FILL_EVEN_ODD); }},
         Change{"Size", [](auto& r) { r.mutable_size()->set_constant(0.2); }},
         Change{"Expression", [](auto& r) { r.mutable_size()->set_expression("0.1"); }},
+        Change{"Raster", [](auto& r) { r.mutable_size()->mutable_raster()->add_values(1); }},
         Change{"Angle", [](auto& r) { r.mutable_quality()->set_min_angle_deg(21); }},
         Change{"Edge", [](auto& r) { r.mutable_quality()->set_min_edge(1); }},
         Change{"Triangles", [](auto& r) { r.mutable_budget()->set_max_triangles(7); }}),

@@ -29,10 +29,20 @@ ServiceOptions small_limits() {
   options.limits.max_segments = 90;
   options.limits.max_seeds = 80;
   options.limits.max_expression_bytes = 70;
+  options.limits.max_raster_values = 65;
   options.limits.max_triangles = 60;
   options.limits.max_bytes = 50;
   options.limits.max_seconds = 40;
   return options;
+}
+
+void set_raster(v1::GenerateMeshRequest& request, std::uint32_t columns, std::uint32_t rows) {
+  v1::Raster& raster = *request.mutable_size()->mutable_raster();
+  raster.set_dx(1);
+  raster.set_dy(1);
+  raster.set_columns(columns);
+  raster.set_rows(rows);
+  raster.mutable_values()->Resize(static_cast<int>(columns * rows), 1);
 }
 
 EngineFn must_not_run() {
@@ -99,6 +109,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"Expression",
              [](Request& r) { r.mutable_size()->set_expression(std::string(71, '1')); },
              "size.expression", "71 bytes; this server's limit is 70"},
+        Case{"Raster", [](Request& r) { set_raster(r, 11, 6); }, "size.raster.values",
+             "66 values; this server's limit is 65"},
         Case{"Triangles", [](Request& r) { r.mutable_budget()->set_max_triangles(61); },
              "budget.max_triangles", "61 triangles; this server's limit is 60"},
         Case{"Bytes", [](Request& r) { r.mutable_budget()->set_max_bytes(51); }, "budget.max_bytes",
@@ -117,7 +129,23 @@ INSTANTIATE_TEST_SUITE_P(
                            "domain.holes", "1 numbers"},
                       Case{"Markers",
                            [](Request& r) { r.mutable_domain()->add_segment_markers(1); },
-                           "domain.segment_markers", "5 markers for 4 segments"}),
+                           "domain.segment_markers", "5 markers for 4 segments"},
+                      Case{"Raster",
+                           [](Request& r) {
+                             set_raster(r, 3, 2);
+                             r.mutable_size()->mutable_raster()->add_values(1);
+                           },
+                           "size.raster.values", "7 values for 3 columns and 2 rows"},
+                      Case{"EmptyRaster", [](Request& r) { set_raster(r, 0, 0); },
+                           "size.raster.values", "0 values for 0 columns and 0 rows"},
+                      // 2^32 nodes.
+                      Case{"HugeRaster",
+                           [](Request& r) {
+                             set_raster(r, 0, 0);
+                             r.mutable_size()->mutable_raster()->set_columns(1u << 16);
+                             r.mutable_size()->mutable_raster()->set_rows(1u << 16);
+                           },
+                           "size.raster.values", "0 values for 65536 columns"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -140,6 +168,18 @@ INSTANTIATE_TEST_SUITE_P(
              "nan"},
         Case{"SizeInfinite", [](Request& r) { r.mutable_size()->set_constant(kInfinity); },
              "size.constant", "inf"},
+        Case{"RasterOrigin",
+             [](Request& r) {
+               set_raster(r, 2, 2);
+               r.mutable_size()->mutable_raster()->set_y(kNan);
+             },
+             "size.raster.y", "is nan"},
+        Case{"RasterSpacing",
+             [](Request& r) {
+               set_raster(r, 2, 2);
+               r.mutable_size()->mutable_raster()->set_dx(0);
+             },
+             "size.raster.dx", "is 0"},
         Case{"AngleOver", [](Request& r) { r.mutable_quality()->set_min_angle_deg(61); },
              "quality.min_angle_deg", "is 61; it must be from 0 to 34 degrees"},
         Case{"AngleUnder", [](Request& r) { r.mutable_quality()->set_min_angle_deg(-1); },

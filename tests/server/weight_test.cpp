@@ -33,6 +33,14 @@ TEST(Weight, OfAnExpressionIsThatOfItsMean) {
   EXPECT_NEAR(static_cast<double>(half), 0.505 * 16 * 1.55e5 * 48, 1.0 * kMegabyte);
 }
 
+TEST(Weight, OfARasterIsThatOfTheMeanOfItsValuesAndTheirOwn) {
+  v1::GenerateMeshRequest request = valid_request();
+  v1::Raster& raster = *request.mutable_size()->mutable_raster();
+  for (int i = 0; i < 1'000'000; ++i) raster.add_values(i < 500'000 ? 1e-5 : 1e-3);
+  const std::uint64_t half = expected_bytes(request, {}) - weight_of("1");
+  EXPECT_NEAR(static_cast<double>(half), 0.505 * 16 * 1.55e5 * 48 + 16e6, 1.0 * kMegabyte);
+}
+
 TEST(Weight, IsAtMostWhatTheJobMayTake) {
   v1::GenerateMeshRequest request = valid_request();
   request.mutable_size()->set_constant(1e-12);

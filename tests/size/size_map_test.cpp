@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "engine/size/expression.h"
 #include "tests/domain/shapes.h"
 
 namespace weft {

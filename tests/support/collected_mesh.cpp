@@ -67,6 +67,13 @@ std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
   check::Requirements requirements;
   requirements.max_area = request.size.constant;
   requirements.size = request.size.expression;
+  if (const auto& raster = request.size.raster)
+    requirements.raster = {{raster->origin.x, raster->origin.y},
+                           raster->dx,
+                           raster->dy,
+                           raster->columns,
+                           raster->rows,
+                           raster->values};
   requirements.min_angle_deg = request.min_angle_deg;
   // What the engine declares it could not refine may miss its bounds, no more.
   requirements.allowed_unrefined = summary.unrefined.edge_floor + summary.unrefined.budget;

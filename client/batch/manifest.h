@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The meshes that a pipeline wants, as a YAML file. The keys are the flags of `weft mesh`; paths
+// are relative to the file; `defaults` hold where a mesh has no such key.
+//
+//   defaults: {min-angle: 20, require: {min-angle: 20}}
+//   meshes:
+//     - name: pipe
+//       input: models/pipe.poly
+//       size: 0.4*hypot(x-200, y-200) + 1
+//       output: [out/pipe.vtu]
+//       draw: out/pipe.png
+//       require: {max-triangles: 5000}
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "client/batch/quality_gate.h"
+#include "client/error.h"
+#include "client/mesh_output.h"
+#include "client/mesh_request.h"
+
+namespace weft::client {
+
+struct BatchMesh {
+  std::string name;  // unique
+  std::filesystem::path input{};
+  MeshWishes wishes{};
+  MeshOutputOptions output{};
+  std::vector<QualityGate> gates{};
+};
+
+// At least one mesh, in the order of the file. An error (kUnreadableInput) names file, line, key
+// and value.
+Result<std::vector<BatchMesh>> read_manifest(const std::filesystem::path& file);
+
+}  // namespace weft::client

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// The flags of `weft batch`.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "client/cli/command_groups.h"
+#include "client/cli/flags.h"
+#include "client/commands/commands.h"
+#include "client/connect_flags.h"
+
+namespace weft::client {
+namespace {
+
+constexpr char kExamples[] =
+    R"(The manifest, in YAML; its keys are flags of `weft mesh`, its paths are relative to
+it, and what is under `defaults` holds for all:
+  defaults: {min-angle: 20}
+  meshes:
+    - name: pipe
+      input: pipe.poly
+      size: 0.4*hypot(x-200, y-200) + 1
+      output: [out/pipe.vtu]
+      draw: out/pipe.png
+      require: {max-triangles: 5000}
+
+Figures that --require and `require` know: min-angle, max-angle, min-triangles,
+max-triangles, max-vertices, max-unrefined.
+
+Examples:
+  weft batch meshes.yaml                    # makes meshes.lock, too: commit it
+  weft batch meshes.yaml --locked --require min-angle=20 \
+    --junit report.xml --summary summary.md)";
+
+}  // namespace
+
+void add_batch_command(CLI::App& app, Chosen& chosen) {
+  struct Kept {
+    BatchOptions options;
+    std::vector<std::string> gates;
+  };
+  const auto kept = std::make_shared<Kept>();
+  BatchOptions& options = kept->options;
+  CLI::App& batch =
+      *app.add_subcommand("batch", "Mesh what a manifest lists, and judge the meshes");
+  batch.footer(kExamples);
+  batch.add_option("MANIFEST", options.manifest, "List of meshes: .yaml")->required();
+  batch
+      .add_option("--require", kept->gates,
+                  "What every mesh must satisfy, such as min-angle=20; may be repeated")
+      ->allow_extra_args(false)
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            const auto gate = QualityGate::parse(text);
+            return gate ? std::string() : gate.error().message;
+          },
+          "", ""))
+      ->type_name("FIGURE=BOUND");
+  batch
+      .add_flag("--locked", options.locked,
+                "Fail where a mesh is not that of the lock file, and leave the file alone")
+      ->envname("WEFT_LOCKED");
+  batch
+      .add_option("--lock", options.lock,
+                  "File with the digest of each mesh. Default: beside the manifest, with the "
+                  "extension .lock")
+      ->type_name("FILE");
+  batch.add_option("--junit", options.junit, "Report to write, as JUnit XML")->type_name("FILE");
+  batch
+      .add_option("--summary", options.summary,
+                  "Page to write, as Markdown, with the drawings of the meshes")
+      ->type_name("FILE");
+  batch.add_option("--jobs", options.jobs, "Meshes that are made at a time")
+      ->envname("WEFT_JOBS")
+      ->check(CLI::Range(1u, 256u))
+      ->capture_default_str()
+      ->type_name("N");
+  add_server_flags(batch, options.server, WithoutServer::kPrivate);
+  add_timeout(batch, options.timeout_seconds,
+              "Give up on a mesh that takes longer. Default: never");
+  batch.add_flag("--quiet,-q", options.quiet, "Tell of meshes that fail alone")
+      ->envname("WEFT_QUIET");
+  batch.callback([kept, &chosen] {
+    for (const std::string& gate : kept->gates)
+      kept->options.gates.push_back(*QualityGate::parse(gate));
+    chosen.run = [kept](std::stop_token stop) { return run_batch(kept->options, std::move(stop)); };
+  });
+}
+
+}  // namespace weft::client

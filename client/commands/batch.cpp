@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// `weft batch`: meshes what a manifest lists, and judges what comes back.
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <mutex>
+#include <thread>
+
+#include "client/batch/batch_report.h"
+#include "client/batch/lock_file.h"
+#include "client/batch/manifest.h"
+#include "client/commands/commands.h"
+#include "client/formats/mesh_formats.h"
+#include "client/mesh_into.h"
+#include "client/text.h"
+
+namespace weft::client {
+namespace {
+
+Result<void> write_text(const std::filesystem::path& file, const std::string& text) {
+  auto output = OutputFile::create(file, {});
+  if (!output) return tl::unexpected(output.error());
+  output->put(text);
+  std::vector<OutputFile> files;
+  files.push_back(std::move(*output));
+  return commit(files);
+}
+
+// Folders of outputs are made: a fresh checkout has none.
+void make_folders(const MeshOutputOptions& output) {
+  std::error_code ignored;  // opening the file will tell
+  for (const auto* files : {&output.files, &output.drawings})
+    for (const auto& file : *files)
+      std::filesystem::create_directories(file.parent_path(), ignored);
+}
+
+// Where a page can show it.
+std::filesystem::path picture_of(const MeshOutputOptions& output) {
+  const auto found =
+      std::find_if(output.drawings.begin(), output.drawings.end(),
+                   [](const auto& file) { return draw_format(file) != DrawFormat::kPdf; });
+  return found == output.drawings.end() ? std::filesystem::path() : *found;
+}
+
+Result<v1::Summary> make_mesh(const BatchMesh& mesh, const Connection& connection,
+                              const BatchOptions& options, const std::stop_token& stop) {
+  const auto domain = read_domain(mesh.input);
+  if (!domain) return tl::unexpected(domain.error());
+  std::optional<MeshOutput> output;
+  if (!mesh.output.empty()) {
+    make_folders(mesh.output);
+    auto opened = MeshOutput::open(mesh.output, mesh.input, stop);
+    if (!opened) return tl::unexpected(opened.error());
+    output.emplace(std::move(*opened));
+  }
+  const auto report = mesh_into(
+      connection, *domain, mesh.wishes, {.timeout_seconds = options.timeout_seconds},
+      output ? &*output : nullptr, [] {}, stop);
+  if (!report) return tl::unexpected(report.error());
+  return report->summary;
+}
+
+std::string line_of(const BatchOutcome& outcome) {
+  std::string line = (outcome.passed() ? "passed  "
+                      : outcome.error  ? "ERROR   "
+                                       : "FAILED  ") +
+                     harmless(outcome.name);
+  if (outcome.summary)
+    line += "  " + with_separators(outcome.summary->triangles()) + " triangles, " +
+            seconds_text(outcome.seconds);
+  if (outcome.error) line += "\n        " + outcome.error->message;
+  for (const std::string& failure : outcome.failures) line += "\n        " + failure;
+  return line + "\n";
+}
+
+// Makes all meshes, so many at a time, and tells each as it is done.
+std::vector<BatchOutcome> make_all(const std::vector<BatchMesh>& meshes,
+                                   const Connection& connection, const BatchOptions& options,
+                                   const std::optional<LockFile>& locked, LockFile& made,
+                                   const std::stop_token& stop) {
+  std::vector<BatchOutcome> outcomes(meshes.size());
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;  // guards `made` and standard output
+  const auto work = [&] {
+    for (std::size_t i = next++; i < meshes.size(); i = next++) {
+      const BatchMesh& mesh = meshes[i];
+      BatchOutcome& outcome = outcomes[i];
+      outcome.name = mesh.name;
+      outcome.drawing = picture_of(mesh.output);
+      const auto start = MeshTimes::Clock::now();
+      auto summary = make_mesh(mesh, connection, options, stop);
+      outcome.seconds = std::chrono::duration<double>(MeshTimes::Clock::now() - start).count();
+      const std::lock_guard lock(mutex);
+      if (summary) {
+        made.add(mesh.name, *summary);
+        for (const auto* gates : {&mesh.gates, &options.gates})
+          for (const QualityGate& gate : *gates)
+            if (auto why = gate.violation(*summary)) outcome.failures.push_back(*why);
+        if (locked)
+          if (auto why = locked->change(mesh.name, made)) outcome.failures.push_back(*why);
+        outcome.summary = std::move(*summary);
+      } else {
+        outcome.error = summary.error();
+      }
+      if (!options.quiet || !outcome.passed()) std::fputs(line_of(outcome).c_str(), stdout);
+      std::fflush(stdout);
+    }
+  };
+  std::vector<std::jthread> threads;
+  for (std::uint32_t t = 0; t < std::min<std::size_t>(options.jobs, meshes.size()); ++t)
+    threads.emplace_back(work);
+  threads.clear();
+  return outcomes;
+}
+
+Result<void> write_reports(const std::vector<BatchOutcome>& outcomes, const BatchOptions& options) {
+  if (!options.junit.empty())
+    if (auto ok = write_text(options.junit, junit_xml(outcomes)); !ok) return ok;
+  if (options.summary.empty()) return {};
+  const auto folder = options.summary.parent_path();
+  return write_text(
+      options.summary,
+      markdown_summary(outcomes, folder.empty() ? std::filesystem::path(".") : folder));
+}
+
+}  // namespace
+
+Result<ExitCode> run_batch(const BatchOptions& options, std::stop_token stop) {
+  const auto meshes = read_manifest(options.manifest);
+  if (!meshes) return tl::unexpected(meshes.error());
+  const auto lock_path = options.lock.empty()
+                             ? std::filesystem::path(options.manifest).replace_extension(".lock")
+                             : options.lock;
+  std::optional<LockFile> locked;
+  if (options.locked) {
+    auto read = read_lock_file(lock_path);
+    if (!read) return tl::unexpected(read.error());
+    locked = std::move(*read);
+  }
+  const auto connection = connect(options.server, stop);
+  if (!connection) return tl::unexpected(connection.error());
+
+  LockFile made;
+  const auto outcomes = make_all(*meshes, *connection, options, locked, made, stop);
+  if (auto written = write_reports(outcomes, options); !written)
+    return tl::unexpected(written.error());
+  bool all_passed = true;
+  for (const BatchOutcome& outcome : outcomes) {
+    if (outcome.error)
+      return fail(outcome.error->exit, harmless(outcome.name) + ": " + outcome.error->message);
+    all_passed &= outcome.passed();
+  }
+  if (locked) {
+    for (const auto& [name, mesh] : locked->meshes) {
+      if (made.meshes.contains(name)) continue;
+      std::printf("FAILED  %s\n        locked, but %s has no such mesh\n", harmless(name).c_str(),
+                  options.manifest.c_str());
+      all_passed = false;
+    }
+  }
+  if (!all_passed) return ExitCode::kCheckFailed;
+  if (!locked)
+    if (auto written = write_lock_file(lock_path, made); !written)
+      return tl::unexpected(written.error());
+  return ExitCode::kOk;
+}
+
+}  // namespace weft::client

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Graded, guaranteed-quality Delaunay meshes from a weft server, as numpy arrays.
+
+    import weft
+
+    with weft.local() as client:                  # or weft.Client("mesh.example.org:7421", tls=True)
+        mesh = client.mesh("coast.geojson", size="1e-3 + 1e-2*hypot(x+74, y-40.5)^2", min_angle=30)
+    mesh.points, mesh.triangles                   # (n, 2) float64, (m, 3) int32
+    mesh.write("coast.vtu")
+
+Lengths are in the unit of the domain, areas in its square, angles in degrees, times in seconds.
+"""
+
+from . import aio
+from ._requests import MeshOptions
+from ._target import TLS
+from ._wire import Chunk
+from .client import Client, MeshStream
+from .domain import Domain, DomainLike, Region
+from .errors import (AlreadyExists, Cancelled, DamagedStream, DeadlineExceeded, DomainError,
+                     FailedPrecondition, FieldViolation, InvalidRequest, LimitExceeded,
+                     LocalServerError, MeshFileError, MissingPackage, NotFound, ServerError,
+                     Unauthenticated, Unavailable, WeftError)
+from .local import LocalServer, local
+from .mesh import Mesh
+from .quality import Quality
+from .results import (Accepted, Job, JobState, Progress, ServerInfo, ServerLimits, Summary, Timings,
+                      Unrefined)
+from .size import Raster, Size
+
+__all__ = [
+    "Accepted", "AlreadyExists", "Cancelled", "Chunk", "Client", "DamagedStream", "DeadlineExceeded",
+    "Domain", "DomainError", "DomainLike", "FailedPrecondition", "FieldViolation", "InvalidRequest",
+    "Job", "JobState", "LimitExceeded", "LocalServer", "LocalServerError", "Mesh", "MeshFileError",
+    "MeshOptions", "MeshStream", "MissingPackage", "NotFound", "Progress", "Quality", "Raster", "Region",
+    "ServerError", "ServerInfo", "ServerLimits", "Size", "Summary", "TLS", "Timings",
+    "Unauthenticated", "Unavailable", "Unrefined", "WeftError", "aio", "local",
+]

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A domain from Triangle's .poly file (https://www.cs.cmu.edu/~quake/triangle.poly.html)."""
+
+from __future__ import annotations
+
+import pathlib
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import DomainError
+
+
+class _Lines:
+    """The lines of a file that say something, one after the other."""
+
+    def __init__(self, path: pathlib.Path) -> None:
+        stripped = (line.partition("#")[0].strip() for line in path.read_text().splitlines())
+        self._lines = [line for line in stripped if line]
+        self._at = 0
+
+    def header(self, what: str, least: int) -> list[int]:
+        if self._at >= len(self._lines):
+            raise DomainError(f"it ends where the number of {what} should be")
+        numbers = self.table(what, 1, least)[0]
+        return [int(number) for number in numbers] + [0] * 4
+
+    def table(self, what: str, rows: int, least: int) -> npt.NDArray[np.float64]:
+        """(rows, at least `least`)."""
+        lines = self._lines[self._at:self._at + rows]
+        self._at += rows
+        if len(lines) < rows:
+            raise DomainError(f"it ends after {len(lines)} of {rows} {what}")
+        if rows == 0:
+            return np.zeros((0, least))
+        try:
+            table = np.loadtxt(lines, ndmin=2)
+        except ValueError as error:
+            raise DomainError(f"{what}: {error}") from None
+        if table.shape[1] < least:
+            raise DomainError(f"{what}: {table.shape[1]} numbers a line, expected {least}")
+        return table
+
+    def ended(self) -> bool:
+        return self._at >= len(self._lines)
+
+
+def _numbered(table: npt.NDArray[np.float64], what: str) -> int:
+    """The first number of rows that are numbered in order."""
+    first = int(table[0, 0]) if len(table) else 0
+    if not np.array_equal(table[:, 0], np.arange(first, first + len(table))) or first not in (0, 1):
+        raise DomainError(f"the {what} are not numbered in order from 0 or 1")
+    return first
+
+
+def read(path: pathlib.Path, region: Callable[..., Any]) -> dict[str, Any]:
+    """The arguments of Domain; `region` makes a Region of x, y, id and max_area."""
+    lines = _Lines(path)
+    count = lines.header("points", 1)[0]
+    if count:
+        vertices = lines.table("points", count, 3)
+    else:
+        beside = _Lines(path.with_suffix(".node"))
+        vertices = beside.table("points", beside.header("points", 1)[0], 3)
+    first = _numbered(vertices, "points")
+    count, marked, *_ = lines.header("segments", 1)
+    segments = lines.table("segments", count, 4 if marked else 3)
+    holes = lines.table("holes", lines.header("holes", 1)[0], 3)
+    count = 0 if lines.ended() else lines.header("regions", 1)[0]
+    regions = []
+    for _, x, y, attribute, *area in lines.table("regions", count, 4):
+        if attribute != int(attribute):
+            raise DomainError(f"a region has the attribute {attribute}, which is no integer")
+        regions.append(region(x, y, int(attribute), area[0] if area and area[0] > 0 else None))
+    return {
+        "points": vertices[:, 1:3],
+        "segments": segments[:, 1:3] - first,
+        "markers": segments[:, 3] if marked else np.zeros(0, np.int32),
+        "holes": holes[:, 1:3],
+        "regions": regions,
+        "fill": "seeds",
+    }

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a user asks for, as messages."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, TypedDict
+
+from . import _protocol
+from .domain import Domain
+from .errors import DomainError
+from .size import Raster, Size
+
+
+class MeshOptions(TypedDict, total=False):
+    """What else a mesh may be asked for; the defaults are the server's."""
+
+    min_edge: float
+    """No edge shorter than this is made, in the unit of the points."""
+    max_triangles: int
+    """Refinement stops here and gives the mesh that it has."""
+    max_seconds: float
+    """Of work; over it, DeadlineExceeded."""
+    threads: int
+    """That compute, at most; the mesh does not depend on it. Default: all of the server."""
+    quadtree: bool
+    """Whether `summary.leaf_boxes` is filled."""
+    no_cache: bool
+    """Make the mesh anew, even if the server has it at hand."""
+
+
+_Request = _protocol.message("weft.v1.GenerateMeshRequest")
+_FILLS = {"seeds": 1, "even-odd": 2}
+
+
+def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOptions) -> Any:
+    """A GenerateMeshRequest."""
+    unknown = set(options) - set(MeshOptions.__annotations__)
+    if unknown:
+        raise TypeError(f"unknown option {sorted(unknown)[0]!r}; there are "
+                        f"{', '.join(MeshOptions.__annotations__)}")
+    request = _Request()
+    _fill_domain(domain, request.domain)
+    _fill_size(size, domain, request.size)
+    request.quality.min_angle_deg = min_angle
+    if "min_edge" in options:
+        request.quality.min_edge = options["min_edge"]
+    if "max_triangles" in options:
+        request.budget.max_triangles = options["max_triangles"]
+    if "max_seconds" in options:
+        request.budget.max_seconds = options["max_seconds"]
+    request.threads = options.get("threads", 0)
+    request.want_quadtree = options.get("quadtree", False)
+    request.no_cache = options.get("no_cache", False)
+    return request
+
+
+def _fill_domain(domain: Domain, message: Any) -> None:
+    message.points.extend(domain.points.ravel().tolist())
+    message.segments.extend(domain.segments.ravel().tolist())
+    if domain.markers.any():
+        message.segment_markers.extend(domain.markers.tolist())
+    message.holes.extend(domain.holes.ravel().tolist())
+    for region in domain.regions:
+        message.regions.add(x=region.x, y=region.y, id=region.id, max_area=region.max_area)
+    message.fill = _FILLS[domain.fill]
+
+
+def _fill_size(size: Size, domain: Domain, message: Any) -> None:
+    if size is None:
+        return
+    if callable(size):
+        if not len(domain.points):
+            raise DomainError("the domain has no points")
+        (left, bottom), (right, top) = domain.points.min(axis=0), domain.points.max(axis=0)
+        size = Raster.sample(size, (left, bottom, right, top))
+    if isinstance(size, Raster):
+        raster = message.raster
+        raster.x, raster.y = size.origin
+        raster.dx, raster.dy = size.spacing
+        raster.rows, raster.columns = size.values.shape
+        raster.values.extend(size.values.ravel().tolist())
+        return
+    if isinstance(size, str):
+        try:
+            size = float(size)
+        except ValueError:
+            message.expression = size
+            return
+    if not (isinstance(size, (int, float)) and math.isfinite(size)):
+        raise DomainError(f"size is {size!r}; see weft.Size")
+    message.constant = size

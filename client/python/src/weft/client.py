@@ -1,0 +1,298 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The client that blocks. weft.aio has its twin for asyncio."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Iterator
+from types import TracebackType
+from typing import Any, Self, Unpack
+
+import grpc
+
+from . import _jobs, _protocol, _target, errors, results
+from ._receiver import MeshReceiver
+from ._requests import MeshOptions, mesh_request
+from ._retry import Retry
+from ._wire import Chunk
+from .domain import DomainLike, as_domain
+from .mesh import Mesh
+from .results import Job, JobState, Progress, ServerInfo
+from .size import Size
+
+
+class Client:
+    """A connection to a server. Thread-safe; a context manager that closes it.
+
+    `target`: "host:port" or "unix:/path"; default: $WEFT_SERVER. `token`: the bearer token; default:
+    $WEFT_TOKEN. `tls`: True, or a TLS. `insecure`: send a token unencrypted even to other machines.
+    `retries`: how often a call is made again, one after the other without anything new, where the
+    server was away or asks for it; streams go on where they broke.
+
+    Methods raise ServerError (errors.py) when a call fails in the end, and DamagedStream for what
+    is no mesh. Every `timeout` is in seconds, of all attempts together; default: none.
+
+        with weft.Client("mesh.example.org:7421", tls=True) as client:
+            mesh = client.mesh("pipe.poly", size="0.4*hypot(x-200, y-200) + 1", min_angle=30)
+    """
+
+    def __init__(self, target: str | None = None, *, token: str | None = None,
+                 tls: _target.TLS | bool | None = None, insecure: bool = False,
+                 retries: int = 8) -> None:
+        connection = _target.connection(target, token, tls, insecure)
+        self.target = connection.target
+        self._metadata = connection.metadata
+        self._retries = retries
+        if connection.credentials is None:
+            self._channel = grpc.insecure_channel(self.target, connection.options)
+        else:
+            self._channel = grpc.secure_channel(self.target, connection.credentials,
+                                                connection.options)
+
+    def close(self) -> None:
+        """Ends the connection and the calls on it."""
+        self._channel.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.close()
+
+    def mesh(self, domain: DomainLike, size: Size = None, min_angle: float = 20, *,
+             on_progress: Callable[[Progress], object] | None = None, timeout: float | None = None,
+             **options: Unpack[MeshOptions]) -> Mesh:
+        """Meshes a domain.
+
+        `domain`: see DomainLike. `size`: see Size. `min_angle`: lower bound on every angle, in
+        degrees, 0 to 34. `on_progress`: called a few times a second. `options`: see MeshOptions.
+        """
+        with self.stream(domain, size, min_angle, on_progress=on_progress, timeout=timeout,
+                         **options) as stream:
+            return stream.mesh()
+
+    def stream(self, domain: DomainLike, size: Size = None, min_angle: float = 20, *,
+               on_progress: Callable[[Progress], object] | None = None,
+               timeout: float | None = None, **options: Unpack[MeshOptions]) -> MeshStream:
+        """As `mesh`, but gives the chunks while the rest of the mesh is refined.
+
+            with client.stream("coast.geojson", size=1e-4) as stream:
+                for chunk in stream:
+                    total += len(chunk.triangles)
+            print(stream.summary.digest)
+        """
+        domain = as_domain(domain)
+        request = mesh_request(domain, size, min_angle, options)
+        return MeshStream(self, _protocol.GENERATE_MESH, request, timeout, on_progress,
+                          MeshReceiver(len(domain.points), len(domain.segments)))
+
+    def server_info(self) -> ServerInfo:
+        """What the server is and what it admits."""
+        return results.server_info(self._call(_protocol.GET_SERVER_INFO))
+
+    def submit(self, domain: DomainLike, size: Size = None, min_angle: float = 20, *,
+               request_id: str | None = None, timeout: float | None = None,
+               **options: Unpack[MeshOptions]) -> Job:
+        """Has the mesh made while nobody waits; the server must keep jobs.
+
+        `request_id`: a submission that is repeated with the same one finds the same job; default:
+        one by chance. The rest is as in `mesh`.
+        """
+        mesh = mesh_request(as_domain(domain), size, min_angle, options)
+        answer = self._call(_protocol.SUBMIT_JOB, timeout, mesh=mesh, no_cache=mesh.no_cache,
+                            request_id=_jobs.request_id(request_id))
+        return results.job(answer.job)
+
+    def get_job(self, job: Job | str) -> Job:
+        """The job of this id, as it is now."""
+        return results.job(self._call(_protocol.GET_JOB, id=_jobs.id_of(job)).job)
+
+    def list_jobs(self, states: Iterable[JobState] = (), limit: int | None = None) -> list[Job]:
+        """One's own jobs, the youngest first; in one of the states, default: all."""
+        pages = _jobs.Pages(states, limit)
+        while pages.wanted():
+            pages.take(self._call(_protocol.LIST_JOBS, **pages.request()))
+        return pages.jobs
+
+    def watch(self, job: Job | str, timeout: float | None = None) -> Iterator[Job]:
+        """The job at once, and again whenever it changes; the last is final."""
+        watch = _jobs.Watch()
+        retry = self._retry(timeout)
+        while True:
+            call = self._stream(_protocol.WATCH_JOB, retry, id=_jobs.id_of(job))
+            try:
+                for message in call:
+                    if (seen := watch.take(message.job)) is not None:
+                        retry.restart()
+                        yield seen
+                if watch.ended:
+                    return
+                error: errors.ServerError = errors.Unavailable(
+                    f"the server {self.target} ended the watch before the job", code="UNAVAILABLE")
+            except grpc.RpcError as broken:
+                if watch.ended:
+                    return
+                error = errors.of_call(broken, self.target)
+            finally:
+                call.cancel()
+            self._wait(retry.wait_after(error))
+
+    def wait(self, job: Job | str, *, on_progress: Callable[[Progress], object] | None = None,
+             timeout: float | None = None) -> Job:
+        """The job, once it has succeeded; raises its error where it failed or was cancelled."""
+        for seen in self.watch(job, timeout):
+            if on_progress and seen.progress:
+                on_progress(seen.progress)
+        if seen.error:
+            raise seen.error
+        return seen
+
+    def cancel(self, job: Job | str) -> Job:
+        """Ends a job that has not ended; does nothing to one that has."""
+        return results.job(self._call(_protocol.CANCEL_JOB, id=_jobs.id_of(job)).job)
+
+    def delete(self, job: Job | str) -> None:
+        """Forgets a job that has ended; FailedPrecondition for one that has not."""
+        self._call(_protocol.DELETE_JOB, id=_jobs.id_of(job))
+
+    def fetch(self, job: Job | str, timeout: float | None = None) -> Mesh:
+        """The mesh of a job that succeeded; FailedPrecondition before that."""
+        with self.stream_job(job, timeout) as stream:
+            return stream.mesh()
+
+    def stream_job(self, job: Job | str, timeout: float | None = None) -> MeshStream:
+        """As `fetch`, but gives the chunks as they come."""
+        request = _protocol.FETCH_MESH.request(id=_jobs.id_of(job))
+        return MeshStream(self, _protocol.FETCH_MESH, request, timeout, None, MeshReceiver())
+
+    def _retry(self, timeout: float | None) -> Retry:
+        return Retry(self._retries, timeout, self.target)
+
+    def _wait(self, seconds: float) -> None:
+        # A connection comes back only while someone waits for it.
+        def changed(state: grpc.ChannelConnectivity) -> None:
+            pass
+        self._channel.subscribe(changed, try_to_connect=True)
+        time.sleep(seconds)
+        self._channel.unsubscribe(changed)
+
+    def _call(self, method: _protocol.Method, timeout: float | None = None, **fields: Any) -> Any:
+        call = self._channel.unary_unary(method.path, method.request.SerializeToString,
+                                         method.response.FromString)
+        retry = self._retry(timeout)
+        repeated = False
+        while True:
+            try:
+                return call(method.request(**fields), timeout=retry.time_left(),
+                            metadata=self._metadata)
+            except grpc.RpcError as broken:
+                error = errors.of_call(broken, self.target)
+            # Where the answer to the first attempt was lost, the job may be gone already.
+            if repeated and method is _protocol.DELETE_JOB and isinstance(error, errors.NotFound):
+                return method.response()
+            self._wait(retry.wait_after(error))
+            repeated = True
+
+    def _stream(self, method: _protocol.Method, retry: Retry, **fields: Any) -> Any:
+        call = self._channel.unary_stream(method.path, method.request.SerializeToString,
+                                          method.response.FromString)
+        return call(method.request(**fields), timeout=retry.time_left(), metadata=self._metadata)
+
+    def _raw_stream(self, method: _protocol.Method, request: Any, retry: Retry) -> Any:
+        call = self._channel.unary_stream(method.path, method.request.SerializeToString)
+        return call(request, timeout=retry.time_left(), metadata=self._metadata)
+
+
+class MeshStream(Iterator[Chunk]):
+    """The chunks of a mesh, in order, each verified; then `summary`.
+
+    A stream that broke goes on where it was: a mesh that is being made is made again and what is
+    there already is not sent twice. After Unavailable was raised, iteration may be tried again
+    later. Leaving its context, or `close`, ends the work on the server. Not thread-safe.
+    """
+
+    def __init__(self, client: Client, method: _protocol.Method, request: Any,
+                 timeout: float | None, on_progress: Callable[[Progress], object] | None,
+                 receiver: MeshReceiver) -> None:
+        self._client = client
+        self._method = method
+        self._request = request
+        self._retry = client._retry(timeout)
+        self._on_progress = on_progress
+        self._receiver = receiver
+        self._call: Any = None
+
+    @property
+    def accepted(self) -> results.Accepted | None:
+        """Which job it is, once the server admitted it."""
+        return self._receiver.accepted
+
+    @property
+    def summary(self) -> results.Summary | None:
+        """What the mesh is like, once all chunks are there."""
+        return self._receiver.summary
+
+    def mesh(self) -> Mesh:
+        """Receives what is left and gives the whole mesh, also the chunks iterated over before."""
+        for _ in self:
+            pass
+        return self._receiver.mesh()
+
+    def close(self) -> None:
+        """Ends the call; does nothing to a stream that has ended."""
+        if self._call is not None:
+            self._call.cancel()
+            self._call = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None,
+                 traceback: TracebackType | None) -> None:
+        self.close()
+
+    def __iter__(self) -> Self:
+        return self
+
+    def __next__(self) -> Chunk:
+        while self._receiver.summary is None:
+            try:
+                message = next(self._open(), None)
+            except grpc.RpcError as broken:
+                self._call = None
+                self._client._wait(self._retry.wait_after(errors.of_call(broken, self._client.target)))
+                continue
+            if message is None:
+                raise errors.DamagedStream("the stream is damaged: it ended without a summary")
+            came = self._receive(message)
+            if isinstance(came, Chunk):
+                self._retry.restart()
+                return came
+            if came and self._on_progress:
+                self._on_progress(came)
+        self._finish()
+        raise StopIteration
+
+    def _open(self) -> Any:
+        if self._call is None:
+            self._request.first_chunk = self._receiver.chunks
+            self._receiver.resume()
+            self._call = self._client._raw_stream(self._method, self._request, self._retry)
+        return self._call
+
+    def _receive(self, message: bytes) -> Chunk | Progress | None:
+        try:
+            return self._receiver.receive(message)
+        except BaseException:
+            self.close()
+            raise
+
+    def _finish(self) -> None:
+        """Lets the call end by itself. What follows the summary does not matter: the mesh is whole."""
+        call, self._call = self._call, None
+        if call is not None:
+            try:
+                for _ in call:
+                    pass
+            except grpc.RpcError:
+                pass

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What to mesh: a planar straight-line graph, and where it comes from.
+
+Input may be dirty: segments may cross, overlap and repeat, points may coincide. The server resolves
+all of it exactly.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import pathlib
+from collections.abc import Sequence
+from typing import Any, Literal, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _geojson, _poly
+from .errors import DomainError
+
+Fill = Literal["seeds", "even-odd"]
+
+
+@dataclasses.dataclass(frozen=True)
+class Region:
+    """A seed that floods the face around it, up to the segments.
+
+    `x`, `y`: inside the face, in the unit of the points. `id`: carried by every triangle of the
+    face, 32 bits. `max_area`: bound on the area of its triangles, in squared units, on top of the
+    size; None: no bound.
+    """
+
+    x: float
+    y: float
+    id: int = 0
+    max_area: float | None = None
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Domain:
+    """A planar straight-line graph.
+
+    `points`: (n, 2) float64, in any unit, magnitudes up to 1e50.
+    `segments`: (k, 2) int32, indices of points.
+    `markers`: (k,) int32, carried by the mesh edges on each segment; default: all 0.
+    `holes`: (h, 2) float64, seeds: the face around each is carved away.
+    `regions`: seeds of faces with an id and an area bound of their own.
+    `fill`: "seeds" meshes every bounded face that no hole floods; "even-odd" the points inside an
+    odd number of rings, as polygons mean it.
+
+    Raises DomainError where shapes, types or numbers make no sense; what only geometry can tell is
+    the server's to find.
+
+        Domain([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)])
+        Domain.read("coast.geojson")
+    """
+
+    points: npt.NDArray[np.float64]
+    segments: npt.NDArray[np.int32]
+    markers: npt.NDArray[np.int32] = dataclasses.field(default_factory=lambda: np.zeros(0, np.int32))
+    holes: npt.NDArray[np.float64] = dataclasses.field(default_factory=lambda: np.zeros((0, 2)))
+    regions: Sequence[Region] = ()
+    fill: Fill = "seeds"
+
+    def __post_init__(self) -> None:
+        points = _floats("points", self.points)
+        segments = _integers("segments", self.segments, np.int32).reshape(-1, 2)
+        markers = _integers("markers", self.markers, np.int32).reshape(-1)
+        if not len(markers):
+            markers = np.zeros(len(segments), np.int32)
+        if len(markers) != len(segments):
+            raise DomainError(f"markers: {len(markers)} for {len(segments)} segments")
+        if len(segments) and not (0 <= segments.min() and segments.max() < len(points)):
+            bad = np.argwhere((segments < 0) | (segments >= len(points)))[0]
+            raise DomainError(f"segments[{bad[0]}] names point {segments[tuple(bad)]} of {len(points)}")
+        if self.fill not in ("seeds", "even-odd"):
+            raise DomainError(f"fill is {self.fill!r}; there are 'seeds' and 'even-odd'")
+        for name, value in (("points", points), ("segments", segments), ("markers", markers),
+                            ("holes", _floats("holes", self.holes)), ("regions", tuple(self.regions))):
+            object.__setattr__(self, name, value)
+
+    @staticmethod
+    def rings(*rings: npt.ArrayLike) -> Domain:
+        """A polygon from arrays (n, 2): what lies inside an odd number of the rings.
+
+        A ring's last point leads to its first, and may repeat it.
+        """
+        return Domain.geojson({"type": "MultiLineString", "coordinates": ()} if not rings else {
+            "type": "Polygon", "coordinates": [_closed(i, ring) for i, ring in enumerate(rings)]})
+
+    @staticmethod
+    def geojson(json: dict[str, Any]) -> Domain:
+        """From a GeoJSON object (RFC 7946), as `json.load` gives it.
+
+        With polygons, the points inside an odd number of rings are meshed, and lines become edges;
+        of lines alone, every bounded face. Points become vertices. The members `marker`, `region`
+        (integers) and `max_area` of a feature's properties are read.
+        """
+        return Domain(**_geojson.read(json, Region))
+
+    @staticmethod
+    def read(path: str | os.PathLike[str]) -> Domain:
+        """From a file: .poly (Triangle), .geojson or .json.
+
+        Raises DomainError where its contents make no sense, OSError where it cannot be read.
+        """
+        path = pathlib.Path(path)
+        try:
+            if path.suffix == ".poly":
+                return Domain(**_poly.read(path, Region))
+            if path.suffix in (".geojson", ".json"):
+                return Domain.geojson(json.loads(path.read_text()))
+        except ValueError as error:
+            raise DomainError(f"{path}: {error}") from None
+        raise DomainError(f"{path}: domains are read from .poly, .geojson and .json")
+
+
+DomainLike = Union[Domain, str, "os.PathLike[str]", dict[str, Any], npt.NDArray[Any],
+                   Sequence[npt.NDArray[Any]], Any]
+"""What is taken for a domain: a Domain; the path of a file; a GeoJSON object; whatever has a
+`__geo_interface__`, such as a shapely geometry or a GeoDataFrame; an array (n, 2), the ring of a
+polygon, or a sequence of them."""
+
+
+def as_domain(domain: DomainLike) -> Domain:
+    """See DomainLike. Raises DomainError."""
+    if isinstance(domain, Domain):
+        return domain
+    if isinstance(domain, (str, os.PathLike)):
+        return Domain.read(domain)
+    if isinstance(domain, dict):
+        return Domain.geojson(domain)
+    if hasattr(domain, "__geo_interface__"):
+        return Domain.geojson(domain.__geo_interface__)
+    if isinstance(domain, np.ndarray) and domain.ndim == 2:
+        return Domain.rings(domain)
+    if isinstance(domain, (Sequence, np.ndarray)) and len(domain) and np.ndim(domain[0]) == 2:
+        return Domain.rings(*domain)
+    raise DomainError(f"a {type(domain).__name__} is no domain; see weft.DomainLike")
+
+
+def _closed(index: int, ring: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    points = _floats(f"ring {index}", ring)
+    if len(points) and (points[0] != points[-1]).any():
+        points = np.concatenate([points, points[:1]])
+    return points
+
+
+def _floats(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """(n, 2), all finite."""
+    try:
+        array = np.ascontiguousarray(values, np.float64)
+    except (TypeError, ValueError) as error:
+        raise DomainError(f"{name}: {error}") from None
+    if array.size == 0:
+        return array.reshape(0, 2)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise DomainError(f"{name}: an array {array.shape}, expected (n, 2)")
+    if not np.isfinite(array).all():
+        bad = np.argwhere(~np.isfinite(array))[0][0]
+        raise DomainError(f"{name}[{bad}] is {tuple(array[bad])}, not finite")
+    return array
+
+
+def _integers(name: str, values: npt.ArrayLike, dtype: type[np.int32]) -> npt.NDArray[np.int32]:
+    array = np.asarray(values)
+    converted = array.astype(dtype) if array.dtype != object else None
+    if converted is None or (array.size and not np.array_equal(converted, array)):
+        raise DomainError(f"{name}: not integers of 32 bits")
+    if name == "segments" and array.size and (array.ndim != 2 or array.shape[1] != 2):
+        raise DomainError(f"{name}: an array {array.shape}, expected (k, 2)")
+    return converted

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A server of one's own."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from types import TracebackType
+from typing import Self
+
+from .client import Client
+from .errors import LocalServerError
+
+_START_SECONDS = 30.0
+_STOP_SECONDS = 5.0
+# What concerns servers that others use, too: this one has no certificate, asks for no token and
+# shows no metrics.
+_NOT_FOR_IT = ("WEFT_TLS_CERT", "WEFT_TLS_KEY", "WEFT_TLS_CLIENT_CA", "WEFT_TOKENS", "WEFT_TOKEN",
+               "WEFT_METRICS")
+
+
+class LocalServer:
+    """A weftd on a unix socket in a temporary folder; ends with its context, or with this process.
+
+    `weftd`: the program; default: $WEFT_WEFTD, or weftd in the PATH. `arguments`: more flags, such
+    as ["--threads", "2", "--data", folder]. Raises LocalServerError where it does not start.
+
+        with weft.LocalServer() as server, weft.Client(server.target) as client: ...
+    """
+
+    def __init__(self, weftd: str | os.PathLike[str] | None = None,
+                 arguments: Sequence[str] = ()) -> None:
+        program = os.fspath(weftd or os.environ.get("WEFT_WEFTD") or shutil.which("weftd") or "")
+        if not program:
+            raise LocalServerError("no private weftd: it is not in the PATH; give its path, or "
+                                   "WEFT_WEFTD")
+        self._cleanup = contextlib.ExitStack()
+        with contextlib.ExitStack() as stack:
+            self.folder = pathlib.Path(stack.enter_context(_folder()))
+            """Holds the socket and the log; is removed at the end."""
+            self.target = f"unix:{self.folder}/socket"
+            """What a Client takes."""
+            self._process = self._spawn(program, arguments)
+            stack.callback(self._end)
+            self._wait_until_ready(program)
+            self._cleanup = stack.pop_all()
+
+    def close(self) -> None:
+        """Stops the server; calls in it are cancelled."""
+        self._cleanup.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None,
+                 traceback: TracebackType | None) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        if hasattr(self, "_cleanup"):
+            self.close()
+
+    def _spawn(self, program: str, arguments: Sequence[str]) -> subprocess.Popen[bytes]:
+        environment = {k: v for k, v in os.environ.items() if k not in _NOT_FOR_IT}
+        with open(self.folder / "log", "wb") as log:
+            try:
+                # A group of its own, so that Ctrl-C reaches us alone.
+                return subprocess.Popen(
+                    [program, "--listen", self.target, "--port-file", str(self.folder / "ready"),
+                     "--exit-with-stdin", "--drain", "1", *arguments],
+                    stdin=subprocess.PIPE, stdout=log, stderr=log, env=environment, process_group=0)
+            except OSError as error:
+                raise LocalServerError(f"no private weftd: {program}: {error.strerror}") from None
+
+    def _wait_until_ready(self, program: str) -> None:
+        deadline = time.monotonic() + _START_SECONDS
+        while not (self.folder / "ready").exists():
+            ended = self._process.poll() is not None
+            if ended or time.monotonic() > deadline:
+                said = (self.folder / "log").read_text(errors="replace").splitlines()[-10:]
+                what = "ended at start" if ended else f"is not ready after {_START_SECONDS:g} s"
+                raise LocalServerError(
+                    "\n  ".join([f"no private weftd: {program} {what}; it said:", *said]))
+            time.sleep(0.005)
+
+    def _end(self) -> None:
+        self._process.terminate()
+        try:
+            self._process.wait(_STOP_SECONDS)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        assert self._process.stdin
+        self._process.stdin.close()
+
+
+def _folder() -> tempfile.TemporaryDirectory[str]:
+    # A socket's path is short.
+    base = tempfile.gettempdir()
+    return tempfile.TemporaryDirectory(prefix="weft-", dir=base if len(base) < 80 else "/tmp",
+                                       ignore_cleanup_errors=True)
+
+
+@contextlib.contextmanager
+def local(weftd: str | os.PathLike[str] | None = None,
+          arguments: Sequence[str] = ()) -> Iterator[Client]:
+    """A Client of a LocalServer, which takes the arguments; both end with the context.
+
+        with weft.local() as client:
+            mesh = client.mesh("key.poly", size="0.02*abs(y-46) + 0.1")
+    """
+    with LocalServer(weftd, arguments) as server, Client(server.target, token="", retries=0) as client:
+        yield client

@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a server says, beside meshes. Immutable; seconds are floats, times are in UTC."""
+
+from __future__ import annotations
+
+import dataclasses
+import datetime
+import enum
+from typing import Any, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _protocol, errors
+
+T = TypeVar("T")
+
+
+def _take(kind: type[T], message: Any, **special: Any) -> T:
+    """A `kind` whose fields are those of the message but for the special ones."""
+    names = (f.name for f in dataclasses.fields(kind))
+    return kind(**special, **{name: getattr(message, name) for name in names if name not in special})
+
+
+@dataclasses.dataclass(frozen=True)
+class Accepted:
+    """A request was admitted."""
+
+    job_id: str
+    """Names it in the server's log."""
+    engine_version: str
+    """A mesh depends on the request and this alone."""
+    threads: int
+    """On which it computes at the same time, at most."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Progress:
+    """Where the work is."""
+
+    stage: str
+    """`queued`, `triangulate`, `size`, `refine` or `emit`."""
+    triangles: int
+    """Of the mesh so far."""
+    expected_triangles: int
+    """Of the final mesh, estimated from the size; 0: not known."""
+    elapsed_seconds: float
+    """Since the request was accepted."""
+    fraction: float
+    """Finished over expected work, 0 to 1; never falls."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Unrefined:
+    """Triangles that miss a bound, by the reason why; each counts once."""
+
+    small_input_angle: int
+    """The angle is forced by two input segments."""
+    edge_floor: int
+    """A split would make edges below `min_edge` or the floor of double precision."""
+    budget: int
+    """`max_triangles` was reached."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Timings:
+    """Where the time went, in seconds: wall time, but work summed over the threads for the stages
+    `refine` and `emit`, which overlap."""
+
+    triangulate_seconds: float
+    size_seconds: float
+    prelude_seconds: float
+    refine_seconds: float
+    emit_seconds: float
+    engine_seconds: float
+    """Wall time of all."""
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Summary:
+    """What a mesh is like."""
+
+    vertices: int
+    triangles: int
+    edges: int
+    """Edges on input segments."""
+    chunks: int
+    area: float
+    """Squared units of the domain."""
+    min_angle_deg: float
+    max_angle_deg: float
+    angle_histogram: npt.NDArray[np.int64]
+    """(18,): angles per 10 degrees."""
+    aspect_histogram: npt.NDArray[np.int64]
+    """(9,): triangles per aspect ratio, 1 for equilateral; the bins end at 1.1, 1.25, 1.5, 2, 3, 5,
+    10, 100, infinity."""
+    size_histogram: npt.NDArray[np.int64]
+    """(10,): triangles per area over its bound, bins of 0.1, the last open."""
+    unrefined: Unrefined
+    timings: Timings
+    peak_engine_bytes: int
+    insertions: int
+    """Vertices that refinement inserted."""
+    exact_predicates: int
+    threads: int
+    deferred: int
+    rounds: int
+    leaves: int
+    """Of the quadtree; 0 where the mesh was made without one."""
+    leaf_boxes: npt.NDArray[np.float64]
+    """(leaves, 4): min x, min y, max x, max y; empty unless `quadtree=True` asked for them."""
+    engine_version: str
+    cached: bool
+    """Whether the server had the mesh at hand: timings, peak and threads are those of the call that
+    made it."""
+    digest: str
+    """SHA-256 in hexadecimal: the name of the mesh."""
+
+
+@dataclasses.dataclass(frozen=True)
+class ServerLimits:
+    """What a request may ask for."""
+
+    max_points: int
+    max_segments: int
+    max_seeds: int
+    max_expression_bytes: int
+    max_triangles: int
+    max_bytes: int
+    max_seconds: float
+    max_request_bytes: int
+    max_concurrent_jobs: int
+    max_min_angle_deg: float
+    max_raster_values: int
+
+
+@dataclasses.dataclass(frozen=True)
+class ServerInfo:
+    """What a server is and what it admits."""
+
+    version: str
+    engine_version: str
+    threads: int
+    limits: ServerLimits
+
+
+class JobState(enum.Enum):
+    """Where a job is."""
+
+    QUEUED = "queued"
+    RUNNING = "running"
+    SUCCEEDED = "succeeded"
+    FAILED = "failed"
+    CANCELLED = "cancelled"
+
+    @property
+    def is_final(self) -> bool:
+        """Whether it stays so."""
+        return self not in (JobState.QUEUED, JobState.RUNNING)
+
+    @property
+    def number(self) -> int:
+        """As the protocol spells it."""
+        return int(_protocol.enum("weft.v1.JobState").values_by_name[f"JOB_STATE_{self.name}"].number)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Job:
+    """A job as it was when the server was asked."""
+
+    id: str
+    request_id: str
+    state: JobState
+    create_time: datetime.datetime | None
+    start_time: datetime.datetime | None
+    """When work on it first began; None where it has not, or where the mesh was kept already."""
+    end_time: datetime.datetime | None
+    attempts: int
+    """More than 1 where a worker was lost."""
+    worker: str
+    progress: Progress | None
+    """While it is running."""
+    error: errors.ServerError | None
+    """Why it failed, or that it was cancelled."""
+    summary: Summary | None
+    """Where it succeeded and the mesh is still kept; without `leaf_boxes`."""
+    from_store: bool
+    """Whether the mesh was kept already when the job was accepted."""
+
+
+def accepted(message: Any) -> Accepted:
+    return _take(Accepted, message)
+
+
+def progress(message: Any) -> Progress:
+    stages = _protocol.enum("weft.v1.Stage").values_by_number
+    stage = stages[message.stage].name.removeprefix("STAGE_").lower() if message.stage in stages else ""
+    return _take(Progress, message, stage=stage)
+
+
+def summary(message: Any) -> Summary:
+    counts = {name: np.array(getattr(message, name), np.int64)
+              for name in ("angle_histogram", "aspect_histogram", "size_histogram")}
+    return _take(Summary, message, **counts,
+                 unrefined=_take(Unrefined, message.unrefined),
+                 timings=_take(Timings, message.timings),
+                 leaf_boxes=np.array(message.leaf_boxes, np.float64).reshape(-1, 4),
+                 digest=message.sha256.hex())
+
+
+def server_info(message: Any) -> ServerInfo:
+    return _take(ServerInfo, message, limits=_take(ServerLimits, message.limits))
+
+
+def job(message: Any) -> Job:
+    def time(name: str) -> datetime.datetime | None:
+        if not message.HasField(name):
+            return None
+        found = getattr(message, name)
+        return (datetime.datetime.fromtimestamp(found.seconds, datetime.timezone.utc)
+                + datetime.timedelta(microseconds=found.nanos // 1000))
+
+    name = _protocol.enum("weft.v1.JobState").values_by_number[message.state].name
+    state = JobState[name.removeprefix("JOB_STATE_")]
+    error = None
+    if message.HasField("error"):
+        error = errors.of_status(message.error, f"the job {message.id} ended with")
+    elif state is JobState.CANCELLED:
+        error = errors.Cancelled(f"the job {message.id} was cancelled", code="CANCELLED")
+    return _take(
+        Job, message, state=state, error=error,
+        create_time=time("create_time"), start_time=time("start_time"), end_time=time("end_time"),
+        progress=progress(message.progress) if message.HasField("progress") else None,
+        summary=summary(message.summary) if message.HasField("summary") else None)

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How large triangles may be."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from typing import Union
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import DomainError
+
+Floats = npt.NDArray[np.float64]
+Size = Union[float, str, "Raster", Callable[[Floats, Floats], npt.ArrayLike], None]
+"""Upper bound on the area of a triangle at its centroid, in squared units of the domain: a number;
+an expression in x and y; a Raster; a function, which `Raster.sample` samples over the domain; or
+None for no bound."""
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Raster:
+    """A size on a grid: bilinear between its nodes, outside it that of its nearest point.
+
+    `values`: (rows, columns) float64, squared units of the domain, positive and finite, also where
+    there is no domain; `values[j, i]` is at `(origin[0] + i * spacing[0], origin[1] + j *
+    spacing[1])`. `origin`, `spacing`: (x, y), in the unit of the domain. Raises DomainError.
+
+        depth = weft.Raster(0.01 * water_depth / 1000, origin=(-82, 24), spacing=(0.25, 0.25))
+    """
+
+    values: Floats
+    origin: tuple[float, float]
+    spacing: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        values = np.ascontiguousarray(self.values, np.float64)
+        if values.ndim != 2 or values.size == 0:
+            raise DomainError(f"raster: values of shape {values.shape}, expected (rows, columns)")
+        object.__setattr__(self, "values", values)
+        bad = np.argwhere(~((values > 0) & np.isfinite(values)))
+        if len(bad):
+            j, i = bad[0]
+            at = tuple(float(o + k * d) for o, k, d in zip(self.origin, (i, j), self.spacing))
+            raise DomainError(f"raster: the size at {at} is {values[j, i]}, in column {i} of row {j}; "
+                              "it must be positive and finite")
+
+    @staticmethod
+    def sample(function: Callable[[Floats, Floats], npt.ArrayLike],
+               box: tuple[float, float, float, float], samples: int = 513) -> Raster:
+        """A function of x and y over a box: min x, min y, max x, max y.
+
+        `function` takes two arrays of one shape and gives another of it, or a number. `samples` are
+        those along the longer side, 2 or more, and are as far apart along the other. What is finer
+        than their distance may be missed. Raises DomainError.
+        """
+        left, bottom, right, top = box
+        step = max(right - left, top - bottom) / (samples - 1)
+        if not (step > 0 and np.isfinite(step)):
+            raise DomainError(f"raster: the box {box} holds nothing")
+        columns = int(np.ceil((right - left) / step - 1e-9)) + 1
+        rows = int(np.ceil((top - bottom) / step - 1e-9)) + 1
+        x, y = np.meshgrid(left + step * np.arange(columns), bottom + step * np.arange(rows))
+        try:
+            values = np.broadcast_to(np.asarray(function(x, y), np.float64), x.shape)
+        except (TypeError, ValueError) as error:
+            raise DomainError(f"size: the function of arrays {x.shape} does not give such an array: "
+                              f"{error}") from error
+        return Raster(values, (left, bottom), (step, step))

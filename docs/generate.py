@@ -1,0 +1,148 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Writes docs/api.md from the comments of proto/, and docs/flags.md from the help of the programs.
+
+    docs/generate.py BUILD [--check]
+
+BUILD is the folder of weftd and weft, such as build/release. With --check nothing is written: the
+exit code is 1 where a page is not what it would be.
+"""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+from google.protobuf import descriptor_pb2
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+FILES = ["mesh_service.proto", "job_service.proto"]
+Field = descriptor_pb2.FieldDescriptorProto
+
+
+def descriptors():
+    with tempfile.NamedTemporaryFile() as out:
+        subprocess.run(
+            ["protoc", f"--proto_path={ROOT / 'proto'}", "--include_source_info",
+             f"--descriptor_set_out={out.name}"] + [f"weft/v1/{name}" for name in FILES],
+            check=True)
+        return descriptor_pb2.FileDescriptorSet.FromString(pathlib.Path(out.name).read_bytes())
+
+
+def anchor(name):
+    return name.lower()
+
+
+class Page:
+    """One .proto file as Markdown."""
+
+    def __init__(self, file):
+        self.comments = {tuple(l.path): l.leading_comments for l in file.source_code_info.location}
+        self.lines = []
+        for i, service in enumerate(file.service):
+            self.service(service, (6, i))
+        for i, message in enumerate(file.message_type):
+            self.message(message, (4, i))
+        for i, enum in enumerate(file.enum_type):
+            self.enum(enum, (5, i))
+
+    def comment(self, path):
+        """The paragraphs of a comment, each on a line."""
+        text = self.comments.get(path, "")
+        paragraphs = re.split(r"\n\s*\n", "\n".join(l.strip() for l in text.splitlines()))
+        return [" ".join(p.split()) for p in paragraphs if p.strip()]
+
+    def cell(self, path):
+        return "<br>".join(self.comment(path)).replace("|", "\\|")
+
+    def add(self, *lines):
+        self.lines += lines
+
+    def service(self, service, path):
+        self.add(f"## {service.name}", "", *sum(([p, ""] for p in self.comment(path)), []))
+        for i, method in enumerate(service.method):
+            stream = "stream of " if method.server_streaming else ""
+            self.add(f"### {service.name}.{method.name}", "",
+                     f"{self.type_link(method.input_type)} → "
+                     f"{stream}{self.type_link(method.output_type)}", "",
+                     *sum(([p, ""] for p in self.comment(path + (2, i))), []))
+
+    def message(self, message, path):
+        self.add(f"## {message.name}", "", *sum(([p, ""] for p in self.comment(path)), []))
+        if not message.field:
+            return
+        self.add("| field | type | meaning |", "|---|---|---|")
+        for i, field in enumerate(message.field):
+            many = "repeated " if field.label == Field.LABEL_REPEATED else ""
+            maybe = "optional " if field.proto3_optional else ""
+            self.add(f"| `{field.name}` = {field.number} | {many}{maybe}{self.type_of(field)} | "
+                     f"{self.cell(path + (2, i))} |")
+        self.add("")
+
+    def enum(self, enum, path):
+        self.add(f"## {enum.name}", "", *sum(([p, ""] for p in self.comment(path)), []))
+        self.add("| value | meaning |", "|---|---|")
+        for i, value in enumerate(enum.value):
+            self.add(f"| `{value.name}` = {value.number} | {self.cell(path + (2, i))} |")
+        self.add("")
+
+    def type_of(self, field):
+        if field.type_name:
+            return self.type_link(field.type_name)
+        return Field.Type.Name(field.type)[len("TYPE_"):].lower()
+
+    @staticmethod
+    def type_link(name):
+        short = name.rsplit(".", 1)[-1]
+        if name.startswith(".weft.v1."):
+            return f"[{short}](#{anchor(short)})"
+        return name.lstrip(".")
+
+
+def api():
+    lines = ["# The protocol, `weft.v1`", "",
+             "Made from the comments of [`proto/weft/v1`](../proto/weft/v1) by `docs/generate.py`.",
+             ""]
+    for file in descriptors().file:
+        lines += Page(file).lines
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def help_of(program, *words):
+    """The help, as it is where no variable of weft is set."""
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("WEFT_")}
+    text = subprocess.run([program, *words, "--help"], check=True, capture_output=True, text=True,
+                          env=environment).stdout
+    # Programs name themselves as they were called; defaults that the machine decides are left out.
+    text = text.replace(str(program), pathlib.Path(program).name)
+    text = re.sub(r"^(  --(?:threads|memory|max-bytes) .*)=\d+ \(", r"\1 (", text, flags=re.M)
+    return "\n".join(line.rstrip() for line in text.strip().splitlines())
+
+
+def flags(build):
+    weft, weftd = build / "weft", build / "weftd"
+    commands = re.findall(r"^  ([a-z-]+)  ", help_of(weft).split("Subcommands:")[1], re.M)
+    lines = ["# Flags", "", "As the programs tell them; made by `docs/generate.py`.", ""]
+    for title, text in [("weftd", help_of(weftd))] + [
+            (f"weft {command}", help_of(weft, command)) for command in commands]:
+        lines += [f"## {title}", "", "```", text, "```", ""]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def main():
+    build = pathlib.Path(sys.argv[1]).resolve()
+    stale = []
+    for name, text in [("api.md", api()), ("flags.md", flags(build))]:
+        page = ROOT / "docs" / name
+        if page.exists() and page.read_text() == text:
+            continue
+        stale.append(name)
+        if "--check" not in sys.argv:
+            page.write_text(text)
+    if "--check" in sys.argv and stale:
+        sys.exit(f"docs: stale, run docs/generate.py: {', '.join(stale)}")
+
+
+if __name__ == "__main__":
+    main()
