@@ -6,6 +6,7 @@
 #include <functional>
 #include <random>
 
+#include "client/formats/domain_formats.h"
 #include "tests/client/support/mesh_files.h"
 #include "tests/client/support/sample_mesh.h"
 
@@ -60,9 +61,8 @@ class HostileMesh : public testing::TestWithParam<const char*> {};
 TEST_P(HostileMesh, IsRefusedOrRead) {
   TempFolder folder;
   const Mesh mesh = square_mesh(3);
-  ASSERT_TRUE(write_files(mesh.view(), folder / "m.node"));
-  ASSERT_TRUE(write_files(mesh.view(), folder / "m.vtu"));
-  ASSERT_TRUE(write_files(mesh.view(), folder / "m.msh"));
+  for (const char* name : {"m.node", "m.vtu", "m.msh", "m.14", "m.su2", "m.npz", "m.obj", "m.off"})
+    ASSERT_TRUE(write_files(mesh.view(), folder / name));
   const std::filesystem::path path = folder / GetParam();
   damage(path, [&path] {
     const auto read = read_mesh(path.extension() == ".poly"
@@ -77,7 +77,18 @@ TEST_P(HostileMesh, IsRefusedOrRead) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, HostileMesh,
-                         testing::Values("m.node", "m.ele", "m.poly", "m.vtu", "m.msh"));
+                         testing::Values("m.node", "m.ele", "m.poly", "m.vtu", "m.msh", "m.14",
+                                         "m.su2", "m.npz", "m.obj", "m.off"));
+
+TEST(HostileMesh, OfGmsh22IsRefusedOrRead) {
+  TempFolder folder;
+  const auto path = folder / "m.msh";
+  std::vector<OutputFile> files;
+  files.push_back(OutputFile::create(path, {}).value());
+  write_mesh(*mesh_format(path), square_mesh(3).view(), files, {.msh_version = MshVersion::k22});
+  ASSERT_TRUE(commit(files));
+  damage(path, [&path] { return read_mesh(path).has_value(); });
+}
 
 TEST(HostileDomain, PolyIsRefusedOrRead) {
   TempFolder folder;
