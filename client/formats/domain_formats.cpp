@@ -5,10 +5,13 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "client/formats/csv_rings.h"
 #include "client/formats/geojson.h"
 #include "client/formats/mesh_domain.h"
 #include "client/formats/mesh_formats.h"
+#include "client/formats/shapefile.h"
 #include "client/formats/triangle_poly.h"
+#include "client/formats/wkt.h"
 #include "client/text.h"
 
 namespace weft::client {
@@ -20,9 +23,9 @@ struct DomainFormat {
 };
 
 constexpr DomainFormat kFormats[] = {
-    {".poly", read_triangle_poly},
-    {".geojson", read_geojson},
-    {".json", read_geojson},
+    {".poly", read_triangle_poly}, {".geojson", read_geojson},
+    {".json", read_geojson},       {".wkt", read_wkt},
+    {".shp", read_shapefile},      {".csv", read_csv_rings},
 };
 
 const DomainFormat* domain_format(const std::filesystem::path& path) {
