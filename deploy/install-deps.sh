@@ -30,8 +30,8 @@ test=(
   g++ libclang-rt-dev llvm # sanitizers, and the names in their reports
   postgresql-15            # the real database
   clang-format clang-tidy shellcheck gmsh python3
-  # what reads the files that weft writes
-  python3-gmsh python3-meshio python3-numpy python3-shapely python3-vtk9
+  # what reads the files that weft writes, and writes those that it reads
+  python3-gmsh python3-meshio python3-numpy python3-pyshp python3-shapely python3-vtk9
 )
 # Some machines bring a newer node; Debian's npm would be in its way.
 command -v npm >/dev/null || test+=(nodejs npm)

@@ -38,13 +38,18 @@ SAHooks quiet_hooks() {
 // The attributes of records.
 class Table {
  public:
-  explicit Table(const std::filesystem::path& path, const SAHooks& hooks) {
+  // An error where there is a table that cannot be read; none without one.
+  Result<void> open(const std::filesystem::path& path, const SAHooks& hooks) {
     std::error_code ignored;
     for (const char* extension : {".dbf", ".DBF"}) {
       const auto name = std::filesystem::path(path).replace_extension(extension);
-      if (!table_ && std::filesystem::exists(name, ignored))
-        table_.reset(::DBFOpenLL(name.c_str(), "rb", const_cast<SAHooks*>(&hooks)));
+      if (!std::filesystem::exists(name, ignored)) continue;
+      table_.reset(::DBFOpenLL(name.c_str(), "rb", const_cast<SAHooks*>(&hooks)));
+      if (!table_)
+        return fail(ExitCode::kUnreadableInput, name.string() + ": is not a dBASE table");
+      return {};
     }
+    return {};
   }
 
   std::optional<double> number(int record, const char* field) const {
@@ -63,7 +68,7 @@ class Table {
 class Reader {
  public:
   Reader(const std::filesystem::path& path, const SAHooks& hooks)
-      : path_(path), hooks_(hooks), table_(path, hooks), builder_(path.string()) {}
+      : path_(path), hooks_(hooks), builder_(path.string()) {}
 
   Result<Domain> read() {
     const std::unique_ptr<SHPInfo, CloseShapes> shapes(
@@ -71,6 +76,7 @@ class Reader {
     if (!shapes)
       return builder_.bad("",
                           "is not a shapefile, or it is damaged, or there is no .shx beside it");
+    if (auto opened = table_.open(path_, hooks_); !opened) return tl::unexpected(opened.error());
     int count = 0;
     int kind = 0;
     ::SHPGetInfo(shapes.get(), &count, &kind, nullptr, nullptr);

@@ -131,7 +131,7 @@ TEST(HostileDomain, CsvIsRefusedOrRead) {
 TEST(HostileDomain, ShapefileIsRefusedOrRead) {
   TempFolder folder;
   write_sample_shapefile(folder / "d");
-  for (const char* part : {"d.shp", "d.shx"})
+  for (const char* part : {"d.shp", "d.shx", "d.dbf"})
     damage(folder / part, [&folder] { return read_domain(folder / "d.shp").has_value(); });
 }
 
