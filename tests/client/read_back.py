@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Has programs that are not ours read what weft writes, and compares what they find with what was
-written; prints a row for every format and reader, as in docs/formats.md.
+written; prints a row for every format and reader. DOCS, docs/formats.md, must have each.
 
-    read_back.py WEFT
+    read_back.py WEFT DOCS
 
 The mesh: a plate of 12 x 12 unit squares, each cut in two triangles, with a hole of 4 x 4 in the
 middle. numpy makes it and `weft convert` writes it in every format. Region 3 is left of x = 6,
@@ -351,7 +351,7 @@ CHECKS = [  # file, flags of weft convert, reader, check
 
 
 def main():
-    weft = sys.argv[1]
+    weft, docs = sys.argv[1], open(sys.argv[2]).read().splitlines()
     with tempfile.TemporaryDirectory() as folder:
         source = os.path.join(folder, "source.npz")
         numpy.savez_compressed(source, **plate())
@@ -359,7 +359,9 @@ def main():
             path = os.path.join(folder, name)
             if not os.path.exists(path):
                 subprocess.run([weft, "convert", source, path, "--quiet", *flags], check=True)
-            print(f"| `{' '.join([os.path.splitext(name)[1], *flags])}` | {reader} |", flush=True)
+            row = f"| `{' '.join([os.path.splitext(name)[1], *flags])}` | {reader} |"
+            print(row, flush=True)
+            equal(f"'{row}' is in {sys.argv[2]}", row in docs, True)
             check(path)
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Has `weft convert` read domains that programs of others wrote, and compares what it makes of them
-with what was meant; prints a row for every format and writer, as in docs/formats.md.
+with what was meant; prints a row for every format and writer. DOCS, docs/formats.md, must have each.
 
-    read_others.py WEFT
+    read_others.py WEFT DOCS
 
 The domain: a plate of 12 x 12 with a hole of 4 x 4 in the middle and, beside it, a triangle. The
 .poly file that comes out is judged by shapely: the faces between its segments, less those with a
@@ -113,15 +113,15 @@ def gmsh_model(triangles, version, binary=0):
 
 GMSH = f"Gmsh {gmsh.__version__}"
 REGIONS = {7: PLATE.area, 8: 8.0}
-CASES = [  # file, writer, what writes, what is expected
-    ("d.wkt", f"shapely {shapely.__version__}", write_wkt, {}),
-    ("d.shp", f"pyshp {shapefile.__version__}", write_shapefile,
+CASES = [  # file, kind, writer, what writes, what is expected
+    ("d.wkt", "", f"shapely {shapely.__version__}", write_wkt, {}),
+    ("d.shp", "", f"pyshp {shapefile.__version__}", write_shapefile,
      {"markers": {3, 4}, "regions": REGIONS}),
-    ("d.csv", f"numpy {numpy.__version__}", write_csv, {"markers": {10, 20, 30}}),
-    ("d41.msh", GMSH, gmsh_model(True, 4.1), {"markers": {0, 5, 6}, "regions": REGIONS}),
-    ("d41b.msh", GMSH, gmsh_model(True, 4.1, 1), {"markers": {0, 5, 6}, "regions": REGIONS}),
-    ("d22.msh", GMSH, gmsh_model(True, 2.2), {"markers": {0, 5, 6}, "regions": REGIONS}),
-    ("d22b.msh", GMSH, gmsh_model(True, 2.2, 1), {"markers": {0, 5, 6}, "regions": REGIONS}),
+    ("d.csv", "", f"numpy {numpy.__version__}", write_csv, {"markers": {10, 20, 30}}),
+    ("d41.msh", " 4.1, text", GMSH, gmsh_model(True, 4.1), {"markers": {0, 5, 6}, "regions": REGIONS}),
+    ("d41b.msh", " 4.1, binary", GMSH, gmsh_model(True, 4.1, 1), {"markers": {0, 5, 6}, "regions": REGIONS}),
+    ("d22.msh", " 2.2, text", GMSH, gmsh_model(True, 2.2), {"markers": {0, 5, 6}, "regions": REGIONS}),
+    ("d22b.msh", " 2.2, binary", GMSH, gmsh_model(True, 2.2, 1), {"markers": {0, 5, 6}, "regions": REGIONS}),
 ]
 
 
@@ -138,14 +138,16 @@ def lines_only(weft, folder):
 
 
 def main():
-    weft = sys.argv[1]
+    weft, docs = sys.argv[1], open(sys.argv[2]).read().splitlines()
     with tempfile.TemporaryDirectory() as folder:
-        for name, writer, write, expected in CASES:
+        for name, kind, writer, write, expected in CASES:
             path = os.path.join(folder, name)
             write(path)
             poly = path + ".poly"
             subprocess.run([weft, "convert", path, poly, "--quiet"], check=True)
-            print(f"| `{name}` | {writer} |", flush=True)
+            row = f"| `{os.path.splitext(name)[1]}`{kind} | {writer} |"
+            print(row, flush=True)
+            equal(f"'{row}' is in {sys.argv[2]}", row in docs, True)
             check(poly, **expected)
         lines_only(weft, folder)
 
