@@ -84,7 +84,7 @@ TEST_F(CommandLine, RefusesUnknownExtensionsBeforeAnyWork) {
   EXPECT_EQ(run(mesh_to("m.stp")), 2);
   EXPECT_NE(err().find("'.stp' is not that of a mesh that is written: .vtu, .msh, .node, "),
             std::string::npos);
-  EXPECT_EQ(run({"mesh", "in.shp", "-o", "m.vtu"}), 2);
+  EXPECT_EQ(run({"mesh", "in.dxf", "-o", "m.vtu"}), 2);
   EXPECT_EQ(run({"mesh", "in.poly", "--draw", "m.gif"}), 2);
   EXPECT_EQ(run({"mesh", "in.poly"}), 2);
   EXPECT_EQ(run({"mesh"}), 2);
