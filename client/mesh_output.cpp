@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/mesh_output.h"
 
+#include <algorithm>
+#include <initializer_list>
 #include <set>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "client/formats/mesh_formats.h"
@@ -20,9 +23,19 @@ Result<void> check_names(const MeshOutputOptions& options,
     return fail(ExitCode::kUsage, "--draw-quadtree needs a drawing: give --draw FILE, too");
   std::vector<std::filesystem::path> files;
   for (const auto& output : options.files) {
-    if (!mesh_format(output) || output.extension() == ".ele") return unknown_mesh_format(output);
+    if (auto ok = check_writable(output, options.writing); !ok) return ok;
     for (auto& file : mesh_files(output)) files.push_back(std::move(file));
   }
+  const auto writes = [&options](std::initializer_list<std::string_view> extensions) {
+    return std::any_of(options.files.begin(), options.files.end(), [&](const auto& file) {
+      return std::find(extensions.begin(), extensions.end(), lower_extension(file)) !=
+             extensions.end();
+    });
+  };
+  if (!options.writing.open_boundaries.empty() && !writes({".14", ".grd"}))
+    return fail(ExitCode::kUsage, "--open-boundary is for ADCIRC: give an output .14 or .grd");
+  if (options.writing.msh_version != MshVersion::k41 && !writes({".msh"}))
+    return fail(ExitCode::kUsage, "--msh-version is for Gmsh: give an output .msh");
   for (const auto& drawing : options.drawings) {
     if (!draw_format(drawing))
       return fail(ExitCode::kUsage, drawing.string() + ": the extension " +
@@ -85,7 +98,7 @@ Result<void> MeshOutput::write(const MeshView& mesh, const v1::Summary& summary)
   std::span<OutputFile> rest = files_;
   for (const auto& name : options_.files) {
     const std::size_t count = mesh_files(name).size();
-    write_mesh(*mesh_format(name), mesh, rest.first(count));
+    write_mesh(*mesh_format(name), mesh, rest.first(count), options_.writing);
     rest = rest.subspan(count);
   }
   std::span<const double> leaves;

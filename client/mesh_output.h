@@ -21,12 +21,14 @@
 #include "client/drawing/draw.h"
 #include "client/error.h"
 #include "client/formats/mesh.h"
+#include "client/formats/mesh_formats.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {
 
 struct MeshOutputOptions {
   std::vector<std::filesystem::path> files{};
+  MeshWriteOptions writing{};  // of the files
   std::vector<std::filesystem::path> drawings{};
   DrawColor color = DrawColor::kNone;
   bool draw_quadtree = false;  // over the drawings

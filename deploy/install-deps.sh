@@ -18,24 +18,26 @@ build=(
   libsqlite3-dev libpq-dev prometheus-cpp-dev                            # its jobs and its metrics
   libcli11-dev nlohmann-json3-dev libcairo2-dev fonts-dejavu-core        # the command line
   libyaml-cpp-dev libpugixml-dev                                         # its batches
+  zlib1g-dev libshp-dev                                                  # .npz, shapefiles
   libmuparser-dev                                                        # the checker
   libgtest-dev libgmock-dev librapidcheck-dev                            # tests
 )
 runtime=(
   libgrpc++1.51 libprotobuf32 libgmp10 libgmpxx4ldbl libmpfr6 libtbb12 libsleef3 libspdlog1.10
   libfmt9 libatomic1 libssl3 libsqlite3-0 libpq5 libprometheus-cpp-core1.0
-  libcairo2 libmuparser2v5 libyaml-cpp0.7 libpugixml1v5 fonts-dejavu-core
+  libcairo2 zlib1g libshp2 libmuparser2v5 libyaml-cpp0.7 libpugixml1v5 fonts-dejavu-core
 )
 test=(
   g++ libclang-rt-dev llvm # sanitizers, and the names in their reports
   postgresql-15            # the real database
-  clang-format clang-tidy shellcheck gmsh python3 python3-meshio
+  clang-format clang-tidy shellcheck python3
+  # what reads the files that weft writes, and writes those that it reads
+  gmsh python3-gmsh python3-meshio python3-numpy python3-pyshp python3-shapely python3-vtk9
   python3-protobuf         # docs/generate.py
   buildah debootstrap      # the container, without a daemon
   docker-compose           # its compose.yaml
-  python3-grpcio python3-protobuf python3-numpy                               # weft for Python
-  python3-matplotlib python3-scipy python3-shapely                            # its plots and examples
-  python3-pytest python3-pip python3-setuptools python3-wheel mypy openssl    # its tests
+  python3-grpcio python3-matplotlib python3-scipy                         # weft for Python
+  python3-pytest python3-pip python3-setuptools python3-wheel mypy openssl # its tests
 )
 # Some machines bring a newer node; Debian's npm would be in its way.
 command -v npm >/dev/null || test+=(nodejs npm)

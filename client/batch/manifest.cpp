@@ -9,6 +9,7 @@
 #include <set>
 
 #include "client/drawing/draw.h"
+#include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
 #include "client/text.h"
 
@@ -85,6 +86,12 @@ const std::map<std::string, Setter>& common_keys() {
        }},
       {"max-seconds", [](const auto& n, auto& m,
                          const auto&) { m.wishes.max_seconds = number_of(n, "max-seconds"); }},
+      {"order",
+       [](const auto& n, auto& m, const auto&) {
+         m.output.writing.order = scalar<int>(n, "order", "1 or 2");
+         if (m.output.writing.order != 1 && m.output.writing.order != 2)
+           throw Wrong{n.Mark(), "order: " + in_quotes(n.Scalar()) + " is not 1 or 2"};
+       }},
       {"color", [](const auto& n, auto& m, const auto&) { m.output.color = color_of(n); }},
       {"require", [](const auto& n, auto& m, const auto&) { require(n, m.gates); }},
   };
@@ -103,8 +110,8 @@ const std::map<std::string, Setter>& mesh_keys() {
     all["output"] = [](const auto& n, auto& m, const auto& folder) {
       m.output.files = paths_of(n, "output", folder);
       for (const auto& file : m.output.files)
-        if (!mesh_format(file))
-          throw Wrong{n.Mark(), "output: " + unknown_mesh_format(file).value().message};
+        if (const auto ok = check_writable(file, {}); !ok)
+          throw Wrong{n.Mark(), "output: " + ok.error().message};
     };
     all["draw"] = [](const auto& n, auto& m, const auto& folder) {
       m.output.drawings = paths_of(n, "draw", folder);

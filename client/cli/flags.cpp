@@ -3,6 +3,9 @@
 
 #include <map>
 
+#include "client/formats/domain_formats.h"
+#include "client/formats/mesh_formats.h"
+
 namespace weft::client {
 
 CLI::Range seconds_range() {
@@ -17,7 +20,11 @@ void add_timeout(CLI::App& command, std::optional<double>& seconds, const std::s
 }
 
 void add_domain_and_wishes(CLI::App& command, std::filesystem::path& input, MeshWishes& wishes) {
-  command.add_option("INPUT", input, "Domain: .poly, .geojson or .json")->required();
+  command
+      .add_option("INPUT", input,
+                  "Domain: " + domain_extensions() +
+                      "; or a mesh, to mesh its domain anew: " + read_mesh_extensions())
+      ->required();
   command
       .add_option("--size", wishes.size,
                   "Upper bound on the area of a triangle at its centroid: a number or an "
@@ -50,12 +57,38 @@ void add_domain_and_wishes(CLI::App& command, std::filesystem::path& input, Mesh
       ->type_name("N");
 }
 
+void add_writing(CLI::App& command, MeshWriteOptions& writing) {
+  command
+      .add_option("--order", writing.order,
+                  "2 writes six-node triangles, with straight sides, to .vtu, .msh and .node")
+      ->envname("WEFT_ORDER")
+      ->check(CLI::Range(1, 2))
+      ->capture_default_str()
+      ->type_name("1|2");
+  static const std::map<std::string, MshVersion> kVersions = {{"2.2", MshVersion::k22},
+                                                              {"4.1", MshVersion::k41}};
+  command
+      .add_option("--msh-version", writing.msh_version,
+                  "Version of .msh files: 4.1, binary, or 2.2, text, for older programs. "
+                  "Default: 4.1")
+      ->envname("WEFT_MSH_VERSION")
+      ->transform(CLI::CheckedTransformer(kVersions).description(""))
+      ->type_name("2.2|4.1");
+  command
+      .add_option("--open-boundary", writing.open_boundaries,
+                  "Marker of segments that ADCIRC's .14 and .grd files have as open boundary; the "
+                  "others are land. May be repeated")
+      ->allow_extra_args(false)
+      ->type_name("MARKER");
+}
+
 void add_output(CLI::App& command, MeshOutputOptions& output) {
   command
       .add_option("-o,--output", output.files,
-                  "File to write: .vtu, .msh or .node; may be repeated")
+                  "File to write, may be repeated: " + written_mesh_extensions())
       ->allow_extra_args(false)
       ->type_name("FILE");
+  add_writing(command, output.writing);
   command
       .add_option("--draw", output.drawings,
                   "Drawing to write: .png, .svg or .pdf; may be repeated")

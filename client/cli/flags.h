@@ -19,6 +19,9 @@ void add_timeout(CLI::App& command, std::optional<double>& seconds, const std::s
 // INPUT, and what its mesh must satisfy.
 void add_domain_and_wishes(CLI::App& command, std::filesystem::path& input, MeshWishes& wishes);
 
+// How meshes are written, where their format leaves a choice.
+void add_writing(CLI::App& command, MeshWriteOptions& writing);
+
 // Files to write, and drawings.
 void add_output(CLI::App& command, MeshOutputOptions& output);
 

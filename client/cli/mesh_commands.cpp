@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The flags of `weft mesh`, `weft check` and `weft info`.
+// The flags of `weft mesh`, `weft check`, `weft convert` and `weft info`.
 #include <memory>
 
 #include "client/cli/command_groups.h"
@@ -7,17 +7,20 @@
 #include "client/commands/commands.h"
 #include "client/commands/job_commands.h"
 #include "client/connect_flags.h"
+#include "client/formats/domain_formats.h"
+#include "client/formats/mesh_formats.h"
 
 namespace weft::client {
 namespace {
 
-constexpr char kMeshExamples[] = R"(Input:  .poly (Triangle), .geojson, .json
-Output: .vtu, .msh (Gmsh 4.1), .node (Triangle's .node, .ele and .poly)
+constexpr char kMeshExamples[] =
+    R"(.node writes Triangle's .node, .ele and .poly, .14 and .grd ADCIRC's grid.
 
 Examples:
   weft mesh coast.geojson -o coast.vtu --size 0.001
   weft mesh pipe.poly -o pipe.msh --size '0.4*hypot(x-200, y-200) + 1' --min-angle 30
   weft mesh key.poly -o key.vtu -o key.node --draw key.png --color angle
+  weft mesh coast.geojson -o fort.14 --open-boundary 1
   weft mesh cylinder.poly --size 1e-2 --draw cylinder.png --draw-quadtree
   weft mesh key.poly -o key.vtu --server mesh.example.org:7421 --json
   weft mesh coast.geojson --size 1e-6 --server mesh.example.org:7421 --detach)";
@@ -26,6 +29,16 @@ constexpr char kCheckExamples[] = R"(Give the bounds that the mesh was made with
 
 Example:
   weft check pipe.msh --domain pipe.poly --size '0.4*hypot(x-200, y-200) + 1' --min-angle 30)";
+
+constexpr char kConvertExamples[] =
+    R"(A mesh is written as it is, vertex by vertex; what the new format does not carry is lost.
+A domain, or that of a mesh, is written as a .poly file; every hole gets a seed.
+
+Examples:
+  weft convert key.vtu key.msh --msh-version 2.2
+  weft convert key.msh key.vtu --order 2
+  weft convert coast.msh fort.14 --open-boundary 1 --open-boundary 2
+  weft convert coast.geojson coast.poly)";
 
 // As `weft submit` does; what is written later is for `weft fetch` to say.
 Result<ExitCode> detach(const MeshOptions& options, std::stop_token stop) {
@@ -78,8 +91,8 @@ void add_check(CLI::App& app, Chosen& chosen) {
   CheckOptions& options = *kept;
   CLI::App& check = *app.add_subcommand("check", "Judge a mesh by the independent checker");
   check.footer(kCheckExamples);
-  check.add_option("MESH", options.mesh, "Mesh: .vtu, .msh or .node")->required();
-  check.add_option("--domain", options.domain, "Domain that was meshed: .poly, .geojson or .json")
+  check.add_option("MESH", options.mesh, "Mesh: " + read_mesh_extensions())->required();
+  check.add_option("--domain", options.domain, "Domain that was meshed: " + domain_extensions())
       ->required()
       ->type_name("INPUT");
   check.add_option("--size", options.size, "Bound on the area, as given to `weft mesh`")
@@ -99,6 +112,24 @@ void add_check(CLI::App& app, Chosen& chosen) {
       [kept, &chosen] { chosen.run = [kept](std::stop_token) { return run_check(*kept); }; });
 }
 
+void add_convert(CLI::App& app, Chosen& chosen) {
+  const auto kept = std::make_shared<ConvertOptions>();
+  CLI::App& convert = *app.add_subcommand("convert", "Write a mesh or a domain in another format");
+  convert.footer(kConvertExamples);
+  convert
+      .add_option("IN", kept->input,
+                  "Mesh: " + read_mesh_extensions() + "; or domain: " + domain_extensions())
+      ->required();
+  convert
+      .add_option("OUT", kept->output, "Mesh: " + written_mesh_extensions() + "; or domain: .poly")
+      ->required();
+  add_writing(convert, kept->writing);
+  add_quiet(convert, kept->quiet);
+  convert.callback([kept, &chosen] {
+    chosen.run = [kept](std::stop_token stop) { return run_convert(*kept, std::move(stop)); };
+  });
+}
+
 void add_info(CLI::App& app, Chosen& chosen) {
   const auto file = std::make_shared<std::filesystem::path>();
   CLI::App& info = *app.add_subcommand("info", "Say what a mesh or a domain holds");
@@ -112,6 +143,7 @@ void add_info(CLI::App& app, Chosen& chosen) {
 void add_mesh_commands(CLI::App& app, Chosen& chosen) {
   add_mesh(app, chosen);
   add_check(app, chosen);
+  add_convert(app, chosen);
   add_info(app, chosen);
 }
 

@@ -10,7 +10,7 @@
 #include "client/batch/lock_file.h"
 #include "client/batch/manifest.h"
 #include "client/commands/commands.h"
-#include "client/formats/mesh_formats.h"
+#include "client/formats/domain_formats.h"
 #include "client/mesh_into.h"
 #include "client/text.h"
 

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "client/commands/commands.h"
+#include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
 
 namespace weft::client {

@@ -53,6 +53,14 @@ struct CheckOptions {
 };
 Result<ExitCode> run_check(const CheckOptions& options);
 
+struct ConvertOptions {
+  std::filesystem::path input;
+  std::filesystem::path output;
+  MeshWriteOptions writing;
+  bool quiet = false;
+};
+Result<ExitCode> run_convert(const ConvertOptions& options, std::stop_token stop);
+
 Result<ExitCode> run_info(const std::filesystem::path& file);
 
 struct ServerOptions {

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "client/commands/commands.h"
+#include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
 #include "client/mesh_angles.h"
 #include "client/text.h"
@@ -103,16 +104,12 @@ std::string describe(const Mesh& mesh) {
 }  // namespace
 
 Result<ExitCode> run_info(const std::filesystem::path& file) {
-  if (is_domain_path(file)) {
+  if (is_plain_domain_path(file)) {
     const auto domain = read_domain(file);
     if (!domain) return tl::unexpected(domain.error());
     return print(row("domain", file.string()) + describe(*domain));
   }
-  if (!mesh_format(file))
-    return fail(ExitCode::kUsage,
-                file.string() + ": the extension " + in_quotes(file.extension().string()) +
-                    " is neither that of a domain (.poly, .geojson, .json) nor of a mesh (.vtu, "
-                    ".msh, .node)");
+  if (!is_domain_path(file)) return unknown_domain_format(file);
   const auto mesh = read_mesh(file);
   if (!mesh) return tl::unexpected(mesh.error());
   return print(row("mesh", file.string()) + describe(*mesh));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `weft mesh`: reads a domain, has it meshed, writes files and drawings.
 #include "client/commands/commands.h"
+#include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
 #include "client/mesh_into.h"
 #include "client/progress_bar.h"

@@ -8,6 +8,7 @@
 #include "client/commands/commands.h"
 #include "client/commands/download.h"
 #include "client/commands/job_commands.h"
+#include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
 #include "client/jobs/job_text.h"
 #include "client/text.h"

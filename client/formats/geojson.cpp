@@ -2,7 +2,6 @@
 #include "client/formats/geojson.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <new>
@@ -13,9 +12,8 @@
 #include <vector>
 
 #include "client/formats/file_contents.h"
-#include "client/formats/interior_point.h"
+#include "client/formats/geometry_builder.h"
 #include "client/formats/json_text.h"
-#include "client/formats/ring_crossing.h"
 #include "client/text.h"
 
 namespace weft::client {
@@ -27,33 +25,20 @@ using Json = nlohmann::json;
 constexpr std::uint64_t kMaxJsonBytes = std::uint64_t{512} << 20;
 constexpr int kMaxJsonDepth = 64;
 
-// What a Feature says of its geometry.
-struct Properties {
-  std::int32_t marker = 0;
-  std::optional<std::int32_t> region;
-  std::optional<double> max_area;
-};
+using Properties = GeometryProperties;
 
 class Reader {
  public:
-  explicit Reader(std::string name) : name_(std::move(name)) {}
+  explicit Reader(const std::string& name) : builder_(name) {}
 
   Result<Domain> read(const Json& root) {
     if (auto read = object(root, "", {}); !read) return tl::unexpected(read.error());
-    if (domain_.points.empty()) return bad("", "holds no geometry");
-    return finish();
+    return builder_.finish();
   }
 
  private:
-  // A polygon that asks for a region, and its path.
-  struct RegionPolygon {
-    PolygonRange range;
-    Properties properties;
-    std::string path;
-  };
-
   tl::unexpected<Error> bad(const std::string& path, const std::string& what) const {
-    return fail(ExitCode::kUnreadableInput, name_ + ": " + (path.empty() ? "" : path + " ") + what);
+    return builder_.bad(path, what);
   }
   static std::string member(const std::string& path, const char* name) {
     return path.empty() ? name : path + "." + name;
@@ -154,143 +139,46 @@ class Reader {
   Result<Point> position(const Json& json, const std::string& path) const {
     if (!json.is_array() || json.size() < 2 || !json[0].is_number() || !json[1].is_number())
       return bad(path, "is not a position [x, y]");
-    const Point at{json[0].get<double>(), json[1].get<double>()};
-    // The limit of the service, and what keeps the predicates from overflow.
-    constexpr double kLargest = 1e50;
-    if (!(std::abs(at.x) <= kLargest && std::abs(at.y) <= kLargest))
-      return bad(path, "is " + coordinates(at.x, at.y) + ", magnitudes go up to 1e50");
-    return at;
+    return Point{json[0].get<double>(), json[1].get<double>()};
   }
 
-  // Reads the positions and drops those that repeat their predecessor. `kept[i]` is the number that
-  // the i-th has in the file.
-  Result<void> positions(const Json& json, const std::string& path, std::vector<Point>& points,
-                         std::vector<std::size_t>& kept) const {
+  Result<std::vector<Point>> positions(const Json& json, const std::string& path) const {
     if (!json.is_array()) return bad(path, "is not an array of positions");
+    std::vector<Point> points;
     points.reserve(json.size());
-    kept.reserve(json.size());
     for (std::size_t i = 0; i < json.size(); ++i) {
       const auto at = position(json[i], element(path, i));
       if (!at) return tl::unexpected(at.error());
-      if (!points.empty() && points.back() == *at) continue;
       points.push_back(*at);
-      kept.push_back(i);
     }
-    return {};
+    return points;
   }
 
   Result<void> point(const Json& json, const std::string& path, const Properties&) {
     const auto at = position(json, path);
     if (!at) return tl::unexpected(at.error());
-    domain_.point_places.add(domain_.points.size(), name_ + ": " + path + ", point ", 0, "");
-    domain_.points.push_back(*at);
-    return {};
-  }
-
-  // Adds the points, and the segments between neighbours; of a ring the last leads to the first.
-  Result<void> chain(const std::vector<Point>& points, const std::vector<std::size_t>& kept,
-                     bool closed, const std::string& path, const Properties& properties) {
-    const std::size_t first = domain_.points.size();
-    if (points.size() > std::numeric_limits<std::uint32_t>::max() - first)
-      return bad(path, "makes more than 4294967295 points");
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (i == 0 || kept[i] != kept[i - 1] + 1)
-        domain_.point_places.add(first + i, name_ + ": " + path + "[", kept[i], "]");
-    }
-    domain_.points.insert(domain_.points.end(), points.begin(), points.end());
-    const std::size_t count = points.size() - (closed ? 0 : 1);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (i == 0 || kept[i] != kept[i - 1] + 1)
-        domain_.segment_places.add(domain_.segments.size(), name_ + ": " + path + ", edge from [",
-                                   kept[i], "]");
-      const std::size_t next = i + 1 < points.size() ? i + 1 : 0;
-      domain_.segments.push_back({static_cast<std::uint32_t>(first + i),
-                                  static_cast<std::uint32_t>(first + next), properties.marker});
-    }
-    return {};
+    return builder_.point(*at, path);
   }
 
   Result<void> line(const Json& json, const std::string& path, const Properties& properties) {
-    std::vector<Point> points;
-    std::vector<std::size_t> kept;
-    if (auto read = positions(json, path, points, kept); !read) return read;
-    if (points.size() < 2) return bad(path, "is a line with fewer than 2 distinct points");
-    const std::size_t first = domain_.segments.size();
-    if (auto added = chain(points, kept, false, path, properties); !added) return added;
-    lines_.push_back({first, domain_.segments.size(), path});
-    return {};
+    const auto points = positions(json, path);
+    if (!points) return tl::unexpected(points.error());
+    return builder_.line(*points, path, properties);
   }
 
   Result<void> polygon(const Json& json, const std::string& path, const Properties& properties) {
     if (!json.is_array()) return bad(path, "is not an array of rings");
-    const std::size_t first = domain_.segments.size();
-    for (std::size_t i = 0; i < json.size(); ++i)
-      if (auto read = ring(json[i], element(path, i), properties); !read) return read;
-    domain_.fill = Domain::Fill::kEvenOdd;
-    if (properties.region || properties.max_area)
-      region_polygons_.push_back({{first, domain_.segments.size()}, properties, path});
+    builder_.begin_polygon();
+    for (std::size_t i = 0; i < json.size(); ++i) {
+      const auto points = positions(json[i], element(path, i));
+      if (!points) return tl::unexpected(points.error());
+      if (auto added = builder_.ring(*points, element(path, i), properties); !added) return added;
+    }
+    builder_.end_polygon(path, properties);
     return {};
   }
 
-  Result<void> ring(const Json& json, const std::string& path, const Properties& properties) {
-    std::vector<Point> points;
-    std::vector<std::size_t> kept;
-    if (auto read = positions(json, path, points, kept); !read) return read;
-    if (json.size() < 4)
-      return bad(path, "is a ring of " + std::to_string(json.size()) + " positions, it needs 4");
-    if (points.front() != points.back())
-      return bad(path, "is a ring that is not closed: it starts at " +
-                           coordinates(points.front().x, points.front().y) + " and ends at " +
-                           coordinates(points.back().x, points.back().y));
-    if (points.size() > 1) points.pop_back();
-    if (points.size() < 3) return bad(path, "is a ring with fewer than 3 distinct points");
-    if (const auto crossing = find_crossing(points)) {
-      const auto edge = [&](std::uint32_t i) {
-        const Point a = points[i];
-        const Point b = points[i + 1 < points.size() ? i + 1 : 0];
-        return "edge " + std::to_string(kept[i]) + " from " + coordinates(a.x, a.y) + " to " +
-               coordinates(b.x, b.y);
-      };
-      return bad(path, "is a ring that crosses itself: " + edge(crossing->first) + " crosses " +
-                           edge(crossing->second));
-    }
-    return chain(points, kept, true, path, properties);
-  }
-
-  // Lines beside polygons are doubled, regions get their seeds.
-  Result<Domain> finish() {
-    std::vector<PolygonRange> ranges;
-    for (const RegionPolygon& polygon : region_polygons_) ranges.push_back(polygon.range);
-    const auto seeds = interior_points(domain_, ranges);
-    if (!seeds) return bad("", seeds.error().message);
-    for (std::size_t i = 0; i < ranges.size(); ++i) {
-      const RegionPolygon& polygon = region_polygons_[i];
-      if (!(*seeds)[i]) return bad(polygon.path, "is a polygon with a region but without area");
-      domain_.region_places.add(i, name_ + ": the region of " + polygon.path + ", seed ", 0, "");
-      domain_.regions.push_back(
-          {*(*seeds)[i], polygon.properties.region.value_or(0), polygon.properties.max_area});
-    }
-    if (domain_.fill == Domain::Fill::kEvenOdd) {
-      for (const Line& line : lines_) {
-        domain_.segment_places.add(domain_.segments.size(),
-                                   name_ + ": " + line.path + ", edge number ", 0, "");
-        for (std::size_t s = line.first_segment; s < line.end_segment; ++s)
-          domain_.segments.push_back(Domain::Segment(domain_.segments[s]));
-      }
-    }
-    return std::move(domain_);
-  }
-
-  struct Line {
-    std::size_t first_segment;
-    std::size_t end_segment;
-    std::string path;
-  };
-
-  std::string name_;
-  Domain domain_;
-  std::vector<Line> lines_;
-  std::vector<RegionPolygon> region_polygons_;
+  GeometryBuilder builder_;
 };
 
 }  // namespace

@@ -9,27 +9,29 @@
 #include "client/text.h"
 
 namespace weft::client {
-namespace {
 
-constexpr std::string_view kBlanks = " \t\r\f\v,";
-
-}  // namespace
+bool LineScanner::skip_line() {
+  column_ = 1;
+  if (rest_.empty()) {
+    content_ = field_ = {};
+    return false;
+  }
+  const std::size_t end = rest_.find('\n');
+  content_ = rest_.substr(0, end);
+  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  ++line_;
+  line_start_ = content_.data();
+  content_ = content_.substr(0, content_.find(syntax_.comment));
+  advance();
+  return true;
+}
 
 bool LineScanner::try_next_line() {
-  while (!rest_.empty()) {
-    const std::size_t end = rest_.find('\n');
-    content_ = rest_.substr(0, end);
-    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-    ++line_;
-    line_start_ = content_.data();
-    content_ = content_.substr(0, content_.find('#'));
-    advance();
+  while (skip_line()) {
     if (field_.empty()) continue;
     column_ = static_cast<std::size_t>(field_.data() - line_start_) + 1;
     return true;
   }
-  column_ = 1;
-  field_ = {};
   return false;
 }
 
@@ -42,13 +44,13 @@ Result<void> LineScanner::next_line(std::string_view what) {
 
 // Finds the field that starts in content_ and takes it off.
 void LineScanner::advance() {
-  const std::size_t start = content_.find_first_not_of(kBlanks);
+  const std::size_t start = content_.find_first_not_of(syntax_.blanks);
   if (start == std::string_view::npos) {
     content_ = field_ = {};
     return;
   }
   content_.remove_prefix(start);
-  const std::size_t length = std::min(content_.find_first_of(kBlanks), content_.size());
+  const std::size_t length = std::min(content_.find_first_of(syntax_.blanks), content_.size());
   field_ = content_.substr(0, length);
   content_.remove_prefix(length);
 }
@@ -62,6 +64,20 @@ tl::unexpected<Error> LineScanner::unexpected_field(std::string_view what) {
   if (field_.empty()) return error("the line ends where " + std::string(what) + " should follow");
   column_ = static_cast<std::size_t>(field_.data() - line_start_) + 1;
   return error("expected " + std::string(what) + ", found " + in_quotes(field_));
+}
+
+Result<std::string_view> LineScanner::word(std::string_view what) {
+  if (field_.empty()) return unexpected_field(what);
+  column_ = static_cast<std::size_t>(field_.data() - line_start_) + 1;
+  const std::string_view found = field_;
+  advance();
+  return found;
+}
+
+std::string_view LineScanner::rest_of_line() const {
+  if (field_.empty()) return {};
+  return {field_.data(),
+          static_cast<std::size_t>(content_.data() + content_.size() - field_.data())};
 }
 
 Result<std::int64_t> LineScanner::integer(std::string_view what) {

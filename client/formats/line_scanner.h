@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads Triangle's text files (.node, .ele, .poly): lines of numbers between blanks, `#` starts a
-// comment, blank lines do not count. Errors (kUnreadableInput) read "file:line:column: expected
-// the x coordinate, found 'abc'".
+// Reads text files that are lines of numbers and words between blanks, such as Triangle's: `#`
+// starts a comment, blank lines do not count. Errors (kUnreadableInput) read "file:line:column:
+// expected the x coordinate, found 'abc'".
 //
 //   LineScanner scanner("box.poly", text);
 //   if (auto line = scanner.next_line("the point count"); !line) return line.error();
@@ -17,24 +17,36 @@
 
 namespace weft::client {
 
+struct LineSyntax {
+  std::string_view blanks = " \t\r\f\v,";
+  char comment = '#';
+};
+
 class LineScanner {
  public:
   // `text` must outlive the scanner.
-  LineScanner(std::string name, std::string_view text) : name_(std::move(name)), rest_(text) {}
+  LineScanner(std::string name, std::string_view text, LineSyntax syntax = {})
+      : name_(std::move(name)), rest_(text), syntax_(syntax) {}
 
   // Moves to the next line that holds something; an error at the end of the file names `what`.
   Result<void> next_line(std::string_view what);
   // Moves to the next line that holds something; false at the end of the file.
   bool try_next_line();
+  // Moves to the next line, whatever it holds; false at the end of the file.
+  bool skip_line();
   // Whether the line has no more fields.
   bool at_line_end() const { return field_.empty(); }
 
   // The next field of the line.
+  Result<std::string_view> word(std::string_view what);
   Result<std::int64_t> integer(std::string_view what);
   Result<std::int32_t> marker(std::string_view what);
   Result<double> real(std::string_view what);  // finite
   // A number of lines to come; refused when so many cannot fit in the rest of the file.
   Result<std::uint64_t> count(std::string_view what);
+
+  // What the line holds from its next field on; reads none of it.
+  std::string_view rest_of_line() const;
 
   // An error at the field that was read last.
   tl::unexpected<Error> error(const std::string& message) const;
@@ -52,6 +64,7 @@ class LineScanner {
   std::uint64_t line_ = 0;
   std::size_t column_ = 1;  // of the field that was read last, or opens the line; from 1
   const char* line_start_ = nullptr;
+  LineSyntax syntax_;
 };
 
 }  // namespace weft::client

@@ -22,10 +22,14 @@ struct MeshView {
   // the input points; either may be empty.
   std::span<const std::uint32_t> input_points;
   std::span<const std::int32_t> input_point_markers;
+  // 2: a node in the middle of every side, after the corners; see second_order.h.
+  std::size_t order = 1;
 
+  std::size_t triangle_nodes() const { return 3 * order; }
+  std::size_t edge_nodes() const { return 1 + order; }
   std::size_t vertex_count() const { return coordinates.size() / 2; }
-  std::size_t triangle_count() const { return triangles.size() / 3; }
-  std::size_t edge_count() const { return edges.size() / 2; }
+  std::size_t triangle_count() const { return triangles.size() / triangle_nodes(); }
+  std::size_t edge_count() const { return edges.size() / edge_nodes(); }
 };
 
 struct Mesh {
@@ -35,7 +39,9 @@ struct Mesh {
   std::vector<std::uint32_t> edges;
   std::vector<std::int32_t> edge_markers;
 
-  MeshView view() const { return {coordinates, triangles, regions, edges, edge_markers, {}, {}}; }
+  MeshView view() const {
+    return {coordinates, triangles, regions, edges, edge_markers, {}, {}, 1};
+  }
   friend bool operator==(const Mesh&, const Mesh&) = default;
 };
 

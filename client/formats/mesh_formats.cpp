@@ -5,96 +5,142 @@
 #include <cmath>
 #include <new>
 #include <stdexcept>
-#include <string>
 
-#include "client/formats/geojson.h"
+#include "client/formats/adcirc.h"
+#include "client/formats/geojson_mesh.h"
 #include "client/formats/msh.h"
+#include "client/formats/npz.h"
+#include "client/formats/second_order.h"
+#include "client/formats/su2.h"
+#include "client/formats/surface_formats.h"
+#include "client/formats/triangle_edges.h"
 #include "client/formats/triangle_mesh.h"
-#include "client/formats/triangle_poly.h"
 #include "client/formats/vtu.h"
 #include "client/text.h"
 
 namespace weft::client {
 namespace {
 
-std::string extension(const std::filesystem::path& path) {
+using Files = std::span<OutputFile>;
+using Options = MeshWriteOptions;
+
+// A writer that makes one file and takes no options.
+template <void (*write)(const MeshView&, OutputFile&)>
+void one_file(const MeshView& mesh, Files files, const Options&) {
+  write(mesh, files[0]);
+}
+
+void write_gmsh(const MeshView& mesh, Files files, const Options& options) {
+  options.msh_version == MshVersion::k22 ? write_msh22(mesh, files[0]) : write_msh(mesh, files[0]);
+}
+
+void write_triangle(const MeshView& mesh, Files files, const Options&) {
+  write_triangle_mesh(mesh, files[0], files[1], files[2]);
+}
+
+void write_adcirc_mesh(const MeshView& mesh, Files files, const Options& options) {
+  write_adcirc(mesh, options.open_boundaries, files[0]);
+}
+
+constexpr bool kSecondOrder = true;
+constexpr bool kFirstOrder = false;
+
+constexpr MeshFormat kFormats[] = {
+    {".vtu", kSecondOrder, one_file<write_vtu>, read_vtu},
+    {".msh", kSecondOrder, write_gmsh, read_msh},
+    {".node", kSecondOrder, write_triangle, read_triangle_mesh},
+    {".ele", kFirstOrder, nullptr, read_triangle_mesh},
+    {".edge", kFirstOrder, one_file<write_triangle_edges>, nullptr},
+    {".neigh", kFirstOrder, one_file<write_triangle_neighbours>, nullptr},
+    {".14", kFirstOrder, write_adcirc_mesh, read_adcirc},
+    {".grd", kFirstOrder, write_adcirc_mesh, read_adcirc},
+    {".su2", kFirstOrder, one_file<write_su2>, read_su2},
+    {".npz", kFirstOrder, one_file<write_npz>, read_npz},
+    {".geojson", kFirstOrder, one_file<write_geojson_mesh>, nullptr},
+    {".obj", kFirstOrder, one_file<write_obj>, read_obj},
+    {".off", kFirstOrder, one_file<write_off>, read_off},
+    {".ply", kFirstOrder, one_file<write_ply>, nullptr},
+    {".stl", kFirstOrder, one_file<write_stl>, nullptr},
+};
+
+template <class Takes>
+std::string extensions(const Takes& takes) {
+  std::string list;
+  for (const MeshFormat& format : kFormats)
+    if (takes(format)) list += (list.empty() ? "" : ", ") + std::string(format.extension);
+  return list;
+}
+
+tl::unexpected<Error> usage(const std::filesystem::path& path, const std::string& why) {
+  return fail(ExitCode::kUsage,
+              path.string() + ": the extension " + in_quotes(path.extension().string()) + why);
+}
+
+}  // namespace
+
+std::string lower_extension(const std::filesystem::path& path) {
   std::string out = path.extension().string();
   std::transform(out.begin(), out.end(), out.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   return out;
 }
 
-}  // namespace
+const MeshFormat* mesh_format(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  for (const MeshFormat& format : kFormats)
+    if (format.extension == extension) return &format;
+  return nullptr;
+}
 
-std::optional<MeshFormat> mesh_format(const std::filesystem::path& path) {
-  const std::string name = extension(path);
-  if (name == ".vtu") return MeshFormat::kVtu;
-  if (name == ".msh") return MeshFormat::kMsh;
-  if (name == ".node" || name == ".ele") return MeshFormat::kTriangle;
-  return std::nullopt;
+std::string written_mesh_extensions() {
+  return extensions([](const MeshFormat& format) { return format.write != nullptr; });
+}
+
+std::string read_mesh_extensions() {
+  return extensions([](const MeshFormat& format) { return format.read != nullptr; });
 }
 
 tl::unexpected<Error> unknown_mesh_format(const std::filesystem::path& path) {
-  return fail(ExitCode::kUsage, path.string() + ": the extension " +
-                                    in_quotes(path.extension().string()) +
-                                    " is not that of a mesh format: .vtu, .msh, .node");
+  return usage(path, " is not that of a mesh that is written: " + written_mesh_extensions());
+}
+
+Result<void> check_writable(const std::filesystem::path& path, const MeshWriteOptions& options) {
+  const MeshFormat* format = mesh_format(path);
+  if (format == nullptr || format->write == nullptr) return unknown_mesh_format(path);
+  if (options.order == 2 && !format->second_order)
+    return usage(path, " is not that of a mesh of second order: " +
+                           extensions([](const MeshFormat& f) { return f.second_order; }));
+  return {};
 }
 
 std::vector<std::filesystem::path> mesh_files(const std::filesystem::path& path) {
-  if (mesh_format(path) != MeshFormat::kTriangle) return {path};
+  if (lower_extension(path) != ".node") return {path};
   std::vector<std::filesystem::path> files;
   for (const char* name : {".node", ".ele", ".poly"})
     files.push_back(std::filesystem::path(path).replace_extension(name));
   return files;
 }
 
-void write_mesh(MeshFormat format, const MeshView& mesh, std::span<OutputFile> files) {
-  switch (format) {
-    case MeshFormat::kVtu:
-      return write_vtu(mesh, files[0]);
-    case MeshFormat::kMsh:
-      return write_msh(mesh, files[0]);
-    case MeshFormat::kTriangle:
-      return write_triangle_mesh(mesh, files[0], files[1], files[2]);
+void write_mesh(const MeshFormat& format, const MeshView& mesh, std::span<OutputFile> files,
+                const MeshWriteOptions& options) {
+  if (options.order == 2) {
+    const SecondOrderMesh second(mesh);
+    format.write(second.view(), files, options);
+  } else {
+    format.write(mesh, files, options);
   }
 }
 
 Result<Mesh> read_mesh(const std::filesystem::path& path) {
-  const auto format = mesh_format(path);
-  if (!format) return unknown_mesh_format(path);
+  const MeshFormat* format = mesh_format(path);
+  if (format == nullptr || format->read == nullptr)
+    return usage(path, " is not that of a mesh that is read: " + read_mesh_extensions());
   try {
-    switch (*format) {
-      case MeshFormat::kVtu:
-        return read_vtu(path);
-      case MeshFormat::kMsh:
-        return read_msh(path);
-      case MeshFormat::kTriangle:
-        return read_triangle_mesh(path);
-    }
+    return format->read(path);
   } catch (const std::bad_alloc&) {
   } catch (const std::length_error&) {
   }
   return fail(ExitCode::kUnreadableInput, path.string() + ": not enough memory to read it");
-}
-
-bool is_domain_path(const std::filesystem::path& path) {
-  const std::string name = extension(path);
-  return name == ".poly" || name == ".geojson" || name == ".json";
-}
-
-tl::unexpected<Error> unknown_domain_format(const std::filesystem::path& path) {
-  return fail(ExitCode::kUsage, path.string() + ": the extension " +
-                                    in_quotes(path.extension().string()) +
-                                    " is not that of a domain: .poly, .geojson, .json");
-}
-
-Result<Domain> read_domain(const std::filesystem::path& path) {
-  if (!is_domain_path(path)) return unknown_domain_format(path);
-  try {
-    return extension(path) == ".poly" ? read_triangle_poly(path) : read_geojson(path);
-  } catch (const std::bad_alloc&) {
-    return fail(ExitCode::kUnreadableInput, path.string() + ": not enough memory to read it");
-  }
 }
 
 Result<Mesh> validated(const std::filesystem::path& path, Mesh mesh) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,11 @@ namespace {
 
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{64} << 30;
 constexpr std::string_view kBlanks = " \t\r\n";
+
+// Types of elements; the first two are the dimensions, too.
+constexpr std::int32_t kLine = 1;
+constexpr std::int32_t kTriangle = 2;
+constexpr std::int32_t kPoint = 15;
 
 // Thrown and caught in this file alone: a format of nested counts reads best without a check after
 // every field.
@@ -60,9 +66,9 @@ class Reader {
       } else if (line == "$Entities") {
         read_entities();
       } else if (line == "$Nodes") {
-        read_nodes();
+        is_22_ ? read_nodes_22() : read_nodes();
       } else if (line == "$Elements") {
-        read_elements();
+        is_22_ ? read_elements_22() : read_elements();
       } else if (line.starts_with("$")) {
         skip_to("$End" + std::string(line.substr(1)));
         continue;
@@ -134,8 +140,9 @@ class Reader {
 
   void read_format() {
     const auto version = text_number<double>();
-    if (version != 4.1)
-      throw Malformed{"has the version " + shortest(version) + ", only 4.1 is read"};
+    if (version != 4.1 && version != 2.2)
+      throw Malformed{"has the version " + shortest(version) + ", only 4.1 and 2.2 are read"};
+    is_22_ = version == 2.2;
     binary_ = text_number<int>() == 1;
     if (text_number<int>() != 8) throw Malformed{"its numbers are not of 8 bytes"};
     start_data();
@@ -187,8 +194,11 @@ class Reader {
   std::int32_t id_of(Tag entity) const {
     const auto group = group_of_entity_.find(entity);
     if (group == group_of_entity_.end()) return 0;
-    const auto id = id_of_group_.find({entity.first, group->second});
-    return id != id_of_group_.end() ? id->second : group->second;
+    return id_of_group(entity.first, group->second);
+  }
+  std::int32_t id_of_group(std::int32_t dimension, std::int32_t group) const {
+    const auto id = id_of_group_.find({dimension, group});
+    return id != id_of_group_.end() ? id->second : group;
   }
 
   void read_nodes() {
@@ -220,6 +230,39 @@ class Reader {
         for (std::int32_t k = 0; parametric && k < dimension; ++k) next<double>();
       }
     }
+    take_nodes(place_of_tag, coordinates);
+  }
+
+  void read_nodes_22() {
+    has_nodes_ = true;
+    const auto nodes = text_count();
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> place_of_tag;
+    std::vector<double> coordinates;
+    place_of_tag.reserve(nodes);
+    coordinates.reserve(2 * nodes);
+    for (std::uint64_t i = 0; i < nodes; ++i) {
+      const auto tag = next<std::int32_t>();
+      place_of_tag.emplace_back(static_cast<std::uint32_t>(tag), i);
+      const auto x = next<double>();
+      const auto y = next<double>();
+      next<double>();
+      coordinates.insert(coordinates.end(), {x, y});
+    }
+    take_nodes(place_of_tag, coordinates);
+  }
+
+  // A number of items to come, as text even in binary files of 2.2.
+  std::uint64_t text_count() {
+    const auto value = text_number<std::uint64_t>();
+    if (value > rest_.size() || value > std::numeric_limits<std::uint32_t>::max())
+      throw Malformed{"announces " + std::to_string(value) + " items, more than the file can hold"};
+    start_data();
+    return value;
+  }
+
+  // `place_of_tag`: tag of a node, its place in `coordinates`.
+  void take_nodes(std::vector<std::pair<std::uint64_t, std::uint64_t>>& place_of_tag,
+                  const std::vector<double>& coordinates) {
     // Vertices go by tag, so that a mesh comes back in the order in which it was written.
     std::sort(place_of_tag.begin(), place_of_tag.end());
     for (const auto& [tag, place] : place_of_tag) {
@@ -253,30 +296,68 @@ class Reader {
       const auto entity = next<std::int32_t>();
       const auto type = next<std::int32_t>();
       const std::uint64_t elements = count();
-      constexpr int kLine = 1;
-      constexpr int kTriangle = 2;
-      constexpr int kPoint = 15;
-      if (type != kLine && type != kTriangle && type != kPoint)
-        throw Malformed{"has elements of type " + std::to_string(type) +
-                        ", which are no triangles, lines or points"};
+      check_type(type);
       const std::int32_t id = id_of({dimension, entity});
       for (std::uint64_t i = 0; i < elements; ++i) {
         next<std::uint64_t>();
-        for (int corner = 0; corner < (type == kPoint ? 1 : type + 1); ++corner) {
-          const std::uint32_t v = vertex(next<std::uint64_t>());
-          if (type == kTriangle) mesh_.triangles.push_back(v);
-          if (type == kLine) mesh_.edges.push_back(v);
-        }
-        if (type == kTriangle) mesh_.regions.push_back(id);
-        if (type == kLine) mesh_.edge_markers.push_back(id);
+        read_element<std::uint64_t>(type, id);
       }
     }
+  }
+
+  // Text: number, type, tags, nodes. Binary: blocks that start with type, elements, tags.
+  void read_elements_22() {
+    has_elements_ = true;
+    const auto elements = text_count();
+    std::int32_t type = 0;
+    std::int32_t tags = 0;
+    std::int32_t in_block = 0;
+    for (std::uint64_t i = 0; i < elements; ++i) {
+      if (binary_ && in_block == 0) {
+        type = next<std::int32_t>();
+        in_block = next<std::int32_t>();
+        tags = next<std::int32_t>();
+        if (in_block <= 0) throw Malformed{"has a block of no elements"};
+      }
+      --in_block;
+      next<std::int32_t>();
+      if (!binary_) {
+        type = next<std::int32_t>();
+        tags = next<std::int32_t>();
+      }
+      check_type(type);
+      std::int32_t group = 0;
+      for (std::int32_t k = 0; k < tags; ++k) {
+        const auto tag = next<std::int32_t>();
+        if (k == 0) group = tag;
+      }
+      read_element<std::int32_t>(type, id_of_group(type == kPoint ? 0 : type, group));
+    }
+  }
+
+  static void check_type(std::int32_t type) {
+    if (type != kLine && type != kTriangle && type != kPoint)
+      throw Malformed{"has elements of type " + std::to_string(type) +
+                      ", which are no triangles, lines or points"};
+  }
+
+  template <class NodeTag>
+  void read_element(std::int32_t type, std::int32_t id) {
+    for (int corner = 0; corner < (type == kPoint ? 1 : type + 1); ++corner) {
+      const auto tag = next<NodeTag>();
+      const std::uint32_t v = vertex(static_cast<std::make_unsigned_t<NodeTag>>(tag));
+      if (type == kTriangle) mesh_.triangles.push_back(v);
+      if (type == kLine) mesh_.edges.push_back(v);
+    }
+    if (type == kTriangle) mesh_.regions.push_back(id);
+    if (type == kLine) mesh_.edge_markers.push_back(id);
   }
 
   std::filesystem::path path_;
   std::string_view whole_;
   std::string_view rest_;
   bool binary_ = false;
+  bool is_22_ = false;
   bool has_nodes_ = false;
   bool has_elements_ = false;
   std::map<Tag, std::int32_t> id_of_group_;

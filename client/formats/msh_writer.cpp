@@ -2,22 +2,18 @@
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
-#include <string>
-#include <type_traits>
 #include <vector>
 
 #include "client/formats/msh.h"
+#include "client/formats/msh_groups.h"
 
 namespace weft::client {
 namespace {
 
-constexpr int kLineType = 1;
-constexpr int kTriangleType = 2;
-
-// The elements of one dimension, sorted by entity. Entity e has the tag e + 1.
-struct Groups {
-  std::vector<std::int32_t> ids;         // per entity: region id or marker, ascending
-  std::vector<std::int32_t> tags;        // per entity: tag of its physical group
+// The elements of one dimension, sorted by entity. Entity e has the tag e + 1 and is the one of its
+// physical group.
+struct Groups : PhysicalGroups {
+  using PhysicalGroups::PhysicalGroups;
   std::vector<std::uint32_t> entity_of;  // per element
   std::vector<std::uint32_t> order;      // elements by entity, then by number
   std::vector<std::size_t> starts;       // per entity: its first in `order`; one more at the end
@@ -35,43 +31,16 @@ void sort_by_entity(std::size_t entities, const std::vector<std::uint32_t>& enti
 }
 
 Groups group(std::span<const std::int32_t> values) {
-  Groups groups;
-  for (std::size_t i = 0; i < values.size(); ++i)  // runs are long
-    if (i == 0 || values[i] != values[i - 1]) groups.ids.push_back(values[i]);
-  std::sort(groups.ids.begin(), groups.ids.end());
-  groups.ids.erase(std::unique(groups.ids.begin(), groups.ids.end()), groups.ids.end());
-
-  std::int32_t free = 0;
-  const auto next_free = [&groups, &free] {
-    do ++free;
-    while (std::binary_search(groups.ids.begin(), groups.ids.end(), free));
-    return free;
-  };
-  for (const std::int32_t id : groups.ids) groups.tags.push_back(id > 0 ? id : next_free());
-
+  Groups groups(values);
   groups.entity_of.resize(values.size());
   std::uint32_t entity = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (i == 0 || values[i] != values[i - 1])
-      entity = static_cast<std::uint32_t>(
-          std::lower_bound(groups.ids.begin(), groups.ids.end(), values[i]) - groups.ids.begin());
+      entity = static_cast<std::uint32_t>(groups.find(values[i]));
     groups.entity_of[i] = entity;
   }
   sort_by_entity(groups.ids.size(), groups.entity_of, groups.order, groups.starts);
   return groups;
-}
-
-void put_names(OutputFile& file, const Groups& curves, const Groups& surfaces) {
-  std::string text =
-      "$PhysicalNames\n" + std::to_string(curves.ids.size() + surfaces.ids.size()) + "\n";
-  const auto add = [&text](const char* dimension, const char* word, const Groups& groups) {
-    for (std::size_t e = 0; e < groups.ids.size(); ++e)
-      text += dimension + std::to_string(groups.tags[e]) + " \"" + word + " " +
-              std::to_string(groups.ids[e]) + "\"\n";
-  };
-  add("1 ", "marker", curves);
-  add("2 ", "region", surfaces);
-  file.put(text + "$EndPhysicalNames\n");
 }
 
 // Corners and physical group of each entity; nothing of what bounds it.
@@ -82,14 +51,14 @@ void put_entities(OutputFile& file, const MeshView& mesh, const Groups& curves,
                                     std::uint64_t{surfaces.ids.size()}, std::uint64_t{0}})
     file.put_raw(count);
   const auto put = [&file, &mesh](const Groups& groups, std::span<const std::uint32_t> vertices,
-                                  std::size_t corners) {
+                                  std::size_t nodes) {
     for (std::size_t e = 0; e < groups.ids.size(); ++e) {
       double low[3] = {};
       double high[3] = {};
       bool empty = true;
       for (std::size_t i = groups.starts[e]; i < groups.starts[e + 1]; ++i) {
-        for (std::size_t k = 0; k < corners; ++k) {
-          const std::size_t v = vertices[groups.order[i] * corners + k];
+        for (std::size_t k = 0; k < nodes; ++k) {
+          const std::size_t v = vertices[groups.order[i] * nodes + k];
           for (std::size_t axis = 0; axis < 2; ++axis) {
             const double c = mesh.coordinates[2 * v + axis];
             low[axis] = empty ? c : std::min(low[axis], c);
@@ -106,8 +75,8 @@ void put_entities(OutputFile& file, const MeshView& mesh, const Groups& curves,
       file.put_raw(std::uint64_t{0});
     }
   };
-  put(curves, mesh.edges, 2);
-  put(surfaces, mesh.triangles, 3);
+  put(curves, mesh.edges, mesh.edge_nodes());
+  put(surfaces, mesh.triangles, mesh.triangle_nodes());
   file.put("\n$EndEntities\n");
 }
 
@@ -117,10 +86,10 @@ void put_nodes(OutputFile& file, const MeshView& mesh, const Groups& curves,
   const std::size_t entities = curves.ids.size() + surfaces.ids.size();
   std::vector<std::uint32_t> entity_of(entities == 0 ? 0 : mesh.vertex_count(), 0);
   for (std::size_t i = mesh.triangles.size(); i-- > 0;)
-    entity_of[mesh.triangles[i]] =
-        static_cast<std::uint32_t>(curves.ids.size() + surfaces.entity_of[i / 3]);
+    entity_of[mesh.triangles[i]] = static_cast<std::uint32_t>(
+        curves.ids.size() + surfaces.entity_of[i / mesh.triangle_nodes()]);
   for (std::size_t i = mesh.edges.size(); i-- > 0;)
-    entity_of[mesh.edges[i]] = curves.entity_of[i / 2];
+    entity_of[mesh.edges[i]] = curves.entity_of[i / mesh.edge_nodes()];
   std::vector<std::uint32_t> order;
   std::vector<std::size_t> starts;
   sort_by_entity(entities, entity_of, order, starts);
@@ -154,25 +123,24 @@ void put_elements(OutputFile& file, const MeshView& mesh, const Groups& curves,
        {std::uint64_t{curves.ids.size() + surfaces.ids.size()}, count, std::uint64_t{1}, count})
     file.put_raw(value);
   std::uint64_t tag = 0;
-  const auto put = [&file, &tag]<std::size_t corners>(
-                       const Groups& groups, std::span<const std::uint32_t> vertices,
-                       std::int32_t dimension, std::int32_t type,
-                       std::integral_constant<std::size_t, corners>) {
+  const auto put = [&file, &tag](const Groups& groups, std::span<const std::uint32_t> vertices,
+                                 std::int32_t dimension, std::int32_t type, std::size_t nodes) {
+    std::uint64_t element[7];
     for (std::size_t e = 0; e < groups.ids.size(); ++e) {
       file.put_raw(dimension);
       file.put_raw(static_cast<std::int32_t>(e + 1));
       file.put_raw(type);
       file.put_raw(std::uint64_t{groups.starts[e + 1] - groups.starts[e]});
       for (std::size_t i = groups.starts[e]; i < groups.starts[e + 1]; ++i) {
-        std::uint64_t element[corners + 1] = {++tag};
-        for (std::size_t k = 0; k < corners; ++k)
-          element[k + 1] = std::uint64_t{vertices[groups.order[i] * corners + k]} + 1;
-        file.put_array(std::span<const std::uint64_t>(element));
+        element[0] = ++tag;
+        for (std::size_t k = 0; k < nodes; ++k)
+          element[k + 1] = std::uint64_t{vertices[groups.order[i] * nodes + k]} + 1;
+        file.put_array(std::span<const std::uint64_t>(element).first(nodes + 1));
       }
     }
   };
-  put(curves, mesh.edges, 1, kLineType, std::integral_constant<std::size_t, 2>{});
-  put(surfaces, mesh.triangles, 2, kTriangleType, std::integral_constant<std::size_t, 3>{});
+  put(curves, mesh.edges, 1, msh_line_type(mesh.order), mesh.edge_nodes());
+  put(surfaces, mesh.triangles, 2, msh_triangle_type(mesh.order), mesh.triangle_nodes());
   file.put("\n$EndElements\n");
 }
 
@@ -184,7 +152,7 @@ void write_msh(const MeshView& mesh, OutputFile& file) {
   file.put("$MeshFormat\n4.1 1 8\n");
   file.put_raw(std::int32_t{1});  // tells the byte order
   file.put("\n$EndMeshFormat\n");
-  put_names(file, curves, surfaces);
+  put_physical_names(file, curves, surfaces);
   put_entities(file, mesh, curves, surfaces);
   put_nodes(file, mesh, curves, surfaces);
   put_elements(file, mesh, curves, surfaces);

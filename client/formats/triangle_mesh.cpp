@@ -10,6 +10,7 @@
 #include "client/formats/file_contents.h"
 #include "client/formats/line_scanner.h"
 #include "client/formats/mesh_formats.h"
+#include "client/formats/text_writer.h"
 #include "client/formats/triangle_points.h"
 #include "client/text.h"
 
@@ -25,21 +26,11 @@ std::vector<std::int32_t> vertex_markers(const MeshView& mesh) {
   for (std::size_t i = 0; i < mesh.edges.size(); ++i) {
     const std::uint32_t v = mesh.edges[i];
     on_edge[v] = true;
-    if (markers[v] == 0) markers[v] = mesh.edge_markers[i / 2];
+    if (markers[v] == 0) markers[v] = mesh.edge_markers[i / mesh.edge_nodes()];
   }
   for (std::size_t v = 0; v < markers.size(); ++v)
     if (markers[v] == 0 && on_edge[v]) markers[v] = 1;
   return markers;
-}
-
-void put_fields(OutputFile& file, std::initializer_list<std::int64_t> fields) {
-  char separator = 0;
-  for (const std::int64_t field : fields) {
-    if (separator) file.put(separator);
-    file.number(field);
-    separator = ' ';
-  }
-  file.put('\n');
 }
 
 Result<void> read_triangles(const std::filesystem::path& path, std::int64_t base, Mesh& mesh) {
@@ -128,31 +119,30 @@ Result<void> read_edges(const std::filesystem::path& path, std::int64_t base, Me
 
 void write_triangle_mesh(const MeshView& mesh, OutputFile& node, OutputFile& ele,
                          OutputFile& poly) {
-  const auto as_number = [](std::size_t value) { return static_cast<std::int64_t>(value); };
   const std::vector<std::int32_t> markers = vertex_markers(mesh);
-  put_fields(node, {as_number(mesh.vertex_count()), 2, 0, 1});
-  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
-    node.number(as_number(v + 1));
-    node.put(' ');
-    node.number(mesh.coordinates[2 * v]);
-    node.put(' ');
-    node.number(mesh.coordinates[2 * v + 1]);
-    node.put(' ');
-    node.number(std::int64_t{markers[v]});
-    node.put('\n');
-  }
-  put_fields(ele, {as_number(mesh.triangle_count()), 3, 1});
+  put_line(node, mesh.vertex_count(), 2, 0, 1);
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+    put_line(node, v + 1, mesh.coordinates[2 * v], mesh.coordinates[2 * v + 1], markers[v]);
+  const std::size_t nodes = mesh.triangle_nodes();
+  put_line(ele, mesh.triangle_count(), nodes, 1);
+  constexpr std::size_t kOrder[] = {0, 1, 2, 4, 5, 3};  // node 4 is opposite corner 1
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    const std::uint32_t* corner = &mesh.triangles[3 * t];
-    put_fields(ele, {as_number(t + 1), corner[0] + std::int64_t{1}, corner[1] + std::int64_t{1},
-                     corner[2] + std::int64_t{1}, mesh.regions[t]});
+    ele.number(static_cast<std::int64_t>(t + 1));
+    ele.put(' ');
+    for (std::size_t k = 0; k < nodes; ++k) {
+      ele.number(mesh.triangles[nodes * t + kOrder[k]] + std::int64_t{1});
+      ele.put(' ');
+    }
+    put_line(ele, mesh.regions[t]);
   }
-  put_fields(poly, {0, 2, 0, 1});
-  put_fields(poly, {as_number(mesh.edge_count()), 1});
-  for (std::size_t e = 0; e < mesh.edge_count(); ++e)
-    put_fields(poly, {as_number(e + 1), mesh.edges[2 * e] + std::int64_t{1},
-                      mesh.edges[2 * e + 1] + std::int64_t{1}, mesh.edge_markers[e]});
-  put_fields(poly, {0});
+  put_line(poly, 0, 2, 0, 1);
+  put_line(poly, mesh.edge_count(), 1);
+  for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
+    const std::uint32_t* ends = &mesh.edges[mesh.edge_nodes() * e];
+    put_line(poly, e + 1, ends[0] + std::int64_t{1}, ends[1] + std::int64_t{1},
+             mesh.edge_markers[e]);
+  }
+  put_line(poly, 0);
 }
 
 Result<Mesh> read_triangle_mesh(const std::filesystem::path& path) {

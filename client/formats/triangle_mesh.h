@@ -5,6 +5,7 @@
 //          are such edges, otherwise 0
 //   .ele   triangles with their region id as the one attribute
 //   .poly  the edges on input segments with their markers; no points of its own, no holes
+// Of second order, .ele has six nodes: the corners, then the middle of the side opposite each.
 #pragma once
 
 #include <filesystem>

@@ -8,6 +8,7 @@
 
 #include "client/formats/file_contents.h"
 #include "client/formats/line_scanner.h"
+#include "client/formats/text_writer.h"
 #include "client/formats/triangle_points.h"
 #include "client/text.h"
 
@@ -123,6 +124,29 @@ Result<Domain> read_triangle_poly(const std::filesystem::path& path) {
   if (auto read = read_holes(scanner, domain); !read) return tl::unexpected(read.error());
   if (auto read = read_regions(scanner, domain); !read) return tl::unexpected(read.error());
   return domain;
+}
+
+void write_triangle_poly(const Domain& domain, OutputFile& file) {
+  const bool marked = !domain.point_markers.empty();
+  put_line(file, domain.points.size(), 2, 0, marked ? 1 : 0);
+  for (std::size_t i = 0; i < domain.points.size(); ++i) {
+    const Point& at = domain.points[i];
+    marked ? put_line(file, i + 1, at.x, at.y, domain.point_markers[i])
+           : put_line(file, i + 1, at.x, at.y);
+  }
+  put_line(file, domain.segments.size(), 1);
+  for (std::size_t i = 0; i < domain.segments.size(); ++i) {
+    const Domain::Segment& segment = domain.segments[i];
+    put_line(file, i + 1, segment.a + std::int64_t{1}, segment.b + std::int64_t{1}, segment.marker);
+  }
+  put_line(file, domain.holes.size());
+  for (std::size_t i = 0; i < domain.holes.size(); ++i)
+    put_line(file, i + 1, domain.holes[i].x, domain.holes[i].y);
+  put_line(file, domain.regions.size());
+  for (std::size_t i = 0; i < domain.regions.size(); ++i) {
+    const Domain::Region& region = domain.regions[i];
+    put_line(file, i + 1, region.at.x, region.at.y, region.id, region.max_area.value_or(-1));
+  }
 }
 
 }  // namespace weft::client

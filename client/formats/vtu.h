@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTK's unstructured grid, XML with raw appended data (VTK file formats, "XML file formats"):
 // points in 3D with z = 0; the triangles, then the edges on input segments as line cells; cell data
-// `region` (0 on lines) and `marker` (0 on triangles), both Int32.
+// `region` (0 on lines) and `marker` (0 on triangles), both Int32. Of second order: quadratic
+// triangles and quadratic edges.
 #pragma once
 
 #include <filesystem>

@@ -8,8 +8,9 @@
 namespace weft::client {
 namespace {
 
-constexpr std::uint8_t kLine = 3;
-constexpr std::uint8_t kTriangle = 5;
+// VTK's numbers for the kinds of cells, of order 1 and 2.
+constexpr std::uint8_t kLine[] = {3, 21};
+constexpr std::uint8_t kTriangle[] = {5, 22};
 constexpr std::size_t kBlock = 1 << 14;  // values that are converted at a time
 
 // One array of the appended section: its element and its place.
@@ -39,12 +40,15 @@ void put_points(OutputFile& file, std::span<const double> coordinates) {
 }
 
 // Where each cell ends in the connectivity: triangles first.
-void put_offsets(OutputFile& file, std::size_t triangles, std::size_t edges) {
+void put_offsets(OutputFile& file, const MeshView& mesh) {
+  const std::size_t triangles = mesh.triangle_count();
+  const std::size_t cells = triangles + mesh.edge_count();
   std::vector<std::int64_t> block;
   block.reserve(kBlock);
   std::int64_t end = 0;
-  for (std::size_t cell = 0; cell < triangles + edges; ++cell) {
-    block.push_back(end += cell < triangles ? 3 : 2);
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    end += static_cast<std::int64_t>(cell < triangles ? mesh.triangle_nodes() : mesh.edge_nodes());
+    block.push_back(end);
     if (block.size() == kBlock) {
       file.put_array(std::span<const std::int64_t>(block));
       block.clear();
@@ -53,9 +57,11 @@ void put_offsets(OutputFile& file, std::size_t triangles, std::size_t edges) {
   file.put_array(std::span<const std::int64_t>(block));
 }
 
-void put_types(OutputFile& file, std::size_t triangles, std::size_t edges) {
-  std::vector<std::uint8_t> types(triangles + edges, kTriangle);
-  std::fill(types.begin() + static_cast<std::ptrdiff_t>(triangles), types.end(), kLine);
+void put_types(OutputFile& file, const MeshView& mesh) {
+  const std::size_t triangles = mesh.triangle_count();
+  std::vector<std::uint8_t> types(triangles + mesh.edge_count(), kTriangle[mesh.order - 1]);
+  std::fill(types.begin() + static_cast<std::ptrdiff_t>(triangles), types.end(),
+            kLine[mesh.order - 1]);
   file.put_array(std::span<const std::uint8_t>(types));
 }
 
@@ -97,9 +103,9 @@ void write_vtu(const MeshView& mesh, OutputFile& file) {
   file.put_array(mesh.triangles);
   file.put_array(mesh.edges);
   file.put_raw((section++)->bytes);
-  put_offsets(file, triangles, edges);
+  put_offsets(file, mesh);
   file.put_raw((section++)->bytes);
-  put_types(file, triangles, edges);
+  put_types(file, mesh);
   file.put_raw((section++)->bytes);
   file.put_array(mesh.regions);
   put_zeros<std::int32_t>(file, edges);

@@ -84,7 +84,7 @@ TEST_F(Manifest, TakesTheFlagsOfMeshAndPathsFromWhereItLies) {
   const auto meshes = read(R"(
 meshes:
   - {name: a, input: in/a.poly, size: x + 1, min-angle: 25, min-edge: 0.5, max-triangles: 9,
-     max-seconds: 4, output: [o/a.vtu, o/a.msh], draw: a.png, color: angle,
+     max-seconds: 4, output: [o/a.vtu, o/a.msh], draw: a.png, color: angle, order: 2,
      require: {min-angle: 25}}
   - {name: b, input: /b.geojson, size: 0.5}
 )");
@@ -101,6 +101,7 @@ meshes:
   EXPECT_EQ(a.output.files.back(), folder_ / "o/a.msh");
   EXPECT_EQ(a.output.drawings.front(), folder_ / "a.png");
   EXPECT_EQ(a.output.color, DrawColor::kAngle);
+  EXPECT_EQ(a.output.writing.order, 2);
   ASSERT_EQ(a.gates.size(), 1u);
   EXPECT_EQ(meshes->back().input, "/b.geojson");
   EXPECT_TRUE(meshes->back().output.empty());
@@ -128,6 +129,8 @@ TEST_F(Manifest, NamesLineAndKeyOfWhatItDoesNotUnderstand) {
             ":4: min-angle: 'much' is not a number");
   EXPECT_EQ(error("meshes:\n  - name: a\n    input: a.poly\n    max-triangles: -5\n"),
             ":4: max-triangles: '-5' is not a count");
+  EXPECT_EQ(error("meshes:\n  - name: a\n    input: a.poly\n    order: 3\n"),
+            ":4: order: '3' is not 1 or 2");
   EXPECT_EQ(
       error("meshes:\n  - name: a\n    input: a.poly\n    require: {angle: 1}\n").substr(0, 24),
       ":4: require: 'angle' is ");
@@ -184,7 +187,8 @@ TEST(LockFile, NamesAFileThatIsNone) {
   const auto read = read_lock_file(folder / "m.lock");
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().exit, ExitCode::kUnreadableInput);
-  EXPECT_TRUE(read.error().message.starts_with((folder / "m.lock").string() + ": not a lock file: "));
+  EXPECT_TRUE(
+      read.error().message.starts_with((folder / "m.lock").string() + ": not a lock file: "));
 }
 
 std::vector<BatchOutcome> three_outcomes() {

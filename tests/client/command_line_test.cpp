@@ -81,10 +81,10 @@ TEST_F(CommandLine, IsSilentWhenQuiet) {
 }
 
 TEST_F(CommandLine, RefusesUnknownExtensionsBeforeAnyWork) {
-  EXPECT_EQ(run(mesh_to("m.stl")), 2);
-  EXPECT_NE(err().find("'.stl' is not that of a mesh format: .vtu, .msh, .node"),
+  EXPECT_EQ(run(mesh_to("m.stp")), 2);
+  EXPECT_NE(err().find("'.stp' is not that of a mesh that is written: .vtu, .msh, .node, "),
             std::string::npos);
-  EXPECT_EQ(run({"mesh", "in.shp", "-o", "m.vtu"}), 2);
+  EXPECT_EQ(run({"mesh", "in.dxf", "-o", "m.vtu"}), 2);
   EXPECT_EQ(run({"mesh", "in.poly", "--draw", "m.gif"}), 2);
   EXPECT_EQ(run({"mesh", "in.poly"}), 2);
   EXPECT_EQ(run({"mesh"}), 2);
@@ -226,7 +226,53 @@ TEST_F(CommandLine, DescribesMeshesAndDomains) {
   EXPECT_NE(out().find("box        (0, 0) to (4, 4)\n"), std::string::npos) << out();
   EXPECT_EQ(run({"info", folder_ / "in.poly"}), 0);
   EXPECT_NE(out().find("markers    1 (1), 2 (1), 3 (1), 4 (1)\n"), std::string::npos) << out();
-  EXPECT_EQ(run({"info", "a.stl"}), 2);
+  EXPECT_EQ(run({"info", "a.stp"}), 2);
+}
+
+TEST_F(CommandLine, ConvertsMeshes) {
+  EXPECT_EQ(run(mesh_to("m.vtu")), 0) << err();
+  EXPECT_EQ(run({"convert", out_file("m.vtu"), out_file("m.npz")}), 0) << err();
+  EXPECT_TRUE(out().starts_with("32 triangles, 25 vertices\nwrote ")) << out();
+  EXPECT_EQ(run({"convert", out_file("m.npz"), out_file("n.node"), "-q"}), 0) << err();
+  EXPECT_EQ(out() + err(), "");
+  EXPECT_EQ(read_mesh(out_file("n.node")).value(), square_mesh(4));
+  EXPECT_EQ(run({"convert", out_file("m.vtu"), out_file("m.msh"), "--msh-version", "2.2", "--order",
+                 "2"}),
+            0)
+      << err();
+  EXPECT_TRUE(contents_of(out_file("m.msh")).starts_with("$MeshFormat\n2.2 0 8\n"));
+}
+
+TEST_F(CommandLine, ConvertsDomainsAndWhatAMeshIsOf) {
+  folder_.write("d.geojson", R"({"type": "Polygon", "coordinates": [
+      [[0, 0], [9, 0], [9, 9], [0, 9], [0, 0]], [[3, 3], [6, 3], [6, 6], [3, 6], [3, 3]]]})");
+  EXPECT_EQ(run({"convert", folder_ / "d.geojson", out_file("d.poly")}), 0) << err();
+  EXPECT_TRUE(out().starts_with("8 points, 8 segments, 1 holes, 0 regions\nwrote ")) << out();
+  EXPECT_EQ(run(mesh_to("m.vtu")), 0) << err();
+  EXPECT_EQ(run({"convert", out_file("m.vtu"), out_file("again.poly")}), 0) << err();
+  EXPECT_TRUE(out().starts_with("19 points, 20 segments, 0 holes, 1 regions\n")) << out();
+}
+
+TEST_F(CommandLine, ConvertRefusesWhatMakesNoSense) {
+  EXPECT_EQ(run({"convert", folder_ / "in.poly", out_file("m.vtu")}), 2);
+  EXPECT_NE(err().find("is a domain, which becomes a mesh by `weft mesh "), std::string::npos);
+  EXPECT_EQ(run({"convert", "m.stl", out_file("m.vtu")}), 2);
+  EXPECT_EQ(run({"convert", "m.vtu", out_file("m.stp")}), 2);
+  EXPECT_EQ(run({"convert", folder_ / "in.poly", folder_ / "in.poly"}), 2);
+  EXPECT_EQ(run({"convert", folder_ / "in.poly", out_file("m.poly"), "--order", "2"}), 2);
+  EXPECT_EQ(run({"convert", folder_ / "none.vtu", out_file("m.msh")}), 4);
+  EXPECT_EQ(left_in("out"), Words{});
+}
+
+TEST_F(CommandLine, RefusesFlagsOfFormatsThatAreNotWritten) {
+  for (const Words& flags : {Words{"--order", "2", "-o", out_file("n.stl")}, Words{"--order", "3"},
+                             Words{"--open-boundary", "1"}, Words{"--msh-version", "2.2"},
+                             Words{"--msh-version", "3"}}) {
+    Words words = mesh_to("m.vtu");
+    words.insert(words.end(), flags.begin(), flags.end());
+    EXPECT_EQ(run(words), 2) << flags[0] << " " << flags[1];
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "pid"));
 }
 
 TEST_F(CommandLine, AsksForHealthAndServerInfo) {

@@ -6,8 +6,11 @@
 #include <functional>
 #include <random>
 
+#include "client/formats/domain_formats.h"
+#include "client/formats/seeded.h"
 #include "tests/client/support/mesh_files.h"
 #include "tests/client/support/sample_mesh.h"
+#include "tests/client/support/shapefile_writer.h"
 
 namespace weft::client {
 namespace {
@@ -60,9 +63,8 @@ class HostileMesh : public testing::TestWithParam<const char*> {};
 TEST_P(HostileMesh, IsRefusedOrRead) {
   TempFolder folder;
   const Mesh mesh = square_mesh(3);
-  ASSERT_TRUE(write_files(mesh.view(), folder / "m.node"));
-  ASSERT_TRUE(write_files(mesh.view(), folder / "m.vtu"));
-  ASSERT_TRUE(write_files(mesh.view(), folder / "m.msh"));
+  for (const char* name : {"m.node", "m.vtu", "m.msh", "m.14", "m.su2", "m.npz", "m.obj", "m.off"})
+    ASSERT_TRUE(write_files(mesh.view(), folder / name));
   const std::filesystem::path path = folder / GetParam();
   damage(path, [&path] {
     const auto read = read_mesh(path.extension() == ".poly"
@@ -77,7 +79,18 @@ TEST_P(HostileMesh, IsRefusedOrRead) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, HostileMesh,
-                         testing::Values("m.node", "m.ele", "m.poly", "m.vtu", "m.msh"));
+                         testing::Values("m.node", "m.ele", "m.poly", "m.vtu", "m.msh", "m.14",
+                                         "m.su2", "m.npz", "m.obj", "m.off"));
+
+TEST(HostileMesh, OfGmsh22IsRefusedOrRead) {
+  TempFolder folder;
+  const auto path = folder / "m.msh";
+  std::vector<OutputFile> files;
+  files.push_back(OutputFile::create(path, {}).value());
+  write_mesh(*mesh_format(path), square_mesh(3).view(), files, {.msh_version = MshVersion::k22});
+  ASSERT_TRUE(commit(files));
+  damage(path, [&path] { return read_mesh(path).has_value(); });
+}
 
 TEST(HostileDomain, PolyIsRefusedOrRead) {
   TempFolder folder;
@@ -97,6 +110,39 @@ TEST(HostileDomain, GeoJsonIsRefusedOrRead) {
       [[1, 1], [2, 1], [2, 2], [1, 1]]]]}}, {"type": "Feature", "properties": null, "geometry":
       {"type": "LineString", "coordinates": [[0.5, 0.5], [3.5, 0.5]]}}]})");
   damage(path, [&path] { return read_domain(path).has_value(); });
+}
+
+TEST(HostileDomain, WktIsRefusedOrRead) {
+  TempFolder folder;
+  const auto path = folder.write(
+      "d.wkt",
+      "MULTIPOLYGON(((0 0, 4 0, 4 4, 0 4, 0 0), (1 1, 2 1, 2 2, 1 1)), ((9 0, 12 0, 9 1, 9 0)));\n"
+      "GEOMETRYCOLLECTION(LINESTRING(0.5 0.5, 3.5 0.5), POINT Z(3 3 3))\n");
+  damage(path, [&path] { return read_domain(path).has_value(); });
+}
+
+TEST(HostileDomain, CsvIsRefusedOrRead) {
+  TempFolder folder;
+  const auto path = folder.write(
+      "d.csv", "ring,x,y,marker\n1,0,0,1\n1,4,0,2\n1,4,4,3\n2,1,1,5\n2,2,1,5\n2,2,2,5\n");
+  damage(path, [&path] { return read_domain(path).has_value(); });
+}
+
+TEST(HostileDomain, ShapefileIsRefusedOrRead) {
+  TempFolder folder;
+  write_sample_shapefile(folder / "d");
+  for (const char* part : {"d.shp", "d.shx", "d.dbf"})
+    damage(folder / part, [&folder] { return read_domain(folder / "d.shp").has_value(); });
+}
+
+TEST(HostileDomain, MeshIsRefusedOrRead) {
+  TempFolder folder;
+  const auto path = folder / "m.14";
+  ASSERT_TRUE(write_files(square_mesh(3).view(), path));
+  damage(path, [&path] {
+    const auto domain = read_domain(path);
+    return domain && seeded(*domain).has_value();
+  });
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ TEST_F(Msh, RefusesWhatItCannotRead) {
   };
   says("hello", "is not a Gmsh mesh: it does not start with $MeshFormat");
   says("", "is empty");
-  says(ascii_with("4.1 0 8", "2.2 0 8"), "has the version 2.2, only 4.1 is read");
+  says(ascii_with("4.1 0 8", "3 0 8"), "has the version 3, only 4.1 and 2.2 are read");
   says(ascii_with("1 10\n", "1 11\n"), "an element names the node 11, which is missing");
   says(ascii_with("2 1 2 1\n", "2 1 3 1\n"),
        "has elements of type 3, which are no triangles, lines or points");

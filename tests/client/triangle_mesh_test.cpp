@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "client/formats/domain_formats.h"
 #include "tests/client/support/mesh_files.h"
 #include "tests/client/support/sample_mesh.h"
 
@@ -82,9 +83,11 @@ TEST(MeshFormats, RefuseUnknownExtensions) {
   const auto mesh = read_mesh("m.stl");
   ASSERT_FALSE(mesh);
   EXPECT_EQ(mesh.error().exit, ExitCode::kUsage);
-  EXPECT_EQ(mesh.error().message,
-            "m.stl: the extension '.stl' is not that of a mesh format: .vtu, .msh, .node");
-  const auto domain = read_domain("m.shp");
+  EXPECT_EQ(
+      mesh.error().message,
+      "m.stl: the extension '.stl' is not that of a mesh that is read: .vtu, .msh, .node, .ele, "
+      ".14, .grd, .su2, .npz, .obj, .off");
+  const auto domain = read_domain("m.dxf");
   ASSERT_FALSE(domain);
   EXPECT_EQ(domain.error().exit, ExitCode::kUsage);
 }

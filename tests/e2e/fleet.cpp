@@ -11,7 +11,7 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "client/formats/mesh_formats.h"
+#include "client/formats/domain_formats.h"
 #include "client/mesh_call.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"

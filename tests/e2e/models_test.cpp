@@ -94,6 +94,38 @@ TEST(Drawing, OfTheQuadtreeIsOfItsLeavesAndTheJsonTellsTheStages) {
   EXPECT_GT(drawn["seconds"]["refine"], 0);
 }
 
+TEST(Formats, EveryMeshThatIsReadHoldsTheSameBounds) {
+  const Server server;
+  const std::string domain = model("us-east-coast.geojson");
+  const Folder folder;
+  Arguments mesh{"mesh", domain, "--size", "0.01", "--quiet", "--server", server.address()};
+  const std::vector<std::string> names = {"m.vtu",   "m.msh", "m.node", "m.npz",
+                                          "fort.14", "m.su2", "m.obj"};
+  for (const std::string& name : names) mesh = mesh + Arguments{"-o", folder / name};
+  const Outcome meshed = run_weft(mesh);
+  ASSERT_EQ(meshed.exit_code, 0) << meshed.err;
+  for (const std::string& name : names) {
+    const Outcome check = run_weft({"check", folder / name, "--domain", domain, "--size", "0.01"});
+    EXPECT_EQ(check.exit_code, 0) << name << check.out << check.err;
+  }
+}
+
+TEST(Formats, AMeshIsMeshedAnewAndCoversTheSame) {
+  const Server server;
+  const Folder folder;
+  const auto area = [&](const std::string& input, const std::string& output) {
+    const Outcome mesh = run_weft(
+        {"mesh", input, "-o", folder / output, "--json", "--quiet", "--server", server.address()});
+    EXPECT_EQ(mesh.exit_code, 0) << mesh.err;
+    return nlohmann::json::parse(mesh.out)["area"].get<double>();
+  };
+  const double coast = area(model("us-east-coast.geojson"), "fort.14");
+  EXPECT_NEAR(area(folder / "fort.14", "again.msh"), coast, 1e-9 * coast);
+  EXPECT_EQ(run_weft({"convert", model("us-east-coast.geojson"), folder / "coast.poly"}).exit_code,
+            0);
+  EXPECT_NEAR(area(folder / "coast.poly", "poly.vtu"), coast, 1e-9 * coast);
+}
+
 TEST(Check, FindsAMeshThatMissesItsBounds) {
   const Folder folder;
   const std::string path = folder / "key.vtu";

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "client/formats/mesh_formats.h"
+#include "client/formats/domain_formats.h"
 #include "client/mesh_call.h"
 #include "tests/e2e/fleet.h"
 #include "tests/e2e/programs.h"

@@ -13,6 +13,7 @@
 #include <string>
 #include <thread>
 
+#include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
 #include "client/mesh_call.h"
 #include "tests/e2e/programs.h"

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/formats/domain_formats.h"
+
+#include <new>
+#include <stdexcept>
+#include <string_view>
+
+#include "client/formats/csv_rings.h"
+#include "client/formats/geojson.h"
+#include "client/formats/mesh_domain.h"
+#include "client/formats/mesh_formats.h"
+#include "client/formats/shapefile.h"
+#include "client/formats/triangle_poly.h"
+#include "client/formats/wkt.h"
+#include "client/text.h"
+
+namespace weft::client {
+namespace {
+
+struct DomainFormat {
+  std::string_view extension;  // lower case
+  Result<Domain> (*read)(const std::filesystem::path&);
+};
+
+constexpr DomainFormat kFormats[] = {
+    {".poly", read_triangle_poly}, {".geojson", read_geojson},
+    {".json", read_geojson},       {".wkt", read_wkt},
+    {".shp", read_shapefile},      {".csv", read_csv_rings},
+};
+
+const DomainFormat* domain_format(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  for (const DomainFormat& format : kFormats)
+    if (format.extension == extension) return &format;
+  return nullptr;
+}
+
+bool is_read_as_mesh(const std::filesystem::path& path) {
+  const MeshFormat* format = mesh_format(path);
+  return format != nullptr && format->read != nullptr;
+}
+
+}  // namespace
+
+bool is_plain_domain_path(const std::filesystem::path& path) {
+  return domain_format(path) != nullptr;
+}
+
+bool is_domain_path(const std::filesystem::path& path) {
+  return is_plain_domain_path(path) || is_read_as_mesh(path);
+}
+
+std::string domain_extensions() {
+  std::string list;
+  for (const DomainFormat& format : kFormats)
+    list += (list.empty() ? "" : ", ") + std::string(format.extension);
+  return list;
+}
+
+tl::unexpected<Error> unknown_domain_format(const std::filesystem::path& path) {
+  return fail(ExitCode::kUsage,
+              path.string() + ": the extension " + in_quotes(path.extension().string()) +
+                  " is not that of a domain: " + domain_extensions() +
+                  "; nor of a mesh that is read as one: " + read_mesh_extensions());
+}
+
+Result<Domain> read_domain(const std::filesystem::path& path) {
+  if (!is_domain_path(path)) return unknown_domain_format(path);
+  try {
+    if (const DomainFormat* format = domain_format(path)) return format->read(path);
+    const auto mesh = read_mesh(path);
+    if (!mesh) return tl::unexpected(mesh.error());
+    return domain_of_mesh(path.string(), mesh->view());
+  } catch (const std::bad_alloc&) {
+  } catch (const std::length_error&) {
+  }
+  return fail(ExitCode::kUnreadableInput, path.string() + ": not enough memory to read it");
+}
+
+}  // namespace weft::client

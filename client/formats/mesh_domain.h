@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The domain of which a mesh is one: to mesh it anew.
+//
+// Segments are the mesh's own edges (a Gmsh file's lines), the boundary of its triangles, and the
+// sides between triangles of different regions; those without a marker have 0. Points are the ends
+// of segments. With triangles, what they cover is filled (Fill::kEvenOdd; segments inside go twice,
+// which leaves the parity alone), and each part between segments whose region is not 0 gets a seed.
+// Without triangles every bounded face is filled (Fill::kSeeds).
+#pragma once
+
+#include <string>
+
+#include "client/formats/domain.h"
+#include "client/formats/mesh.h"
+
+namespace weft::client {
+
+// `name` is that of the mesh, for the places of points and segments. REQUIRES: vertex numbers are
+// in range.
+Domain domain_of_mesh(const std::string& name, const MeshView& mesh);
+
+}  // namespace weft::client

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The same mesh with six-node triangles and three-node edges: a node in the middle of every side,
+// shared by the triangles at it. Sides stay straight.
+//
+// Nodes are the vertices, with the numbers that they have, then the midside nodes in the order of
+// MeshEdges. A triangle has its corners 0, 1, 2, then the nodes between 0 and 1, 1 and 2, 2 and 0,
+// as VTK and Gmsh want them; an edge has its ends, then its middle. Takes 70 bytes for a triangle.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "client/formats/mesh.h"
+
+namespace weft::client {
+
+class SecondOrderMesh {
+ public:
+  // `mesh`, of order 1, must outlive this.
+  explicit SecondOrderMesh(const MeshView& mesh);
+  // Of order 2.
+  MeshView view() const;
+
+ private:
+  MeshView mesh_;
+  std::vector<double> coordinates_;
+  std::vector<std::uint32_t> triangles_;  // six nodes each
+  std::vector<std::uint32_t> edges_;      // three nodes each
+};
+
+}  // namespace weft::client

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/client/support/shapefile_writer.h"
+
+#include <shapefil.h>
+
+#include <vector>
+
+namespace weft::client {
+namespace {
+
+struct Record {
+  std::vector<double> x;
+  std::vector<double> y;
+  std::vector<int> parts;
+};
+
+void add(SHPInfo* shapes, const Record& record) {
+  SHPObject* shape = ::SHPCreateObject(
+      SHPT_POLYGON, -1, static_cast<int>(record.parts.size()), record.parts.data(), nullptr,
+      static_cast<int>(record.x.size()), record.x.data(), record.y.data(), nullptr, nullptr);
+  ::SHPWriteObject(shapes, -1, shape);
+  ::SHPDestroyObject(shape);
+}
+
+}  // namespace
+
+void write_sample_shapefile(const std::filesystem::path& base) {
+  SHPInfo* shapes = ::SHPCreate(base.c_str(), SHPT_POLYGON);
+  add(shapes, {{0, 0, 4, 4, 0, 1, 2, 2, 1}, {0, 4, 4, 0, 0, 1, 1, 2, 1}, {0, 5}});
+  add(shapes, {{10, 10, 11, 10}, {0, 1, 0, 0}, {0}});
+  ::SHPClose(shapes);
+
+  DBFInfo* table = ::DBFCreate(base.c_str());
+  ::DBFAddField(table, "marker", FTInteger, 9, 0);
+  ::DBFAddField(table, "region", FTInteger, 9, 0);
+  ::DBFAddField(table, "max_area", FTDouble, 12, 4);
+  ::DBFWriteIntegerAttribute(table, 0, 0, 3);
+  ::DBFWriteIntegerAttribute(table, 0, 1, 7);
+  ::DBFWriteDoubleAttribute(table, 0, 2, 0.5);
+  ::DBFWriteIntegerAttribute(table, 1, 0, 4);
+  ::DBFWriteNULLAttribute(table, 1, 1);
+  ::DBFWriteNULLAttribute(table, 1, 2);
+  ::DBFClose(table);
+}
+
+}  // namespace weft::client

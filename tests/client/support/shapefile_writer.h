@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes a shapefile by Shapelib.
+#pragma once
+
+#include <filesystem>
+
+namespace weft::client {
+
+// BASE.shp, .shx and .dbf with two polygons: a square with a triangular hole, marker 3, region 7,
+// max_area 0.5; and a triangle, marker 4, without the others.
+void write_sample_shapefile(const std::filesystem::path& base);
+
+}  // namespace weft::client
