@@ -74,12 +74,8 @@ chmod 700 "$scratch/data"
 in_container() {
   "${buildah[@]}" run --volume "$scratch/data:/var/lib/weft" "$container" -- "$@"
 }
-pid_of_server() {
-  local pid
-  for pid in $(pgrep -x weftd); do
-    [[ $(readlink "/proc/$pid/root") == "$root" ]] && echo "$pid"
-  done
-}
+# weftd itself: buildah does not hand signals on.
+pid_of_server() { pgrep -f '^weftd .*--port-file /var/lib/weft/address'; }
 listens() { [[ -s $scratch/data/address ]]; }
 start_server() {
   rm -f "$scratch/data/address"

@@ -83,6 +83,7 @@ void add_batch_command(CLI::App& app, Chosen& chosen) {
   batch.callback([kept, &chosen] {
     for (const std::string& gate : kept->gates)
       kept->options.gates.push_back(*QualityGate::parse(gate));
+    chosen.when_interrupted = "interrupted; meshes that are not named above were not written";
     chosen.run = [kept](std::stop_token stop) { return run_batch(kept->options, std::move(stop)); };
   });
 }
