@@ -74,7 +74,7 @@ class Restless {
     const auto claimed = store_.claim("worker", milliseconds(below(2) * 60'000), ~std::uint64_t{0});
     if (!claimed || !*claimed) return;
     const ClaimRef ref = (*claimed)->ref;
-    StoredMesh mesh{.summary = name, .chunks = {}};
+    StoredMesh mesh{.summary = name, .brief = {}, .chunks = {}};
     for (int i = 0; i < 3; ++i) {
       const std::string chunk(static_cast<std::size_t>(1 + below(30'000)), name[0]);
       mesh.chunks.push_back({sha256_of(chunk), chunk.size()});

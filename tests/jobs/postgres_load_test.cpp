@@ -78,7 +78,7 @@ class BusyServer {
 
   void make(const Claim& claim) {
     const std::string chunk = "chunk of " + claim.key;
-    const StoredMesh mesh{.summary = "", .chunks = {{sha256_of(chunk), chunk.size()}}};
+    const StoredMesh mesh{.summary = "", .brief = {}, .chunks = {{sha256_of(chunk), chunk.size()}}};
     while (!stopping_) {
       // A database that was killed may have forgotten a chunk that it had taken: so again and
       // again.

@@ -91,7 +91,8 @@ TEST_F(PostgresTest, WhatOneServerAcceptsAnotherMakesAndAThirdReads) {
   const auto claimed = working->claim("worker", hours(1), 1);
   ASSERT_TRUE(claimed && *claimed);
   ASSERT_TRUE(working->put_chunk(sha256_of("a"), "a"));
-  ASSERT_EQ(working->finish((*claimed)->ref, {.summary = "s", .chunks = {{sha256_of("a"), 1}}}),
+  ASSERT_EQ(working->finish((*claimed)->ref,
+                            {.summary = "s", .brief = {}, .chunks = {{sha256_of("a"), 1}}}),
             Held::kHeld);
   EXPECT_EQ((*reading->get("ann", job->job.id))->state, JobState::kSucceeded);
   EXPECT_EQ((*reading->mesh(key_of("k")))->summary, "s");
@@ -145,7 +146,8 @@ TEST_F(PostgresTest, NoAnswerIsForgottenWhenTheDatabaseIsKilled) {
   ASSERT_TRUE(claimed && *claimed) << "the submission is forgotten";
   kill();
   EXPECT_EQ(store->renew((*claimed)->ref, hours(1), ""), Held::kHeld) << "it would be given twice";
-  ASSERT_EQ(store->finish((*claimed)->ref, {.summary = "s", .chunks = {}}), Held::kHeld);
+  ASSERT_EQ(store->finish((*claimed)->ref, {.summary = "s", .brief = {}, .chunks = {}}),
+            Held::kHeld);
   kill();
   EXPECT_EQ((*store->get("ann", job->job.id))->state, JobState::kSucceeded);
 }
@@ -237,7 +239,7 @@ TEST_F(PostgresTest, AFinishWhoseAnswerWasLostIsHeld) {
   const auto job = store->submit({.owner = "ann", .key = key_of("k")});
   const ClaimRef claimed = (*store->claim("worker", hours(1), 1))->ref;
   proxy.cut(1);
-  EXPECT_EQ(store->finish(claimed, {.summary = "s", .chunks = {}}), Held::kHeld);
+  EXPECT_EQ(store->finish(claimed, {.summary = "s", .brief = {}, .chunks = {}}), Held::kHeld);
   EXPECT_EQ((*store->get("ann", job->job.id))->state, JobState::kSucceeded);
 }
 
@@ -247,9 +249,9 @@ TEST_F(PostgresTest, AFinishThatFailedTwiceIsHeldTheNextTime) {
   ASSERT_TRUE(store->submit({.owner = "ann", .key = key_of("k")}));
   const ClaimRef claimed = (*store->claim("worker", hours(1), 1))->ref;
   proxy.cut(2);
-  EXPECT_EQ(store->finish(claimed, {.summary = "s", .chunks = {}}).error().kind,
+  EXPECT_EQ(store->finish(claimed, {.summary = "s", .brief = {}, .chunks = {}}).error().kind,
             StoreErrorKind::kUnavailable);
-  EXPECT_EQ(store->finish(claimed, {.summary = "s", .chunks = {}}), Held::kHeld);
+  EXPECT_EQ(store->finish(claimed, {.summary = "s", .brief = {}, .chunks = {}}), Held::kHeld);
 }
 
 TEST_F(PostgresTest, AClaimWhoseAnswerWasLostComesBackByItsLease) {

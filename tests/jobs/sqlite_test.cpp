@@ -217,6 +217,7 @@ class FullDiskTest : public SqliteTest {
     const std::string more(kChunk, 'M');
     ASSERT_TRUE(store_->put_chunk(sha256_of(more), more));
     const StoredMesh mesh{.summary = "",
+                          .brief = {},
                           .chunks = {{sha256_of(kept_), kChunk}, {sha256_of(more), kChunk}}};
     EXPECT_EQ(store_->finish(claim_, mesh), Held::kHeld);
     EXPECT_EQ(*store_->chunk(sha256_of(more)), more);

@@ -232,7 +232,8 @@ TEST_P(StoreTest, AMeshIsReadAsItWasFinished) {
 
 TEST_P(StoreTest, AMeshOfNoChunksIsAMesh) {
   submit("ann", "k");
-  ASSERT_EQ(store_->finish(claim().ref, {.summary = "empty", .chunks = {}}), Held::kHeld);
+  ASSERT_EQ(store_->finish(claim().ref, {.summary = "empty", .brief = {}, .chunks = {}}),
+            Held::kHeld);
   EXPECT_EQ(mesh("k")->summary, "empty");
 }
 
