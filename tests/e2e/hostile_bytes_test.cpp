@@ -186,7 +186,9 @@ TEST_P(HostileBytes, AreAnsweredAndHarmNobody) {
     send(scribbler.damaged(message));
   }
   EXPECT_EQ(send(std::string(kMiB + 1, '\x0a')).error_code(), grpc::RESOURCE_EXHAUSTED);
-  if (kMemoryTells) EXPECT_LT(server.resident_bytes(), before + 256 * kMiB);
+  if (kMemoryTells) {
+    EXPECT_LT(server.resident_bytes(), before + 256 * kMiB);
+  }
 
   Reference reference;
   const v1::GenerateMeshRequest good = mixed_request(2);

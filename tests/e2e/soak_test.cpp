@@ -88,7 +88,9 @@ TEST(Soak, MemoryAndDescriptorsDoNotGrowWithTheNumberOfJobs) {
                 static_cast<double>(bytes.back()) / kMiB, files.back());
   }
   EXPECT_EQ(server.metric("weft_jobs_total{state=\"succeeded\"}"), marks.back() / 2);
-  if (kMemoryTells) EXPECT_LT(bytes.back(), bytes.front() + 16 * kMiB);
+  if (kMemoryTells) {
+    EXPECT_LT(bytes.back(), bytes.front() + 16 * kMiB);
+  }
   EXPECT_LE(files.back(), files.front() + 8);
 }
 
