@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What `weft batch` reads and writes; with a real server: tests/e2e/batch_test.cpp.
 #include <gtest/gtest.h>
 
