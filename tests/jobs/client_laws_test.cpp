@@ -291,7 +291,9 @@ TEST_P(StoreTest, AJobShowsTheBriefOfItsMeshForAsLongAsThatIsKept) {
   const JobRecord found = submit("ann", "k");
   EXPECT_EQ(first.brief, "brief");
   EXPECT_EQ(found.brief, "brief");
-  for (const JobRecord& job : *store_->list({.owner = "ann"})) EXPECT_EQ(job.brief, "brief");
+  const auto jobs = store_->list({.owner = "ann"});
+  ASSERT_EQ(jobs->size(), 2U);
+  for (const JobRecord& job : *jobs) EXPECT_EQ(job.brief, "brief");
   EXPECT_EQ(store_->collect({.age = hours(1), .bytes = 0})->meshes, 1U);
   EXPECT_EQ(get(first).brief, "");
 }
