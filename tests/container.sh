@@ -21,7 +21,7 @@ export STORAGE_DRIVER=vfs BUILDAH_ISOLATION=chroot
 buildah=(buildah --root "$scratch/images" --runroot "$scratch/run")
 server=
 tidy_up() {
-  [[ -z $server ]] || kill "$server" 2>/dev/null || true
+  [[ -z $server ]] || kill "$(pid_of_server)" 2>/dev/null || true
   "${buildah[@]}" rm --all >/dev/null 2>&1 || true
   rm -rf "$scratch"
 }
@@ -74,8 +74,12 @@ chmod 700 "$scratch/data"
 in_container() {
   "${buildah[@]}" run --volume "$scratch/data:/var/lib/weft" "$container" -- "$@"
 }
-# weftd itself: buildah does not hand signals on.
-pid_of_server() { pgrep -f '^weftd .*--port-file /var/lib/weft/address'; }
+# weftd itself, the last descendant of buildah, which does not hand signals on.
+pid_of_server() {
+  local pid=$server child
+  while child=$(pgrep -P "$pid" | head -n 1) && [[ $child ]]; do pid=$child; done
+  echo "$pid"
+}
 listens() { [[ -s $scratch/data/address ]]; }
 start_server() {
   rm -f "$scratch/data/address"
