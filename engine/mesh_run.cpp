@@ -93,13 +93,12 @@ class MeshRun {
     }
     summary_.peak_bytes = plan_.domain.bytes() + plan_.other_bytes + corners_.bytes() +
                           mesh_.bytes() + root_.bytes() + root_bytes_ + parts_.peak_bytes() +
-                          (leaves_ ? leaves_->bytes() + tree_.bytes() : 0);
+                          (leaves_ ? leaves_->bytes() + order_.bytes() + tree_.bytes() : 0);
     return std::nullopt;
   }
 
  private:
   static constexpr std::uint64_t kNoCap = std::numeric_limits<std::uint64_t>::max();
-  static constexpr std::uint32_t kRounds = LeafTasks<AreaBound>::kRounds;
   // From so many leaves on, parts leave while others are refined. A smaller mesh is done at once,
   // and keeps the right to a clean-up.
   static constexpr std::uint32_t kStreamingLeaves = 64;
@@ -124,8 +123,8 @@ class MeshRun {
       if (error) return error;
       tree_ = prelude.take_tree();
       if (tree_.leaves().size() > 1) {
-        leaves_.emplace(setting_, plan_.quality, area_, tree_, prelude.bad_triangles());
-        context_.end_stage("conflicts");
+        order_ = prelude.take_order();
+        leaves_.emplace(setting_, plan_.quality, area_, tree_, order_, prelude.bad_triangles());
         for (const Quadtree::Leaf& leaf : tree_.leaves()) total_weight_ += leaf.weight;
         streams_ = prelude.fits() && leaves_->size() >= kStreamingLeaves && !plan_.max_triangles &&
                    plan_.quality.sin2 <= kStreamingSin2;
@@ -201,7 +200,6 @@ class MeshRun {
     return parts_.error();
   }
 
-  using Graph = LeafGraph<LeafTasks<AreaBound>>;
   static constexpr Trace::GraphName kClosingGraph{"closing parts", {"closing part"}};
 
   // Refines and sends at the same time up to the first leaf that is near something left over, then
@@ -215,17 +213,17 @@ class MeshRun {
     if (streams_) send_opening();
     context_.end_stage("opening part");
     {
-      TaskGraph graph(n * Graph::kTasks);
-      Graph::add_refinement(*leaves_, graph);
-      if (streams_) Graph::add_parts(*leaves_, graph);
-      parts_.run(Graph::kName, std::move(graph), 0, final_leaves_, Graph::part,
+      TaskGraph graph(n * LeafGraph::kTasks);
+      LeafGraph::add_refinement(order_, graph);
+      if (streams_) LeafGraph::add_parts(order_, graph);
+      parts_.run(LeafGraph::kName, std::move(graph), 0, final_leaves_, LeafGraph::part,
                  [this](std::uint32_t task) {
-                   const std::uint32_t leaf = task / Graph::kTasks;
-                   const std::uint32_t step = task % Graph::kTasks;
-                   if (step < kRounds) refine(leaf, step);
+                   const std::uint32_t leaf = task / LeafGraph::kTasks;
+                   const std::uint32_t step = task % LeafGraph::kTasks;
+                   if (step < LeafGraph::kRounds) refine(leaf, step);
                    if (!streams_) return;  // nothing to settle yet
-                   if (task == Graph::settle(leaf)) settled_[leaf] = is_settled(leaf);
-                   if (task == Graph::number(leaf) && !may_be_final(leaf))
+                   if (task == LeafGraph::settle(leaf)) settled_[leaf] = is_settled(leaf);
+                   if (task == LeafGraph::number(leaf) && !may_be_final(leaf))
                      final_leaves_ = std::min(final_leaves_.load(), leaf);
                    if (leaf < final_leaves_) send_leaf(task, leaf);
                  });
@@ -234,12 +232,13 @@ class MeshRun {
       if (leaves_->left() > 0) clean_up();
       if (!streams_ && !parts_.stopped()) send_opening();
       const std::uint32_t first = final_leaves_.exchange(n);
-      TaskGraph graph(n * Graph::kTasks);
-      Graph::add_parts(*leaves_, graph);
+      TaskGraph graph(n * LeafGraph::kTasks);
+      LeafGraph::add_parts(order_, graph);
       if (!parts_.stopped()) {
-        parts_.run(Graph::kName, std::move(graph), first, n, Graph::part,
+        parts_.run(LeafGraph::kName, std::move(graph), first, n, LeafGraph::part,
                    [this, first](std::uint32_t task) {
-                     if (task / Graph::kTasks >= first) send_leaf(task, task / Graph::kTasks);
+                     if (task / LeafGraph::kTasks >= first)
+                       send_leaf(task, task / LeafGraph::kTasks);
                    });
       }
     }
@@ -255,21 +254,21 @@ class MeshRun {
       parts_.stop(*error);
     if (round == 0) context_.add_fraction(kRefining * share_of(leaf));
     if (round == 0 || leaves_->has_left(leaf)) return;
-    for (std::uint32_t later = kRounds; --later > round;) {
+    for (std::uint32_t later = LeafGraph::kRounds; --later > round;) {
       if (Trace* const trace = context_.trace())
-        trace->skip(Graph::round(leaf, later), Graph::round(leaf, round));
-      parts_.skip(Graph::round(leaf, later));
+        trace->skip(LeafGraph::round(leaf, later), LeafGraph::round(leaf, round));
+      parts_.skip(LeafGraph::round(leaf, later));
     }
   }
 
   bool is_settled(std::uint32_t leaf) const {
-    const auto& conflicts = leaves_->conflicts(leaf);
+    const auto& conflicts = order_.conflicts(leaf);
     return !leaves_->has_left(leaf) &&
            std::none_of(conflicts.begin(), conflicts.end(),
                         [&](std::uint32_t other) { return leaves_->has_left(other); });
   }
   bool may_be_final(std::uint32_t leaf) const {
-    const auto& conflicts = leaves_->conflicts(leaf);
+    const auto& conflicts = order_.conflicts(leaf);
     return settled_[leaf] && std::all_of(conflicts.begin(), conflicts.end(),
                                          [&](std::uint32_t other) { return settled_[other]; });
   }
@@ -278,9 +277,9 @@ class MeshRun {
   // its part.
   void send_leaf(std::uint32_t task, std::uint32_t leaf) {
     const Slots& slots = leaves_->slots(leaf);
-    if (task == Graph::number(leaf)) numbers_ = slots.number_vertices(mesh_, numbers_);
-    if (task == Graph::hand_on(leaf)) handed_on_[leaf] = triangles_handed_on(mesh_, slots);
-    if (task != Graph::part(leaf)) return;
+    if (task == LeafGraph::number(leaf)) numbers_ = slots.number_vertices(mesh_, numbers_);
+    if (task == LeafGraph::hand_on(leaf)) handed_on_[leaf] = triangles_handed_on(mesh_, slots);
+    if (task != LeafGraph::part(leaf)) return;
     context_.add_fraction((1 - kRefining) * share_of(leaf));
     parts_.finish(
         leaf, build_part([&](PartBuilder<AreaBound>& builder) {
@@ -296,7 +295,7 @@ class MeshRun {
             }
             builder.add_triangles(first, last);
           });
-          for (const std::uint32_t other : leaves_->conflicts(leaf)) {
+          for (const std::uint32_t other : order_.conflicts(leaf)) {
             if (other > leaf) break;
             for (const HandedOn& h : handed_on_[other]) {
               if (h.owner == slots.owner()) builder.add_triangle(h.triangle);
@@ -357,6 +356,7 @@ class MeshRun {
   Delivery delivery_;
   PartRun parts_;
   Quadtree tree_;
+  LeafOrder order_;
   std::optional<LeafTasks<AreaBound>> leaves_;
   bool streams_ = false;
   double total_weight_ = 0;

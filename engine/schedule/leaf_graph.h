@@ -2,22 +2,21 @@
 // The tasks of the leaves and what waits for what: rounds of refinement, then what makes a leaf a
 // part of the mesh that is sent. Numbered by leaf, so that the first leaves are finished first.
 //
-//   using Graph = LeafGraph<LeafTasks<ConstantArea>>;
-//   TaskGraph graph(leaves.size() * Graph::kTasks);
-//   Graph::add_refinement(leaves, graph);
-//   Graph::add_parts(leaves, graph);
+//   TaskGraph graph(order.size() * LeafGraph::kTasks);
+//   LeafGraph::add_refinement(order, graph);
+//   LeafGraph::add_parts(order, graph);
 #pragma once
 
 #include <cstdint>
 
+#include "engine/schedule/leaf_order.h"
 #include "engine/schedule/task_graph.h"
 #include "engine/schedule/trace.h"
 
 namespace weft {
 
-template <class Leaves>
 struct LeafGraph {
-  static constexpr std::uint32_t kRounds = Leaves::kRounds;
+  static constexpr std::uint32_t kRounds = 4;
   static constexpr std::uint32_t kTasks = kRounds + 4;  // of a leaf
   static constexpr Trace::GraphName kName{
       "leaves",
@@ -32,12 +31,12 @@ struct LeafGraph {
   static std::uint32_t hand_on(std::uint32_t leaf) { return leaf * kTasks + kRounds + 2; }
   static std::uint32_t part(std::uint32_t leaf) { return leaf * kTasks + kRounds + 3; }
 
-  static void add_refinement(const Leaves& leaves, TaskGraph& graph) {
-    for (std::uint32_t l = 0; l < leaves.size(); ++l) {
+  static void add_refinement(const LeafOrder& order, TaskGraph& graph) {
+    for (std::uint32_t l = 0; l < order.size(); ++l) {
       for (std::uint32_t r = 0; r < kRounds; ++r) {
         if (r > 0) graph.add_dependency(round(l, r - 1), round(l, r));
-        for (const std::uint32_t other : leaves.conflicts(l)) {
-          if (leaves.before(other, l)) {
+        for (const std::uint32_t other : order.conflicts(l)) {
+          if (order.before(other, l)) {
             graph.add_dependency(round(other, r), round(l, r));
           } else if (r > 0) {
             graph.add_dependency(round(other, r - 1), round(l, r));
@@ -49,14 +48,14 @@ struct LeafGraph {
 
   // A leaf is final once all that own a part of its grown box are done, and none of them, nor of
   // their own conflicts, has left anything to the clean-up: that must have room to work.
-  static void add_parts(const Leaves& leaves, TaskGraph& graph) {
-    for (std::uint32_t l = 0; l < leaves.size(); ++l) {
+  static void add_parts(const LeafOrder& order, TaskGraph& graph) {
+    for (std::uint32_t l = 0; l < order.size(); ++l) {
       graph.add_dependency(round(l, kRounds - 1), settle(l));
       graph.add_dependency(settle(l), number(l));
       if (l > 0) graph.add_dependency(number(l - 1), number(l));
       graph.add_dependency(number(l), hand_on(l));
       graph.add_dependency(hand_on(l), part(l));
-      for (const std::uint32_t other : leaves.conflicts(l)) {
+      for (const std::uint32_t other : order.conflicts(l)) {
         graph.add_dependency(round(other, kRounds - 1), settle(l));
         graph.add_dependency(settle(other), number(l));
         if (other < l) graph.add_dependency(hand_on(other), part(l));

@@ -4,8 +4,7 @@
 // A leaf's task owns the leaf's grown box (ownership.h) and refines the bad triangles whose
 // centroids lie in the leaf. Tasks whose grown boxes overlap are in conflict and run one after the
 // other, all others at the same time. The ORDER between two in conflict is fixed beforehand: by
-// round, then by a greedy colouring of the conflicts in Morton order. So the mesh depends on the
-// request alone, whatever the threads do.
+// round, then by leaf_order.h. So the mesh depends on the request alone, whatever the threads do.
 //
 // Rounds. In the first a task hands what it makes bad outside its leaf to the leaf there, and each
 // leaf pulls what its neighbours have left for it, from those before it in the first round and from
@@ -35,6 +34,8 @@
 
 #include "engine/refine/refiner.h"
 #include "engine/refine/slots.h"
+#include "engine/schedule/leaf_graph.h"
+#include "engine/schedule/leaf_order.h"
 #include "engine/schedule/quadtree.h"
 
 namespace weft {
@@ -58,33 +59,23 @@ struct OwnsUnfrozen {
 template <class AreaBound>
 class LeafTasks {
  public:
-  static constexpr std::uint32_t kRounds = 4;
-
   // Leaf l is owner l + 1 of slots; the clean-up is the owner after the last leaf. `seeds` are the
   // bad triangles to begin with.
   LeafTasks(const Setting& setting, const QualityBounds& quality, const AreaBound& area,
-            const Quadtree& tree, const std::vector<BadTriangle>& seeds)
-      : setting_(setting), quality_(quality), area_(area), tree_(tree) {
-    auto conflicts = tree.conflicts();
-    leaves_.resize(conflicts.size());
-    for (std::uint32_t l = 0; l < leaves_.size(); ++l) {
-      leaves_[l].slots = Slots(l + 1);
-      leaves_[l].conflicts = std::move(conflicts[l]);
-    }
-    colour();
+            const Quadtree& tree, const LeafOrder& order, const std::vector<BadTriangle>& seeds)
+      : setting_(setting),
+        quality_(quality),
+        area_(area),
+        tree_(tree),
+        order_(order),
+        leaves_(order.size()) {
+    for (std::uint32_t l = 0; l < size(); ++l) leaves_[l].slots = Slots(l + 1);
     for (const BadTriangle& t : seeds)
       leaves_[tree_.leaf_at(centroid_of(t.triangle))].left.push_back(t);
-    clean_up_slots_ = Slots(static_cast<std::uint32_t>(leaves_.size()) + 1);
+    clean_up_slots_ = Slots(size() + 1);
   }
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(leaves_.size()); }
-  const std::vector<std::uint32_t>& conflicts(std::uint32_t leaf) const {
-    return leaves_[leaf].conflicts;
-  }
-  // Whether `leaf` comes before `other` within a round. REQUIRES: they are in conflict.
-  bool before(std::uint32_t leaf, std::uint32_t other) const {
-    return leaves_[leaf].colour < leaves_[other].colour;
-  }
   const Slots& slots(std::uint32_t leaf) const { return leaves_[leaf].slots; }
   void give_back_triangles(std::uint32_t leaf) {
     leaves_[leaf].slots.give_back_triangles(setting_.mesh);
@@ -125,7 +116,7 @@ class LeafTasks {
     std::vector<std::vector<std::uint32_t>> frozen_near(leaves_.size());
     for (std::uint32_t l = 0; l < leaves_.size(); ++l) {
       if (l < frozen) frozen_near[l].push_back(l);
-      for (const std::uint32_t other : leaves_[l].conflicts) {
+      for (const std::uint32_t other : order_.conflicts(l)) {
         if (other < frozen) frozen_near[l].push_back(other);
       }
     }
@@ -166,8 +157,7 @@ class LeafTasks {
     std::uint64_t bytes = leaves_.capacity() * sizeof(Leaf);
     for (const auto& w : workers_) bytes += w->refiner.bytes();
     for (const Leaf& l : leaves_) {
-      bytes += l.slots.bytes() + l.conflicts.capacity() * sizeof(std::uint32_t) +
-               l.left.capacity() * sizeof(BadTriangle) +
+      bytes += l.slots.bytes() + l.left.capacity() * sizeof(BadTriangle) +
                l.handed_over.capacity() * sizeof(l.handed_over[0]);
     }
     return bytes;
@@ -184,8 +174,6 @@ class LeafTasks {
 
   struct Leaf {
     Slots slots;
-    std::vector<std::uint32_t> conflicts;
-    std::uint32_t colour = 0;
     std::vector<BadTriangle> left;
     std::vector<SegmentEdge> segments_left;
     // In the first round.
@@ -235,23 +223,12 @@ class LeafTasks {
     Worker* worker_;
   };
 
-  void colour() {
-    for (std::uint32_t l = 0; l < leaves_.size(); ++l) {
-      std::vector<bool> used(leaves_[l].conflicts.size() + 1, false);
-      for (const std::uint32_t other : leaves_[l].conflicts) {
-        if (other < l && leaves_[other].colour < used.size()) used[leaves_[other].colour] = true;
-      }
-      const auto free = std::find(used.begin(), used.end(), false);
-      leaves_[l].colour = static_cast<std::uint32_t>(free - used.begin());
-    }
-  }
-
   // Calls f for what neighbours have left for this leaf, as long as it returns true.
   template <class F>
   void for_handed_to(std::uint32_t leaf, std::uint32_t round, F&& f) const {
     if (round > 1) return;
-    for (const std::uint32_t other : leaves_[leaf].conflicts) {
-      if (before(other, leaf) != (round == 0)) continue;
+    for (const std::uint32_t other : order_.conflicts(leaf)) {
+      if (order_.before(other, leaf) != (round == 0)) continue;
       for (const auto& h : leaves_[other].handed_over) {
         if (h.leaf == leaf && !f(h.what)) return;
       }
@@ -292,17 +269,14 @@ class LeafTasks {
     }
   }
   bool may_hand_over(std::uint32_t from, std::uint32_t round, std::uint32_t to) const {
-    const auto& conflicts = leaves_[from].conflicts;
-    return round == 0 && std::binary_search(conflicts.begin(), conflicts.end(), to);
+    return round == 0 && order_.in_conflict(from, to);
   }
 
   // Whether a leaf's task may read the vertices in a slot at any time: nobody writes those of owner
   // 0, and those of a leaf only its task.
   bool may_look_at(std::uint32_t leaf, std::uint32_t slot) const {
     const std::uint32_t owner = setting_.mesh.owner_of_triangle(slot);
-    const auto& conflicts = leaves_[leaf].conflicts;
-    return owner == 0 || owner == leaf + 1 ||
-           std::binary_search(conflicts.begin(), conflicts.end(), owner - 1);
+    return owner == 0 || owner == leaf + 1 || order_.in_conflict(leaf, owner - 1);
   }
 
   Point steiner_point_of(const BadTriangle& bad) const {
@@ -320,11 +294,12 @@ class LeafTasks {
   const QualityBounds quality_;
   const AreaBound area_;
   const Quadtree& tree_;
+  const LeafOrder& order_;
   std::vector<Leaf> leaves_;
   Slots clean_up_slots_;
   std::atomic<std::uint64_t> deferred_{0};
   RefinerFigures clean_up_figures_;
-  std::array<std::atomic<bool>, kRounds> rounds_{};  // those that found work
+  std::array<std::atomic<bool>, LeafGraph::kRounds> rounds_{};  // those that found work
 
   std::mutex mutex_;  // guards the two below while tasks run
   std::vector<std::unique_ptr<Worker>> workers_;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What comes before the leaves' tasks: a coarse mesh, the quadtree from it, circumradii that fit
-// the leaves (the paper's eq. 5), and the bad triangles to begin with.
+// What comes before the leaves' tasks: a coarse mesh, the quadtree from it and the order of its
+// leaves, circumradii that fit them (the paper's eq. 5), and the bad triangles to begin with.
 //
 //   Prelude<ConstantArea> prelude(setting, quality, area, 16'000, slots);
 //   if (auto error = prelude.run(box)) return error;
 //   Quadtree tree = prelude.take_tree();
+//   LeafOrder order = prelude.take_order();
 //
 // The coarse mesh obeys the grading function, multiplied, and no bound on angles. So it follows the
 // grading wherever the domain is, and misses none of its features.
@@ -21,6 +22,7 @@
 #include "engine/refine/refiner.h"
 #include "engine/refine/slots.h"
 #include "engine/refine/triangle_judge.h"
+#include "engine/schedule/leaf_order.h"
 #include "engine/schedule/leaf_radius.h"
 #include "engine/schedule/quadtree.h"
 
@@ -49,14 +51,22 @@ class Prelude {
     tree_ = Quadtree::build(box, samples(), leaf_triangles_);
     setting_.context.end_stage("quadtree");
     if (tree_.leaves().size() == 1) return std::nullopt;
-    if (auto error = refine(no_angles, LeafRadius(tree_), box)) return error;
+    // Neither needs the other.
+    std::optional<Error> error;
+    setting_.context.for_each(2, [&](std::size_t which) {
+      if (which == 0) error = refine(no_angles, LeafRadius(tree_), box);
+      if (which == 1) order_ = LeafOrder(tree_);
+    });
     setting_.context.end_stage("leaf radius");
-    auto error = judge(box);
+    if (error) return error;
+    error = judge(box);
     setting_.context.end_stage("seeding");
     return error;
   }
 
   Quadtree take_tree() { return std::move(tree_); }
+  // Where the tree has more than one leaf.
+  LeafOrder take_order() { return std::move(order_); }
   // In the order of the slots.
   const std::vector<BadTriangle>& bad_triangles() const { return bad_; }
   // Whether every circumradius fits its leaf.
@@ -182,6 +192,7 @@ class Prelude {
   const double leaf_triangles_;
   Slots& slots_;
   Quadtree tree_;
+  LeafOrder order_;
   std::vector<BadTriangle> bad_;
   bool fits_ = true;
   RefinerFigures figures_;
