@@ -5,8 +5,8 @@
 // the same time, so a container's CPU quota is kept. Thread-safe.
 //
 //   Arena arena(4);
-//   arena.run([&] { refine(); });     // on one of the four, the caller waits
-//   arena.start([&] { refine(); });   // the caller goes on
+//   arena.run([&] { refine(); });      // on one of the four, the caller waits
+//   arena.start([&] { refine(); });    // the caller goes on
 //   arena.for_each(9, 2, [&](int i) { refine(i); });   // on two, the caller waits
 #pragma once
 
@@ -16,6 +16,9 @@
 
 #include <atomic>
 #include <cstddef>
+#include <functional>
+#include <future>
+#include <memory>
 #include <utility>
 
 #include "engine/handover.h"
@@ -32,13 +35,19 @@ class Arena {
 
   int threads() const { return arena_.max_concurrency(); }
 
-  // Runs f in the arena once a slot is free, and returns when it is done. The caller's own thread
-  // takes the slot when it can.
+  // Runs f in the arena once a slot is free, and returns when it is done; at once where the caller
+  // is in the arena already. What f throws, this throws.
+  //
+  // A caller from outside only waits. Were its thread to take the slot, there would be one thread
+  // more than processors, and the system made two of them share one for up to 4 ms after the
+  // caller went back to sleep: 2 % of the time of two threads at 1 M triangles.
   template <class F>
   auto run(F&& f) {
-    return run_handed_over(std::forward<F>(f), [this](auto&& g) -> decltype(auto) {
-      return arena_.execute(std::forward<decltype(g)>(g));
-    });
+    if (inside_ == this) return f();
+    const auto task = std::make_shared<std::packaged_task<decltype(f())()>>(std::ref(f));
+    auto result = task->get_future();
+    start([task] { (*task)(); });
+    return result.get();
   }
 
   // Calls f(0) to f(n - 1) in any order, at most `threads` at the same time. What f throws, this
@@ -58,11 +67,24 @@ class Arena {
   // Runs f in the arena once a slot is free: first come, first served.
   template <class F>
   void start(F&& f) {
-    arena_.enqueue(handed_over(std::forward<F>(f)));
+    arena_.enqueue(handed_over([this, f = std::forward<F>(f)] {
+      const Stay stay(this);
+      f();
+    }));
   }
 
  private:
   static constexpr unsigned kReservedForCallers = 0;
+
+  // A thread's time in an arena.
+  class Stay {
+   public:
+    explicit Stay(const Arena* arena) { inside_ = arena; }
+    ~Stay() { inside_ = nullptr; }
+    Stay(const Stay&) = delete;
+    Stay& operator=(const Stay&) = delete;
+  };
+  static inline thread_local const Arena* inside_ = nullptr;
 
   // TBB counts the calling thread in, which here only waits; and by itself it makes no more threads
   // than the machine has.

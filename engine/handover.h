@@ -5,7 +5,7 @@
 // nothing is left of this.
 //
 //   arena.enqueue(handed_over(f));
-//   return run_handed_over(f, [&](auto&& g) { arena.execute(g); });
+//   run_handed_over<int>(f, [&](auto&& g) { tbb::parallel_for(0, n, g); });
 //
 // Each hand-over is told of by its own address, so nothing is told that TBB does not guarantee.
 #pragma once
@@ -25,7 +25,6 @@
 #include <sanitizer/tsan_interface.h>
 
 #include <memory>
-#include <optional>
 #include <type_traits>
 
 namespace weft {
@@ -61,11 +60,9 @@ struct Trampoline {
 
 // `execute` may call what it gets with Args, several times, on any threads.
 template <class... Args, class F, class Execute>
-auto run_handed_over(F&& f, Execute&& execute) {
-  using R = decltype(f(std::declval<Args>()...));
+void run_handed_over(F&& f, Execute&& execute) {
   struct Call {
     std::decay_t<F>& f;
-    std::conditional_t<std::is_void_v<R>, bool, std::optional<R>> result{};
     static void run_on(void* self, Args... args) { static_cast<Call*>(self)->run(args...); }
     void run(Args... args) {
       __tsan_acquire(this);
@@ -73,11 +70,7 @@ auto run_handed_over(F&& f, Execute&& execute) {
         Call* call;
         ~Release() { __tsan_release(call); }
       } release{this};
-      if constexpr (std::is_void_v<R>) {
-        f(args...);
-      } else {
-        result.emplace(f(args...));
-      }
+      f(args...);
     }
   } call{f};
   __tsan_release(&call);
@@ -85,11 +78,8 @@ auto run_handed_over(F&& f, Execute&& execute) {
     Call* call;
     ~Acquire() { __tsan_acquire(call); }
   };
-  {
-    const Acquire acquire{&call};
-    execute(Trampoline<Args...>{&call, &Call::run_on});
-  }
-  if constexpr (!std::is_void_v<R>) return std::move(*call.result);
+  const Acquire acquire{&call};
+  execute(Trampoline<Args...>{&call, &Call::run_on});
 }
 
 }  // namespace weft
@@ -104,8 +94,8 @@ F&& handed_over(F&& f) {
 }
 
 template <class... Args, class F, class Execute>
-auto run_handed_over(F&& f, Execute&& execute) {
-  return execute(std::forward<F>(f));
+void run_handed_over(F&& f, Execute&& execute) {
+  execute(std::forward<F>(f));
 }
 
 }  // namespace weft
