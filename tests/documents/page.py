@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A page of Markdown as what can be run of it. documents.py tells the conventions."""
+
+from __future__ import annotations
+
+import dataclasses
+import pathlib
+import re
+
+FENCE = re.compile(r"```(\w*)")
+NOT_RUN = re.compile(r"<!-- not run: (.+) -->")
+FILE_NAME = re.compile(r"# ([\w./-]+\.\w+)")
+LINK = re.compile(r"(!?)\[[^\]]*\]\(([^)\s]+)\)")
+
+
+@dataclasses.dataclass
+class Block:
+    """Code between two fences."""
+
+    language: str
+    code: str
+    line: int
+    """Of the page, on which the code begins."""
+    not_run: str = ""
+    """Why, where it is not."""
+    output: Block | None = None
+    """What it must print, where the page shows that."""
+
+    @property
+    def file(self) -> str:
+        """The name of the file that it is, if it is one."""
+        name = FILE_NAME.fullmatch(self.code.split("\n", 1)[0])
+        return name[1] if name and self.language not in ("sh", "console", "python", "text") else ""
+
+    def padded(self, code: str | None = None, line: int | None = None) -> str:
+        """The code on the very lines that it has in the page, so that errors name those."""
+        return "\n" * ((line or self.line) - 1) + (code or self.code)
+
+
+@dataclasses.dataclass
+class Page:
+    path: pathlib.Path
+    blocks: list[Block]
+    pictures: list[tuple[int, str]]
+    """Line and path of each picture that it shows."""
+    links: list[tuple[int, str]]
+    """Line and target of every other link."""
+
+
+def read(path: pathlib.Path) -> Page:
+    blocks: list[Block] = []
+    links: dict[str, list[tuple[int, str]]] = {"": [], "!": []}
+    block = None
+    not_run = ""
+    for number, line in enumerate(path.read_text().splitlines(), start=1):
+        if block is None:
+            if fence := FENCE.fullmatch(line):
+                block = Block(fence[1], "", number + 1, not_run)
+                not_run = ""
+            elif reason := NOT_RUN.fullmatch(line):
+                not_run = reason[1]
+            else:
+                for mark, target in LINK.findall(re.sub("`[^`]*`", "`", line)):
+                    links[mark].append((number, target))
+        elif line == "```":
+            before = blocks[-1] if blocks else None
+            if block.language == "text" and before and before.language in ("sh", "python"):
+                before.output = block
+            blocks.append(block)
+            block = None
+        else:
+            block.code += line + "\n"
+    if block is not None:
+        raise SystemExit(f"{path}:{block.line}: this block has no end")
+    return Page(path, blocks, links["!"], links[""])
+
+
+def broken(page: Page) -> list[tuple[int, str]]:
+    """Line and target of the links that lead to no file, or no heading of it."""
+    found = []
+    for line, target in page.links:
+        if re.match(r"https?:", target):
+            continue
+        name, _, anchor = target.partition("#")
+        path = page.path.parent / name if name else page.path
+        if not path.exists() or (anchor and anchor not in anchors(path)):
+            found.append((line, target))
+    return found
+
+
+def anchors(path: pathlib.Path) -> set[str]:
+    """Of the headings of a page, as GitHub and GitLab name them."""
+    text = re.sub(r"^```.*?^```$", "", path.read_text(), flags=re.M | re.S)
+    headings = re.findall(r"^#+ (.*)$", text, re.M)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
