@@ -16,7 +16,8 @@ deploy/ and client/ are there. Programs, servers, certificates and databases are
     text      after one of these: what it printed.
     console   commands after `$ `, and what each printed, errors included. A command that fails must
               show what it says; its exit code matters where `$ echo $?` shows it.
-    any other is a file, where its first line is `# NAME`; otherwise it is for looking at.
+    any other is a file, where its first line is `# NAME`; otherwise it is for looking at, and holds
+              no commands.
 
     <!-- not run: REASON -->    on a line of its own before a block that cannot be run here
 
@@ -114,6 +115,8 @@ class Session:
             self._compare(block.output, self._call(self.python, block.padded()))
         elif block.language == "console":
             self._run_console(block)
+        elif block.language != "text" and re.search(r"^(\$|weftd?) ", block.code, re.M):
+            raise Failed(block.line, f"commands in a block of '{block.language}' are not run")
 
     def _run_shell(self, block: pages.Block) -> str:
         """Waits for a server to listen before it goes on, as its reader does."""
@@ -128,12 +131,18 @@ class Session:
             self.ready.unlink(missing_ok=True)
             printed += self._call(self.shell, block.padded("\n".join(part) + "\n", start))
             start = number + 1
-            end = time.monotonic() + interpreter.PATIENCE
-            while serves and not self.ready.exists():
-                if time.monotonic() > end:
-                    raise Failed(number, "the server does not listen")
-                time.sleep(0.02)
+            if serves:
+                self._wait_until_it_listens(number)
         return printed
+
+    def _wait_until_it_listens(self, line: int) -> None:
+        end = time.monotonic() + interpreter.PATIENCE
+        while not self.ready.exists():
+            if self.shell.run("kill -0 $! 2> /dev/null || echo ended", shown=True):
+                raise Failed(line, "the server has ended")
+            if time.monotonic() > end:
+                raise Failed(line, "the server does not listen")
+            time.sleep(0.02)
 
     def _run_console(self, block: pages.Block) -> None:
         command, shown, at = "", "", block.line

@@ -81,7 +81,7 @@ class Interpreter:
         self.output.seek(start)
         printed = self.output.read().decode(errors="replace")
         if answer != "done":
-            raise Failed(int(answer) if answer.isdigit() else 0, printed)
+            raise Failed(int(answer) if answer.isdigit() else 0, f"this fails, and prints\n{printed}")
         return printed
 
     def _answer(self) -> str:

@@ -52,7 +52,7 @@ def shrink(drawn: pathlib.Path, shown: pathlib.Path) -> None:
         width = min(width, picture.width)
         small = picture.resize((width, round(picture.height * width / picture.width)),
                                Image.Resampling.LANCZOS)
-        for colors in (64, 32):
+        for colors in (128, 64, 32):
             # A line's colour is that of few pixels, and must stay.
             small.quantize(colors, Image.Quantize.MAXCOVERAGE, kmeans=1,
                            dither=Image.Dither.NONE).save(shown, optimize=True)
