@@ -50,6 +50,8 @@ for words in os.fdopen(blocks):
 
 
 class Failed(Exception):
+    """`line`: of the page; 0 where it is not known."""
+
     def __init__(self, line: int, what: str):
         super().__init__(what)
         self.line = line

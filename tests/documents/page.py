@@ -7,6 +7,8 @@ import dataclasses
 import pathlib
 import re
 
+from interpreter import Failed
+
 FENCE = re.compile(r"```(\w*)")
 NOT_RUN = re.compile(r"<!-- not run: (.+) -->")
 FILE_NAME = re.compile(r"# ([\w./-]+\.\w+)")
@@ -32,10 +34,6 @@ class Block:
         name = FILE_NAME.fullmatch(self.code.split("\n", 1)[0])
         return name[1] if name and self.language not in ("sh", "console", "python", "text") else ""
 
-    def padded(self, code: str | None = None, line: int | None = None) -> str:
-        """The code on the very lines that it has in the page, so that errors name those."""
-        return "\n" * ((line or self.line) - 1) + (code or self.code)
-
 
 @dataclasses.dataclass
 class Page:
@@ -47,7 +45,13 @@ class Page:
     """Line and target of every other link."""
 
 
+def on_line(line: int, code: str) -> str:
+    """The code on the very lines that it has in the page, so that errors name those."""
+    return "\n" * (line - 1) + code
+
+
 def read(path: pathlib.Path) -> Page:
+    """Raises Failed."""
     blocks: list[Block] = []
     links: dict[str, list[tuple[int, str]]] = {"": [], "!": []}
     block = None
@@ -57,21 +61,24 @@ def read(path: pathlib.Path) -> Page:
             if fence := FENCE.fullmatch(line):
                 block = Block(fence[1], "", number + 1, not_run)
                 not_run = ""
+            elif line.lstrip().startswith("```"):
+                raise Failed(number, "this begins no block that the test knows")
             elif reason := NOT_RUN.fullmatch(line):
                 not_run = reason[1]
             else:
                 for mark, target in LINK.findall(re.sub("`[^`]*`", "`", line)):
                     links[mark].append((number, target))
         elif line == "```":
-            before = blocks[-1] if blocks else None
-            if block.language == "text" and before and before.language in ("sh", "python"):
-                before.output = block
+            if block.language == "text":
+                if not blocks or blocks[-1].language not in ("sh", "python"):
+                    raise Failed(block.line, "there is no block above that prints this")
+                blocks[-1].output = block
             blocks.append(block)
             block = None
         else:
             block.code += line + "\n"
     if block is not None:
-        raise SystemExit(f"{path}:{block.line}: this block has no end")
+        raise Failed(block.line, "this block has no end")
     return Page(path, blocks, links["!"], links[""])
 
 

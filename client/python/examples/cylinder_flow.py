@@ -6,7 +6,7 @@ The benchmark 2D-1 of Schaefer and Turek (1996): channel 2.2 x 0.41, cylinder of
 (0.2, 0.2), parabolic inflow of mean velocity 0.2, viscosity 0.001. Exits with 1 where the drag is
 farther than 1 % from the reference. Needs python3-scipy.
 
-    python3 cylinder_flow.py DOMAIN [PICTURE]      DOMAIN has the markers below; no picture by default
+    python3 cylinder_flow.py DOMAIN [PICTURE]      DOMAIN with the markers below, such as channel.poly
 """
 
 import sys
@@ -64,7 +64,8 @@ class Space:
 
 
 def flow(mesh):
-    """Velocities (k, 2) at corners and midpoints, pressures (n,), and the force on the cylinder."""
+    """Velocities (k, 2) at corners and midpoints, pressures (n,), and the force (2,) on the cylinder:
+    what the equations at its nodes are short of."""
     space = Space(mesh)
     k, n = len(space.points), len(mesh.points)
     diffusion = space.matrix(VISCOSITY * np.einsum("mq,mqid,mqjd->mij", space.weights, space.slopes,
@@ -81,7 +82,8 @@ def flow(mesh):
     free = np.concatenate([~fixed[:, 0], ~fixed[:, 1], np.ones(n, bool)])
 
     def convection(v):
-        """Carrying by v, and the matrices (d, e) of what carries v: d of what is carried by e."""
+        """The matrix of (v . grad) w, which takes each component of w alone, and those, (d, e), of
+        (w . grad) v: of component e of w to component d."""
         here = np.einsum("qi,mid->mqd", SHAPES, v[space.nodes])
         slope = np.einsum("mqid,mie->mqed", space.slopes, v[space.nodes])
         carry = space.matrix(np.einsum("mq,qi,mqjd,mqd->mij", space.weights, SHAPES, space.slopes, here),
@@ -92,21 +94,21 @@ def flow(mesh):
         return carry, react
 
     values = np.concatenate([velocity[:, 0], velocity[:, 1], np.zeros(n)])
-    for step in range(10):  # Newton's method, from nothing but the inflow
+    for _ in range(10):  # Newton's method, from nothing but the inflow
         carry, react = convection(values[:2 * k].reshape(2, k).T)
         moved = diffusion + carry
         residual = np.concatenate([moved @ values[:k] + pressure[0] @ values[2 * k:],
                                    moved @ values[k:2 * k] + pressure[1] @ values[2 * k:],
                                    pressure[0].T @ values[:k] + pressure[1].T @ values[k:2 * k]])
-        change = np.linalg.norm(residual[free])
-        if change < 1e-10:
+        left = np.linalg.norm(residual[free])
+        if left < 1e-10:
             break
         jacobian = sparse.bmat([[moved + react[0][0], react[0][1], pressure[0]],
                                 [react[1][0], moved + react[1][1], pressure[1]],
                                 [pressure[0].T, pressure[1].T, None]]).tocsr()
         values[free] -= scipy.sparse.linalg.spsolve(jacobian[free][:, free].tocsc(), residual[free])
     else:
-        sys.exit(f"Newton's method has not converged: the residual is {change:.1e}")
+        sys.exit(f"Newton's method has not converged: the residual is {left:.1e}")
     cylinder = space.nodes_on(mesh, CYLINDER)
     force = -np.array([residual[cylinder].sum(), residual[k + cylinder].sum()])
     return values[:2 * k].reshape(2, k).T, values[2 * k:], force
