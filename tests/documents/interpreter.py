@@ -8,7 +8,7 @@ import pathlib
 import select
 import subprocess
 
-PATIENCE = 120  # seconds for a block
+PATIENCE = 300  # seconds for a block: the machine may be busy
 
 # Given two descriptors, reads the files to run from the first and answers on the second: `done`, or
 # the line that failed. A failure ends the shell, unless `shown` is asked for: then the page shows
