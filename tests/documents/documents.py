@@ -2,11 +2,11 @@
 """Runs what the documents tell their readers to run, and fails, with file and line, where a command
 fails or prints something else than the page shows.
 
-    documents.py BUILD [--pictures] [PAGE...]
+    documents.py BUILD [--anew] [PAGE...]
 
 BUILD is the folder of weft, weftd and python/, such as build/release. Pages are README.md,
-docs/**/*.md and client/python/README.md, but for those that docs/generate.py makes. With --pictures
-the pictures that pages show are made anew: from the files of that name that their commands draw.
+docs/**/*.md and client/python/README.md, but for those that docs/generate.py makes. With --anew the
+pages get what their commands print and draw now, for a person to look at.
 
 A page is run from its top in an empty folder that stands for the root of the repository: tests/,
 deploy/ and client/ are there. Programs, servers, certificates and databases are real.
@@ -55,7 +55,7 @@ def run_page(build: pathlib.Path, path: pathlib.Path, anew: bool) -> tuple[bool,
         page = pages.read(path)
         with tempfile.TemporaryDirectory(prefix="weft-page-") as scratch:
             os.chmod(scratch, 0o755)  # PostgreSQL's user has to get through
-            session = Session(build, pathlib.Path(scratch), DATABASE in path.read_text())
+            session = Session(build, pathlib.Path(scratch), DATABASE in path.read_text(), anew)
             try:
                 for block in page.blocks:
                     line = block.line
@@ -66,6 +66,7 @@ def run_page(build: pathlib.Path, path: pathlib.Path, anew: bool) -> tuple[bool,
             for line, target in page.pictures:
                 shown = path.parent / target
                 pictures.check(shown, next(pathlib.Path(scratch).rglob(shown.name), None), anew)
+        pages.rewrite(path, session.changes)
         for line, target in pages.broken(page):
             raise Failed(line, f"the link leads nowhere: {target}")
     except pictures.Differs as error:
@@ -86,7 +87,7 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("pages", type=pathlib.Path, nargs="*")
-    parser.add_argument("--pictures", action="store_true")
+    parser.add_argument("--anew", action="store_true")
     arguments = parser.parse_args()
     paths = [p.resolve() for p in arguments.pages] or [
         ROOT / "README.md", ROOT / "client/python/README.md",
@@ -94,7 +95,7 @@ def main() -> None:
     start = time.monotonic()
     failed = 0
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        jobs = [pool.submit(run_page, arguments.build.resolve(), path, arguments.pictures)
+        jobs = [pool.submit(run_page, arguments.build.resolve(), path, arguments.anew)
                 for path in paths]
         for job in jobs:
             good, said = job.result()

@@ -15,9 +15,9 @@ WRONG = {
     "a command fails": ("```sh\ntrue\nfalse\n```\n", 3, "this fails"),
     "a command of a pipe fails": ("```sh\nweft info none.vtu | cat\n```\n", 2, "none.vtu"),
     "the shell ends": ("```sh\nexit 3\n```\n", 2, "this fails"),
-    "a console shows another output": ("```console\n$ echo 1\n1\n$ echo 2\n3\n```\n", 4, "prints\n2"),
-    "a console shows another exit code": ("```console\n$ false\n$ echo $?\n0\n```\n", 3, "prints\n1"),
-    "a console hides a failure": ("```console\n$ weft info none.vtu\n```\n", 2, "none.vtu"),
+    "a console shows another output": ("```console\n$ echo 1\n1\n$ echo 2\n3\n```\n", 5, "prints\n2"),
+    "a console shows another exit code": ("```console\n$ false\n$ echo $?\n0\n```\n", 4, "prints\n1"),
+    "a console hides a failure": ("```console\n$ weft info none.vtu\n```\n", 3, "none.vtu"),
     "a file is not what a command wants": ("```csv\n# a.csv\n0,0\n```\n\n```sh\nweft info a.csv\n```\n",
                                            7, "this fails"),
     "Python raises": ("```python\nx = 1\nassert x == 2\n```\n", 3, "AssertionError"),
@@ -39,10 +39,10 @@ WRONG = {
 @pytest.fixture
 def run(tmp_path):
     """Whether a page is well, and what is said of it."""
-    def run_it(text):
+    def run_it(text, anew=False):
         page = tmp_path / "page.md"
         page.write_text(text)
-        return documents.run_page(BUILD, page, False)
+        return documents.run_page(BUILD, page, anew)
     return run_it
 
 
@@ -76,3 +76,14 @@ def test_what_is_not_run_is_told_with_its_reason(run):
     good, found = run("<!-- not run: needs the moon -->\n```sh\nfalse\n```\n")
     assert good
     assert "page.md:3 is not run: needs the moon" in found
+
+
+def test_a_page_is_written_anew(run, tmp_path):
+    good, found = run("```console\n$ echo 1; \\\n  echo 2\n0\n$ echo 3\n```\n\n```python\nprint(4)\n```\n\n"
+                      "```text\n5\n6\n```\n\n" + DRAWING + "![a](drawn/key.png)\n", anew=True)
+    assert good, found
+    page = (tmp_path / "page.md").read_text()
+    assert page.startswith("```console\n$ echo 1; \\\n  echo 2\n1\n2\n$ echo 3\n3\n```\n\n```python\nprint(4)\n"
+                           "```\n\n```text\n4\n```\n")
+    good, found = run(page)
+    assert good, found

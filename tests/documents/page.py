@@ -100,3 +100,12 @@ def anchors(path: pathlib.Path) -> set[str]:
     text = re.sub(r"^```.*?^```$", "", path.read_text(), flags=re.M | re.S)
     headings = re.findall(r"^#+ (.*)$", text, re.M)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def rewrite(path: pathlib.Path, changes: list[tuple[Block, str]]) -> None:
+    """Replaces blocks, given in the order of the page."""
+    lines = path.read_text().splitlines(keepends=True)
+    for block, text in reversed(changes):
+        first = block.line - 1
+        lines[first:first + block.code.count("\n")] = [line.rstrip() + "\n" for line in text.splitlines()]
+    path.write_text("".join(lines))

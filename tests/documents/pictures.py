@@ -25,14 +25,14 @@ def check(shown: pathlib.Path, drawn: pathlib.Path | None, anew: bool) -> None:
         shown.parent.mkdir(parents=True, exist_ok=True)
         shrink(drawn, shown)
     if not shown.exists():
-        raise Differs(f"there is no picture {shown}; documents.py --pictures makes it")
+        raise Differs(f"there is no picture {shown}; documents.py --anew makes it")
     if shown.stat().st_size > MOST_BYTES:
         raise Differs(f"{shown.name} has {shown.stat().st_size} bytes, more than {MOST_BYTES}")
     difference = ImageChops.difference(thumbnail(shown), thumbnail(drawn))
     mean = sum(ImageStat.Stat(difference).mean) / 3
     if mean > ALIKE:
         raise Differs(f"{shown.name} does not look like what is drawn now: the mean difference is "
-                      f"{mean:.1f} of 255; documents.py --pictures makes it anew")
+                      f"{mean:.1f} of 255; documents.py --anew makes it anew")
 
 
 def thumbnail(path: pathlib.Path) -> Image.Image:

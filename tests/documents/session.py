@@ -24,10 +24,13 @@ addresses = (f"127.{n >> 16 & 127 | 64}.{n >> 8 & 255}.{n & 255}"  # no two page
 
 
 class Session:
-    """Runs the blocks of a page in `folder`, which is empty, with the programs of `build`."""
+    """Runs the blocks of a page in `folder`, which is empty, with the programs of `build`. With
+    `anew`, output that is not as shown is not a failure, but noted in `changes`."""
 
-    def __init__(self, build: pathlib.Path, folder: pathlib.Path, needs_database: bool):
+    def __init__(self, build: pathlib.Path, folder: pathlib.Path, needs_database: bool, anew: bool):
         self.folder = folder
+        self.anew = anew
+        self.changes: list[tuple[pages.Block, str]] = []
         self.database = self.python = None
         # Pages name the addresses and the database that a reader has; here many pages, tests and
         # people share a machine.
@@ -102,17 +105,17 @@ class Session:
             time.sleep(0.02)
 
     def _run_console(self, block: pages.Block) -> None:
-        command, shown, at = "", "", block.line
-        for number, line in enumerate([*block.code.splitlines(), "$ "], start=block.line):
-            if line.startswith("$ "):
-                if command:
-                    printed = self._call(self.shell, command, shown=True)
-                    self._compare(pages.Block("text", shown, at), printed)
-                command, shown, at = line[2:] + "\n", "", number
-            elif command.endswith("\\\n"):
-                command += line + "\n"
-            else:
-                shown += line + "\n"
+        lines = block.code.splitlines(keepends=True)
+        at = 0
+        while at < len(lines):
+            command = [lines[at].removeprefix("$ ")]
+            while command[-1].endswith("\\\n"):
+                command.append(lines[at + len(command)])
+            at += len(command)
+            shown = list(itertools.takewhile(lambda line: not line.startswith("$ "), lines[at:]))
+            printed = self._call(self.shell, "".join(command), shown=True)
+            self._compare(pages.Block("text", "".join(shown), block.line + at), printed)
+            at += len(shown)
 
     def _call(self, runner: interpreter.Interpreter, code: str, shown: bool = False) -> str:
         for name, own in self.names.items():
@@ -122,7 +125,9 @@ class Session:
             printed = printed.replace(own, name)  # the first of two names for the same
         return without_progress(printed)
 
-    @staticmethod
-    def _compare(expected: pages.Block | None, printed: str) -> None:
-        if expected and not is_as_shown(printed, expected.code):
+    def _compare(self, expected: pages.Block | None, printed: str) -> None:
+        if expected is None or is_as_shown(printed, expected.code):
+            return
+        if not self.anew:
             raise Failed(expected.line, f"the page shows\n{expected.code}but it prints\n{printed}")
+        self.changes.append((expected, printed))
