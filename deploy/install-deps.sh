@@ -38,6 +38,7 @@ test=(
   docker-compose           # its compose.yaml
   python3-grpcio python3-matplotlib python3-scipy                         # weft for Python
   python3-pytest python3-pip python3-setuptools python3-wheel mypy openssl # its tests
+  python3-venv python3-pil curl                                           # the documents
 )
 # Some machines bring a newer node; Debian's npm would be in its way.
 command -v npm >/dev/null || test+=(nodejs npm)

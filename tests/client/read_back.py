@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Has programs that are not ours read what weft writes, and compares what they find with what was
-written; prints a row for every format and reader. DOCS, docs/formats.md, must have each.
+written; prints a row for every format and reader. DOCS, docs/formats.md, must have these, and every
+format that weft writes must be among them.
 
     read_back.py WEFT DOCS
 
@@ -15,6 +16,7 @@ Needs Debian's python3-gmsh, python3-meshio, python3-numpy, python3-shapely and 
 import collections
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -27,6 +29,8 @@ import shapely.geometry
 import shapely.ops
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
+
+import format_table
 
 VERTICES, TRIANGLES, SIDES, AREA = 160, 256, 416, 128.0
 REGIONS = {3: 128, 7: 128}
@@ -353,7 +357,8 @@ CHECKS = [  # file, flags of weft convert, reader, check
 
 
 def main():
-    weft, docs = sys.argv[1], open(sys.argv[2]).read().splitlines()
+    weft, docs = sys.argv[1:]
+    rows = []
     with tempfile.TemporaryDirectory() as folder:
         source = os.path.join(folder, "source.npz")
         numpy.savez_compressed(source, **plate())
@@ -363,8 +368,13 @@ def main():
                 subprocess.run([weft, "convert", source, path, "--quiet", *flags], check=True)
             row = f"| `{' '.join([os.path.splitext(name)[1], *flags])}` | {reader} |"
             print(row, flush=True)
-            equal(f"'{row}' is in {sys.argv[2]}", row in docs, True)
+            rows.append(row)
             check(path)
+    format_table.check(docs, "| written by weft | read by |", rows)
+    usage = subprocess.run([weft, "convert", "--help"], check=True, capture_output=True, text=True).stdout
+    written = re.search(r"^  OUT .*? Mesh: ([^;]*)", usage, re.M)[1].split(", ")
+    equal("formats that weft writes", sorted({os.path.splitext(c[0])[1] for c in CHECKS}),
+          sorted(written))
 
 
 main()

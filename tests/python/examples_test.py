@@ -35,9 +35,15 @@ def test_poisson_converges_with_order_two():
     assert said.count("triangles") == 4, said
 
 
-def test_what_the_readme_shows_is_what_it_prints():
-    root = pathlib.Path(os.environ["WEFT_SOURCE"])
-    code, printed = re.search(r"## From Python\n\n```python\n(.*?)```\n\n```\n(.*?)```",
-                              (root / "README.md").read_text(), re.DOTALL).groups()
-    done = subprocess.run([sys.executable, "-B", "-c", code], cwd=root, capture_output=True, text=True)
-    assert done.stdout == printed, done.stderr
+def test_the_drag_of_a_cylinder_is_that_of_the_benchmark(tmp_path):
+    angle = np.linspace(0, 2 * np.pi, 96, endpoint=False)
+    ring = np.column_stack([0.2 + 0.05 * np.cos(angle), 0.2 + 0.05 * np.sin(angle)])
+    corners = [(0, 0, 3), (2.2, 0, 2), (2.2, 0.41, 3), (0, 0.41, 1), *((x, y, 4) for x, y in ring)]
+    after = [1, 2, 3, 0, *range(5, 100), 4]
+    poly = ["100 2 0 0", *(f"{i} {x} {y}" for i, (x, y, _) in enumerate(corners)),
+            "100 1", *(f"{i} {i} {after[i]} {marker}" for i, (_, _, marker) in enumerate(corners)),
+            "1", "0 0.2 0.2"]
+    (tmp_path / "channel.poly").write_text("\n".join(poly))
+    said = run("cylinder_flow.py", tmp_path / "channel.poly", tmp_path / "flow.png")
+    assert re.search(r"drag 5\.5[678]", said), said
+    assert (tmp_path / "flow.png").stat().st_size > 10_000

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs what the documents tell their readers to run, and fails, with file and line, where a command
+fails or prints something else than the page shows.
+
+    documents.py BUILD [--anew] [PAGE...]
+
+BUILD is the folder of weft, weftd and python/, such as build/release. Pages are README.md,
+docs/**/*.md and client/python/README.md, but for those that docs/generate.py makes. With --anew the
+pages get what their commands print and draw now, for a person to look at.
+
+A page is run from its top in an empty folder that stands for the root of the repository: tests/,
+deploy/ and client/ are there. Programs, servers, certificates and databases are real.
+
+    sh        runs in bash. All blocks of a page share a shell; a command that fails ends the page.
+    python    runs in Python, all blocks of a page in the same.
+    text      after one of these: what it printed.
+    console   commands after `$ `, and what each printed, errors included. A command that fails must
+              show what it says; its exit code matters where `$ echo $?` shows it.
+    any other is a file, where its first line is `# NAME`; otherwise it is for looking at, and holds
+              no commands.
+
+    <!-- not run: REASON -->    on a line of its own before a block that cannot be run here
+
+What varies from run to run and from machine to machine is in printed.py; a line `...` stands for any
+number of lines.
+
+A picture that a page shows must be one that its commands have drawn, in a file of that name, and
+must look like it. A link to a file, or a heading, of the repository must lead to one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import concurrent.futures
+import os
+import pathlib
+import sys
+import tempfile
+import time
+
+import page as pages
+import pictures
+from interpreter import Failed
+from session import DATABASE, ROOT, Session
+
+GENERATED = ["api.md", "flags.md"]  # docs/generate.py --check
+
+
+def run_page(build: pathlib.Path, path: pathlib.Path, anew: bool) -> tuple[bool, str]:
+    """Whether all went well, and what to say of it."""
+    name = os.path.relpath(path, ROOT)
+    start = time.monotonic()
+    line = 0  # where we are
+    try:
+        page = pages.read(path)
+        with tempfile.TemporaryDirectory(prefix="weft-page-") as scratch:
+            os.chmod(scratch, 0o755)  # PostgreSQL's user has to get through
+            session = Session(build, pathlib.Path(scratch), DATABASE in path.read_text(), anew)
+            try:
+                for block in page.blocks:
+                    line = block.line
+                    if not block.not_run:
+                        session.run(block)
+            finally:
+                session.close()
+            for line, target in page.pictures:
+                shown = path.parent / target
+                pictures.check(shown, next(pathlib.Path(scratch).rglob(shown.name), None), anew)
+        pages.rewrite(path, session.changes)
+        for line, target in pages.broken(page):
+            raise Failed(line, f"the link leads nowhere: {target}")
+    except pictures.Differs as error:
+        return False, f"{name}:{line}: {error}"
+    except Failed as error:
+        return False, f"{name}:{error.line or line}: {error}"
+    run = [b for b in page.blocks if b.language in ("sh", "console", "python") and not b.not_run]
+    compared = [b for b in run if b.output or b.language == "console"]
+    said = (f"{name}: {len(run)} blocks run, {len(compared)} with what they print, "
+            f"{len(page.pictures)} pictures, {time.monotonic() - start:.1f} s")
+    for block in page.blocks:
+        if block.not_run:
+            said += f"\n  {name}:{block.line} is not run: {block.not_run}"
+    return True, said
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("pages", type=pathlib.Path, nargs="*")
+    parser.add_argument("--anew", action="store_true")
+    arguments = parser.parse_args()
+    paths = [p.resolve() for p in arguments.pages] or [
+        ROOT / "README.md", ROOT / "client/python/README.md",
+        *sorted(p for p in (ROOT / "docs").rglob("*.md") if p.name not in GENERATED)]
+    start = time.monotonic()
+    failed = 0
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        jobs = [pool.submit(run_page, arguments.build.resolve(), path, arguments.anew)
+                for path in paths]
+        for job in jobs:
+            good, said = job.result()
+            print(said, flush=True)
+            failed += not good
+    print(f"{len(paths)} pages, {failed} of them failed, {time.monotonic() - start:.1f} s")
+    sys.exit(failed != 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A page of Markdown as what can be run of it. documents.py tells the conventions."""
+
+from __future__ import annotations
+
+import dataclasses
+import pathlib
+import re
+
+from interpreter import Failed
+
+FENCE = re.compile(r"```(\w*)")
+NOT_RUN = re.compile(r"<!-- not run: (.+) -->")
+FILE_NAME = re.compile(r"# ([\w./-]+\.\w+)")
+LINK = re.compile(r"(!?)\[[^\]]*\]\(([^)\s]+)\)")
+
+
+@dataclasses.dataclass
+class Block:
+    """Code between two fences."""
+
+    language: str
+    code: str
+    line: int
+    """Of the page, on which the code begins."""
+    not_run: str = ""
+    """Why, where it is not."""
+    output: Block | None = None
+    """What it must print, where the page shows that."""
+
+    @property
+    def file(self) -> str:
+        """The name of the file that it is, if it is one."""
+        name = FILE_NAME.fullmatch(self.code.split("\n", 1)[0])
+        return name[1] if name and self.language not in ("sh", "console", "python", "text") else ""
+
+
+@dataclasses.dataclass
+class Page:
+    path: pathlib.Path
+    blocks: list[Block]
+    pictures: list[tuple[int, str]]
+    """Line and path of each picture that it shows."""
+    links: list[tuple[int, str]]
+    """Line and target of every other link."""
+
+
+def on_line(line: int, code: str) -> str:
+    """The code on the very lines that it has in the page, so that errors name those."""
+    return "\n" * (line - 1) + code
+
+
+def read(path: pathlib.Path) -> Page:
+    """Raises Failed."""
+    blocks: list[Block] = []
+    links: dict[str, list[tuple[int, str]]] = {"": [], "!": []}
+    block = None
+    not_run = ""
+    for number, line in enumerate(path.read_text().splitlines(), start=1):
+        if block is None:
+            if fence := FENCE.fullmatch(line):
+                block = Block(fence[1], "", number + 1, not_run)
+                not_run = ""
+            elif line.lstrip().startswith("```"):
+                raise Failed(number, "this begins no block that the test knows")
+            elif reason := NOT_RUN.fullmatch(line):
+                not_run = reason[1]
+            else:
+                for mark, target in LINK.findall(re.sub("`[^`]*`", "`", line)):
+                    links[mark].append((number, target))
+        elif line == "```":
+            if block.language == "text":
+                if not blocks or blocks[-1].language not in ("sh", "python"):
+                    raise Failed(block.line, "there is no block above that prints this")
+                blocks[-1].output = block
+            blocks.append(block)
+            block = None
+        else:
+            block.code += line + "\n"
+    if block is not None:
+        raise Failed(block.line, "this block has no end")
+    return Page(path, blocks, links["!"], links[""])
+
+
+def broken(page: Page) -> list[tuple[int, str]]:
+    """Line and target of the links that lead to no file, or no heading of it."""
+    found = []
+    for line, target in page.links:
+        if re.match(r"https?:", target):
+            continue
+        name, _, anchor = target.partition("#")
+        path = page.path.parent / name if name else page.path
+        if not path.exists() or (anchor and anchor not in anchors(path)):
+            found.append((line, target))
+    return found
+
+
+def anchors(path: pathlib.Path) -> set[str]:
+    """Of the headings of a page, as GitHub and GitLab name them."""
+    text = re.sub(r"^```.*?^```$", "", path.read_text(), flags=re.M | re.S)
+    headings = re.findall(r"^#+ (.*)$", text, re.M)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def rewrite(path: pathlib.Path, changes: list[tuple[Block, str]]) -> None:
+    """Replaces blocks, given in the order of the page."""
+    lines = path.read_text().splitlines(keepends=True)
+    for block, text in reversed(changes):
+        first = block.line - 1
+        lines[first:first + block.code.count("\n")] = [line.rstrip() + "\n" for line in text.splitlines()]
+    path.write_text("".join(lines))
