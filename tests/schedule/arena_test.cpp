@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/arena.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "tests/support/event.h"
+
+namespace weft {
+namespace {
+
+TEST(Arena, RunsOnItsOwnThreadsWhileTheCallerWaits) {
+  Arena arena(2);
+  const auto caller = std::this_thread::get_id();
+  EXPECT_NE(arena.run([] { return std::this_thread::get_id(); }), caller);
+}
+
+// With one thread, waiting for another would be waiting for ever.
+TEST(Arena, RunsAtOnceWhatIsRunFromWithin) {
+  Arena arena(1);
+  const bool same = arena.run([&] {
+    const auto outer = std::this_thread::get_id();
+    return arena.run([&] { return std::this_thread::get_id() == outer; });
+  });
+  EXPECT_TRUE(same);
+}
+
+TEST(Arena, RunsAtOnceWhatAStartedFunctionRuns) {
+  Arena arena(1);
+  Event done;
+  int ran = 0;
+  arena.start([&] {
+    arena.for_each(3, 1, [&](std::size_t) { arena.run([&] { ++ran; }); });
+    done.set();
+  });
+  done.wait();
+  EXPECT_EQ(ran, 3);
+}
+
+TEST(Arena, ThrowsWhatItsFunctionThrows) {
+  Arena arena(2);
+  EXPECT_THROW(arena.run([] { throw std::runtime_error("no"); }), std::runtime_error);
+  EXPECT_THROW(arena.for_each(9, 2,
+                              [](std::size_t i) {
+                                if (i == 5) throw std::runtime_error("no");
+                              }),
+               std::runtime_error);
+  EXPECT_EQ(arena.run([] { return 7; }), 7);
+}
+
+TEST(Arena, ReturnsWhatCanOnlyBeMoved) {
+  Arena arena(1);
+  EXPECT_EQ(*arena.run([] { return std::make_unique<int>(7); }), 7);
+}
+
+TEST(Arena, RunsEachStepOfALoopOnce) {
+  Arena arena(3);
+  std::vector<std::atomic<int>> steps(1000);
+  arena.for_each(steps.size(), 3, [&](std::size_t i) { ++steps[i]; });
+  for (const auto& count : steps) EXPECT_EQ(count, 1);
+}
+
+}  // namespace
+}  // namespace weft
