@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "client/cli/command_groups.h"
+#include "client/cli/flags.h"
 #include "client/signals.h"
 
 namespace {
@@ -41,6 +42,8 @@ int run(int argc, char** argv) {
   add_server_commands(app, chosen);
   try {
     app.parse(argc, argv);
+    for (const CLI::App* command : app.get_subcommands())
+      refuse_idle_flags(*command, {argv, static_cast<std::size_t>(argc)});
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
   }

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace weft::client {
 namespace {
@@ -48,7 +49,25 @@ void fill(const Domain& domain, v1::Domain& out) {
   out.set_fill(domain.fill == Domain::Fill::kEvenOdd ? v1::FILL_EVEN_ODD : v1::FILL_SEEDS);
 }
 
+void fill(const SizeGrid& grid, v1::Raster& out) {
+  out.set_x(grid.x);
+  out.set_y(grid.y);
+  out.set_dx(grid.dx);
+  out.set_dy(grid.dy);
+  out.set_columns(grid.columns);
+  out.set_rows(grid.rows);
+  out.mutable_values()->Add(grid.values.begin(), grid.values.end());
+}
+
 }  // namespace
+
+Result<MeshWishes> with_size_grid(MeshWishes wishes) {
+  if (!is_size_grid_path(wishes.size)) return wishes;
+  auto grid = read_size_grid(wishes.size);
+  if (!grid) return tl::unexpected(grid.error());
+  wishes.size_grid = std::make_shared<const SizeGrid>(std::move(*grid));
+  return wishes;
+}
 
 Result<void> check_sendable(const Domain& domain) {
   // A message of gRPC ends at 2 GiB.
@@ -63,7 +82,9 @@ Result<void> check_sendable(const Domain& domain) {
 v1::GenerateMeshRequest make_request(const Domain& domain, const MeshWishes& wishes) {
   v1::GenerateMeshRequest request;
   fill(domain, *request.mutable_domain());
-  if (const auto constant = as_number(wishes.size)) {
+  if (wishes.size_grid) {
+    fill(*wishes.size_grid, *request.mutable_size()->mutable_raster());
+  } else if (const auto constant = as_number(wishes.size)) {
     request.mutable_size()->set_constant(*constant);
   } else if (!wishes.size.empty()) {
     request.mutable_size()->set_expression(wishes.size);

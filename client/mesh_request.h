@@ -6,18 +6,24 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "client/error.h"
 #include "client/formats/domain.h"
+#include "client/formats/size_grid.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {
 
 // What the mesh must satisfy. DEFAULT of all that is optional: the server's.
 struct MeshWishes {
-  std::string size{};  // a number or an expression in x and y; empty: no bound
+  // A number, an expression in x and y, or the path of a grid (formats/size_grid.h); empty: no
+  // bound.
+  std::string size{};
+  // What that path holds: see with_size_grid.
+  std::shared_ptr<const SizeGrid> size_grid{};
   std::optional<double> min_angle_deg{};
   std::optional<double> min_edge{};
   std::optional<std::uint64_t> max_triangles{};
@@ -27,9 +33,13 @@ struct MeshWishes {
   bool no_cache = false;  // made anew, even if the server has it at hand
 };
 
+// Reads the grid whose path the size is, where it is one.
+Result<MeshWishes> with_size_grid(MeshWishes wishes);
+
 // An error (kUnreadableInput) where the domain is too large for any message.
 Result<void> check_sendable(const Domain& domain);
 
+// REQUIRES: the size is no path, or its grid was read.
 v1::GenerateMeshRequest make_request(const Domain& domain, const MeshWishes& wishes);
 
 }  // namespace weft::client

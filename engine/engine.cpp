@@ -237,7 +237,7 @@ Result<Summary> generate_mesh(const MeshRequest& request, ChunkSink& sink,
   try {
     return Job(request, sink, context).run();
   } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::kBudgetExceeded, "", "memory ran out");
+    return fail(ErrorCode::kOutOfMemory, "", "memory ran out");
   } catch (const std::exception& e) {
     return fail(ErrorCode::kInternal, "", e.what());
   }

@@ -33,6 +33,8 @@ enum class ErrorCode {
   // The request is larger than what it may use.
   kLimitExceeded,   // refused before work: an input or an estimate is over a limit
   kBudgetExceeded,  // stopped at work: bytes ran out
+  // The machine is short of something; the same request may succeed later.
+  kOutOfMemory,
   // The request was stopped from outside.
   kDeadlineExceeded,
   kCancelled,

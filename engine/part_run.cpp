@@ -36,7 +36,7 @@ void PartRun::run(const Trace::GraphName& name, TaskGraph graph, std::uint32_t f
   } while (run.step() || ready());
   if (trace) trace->end_stage(name.stage);
   if (run.starved() && !stopped_)
-    stop({ErrorCode::kBudgetExceeded, "", "memory ran out: no thread could be started"});
+    stop({ErrorCode::kOutOfMemory, "", "memory ran out: no thread could be started"});
 }
 
 void PartRun::run_task(std::uint32_t t, const std::function<void(std::uint32_t)>& task) {
@@ -48,7 +48,7 @@ void PartRun::run_task(std::uint32_t t, const std::function<void(std::uint32_t)>
       task(t);
     }
   } catch (const std::bad_alloc&) {
-    stop({ErrorCode::kBudgetExceeded, "", "memory ran out"});
+    stop({ErrorCode::kOutOfMemory, "", "memory ran out"});
   } catch (const std::exception& e) {
     stop({ErrorCode::kInternal, "", e.what()});
   }

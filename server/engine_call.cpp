@@ -22,7 +22,7 @@ tl::expected<Summary, Failure> call_engine(const EngineFn& engine,
     if (!summary) return tl::unexpected(failure_of(summary.error()));
     return *summary;
   } catch (const std::bad_alloc&) {
-    return tl::unexpected(Failure{Reason::kBudgetExceeded, "", "the server is out of memory"});
+    return tl::unexpected(Failure{Reason::kOutOfMemory, "", "the server is out of memory"});
   } catch (const std::exception& error) {
     return tl::unexpected(
         Failure{Reason::kInternal, "", fmt::format("the engine failed: {}", error.what())});

@@ -16,7 +16,7 @@ namespace weft::server {
 using EngineFn = std::function<Result<Summary>(const MeshRequest&, ChunkSink&, ExecutionContext&)>;
 
 // Frees the request as soon as the engine's own form of it is made. What is thrown becomes a
-// failure: BUDGET_EXCEEDED for want of memory, INTERNAL else.
+// failure: OUT_OF_MEMORY for want of memory, INTERNAL else.
 // REQUIRES: check_shape and check_limits found nothing in the request.
 tl::expected<Summary, Failure> call_engine(const EngineFn& engine,
                                            std::unique_ptr<v1::GenerateMeshRequest> request,

@@ -38,6 +38,7 @@ constexpr std::array kTable = {
     row(kBadSizeValue, "BAD_SIZE_VALUE", INVALID_ARGUMENT, kFinal, "bad_size_value"),
     row(kLimitExceeded, "LIMIT_EXCEEDED", RESOURCE_EXHAUSTED, kFinal, "limit_exceeded"),
     row(kBudgetExceeded, "BUDGET_EXCEEDED", RESOURCE_EXHAUSTED, kFinal, "budget_exceeded"),
+    row(kOutOfMemory, "OUT_OF_MEMORY", RESOURCE_EXHAUSTED, kRetry, "out_of_memory"),
     row(kDeadlineExceeded, "DEADLINE_EXCEEDED", DEADLINE_EXCEEDED, kFinal, "deadline_exceeded"),
     row(kCancelled, "CANCELLED", CANCELLED, kFinal, "cancelled"),
     row(kInternal, "INTERNAL", INTERNAL, kFinal, "internal"),

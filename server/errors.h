@@ -34,6 +34,7 @@ enum class Reason {
   kBadSizeValue,
   kLimitExceeded,
   kBudgetExceeded,
+  kOutOfMemory,
   kDeadlineExceeded,
   kCancelled,
   kInternal,

@@ -14,13 +14,13 @@
 #include <thread>
 
 #include "engine/engine.h"
-#include "server/jobs/postgres_store.h"
-#include "server/jobs/sqlite_store.h"
 #include "server/log.h"
 #include "server/machine.h"
 #include "server/options.h"
 #include "server/server.h"
 #include "server/stop_events.h"
+#include "server/store/postgres_store.h"
+#include "server/store/sqlite_store.h"
 #include "server/version.h"
 
 namespace weft::server {

@@ -11,6 +11,7 @@
 #include "server/jobs/mesh_key.h"
 #include "server/refusal.h"
 #include "server/translate.h"
+#include "server/unary_call.h"
 #include "server/wire_scan.h"
 
 namespace weft::server {
@@ -98,7 +99,7 @@ Reactor* MeshService::admit(grpc::CallbackServerContext* context, grpc::ByteBuff
   }
   changed_.notify_all();
   job->start();
-  return job.get();
+  return job->given_to_grpc();
 }
 
 tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure> MeshService::read(
@@ -137,12 +138,12 @@ Reactor* MeshService::refuse(const Caller& caller, const Failure& failure) {
 grpc::ServerUnaryReactor* MeshService::GetServerInfo(grpc::CallbackServerContext* context,
                                                      const v1::GetServerInfoRequest*,
                                                      v1::GetServerInfoResponse* response) {
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  auto* const call = new UnaryCall;
   const auto caller = authenticator_.identify(*context);
   const auto finish = [&](const grpc::Status& status) {
     metrics_.call_ended("GetServerInfo", status.error_code(), caller ? caller->seconds_since() : 0);
-    reactor->Finish(status);
-    return reactor;
+    call->finish(status);
+    return call;
   };
   if (!caller) return finish(to_status(caller.error(), ""));
   if (!gate_.enter())

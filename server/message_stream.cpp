@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "server/grpc_handover.h"
+
 namespace weft::server {
 
 MessageStream::MessageStream(grpc::CallbackServerContext* context, grpc::ByteBuffer first,
@@ -58,6 +60,11 @@ bool MessageStream::settle(grpc::Status status) {
   return true;
 }
 
+grpc::ServerWriteReactor<grpc::ByteBuffer>* MessageStream::given_to_grpc() {
+  give_to_grpc(this);
+  return this;
+}
+
 bool MessageStream::ended() const {
   std::lock_guard lock(mutex_);
   return status_.has_value();
@@ -97,16 +104,19 @@ void MessageStream::pump() {
   if (next) {
     write(std::move(*next));
   } else {
+    give_to_grpc(this);
     Finish(std::move(status));
   }
 }
 
 void MessageStream::write(grpc::ByteBuffer message) {
   outgoing_ = std::move(message);
+  give_to_grpc(this);
   StartWrite(&outgoing_);
 }
 
 void MessageStream::OnWriteDone(bool ok) {
+  take_from_grpc(this);
   {
     std::lock_guard lock(mutex_);
     writing_ = false;
@@ -116,10 +126,18 @@ void MessageStream::OnWriteDone(bool ok) {
     client_gone();
   }
   wrote();
+  give_to_grpc(this);
   pump();  // last: it may finish the call, after which the stream may be gone
 }
 
+void MessageStream::OnCancel() {
+  take_from_grpc(this);
+  client_gone();
+  give_to_grpc(this);
+}
+
 void MessageStream::OnDone() {
+  take_from_grpc(this);
   {
     std::lock_guard lock(context_mutex_);
     context_ = nullptr;

@@ -46,6 +46,9 @@ class MessageStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   // Ends the call even where a write is outstanding that the client will never read.
   void kill();
 
+  // What a handler returns: gRPC's from there on.
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* given_to_grpc();
+
   // The status is settled: whatever else is sent is lost.
   bool ended() const;
 
@@ -76,7 +79,7 @@ class MessageStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
 
  private:
   void OnWriteDone(bool ok) final;
-  void OnCancel() final { client_gone(); }
+  void OnCancel() final;
   void OnDone() final;
   bool settle(grpc::Status status);      // false where it was settled before
   void write(grpc::ByteBuffer message);  // REQUIRES: the caller has set writing_ just before

@@ -12,6 +12,11 @@
 namespace weft::server {
 namespace {
 
+// Flags that say nothing where no jobs are kept.
+constexpr const char* kOfTheStore[] = {"--role",      "--max-queued",   "--max-queued-per-client",
+                                       "--lease",     "--max-attempts", "--keep",
+                                       "--keep-bytes"};
+
 std::string environment_name(std::string flag) {
   std::string name = "WEFT_" + flag.substr(2);
   for (char& c : name)
@@ -161,6 +166,7 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
   flags.count("--max-points", limits.max_points, "Points a request");
   flags.count("--max-segments", limits.max_segments, "Segments a request");
   flags.count("--max-seeds", limits.max_seeds, "Hole and region seeds a request");
+  flags.count("--max-raster-values", limits.max_raster_values, "Values of a size raster");
   flags.count("--max-triangles", limits.max_triangles, "Triangles a mesh");
   flags.bytes("--max-bytes", limits.max_bytes, "Engine memory a job; default: half of the memory");
   flags.bytes("--max-request-bytes", limits.max_request_bytes, "Request message")
@@ -179,6 +185,9 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
 
   try {
     app.parse(argc, argv);
+    if (options.data.empty() && options.store.empty())
+      for (const char* name : kOfTheStore)
+        if (app.count(name) != 0) throw CLI::RequiresError(name, "--data or --store");
   } catch (const CLI::ParseError& error) {
     return Exit{app.exit(error) == 0 ? 0 : kExitUsage};
   }

@@ -75,7 +75,11 @@ using Setter =
 // The keys that defaults may have, too.
 const std::map<std::string, Setter>& common_keys() {
   static const std::map<std::string, Setter> keys = {
-      {"size", [](const auto& n, auto& m, const auto&) { m.wishes.size = text_of(n, "size"); }},
+      {"size",
+       [](const auto& n, auto& m, const auto& folder) {
+         m.wishes.size = text_of(n, "size");
+         if (is_size_grid_path(m.wishes.size)) m.wishes.size = folder / m.wishes.size;
+       }},
       {"min-angle", [](const auto& n, auto& m,
                        const auto&) { m.wishes.min_angle_deg = number_of(n, "min-angle"); }},
       {"min-edge",

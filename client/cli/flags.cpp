@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/flags.h"
 
+#include <algorithm>
 #include <map>
+#include <string_view>
 
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
@@ -26,10 +28,11 @@ void add_domain_and_wishes(CLI::App& command, std::filesystem::path& input, Mesh
                       "; or a mesh, to mesh its domain anew: " + read_mesh_extensions())
       ->required();
   command
-      .add_option("--size", wishes.size,
-                  "Upper bound on the area of a triangle at its centroid: a number or an "
-                  "expression in x and y. Default: no bound")
-      ->type_name("EXPR");
+      .add_option(
+          "--size", wishes.size,
+          "Upper bound on the area of a triangle at its centroid: a number, an expression in "
+          "x and y, or a grid of such bounds as .asc (ESRI ASCII). Default: no bound")
+      ->type_name("EXPR|FILE");
   command
       .add_option("--min-angle", wishes.min_angle_deg,
                   "Lower bound on every angle, in degrees, 0 to 34. Default: 20")
@@ -105,6 +108,37 @@ void add_output(CLI::App& command, MeshOutputOptions& output) {
       .add_flag("--draw-quadtree", output.draw_quadtree,
                 "Draw the leaves of the quadtree that guided refinement over the mesh")
       ->envname("WEFT_DRAW_QUADTREE");
+}
+
+void refuse_idle_flags(const CLI::App& command, std::span<char* const> words) {
+  struct Pair {
+    const char* flag;
+    const char* other;
+  };
+  static constexpr Pair kNeeds[] = {{"--order", "--output"},
+                                    {"--msh-version", "--output"},
+                                    {"--open-boundary", "--output"},
+                                    {"--color", "--draw"},
+                                    {"--tls", "--server"},
+                                    {"--tls-ca", "--server"},
+                                    {"--tls-cert", "--server"},
+                                    {"--tls-key", "--server"},
+                                    {"--tls-server-name", "--server"},
+                                    {"--token-file", "--server"},
+                                    {"--insecure", "--server"}};
+  static constexpr Pair kExcludes[] = {{"--interval", "--once"}};
+  const auto is_given = [words](const std::string& flag) {
+    return std::any_of(words.begin(), words.end(), [&flag](std::string_view word) {
+      return word == flag || word.starts_with(flag + "=");
+    });
+  };
+  for (const auto& [flag, other] : kNeeds) {
+    const CLI::Option* const needed = command.get_option_no_throw(other);
+    if (needed != nullptr && needed->count() == 0 && is_given(flag))
+      throw CLI::RequiresError(flag, other);
+  }
+  for (const auto& [flag, other] : kExcludes)
+    if (is_given(flag) && is_given(other)) throw CLI::ExcludesError(flag, other);
 }
 
 void add_json(CLI::App& command, bool& json, const std::string& help) {

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "client/mesh_output.h"
@@ -24,6 +25,11 @@ void add_writing(CLI::App& command, MeshWriteOptions& writing);
 
 // Files to write, and drawings.
 void add_output(CLI::App& command, MeshOutputOptions& output);
+
+// Throws CLI::ParseError where a flag among the words of the command line would do nothing, for
+// want of the one that it is about, or because of another one. Variables of the environment are
+// there for all commands, and may well be of no use to one.
+void refuse_idle_flags(const CLI::App& command, std::span<char* const> words);
 
 void add_json(CLI::App& command, bool& json, const std::string& help);
 void add_quiet(CLI::App& command, bool& quiet);

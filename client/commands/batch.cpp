@@ -46,6 +46,8 @@ Result<v1::Summary> make_mesh(const BatchMesh& mesh, const Connection& connectio
                               const BatchOptions& options, const std::stop_token& stop) {
   const auto domain = read_domain(mesh.input);
   if (!domain) return tl::unexpected(domain.error());
+  const auto wishes = with_size_grid(mesh.wishes);
+  if (!wishes) return tl::unexpected(wishes.error());
   std::optional<MeshOutput> output;
   if (!mesh.output.empty()) {
     make_folders(mesh.output);
@@ -54,7 +56,7 @@ Result<v1::Summary> make_mesh(const BatchMesh& mesh, const Connection& connectio
     output.emplace(std::move(*opened));
   }
   const auto report = mesh_into(
-      connection, *domain, mesh.wishes, {.timeout_seconds = options.timeout_seconds},
+      connection, *domain, *wishes, {.timeout_seconds = options.timeout_seconds},
       output ? &*output : nullptr, [] {}, stop);
   if (!report) return tl::unexpected(report.error());
   return report->summary;

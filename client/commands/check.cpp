@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <utility>
 
 #include "client/commands/commands.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
+#include "client/formats/size_grid.h"
 
 namespace weft::client {
 namespace {
@@ -40,6 +42,10 @@ check::Mesh to_checker(const Mesh& mesh) {
   return out;
 }
 
+check::SizeRaster to_checker(SizeGrid&& grid) {
+  return {{grid.x, grid.y}, grid.dx, grid.dy, grid.columns, grid.rows, std::move(grid.values)};
+}
+
 }  // namespace
 
 Result<ExitCode> run_check(const CheckOptions& options) {
@@ -50,7 +56,11 @@ Result<ExitCode> run_check(const CheckOptions& options) {
   check::Requirements requirements;
   requirements.min_angle_deg = options.min_angle_deg;
   requirements.allowed_unrefined = options.max_unrefined;
-  if (!options.size.empty()) {
+  if (is_size_grid_path(options.size)) {
+    auto grid = read_size_grid(options.size);
+    if (!grid) return tl::unexpected(grid.error());
+    requirements.raster = to_checker(std::move(*grid));
+  } else if (!options.size.empty()) {
     double constant = 0;
     const char* end = options.size.data() + options.size.size();
     const auto [stop, problem] = std::from_chars(options.size.data(), end, constant);

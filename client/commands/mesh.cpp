@@ -15,6 +15,8 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   if (!output) return tl::unexpected(output.error());
   const auto domain = read_domain(options.input);
   if (!domain) return tl::unexpected(domain.error());
+  auto wishes = with_size_grid(options.wishes);
+  if (!wishes) return tl::unexpected(wishes.error());
   times.read = MeshTimes::Clock::now();
 
   const auto connection = connect(options.server, stop);
@@ -25,13 +27,12 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   const MeshCallOptions call{
       .timeout_seconds = options.timeout_seconds,
       .on_progress = [&progress](const v1::Progress& p) { progress.update(p); }};
-  MeshWishes wishes = options.wishes;
-  wishes.quadtree = options.output.draw_quadtree;
+  wishes->quadtree = options.output.draw_quadtree;
   const auto received = [&] {
     times.received = MeshTimes::Clock::now();
     if (output->draws()) progress.say("drawing");
   };
-  const auto report = mesh_into(*connection, *domain, wishes, call, &*output, received, stop);
+  const auto report = mesh_into(*connection, *domain, *wishes, call, &*output, received, stop);
   if (!report) return tl::unexpected(report.error());
   times.written = MeshTimes::Clock::now();
   progress.clear();

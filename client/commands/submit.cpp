@@ -39,10 +39,11 @@ Result<std::optional<MeshOutput>> open_output(const SubmitOptions& options,
 
 Result<v1::Job> submit(JobServer& server, const Domain& domain, const SubmitOptions& options) {
   if (auto ok = check_sendable(domain); !ok) return tl::unexpected(ok.error());
-  MeshWishes wishes = options.wishes;
-  wishes.quadtree = options.output.draw_quadtree;
+  auto wishes = with_size_grid(options.wishes);
+  if (!wishes) return tl::unexpected(wishes.error());
+  wishes->quadtree = options.output.draw_quadtree;
   v1::SubmitJobRequest request;
-  *request.mutable_mesh() = make_request(domain, wishes);
+  *request.mutable_mesh() = make_request(domain, *wishes);
   request.set_request_id(options.request_id.empty() ? random_request_id() : options.request_id);
   request.set_no_cache(options.no_cache);
   auto job = server.submit(request, &domain);

@@ -97,7 +97,7 @@ Result<Domain> triangulate(const Pslg& pslg, const ExecutionContext& context) {
   } catch (Stopped& stopped) {
     return tl::unexpected(std::move(stopped.error));
   } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::kBudgetExceeded, "",
+    return fail(ErrorCode::kOutOfMemory, "",
                 "the machine has no memory left to triangulate the domain");
   } catch (const std::exception& e) {
     return fail(ErrorCode::kInternal, "", std::string("triangulating the domain: ") + e.what());

@@ -86,6 +86,7 @@ struct Domain {
 //                       2^25 crossings, overlaps and touchings (arrangement.h)
 //   kBudgetExceeded     300 bytes a vertex and 120 a subsegment, about the peak, are over
 //                       Budget::max_bytes
+//   kOutOfMemory        the machine has none left
 //   kCancelled, kDeadlineExceeded  noticed within 50 ms; to free what a million points have taken
 //                       takes some 20 ms more
 //

@@ -95,7 +95,7 @@ struct Mesh {
 
   // The domain's triangulation, in blocks of owner 0, with room for at least `max_triangles` in
   // all, and for the slots that tasks leave dead or unused. `expected_triangles` decides whether
-  // huge pages are worth it. Errors: kBudgetExceeded, kLimitExceeded, kCancelled,
+  // huge pages are worth it. Errors: kOutOfMemory, kLimitExceeded, kCancelled,
   // kDeadlineExceeded.
   static Result<Mesh> from(const Domain& domain, std::uint64_t max_triangles,
                            double expected_triangles, const ExecutionContext& context);

@@ -36,7 +36,7 @@ class VirtualArray {
     void* raw = mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (raw == MAP_FAILED) {
-      return fail(ErrorCode::kBudgetExceeded, "",
+      return fail(ErrorCode::kOutOfMemory, "",
                   "cannot reserve " + std::to_string(bytes) + " bytes of address space");
     }
     VirtualArray array;

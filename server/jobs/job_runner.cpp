@@ -112,7 +112,7 @@ bool JobRunner::work_once() {
     const Listed listed(*this, run);
     run->run();
   } catch (const std::bad_alloc&) {  // none for the request, or for what came of it
-    give_up(name, {Reason::kBudgetExceeded, "", "the server is out of memory"});
+    give_up(name, {Reason::kOutOfMemory, "", "the server is out of memory"});
   } catch (const std::exception& error) {
     give_up(name, {Reason::kInternal, "", error.what()});
   }

@@ -12,6 +12,7 @@
 #include "server/jobs/mesh_key.h"
 #include "server/refusal.h"
 #include "server/translate.h"
+#include "server/unary_call.h"
 #include "server/weight.h"
 #include "server/wire_scan.h"
 #include "server/work.h"
@@ -91,24 +92,24 @@ void JobService::stop_all() {
 
 JobService::Unary* JobService::answer(Context* context, const char* method,
                                       std::function<Answer(const Caller&)> handler) {
-  Unary* reactor = context->DefaultReactor();
-  const auto finish = [this, reactor, method](const Caller& caller, const Answer& failure) {
+  auto* const call = new UnaryCall;
+  const auto finish = [this, call, method](const Caller& caller, const Answer& failure) {
     if (!failure) {
       metrics_.call_ended(method, grpc::OK, caller.seconds_since());
-      return reactor->Finish(grpc::Status::OK);
+      return call->finish(grpc::Status::OK);
     }
     refused(caller, method, *failure);
-    reactor->Finish(to_status(*failure, ""));
+    call->finish(to_status(*failure, ""));
   };
   const auto caller = authenticator_.identify(*context);
   if (!caller) {
     finish(Authenticator::unverified(*context), caller.error());
-    return reactor;
+    return call;
   }
   auto pass = gate_.enter();
   if (!pass) {
     finish(*caller, Failure{Reason::kStopping, "", "the server is stopping"});
-    return reactor;
+    return call;
   }
   const auto kept = std::make_shared<DrainGate::Pass>(std::move(*pass));
   const auto work = [finish, kept, handler = std::move(handler), caller = *caller] {
@@ -121,7 +122,7 @@ JobService::Unary* JobService::answer(Context* context, const char* method,
   if (!push(threads_, work))
     finish(*caller, Failure{Reason::kQueueFull, "",
                             fmt::format("{} calls wait for the store already", kWaitingCalls)});
-  return reactor;
+  return call;
 }
 
 JobService::Unary* JobService::SubmitJob(Context* context, const grpc::ByteBuffer* request,
@@ -300,7 +301,7 @@ JobService::Stream* JobService::open(Context* context, const grpc::ByteBuffer& b
   }
   changed_.notify_all();
   stream->start();
-  return stream.get();
+  return stream->given_to_grpc();
 }
 
 void JobService::refused(const Caller& caller, const char* method, const Failure& failure) {

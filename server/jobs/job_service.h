@@ -25,10 +25,10 @@
 #include "server/caller.h"
 #include "server/drain.h"
 #include "server/job_queue.h"
-#include "server/jobs/job_store.h"
 #include "server/jobs/job_stream.h"
 #include "server/limits.h"
 #include "server/log.h"
+#include "server/store/job_store.h"
 #include "weft/v1/job_service.grpc.pb.h"
 
 namespace weft::server {

@@ -18,10 +18,10 @@
 #include "server/drain.h"
 #include "server/errors.h"
 #include "server/job_queue.h"
-#include "server/jobs/job_store.h"
 #include "server/log.h"
 #include "server/message_stream.h"
 #include "server/metrics.h"
+#include "server/store/job_store.h"
 
 namespace weft::server {
 

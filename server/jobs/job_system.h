@@ -14,9 +14,9 @@
 #include "server/engine_call.h"
 #include "server/jobs/job_runner.h"
 #include "server/jobs/job_service.h"
-#include "server/jobs/job_store.h"
 #include "server/log.h"
 #include "server/memory_gate.h"
+#include "server/store/job_store.h"
 
 namespace weft::server {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "server/errors.h"
-#include "server/jobs/job_store.h"
+#include "server/store/job_store.h"
 #include "weft/v1/job_service.pb.h"
 
 namespace weft::server {

@@ -19,10 +19,10 @@
 
 #include "engine/arena.h"
 #include "server/engine_call.h"
-#include "server/jobs/job_store.h"
 #include "server/limits.h"
 #include "server/log.h"
 #include "server/metrics.h"
+#include "server/store/job_store.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::server {

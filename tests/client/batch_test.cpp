@@ -86,7 +86,7 @@ meshes:
   - {name: a, input: in/a.poly, size: x + 1, min-angle: 25, min-edge: 0.5, max-triangles: 9,
      max-seconds: 4, output: [o/a.vtu, o/a.msh], draw: a.png, color: angle, order: 2,
      require: {min-angle: 25}}
-  - {name: b, input: /b.geojson, size: 0.5}
+  - {name: b, input: /b.geojson, size: depth.asc}
 )");
   ASSERT_TRUE(meshes) << meshes.error().message;
   ASSERT_EQ(meshes->size(), 2u);
@@ -104,6 +104,7 @@ meshes:
   EXPECT_EQ(a.output.writing.order, 2);
   ASSERT_EQ(a.gates.size(), 1u);
   EXPECT_EQ(meshes->back().input, "/b.geojson");
+  EXPECT_EQ(meshes->back().wishes.size, (folder_ / "depth.asc").string());
   EXPECT_TRUE(meshes->back().output.empty());
 }
 

@@ -92,6 +92,37 @@ TEST_F(CommandLine, RefusesUnknownExtensionsBeforeAnyWork) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "pid"));
 }
 
+TEST_F(CommandLine, RefusesFlagsThatWouldDoNothing) {
+  const auto refusal = [this](Words words) {
+    EXPECT_EQ(run(words), 2) << words.back();
+    return err();
+  };
+  EXPECT_NE(refusal({"mesh", "in.poly", "--detach", "--server", "unix:s", "--order", "2"})
+                .find("--order requires --output"),
+            std::string::npos)
+      << err();
+  EXPECT_NE(refusal({"submit", "in.poly", "--server", "unix:s", "--msh-version", "2.2"})
+                .find("--msh-version requires --output"),
+            std::string::npos)
+      << err();
+  EXPECT_NE(refusal({"mesh", "in.poly", "-o", "m.vtu", "--color", "angle"})
+                .find("--color requires --draw"),
+            std::string::npos)
+      << err();
+  EXPECT_NE(refusal({"mesh", "in.poly", "-o", "m.vtu", "--tls"}).find("--tls requires --server"),
+            std::string::npos)
+      << err();
+  EXPECT_NE(refusal({"top", "--server", "unix:s", "--once", "--interval", "2"})
+                .find("--interval excludes --once"),
+            std::string::npos)
+      << err();
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "pid"));
+}
+
+TEST_F(CommandLine, LetsTheEnvironmentNameWhatACommandHasNoUseFor) {
+  EXPECT_EQ(run(mesh_to("m.vtu"), {"WEFT_COLOR=angle", "WEFT_TOKEN_FILE=/nowhere"}), 0) << err();
+}
+
 TEST_F(CommandLine, DrawsTheQuadtreeAndSaysOfHowManyLeaves) {
   const Words words = {"mesh", folder_ / "in.poly", "--draw", folder_ / "out" / "d.svg"};
   ASSERT_EQ(run(words), 0) << err();

@@ -44,15 +44,17 @@ class Client {
         tally_(tally) {}
 
   void run() {
-    switch (number_ % 4) {
+    switch (number_ % 5) {
       case 0:
         return generate();
       case 1:
         return generate_and_cancel();
       case 2:
         return generate_in_time();
+      case 3:
+        return generate_and_read_slowly();
       default:
-        return number_ % 8 == 3 ? submit() : submit_and_cancel();
+        return number_ % 2 == 0 ? submit() : submit_and_cancel();
     }
   }
 
@@ -74,6 +76,13 @@ class Client {
              }),
         [](const grpc::Status& status) { return status.error_code() == grpc::CANCELLED; },
         tally_.cancelled);
+  }
+
+  void generate_and_read_slowly() {
+    grpc::ClientContext context;
+    judge(
+        call(context, [&](int) { std::this_thread::sleep_for(milliseconds(random_() % 20)); }),
+        [](const grpc::Status&) { return false; }, tally_.wrong);
   }
 
   void generate_in_time() {

@@ -48,6 +48,25 @@ TEST(Models, ThroughTheServerHoldTheirBoundsAndCounts) {
   EXPECT_LE(triangles("us-east-coast.poly", "coast.vtu", {"--size", "1e-3"}), 500'000);
 }
 
+TEST(Models, HoldTheBoundsOfASizeGrid) {
+  const Server server;
+  Folder folder;
+  // From 0.02 in the west to 0.5 in the east of the cylinder's channel.
+  const std::string grid = folder.write("size.asc",
+                                        "ncols 3\nnrows 2\nxllcorner -20\nyllcorner -20\n"
+                                        "cellsize 20\n0.02 0.1 0.5\n0.02 0.1 0.5\n");
+  const auto json =
+      mesh_and_check(server, model("cylinder.poly"), "cylinder.vtu", {"--size", grid});
+  EXPECT_GT(json.at("triangles").get<int>(), 1000);
+  const Outcome coarse = run_weft({"mesh", model("cylinder.poly"), "-o", folder / "coarse.vtu",
+                                   "--quiet", "--server", server.address()});
+  EXPECT_EQ(coarse.exit_code, 0) << coarse.err;
+  EXPECT_EQ(
+      run_weft({"check", folder / "coarse.vtu", "--domain", model("cylinder.poly"), "--size", grid})
+          .exit_code,
+      3);
+}
+
 TEST(Models, GiveTheSameDigestThroughAPrivateServerAndASharedOne) {
   const Server server;
   const auto digest = [](const Arguments& where) {

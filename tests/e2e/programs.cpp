@@ -2,6 +2,7 @@
 #include "tests/e2e/programs.h"
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -96,7 +97,7 @@ std::vector<std::string> Server::addresses() const {
 Server::~Server() {
   if (pid_ < 0) return;
   ::kill(pid_, SIGTERM);
-  wait_for(pid_);
+  EXPECT_EQ(wait_for(pid_), 0) << "weftd did not drain in peace:\n" << contents(folder_ / "err");
 }
 
 void Server::kill() {

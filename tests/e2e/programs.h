@@ -23,7 +23,7 @@ struct Outcome {
 // Runs build/.../weft with these arguments and waits.
 Outcome run_weft(const std::vector<std::string>& arguments);
 
-// A weftd on a unix socket; SIGTERM at the end.
+// A weftd on a unix socket; SIGTERM at the end, after which it must exit with 0.
 class Server {
  public:
   explicit Server(const std::vector<std::string>& arguments = {});

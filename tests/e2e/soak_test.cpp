@@ -127,6 +127,48 @@ void let_settle(const Server& server) {
   } while (now > before);
 }
 
+// A client of its own connection that reads when it is told to.
+template <class Message>
+struct SlowReader {
+  grpc::ClientContext context;
+  std::unique_ptr<grpc::ClientReader<Message>> reader;
+  std::string digests;  // of the chunks
+  std::string digest;   // of the mesh, as its summary says
+
+  // False at the end.
+  bool read() {
+    Message message;
+    if (!reader->Read(&message)) return false;
+    if (message.has_chunk()) digests += message.chunk().sha256();
+    if (message.has_summary()) digest = message.summary().sha256();
+    return true;
+  }
+};
+
+// One message each, again and again.
+template <class Message>
+void read_slowly(std::vector<SlowReader<Message>>& readers, milliseconds pause) {
+  for (std::size_t reading = readers.size(); reading > 0;) {
+    std::this_thread::sleep_for(pause);
+    for (SlowReader<Message>& slow : readers) {
+      if (slow.reader == nullptr || slow.read()) continue;
+      EXPECT_TRUE(slow.reader->Finish().ok());
+      slow.reader.reset();
+      --reading;
+    }
+  }
+  for (const SlowReader<Message>& slow : readers) EXPECT_EQ(sha256(slow.digests), slow.digest);
+}
+
+// How much it has grown to at most, told.
+std::uint64_t growth(std::uint64_t before, const PeakMemory& peak, int readers,
+                     std::uint64_t mesh_bytes) {
+  std::printf("%d readers of %.1f MiB each: %.1f MiB before, %.1f MiB at most\n", readers,
+              static_cast<double>(mesh_bytes) / kMiB, static_cast<double>(before) / kMiB,
+              static_cast<double>(peak.bytes()) / kMiB);
+  return peak.bytes() - std::min(before, peak.bytes());
+}
+
 TEST(Soak, SlowReadersHoldLittleOfTheirMeshesInTheServersMemory) {
   constexpr int kReaders = 50;
   const Folder folder;
@@ -153,41 +195,59 @@ TEST(Soak, SlowReadersHoldLittleOfTheirMeshesInTheServersMemory) {
   }
   const std::uint64_t before = server.resident_bytes();
   const PeakMemory peak(server);
-  struct Slow {
-    grpc::ClientContext context;
-    std::unique_ptr<grpc::ClientReader<v1::FetchMeshResponse>> reader;
-    std::string digests;
-    std::string digest;
-  };
-  std::vector<Slow> readers(kReaders);
-  for (Slow& slow : readers)
+  std::vector<SlowReader<v1::FetchMeshResponse>> readers(kReaders);
+  for (auto& slow : readers)
     slow.reader =
         v1::JobService::NewStub(connect(server.address()))->FetchMesh(&slow.context, fetch);
   let_settle(server);  // nobody reads yet: it has all the time to read ahead
-  // One message each, again and again.
-  for (int reading = kReaders; reading > 0;) {
-    std::this_thread::sleep_for(milliseconds(few_or_many(2, 100)));
-    for (Slow& slow : readers) {
-      if (slow.reader == nullptr) continue;
-      v1::FetchMeshResponse message;
-      if (slow.reader->Read(&message)) {
-        if (message.has_chunk()) slow.digests += message.chunk().sha256();
-        if (message.has_summary()) slow.digest = message.summary().sha256();
-        continue;
-      }
-      EXPECT_TRUE(slow.reader->Finish().ok());
-      slow.reader.reset();
-      --reading;
-    }
-  }
-  for (const Slow& slow : readers) EXPECT_EQ(sha256(slow.digests), slow.digest);
-  const std::uint64_t grown = peak.bytes() - std::min(before, peak.bytes());
-  std::printf("%d readers of %.1f MiB each: %.1f MiB before, %.1f MiB at most\n", kReaders,
-              static_cast<double>(mesh_bytes) / kMiB, static_cast<double>(before) / kMiB,
-              static_cast<double>(peak.bytes()) / kMiB);
+  read_slowly(readers, milliseconds(few_or_many(2, 100)));
+  const std::uint64_t grown = growth(before, peak, kReaders, mesh_bytes);
   if (!kMemoryTells) return;
   EXPECT_LT(grown, kReaders * mesh_bytes / 2);
   EXPECT_LT(grown, kReaders * 6 * kMiB);
+}
+
+v1::GenerateMeshRequest cylinder_of(const std::string& size) {
+  static const auto domain = client::read_domain(model("cylinder.poly")).value();
+  return client::make_request(domain, {.size = size});
+}
+
+// The engine holds the mesh that it makes, whoever reads it; no more of it waits to be read than
+// for FetchMesh.
+TEST(Soak, SlowReadersOfMeshesInTheMakingHoldLittleBesidesTheEngineAndHoldNobodyBack) {
+  const int kReaders = few_or_many(5, 50);
+  const Server server({"--threads", "2", "--jobs", std::to_string(kReaders + 1), "--memory", "1TiB",
+                       "--stall-timeout", "3600", "--cache-bytes", "0", "--metrics",
+                       "127.0.0.1:0"});
+  const auto stub = v1::MeshService::NewStub(connect(server.address()));
+  const v1::GenerateMeshRequest large = cylinder_of("5e-4");
+  std::uint64_t mesh_bytes = 0;
+  std::uint64_t engine_bytes = 0;
+  // On its own connection, to its end.
+  const auto read_large = [&] {
+    grpc::ClientContext context;
+    const auto reader = stub->GenerateMesh(&context, large);
+    v1::GenerateMeshResponse message;
+    for (mesh_bytes = 0; reader->Read(&message);) mesh_bytes += message.ByteSizeLong();
+    engine_bytes = message.summary().peak_engine_bytes();
+    return reader->Finish().ok();
+  };
+  ASSERT_TRUE(read_large());
+  const std::uint64_t before = server.resident_bytes();
+  const PeakMemory peak(server);
+  std::vector<SlowReader<v1::GenerateMeshResponse>> readers(static_cast<std::size_t>(kReaders));
+  for (auto& slow : readers)
+    slow.reader =
+        v1::MeshService::NewStub(connect(server.address()))->GenerateMesh(&slow.context, large);
+  EXPECT_TRUE(server.shows("weft_running_jobs{queue=\"calls\"}", kReaders));
+  let_settle(server);
+  const std::uint64_t grown = growth(before, peak, kReaders, mesh_bytes);
+  EXPECT_TRUE(read_large());
+  EXPECT_TRUE(server.shows("weft_running_jobs{queue=\"calls\"}", kReaders));
+  read_slowly(readers, milliseconds(few_or_many(2, 100)));
+  if (kMemoryTells) {
+    EXPECT_LT(grown, static_cast<std::uint64_t>(kReaders) * (engine_bytes + mesh_bytes / 2));
+  }
 }
 
 }  // namespace

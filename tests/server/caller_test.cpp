@@ -4,7 +4,7 @@
 
 #include <google/protobuf/descriptor.h>
 
-#include "server/jobs/sqlite_store.h"
+#include "server/store/sqlite_store.h"
 #include "tests/client/support/temp_folder.h"
 #include "tests/server/logged_server.h"
 #include "tests/server/raw_call.h"

@@ -26,9 +26,15 @@ TEST(ErrorTable, TellsBadRequestsFromLimitsAndFromOurOwnFaults) {
   EXPECT_EQ(row_of(reason_of(ErrorCode::kBadSizeValue)).code, grpc::INVALID_ARGUMENT);
   EXPECT_EQ(row_of(reason_of(ErrorCode::kLimitExceeded)).code, grpc::RESOURCE_EXHAUSTED);
   EXPECT_EQ(row_of(reason_of(ErrorCode::kBudgetExceeded)).code, grpc::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(row_of(reason_of(ErrorCode::kOutOfMemory)).code, grpc::RESOURCE_EXHAUSTED);
   EXPECT_EQ(row_of(reason_of(ErrorCode::kDeadlineExceeded)).code, grpc::DEADLINE_EXCEEDED);
   EXPECT_EQ(row_of(reason_of(ErrorCode::kCancelled)).code, grpc::CANCELLED);
   EXPECT_EQ(row_of(reason_of(ErrorCode::kInternal)).code, grpc::INTERNAL);
+}
+
+TEST(ErrorTable, TellsTheJobsOwnBudgetFromTheMachinesMemory) {
+  EXPECT_FALSE(row_of(Reason::kBudgetExceeded).retryable);
+  EXPECT_TRUE(row_of(Reason::kOutOfMemory).retryable);
 }
 
 TEST(CodeName, IsTheNameThatGrpcGivesTheCode) {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/jobs/job_store.h"
+#include "server/store/job_store.h"
 
 namespace weft::server::testing {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Jobs when there is no memory for them outside the engine: it costs an attempt at most, never the
-// server, and what was taken is given back. Within the engine it fails the job, by its name.
+// server, and what was taken is given back. The same within the engine, but where it is the job's
+// own budget that runs out.
 #include <atomic>
 #include <new>
 #include <stdexcept>
@@ -64,9 +65,33 @@ TEST(WantOfMemory, WhenALeaseIsRenewedIsOvercome) {
   EXPECT_EQ(client.wait(client.submit(valid_request())).attempts(), 1u);
 }
 
-TEST(WantOfMemory, InTheEngineFailsTheJobByItsName) {
+TEST(WantOfMemory, InTheEngineCostsAnAttempt) {
+  std::atomic<int> runs{0};
+  JobServer server([&](const auto&, ChunkSink& sink, auto&) -> Result<Summary> {
+    if (runs++ == 0) throw std::bad_alloc();
+    return send_chunks(sink, 1);
+  });
+  JobClient client = server.client();
+  const v1::Job job = client.wait(client.submit(valid_request()));
+  EXPECT_EQ(job.state(), v1::JOB_STATE_SUCCEEDED);
+  EXPECT_EQ(job.attempts(), 2u);
+}
+
+TEST(WantOfMemory, InTheEngineEveryTimeFailsTheJobByItsName) {
   JobServer server(
       [](const auto&, ChunkSink&, auto&) -> Result<Summary> { throw std::bad_alloc(); });
+  JobClient client = server.client();
+  const v1::Job job = client.wait(client.submit(valid_request()));
+  EXPECT_EQ(job.state(), v1::JOB_STATE_FAILED);
+  EXPECT_EQ(job.attempts(), 3u);
+  const grpc::Status status(grpc::RESOURCE_EXHAUSTED, "", job.error().SerializeAsString());
+  EXPECT_EQ(details_of(status).error_info.reason(), "OUT_OF_MEMORY");
+}
+
+TEST(WantOfMemory, OfTheBudgetFailsTheJobAtOnce) {
+  JobServer server([](const auto&, ChunkSink&, auto&) -> Result<Summary> {
+    return fail(ErrorCode::kBudgetExceeded, "budget.max_bytes", "over the budget");
+  });
   JobClient client = server.client();
   const v1::Job job = client.wait(client.submit(valid_request()));
   EXPECT_EQ(job.state(), v1::JOB_STATE_FAILED);
@@ -84,7 +109,7 @@ TEST(WantOfMemory, EveryTimeFailsTheJob) {
   EXPECT_EQ(job.attempts(), 3u);
   EXPECT_EQ(calls, 3);
   const grpc::Status status(grpc::RESOURCE_EXHAUSTED, "", job.error().SerializeAsString());
-  EXPECT_EQ(details_of(status).error_info.reason(), "BUDGET_EXCEEDED");
+  EXPECT_EQ(details_of(status).error_info.reason(), "OUT_OF_MEMORY");
   EXPECT_TRUE(eventually([&] { return server.metric("weft_jobs_total{state=\"failed\"}") == 1; }));
 }
 

@@ -254,7 +254,9 @@ TEST(GenerateMesh, TurnsAnExceptionIntoInternalAndServesTheNextCall) {
   EXPECT_EQ(thrown.status.error_code(), grpc::StatusCode::INTERNAL);
   EXPECT_NE(thrown.status.error_message().find("boom"), std::string::npos);
   EXPECT_EQ(call(*stub, valid_request()).status.error_code(), grpc::StatusCode::INTERNAL);
-  EXPECT_EQ(call(*stub, valid_request()).status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  const Outcome starved = call(*stub, valid_request());
+  EXPECT_EQ(starved.status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(details_of(starved.status).error_info.reason(), "OUT_OF_MEMORY");
   EXPECT_TRUE(call(*stub, valid_request()).status.ok());
 }
 

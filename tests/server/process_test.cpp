@@ -221,12 +221,14 @@ TEST_F(TemporaryFolder, WritesTheBoundAddressesToThePortFile) {
 TEST(Process, ReadsFlagsFromTheEnvironmentAndFlagsWin) {
   Weftd weftd({"--max-segments", "11"}, {{"WEFT_LISTEN", "127.0.0.1:0"},
                                          {"WEFT_MAX_POINTS", "10"},
+                                         {"WEFT_MAX_RASTER_VALUES", "7"},
                                          {"WEFT_MAX_SEGMENTS", "99"},
                                          {"WEFT_MAX_REQUEST_BYTES", "2MiB"},
                                          {"WEFT_THREADS", "3"}});
   const v1::GetServerInfoResponse info = info_of(weftd.address());
   EXPECT_EQ(info.limits().max_points(), 10u);
   EXPECT_EQ(info.limits().max_segments(), 11u);
+  EXPECT_EQ(info.limits().max_raster_values(), 7u);
   EXPECT_EQ(info.limits().max_request_bytes(), 2u << 20);
   EXPECT_EQ(info.threads(), 3u);
   EXPECT_EQ(info.limits().max_concurrent_jobs(), 4u);
@@ -268,6 +270,16 @@ TEST(Process, EndsWith2OnWrongFlags) {
                                                 {"--tls-client-ca", "ca.pem"},
                                                 {"--max-seconds", "nan"}})
     EXPECT_EQ(Weftd(flags, {{"WEFT_LISTEN", "127.0.0.1:0"}}).wait(), 2) << flags.front();
+}
+
+TEST(Process, EndsWith2OnFlagsOfAStoreWithoutOne) {
+  for (const std::vector<std::string>& flags :
+       {std::vector<std::string>{"--role", "worker"}, {"--keep", "60"}, {"--max-queued", "9"}}) {
+    Weftd weftd(flags, {{"WEFT_LISTEN", "127.0.0.1:0"}});
+    EXPECT_EQ(weftd.wait(), 2) << flags.front();
+    EXPECT_NE(weftd.log().find(flags.front() + " requires --data or --store"), std::string::npos)
+        << weftd.log();
+  }
 }
 
 TEST(Process, TellsItsVersion) {

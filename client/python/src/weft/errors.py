@@ -80,7 +80,8 @@ class InvalidRequest(ServerError):
 
 
 class LimitExceeded(ServerError):
-    """RESOURCE_EXHAUSTED: over a limit or a budget, or, with `retry_after`, a full queue."""
+    """RESOURCE_EXHAUSTED: over a limit or a budget, or, with `retry_after`, a full queue or
+    a machine without memory left."""
 
 
 class DeadlineExceeded(ServerError):

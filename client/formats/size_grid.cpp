@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/formats/size_grid.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "client/formats/file_contents.h"
+#include "client/formats/line_scanner.h"
+#include "client/formats/mesh_formats.h"
+#include "client/text.h"
+
+namespace weft::client {
+namespace {
+
+constexpr std::uint64_t kMaxFileBytes = std::uint64_t{4} << 30;
+// More than any server takes.
+constexpr std::int64_t kMaxNodes = std::int64_t{1} << 28;
+
+struct Header {
+  std::optional<std::int64_t> columns, rows;
+  std::optional<double> corner_x, corner_y, centre_x, centre_y, size, dx, dy, no_data;
+};
+
+std::string lower(std::string_view word) {
+  std::string text(word);
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return text;
+}
+
+class Reader {
+ public:
+  Reader(const std::string& name, std::string_view text) : scanner_(name, text) {}
+
+  Result<SizeGrid> read() {
+    if (auto header = read_header(); !header) return tl::unexpected(header.error());
+    if (auto placed = place(); !placed) return tl::unexpected(placed.error());
+    if (auto values = read_values(); !values) return tl::unexpected(values.error());
+    return std::move(grid_);
+  }
+
+ private:
+  // Lines of a word and a number; ends on the first line of values.
+  Result<void> read_header() {
+    while (true) {
+      if (auto line = scanner_.next_line("the values"); !line) return line;
+      const std::string_view rest = scanner_.rest_of_line();
+      if (rest.find_first_of("+-.0123456789") == 0) return {};
+      if (auto field = read_field(); !field) return field;
+    }
+  }
+
+  Result<void> read_field() {
+    const auto word = scanner_.word("a word of the header");
+    if (!word) return tl::unexpected(word.error());
+    const std::string name = lower(*word);
+    struct Count {
+      std::string_view name;
+      std::optional<std::int64_t> Header::*field;
+    };
+    static constexpr Count kCounts[] = {{"ncols", &Header::columns}, {"nrows", &Header::rows}};
+    for (const Count& count : kCounts) {
+      if (count.name != name) continue;
+      const auto value = scanner_.integer(name);
+      if (!value) return tl::unexpected(value.error());
+      if (*value < 1 || *value > kMaxNodes)
+        return scanner_.error(name + " is " + std::to_string(*value) + ", not from 1 to " +
+                              std::to_string(kMaxNodes));
+      header_.*count.field = *value;
+      return {};
+    }
+    struct Real {
+      std::string_view name;
+      std::optional<double> Header::*field;
+    };
+    static constexpr Real kReals[] = {{"xllcorner", &Header::corner_x},
+                                      {"yllcorner", &Header::corner_y},
+                                      {"xllcenter", &Header::centre_x},
+                                      {"yllcenter", &Header::centre_y},
+                                      {"cellsize", &Header::size},
+                                      {"dx", &Header::dx},
+                                      {"dy", &Header::dy},
+                                      {"nodata_value", &Header::no_data}};
+    for (const Real& real : kReals) {
+      if (real.name != name) continue;
+      const auto value = scanner_.real(name);
+      if (!value) return tl::unexpected(value.error());
+      header_.*real.field = *value;
+      return {};
+    }
+    return scanner_.error("'" + harmless(std::string(*word)) + "' is no word of a grid's header");
+  }
+
+  Result<void> place() {
+    const Header& h = header_;
+    const auto missing = [this](const char* what) {
+      return scanner_.error(std::string("the header has no ") + what);
+    };
+    if (!h.columns) return missing("ncols");
+    if (!h.rows) return missing("nrows");
+    if (!h.size && !(h.dx && h.dy)) return missing("cellsize");
+    if (!h.corner_x && !h.centre_x) return missing("xllcorner");
+    if (!h.corner_y && !h.centre_y) return missing("yllcorner");
+    if (*h.columns > kMaxNodes / *h.rows)
+      return scanner_.error("ncols times nrows is over " + std::to_string(kMaxNodes));
+    grid_.dx = h.dx ? *h.dx : *h.size;
+    grid_.dy = h.dy ? *h.dy : *h.size;
+    if (!(grid_.dx > 0 && grid_.dy > 0))
+      return scanner_.error("the size of a cell is not positive");
+    grid_.x = h.centre_x ? *h.centre_x : *h.corner_x + grid_.dx / 2;
+    grid_.y = h.centre_y ? *h.centre_y : *h.corner_y + grid_.dy / 2;
+    grid_.columns = static_cast<std::uint32_t>(*h.columns);
+    grid_.rows = static_cast<std::uint32_t>(*h.rows);
+    return {};
+  }
+
+  // Rows may be broken over lines.
+  Result<void> read_values() {
+    std::vector<double>& values = grid_.values;
+    const std::size_t columns = grid_.columns;
+    values.resize(columns * grid_.rows);
+    for (std::size_t row = grid_.rows; row-- > 0;) {
+      for (std::size_t column = 0; column < columns; ++column) {
+        if (scanner_.at_line_end())
+          if (auto line = scanner_.next_line("a value"); !line) return line;
+        const auto value = scanner_.real("a value");
+        if (!value) return tl::unexpected(value.error());
+        if (header_.no_data && *value == *header_.no_data)
+          return scanner_.error("a cell without a value: the bound there is for you to say");
+        if (!(*value > 0)) return scanner_.error("the bound on the area is not positive");
+        values[row * columns + column] = *value;
+      }
+    }
+    if (!scanner_.at_line_end() || scanner_.try_next_line())
+      return scanner_.error("more values than ncols times nrows");
+    return {};
+  }
+
+  LineScanner scanner_;
+  Header header_;
+  SizeGrid grid_;
+};
+
+}  // namespace
+
+bool is_size_grid_path(const std::filesystem::path& path) {
+  return lower_extension(path) == ".asc";
+}
+
+Result<SizeGrid> read_size_grid(const std::filesystem::path& path) {
+  const auto file = read_file(path, kMaxFileBytes);
+  if (!file) return tl::unexpected(file.error());
+  return Reader(path.string(), file->text()).read();
+}
+
+}  // namespace weft::client

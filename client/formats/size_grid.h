@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// A size field on a grid, and the file that holds one: an ESRI ASCII grid (.asc), as GIS programs
+// write rasters of one band.
+//
+//   ncols 3
+//   nrows 2
+//   xllcorner 10        (or xllcenter)
+//   yllcorner 20        (or yllcenter)
+//   cellsize 2          (or dx and dy)
+//   NODATA_value -9999  (optional)
+//   1 2 3               (the northmost row first)
+//   4 5 6
+//
+// A value is that of the centre of its cell: the upper bound on the area of a triangle there, in
+// squared units of the coordinates. Every one must be positive; a cell without a value is refused,
+// for the bound there would be a guess.
+//
+//   Result<SizeGrid> grid = read_size_grid("coast.asc");
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "client/error.h"
+
+namespace weft::client {
+
+struct SizeGrid {
+  double x = 0;  // of the first value: the south-west one
+  double y = 0;
+  double dx = 1;
+  double dy = 1;
+  std::uint32_t columns = 0;
+  std::uint32_t rows = 0;
+  std::vector<double> values{};  // by rows, from the southmost
+};
+
+// By extension, in any case. No expression ends so.
+bool is_size_grid_path(const std::filesystem::path& path);
+
+// Errors (kUnreadableInput) name file, line and column.
+Result<SizeGrid> read_size_grid(const std::filesystem::path& path);
+
+}  // namespace weft::client

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tells ThreadSanitizer what gRPC guarantees of a reactor: what was done before it was given to
+// gRPC, by returning it from a handler or by starting an operation, is seen by the callbacks of
+// that; and what callbacks have done is seen by OnDone. Debian builds gRPC without ThreadSanitizer,
+// which therefore does not see it. In other builds nothing is left of this.
+//
+//   give_to_grpc(this);
+//   StartWrite(&message);
+//   ...
+//   void OnWriteDone(bool) override { take_from_grpc(this); ... }
+#pragma once
+
+#include "engine/handover.h"
+
+namespace weft::server {
+
+inline void give_to_grpc([[maybe_unused]] void* reactor) {
+#ifdef WEFT_THREAD_SANITIZER
+  __tsan_release(reactor);
+#endif
+}
+
+inline void take_from_grpc([[maybe_unused]] void* reactor) {
+#ifdef WEFT_THREAD_SANITIZER
+  __tsan_acquire(reactor);
+#endif
+}
+
+}  // namespace weft::server

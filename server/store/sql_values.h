@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the stores write in SQL what the rest of the server has in types of its own. Both give a job
+// as the same fifteen columns, in the order in which `read_job` reads them.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/store/job_store.h"
+
+namespace weft::server {
+
+inline WallTime from_micros(std::int64_t micros) {
+  return WallTime(
+      std::chrono::duration_cast<WallTime::duration>(std::chrono::microseconds(micros)));
+}
+inline std::int64_t to_micros(WallTime time) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(time.time_since_epoch()).count();
+}
+inline std::int64_t to_micros(std::chrono::microseconds duration) {
+  return duration.count();
+}
+
+// What SQL can hold of a number that may be larger.
+inline std::int64_t to_sql(std::uint64_t number) {
+  constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  return static_cast<std::int64_t>(std::min(number, kMost));
+}
+inline std::uint64_t to_unsigned(std::int64_t number) {
+  return static_cast<std::uint64_t>(number);
+}
+
+// A bit for each; all, where there are none.
+inline std::int64_t bits_of(const std::vector<JobState>& states) {
+  std::int64_t bits = states.empty() ? ~std::int64_t{0} : 0;
+  for (const JobState state : states) bits |= std::int64_t{1} << static_cast<int>(state);
+  return bits;
+}
+
+template <class Rows>
+JobRecord read_job(const Rows& rows) {
+  const auto time = [&](int column) {
+    return rows.null(column) ? std::nullopt : std::optional(from_micros(rows.integer(column)));
+  };
+  JobRecord job;
+  job.id = rows.bytes(0);
+  job.owner = rows.bytes(1);
+  job.request_id = rows.bytes(2);
+  job.key = rows.bytes(3);
+  job.state = static_cast<JobState>(rows.integer(4));
+  job.created = from_micros(rows.integer(5));
+  job.started = time(6);
+  job.ended = time(7);
+  job.attempts = static_cast<std::uint32_t>(rows.integer(8));
+  job.from_store = rows.integer(9) != 0;
+  job.worker = rows.bytes(10);
+  job.progress = rows.bytes(11);
+  job.error = rows.bytes(12);
+  if (!rows.null(13)) job.task = rows.integer(13);
+  job.brief = rows.bytes(14);
+  return job;
+}
+
+}  // namespace weft::server
