@@ -21,10 +21,17 @@ LABEL org.opencontainers.image.title="weft" \
       org.opencontainers.image.description="Graded, guaranteed-quality Delaunay meshes over gRPC" \
       org.opencontainers.image.licenses="GPL-3.0-or-later AND Apache-2.0"
 COPY deploy/install-deps.sh /tmp/
-# Documentation and translations of the packages would be a quarter of what is added.
-RUN printf 'path-exclude=/usr/share/%s/*\n' doc man locale info lintian >/etc/dpkg/dpkg.cfg.d/small \
+# Nothing here reads what is left out: documentation and translations, all fonts but the one of the
+# drawings, and libraries beside those that the programs load, such as protobuf's compiler.
+RUN printf 'path-exclude=%s\n' '/usr/share/doc/*' '/usr/share/man/*' '/usr/share/info/*' \
+      '/usr/share/locale/*' '/usr/share/lintian/*' '/usr/share/X11/*' '/usr/share/fonts/*.ttf' \
+      '*/libgrpc*_unsecure.so*' '*/libgrpcpp_channelz.so*' \
+      '*/libgrpc_plugin_support.so*' '*/libprotoc.so*' '*/libsleefgnuabi.so*' '*/libbrotlienc.so*' \
+      >/etc/dpkg/dpkg.cfg.d/small \
+ && echo 'path-include=*/DejaVuSans.ttf' >>/etc/dpkg/dpkg.cfg.d/small \
  && /tmp/install-deps.sh runtime \
- && rm -rf /tmp/install-deps.sh /var/lib/apt/lists/* /var/cache/apt/* /var/log/* \
+ && rm -rf /tmp/install-deps.sh /var/lib/apt/lists/* /var/cache/apt/* /var/cache/debconf/*-old \
+      /var/lib/dpkg/*-old /var/log/* \
  && useradd --system --no-create-home --shell /usr/sbin/nologin --uid 990 weft \
  && install -d -o weft -g weft -m 700 /var/lib/weft
 COPY --from=build /src/LICENSE /src/LICENSES/ /usr/share/doc/weft/

@@ -2,6 +2,7 @@
 #include "client/mesh_into.h"
 
 #include <filesystem>
+#include <utility>
 
 #include "client/mesh_spool.h"
 
@@ -15,7 +16,7 @@ Result<MeshReport> mesh_into(const Connection& connection, const Domain& domain,
   const auto spool = MeshSpool::create(
       output != nullptr ? output->folder() : std::filesystem::temp_directory_path(ignored));
   if (!spool) return tl::unexpected(spool.error());
-  auto report = call_generate_mesh(connection, domain, wishes, call, **spool, stop);
+  auto report = call_generate_mesh(connection, domain, wishes, call, **spool, std::move(stop));
   if (!report) {
     Error error = report.error();
     constexpr int kUnavailable = 14;

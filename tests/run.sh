@@ -2,17 +2,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # From a fresh Debian 12 machine to all tests run: installs what is missing, builds with warnings as
 # errors, runs every test, then those labelled `sanitize` again under AddressSanitizer and
-# UndefinedBehaviorSanitizer and those labelled `threads` under ThreadSanitizer, and checks
-# formatting, licences, protocol and scripts. Prints each step with its seconds, and the closing
-# lines of ctest last. Fails when any step failed.
+# UndefinedBehaviorSanitizer and those labelled `threads` under ThreadSanitizer, builds and runs the
+# container, and checks formatting, licences, protocol and scripts. Prints each step with its
+# seconds, and the closing lines of ctest last. Fails when any step failed.
 #
-#   tests/run.sh [--quick]     --quick leaves the sanitizers out
+#   tests/run.sh [--quick]     --quick leaves the sanitizers and the container out
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
 
 case "$#:${1-}" in
-  0:) sanitize=yes ;;
-  1:--quick) sanitize= ;;
+  0:) all=yes ;;
+  1:--quick) all= ;;
   *)
     echo "usage: tests/run.sh [--quick]" >&2
     exit 2
@@ -99,6 +99,14 @@ check_deployment() {
   done
 }
 
+check_container() {
+  if ((EUID != 0)); then
+    echo "the container: not built, for want of root"
+    return
+  fi
+  tests/container.sh build/release/weft
+}
+
 export UBSAN_OPTIONS=print_stacktrace=1
 export TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp
 
@@ -113,7 +121,8 @@ needed "build" cmake --build --preset release
 step "licences" tests/licences.sh
 step "documents" docs/generate.py build/release --check
 step "tests" run_ctest release --timeout 300
-if [[ $sanitize ]]; then
+if [[ $all ]]; then
+  step "container" check_container
   needed "configure, sanitizers" cmake --preset asan -DWEFT_WERROR=ON
   needed "build, sanitizers" cmake --build --preset asan --target sanitize-tests
   step "tests, sanitizers" run_ctest asan -L sanitize --timeout 600

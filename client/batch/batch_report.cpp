@@ -18,7 +18,7 @@ std::string two_digits(double value) {
 }
 
 // What would end a cell of a table, or begin a tag.
-std::string in_cell(std::string text) {
+std::string in_cell(const std::string& text) {
   std::string safe;
   for (const char c : harmless(text)) {
     if (c == '|' || c == '<' || c == '`') safe += '\\';

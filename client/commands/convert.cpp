@@ -35,7 +35,7 @@ void turn_counter_clockwise(Mesh& mesh) {
   }
 }
 
-Result<ExitCode> convert_mesh(const ConvertOptions& options, std::stop_token stop) {
+Result<ExitCode> convert_mesh(const ConvertOptions& options, const std::stop_token& stop) {
   auto output = MeshOutput::open({.files = {options.output}, .writing = options.writing},
                                  options.input, stop);
   if (!output) return tl::unexpected(output.error());
@@ -93,7 +93,7 @@ Result<ExitCode> run_convert(const ConvertOptions& options, std::stop_token stop
                                       ": is a domain, which becomes a mesh by `weft mesh " +
                                       options.input.string() + " -o " + options.output.string() +
                                       "`; converted, it becomes a .poly file");
-  return convert_mesh(options, std::move(stop));
+  return convert_mesh(options, stop);
 }
 
 }  // namespace weft::client
