@@ -100,8 +100,8 @@ check_deployment() {
 }
 
 check_container() {
-  if ((EUID != 0)); then
-    echo "the container: not built, for want of root"
+  if ((EUID != 0)) || ! unshare --mount mount -t tmpfs none /mnt 2>/dev/null; then
+    echo "the container: not built, for want of root, or of the right to mount"
     return
   fi
   tests/container.sh build/release/weft
