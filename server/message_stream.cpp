@@ -126,8 +126,8 @@ void MessageStream::OnWriteDone(bool ok) {
     client_gone();
   }
   wrote();
-  give_to_grpc(this);
-  pump();  // last: it may finish the call, after which the stream may be gone
+  pump();
+  give_to_grpc(this);  // which counts this callback: the stream is here to its end
 }
 
 void MessageStream::OnCancel() {
