@@ -11,8 +11,9 @@ WORKDIR /src
 COPY deploy/install-deps.sh deploy/
 RUN deploy/install-deps.sh build
 COPY . .
-RUN export CCACHE_DIR=/var/cache/ccache CCACHE_BASEDIR=/src CCACHE_NOHASHDIR=1 \
- && cmake --preset release -DBUILD_TESTING=OFF \
+ARG WERROR=OFF
+RUN export CCACHE_DIR=/var/cache/ccache \
+ && cmake --preset release -DBUILD_TESTING=OFF -DWEFT_WERROR=${WERROR} \
  && cmake --build --preset release --target weftd weft \
  && strip build/release/weftd build/release/weft
 

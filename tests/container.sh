@@ -57,7 +57,8 @@ say "image, by buildah"
 volumes=()
 cache=$(ccache --get-config cache_dir 2>/dev/null) && mkdir -p "$cache" &&
   volumes=(--volume "$cache:/var/cache/ccache")
-"${buildah[@]}" build --pull-never --build-arg BASE=localhost/weft-base "${volumes[@]}" \
+"${buildah[@]}" build --pull-never --build-arg BASE=localhost/weft-base \
+  --build-arg WERROR=ON "${volumes[@]}" \
   --format docker --tag weft . >"$scratch/build.log" 2>&1 ||
   fail "the image does not build: $(tail -n 30 "$scratch/build.log")"
 mapfile -t healthcheck < <("${buildah[@]}" inspect --type image weft |
