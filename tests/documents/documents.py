@@ -88,7 +88,7 @@ def main() -> None:
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("pages", type=pathlib.Path, nargs="*")
     parser.add_argument("--anew", action="store_true")
-    arguments = parser.parse_args()
+    arguments = parser.parse_intermixed_args()
     paths = [p.resolve() for p in arguments.pages] or [
         ROOT / "README.md", ROOT / "client/python/README.md",
         *sorted(p for p in (ROOT / "docs").rglob("*.md") if p.name not in GENERATED)]
