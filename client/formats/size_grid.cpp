@@ -32,7 +32,8 @@ std::string lower(std::string_view word) {
 
 class Reader {
  public:
-  Reader(const std::string& name, std::string_view text) : scanner_(name, text) {}
+  Reader(const std::string& name, std::string_view text)
+      : most_values_((text.size() + 1) / 2), scanner_(name, text) {}
 
   Result<SizeGrid> read() {
     if (auto header = read_header(); !header) return tl::unexpected(header.error());
@@ -120,6 +121,8 @@ class Reader {
   Result<void> read_values() {
     std::vector<double>& values = grid_.values;
     const std::size_t columns = grid_.columns;
+    if (columns * grid_.rows > most_values_)
+      return scanner_.error("fewer values than ncols times nrows");
     values.resize(columns * grid_.rows);
     for (std::size_t row = grid_.rows; row-- > 0;) {
       for (std::size_t column = 0; column < columns; ++column) {
@@ -138,6 +141,7 @@ class Reader {
     return {};
   }
 
+  const std::size_t most_values_;  // that the file has room for
   LineScanner scanner_;
   Header header_;
   SizeGrid grid_;

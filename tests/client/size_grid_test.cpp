@@ -70,6 +70,9 @@ TEST_F(SizeGridFile, IsRefusedWhereItsHeaderOrItsLengthIsWrong) {
   EXPECT_NE(refusal("ncols 268435456\nnrows 268435456\nxllcorner 0\nyllcorner 0\ncellsize 1\n1\n")
                 .find("ncols times nrows"),
             std::string::npos);
+  EXPECT_NE(refusal("ncols 16384\nnrows 16384\nxllcorner 0\nyllcorner 0\ncellsize 1\n1\n")
+                .find("fewer values"),
+            std::string::npos);
   EXPECT_NE(refusal("columns 2\n").find("'columns'"), std::string::npos);
   EXPECT_NE(refusal(std::string(kGrid) + "7\n").find("more values"), std::string::npos);
   EXPECT_NE(refusal("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1\n")
