@@ -57,6 +57,7 @@ class Arena {
     std::atomic<std::size_t> next{0};
     run_handed_over<int>(
         [&](int) {
+          const Stay stay(this);
           for (std::size_t i = next++; i < n; i = next++) f(i);
         },
         [&](auto&& work) {
@@ -79,10 +80,13 @@ class Arena {
   // A thread's time in an arena.
   class Stay {
    public:
-    explicit Stay(const Arena* arena) { inside_ = arena; }
-    ~Stay() { inside_ = nullptr; }
+    explicit Stay(const Arena* arena) : before_(std::exchange(inside_, arena)) {}
+    ~Stay() { inside_ = before_; }
     Stay(const Stay&) = delete;
     Stay& operator=(const Stay&) = delete;
+
+   private:
+    const Arena* const before_;  // TBB may run a task while another one waits
   };
   static inline thread_local const Arena* inside_ = nullptr;
 

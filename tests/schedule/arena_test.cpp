@@ -42,6 +42,17 @@ TEST(Arena, RunsAtOnceWhatAStartedFunctionRuns) {
   EXPECT_EQ(ran, 3);
 }
 
+TEST(Arena, RunsAtOnceWhatTheStepsOfALoopRun) {
+  Arena arena(2);
+  std::atomic<int> elsewhere = 0;
+  arena.for_each(200, 2, [&](std::size_t) {
+    const auto step = std::this_thread::get_id();
+    std::this_thread::yield();
+    if (arena.run([] { return std::this_thread::get_id(); }) != step) ++elsewhere;
+  });
+  EXPECT_EQ(elsewhere, 0);
+}
+
 TEST(Arena, ThrowsWhatItsFunctionThrows) {
   Arena arena(2);
   EXPECT_THROW(arena.run([] { throw std::runtime_error("no"); }), std::runtime_error);
