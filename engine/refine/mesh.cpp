@@ -46,29 +46,29 @@ Result<Mesh> Mesh::from(const Domain& domain, std::uint64_t max_triangles,
   // Address space is all that the room takes: twice the limit is far more than tasks leave dead.
   const std::uint64_t slots = std::min<std::uint64_t>(
       kMaxTriangles, 2 * std::clamp<std::uint64_t>(max_triangles, initial, kMaxTriangles) + kSlack);
-  const bool huge_pages = expected_triangles > kWorthHugePages;
+  const Pages pages = expected_triangles > kWorthHugePages ? Pages::kHuge : Pages::kAny;
   Mesh mesh;
   const auto triangle_blocks = static_cast<std::uint32_t>(slots >> kTriangleShift);
   // Each insertion adds one vertex and one or two triangles (one only on the outer boundary).
   const auto vertex_blocks = static_cast<std::uint32_t>(slots >> kVertexShift) +
                              blocks_for(domain.vertices.size(), kVertexBlock);
-  const auto reserve = [](auto& array, std::size_t count, bool huge) -> std::optional<Error> {
-    auto reserved = std::remove_reference_t<decltype(array)>::reserve(count, huge);
+  const auto reserve = [](auto& array, std::size_t count, Pages kind) -> std::optional<Error> {
+    auto reserved = std::remove_reference_t<decltype(array)>::reserve(count, kind);
     if (!reserved) return reserved.error();
     array = std::move(*reserved);
     return std::nullopt;
   };
   const std::size_t vertex_slots = std::size_t{vertex_blocks} * kVertexBlock;
   for (const auto& error :
-       {reserve(mesh.triangles, std::size_t{triangle_blocks} * kTriangleBlock, huge_pages),
-        reserve(mesh.vertices, vertex_slots, huge_pages),
-        reserve(mesh.triangle_owner, triangle_blocks, false),
-        reserve(mesh.vertex_blocks, vertex_blocks, false),
-        reserve(mesh.subsegments, vertex_slots, false)}) {
+       {reserve(mesh.triangles, std::size_t{triangle_blocks} * kTriangleBlock, pages),
+        reserve(mesh.vertices, vertex_slots, pages),
+        reserve(mesh.triangle_owner, triangle_blocks, Pages::kSmall),
+        reserve(mesh.vertex_blocks, vertex_blocks, Pages::kSmall),
+        reserve(mesh.subsegments, vertex_slots, Pages::kSmall)}) {
     if (error) return tl::unexpected(*error);
   }
 
-  // The blocks of owner 0: all bytes are zero already.
+  // The blocks of owner 0: what tells the owner is zero already.
   mesh.triangle_pool =
       std::make_unique<BlockPool>(blocks_for(initial, kTriangleBlock), triangle_blocks);
   mesh.vertex_pool =

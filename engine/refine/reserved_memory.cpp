@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/refine/reserved_memory.h"
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+
+namespace weft {
+namespace {
+
+struct Range {
+  std::byte* data = nullptr;
+  std::size_t bytes = 0;
+};
+
+void give_back(const Range& range) {
+  if (range.data) munmap(range.data, range.bytes);
+}
+
+// Ranges with huge pages that nobody uses, the one left last in front. Outlives whatever is static.
+class KeptRanges {
+ public:
+  // The smallest that has room; of those, the one left last.
+  std::optional<Range> take(std::size_t bytes) {
+    const std::lock_guard lock(mutex_);
+    const auto best =
+        std::min_element(ranges_.begin(), ranges_.end(), [&](const Range& a, const Range& b) {
+          return a.bytes >= bytes && (b.bytes < bytes || a.bytes < b.bytes);
+        });
+    if (best->bytes < bytes) return std::nullopt;
+    const Range result = *best;
+    *std::move(best + 1, ranges_.end(), best) = {};
+    return result;
+  }
+
+  void keep(const Range& range) {
+    const std::size_t kept = std::min(range.bytes, ReservedMemory::kKeptBytes);
+    madvise(range.data, kept, MADV_FREE);
+    if (range.bytes > kept) madvise(range.data + kept, range.bytes - kept, MADV_DONTNEED);
+    Range oldest;
+    {
+      const std::lock_guard lock(mutex_);
+      oldest = ranges_.back();
+      std::move_backward(ranges_.begin(), ranges_.end() - 1, ranges_.end());
+      ranges_.front() = range;
+    }
+    give_back(oldest);
+  }
+
+  void give_all_back() {
+    std::array<Range, ReservedMemory::kKeptRanges> all;
+    {
+      const std::lock_guard lock(mutex_);
+      all = std::exchange(ranges_, {});
+    }
+    for (const Range& range : all) give_back(range);
+  }
+
+ private:
+  std::mutex mutex_;  // guards the one below
+  std::array<Range, ReservedMemory::kKeptRanges> ranges_;
+};
+
+constinit KeptRanges kept_ranges;
+
+// From a multiple of kHugePage on.
+std::optional<Range> map(std::size_t bytes) {
+  constexpr std::size_t kHugePage = ReservedMemory::kHugePage;
+  void* const raw = mmap(nullptr, bytes + kHugePage, PROT_READ | PROT_WRITE,
+                         MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (raw == MAP_FAILED) return std::nullopt;
+  auto* const first = static_cast<std::byte*>(raw);
+  const std::size_t before = -reinterpret_cast<std::uintptr_t>(raw) % kHugePage;
+  if (before > 0) munmap(first, before);
+  munmap(first + before + bytes, kHugePage - before);
+  return Range{first + before, bytes};
+}
+
+}  // namespace
+
+Result<ReservedMemory> ReservedMemory::reserve(std::size_t bytes, Pages pages) {
+  bytes = (bytes + kHugePage - 1) / kHugePage * kHugePage;
+  ReservedMemory memory;
+  std::optional<Range> range;
+  if (pages != Pages::kSmall) range = kept_ranges.take(bytes);
+  memory.huge_pages_ = range || pages == Pages::kHuge;
+  if (!range) {
+    range = map(bytes);
+    if (!range) {
+      kept_ranges.give_all_back();
+      range = map(bytes);
+    }
+    if (!range) {
+      return fail(ErrorCode::kOutOfMemory, "",
+                  "cannot reserve " + std::to_string(bytes) + " bytes of address space");
+    }
+    if (memory.huge_pages_) madvise(range->data, range->bytes, MADV_HUGEPAGE);
+  }
+  memory.data_ = range->data;
+  memory.bytes_ = range->bytes;
+  return memory;
+}
+
+ReservedMemory::~ReservedMemory() {
+  if (huge_pages_) {
+    kept_ranges.keep({data_, bytes_});
+  } else {
+    give_back({data_, bytes_});
+  }
+}
+
+}  // namespace weft

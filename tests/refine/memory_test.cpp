@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the mesh lies while it is refined: blocks by runs of a thread, and pages that outlive jobs.
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "engine/refine/block_pool.h"
+#include "engine/refine/reserved_memory.h"
+#include "tests/domain/shapes.h"
+#include "tests/support/collected_mesh.h"
+
+namespace weft {
+namespace {
+
+constexpr std::size_t kMiB = std::size_t{1} << 20;
+
+std::vector<std::uint32_t> take(BlockPool& pool, std::uint32_t count) {
+  std::vector<std::uint32_t> blocks(count);
+  for (std::uint32_t& block : blocks) block = pool.take();
+  return blocks;
+}
+
+TEST(Blocks, NextToOneAnotherAreOfOneThread) {
+  BlockPool pool(5, 1000);  // its first run is shorter
+  auto mine = take(pool, BlockPool::kRun - 5 + 3);
+  std::vector<std::uint32_t> others;
+  std::thread([&] { others = take(pool, 20); }).join();
+  const auto rest = take(pool, BlockPool::kRun - 3);
+  mine.insert(mine.end(), rest.begin(), rest.end());
+  for (std::size_t i = 0; i < mine.size(); ++i) EXPECT_EQ(mine[i], 5 + i);
+  for (std::size_t i = 0; i < others.size(); ++i) EXPECT_EQ(others[i], 2 * BlockPool::kRun + i);
+}
+
+TEST(Blocks, AreHandedOutOnceUntilThereAreNoMore) {
+  BlockPool pool(0, 1000);
+  std::vector<std::uint32_t> taken[2];
+  const auto take_all = [&](std::vector<std::uint32_t>& blocks) {
+    EXPECT_THROW(
+        {
+          while (true) blocks.push_back(pool.take());
+        },
+        std::bad_alloc);
+  };
+  std::thread other([&] { take_all(taken[1]); });
+  take_all(taken[0]);
+  other.join();
+  auto& all = taken[0];
+  all.insert(all.end(), taken[1].begin(), taken[1].end());
+  std::sort(all.begin(), all.end());
+  ASSERT_EQ(all.size(), 1000u);
+  for (std::uint32_t i = 0; i < all.size(); ++i) ASSERT_EQ(all[i], i);
+}
+
+TEST(Blocks, GivenBackAreTakenAgainBeforeFreshOnes) {
+  BlockPool pool(0, 1000);
+  auto blocks = take(pool, 3 * BlockPool::kRun);
+  for (const std::uint32_t block : blocks) pool.give_back(block);
+  auto again = take(pool, 3 * BlockPool::kRun);
+  std::sort(again.begin(), again.end());
+  EXPECT_EQ(again, blocks);
+  EXPECT_EQ(pool.peak(), 3 * BlockPool::kRun);
+}
+
+ReservedMemory reserved(std::size_t bytes, Pages pages) {
+  auto memory = ReservedMemory::reserve(bytes, pages);
+  EXPECT_TRUE(memory);
+  return std::move(*memory);
+}
+
+bool mapped(const std::byte* page) {
+  unsigned char resident = 0;
+  return mincore(const_cast<std::byte*>(page), 1, &resident) == 0;
+}
+
+TEST(ReservedMemory, OfSmallPagesIsZeroAndNotKept) {
+  for (int i = 0; i < 2; ++i) {
+    const ReservedMemory memory = reserved(3 * kMiB, Pages::kSmall);
+    EXPECT_FALSE(memory.huge_pages());
+    EXPECT_GE(memory.bytes(), 3 * kMiB);
+    EXPECT_TRUE(std::all_of(memory.data(), memory.data() + memory.bytes(),
+                            [](std::byte b) { return b == std::byte{0}; }));
+    std::memset(memory.data(), 1, memory.bytes());
+  }
+}
+
+TEST(ReservedMemory, OfHugePagesIsKeptForTheNext) {
+  const std::byte* left = nullptr;
+  {
+    const ReservedMemory memory = reserved(6 * kMiB, Pages::kHuge);
+    left = memory.data();
+  }
+  EXPECT_TRUE(mapped(left));
+  const ReservedMemory again = reserved(5 * kMiB, Pages::kAny);
+  EXPECT_EQ(again.data(), left);
+  EXPECT_TRUE(again.huge_pages());
+  const ReservedMemory other = reserved(5 * kMiB, Pages::kSmall);
+  EXPECT_NE(other.data(), left);
+}
+
+TEST(ReservedMemory, IsKeptWhereItHasRoom) {
+  const std::byte* left = nullptr;
+  { left = reserved(6 * kMiB, Pages::kHuge).data(); }
+  EXPECT_NE(reserved(700'000 * kMiB, Pages::kHuge).data(), left);
+}
+
+TEST(ReservedMemory, IsKeptUpToANumberOfRangesAndOfBytes) {
+  constexpr std::size_t kBytes = ReservedMemory::kKeptBytes + 4 * kMiB;
+  std::vector<const std::byte*> left;
+  {
+    std::vector<ReservedMemory> all;
+    for (std::size_t i = 0; i <= ReservedMemory::kKeptRanges; ++i) {
+      all.push_back(reserved(kBytes, Pages::kHuge));
+      all.back().data()[kBytes - 1] = std::byte{1};
+      left.push_back(all.back().data());
+    }
+    while (!all.empty()) all.erase(all.begin());
+  }
+  EXPECT_FALSE(mapped(left.front()));
+  for (std::size_t i = 1; i < left.size(); ++i) {
+    ASSERT_TRUE(mapped(left[i]));
+    EXPECT_EQ(left[i][kBytes - 1], std::byte{0});
+  }
+}
+
+TEST(ReservedMemory, ThatAnotherJobLeftChangesNoMesh) {
+  const MeshRequest request{.pslg = square(), .size = {.constant = 2e-5}};
+  Budget budget;
+  budget.triangle_limit = 1'000'000;
+  std::optional<Digest> digest;
+  for (int run = 0; run < 2; ++run) {
+    CollectedMesh mesh;
+    ExecutionContext context(budget);
+    const auto summary = generate_mesh(request, mesh, context);
+    ASSERT_TRUE(summary);
+    EXPECT_EQ(verdict(request, mesh, *summary), "");
+    if (digest) {
+      EXPECT_EQ(summary->digest, *digest);
+    }
+    digest = summary->digest;
+    // For the triangles and the vertices of the second.
+    const ReservedMemory left[2] = {reserved(256 * kMiB, Pages::kHuge),
+                                    reserved(256 * kMiB, Pages::kHuge)};
+    for (const ReservedMemory& memory : left)
+      std::memset(memory.data(), 0xab, ReservedMemory::kKeptBytes);
+  }
+}
+
+}  // namespace
+}  // namespace weft
