@@ -45,9 +45,8 @@ void GraphRun::release(std::uint32_t task) {
 }
 
 void GraphRun::notify() {
-  std::lock_guard lock(mutex_);
+  const std::lock_guard lock(mutex_);
   notified_ = true;
-  changed_.notify_all();
 }
 
 bool GraphRun::step() {
@@ -90,9 +89,8 @@ void GraphRun::start_thread() {
 
 // REQUIRES: the mutex is held.
 void GraphRun::end_thread() {
-  if (--running_ > 0) return;
-  idle_since_ = std::chrono::steady_clock::now();
-  changed_.notify_all();
+  if (--running_ == 0) idle_since_ = std::chrono::steady_clock::now();
+  if (running_ == 0 || notified_) changed_.notify_all();
 }
 
 std::optional<std::chrono::steady_clock::time_point> GraphRun::idle_since() {
@@ -114,6 +112,10 @@ void GraphRun::work() {
     lock.unlock();
     run(task);
   } while (std::chrono::steady_clock::now() < end);
+  std::unique_lock lock(mutex_);
+  const bool wake = notified_;
+  lock.unlock();
+  if (wake) changed_.notify_all();
   start_thread();
 }
 

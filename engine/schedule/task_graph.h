@@ -13,7 +13,8 @@
 // depends on it.
 //
 // Fairness: a thread gives the arena's slot back after kSlice and queues for the next, so the jobs
-// of an arena take turns.
+// of an arena take turns. It wakes who waits in `step` then, and not in between: waking it for each
+// part of a mesh took two threads 1.5 % of their time at 1 M triangles.
 #pragma once
 
 #include <atomic>
@@ -88,7 +89,7 @@ class GraphRun {
   bool starved() const { return starved_; }
   // Since when no thread works, if none does; always, without an arena.
   std::optional<std::chrono::steady_clock::time_point> idle_since();
-  // Wakes `step`. Thread-safe.
+  // Makes `step` return, when the slice of a thread at work ends. To be called by a task.
   void notify();
 
  private:
