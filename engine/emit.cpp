@@ -89,18 +89,24 @@ void PartBuilder<AreaBound>::add_triangles(std::uint32_t first, std::uint32_t la
 
 template <class AreaBound>
 void PartBuilder<AreaBound>::add_triangle(const Triangle& triangle) {
-  if (--until_poll_ == 0) {
-    until_poll_ = kPollInterval;
-    stopped_ = stopped_ || context_.poll();
-  }
+  if (block_->size == TriangleBlock::kSize) add_block();
   make_room(kMaxTriangleBytes);
   bytes_ += has_regions_ ? 16 : 12;
-  for (const std::uint32_t v : triangle.vertex) {
-    chunk_.triangles.push_back(mesh_.number_of(v));
-    chunk_.box.add(mesh_.vertices[v]);
+  const Region& region = domain_.regions[triangle.region];
+  const auto& v = triangle.vertex;
+  for (std::size_t i = 0; i < 3; ++i) numbers_[3 * block_->size + i] = mesh_.number_of(v[i]);
+  region_bound_[block_->size] = region.max_area;
+  block_->add(mesh_.vertices[v[0]], mesh_.vertices[v[1]], mesh_.vertices[v[2]]);
+  if (has_regions_) chunk_.regions.push_back(region.id);
+  if (triangle.flags <= 7) [[likely]] {
+    // Neither bad nor excused.
+  } else if (triangle.badness() != kGood) {
+    ++part_.unrefined.budget;
+  } else if (triangle.excuse() == Excuse::kSmallInputAngle) {
+    ++part_.unrefined.small_input_angle;
+  } else if (triangle.excuse() == Excuse::kEdgeFloor) {
+    ++part_.unrefined.edge_floor;
   }
-  if (has_regions_) chunk_.regions.push_back(domain_.regions[triangle.region].id);
-  measure(triangle);
   if (triangle.segment_bits() == 0) [[likely]]
     return;
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -119,8 +125,7 @@ void PartBuilder<AreaBound>::add_triangle(const Triangle& triangle) {
 template <class AreaBound>
 std::optional<Part> PartBuilder<AreaBound>::finish() {
   if (stopped_) return std::nullopt;
-  measure_block();
-  if (!chunk_.coordinates.empty() || !chunk_.triangles.empty()) close_chunk();
+  if (bytes_ > 0) close_chunk();
   return std::move(part_);
 }
 
@@ -132,6 +137,7 @@ void PartBuilder<AreaBound>::make_room(std::size_t bytes) {
 
 template <class AreaBound>
 void PartBuilder<AreaBound>::close_chunk() {
+  add_block();
   const auto is_zero = [](std::int32_t id) { return id == 0; };
   if (std::all_of(chunk_.regions.begin(), chunk_.regions.end(), is_zero)) chunk_.regions.clear();
   chunk_.digest = chunk_digest(chunk_);
@@ -139,30 +145,16 @@ void PartBuilder<AreaBound>::close_chunk() {
   bytes_ = 0;
 }
 
-// The figures are gathered in blocks.
 template <class AreaBound>
-void PartBuilder<AreaBound>::measure(const Triangle& triangle) {
-  region_bound_[block_->size] = domain_.regions[triangle.region].max_area;
-  block_->add(mesh_.vertices[triangle.vertex[0]], mesh_.vertices[triangle.vertex[1]],
-              mesh_.vertices[triangle.vertex[2]]);
-  if (block_->size == TriangleBlock::kSize) measure_block();
-  if (triangle.flags <= 7) [[likely]]
-    return;
-  if (triangle.badness() != kGood) {
-    ++part_.unrefined.budget;
-  } else if (triangle.excuse() == Excuse::kSmallInputAngle) {
-    ++part_.unrefined.small_input_angle;
-  } else if (triangle.excuse() == Excuse::kEdgeFloor) {
-    ++part_.unrefined.edge_floor;
-  }
-}
-
-template <class AreaBound>
-void PartBuilder<AreaBound>::measure_block() {
-  if (block_->size == 0) return;
+void PartBuilder<AreaBound>::add_block() {
+  stopped_ = stopped_ || context_.poll();
+  const std::size_t n = block_->size;
+  if (n == 0) return;
+  chunk_.triangles.insert(chunk_.triangles.end(), numbers_, numbers_ + 3 * n);
+  chunk_.box.merge(block_->box());
   block_->find_centroids();
-  area_.bounds_at(block_->size, block_->centroid_x, block_->centroid_y, block_->bound);
-  for (std::size_t i = 0; i < block_->size; ++i)
+  area_.bounds_at(n, block_->centroid_x, block_->centroid_y, block_->bound);
+  for (std::size_t i = 0; i < n; ++i)
     block_->bound[i] = std::min(block_->bound[i], region_bound_[i]);
   part_.statistics.add(*block_);
   block_->size = 0;

@@ -68,12 +68,9 @@ class PartBuilder {
   std::optional<Part> finish();
 
  private:
-  static constexpr std::uint32_t kPollInterval = 1024;  // triangles
-
   void make_room(std::size_t bytes);
   void close_chunk();
-  void measure(const Triangle& triangle);
-  void measure_block();
+  void add_block();
 
   const Mesh& mesh_;
   const Domain& domain_;
@@ -82,11 +79,12 @@ class PartBuilder {
   AreaBound area_;
   const ExecutionContext& context_;
   bool stopped_ = false;
-  std::uint32_t until_poll_ = kPollInterval;
   Part part_;
   Chunk chunk_;
-  std::size_t bytes_ = 0;  // in chunk_
+  std::size_t bytes_ = 0;  // in chunk_, with those of the block
+  // Triangles that are yet to be measured and put into chunk_, all at once.
   std::unique_ptr<TriangleBlock> block_ = std::make_unique<TriangleBlock>();
+  std::uint32_t numbers_[3 * TriangleBlock::kSize];  // of their vertices
   double region_bound_[TriangleBlock::kSize];
 };
 

@@ -33,6 +33,10 @@ struct Box {
     max_x = std::max(max_x, p.x);
     max_y = std::max(max_y, p.y);
   }
+  void merge(const Box& other) {
+    add(Point{other.min_x, other.min_y});
+    add(Point{other.max_x, other.max_y});
+  }
   double width() const { return max_x - min_x; }
   double height() const { return max_y - min_y; }
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/quality_statistics.h"
 
+#include <emmintrin.h>
 #include <sleef.h>
 
 #include <algorithm>
@@ -9,6 +10,8 @@
 
 namespace weft {
 namespace {
+
+using Lanes = __m128d;
 
 // An angle is kept as t = c / (1 + |c|) of its cotangent c: t falls from 1 at 0 degrees to -1 at
 // 180, and costs one division and no root.
@@ -64,51 +67,86 @@ void TriangleBlock::find_centroids() {
   }
 }
 
+Box TriangleBlock::box() const {
+  Box box;
+  const auto extent = [this](const double(&coordinate)[3][kSize], double& least, double& most) {
+    // An odd last one is taken twice.
+    Lanes low[3];
+    Lanes high[3];
+    for (std::size_t k = 0; k < 3; ++k) low[k] = high[k] = _mm_set1_pd(coordinate[k][size - 1]);
+    for (std::size_t i = 0; i + 1 < size; i += 2) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Lanes c = _mm_load_pd(&coordinate[k][i]);
+        low[k] = _mm_min_pd(low[k], c);
+        high[k] = _mm_max_pd(high[k], c);
+      }
+    }
+    const Lanes l = _mm_min_pd(_mm_min_pd(low[0], low[1]), low[2]);
+    const Lanes h = _mm_max_pd(_mm_max_pd(high[0], high[1]), high[2]);
+    least = std::min(l[0], l[1]);
+    most = std::max(h[0], h[1]);
+  };
+  extent(x, box.min_x, box.max_x);
+  extent(y, box.min_y, box.max_y);
+  return box;
+}
+
 void QualityStatistics::add(const TriangleBlock& block) {
   constexpr std::size_t kSize = TriangleBlock::kSize;
-  double angle[3][kSize];
-  std::int64_t aspect[kSize];  // its bin
-  double ratio[kSize];
-  double area[kSize];
+  static_assert(kSize % 2 == 0);
+  alignas(16) double angle[3][kSize];      // as t
+  alignas(16) std::int64_t aspect[kSize];  // its bin
+  alignas(16) double ratio[kSize];
+  alignas(16) double area[kSize];
   const std::size_t n = block.size;
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < n; i += 2) {
+    const auto edge = [i](const double(&coordinate)[3][kSize], std::size_t from, std::size_t to) {
+      return _mm_load_pd(&coordinate[to][i]) - _mm_load_pd(&coordinate[from][i]);
+    };
     // Edge k is opposite corner k.
-    const double ex0 = block.x[2][i] - block.x[1][i];
-    const double ey0 = block.y[2][i] - block.y[1][i];
-    const double ex1 = block.x[0][i] - block.x[2][i];
-    const double ey1 = block.y[0][i] - block.y[2][i];
-    const double ex2 = block.x[1][i] - block.x[0][i];
-    const double ey2 = block.y[1][i] - block.y[0][i];
-    const double doubled = ex2 * ey0 - ey2 * ex0;
-    const double dot0 = -(ex1 * ex2 + ey1 * ey2);
-    const double dot1 = -(ex2 * ex0 + ey2 * ey0);
-    const double dot2 = -(ex0 * ex1 + ey0 * ey1);
-    angle[0][i] = dot0 / (doubled + std::fabs(dot0));
-    angle[1][i] = dot1 / (doubled + std::fabs(dot1));
-    angle[2][i] = dot2 / (doubled + std::fabs(dot2));
-    const double l0 = std::sqrt(ex0 * ex0 + ey0 * ey0);
-    const double l1 = std::sqrt(ex1 * ex1 + ey1 * ey1);
-    const double l2 = std::sqrt(ex2 * ex2 + ey2 * ey2);
-    const double longest = std::max(l0, std::max(l1, l2));
-    const double scaled = longest * (l0 + l1 + l2) * (0.5 / 1.7320508075688772);
-    aspect[i] = 0;
-    for (const double end : kAspects) aspect[i] += scaled > end * doubled ? 1 : 0;
-    area[i] = 0.5 * doubled;
-    ratio[i] = area[i] / block.bound[i] * 10;
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    area_ += area[i];
-    for (const auto& t : angle) {
-      ++angles_[angle_bin(t[i])];
-      smallest_angle_ = std::max(smallest_angle_, t[i]);
-      largest_angle_ = std::min(largest_angle_, t[i]);
+    const Lanes ex[3] = {edge(block.x, 1, 2), edge(block.x, 2, 0), edge(block.x, 0, 1)};
+    const Lanes ey[3] = {edge(block.y, 1, 2), edge(block.y, 2, 0), edge(block.y, 0, 1)};
+    const Lanes doubled = ex[2] * ey[0] - ey[2] * ex[0];
+    Lanes length[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = k == 2 ? 0 : k + 1;
+      const std::size_t previous = k == 0 ? 2 : k - 1;
+      const Lanes dot = -(ex[next] * ex[previous] + ey[next] * ey[previous]);
+      const Lanes magnitude = _mm_andnot_pd(_mm_set1_pd(-0.0), dot);
+      _mm_store_pd(&angle[k][i], dot / (doubled + magnitude));
+      length[k] = _mm_sqrt_pd(ex[k] * ex[k] + ey[k] * ey[k]);
     }
+    const Lanes longest = _mm_max_pd(length[0], _mm_max_pd(length[1], length[2]));
+    const Lanes scaled = longest * (length[0] + length[1] + length[2]) * (0.5 / 1.7320508075688772);
+    __m128i bin = _mm_setzero_si128();
+    for (const double end : kAspects)
+      bin = _mm_sub_epi64(bin, _mm_castpd_si128(_mm_cmpgt_pd(scaled, end * doubled)));
+    _mm_store_si128(reinterpret_cast<__m128i*>(&aspect[i]), bin);
+    const Lanes half = 0.5 * doubled;
+    _mm_store_pd(&area[i], half);
+    _mm_store_pd(&ratio[i], half / _mm_load_pd(&block.bound[i]) * 10);
+  }
+  // Neighbours fall into the same bins: were they the same counters, each would wait for the last.
+  std::array<std::array<std::uint32_t, 18>, 3> angles{};
+  double total = area_;
+  double smallest = smallest_angle_;
+  double largest = largest_angle_;
+  for (std::size_t i = 0; i < n; ++i) {
+    total += area[i];
+    for (std::size_t k = 0; k < 3; ++k) ++angles[k][angle_bin(angle[k][i])];
+    smallest = std::max(smallest, std::max(std::max(angle[0][i], angle[1][i]), angle[2][i]));
+    largest = std::min(largest, std::min(std::min(angle[0][i], angle[1][i]), angle[2][i]));
     ++aspects_[static_cast<std::size_t>(aspect[i])];
     if (block.bound[i] < std::numeric_limits<double>::infinity()) {
       // Not a number, where the size field is bad, counts as exceeding.
       ++sizes_[ratio[i] < 9 ? static_cast<std::size_t>(ratio[i]) : 9];
     }
   }
+  area_ = total;
+  smallest_angle_ = smallest;
+  largest_angle_ = largest;
+  for (std::size_t bin = 0; bin < angles_.size(); ++bin)
+    angles_[bin] += std::uint64_t{angles[0][bin]} + angles[1][bin] + angles[2][bin];
 }
 
 void QualityStatistics::add(const QualityStatistics& other) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The figures of a mesh: angles, aspect ratios, areas over their bounds. They are gathered while
-// the mesh is sent, a block of triangles at a time, in loops that the compiler vectorises.
+// the mesh is sent, a block of triangles at a time: two at once as far as that goes, and counted
+// where no count waits for the one before. One by one they took 13 % of the whole run.
 #pragma once
 
 #include <array>
@@ -33,6 +34,8 @@ struct TriangleBlock {
   }
   // Fills the centroids, also those of the lanes up to the next multiple of SizeFunction::kLanes.
   void find_centroids();
+  // REQUIRES: there is a triangle.
+  Box box() const;
 };
 
 class QualityStatistics {
