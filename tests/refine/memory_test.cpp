@@ -74,6 +74,13 @@ ReservedMemory reserved(std::size_t bytes, Pages pages) {
   return std::move(*memory);
 }
 
+// What other tests have left, so that nothing of it is in the way.
+std::vector<ReservedMemory> all_kept() {
+  std::vector<ReservedMemory> all;
+  while (all.empty() || all.back().huge_pages()) all.push_back(reserved(1, Pages::kAny));
+  return all;
+}
+
 bool mapped(const std::byte* page) {
   unsigned char resident = 0;
   return mincore(const_cast<std::byte*>(page), 1, &resident) == 0;
@@ -91,6 +98,7 @@ TEST(ReservedMemory, OfSmallPagesIsZeroAndNotKept) {
 }
 
 TEST(ReservedMemory, OfHugePagesIsKeptForTheNext) {
+  const auto others = all_kept();
   const std::byte* left = nullptr;
   {
     const ReservedMemory memory = reserved(6 * kMiB, Pages::kHuge);
@@ -104,13 +112,27 @@ TEST(ReservedMemory, OfHugePagesIsKeptForTheNext) {
   EXPECT_NE(other.data(), left);
 }
 
-TEST(ReservedMemory, IsKeptWhereItHasRoom) {
-  const std::byte* left = nullptr;
-  { left = reserved(6 * kMiB, Pages::kHuge).data(); }
-  EXPECT_NE(reserved(700'000 * kMiB, Pages::kHuge).data(), left);
+TEST(ReservedMemory, IsTakenFromTheSmallestThatHasRoom) {
+  const auto others = all_kept();
+  const std::byte* left[3];
+  {
+    const ReservedMemory large = reserved(40 * kMiB, Pages::kHuge);
+    const ReservedMemory fitting = reserved(20 * kMiB, Pages::kHuge);
+    const ReservedMemory small = reserved(6 * kMiB, Pages::kHuge);
+    left[0] = large.data();
+    left[1] = fitting.data();
+    left[2] = small.data();
+  }
+  const ReservedMemory first = reserved(18 * kMiB, Pages::kHuge);
+  EXPECT_EQ(first.data(), left[1]);
+  const ReservedMemory second = reserved(18 * kMiB, Pages::kHuge);
+  EXPECT_EQ(second.data(), left[0]);
+  const ReservedMemory third = reserved(18 * kMiB, Pages::kHuge);
+  EXPECT_NE(third.data(), left[2]);
 }
 
 TEST(ReservedMemory, IsKeptUpToANumberOfRangesAndOfBytes) {
+  const auto others = all_kept();
   constexpr std::size_t kBytes = ReservedMemory::kKeptBytes + 4 * kMiB;
   std::vector<const std::byte*> left;
   {
@@ -144,11 +166,12 @@ TEST(ReservedMemory, ThatAnotherJobLeftChangesNoMesh) {
       EXPECT_EQ(summary->digest, *digest);
     }
     digest = summary->digest;
-    // For the triangles and the vertices of the second.
-    const ReservedMemory left[2] = {reserved(256 * kMiB, Pages::kHuge),
-                                    reserved(256 * kMiB, Pages::kHuge)};
-    for (const ReservedMemory& memory : left)
-      std::memset(memory.data(), 0xab, ReservedMemory::kKeptBytes);
+    // More than the second needs for its triangles and vertices.
+    std::vector<ReservedMemory> left;
+    while (left.size() < ReservedMemory::kKeptRanges) {
+      left.push_back(reserved(256 * kMiB, Pages::kHuge));
+      std::memset(left.back().data(), 0xab, 8 * kMiB);
+    }
   }
 }
 

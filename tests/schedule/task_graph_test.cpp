@@ -235,18 +235,46 @@ TEST(TaskGraph, TakesNoMoreThreadsThanItsShareOfTheArena) {
   EXPECT_GE(most, 1);
 }
 
-TEST(TaskGraph, StepReturnsOnceNotified) {
+TEST(TaskGraph, StepReturnsAtTheEndOfASliceOnceNotified) {
+  constexpr std::uint32_t kTasks = 1000;
   Arena arena(2);
-  TaskGraph graph(1);
-  Event notified;
+  TaskGraph graph(kTasks);
+  for (std::uint32_t t = 1; t < kTasks; ++t) graph.add_dependency(t - 1, t);
+  std::atomic<bool> returned = false;
+  std::uint32_t waiting = 0;  // tasks that ran before `step` had returned
   std::unique_ptr<GraphRun> run;
-  run = std::make_unique<GraphRun>(graph, &arena, 2, [&](std::uint32_t) {
-    run->notify();
-    EXPECT_TRUE(notified.wait());  // the task goes on until `step` has returned
+  run = std::make_unique<GraphRun>(graph, &arena, 2, [&](std::uint32_t task) {
+    if (task == 0) run->notify();
+    if (returned) return;
+    ++waiting;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   });
   run->start();
   EXPECT_TRUE(run->step());
-  notified.set();
+  returned = true;
+  while (run->step()) {
+  }
+  EXPECT_LT(waiting, kTasks);
+}
+
+TEST(TaskGraph, StepReturnsOnceNotifiedWhereAThreadFindsNothingMoreToDo) {
+  Arena arena(2);
+  TaskGraph graph(2);
+  Event started;
+  Event returned;
+  std::unique_ptr<GraphRun> run;
+  run = std::make_unique<GraphRun>(graph, &arena, 2, [&](std::uint32_t task) {
+    if (task == 1) {
+      started.set();
+      EXPECT_TRUE(returned.wait());
+    } else {
+      EXPECT_TRUE(started.wait());
+      run->notify();
+    }
+  });
+  run->start();
+  EXPECT_TRUE(run->step());
+  returned.set();
   while (run->step()) {
   }
 }
