@@ -117,22 +117,11 @@ class Job {
       raster_.emplace(std::move(*raster));
     }
     if (Trace* const trace = context_.trace()) trace->start();
-    context_.enter(Stage::kTriangulate);
-    auto domain = context_.compute([&] { return triangulate(request_.pslg, context_); });
-    if (!domain) return tl::unexpected(domain.error());
-    domain_ = std::move(*domain);
-    for (Point p : domain_.vertices) summary_.box.add(p);
-    if (auto error = check_extent(summary_.box)) return tl::unexpected(*error);
-    summary_.triangulate_seconds = clock_.lap();
-    context_.end_stage("triangulation");
-
-    context_.enter(Stage::kSize);
-    if (const SizeFunction* const size = varying_size()) {
-      auto map = context_.compute([&] { return SizeMap::build(*size, domain_, context_); });
-      if (!map) return tl::unexpected(map.error());
-      MappedArea area(*size, *map);
-      return mesh(area, {map->least_triangles(), map->likely_triangles()},
-                  std::numeric_limits<double>::infinity(), map->bytes() + raster_bytes());
+    if (auto error = context_.compute([this] { return prepare(); })) return tl::unexpected(*error);
+    if (map_) {
+      MappedArea area(*varying_size(), *map_);
+      return mesh(area, {map_->least_triangles(), map_->likely_triangles()},
+                  std::numeric_limits<double>::infinity(), map_->bytes() + raster_bytes());
     }
     const auto bound = constant_bound();
     if (!bound) return tl::unexpected(bound.error());
@@ -142,6 +131,26 @@ class Job {
 
  private:
   static constexpr std::uint64_t kUncountable = 1'000'000'000'000'000'000;
+
+  // The domain's triangulation, and the map of a size that varies.
+  std::optional<Error> prepare() {
+    context_.enter(Stage::kTriangulate);
+    auto domain = triangulate(request_.pslg, context_);
+    if (!domain) return domain.error();
+    domain_ = std::move(*domain);
+    for (Point p : domain_.vertices) summary_.box.add(p);
+    if (auto error = check_extent(summary_.box)) return error;
+    summary_.triangulate_seconds = clock_.lap();
+    context_.end_stage("triangulation");
+
+    context_.enter(Stage::kSize);
+    const SizeFunction* const size = varying_size();
+    if (!size) return std::nullopt;
+    auto map = SizeMap::build(*size, domain_, context_);
+    if (!map) return map.error();
+    map_.emplace(std::move(*map));
+    return std::nullopt;
+  }
 
   // The size where it is not the same everywhere; null where it is.
   const SizeFunction* varying_size() const {
@@ -226,6 +235,7 @@ class Job {
   std::optional<Expression> expression_;
   std::optional<RasterSize> raster_;
   Domain domain_;
+  std::optional<SizeMap> map_;
   double expected_ = 0;  // triangles
   Summary summary_;
 };

@@ -72,14 +72,19 @@ class MeshRun {
         delivery_(sink, context, summary),
         parts_(delivery_, context) {}
 
-  // `start` is when the work on the mesh began.
-  std::optional<Error> run(Clock::time_point start) {
+  // All before the leaves' tasks, or all refinement where there is one leaf. `start` is when the
+  // work on the mesh began.
+  std::optional<Error> prepare(Clock::time_point start) {
     context_.add_triangles(static_cast<std::int64_t>(plan_.domain.triangles.size()));
     context_.end_stage("mesh set-up");
-    auto error = context_.compute([&] { return prelude(); });
+    auto error = prelude();
     summary_.prelude_seconds = seconds_since(start);
-    if (!error) error = leaves_ ? run_leaves() : run_alone();
-    if (error) return error;
+    return error;
+  }
+
+  // The rest.
+  std::optional<Error> run(Clock::time_point start) {
+    if (auto error = leaves_ ? run_leaves() : run_alone()) return error;
     delivery_.finish();
     context_.end_stage("closing");
     summary_.engine_seconds = seconds_since(start) - parts_.blocked_seconds();
@@ -378,15 +383,22 @@ std::optional<Error> run_mesh(const MeshPlan& plan, const AreaBound& area, Chunk
                               ExecutionContext& context, Summary& summary) {
   const auto attempt = [&](bool cut_off) -> std::optional<Error> {
     const auto start = Clock::now();
-    auto mesh = context.compute([&] {
-      return Mesh::from(plan.domain, context.budget().triangle_limit, plan.expected_triangles,
-                        context);
-    });
-    if (!mesh) return mesh.error();
-    auto corners = context.compute([&] { return AcuteCorners::build(plan.domain, context); });
-    if (!corners) return corners.error();
-    return MeshRun<AreaBound>(plan, area, sink, context, summary, *mesh, *corners, cut_off)
-        .run(start);
+    std::optional<Mesh> mesh;
+    std::optional<AcuteCorners> corners;
+    std::optional<MeshRun<AreaBound>> run;
+    const auto prepare = [&]() -> std::optional<Error> {
+      auto mesh_made = Mesh::from(plan.domain, context.budget().triangle_limit,
+                                  plan.expected_triangles, context);
+      if (!mesh_made) return mesh_made.error();
+      mesh.emplace(std::move(*mesh_made));
+      auto corners_made = AcuteCorners::build(plan.domain, context);
+      if (!corners_made) return corners_made.error();
+      corners.emplace(std::move(*corners_made));
+      run.emplace(plan, area, sink, context, summary, *mesh, *corners, cut_off);
+      return run->prepare(start);
+    };
+    if (auto error = context.compute(prepare)) return error;
+    return run->run(start);
   };
   const double cap = static_cast<double>(plan.max_triangles.value_or(0));
   if (plan.max_triangles && plan.least_triangles > cap) return attempt(true);
