@@ -3,8 +3,75 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace weft {
+namespace {
+
+// A histogram counted anew. What lies on the border of two bins, as far as double precision tells,
+// may be in either.
+class Recount {
+ public:
+  // Bin i ends at ends[i], the last one nowhere.
+  explicit Recount(std::vector<double> ends) : ends_(std::move(ends)), counts_(ends_.size() + 1) {}
+
+  void add(double value) {
+    const auto end = std::upper_bound(ends_.begin(), ends_.end(), value);
+    ++counts_[static_cast<std::size_t>(end - ends_.begin())];
+    const auto on_border = [value](double e) { return std::fabs(value - e) <= 1e-9 * e; };
+    if (std::any_of(ends_.begin(), ends_.end(), on_border)) ++on_borders_;
+  }
+
+  template <class Histogram>
+  bool agrees_with(const Histogram& histogram) const {
+    std::uint64_t apart = 0;
+    for (std::size_t i = 0; i < counts_.size(); ++i)
+      apart += histogram[i] > counts_[i] ? histogram[i] - counts_[i] : counts_[i] - histogram[i];
+    return histogram.size() == counts_.size() && apart <= 2 * on_borders_;
+  }
+
+ private:
+  const std::vector<double> ends_;
+  std::vector<std::uint64_t> counts_;
+  std::uint64_t on_borders_ = 0;
+};
+
+// What is wrong with the histograms, or "".
+std::string miscounted(const MeshRequest& request, const check::Mesh& mesh,
+                       const Summary& summary) {
+  Recount angles({10, 20, 30, 40, 50, 60, 70, 80, 90, 100, 110, 120, 130, 140, 150, 160, 170});
+  Recount aspects({1.1, 1.25, 1.5, 2, 3, 5, 10, 100});
+  Recount sizes({0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9});
+  const bool bounded_by_regions =
+      std::any_of(request.pslg.regions.begin(), request.pslg.regions.end(),
+                  [](const RegionSeed& r) { return r.max_area.has_value(); });
+  for (const auto& t : mesh.triangles) {
+    double length[3];
+    double area = 0;
+    for (int k = 0; k < 3; ++k) {
+      const check::Vec2 a = mesh.vertices[t[k]];
+      const check::Vec2 b = mesh.vertices[t[(k + 1) % 3]];
+      const check::Vec2 c = mesh.vertices[t[(k + 2) % 3]];
+      const double cross = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+      const double dot = (b.x - a.x) * (c.x - a.x) + (b.y - a.y) * (c.y - a.y);
+      angles.add(std::atan2(cross, dot) * (180 / std::acos(-1.0)));
+      length[k] = std::hypot(b.x - a.x, b.y - a.y);
+      if (k == 0) area = 0.5 * cross;
+    }
+    const double inradius = 2 * area / (length[0] + length[1] + length[2]);
+    aspects.add(std::max({length[0], length[1], length[2]}) / (2 * std::sqrt(3.0) * inradius));
+    if (request.size.constant) sizes.add(area / *request.size.constant);
+  }
+  if (!angles.agrees_with(summary.angle_histogram)) return "the summary miscounts angles";
+  if (!aspects.agrees_with(summary.aspect_histogram)) return "the summary miscounts aspect ratios";
+  if (request.size.constant && !bounded_by_regions && !sizes.agrees_with(summary.size_histogram))
+    return "the summary miscounts sizes";
+  return "";
+}
+
+}  // namespace
 
 bool CollectedMesh::accept(Chunk&& chunk) {
   must(chunk.index == chunks, "chunks come in order");
@@ -88,6 +155,7 @@ std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
     return "the summary has another largest angle";
   if (std::fabs(summary.area - report.facts.area) > 1e-9 * report.facts.area)
     return "the summary has another area";
+  if (auto wrong = miscounted(request, collected.mesh, summary); !wrong.empty()) return wrong;
   for (const auto& [vertex, point] : collected.input_points) {
     if (vertex >= collected.mesh.vertices.size() || point >= request.pslg.points.size())
       return "an input point is out of range";
