@@ -237,14 +237,14 @@ TEST(TaskGraph, TakesNoMoreThreadsThanItsShareOfTheArena) {
 
 TEST(TaskGraph, StepReturnsAtTheEndOfASliceOnceNotified) {
   constexpr std::uint32_t kTasks = 1000;
-  Arena arena(2);
+  Arena arena(1);
   TaskGraph graph(kTasks);
   for (std::uint32_t t = 1; t < kTasks; ++t) graph.add_dependency(t - 1, t);
   std::atomic<bool> returned = false;
   std::uint32_t waiting = 0;  // tasks that ran before `step` had returned
   std::unique_ptr<GraphRun> run;
-  run = std::make_unique<GraphRun>(graph, &arena, 2, [&](std::uint32_t task) {
-    if (task == 0) run->notify();
+  run = std::make_unique<GraphRun>(graph, &arena, 1, [&](std::uint32_t task) {
+    if (task == 30) run->notify();  // by now `step` waits
     if (returned) return;
     ++waiting;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
