@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace weft {
 namespace {
@@ -85,10 +86,9 @@ std::optional<Range> map(std::size_t bytes) {
 
 Result<ReservedMemory> ReservedMemory::reserve(std::size_t bytes, Pages pages) {
   bytes = (bytes + kHugePage - 1) / kHugePage * kHugePage;
-  ReservedMemory memory;
   std::optional<Range> range;
   if (pages != Pages::kSmall) range = kept_ranges.take(bytes);
-  memory.huge_pages_ = range || pages == Pages::kHuge;
+  const bool huge_pages = range || pages == Pages::kHuge;
   if (!range) {
     range = map(bytes);
     if (!range) {
@@ -99,10 +99,12 @@ Result<ReservedMemory> ReservedMemory::reserve(std::size_t bytes, Pages pages) {
       return fail(ErrorCode::kOutOfMemory, "",
                   "cannot reserve " + std::to_string(bytes) + " bytes of address space");
     }
-    if (memory.huge_pages_) madvise(range->data, range->bytes, MADV_HUGEPAGE);
+    if (huge_pages) madvise(range->data, range->bytes, MADV_HUGEPAGE);
   }
+  ReservedMemory memory;
   memory.data_ = range->data;
   memory.bytes_ = range->bytes;
+  memory.huge_pages_ = huge_pages;
   return memory;
 }
 

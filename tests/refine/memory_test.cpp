@@ -151,6 +151,16 @@ TEST(ReservedMemory, IsKeptUpToANumberOfRangesAndOfBytes) {
   }
 }
 
+TEST(ReservedMemory, IsGivenUpWhereThereIsNoRoomForMore) {
+  const auto others = all_kept();
+  const std::byte* left = nullptr;
+  { left = reserved(6 * kMiB, Pages::kHuge).data(); }
+  const auto more = ReservedMemory::reserve(std::size_t{1} << 60, Pages::kHuge);
+  ASSERT_FALSE(more);
+  EXPECT_EQ(more.error().code, ErrorCode::kOutOfMemory);
+  EXPECT_FALSE(mapped(left));
+}
+
 TEST(ReservedMemory, ThatAnotherJobLeftChangesNoMesh) {
   const MeshRequest request{.pslg = square(), .size = {.constant = 2e-5}};
   Budget budget;
