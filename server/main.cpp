@@ -3,6 +3,7 @@
 // listen, 4 cannot open the store, 128 + signal where a second signal cut the draining short.
 #include <fmt/format.h>
 #include <grpc/grpc.h>
+#include <openssl/crypto.h>
 
 #include <chrono>
 #include <csignal>
@@ -79,6 +80,9 @@ int serve(Options options) {
   // Never undone: the clean-up that follows the last user of gRPC 1.51 may wait 10 s for its backup
   // poller. The end of the process does it at once.
   grpc_init();
+  // OpenSSL keeps a state for the thread that uses it first. At the end it is freed for this one,
+  // and would not be for one of the arena.
+  OPENSSL_init_crypto(OPENSSL_INIT_LOAD_CONFIG, nullptr);
   adopt_grpc_logs(options.log_format);
   const Logger log = make_logger(options.log_level, options.log_format);
   ServiceOptions& service = options.server.service;
