@@ -3,106 +3,53 @@
 
 #include <cstddef>
 
-#include "engine/domain/cdt.h"
-#include "engine/domain/hilbert.h"
 #include "engine/domain/segment_inserter.h"
+#include "engine/domain/triangulation.h"
 #include "engine/domain/validate.h"
 
 namespace weft {
 namespace {
 
-// A biased randomised insertion order (Amenta, Choi, Rote, "Incremental constructions con BRIO",
-// 2003): rounds of doubling size, each along the Hilbert curve. The round comes from a hash of the
-// rank, so the order is the same on every run.
-unsigned insertion_round(std::uint64_t rank) {
-  std::uint64_t h = (rank + 1) * 0x9e3779b97f4a7c15u;
-  h = (h ^ h >> 30) * 0xbf58476d1ce4e5b9u;
-  h = (h ^ h >> 27) * 0x94d049bb133111ebu;
-  h ^= h >> 31;
-  constexpr unsigned kLastRound = 12;
-  unsigned round = kLastRound;
-  for (; round > 0 && (h & 1) != 0; h >>= 1) --round;
-  return round;
-}
-constexpr unsigned kRounds = 13;
-
-// Returns the vertex of each point.
-std::vector<Cdt::Vertex_handle> insert_points(const std::vector<Point>& points, Cdt& cdt,
-                                              Pacer& pacer) {
-  std::vector<Cdt::Vertex_handle> vertices(points.size());
-  Cdt::Face_handle hint;
-  const auto insert = [&](std::uint32_t i) {
-    pacer.step();
-    const Cdt::Point p(points[i].x, points[i].y);
-    Cdt::Locate_type type = Cdt::VERTEX;
-    int k = 0;
-    const Cdt::Face_handle face = cdt.locate(p, type, k, hint);
-    Cdt::Vertex_handle& v = vertices[i];
-    if (type == Cdt::VERTEX) {
-      v = face->vertex(k);
-      v->info() = std::min(v->info(), i);
-    } else {
-      v = cdt.insert(p, type, face, k);
-      v->info() = i;
-    }
-    hint = v->face();
-  };
-  // A triangle first: on a line CGAL takes linear time to find a place.
-  for (const std::uint32_t i : spanning_points(points, pacer).point) insert(i);
-  const std::vector<std::uint32_t> order = hilbert_order(points, pacer);
-  for (unsigned round = 0; round < kRounds; ++round)
-    for (std::size_t rank = 0; rank < order.size(); ++rank)
-      if (insertion_round(rank) == round) insert(order[rank]);
-  return vertices;
-}
-
 // The finite part of the triangulation in plain arrays; vertices in the order of their ids.
-Arrangement extract(const Pslg& pslg, Cdt& cdt, const SegmentInserter& segments, Pacer& pacer) {
+Arrangement extract(const Pslg& pslg, const Triangulation& t, SegmentInserter& segments,
+                    Pacer& pacer) {
   const std::size_t inputs = pslg.points.size();
-  std::vector<std::uint32_t> number(inputs + segments.crossings(), kNone);
-  for (const Cdt::Vertex_handle v : cdt.finite_vertex_handles()) {
+  std::vector<std::uint32_t> vertex_of_id(inputs + segments.crossings(), kNone);
+  for (Triangulation::Vertex v = 0; v < t.vertices(); ++v) {
     pacer.step();
-    number[v->info()] = 0;
+    if (t.exists(v)) vertex_of_id[t.id(v)] = v;
   }
   Arrangement result;
-  for (std::uint32_t id = 0; id < number.size(); ++id) {
+  result.vertices.reserve(vertex_of_id.size());
+  result.input_point.reserve(vertex_of_id.size());
+  std::vector<std::uint32_t> number(t.vertices(), kNone);
+  for (std::uint32_t id = 0; id < vertex_of_id.size(); ++id) {
     pacer.step();
-    if (number[id] == kNone) continue;
-    number[id] = static_cast<std::uint32_t>(result.input_point.size());
+    const std::uint32_t v = vertex_of_id[id];
+    if (v == kNone) continue;
+    number[v] = static_cast<std::uint32_t>(result.vertices.size());
     result.input_point.push_back(id < inputs ? id : kNone);
-  }
-  result.vertices.resize(result.input_point.size());
-  for (const Cdt::Vertex_handle v : cdt.finite_vertex_handles()) {
-    pacer.step();
-    const std::uint32_t id = v->info();
-    result.vertices[number[id]] = id < inputs ? pslg.points[id] : at(v);  // of 0 and -0, the first
+    result.vertices.push_back(id < inputs ? pslg.points[id] : t.at(v));  // of 0 and -0, the first
   }
 
+  std::vector<std::uint32_t> face_number(t.faces());
   std::uint32_t faces = 0;
-  for (const Cdt::Face_handle f : cdt.all_face_handles()) {
+  for (std::uint32_t f = 0; f < t.faces(); ++f) {
     pacer.step();
-    f->info() = cdt.is_infinite(f) ? kNone : faces++;
+    face_number[f] = t.is_infinite(f) ? kNone : faces++;
   }
-  result.triangles.reserve(faces);
-  for (const Cdt::Face_handle f : cdt.finite_face_handles()) {
+  result.triangles.resize(faces);
+  for (std::uint32_t f = 0; f < t.faces(); ++f) {
     pacer.step();
-    Arrangement::Triangle t{};
+    if (face_number[f] == kNone) continue;
+    Arrangement::Triangle& to = result.triangles[face_number[f]];
     for (int i = 0; i < 3; ++i) {
-      t.vertex[i] = number[f->vertex(i)->info()];
-      t.neighbor[i] = f->neighbor(i)->info();
-      t.constraint[i] = kNone;
-      if (!f->is_constrained(i)) continue;
-      if (t.neighbor[i] < f->info()) {
-        const Arrangement::Triangle& n = result.triangles[t.neighbor[i]];
-        t.constraint[i] = n.constraint[f->neighbor(i)->index(f)];
-        continue;
-      }
-      const auto [right, left] = ends({f, i});
-      t.constraint[i] = static_cast<std::uint32_t>(result.constraints.size());
-      result.constraints.push_back(segments.constraints().at(right->info(), left->info()));
+      to.vertex[i] = number[t.vertex(f, i)];
+      to.neighbor[i] = face_number[t.mirror({f, i}).face];
+      to.constraint[i] = t.constraint({f, i});
     }
-    result.triangles.push_back(t);
   }
+  result.constraints = segments.take_constraints();
   return result;
 }
 
@@ -114,11 +61,12 @@ std::uint64_t estimated_bytes(std::uint64_t vertices, std::uint64_t edges) {
 
 Arrangement arrange(const Pslg& pslg, Pacer& pacer, std::uint64_t max_splits) {
   pacer.require(estimated_bytes(pslg.points.size(), pslg.segments.size()));
-  Cdt cdt{CdtKernel(pacer)};
-  const std::vector<Cdt::Vertex_handle> vertices = insert_points(pslg.points, cdt, pacer);
-  SegmentInserter segments(pslg, vertices, cdt, max_splits, pacer);
+  Triangulation triangulation(pacer);
+  const Span span = spanning_points(pslg.points, pacer);
+  triangulation.build(pslg.points, span.point[0], span.point[1], span.point[2]);
+  SegmentInserter segments(pslg, triangulation, max_splits, pacer);
   segments.insert_all();
-  return extract(pslg, cdt, segments, pacer);
+  return extract(pslg, triangulation, segments, pacer);
 }
 
 }  // namespace weft

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/domain/hilbert.h"
 #include "engine/domain/locate.h"
 
 namespace weft {
@@ -20,28 +21,36 @@ struct Faces {
   std::uint32_t count = 1;
 };
 
-// Floods from `start` across edges without a constraint.
+// Floods from `start` across edges without a constraint. Whether a neighbour is new is hard to
+// foresee, so there is no branch on it; and first come, first served, so that a triangle is known
+// long before its turn. `queue` has room for all triangles and three more, of_triangle for one
+// more, which stands for what is beyond the hull.
 void flood(const Arrangement& a, std::uint32_t start, std::uint32_t face, Faces& faces,
-           std::vector<std::uint32_t>& stack, Pacer& pacer) {
-  faces.of_triangle[start] = face;
-  stack.push_back(start);
-  while (!stack.empty()) {
+           std::vector<std::uint32_t>& queue, Pacer& pacer) {
+  std::uint32_t* const of = faces.of_triangle.data();
+  const auto beyond = static_cast<std::uint32_t>(a.triangles.size());
+  of[start] = face;
+  std::uint32_t* first = queue.data();
+  std::uint32_t* last = first;
+  *last++ = start;
+  while (first != last) {
     pacer.step();
-    const Arrangement::Triangle& t = a.triangles[stack.back()];
-    stack.pop_back();
+    const Arrangement::Triangle& t = a.triangles[*first++];
     for (int i = 0; i < 3; ++i) {
-      const std::uint32_t n = t.neighbor[i];
-      if (n == kNone || t.constraint[i] != kNone || faces.of_triangle[n] != kNone) continue;
-      faces.of_triangle[n] = face;
-      stack.push_back(n);
+      const std::uint32_t n = std::min(t.neighbor[i], beyond);
+      const bool is_new = (t.constraint[i] == kNone) & (of[n] == kNone);
+      *last = n;
+      last += is_new;
+      of[n] = is_new ? face : of[n];
     }
   }
 }
 
 Faces find_faces(const Arrangement& a, Pacer& pacer) {
   Faces faces;
-  faces.of_triangle.assign(a.triangles.size(), kNone);
-  std::vector<std::uint32_t> stack;
+  faces.of_triangle.assign(a.triangles.size() + 1, kNone);
+  faces.of_triangle.back() = Faces::kUnbounded;
+  std::vector<std::uint32_t> queue(a.triangles.size() + 3);
   const auto open_to_the_outside = [](const Arrangement::Triangle& t) {
     for (int i = 0; i < 3; ++i)
       if (t.neighbor[i] == kNone && t.constraint[i] == kNone) return true;
@@ -49,9 +58,9 @@ Faces find_faces(const Arrangement& a, Pacer& pacer) {
   };
   for (std::uint32_t t = 0; t < a.triangles.size(); ++t)
     if (faces.of_triangle[t] == kNone && open_to_the_outside(a.triangles[t]))
-      flood(a, t, Faces::kUnbounded, faces, stack, pacer);
+      flood(a, t, Faces::kUnbounded, faces, queue, pacer);
   for (std::uint32_t t = 0; t < a.triangles.size(); ++t)
-    if (faces.of_triangle[t] == kNone) flood(a, t, faces.count++, faces, stack, pacer);
+    if (faces.of_triangle[t] == kNone) flood(a, t, faces.count++, faces, queue, pacer);
   return faces;
 }
 
@@ -118,31 +127,41 @@ std::string coordinates(Point p) {
   return out.str();
 }
 
-// The bounded face that a seed lies in.
+// The bounded faces that seeds lie in. Looks them up along a Hilbert curve, each from where the one
+// before lies.
 class SeedLocator {
  public:
-  SeedLocator(const Arrangement& arrangement, const Faces& faces, Pacer& pacer)
-      : arrangement_(arrangement), faces_(faces), pacer_(pacer) {}
+  SeedLocator(const Arrangement& arrangement, const Faces& faces, const Pslg& pslg, Pacer& pacer)
+      : faces_(faces), seeds_(pslg.holes) {
+    for (const RegionSeed& region : pslg.regions) seeds_.push_back(region.at);
+    locations_.resize(seeds_.size());
+    std::uint32_t start = 0;
+    for (const std::uint32_t seed : hilbert_order(seeds_, pacer)) {
+      locations_[seed] = locate(arrangement, seeds_[seed], start, pacer);
+      if (locations_[seed].triangle != kNone) start = locations_[seed].triangle;
+    }
+  }
 
-  Result<std::uint32_t> face(Point seed, const std::string& field) {
-    const Location location = locate(arrangement_, seed, start_, pacer_);
+  // Of the seed-th of the holes' and the regions' seeds. `field` makes its name.
+  template <class Field>
+  Result<std::uint32_t> face(std::size_t seed, const Field& field) const {
+    const Location& location = locations_[seed];
     if (location.on_segment || location.on_vertex)
-      return fail(ErrorCode::kSeedOnSegment, field,
-                  "the seed " + coordinates(seed) + " lies on a " +
+      return fail(ErrorCode::kSeedOnSegment, field(),
+                  "the seed " + coordinates(seeds_[seed]) + " lies on a " +
                       (location.on_vertex ? "point" : "segment") +
                       ", so it does not tell which face it means");
     if (location.triangle == kNone || faces_.of_triangle[location.triangle] == Faces::kUnbounded)
-      return fail(ErrorCode::kSeedOutsideDomain, field,
-                  "the seed " + coordinates(seed) + " lies outside: no segments enclose it");
-    start_ = location.triangle;
+      return fail(
+          ErrorCode::kSeedOutsideDomain, field(),
+          "the seed " + coordinates(seeds_[seed]) + " lies outside: no segments enclose it");
     return faces_.of_triangle[location.triangle];
   }
 
  private:
-  const Arrangement& arrangement_;
   const Faces& faces_;
-  Pacer& pacer_;
-  std::uint32_t start_ = 0;  // seeds come in clusters: search on from the last one
+  std::vector<Point> seeds_;
+  std::vector<Location> locations_;
 };
 
 Error empty_domain(const Pslg& pslg, const Faces& faces) {
@@ -166,9 +185,9 @@ Result<Carving> carve(const Arrangement& arrangement, const Pslg& pslg, Pacer& p
   if (pslg.fill == Fill::kEvenOdd) inside = find_odd_faces(arrangement, faces, pacer);
   inside[Faces::kUnbounded] = false;
 
-  SeedLocator locator(arrangement, faces, pacer);
+  const SeedLocator locator(arrangement, faces, pslg, pacer);
   for (std::size_t i = 0; i < pslg.holes.size(); ++i) {
-    const auto face = locator.face(pslg.holes[i], "domain.holes[" + std::to_string(i) + "]");
+    const auto face = locator.face(i, [i] { return "domain.holes[" + std::to_string(i) + "]"; });
     if (!face) return tl::unexpected(face.error());
     inside[*face] = false;
   }
@@ -179,11 +198,11 @@ Result<Carving> carve(const Arrangement& arrangement, const Pslg& pslg, Pacer& p
   std::vector<std::uint32_t> region_of_face(faces.count, 0);
   for (std::size_t i = 0; i < pslg.regions.size(); ++i) {
     const RegionSeed& seed = pslg.regions[i];
-    const std::string field = "domain.regions[" + std::to_string(i) + "]";
-    const auto face = locator.face(seed.at, field);
+    const auto field = [i] { return "domain.regions[" + std::to_string(i) + "]"; };
+    const auto face = locator.face(pslg.holes.size() + i, field);
     if (!face) return tl::unexpected(face.error());
     if (!inside[*face])
-      return fail(ErrorCode::kSeedOutsideDomain, field,
+      return fail(ErrorCode::kSeedOutsideDomain, field(),
                   "the seed " + coordinates(seed.at) + " lies in a hole");
     region_of_face[*face] = static_cast<std::uint32_t>(carving.regions.size());
     carving.regions.push_back({seed.id, seed.max_area.value_or(Region{}.max_area)});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/domain/domain.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <exception>
 #include <new>
@@ -20,6 +21,11 @@ std::vector<std::uint32_t> kept_triangles(const Arrangement& a, const Carving& c
                                           Pacer& pacer) {
   std::vector<std::uint32_t> kept;
   std::vector<Point> centroids;
+  const auto count = static_cast<std::size_t>(
+      a.triangles.size() -
+      static_cast<std::size_t>(std::count(carving.region.begin(), carving.region.end(), kNone)));
+  kept.reserve(count);
+  centroids.reserve(count);
   for (std::uint32_t t = 0; t < a.triangles.size(); ++t) {
     pacer.step();
     if (carving.region[t] == kNone) continue;
@@ -45,6 +51,9 @@ Domain extract(const Arrangement& a, Carving&& carving, Pacer& pacer) {
   }
 
   Domain domain;
+  domain.vertices.reserve(a.vertices.size());
+  domain.input_point.reserve(a.vertices.size());
+  domain.subsegments.reserve(a.constraints.size());
   for (std::uint32_t v = 0; v < a.vertices.size(); ++v) {
     pacer.step();
     if (vertex_number[v] == kNone) continue;

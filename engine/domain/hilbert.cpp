@@ -10,19 +10,49 @@ namespace {
 
 constexpr unsigned kLevels = 24;
 
-// Position of cell (x, y) along the curve, from the coarsest level down: each level turns the
-// quadrant that it descends into. Without branches, for their outcomes are random.
+// The curve, four levels at a time. A level's turn mirrors the cell, or swaps its coordinates, or
+// both, in the quadrant that the curve descends into: four states.
+constexpr unsigned kStep = 4;
+static_assert(kLevels % kStep == 0);
+
+// Entry state << 8 | x << 4 | y: the state after four levels in the upper byte, what they add to
+// the key in the lower.
+constexpr std::array<std::uint16_t, 4 << 2 * kStep> kCurve = [] {
+  std::array<std::uint16_t, 4 << 2 * kStep> table{};
+  for (std::uint32_t state = 0; state < 4; ++state) {
+    for (std::uint32_t cell = 0; cell < 1u << 2 * kStep; ++cell) {
+      std::uint32_t x = cell >> kStep;
+      std::uint32_t y = cell & ((1u << kStep) - 1);
+      std::uint32_t key = 0;
+      std::uint32_t mirrored = state >> 1;
+      std::uint32_t swapped = state & 1;
+      for (unsigned level = kStep; level-- > 0;) {
+        std::uint32_t right = (x >> level & 1) ^ mirrored;
+        std::uint32_t upper = (y >> level & 1) ^ mirrored;
+        if (swapped) std::swap(right, upper);
+        key = key << 2 | ((3 * right) ^ upper);
+        if (upper == 1) continue;
+        swapped ^= 1;
+        mirrored ^= right;
+      }
+      table[state << 2 * kStep | cell] =
+          static_cast<std::uint16_t>((mirrored << 1 | swapped) << 8 | key);
+    }
+  }
+  return table;
+}();
+
+// Position of cell (x, y) along the curve.
 std::uint64_t hilbert_key(std::uint32_t x, std::uint32_t y) {
+  constexpr std::uint32_t kMask = (1u << kStep) - 1;
   std::uint64_t key = 0;
-  for (unsigned level = kLevels; level-- > 0;) {
-    const std::uint32_t right = x >> level & 1;
-    const std::uint32_t upper = y >> level & 1;
-    key = key << 2 | ((3 * right) ^ upper);
-    const std::uint32_t turn = upper - 1;  // all ones in the two lower quadrants
-    const std::uint32_t mirror = turn & (0 - right);
-    const std::uint32_t swap = (x ^ y) & turn;
-    x ^= swap ^ mirror;
-    y ^= swap ^ mirror;
+  std::uint32_t state = 0;
+  for (unsigned level = kLevels; level > 0;) {
+    level -= kStep;
+    const std::uint16_t entry =
+        kCurve[state << 2 * kStep | (x >> level & kMask) << kStep | (y >> level & kMask)];
+    key = key << 2 * kStep | (entry & 0xff);
+    state = entry >> 8;
   }
   return key;
 }
@@ -36,19 +66,23 @@ struct Entry {
 // millions of entries could not be stopped in time.
 void radix_sort(std::vector<Entry>& entries, Pacer& pacer) {
   constexpr unsigned kDigitBits = 12;
+  constexpr unsigned kDigits = 2 * kLevels / kDigitBits;
   static_assert(2 * kLevels % kDigitBits == 0);
+  constexpr std::size_t kValues = std::size_t{1} << kDigitBits;
+  std::vector<std::uint32_t> starts(kDigits * kValues);
+  for (const Entry& e : entries) {
+    pacer.step();
+    for (unsigned d = 0; d < kDigits; ++d)
+      ++starts[d * kValues + (e.key >> d * kDigitBits & (kValues - 1))];
+  }
   std::vector<Entry> sorted(entries.size());
-  for (unsigned shift = 0; shift < 2 * kLevels; shift += kDigitBits) {
-    std::array<std::uint32_t, 1u << kDigitBits> start{};
-    const auto digit = [shift, &start](const Entry& e) {
-      return e.key >> shift & (start.size() - 1);
-    };
-    for (const Entry& e : entries) ++start[digit(e)];
+  for (unsigned d = 0; d < kDigits; ++d) {
+    std::uint32_t* const start = &starts[d * kValues];
     std::uint32_t sum = 0;
-    for (std::uint32_t& s : start) sum += std::exchange(s, sum);
+    for (std::size_t v = 0; v < kValues; ++v) sum += std::exchange(start[v], sum);
     for (const Entry& e : entries) {
       pacer.step();
-      sorted[start[digit(e)]++] = e;
+      sorted[start[e.key >> d * kDigitBits & (kValues - 1)]++] = e;
     }
     entries.swap(sorted);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/domain/locate.h"
 
-#include "engine/domain/predicates.h"
+#include "engine/domain/filtered.h"
 
 namespace weft {
 namespace {
@@ -33,8 +33,8 @@ Location locate(const Arrangement& a, Point p, std::uint32_t start, Pacer& pacer
     const Arrangement::Triangle& t = a.triangles[triangle];
     int side[3];
     for (int i = 0; i < 3; ++i)
-      side[i] = orientation_exact(a.vertices[t.vertex[(i + 1) % 3]],
-                                  a.vertices[t.vertex[(i + 2) % 3]], p);
+      side[i] =
+          orientation(a.vertices[t.vertex[(i + 1) % 3]], a.vertices[t.vertex[(i + 2) % 3]], p);
     unsigned tried = 0;
     unsigned i = random % 3;
     while (tried < 3 && side[i] >= 0) {

@@ -23,4 +23,9 @@ bool in_circle_exact(Point a, Point b, Point c, Point p) noexcept {
          CGAL::ON_POSITIVE_SIDE;
 }
 
+int in_circle_sign_exact(Point a, Point b, Point c, Point p) noexcept {
+  return static_cast<int>(
+      Kernel::Side_of_oriented_circle_2{}(to_cgal(a), to_cgal(b), to_cgal(c), to_cgal(p)));
+}
+
 }  // namespace weft

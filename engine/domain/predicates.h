@@ -19,4 +19,7 @@ int orientation_exact(Point a, Point b, Point c) noexcept;
 // Whether p lies strictly inside the circle through a, b, c. REQUIRES: a, b, c turn left.
 bool in_circle_exact(Point a, Point b, Point c, Point p) noexcept;
 
+// 1 where p lies inside that circle, -1 outside, 0 on it. REQUIRES: the same.
+int in_circle_sign_exact(Point a, Point b, Point c, Point p) noexcept;
+
 }  // namespace weft
