@@ -74,26 +74,19 @@ std::optional<Error> AcuteCorners::find_acute_vertices(const Domain& domain,
   return std::nullopt;
 }
 
-// Sorts by (a, b): a counting sort by b, then a stable one by a. Linear, so that it can be polled.
+// A counting sort by the lower end: linear, so that it can be polled.
 std::optional<Error> AcuteCorners::sort_by_ends(const Domain& domain,
                                                 const ExecutionContext& context) {
-  by_ends_.reserve(domain.subsegments.size());
+  first_.assign(domain.vertices.size() + 2, 0);
+  for (const Subsegment& s : domain.subsegments) ++first_[std::min(s.a, s.b) + 2];
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  by_ends_.resize(domain.subsegments.size());
   for (std::uint32_t s = 0; s < domain.subsegments.size(); ++s) {
-    const auto [a, b] = std::minmax(domain.subsegments[s].a, domain.subsegments[s].b);
-    by_ends_.push_back({a, b, s});
-  }
-  std::vector<Ends> sorted(by_ends_.size());
-  for (std::uint32_t Ends::*key : {&Ends::b, &Ends::a}) {
-    std::vector<std::uint32_t> start(domain.vertices.size() + 1, 0);
-    for (const Ends& e : by_ends_) ++start[e.*key + 1];
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    for (std::size_t i = 0; i < by_ends_.size(); ++i) {
-      if (i % kPollInterval == 0) {
-        if (auto error = context.poll()) return error;
-      }
-      sorted[start[by_ends_[i].*key]++] = by_ends_[i];
+    if (s % kPollInterval == 0) {
+      if (auto error = context.poll()) return error;
     }
-    by_ends_.swap(sorted);
+    const auto [a, b] = std::minmax(domain.subsegments[s].a, domain.subsegments[s].b);
+    by_ends_[first_[a + 1]++] = {b, s};
   }
   return std::nullopt;
 }
@@ -147,10 +140,9 @@ std::uint32_t AcuteCorners::subsegment(const Mesh& mesh, std::uint32_t a, std::u
   if (const std::uint32_t s = mesh.subsegment_of(a); s != kNone) return s;
   if (const std::uint32_t s = mesh.subsegment_of(b); s != kNone) return s;
   const auto [low, high] = std::minmax(a, b);
-  const auto found = std::lower_bound(
-      by_ends_.begin(), by_ends_.end(), std::make_pair(low, high),
-      [](const Ends& e, const auto& key) { return std::make_pair(e.a, e.b) < key; });
-  return found->subsegment;
+  std::uint32_t i = first_[low];
+  while (by_ends_[i].b != high) ++i;
+  return by_ends_[i].subsegment;
 }
 
 }  // namespace weft

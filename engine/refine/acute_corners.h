@@ -35,11 +35,13 @@ class AcuteCorners {
   // Index into Domain::subsegments of the edge a-b, which must lie on a segment.
   std::uint32_t subsegment(const Mesh& mesh, std::uint32_t a, std::uint32_t b) const;
 
-  std::uint64_t bytes() const { return acute_.size() + by_ends_.size() * sizeof(Ends); }
+  std::uint64_t bytes() const {
+    return acute_.size() + by_ends_.size() * sizeof(Ends) + first_.size() * sizeof(std::uint32_t);
+  }
 
  private:
   struct Ends {
-    std::uint32_t a, b;  // a < b
+    std::uint32_t b;  // the higher one
     std::uint32_t subsegment;
   };
 
@@ -51,8 +53,9 @@ class AcuteCorners {
   bool acute(std::uint32_t vertex) const { return vertex < acute_.size() && acute_[vertex]; }
 
   const std::vector<Subsegment>* subsegments_;
-  std::vector<char> acute_;    // per vertex of the domain
-  std::vector<Ends> by_ends_;  // sorted
+  std::vector<char> acute_;           // per vertex of the domain
+  std::vector<Ends> by_ends_;         // by the lower end
+  std::vector<std::uint32_t> first_;  // per vertex of the domain: its first in by_ends_
 };
 
 }  // namespace weft

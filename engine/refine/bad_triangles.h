@@ -15,7 +15,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <queue>
 #include <vector>
 
 #include "engine/refine/mesh.h"
@@ -42,8 +41,7 @@ class BadTriangles {
   // REQUIRES: the triangle has this badness.
   void push(std::uint32_t t, Badness badness) {
     if (order_ == Order::kShortestFirst && badness == kSkinny) [[unlikely]] {
-      shortest_first_.push({t, static_cast<float>(shortest_edge2(t))});
-      peak_skinny_ = std::max(peak_skinny_, shortest_first_.size());
+      push_skinny(t, static_cast<float>(shortest_edge2(t)));
       return;
     }
     levels_[badness].push_back(t);
@@ -64,10 +62,19 @@ class BadTriangles {
         in_use_[word] &= ~(std::uint64_t{1} << level % 64);
       }
     }
-    while (!shortest_first_.empty()) {
-      const std::uint32_t t = shortest_first_.top().triangle;
-      shortest_first_.pop();
-      if (mesh_.triangles[t].badness() == kSkinny) return t;
+    for (; first_word_ < kSkinnyWords; ++first_word_) {
+      while (skinny_in_use_[first_word_] != 0) {
+        const std::size_t level =
+            64 * first_word_ + static_cast<unsigned>(std::countr_zero(skinny_in_use_[first_word_]));
+        const std::uint32_t entry = heads_[level];
+        const std::uint32_t t = skinny_[entry].triangle;
+        heads_[level] = skinny_[entry].next;
+        skinny_[entry].next = free_;
+        free_ = entry;
+        if (heads_[level] == kNone)
+          skinny_in_use_[first_word_] &= ~(std::uint64_t{1} << level % 64);
+        if (mesh_.triangles[t].badness() == kSkinny) return t;
+      }
     }
     return kNone;
   }
@@ -76,22 +83,45 @@ class BadTriangles {
   void clear() {
     for (auto& entries : levels_) entries.clear();
     in_use_ = {};
-    shortest_first_ = {};
+    skinny_.clear();
+    free_ = kNone;
+    skinny_in_use_ = {};
+    first_word_ = kSkinnyWords;
+    heads_.clear();
   }
 
   std::uint64_t bytes() const {
     std::uint64_t entries = 0;
     for (const auto& level : levels_) entries += level.capacity();
-    return entries * sizeof(std::uint32_t) + peak_skinny_ * sizeof(Skinny);
+    return (entries + heads_.capacity()) * sizeof(std::uint32_t) +
+           skinny_.capacity() * sizeof(Skinny);
   }
 
  private:
-  // A skinny triangle by its shortest edge.
+  // Skinny triangles by their shortest edge, eight levels an octave of its square; last in first
+  // out within a level.
   struct Skinny {
     std::uint32_t triangle;
-    float shortest2;
-    bool operator<(const Skinny& other) const { return shortest2 > other.shortest2; }
+    std::uint32_t next;
   };
+  static constexpr unsigned kDropped = 20;  // of a float's bits
+  static constexpr std::size_t kSkinnyWords = (std::size_t{1} << (31 - kDropped)) / 64;
+
+  void push_skinny(std::uint32_t t, float shortest2) {
+    if (heads_.empty()) heads_.assign(64 * kSkinnyWords, kNone);
+    const std::size_t level = std::bit_cast<std::uint32_t>(shortest2) >> kDropped;
+    std::uint32_t entry = free_;
+    if (entry == kNone) {
+      entry = static_cast<std::uint32_t>(skinny_.size());
+      skinny_.push_back({});
+    } else {
+      free_ = skinny_[entry].next;
+    }
+    skinny_[entry] = {t, (skinny_in_use_[level / 64] >> level % 64 & 1) ? heads_[level] : kNone};
+    heads_[level] = entry;
+    skinny_in_use_[level / 64] |= std::uint64_t{1} << level % 64;
+    first_word_ = std::min(first_word_, level / 64);
+  }
 
   double shortest_edge2(std::uint32_t t) const {
     const Triangle& triangle = mesh_.triangles[t];
@@ -108,8 +138,11 @@ class BadTriangles {
   const Order order_;
   std::array<std::vector<std::uint32_t>, kWorst + 1> levels_;  // by badness
   std::array<std::uint64_t, (kWorst + 64) / 64> in_use_{};     // a bit a level
-  std::priority_queue<Skinny> shortest_first_;                 // the skinny ones, kShortestFirst
-  std::size_t peak_skinny_ = 0;
+  std::vector<Skinny> skinny_;
+  std::uint32_t free_ = kNone;
+  std::vector<std::uint32_t> heads_;
+  std::array<std::uint64_t, kSkinnyWords> skinny_in_use_{};
+  std::size_t first_word_ = kSkinnyWords;
 };
 
 }  // namespace weft
