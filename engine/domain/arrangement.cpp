@@ -56,7 +56,7 @@ Arrangement extract(const Pslg& pslg, const Triangulation& t, SegmentInserter& s
 }  // namespace
 
 std::uint64_t estimated_bytes(std::uint64_t vertices, std::uint64_t edges) {
-  return 300 * vertices + 120 * edges;
+  return 240 * vertices + 40 * edges;
 }
 
 Arrangement arrange(const Pslg& pslg, Pacer& pacer, std::uint64_t max_splits) {

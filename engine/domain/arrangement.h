@@ -11,7 +11,7 @@
 // within kSnapUlps ulps of the segment's largest coordinate, and a crossing that close to an end of
 // one of the two pieces is that end. So a T-junction whose end was rounded still is a junction.
 //
-// Source: the incremental method of CGAL's constrained triangulations, with this snapping.
+// Source: the incremental method of triangulation.h, with this snapping.
 #pragma once
 
 #include <cstdint>
@@ -49,8 +49,10 @@ struct Arrangement {
   std::vector<Constraint> constraints;
 };
 
-// Bytes that an arrangement of so many vertices and constrained edges takes at the peak: CGAL's
-// triangulation and the plain copy of it side by side. Measured: 265 bytes a vertex.
+// Bytes that an arrangement of so many vertices and constrained edges takes at the peak: the
+// triangulation and the plain copy of it side by side. Measured at a million vertices: 220 a vertex
+// where there are no segments, 224 on a ring, 249 and 293 where 1.5 and 2 edges a vertex are
+// constrained and crossings made the vertices.
 std::uint64_t estimated_bytes(std::uint64_t vertices, std::uint64_t edges);
 
 // REQUIRES: a PSLG that `validate` accepts. Throws Stopped: kLimitExceeded over `max_splits`,

@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The predicates inline: J. R. Shewchuk's first filter ("Adaptive precision floating-point
-// arithmetic", 1997), and CGAL's exact ones where it cannot tell.
+// The predicates inline: a floating-point filter, and the exact predicate (predicates.h) where the
+// filter cannot tell. Their signs are those of the exact predicates, for coordinates of at most
+// 1e50 in magnitude, which `validate` ensures, and however small.
+//
+// Source: the first of the error bounds in J. R. Shewchuk, "Adaptive precision floating-point
+// arithmetic and fast robust geometric predicates", 1997: with e = 2^-53, the rounded determinant
+// is off by at most (3 + 16 e) e times the sum of its products' magnitudes in `orientation`, by
+// (10 + 96 e) e times the permanent in `in_circle`.
+//
+// He assumes that nothing overflows or underflows. The largest term here is below 1e204, so nothing
+// overflows. Differences and sums do not underflow harmfully: a result below 2^-1022 is exact. A
+// product that underflows is off by at most u = 2^-1074 more. In `orientation` two products may, so
+// the determinant is off by 2 u more. In `in_circle` u is multiplied by the other factor, a sum of
+// squares or of products of differences, of at most 2e101: the three terms are off by less than
+// 1e-221 more. The bounds below add more than that, 1e-300 and 1e-200. So a domain around
+// 1e-50 wide is triangulated by exact arithmetic alone: slower by far, but right.
 #pragma once
 
 #include <cmath>
@@ -9,14 +23,19 @@
 
 namespace weft {
 
-// Differences of coordinates that `validate` accepts are 0 or at least 1e-117, so products of two
-// do not underflow.
-inline constexpr double kOrientationError = 3.3306690738754716e-16;
+// How far left - right, rounded, may be from the difference of the two exact products, each of two
+// differences of coordinates.
+inline double orientation_error(double left, double right) {
+  return 3.3306690738754716e-16 * (std::fabs(left) + std::fabs(right)) + 1e-300;
+}
+
+// 1 where a, b, c turn left (counter-clockwise), -1 where they turn right, 0 where they are on a
+// line.
 inline int orientation(Point a, Point b, Point c) {
   const double left = (a.x - c.x) * (b.y - c.y);
   const double right = (a.y - c.y) * (b.x - c.x);
   const double det = left - right;
-  const double error = kOrientationError * (std::fabs(left) + std::fabs(right));
+  const double error = orientation_error(left, right);
   if (det > error) [[likely]]
     return 1;
   if (-det > error) [[likely]]
@@ -24,7 +43,8 @@ inline int orientation(Point a, Point b, Point c) {
   return orientation_exact(a, b, c);
 }
 
-// 1 where d lies inside the circle through a, b, c, which turn left; -1 outside, 0 on it.
+// 1 where d lies inside the circle through a, b, c; -1 outside, 0 on it. REQUIRES: a, b, c turn
+// left.
 inline int in_circle(Point a, Point b, Point c, Point d) {
   const double adx = a.x - d.x, ady = a.y - d.y;
   const double bdx = b.x - d.x, bdy = b.y - d.y;
@@ -39,7 +59,6 @@ inline int in_circle(Point a, Point b, Point c, Point d) {
   const double permanent = (std::fabs(bc) + std::fabs(cb)) * a2 +
                            (std::fabs(ca) + std::fabs(ac)) * b2 +
                            (std::fabs(ab) + std::fabs(ba)) * c2;
-  // What underflow may cost: a denormal times the square of a difference, at most 1e102.
   const double error = 1.1102230246251577e-15 * permanent + 1e-200;
   if (det > error) return 1;
   if (-det > error) return -1;

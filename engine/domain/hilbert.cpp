@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstddef>
+#include <numeric>
+#include <span>
 #include <utility>
 
 namespace weft {
@@ -88,25 +90,45 @@ void radix_sort(std::vector<Entry>& entries, Pacer& pacer) {
   }
 }
 
+// Sorts `order`, numbers of points. The grid is finer by 2^24 at each level, and all doubles are
+// within 2^2100 of each other, so the recursion is shallow.
+void sort_along_curve(const std::vector<Point>& points, std::span<std::uint32_t> order,
+                      Pacer& pacer) {
+  constexpr std::size_t kCrowd = 64;
+  constexpr double kSmallestSide = 1e-290;  // so that the scale is finite
+  Box box;
+  for (const std::uint32_t i : order) box.add(points[i]);
+  const double side = std::max(box.width(), box.height());
+  if (!(side > kSmallestSide)) return;
+  const double scale = ((1u << kLevels) - 1) / side;
+
+  std::vector<Entry> entries(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    pacer.step();
+    const Point p = points[order[k]];
+    const auto x = static_cast<std::uint32_t>((p.x - box.min_x) * scale);
+    const auto y = static_cast<std::uint32_t>((p.y - box.min_y) * scale);
+    entries[k] = {hilbert_key(x, y), order[k]};
+  }
+  radix_sort(entries, pacer);
+  std::vector<std::span<std::uint32_t>> crowds;
+  for (std::size_t first = 0, last; first < order.size(); first = last) {
+    for (last = first; last < order.size() && entries[last].key == entries[first].key; ++last) {
+      pacer.step();
+      order[last] = entries[last].index;
+    }
+    if (last - first > kCrowd) crowds.push_back(order.subspan(first, last - first));
+  }
+  entries = {};  // one level's at a time
+  for (const std::span<std::uint32_t> crowd : crowds) sort_along_curve(points, crowd, pacer);
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> hilbert_order(const std::vector<Point>& points, Pacer& pacer) {
-  Box box;
-  for (const Point p : points) box.add(p);
-  const double side = std::max(box.width(), box.height());
-  const double scale = side > 0 ? ((1u << kLevels) - 1) / side : 0;
-
-  std::vector<Entry> entries(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    pacer.step();
-    const auto x = static_cast<std::uint32_t>((points[i].x - box.min_x) * scale);
-    const auto y = static_cast<std::uint32_t>((points[i].y - box.min_y) * scale);
-    entries[i] = {hilbert_key(x, y), static_cast<std::uint32_t>(i)};
-  }
-  radix_sort(entries, pacer);
-
   std::vector<std::uint32_t> order(points.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = entries[i].index;
+  std::iota(order.begin(), order.end(), 0u);
+  sort_along_curve(points, order, pacer);
   return order;
 }
 

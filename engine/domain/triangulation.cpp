@@ -35,6 +35,19 @@ bool between(Point a, Point b, Point p) {
                     : (a.y < p.y) == (p.y < b.y) && p.y != a.y && p.y != b.y;
 }
 
+// Where a, b, c and p are on one circle: whether p counts as inside. The point that is raised most,
+// the last in lexicographic order, decides. p itself, raised, is outside. Another one takes p in
+// if and only if p is on its side of the line through the other two; p is never on that line.
+bool inside_when_raised(Point a, Point b, Point c, Point p) {
+  Point last = p;
+  for (const Point q : {a, b, c})
+    if (before(last, q)) last = q;
+  if (last == p) return false;
+  if (last == a) return orientation(p, b, c) > 0;
+  if (last == b) return orientation(a, p, c) > 0;
+  return orientation(a, b, p) > 0;
+}
+
 }  // namespace
 
 void Triangulation::build(const std::vector<Point>& points, std::uint32_t a, std::uint32_t b,
@@ -45,24 +58,56 @@ void Triangulation::build(const std::vector<Point>& points, std::uint32_t a, std
   vertex_of_point_.resize(n);
   face_of_.assign(n, kNone);
   for (Vertex v = 0; v < n; ++v) {
+    pacer_.step();
     points_[v] = points[id_[v]];
     vertex_of_point_[id_[v]] = v;
   }
-  faces_.reserve(2 * std::size_t{n});
+  faces_.reserve(2 * std::size_t{n});  // 2 n - 2 at most, the infinite ones with them
+  make_first_triangle(vertex_of(a), vertex_of(b), vertex_of(c));
 
-  // The order of insertion: by round, and in a round along the curve.
+  Vertex last = vertex_of(a);
+  for (const Vertex next : insertion_order()) {
+    pacer_.step();
+    if (exists(next)) continue;
+    // The walk begins at the nearest of those before it along the curve, if it is not far.
+    constexpr Vertex kLookBack = 16;
+    Vertex near = last;
+    for (Vertex back = next; back-- > 0 && next - back <= kLookBack;) {
+      if (!exists(back)) continue;
+      near = back;
+      break;
+    }
+    insert_delaunay(next, face_of_[near]);
+    if (exists(next)) last = next;
+  }
+  constraints_.reserve(faces_.capacity());
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    pacer_.step();
+    constraints_.push_back({{kNone, kNone, kNone}});
+  }
+}
+
+// All vertices: by round, and in a round along the curve.
+std::vector<Triangulation::Vertex> Triangulation::insertion_order() const {
+  const auto n = static_cast<std::uint32_t>(points_.size());
   std::array<std::uint32_t, kRounds + 1> start{};
   std::vector<std::uint8_t> round(n);
   for (Vertex v = 0; v < n; ++v) {
+    pacer_.step();
     round[v] = static_cast<std::uint8_t>(insertion_round(v));
     ++start[round[v] + 1];
   }
   for (unsigned r = 0; r < kRounds; ++r) start[r + 1] += start[r];
   std::vector<Vertex> sequence(n);
-  for (Vertex v = 0; v < n; ++v) sequence[start[round[v]]++] = v;
+  for (Vertex v = 0; v < n; ++v) {
+    pacer_.step();
+    sequence[start[round[v]]++] = v;
+  }
+  return sequence;
+}
 
-  // The first triangle, and the three faces around it.
-  Vertex u = vertex_of_point_[a], v = vertex_of_point_[b], w = vertex_of_point_[c];
+// The triangle of three vertices, and the three infinite faces around it.
+void Triangulation::make_first_triangle(Vertex u, Vertex v, Vertex w) {
   if (orientation(at(u), at(v), at(w)) < 0) std::swap(v, w);
   faces_.push_back({{u, v, w}, {}});
   faces_.push_back({{w, v, kInfinite}, {}});
@@ -74,22 +119,10 @@ void Triangulation::build(const std::vector<Point>& points, std::uint32_t a, std
     link(f, 1, pack(static_cast<std::uint32_t>(ccw(i) + 1), 0));
   }
   face_of_[u] = face_of_[v] = face_of_[w] = 0;
-  Vertex last = u;
-  for (const Vertex next : sequence) {
-    pacer_.step();
-    if (face_of_[next] != kNone) continue;
-    Vertex near = last;
-    for (Vertex back = next, tries = 0; back-- > 0 && tries < 16; ++tries)
-      if (face_of_[back] != kNone) {
-        near = back;
-        break;
-      }
-    insert_delaunay(next, face_of_[near]);
-    if (face_of_[next] != kNone) last = next;
-  }
-  constraints_.assign(faces_.size(), {{kNone, kNone, kNone}});
 }
 
+// Whether the face cannot stay where p becomes a vertex. An infinite face can, unless p sees its
+// hull edge from outside, or lies on it.
 inline bool Triangulation::conflicts(const Face& face, Point p) const {
   const Vertex a = face.vertex[0], b = face.vertex[1], c = face.vertex[2];
   if (c == kInfinite || b == kInfinite || a == kInfinite) [[unlikely]] {
@@ -102,7 +135,7 @@ inline bool Triangulation::conflicts(const Face& face, Point p) const {
   const int side = in_circle(q, r, s, p);
   if (side != 0) [[likely]]
     return side > 0;
-  return perturbed(q, r, s, p) > 0;
+  return inside_when_raised(q, r, s, p);
 }
 
 // Inserts v into the Delaunay triangulation, or makes it stand for the vertex that is there.
@@ -115,18 +148,20 @@ void Triangulation::insert_delaunay(Vertex v, std::uint32_t start) {
     if (id_[v] < id_[coincident]) std::swap(id_[v], id_[coincident]);
     return;
   }
-  // The faces in conflict hang together as a tree; the border comes out counter-clockwise.
-  dead_.clear();
+  find_cavity(p, first);
+  fill_cavity(v);
+}
+
+// Collects the faces in conflict with p in dead_, and what is around them in border_. The faces
+// are a tree, because no vertex is inside the cavity: so none is met twice, nothing need be marked,
+// and the border comes out counter-clockwise.
+void Triangulation::find_cavity(Point p, std::uint32_t first) {
+  dead_.assign(1, first);
   border_.clear();
-  stack_.clear();
-  dead_.push_back(first);
-  {
-    const Face& f = faces_[first];
-    stack_.push_back(f.neighbor[2]);
-    stack_.push_back(f.neighbor[1]);
-    stack_.push_back(f.neighbor[0]);
-  }
+  const Face& start = faces_[first];
+  stack_.assign({start.neighbor[2], start.neighbor[1], start.neighbor[0]});
   while (!stack_.empty()) {
+    pacer_.step();
     const std::uint32_t h = stack_.back();
     stack_.pop_back();
     const Face& f = faces_[h >> 2];
@@ -139,6 +174,10 @@ void Triangulation::insert_delaunay(Vertex v, std::uint32_t start) {
       border_.push_back({f.vertex[cw(i)], h});
     }
   }
+}
+
+// Replaces the cavity's faces by those from v to each edge of its border, which are two more.
+void Triangulation::fill_cavity(Vertex v) {
   const std::size_t count = border_.size();
   while (dead_.size() < count) {
     dead_.push_back(static_cast<std::uint32_t>(faces_.size()));
@@ -147,6 +186,7 @@ void Triangulation::insert_delaunay(Vertex v, std::uint32_t start) {
   std::uint32_t previous = dead_[count - 1];
   std::uint32_t current = dead_[0];
   for (std::size_t k = 0; k < count; ++k) {
+    pacer_.step();
     const std::uint32_t next = k + 1 < count ? dead_[k + 1] : dead_[0];
     const Vertex a = border_[k].from;
     const Vertex b = k + 1 < count ? border_[k + 1].from : border_[0].from;
@@ -183,8 +223,10 @@ std::uint32_t Triangulation::find_conflict(Point p, std::uint32_t start, Vertex&
     const double lq = lx * qy, ql = ly * qx, qr = qx * ry, rq = qy * rx;
     const double of_left = lq - ql, of_right = qr - rq;
     bool beyond_left = of_left < 0, beyond_right = of_right < 0;
-    if ((std::fabs(of_left) <= kOrientationError * (std::fabs(lq) + std::fabs(ql))) |
-        (std::fabs(of_right) <= kOrientationError * (std::fabs(qr) + std::fabs(rq)))) [[unlikely]] {
+    const bool left_unsure = std::fabs(of_left) <= orientation_error(lq, ql);
+    const bool right_unsure = std::fabs(of_right) <= orientation_error(qr, rq);
+    if (left_unsure | right_unsure) [[unlikely]] {
+      // Where p is a vertex of the face, one of the two is 0.
       for (const Vertex v : face.vertex)
         if (at(v) == p) {
           coincident = v;
@@ -199,21 +241,6 @@ std::uint32_t Triangulation::find_conflict(Point p, std::uint32_t start, Vertex&
     l = beyond_left ? l : q;
     if (faces_[e.face].vertex[e.i] == kInfinite) return e.face;
   }
-}
-
-// Source: CGAL's Triangulation_2::side_of_oriented_circle.
-int Triangulation::perturbed(Point a, Point b, Point c, Point p) const {
-  const Point* sorted[4] = {&a, &b, &c, &p};
-  std::sort(sorted, sorted + 4, [](const Point* q, const Point* r) { return before(*q, *r); });
-  for (int i = 3; i > 0; --i) {
-    if (sorted[i] == &p) return -1;
-    int side = 0;
-    if (sorted[i] == &c) side = orientation(a, b, p);
-    if (sorted[i] == &b) side = orientation(a, p, c);
-    if (sorted[i] == &a) side = orientation(p, b, c);
-    if (side != 0) return side;
-  }
-  return -1;
 }
 
 std::uint32_t Triangulation::new_face() {
@@ -236,6 +263,7 @@ Triangulation::Edge Triangulation::find_edge(Vertex u, Vertex v) const {
     turning[k] = {face_of_[center[k]], index(face_of_[center[k]], center[k])};
   const std::uint32_t first[2] = {turning[0].face, turning[1].face};
   for (int k = 0;; k ^= 1) {
+    pacer_.step();
     // The face of `turning` has its center as vertex i.
     auto& [f, i] = turning[k];
     const Face& face = faces_[f];
@@ -281,12 +309,13 @@ void Triangulation::flip(Edge e) {
   if (b != kInfinite) face_of_[b] = s;
 }
 
-// C. Lawson's flips until every edge without a constraint is Delaunay again.
-void Triangulation::restore(std::vector<std::uint32_t>& suspects) {
-  while (!suspects.empty()) {
+// C. Lawson's flips until every edge without a constraint is Delaunay again; stack_ has those that
+// may not be.
+void Triangulation::restore() {
+  while (!stack_.empty()) {
     pacer_.step();
-    const Edge e = unpack(suspects.back());
-    suspects.pop_back();
+    const Edge e = unpack(stack_.back());
+    stack_.pop_back();
     if (constraint(e) != kNone) continue;
     const Edge m = mirror(e);
     Edge side = e, other = m;
@@ -294,8 +323,8 @@ void Triangulation::restore(std::vector<std::uint32_t>& suspects) {
     if (apex(side) == kInfinite || !conflicts(faces_[other.face], at(apex(side)))) continue;
     flip(e);
     for (const Edge f : {e, m}) {
-      suspects.push_back(pack(f.face, ccw(f.i)));
-      suspects.push_back(pack(f.face, cw(f.i)));
+      stack_.push_back(pack(f.face, ccw(f.i)));
+      stack_.push_back(pack(f.face, cw(f.i)));
     }
   }
 }
@@ -303,12 +332,12 @@ void Triangulation::restore(std::vector<std::uint32_t>& suspects) {
 void Triangulation::unconstrain(Edge e) {
   constrain(e, kNone);
   stack_.assign(1, pack(e.face, e.i));
-  restore(stack_);
+  restore();
 }
 
-// Digs along the segment by flips at u, and repairs what is left on both sides.
-// Source: Triangle's constrainededge() and delaunayfixup(). Here a half-edge goes from vertex
-// ccw(i) to cw(i).
+// Digs along the segment by flips at u, and repairs what is left on both sides. Faces may be
+// clockwise meanwhile. Source: Triangle's constrainededge() and delaunayfixup(), whose recursion is
+// a stack here, because it may be as deep as the edge crosses faces.
 Triangulation::Edge Triangulation::insert_edge(Vertex u, Vertex v, Edge first) {
   const auto origin_previous = [this](Edge e) {
     const Edge m = mirror(e);
@@ -338,6 +367,8 @@ Triangulation::Edge Triangulation::insert_edge(Vertex u, Vertex v, Edge first) {
   }
 }
 
+// Makes the polygon Delaunay that has edge e, at u, and lies on the dug side: `left_side` of the
+// segment or the other.
 void Triangulation::fix_up(Edge e, bool left_side) {
   stack_.assign(1, pack(e.face, e.i));
   while (!stack_.empty()) {
@@ -356,7 +387,7 @@ void Triangulation::fix_up(Edge e, bool left_side) {
   }
 }
 
-// The visibility walk with a random choice, as constraints may lead a plain one in circles.
+// The stochastic walk of locate.cpp.
 Triangulation::Place Triangulation::locate(Point p, std::uint32_t start) const {
   std::uint32_t random = 2463534242u;
   std::uint32_t f = start;
@@ -394,55 +425,47 @@ Triangulation::Vertex Triangulation::insert(Point p, std::uint32_t id, const Pla
   points_.push_back(p);
   id_.push_back(id);
   face_of_.push_back(kNone);
-  const std::uint32_t f = place.edge.face;
+  if (place.at == At::kEdge) {
+    split_edge(place.edge, v);
+  } else {
+    split_face(place.edge.face, v);
+  }
   stack_.clear();
-  const auto split_face = [this, v](std::uint32_t face) {
-    const Face old = faces_[face];
-    const OnEdges on = constraints_[face];
-    const std::uint32_t part[3] = {face, new_face(), new_face()};
-    for (int i = 0; i < 3; ++i) {
-      const Vertex a = old.vertex[ccw(i)], b = old.vertex[cw(i)];
-      Face& to = faces_[part[i]];
-      to.vertex[0] = v;
-      to.vertex[1] = a;
-      to.vertex[2] = b;
-      to.neighbor[1] = pack(part[ccw(i)], 2);
-      to.neighbor[2] = pack(part[cw(i)], 1);
-      constraints_[part[i]] = {{on.edge[i], kNone, kNone}};
-      if (a != kInfinite) face_of_[a] = part[i];
-    }
-    for (int i = 0; i < 3; ++i) link(part[i], 0, old.neighbor[i]);
-    face_of_[v] = face;
-  };
-  if (place.at != At::kEdge) {
-    split_face(f);
-    Edge e{f, 0};
-    for (int i = 0; i < 3; ++i) {
-      stack_.push_back(pack(e.face, 0));
-      e.face = faces_[e.face].neighbor[1] >> 2;
-    }
-    restore(stack_);
-    return v;
-  }
-  // Splits the near face, which leaves a flat one at the edge, and flips that away.
-  const std::uint32_t on = constraint(place.edge);
-  const Vertex from = right(place.edge), to = left(place.edge);
-  if (on != kNone) constrain(place.edge, kNone);
-  split_face(f);
-  flip(find_edge(from, to));
-  if (on != kNone) {
-    constrain(find_edge(from, v), on);
-    constrain(find_edge(v, to), on);
-  }
-  const std::uint32_t around = face_of_[v];
-  Edge turn{around, index(around, v)};
+  const std::uint32_t first = face_of_[v];
+  Edge turn{first, index(first, v)};
   do {
     stack_.push_back(pack(turn.face, turn.i));
-    const Edge n = mirror({turn.face, ccw(turn.i)});
-    turn = {n.face, ccw(n.i)};
-  } while (turn.face != around);
-  restore(stack_);
+    const Edge next = mirror({turn.face, ccw(turn.i)});
+    turn = {next.face, ccw(next.i)};
+  } while (turn.face != first);
+  restore();
   return v;
+}
+
+void Triangulation::split_face(std::uint32_t face, Vertex v) {
+  const Face old = faces_[face];
+  const OnEdges on = constraints_[face];
+  const std::uint32_t part[3] = {face, new_face(), new_face()};
+  for (int i = 0; i < 3; ++i) {
+    const Vertex a = old.vertex[ccw(i)], b = old.vertex[cw(i)];
+    faces_[part[i]] = {{v, a, b}, {kNone, pack(part[ccw(i)], 2), pack(part[cw(i)], 1)}};
+    constraints_[part[i]] = {{on.edge[i], kNone, kNone}};
+    if (a != kInfinite) face_of_[a] = part[i];
+  }
+  for (int i = 0; i < 3; ++i) link(part[i], 0, old.neighbor[i]);
+  face_of_[v] = face;
+}
+
+// Splits the face on the near side, which leaves a flat one at the edge, and flips that away.
+void Triangulation::split_edge(const Edge& edge, Vertex v) {
+  const std::uint32_t on = constraint(edge);
+  const Vertex from = right(edge), to = left(edge);
+  if (on != kNone) constrain(edge, kNone);
+  split_face(edge.face, v);
+  flip(find_edge(from, to));
+  if (on == kNone) return;
+  constrain(find_edge(from, v), on);
+  constrain(find_edge(v, to), on);
 }
 
 }  // namespace weft

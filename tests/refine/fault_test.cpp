@@ -62,13 +62,6 @@ void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   std::free(p);
 }
 
-#ifdef __SANITIZE_ADDRESS__
-// CGAL loses a block of faces where memory runs out between taking it and noting it.
-extern "C" const char* __lsan_default_suppressions() {
-  return "leak:CGAL::Compact_container";
-}
-#endif
-
 namespace weft {
 namespace {
 
