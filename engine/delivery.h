@@ -24,6 +24,7 @@ class Delivery {
   // Gives the chunks their numbers, and the sink the chunks.
   std::optional<Error> send(Part&& part) {
     statistics_.add(part.statistics);
+    if (summary_.unrefined.without_excuse() == 0) summary_.unrefined_at = part.unrefined_at;
     summary_.unrefined += part.unrefined;
     summary_.edges += part.edges;
     for (Chunk& chunk : part.chunks) {

@@ -49,7 +49,7 @@ std::vector<HandedOn> triangles_handed_on(const Mesh& mesh, const Slots& slots) 
 
 template <class AreaBound>
 PartBuilder<AreaBound>::PartBuilder(const Mesh& mesh, const Domain& domain,
-                                    const AcuteCorners& corners, AreaBound area,
+                                    const AcuteCorners& corners, AreaBound area, bool cut_off,
                                     const ExecutionContext& context)
     : mesh_(mesh),
       domain_(domain),
@@ -57,6 +57,7 @@ PartBuilder<AreaBound>::PartBuilder(const Mesh& mesh, const Domain& domain,
       has_regions_(std::any_of(domain.regions.begin(), domain.regions.end(),
                                [](const Region& r) { return r.id != 0; })),
       area_(std::move(area)),
+      cut_off_(cut_off),
       context_(context) {}
 
 template <class AreaBound>
@@ -98,15 +99,9 @@ void PartBuilder<AreaBound>::add_triangle(const Triangle& triangle) {
   region_bound_[block_->size] = region.max_area;
   block_->add(mesh_.vertices[v[0]], mesh_.vertices[v[1]], mesh_.vertices[v[2]]);
   if (has_regions_) chunk_.regions.push_back(region.id);
-  if (triangle.flags <= 7) [[likely]] {
-    // Neither bad nor excused.
-  } else if (triangle.badness() != kGood) {
-    ++part_.unrefined.budget;
-  } else if (triangle.excuse() == Excuse::kSmallInputAngle) {
-    ++part_.unrefined.small_input_angle;
-  } else if (triangle.excuse() == Excuse::kEdgeFloor) {
-    ++part_.unrefined.edge_floor;
-  }
+  const bool good = triangle.flags <= 7;  // neither bad nor excused
+  if (!good) [[unlikely]]
+    count_unrefined(triangle);
   if (triangle.segment_bits() == 0) [[likely]]
     return;
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -119,6 +114,27 @@ void PartBuilder<AreaBound>::add_triangle(const Triangle& triangle) {
     chunk_.edges.push_back({mesh_.number_of(a), mesh_.number_of(b), s.segment, s.marker});
     bytes_ += sizeof(Chunk::Edge);
     ++part_.edges;
+  }
+}
+
+template <class AreaBound>
+void PartBuilder<AreaBound>::count_unrefined(const Triangle& triangle) {
+  Unrefined& count = part_.unrefined;
+  const bool left = triangle.badness() != kGood;
+  if (left && cut_off_) {
+    ++count.budget;
+  } else if (triangle.excuse() == Excuse::kSmallInputAngle) {
+    ++count.small_input_angle;
+  } else if (triangle.excuse() == Excuse::kEdgeFloor) {
+    ++count.edge_floor;
+  } else {
+    if (count.without_excuse() == 0) {
+      part_.unrefined_at =
+          centroid(mesh_.vertices[triangle.vertex[0]], mesh_.vertices[triangle.vertex[1]],
+                   mesh_.vertices[triangle.vertex[2]]);
+    }
+    ++(left ? count.streaming : count.precision);
+    count.too_large += triangle.too_large();
   }
 }
 

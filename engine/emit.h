@@ -32,6 +32,7 @@ struct Part {
   std::vector<Chunk> chunks;
   QualityStatistics statistics;
   Unrefined unrefined;
+  Point unrefined_at;  // as Summary::unrefined_at, of this part
   std::uint64_t edges = 0;
 
   std::uint64_t bytes() const;
@@ -49,12 +50,13 @@ std::vector<HandedOn> triangles_handed_on(const Mesh& mesh, const Slots& slots);
 
 // Builds one part. `AreaBound` gives the bounds for the size histogram: it has bounds_at, as
 // ConstantArea and MappedArea do. REQUIRES: what is added is final, and all vertices of triangles
-// have their numbers.
+// have their numbers. A triangle that is still bad is counted for the budget if refinement was
+// `cut_off` by it; if not, it is one that was left for want of room while the mesh was streamed.
 template <class AreaBound>
 class PartBuilder {
  public:
   PartBuilder(const Mesh& mesh, const Domain& domain, const AcuteCorners& corners, AreaBound area,
-              const ExecutionContext& context);
+              bool cut_off, const ExecutionContext& context);
 
   // About so many will be added: without it, vectors take up to twice what they need.
   void expect(std::size_t vertices, std::size_t triangles);
@@ -68,6 +70,7 @@ class PartBuilder {
   std::optional<Part> finish();
 
  private:
+  void count_unrefined(const Triangle& triangle);
   void make_room(std::size_t bytes);
   void close_chunk();
   void add_block();
@@ -77,6 +80,7 @@ class PartBuilder {
   const AcuteCorners& corners_;
   const bool has_regions_;
   AreaBound area_;
+  const bool cut_off_;
   const ExecutionContext& context_;
   bool stopped_ = false;
   Part part_;

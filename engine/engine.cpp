@@ -7,6 +7,7 @@
 #include <memory>
 #include <new>
 
+#include "engine/bounds_error.h"
 #include "engine/domain/domain.h"
 #include "engine/mesh_run.h"
 #include "engine/refine/area_bound.h"
@@ -138,6 +139,7 @@ class Job {
     auto domain = triangulate(request_.pslg, context_);
     if (!domain) return domain.error();
     domain_ = std::move(*domain);
+    summary_.merging = domain_.merging;
     for (Point p : domain_.vertices) summary_.box.add(p);
     if (auto error = check_extent(summary_.box)) return error;
     summary_.triangulate_seconds = clock_.lap();
@@ -211,6 +213,10 @@ class Job {
     if (wants_cap()) plan.max_triangles = budget.max_triangles;
     if (auto error = run_mesh(plan, area, sink_, context_, summary_)) return tl::unexpected(*error);
     summary_.engine_seconds += summary_.triangulate_seconds + summary_.size_seconds;
+    if (!request_.allow_unrefined) {
+      if (auto error = bounds_error(summary_, request_.min_angle_deg))
+        return tl::unexpected(*error);
+    }
     context_.enter(Stage::kDone);
     return summary_;
   }

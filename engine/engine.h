@@ -43,13 +43,17 @@ struct MeshRequest {
   double min_angle_deg = 20;
   // No edge shorter than this is made, in units. 0: only the floor of double precision.
   double min_edge = 0;
+  // Whether a mesh with triangles that miss a bound without excuse (Unrefined::without_excuse) is a
+  // result. If not, it ends with kBoundsNotMet, after its chunks.
+  bool allow_unrefined = false;
   // Triangles of the final mesh that a leaf of the quadtree holds at most. About 16,000 are
   // fastest; another number gives another mesh. Not on the wire: for tests and measurements.
   double leaf_triangles = 16'000;
 };
 
 // Computes in the context's arena; calls the sink on the calling thread. Errors carry the field
-// path of the request as the wire spells it. Never throws.
+// path of the request as the wire spells it; what the sink took before an error is no mesh. Never
+// throws.
 Result<Summary> generate_mesh(const MeshRequest& request, ChunkSink& sink,
                               ExecutionContext& context);
 

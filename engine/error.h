@@ -38,6 +38,9 @@ enum class ErrorCode {
   // The request was stopped from outside.
   kDeadlineExceeded,
   kCancelled,
+  // The mesh was made and is not what was asked for: a triangle misses a bound though neither an
+  // angle of the input nor the caller's own budget or shortest edge excuses it.
+  kBoundsNotMet,
   // The engine is wrong.
   kInternal,
 };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/chunk.h"
+#include "engine/domain/domain.h"
 
 namespace weft {
 
@@ -14,16 +15,27 @@ namespace weft {
 // reason that holds.
 struct Unrefined {
   std::uint64_t small_input_angle = 0;  // its smallest angle is forced by two segments that meet
-  std::uint64_t edge_floor = 0;         // splitting it would make edges below the floor
+  std::uint64_t edge_floor = 0;         // splitting it would make edges below MeshRequest::min_edge
   std::uint64_t budget = 0;             // max_triangles was reached
+  std::uint64_t precision = 0;          // splitting it would make edges where double precision ends
+  std::uint64_t streaming = 0;          // what is around it had been sent when it was to be split
+  // Of the last two, those that are larger than their bound; the others are below the angle alone.
+  std::uint64_t too_large = 0;
 
   Unrefined& operator+=(const Unrefined& other) {
     small_input_angle += other.small_input_angle;
     edge_floor += other.edge_floor;
     budget += other.budget;
+    precision += other.precision;
+    streaming += other.streaming;
+    too_large += other.too_large;
     return *this;
   }
-  std::uint64_t total() const { return small_input_angle + edge_floor + budget; }
+  std::uint64_t total() const {
+    return small_input_angle + edge_floor + budget + precision + streaming;
+  }
+  // Those that neither the input nor the request excuses.
+  std::uint64_t without_excuse() const { return precision + streaming; }
 };
 
 struct Summary {
@@ -44,6 +56,10 @@ struct Summary {
   // there is no bound.
   std::array<std::uint64_t, 10> size_histogram{};
   Unrefined unrefined;
+  // The centroid of the first triangle, in the order of the chunks, that misses a bound without
+  // excuse; meaningless if there is none.
+  Point unrefined_at;
+  Merging merging;  // of the input, before refinement
 
   // Seconds of wall time, one stage after the other.
   double triangulate_seconds = 0;

@@ -49,6 +49,17 @@ struct Region {
   double max_area = std::numeric_limits<double>::infinity();
 };
 
+// What was merged because it lay nearer together than the tolerance.
+struct Merging {
+  double tolerance = 0;        // the larger of Pslg::snap and the precision floor
+  std::uint64_t points = 0;    // input points that moved onto another vertex
+  std::uint64_t segments = 0;  // input segments led through a vertex that is not exactly on them
+  double farthest = 0;         // the largest distance that a point or a segment moved
+  Point farthest_at;           // where that is; meaningless if farthest is 0
+  std::uint64_t vanished_faces = 0;  // bounded faces of the input that the merging closed
+  Point vanished_at;                 // in one of them; meaningless if there is none
+};
+
 struct Domain {
   struct Triangle {
     std::uint32_t vertex[3];      // counter-clockwise
@@ -63,6 +74,7 @@ struct Domain {
   std::vector<Triangle> triangles;
   std::vector<Subsegment> subsegments;
   std::vector<Region> regions;  // regions[0] is the default region
+  Merging merging = {};
 
   std::uint64_t bytes() const {
     return vertices.capacity() * sizeof(Point) + input_point.capacity() * sizeof(std::uint32_t) +
@@ -77,7 +89,8 @@ struct Domain {
 //   kBadCoordinate      domain.points[i].x or .y, the same of domain.holes[i], domain.regions[i]
 //   kIndexOutOfRange    domain.segments[i].a or .b
 //   kZeroLengthSegment  domain.segments[i]
-//   kBadOption          domain.regions[i].max_area: not finite or not above 0
+//   kBadOption          domain.regions[i].max_area: not finite or not above 0; domain.snap: not
+//                       finite or below 0
 //   kTooFewPoints, kCollinearPoints                domain.points
 //   kSeedOutsideDomain, kSeedOnSegment             domain.holes[i], domain.regions[i]
 //   kEmptyDomain        domain.segments where no face is enclosed, domain.holes where they carve

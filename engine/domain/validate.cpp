@@ -74,6 +74,12 @@ std::optional<Error> check_counts(const Pslg& pslg) {
   return {};
 }
 
+std::optional<Error> check_snap(double snap) {
+  if (std::isfinite(snap) && snap >= 0) return {};
+  return Error{ErrorCode::kBadOption, "domain.snap",
+               text("the snap distance is ", snap, "; it must be finite and 0 or more")};
+}
+
 std::optional<Error> check_span(const std::vector<Point>& points, Pacer& pacer) {
   const Span span = spanning_points(points, pacer);
   if (span.size < 2 || points.size() < 3)
@@ -114,6 +120,7 @@ std::optional<Error> validate(const Pslg& pslg, Pacer& pacer) {
     pacer.step();
     if (auto error = check_region(pslg.regions[i], i)) return error;
   }
+  if (auto error = check_snap(pslg.snap)) return error;
   return check_span(pslg.points, pacer);
 }
 

@@ -22,8 +22,8 @@ inline constexpr double kMaxMagnitude = 1e50;
 inline constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 28;
 inline constexpr std::uint64_t kMaxSegments = std::uint64_t{1} << 30;
 
-// The first offender, in the order: points, segments, holes, regions, then the points as a whole.
-// Nothing where the PSLG is sound. Throws Stopped.
+// The first offender, in the order: points, segments, holes, regions, snap, then the points as a
+// whole. Nothing where the PSLG is sound. Throws Stopped.
 std::optional<Error> validate(const Pslg& pslg, Pacer& pacer);
 
 // The first points that are distinct (2) and not on a line (3); fewer where there are none.

@@ -52,11 +52,18 @@ inline constexpr Badness kLarge = 2;
 inline constexpr Badness kWorst = 255;
 
 // Why a triangle stays bad.
-enum class Excuse : std::uint32_t { kNone = 0, kSmallInputAngle = 1, kEdgeFloor = 2 };
+enum class Excuse : std::uint32_t {
+  kNone = 0,
+  kSmallInputAngle = 1,  // two segments of the input force it
+  kEdgeFloor = 2,        // the caller's own floor on edges
+  kPrecision = 3,        // double precision ends: nobody asked for that
+};
 
 struct alignas(32) Triangle {
   std::uint32_t vertex[3];
-  std::uint32_t flags;  // bits 0-2: edge i lies on a segment; 3: dead; 4-5: Excuse; 8-15: Badness
+  // Bits 0-2: edge i lies on a segment; 3: dead; 4-5: Excuse; 6: excused though too large; 8-15:
+  // Badness.
+  std::uint32_t flags;
   HalfEdge neighbor[3];
   std::uint32_t region;  // index into Domain::regions
 
@@ -65,9 +72,15 @@ struct alignas(32) Triangle {
   bool dead() const { return flags >> 3 & 1; }
   Badness badness() const { return flags >> 8; }
   Excuse excuse() const { return static_cast<Excuse>(flags >> 4 & 3); }
-  // Each forgets what the other said: an excused triangle is no longer to be refined.
+  // Whether a triangle that is bad or excused is larger than its bound.
+  bool too_large() const { return badness() >= kLarge || (flags >> 6 & 1); }
+  // Each forgets what the other said, but for too_large: an excused triangle is no longer to be
+  // refined.
   void set_badness(Badness b) { flags = (flags & 7) | b << 8; }
-  void set_excuse(Excuse e) { flags = (flags & 7) | static_cast<std::uint32_t>(e) << 4; }
+  void set_excuse(Excuse e) {
+    const std::uint32_t large = too_large() ? 1u << 6 : 0;
+    flags = (flags & 7) | static_cast<std::uint32_t>(e) << 4 | large;
+  }
   void die() { flags = 1u << 3; }
 };
 static_assert(sizeof(Triangle) == 32);

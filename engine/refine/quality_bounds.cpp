@@ -5,7 +5,7 @@
 
 namespace weft {
 
-QualityBounds QualityBounds::from(double min_angle_deg, double min_length, double precision) {
+QualityBounds QualityBounds::from(double min_angle_deg, double min_edge, double precision) {
   // The C library's sine may differ in its last bit from machine to machine; this one does not.
   constexpr double kRadians = 3.14159265358979323846 / 180;
   const double sine = Sleef_cinz_sind1_u10purec(min_angle_deg * kRadians);
@@ -14,8 +14,9 @@ QualityBounds QualityBounds::from(double min_angle_deg, double min_length, doubl
   bounds.sin2 = sine * sine;
   // Üngör's off-centre: the apex over the shortest edge whose angle is the bound, a little inside.
   bounds.off_centre = min_angle_deg > 0 ? 0.475 * std::sqrt((1 + cosine) / (1 - cosine)) : 0;
+  bounds.min_edge2 = min_edge * min_edge;
   bounds.precision2 = precision * precision;
-  bounds.min_length2 = std::max(min_length * min_length, bounds.precision2);
+  bounds.min_length2 = std::max(bounds.min_edge2, bounds.precision2);
   return bounds;
 }
 

@@ -24,12 +24,13 @@ namespace weft {
 struct QualityBounds {
   double sin2 = 0;         // of the minimum angle
   double off_centre = 0;   // see steiner_point.h
-  double min_length2 = 0;  // squared floor on the length of new edges
+  double min_edge2 = 0;    // squared floor on the length of new edges that the caller asks for
   double precision2 = 0;   // squared length below which double precision ends
+  double min_length2 = 0;  // the larger of the two
 
-  // No edge below min_length, nor below `precision`, is made. REQUIRES: 0 <= min_angle_deg <=
+  // No edge below min_edge, nor below `precision`, is made. REQUIRES: 0 <= min_angle_deg <=
   // kMaxMinAngleDeg.
-  static QualityBounds from(double min_angle_deg, double min_length, double precision);
+  static QualityBounds from(double min_angle_deg, double min_edge, double precision);
 };
 
 // Squared circumradius of a counter-clockwise triangle.

@@ -164,9 +164,19 @@ class Refiner {
         defer(t);
         return;
       case Outcome::kTooClose:
-        triangle.set_excuse(Excuse::kEdgeFloor);
+        triangle.set_excuse(refusal());
         return;
     }
+  }
+
+  // Why the star of a point was refused, by the edges that it would have had.
+  [[gnu::noinline]] Excuse refusal() const {
+    const auto& points = cavity_.ring().points;
+    const auto end = points.begin() + cavity_.ring().size;
+    const auto nearest = std::min_element(
+        points.begin(), end,
+        [](const RingPoint& a, const RingPoint& b) { return a.length2 < b.length2; });
+    return nearest->length2 < quality_.min_edge2 ? Excuse::kEdgeFloor : Excuse::kPrecision;
   }
 
   // The Steiner point of t encroaches upon segments: split them and let t try again, if it is
@@ -182,7 +192,7 @@ class Refiner {
     } else if (segments_deferred_) {
       defer(t);
     } else {
-      after.set_excuse(Excuse::kEdgeFloor);
+      after.set_excuse(segments_refused_);
     }
   }
 
@@ -385,6 +395,7 @@ class Refiner {
   bool split_queued_segments() {
     bool any = false;
     segments_deferred_ = false;
+    segments_refused_ = Excuse::kNone;
     while (!segments_.empty() && !full() && !stopped_) {
       tick();
       const SegmentEdge s = segments_.back();
@@ -403,6 +414,7 @@ class Refiner {
       const Outcome outcome = split_segment(s.triangle, s.edge);
       any |= outcome == Outcome::kInserted;
       if (outcome == Outcome::kNotOwned) defer_segment(s);
+      if (outcome == Outcome::kTooClose) segments_refused_ = std::max(segments_refused_, refusal());
     }
     return any;
   }
@@ -512,6 +524,9 @@ class Refiner {
   std::vector<BadTriangle> handed_over_;
   std::vector<Badness> judged_;  // of the triangle at each edge of the ring
   bool segments_deferred_ = false;
+  // Why segments of the last call of split_queued_segments were not split; precision over the
+  // caller's floor.
+  Excuse segments_refused_ = Excuse::kNone;
   std::optional<Error> stopped_;
   std::uint32_t until_poll_ = 1;
   std::int64_t added_ = 0;  // triangles that the context does not know of

