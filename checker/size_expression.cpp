@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "checker/text.h"
 
@@ -86,8 +87,9 @@ class UnaryRun {
 };
 
 // Makes of a source what muParser reads as the grammar means it: what the grammar does not have is
-// refused, as muParser would take more; runs of unary operators, which it does not take, are
-// folded; white space is blanks. Every token keeps its column.
+// refused, as muParser would take more, such as a < b < c; runs of unary operators, which it does
+// not take, are folded; white space is blanks, but a function moves up to its parenthesis. All
+// other tokens keep their columns.
 class Translator {
  public:
   explicit Translator(std::string_view source) : source_(source), text_(source.size(), ' ') {}
@@ -95,6 +97,7 @@ class Translator {
   tl::expected<std::string, std::string> translate() {
     UnaryRun run;
     bool operand_next = true;  // so that + - ! are unary
+    std::string_view name;     // the last token, if it is one
     std::size_t i = 0;
     while (i < source_.size()) {
       if (std::string_view(" \t\n\r").find(source_[i]) != std::string_view::npos) {
@@ -104,6 +107,13 @@ class Translator {
       const auto length = token_length(i);
       if (!length) return tl::unexpected(length.error());
       const std::string_view token = source_.substr(i, *length);
+      if (chains(token)) return tl::unexpected(say("comparisons do not chain, at column ", i + 1));
+      if (token == "(" && !name.empty()) {
+        text_.replace(static_cast<std::size_t>(name.data() - source_.data()), name.size(),
+                      name.size(), ' ');
+        text_.replace(i - name.size(), name.size(), name);
+      }
+      name = is_letter(token[0]) ? token : std::string_view();
       if (operand_next && (token == "+" || token == "-" || token == "!")) {
         run.add(token[0]);
       } else {
@@ -121,6 +131,20 @@ class Translator {
   }
 
  private:
+  // Whether the token is a comparison of what a comparison gives, without parentheses between.
+  bool chains(std::string_view token) {
+    if (token == "(") compared_.push_back(false);
+    if (token == ")" && compared_.size() > 1) compared_.pop_back();
+    if (token == "&&" || token == "||" || token == "?" || token == ":" || token == ",")
+      compared_.back() = false;
+    if (token != "<" && token != "<=" && token != ">" && token != ">=" && token != "==" &&
+        token != "!=")
+      return false;
+    const bool twice = compared_.back();
+    compared_.back() = true;
+    return twice;
+  }
+
   tl::expected<std::size_t, std::string> token_length(std::size_t i) const {
     const auto refuse = [i](const auto&... parts) {
       return tl::unexpected(say(parts..., " at column ", i + 1));
@@ -151,6 +175,7 @@ class Translator {
 
   std::string_view source_;
   std::string text_;
+  std::vector<bool> compared_{false};  // per open parenthesis: whether its operand is a comparison
 };
 
 // muParser with nothing but the grammar's functions, constants and unary operators. The binary

@@ -66,7 +66,6 @@ TEST(SizeExpression, ComparesToZeroOrOne) {
   EXPECT_EQ(value("x>=3"), 1);
   EXPECT_EQ(value("x==3"), 1);
   EXPECT_EQ(value("x!=3"), 0);
-  EXPECT_EQ(value("5>4>3"), 0);
   EXPECT_EQ(value("1+1<3"), 1);
   EXPECT_EQ(value("(x<y)+(y<x)"), 1);
 }
@@ -141,6 +140,18 @@ TEST(SizeExpression, YieldsWhatArithmeticYields) {
 
 TEST(SizeExpression, AcceptsWhiteSpaceAnywhereBetweenTokens) {
   EXPECT_EQ(value(" x\t+\n y "), 8);
+  EXPECT_EQ(value("2*hypot (x,4) - sqrt\n\n ( 4 )"), 8);
+  EXPECT_EQ(value("- sqrt \t( 4 ) + -!abs  (1)"), -2);
+}
+
+TEST(SizeExpression, DoesNotChainComparisons) {
+  for (const std::string_view source :
+       {"x < y == 1", "0 < x < 5", "1 == x == y", "(x) < (y) >= 1", "x < 1 ? 1 : 2 < 3 != 4"})
+    EXPECT_FALSE(SizeExpression::parse(source)) << source;
+  EXPECT_EQ(value("(x < y) == 1"), 1);
+  EXPECT_EQ(value("1 == (x < y)"), 1);
+  EXPECT_EQ(value("x < y && y > x || 1 == 2"), 1);
+  EXPECT_EQ(value("x > y ? x < 1 : min(x < y, 1 < 2) == 1"), 1);
 }
 
 TEST(SizeExpression, RefusesWhatTheGrammarDoesNotHave) {
