@@ -36,6 +36,7 @@
 
 #include "engine/domain/predicates.h"
 #include "engine/geometry.h"
+#include "engine/refine/lens.h"
 #include "engine/refine/mesh.h"
 #include "engine/refine/ownership.h"
 
@@ -92,9 +93,10 @@ class Cavity {
     owner_ = owner;
   }
 
-  // The cavity of `p`, which must lie in the circumdisk of `seed`. REQUIRES: the seed's vertices
-  // are owned.
-  Growth grow_from_triangle(std::uint32_t seed, Point p) {
+  // The cavity of `p`, which must lie in the circumdisk of `seed` and out of the segments' lenses
+  // (lens.h). REQUIRES: the seed's vertices are owned.
+  Growth grow_from_triangle(std::uint32_t seed, Point p, double lens) {
+    lens_ = lens;
     const Triangle& t = triangles_[seed];
     const __m128d origin = _mm_set_pd(p.y, p.x);
     const End a = end_at(t.vertex[0], origin);
@@ -322,7 +324,7 @@ class Cavity {
   // Notes the segment that a constrained edge lies on, if p encroaches upon it.
   [[gnu::noinline, gnu::cold]] void watch(const RingPoint& start, const Frame& edge) {
     const RingPoint& end = edge.end;
-    if (start.x * end.x + start.y * end.y < 0 || end.cross <= 0) {
+    if (end.cross <= 0 || in_lens(start.x, start.y, end.x, end.y, lens_)) {
       encroached_.push_back(
           {triangle_of(edge.inside), edge_of(edge.inside), start.vertex, end.vertex});
     }
@@ -390,6 +392,7 @@ class Cavity {
   std::uint32_t foreign_ = 0;  // not 0 where the cavity has slots of other owners
   Ring ring_;
   std::uint32_t far_end_ = 0;
+  double lens_ = kDiametralDisk;
   std::vector<SegmentEdge> encroached_;
   std::uint64_t exact_predicates_ = 0;
 };

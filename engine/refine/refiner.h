@@ -5,7 +5,7 @@
 //
 //   Refiner<OwnsAll, ConstantArea> refiner(setting, quality, ConstantArea(1e-3));
 //   refiner.begin(slots, OwnsAll{}, box);
-//   refiner.queue_all();                              // segments first, then bad triangles
+//   refiner.queue_all();                              // the bad triangles
 //   std::optional<Error> stopped = refiner.run();     // nothing: all is refined or excused
 //
 // What makes it fast, each with its cost measured at 1 M triangles: no point location (a bad
@@ -36,6 +36,7 @@
 #include "engine/refine/area_bound.h"
 #include "engine/refine/bad_triangles.h"
 #include "engine/refine/cavity.h"
+#include "engine/refine/lens.h"
 #include "engine/refine/mesh.h"
 #include "engine/refine/ownership.h"
 #include "engine/refine/quality_bounds.h"
@@ -92,11 +93,9 @@ class Refiner {
   }
   void queue(const SegmentEdge& left) { segments_.push_back(left); }
 
-  // Splits the segments that are encroached upon, then judges every triangle and queues the bad
-  // ones. REQUIRES: all triangles lie in the slots of this task.
+  // Judges every triangle and queues the bad ones. REQUIRES: all triangles lie in the slots of this
+  // task.
   std::optional<Error> queue_all() {
-    for_all_triangles([&](std::uint32_t t) { queue_encroached_segments(t); });
-    split_queued_segments();
     for_all_triangles([&](std::uint32_t t) { judge(t); });
     return stopped_;
   }
@@ -198,7 +197,7 @@ class Refiner {
 
   Outcome insert_in_triangle(std::uint32_t t, Point p) {
     while (true) {
-      switch (cavity_.grow_from_triangle(t, p)) {
+      switch (cavity_.grow_from_triangle(t, p, lens_of(t))) {
         case Growth::kOverflow:
           enlarge();
           continue;
@@ -220,11 +219,20 @@ class Refiner {
     return Outcome::kInserted;
   }
 
+  // What encroaches upon a segment for the triangle's sake.
+  double lens_of(std::uint32_t t) const {
+    return mesh_.triangles[t].badness() == kSkinny ? quality_.lens : kDiametralDisk;
+  }
+
+  std::uint32_t apex_of(HalfEdge h) const {
+    return mesh_.triangles[triangle_of(h)].vertex[edge_of(h)];
+  }
+
   // Whether the vertex opposite is nearer to the edge's line than double precision can mend: two
   // segments that almost coincide would split each other down to the floor.
   bool too_thin(HalfEdge h) const {
     const Triangle& triangle = mesh_.triangles[triangle_of(h)];
-    const Point apex = mesh_.vertices[triangle.vertex[edge_of(h)]];
+    const Point apex = mesh_.vertices[apex_of(h)];
     const Point a = mesh_.vertices[triangle.vertex[kNext[edge_of(h)]]];
     const Point b = mesh_.vertices[triangle.vertex[kPrevious[edge_of(h)]]];
     const double x = b.x - a.x;
@@ -238,14 +246,14 @@ class Refiner {
     const Triangle& triangle = mesh_.triangles[t];
     const std::uint32_t a = triangle.vertex[kNext[edge]];
     const std::uint32_t b = triangle.vertex[kPrevious[edge]];
+    const HalfEdge across = triangle.neighbor[edge];
+    const bool closed = across != kNone;
     const Point p = corners_.split_point(mesh_, a, b);
     Growth growth;
     while ((growth = cavity_.grow_from_segment(t, edge, p)) == Growth::kOverflow) enlarge();
     if (growth == Growth::kNotOwned) return Outcome::kNotOwned;
 
     const Ring& ring = cavity_.ring();
-    const HalfEdge across = triangle.neighbor[edge];
-    const bool closed = across != kNone;
     if (too_thin(half_edge(t, edge)) || (closed && too_thin(across))) return Outcome::kTooClose;
     const std::uint32_t near_side = closed ? cavity_.far_end() : ring.size;
     RingVerdict verdict =
@@ -356,8 +364,8 @@ class Refiner {
     }
   }
 
-  // The star of a point on a segment: its two pieces are on the segment, each side keeps its
-  // region, and the new vertex may encroach upon other segments.
+  // The star of a point on a segment: its two pieces are on the segment, and each side keeps its
+  // region.
   void mark_segment(std::uint32_t near_side, bool closed, std::uint32_t near_region,
                     std::uint32_t far_region) {
     Triangle* const triangles = mesh_.triangles.data();
@@ -369,29 +377,11 @@ class Refiner {
       triangles[star[near_side]].flags |= 1u << 2;
       triangles[star[n - 1]].flags |= 1u << 1;
     }
-    for (std::uint32_t i = 0; i < n; ++i) {
+    for (std::uint32_t i = 0; i < n; ++i)
       triangles[star[i]].region = i < near_side ? near_region : far_region;
-      queue_encroached_segments(star[i]);
-    }
   }
 
-  // Queues the edges of t on segments whose diametral disk contains the vertex opposite.
-  void queue_encroached_segments(std::uint32_t t) {
-    const Triangle& triangle = mesh_.triangles[t];
-    if (triangle.segment_bits() == 0) return;
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      if (!triangle.on_segment(i)) continue;
-      const Point apex = mesh_.vertices[triangle.vertex[i]];
-      const Point a = mesh_.vertices[triangle.vertex[kNext[i]]];
-      const Point b = mesh_.vertices[triangle.vertex[kPrevious[i]]];
-      if ((a.x - apex.x) * (b.x - apex.x) + (a.y - apex.y) * (b.y - apex.y) < 0) {
-        segments_.push_back({t, i, triangle.vertex[kNext[i]], triangle.vertex[kPrevious[i]]});
-      }
-    }
-  }
-
-  // Splits the queued segments, and those that the new points encroach upon. Returns whether any
-  // was split.
+  // Splits the queued segments. Returns whether any was split.
   bool split_queued_segments() {
     bool any = false;
     segments_deferred_ = false;
