@@ -9,21 +9,13 @@ namespace weft::check {
 namespace {
 
 constexpr double kCosine60 = 0.5 - 1e-9;
-constexpr double kSameDistance = 1e-3;
+constexpr double kSameDistance = 0x1p-46;  // over the largest coordinate
 
 // Whether p and q are seen from v at less than 60 degrees.
 bool below_60_degrees(Vec2 v, Vec2 p, Vec2 q) {
   const double ux = p.x - v.x, uy = p.y - v.y;
   const double wx = q.x - v.x, wy = q.y - v.y;
   return ux * wx + uy * wy > kCosine60 * std::hypot(ux, uy) * std::hypot(wx, wy);
-}
-
-// Whether p and q are at the same distance from v, and seen from there at less than 60 degrees.
-bool is_shell(Vec2 v, Vec2 p, Vec2 q) {
-  const double to_p = std::hypot(p.x - v.x, p.y - v.y);
-  const double to_q = std::hypot(q.x - v.x, q.y - v.y);
-  return to_p > 0 && std::fabs(to_p - to_q) <= kSameDistance * std::min(to_p, to_q) &&
-         below_60_degrees(v, p, q);
 }
 
 // The pairs with this first number.
@@ -40,6 +32,9 @@ std::span<const SegmentsOfVertices::value_type> entries(const SegmentsOfVertices
 SmallInputAngles::SmallInputAngles(const Mesh& mesh, const ListedEdges& listed,
                                    SegmentsOfVertices segments)
     : mesh_(mesh), listed_(listed), segments_(std::move(segments)) {
+  for (const Vec2 p : mesh.vertices)
+    same_distance_ = std::max({same_distance_, std::fabs(p.x), std::fabs(p.y)});
+  same_distance_ *= kSameDistance;
   vertices_.reserve(segments_.size());
   for (const auto& [vertex, segment] : segments_) vertices_.emplace_back(segment, vertex);
   std::sort(vertices_.begin(), vertices_.end());
@@ -53,6 +48,13 @@ Excuse SmallInputAngles::excuse(std::uint32_t triangle, std::uint32_t corner) co
       below_60_degrees(mesh_.vertices[vertices[corner]], mesh_.vertices[p], mesh_.vertices[q]))
     return Excuse::kCorner;
   return on_shell(p, q) ? Excuse::kShell : Excuse::kNone;
+}
+
+// Whether p and q are at the same distance from v, and seen from there at less than 60 degrees.
+bool SmallInputAngles::is_shell(Vec2 v, Vec2 p, Vec2 q) const {
+  const double to_p = std::hypot(p.x - v.x, p.y - v.y);
+  const double to_q = std::hypot(q.x - v.x, q.y - v.y);
+  return to_p > 0 && std::fabs(to_p - to_q) <= same_distance_ && below_60_degrees(v, p, q);
 }
 
 bool SmallInputAngles::on_shell(std::uint32_t p, std::uint32_t q) const {

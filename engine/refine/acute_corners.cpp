@@ -26,9 +26,52 @@ double length(Vector u) {
   return std::sqrt(dot(u, u));
 }
 
+// Whether u and v make an angle below 60 degrees.
+bool below_60_degrees_apart(Vector u, Vector v) {
+  return dot(u, v) > 0.5 * length(u) * length(v);
+}
+
 // Whether the angle from u counter-clockwise to v, known to be below 180 degrees, is below 60.
 bool below_60_degrees(Vector u, Vector v) {
-  return cross(u, v) > 0 && dot(u, v) > 0.5 * length(u) * length(v);
+  return cross(u, v) > 0 && below_60_degrees_apart(u, v);
+}
+
+// The multiple of the largest power of two in the middle third of [low, high]; of two, the nearer
+// to the middle. REQUIRES: 0 <= low <= high.
+double dyadic_between(double low, double high) {
+  const double middle = 0.5 * (low + high);
+  const double reach = (high - low) / 6;
+  int exponent = 0;
+  std::frexp(high, &exponent);
+  for (const int last = exponent - 53; exponent > last; --exponent) {
+    const double step = std::ldexp(1.0, exponent);
+    const double nearest = std::nearbyint(middle / step) * step;
+    if (std::fabs(nearest - middle) <= reach) return nearest;
+  }
+  return middle;
+}
+
+// Which part of the way between two points on a ray from the corner this distance from it is.
+double part_of(double distance, Point corner, Point from, Point to) {
+  const double start = length(from - corner);
+  return (distance - start) / (length(to - corner) - start);
+}
+
+// A vertex that a piece is to match is nearer to it than this part of its length.
+constexpr double kNarrow = 0.1;
+
+// A split here leaves no piece below a quarter.
+bool in_middle(double part) {
+  return part > 0.25 && part < 0.75;
+}
+
+// Whether p and q are at the same distance from the corner, and below 60 degrees apart there.
+bool on_shell(Point corner, Point p, Point q) {
+  const double largest = std::max({std::fabs(corner.x), std::fabs(corner.y), std::fabs(p.x),
+                                   std::fabs(p.y), std::fabs(q.x), std::fabs(q.y)});
+  return std::fabs(length(p - corner) - length(q - corner)) <=
+             AcuteCorners::kSameDistance * largest &&
+         below_60_degrees_apart(p - corner, q - corner);
 }
 
 }  // namespace
@@ -74,35 +117,98 @@ std::optional<Error> AcuteCorners::find_acute_vertices(const Domain& domain,
   return std::nullopt;
 }
 
-// A counting sort by the lower end: linear, so that it can be polled.
+// Two counting sorts, by the higher end and then by the lower: linear, so that they can be polled.
 std::optional<Error> AcuteCorners::sort_by_ends(const Domain& domain,
                                                 const ExecutionContext& context) {
+  struct Entry {
+    std::uint32_t low, high, subsegment;
+  };
+  const std::size_t n = domain.subsegments.size();
+  std::vector<std::uint32_t> next(domain.vertices.size() + 1, 0);
   first_.assign(domain.vertices.size() + 2, 0);
-  for (const Subsegment& s : domain.subsegments) ++first_[std::min(s.a, s.b) + 2];
+  for (const Subsegment& s : domain.subsegments) {
+    ++next[std::max(s.a, s.b) + 1];
+    ++first_[std::min(s.a, s.b) + 2];
+  }
+  std::partial_sum(next.begin(), next.end(), next.begin());
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
-  by_ends_.resize(domain.subsegments.size());
-  for (std::uint32_t s = 0; s < domain.subsegments.size(); ++s) {
+  std::vector<Entry> by_high(n);
+  for (std::uint32_t s = 0; s < n; ++s) {
     if (s % kPollInterval == 0) {
       if (auto error = context.poll()) return error;
     }
-    const auto [a, b] = std::minmax(domain.subsegments[s].a, domain.subsegments[s].b);
-    by_ends_[first_[a + 1]++] = {b, s};
+    const auto [low, high] = std::minmax(domain.subsegments[s].a, domain.subsegments[s].b);
+    by_high[next[high]++] = {low, high, s};
+  }
+  by_ends_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (i % kPollInterval == 0) {
+      if (auto error = context.poll()) return error;
+    }
+    by_ends_[first_[by_high[i].low + 1]++] = {by_high[i].high, by_high[i].subsegment};
   }
   return std::nullopt;
 }
 
-Point AcuteCorners::split_point(const Mesh& mesh, std::uint32_t a, std::uint32_t b) const {
-  Point from = mesh.vertices[a];
-  Point to = mesh.vertices[b];
-  if (acute(a) == acute(b)) return {0.5 * from.x + 0.5 * to.x, 0.5 * from.y + 0.5 * to.y};
-  if (acute(b)) std::swap(from, to);
-  const double whole = length(to - from);
-  // The power of two in (whole / 3, 2/3 whole].
-  int exponent = 0;
-  const double fraction = std::frexp(whole, &exponent);  // in [1/2, 1)
-  const double shell = std::ldexp(fraction < 0.75 ? 0.25 : 0.5, exponent);
-  const double t = shell / whole;
-  return {from.x + t * (to.x - from.x), from.y + t * (to.y - from.y)};
+Point AcuteCorners::split_point(const Mesh& mesh, Pair ends, Pair apexes) const {
+  const Point from = mesh.vertices[ends[0]];
+  const Point to = mesh.vertices[ends[1]];
+  const std::uint32_t s = subsegment(mesh, ends[0], ends[1]);
+  double part = 0.5;
+  if (acute((*subsegments_)[s].a) || acute((*subsegments_)[s].b)) {
+    const auto matching = matching_part(mesh, s, from, to, apexes);
+    part = matching ? *matching : dyadic_part(mesh, s, from, to);
+  }
+  // Exact where the ends are: no part of a length is rounded.
+  if (part == 0.5) return {0.5 * from.x + 0.5 * to.x, 0.5 * from.y + 0.5 * to.y};
+  return {from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)};
+}
+
+std::optional<double> AcuteCorners::matching_part(const Mesh& mesh, std::uint32_t subsegment,
+                                                  Point from, Point to, Pair apexes) const {
+  const Subsegment& s = (*subsegments_)[subsegment];
+  const Vector piece = to - from;
+  std::optional<double> part;
+  double narrowest = kNarrow * dot(piece, piece);  // distance times the piece's length
+  for (const std::uint32_t apex : apexes) {
+    for (const std::uint32_t end : {s.a, s.b}) {
+      if (apex == kNone || !acute(end) || !on_other_arm(mesh, apex, end, subsegment)) continue;
+      const Point corner = mesh.vertices[end];
+      const Point at = mesh.vertices[apex];
+      const Point far = mesh.vertices[end == s.a ? s.b : s.a];
+      if (!below_60_degrees_apart(at - corner, far - corner)) continue;
+      const double candidate = part_of(length(at - corner), corner, from, to);
+      const double width = std::fabs(cross(piece, at - from));
+      if (!in_middle(candidate) || width >= narrowest) continue;
+      part = candidate;
+      narrowest = width;
+    }
+  }
+  return part;
+}
+
+double AcuteCorners::dyadic_part(const Mesh& mesh, std::uint32_t subsegment, Point from,
+                                 Point to) const {
+  const Subsegment& s = (*subsegments_)[subsegment];
+  const Point a = mesh.vertices[s.a];
+  const Point b = mesh.vertices[s.b];
+  const bool nearer_b = length(from - b) + length(to - b) < length(from - a) + length(to - a);
+  const Point corner = acute(s.a) && (!acute(s.b) || !nearer_b) ? a : b;
+  const auto [low, high] = std::minmax(length(from - corner), length(to - corner));
+  const double part = part_of(dyadic_between(low, high), corner, from, to);
+  return in_middle(part) ? part : 0.5;
+}
+
+bool AcuteCorners::on_other_arm(const Mesh& mesh, std::uint32_t vertex, std::uint32_t corner,
+                                std::uint32_t subsegment) const {
+  std::uint32_t on = mesh.subsegment_of(vertex);
+  if (on != kNone) {
+    if ((*subsegments_)[on].a != corner && (*subsegments_)[on].b != corner) return false;
+  } else {
+    if (vertex >= acute_.size() || vertex == corner) return false;
+    on = subsegment_between(vertex, corner);
+  }
+  return on != kNone && on != subsegment;
 }
 
 bool AcuteCorners::excuses(const Mesh& mesh, const Triangle& triangle) const {
@@ -117,32 +223,32 @@ bool AcuteCorners::excuses(const Mesh& mesh, const Triangle& triangle) const {
       edge = i;
     }
   }
-  const std::uint32_t a = triangle.vertex[kNext[edge]];
-  const std::uint32_t b = triangle.vertex[kPrevious[edge]];
+  std::uint32_t a = triangle.vertex[kNext[edge]];
+  std::uint32_t b = triangle.vertex[kPrevious[edge]];
+  if (mesh.subsegment_of(a) == kNone) std::swap(a, b);
   const std::uint32_t of_a = mesh.subsegment_of(a);
-  const std::uint32_t of_b = mesh.subsegment_of(b);
-  if (of_a == kNone || of_b == kNone || of_a == of_b) return false;
+  if (of_a == kNone) return false;
   const Subsegment& s = (*subsegments_)[of_a];
-  const Subsegment& t = (*subsegments_)[of_b];
-  const std::uint32_t shared = (s.a == t.a || s.a == t.b)   ? s.a
-                               : (s.b == t.a || s.b == t.b) ? s.b
-                                                            : kNone;
-  if (shared == kNone || !acute(shared)) return false;
-  const Point corner = mesh.vertices[shared];
-  const Vector to_a = mesh.vertices[a] - corner;
-  const Vector to_b = mesh.vertices[b] - corner;
-  const bool small_angle = dot(to_a, to_b) > 0.5 * length(to_a) * length(to_b);
-  constexpr double kSameDistance = 1e-4;  // rounding near the edge floor is 2e-5
-  return small_angle && std::fabs(length(to_a) - length(to_b)) < kSameDistance * length(to_a);
+  const auto excused_at = [&](std::uint32_t corner) {
+    return acute(corner) && on_other_arm(mesh, b, corner, of_a) &&
+           on_shell(mesh.vertices[corner], mesh.vertices[a], mesh.vertices[b]);
+  };
+  return excused_at(s.a) || excused_at(s.b);
 }
 
 std::uint32_t AcuteCorners::subsegment(const Mesh& mesh, std::uint32_t a, std::uint32_t b) const {
   if (const std::uint32_t s = mesh.subsegment_of(a); s != kNone) return s;
   if (const std::uint32_t s = mesh.subsegment_of(b); s != kNone) return s;
+  return subsegment_between(a, b);
+}
+
+std::uint32_t AcuteCorners::subsegment_between(std::uint32_t a, std::uint32_t b) const {
   const auto [low, high] = std::minmax(a, b);
-  std::uint32_t i = first_[low];
-  while (by_ends_[i].b != high) ++i;
-  return by_ends_[i].subsegment;
+  const auto begin = by_ends_.begin() + first_[low];
+  const auto end = by_ends_.begin() + first_[low + 1];
+  const auto found = std::lower_bound(
+      begin, end, high, [](const Ends& ends, std::uint32_t vertex) { return ends.b < vertex; });
+  return found != end && found->b == high ? found->subsegment : kNone;
 }
 
 }  // namespace weft

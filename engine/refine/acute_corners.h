@@ -1,14 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small input angles. Where two segments meet at less than 60 degrees inside the domain, splitting
-// one at its midpoint may encroach upon the other for ever. So such corners get concentric shells:
-// a subsegment that ends at an acute vertex is split at a power of two from it (Ruppert 1995), the
-// pieces of both segments end at equal distances, and a skinny triangle whose shortest edge joins
-// two such points is left as it is (Miller, Pav and Walkington 2003; Triangle does the same):
-// splitting it could only make edges shorter, for its angle comes from the input.
-// Plain Ruppert wastes 2.6 times the vertices on a wedge of 3 degrees, and never ends on a star of
-// 36 rays.
+// Small input angles. Where two segments, the arms, meet at less than 60 degrees inside the domain,
+// splitting one at its midpoint may encroach upon the other for ever. So arms are split at equal
+// distances from their corner (concentric shells: Ruppert 1995), and a skinny triangle whose
+// shortest edge joins two arms at the same distance is left as it is (Miller, Pav and Walkington
+// 2003): splitting it could only make edges shorter, because its angle comes from the input.
+//
+// Where a piece of an arm is split:
+//   - at the distance of the vertex that faces it, if that vertex is on another arm of the corner
+//     the distance in the middle half of the piece, and the vertex nearer to the piece than a
+//     tenth of its length. So an arm that ends at any distance, or that another corner has split,
+//     is matched by one vertex. Without it the other arm is split down to the width between them,
+//     30 times in a wedge of 1e-9 rad; with vertices farther away, twice as many triangles of
+//     us-east-coast stay;
+//   - otherwise at the coarsest multiple of a power of two in the middle third of its distances,
+//     from the nearer corner if both ends of the arm are acute. Pieces of arms of unequal lengths
+//     get equal distances, and a piece at the corner ends at a power of two.
+//
+// Two vertices are at the same distance if rounding explains the difference: 2^-47 of the largest
+// coordinate of the three points. A vertex on an arm is off its distance by 10 units in the last
+// place at most: 3 of its part of the piece, 4 of two distances, 3 of coordinates. Nothing more is
+// needed, and anything more is harmful: a triangle that has the third vertex between the two arms'
+// vertices has an angle of nearly 180 degrees, and must not stay. The checker allows twice that
+// (checker/excuse.h).
+//
+// An input vertex that ends an arm counts as on a shell, but two of them do not excuse a triangle:
+// a fan of equal arms is refined toward its corner.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -22,12 +41,18 @@ namespace weft {
 
 class AcuteCorners {
  public:
+  // Difference of two distances that rounding explains, over the largest coordinate.
+  static constexpr double kSameDistance = 0x1p-47;
+
   // Keeps a reference to the domain's subsegments. Errors: kCancelled, kDeadlineExceeded.
   static Result<AcuteCorners> build(const Domain& domain, const ExecutionContext& context);
 
-  // Where to split the subsegment between two mesh vertices: at a power of two from its end if
-  // exactly one is acute, else in the middle.
-  Point split_point(const Mesh& mesh, std::uint32_t a, std::uint32_t b) const;
+  // Two vertices of the mesh.
+  using Pair = std::array<std::uint32_t, 2>;
+
+  // Where to split the piece of a segment between two vertices: as above on an arm, otherwise in
+  // the middle. `apexes` face the piece from its two sides; kNone if a side has no triangle.
+  Point split_point(const Mesh& mesh, Pair ends, Pair apexes) const;
 
   // Whether a skinny triangle is to stay because of a small input angle.
   bool excuses(const Mesh& mesh, const Triangle& triangle) const;
@@ -51,10 +76,20 @@ class AcuteCorners {
   std::optional<Error> sort_by_ends(const Domain& domain, const ExecutionContext& context);
 
   bool acute(std::uint32_t vertex) const { return vertex < acute_.size() && acute_[vertex]; }
+  // The subsegment between two vertices of the domain, or kNone.
+  std::uint32_t subsegment_between(std::uint32_t a, std::uint32_t b) const;
+  // Whether the vertex lies on, or ends, an arm of the corner other than this subsegment.
+  bool on_other_arm(const Mesh& mesh, std::uint32_t vertex, std::uint32_t corner,
+                    std::uint32_t subsegment) const;
+
+  // Parts of the way from one end of a piece to the other.
+  std::optional<double> matching_part(const Mesh& mesh, std::uint32_t subsegment, Point from,
+                                      Point to, Pair apexes) const;
+  double dyadic_part(const Mesh& mesh, std::uint32_t subsegment, Point from, Point to) const;
 
   const std::vector<Subsegment>* subsegments_;
   std::vector<char> acute_;           // per vertex of the domain
-  std::vector<Ends> by_ends_;         // by the lower end
+  std::vector<Ends> by_ends_;         // by the lower end, then by the higher
   std::vector<std::uint32_t> first_;  // per vertex of the domain: its first in by_ends_
 };
 

@@ -248,7 +248,8 @@ class Refiner {
     const std::uint32_t b = triangle.vertex[kPrevious[edge]];
     const HalfEdge across = triangle.neighbor[edge];
     const bool closed = across != kNone;
-    const Point p = corners_.split_point(mesh_, a, b);
+    const Point p = corners_.split_point(mesh_, {a, b},
+                                         {triangle.vertex[edge], closed ? apex_of(across) : kNone});
     Growth growth;
     while ((growth = cavity_.grow_from_segment(t, edge, p)) == Growth::kOverflow) enlarge();
     if (growth == Growth::kNotOwned) return Outcome::kNotOwned;

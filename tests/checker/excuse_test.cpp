@@ -55,6 +55,12 @@ TEST(Excuse, PointsAtUnequalDistanceAreNoShell) {
   EXPECT_TRUE(violated(report).contains(Rule::kAngle)) << to_text(report);
 }
 
+TEST(Excuse, DistancesAreTheSameToWithinRounding) {
+  EXPECT_EQ(wedge(10, 1, 1 + 0x1p-46).check().facts.excused_shell, 2u);
+  const Report report = wedge(10, 1, 1 + 0x1p-43).check();
+  EXPECT_TRUE(violated(report).contains(Rule::kAngle)) << to_text(report);
+}
+
 TEST(Excuse, AnInputAngleAboveTheBoundNeedsNoExcuse) {
   const Report report = wedge(30, 1, 1).check();
   EXPECT_EQ(report.facts.excused_corner, 0u);
