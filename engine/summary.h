@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/chunk.h"
-#include "engine/domain/domain.h"
+#include "engine/domain/merging.h"
 
 namespace weft {
 

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/domain/arrangement.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <optional>
+#include <sstream>
 
 #include "engine/domain/segment_inserter.h"
+#include "engine/domain/snapping.h"
+#include "engine/domain/tolerance.h"
 #include "engine/domain/triangulation.h"
 #include "engine/domain/validate.h"
 
@@ -11,9 +16,9 @@ namespace weft {
 namespace {
 
 // The finite part of the triangulation in plain arrays; vertices in the order of their ids.
-Arrangement extract(const Pslg& pslg, const Triangulation& t, SegmentInserter& segments,
-                    Pacer& pacer) {
-  const std::size_t inputs = pslg.points.size();
+Arrangement extract(const std::vector<Point>& points, const Triangulation& t,
+                    SegmentInserter& segments, Pacer& pacer) {
+  const std::size_t inputs = points.size();
   std::vector<std::uint32_t> vertex_of_id(inputs + segments.crossings(), kNone);
   for (Triangulation::Vertex v = 0; v < t.vertices(); ++v) {
     pacer.step();
@@ -29,7 +34,7 @@ Arrangement extract(const Pslg& pslg, const Triangulation& t, SegmentInserter& s
     if (v == kNone) continue;
     number[v] = static_cast<std::uint32_t>(result.vertices.size());
     result.input_point.push_back(id < inputs ? id : kNone);
-    result.vertices.push_back(id < inputs ? pslg.points[id] : t.at(v));  // of 0 and -0, the first
+    result.vertices.push_back(id < inputs ? points[id] : t.at(v));  // of 0 and -0, the first
   }
 
   std::vector<std::uint32_t> face_number(t.faces());
@@ -53,7 +58,25 @@ Arrangement extract(const Pslg& pslg, const Triangulation& t, SegmentInserter& s
   return result;
 }
 
+bool has_edge_below(double length, const Triangulation& t, Pacer& pacer) {
+  for (std::uint32_t f = 0; f < t.faces(); ++f) {
+    pacer.step();
+    if (t.is_infinite(f)) continue;
+    const Point a = t.at(t.vertex(f, 0)), b = t.at(t.vertex(f, 1)), c = t.at(t.vertex(f, 2));
+    const double shortest2 = std::min({distance2(a, b), distance2(b, c), distance2(c, a)});
+    if (shortest2 < length * length) return true;
+  }
+  return false;
+}
+
 }  // namespace
+
+Error closed_by_merging(const Merging& merging) {
+  std::ostringstream message;
+  message << "merging what is nearer than " << merging.tolerance
+          << " has closed the domain, so there is nothing to mesh";
+  return {ErrorCode::kEmptyDomain, "domain.segments", message.str()};
+}
 
 std::uint64_t estimated_bytes(std::uint64_t vertices, std::uint64_t edges) {
   return 240 * vertices + 40 * edges;
@@ -61,12 +84,29 @@ std::uint64_t estimated_bytes(std::uint64_t vertices, std::uint64_t edges) {
 
 Arrangement arrange(const Pslg& pslg, Pacer& pacer, std::uint64_t max_splits) {
   pacer.require(estimated_bytes(pslg.points.size(), pslg.segments.size()));
-  Triangulation triangulation(pacer);
-  const Span span = spanning_points(pslg.points, pacer);
-  triangulation.build(pslg.points, span.point[0], span.point[1], span.point[2]);
-  SegmentInserter segments(pslg, triangulation, max_splits, pacer);
+  Merging merging{.tolerance = merge_tolerance(pslg)};
+  std::optional<Triangulation> triangulation;
+  const auto build = [&](const std::vector<Point>& points) {
+    const Span span = spanning_points(points, pacer);
+    if (span.size < 3) throw Stopped{closed_by_merging(merging)};
+    triangulation.emplace(pacer).build(points, span.point[0], span.point[1], span.point[2]);
+  };
+  // The two nearest points of all are joined by an edge, so in most cases the triangulation tells
+  // that there is nothing to merge.
+  std::vector<Point> merged;
+  const std::vector<Point>* points = &pslg.points;
+  const bool wants_snapping = pslg.snap == merging.tolerance;
+  if (!wants_snapping) build(pslg.points);
+  if (wants_snapping || has_edge_below(merging.tolerance, *triangulation, pacer)) {
+    merged = merge_points(pslg.points, merging, pacer);
+    points = &merged;
+    build(merged);
+  }
+  SegmentInserter segments(pslg, *points, *triangulation, max_splits, merging, pacer);
   segments.insert_all();
-  return extract(pslg, triangulation, segments, pacer);
+  Arrangement result = extract(*points, *triangulation, segments, pacer);
+  result.merging = merging;
+  return result;
 }
 
 }  // namespace weft

@@ -85,6 +85,7 @@ Domain extract(const Arrangement& a, Carving&& carving, Pacer& pacer) {
     to.region = carving.region[kept[k]];
   }
   domain.regions = std::move(carving.regions);
+  domain.merging = a.merging;
   return domain;
 }
 

@@ -29,6 +29,7 @@
 #include <vector>
 
 #include "engine/context.h"
+#include "engine/domain/merging.h"
 #include "engine/domain/pslg.h"
 #include "engine/error.h"
 #include "engine/geometry.h"
@@ -49,17 +50,6 @@ struct Region {
   double max_area = std::numeric_limits<double>::infinity();
 };
 
-// What was merged because it lay nearer together than the tolerance.
-struct Merging {
-  double tolerance = 0;        // the larger of Pslg::snap and the precision floor
-  std::uint64_t points = 0;    // input points that moved onto another vertex
-  std::uint64_t segments = 0;  // input segments led through a vertex that is not exactly on them
-  double farthest = 0;         // the largest distance that a point or a segment moved
-  Point farthest_at;           // where that is; meaningless if farthest is 0
-  std::uint64_t vanished_faces = 0;  // bounded faces of the input that the merging closed
-  Point vanished_at;                 // in one of them; meaningless if there is none
-};
-
 struct Domain {
   struct Triangle {
     std::uint32_t vertex[3];      // counter-clockwise
@@ -74,7 +64,7 @@ struct Domain {
   std::vector<Triangle> triangles;
   std::vector<Subsegment> subsegments;
   std::vector<Region> regions;  // regions[0] is the default region
-  Merging merging = {};
+  Merging merging;
 
   std::uint64_t bytes() const {
     return vertices.capacity() * sizeof(Point) + input_point.capacity() * sizeof(std::uint32_t) +

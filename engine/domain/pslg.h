@@ -42,8 +42,9 @@ struct Pslg {
   std::vector<Point> holes;
   std::vector<RegionSeed> regions;
   Fill fill = Fill::kSeeds;
-  // Whatever lies nearer together than this is merged first, in the unit of the points. 0: only
-  // what double precision cannot keep apart. REQUIRES: finite, 0 or more.
+  // Features nearer than this are merged first: points, points and segments, crossings (see
+  // arrangement.h). In the units of the coordinates, 0 or more. 0: only what double precision
+  // cannot keep apart.
   double snap = 0;
 };
 

@@ -2,12 +2,13 @@
 #include "engine/domain/segment_inserter.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 
 #include "engine/domain/crossing.h"
 #include "engine/domain/snapping.h"
+#include "engine/domain/strip_search.h"
+#include "engine/domain/tolerance.h"
 
 namespace weft {
 namespace {
@@ -29,12 +30,18 @@ void merge(Arrangement::Constraint& into, const Arrangement::Constraint& other) 
 
 }  // namespace
 
-SegmentInserter::SegmentInserter(const Pslg& pslg, Triangulation& triangulation,
-                                 std::uint64_t max_splits, Pacer& pacer)
-    : pslg_(pslg), t_(triangulation), max_splits_(max_splits), pacer_(pacer) {
-  double largest = 0;
-  for (const Point p : pslg.points) largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
-  surely_apart_ = 2 * snap_distance({largest, 0}, {0, 0});
+SegmentInserter::SegmentInserter(const Pslg& pslg, const std::vector<Point>& points,
+                                 Triangulation& triangulation, std::uint64_t max_splits,
+                                 Merging& merging, Pacer& pacer)
+    : pslg_(pslg),
+      points_(points),
+      t_(triangulation),
+      max_splits_(max_splits),
+      merging_(merging),
+      pacer_(pacer),
+      tolerance2_(merging.tolerance * merging.tolerance) {
+  constexpr double kRounding = 0x1p-50;  // 4 to 8 units in the last place
+  rounding_ = kRounding * largest_coordinate(pslg.points);
   constraints_.reserve(pslg.segments.size());
 }
 
@@ -43,11 +50,48 @@ void SegmentInserter::insert_all() {
     const Segment& s = pslg_.segments[i];
     const Piece whole{
         t_.vertex_of(s.a), t_.vertex_of(s.b), {i, s.marker, s.marker != 0 ? i : kNone, true}};
-    if (whole.u != whole.v) insert(whole);
-    while (!pieces_.empty()) {
-      const Piece piece = pieces_.back();
-      pieces_.pop_back();
-      insert(piece);
+    if (whole.u == whole.v) {
+      shrunk_.emplace_back(s.a, s.b);
+      continue;
+    }
+    insert(whole);
+    insert_pieces();
+  }
+  separate();
+  count_faces();
+}
+
+void SegmentInserter::insert_pieces() {
+  while (!pieces_.empty()) {
+    const Piece piece = pieces_.back();
+    pieces_.pop_back();
+    insert(piece);
+  }
+}
+
+// Leads every edge through the vertices beside it, until none is left: an edge that was inserted
+// early knows nothing of the vertices that came later, and none of those beside the triangles that
+// it passes through.
+void SegmentInserter::separate() {
+  StripSearch strip(t_, 0.5 * merging_.tolerance, pacer_);
+  for (bool is_done = false; !is_done;) {
+    is_done = true;
+    for (std::uint32_t f = 0; f < t_.faces(); ++f) {
+      pacer_.step();
+      for (int i = 0; i < 3; ++i) {
+        const Edge edge{f, i};
+        if (t_.constraint(edge) == kNone) continue;
+        const Vertex apex = t_.apex(edge);
+        if (apex == Triangulation::kInfinite) continue;
+        const Piece piece{t_.right(edge), t_.left(edge), constraints_[t_.constraint(edge)]};
+        const Vertex w = touches(apex, piece) ? apex : strip.nearest(edge);
+        if (w == Triangulation::kInfinite || !shortens(piece.u, at(w), piece.v)) continue;
+        unconstrain(edge);
+        merge_through(w, piece);
+        insert_pieces();
+        is_done = false;
+        i = -1;  // another face by now
+      }
     }
   }
 }
@@ -61,7 +105,7 @@ void SegmentInserter::insert(const Piece& piece) {
     for (const Edge& side : {edge, t_.mirror(edge)}) {
       const Vertex apex = t_.apex(side);
       if (apex != Triangulation::kInfinite && touches(apex, piece))
-        return push_through(apex, piece);
+        return merge_through(apex, piece);
     }
     return remember(edge, piece);
   }
@@ -75,7 +119,7 @@ void SegmentInserter::insert(const Piece& piece) {
       case LineProbe::Sees::kEdge:
         break;
       case LineProbe::Sees::kVertex:
-        return push_through(probe.vertex(), piece);
+        return merge_through(probe.vertex(), piece);
       case LineProbe::Sees::kCrossing:
         return walk(probe, piece);
     }
@@ -90,8 +134,8 @@ void SegmentInserter::walk(const LineProbe& probe, const Piece& piece) {
   Edge edge = probe.edge();
   Vertex right = t_.right(edge);
   Vertex left = t_.left(edge);
-  if (touches(right, piece)) return push_through(right, piece);
-  if (touches(left, piece)) return push_through(left, piece);
+  if (touches(right, piece)) return merge_through(right, piece);
+  if (touches(left, piece)) return merge_through(left, piece);
   for (;;) {
     pacer_.step();
     if (t_.constraint(edge) != kNone) return cross(edge, piece);
@@ -99,7 +143,7 @@ void SegmentInserter::walk(const LineProbe& probe, const Piece& piece) {
     const Vertex w = t_.apex(next);
     if (w == probe.to()) return remember(t_.insert_edge(probe.from(), w, probe.edge()), piece);
     const int side = orientation(a, b, at(w));
-    if (side == 0 || touches(w, piece)) return push_through(w, piece);
+    if (side == 0 || touches(w, piece)) return merge_through(w, piece);
     // w replaces the end on its side; the next edge crossed is opposite to the one replaced.
     Vertex& replaced = side > 0 ? left : right;
     edge = {next.face, t_.index(next.face, replaced)};
@@ -120,47 +164,59 @@ bool SegmentInserter::splits_cleanly(Edge edge, Point p) const {
 
 // Makes the piece and the constrained edge that it crosses meet in a vertex.
 void SegmentInserter::cross(Edge edge, const Piece& piece) {
-  const Vertex right = t_.right(edge);
-  const Vertex left = t_.left(edge);
+  const Point u = at(piece.u), v = at(piece.v), r = at(t_.right(edge)), l = at(t_.left(edge));
   const auto [a, b] = segment(piece.constraint);
   const auto [c, d] = segment(constraints_[t_.constraint(edge)]);
-  const double snap = std::max(snap_distance(a, b), snap_distance(c, d));
-  if (properly_cross(a, b, c, d) && meet_at(crossing_point(a, b, c, d), snap, edge, piece)) return;
-  // Rounding has bent the two, so that they cross elsewhere than their segments, if these do.
-  const Point p = crossing_point(at(piece.u), at(piece.v), at(right), at(left));
-  if (!meet_at(p, snap, edge, piece)) meet_in_new_vertex(p, edge, piece);
+  if (properly_cross(a, b, c, d)) {
+    const Point p = crossing_point(a, b, c, d);
+    const bool is_near = distance_to_line(p, u, v) < merging_.tolerance &&
+                         distance_to_line(p, r, l) < merging_.tolerance;
+    if (is_near && meet_at(p, edge, piece)) return;
+  }
+  // Merging has bent the two, so that they cross elsewhere than their segments, if these do.
+  const Point p = crossing_point(u, v, r, l);
+  if (!meet_at(p, edge, piece)) meet_in_new_vertex(p, edge, piece);
 }
 
-// Declines where one of the two would not advance.
-bool SegmentInserter::meet_at(Point p, double snap, Edge edge, const Piece& piece) {
+// Declines if one of the two would not become shorter.
+bool SegmentInserter::meet_at(Point p, Edge edge, const Piece& piece) {
   const Vertex right = t_.right(edge);
   const Vertex left = t_.left(edge);
-  const Constraint& other = constraints_[t_.constraint(edge)];
-  std::array<Vertex, 4> nearest{piece.u, piece.v, right, left};
-  std::stable_sort(nearest.begin(), nearest.end(), [this, p](Vertex v, Vertex w) {
-    return distance(at(v), p) < distance(at(w), p);
-  });
-  for (const Vertex w : nearest) {
-    if (distance(at(w), p) > snap) break;
-    if (is_end(w, edge) ? !advances(at(w), piece.u, piece.v, piece.constraint)
-                        : !advances(at(w), right, left, other))
-      continue;
-    meet_in_end(w, edge, piece);
-    return true;
+  const Vertex w = near(p);
+  if (w == Triangulation::kInfinite) {
+    if (!shortens(piece.u, p, piece.v) || !shortens(right, p, left)) return false;
+    meet_in_new_vertex(p, edge, piece);
+  } else {
+    if (!shortens_or_is_end(piece.u, w, piece.v) || !shortens_or_is_end(right, w, left))
+      return false;
+    meet_in(w, edge, piece);
   }
-  if (!advances(p, piece.u, piece.v, piece.constraint) || !advances(p, right, left, other))
-    return false;
-  meet_in_new_vertex(p, edge, piece);
   return true;
 }
 
-// w is an end of one of the two; the other one is led through it.
-void SegmentInserter::meet_in_end(Vertex w, Edge edge, const Piece& piece) {
-  if (is_end(w, edge)) return push_through(w, piece);
+// The two are led through w, unless it is an end.
+void SegmentInserter::meet_in(Vertex w, Edge edge, const Piece& piece) {
+  if (w == piece.u || w == piece.v) {
+    push(piece.u, piece.v, piece.constraint);
+  } else {
+    merge_through(w, piece);
+  }
+  if (is_end(w, edge)) return;
   const Vertex right = t_.right(edge);
   const Vertex left = t_.left(edge);
-  push(piece.u, piece.v, piece.constraint);
-  push_through(w, {right, left, unconstrain(edge)});
+  merge_through(w, {right, left, unconstrain(edge)});
+}
+
+// All vertices are in the grid from the first crossing on.
+SegmentInserter::Vertex SegmentInserter::near(Point p) {
+  if (!vertices_) {
+    vertices_.emplace(merging_.tolerance);
+    for (Vertex v = 0; v < t_.vertices(); ++v) {
+      pacer_.step();
+      if (t_.exists(v)) vertices_->insert(v, at(v));
+    }
+  }
+  return vertices_->nearest(p);
 }
 
 void SegmentInserter::meet_in_new_vertex(Point p, Edge edge, const Piece& piece) {
@@ -179,7 +235,10 @@ void SegmentInserter::meet_in_new_vertex(Point p, Edge edge, const Piece& piece)
     w = insert_crossing(p, id, hint);
     push_through(w, {right, left, other});
   }
-  if (t_.id(w) == id) ++crossings_;
+  if (t_.id(w) == id) {
+    ++crossings_;
+    vertices_->insert(w, p);
+  }
   push_through(w, piece);
   pacer_.require(estimated_bytes(pslg_.points.size() + crossings_, constraints_.size()));
 }
@@ -216,10 +275,29 @@ void SegmentInserter::push_through(Vertex w, const Piece& piece) {
   push(piece.u, w, piece.constraint);
 }
 
+// The same, and takes note of how far that moves the segment.
+void SegmentInserter::merge_through(Vertex w, const Piece& piece) {
+  const auto [a, b] = input_segment(piece.constraint);
+  if (const double off = distance_to_segment(at(w), a, b); off > rounding_) {
+    merging_.add_move(off, at(w));
+    is_moved_.resize(pslg_.segments.size());
+    if (!is_moved_[piece.constraint.segment]) ++merging_.segments;
+    is_moved_[piece.constraint.segment] = true;
+  }
+  push_through(w, piece);
+}
+
 // The piece has become an edge.
 void SegmentInserter::remember(Edge edge, const Piece& piece) {
-  if (const std::uint32_t constraint = t_.constraint(edge); constraint != kNone)
-    return merge(constraints_[constraint], piece.constraint);
+  if (const std::uint32_t constraint = t_.constraint(edge); constraint != kNone) {
+    Constraint& other = constraints_[constraint];
+    const auto [a, b] = input_segment(other);
+    const auto [c, d] = input_segment(piece.constraint);
+    const bool overlap = orientation_exact(a, b, c) == 0 && orientation_exact(a, b, d) == 0;
+    if (!overlap && other.segment != piece.constraint.segment)
+      coincident_.emplace_back(piece.u, piece.v);
+    return merge(other, piece.constraint);
+  }
   t_.constrain(edge, static_cast<std::uint32_t>(constraints_.size()));
   constraints_.push_back(piece.constraint);
 }
@@ -237,25 +315,46 @@ void SegmentInserter::count_split() {
                        " times, which is the limit"}};
 }
 
+// Within the tolerance of both the piece and its input segment; or within half of it of the piece,
+// however far earlier merges have led this from its segment.
 bool SegmentInserter::touches(Vertex w, const Piece& piece) const {
-  const auto [a, b] = segment(piece.constraint);
-  const Point p = at(w);
-  const double ux = b.x - a.x, uy = b.y - a.y;
-  const double area = ux * (p.y - a.y) - uy * (p.x - a.x);
-  if (area * area > surely_apart_ * surely_apart_ * (ux * ux + uy * uy)) [[likely]]
+  const Point u = at(piece.u), v = at(piece.v), p = at(w);
+  const double x = v.x - u.x, y = v.y - u.y;
+  const double cross = x * (p.y - u.y) - y * (p.x - u.x);
+  const double length2 = x * x + y * y;
+  if (cross * cross > tolerance2_ * length2) [[likely]]
     return false;
-  return distance_to_line(p, a, b) <= snap_distance(a, b) &&
-         advances(at(w), piece.u, piece.v, piece.constraint);
+  // Squares of tiny coordinates underflow, lengths do not.
+  const double off = std::fabs(cross) / std::sqrt(length2);
+  if (off >= merging_.tolerance || !shortens(piece.u, p, piece.v)) return false;
+  if (off < 0.5 * merging_.tolerance) return true;
+  const auto [a, b] = input_segment(piece.constraint);
+  return distance_to_segment(p, a, b) < merging_.tolerance;
 }
 
-bool SegmentInserter::advances(Point p, Vertex u, Vertex v, const Constraint& constraint) const {
-  const auto [a, b] = segment(constraint);
-  const auto [low, high] = std::minmax({progress(at(u), a, b), progress(at(v), a, b)});
-  const double here = progress(p, a, b);
-  return low < here && here < high;
+bool SegmentInserter::shortens(Vertex u, Point p, Vertex v) const {
+  const double whole2 = distance2(at(u), at(v));
+  return distance2(at(u), p) < whole2 && distance2(p, at(v)) < whole2;
+}
+
+// What was between segments and is gone.
+void SegmentInserter::count_faces() {
+  const Connectivity loops = connectivity(shrunk_, pacer_);
+  const Connectivity runs = connectivity(coincident_, pacer_);
+  merging_.vanished_faces = loops.loops + runs.components;
+  if (loops.loops > 0) {
+    merging_.vanished_at = at(t_.vertex_of(shrunk_[loops.first_loop].first));
+  } else if (runs.components > 0) {
+    merging_.vanished_at = at(coincident_.front().first);
+  }
 }
 
 std::pair<Point, Point> SegmentInserter::segment(const Constraint& constraint) const {
+  const Segment& s = pslg_.segments[constraint.segment];
+  return {points_[s.a], points_[s.b]};
+}
+
+std::pair<Point, Point> SegmentInserter::input_segment(const Constraint& constraint) const {
   const Segment& s = pslg_.segments[constraint.segment];
   return {pslg_.points[s.a], pslg_.points[s.b]};
 }

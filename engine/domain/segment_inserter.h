@@ -4,12 +4,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "engine/domain/arrangement.h"
 #include "engine/domain/line_probe.h"
+#include "engine/domain/merging.h"
 #include "engine/domain/pacer.h"
+#include "engine/domain/point_grid.h"
 #include "engine/domain/pslg.h"
 #include "engine/domain/triangulation.h"
 
@@ -17,11 +20,12 @@ namespace weft {
 
 class SegmentInserter {
  public:
-  // `triangulation` is that of the points. All references must outlive the inserter.
-  SegmentInserter(const Pslg& pslg, Triangulation& triangulation, std::uint64_t max_splits,
-                  Pacer& pacer);
+  // `points` are those of the PSLG, after merging (merge_points in merging.h), `triangulation` is
+  // theirs. Adds to `merging`. All references must outlive the inserter.
+  SegmentInserter(const Pslg& pslg, const std::vector<Point>& points, Triangulation& triangulation,
+                  std::uint64_t max_splits, Merging& merging, Pacer& pacer);
 
-  // Throws Stopped.
+  // Afterwards no vertex is nearer to a constrained edge than half the tolerance. Throws Stopped.
   void insert_all();
 
   // By the numbers that the triangulation has; some are no longer in use.
@@ -39,15 +43,19 @@ class SegmentInserter {
     Constraint constraint;
   };
 
+  void insert_pieces();
+  void separate();
   void insert(const Piece& piece);
   void walk(const LineProbe& probe, const Piece& piece);
   void cross(Edge edge, const Piece& piece);
-  bool meet_at(Point p, double snap, Edge edge, const Piece& piece);
-  void meet_in_end(Vertex w, Edge edge, const Piece& piece);
+  bool meet_at(Point p, Edge edge, const Piece& piece);
+  void meet_in(Vertex w, Edge edge, const Piece& piece);
   void meet_in_new_vertex(Point p, Edge edge, const Piece& piece);
+  void count_faces();
 
   void push(Vertex u, Vertex v, const Constraint& constraint);
   void push_through(Vertex w, const Piece& piece);
+  void merge_through(Vertex w, const Piece& piece);
   void remember(Edge edge, const Piece& piece);
   Constraint unconstrain(Edge edge);
   Vertex insert_crossing(Point p, std::uint32_t id, std::uint32_t hint);
@@ -57,22 +65,37 @@ class SegmentInserter {
   Point at(Vertex v) const { return t_.at(v); }
   void count_split();
 
-  // Whether w counts as on the piece.
+  // Whether w is so near the piece that this is to be led through it.
   bool touches(Vertex w, const Piece& piece) const;
 
-  // Whether p would advance the chain of the constraint's segment between its vertices u and v.
-  bool advances(Point p, Vertex u, Vertex v, const Constraint& constraint) const;
+  // Whether the parts from u to p and from p to v are both shorter than the straight line from u to
+  // v: what makes the insertion end.
+  bool shortens(Vertex u, Point p, Vertex v) const;
+  bool shortens_or_is_end(Vertex u, Vertex w, Vertex v) const {
+    return w == u || w == v || shortens(u, at(w), v);
+  }
 
-  // The ends of the lowest input segment.
+  // The vertex that p is to become, Triangulation::kInfinite if none is near.
+  Vertex near(Point p);
+
+  // The ends of the lowest input segment, after merging; and as they were.
   std::pair<Point, Point> segment(const Constraint& constraint) const;
+  std::pair<Point, Point> input_segment(const Constraint& constraint) const;
 
   const Pslg& pslg_;
+  const std::vector<Point>& points_;
   Triangulation& t_;
   const std::uint64_t max_splits_;
+  Merging& merging_;
   Pacer& pacer_;
+  const double tolerance2_;
+  double rounding_ = 0;  // what a vertex on a segment may be off it
   std::vector<Constraint> constraints_;
-  double surely_apart_ = 0;    // more than the snapping distance of any segment
-  std::vector<Piece> pieces_;  // still to insert, last one first
+  std::vector<Piece> pieces_;          // still to insert, last one first
+  std::optional<PointGrid> vertices_;  // all of them, from the first crossing on
+  std::vector<bool> is_moved_;         // per segment, from the first one on
+  Edges shrunk_;                       // segments whose ends have merged, by points
+  Edges coincident_;                   // edges on which segments have come to lie together
   std::uint32_t crossings_ = 0;
   std::uint64_t splits_ = 0;
 };

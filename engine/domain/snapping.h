@@ -1,38 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// When a vertex is so near a segment that it counts as on it. Rounded arithmetic: these decide what
-// meets what, never on which side something lies.
+// Distances that decide what meets what, never on which side something lies: rounded arithmetic,
+// the same on every machine.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "engine/domain/arrangement.h"
 #include "engine/geometry.h"
 
 namespace weft {
 
-// kSnapUlps ulps of the largest coordinate of segment ab.
-inline double snap_distance(Point a, Point b) {
-  const double m = std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(b.x), std::fabs(b.y)});
-  return kSnapUlps * (std::nextafter(m, std::numeric_limits<double>::infinity()) - m);
+inline double distance2(Point p, Point q) {
+  return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
 }
 
 inline double distance(Point p, Point q) {
-  return std::max(std::fabs(p.x - q.x), std::fabs(p.y - q.y));
+  return std::sqrt(distance2(p, q));
 }
 
+// REQUIRES: a and b differ.
 inline double distance_to_line(Point p, Point a, Point b) {
   const double ux = b.x - a.x;
   const double uy = b.y - a.y;
   return std::fabs(ux * (p.y - a.y) - uy * (p.x - a.x)) / std::sqrt(ux * ux + uy * uy);
 }
 
-// How far along segment ab p lies, up to a factor. One order for all vertices of the segment's
-// chain: as each vertex that it is led through comes strictly between its neighbours, the chain
-// never turns back and only so many vertices can be added.
-inline double progress(Point p, Point a, Point b) {
-  return (b.x - a.x) * (p.x - a.x) + (b.y - a.y) * (p.y - a.y);
+inline double distance_to_segment(Point p, Point a, Point b) {
+  const double ux = b.x - a.x;
+  const double uy = b.y - a.y;
+  const double along = ux * (p.x - a.x) + uy * (p.y - a.y);
+  if (along <= 0) return distance(p, a);
+  if (along >= ux * ux + uy * uy) return distance(p, b);
+  return distance_to_line(p, a, b);
 }
 
 }  // namespace weft

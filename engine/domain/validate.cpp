@@ -63,6 +63,13 @@ std::optional<Error> check_region(const RegionSeed& region, std::size_t i) {
                text("the maximum area is ", *region.max_area, "; it must be finite and above 0")};
 }
 
+std::optional<Error> check_snap(double snap) {
+  if (snap >= 0 && std::isfinite(snap)) return {};
+  return Error{
+      ErrorCode::kBadOption, "domain.snap",
+      text("the distance to merge within is ", snap, "; it must be 0 or more, and finite")};
+}
+
 std::optional<Error> check_counts(const Pslg& pslg) {
   const auto over = [](const char* list, std::size_t count, std::uint64_t limit) {
     return Error{ErrorCode::kLimitExceeded, text("domain.", list),
@@ -72,12 +79,6 @@ std::optional<Error> check_counts(const Pslg& pslg) {
   if (pslg.segments.size() > kMaxSegments)
     return over("segments", pslg.segments.size(), kMaxSegments);
   return {};
-}
-
-std::optional<Error> check_snap(double snap) {
-  if (std::isfinite(snap) && snap >= 0) return {};
-  return Error{ErrorCode::kBadOption, "domain.snap",
-               text("the snap distance is ", snap, "; it must be finite and 0 or more")};
 }
 
 std::optional<Error> check_span(const std::vector<Point>& points, Pacer& pacer) {

@@ -26,7 +26,7 @@ struct QualityBounds {
   double sin2 = 0;         // of the minimum angle
   double off_centre = 0;   // see steiner_point.h
   double min_edge2 = 0;    // squared floor on the length of new edges that the caller asks for
-  double lens = kNoLens;    // what encroaches for skinny triangles (lens.h)
+  double lens = kNoLens;   // what encroaches for skinny triangles (lens.h)
   double precision2 = 0;   // squared length below which double precision ends
   double min_length2 = 0;  // the larger of the two
 

@@ -15,7 +15,10 @@
 namespace weft {
 namespace {
 
-Domain triangulated(const Pslg& pslg) {
+// The tolerance in units in the last place, as the largest coordinate has them.
+constexpr double kTolerance = 8192;
+
+Domain triangulated(const Pslg& pslg, double ulps = 6) {
   const ExecutionContext context;
   Result<Domain> domain = triangulate(pslg, context);
   if (!domain) {
@@ -23,8 +26,8 @@ Domain triangulated(const Pslg& pslg) {
     return {};
   }
   EXPECT_EQ(broken_law(pslg, *domain), std::nullopt);
-  EXPECT_EQ(broken_chain(pslg, *domain), std::nullopt);
-  EXPECT_EQ(broken_origin(pslg, *domain), std::nullopt);
+  EXPECT_EQ(broken_chain(pslg, *domain, ulps), std::nullopt);
+  EXPECT_EQ(broken_origin(pslg, *domain, ulps), std::nullopt);
   return *std::move(domain);
 }
 
@@ -109,7 +112,7 @@ TEST(Arrangement, MergesChordsThatNearlyMeetInOnePoint) {
     const double x = 1.5 * std::cos(angle), y = 1.5 * std::sin(angle);
     add_segment(pslg, {0.1 + x, 0.2 + y}, {0.1 - x, 0.2 - y}, i);
   }
-  const Domain domain = triangulated(pslg);
+  const Domain domain = triangulated(pslg, 2 * kTolerance);
   // Rounded, the chords meet pairwise in hundreds of points around (0.1, 0.2).
   EXPECT_LE(domain.vertices.size(), 4u + 2 * n + 20);
 }
@@ -131,7 +134,7 @@ TEST(Arrangement, StaysDelaunayWhereACrossingIsRoundedOffAShortPiece) {
   const Result<Domain> domain = triangulate(pslg, context);
   ASSERT_TRUE(domain);
   EXPECT_EQ(broken_law(pslg, *domain), std::nullopt);
-  EXPECT_EQ(broken_chain(pslg, *domain), std::nullopt);
+  EXPECT_EQ(broken_chain(pslg, *domain, 2 * kTolerance), std::nullopt);
 }
 
 TEST(Arrangement, NamesTheLowestSegmentOfAnOverlap) {
@@ -205,11 +208,22 @@ TEST(Arrangement, JoinsATJunctionWhoseEndIsRounded) {
   }
 }
 
-TEST(Arrangement, KeepsAPointAThousandUlpsOffASegmentApart) {
+TEST(Arrangement, LeadsASegmentThroughAPointWithinTheToleranceOfIt) {
   Pslg pslg = square();
-  pslg.points.push_back({0.5, 1e-13});
+  pslg.points.push_back({0.5, 0.9 * 0x1p-40});
+  const Domain domain = triangulated(pslg, kTolerance);
+  EXPECT_EQ(subsegment(domain, {0, 0}, {1, 0}), nullptr);
+  EXPECT_EQ(domain.merging.segments, 1u);
+  EXPECT_DOUBLE_EQ(domain.merging.farthest, 0.9 * 0x1p-40);
+  EXPECT_EQ(domain.merging.farthest_at, pslg.points.back());
+}
+
+TEST(Arrangement, KeepsAPointFartherThanTheToleranceFromASegmentApart) {
+  Pslg pslg = square();
+  pslg.points.push_back({0.5, 1.1 * 0x1p-40});
   const Domain domain = triangulated(pslg);
   EXPECT_NE(subsegment(domain, {0, 0}, {1, 0}), nullptr);
+  EXPECT_EQ(domain.merging.segments, 0u);
 }
 
 TEST(Arrangement, KeepsDanglingSegments) {

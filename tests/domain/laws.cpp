@@ -137,7 +137,7 @@ std::vector<std::uint32_t> subsegments_on(const Pslg& pslg, const Domain& d, std
   // A quick look before the exact one.
   const auto may_be_near = [&](Point p) {
     return std::fabs(ux * (p.y - a.y) - uy * (p.x - a.x)) <=
-           1e-10 * scale * (std::fabs(ux) + std::fabs(uy));
+           std::max(1e-10, ulps * 0x1p-50) * scale * (std::fabs(ux) + std::fabs(uy));
   };
   std::vector<std::uint32_t> on;
   for (std::uint32_t k = 0; k < d.subsegments.size(); ++k) {
@@ -168,6 +168,16 @@ Broken broken_chain(const Pslg& pslg, const Domain& d, double ulps) {
   std::map<std::pair<double, double>, std::uint32_t> vertex_at;
   for (std::uint32_t v = 0; v < d.vertices.size(); ++v)
     vertex_at[{d.vertices[v].x, d.vertices[v].y}] = v;
+  // The vertex of an input point, or those that it may have moved to.
+  const auto vertices_of = [&](Point p) {
+    std::set<std::uint32_t> vertices;
+    const auto found = vertex_at.find({p.x, p.y});
+    if (found != vertex_at.end()) return std::set{found->second};
+    for (std::uint32_t v = 0; v < d.vertices.size(); ++v)
+      if (std::hypot(d.vertices[v].x - p.x, d.vertices[v].y - p.y) < d.merging.tolerance)
+        vertices.insert(v);
+    return vertices;
+  };
   for (std::uint32_t i = 0; i < pslg.segments.size(); ++i) {
     std::map<std::uint32_t, std::vector<std::uint32_t>> adjacent;
     for (const std::uint32_t k : subsegments_on(pslg, d, i, ulps)) {
@@ -175,7 +185,7 @@ Broken broken_chain(const Pslg& pslg, const Domain& d, double ulps) {
       adjacent[d.subsegments[k].b].push_back(d.subsegments[k].a);
     }
     const Point a = pslg.points[pslg.segments[i].a], b = pslg.points[pslg.segments[i].b];
-    std::set<std::uint32_t> reached{vertex_at.at({a.x, a.y})};
+    std::set<std::uint32_t> reached = vertices_of(a);
     std::vector<std::uint32_t> stack(reached.begin(), reached.end());
     while (!stack.empty()) {
       const std::uint32_t v = stack.back();
@@ -183,17 +193,18 @@ Broken broken_chain(const Pslg& pslg, const Domain& d, double ulps) {
       for (const std::uint32_t w : adjacent[v])
         if (reached.insert(w).second) stack.push_back(w);
     }
-    if (!reached.contains(vertex_at.at({b.x, b.y})))
+    const std::set<std::uint32_t> ends = vertices_of(b);
+    const auto is_reached = [&](std::uint32_t v) { return reached.contains(v); };
+    if (std::none_of(ends.begin(), ends.end(), is_reached))
       return broken("segment ", i, " is not a chain of subsegments");
   }
   return {};
 }
 
-Broken broken_origin(const Pslg& pslg, const Domain& d) {
-  constexpr double kUlps = 6;
+Broken broken_origin(const Pslg& pslg, const Domain& d, double ulps) {
   std::vector<std::vector<std::uint32_t>> lies_on(d.subsegments.size());
   for (std::uint32_t i = 0; i < pslg.segments.size(); ++i)
-    for (const std::uint32_t k : subsegments_on(pslg, d, i, kUlps)) lies_on[k].push_back(i);
+    for (const std::uint32_t k : subsegments_on(pslg, d, i, ulps)) lies_on[k].push_back(i);
   for (std::uint32_t k = 0; k < d.subsegments.size(); ++k) {
     if (lies_on[k].empty()) return broken("subsegment ", k, " lies on no segment");
     std::int32_t marker = 0;
@@ -204,6 +215,46 @@ Broken broken_origin(const Pslg& pslg, const Domain& d) {
                     lies_on[k].front());
     if (d.subsegments[k].marker != marker)
       return broken("subsegment ", k, " has marker ", d.subsegments[k].marker, ", not ", marker);
+  }
+  return {};
+}
+
+Broken broken_separation(const Pslg& pslg, const Domain& d, double reach) {
+  constexpr double kRounding = 1e-3;  // of the arithmetic here, as a fraction of the tolerance
+  const double tolerance = d.merging.tolerance;
+  const auto to_segment = [](Point p, Point a, Point b) {
+    const double x = b.x - a.x, y = b.y - a.y;
+    const double along = (x * (p.x - a.x) + y * (p.y - a.y)) / (x * x + y * y);
+    const double t = std::clamp(along, 0.0, 1.0);
+    return std::hypot(a.x + t * x - p.x, a.y + t * y - p.y);
+  };
+  for (std::uint32_t v = 0; v < d.vertices.size(); ++v) {
+    const Point p = d.vertices[v];
+    for (std::uint32_t w = 0; w < v; ++w)
+      if (std::hypot(p.x - d.vertices[w].x, p.y - d.vertices[w].y) < (1 - kRounding) * tolerance)
+        return broken("vertices ", v, " and ", w, " are nearer than the tolerance");
+    for (std::uint32_t k = 0; k < d.subsegments.size(); ++k) {
+      const Subsegment& s = d.subsegments[k];
+      if (s.a == v || s.b == v) continue;
+      const double off = to_segment(p, d.vertices[s.a], d.vertices[s.b]);
+      if (off < (0.5 - kRounding) * tolerance)
+        return broken("vertex ", v, " is ", off / tolerance, " tolerances off subsegment ", k);
+    }
+  }
+  for (std::uint32_t i = 0; i < pslg.points.size(); ++i) {
+    const Point p = pslg.points[i];
+    const bool is_there = std::any_of(d.vertices.begin(), d.vertices.end(), [&](Point q) {
+      return std::hypot(p.x - q.x, p.y - q.y) <= reach * tolerance;
+    });
+    if (!is_there) return broken("input point ", i, " is near no vertex");
+  }
+  for (std::uint32_t k = 0; k < d.subsegments.size(); ++k) {
+    const Segment& s = pslg.segments[d.subsegments[k].segment];
+    for (const std::uint32_t v : {d.subsegments[k].a, d.subsegments[k].b}) {
+      const double off = to_segment(d.vertices[v], pslg.points[s.a], pslg.points[s.b]);
+      if (off > reach * tolerance)
+        return broken("subsegment ", k, " is ", off / tolerance, " tolerances off its segment");
+    }
   }
   return {};
 }

@@ -18,9 +18,15 @@ std::optional<std::string> broken_law(const Pslg& pslg, const Domain& domain);
 // `ulps` ulps of it.
 std::optional<std::string> broken_chain(const Pslg& pslg, const Domain& domain, double ulps = 6);
 
-// For domains whose segments are either apart or within rounding: every subsegment lies on a
+// For domains whose segments are either apart or within `ulps` ulps: every subsegment lies on a
 // segment, and names the lowest of them and the first marker that is not 0.
-std::optional<std::string> broken_origin(const Pslg& pslg, const Domain& domain);
+std::optional<std::string> broken_origin(const Pslg& pslg, const Domain& domain, double ulps = 6);
+
+// For domains that carve nothing away: no two vertices are nearer than the tolerance, no vertex is
+// nearer than half of it to a subsegment that it is no end of, and every input point is within
+// `reach` tolerances of a vertex, every subsegment within as many of the segment that it names.
+std::optional<std::string> broken_separation(const Pslg& pslg, const Domain& domain,
+                                             double reach = 1.01);
 
 // Exactly the sum of the triangles' areas, rounded once.
 double area(const Domain& domain);

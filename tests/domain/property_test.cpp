@@ -2,12 +2,14 @@
 // Random dirty PSLGs: on a small integer grid crossings, overlaps, touchings and repeats abound.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <numbers>
 #include <random>
 
 #include "engine/domain/domain.h"
+#include "engine/domain/snapping.h"
 #include "tests/domain/laws.h"
 #include "tests/domain/shapes.h"
 
@@ -99,7 +101,8 @@ TEST(DirtyPslg, OfRandomSegmentsKeepsAllLaws) {
   }
 }
 
-// For segments closer to each other than rounding: whatever becomes of them, it ends, lawfully.
+// For segments closer to each other than the tolerance: whatever becomes of them, it ends,
+// lawfully.
 void expect_lawful(const Pslg& pslg, double ulps) {
   ExecutionContext context;
   context.set_deadline(ExecutionContext::Clock::now() + std::chrono::seconds(20));
@@ -107,17 +110,18 @@ void expect_lawful(const Pslg& pslg, double ulps) {
   ASSERT_TRUE(domain) << domain.error().message;
   EXPECT_EQ(broken_law(pslg, *domain), std::nullopt);
   EXPECT_EQ(broken_chain(pslg, *domain, ulps), std::nullopt);
+  EXPECT_EQ(broken_separation(pslg, *domain, 4), std::nullopt);
 }
 
-TEST(NearMisses, OnAGridOfAFewUlpsEndLawfully) {
+TEST(NearMisses, OnAGridAsFineAsTheToleranceEndLawfully) {
   for (std::uint32_t seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE(seed);
     Generator random(5000 + seed);
     const int grid = 2 + random.below(40);
-    const double scale = std::ldexp(1, -52 + random.below(8));
+    const double scale = std::ldexp(1, -44 + random.below(8));
     Pslg pslg;
-    // Farther from the grid than the snapping distance, so that no point ends up outside.
-    const double margin = scale + std::ldexp(1, -48);
+    // Farther from the grid than the tolerance, so that no point ends up outside.
+    const double margin = scale + std::ldexp(1, -38);
     const double high = 1.5 + grid * scale + margin;
     add_box(pslg, {1.5 - margin, 1.5 - margin}, {high, high});
     const int segments = random.below(60);
@@ -126,7 +130,7 @@ TEST(NearMisses, OnAGridOfAFewUlpsEndLawfully) {
       const Point b{1.5 + random.below(grid) * scale, 1.5 + random.below(grid) * scale};
       if (a != b) add_segment(pslg, a, b);
     }
-    expect_lawful(pslg, 16);
+    expect_lawful(pslg, 4 * 8192);
   }
 }
 
@@ -144,7 +148,7 @@ TEST(NearMisses, OfChordsThroughNearlyOnePointEndLawfully) {
       const double y = (1 + random.unit()) * std::sin(angle);
       add_segment(pslg, {0.3 + x + off, 0.4 + y}, {0.3 - x, 0.4 - y - off});
     }
-    expect_lawful(pslg, 16);
+    expect_lawful(pslg, 4 * 8192);
   }
 }
 
@@ -169,7 +173,37 @@ TEST(NearMisses, OfNearlyCollinearSegmentsEndLawfully) {
       const Point a = point(), b = point();
       if (a != b) add_segment(pslg, a, b);
     }
-    expect_lawful(pslg, 16);
+    expect_lawful(pslg, 4 * 8192);
+  }
+}
+
+// A coarse grid, each of whose points is drawn anew with an error each time, as by an export: the
+// errors lie around the tolerance, below and above.
+TEST(NearMisses, OfPointsDrawnWithErrorsEndLawfully) {
+  for (std::uint32_t seed = 0; seed < 150; ++seed) {
+    SCOPED_TRACE(seed);
+    Generator random(8000 + seed);
+    const double offset = std::array{0.0, 1.0, 1e3, 1e6}[seed % 4];
+    const bool snaps = seed % 3 == 0;
+    Pslg pslg;
+    add_box(pslg, {offset - 1, offset - 1}, {offset + 9, offset + 9});
+    if (snaps) pslg.snap = 0.01;
+    const double error = (snaps ? 0.01 : 0x1p-40 * (offset + 9)) * std::ldexp(4, -random.below(6));
+    const auto coordinate = [&] {
+      return offset + random.below(9) + error * (2 * random.unit() - 1);
+    };
+    const int segments = 2 + random.below(30);
+    for (int i = 0; i < segments; ++i) {
+      const Point a{coordinate(), coordinate()}, b{coordinate(), coordinate()};
+      if (distance(a, b) > 0.5) add_segment(pslg, a, b, 1 + i);
+    }
+    ExecutionContext context;
+    context.set_deadline(ExecutionContext::Clock::now() + std::chrono::seconds(20));
+    const Result<Domain> domain = triangulate(pslg, context);
+    ASSERT_TRUE(domain) << domain.error().message;
+    EXPECT_EQ(broken_law(pslg, *domain), std::nullopt);
+    EXPECT_EQ(broken_separation(pslg, *domain, 3), std::nullopt);
+    EXPECT_DOUBLE_EQ(area(*domain), 100);
   }
 }
 

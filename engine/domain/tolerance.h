@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The one tolerance of a domain. Features nearer than T = merge_tolerance() are merged by the
+// arrangement (arrangement.h); what is left is meshed within its bounds.
+//
+// T is the caller's Pslg::snap, but at least kMergeFraction of the largest absolute coordinate,
+// 4,096 to 8,192 units in its last place: below that, double precision has no room to refine in.
+// After merging, vertices are T apart and T / 2 off the segments that they are no ends of. Edges
+// that the bounds then need are a fraction of that: at 20 to 34 degrees, T / 10 in practice, and
+// less where segments meet at small angles. Refinement makes no edge below kEdgeFraction of the
+// largest coordinate, T / 64: at 64 units in the last place, a rounded Steiner point is off by less
+// than a hundredth of an edge.
+//
+// The largest coordinate counts, not the size of the feature or of the domain: the output is
+// rounded to doubles, so units in the last place are what a mesh far from the origin consists of.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "engine/domain/pslg.h"
+#include "engine/geometry.h"
+
+namespace weft {
+
+inline constexpr double kMergeFraction = 0x1p-40;
+inline constexpr double kEdgeFraction = 0x1p-46;
+
+inline double largest_coordinate(const std::vector<Point>& points) {
+  double largest = 0;
+  for (const Point p : points) largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
+  return largest;
+}
+
+inline double merge_tolerance(const Pslg& pslg) {
+  return std::max(pslg.snap, kMergeFraction * largest_coordinate(pslg.points));
+}
+
+}  // namespace weft
