@@ -9,6 +9,7 @@
 
 #include "engine/bounds_error.h"
 #include "engine/domain/domain.h"
+#include "engine/domain/tolerance.h"
 #include "engine/mesh_run.h"
 #include "engine/refine/area_bound.h"
 #include "engine/refine/mapped_area.h"
@@ -73,12 +74,10 @@ std::optional<Error> check_extent(const Box& box) {
                    text(kSmallestExtent)};
 }
 
-// Where double precision ends: edges below this fraction of the largest coordinate are not made.
-// Leaves the predicates and the Steiner points 2^17 units in the last place to work in.
+// Where double precision ends: edges below this are not made.
 double precision_of(const Box& box) {
-  constexpr double kPrecision = 0x1p-36;
-  return kPrecision * std::max({std::fabs(box.min_x), std::fabs(box.min_y), std::fabs(box.max_x),
-                                std::fabs(box.max_y)});
+  return kEdgeFraction * std::max({std::fabs(box.min_x), std::fabs(box.min_y), std::fabs(box.max_x),
+                                   std::fabs(box.max_y)});
 }
 
 // The least number of triangles for an area of at most `bound`, and of what each region allows.

@@ -23,6 +23,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -137,12 +138,14 @@ class Refiner {
 
   static constexpr std::uint32_t kMaxGrowth = 2;  // triangles that an insertion adds
   static constexpr std::size_t kInitialRing = 1024;
+  static constexpr int kNudges = 4;  // to either side, of a point that splits a segment
 
   enum class Outcome {
     kInserted,
     kEncroaches,  // cavity_.encroached() are to be split first
     kNotOwned,
     kTooClose,  // an edge would be below the floor, or double precision ends
+    kFlat,      // a triangle would not be counter-clockwise
   };
 
   void refine(std::uint32_t t) {
@@ -163,6 +166,7 @@ class Refiner {
         defer(t);
         return;
       case Outcome::kTooClose:
+      case Outcome::kFlat:
         triangle.set_excuse(refusal());
         return;
     }
@@ -228,8 +232,10 @@ class Refiner {
     return mesh_.triangles[triangle_of(h)].vertex[edge_of(h)];
   }
 
-  // Whether the vertex opposite is nearer to the edge's line than double precision can mend: two
-  // segments that almost coincide would split each other down to the floor.
+  // Whether the vertex opposite is nearer to the edge than double precision can mend: two segments
+  // that almost coincide would split each other down to the floor. A vertex beyond the edge's ends
+  // does not count: where a split was rounded, the next piece of the same segment is on its line
+  // but for a unit in the last place.
   bool too_thin(HalfEdge h) const {
     const Triangle& triangle = mesh_.triangles[triangle_of(h)];
     const Point apex = mesh_.vertices[apex_of(h)];
@@ -237,19 +243,44 @@ class Refiner {
     const Point b = mesh_.vertices[triangle.vertex[kPrevious[edge_of(h)]]];
     const double x = b.x - a.x;
     const double y = b.y - a.y;
+    const double length2 = x * x + y * y;
+    const double along = x * (apex.x - a.x) + y * (apex.y - a.y);
     const double cross = x * (apex.y - a.y) - y * (apex.x - a.x);
-    return cross * cross < quality_.precision2 * (x * x + y * y);
+    return along > 0 && along < length2 && cross * cross < quality_.precision2 * length2;
   }
 
-  // Splits edge `edge` of triangle t, which lies on a segment.
+  // Splits edge `edge` of triangle t, which lies on a segment. The next piece of the same segment
+  // may be in line with the edge but for rounding; if then the point is on the wrong side of that
+  // line, a triangle would be flat. So the point gives way, by a few units in the last place.
   Outcome split_segment(std::uint32_t t, std::uint32_t edge) {
     const Triangle& triangle = mesh_.triangles[t];
     const std::uint32_t a = triangle.vertex[kNext[edge]];
     const std::uint32_t b = triangle.vertex[kPrevious[edge]];
     const HalfEdge across = triangle.neighbor[edge];
+    const Point p = corners_.split_point(
+        mesh_, {a, b}, {triangle.vertex[edge], across != kNone ? apex_of(across) : kNone});
+    Outcome outcome = split_segment_at(t, edge, p);
+    if (outcome != Outcome::kFlat) [[likely]]
+      return outcome;
+    const double x = mesh_.vertices[b].x - mesh_.vertices[a].x;
+    const double y = mesh_.vertices[b].y - mesh_.vertices[a].y;
+    const double unit =
+        0x1p-52 * std::max(std::fabs(p.x), std::fabs(p.y)) / std::sqrt(x * x + y * y);
+    for (int k = 1; k <= kNudges && outcome == Outcome::kFlat; ++k) {
+      for (const double side : {k * unit, -k * unit}) {
+        outcome = split_segment_at(t, edge, {p.x - side * y, p.y + side * x});
+        if (outcome != Outcome::kFlat) break;
+      }
+    }
+    return outcome;
+  }
+
+  Outcome split_segment_at(std::uint32_t t, std::uint32_t edge, Point p) {
+    const Triangle& triangle = mesh_.triangles[t];
+    const std::uint32_t a = triangle.vertex[kNext[edge]];
+    const std::uint32_t b = triangle.vertex[kPrevious[edge]];
+    const HalfEdge across = triangle.neighbor[edge];
     const bool closed = across != kNone;
-    const Point p = corners_.split_point(mesh_, {a, b},
-                                         {triangle.vertex[edge], closed ? apex_of(across) : kNone});
     Growth growth;
     while ((growth = cavity_.grow_from_segment(t, edge, p)) == Growth::kOverflow) enlarge();
     if (growth == Growth::kNotOwned) return Outcome::kNotOwned;
@@ -267,7 +298,7 @@ class Refiner {
       verdict.too_close |= far.too_close;
       verdict.reach2 = std::max(verdict.reach2, far.reach2);
     }
-    if (!acceptable(verdict, p)) return Outcome::kTooClose;
+    if (!acceptable(verdict, p)) return verdict.too_close ? Outcome::kTooClose : Outcome::kFlat;
 
     const std::uint32_t near_region = triangle.region;
     const std::uint32_t far_region = closed ? mesh_.triangles[triangle_of(across)].region : 0;
@@ -405,7 +436,8 @@ class Refiner {
       const Outcome outcome = split_segment(s.triangle, s.edge);
       any |= outcome == Outcome::kInserted;
       if (outcome == Outcome::kNotOwned) defer_segment(s);
-      if (outcome == Outcome::kTooClose) segments_refused_ = std::max(segments_refused_, refusal());
+      if (outcome == Outcome::kTooClose || outcome == Outcome::kFlat)
+        segments_refused_ = std::max(segments_refused_, refusal());
     }
     return any;
   }
