@@ -171,16 +171,6 @@ void stroke_boxes(cairo_t* cairo, std::span<const double> boxes, const Canvas& c
 
 }  // namespace
 
-std::optional<DrawFormat> draw_format(const std::filesystem::path& path) {
-  std::string name = path.extension().string();
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  if (name == ".png") return DrawFormat::kPng;
-  if (name == ".svg") return DrawFormat::kSvg;
-  if (name == ".pdf") return DrawFormat::kPdf;
-  return std::nullopt;
-}
-
 Result<void> draw(const MeshView& mesh, const DrawOptions& options, OutputFile& file) {
   const double pixel = options.format == DrawFormat::kPng ? 1 : 0.5;  // in units of the page
   const double long_side = options.long_side * pixel;

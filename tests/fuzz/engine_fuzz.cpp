@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The engine against the checker, on PSLGs of mesh_case.h. Asserts:
+//   checker-RULE    the independent checker finds nothing against the mesh, nor does its summary;
+//                   plain-RULE of a case without jitter, where no tolerance is in question
+//   internal        no error is kInternal: whatever else is wrong with a case has a name
+//   threads         one thread and three give the same bytes, or the same error
+//   explosion       a domain of a few points on a coarse grid without a size, whose features are
+//                   all far apart, has not thousands of triangles
+// A case that is refused, or that reaches its limit of triangles, is in order.
+#include <cstdint>
+#include <string>
+#include <variant>
+
+#include "tests/fuzz/law.h"
+#include "tests/fuzz/mesh_case.h"
+#include "tests/support/collected_mesh.h"
+
+namespace weft::fuzz {
+namespace {
+
+constexpr int kThreads = 3;
+
+struct Outcome {
+  Result<Summary> summary;
+  CollectedMesh mesh;
+};
+
+Outcome generate(const MeshCase& made, Arena* arena) {
+  ExecutionContext context(made.budget);
+  if (arena != nullptr) context.set_arena(*arena, kThreads);
+  CollectedMesh mesh;
+  Result<Summary> summary = generate_mesh(made.request, mesh, context);
+  return {std::move(summary), std::move(mesh)};
+}
+
+std::string name_of(const Result<Summary>& summary) {
+  if (summary) return "a mesh of " + std::to_string(summary->triangles) + " triangles";
+  return "error " + std::to_string(static_cast<int>(summary.error().code)) + ", " +
+         summary.error().field + ": " + summary.error().message;
+}
+
+bool same(const Result<Summary>& a, const Result<Summary>& b) {
+  if (a.has_value() != b.has_value()) return false;
+  if (a) return a->digest == b->digest && a->vertices == b->vertices;
+  return a.error().code == b.error().code && a.error().field == b.error().field;
+}
+
+// "chains" of "chains: segment 3 has a gap": the first line that begins with a rule.
+std::string law_of(const MeshCase& made, const std::string& verdict) {
+  const std::string judge = made.plain ? "plain-" : "checker-";
+  for (std::size_t r = 0; r < check::kRules; ++r) {
+    const std::string name(check::rule_name(static_cast<check::Rule>(r)));
+    if (verdict.find("\n" + name + ":") != std::string::npos) return judge + name;
+  }
+  return judge + "summary";
+}
+
+void judge(const std::uint8_t* data, std::size_t size) {
+  const MeshCase made = decode_mesh_case(ByteSource(data, size));
+  const auto must = [&](bool holds, const std::string& law, const std::string& evidence) {
+    if (!holds) broken(law, evidence + "\n" + to_text(made), data, size);
+  };
+  const Outcome one = generate(made, nullptr);
+  if (one.summary) {
+    const std::string wrong = verdict(made.request, one.mesh, *one.summary);
+    must(wrong.empty(), law_of(made, wrong), wrong);
+  } else {
+    const Error& error = one.summary.error();
+    must(error.code != ErrorCode::kInternal, "internal", error.message);
+    const bool endless = error.code == ErrorCode::kLimitExceeded && made.plain &&
+                         !made.request.size.constant && !made.request.size.expression &&
+                         !made.request.size.raster && made.request.min_angle_deg <= 25;
+    must(!endless, "explosion", error.message);
+  }
+  // The arena is never freed: its threads would have to be waited for as the process ends.
+  static Arena& arena = *new Arena(kThreads);
+  const Outcome three = generate(made, &arena);
+  must(same(one.summary, three.summary), "threads",
+       "one thread: " + name_of(one.summary) + "\nthree: " + name_of(three.summary));
+}
+
+}  // namespace
+}  // namespace weft::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  weft::fuzz::judge(data, size);
+  return 0;
+}

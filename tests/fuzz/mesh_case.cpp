@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/fuzz/mesh_case.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace weft::fuzz {
+namespace {
+
+constexpr std::size_t kMostPoints = 40;
+
+template <class... Values>
+std::string print(const char* format, Values... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+// Takes a PSLG's choices from the bytes.
+class PslgMaker {
+ public:
+  PslgMaker(ByteSource& bytes, Pslg& pslg) : bytes_(bytes), pslg_(pslg) {}
+
+  // Returns whether nothing was rounded: whatever is near is so on the grid.
+  bool make() {
+    read_frame();
+    pslg_.fill = bytes_.below(4) == 1 ? Fill::kEvenOdd : Fill::kSeeds;
+    const std::size_t seeds = bytes_.byte();
+    if (bytes_.below(4) != 3) add_box();
+    while (bytes_.left() > 2 * seeds % 16 && points_.size() < kMostPoints) add_point();
+    for (std::size_t i = 0; i < seeds % 4; ++i) pslg_.holes.push_back(placed(seed()));
+    for (std::size_t i = 0; i < seeds / 4 % 4; ++i) add_region();
+    for (const Point p : points_) pslg_.points.push_back(placed(p));
+    return jitter_ == 0 && sine_ == 0 && decimals_ < 0 && (scale_ == 1 || scale_ == 1e3) &&
+           !skewed_;
+  }
+
+  double extent() const { return scale_ * (grid_ + 1); }
+
+ private:
+  // How grid coordinates become those of the request.
+  void read_frame() {
+    grid_ = static_cast<double>(2 + bytes_.below(15));
+    scale_ = bytes_.one_of<double>({1, 1, 1, 0.1, 1.0 / 3, 1e-3, 1e3, 17.7});
+    jitter_ = bytes_.one_of<double>({0, 0, 0, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8,
+                                     1e-7, 1e-6, 1e-5, 1e-4, 1e-3});
+    offset_ = bytes_.one_of<Point>(
+        {{0, 0}, {0, 0}, {1, 1}, {1e3, 1e3}, {1e6, 1e6}, {5e5, 4.65e6}, {-1e3, 0}, {0, 1e6}});
+    const std::array<double, 2> turn = bytes_.one_of<std::array<double, 2>>(
+        {{1, 0}, {1, 0}, {0.8, 0.6}, {5.0 / 13, 12.0 / 13}, {15.0 / 17, 8.0 / 17}});
+    cosine_ = turn[0];
+    sine_ = turn[1];
+    decimals_ = bytes_.one_of({-1, -1, -1, 2, 3, 4, 5, 6, 7, 8, 9});
+  }
+
+  Point placed(Point p) const {
+    Point q{offset_.x + scale_ * (cosine_ * p.x - sine_ * p.y),
+            offset_.y + scale_ * (sine_ * p.x + cosine_ * p.y)};
+    if (decimals_ >= 0) {
+      double power = 1;
+      for (int i = 0; i < decimals_; ++i) power *= 10;
+      q = {std::nearbyint(q.x * power) / power, std::nearbyint(q.y * power) / power};
+    }
+    return q;
+  }
+
+  Point on_grid() {
+    const auto lines = static_cast<std::size_t>(grid_) + 1;
+    const double x = static_cast<double>(bytes_.below(lines));
+    return {x, static_cast<double>(bytes_.below(lines))};
+  }
+  Point earlier() { return points_.empty() ? on_grid() : points_[bytes_.below(points_.size())]; }
+  // A few jitters either way.
+  Point near(Point p) {
+    const std::size_t steps = bytes_.byte();
+    return {p.x + jitter_ * (static_cast<double>(steps % 16) - 7),
+            p.y + jitter_ * (static_cast<double>(steps / 16) - 7)};
+  }
+
+  void link(std::size_t a, std::size_t b) {
+    const auto marker = static_cast<std::int32_t>(pslg_.segments.size() % 5);
+    pslg_.segments.push_back(
+        {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), marker});
+  }
+
+  void add_box() {
+    points_ = {{-1, -1}, {grid_ + 1, -1}, {grid_ + 1, grid_ + 1}, {-1, grid_ + 1}};
+    for (std::size_t i = 0; i < 4; ++i) link(i, (i + 1) % 4);
+  }
+
+  void add_point() {
+    const std::size_t choice = bytes_.byte();
+    points_.push_back(make_point(choice % 8));
+    const std::size_t last = points_.size() - 1;
+    switch (choice / 8 % 8) {
+      case 0:
+        return;
+      case 1:
+      case 2:
+      case 3:
+        if (last > 0) link(last - 1, last);
+        return;
+      case 4:
+        if (last > 1) link(last - 2, last);
+        if (last > 0) link(last - 1, last);
+        return;
+      default:
+        if (const std::size_t other = bytes_.below(points_.size()); other != last)
+          link(other, last);
+    }
+  }
+
+  Point make_point(std::size_t kind) {
+    switch (kind) {
+      case 4:
+        return near(earlier());
+      case 5: {  // beside a segment, or on it
+        const Point a = earlier();
+        const Point b = earlier();
+        const double t = static_cast<double>(bytes_.below(17)) / 16;
+        return near({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)});
+      }
+      case 6: {  // on an arm of a star: the arms differ by little
+        skewed_ = true;
+        const Point apex = earlier();
+        const std::size_t arm = bytes_.byte();
+        const double length = static_cast<double>(1 + arm % 8);
+        const double slope = bytes_.one_of({1e-9, 1e-7, 1e-5, 1e-3, 0.01, 0.05, 0.1, 0.3});
+        const double rise = length * slope * static_cast<double>(arm / 8 % 8);
+        return arm < 128 ? Point{apex.x + length, apex.y + rise}
+                         : Point{apex.x - rise, apex.y + length};
+      }
+      case 7:
+        return near(on_grid());
+      default:
+        return on_grid();
+    }
+  }
+
+  Point seed() {
+    const Point p = on_grid();
+    return {p.x + 0.375, p.y + 0.4375};
+  }
+
+  void add_region() {
+    RegionSeed region{.at = placed(seed()),
+                      .id = static_cast<std::int32_t>(1 + bytes_.below(3)),
+                      .max_area = std::nullopt};
+    if (bytes_.flag())
+      region.max_area = extent() * extent() / static_cast<double>(1 + bytes_.below(200));
+    pslg_.regions.push_back(region);
+  }
+
+  ByteSource& bytes_;
+  Pslg& pslg_;
+  double grid_ = 2;
+  double scale_ = 1;
+  double jitter_ = 0;
+  Point offset_;
+  double cosine_ = 1;
+  double sine_ = 0;
+  int decimals_ = -1;
+  bool skewed_ = false;
+  std::vector<Point> points_;  // in grid coordinates
+};
+
+SizeSpec read_size(ByteSource& bytes, double extent, const Pslg& pslg) {
+  SizeSpec size;
+  const std::size_t kind = bytes.below(8);
+  const double area = extent * extent / static_cast<double>(1 + bytes.byte());
+  const Point at = pslg.points.empty() ? Point{} : pslg.points[bytes.below(pslg.points.size())];
+  switch (kind) {
+    case 4:
+      size.constant = area;
+      break;
+    case 5: {
+      const double step = extent / 8;
+      switch (bytes.below(6)) {
+        case 0:
+          size.expression =
+              print("%.17g + %.17g*hypot(x-%.17g, y-%.17g)", area / 4, step, at.x, at.y);
+          break;
+        case 1:
+          size.expression = print("x < %.17g ? %.17g : %.17g", at.x + step, area, area / 5);
+          break;
+        case 2:
+          size.expression =
+              print("hypot(x-%.17g,y-%.17g) < %.17g ? %.17g : 1e30", at.x, at.y, step, area / 6);
+          break;
+        case 3:
+          size.expression = print("%.17g + abs(y-%.17g)*%.17g", area / 3, at.y, step);
+          break;
+        case 4:
+          size.expression = print("%.17g", area);
+          break;
+        default:
+          size.expression = print("max(%.17g, (x-%.17g)^2)", area / 4, at.x);
+      }
+      break;
+    }
+    case 6: {
+      Raster raster{.origin = at,
+                    .dx = extent / static_cast<double>(1 + bytes.below(8)),
+                    .dy = extent / static_cast<double>(1 + bytes.below(8)),
+                    .columns = static_cast<std::uint32_t>(1 + bytes.below(4)),
+                    .rows = static_cast<std::uint32_t>(1 + bytes.below(4)),
+                    .values = {}};
+      for (std::size_t i = 0; i < std::size_t{raster.columns} * raster.rows; ++i)
+        raster.values.push_back(extent * extent / static_cast<double>(1 + bytes.byte()));
+      size.raster = std::move(raster);
+      break;
+    }
+    default:
+      break;
+  }
+  return size;
+}
+
+// Until every workstream's tree has it.
+void set_snap(auto& pslg, double snap) {
+  if constexpr (requires { pslg.snap; }) pslg.snap = snap;
+}
+double snap_of(const auto& pslg) {
+  if constexpr (requires { pslg.snap; }) return pslg.snap;
+  return 0;
+}
+
+}  // namespace
+
+MeshCase decode_mesh_case(ByteSource bytes) {
+  MeshCase made;
+  MeshRequest& request = made.request;
+  // The bounds come first, so that what a mutation adds at the end is more of the domain.
+  const std::size_t bounds = bytes.byte();
+  ByteSource size_bytes = bytes;
+  bytes.take(6);
+  constexpr std::array<double, 9> kAngles{20, 20, 0, 25, 30, 33, 34, 12.5, 1};
+  request.min_angle_deg = kAngles[bounds % kAngles.size()];
+  request.leaf_triangles = bytes.one_of<double>({16'000, 50, 50, 100, 300});
+  const std::size_t rarely = bytes.byte();
+  PslgMaker maker(bytes, request.pslg);
+  made.plain = maker.make();
+  request.size = read_size(size_bytes, maker.extent(), request.pslg);
+  if (rarely % 8 == 1) request.min_edge = maker.extent() / static_cast<double>(1 + rarely);
+  if (rarely % 8 == 2) made.budget.max_triangles = rarely;
+  if (rarely % 8 == 3) {
+    constexpr std::array<double, 4> kSnaps{1e-9, 1e-6, 1e-3, 0.1};
+    set_snap(request.pslg, maker.extent() * kSnaps[rarely / 8 % kSnaps.size()]);
+  }
+  made.budget.triangle_limit = kTriangleLimit;
+  return made;
+}
+
+std::string to_text(const MeshCase& mesh_case) {
+  const MeshRequest& request = mesh_case.request;
+  const Pslg& pslg = request.pslg;
+  std::string text = print("# --min-angle %.17g", request.min_angle_deg);
+  if (request.size.constant) text += print(" --size %.17g", *request.size.constant);
+  if (request.size.expression) text += " --size '" + *request.size.expression + "'";
+  if (request.min_edge > 0) text += print(" --min-edge %.17g", request.min_edge);
+  if (snap_of(pslg) > 0) text += print(" --snap %.17g", snap_of(pslg));
+  if (mesh_case.budget.max_triangles < kTriangleLimit)
+    text += print(" --max-triangles %llu",
+                  static_cast<unsigned long long>(mesh_case.budget.max_triangles));
+  text += print("   (leaf_triangles %g, fill %s, triangle_limit %llu)\n", request.leaf_triangles,
+                pslg.fill == Fill::kSeeds ? "seeds" : "even-odd",
+                static_cast<unsigned long long>(mesh_case.budget.triangle_limit));
+  if (const auto& raster = request.size.raster) {
+    text += print("# raster: origin %.17g %.17g, step %.17g %.17g, %u x %u:", raster->origin.x,
+                  raster->origin.y, raster->dx, raster->dy, raster->columns, raster->rows);
+    for (const double value : raster->values) text += print(" %.17g", value);
+    text += "\n";
+  }
+  text += print("%zu 2 0 0\n", pslg.points.size());
+  for (std::size_t i = 0; i < pslg.points.size(); ++i)
+    text += print("%zu %.17g %.17g\n", i, pslg.points[i].x, pslg.points[i].y);
+  text += print("%zu 1\n", pslg.segments.size());
+  for (std::size_t i = 0; i < pslg.segments.size(); ++i)
+    text +=
+        print("%zu %u %u %d\n", i, pslg.segments[i].a, pslg.segments[i].b, pslg.segments[i].marker);
+  text += print("%zu\n", pslg.holes.size());
+  for (std::size_t i = 0; i < pslg.holes.size(); ++i)
+    text += print("%zu %.17g %.17g\n", i, pslg.holes[i].x, pslg.holes[i].y);
+  text += print("%zu\n", pslg.regions.size());
+  for (std::size_t i = 0; i < pslg.regions.size(); ++i)
+    text += print("%zu %.17g %.17g %d %.17g\n", i, pslg.regions[i].at.x, pslg.regions[i].at.y,
+                  pslg.regions[i].id, pslg.regions[i].max_area.value_or(-1));
+  return text;
+}
+
+}  // namespace weft::fuzz

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bytes as a request to the engine: a small PSLG of the kinds that break meshers.
+//
+// Points stand on a grid of 2 to 16 lines, near earlier points, near segments between them, or
+// beside each other on the arms of acute stars; "near" is a jitter of 1e-15 to 1e-3 grid steps. The
+// grid may be turned by a Pythagorean angle, scaled, moved by up to 1e6, and rounded to decimals,
+// as exports of floor plans are. Segments link them at random, so they cross, overlap and repeat.
+// Then come seeds, a fill, and bounds of all kinds.
+//
+// The same bytes give the same case, on every machine.
+#pragma once
+
+#include <string>
+
+#include "engine/engine.h"
+#include "tests/fuzz/byte_source.h"
+
+namespace weft::fuzz {
+
+struct MeshCase {
+  MeshRequest request{};
+  Budget budget{};
+  bool plain = false;  // nothing was rounded: what is near is so on the grid
+};
+
+// Triangles of a case, at most: beyond them the engine refuses or stops. About 40 ms of work with
+// sanitizers.
+inline constexpr std::uint64_t kTriangleLimit = 3000;
+
+MeshCase decode_mesh_case(ByteSource bytes);
+
+// The case as a .poly file with its flags in comments, to 17 digits.
+std::string to_text(const MeshCase& mesh_case);
+
+}  // namespace weft::fuzz
