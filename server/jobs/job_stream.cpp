@@ -138,12 +138,12 @@ void FetchStream::begin() {
     return fail(
         {Reason::kChunkOutOfRange, "first_chunk",
          fmt::format("first_chunk is {}, but the mesh has {} chunks", next_, mesh_.chunks.size())});
+  const auto summary = read_summary(mesh_);
+  if (!summary) return fail(summary.error());
   v1::FetchMeshResponse accepted;
-  v1::Summary summary;
-  summary.ParseFromString(mesh_.summary);
   accepted.mutable_accepted()->set_job_id(job_.id);
-  accepted.mutable_accepted()->set_engine_version(summary.engine_version());
-  accepted.mutable_accepted()->set_threads(summary.threads());
+  accepted.mutable_accepted()->set_engine_version(summary->engine_version());
+  accepted.mutable_accepted()->set_threads(summary->threads());
   send(serialize(accepted));
   send_what_fits();
 }

@@ -2,7 +2,12 @@
 #include "server/jobs/job_wire.h"
 
 #include <fmt/format.h>
+#include <google/protobuf/stubs/common.h>
 #include <google/protobuf/util/time_util.h>
+
+#include <algorithm>
+
+#include "server/translate.h"
 
 namespace weft::server {
 namespace {
@@ -10,6 +15,22 @@ namespace {
 google::protobuf::Timestamp to_wire(WallTime time) {
   return google::protobuf::util::TimeUtil::MicrosecondsToTimestamp(
       std::chrono::duration_cast<std::chrono::microseconds>(time.time_since_epoch()).count());
+}
+
+// What a damaged row holds must not keep a client from reading the message, with all the other jobs
+// in it. Texts that are no UTF-8 would, and messages that do not parse.
+std::string text_of(const std::string& stored) {
+  using google::protobuf::internal::IsStructurallyValidUTF8;
+  if (IsStructurallyValidUTF8(stored.data(), static_cast<int>(stored.size()))) return stored;
+  std::string text = stored;
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return (c & 0x80) != 0; }, '?');
+  return text;
+}
+
+template <class Message>
+void parse_into(Message& message, const std::string& stored) {
+  if (!message.ParseFromString(stored)) message.Clear();
 }
 
 Reason reason_of(StoreErrorKind kind) {
@@ -40,22 +61,39 @@ Failure mesh_gone(std::string_view id) {
 
 v1::Job to_wire(const JobRecord& record) {
   v1::Job job;
-  job.set_id(record.id);
-  job.set_request_id(record.request_id);
+  job.set_id(text_of(record.id));
+  job.set_request_id(text_of(record.request_id));
   job.set_state(to_wire(record.state));
   *job.mutable_create_time() = to_wire(record.created);
   if (record.started) *job.mutable_start_time() = to_wire(*record.started);
   if (record.ended) *job.mutable_end_time() = to_wire(*record.ended);
   job.set_attempts(record.attempts);
-  job.set_worker(record.worker);
-  if (!record.progress.empty()) job.mutable_progress()->ParseFromString(record.progress);
-  if (!record.error.empty()) job.mutable_error()->ParseFromString(record.error);
+  job.set_worker(text_of(record.worker));
+  if (!record.progress.empty()) parse_into(*job.mutable_progress(), record.progress);
+  if (!record.error.empty()) parse_into(*job.mutable_error(), record.error);
   job.set_from_store(record.from_store);
   if (!record.brief.empty()) {
-    job.mutable_summary()->ParseFromString(record.brief);
+    parse_into(*job.mutable_summary(), record.brief);
     job.mutable_summary()->clear_leaf_boxes();  // of meshes that older servers made
   }
   return job;
+}
+
+tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure> read_request(const Claim& claim) {
+  auto request = std::make_unique<v1::GenerateMeshRequest>();
+  if (!request->ParseFromString(claim.request))
+    return tl::unexpected(Failure{Reason::kStoreBroken, "", "the stored request does not parse"});
+  if (const auto failure = check_shape(*request))
+    return tl::unexpected(
+        Failure{Reason::kStoreBroken, "", "the stored request is damaged: " + failure->message});
+  return request;
+}
+
+tl::expected<v1::Summary, Failure> read_summary(const StoredMesh& mesh) {
+  v1::Summary summary;
+  if (!summary.ParseFromString(mesh.summary))
+    return tl::unexpected(Failure{Reason::kStoreBroken, "", "the stored summary does not parse"});
+  return summary;
 }
 
 std::string_view state_name(JobState state) {

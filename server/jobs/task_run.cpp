@@ -22,10 +22,10 @@ constexpr std::chrono::seconds kPatience{60};
 constexpr milliseconds kFirstPause{50};
 constexpr milliseconds kLongestPause{2000};
 
-std::unique_ptr<v1::GenerateMeshRequest> parse(const std::string& bytes) {
-  auto request = std::make_unique<v1::GenerateMeshRequest>();
-  request->ParseFromString(bytes);
-  return request;
+// An empty one if there is none to work on: the run then ends before it has begun.
+const v1::GenerateMeshRequest& shown(
+    const tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure>& request) {
+  return request ? **request : v1::GenerateMeshRequest::default_instance();
 }
 
 std::string label_of(const Claim& claim) {
@@ -46,10 +46,10 @@ TaskRun::TaskRun(const RunEnvironment& environment, Claim claim)
     : environment_(environment),
       claim_(std::move(claim)),
       label_(label_of(claim_)),
-      request_(parse(claim_.request)),
-      max_seconds_(to_seconds(request_->budget(), environment.limits)),
-      threads_(to_threads(request_->threads(), environment.arena.threads())),
-      context_(to_budget(request_->budget(), environment.limits)) {
+      request_(read_request(claim_)),
+      max_seconds_(to_seconds(shown(request_).budget(), environment.limits)),
+      threads_(to_threads(shown(request_).threads(), environment.arena.threads())),
+      context_(to_budget(shown(request_).budget(), environment.limits)) {
   claim_.request = {};
   context_.set_deadline(seconds_from_now(max_seconds_));
   context_.set_arena(environment.arena, static_cast<int>(threads_));
@@ -66,7 +66,8 @@ void TaskRun::run() {
 }
 
 tl::expected<void, Failure> TaskRun::make_mesh() {
-  auto summary = call_engine(environment_.engine, std::move(request_), *this, context_);
+  if (!request_) return tl::unexpected(request_.error());
+  auto summary = call_engine(environment_.engine, std::move(*request_), *this, context_);
   if (store_error_) return tl::unexpected(failure_of(*store_error_));
   if (!summary && summary.error().reason == Reason::kDeadlineExceeded)
     summary.error().message =

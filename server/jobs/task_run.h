@@ -40,7 +40,7 @@ struct RunEnvironment {
 
 class TaskRun final : private ChunkSink {
  public:
-  // REQUIRES: claim.request is a GenerateMeshRequest that was checked.
+  // A claim whose request no server has stored fails with kStoreBroken.
   TaskRun(const RunEnvironment& environment, Claim claim);
 
   // Returns once the claim has ended.
@@ -72,7 +72,7 @@ class TaskRun final : private ChunkSink {
   const RunEnvironment& environment_;
   Claim claim_;              // its request is parsed, and empty, once this is made
   const std::string label_;  // of its lines in the log
-  std::unique_ptr<v1::GenerateMeshRequest> request_;
+  tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure> request_;
   const Clock::time_point began_ = Clock::now();
   const double max_seconds_;  // of work
   const std::uint32_t threads_;

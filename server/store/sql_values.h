@@ -15,9 +15,12 @@
 
 namespace weft::server {
 
+// The nearest time that the clock knows: those of a damaged row may be any number.
 inline WallTime from_micros(std::int64_t micros) {
-  return WallTime(
-      std::chrono::duration_cast<WallTime::duration>(std::chrono::microseconds(micros)));
+  constexpr auto kFirst = std::chrono::ceil<std::chrono::microseconds>(WallTime::duration::min());
+  constexpr auto kLast = std::chrono::floor<std::chrono::microseconds>(WallTime::duration::max());
+  return WallTime(std::chrono::duration_cast<WallTime::duration>(
+      std::clamp(std::chrono::microseconds(micros), kFirst, kLast)));
 }
 inline std::int64_t to_micros(WallTime time) {
   return std::chrono::duration_cast<std::chrono::microseconds>(time.time_since_epoch()).count();

@@ -18,6 +18,7 @@
 
 #include "server/jobs/job_wire.h"
 #include "server/store/sqlite_store.h"
+#include "server/translate.h"
 #include "tests/client/support/temp_folder.h"
 #include "tests/fuzz/byte_source.h"
 #include "tests/fuzz/law.h"
@@ -160,8 +161,7 @@ class Caller {
     for (const std::string_view key : kKeys) {
       const auto mesh = store_.mesh(std::string(key));
       if (mesh && *mesh) {
-        v1::Summary summary;
-        summary.ParseFromString((*mesh)->summary);
+        (void)read_summary(**mesh);
         for (const StoredChunk& chunk : (*mesh)->chunks) (void)store_.chunk(chunk.sha256);
       }
       (void)store_.chunk(std::string(key));
@@ -179,8 +179,7 @@ class Caller {
     const auto claim = store_.claim("worker", milliseconds(1000), 1 << 20);
     if (claim && *claim) {
       const ClaimRef ref = (*claim)->ref;
-      v1::GenerateMeshRequest request;
-      request.ParseFromString((*claim)->request);
+      if (const auto request = read_request(**claim)) (void)to_engine(**request);
       (void)store_.renew(ref, milliseconds(1000), "progress");
       (void)store_.put_chunk(std::string(kKeys[1]), "chunk");
       (void)store_.finish(ref,
