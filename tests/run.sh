@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # From a fresh Debian 12 machine to all tests run: installs what is missing, builds with warnings as
 # errors, runs every test, then those labelled `sanitize` again under AddressSanitizer and
-# UndefinedBehaviorSanitizer and those labelled `threads` under ThreadSanitizer, builds and runs the
-# container, and checks formatting, licences, protocol and scripts. Prints each step with its
+# UndefinedBehaviorSanitizer and those labelled `threads` under ThreadSanitizer, fuzzes, builds and
+# runs the container, and checks formatting, licences, protocol and scripts. Prints each step with its
 # seconds, and the closing lines of ctest last. Fails when any step failed.
 #
-#   tests/run.sh [--quick]     --quick leaves the sanitizers and the container out
+#   tests/run.sh [--quick]     --quick leaves sanitizers, fuzzers and the container out
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
 
@@ -129,5 +129,8 @@ if [[ $all ]]; then
   needed "configure, threads" cmake --preset tsan -DWEFT_WERROR=ON
   needed "build, threads" cmake --build --preset tsan --target threads-tests
   step "tests, threads" run_ctest tsan -L threads --timeout 600
+  needed "configure, fuzzers" cmake --preset fuzz -DWEFT_WERROR=ON
+  needed "build, fuzzers" cmake --build --preset fuzz --target fuzz-targets
+  step "fuzzers" tests/fuzz/run.sh 20
 fi
 finish
