@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/domain/hilbert.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <numeric>
@@ -64,22 +65,24 @@ struct Entry {
   std::uint32_t index;
 };
 
-// Least significant digit first, so points with equal keys keep their order. A standard sort of
-// millions of entries could not be stopped in time.
-void radix_sort(std::vector<Entry>& entries, Pacer& pacer) {
-  constexpr unsigned kDigitBits = 12;
-  constexpr unsigned kDigits = 2 * kLevels / kDigitBits;
-  static_assert(2 * kLevels % kDigitBits == 0);
+constexpr unsigned kDigitBits = 12;
+constexpr unsigned kDigits = 2 * kLevels / kDigitBits;
+static_assert(2 * kLevels % kDigitBits == 0);
+
+// By the digits from `first` on, the least significant one first, so that entries equal in these
+// keep their order. A standard sort of millions of entries could not be stopped in time.
+void radix_sort(std::vector<Entry>& entries, unsigned first, Pacer& pacer) {
   constexpr std::size_t kValues = std::size_t{1} << kDigitBits;
-  std::vector<std::uint32_t> starts(kDigits * kValues);
+  std::vector<std::uint32_t> starts((kDigits - first) * kValues);
+  const auto starts_of = [&](unsigned d) { return &starts[(d - first) * kValues]; };
   for (const Entry& e : entries) {
     pacer.step();
-    for (unsigned d = 0; d < kDigits; ++d)
-      ++starts[d * kValues + (e.key >> d * kDigitBits & (kValues - 1))];
+    for (unsigned d = first; d < kDigits; ++d)
+      ++starts_of(d)[e.key >> d * kDigitBits & (kValues - 1)];
   }
   std::vector<Entry> sorted(entries.size());
-  for (unsigned d = 0; d < kDigits; ++d) {
-    std::uint32_t* const start = &starts[d * kValues];
+  for (unsigned d = first; d < kDigits; ++d) {
+    std::uint32_t* const start = starts_of(d);
     std::uint32_t sum = 0;
     for (std::size_t v = 0; v < kValues; ++v) sum += std::exchange(start[v], sum);
     for (const Entry& e : entries) {
@@ -87,6 +90,21 @@ void radix_sort(std::vector<Entry>& entries, Pacer& pacer) {
       sorted[start[e.key >> d * kDigitBits & (kValues - 1)]++] = e;
     }
     entries.swap(sorted);
+  }
+}
+
+// By key; entries with equal keys keep their order. Few entries differ in the upper half of their
+// keys already, all but neighbours: half of the passes, and the neighbours by themselves.
+void sort_by_key(std::vector<Entry>& entries, Pacer& pacer) {
+  constexpr std::size_t kFew = 1 << 16;
+  if (entries.size() >= kFew) return radix_sort(entries, 0, pacer);
+  constexpr unsigned kUpper = kDigits / 2;
+  radix_sort(entries, kUpper, pacer);
+  const auto upper = [](const Entry& e) { return e.key >> kUpper * kDigitBits; };
+  for (auto first = entries.begin(), last = first; first != entries.end(); first = last) {
+    while (++last != entries.end() && upper(*last) == upper(*first)) continue;
+    if (last - first > 1)
+      std::stable_sort(first, last, [](const Entry& a, const Entry& b) { return a.key < b.key; });
   }
 }
 
@@ -110,7 +128,7 @@ void sort_along_curve(const std::vector<Point>& points, std::span<std::uint32_t>
     const auto y = static_cast<std::uint32_t>((p.y - box.min_y) * scale);
     entries[k] = {hilbert_key(x, y), order[k]};
   }
-  radix_sort(entries, pacer);
+  sort_by_key(entries, pacer);
   std::vector<std::span<std::uint32_t>> crowds;
   for (std::size_t first = 0, last; first < order.size(); first = last) {
     for (last = first; last < order.size() && entries[last].key == entries[first].key; ++last) {

@@ -23,7 +23,7 @@ void give_back(const Range& range) {
   if (range.data) munmap(range.data, range.bytes);
 }
 
-// Ranges with huge pages that nobody uses, the one left last in front. Outlives whatever is static.
+// Ranges of one kind of pages that nobody uses, the one left last in front. Outlives whatever is static.
 class KeptRanges {
  public:
   // The smallest that has room; of those, the one left last.
@@ -67,7 +67,8 @@ class KeptRanges {
   std::array<Range, ReservedMemory::kKeptRanges> ranges_;
 };
 
-constinit KeptRanges kept_ranges;
+constinit KeptRanges kept_huge_pages;
+constinit KeptRanges kept_small_pages;
 
 // From a multiple of kHugePage on.
 std::optional<Range> map(std::size_t bytes) {
@@ -87,32 +88,39 @@ std::optional<Range> map(std::size_t bytes) {
 Result<ReservedMemory> ReservedMemory::reserve(std::size_t bytes, Pages pages) {
   bytes = (bytes + kHugePage - 1) / kHugePage * kHugePage;
   std::optional<Range> range;
-  if (pages != Pages::kSmall) range = kept_ranges.take(bytes);
-  const bool huge_pages = range || pages == Pages::kHuge;
+  if (pages != Pages::kSmall) {
+    range = kept_huge_pages.take(bytes);
+    if (range) pages = Pages::kHuge;
+  }
+  if (!range && pages == Pages::kAny) range = kept_small_pages.take(bytes);
   if (!range) {
     range = map(bytes);
     if (!range) {
-      kept_ranges.give_all_back();
+      kept_huge_pages.give_all_back();
+      kept_small_pages.give_all_back();
       range = map(bytes);
     }
     if (!range) {
       return fail(ErrorCode::kOutOfMemory, "",
                   "cannot reserve " + std::to_string(bytes) + " bytes of address space");
     }
-    if (huge_pages) madvise(range->data, range->bytes, MADV_HUGEPAGE);
+    if (pages == Pages::kHuge) madvise(range->data, range->bytes, MADV_HUGEPAGE);
   }
   ReservedMemory memory;
   memory.data_ = range->data;
   memory.bytes_ = range->bytes;
-  memory.huge_pages_ = huge_pages;
+  memory.pages_ = pages;
   return memory;
 }
 
 ReservedMemory::~ReservedMemory() {
-  if (huge_pages_) {
-    kept_ranges.keep({data_, bytes_});
+  const Range range{data_, bytes_};
+  if (pages_ == Pages::kHuge) {
+    kept_huge_pages.keep(range);
+  } else if (pages_ == Pages::kAny) {
+    kept_small_pages.keep(range);
   } else {
-    give_back({data_, bytes_});
+    give_back(range);
   }
 }
 
