@@ -318,9 +318,9 @@ void Triangulation::restore() {
     stack_.pop_back();
     if (constraint(e) != kNone) continue;
     const Edge m = mirror(e);
-    Edge side = e, other = m;
-    if (apex(side) == kInfinite) std::swap(side, other);
-    if (apex(side) == kInfinite || !conflicts(faces_[other.face], at(apex(side)))) continue;
+    // An edge of the hull stays. An edge to infinity goes where the hull would not be convex.
+    if (apex(e) == kInfinite || apex(m) == kInfinite) continue;
+    if (!conflicts(faces_[m.face], at(apex(e)))) continue;
     flip(e);
     for (const Edge f : {e, m}) {
       stack_.push_back(pack(f.face, ccw(f.i)));
