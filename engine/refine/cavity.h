@@ -74,7 +74,7 @@ class Cavity {
  public:
   enum class Growth {
     kComplete,
-    kEncroaches,  // p encroaches upon, or lies behind, the segments in `encroached()`
+    kEncroaches,  // p encroaches upon, or is behind, the segments in `encroached()`
     kNotOwned,    // the cavity reaches into what the task does not own
     kOverflow,    // out of room: call `enlarge` and try again
   };
@@ -110,7 +110,11 @@ class Cavity {
     frames[1].end.vertex = c.vertex;
     test_corner(seed, 0, c, a, b, _mm_set_pd(cross_ab, cross(c, a)), origin, frames[0], frames[1]);
     test_corner(seed, 1, a, b, c, _mm_set_pd(cross(b, c), cross_ab), origin, frames[2], frames[1]);
-    return grow(3, origin, true);
+    const Growth growth = grow(3, origin, true);
+    if (growth == Growth::kEncroaches) [[unlikely]]
+      keep_what_hides(
+          centroid(vertices_[t.vertex[0]], vertices_[t.vertex[1]], vertices_[t.vertex[2]]), p);
+    return growth;
   }
 
   // The cavity of a point `p` of the segment that edge `edge` of `triangle` lies on. The ring is
@@ -327,6 +331,26 @@ class Cavity {
     if (end.cross <= 0 || in_lens(start.x, start.y, end.x, end.y, lens_)) {
       encroached_.push_back(
           {triangle_of(edge.inside), edge_of(edge.inside), start.vertex, end.vertex});
+    }
+  }
+
+  // If p is behind a segment, as seen from a point of the seed: of all that it encroaches upon,
+  // keeps the nearest such.
+  [[gnu::noinline, gnu::cold]] void keep_what_hides(Point from, Point p) {
+    const auto side = [](Point a, Point b, Point c) {
+      return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    };
+    if (encroached_.size() < 2) return;
+    double nearest = 1;  // part of the way
+    for (const SegmentEdge s : std::vector<SegmentEdge>(encroached_)) {
+      const Point a = vertices_[s.a];
+      const Point b = vertices_[s.b];
+      const double before = side(a, b, from);
+      const double part = before / (before - side(a, b, p));
+      const bool between = side(from, p, a) < 0 != side(from, p, b) < 0;
+      if (!(between && part > 0 && part < nearest)) continue;
+      nearest = part;
+      encroached_.assign(1, s);
     }
   }
 
