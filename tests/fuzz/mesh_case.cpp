@@ -218,15 +218,6 @@ SizeSpec read_size(ByteSource& bytes, double extent, const Pslg& pslg) {
   return size;
 }
 
-// Until every workstream's tree has it.
-void set_snap(auto& pslg, double snap) {
-  if constexpr (requires { pslg.snap; }) pslg.snap = snap;
-}
-double snap_of(const auto& pslg) {
-  if constexpr (requires { pslg.snap; }) return pslg.snap;
-  return 0;
-}
-
 }  // namespace
 
 MeshCase decode_mesh_case(ByteSource bytes) {
@@ -247,7 +238,7 @@ MeshCase decode_mesh_case(ByteSource bytes) {
   if (rarely % 8 == 2) made.budget.max_triangles = rarely;
   if (rarely % 8 == 3) {
     constexpr std::array<double, 4> kSnaps{1e-9, 1e-6, 1e-3, 0.1};
-    set_snap(request.pslg, maker.extent() * kSnaps[rarely / 8 % kSnaps.size()]);
+    request.pslg.snap = maker.extent() * kSnaps[rarely / 8 % kSnaps.size()];
   }
   made.budget.triangle_limit = kTriangleLimit;
   return made;
@@ -260,7 +251,7 @@ std::string to_text(const MeshCase& mesh_case) {
   if (request.size.constant) text += print(" --size %.17g", *request.size.constant);
   if (request.size.expression) text += " --size '" + *request.size.expression + "'";
   if (request.min_edge > 0) text += print(" --min-edge %.17g", request.min_edge);
-  if (snap_of(pslg) > 0) text += print(" --snap %.17g", snap_of(pslg));
+  if (pslg.snap > 0) text += print(" --snap %.17g", pslg.snap);
   if (mesh_case.budget.max_triangles < kTriangleLimit)
     text += print(" --max-triangles %llu",
                   static_cast<unsigned long long>(mesh_case.budget.max_triangles));
