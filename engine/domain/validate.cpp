@@ -65,9 +65,8 @@ std::optional<Error> check_region(const RegionSeed& region, std::size_t i) {
 
 std::optional<Error> check_snap(double snap) {
   if (snap >= 0 && std::isfinite(snap)) return {};
-  return Error{
-      ErrorCode::kBadOption, "domain.snap",
-      text("the distance to merge within is ", snap, "; it must be 0 or more, and finite")};
+  return Error{ErrorCode::kBadOption, "domain.snap",
+               text("the snap distance is ", snap, "; it must be finite and 0 or more")};
 }
 
 std::optional<Error> check_counts(const Pslg& pslg) {

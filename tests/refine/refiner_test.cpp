@@ -135,17 +135,17 @@ TEST(Slots, AreWrittenByTheirOwnerAlone) {
   });
 }
 
-TEST(Segments, ThatAlmostCoincideDoNotSplitEachOtherDownToTheFloor) {
+TEST(Segments, ThatAlmostCoincideAreOneAndMeetTheirBounds) {
   MeshRequest request{.pslg = square(20)};
   add_segment(request.pslg, {1, 1}, {19, 7});
   add_segment(request.pslg, {1, 1}, {10, 4 + 3e-13});
   add_segment(request.pslg, {10, 4 + 3e-13}, {19, 7});
-  request.allow_unrefined = true;
   CollectedMesh mesh;
-  ExecutionContext context(Budget{.triangle_limit = 100'000});
+  ExecutionContext context(Budget{.triangle_limit = 1'000});
   const auto summary = generate_mesh(request, mesh, context);
   ASSERT_TRUE(summary) << summary.error().message;
-  EXPECT_GT(summary->unrefined.precision, 0u);
+  EXPECT_EQ(summary->unrefined.without_excuse(), 0u);
+  EXPECT_EQ(summary->merging.segments, 1u);
 }
 
 TEST(Cavity, OfThousandsOfTrianglesFits) {
