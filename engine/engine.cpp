@@ -13,6 +13,7 @@
 #include "engine/mesh_run.h"
 #include "engine/refine/area_bound.h"
 #include "engine/refine/mapped_area.h"
+#include "engine/schedule/narrow_places.h"
 #include "engine/size/expression.h"
 #include "engine/size/size_map.h"
 
@@ -193,7 +194,19 @@ class Job {
                       std::to_string(budget.triangle_limit));
     }
     // Triangles come out at 0.64 of their bound on average.
-    expected_ = std::max(1.55 * estimate.likely, static_cast<double>(domain_.triangles.size()));
+    by_size_ = std::max(1.55 * estimate.likely, static_cast<double>(domain_.triangles.size()));
+    const QualityBounds quality =
+        QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(summary_.box));
+    auto narrow = context_.compute([&] {
+      return NarrowPlaces::find(
+          domain_, quality, [&](Point p) { return map_ ? map_->likely_size(p) : bound; }, context_);
+    });
+    if (!narrow) return tl::unexpected(narrow.error());
+    if (!wants_cap() && narrow->least() > static_cast<double>(budget.triangle_limit))
+      return tl::unexpected(too_narrow(*narrow));
+    const double elsewhere =
+        NarrowPlaces::elsewhere(quality) * static_cast<double>(domain_.triangles.size());
+    expected_ = std::max(by_size_, elsewhere) + narrow->likely();
     const double most = static_cast<double>(wants_cap() ? budget.max_triangles : kUncountable);
     context_.report_expected(static_cast<std::uint64_t>(std::min(expected_, most)));
     summary_.size_seconds = clock_.lap();
@@ -202,13 +215,14 @@ class Job {
     context_.enter(Stage::kRefine);
     MeshPlan plan{.domain = domain_,
                   .box = summary_.box,
-                  .quality = QualityBounds::from(request_.min_angle_deg, request_.min_edge,
-                                                 precision_of(summary_.box)),
+                  .quality = quality,
                   .order = order(),
+                  .narrow = *narrow,
                   .expected_triangles = expected_,
+                  .expected_by_size = by_size_,
                   .leaf_triangles = request_.leaf_triangles,
-                  .least_triangles = estimate.least,
-                  .other_bytes = size_bytes};
+                  .least_triangles = std::max(estimate.least, narrow->least()),
+                  .other_bytes = size_bytes + narrow->bytes()};
     if (wants_cap()) plan.max_triangles = budget.max_triangles;
     if (auto error = run_mesh(plan, area, sink_, context_, summary_)) return tl::unexpected(*error);
     summary_.engine_seconds += summary_.triangulate_seconds + summary_.size_seconds;
@@ -220,6 +234,17 @@ class Job {
     return summary_;
   }
 
+  Error too_narrow(const NarrowPlaces& narrow) const {
+    const NarrowPlaces::Costliest& worst = *narrow.costliest();
+    return {ErrorCode::kLimitExceeded, "quality.min_angle_deg",
+            "the minimum angle asks for at least " + text(std::ceil(narrow.least())) +
+                " triangles where the domain is narrow, more than the limit of " +
+                std::to_string(context_.budget().triangle_limit) +
+                "; most of them between segments " + std::to_string(worst.segment) + " and " +
+                std::to_string(worst.other) + ", " + text(worst.width) + " apart at (" +
+                text(worst.at.x) + ", " + text(worst.at.y) + ")"};
+  }
+
   // Whether the client asked for a cap of its own: then reaching it is no error.
   bool wants_cap() const {
     const std::uint64_t wish = context_.budget().max_triangles;
@@ -228,7 +253,7 @@ class Job {
 
   // Where the size makes few triangles beyond the domain's own, quality makes most of them.
   Order order() const {
-    const bool quality_rules = expected_ < 8.0 * static_cast<double>(domain_.triangles.size());
+    const bool quality_rules = by_size_ < 8.0 * static_cast<double>(domain_.triangles.size());
     return quality_rules || request_.min_angle_deg > 30 ? Order::kShortestFirst
                                                         : Order::kLastInFirstOut;
   }
@@ -242,6 +267,7 @@ class Job {
   Domain domain_;
   std::optional<SizeMap> map_;
   double expected_ = 0;  // triangles
+  double by_size_ = 0;   // of these, what the size alone makes
   Summary summary_;
 };
 

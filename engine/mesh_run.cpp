@@ -121,8 +121,9 @@ class MeshRun {
   }
 
   std::optional<Error> prelude() {
-    if (!cut_off_ && plan_.expected_triangles > plan_.leaf_triangles) {
-      Prelude<AreaBound> prelude(setting_, plan_.quality, area_, plan_.leaf_triangles, root_);
+    if (!cut_off_ && plan_.wants_leaves()) {
+      Prelude<AreaBound> prelude(setting_, plan_.quality, area_, plan_.narrow, plan_.leaf_triangles,
+                                 root_);
       auto error = prelude.run(plan_.box);
       add(prelude.figures());
       if (error) return error;
@@ -258,7 +259,7 @@ class MeshRun {
     if (auto error = refine_time_.measure([&] { return leaves_->refine(leaf, round); }))
       parts_.stop(*error);
     if (round == 0) context_.add_fraction(kRefining * share_of(leaf));
-    if (round == 0 || leaves_->has_left(leaf)) return;
+    if (LeafGraph::may_be_handed(round + 1) || leaves_->has_left(leaf)) return;
     for (std::uint32_t later = LeafGraph::kRounds; --later > round;) {
       if (Trace* const trace = context_.trace())
         trace->skip(LeafGraph::round(leaf, later), LeafGraph::round(leaf, round));

@@ -12,6 +12,7 @@
 #include "engine/error.h"
 #include "engine/refine/bad_triangles.h"
 #include "engine/refine/quality_bounds.h"
+#include "engine/schedule/narrow_places.h"
 #include "engine/summary.h"
 
 namespace weft {
@@ -21,13 +22,22 @@ struct MeshPlan {
   Box box;  // of the domain
   QualityBounds quality;
   Order order;
+  const NarrowPlaces& narrow;
   double expected_triangles;
-  double leaf_triangles;   // of the final mesh, in a leaf of the quadtree at most
-  double least_triangles;  // for certain
+  double expected_by_size;  // of these, what the size alone makes
+  double leaf_triangles;    // of the final mesh, in a leaf of the quadtree at most
+  double least_triangles;   // for certain
   // Stop with what there is at so many: one task refines in order, then. Where fewer are enough,
   // the mesh is the same as without; nothing is sent before that is known.
   std::optional<std::uint64_t> max_triangles = std::nullopt;
   std::uint64_t other_bytes = 0;  // that the job holds besides
+
+  // Whether leaves pay. What the bound on angles makes, one task makes faster up to some 60,000
+  // triangles: the coarse phase costs more there than two threads save.
+  bool wants_leaves() const {
+    constexpr double kByAngles = 4;  // leaves full
+    return expected_by_size > leaf_triangles || expected_triangles > kByAngles * leaf_triangles;
+  }
 };
 
 // Refines and sends the mesh; fills the summary but for the stages before. The bytes sent depend on

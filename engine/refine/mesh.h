@@ -61,8 +61,8 @@ enum class Excuse : std::uint32_t {
 
 struct alignas(32) Triangle {
   std::uint32_t vertex[3];
-  // Bits 0-2: edge i lies on a segment; 3: dead; 4-5: Excuse; 6: excused though too large; 8-15:
-  // Badness.
+  // Bits 0-2: edge i lies on a segment; 3: dead; 4-5: Excuse; 6: excused though too large; 7:
+  // deferred; 8-15: Badness.
   std::uint32_t flags;
   HalfEdge neighbor[3];
   std::uint32_t region;  // index into Domain::regions
@@ -81,6 +81,9 @@ struct alignas(32) Triangle {
     const std::uint32_t large = too_large() ? 1u << 6 : 0;
     flags = (flags & 7) | static_cast<std::uint32_t>(e) << 4 | large;
   }
+  // Whether the task at work has put it off: the queue may have further entries of it.
+  bool deferred() const { return flags >> 7 & 1; }
+  void set_deferred(bool on) { flags = (flags & ~(1u << 7)) | static_cast<std::uint32_t>(on) << 7; }
   void die() { flags = 1u << 3; }
 };
 static_assert(sizeof(Triangle) == 32);

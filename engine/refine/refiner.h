@@ -89,6 +89,7 @@ class Refiner {
     if (!owns(t)) {
       deferred_.push_back(left);
     } else if (t.badness() != kGood) {
+      mesh_.triangles[left.triangle].set_deferred(false);
       bad_.push(left.triangle, t.badness());
     }
   }
@@ -150,6 +151,8 @@ class Refiner {
 
   void refine(std::uint32_t t) {
     Triangle& triangle = mesh_.triangles[t];
+    if (Ownership::kRestricted && triangle.deferred()) [[unlikely]]
+      return;
     if (triangle.badness() == kSkinny && corners_.excuses(mesh_, triangle)) {
       triangle.set_excuse(Excuse::kSmallInputAngle);
       return;
@@ -476,7 +479,10 @@ class Refiner {
     });
   }
 
-  void defer(std::uint32_t t) { deferred_.push_back({t, mesh_.triangles[t].vertex[0]}); }
+  void defer(std::uint32_t t) {
+    mesh_.triangles[t].set_deferred(true);
+    deferred_.push_back({t, mesh_.triangles[t].vertex[0]});
+  }
   void defer_segment(const SegmentEdge& s) {
     deferred_segments_.push_back(s);
     segments_deferred_ = true;

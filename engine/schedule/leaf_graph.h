@@ -16,8 +16,13 @@
 namespace weft {
 
 struct LeafGraph {
+  static constexpr std::uint32_t kHandOverRounds = 2;
   static constexpr std::uint32_t kRounds = 4;
   static constexpr std::uint32_t kTasks = kRounds + 4;  // of a leaf
+  // Whether a leaf's task hands over, in this round, what lies outside its leaf; and whether it may
+  // have been handed anything.
+  static constexpr bool hands_over(std::uint32_t round) { return round < kHandOverRounds; }
+  static constexpr bool may_be_handed(std::uint32_t round) { return round <= kHandOverRounds; }
   static constexpr Trace::GraphName kName{
       "leaves",
       {"round 1", "round 2", "round 3", "round 4", "settle", "number", "hand on", "part"}};

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The prelude's criterion, the paper's eq. 5: refine until every circumradius is below a quarter of
-// the side of the leaf where the triangle's centroid lies. Vertices are never removed, so once it
-// holds, circumdisks stay small, and a leaf's task rarely meets what it does not own.
+// The prelude's criterion, after the paper's eq. 5: refine until every circumradius is below a
+// quarter of the side of the leaf where the triangle's centroid lies. Vertices are never removed,
+// so once it holds, circumdisks stay small, and a leaf's task rarely meets what it does not own.
+//
+// That makes some 25 triangles in a leaf, and so it is asked for in busy leaves alone, for which
+// many more are expected. About a busy leaf the limit grows by half of the distance from it; away
+// from all of them it is twice the leaf's side. (Asked for everywhere, it made 15 % more triangles
+// than the size on a square with one fine spot, 166 leaves of which 4 are busy; now 0.6 to 1 %.)
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
+#include <vector>
 
 #include "engine/refine/area_bound.h"
 #include "engine/schedule/quadtree.h"
@@ -15,9 +23,28 @@ namespace weft {
 // Stands in for the grading function (refine/area_bound.h).
 class LeafRadius {
  public:
-  static constexpr double kFraction = 4;
+  // A leaf is busy from this weight on.
+  LeafRadius(const Quadtree& tree, double busy) : tree_(&tree), busy_near_(tree.leaves().size()) {
+    const auto& leaves = tree.leaves();
+    const auto is_busy = [&](std::uint32_t l) { return leaves[l].weight >= busy; };
+    for (std::uint32_t l = 0; l < leaves.size(); ++l) {
+      if (!is_busy(l)) continue;
+      busy_near_[l].push_back(l);
+      for (const std::uint32_t other : tree.touching(l)) busy_near_[other].push_back(l);
+    }
+  }
 
-  explicit LeafRadius(const Quadtree& tree) : tree_(&tree) {}
+  // Of the circumradius of a triangle with this centroid.
+  double limit_at(Point centroid) const {
+    const auto& leaves = tree_->leaves();
+    const std::uint32_t leaf = tree_->leaf_at(centroid);
+    double limit = kElsewhere * leaves[leaf].side();
+    for (const std::uint32_t l : busy_near_[leaf]) {
+      const double away = std::max(0.0, -room_in(leaves[l].box, centroid));
+      limit = std::min(limit, kPart * leaves[l].side() + kGrowth * away);
+    }
+    return limit;
+  }
 
   void begin(const Box&) {}
   RingVerdict judge(const Ring& ring, std::uint32_t first, std::uint32_t last, Point p, double,
@@ -33,7 +60,7 @@ class LeafRadius {
       const Point centroid{p.x + (a.x + b.x) * (1.0 / 3), p.y + (a.y + b.y) * (1.0 / 3)};
       // R = |a| |b| |e| / (2 a x b)
       const double product = a.length2 * b.length2 * (ex * ex + ey * ey);
-      const double limit = 2 / kFraction * tree_->leaves()[tree_->leaf_at(centroid)].side();
+      const double limit = 2 * limit_at(centroid);
       const double allowed = limit * b.cross * (limit * b.cross);
       badness[i] = product > allowed ? badness_of_size(product, allowed) : kGood;
     }
@@ -44,7 +71,12 @@ class LeafRadius {
   const std::optional<BadSize>& bad_size() const { return bad_size_; }
 
  private:
+  static constexpr double kElsewhere = 2;
+  static constexpr double kPart = 0.25;
+  static constexpr double kGrowth = 0.5;  // 1 doubles what is deferred and saves 0.1 %
+
   const Quadtree* tree_;
+  std::vector<std::vector<std::uint32_t>> busy_near_;  // per leaf: itself, and those it touches
   std::optional<BadSize> bad_size_;
 };
 

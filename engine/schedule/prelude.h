@@ -2,13 +2,14 @@
 // What comes before the leaves' tasks: a coarse mesh, the quadtree from it and the order of its
 // leaves, circumradii that fit them (the paper's eq. 5), and the bad triangles to begin with.
 //
-//   Prelude<ConstantArea> prelude(setting, quality, area, 16'000, slots);
+//   Prelude<ConstantArea> prelude(setting, quality, area, narrow_places, 16'000, slots);
 //   if (auto error = prelude.run(box)) return error;
 //   Quadtree tree = prelude.take_tree();
 //   LeafOrder order = prelude.take_order();
 //
 // The coarse mesh obeys the grading function, multiplied, and no bound on angles. So it follows the
-// grading wherever the domain is, and misses none of its features.
+// grading wherever the domain is, and misses none of its features. What the bound on angles will
+// make at narrow places is not in it: these add samples of their own.
 #pragma once
 
 #include <algorithm>
@@ -24,6 +25,7 @@
 #include "engine/refine/triangle_judge.h"
 #include "engine/schedule/leaf_order.h"
 #include "engine/schedule/leaf_radius.h"
+#include "engine/schedule/narrow_places.h"
 #include "engine/schedule/quadtree.h"
 
 namespace weft {
@@ -33,10 +35,11 @@ class Prelude {
  public:
   // `slots` has all triangles of the mesh, and takes those that are made.
   Prelude(const Setting& setting, const QualityBounds& quality, const AreaBound& area,
-          double leaf_triangles, Slots& slots)
+          const NarrowPlaces& narrow, double leaf_triangles, Slots& slots)
       : setting_(setting),
         quality_(quality),
         area_(area),
+        narrow_(narrow),
         leaf_triangles_(leaf_triangles),
         slots_(slots) {}
 
@@ -53,13 +56,14 @@ class Prelude {
     if (tree_.leaves().size() == 1) return std::nullopt;
     // Neither needs the other.
     std::optional<Error> error;
+    const LeafRadius radius(tree_, leaf_triangles_ / kBusy);
     setting_.context.for_each(2, [&](std::size_t which) {
-      if (which == 0) error = refine(no_angles, LeafRadius(tree_), box);
+      if (which == 0) error = refine(no_angles, radius, box);
       if (which == 1) order_ = LeafOrder(tree_);
     });
     setting_.context.end_stage("leaf radius");
     if (error) return error;
-    error = judge(box);
+    error = judge(box, radius);
     setting_.context.end_stage("seeding");
     return error;
   }
@@ -77,6 +81,9 @@ class Prelude {
   // A coarse triangle stands for one in so many of a leaf: it takes a dozen of them to place the
   // leaves' borders well.
   static constexpr double kCoarseTrianglesPerLeaf = 16;
+  // A leaf is busy with one in so many of the triangles that it has room for: those that a bound on
+  // the circumradius makes are few among them.
+  static constexpr double kBusy = 16;
 
   using Run = std::pair<std::uint32_t, std::uint32_t>;  // of slots: first, and one past the last
 
@@ -112,6 +119,7 @@ class Prelude {
     setting_.context.for_each(all.size(), [&](std::size_t r) { found[r] = samples(all[r]); });
     std::vector<Quadtree::Sample> result;
     for (const auto& samples : found) result.insert(result.end(), samples.begin(), samples.end());
+    narrow_.add_samples(leaf_triangles_ / kCoarseTrianglesPerLeaf, result);
     return result;
   }
 
@@ -144,10 +152,11 @@ class Prelude {
   }
 
   // Judges all triangles by the bounds of the mesh that is asked for.
-  std::optional<Error> judge(const Box& box) {
+  std::optional<Error> judge(const Box& box, const LeafRadius& radius) {
     const std::vector<Run> all = runs();
     std::vector<Found> found(all.size());
-    setting_.context.for_each(all.size(), [&](std::size_t r) { found[r] = judge(all[r], box); });
+    setting_.context.for_each(all.size(),
+                              [&](std::size_t r) { found[r] = judge(all[r], box, radius); });
     for (const Found& f : found) {
       if (f.bad_size) return Error{ErrorCode::kBadSizeValue, "size", bad_size_message(*f.bad_size)};
       bad_.insert(bad_.end(), f.bad.begin(), f.bad.end());
@@ -156,7 +165,7 @@ class Prelude {
     return setting_.context.poll();
   }
 
-  Found judge(const Run& run, const Box& box) const {
+  Found judge(const Run& run, const Box& box, const LeafRadius& radius) const {
     const Mesh& mesh = setting_.mesh;
     Found found;
     AreaBound area = area_.again();
@@ -167,18 +176,17 @@ class Prelude {
       const Badness badness = judge(mesh, t, region_bound(t), quality_, area);
       triangle.set_badness(badness);
       if (badness != kGood) found.bad.push_back({t, triangle.vertex[0]});
-      found.fits = found.fits && fits(triangle);
+      found.fits = found.fits && fits(triangle, radius);
     }
     found.bad_size = area.bad_size();
     return found;
   }
 
-  bool fits(const Triangle& t) const {
+  bool fits(const Triangle& t, const LeafRadius& radius) const {
     const Point a = setting_.mesh.vertices[t.vertex[0]];
     const Point b = setting_.mesh.vertices[t.vertex[1]];
     const Point c = setting_.mesh.vertices[t.vertex[2]];
-    const double side = tree_.leaves()[tree_.leaf_at(centroid(a, b, c))].side();
-    const double limit = side / LeafRadius::kFraction;
+    const double limit = radius.limit_at(centroid(a, b, c));
     return circumradius2(a, b, c) <= limit * limit;
   }
 
@@ -189,6 +197,7 @@ class Prelude {
   const Setting setting_;
   const QualityBounds quality_;
   const AreaBound& area_;
+  const NarrowPlaces& narrow_;
   const double leaf_triangles_;
   Slots& slots_;
   Quadtree tree_;

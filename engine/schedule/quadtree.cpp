@@ -9,7 +9,7 @@
 namespace weft {
 namespace {
 
-constexpr unsigned kMaxDepth = 20;
+constexpr unsigned kMaxDepth = 31;  // what Morton codes of 64 bits have room for
 
 // Spreads the bits of v to the even places.
 std::uint64_t spread(std::uint64_t v) {
@@ -147,6 +147,26 @@ std::uint32_t Quadtree::leaf_at(Point p) const {
     node = &nodes_[node->first_child + child];
   }
   return node->leaf;
+}
+
+std::vector<std::uint32_t> Quadtree::touching(std::uint32_t leaf) const {
+  // Borders are the same doubles, so boxes that touch do so exactly.
+  const auto touch = [](const Box& a, const Box& b) {
+    return a.min_x <= b.max_x && b.min_x <= a.max_x && a.min_y <= b.max_y && b.min_y <= a.max_y;
+  };
+  std::vector<std::uint32_t> result;
+  std::vector<std::uint32_t> stack{0};
+  while (!stack.empty()) {
+    const Node& node = nodes_[stack.back()];
+    stack.pop_back();
+    if (!touch(node.grown, leaves_[leaf].box)) continue;
+    if (node.first_child != 0) {
+      for (std::uint32_t child = 4; child-- > 0;) stack.push_back(node.first_child + child);
+    } else if (node.leaf != leaf && touch(leaves_[node.leaf].box, leaves_[leaf].box)) {
+      result.push_back(node.leaf);
+    }
+  }
+  return result;
 }
 
 std::vector<std::vector<std::uint32_t>> Quadtree::conflicts() const {

@@ -33,7 +33,7 @@ class Quadtree {
   };
 
   // Over a square that holds `domain`. A leaf weighs at most `target`, unless it has one sample
-  // alone or is 2^20 times smaller than the square.
+  // alone or is 2^31 times smaller than the square.
   static Quadtree build(const Box& domain, std::vector<Sample> samples, double target);
 
   // In Morton order.
@@ -42,6 +42,8 @@ class Quadtree {
   Box box() const { return box_; }
   // Index of the leaf at a point; of one near by where the point lies outside the square.
   std::uint32_t leaf_at(Point p) const;
+  // The other leaves whose boxes touch that of a leaf, in order.
+  std::vector<std::uint32_t> touching(std::uint32_t leaf) const;
   // Per leaf, the others whose grown boxes overlap its own, in order.
   std::vector<std::vector<std::uint32_t>> conflicts() const;
 

@@ -91,6 +91,10 @@ double common_area(const Box& box, const Corners& c) {
   return 0.5 * doubled;
 }
 
+double likely(double lo, double hi) {
+  return lo > 0 ? std::sqrt(lo) * std::sqrt(hi) : hi;
+}
+
 bool contains(const Box& outer, const Box& inner) {
   return inner.min_x >= outer.min_x && inner.max_x <= outer.max_x && inner.min_y >= outer.min_y &&
          inner.max_y <= outer.max_y;
@@ -240,8 +244,7 @@ Result<SizeMap> SizeMap::build(const SizeFunction& size, const Domain& domain,
         first += std::accumulate(look.overlaps.begin(), look.overlaps.end(), 0u);
         const double area = look.split ? common_area(level, pending, domain) : look.area;
         if (bounds.lo > 0 && !bounds.may_be_nan) map.least_triangles_ += area / bounds.hi;
-        const double guess =
-            bounds.lo > 0 ? std::sqrt(bounds.lo) * std::sqrt(bounds.hi) : bounds.hi;
+        const double guess = likely(bounds.lo, bounds.hi);
         if (guess > 0) map.likely_triangles_ += area / guess;
       }
     }
@@ -257,6 +260,11 @@ Result<SizeMap> SizeMap::build(const SizeFunction& size, const Domain& domain,
     }
   }
   return map;
+}
+
+double SizeMap::likely_size(Point p) const {
+  const Place place = locate({p.x, p.y, p.x, p.y});
+  return likely(place.node->lo, place.node->hi);
 }
 
 SizeMap::Place SizeMap::locate(const Box& box) const {

@@ -84,6 +84,9 @@ class SizeMap {
   double least_triangles() const { return least_triangles_; }
   double likely_triangles() const { return likely_triangles_; }
 
+  // A best guess of the function's value at a point of the domain.
+  double likely_size(Point p) const;
+
   std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
 
  private:

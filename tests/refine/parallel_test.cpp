@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -270,6 +272,63 @@ TEST(Parallel, RegionsGiveOneMesh) {
   const auto summary = expect_one_mesh(request);
   ASSERT_TRUE(summary);
   EXPECT_GE(summary->leaves.size(), 32u);
+}
+
+// Two segments side by side in a square of side 100: the bound on angles makes the mesh.
+MeshRequest parallel_segments(double gap, double shift) {
+  MeshRequest request{.pslg = square(100), .leaf_triangles = 1'000};
+  add_segment(request.pslg, {10, 50}, {90, 50});
+  add_segment(request.pslg, {10 + shift, 50 + gap}, {90 + shift, 50 + gap});
+  return request;
+}
+
+class ParallelSegments : public testing::TestWithParam<std::optional<double>> {};
+
+TEST_P(ParallelSegments, HaveLeavesThatHardlyWaitForEachOther) {
+  for (const double shift : {0.0, 0.0013}) {
+    MeshRequest request = parallel_segments(kSanitized ? 0.02 : 0.0023, shift);
+    request.size.constant = GetParam();
+    const auto summary = expect_one_mesh(request);
+    ASSERT_TRUE(summary);
+    EXPECT_GE(summary->leaves.size(), kSanitized ? 20u : 200u);
+    if (kSanitized) continue;
+    EXPECT_LT(100 * summary->deferred, summary->insertions);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, ParallelSegments, testing::Values(std::nullopt, 8.0),
+                         [](const auto& info) { return info.param ? "ASize" : "NoSize"; });
+
+// What leaves add to the triangles of one leaf: 1.02 is 2 %.
+double cost_of_leaves(MeshRequest request, std::size_t* leaves) {
+  const auto many = mesh_on(nullptr, request);
+  request.leaf_triangles = std::numeric_limits<double>::infinity();
+  const auto one = mesh_on(nullptr, request);
+  EXPECT_TRUE(many && one);
+  if (!many || !one) return 0;
+  *leaves = many->leaves.size();
+  return static_cast<double>(many->triangles) / static_cast<double>(one->triangles);
+}
+
+TEST(Leaves, AddNoTrianglesAroundAFineSpot) {
+  for (const double angle : {0, 20}) {
+    std::size_t leaves = 0;
+    EXPECT_LT(cost_of_leaves({.pslg = square(1000),
+                              .size = {.expression = "hypot(x-333.3,y-411.7)<1 ? 2e-4 : 1e9"},
+                              .min_angle_deg = angle},
+                             &leaves),
+              1.02);
+    EXPECT_GT(leaves, 10u);
+  }
+}
+
+TEST(Leaves, AreAsSmallAsASpotFarBelowAMillionthOfTheDomain) {
+  std::size_t leaves = 0;
+  EXPECT_LT(cost_of_leaves({.pslg = square(1000),
+                            .size = {.expression = "hypot(x-333.3,y-411.7)<1e-4 ? 1e-12 : 1e9"}},
+                           &leaves),
+            1.02);
+  EXPECT_GT(leaves, 10u);
 }
 
 // How much of the work was done when the first chunk with triangles left.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTarget = 100;
 // What a leaf may be smaller than the square, at most.
-constexpr double kDeepest = 0x1p-20;
+constexpr double kDeepest = 0x1p-31;
 
 struct Tree {
   Box domain;
@@ -90,7 +90,7 @@ TEST_P(Quadtrees, HaveTheirLeavesInMortonOrder) {
     const auto code = [&](const Quadtree::Leaf& leaf) {
       const auto [x, y] = cell(tree.quadtree.box(), leaf.box);
       std::uint64_t code = 0;
-      for (unsigned bit = 0; bit < 20; ++bit)
+      for (unsigned bit = 0; bit < 31; ++bit)
         code |= (x >> bit & 1) << (2 * bit) | (y >> bit & 1) << (2 * bit + 1);
       return code;
     };
@@ -167,6 +167,23 @@ TEST_P(Quadtrees, LoseNoWeight) {
       most += tree.quadtree.leaves()[l].weight - expected[l];
     }
     EXPECT_NEAR(most, 0, 1e-6);
+  });
+}
+
+TEST_P(Quadtrees, KnowWhichLeavesTouch) {
+  for_trees([](const Tree& tree) {
+    const auto& leaves = tree.quadtree.leaves();
+    for (std::uint32_t a = 0; a < leaves.size(); ++a) {
+      std::vector<std::uint32_t> expected;
+      for (std::uint32_t b = 0; b < leaves.size(); ++b) {
+        const Box& p = leaves[a].box;
+        const Box& q = leaves[b].box;
+        const bool apart =
+            p.max_x < q.min_x || q.max_x < p.min_x || p.max_y < q.min_y || q.max_y < p.min_y;
+        if (a != b && !apart) expected.push_back(b);
+      }
+      ASSERT_EQ(tree.quadtree.touching(a), expected) << "leaf " << a;
+    }
   });
 }
 
