@@ -73,6 +73,7 @@ bool has_edge_below(double length, const Triangulation& t, Pacer& pacer) {
 
 Error closed_by_merging(const Merging& merging) {
   std::ostringstream message;
+  message.precision(17);
   message << "merging what is nearer than " << merging.tolerance
           << " has closed the domain, so there is nothing to mesh";
   return {ErrorCode::kEmptyDomain, "domain.segments", message.str()};

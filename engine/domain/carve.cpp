@@ -120,11 +120,15 @@ std::vector<bool> find_odd_faces(const Arrangement& a, const Faces& faces, Pacer
   return odd;
 }
 
-std::string coordinates(Point p) {
+std::string number(double value) {
   std::ostringstream out;
   out.precision(17);
-  out << "(" << p.x << ", " << p.y << ")";
+  out << value;
   return out.str();
+}
+
+std::string coordinates(Point p) {
+  return "(" + number(p.x) + ", " + number(p.y) + ")";
 }
 
 // The bounded faces that seeds lie in. Looks them up along a Hilbert curve, each from where the one
@@ -132,13 +136,16 @@ std::string coordinates(Point p) {
 class SeedLocator {
  public:
   SeedLocator(const Arrangement& arrangement, const Faces& faces, const Pslg& pslg, Pacer& pacer)
-      : faces_(faces), seeds_(pslg.holes) {
+      : faces_(faces), tolerance_(arrangement.merging.tolerance), seeds_(pslg.holes) {
     for (const RegionSeed& region : pslg.regions) seeds_.push_back(region.at);
     locations_.resize(seeds_.size());
+    is_near_.resize(seeds_.size());
     std::uint32_t start = 0;
     for (const std::uint32_t seed : hilbert_order(seeds_, pacer)) {
       locations_[seed] = locate(arrangement, seeds_[seed], start, pacer);
-      if (locations_[seed].triangle != kNone) start = locations_[seed].triangle;
+      if (locations_[seed].triangle == kNone) continue;
+      start = locations_[seed].triangle;
+      is_near_[seed] = is_near(arrangement, seeds_[seed], start, tolerance_, pacer);
     }
   }
 
@@ -151,6 +158,12 @@ class SeedLocator {
                   "the seed " + coordinates(seeds_[seed]) + " lies on a " +
                       (location.on_vertex ? "point" : "segment") +
                       ", so it does not tell which face it means");
+    if (is_near_[seed])
+      return fail(ErrorCode::kSeedOnSegment, field(),
+                  "the seed " + coordinates(seeds_[seed]) + " is nearer than " +
+                      number(tolerance_) +
+                      " to a segment or point, so its face may have changed or vanished when what "
+                      "is so near was merged");
     if (location.triangle == kNone || faces_.of_triangle[location.triangle] == Faces::kUnbounded)
       return fail(
           ErrorCode::kSeedOutsideDomain, field(),
@@ -160,15 +173,19 @@ class SeedLocator {
 
  private:
   const Faces& faces_;
+  const double tolerance_;
   std::vector<Point> seeds_;
   std::vector<Location> locations_;
+  std::vector<bool> is_near_;  // to a segment or vertex
 };
 
-Error empty_domain(const Pslg& pslg, const Faces& faces) {
+Error empty_domain(const Pslg& pslg, const Merging& merging, const Faces& faces) {
+  if (faces.count == 1 && merging.vanished_faces > 0) return closed_by_merging(merging);
   if (faces.count == 1)
     return {ErrorCode::kEmptyDomain, "domain.segments",
             "no face is enclosed by segments (" + std::to_string(pslg.segments.size()) +
                 " given), so there is nothing to mesh"};
+  if (pslg.holes.empty() && merging.vanished_faces > 0) return closed_by_merging(merging);
   if (pslg.holes.empty())
     return {ErrorCode::kEmptyDomain, "domain.segments",
             "by the even-odd rule nothing is inside: every face is enclosed an even number of "
@@ -192,7 +209,7 @@ Result<Carving> carve(const Arrangement& arrangement, const Pslg& pslg, Pacer& p
     inside[*face] = false;
   }
   if (std::find(inside.begin(), inside.end(), true) == inside.end())
-    return tl::unexpected(empty_domain(pslg, faces));
+    return tl::unexpected(empty_domain(pslg, arrangement.merging, faces));
 
   Carving carving{.region = {}, .regions = {Region{}}};
   std::vector<std::uint32_t> region_of_face(faces.count, 0);

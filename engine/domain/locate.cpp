@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/domain/locate.h"
 
+#include <unordered_set>
+#include <vector>
+
 #include "engine/domain/filtered.h"
+#include "engine/domain/snapping.h"
 
 namespace weft {
 namespace {
@@ -45,6 +49,28 @@ Location locate(const Arrangement& a, Point p, std::uint32_t start, Pacer& pacer
     if (t.neighbor[i] == kNone) return {};  // the hull is convex
     triangle = t.neighbor[i];
   }
+}
+
+// Floods the triangles across edges that are so near; once one of their vertices is, it is done. So
+// it passes few triangles even beside a vertex of many.
+bool is_near(const Arrangement& a, Point p, std::uint32_t triangle, double radius, Pacer& pacer) {
+  std::vector<std::uint32_t> stack{triangle};
+  std::unordered_set<std::uint32_t> seen{triangle};
+  while (!stack.empty()) {
+    pacer.step();
+    const Arrangement::Triangle& t = a.triangles[stack.back()];
+    stack.pop_back();
+    for (const std::uint32_t v : t.vertex)
+      if (distance(a.vertices[v], p) < radius) return true;
+    for (int i = 0; i < 3; ++i) {
+      const Point b = a.vertices[t.vertex[(i + 1) % 3]], c = a.vertices[t.vertex[(i + 2) % 3]];
+      if (distance_to_segment(p, b, c) >= radius) continue;
+      if (t.constraint[i] != kNone) return true;
+      if (t.neighbor[i] != kNone && seen.insert(t.neighbor[i]).second)
+        stack.push_back(t.neighbor[i]);
+    }
+  }
+  return false;
 }
 
 }  // namespace weft

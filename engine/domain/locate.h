@@ -19,4 +19,8 @@ struct Location {
 // Walks from triangle `start`. Exact predicates; throws Stopped.
 Location locate(const Arrangement& arrangement, Point p, std::uint32_t start, Pacer& pacer);
 
+// Whether a segment or a vertex is nearer to p than `distance`. REQUIRES: the triangle contains p.
+bool is_near(const Arrangement& arrangement, Point p, std::uint32_t triangle, double distance,
+             Pacer& pacer);
+
 }  // namespace weft

@@ -186,6 +186,76 @@ TEST(EmptyDomain, WhereEveryRingIsDoubled) {
                "times");
 }
 
+// A ring about (x, y), half as wide and high as said.
+Pslg with_box(Pslg pslg, double x, double y, double width, double height) {
+  add_box(pslg, {x - width, y - height}, {x + width, y + height});
+  return pslg;
+}
+
+TEST(Merging, ClosesAFaceThinnerThanTheTolerance) {
+  Pslg pslg = with_box(square(), 0.5, 0.5, 0.2, 0.004);
+  EXPECT_EQ(triangulated(pslg).merging.vanished_faces, 0u);
+  pslg.snap = 0.01;
+  const Domain domain = triangulated(pslg);
+  EXPECT_EQ(domain.merging.vanished_faces, 1u);
+  EXPECT_NEAR(domain.merging.vanished_at.y, 0.5, 0.01);
+  EXPECT_EQ(domain.merging.points, 2u);
+  EXPECT_NEAR(domain.merging.farthest, 0.008, 1e-9);
+  EXPECT_DOUBLE_EQ(area(domain), 1);
+}
+
+TEST(Merging, CountsEveryLoopThatBecomesAVertex) {
+  Pslg pslg = with_box(with_box(square(), 0.5, 0.5, 0.001, 0.001), 0.2, 0.7, 0.002, 0.001);
+  pslg.snap = 0.01;
+  const Domain domain = triangulated(pslg);
+  EXPECT_EQ(domain.merging.vanished_faces, 2u);
+  EXPECT_EQ(domain.merging.vanished_at, (Point{0.499, 0.499}));
+  EXPECT_EQ(domain.merging.points, 6u);
+}
+
+TEST(Merging, CountsNoFaceForOverlapsAndJunctions) {
+  Pslg pslg = square();
+  add_segment(pslg, {0.25, 0}, {0.75, 0});
+  add_segment(pslg, {0.5, 0.005}, {0.5, 0.8});
+  pslg.snap = 0.01;
+  const Domain domain = triangulated(pslg);
+  EXPECT_EQ(domain.merging.vanished_faces, 0u);
+  EXPECT_EQ(domain.merging.segments, 2u);  // both that lie on y = 0
+}
+
+TEST(Merging, JoinsRoomsThatAreDrawnWithARoundedGap) {
+  for (const Fill fill : {Fill::kSeeds, Fill::kEvenOdd}) {
+    Pslg pslg{.fill = fill, .snap = 1e-3};
+    add_box(pslg, {0, 0}, {1, 1});
+    add_box(pslg, {1.0004, -0.0003}, {2, 1.0002});
+    const Domain domain = triangulated(pslg);
+    EXPECT_NEAR(area(domain), 2, 1e-3);
+    EXPECT_EQ(domain.merging.points, 2u);
+    EXPECT_EQ(domain.merging.vanished_faces, 1u);  // the two walls, with nothing between
+  }
+}
+
+TEST(Merging, ThatClosesTheDomainIsRefused) {
+  Pslg thin;
+  add_box(thin, {0, 0}, {1, 0.001});
+  thin.snap = 0.01;
+  const char* const message =
+      "merging what is nearer than 0.01 has closed the domain, so there is nothing to mesh";
+  expect_error(thin, ErrorCode::kEmptyDomain, "domain.segments", message);
+  Pslg small = square(0.001);
+  small.snap = 0.01;
+  expect_error(small, ErrorCode::kEmptyDomain, "domain.segments", message);
+}
+
+TEST(HoleSeed, InAFaceThatVanishesIsRefused) {
+  Pslg pslg = with_box(square(), 0.5, 0.5, 0.001, 0.001);
+  pslg.snap = 0.01;
+  pslg.holes = {{0.5, 0.5}};
+  expect_error(pslg, ErrorCode::kSeedOnSegment, "domain.holes[0]",
+                 "the seed (0.5, 0.5) is nearer than 0.01 to a segment or point, so its face may "
+                 "have changed or vanished when what is so near was merged");
+}
+
 TEST(RegionSeed, FloodsItsFaceOnly) {
   Pslg pslg = nested();
   pslg.regions = {{.at = {0, 0.5}, .id = -5, .max_area = 0.25},

@@ -99,6 +99,15 @@ TEST(Validate, RefusesASnapDistanceThatIsNoDistance) {
   }
 }
 
+TEST(Validate, TakesTheLargestSnapDistance) {
+  Pslg pslg = square();
+  pslg.snap = std::numeric_limits<double>::max();
+  const ExecutionContext context;
+  const Result<Domain> domain = triangulate(pslg, context);
+  ASSERT_FALSE(domain);
+  EXPECT_EQ(domain.error().code, ErrorCode::kEmptyDomain);
+}
+
 TEST(Validate, NamesTheSegmentEndThatIsOutOfRange) {
   Pslg pslg = square();
   pslg.segments[1].a = 4;

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Features that are almost nothing apart, as rounding leaves them: either they merge, or they are
+// meshed within the bounds.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "engine/engine.h"
+#include "tests/domain/shapes.h"
+#include "tests/support/collected_mesh.h"
+#include "tests/support/floor_plan.h"
+
+namespace weft {
+namespace {
+
+struct Meshed {
+  Summary summary;
+  std::size_t bad = 0;  // triangles that miss a bound, by a measure of our own
+};
+
+Meshed meshed(const MeshRequest& request) {
+  CollectedMesh collected;
+  ExecutionContext context;
+  const auto summary = generate_mesh(request, collected, context);
+  if (!summary) {
+    ADD_FAILURE() << summary.error().message;
+    return {};
+  }
+  Meshed result{.summary = *summary};
+  const double degree = std::acos(-1.0) / 180;
+  for (const auto& t : collected.mesh.triangles) {
+    double angle = 180 * degree, area = 0;
+    for (int k = 0; k < 3; ++k) {
+      const check::Vec2 a = collected.mesh.vertices[t[k]];
+      const check::Vec2 b = collected.mesh.vertices[t[(k + 1) % 3]];
+      const check::Vec2 c = collected.mesh.vertices[t[(k + 2) % 3]];
+      const double cross = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+      const double dot = (b.x - a.x) * (c.x - a.x) + (b.y - a.y) * (c.y - a.y);
+      angle = std::min(angle, std::atan2(cross, dot));
+      area = 0.5 * cross;
+    }
+    const bool is_large = request.size.constant && area > *request.size.constant * (1 + 1e-9);
+    if (is_large || angle < (request.min_angle_deg - 1e-6) * degree) ++result.bad;
+  }
+  return result;
+}
+
+// All triangles are within their bounds; there is no input angle to excuse one.
+void expect_within_bounds(const Meshed& mesh) {
+  EXPECT_EQ(mesh.bad, 0u);
+  EXPECT_EQ(mesh.summary.unrefined.total(), 0u);
+}
+
+double rounded(double value, int decimals) {
+  char text[64];
+  const auto end =
+      std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals).ptr;
+  double result = 0;
+  std::from_chars(text, end, result);
+  return result;
+}
+
+// Of all decimals and offsets.
+template <class Check>
+void for_plans(int count, Check&& check) {
+  constexpr double kOffsets[] = {0, 1e5, 1e6};
+  for (int i = 0; i < count; ++i) {
+    const FloorPlan plan{static_cast<std::uint64_t>(i), kOffsets[i % 3], 2 + i / 3 % 8};
+    SCOPED_TRACE(testing::Message() << "plan " << i << ", offset " << plan.offset << ", "
+                                    << plan.decimals << " decimals");
+    check(plan);
+  }
+}
+
+TEST(FloorPlans, AreMeshedWithinTheirBounds) {
+  for_plans(120, [](const FloorPlan& plan) {
+    expect_within_bounds(meshed({.pslg = floor_plan(plan)}));
+    expect_within_bounds(meshed({.pslg = floor_plan(plan), .size = {.constant = 1}}));
+  });
+}
+
+TEST(FloorPlans, AreMeshedWithinSteepBounds) {
+  for_plans(48, [](const FloorPlan& plan) {
+    expect_within_bounds(meshed({.pslg = floor_plan(plan), .min_angle_deg = 30}));
+  });
+}
+
+TEST(FloorPlans, OfWhichTheErrorsAreMergedTakeNoMoreTrianglesThanUnrounded) {
+  for_plans(120, [](const FloorPlan& plan) {
+    FloorPlan exact = plan;
+    exact.decimals = kUnrounded;
+    MeshRequest request{.pslg = floor_plan(plan)};
+    request.pslg.snap = 1.5 * std::pow(10, -plan.decimals);
+    const Meshed mesh = meshed(request), reference = meshed({.pslg = floor_plan(exact)});
+    expect_within_bounds(mesh);
+    EXPECT_LE(static_cast<double>(mesh.summary.triangles),
+              1.1 * static_cast<double>(reference.summary.triangles));
+    const Merging& merging = mesh.summary.merging;
+    EXPECT_GE(merging.tolerance, request.pslg.snap);
+    EXPECT_LE(merging.farthest, merging.tolerance);
+  });
+}
+
+TEST(NearFeatures, OfAPartitionThatEndsOnAWallInUtmCoordinates) {
+  for (int decimals = 2; decimals <= 12; ++decimals) {
+    SCOPED_TRACE(decimals);
+    MeshRequest request{.size = {.constant = 10}};
+    const double end = rounded(4649846 + 140.0 / 3, decimals);
+    add_box(request.pslg, {499900, 4649800}, {500400, 4650000});
+    add_segment(request.pslg, {500000, 4649846}, {500300, 4649946});
+    add_segment(request.pslg, {500140, end}, {500140, 4649976});
+    expect_within_bounds(meshed(request));
+  }
+}
+
+TEST(NearFeatures, OfAPointAboveTheToleranceBesideASegment) {
+  MeshRequest request{.size = {.constant = 1e-3}};
+  add_box(request.pslg, {1, 1}, {1.9, 1.9});
+  add_segment(request.pslg, {1.05, 1.1}, {1.85, 1.37});
+  request.pslg.points.push_back({1.4, 1.2181250000000112});
+  expect_within_bounds(meshed(request));
+}
+
+TEST(NearFeatures, AtEveryDistanceAreMeshedWithinTheirBounds) {
+  for (const double offset : {0.0, 1e3, 1e6}) {
+    for (double distance = 1e-15; distance < 1e-2; distance *= 1.7) {
+      SCOPED_TRACE(testing::Message() << distance << " at " << offset);
+      MeshRequest request;
+      add_box(request.pslg, {offset, offset}, {offset + 1, offset + 1});
+      add_segment(request.pslg, {offset + 0.1, offset + 0.2}, {offset + 0.9, offset + 0.5});
+      request.pslg.points.push_back({offset + 0.5, offset + 0.35 + distance * (offset + 1)});
+      expect_within_bounds(meshed(request));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weft
