@@ -5,7 +5,9 @@
 //     for triangular mesh generation", 2002);
 //   - a Steiner point of a triangle that is too large, in the diametral disk: nothing else keeps it
 //     from the segment;
-//   - any Steiner point on the far side of the piece.
+//   - any Steiner point on the far side of the piece. Of all that it encroaches upon, the piece
+//   that
+//     hides it from its triangle is split alone.
 // A vertex that is there already encroaches upon nothing. So no segment is split except for a bad
 // triangle, and with an angle bound of 0 and no size none is.
 //
@@ -42,9 +44,9 @@
 // least is proven for Ruppert's disk, not for this.
 //
 //   us-east-coast, no size      20 deg    25 deg    30 deg    33 deg
-//   disk                        18,681    24,288    36,548    67,533
-//   lens, phi = theta           18,264    24,026    36,240    53,347
-//   this lens                   18,281    24,026    36,240    53,347
+//   disk, vertices too          18,681    24,288    36,548    67,533
+//   lens, phi = theta           18,264    24,026    36,240    53,348
+//   this lens                   18,279    24,026    36,240    53,348
 //
 // The mesh is constrained Delaunay, and not conforming Delaunay: the circumdisk of a triangle at a
 // segment may hold vertices beyond it. No cavity crosses a segment, so neither the ownership of

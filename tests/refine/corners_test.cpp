@@ -10,8 +10,13 @@
 #include <vector>
 
 #include "engine/engine.h"
+#include "engine/refine/cavity.h"
 #include "engine/refine/lens.h"
+#include "engine/refine/mesh.h"
+#include "engine/refine/quality_bounds.h"
+#include "engine/refine/steiner_point.h"
 #include "tests/domain/shapes.h"
+#include "tests/refine/random_pslg.h"
 #include "tests/support/collected_mesh.h"
 #include "tests/support/poly.h"
 
@@ -75,6 +80,48 @@ TEST(Lens, HoldsWhatSeesThePieceAtTheAngleOrMore) {
   EXPECT_TRUE(seen_at(130.01));
   EXPECT_FALSE(seen_at(129.99));
   EXPECT_FALSE(seen_at(10));
+}
+
+double side(Point a, Point b, Point c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+TEST(Lens, OfASegmentBehindAnotherIsNotAsked) {
+  const QualityBounds quality = QualityBounds::from(20, 0, 1e-9);
+  std::size_t hidden = 0;
+  for (const Kind& kind : kinds()) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      Random random(seed);
+      ExecutionContext context;
+      const auto domain = triangulate(kind.generate(random), context);
+      if (!domain) continue;  // a tangle that encloses nothing
+      const Mesh mesh = *Mesh::from(*domain, 1'000'000, 0, context);
+      Cavity<OwnsAll> cavity(mesh);
+      cavity.begin(OwnsAll{}, 0);
+      for (std::uint32_t t = 0; t < domain->triangles.size(); ++t) {
+        const auto& v = domain->triangles[t].vertex;
+        const Point a = domain->vertices[v[0]];
+        const Point b = domain->vertices[v[1]];
+        const Point c = domain->vertices[v[2]];
+        const Point p = steiner_point(a, b, c, quality);
+        const Point from = centroid(a, b, c);
+        if (cavity.grow_from_triangle(t, p, quality.lens) != Cavity<OwnsAll>::Growth::kEncroaches) {
+          continue;
+        }
+        for (const SegmentEdge& s : cavity.encroached()) {
+          const Point start = domain->vertices[s.a];
+          const Point end = domain->vertices[s.b];
+          const bool hides = side(from, p, start) * side(from, p, end) < 0 &&
+                             side(start, end, from) * side(start, end, p) < 0;
+          hidden += hides ? 1 : 0;
+          if (hides) {
+            EXPECT_EQ(cavity.encroached().size(), 1u) << kind.name << ' ' << seed;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(hidden, 100u);
 }
 
 class BoundOfZero : public testing::TestWithParam<const char*> {};
