@@ -239,6 +239,15 @@ TEST(Wedge, WithALongerArmBetweenOthersIsMatchedByEach) {
   EXPECT_LE(mesh(pslg, 20).triangles, 300u);
 }
 
+TEST(Wedge, BetweenEndsAtNearlyTheSameDistanceIsExcusedByNeither) {
+  // The arm between is split at the distance of one; the other's is off by 6e-7 of it.
+  Pslg pslg;
+  add_box(pslg, {-1, -1}, {2, 2});
+  const double lengths[] = {0.5, 1, 0.5000003};
+  for (int i = 0; i < 3; ++i) add_segment(pslg, {0, 0}, arm({0, 0}, i * 1e-5, lengths[i]));
+  EXPECT_LE(mesh(pslg, 20).triangles, 300u);
+}
+
 TEST(NearlyCoincident, AVertexBesideASegmentDoesNotExplode) {
   // 5e-8 from a segment of 5e-3 that it shares an end with. It made 129,000 vertices.
   Pslg pslg = square();
