@@ -23,6 +23,8 @@ namespace weft {
 // Stands in for the grading function (refine/area_bound.h).
 class LeafRadius {
  public:
+  static constexpr double kPart = 0.25;
+
   // A leaf is busy from this weight on.
   LeafRadius(const Quadtree& tree, double busy) : tree_(&tree), busy_near_(tree.leaves().size()) {
     const auto& leaves = tree.leaves();
@@ -72,7 +74,6 @@ class LeafRadius {
 
  private:
   static constexpr double kElsewhere = 2;
-  static constexpr double kPart = 0.25;
   static constexpr double kGrowth = 0.5;  // 1 doubles what is deferred and saves 0.1 %
 
   const Quadtree* tree_;

@@ -63,7 +63,7 @@ class Prelude {
     });
     setting_.context.end_stage("leaf radius");
     if (error) return error;
-    error = judge(box, radius);
+    error = judge(box);
     setting_.context.end_stage("seeding");
     return error;
   }
@@ -73,7 +73,8 @@ class Prelude {
   LeafOrder take_order() { return std::move(order_); }
   // In the order of the slots.
   const std::vector<BadTriangle>& bad_triangles() const { return bad_; }
-  // Whether every circumradius fits its leaf.
+  // Whether every circumradius is below a quarter of its leaf's side, in leaves that are not busy
+  // too: then what is cleaned up stays near.
   bool fits() const { return fits_; }
   const RefinerFigures& figures() const { return figures_; }
 
@@ -152,11 +153,10 @@ class Prelude {
   }
 
   // Judges all triangles by the bounds of the mesh that is asked for.
-  std::optional<Error> judge(const Box& box, const LeafRadius& radius) {
+  std::optional<Error> judge(const Box& box) {
     const std::vector<Run> all = runs();
     std::vector<Found> found(all.size());
-    setting_.context.for_each(all.size(),
-                              [&](std::size_t r) { found[r] = judge(all[r], box, radius); });
+    setting_.context.for_each(all.size(), [&](std::size_t r) { found[r] = judge(all[r], box); });
     for (const Found& f : found) {
       if (f.bad_size) return Error{ErrorCode::kBadSizeValue, "size", bad_size_message(*f.bad_size)};
       bad_.insert(bad_.end(), f.bad.begin(), f.bad.end());
@@ -165,7 +165,7 @@ class Prelude {
     return setting_.context.poll();
   }
 
-  Found judge(const Run& run, const Box& box, const LeafRadius& radius) const {
+  Found judge(const Run& run, const Box& box) const {
     const Mesh& mesh = setting_.mesh;
     Found found;
     AreaBound area = area_.again();
@@ -176,17 +176,18 @@ class Prelude {
       const Badness badness = judge(mesh, t, region_bound(t), quality_, area);
       triangle.set_badness(badness);
       if (badness != kGood) found.bad.push_back({t, triangle.vertex[0]});
-      found.fits = found.fits && fits(triangle, radius);
+      found.fits = found.fits && fits(triangle);
     }
     found.bad_size = area.bad_size();
     return found;
   }
 
-  bool fits(const Triangle& t, const LeafRadius& radius) const {
+  bool fits(const Triangle& t) const {
     const Point a = setting_.mesh.vertices[t.vertex[0]];
     const Point b = setting_.mesh.vertices[t.vertex[1]];
     const Point c = setting_.mesh.vertices[t.vertex[2]];
-    const double limit = radius.limit_at(centroid(a, b, c));
+    const double limit =
+        LeafRadius::kPart * tree_.leaves()[tree_.leaf_at(centroid(a, b, c))].side();
     return circumradius2(a, b, c) <= limit * limit;
   }
 

@@ -322,6 +322,17 @@ TEST(Leaves, AddNoTrianglesAroundAFineSpot) {
   }
 }
 
+// What is cleaned up around leaves with large triangles needs room far around: nothing may have
+// left.
+TEST(Leaves, ThatAreNotBusyKeepTheGuarantee) {
+  MeshRequest request{.pslg = square(1000),
+                      .size = {.expression = "hypot(x-333.3,y-411.7)<1 ? 2e-4 : 1e9"}};
+  const auto summary = expect_one_mesh(request);
+  ASSERT_TRUE(summary);
+  EXPECT_GE(summary->leaves.size(), 64u);
+  EXPECT_EQ(summary->unrefined.without_excuse(), 0u);
+}
+
 TEST(Leaves, AreAsSmallAsASpotFarBelowAMillionthOfTheDomain) {
   std::size_t leaves = 0;
   EXPECT_LT(cost_of_leaves({.pslg = square(1000),
