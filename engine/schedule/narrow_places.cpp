@@ -35,13 +35,13 @@ double distance_to_segment(Point p, Point a, Point b) {
 // at the distance y from it, and a triangle for each c times an edge's square. With c and K from
 // what was measured, in triangles a square of h x h:
 //
-//   minimum angle              5     10    15    20    25    30    33
-//   in the strip, from        0.22  0.43  0.63  0.86  0.94  1.27  1.72
-//              to             0.32  0.63  0.94  1.27  1.72  1.88  1.90
-//   2.8 tan                   0.24  0.49  0.75  1.02  1.31  1.62  1.82
-//   strip and both sides, from 0.5   1.2   1.9   3.1   4.5   9.2  14.9
-//              to             0.7   1.7   4.4   4.7   9.1  13    20
-//   + 4 tan / (1 - tan / .78)  0.6   1.4   2.4   3.8   5.9  10.5  17
+//   minimum angle                5     10    15    20    25    30    33
+//   in the strip, from          0.16  0.32  0.48  0.65  0.71  0.95  1.3
+//                 to            0.24  0.48  0.71  0.95  1.3   1.4   2.0
+//   2.2 tan                     0.19  0.39  0.59  0.80  1.0   1.3   1.4
+//   strip and both sides, from  0.35  0.86  1.4   2.3   4.4   6.5   12
+//                         to    0.55  1.3   2.2   3.8   6.6   11    26
+//   + 3.5 tan / (1 - tan / .78) 0.54  1.2   2.0   3.2   5.1   9.1   15
 struct Grading {
   double k;
   double c;
@@ -49,8 +49,8 @@ struct Grading {
 
   static Grading of(double sin2) {
     const double tangent = std::sqrt(sin2 / (1 - sin2));
-    const double in_strip = 2.8 * tangent;
-    const double at_side = 2 * tangent / (1 - tangent / 0.78);
+    const double in_strip = 2.2 * tangent;
+    const double at_side = 1.75 * tangent / (1 - tangent / 0.78);
     // The sum over the distance y, of the strip up to the middle: 1 / (c (1 + K/2)) = in_strip; to
     // infinity: 1 / (c K) = at_side.
     Grading grading{};
