@@ -28,7 +28,8 @@ inline std::string shortest_text(double value) {
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
 }
 
-// The grading of the paper's cylinder flow, for about so many triangles on cylinder.poly.
+// The grading of a flow around a cylinder, for about so many triangles on cylinder.poly: the
+// paper's, with abs(y) < 5 in the wake where the paper prints y < 5.
 inline std::string cylinder_size(double triangles) {
   return "(x>=0 && abs(y)<5) || (x<0 && x^2+y^2<25) ? " + shortest_text(1200 / triangles) + " : " +
          shortest_text(1e4 / triangles);

@@ -1,11 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which vertices a refinement task may use: a compile-time parameter of the kernel.
 //
-// The rule: a triangle may be modified only by a task that owns its three vertices, and read only
-// when reached across an edge whose two ends are owned. Concurrent tasks own disjoint boxes, and
-// vertices never move. So two concurrent cavities share no triangle (its vertices would have two
-// owners) and their boundaries share no edge; by Corollary 1 of the paper their points are
-// Delaunay-independent, and the mesh needs no lock and no atomic.
+// The rule: a task touches a triangle, to read it or to write it, only if it owns at least two of
+// its vertices. It replaces a triangle only if it owns all three; of one across the border of a
+// cavity, whose two common vertices it owns, it reads the third and writes the link to what is new.
+// Concurrent tasks own disjoint boxes, and vertices never move: of three vertices no two tasks own
+// two each, so at any time at most one task may touch a triangle, and the mesh needs no lock and no
+// atomic.
+//
+// That each insertion is that of the sequential algorithm follows by induction over the moments at
+// which cavities are replaced, of all tasks in one order. Let the mesh be constrained Delaunay
+// before such a moment. The task has looked at triangles only that no other task at work may touch,
+// so they are still as it found them, and the cavity is that of its point in this mesh: replacing
+// it is an insertion by Bowyer-Watson, and the mesh is constrained Delaunay after it. The vertices
+// of the cavity's border lie in the task's box; the box is convex, so the point does, too, and all
+// new triangles have three vertices of this task. So nothing is new to any other task at work.
 #pragma once
 
 #include "engine/geometry.h"
