@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "client/formats/region_values.h"
+
 namespace weft::client {
 
 struct Point {
@@ -61,6 +63,7 @@ struct Domain {
   std::vector<Segment> segments;
   std::vector<Point> holes;
   std::vector<Region> regions;
+  std::vector<RegionValue> region_values;  // of ids that stand for another number in the file
   Fill fill = Fill::kSeeds;
 
   Provenance point_places;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/formats/triangle_mesh.h"
 
-#include <cmath>
-#include <limits>
+#include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,9 +10,9 @@
 #include "client/formats/file_contents.h"
 #include "client/formats/line_scanner.h"
 #include "client/formats/mesh_formats.h"
+#include "client/formats/region_values.h"
 #include "client/formats/text_writer.h"
 #include "client/formats/triangle_points.h"
-#include "client/text.h"
 
 namespace weft::client {
 namespace {
@@ -56,6 +56,8 @@ Result<void> read_triangles(const std::filesystem::path& path, std::int64_t base
   const std::size_t vertices = mesh.coordinates.size() / 2;
   mesh.triangles.reserve(*count * 3);
   mesh.regions.reserve(*count);
+  std::vector<double> regions;
+  regions.reserve(*count);
   for (std::uint64_t i = 0; i < *count; ++i) {
     if (auto line = scanner.next_line("a triangle"); !line) return line;
     if (auto number = scanner.integer("the triangle number"); !number)
@@ -65,18 +67,17 @@ Result<void> read_triangles(const std::filesystem::path& path, std::int64_t base
       if (!v) return tl::unexpected(v.error());
       mesh.triangles.push_back(*v);
     }
-    std::int32_t region = 0;
+    double attribute = 0;
     if (attributes > 0) {
       const auto value = scanner.real("the triangle's attribute");
       if (!value) return tl::unexpected(value.error());
-      if (*value != std::nearbyint(*value) ||
-          std::abs(*value) > std::numeric_limits<std::int32_t>::max())
-        return scanner.error("the triangle's attribute is " + shortest(*value) +
-                             ", it must be an integer of 32 bits: it is the region's id");
-      region = static_cast<std::int32_t>(*value);
+      attribute = *value;
     }
-    mesh.regions.push_back(region);
+    regions.push_back(attribute);
   }
+  const RegionIds ids(regions);
+  std::transform(regions.begin(), regions.end(), std::back_inserter(mesh.regions),
+                 [&ids](double attribute) { return ids.of(attribute); });
   return {};
 }
 

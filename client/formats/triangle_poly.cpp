@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/formats/triangle_poly.h"
 
-#include <cmath>
-#include <limits>
+#include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "client/formats/file_contents.h"
 #include "client/formats/line_scanner.h"
@@ -78,27 +79,39 @@ Result<void> read_regions(LineScanner& scanner, Domain& domain) {
   if (!scanner.try_next_line()) return {};
   const auto count = scanner.count("the region count");
   if (!count) return tl::unexpected(count.error());
+  std::vector<double> attributes;
   for (std::uint64_t i = 0; i < *count; ++i) {
     if (auto line = scanner.next_line("a region"); !line) return line;
     const auto seed = read_seed(scanner);
     if (!seed) return tl::unexpected(seed.error());
     const auto attribute = scanner.real("the region's attribute");
     if (!attribute) return tl::unexpected(attribute.error());
-    if (*attribute != std::nearbyint(*attribute) ||
-        std::abs(*attribute) > std::numeric_limits<std::int32_t>::max())
-      return scanner.error("the region's attribute is " + shortest(*attribute) +
-                           ", it must be an integer of 32 bits: it is the region's id");
-    Domain::Region region{*seed, static_cast<std::int32_t>(*attribute), std::nullopt};
+    attributes.push_back(*attribute);
+    double max_area = *attribute;  // a lone value is both
     if (!scanner.at_line_end()) {
       const auto area = scanner.real("the region's maximum area");
       if (!area) return tl::unexpected(area.error());
-      if (*area > 0) region.max_area = *area;
+      max_area = *area;
     }
+    Domain::Region region{*seed, 0, std::nullopt};
+    if (max_area > 0) region.max_area = max_area;
     domain.region_places.extend(i, scanner.name() + ":", scanner.line());
     domain.regions.push_back(region);
   }
+  const RegionIds ids(attributes);
+  for (std::size_t i = 0; i < attributes.size(); ++i) domain.regions[i].id = ids.of(attributes[i]);
+  domain.region_values = ids.assigned();
   if (scanner.try_next_line()) return scanner.error("the file goes on after its last region");
   return {};
+}
+
+// What the file that the domain came from has in the place of a region's id, if that is another
+// number.
+std::optional<double> value_of(const Domain& domain, std::int32_t id) {
+  const auto found = std::find_if(domain.region_values.begin(), domain.region_values.end(),
+                                  [id](const RegionValue& known) { return known.id == id; });
+  if (found == domain.region_values.end()) return std::nullopt;
+  return found->value;
 }
 
 }  // namespace
@@ -145,7 +158,10 @@ void write_triangle_poly(const Domain& domain, OutputFile& file) {
   put_line(file, domain.regions.size());
   for (std::size_t i = 0; i < domain.regions.size(); ++i) {
     const Domain::Region& region = domain.regions[i];
-    put_line(file, i + 1, region.at.x, region.at.y, region.id, region.max_area.value_or(-1));
+    const double max_area = region.max_area.value_or(-1);
+    const auto value = value_of(domain, region.id);
+    value ? put_line(file, i + 1, region.at.x, region.at.y, *value, max_area)
+          : put_line(file, i + 1, region.at.x, region.at.y, region.id, max_area);
   }
 }
 

@@ -74,9 +74,15 @@ TEST(TriangleMesh, RefusesWhatDoesNotFit) {
   EXPECT_EQ(refusal("1 6 0\n1 1 2 3 1 2 3\n"),
             "m.ele:1:3: the corners per triangle are 6, only 3 are read");
   EXPECT_EQ(refusal("2 3 0\n1 1 2 3\n"), "m.ele:3: the file ends where a triangle should follow");
-  EXPECT_EQ(refusal("1 3 1\n1 1 2 3 0.5\n"),
-            "m.ele:2:9: the triangle's attribute is 0.5, it must be an integer of 32 bits: it is "
-            "the region's id");
+}
+
+TEST(TriangleMesh, GivesAttributesThatAreNoIntegersTheIdsThatTheDomainGivesThem) {
+  TempFolder folder;
+  folder.write("m.node", "4 2 0 0\n1 0 0\n2 1 0\n3 0 1\n4 1 1\n");
+  folder.write("m.ele", "2 3 1\n1 1 2 3 0.7\n2 2 4 3 0.35\n");
+  const auto mesh = read_mesh(folder / "m.node");
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_EQ(mesh->regions, (std::vector<std::int32_t>{2, 1}));
 }
 
 TEST(MeshFormats, RefuseUnknownExtensions) {

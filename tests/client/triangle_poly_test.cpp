@@ -108,10 +108,45 @@ TEST_F(TrianglePoly, RefusesCoordinatesThatAreNotFinite) {
             "box.poly:2:5: expected the y coordinate, found '1e999'");
 }
 
-TEST_F(TrianglePoly, RefusesARegionIdThatIsNoInteger) {
-  EXPECT_EQ(refusal("1 2 0 0\n1 0 0\n0\n0\n1\n1 0 0 2.5 1\n"),
-            "box.poly:6:7: the region's attribute is 2.5, it must be an integer of 32 bits: it is "
-            "the region's id");
+TEST_F(TrianglePoly, GivesAttributesThatAreNoIntegersIdsOfTheirOwnAndKeepsTheValues) {
+  const auto domain = read(
+      "1 2 0 0\n1 0 0\n0\n0\n6\n1 0 0 0.7 1\n2 0 0 2 1\n3 0 0 0.35 1\n4 0 0 0.7 1\n"
+      "5 0 0 -8 1\n6 0 0 1e12 1\n");
+  ASSERT_TRUE(domain) << domain.error().message;
+  std::vector<std::int32_t> ids;
+  for (const auto& region : domain->regions) ids.push_back(region.id);
+  EXPECT_EQ(ids, (std::vector<std::int32_t>{3, 2, 1, 3, -8, 4}));
+  EXPECT_EQ(domain->region_values, (std::vector<RegionValue>{{1, 0.35}, {3, 0.7}, {4, 1e12}}));
+}
+
+TEST_F(TrianglePoly, TakesALoneValueForTheAttributeAndTheMaximumArea) {
+  const auto domain = read("1 2 0 0\n1 0 0\n0\n0\n3\n1 0 0 3\n2 0 0 -3\n3 0 0 0.25\n");
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->regions, (std::vector<Domain::Region>{
+                                 {{0, 0}, 3, 3.0}, {{0, 0}, -3, std::nullopt}, {{0, 0}, 1, 0.25}}));
+  EXPECT_EQ(domain->region_values, (std::vector<RegionValue>{{1, 0.25}}));
+}
+
+TEST_F(TrianglePoly, WritesTheValuesThatWereRead) {
+  const auto domain = read(
+      "3 2 0 0\n1 0 0\n2 1 0\n3 0 1\n3 0\n1 1 2\n2 2 3\n3 3 1\n0\n2\n"
+      "1 0.1 0.1 0.35 -1\n2 0.2 0.2 100000 0.5\n");
+  ASSERT_TRUE(domain) << domain.error().message;
+  auto file = OutputFile::create(folder_ / "again.poly", {});
+  ASSERT_TRUE(file) << file.error().message;
+  write_triangle_poly(*domain, *file);
+  std::vector<OutputFile> files;
+  files.push_back(std::move(*file));
+  ASSERT_TRUE(commit(files));
+  const auto again = read_triangle_poly(folder_ / "again.poly");
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(again->regions, domain->regions);
+  EXPECT_EQ(again->region_values, domain->region_values);
+}
+
+TEST_F(TrianglePoly, RefusesARegionWithoutAnyValue) {
+  EXPECT_EQ(refusal("1 2 0 0\n1 0 0\n0\n0\n1\n1 0 0\n"),
+            "box.poly:6:5: the line ends where the region's attribute should follow");
 }
 
 TEST_F(TrianglePoly, RefusesATruncatedFileAndSaysWhereItEnds) {

@@ -56,6 +56,17 @@ def test_a_multipolygon_of_shapely_is_meshed_in_all_its_parts(client):
     assert client.mesh(parts).summary.area == pytest.approx(3)
 
 
+def test_attributes_of_triangles_regions_may_be_any_numbers(client, digest_of, tmp_path):
+    path = tmp_path / "regions.poly"
+    path.write_text("4 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n5 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n5 1 3\n"
+                    "0\n2\n1 3 1 0.7\n2 1 3 0.35 -1  # the first is its own maximum area\n")
+    domain = weft.Domain.read(path)
+    first, second = domain.regions
+    assert domain.region_values == {1: 0.35, 2: 0.7}
+    assert (first.id, first.max_area, second.id, second.max_area) == (2, 0.7, 1, None)
+    assert client.mesh(path).digest == digest_of(path)
+
+
 def test_holes_and_regions_of_seeds_are_kept(client):
     rings = weft.Domain.rings(SQUARE, HOLE)
     domain = weft.Domain(rings.points, rings.segments, markers=np.arange(8), holes=[(1.5, 1.5)],

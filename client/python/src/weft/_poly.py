@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+import itertools
 import pathlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -43,6 +44,14 @@ class _Lines:
             raise DomainError(f"{what}: {table.shape[1]} numbers a line, expected {least}")
         return table
 
+    def rows(self, what: str, count: int, least: int) -> list[list[float]]:
+        """As `table`, of rows that may differ in length."""
+        rows = [self.table(what, 1, least)[0] for _ in range(count)]
+        for row in rows:
+            if not np.isfinite(row).all():
+                raise DomainError(f"{what}: a number is not finite")
+        return [row.tolist() for row in rows]
+
     def ended(self) -> bool:
         return self._at >= len(self._lines)
 
@@ -53,6 +62,19 @@ def _numbered(table: npt.NDArray[np.float64], what: str) -> int:
     if not np.array_equal(table[:, 0], np.arange(first, first + len(table))) or first not in (0, 1):
         raise DomainError(f"the {what} are not numbered in order from 0 or 1")
     return first
+
+
+def region_ids(attributes: Iterable[float]) -> dict[float, int]:
+    """An id for each attribute, which may be any real number.
+
+    An integer of 32 bits is its own id. The other values, in ascending order, get the smallest
+    positive ids that no integer among the attributes has.
+    """
+    values = sorted(set(attributes))
+    own = {value: int(value) for value in values if value.is_integer() and -2**31 <= value < 2**31}
+    taken = set(own.values())
+    free = (number for number in itertools.count(1) if number not in taken)
+    return {value: own[value] if value in own else next(free) for value in values}
 
 
 def read(path: pathlib.Path, region: Callable[..., Any]) -> dict[str, Any]:
@@ -69,16 +91,17 @@ def read(path: pathlib.Path, region: Callable[..., Any]) -> dict[str, Any]:
     segments = lines.table("segments", count, 4 if marked else 3)
     holes = lines.table("holes", lines.header("holes", 1)[0], 3)
     count = 0 if lines.ended() else lines.header("regions", 1)[0]
-    regions = []
-    for _, x, y, attribute, *area in lines.table("regions", count, 4):
-        if attribute != int(attribute):
-            raise DomainError(f"a region has the attribute {attribute}, which is no integer")
-        regions.append(region(x, y, int(attribute), area[0] if area and area[0] > 0 else None))
+    rows = lines.rows("regions", count, 4)
+    ids = region_ids(row[3] for row in rows)
+    # A lone value is both the attribute and the maximum area, as Triangle documents it.
+    regions = [region(row[1], row[2], ids[row[3]], area if (area := row[3:5][-1]) > 0 else None)
+               for row in rows]
     return {
         "points": vertices[:, 1:3],
         "segments": segments[:, 1:3] - first,
         "markers": segments[:, 3] if marked else np.zeros(0, np.int32),
         "holes": holes[:, 1:3],
         "regions": regions,
+        "region_values": {number: value for value, number in ids.items() if number != value},
         "fill": "seeds",
     }

@@ -11,7 +11,7 @@ import dataclasses
 import json
 import os
 import pathlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, Union
 
 import numpy as np
@@ -49,6 +49,8 @@ class Domain:
     `regions`: seeds of faces with an id and an area bound of their own.
     `fill`: "seeds" meshes every bounded face that no hole floods; "even-odd" the points inside an
     odd number of rings, as polygons mean it.
+    `region_values`: the attributes of a .poly file that are no integers, by the id that stands for
+    each; no server needs them.
 
     Raises DomainError where shapes, types or numbers make no sense; what only geometry can tell is
     the server's to find.
@@ -63,6 +65,7 @@ class Domain:
     holes: npt.NDArray[np.float64] = dataclasses.field(default_factory=lambda: np.zeros((0, 2)))
     regions: Sequence[Region] = ()
     fill: Fill = "seeds"
+    region_values: Mapping[int, float] = dataclasses.field(default_factory=dict)
 
     def __post_init__(self) -> None:
         points = _floats("points", self.points)
