@@ -41,6 +41,7 @@ struct Domain {
   std::vector<Vec2> holes;
   std::vector<RegionSeed> regions;
   Fill fill = Fill::kSeeds;
+  double snap = 0;  // features nearer than this are to be merged (tolerance.h); at least 0
 };
 
 }  // namespace weft::check

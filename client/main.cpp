@@ -23,8 +23,8 @@ constexpr char kExitCodes[] = R"(Exit codes:
   64 + n   the call to the server, or the job that was waited for, ended with gRPC
            status n: 65 the job was cancelled, 67 the request is wrong, 68 a
            deadline passed, 69 there is no such job, 72 a limit was exceeded, 73 the
-           job has not ended, 78 the server is absent or went away, 79 the stream
-           was damaged, 80 the token is missing or wrong
+           mesh misses its bounds, or the job has not ended, 78 the server is absent
+           or went away, 79 the stream was damaged, 80 the token is missing or wrong
   128 + n  stopped by signal n
 
 Flags that name a variable in their help, such as (Env:WEFT_SERVER), are also read

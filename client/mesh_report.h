@@ -4,8 +4,10 @@
 
 #include <chrono>
 #include <cstdint>
+#include <span>
 #include <string>
 
+#include "client/formats/region_values.h"
 #include "client/json_line.h"
 #include "weft/v1/mesh_service.pb.h"
 
@@ -38,8 +40,21 @@ Json summary_json(const v1::Summary& summary);
 Json mesh_json(const MeshReport& report, const MeshTimes& times);
 
 // "943,075 triangles, 472,520 vertices, angles 20.04 to 139.72 degrees\n", and a line for each
-// reason why triangles miss a bound.
+// reason why triangles miss a bound, and what was merged.
 std::string summary_text(const v1::Summary& summary);
+
+// "WARNING: 12 triangles without excuse, 9 above the bound on their area and 3 below the minimum
+// angle, because double precision ends; the first is at (1, 2)\n"; empty if there are none.
+std::string unrefined_warning(const v1::Unrefined& unrefined);
+
+// "merged within 0.001: 12 points moved, 3 segments bent, by 0.0007 at most, at (1, 2)\n2 faces of
+// the input vanished, one at (1, 2)\n"; empty if nothing was merged.
+std::string merging_text(const v1::Merging& merging);
+
+// "region 1 = 0.35\n", a line each.
+std::string region_values_text(std::span<const RegionValue> values);
+// {"1": 0.35}
+Json region_values_json(std::span<const RegionValue> values);
 
 // summary_text, and a line on where the time went.
 std::string mesh_text(const MeshReport& report, const MeshTimes& times);

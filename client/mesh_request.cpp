@@ -94,6 +94,8 @@ v1::GenerateMeshRequest make_request(const Domain& domain, const MeshWishes& wis
   if (wishes.max_triangles) request.mutable_budget()->set_max_triangles(*wishes.max_triangles);
   if (wishes.max_seconds) request.mutable_budget()->set_max_seconds(*wishes.max_seconds);
   if (wishes.threads) request.set_threads(*wishes.threads);
+  if (wishes.snap) request.mutable_domain()->set_snap(*wishes.snap);
+  request.set_allow_unrefined(wishes.allow_unrefined);
   request.set_want_quadtree(wishes.quadtree);
   request.set_no_cache(wishes.no_cache);
   return request;

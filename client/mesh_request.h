@@ -29,8 +29,10 @@ struct MeshWishes {
   std::optional<std::uint64_t> max_triangles{};
   std::optional<double> max_seconds{};
   std::optional<std::uint32_t> threads{};
-  bool quadtree = false;  // of the summary, to draw it
-  bool no_cache = false;  // made anew, even if the server has it at hand
+  std::optional<double> snap{};  // what lies nearer together is merged first
+  bool allow_unrefined = false;  // a mesh that misses its bounds without excuse is taken
+  bool quadtree = false;         // of the summary, to draw it
+  bool no_cache = false;         // made anew, even if the server has it at hand
 };
 
 // Reads the grid whose path the size is, where it is one.

@@ -17,6 +17,13 @@ std::string code_name(int code) {
   return name.empty() ? "status " + std::to_string(code) : name;
 }
 
+google::rpc::ErrorInfo info_of(const google::rpc::Status& status) {
+  google::rpc::ErrorInfo info;
+  for (const auto& detail : status.details())
+    if (detail.Is<google::rpc::ErrorInfo>()) detail.UnpackTo(&info);
+  return info;
+}
+
 }  // namespace
 
 std::string locate_field(const std::string& field, const Domain& domain) {
@@ -39,9 +46,7 @@ std::string locate_field(const std::string& field, const Domain& domain) {
 }
 
 std::string reason_of(const google::rpc::Status& status) {
-  google::rpc::ErrorInfo info;
-  for (const auto& detail : status.details())
-    if (detail.Is<google::rpc::ErrorInfo>()) detail.UnpackTo(&info);
+  const google::rpc::ErrorInfo info = info_of(status);
   std::string text = code_name(status.code());
   if (!info.reason().empty()) text += " (" + harmless(info.reason()) + ")";
   return text;
@@ -76,6 +81,8 @@ Error error_of(const google::rpc::Status& status, const std::string& subject,
       if (c == '\n') message += "  ";
     }
   }
+  if (info_of(status).reason() == "BOUNDS_NOT_MET")
+    message += "\n  --allow-unrefined takes such a mesh all the same";
   const bool valid = status.code() >= 1 && status.code() <= 16;
   return {valid ? exit_code_of_status(status.code()) : ExitCode::kInternal, std::move(message)};
 }

@@ -41,6 +41,7 @@ constexpr std::array kTable = {
     row(kOutOfMemory, "OUT_OF_MEMORY", RESOURCE_EXHAUSTED, kRetry, "out_of_memory"),
     row(kDeadlineExceeded, "DEADLINE_EXCEEDED", DEADLINE_EXCEEDED, kFinal, "deadline_exceeded"),
     row(kCancelled, "CANCELLED", CANCELLED, kFinal, "cancelled"),
+    row(kBoundsNotMet, "BOUNDS_NOT_MET", FAILED_PRECONDITION, kFinal, "bounds_not_met"),
     row(kInternal, "INTERNAL", INTERNAL, kFinal, "internal"),
     row(kMalformedRequest, "MALFORMED_REQUEST", INVALID_ARGUMENT, kFinal, "malformed_request"),
     row(kBadArray, "BAD_ARRAY", INVALID_ARGUMENT, kFinal, "bad_array"),

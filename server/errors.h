@@ -37,6 +37,7 @@ enum class Reason {
   kOutOfMemory,
   kDeadlineExceeded,
   kCancelled,
+  kBoundsNotMet,
   kInternal,
   kMalformedRequest,  // bytes that are no GenerateMeshRequest
   kBadArray,          // an array whose length makes no sense

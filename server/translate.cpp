@@ -89,6 +89,35 @@ void assign(Array& array, const Values& values) {
   array.Add(values.data(), values.data() + values.size());
 }
 
+void write_unrefined(const Summary& summary, v1::Unrefined& message) {
+  const Unrefined& unrefined = summary.unrefined;
+  message.set_small_input_angle(unrefined.small_input_angle);
+  message.set_edge_floor(unrefined.edge_floor);
+  message.set_budget(unrefined.budget);
+  message.set_precision(unrefined.precision);
+  message.set_streaming(unrefined.streaming);
+  message.set_too_large(unrefined.too_large);
+  if (unrefined.without_excuse() == 0) return;
+  message.set_x(summary.unrefined_at.x);
+  message.set_y(summary.unrefined_at.y);
+}
+
+void write_merging(const Merging& merging, v1::Merging& message) {
+  message.set_tolerance(merging.tolerance);
+  message.set_points(merging.points);
+  message.set_segments(merging.segments);
+  message.set_farthest(merging.farthest);
+  if (merging.farthest > 0) {
+    message.set_farthest_x(merging.farthest_at.x);
+    message.set_farthest_y(merging.farthest_at.y);
+  }
+  message.set_vanished_faces(merging.vanished_faces);
+  if (merging.vanished_faces > 0) {
+    message.set_vanished_x(merging.vanished_at.x);
+    message.set_vanished_y(merging.vanished_at.y);
+  }
+}
+
 template <class Bytes>
 std::string to_string(const Bytes& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -142,6 +171,7 @@ MeshRequest to_engine(const v1::GenerateMeshRequest& request) {
          region.id(),
          region.has_max_area() ? std::optional(region.max_area()) : std::nullopt});
   out.pslg.fill = domain.fill() == v1::FILL_EVEN_ODD ? Fill::kEvenOdd : Fill::kSeeds;
+  out.pslg.snap = domain.snap();
 
   if (request.size().has_constant()) out.size.constant = request.size().constant();
   if (request.size().has_expression()) out.size.expression = request.size().expression();
@@ -153,6 +183,7 @@ MeshRequest to_engine(const v1::GenerateMeshRequest& request) {
   }
   if (request.quality().has_min_angle_deg()) out.min_angle_deg = request.quality().min_angle_deg();
   out.min_edge = request.quality().min_edge();
+  out.allow_unrefined = request.allow_unrefined();
   return out;
 }
 
@@ -225,9 +256,8 @@ v1::Summary to_wire(const Summary& summary, std::uint32_t threads) {
   assign(*message.mutable_angle_histogram(), summary.angle_histogram);
   assign(*message.mutable_aspect_histogram(), summary.aspect_histogram);
   assign(*message.mutable_size_histogram(), summary.size_histogram);
-  message.mutable_unrefined()->set_small_input_angle(summary.unrefined.small_input_angle);
-  message.mutable_unrefined()->set_edge_floor(summary.unrefined.edge_floor);
-  message.mutable_unrefined()->set_budget(summary.unrefined.budget);
+  write_unrefined(summary, *message.mutable_unrefined());
+  write_merging(summary.merging, *message.mutable_merging());
   v1::Timings& timings = *message.mutable_timings();
   timings.set_triangulate_seconds(summary.triangulate_seconds);
   timings.set_size_seconds(summary.size_seconds);

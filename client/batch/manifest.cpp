@@ -84,6 +84,11 @@ const std::map<std::string, Setter>& common_keys() {
                        const auto&) { m.wishes.min_angle_deg = number_of(n, "min-angle"); }},
       {"min-edge",
        [](const auto& n, auto& m, const auto&) { m.wishes.min_edge = number_of(n, "min-edge"); }},
+      {"snap", [](const auto& n, auto& m, const auto&) { m.wishes.snap = number_of(n, "snap"); }},
+      {"allow-unrefined",
+       [](const auto& n, auto& m, const auto&) {
+         m.wishes.allow_unrefined = scalar<bool>(n, "allow-unrefined", "true or false");
+       }},
       {"max-triangles",
        [](const auto& n, auto& m, const auto&) {
          m.wishes.max_triangles = scalar<std::uint64_t>(n, "max-triangles", "a count");

@@ -27,7 +27,8 @@ constexpr std::array<Figure, 6> kFigures = {{
     {"max-vertices", false, [](const v1::Summary& s) { return static_cast<double>(s.vertices()); }},
     {"max-unrefined", false,
      [](const v1::Summary& s) {
-       return static_cast<double>(s.unrefined().edge_floor() + s.unrefined().budget());
+       const v1::Unrefined& u = s.unrefined();
+       return static_cast<double>(u.edge_floor() + u.budget() + u.precision() + u.streaming());
      }},
 }};
 

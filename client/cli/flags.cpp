@@ -21,6 +21,10 @@ void add_timeout(CLI::App& command, std::optional<double>& seconds, const std::s
       ->type_name("S");
 }
 
+void add_snap(CLI::App& command, std::optional<double>& snap, const std::string& help) {
+  command.add_option("--snap", snap, help)->envname("WEFT_SNAP")->type_name("D");
+}
+
 void add_domain_and_wishes(CLI::App& command, std::filesystem::path& input, MeshWishes& wishes) {
   command
       .add_option("INPUT", input,
@@ -41,6 +45,14 @@ void add_domain_and_wishes(CLI::App& command, std::filesystem::path& input, Mesh
   command.add_option("--min-edge", wishes.min_edge, "Make no edge shorter than this")
       ->envname("WEFT_MIN_EDGE")
       ->type_name("LEN");
+  add_snap(command, wishes.snap,
+           "Merge points and segments of the domain that are nearer together than this first. "
+           "Default: only what double precision cannot keep apart");
+  command
+      .add_flag("--allow-unrefined", wishes.allow_unrefined,
+                "Take a mesh with triangles that miss a bound though neither the domain nor a flag "
+                "excuses them; without it, such a mesh is an error")
+      ->envname("WEFT_ALLOW_UNREFINED");
   command
       .add_option("--max-triangles", wishes.max_triangles,
                   "Stop refining at this number of triangles")

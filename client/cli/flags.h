@@ -17,6 +17,8 @@ CLI::Range seconds_range();
 
 void add_timeout(CLI::App& command, std::optional<double>& seconds, const std::string& help);
 
+void add_snap(CLI::App& command, std::optional<double>& snap, const std::string& help);
+
 // INPUT, and what its mesh must satisfy.
 void add_domain_and_wishes(CLI::App& command, std::filesystem::path& input, MeshWishes& wishes);
 

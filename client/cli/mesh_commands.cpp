@@ -103,10 +103,12 @@ void add_check(CLI::App& app, Chosen& chosen) {
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str()
       ->type_name("DEG");
+  add_snap(check, options.snap,
+           "Distance within which features were merged, as given to `weft mesh`");
   check
       .add_option("--max-unrefined", options.max_unrefined,
-                  "Triangles that may miss a bound, as `weft mesh` counted them (edge floor and "
-                  "budget; small input angles are excused anyway)")
+                  "Triangles that may miss a bound, as `weft mesh` counted them (all but small "
+                  "input angles, which are excused anyway)")
       ->capture_default_str()
       ->type_name("N");
   check.callback(

@@ -70,6 +70,11 @@ std::string line_of(const BatchOutcome& outcome) {
   if (outcome.summary)
     line += "  " + with_separators(outcome.summary->triangles()) + " triangles, " +
             seconds_text(outcome.seconds);
+  if (outcome.summary) {
+    std::string warning = unrefined_warning(outcome.summary->unrefined());
+    if (!warning.empty()) warning.pop_back();
+    if (!warning.empty()) line += "\n        " + warning;
+  }
   if (outcome.error) line += "\n        " + outcome.error->message;
   for (const std::string& failure : outcome.failures) line += "\n        " + failure;
   return line + "\n";

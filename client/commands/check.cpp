@@ -4,17 +4,19 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <utility>
 
 #include "client/commands/commands.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/size_grid.h"
+#include "client/text.h"
 
 namespace weft::client {
 namespace {
 
-check::Domain to_checker(const Domain& domain) {
+check::Domain to_checker(const Domain& domain, double snap) {
   check::Domain out;
   for (const Point& point : domain.points) out.points.push_back({point.x, point.y});
   for (const Domain::Segment& segment : domain.segments) {
@@ -25,6 +27,7 @@ check::Domain to_checker(const Domain& domain) {
   for (const Domain::Region& region : domain.regions)
     out.regions.push_back({{region.at.x, region.at.y}, region.id, region.max_area});
   out.fill = domain.fill == Domain::Fill::kEvenOdd ? check::Fill::kEvenOdd : check::Fill::kSeeds;
+  out.snap = snap;
   return out;
 }
 
@@ -49,6 +52,9 @@ check::SizeRaster to_checker(SizeGrid&& grid) {
 }  // namespace
 
 Result<ExitCode> run_check(const CheckOptions& options) {
+  if (options.snap && !(std::isfinite(*options.snap) && *options.snap >= 0))
+    return fail(ExitCode::kUsage,
+                "--snap is " + shortest(*options.snap) + "; it must be finite and 0 or more");
   const auto domain = read_domain(options.domain);
   if (!domain) return tl::unexpected(domain.error());
   const auto mesh = read_mesh(options.mesh);
@@ -70,7 +76,8 @@ Result<ExitCode> run_check(const CheckOptions& options) {
       requirements.size = options.size;
     }
   }
-  const check::Report report = check::check(to_checker(*domain), to_checker(*mesh), requirements);
+  const check::Report report =
+      check::check(to_checker(*domain, options.snap.value_or(0)), to_checker(*mesh), requirements);
   const auto printed =
       print(check::to_text(report) + (report.ok() ? "the mesh holds\n" : "the mesh fails\n"));
   if (!printed) return printed;

@@ -49,6 +49,7 @@ struct CheckOptions {
   std::filesystem::path domain;
   std::string size;
   double min_angle_deg = 20;
+  std::optional<double> snap;
   std::uint64_t max_unrefined = 0;
 };
 Result<ExitCode> run_check(const CheckOptions& options);

@@ -10,6 +10,7 @@
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
 #include "client/mesh_angles.h"
+#include "client/mesh_report.h"
 #include "client/text.h"
 
 namespace weft::client {
@@ -62,6 +63,15 @@ class BoundingBox {
   bool empty_ = true;
 };
 
+// "region 1 = 0.35, region 2 = 0.7": attributes of a .poly file that are no ids.
+std::string list(std::span<const RegionValue> values) {
+  std::string text = region_values_text(values);
+  text.pop_back();
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;)
+    text.replace(at, 1, ", ");
+  return text;
+}
+
 std::string describe(const Domain& domain) {
   BoundingBox box;
   for (const Point& point : domain.points) box.add(point.x, point.y);
@@ -73,6 +83,7 @@ std::string describe(const Domain& domain) {
          row("segments", with_separators(domain.segments.size())) +
          row("holes", with_separators(domain.holes.size())) +
          row("regions", tally(count_values(regions))) +
+         (domain.region_values.empty() ? "" : row("attributes", list(domain.region_values))) +
          row("markers", tally(count_values(markers))) +
          row("filling", domain.fill == Domain::Fill::kEvenOdd ? "even-odd" : "seeds") +
          row("box", box.text());

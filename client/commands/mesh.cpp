@@ -37,9 +37,15 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   times.written = MeshTimes::Clock::now();
   progress.clear();
 
-  if (options.json) return print(json_line(mesh_json(*report, times)));
-  return options.quiet ? ExitCode::kOk
-                       : print(mesh_text(*report, times) + output->text(report->summary));
+  if (options.json) {
+    Json json = mesh_json(*report, times);
+    if (!domain->region_values.empty())
+      json["region_values"] = region_values_json(domain->region_values);
+    return print(json_line(json));
+  }
+  if (options.quiet) return ExitCode::kOk;
+  return print(mesh_text(*report, times) + region_values_text(domain->region_values) +
+               output->text(report->summary));
 }
 
 }  // namespace weft::client

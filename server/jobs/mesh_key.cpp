@@ -26,6 +26,7 @@ void make_canonical(v1::GenerateMeshRequest& request) {
   if (request.size().field_case() == v1::SizeField::FIELD_NOT_SET) request.clear_size();
   v1::Domain& domain = *request.mutable_domain();
   if (domain.fill() == v1::FILL_UNSPECIFIED) domain.set_fill(v1::FILL_SEEDS);
+  if (domain.snap() == 0) domain.clear_snap();  // -0 is 0
   const auto& markers = domain.segment_markers();
   if (std::all_of(markers.begin(), markers.end(), [](int marker) { return marker == 0; }))
     domain.clear_segment_markers();

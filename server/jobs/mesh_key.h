@@ -4,7 +4,9 @@
 //
 // Law: what is spelled differently and means the same has one key: a default that is written out,
 // markers that are all 0. What does not change the mesh is left out: threads, first_chunk,
-// want_quadtree, no_cache, and of the budget all but max_triangles.
+// want_quadtree, no_cache, and of the budget all but max_triangles. What decides whether there is a
+// mesh at all, allow_unrefined, is in the key: nobody gets a mesh that another one allowed to miss
+// its bounds.
 #pragma once
 
 #include <string>

@@ -50,6 +50,9 @@ TEST(QualityGate, ExcusesWhatTheInputForces) {
   summary.mutable_unrefined()->set_budget(2);
   summary.mutable_unrefined()->set_edge_floor(1);
   EXPECT_EQ(violation("max-unrefined=2", summary), "max-unrefined is 3, more than 2");
+  summary.mutable_unrefined()->set_precision(4);
+  summary.mutable_unrefined()->set_streaming(8);
+  EXPECT_EQ(violation("max-unrefined=14", summary), "max-unrefined is 15, more than 14");
 }
 
 TEST(QualityGate, RefusesWhatItDoesNotKnow) {
@@ -84,7 +87,7 @@ TEST_F(Manifest, TakesTheFlagsOfMeshAndPathsFromWhereItLies) {
   const auto meshes = read(R"(
 meshes:
   - {name: a, input: in/a.poly, size: x + 1, min-angle: 25, min-edge: 0.5, max-triangles: 9,
-     max-seconds: 4, output: [o/a.vtu, o/a.msh], draw: a.png, color: angle, order: 2,
+     snap: 0.125, allow-unrefined: true, max-seconds: 4, output: [o/a.vtu, o/a.msh], draw: a.png, color: angle, order: 2,
      require: {min-angle: 25}}
   - {name: b, input: /b.geojson, size: depth.asc}
 )");
@@ -96,6 +99,9 @@ meshes:
   EXPECT_EQ(a.wishes.size, "x + 1");
   EXPECT_EQ(a.wishes.min_angle_deg, 25);
   EXPECT_EQ(a.wishes.min_edge, 0.5);
+  EXPECT_EQ(a.wishes.snap, 0.125);
+  EXPECT_TRUE(a.wishes.allow_unrefined);
+  EXPECT_FALSE(meshes->back().wishes.allow_unrefined);
   EXPECT_EQ(a.wishes.max_triangles, 9u);
   EXPECT_EQ(a.wishes.max_seconds, 4);
   EXPECT_EQ(a.output.files.back(), folder_ / "o/a.msh");

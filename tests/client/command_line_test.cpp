@@ -53,8 +53,16 @@ TEST_F(CommandLine, PrintsOneJsonObject) {
   const auto json = nlohmann::json::parse(out());
   EXPECT_EQ(json["vertices"], 25);
   EXPECT_EQ(json["triangles"], 32);
-  EXPECT_EQ(json["unrefined"],
-            (nlohmann::json{{"small_input_angle", 0}, {"edge_floor", 0}, {"budget", 0}}));
+  EXPECT_EQ(json["unrefined"], (nlohmann::json{{"small_input_angle", 0},
+                                               {"edge_floor", 0},
+                                               {"budget", 0},
+                                               {"precision", 0},
+                                               {"streaming", 0}}));
+  EXPECT_EQ(json["merging"], (nlohmann::json{{"tolerance", 0.0},
+                                             {"points", 0},
+                                             {"segments", 0},
+                                             {"farthest", 0.0},
+                                             {"vanished_faces", 0}}));
   EXPECT_EQ(json["digest"].get<std::string>().size(), 64u);
   EXPECT_EQ(json["threads"], 2);
   EXPECT_EQ(json["engine_seconds"], 0.5);

@@ -163,7 +163,9 @@ TEST(MeshRequest, CarriesTheDomainAndTheWishes) {
                                              .min_edge = 0.5,
                                              .max_triangles = 7,
                                              .max_seconds = 2,
-                                             .threads = 3});
+                                             .threads = 3,
+                                             .snap = 0.25,
+                                             .allow_unrefined = true});
   EXPECT_EQ(request.domain().points_size(), 8);
   EXPECT_EQ(request.domain().points(4), 2);
   EXPECT_EQ(request.domain().segments(7), 0u);
@@ -179,6 +181,9 @@ TEST(MeshRequest, CarriesTheDomainAndTheWishes) {
   EXPECT_EQ(request.budget().max_triangles(), 7u);
   EXPECT_EQ(request.budget().max_seconds(), 2);
   EXPECT_EQ(request.threads(), 3u);
+  EXPECT_EQ(request.domain().snap(), 0.25);
+  EXPECT_TRUE(request.allow_unrefined());
+  EXPECT_FALSE(make_request(domain, {}).allow_unrefined());
 }
 
 TEST(MeshRequest, TakesANumberAsAConstantSizeAndLeavesDefaultsToTheServer) {

@@ -47,6 +47,21 @@ TEST(ServerError, KeepsACaretUnderItsColumn) {
   EXPECT_TRUE(error.message.ends_with("\n  unexpected ')'\n  x + )\n      ^"));
 }
 
+TEST(ServerError, SaysWhichFlagTakesAMeshThatMissesItsBounds) {
+  google::rpc::Status details;
+  google::rpc::ErrorInfo info;
+  info.set_reason("BOUNDS_NOT_MET");
+  details.add_details()->PackFrom(info);
+  const Error error = error_of(
+      {grpc::StatusCode::FAILED_PRECONDITION, "12 triangles miss", details.SerializeAsString()},
+      "a", nullptr);
+  EXPECT_EQ(static_cast<int>(error.exit), 73);
+  EXPECT_EQ(error.message,
+            "the server a answers FAILED_PRECONDITION (BOUNDS_NOT_MET)\n"
+            "  12 triangles miss\n"
+            "  --allow-unrefined takes such a mesh all the same");
+}
+
 TEST(ServerError, LetsNoControlCharactersReachTheTerminal) {
   const Error error = error_of({grpc::StatusCode::UNKNOWN, "\x1b[2Jboo"}, "a", nullptr);
   EXPECT_EQ(error.message, "the server a answers UNKNOWN\n  ?[2Jboo");

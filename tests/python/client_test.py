@@ -78,6 +78,23 @@ def test_options_reach_the_server(client):
         client.mesh(CYLINDER, size=1e-4, max_seconds=1e-3)
 
 
+def test_a_mesh_that_misses_its_bounds_is_an_error_unless_it_is_allowed(client):
+    corner = 1e6 + np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
+    size = "min(1e-2, 1e-24 + 0.1*((x-1e6)^2 + (y-1e6)^2))"  # below the distance of doubles
+    with pytest.raises(weft.BoundsNotMet, match="double precision ends; the first is at"):
+        client.mesh(corner, size=size)
+    summary = client.mesh(corner, size=size, allow_unrefined=True).summary
+    assert summary.unrefined.precision > 0
+    assert summary.unrefined.x == pytest.approx(1e6)
+
+
+def test_a_snap_reaches_the_server_which_refuses_what_is_no_distance(client):
+    assert client.mesh(KEY, snap=1e-9).summary.merging.points == 0
+    with pytest.raises(weft.InvalidRequest) as caught:
+        client.mesh(KEY, snap=-1)
+    assert caught.value.violations[0].field == "domain.snap"
+
+
 def test_an_option_that_is_none_is_refused(client):
     with pytest.raises(TypeError, match="'max_triangle'.*max_triangles"):
         client.mesh(KEY, max_triangle=5)

@@ -29,6 +29,9 @@ TEST(ErrorTable, TellsBadRequestsFromLimitsAndFromOurOwnFaults) {
   EXPECT_EQ(row_of(reason_of(ErrorCode::kOutOfMemory)).code, grpc::RESOURCE_EXHAUSTED);
   EXPECT_EQ(row_of(reason_of(ErrorCode::kDeadlineExceeded)).code, grpc::DEADLINE_EXCEEDED);
   EXPECT_EQ(row_of(reason_of(ErrorCode::kCancelled)).code, grpc::CANCELLED);
+  EXPECT_EQ(row_of(reason_of(ErrorCode::kBoundsNotMet)).code, grpc::FAILED_PRECONDITION);
+  EXPECT_FALSE(row_of(reason_of(ErrorCode::kBoundsNotMet)).retryable);
+  EXPECT_EQ(row_of(reason_of(ErrorCode::kBoundsNotMet)).name, "BOUNDS_NOT_MET");
   EXPECT_EQ(row_of(reason_of(ErrorCode::kInternal)).code, grpc::INTERNAL);
 }
 

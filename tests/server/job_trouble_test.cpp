@@ -91,6 +91,31 @@ TEST(JobTrouble, ADiskThatStaysFullFailsTheJobByItsName) {
   EXPECT_EQ(details_of(status).error_info.reason(), "STORE_FULL");
 }
 
+TEST(JobTrouble, AMeshThatMissesItsBoundsFailsTheJobAtOnceAndIsNotKept) {
+  std::atomic<int> runs = 0;
+  JobServer server([&](const auto&, ChunkSink& sink, auto&) -> Result<Summary> {
+    ++runs;
+    send_chunks(sink, 3);
+    return fail(ErrorCode::kBoundsNotMet, "", "12 triangles miss a bound");
+  });
+  JobClient client = server.client();
+  for (int attempt = 1; attempt <= 2; ++attempt) {
+    const std::string id = client.submit(valid_request());
+    const v1::Job job = client.wait(id);
+    EXPECT_EQ(job.state(), v1::JOB_STATE_FAILED);
+    EXPECT_EQ(job.attempts(), 1);
+    EXPECT_EQ(job.error().code(), grpc::FAILED_PRECONDITION);
+    EXPECT_EQ(job.error().message(), "12 triangles miss a bound");
+    const grpc::Status status(grpc::FAILED_PRECONDITION, "", job.error().SerializeAsString());
+    EXPECT_EQ(details_of(status).error_info.reason(), "BOUNDS_NOT_MET");
+    EXPECT_FALSE(job.has_summary());
+    const Fetched fetched = client.fetch(id);
+    EXPECT_EQ(details_of(fetched.status).error_info.reason(), "JOB_NOT_DONE");
+    EXPECT_TRUE(fetched.messages.empty());
+    EXPECT_EQ(runs, attempt);
+  }
+}
+
 TEST(JobTrouble, AJobWhoseWorkersAreAllLostFails) {
   Event release;
   JobOptions jobs = quick_jobs();

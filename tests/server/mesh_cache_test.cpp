@@ -157,6 +157,29 @@ TEST(GenerateMeshAgain, DoesNotAnswerWithAFailure) {
   EXPECT_EQ(server.runs(), 2);
 }
 
+TEST(GenerateMeshAgain, DoesNotGiveAMeshThatMissesItsBoundsToWhoeverDidNotAllowIt) {
+  std::atomic<int> runs = 0;
+  TestServer server([&](const MeshRequest& request, ChunkSink& sink, auto&) -> Result<Summary> {
+    ++runs;
+    auto summary = send_chunks(sink, 3);
+    if (!request.allow_unrefined) return fail(ErrorCode::kBoundsNotMet, "", "12 triangles miss");
+    return summary;
+  });
+  const auto stub = server.stub();
+  v1::GenerateMeshRequest allowed = valid_request();
+  allowed.set_allow_unrefined(true);
+  EXPECT_TRUE(call(*stub, allowed).status.ok());
+  EXPECT_TRUE(call(*stub, allowed).messages.back().summary().cached());
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    const Outcome outcome = call(*stub, valid_request());
+    EXPECT_EQ(outcome.status.error_code(), grpc::FAILED_PRECONDITION);
+    EXPECT_EQ(details_of(outcome.status).error_info.reason(), "BOUNDS_NOT_MET");
+    EXPECT_FALSE(details_of(outcome.status).retry_info);
+    EXPECT_EQ(outcome.chunk_indices().size(), 3u);
+  }
+  EXPECT_EQ(runs, 3);
+}
+
 TEST(GenerateMeshAgain, MakesTheMeshAnewWhereNothingIsKept) {
   CachingServer server(0);
   server.ask(valid_request());

@@ -25,6 +25,7 @@ TEST(MeshKey, IsTheSameForADefaultThatIsWrittenOut) {
   const std::string key = mesh_key(request);
   request.mutable_quality()->set_min_angle_deg(20);
   request.mutable_domain()->set_fill(v1::FILL_SEEDS);
+  request.mutable_domain()->set_snap(-0.0);
   for (int i = 0; i < 4; ++i) request.mutable_domain()->add_segment_markers(0);
   EXPECT_EQ(mesh_key(request), key);
 }
@@ -56,6 +57,8 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"Expression", [](auto& r) { r.mutable_size()->set_expression("0.1"); }},
         Change{"Raster", [](auto& r) { r.mutable_size()->mutable_raster()->add_values(1); }},
         Change{"Angle", [](auto& r) { r.mutable_quality()->set_min_angle_deg(21); }},
+        Change{"Snap", [](auto& r) { r.mutable_domain()->set_snap(1e-3); }},
+        Change{"AllowUnrefined", [](auto& r) { r.set_allow_unrefined(true); }},
         Change{"Edge", [](auto& r) { r.mutable_quality()->set_min_edge(1); }},
         Change{"Triangles", [](auto& r) { r.mutable_budget()->set_max_triangles(7); }}),
     [](const auto& info) { return std::string(info.param.name); });

@@ -125,6 +125,7 @@ check::Domain domain_of(const Pslg& pslg) {
     domain.regions.push_back({{r.at.x, r.at.y}, r.id, r.max_area});
   }
   domain.fill = pslg.fill == Fill::kEvenOdd ? check::Fill::kEvenOdd : check::Fill::kSeeds;
+  domain.snap = pslg.snap;
   return domain;
 }
 

@@ -17,22 +17,23 @@ from ._target import TLS
 from ._wire import Chunk
 from .client import Client, MeshStream
 from .domain import Domain, DomainLike, Region
-from .errors import (AlreadyExists, Cancelled, DamagedStream, DeadlineExceeded, DomainError,
-                     FailedPrecondition, FieldViolation, InvalidRequest, LimitExceeded,
+from .errors import (AlreadyExists, BoundsNotMet, Cancelled, DamagedStream, DeadlineExceeded,
+                     DomainError, FailedPrecondition, FieldViolation, InvalidRequest, LimitExceeded,
                      LocalServerError, MeshFileError, MissingPackage, NotFound, ServerError,
                      Unauthenticated, Unavailable, WeftError)
 from .local import LocalServer, local
 from .mesh import Mesh
 from .quality import Quality
-from .results import (Accepted, Job, JobState, Progress, ServerInfo, ServerLimits, Summary, Timings,
-                      Unrefined)
+from .results import (Accepted, Job, JobState, Merging, Progress, ServerInfo, ServerLimits, Summary,
+                      Timings, Unrefined)
 from .size import Raster, Size
 
 __all__ = [
-    "Accepted", "AlreadyExists", "Cancelled", "Chunk", "Client", "DamagedStream", "DeadlineExceeded",
-    "Domain", "DomainError", "DomainLike", "FailedPrecondition", "FieldViolation", "InvalidRequest",
-    "Job", "JobState", "LimitExceeded", "LocalServer", "LocalServerError", "Mesh", "MeshFileError",
-    "MeshOptions", "MeshStream", "MissingPackage", "NotFound", "Progress", "Quality", "Raster", "Region",
-    "ServerError", "ServerInfo", "ServerLimits", "Size", "Summary", "TLS", "Timings",
-    "Unauthenticated", "Unavailable", "Unrefined", "WeftError", "aio", "local",
+    "Accepted", "AlreadyExists", "BoundsNotMet", "Cancelled", "Chunk", "Client", "DamagedStream",
+    "DeadlineExceeded", "Domain", "DomainError", "DomainLike", "FailedPrecondition",
+    "FieldViolation", "InvalidRequest", "Job", "JobState", "LimitExceeded", "LocalServer",
+    "LocalServerError", "Merging", "Mesh", "MeshFileError", "MeshOptions", "MeshStream",
+    "MissingPackage", "NotFound", "Progress", "Quality", "Raster", "Region", "ServerError",
+    "ServerInfo", "ServerLimits", "Size", "Summary", "TLS", "Timings", "Unauthenticated",
+    "Unavailable", "Unrefined", "WeftError", "aio", "local",
 ]

@@ -17,6 +17,12 @@ class MeshOptions(TypedDict, total=False):
 
     min_edge: float
     """No edge shorter than this is made, in the unit of the points."""
+    snap: float
+    """Merge everything of the domain that lies nearer together than this first, in the unit of the
+    points; `summary.merging` tells what moved."""
+    allow_unrefined: bool
+    """Take a mesh with triangles that miss a bound though nothing excuses them, instead of
+    BoundsNotMet."""
     max_triangles: int
     """Refinement stops here and gives the mesh that it has."""
     max_seconds: float
@@ -45,6 +51,8 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
     request.quality.min_angle_deg = min_angle
     if "min_edge" in options:
         request.quality.min_edge = options["min_edge"]
+    request.domain.snap = options.get("snap", 0)
+    request.allow_unrefined = options.get("allow_unrefined", False)
     if "max_triangles" in options:
         request.budget.max_triangles = options["max_triangles"]
     if "max_seconds" in options:

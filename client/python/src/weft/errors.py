@@ -105,7 +105,12 @@ class AlreadyExists(ServerError):
 
 
 class FailedPrecondition(ServerError):
-    """FAILED_PRECONDITION: the job has not ended, or did not succeed."""
+    """FAILED_PRECONDITION: the job has not ended, or did not succeed; or BoundsNotMet."""
+
+
+class BoundsNotMet(FailedPrecondition):
+    """BOUNDS_NOT_MET: triangles of the mesh miss a bound though nothing excuses them; the message says
+    how many, why and where. `allow_unrefined=True` gives the mesh all the same."""
 
 
 class Unavailable(ServerError):
@@ -124,6 +129,10 @@ _CLASSES: dict[str, type[ServerError]] = {
     "FAILED_PRECONDITION": FailedPrecondition,
     "UNAVAILABLE": Unavailable,
 }
+
+
+# Reasons that have a class of their own.
+_REASONS: dict[str, type[ServerError]] = {"BOUNDS_NOT_MET": BoundsNotMet}
 
 
 def of_status(status: Any, subject: str) -> ServerError:
@@ -148,7 +157,8 @@ def of_status(status: Any, subject: str) -> ServerError:
     delay = None
     if retry.HasField("retry_delay"):
         delay = max(0.0, retry.retry_delay.seconds + retry.retry_delay.nanos * 1e-9)
-    return _CLASSES.get(code, ServerError)(
+    kind = _REASONS.get(info.reason) or _CLASSES.get(code, ServerError)
+    return kind(
         text, code=code, reason=info.reason, detail=status.message, violations=violations,
         retry_after=delay, job_id=info.metadata.get("job_id", ""))
 

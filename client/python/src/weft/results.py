@@ -57,9 +57,45 @@ class Unrefined:
     small_input_angle: int
     """The angle is forced by two input segments."""
     edge_floor: int
-    """A split would make edges below `min_edge` or the floor of double precision."""
+    """A split would make edges below `min_edge`."""
     budget: int
     """`max_triangles` was reached."""
+    precision: int
+    """A split would make edges where double precision ends; above 0 only with `allow_unrefined`, as
+    is the next."""
+    streaming: int
+    """What is around the triangle had been sent already when it was to be split."""
+    too_large: int
+    """Of those in `precision` and `streaming`, the triangles larger than their bound; the others miss
+    the minimum angle alone."""
+    x: float
+    """Centroid of the first triangle in `precision` or `streaming`; 0 if there is none."""
+    y: float
+    """See x."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Merging:
+    """What of the input was merged because it lay nearer together than a tolerance."""
+
+    tolerance: float
+    """The larger of `snap` and the distance that double precision cannot keep apart."""
+    points: int
+    """Input points that moved onto another vertex."""
+    segments: int
+    """Input segments that were led through a vertex that is not exactly on them."""
+    farthest: float
+    """The largest distance that a point or a segment moved."""
+    farthest_x: float
+    """Where that is; 0 if nothing moved."""
+    farthest_y: float
+    """See farthest_x."""
+    vanished_faces: int
+    """Bounded faces of the input that the merging closed."""
+    vanished_x: float
+    """A place in one of them; 0 if there is none."""
+    vanished_y: float
+    """See vanished_x."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -97,6 +133,7 @@ class Summary:
     size_histogram: npt.NDArray[np.int64]
     """(10,): triangles per area over its bound, bins of 0.1, the last open."""
     unrefined: Unrefined
+    merging: Merging
     timings: Timings
     peak_engine_bytes: int
     insertions: int
@@ -203,6 +240,7 @@ def summary(message: Any) -> Summary:
               for name in ("angle_histogram", "aspect_histogram", "size_histogram")}
     return _take(Summary, message, **counts,
                  unrefined=_take(Unrefined, message.unrefined),
+                 merging=_take(Merging, message.merging),
                  timings=_take(Timings, message.timings),
                  leaf_boxes=np.array(message.leaf_boxes, np.float64).reshape(-1, 4),
                  digest=message.sha256.hex())
