@@ -23,7 +23,7 @@ std::string hash_of(const std::uint8_t* input, std::size_t size) {
 void broken(std::string_view law, const std::string& evidence, const std::uint8_t* input,
             std::size_t size) {
   const char* const folder = std::getenv("WEFT_FUZZ_FINDINGS");
-  if (folder == nullptr) {
+  if (folder == nullptr || *folder == 0) {
     std::fprintf(stderr, "broken law: %.*s\n%s\n", static_cast<int>(law.size()), law.data(),
                  evidence.c_str());
     std::abort();

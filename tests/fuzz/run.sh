@@ -26,8 +26,9 @@ fuzz() {
       "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")" \
       "$(sed -n 's/.*DONE *cov: \([0-9]*\) ft: \([0-9]*\).*/\1 edges, \2 features/p' "$log")"
   else
-    printf '%s: a finding; %s ends with\n' "$target" "$log"
-    grep -v '^#\|NEW_FUNC' "$log" | tail -n 40
+    printf '%s: a finding, see %s\n' "$target" "$log"
+    grep -m 1 -A 30 'broken law\|ERROR: \|runtime error' "$log"
+    grep 'Test unit written' "$log"
     return 1
   fi
 }
