@@ -240,6 +240,7 @@ MeshCase decode_mesh_case(ByteSource bytes) {
     constexpr std::array<double, 4> kSnaps{1e-9, 1e-6, 1e-3, 0.1};
     request.pslg.snap = maker.extent() * kSnaps[rarely / 8 % kSnaps.size()];
   }
+  made.plain = made.plain && request.pslg.snap == 0;
   made.budget.triangle_limit = kTriangleLimit;
   return made;
 }

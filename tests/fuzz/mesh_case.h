@@ -20,7 +20,7 @@ namespace weft::fuzz {
 struct MeshCase {
   MeshRequest request{};
   Budget budget{};
-  bool plain = false;  // nothing was rounded: what is near is so on the grid
+  bool plain = false;  // nothing was rounded, nothing is to be merged
 };
 
 // Triangles of a case, at most: beyond them the engine refuses or stops. About 40 ms of work with

@@ -14,17 +14,23 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "tests/fuzz/law.h"
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace {
+
+constexpr double kSlow = 3;  // seconds of all threads: a case is bounded to take a fraction of that
 
 using Bytes = std::vector<std::uint8_t>;
 using Input = std::pair<std::filesystem::path, Bytes>;
@@ -100,12 +106,19 @@ void run_for(std::chrono::duration<double> time, std::uint64_t seed,
   const auto start = std::chrono::steady_clock::now();
   Mutator mutator(seed, inputs);
   std::uint64_t runs = 0;
+  double slowest = 0;
   while (std::chrono::steady_clock::now() - start < time) {
     const Bytes bytes = mutator.next();
+    const std::clock_t before = std::clock();
     LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
+    const double took = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+    if (took > kSlow)
+      weft::fuzz::broken("slow", std::to_string(took) + " s", bytes.data(), bytes.size());
+    slowest = std::max(slowest, took);
     ++runs;
   }
-  std::fprintf(stderr, "%llu inputs\n", static_cast<unsigned long long>(runs));
+  std::fprintf(stderr, "%llu inputs, the slowest of %.3f s\n",
+               static_cast<unsigned long long>(runs), slowest);
 }
 
 }  // namespace
