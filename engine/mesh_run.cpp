@@ -189,6 +189,12 @@ class MeshRun {
         [&](std::uint32_t part) {
           parts_.finish(part, build_part([&](PartBuilder<AreaBound>& builder) {
                           const std::size_t end = std::min((part + 1) * kPerPart, sections.size());
+                          std::size_t vertices = 0;
+                          std::size_t triangles = 0;
+                          for (std::size_t s = part * kPerPart; s < end; ++s)
+                            (sections[s].vertices ? vertices : triangles) +=
+                                sections[s].last - sections[s].first;
+                          builder.expect(vertices, triangles);
                           for (std::size_t s = part * kPerPart; s < end; ++s)
                             build(builder, sections[s]);
                         }));

@@ -225,11 +225,12 @@ Result<Carving> carve(const Arrangement& arrangement, const Pslg& pslg, Pacer& p
     carving.regions.push_back({seed.id, seed.max_area.value_or(Region{}.max_area)});
   }
 
+  for (std::uint32_t face = 0; face < faces.count; ++face)
+    if (!inside[face]) region_of_face[face] = kNone;
   carving.region.resize(arrangement.triangles.size());
   for (std::size_t t = 0; t < carving.region.size(); ++t) {
     pacer.step();
-    const std::uint32_t face = faces.of_triangle[t];
-    carving.region[t] = inside[face] ? region_of_face[face] : kNone;
+    carving.region[t] = region_of_face[faces.of_triangle[t]];
   }
   return carving;
 }
