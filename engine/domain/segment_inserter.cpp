@@ -81,8 +81,8 @@ void SegmentInserter::separate() {
       for (int i = 0; i < 3; ++i) {
         const Edge edge{f, i};
         if (t_.constraint(edge) == kNone) continue;
+        if (strip.is_clear(edge)) continue;
         const Vertex apex = t_.apex(edge);
-        if (apex == Triangulation::kInfinite) continue;
         const Piece piece{t_.right(edge), t_.left(edge), constraints_[t_.constraint(edge)]};
         const Vertex w = touches(apex, piece) ? apex : strip.nearest(edge);
         if (w == Triangulation::kInfinite || !shortens(piece.u, at(w), piece.v)) continue;

@@ -37,16 +37,10 @@ bool StripSearch::leads_on(Edge edge) const {
 }
 
 StripSearch::Vertex StripSearch::nearest(Edge edge) {
-  const Vertex apex = t_.apex(edge);
-  if (apex == Triangulation::kInfinite) return Triangulation::kInfinite;
+  if (is_clear(edge)) return Triangulation::kInfinite;
   u_ = t_.right(edge);
   v_ = t_.left(edge);
-  const Point from = t_.at(u_), to = t_.at(v_), at = t_.at(apex);
-  const double ux = from.x - at.x, uy = from.y - at.y, vx = to.x - at.x, vy = to.y - at.y;
-  const double dot = ux * vx + uy * vy;
-  if (dot >= 0 || 4 * dot * dot < (ux * ux + uy * uy) * (vx * vx + vy * vy))
-    return Triangulation::kInfinite;
-
+  const Point from = t_.at(u_), to = t_.at(v_);
   from_ = from;
   along_ = {to.x - from.x, to.y - from.y};
   length2_ = along_.x * along_.x + along_.y * along_.y;

@@ -24,12 +24,22 @@ class StripSearch {
   // between the edge's ends, and not hidden by another constrained edge. kInfinite if there is
   // none. So the triangle that it makes with the edge has no vertex inside.
   //
-  // In most cases the face tells: if it is seen from its apex at 120 degrees at most, every visible
-  // vertex sees the edge so, since it lies outside of the face's circumcircle. Then one of the
-  // angles at the edge is 30 degrees at least, at an end that is twice the height away. Otherwise
-  // the faces are searched that the strip of this height passes through; around the edge's ends,
+  // It searches the faces that the strip of this height passes through; around the edge's ends,
   // those within 30 degrees of it. Throws Stopped.
   Vertex nearest(Edge edge);
+
+  // Whether the face tells that there is none, as most do: it is seen from its apex at 120 degrees
+  // at most, so every visible vertex sees the edge so, since it lies outside of the face's
+  // circumcircle. Then one of the angles at the edge is 30 degrees at least, at an end that is
+  // twice the height away.
+  bool is_clear(Edge edge) const {
+    const Vertex apex = t_.apex(edge);
+    if (apex == Triangulation::kInfinite) return true;
+    const Point u = t_.at(t_.right(edge)), v = t_.at(t_.left(edge)), at = t_.at(apex);
+    const double ux = u.x - at.x, uy = u.y - at.y, vx = v.x - at.x, vy = v.y - at.y;
+    const double dot = ux * vx + uy * vy;
+    return dot >= 0 || 4 * dot * dot < (ux * ux + uy * uy) * (vx * vx + vy * vy);
+  }
 
  private:
   // A vertex in the coordinates of the edge: along it, and above it, both times its length.
