@@ -15,6 +15,9 @@
 // it is an insertion by Bowyer-Watson, and the mesh is constrained Delaunay after it. The vertices
 // of the cavity's border lie in the task's box; the box is convex, so the point does, too, and all
 // new triangles have three vertices of this task. So nothing is new to any other task at work.
+//
+// Beside that, a task that begins asks whether a triangle handed on to it is still there: of slots
+// that no task writes that may run at the same time (leaf_tasks.h, may_look_at).
 #pragma once
 
 #include "engine/geometry.h"
