@@ -15,29 +15,35 @@ namespace {
 
 class ChainJudge {
  public:
-  ChainJudge(const Domain& domain, const Arrangement& arrangement, const Mesh& mesh,
+  ChainJudge(const BentDomain& bent, const Arrangement& arrangement, const Mesh& mesh,
              const ListedEdges& listed, const InputPoints& input_points, Findings& findings)
-      : domain_(domain),
+      : bent_(bent),
+        domain_(bent.domain),
         arrangement_(arrangement),
         mesh_(mesh),
         input_points_(input_points),
         findings_(findings),
-        tolerance_(on_segment_tolerance(domain)),
-        steps_(steps_along_segments(domain, mesh, listed, tolerance_)),
+        tolerance_(on_segment_tolerance(domain_)),
+        steps_(steps_along_segments(domain_, mesh, listed,
+                                    std::vector<double>(domain_.segments.size(), tolerance_))),
         vertex_at_(vertices_of_arrangement(arrangement, input_points, mesh, listed, tolerance_)),
         expected_marker_(mesh.edges.size()),
         state_(mesh.edges.size(), State::kOnNoSegment) {}
 
-  void judge_segment(std::uint32_t segment, const std::vector<FaceRole>& roles) {
+  void judge_segment(std::uint32_t segment, const std::vector<Need>& needs) {
     const auto along = arrangement_.edges_of(segment);
     const Track track = track_of(domain_, segment);
-    const auto needed = [&](std::uint32_t e) {
-      return roles[arrangement_.face(2 * e)].kept || roles[arrangement_.face(2 * e + 1)].kept;
+    const auto need = [&](std::uint32_t e) {
+      const Need most =
+          std::max(needs[arrangement_.face(2 * e)], needs[arrangement_.face(2 * e + 1)]);
+      return bent_.is_tear[segment] ? std::min(most, Need::kEitherWay) : most;
     };
     for (std::size_t first = 0, end = 0; first < along.size(); first = end) {
       end = first + 1;
-      if (!needed(along[first])) continue;
-      while (end < along.size() && needed(along[end])) ++end;
+      const Need wanted = need(along[first]);
+      if (wanted == Need::kNothing) continue;
+      while (end < along.size() && need(along[end]) == wanted) ++end;
+      is_optional_ = wanted == Need::kEitherWay;
       judge_run(segment, track, along.subspan(first, end - first));
     }
   }
@@ -49,6 +55,11 @@ class ChainJudge {
       if (state_[step.edge] == State::kOnSegment && marker != expected_marker_[step.edge] &&
           marker == marker_of(edge_at(step, track_of(domain_, step.segment))))
         expected_marker_[step.edge] = marker;
+    }
+    for (const auto& [edge, marker] : bent_.beside) {
+      if (state_[edge] == State::kOnNoSegment) state_[edge] = State::kUnclear;
+      if (state_[edge] == State::kOnSegment && mesh_.edges[edge].marker == marker)
+        expected_marker_[edge] = marker;
     }
     for (std::size_t i = 0; i < mesh_.edges.size(); ++i) {
       const Mesh::Edge& edge = mesh_.edges[i];
@@ -135,8 +146,9 @@ class ChainJudge {
   }
 
   void miss(std::uint32_t segment, std::uint32_t w) {
+    if (is_optional_) return;
     findings_.add(Rule::kChains, [&] {
-      return say("segment ", segment, ": no vertex where it meets others, near ",
+      return say("segment ", bent_.origin[segment], ": no vertex where it meets others, near ",
                  arrangement_.vertices().at(w));
     });
   }
@@ -148,11 +160,11 @@ class ChainJudge {
     const std::span<const Step> steps = steps_between(segment, start, goal);
     const Walk found = walk(steps, from, start, to, tolerance_);
     for (const std::size_t k : found.path) use(steps[k], track);
-    if (!found.path.empty()) return;
+    if (!found.path.empty() || is_optional_) return;
     for (const Step& step : steps) state_[step.edge] = std::max(state_[step.edge], State::kUnclear);
     findings_.add(Rule::kChains, [&] {
-      return say("segment ", segment, ": between vertices ", from, " at ", mesh_.vertices[from],
-                 " and ", to, " at ", mesh_.vertices[to],
+      return say("segment ", bent_.origin[segment], ": between vertices ", from, " at ",
+                 mesh_.vertices[from], " and ", to, " at ", mesh_.vertices[to],
                  ", the chain of listed edges breaks off at vertex ", found.farthest, " at ",
                  mesh_.vertices[found.farthest]);
     });
@@ -193,16 +205,18 @@ class ChainJudge {
     if (state_[step.edge] != State::kOnSegment)
       expected_marker_[step.edge] = marker_of(edge_at(step, track));
     state_[step.edge] = State::kOnSegment;
-    segments_.emplace_back(step.from, step.segment);
-    segments_.emplace_back(step.to, step.segment);
+    segments_.emplace_back(step.from, bent_.origin[step.segment]);
+    segments_.emplace_back(step.to, bent_.origin[step.segment]);
   }
 
+  const BentDomain& bent_;
   const Domain& domain_;
   const Arrangement& arrangement_;
   const Mesh& mesh_;
   const InputPoints& input_points_;
   Findings& findings_;
   double tolerance_;
+  bool is_optional_ = false;  // whether the run at hand may be missing
   std::vector<Step> steps_;
   std::vector<std::optional<std::uint32_t>> vertex_at_;
   std::vector<std::int32_t> expected_marker_;  // per listed edge on a segment
@@ -212,24 +226,26 @@ class ChainJudge {
 
 }  // namespace
 
-void judge_points(const Domain& domain, const Arrangement& arrangement,
-                  const std::vector<FaceRole>& roles, const InputPoints& input_points,
+void judge_points(const BentDomain& bent, std::size_t count, const Arrangement& arrangement,
+                  const std::vector<Need>& needs, const InputPoints& input_points,
                   Findings& findings) {
+  const Domain& domain = bent.domain;
   std::vector<char> is_end(domain.points.size(), 0);
   for (const auto [a, b] : domain.segments) is_end[a] = is_end[b] = 1;
-  const auto beside_kept = [&](std::uint32_t half_edge) {
-    return roles[arrangement.face(half_edge)].kept || roles[arrangement.face(half_edge ^ 1u)].kept;
+  const auto beside_needed = [&](std::uint32_t half_edge) {
+    return needs[arrangement.face(half_edge)] == Need::kAll ||
+           needs[arrangement.face(half_edge ^ 1u)] == Need::kAll;
   };
-  for (std::uint32_t i = 0; i < domain.points.size(); ++i) {
+  for (std::uint32_t i = 0; i < count; ++i) {
     const Vec2 p = domain.points[i];
     if (input_points.vertex_at(p)) continue;
     bool in_domain = false;
     if (is_end[i]) {
       const auto around = arrangement.half_edges_at(arrangement.vertices().of_point(i));
-      in_domain = std::any_of(around.begin(), around.end(), beside_kept);
+      in_domain = std::any_of(around.begin(), around.end(), beside_needed);
     } else {
       const Arrangement::Place place = arrangement.locate(p);
-      in_domain = place.edge ? beside_kept(2 * *place.edge) : roles[place.face].kept;
+      in_domain = place.edge ? beside_needed(2 * *place.edge) : needs[place.face] == Need::kAll;
     }
     if (in_domain)
       findings.add(Rule::kPoints, [&] {
@@ -238,13 +254,13 @@ void judge_points(const Domain& domain, const Arrangement& arrangement,
   }
 }
 
-SegmentsOfVertices judge_chains(const Domain& domain, const Arrangement& arrangement,
-                                const std::vector<FaceRole>& roles, const Mesh& mesh,
+SegmentsOfVertices judge_chains(const BentDomain& bent, const Arrangement& arrangement,
+                                const std::vector<Need>& needs, const Mesh& mesh,
                                 const ListedEdges& listed, const InputPoints& input_points,
                                 Findings& findings) {
-  ChainJudge judge(domain, arrangement, mesh, listed, input_points, findings);
-  for (std::uint32_t segment = 0; segment < domain.segments.size(); ++segment)
-    judge.judge_segment(segment, roles);
+  ChainJudge judge(bent, arrangement, mesh, listed, input_points, findings);
+  for (std::uint32_t segment = 0; segment < bent.domain.segments.size(); ++segment)
+    judge.judge_segment(segment, needs);
   judge.judge_listed(listed);
   return judge.take_segments();
 }

@@ -6,15 +6,17 @@
 #include <vector>
 
 #include "checker/arrangement.h"
+#include "checker/bent_domain.h"
 #include "checker/chains.h"
 #include "checker/contacts.h"
 #include "checker/coverage.h"
 #include "checker/delaunay.h"
 #include "checker/domain_rules.h"
 #include "checker/fill.h"
-#include "checker/gaps.h"
 #include "checker/half_edges.h"
+#include "checker/joined_faces.h"
 #include "checker/listed_edges.h"
+#include "checker/near_features.h"
 #include "checker/overlap.h"
 #include "checker/structure.h"
 #include "checker/text.h"
@@ -25,28 +27,59 @@ namespace {
 struct FilledDomain {
   Arrangement arrangement;
   std::vector<FaceRole> roles;  // per face
+  JoinedFaces joined;
+  std::vector<Need> needs;  // per face
 };
 
-std::optional<FilledDomain> arrange(const Domain& domain, Findings& findings) {
+bool complete(const Contacts& contacts, Findings& findings) {
+  if (contacts.complete) return true;
+  findings.add(Rule::kDomain, [] {
+    return say("segments meet in more than ", kMaxContacts, " points other than their ends");
+  });
+  return false;
+}
+
+std::optional<NearFeatures> near_features(const Domain& domain, Findings& findings) {
   if (!judge_domain(domain, findings)) return std::nullopt;
-  std::vector<Vec2> points = domain.points;
-  std::vector<SegmentEnds> segments = domain.segments;
-  for (const std::array<Vec2, 2>& link : links_across_gaps(domain)) {
+  const Contacts contacts = find_contacts(domain.points, domain.segments, kMaxContacts);
+  if (!complete(contacts, findings)) return std::nullopt;
+  return find_near_features(domain, contacts);
+}
+
+std::optional<FilledDomain> arrange(const BentDomain& bent, Findings& findings) {
+  std::vector<Vec2> points = bent.domain.points;
+  std::vector<SegmentEnds> segments = bent.domain.segments;
+  for (const std::array<Vec2, 2>& link : bent.links) {
     const auto first = static_cast<std::uint32_t>(points.size());
     points.insert(points.end(), link.begin(), link.end());
     segments.push_back({first, first + 1});
   }
   const Contacts contacts = find_contacts(points, segments, kMaxContacts);
-  if (!contacts.complete) {
-    findings.add(Rule::kDomain, [] {
-      return say("segments meet in more than ", kMaxContacts, " points other than their ends");
-    });
-    return std::nullopt;
-  }
-  Arrangement arrangement(points, segments, contacts, domain.segments.size());
-  std::vector<FaceRole> roles = fill_faces(domain, arrangement, findings);
+  if (!complete(contacts, findings)) return std::nullopt;
+  Arrangement arrangement(points, segments, contacts, bent.domain.segments.size());
+  std::vector<FaceRole> roles = fill_faces(bent.domain, arrangement, findings);
   if (findings.total(Rule::kDomain) > 0) return std::nullopt;
-  return FilledDomain{std::move(arrangement), std::move(roles)};
+  JoinedFaces joined = join_faces(bent, arrangement, roles);
+  std::vector<Need> needs(roles.size());
+  for (std::uint32_t f = 0; f < roles.size(); ++f)
+    needs[f] = joined.is_sliver(f) ? Need::kEitherWay : roles[f].kept ? Need::kAll : Need::kNothing;
+  return FilledDomain{std::move(arrangement), std::move(roles), std::move(joined),
+                      std::move(needs)};
+}
+
+// What seems not to be in the mesh, but has to be, may be beside its segment after all. Notes those
+// segments; false if there are no new ones.
+bool try_without_jumps(const BentDomain& bent, const FilledDomain& filled,
+                       std::vector<char>& jumps_last) {
+  bool any = false;
+  for (std::uint32_t piece = 0; piece < bent.domain.segments.size(); ++piece) {
+    char& last = jumps_last[bent.origin[piece]];
+    if (!bent.is_gap[piece] || last) continue;
+    for (const std::uint32_t e : filled.arrangement.edges_of(piece))
+      for (const std::uint32_t h : {2 * e, 2 * e + 1})
+        if (filled.needs[filled.arrangement.face(h)] == Need::kAll) last = any = true;
+  }
+  return any;
 }
 
 }  // namespace
@@ -61,7 +94,8 @@ Report check(const Domain& domain, const Mesh& mesh, const Requirements& require
   report.facts.triangles = mesh.triangles.size();
   report.facts.edges = mesh.edges.size();
 
-  const std::optional<FilledDomain> filled = arrange(domain, findings);
+  const std::optional<NearFeatures> near = near_features(domain, findings);
+  std::optional<FilledDomain> filled;
   QualityContext context;
   std::optional<SmallInputAngles> small_input_angles;
   std::vector<std::uint32_t> faces;
@@ -73,14 +107,25 @@ Report check(const Domain& domain, const Mesh& mesh, const Requirements& require
   if (sound && half_edges->judge_conformity(findings)) {
     const ListedEdges listed = find_listed_edges(mesh, *half_edges, findings);
     judge_delaunay(mesh, *half_edges, listed, findings);
-    if (judge_overlap(mesh, *half_edges, listed, findings) && filled) {
-      const auto& [arrangement, roles] = *filled;
-      const InputPoints input_points(domain, mesh);
-      judge_points(domain, arrangement, roles, input_points, findings);
+    const bool no_overlap = judge_overlap(mesh, *half_edges, listed, findings);
+    BentDomain bent;
+    if (near) {
+      judge_named_points(domain, *near, mesh, findings);
+      std::vector<char> jumps_last(domain.segments.size(), 0);
+      for (bool again = true; again;) {
+        bent = bend(domain, *near, mesh, listed, jumps_last);
+        filled = arrange(bent, findings);
+        again = filled && try_without_jumps(bent, *filled, jumps_last);
+      }
+    }
+    if (no_overlap && filled) {
+      const auto& [arrangement, roles, joined, needs] = *filled;
+      const InputPoints input_points(bent.domain, mesh);
+      judge_points(bent, domain.points.size(), arrangement, needs, input_points, findings);
       small_input_angles.emplace(
           mesh, listed,
-          judge_chains(domain, arrangement, roles, mesh, listed, input_points, findings));
-      faces = judge_coverage(domain, arrangement, roles, mesh, *half_edges, listed, findings);
+          judge_chains(bent, arrangement, needs, mesh, listed, input_points, findings));
+      faces = judge_coverage(bent, arrangement, roles, joined, mesh, *half_edges, listed, findings);
       context = {&*small_input_angles, faces, roles};
     } else {
       skip({Rule::kChains, Rule::kPoints, Rule::kMarkers, Rule::kCoverage, Rule::kRegions,
@@ -89,6 +134,7 @@ Report check(const Domain& domain, const Mesh& mesh, const Requirements& require
     half_edges.reset();
     judge_quality(mesh, requirements, context, report.facts, findings);
   } else {
+    if (near) arrange(unbent(domain), findings);  // for what may be wrong with the domain itself
     if (findings.total(Rule::kStructure) > 0) skip({Rule::kOrientation});
     if (!sound) skip({Rule::kConformity});
     skip({Rule::kOverlap, Rule::kEdges, Rule::kChains, Rule::kPoints, Rule::kMarkers,

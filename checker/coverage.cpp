@@ -28,10 +28,10 @@ Vec2 centroid(const Mesh& mesh, std::uint32_t t) {
   return {(p.x + q.x + r.x) / 3, (p.y + q.y + r.y) / 3};
 }
 
-std::string name_of_edge(const Arrangement& arrangement, std::uint32_t e) {
+std::string name_of_edge(const BentDomain& bent, const Arrangement& arrangement, std::uint32_t e) {
   const Arrangement::Edge& edge = arrangement.edges()[e];
   const auto covers = arrangement.covers(e);
-  const std::string segment = covers.empty() ? "a gap" : say("segment ", covers[0]);
+  const std::string segment = covers.empty() ? "a gap" : say("segment ", bent.origin[covers[0]]);
   return say(segment, " from ", arrangement.vertices().at(edge.u), " to ",
              arrangement.vertices().at(edge.v));
 }
@@ -79,28 +79,34 @@ Patches find_patches(const Mesh& mesh, const HalfEdges& half_edges, const Listed
 
 }  // namespace
 
-std::vector<std::uint32_t> judge_coverage(const Domain& domain, const Arrangement& arrangement,
-                                          const std::vector<FaceRole>& roles, const Mesh& mesh,
+std::vector<std::uint32_t> judge_coverage(const BentDomain& bent, const Arrangement& arrangement,
+                                          const std::vector<FaceRole>& roles,
+                                          const JoinedFaces& joined, const Mesh& mesh,
                                           const HalfEdges& half_edges, const ListedEdges& listed,
                                           Findings& findings) {
-  const double tolerance = on_segment_tolerance(domain);
-  const auto slack = [&](double area, double perimeter) {
-    return 1e-12 * std::fabs(area) + 4 * tolerance * (perimeter + tolerance);
+  const double tolerance = on_segment_tolerance(bent.domain);
+  const auto explained = [&](double area, double perimeter, double slack) {
+    return 1e-12 * std::fabs(area) + 4 * tolerance * (perimeter + tolerance) +
+           sliver_area(perimeter, slack);
   };
   Patches patches = find_patches(mesh, half_edges, listed);
   std::vector<Sum> covered(roles.size());
   std::vector<std::uint32_t> face_of_patch;
+  std::vector<char> is_sliver;  // per patch
   for (const Patch& patch : patches.patches) {
     const Vec2 centre = centroid(mesh, patch.roundest);
     const Arrangement::Place place = arrangement.locate(centre);
     const double area = static_cast<double>(patch.twice_area.total() / 2);
+    const double slack = joined.faces[joined.of[place.face]].slack;
     face_of_patch.push_back(place.face);
-    covered[place.face].add(patch.twice_area.total() / 2);
-    if (area <= slack(area, patch.perimeter)) continue;
+    covered[joined.of[place.face]].add(patch.twice_area.total() / 2);
+    const bool is_small = area <= explained(area, patch.perimeter, slack);
+    is_sliver.push_back(is_small && slack > 0);
+    if (is_small) continue;
     if (place.edge)
       findings.add(Rule::kCoverage, [&] {
         return say("triangle ", patch.roundest, " lies across ",
-                   name_of_edge(arrangement, *place.edge));
+                   name_of_edge(bent, arrangement, *place.edge));
       });
     else if (!roles[place.face].kept)
       findings.add(Rule::kCoverage, [&] {
@@ -113,24 +119,25 @@ std::vector<std::uint32_t> judge_coverage(const Domain& domain, const Arrangemen
   std::vector<char> judged(roles.size(), 0);
   for (std::uint32_t g = 0; g < 2 * arrangement.edges().size(); ++g) {
     // Each face is named by the first half-edge that it has.
-    const std::uint32_t f = arrangement.face(g);
-    if (!roles[f].kept || judged[f]) continue;
+    const std::uint32_t f = joined.of[arrangement.face(g)];
+    if (!roles[f].kept || joined.is_sliver(f) || judged[f]) continue;
     judged[f] = 1;
-    const Arrangement::Face& face = arrangement.faces()[f];
+    const JoinedFaces::Face& face = joined.faces[f];
     const double area = static_cast<double>(covered[f].total());
-    if (std::fabs(area - face.area) <= slack(face.area, face.perimeter)) continue;
+    if (std::fabs(area - face.area) <= explained(face.area, face.perimeter, face.slack)) continue;
     findings.add(Rule::kCoverage, [&] {
       return say("the face ", g % 2 == 0 ? "left" : "right", " of ",
-                 name_of_edge(arrangement, g / 2), " has the area ", face.area,
+                 name_of_edge(bent, arrangement, g / 2), " has the area ", face.area,
                  ", but triangles cover ", area);
     });
   }
 
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const std::uint32_t face = face_of_patch[patches.of_triangle[t]];
+    const std::uint32_t patch = patches.of_triangle[t];
+    const std::uint32_t face = face_of_patch[patch];
     patches.of_triangle[t] = face;
     const std::int32_t region = mesh.regions.empty() ? 0 : mesh.regions[t];
-    if (!roles[face].kept || region == roles[face].region) continue;
+    if (!roles[face].kept || region == roles[face].region || is_sliver[patch]) continue;
     findings.add(Rule::kRegions, [&] {
       return say("triangle ", t, " at ", centroid(mesh, static_cast<std::uint32_t>(t)),
                  " has the region id ", region, ", it lies in region ", roles[face].region);

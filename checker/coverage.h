@@ -7,15 +7,18 @@
 // triangle. The area covered in each face must be that face's, to within
 //     1e-12 of it + 4 d (its perimeter + d),  d the tolerance of tolerance.h,
 // and a patch in a face that is not kept may have no more area than its own boundary explains so.
+// Near bent segments a face is uncertain by the area of a sliver, too, and a patch that is no
+// larger than that may have any role and region (joined_faces.h).
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "checker/arrangement.h"
-#include "checker/domain.h"
+#include "checker/bent_domain.h"
 #include "checker/fill.h"
 #include "checker/half_edges.h"
+#include "checker/joined_faces.h"
 #include "checker/listed_edges.h"
 #include "checker/mesh.h"
 #include "checker/report.h"
@@ -24,8 +27,9 @@ namespace weft::check {
 
 // Adds violations of kCoverage and kRegions. Returns the face of each triangle.
 // REQUIRES: no overlap.
-std::vector<std::uint32_t> judge_coverage(const Domain& domain, const Arrangement& arrangement,
-                                          const std::vector<FaceRole>& roles, const Mesh& mesh,
+std::vector<std::uint32_t> judge_coverage(const BentDomain& bent, const Arrangement& arrangement,
+                                          const std::vector<FaceRole>& roles,
+                                          const JoinedFaces& joined, const Mesh& mesh,
                                           const HalfEdges& half_edges, const ListedEdges& listed,
                                           Findings& findings);
 

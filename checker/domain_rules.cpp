@@ -36,6 +36,8 @@ bool judge_domain(const Domain& domain, Findings& findings) {
     else if (domain.points[a] == domain.points[b])
       bad("segment ", i, " joins points ", a, " and ", b, ", both at ", domain.points[a]);
   }
+  if (!(domain.snap >= 0 && domain.snap <= kMaxMagnitude))
+    bad("the merging distance ", domain.snap, " is not finite or below 0");
   if (!domain.markers.empty() && domain.markers.size() != domain.segments.size())
     bad(domain.markers.size(), " markers for ", domain.segments.size(), " segments");
   return findings.total(Rule::kDomain) == 0;

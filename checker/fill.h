@@ -16,6 +16,7 @@ struct FaceRole {
   bool kept = false;
   std::int32_t region = 0;
   double max_area = std::numeric_limits<double>::infinity();
+  friend bool operator==(const FaceRole&, const FaceRole&) = default;
 };
 
 // One role per face. Fill::kEvenOdd keeps the faces that a path from infinity reaches by crossing

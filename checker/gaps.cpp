@@ -18,14 +18,18 @@ double unit_in_the_last_place(double value) {
   return std::nextafter(value, std::numeric_limits<double>::infinity()) - value;
 }
 
+}  // namespace
+
 double snap_distance(Vec2 a, Vec2 b) {
   const double largest = std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(b.x), std::fabs(b.y)});
   return kSnapUlps * unit_in_the_last_place(largest);
 }
 
-// A double beside p on or beyond the line a-b, which p is not on.
-std::optional<Vec2> across(Vec2 p, Vec2 a, Vec2 b, double snap) {
+std::optional<Vec2> across(Vec2 p, Vec2 a, Vec2 b, double distance) {
   const int side = orientation(a, b, p);
+  if (side == 0) return std::nullopt;
+  // A distance is rounded, and may be too short to change p at all.
+  const double snap = std::max(distance, snap_distance(p, p));
   const double length = std::hypot(b.x - a.x, b.y - a.y);
   // Towards the line: to the right of a-b if p is on its left.
   const double x = side * (b.y - a.y) / length, y = -side * (b.x - a.x) / length;
@@ -35,8 +39,6 @@ std::optional<Vec2> across(Vec2 p, Vec2 a, Vec2 b, double snap) {
   }
   return std::nullopt;
 }
-
-}  // namespace
 
 std::vector<std::array<Vec2, 2>> links_across_gaps(const Domain& domain) {
   std::vector<Box> boxes;

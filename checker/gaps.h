@@ -4,10 +4,12 @@
 // it stops short, and the faces on its two sides are one. So an end within kSnapUlps units in the
 // last place of a segment (of that segment's largest coordinate) counts as on it, as it does for
 // the mesher: a link, a segment as short as that, is added from the end across the other segment.
-// Links bound faces; they are no segments to be found in the mesh.
+// Links bound faces; they are no segments to be found in the mesh. (Where more than rounding has
+// opened a junction, by less than the merging distance: bent_domain.h.)
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "checker/domain.h"
@@ -15,6 +17,13 @@
 namespace weft::check {
 
 inline constexpr double kSnapUlps = 4;
+
+// How near an end must be to the segment a-b.
+double snap_distance(Vec2 a, Vec2 b);
+
+// A double beside p on or beyond the line a-b, to be looked for from this distance on; none if p is
+// on the line.
+std::optional<Vec2> across(Vec2 p, Vec2 a, Vec2 b, double distance);
 
 // REQUIRES: a domain that judge_domain accepts.
 std::vector<std::array<Vec2, 2>> links_across_gaps(const Domain& domain);

@@ -23,6 +23,9 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise
   std::vector<std::int32_t> regions;                    // one per triangle, or empty: all 0
   std::vector<Edge> edges;                              // each once, in either direction
+  // Mesh vertices that stand for input points: (vertex, the lowest point that it stands for), or
+  // empty: the checker finds them by their places.
+  std::vector<std::array<std::uint32_t, 2>> input_points;
 };
 
 }  // namespace weft::check

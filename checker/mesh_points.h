@@ -11,6 +11,8 @@
 #include "checker/domain.h"
 #include "checker/listed_edges.h"
 #include "checker/mesh.h"
+#include "checker/near_features.h"
+#include "checker/report.h"
 
 namespace weft::check {
 
@@ -26,6 +28,19 @@ class InputPoints {
   std::vector<Vec2> points_;                            // sorted, distinct
   std::vector<std::optional<std::uint32_t>> vertices_;  // for each
 };
+
+// kPoints: the mesh's own list of input points, if it has one, names each vertex and each point at
+// most once, and a vertex at the place of the point, or, if the point may move, within the merging
+// distance. REQUIRES: structure holds.
+void judge_named_points(const Domain& domain, const NearFeatures& near, const Mesh& mesh,
+                        Findings& findings);
+
+// Per input point the mesh vertex that stands for it: the one with its coordinates; otherwise, if
+// the point may move, the nearest within the merging distance that is at the place of a lower input
+// point; or else at that of any input point; or else the nearest of all.
+std::vector<std::optional<std::uint32_t>> images_of_points(const Domain& domain,
+                                                           const NearFeatures& near,
+                                                           const Mesh& mesh);
 
 // Per vertex of the arrangement, the mesh vertex that stands for it: for an input point the one
 // with its coordinates, for any other the nearest end of a listed edge within the tolerance.

@@ -86,7 +86,7 @@ class QualityJudge {
       smallest_cotangent = std::min(smallest_cotangent, shape.smallest_cotangent);
       const bool misses_angle = !judge_angle(t, shape);
       const bool misses_area = !judge_area(t, shape, corners);
-      facts_.unrefined += misses_angle || misses_area;
+      if (misses_angle || misses_area) note_unrefined(t, shape.centroid);
     }
     facts_.area = static_cast<double>(area.total());
     facts_.min_angle_deg = degrees_of(largest_cotangent);
@@ -95,6 +95,12 @@ class QualityJudge {
   }
 
  private:
+  void note_unrefined(std::uint32_t t, Vec2 at) {
+    if (facts_.unrefined++ > 0) return;
+    facts_.first_unrefined = t;
+    facts_.first_unrefined_at = at;
+  }
+
   bool judge_angle(std::uint32_t t, const Shape& shape) {
     if (shape.largest_cotangent <= cotangent_limit_) return true;
     if (requirements_.allow_small_input_angles) {

@@ -49,7 +49,10 @@ std::string to_text(const Report& report) {
     out += say("largest area over its bound ", *facts.worst_area_ratio, "\n");
   out += say("excused by small input angles ", facts.excused_corner + facts.excused_shell, " (",
              facts.excused_corner, " with the corner, ", facts.excused_shell,
-             " on its shells), unrefined ", facts.unrefined, "\n");
+             " on its shells), unrefined ", facts.unrefined);
+  if (facts.first_unrefined)
+    out += say(", the first at ", facts.first_unrefined_at, ": triangle ", *facts.first_unrefined);
+  out += "\n";
   for (std::size_t i = 0; i < report.violations.size(); ++i) {
     const Violation& violation = report.violations[i];
     out += say(rule_name(violation.rule), ": ", violation.sentence, "\n");

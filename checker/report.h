@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "checker/domain.h"
+
 namespace weft::check {
 
 enum class Rule : std::uint8_t {
@@ -51,7 +53,11 @@ struct Facts {
   // itself, and those whose shortest edge joins its two segments at equal distance from it.
   std::uint64_t excused_corner = 0;
   std::uint64_t excused_shell = 0;
-  std::uint64_t unrefined = 0;  // triangles that miss the angle or area bound without excuse
+  // Triangles that miss the angle or area bound without excuse, whether or not that is allowed; the
+  // first of them, and the middle of its corners.
+  std::uint64_t unrefined = 0;
+  std::optional<std::uint32_t> first_unrefined;
+  Vec2 first_unrefined_at;
 };
 
 struct Report {

@@ -17,11 +17,14 @@ Track track_of(const Domain& domain, std::uint32_t segment) {
 }
 
 std::vector<Step> steps_along_segments(const Domain& domain, const Mesh& mesh,
-                                       const ListedEdges& listed, double tolerance) {
+                                       const ListedEdges& listed,
+                                       std::span<const double> tolerances) {
   std::vector<Box> boxes;
   boxes.reserve(domain.segments.size());
-  for (const auto [a, b] : domain.segments)
-    boxes.push_back(box_of(domain.points[a], domain.points[b]).grown(2 * tolerance));
+  for (std::size_t s = 0; s < domain.segments.size(); ++s) {
+    const auto [a, b] = domain.segments[s];
+    boxes.push_back(box_of(domain.points[a], domain.points[b]).grown(2 * tolerances[s]));
+  }
   const BoxTree tree(std::move(boxes));
   std::vector<Step> steps;
   for (std::uint32_t i = 0; i < mesh.edges.size(); ++i) {
@@ -30,7 +33,7 @@ std::vector<Step> steps_along_segments(const Domain& domain, const Mesh& mesh,
     const Vec2 p = mesh.vertices[a], q = mesh.vertices[b];
     tree.visit(box_of(p, p), [&](std::uint32_t s) {
       const Track track = track_of(domain, s);
-      if (!track.carries(p, tolerance) || !track.carries(q, tolerance)) return;
+      if (!track.carries(p, tolerances[s]) || !track.carries(q, tolerances[s])) return;
       const double at_p = track.position(p), at_q = track.position(q);
       if (at_p < at_q)
         steps.push_back({s, at_p, at_q, a, b, i});

@@ -28,9 +28,10 @@ struct Step {
 // Measures along a segment from its lexicographically smaller end.
 Track track_of(const Domain& domain, std::uint32_t segment);
 
-// Sorted by key. An edge near several segments is a step of each.
+// Sorted by key. An edge near several segments is a step of each. `tolerances`: one per segment.
 std::vector<Step> steps_along_segments(const Domain& domain, const Mesh& mesh,
-                                       const ListedEdges& listed, double tolerance);
+                                       const ListedEdges& listed,
+                                       std::span<const double> tolerances);
 
 struct Walk {
   std::vector<std::size_t> path;  // steps from start to goal, last first; empty if there is none

@@ -120,6 +120,8 @@ TEST(Unrefined, AsManyAsAreAllowedAreNoViolation) {
   Report report = problem.check();
   EXPECT_TRUE(report.ok()) << to_text(report);
   EXPECT_EQ(report.facts.unrefined, 8u);
+  ASSERT_TRUE(report.facts.first_unrefined);
+  EXPECT_NE(to_text(report).find("unrefined 8, the first at ("), std::string::npos);
   problem.requirements.allowed_unrefined = 7;
   report = problem.check();
   EXPECT_EQ(violated(report), (Rules{Rule::kAngle, Rule::kArea}));
