@@ -105,7 +105,7 @@ bool CollectedMesh::accept(Chunk&& chunk) {
     must(known(e.a) && known(e.b), "edges do not refer ahead");
     mesh.edges.push_back({e.a, e.b, e.marker});
   }
-  for (const auto& pair : chunk.input_points) input_points.push_back(pair);
+  for (const auto& pair : chunk.input_points) mesh.input_points.push_back(pair);
   return true;
 }
 
@@ -158,7 +158,7 @@ std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
   if (std::fabs(summary.area - report.facts.area) > 1e-9 * report.facts.area)
     return "the summary has another area";
   if (auto wrong = miscounted(request, collected.mesh, summary); !wrong.empty()) return wrong;
-  for (const auto& [vertex, point] : collected.input_points) {
+  for (const auto& [vertex, point] : collected.mesh.input_points) {
     if (vertex >= collected.mesh.vertices.size() || point >= request.pslg.points.size())
       return "an input point is out of range";
     const check::Vec2 v = collected.mesh.vertices[vertex];

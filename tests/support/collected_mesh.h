@@ -23,8 +23,6 @@ class CollectedMesh : public ChunkSink {
   check::Mesh mesh;
   std::uint32_t chunks = 0;
   std::string broken_law;  // the first one that did not hold
-  // Pairs of mesh vertex and input point.
-  std::vector<std::array<std::uint32_t, 2>> input_points;
 
  private:
   void must(bool holds, const char* law);
