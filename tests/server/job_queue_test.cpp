@@ -125,10 +125,13 @@ TEST(JobQueue, DoesNotPassOverAJobForEver) {
   auto taken = gate.take(50);
   std::atomic<int> light_runs{0};
   Event heavy_ran;
+  Busy busy;
   JobQueue queue({.workers = 1, .capacity = 1000, .gate = &gate});
+  busy.occupy(queue);
   queue.push(make_task([&] { heavy_ran.set(); }), {.client = "heavy", .weight = 60});
   for (int i = 0; i < 500; ++i)
     queue.push(make_task([&] { ++light_runs; }), {.client = "light", .weight = 10});
+  busy.release.set();
   while (light_runs < 60) std::this_thread::yield();
   queue.notify();
   EXPECT_LT(light_runs, 200);

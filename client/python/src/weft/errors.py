@@ -157,7 +157,7 @@ def of_status(status: Any, subject: str) -> ServerError:
     delay = None
     if retry.HasField("retry_delay"):
         delay = max(0.0, retry.retry_delay.seconds + retry.retry_delay.nanos * 1e-9)
-    kind = _REASONS.get(info.reason) or _CLASSES.get(code, ServerError)
+    kind = _REASONS.get(info.reason, _CLASSES.get(code, ServerError))
     return kind(
         text, code=code, reason=info.reason, detail=status.message, violations=violations,
         retry_after=delay, job_id=info.metadata.get("job_id", ""))
