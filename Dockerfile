@@ -20,7 +20,7 @@ RUN export CCACHE_DIR=/var/cache/ccache \
 FROM ${BASE}
 LABEL org.opencontainers.image.title="weft" \
       org.opencontainers.image.description="Graded, guaranteed-quality Delaunay meshes over gRPC" \
-      org.opencontainers.image.licenses="GPL-3.0-or-later AND Apache-2.0"
+      org.opencontainers.image.licenses="Apache-2.0"
 COPY deploy/install-deps.sh /tmp/
 # Nothing here reads what is left out: documentation and translations, all fonts but the one of the
 # drawings, and libraries beside those that the programs load, such as protobuf's compiler.
@@ -35,7 +35,7 @@ RUN printf 'path-exclude=%s\n' '/usr/share/doc/*' '/usr/share/man/*' '/usr/share
       /var/lib/dpkg/*-old /var/log/* \
  && useradd --system --no-create-home --shell /usr/sbin/nologin --uid 990 weft \
  && install -d -o weft -g weft -m 700 /var/lib/weft
-COPY --from=build /src/LICENSE /src/LICENSES/ /usr/share/doc/weft/
+COPY --from=build /src/LICENSE /src/NOTICE /src/LICENSES/ /usr/share/doc/weft/
 COPY --from=build /src/build/release/weftd /src/build/release/weft /usr/local/bin/
 USER 990
 VOLUME /var/lib/weft

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The threads that compute. This is the only header that knows TBB; all else speaks of an Arena.
 //
 // One arena serves a process: however many jobs there are, no more than its threads compute at

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A piece of the finished mesh, and where it goes.
 //
 // Chunks are numbered from 0 and come in order; together they are the whole mesh. Vertices and

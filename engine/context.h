@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The one thing that travels with a job: cancellation, deadline, budgets, progress, and where it
 // computes.
 //

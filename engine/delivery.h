@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Sends the parts of a mesh in their order, and adds up what they tell.
 #pragma once
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // From the refined mesh to the chunks that leave: part by part, each on any thread.
 //
 // Vertices are numbered by owner and then in the order in which the owner made them

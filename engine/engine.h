@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The engine's face: a PSLG and a size field go in, a guaranteed-quality Delaunay mesh comes out
 // in chunks. A. N. Chernikov and N. P. Chrisochoides, "Parallel 2D Graded Guaranteed Quality
 // Delaunay Mesh Refinement", 2006.

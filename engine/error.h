@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What can go wrong in the engine, and the one table of what it is called.
 //
 // No exception leaves the engine: every public function that can fail returns a Result<T>. An

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Tells ThreadSanitizer what TBB guarantees: what a thread wrote before it gave a function to the
 // arena is seen by the thread that runs it, and what that one wrote by whoever waited for it.
 // Debian builds libtbb without ThreadSanitizer, which therefore does not see it. In other builds

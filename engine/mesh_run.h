@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // From the domain to the chunks: prelude, quadtree, the leaves' tasks, and the parts of finished
 // leaves that leave while others are refined.
 #pragma once

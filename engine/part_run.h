@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Runs graphs of tasks that make parts of the mesh, and sends the parts in their order while the
 // tasks go on. The first error ends it: tasks that have not begun are passed over.
 //

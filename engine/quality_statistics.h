@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The figures of a mesh: angles, aspect ratios, areas over their bounds. They are gathered while
 // the mesh is sent, a block of triangles at a time: two at once as far as that goes, and counted
 // where no count waits for the one before. One by one they took 13 % of the whole run.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Who calls. Every handler of weft's services asks first, before it looks at the request:
 //
 //   const auto caller = authenticator.identify(*context);

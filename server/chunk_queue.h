@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The hand-over between an engine that makes messages and a stream that sends them: first in,
 // first out, bounded by bytes and by count. The engine's thread waits where the queue is full, the
 // stream's never does.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What holds for connections before anyone knows who is at the other end: where they must be
 // encrypted, how long they may idle, how often they may ping.
 #pragma once

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The gate that every call passes: it counts those inside, can be closed to new ones, and tells
 // when the last one has left.
 //

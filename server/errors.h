@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The one table of what can go wrong with a call, and what each is called everywhere: the reason
 // in ErrorInfo, the gRPC code, whether the same request may succeed later, the exit code of the
 // command line (64 + gRPC code) and the metric label.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Tells ThreadSanitizer what gRPC guarantees of a reactor: what was done before it was given to
 // gRPC, by returning it from a handler or by starting an operation, is seen by the callbacks of
 // that; and what callbacks have done is seen by OnDone. Debian builds gRPC without ThreadSanitizer,

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Jobs wait their turn and run on threads of their own: as many at once as there are workers, as
 // many waiting as the capacity says.
 //

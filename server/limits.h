@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What a request may ask for. Whatever is over a limit is refused before any work, and the message
 // names both the value and the limit.
 #pragma once

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Addresses to listen on: HOST:PORT (an IPv6 host in brackets, port 0 for any free one) or
 // unix:PATH.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Logs: lines on stderr, one per job transition, as key=value or as JSON. Bodies are never logged.
 //
 // Whoever logs writes key=value, strings by log_value; the JSON of a line has the same keys in the

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A line of key=value, as log_value makes them, as one JSON object.
 #pragma once
 

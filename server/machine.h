@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What the machine grants this process: processors, by affinity and cgroup quota, and memory, by
 // cgroup limit. Both versions of cgroups are read, and every level from the process's own group to
 // the root, since the tightest counts. A container often shows its group as the root: levels whose

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // weftd: the process around the server. Exit codes: 0 drained, 1 failed, 2 wrong flags, 3 cannot
 // listen, 4 cannot open the store, 128 + signal where a second signal cut the draining short.
 #include <fmt/format.h>

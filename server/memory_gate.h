@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Memory is promised to jobs before they begin: a job that would need more than is left waits.
 //
 //   if (auto share = gate.take(weight)) ... the share travels with the job and goes back with it

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Meshes that GenerateMesh calls have finished, in memory: a request with the same mesh_key is
 // answered with the same messages, without the engine. The mesh that was asked for longest ago goes
 // first when there is no more room.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // One GenerateMesh call that was admitted: it waits in the job queue, runs the engine on a worker
 // thread, hands the chunks to its stream, and ends exactly once, whatever stops it. One whose mesh
 // is at hand does none of that but the last.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // weft.v1.MeshService on gRPC's callback API. A call is parsed, checked against the limits and
 // admitted on gRPC's thread; all the rest happens on workers (job_queue.h). One more thread ticks
 // the jobs a few times a second, for progress, deadlines and stalled clients.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The sending half of a server-streaming call: serialized messages go in from any thread, and go
 // out one write at a time, in order. No gRPC thread ever waits here.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What a server counts and measures, for Prometheus. Names, types and units are in metrics.cpp and
 // in every scrape; no label tells who called.
 //

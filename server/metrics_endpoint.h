@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A small web server for those who watch: GET /metrics for Prometheus, GET /healthz for whoever
 // sends calls here (200 while the server takes them, 503 while it drains).
 //

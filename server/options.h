@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The flags of weftd. Every flag is also read from the environment, as WEFT_ and its name in
 // capitals: --max-points is WEFT_MAX_POINTS. A flag wins over the environment.
 #pragma once

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What every program tells Prometheus of itself, under the usual names: process_cpu_seconds_total,
 // process_resident_memory_bytes, process_open_fds and so on. What /proc does not tell is left out.
 #pragma once

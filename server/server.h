@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The whole server but the process around it: MeshService, grpc.health.v1 and reflection on their
 // addresses.
 //

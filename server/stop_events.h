@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What may end the process, as events that one thread waits for: SIGTERM, SIGINT, the end of
 // standard input, and a note from another thread. Signals arrive by a file descriptor: nothing runs
 // in a signal handler.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Encryption of TCP addresses: TLS 1.2 and 1.3, and client certificates where a CA for them is
 // named.
 //

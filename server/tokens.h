@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Bearer tokens and whose they are, from a file of lines `NAME TOKEN`. Empty lines and lines that
 // begin with # say nothing; a name may have several tokens, so that one can replace another.
 //

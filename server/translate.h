@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Between the wire and the engine: the only place that knows both.
 //
 // What an array's length or an option's range can tell is checked here, before a job is admitted;

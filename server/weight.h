@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // How much memory a request is expected to take, for whoever admits it. An estimate, in
 // microseconds: the box of the points stands for the domain, a thousand samples for the size field,
 // regions are not looked at. What a job may take at most is its budget, and the engine holds it.

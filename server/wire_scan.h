@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Looks at a request without parsing it.
 //
 // Arrays of numbers take at most four times their wire bytes in memory, so the limit on request

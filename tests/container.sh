@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: Apache-2.0
 # Builds the image of the Dockerfile and runs it, without a Docker daemon and without pulling
 # anything: debootstrap makes the base, buildah builds on it and starts the server, and a client
 # outside meshes through it. Needs root, for both.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: Apache-2.0
 # From a fresh Debian 12 machine to all tests run: installs what is missing, builds with warnings as
 # errors, runs every test, then those labelled `sanitize` again under AddressSanitizer and
 # UndefinedBehaviorSanitizer and those labelled `threads` under ThreadSanitizer, fuzzes, builds and

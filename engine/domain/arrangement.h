@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The arrangement of a PSLG's segments, triangulated: every crossing, overlap and touching is
 // resolved, and the convex hull of all points is covered by a constrained Delaunay triangulation
 // whose constrained edges are the pieces of the segments.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Which faces of an arrangement belong to the domain, and to which region.
 //
 // A face is a maximal set of triangles connected across edges without a constraint. What is outside

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The domain: the constrained Delaunay triangulation (CDT) of a PSLG, holes carved, regions
 // flooded, the outside removed. It is what refinement starts from.
 //

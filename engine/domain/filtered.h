@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The predicates inline: a floating-point filter, and the exact predicate (predicates.h) where the
 // filter cannot tell. Their signs are those of the exact predicates, for coordinates of at most
 // 1e50 in magnitude, which `validate` ensures, and however small.

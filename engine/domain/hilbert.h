@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The order of points along a Hilbert curve: neighbours in the order are neighbours in the plane.
 #pragma once
 

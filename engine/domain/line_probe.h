@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Looks around a vertex of the triangulation for what lies towards another one.
 #pragma once
 

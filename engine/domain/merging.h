@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What became of features nearer than the tolerance (tolerance.h).
 #pragma once
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Keeps long loops stoppable: cancellation, deadline and the byte budget, polled every so many
 // steps.
 //

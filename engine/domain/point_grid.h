@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Finds the nearest of many points, if it is nearer than a radius: a hash table of square cells.
 //
 // The table is never walked, and ties go to the lowest index: its order cannot leak into a result.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Exact geometric predicates on doubles: the sign of a determinant, never its rounded value.
 //
 // They are CGAL's filtered predicates, compiled once here so that no other file pays for CGAL's

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A planar straight-line graph: what a client asks to be meshed.
 //
 // Points and segments bound the domain. Input may be dirty: segments may cross, overlap or repeat,

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Leads the segments of a PSLG through the triangulation of its points, each as a chain of
 // constrained edges. See arrangement.h for how segments meet.
 #pragma once

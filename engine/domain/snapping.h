@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Distances that decide what meets what, never on which side something lies: rounded arithmetic,
 // the same on every machine.
 #pragma once

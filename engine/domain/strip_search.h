@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Finds vertices beside a constrained edge that are nearer to it than a given height.
 #pragma once
 

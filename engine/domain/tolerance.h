@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The one tolerance of a domain. Features nearer than T = merge_tolerance() are merged by the
 // arrangement (arrangement.h); what is left is meshed within its bounds.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A constrained Delaunay triangulation in plain arrays: 24 bytes a face, and 12 for what lies on
 // its edges. The plane outside the convex hull is covered by faces with the vertex kInfinite.
 //

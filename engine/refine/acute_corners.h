@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Small input angles. Where two segments, the arms, meet at less than 60 degrees inside the domain,
 // splitting one at its midpoint may encroach upon the other for ever. So arms are split at equal
 // distances from their corner (concentric shells: Ruppert 1995), and a skinny triangle whose

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What the kernel asks of a grading function: the bounds on the areas of a ring of new triangles.
 // The kernel is a template over this, so that a constant costs nothing.
 #pragma once

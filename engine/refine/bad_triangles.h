@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The bad triangles that wait to be refined, and their order.
 //
 // Too large ones come first, by how much too large they are (four levels an octave), the last in

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Hands out the numbers of blocks. Thread-safe. A block is taken once in a few hundred insertions,
 // so a mutex is good enough.
 //

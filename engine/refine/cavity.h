@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The cavity of a point p: the triangles whose open circumdisk contains p (Bowyer-Watson), and the
 // ring of edges around it, in counter-clockwise order.
 //

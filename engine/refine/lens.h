@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What encroaches upon a piece of a segment, so that the piece is split instead:
 //   - a Steiner point of a triangle that is only skinny, in the piece's diametral lens: where the
 //     piece is seen at 180 - 2 phi degrees or more (J. R. Shewchuk, "Delaunay refinement algorithms

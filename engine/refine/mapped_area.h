@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A grading function that is not the same everywhere: evaluated for a ring of triangles at a time,
 // and only where the size map's bounds leave a doubt (size/size_map.h).
 #pragma once

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The mesh that refinement works on: 32 bytes a triangle, 16 bytes a vertex, so 40 bytes a
 // triangle.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Which vertices a refinement task may use: a compile-time parameter of the kernel.
 //
 // The rule: a task touches a triangle, to read it or to write it, only if it owns at least two of

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The bounds on a triangle's shape, and the test of a whole ring of new triangles at once.
 //
 // With edges a, b from p, e = b - a, and A2 = a x b twice the area, the smallest angle is opposite

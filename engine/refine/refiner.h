@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Delaunay refinement of a region of the mesh, as the paper's Section 2 tells it: while a triangle
 // is bad (too large or too skinny), insert its Steiner point by Bowyer-Watson; if the point would
 // encroach upon a segment, split the segment instead.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Address space for the most that a job may need: the system commits a page when it is first
 // touched, so what lies in it grows without moving.
 //

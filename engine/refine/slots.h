@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The slots of one owner: the vertices and triangles that a refinement task makes. Vertices on
 // segments have blocks of their own, for these remember their subsegment.
 //

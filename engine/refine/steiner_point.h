@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Where a bad triangle's Steiner point goes: its circumcentre, or its off-centre where that is
 // nearer to the shortest edge (A. Üngör, "Off-centers", 2004). Off-centres cost 5 % at 20 degrees
 // and pay from about 32.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The badness of a triangle that no insertion here has made: as a ring around its first vertex, of
 // its edge there and back, for rings are judged two triangles at a time (quality_bounds.h).
 #pragma once

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // An array that never moves. So a mesh grows without copying, and other threads may read it while
 // it does.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The tasks of the leaves and what waits for what: rounds of refinement, then what makes a leaf a
 // part of the mesh that is sent. Numbered by leaf, so that the first leaves are finished first.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Which leaves' tasks are in conflict, for their grown boxes overlap, and which of two in conflict
 // comes first: the one of the lower colour, of a greedy colouring in Morton order. So the order
 // depends on the tree alone.

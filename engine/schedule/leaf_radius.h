@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The prelude's criterion, after the paper's eq. 5: refine until every circumradius is below a
 // quarter of the side of the leaf where the triangle's centroid lies. Vertices are never removed,
 // so once it holds, circumdisks stay small, and a leaf's task rarely meets what it does not own.

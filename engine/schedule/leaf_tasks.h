@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Refinement by leaves of the quadtree.
 //
 // A leaf's task owns the leaf's grown box (ownership.h) and refines the bad triangles whose

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What the bound on angles costs where the domain is narrow: how many triangles, and where.
 //
 //   auto places = NarrowPlaces::find(domain, quality, likely_area, context);

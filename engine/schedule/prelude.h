@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What comes before the leaves' tasks: a coarse mesh, the quadtree from it and the order of its
 // leaves, circumradii that fit them (the paper's eq. 5), and the bad triangles to begin with.
 //

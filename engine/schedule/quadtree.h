@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The quadtree that guides refinement (the paper's Section 2.4): each leaf holds about the same
 // number of triangles of the final mesh, so the tree follows the grading.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Tasks that wait for one another, and their execution on an arena.
 //
 //   TaskGraph graph(3);

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What a run did and for how long: stages one after the other, and the tasks of those that are a
 // graph of tasks. From a run on one thread one can tell how it would go on many
 // (`weft-bench scaling`).

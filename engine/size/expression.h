@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The grading function as users write it: an expression in x and y, parsed once, compiled to a
 // batch program.
 //

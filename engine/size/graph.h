@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A size expression as a directed acyclic graph: equal subexpressions are one node, and what does
 // not depend on x and y is folded while the graph is built.
 //

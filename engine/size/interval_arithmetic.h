@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Interval counterparts of the operations in lanes.h: for operands within the given intervals, the
 // computed result lies within the returned one, bit for bit.
 //

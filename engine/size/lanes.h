@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What each operation computes, on two lanes at once: the single definition that the batch
 // evaluator, constant folding and the end points of intervals share.
 //

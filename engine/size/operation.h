@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The operations that a size expression is made of, after parsing.
 //
 // A value is a number or a truth. Inside a program a truth is a mask: all bits set or none.

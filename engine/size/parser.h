@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The grammar of size expressions (expression.h), by recursive descent into a graph.
 #pragma once
 

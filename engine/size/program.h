@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A size expression as straight-line code for a machine with one accumulator and a register file.
 //
 // Every instruction leaves its result in the accumulator; `store` says where it is kept too, for

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The grading function as a raster: values at the nodes of a grid, bilinear between them, and
 // outside the grid those of its nearest point.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A grading function: the upper bound on a triangle's area, in squared units, as a function of its
 // centroid. Its values come with bounds over boxes, which guide the refinement (size_map.h).
 //

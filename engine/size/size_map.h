@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A quadtree of boxes over the domain, with bounds of the grading function in each.
 //
 // It serves twice:

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A program as threaded code: what `Expression::evaluate` runs.
 //
 // A step is a handler and its operands; a handler computes 8 lanes and jumps to the next step's

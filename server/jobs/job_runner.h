@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The worker half of a server: takes tasks from the store while there is room for them, runs them,
 // renews their leases, and keeps the store in order: tasks whose workers were lost are queued
 // again, and what is kept too long is collected. Every server of a store does all of it.

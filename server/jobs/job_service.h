@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // weft.v1.JobService on gRPC's callback API. gRPC's threads only hand over: all that asks the store
 // runs on threads of the service's own, and what is streamed is pulled by those who read it.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What the two streams of JobService have in common: a job that its owner may see, a store that is
 // asked on the service's own threads, an end for clients that read nothing.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // All of a server that has to do with jobs that outlive it: the store, the service that takes and
 // shows jobs, and the workers that do them. A server may have the service, the workers, or both;
 // any number of servers share a PostgreSQL store.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The name of a mesh that is still to be made: requests whose meshes are the same bytes have the
 // same key.
 //

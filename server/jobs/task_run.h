@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // One task at work: the engine makes the mesh, its chunks go to the store one by one, and the store
 // settles what became of it. Whatever happens, the claim ends in one of three ways: settled
 // (finished or failed), released for another try, or lost to whoever has it now.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Names for jobs, as ULIDs: 26 characters of Crockford's base 32, the first 10 of them the time in
 // milliseconds, the others random. Those of one JobIds sort in the order in which they were given.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What outlives a server: the jobs, the work that is still to be done for them, and the meshes that
 // were made. Two kinds exist, in one file (sqlite_store.h) and for several servers
 // (postgres_store.h); one suite of tests holds both to the laws below.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What the house-keeping of every store has in common: what may be much is done in steps, each a
 // transaction of its own, so that others write between.
 #pragma once

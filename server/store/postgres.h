@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A thin layer over libpq: connections, transactions and rows that end by themselves. It knows
 // nothing of what is stored. Parameters and results travel as binary.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The PostgreSQL store for clients: jobs are accepted, looked at, cancelled and removed, meshes
 // read.
 #include "server/store/postgres_jobs.h"

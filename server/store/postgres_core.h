@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What every function of the PostgreSQL store stands on: the connections, what is done when one
 // breaks, and who is told of a change.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The functions of the PostgreSQL store: for clients in postgres_clients.cpp, for workers in
 // postgres_workers.cpp, for the house-keeping in postgres_keeping.cpp.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The house-keeping of the PostgreSQL store: leases that ran out, what is kept too long, figures.
 // What may be much is done in steps. Servers that do the same at once do not wait for each other.
 #include "server/store/keeping.h"

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Hears of the changes that other servers make to a database, and tells of them, on a thread and a
 // connection of its own. When the connection breaks it comes back by itself, and then tells of a
 // change, for there may have been some.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A JobStore in a PostgreSQL database, for any number of servers that share it. Its tables begin
 // with weft_, lie in the first schema of the search path, and are made at the first start.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The PostgreSQL store for workers: tasks are claimed, and settled or given back.
 #include "server/store/postgres_jobs.h"
 #include "server/store/sql_values.h"

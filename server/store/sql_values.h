@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // How the stores write in SQL what the rest of the server has in types of its own. Both give a job
 // as the same fifteen columns, in the order in which `read_job` reads them.
 #pragma once

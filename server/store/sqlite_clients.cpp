@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The SQLite store for clients: jobs are accepted, looked at, cancelled and removed, meshes read.
 #include "server/store/sql_values.h"
 #include "server/store/sqlite_jobs.h"

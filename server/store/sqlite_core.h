@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What every function of the SQLite store stands on: the folder, the connections, who may use
 // which when, the clock, and whom to tell of a change.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The functions of the SQLite store: for clients in sqlite_clients.cpp, for workers in
 // sqlite_workers.cpp, for the house-keeping in sqlite_keeping.cpp.
 #pragma once

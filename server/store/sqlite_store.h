@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A JobStore in one file, for one server: weft.db in a folder of its own. It needs nothing but the
 // disk, and is the store of whoever names no other.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The SQLite store for workers: tasks are claimed, and settled or given back.
 #include "server/store/sql_values.h"
 #include "server/store/sqlite_jobs.h"

@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: Apache-2.0
 """Runs what the documents tell their readers to run, and fails, with file and line, where a command
 fails or prints something else than the page shows.
 

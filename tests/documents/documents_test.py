@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: Apache-2.0
 """A page that is wrong makes the test of the pages fail, at the line that is wrong."""
 
 import os

@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: Apache-2.0
 """A shell or a Python that runs one block after the other, as somebody at a terminal would."""
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: Apache-2.0
 """A page of Markdown as what can be run of it. documents.py tells the conventions."""
 
 from __future__ import annotations

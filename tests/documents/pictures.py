@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: Apache-2.0
 """Pictures of pages: shrunk from what the commands draw, and held against it."""
 
 from __future__ import annotations

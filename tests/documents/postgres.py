@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: Apache-2.0
 """A PostgreSQL server of one's own, on a socket in a folder. It ends with whoever started it."""
 
 from __future__ import annotations

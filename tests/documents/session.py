@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: Apache-2.0
 """A page while it is run: its folder, its shell and its Python, its servers and its database."""
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Judges a Domain by the laws of engine/domain/domain.h, in rational arithmetic of its own.
 #pragma once
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Random dirty PSLGs: on a small integer grid crossings, overlaps, touchings and repeats abound.
 #include <gtest/gtest.h>
 

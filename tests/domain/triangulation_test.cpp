@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The laws of engine/domain/triangulation.h, by exact predicates.
 #include "engine/domain/triangulation.h"
 

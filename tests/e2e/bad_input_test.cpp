@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Bad input: each gives its error, which names the offender; nothing is written, and the server
 // goes on.
 #include <gtest/gtest.h>

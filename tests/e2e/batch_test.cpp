@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A pipeline's meshes: deploy/ci/mesh.sh with the real weft, and a server that it starts or is told
 // of.
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Many jobs for one or more servers that may be killed meanwhile: submitted, counted, and each mesh
 // held against that of a server that was left in peace.
 //

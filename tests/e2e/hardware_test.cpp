@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The mesh does not depend on what the processor can do: libm and OpenSSL choose their code by it,
 // and are told here to believe in an old one.
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Bytes that no client of ours sends, on every method there is: each call is answered, and the
 // server goes on.
 #include <google/protobuf/descriptor.h>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Servers that are killed, frozen and replaced at any moment while they make meshes: every job that
 // was accepted succeeds, once, with the mesh that an undisturbed server makes.
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Jobs through the real weft and the real weftd: submitted, left alone, found again, fetched.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A crowd at one server: each client gets the right mesh, or its own cancellation or deadline, or
 // is told that the server is full and when to come again; and nothing of them stays behind.
 #include <grpcpp/client_context.h>

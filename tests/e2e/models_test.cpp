@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The whole path on the models: weft mesh, through weftd, to a file; then weft check on that file.
 #include <gtest/gtest.h>
 

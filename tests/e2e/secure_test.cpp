@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // weft and weftd with certificates and tokens, as their users give them.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What a server holds on to: nothing of the jobs that are over, little of those who read slowly.
 #include <grpcpp/client_context.h>
 #include <gtest/gtest.h>

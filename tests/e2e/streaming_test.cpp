@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The stream of a real weftd as a client of weft.v1 sees it: chunks that come again byte for byte,
 // progress, and several jobs on one server.
 #include <grpcpp/client_context.h>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A connection that tears after each single chunk, and a client that comes back for the next one:
 // what it puts together is byte for byte what an undisturbed client gets.
 #include <grpc/grpc.h>

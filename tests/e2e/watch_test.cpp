@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What a real weftd shows to those who watch it, and whether that is what the dashboard and the
 // alerts in deploy/ look at.
 #include <gtest/gtest.h>

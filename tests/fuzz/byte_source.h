@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The bytes of a fuzzer's input, read as the choices that make a case. Once they are used up every
 // choice is 0, so each input, however short, is a case, and a case is a function of its bytes. (Not
 // clang's FuzzedDataProvider, which the sanitizers' g++ does not have.)

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The engine against the checker, on PSLGs of mesh_case.h. Asserts:
 //   checker-RULE    the independent checker finds nothing against the mesh, nor does its summary;
 //                   plain-RULE of a case without jitter, where no tolerance is in question

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Size expressions: any bytes are parsed; the first nine choose a box and points in it. Asserts of
 // what parses:
 //   batch         a value is the same bits in a batch, at any place of it, and alone

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The client's readers: the first byte chooses a format, the rest is the file, or up to three files
 // that are read together. Asserts, beyond that a reader neither crashes nor takes memory out of
 // proportion:

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What a fuzz target does with a law that does not hold.
 //
 // The process ends, as libFuzzer and ctest want it, after the law and the evidence were printed.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The manifests of `weft batch`: any bytes are an error with a sentence, or at least one mesh, each
 // with a name of its own and an input.
 #include <cstdint>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Bytes as a request to the engine: a small PSLG of the kinds that break meshers.
 //
 // Points stand on a grid of 2 to 16 lines, near earlier points, near segments between them, or

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Bytes as a protobuf message of a given type: fields of all kinds, nested ones, unknown ones,
 // packed arrays and strings that are no UTF-8, all as the bytes choose.
 #pragma once

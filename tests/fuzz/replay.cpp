@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Stands in for libFuzzer wherever there is none: runs a target on every file of the folders that
 // are named. So ctest holds every build to what the fuzzers have found.
 //

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: Apache-2.0
 # Fuzzes each target for a while, two at a time, from its corpus; fails if one finds something, and
 # says where the input is. What is new of a corpus stays in build/fuzz/corpus for the next run.
 #

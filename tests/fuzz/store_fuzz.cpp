@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Rows that no store of ours has written: values of the wrong type, size and range in every column
 // of weft.db, as a damaged or hostile database holds them. The bytes choose the tables and values;
 // then every function of the store is called, and what it gives goes to the wire. Asserts, beyond

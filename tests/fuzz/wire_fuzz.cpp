@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The bytes of a request, on their way through the server: counted, parsed, checked, weighed, named
 // and meshed. The first byte chooses whether the rest is a SubmitJobRequest as it stands, or the
 // choices that make one, whose bytes may then be damaged. Asserts:

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A mesh that is not what was asked for ends with an error, unless the caller allows it.
 #include "engine/bounds_error.h"
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Where segments are split (engine/refine/lens.h), and what small input angles cost
 // (engine/refine/acute_corners.h). Every mesh is judged by the independent checker. The bounds on
 // the numbers of triangles leave room for the last bit of the C library's sines, and for little

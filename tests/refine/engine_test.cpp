@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The engine's promises other than the mesh's quality: errors, budgets, stopping, determinism.
 #include "engine/engine.h"
 

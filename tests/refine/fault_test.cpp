@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Memory that runs out, at any moment and on any thread, ends the job with a typed error and leaves
 // the arena fit for the next.
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Where the mesh lies while it is refined: blocks by runs of a thread, and pages that outlive jobs.
 #include <gtest/gtest.h>
 #include <sys/mman.h>

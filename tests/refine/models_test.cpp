@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The models of tests/models with their grading functions, each judged by the independent checker.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Features that are almost nothing apart, as rounding leaves them: either they merge, or they are
 // meshed within the bounds.
 #include <gtest/gtest.h>

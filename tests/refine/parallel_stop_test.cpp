@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Every way to end a job early, on several threads.
 #include <gtest/gtest.h>
 #include <malloc.h>

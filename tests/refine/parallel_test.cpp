@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // One request, one mesh, bit for bit: at every number of threads, and without an arena. Leaves are
 // small, so that borders dominate. Each mesh is judged once; what is the same needs no second look.
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What a job tells of its progress, sampled whenever a chunk leaves.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Small domains that nobody would draw, each from a seed.
 //
 //   Random random(seed);

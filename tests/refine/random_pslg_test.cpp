@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Thousands of small domains that nobody would draw, each judged by the independent checker.
 // Every domain comes from a seed that its failure names.
 #include <gtest/gtest.h>

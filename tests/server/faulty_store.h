@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A store that fails when the test says so, and is a real one otherwise.
 #pragma once
 

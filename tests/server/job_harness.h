@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A real server with a real store in a folder, its log and metrics, and the calls of JobService.
 #pragma once
 

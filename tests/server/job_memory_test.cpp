@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Jobs when there is no memory for them outside the engine: it costs an attempt at most, never the
 // server, and what was taken is given back. The same within the engine, but where it is the job's
 // own budget that runs out.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // JobService over a real socket and a real store, with engines that do what the test says.
 #include <google/protobuf/util/message_differencer.h>
 

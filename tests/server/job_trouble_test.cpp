@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Jobs when something is wrong: a store that fails, readers that do not read, servers that stop.
 #include <atomic>
 #include <thread>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What a server shows of its jobs beside their own calls: in lists, in its log, in its metrics, and
 // of its limits by GetServerInfo.
 #include <sstream>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Records of a damaged store, on their way to the wire.
 #include "server/jobs/job_wire.h"
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What is shown over HTTP, and what strangers cannot do to it.
 #include "server/metrics_endpoint.h"
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // grpc.health.v1 and reflection, with requests and responses spelled in wire bytes.
 #include <thread>
 

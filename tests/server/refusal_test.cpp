@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Requests that are refused before any work: over a limit, ill-shaped, or no request at all.
 #include <cmath>
 #include <functional>

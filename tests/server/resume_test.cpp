@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Streams that begin at a later chunk, with a scripted engine; with the real one:
 // tests/e2e/streaming_test.cpp.
 #include <numeric>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What a job gets of the server's threads, and of the stream while it works.
 #include <tbb/task_arena.h>
 

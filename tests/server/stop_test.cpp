@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Everything that ends a job before its time.
 #include <grpcpp/create_channel_posix.h>
 #include <netinet/in.h>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Towards the wire; what comes from the wire is tested over a socket, in mesh_service_test.cpp.
 #include "server/translate.h"
 

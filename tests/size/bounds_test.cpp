@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Bounds over boxes: never narrower than the values, and as tight as promised.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Values: the same in every batch and on every machine, and what they should be.
 #include <gtest/gtest.h>
 

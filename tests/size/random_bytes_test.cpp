@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The parser against bytes that nobody meant: it answers, with a value or with an error.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A kind of store as the tests of the laws see it: something that opens, opens again, and ages.
 #pragma once
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The laws of a store whose server is killed in the middle of whatever it does.
 #include <signal.h>
 #include <sys/prctl.h>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The laws of a store with many threads at it.
 #include <algorithm>
 #include <atomic>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Stands between a store and its database, and cuts a connection at the worst moment: when a
 // commit has been done, and its answer is on the way.
 #pragma once

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The laws of a store: what is kept, for how long, and what it comes to.
 #include "tests/store/store_test.h"
 

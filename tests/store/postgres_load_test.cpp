@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Several servers at work on one database that is restarted and killed under them.
 #include <atomic>
 #include <functional>

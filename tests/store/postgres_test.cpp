@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What only the store in a database does: several servers on it, and connections that break.
 #include "server/store/postgres_store.h"
 

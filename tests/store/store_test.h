@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What the tests of the laws share: each runs on a fresh store of every kind.
 #pragma once
 

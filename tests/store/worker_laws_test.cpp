@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The laws of a store, as those who work for it see them.
 #include <atomic>
 #include <map>

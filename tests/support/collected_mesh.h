@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A mesh as its chunks bring it, in the checker's terms, and the checker's verdict on it.
 //
 //   CollectedMesh mesh;

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Floor plans as drawing programs export them, each from a seed: a house turned by some angle,
 // divided by partitions that end on walls, with doors, and columns in some rooms.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The plainest of web clients, which can misbehave, and a reader of what it gets.
 #pragma once
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Reads the models of the tests: Triangle's .poly with its points in the same file.
 //
 //   Pslg coast = read_poly(model("us-east-coast.poly"));

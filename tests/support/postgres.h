@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A real PostgreSQL server, started by a test in a fresh folder, and reached through a Unix socket
 // there. It ends with the test program, in whatever way that ends, and its folder goes with it.
 //
