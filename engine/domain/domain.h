@@ -5,11 +5,10 @@
 //   Result<Domain> domain = triangulate(pslg, context);
 //
 // Crossings and near misses. Predicates are exact on doubles; the crossing of two input segments
-// is computed exactly and rounded once, and both are led through the rounded point. A segment is
-// also led through every vertex within 4 ulps (of its largest coordinate) that it passes, so a
-// T-junction whose end was rounded still is a junction, and several segments that nearly meet in
-// one point do meet in one. So "lies on" below means: within a few ulps (4, rarely up to 15 where
-// dozens of segments nearly meet in one point).
+// is computed exactly and rounded once, and both are led through the rounded point. Features nearer
+// than one tolerance are merged (tolerance.h, arrangement.h): so a T-junction whose end was rounded
+// still is a junction, and several segments that nearly meet in one point do meet in one. "Lies on"
+// below means: within that tolerance, or a few times it where dozens of segments nearly meet.
 //
 // Laws that a Domain obeys (checked by tests):
 //   - every triangle is counter-clockwise and refers to three distinct vertices;
