@@ -23,7 +23,8 @@ void give_back(const Range& range) {
   if (range.data) munmap(range.data, range.bytes);
 }
 
-// Ranges of one kind of pages that nobody uses, the one left last in front. Outlives whatever is static.
+// Ranges of one kind of pages that nobody uses, the one left last in front. Outlives whatever is
+// static.
 class KeptRanges {
  public:
   // The smallest that has room; of those, the one left last.

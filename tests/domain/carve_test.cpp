@@ -252,8 +252,8 @@ TEST(HoleSeed, InAFaceThatVanishesIsRefused) {
   pslg.snap = 0.01;
   pslg.holes = {{0.5, 0.5}};
   expect_error(pslg, ErrorCode::kSeedOnSegment, "domain.holes[0]",
-                 "the seed (0.5, 0.5) is nearer than 0.01 to a segment or point, so its face may "
-                 "have changed or vanished when what is so near was merged");
+               "the seed (0.5, 0.5) is nearer than 0.01 to a segment or point, so its face may "
+               "have changed or vanished when what is so near was merged");
 }
 
 TEST(RegionSeed, FloodsItsFaceOnly) {
