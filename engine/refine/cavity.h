@@ -347,7 +347,7 @@ class Cavity {
       const Point b = vertices_[s.b];
       const double before = side(a, b, from);
       const double part = before / (before - side(a, b, p));
-      const bool between = side(from, p, a) < 0 != side(from, p, b) < 0;
+      const bool between = (side(from, p, a) < 0) != (side(from, p, b) < 0);
       if (!(between && part > 0 && part < nearest)) continue;
       nearest = part;
       encroached_.assign(1, s);
