@@ -159,7 +159,8 @@ StoreResult<StoreFigures> SqliteJobs::figures() {
         figures.queued = to_unsigned(rows.integer(0));
         figures.queued_weight = to_unsigned(rows.integer(1));
         if (figures.queued != 0) {
-          const std::int64_t waited = to_micros(core_->now()) - rows.integer(2);
+          const std::int64_t waited =
+              to_micros(core_->now()) - to_micros(from_micros(rows.integer(2)));
           figures.oldest_queued_seconds =
               1e-6 * static_cast<double>(std::max<std::int64_t>(waited, 0));
         }
