@@ -225,7 +225,9 @@ TEST(Merging, CountsNoFaceForOverlapsAndJunctions) {
 
 TEST(Merging, JoinsRoomsThatAreDrawnWithARoundedGap) {
   for (const Fill fill : {Fill::kSeeds, Fill::kEvenOdd}) {
-    Pslg pslg{.fill = fill, .snap = 1e-3};
+    Pslg pslg;
+    pslg.fill = fill;
+    pslg.snap = 1e-3;
     add_box(pslg, {0, 0}, {1, 1});
     add_box(pslg, {1.0004, -0.0003}, {2, 1.0002});
     const Domain domain = triangulated(pslg);
