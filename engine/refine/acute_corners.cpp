@@ -194,7 +194,7 @@ double AcuteCorners::dyadic_part(const Mesh& mesh, std::uint32_t subsegment, Poi
   const Point b = mesh.vertices[s.b];
   const bool nearer_b = length(from - b) + length(to - b) < length(from - a) + length(to - a);
   const Point corner = acute(s.a) && (!acute(s.b) || !nearer_b) ? a : b;
-  const auto [low, high] = std::minmax(length(from - corner), length(to - corner));
+  const auto [low, high] = std::minmax({length(from - corner), length(to - corner)});
   const double part = part_of(dyadic_between(low, high), corner, from, to);
   return in_middle(part) ? part : 0.5;
 }
