@@ -10,7 +10,11 @@ namespace weft::server {
 namespace {
 
 TEST(JobWire, WritesWhatClientsCanReadWhateverTheRecordHolds) {
-  JobRecord record{.id = "id\xff", .request_id = "\xc3\x28", .worker = "w\x80", .progress = "\x0f"};
+  JobRecord record;
+  record.id = "id\xff";
+  record.request_id = "\xc3\x28";
+  record.worker = "w\x80";
+  record.progress = "\x0f";
   record.error = record.progress;
   record.brief = "\xb2\x01\x02\xff\xff";  // engine_version, no UTF-8
   const v1::Job job = to_wire(record);
