@@ -29,7 +29,7 @@ _LABELS = {"angle": "smallest angle, degrees", "area": "area", "region": "region
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Mesh:
-    """A conforming, graded Delaunay triangulation; verified against its digest.
+    """A graded, constrained Delaunay triangulation; verified against its digest.
 
         mesh = client.mesh("coast.geojson", size=1e-3)
         mesh.points[mesh.triangles].mean(axis=1)     # the centroids, (m, 2)
