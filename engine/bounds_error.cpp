@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/bounds_error.h"
 
-#include <charconv>
 #include <cstdint>
 #include <string>
 
+#include "engine/text.h"
+
 namespace weft {
-namespace {
-
-std::string text(double value) {
-  char buffer[32];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value);
-  return {buffer, end.ptr};
-}
-
-}  // namespace
 
 std::optional<Error> bounds_error(const Summary& summary, double min_angle_deg) {
   const Unrefined& unrefined = summary.unrefined;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/engine.h"
 
-#include <charconv>
 #include <cmath>
 #include <exception>
 #include <memory>
@@ -16,15 +15,10 @@
 #include "engine/schedule/narrow_places.h"
 #include "engine/size/expression.h"
 #include "engine/size/size_map.h"
+#include "engine/text.h"
 
 namespace weft {
 namespace {
-
-std::string text(double value) {
-  char buffer[32];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value);
-  return {buffer, end.ptr};
-}
 
 // Wall time since the last call.
 class StageClock {

@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
+
+#include "engine/text.h"
 
 namespace weft {
 namespace {
@@ -22,12 +23,6 @@ void add(Interval& to, double value) {
 void add(Interval& to, const Interval& other) {
   to.lo = std::min(to.lo, other.lo);
   to.hi = std::max(to.hi, other.hi);
-}
-
-std::string text(double value) {
-  char buffer[32];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value);
-  return {buffer, end.ptr};
 }
 
 }  // namespace
