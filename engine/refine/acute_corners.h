@@ -6,7 +6,7 @@
 // 2003): splitting it could only make edges shorter, because its angle comes from the input.
 //
 // Where a piece of an arm is split:
-//   - at the distance of the vertex that faces it, if that vertex is on another arm of the corner
+//   - at the distance of the vertex that faces it, if that vertex is on another arm of the corner,
 //     the distance in the middle half of the piece, and the vertex nearer to the piece than a
 //     tenth of its length. So an arm that ends at any distance, or that another corner has split,
 //     is matched by one vertex. Without it the other arm is split down to the width between them,
