@@ -35,6 +35,7 @@ class Bender {
     result_.domain.points = domain.points;
     result_.domain.snap = domain.snap;
     result_.link_slack = sliver_slack();
+    result_.rounding = near.rounding;
     for (std::size_t i = 0; i < images_.size(); ++i)
       if (images_[i]) result_.domain.points[i] = mesh.vertices[*images_[i]];
     find_stops(listed);
@@ -167,12 +168,19 @@ class Bender {
 
 }  // namespace
 
+double BentDomain::slack_of(std::span<const std::uint32_t> covers) const {
+  double most = covers.empty() ? link_slack : 0;
+  for (const std::uint32_t piece : covers) most = std::max(most, slack[piece]);
+  return std::max(most, rounding);
+}
+
 BentDomain unbent(const Domain& domain) {
   BentDomain result;
   result.domain = domain;
   result.is_gap.resize(domain.segments.size());
   result.is_tear.resize(domain.segments.size());
   result.slack.resize(domain.segments.size());
+  result.rounding = on_segment_tolerance(domain);
   result.links = links_across_gaps(domain);
   result.origin.resize(domain.segments.size());
   std::iota(result.origin.begin(), result.origin.end(), 0u);

@@ -15,6 +15,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -36,9 +37,14 @@ struct BentDomain {
   std::vector<double> slack;
   std::vector<std::array<Vec2, 2>> links;  // bound faces, but are not in the mesh
   double link_slack = 0;                   // the slack of the links
+  double rounding = 0;                     // of every place: on_segment_tolerance
   // Listed edges beside bent segments, each with the marker of such a segment; sorted, distinct.
   // With several chains beside each other, which edge belongs to which segment is open.
   std::vector<std::pair<std::uint32_t, std::int32_t>> beside;
+
+  // By how much the place of an edge of the arrangement is uncertain, by the pieces that it is part
+  // of; none on a link.
+  double slack_of(std::span<const std::uint32_t> covers) const;
 };
 
 // The domain itself, with links across gaps. REQUIRES: a domain that judge_domain accepts.

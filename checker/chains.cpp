@@ -36,7 +36,9 @@ class ChainJudge {
     const auto need = [&](std::uint32_t e) {
       const Need most =
           std::max(needs[arrangement_.face(2 * e)], needs[arrangement_.face(2 * e + 1)]);
-      return bent_.is_tear[segment] ? std::min(most, Need::kEitherWay) : most;
+      return bent_.is_tear[segment] || is_short(segment, e, needs)
+                 ? std::min(most, Need::kEitherWay)
+                 : most;
     };
     for (std::size_t first = 0, end = 0; first < along.size(); first = end) {
       end = first + 1;
@@ -44,6 +46,7 @@ class ChainJudge {
       if (wanted == Need::kNothing) continue;
       while (end < along.size() && need(along[end]) == wanted) ++end;
       is_optional_ = wanted == Need::kEitherWay;
+      if (is_optional_) allow(segment, track, along.subspan(first, end - first));
       judge_run(segment, track, along.subspan(first, end - first));
     }
   }
@@ -88,6 +91,23 @@ class ChainJudge {
   // In the order of what is known: near a broken chain, an edge may belong to it.
   enum class State : std::uint8_t { kOnNoSegment, kUnclear, kOnSegment };
 
+  // Whether merging, or rounding at a small angle, may have made one vertex of the edge's ends:
+  // beside it is a sliver, then.
+  bool is_short(std::uint32_t segment, std::uint32_t e, const std::vector<Need>& needs) const {
+    if (needs[arrangement_.face(2 * e)] != Need::kEitherWay &&
+        needs[arrangement_.face(2 * e + 1)] != Need::kEitherWay)
+      return false;
+    const Arrangement::Edge& edge = arrangement_.edges()[e];
+    const Vec2 p = arrangement_.vertices().at(edge.u), q = arrangement_.vertices().at(edge.v);
+    return std::hypot(q.x - p.x, q.y - p.y) <=
+           std::max(reach(segment, edge.u), reach(segment, edge.v));
+  }
+
+  // How far from w the chain of the segment may meet others that pass there.
+  double reach(std::uint32_t segment, std::uint32_t w) const {
+    return std::max(tolerance_ / std::max(smallest_sine(segment, w), 1e-15), bent_.slack[segment]);
+  }
+
   // Edges of the segment, one after the other, that must be in the mesh. The chain passes through
   // the input points among their ends; its own ends may be crossings. Where it crosses others in
   // between it has a vertex with them, or the mesh would overlap.
@@ -102,22 +122,26 @@ class ChainJudge {
       std::optional<std::uint32_t> stop = vertex_at_[w];
       if (!stop && is_input) continue;  // for judge_points to miss
       if (!stop) stop = meeting_near(segment, track, w);
-      if (!stop) return miss(segment, w);
+      if (!stop) {
+        miss(segment, w);
+        if (!is_optional_) return;
+        previous.reset();
+        continue;
+      }
       if (previous && *previous != *stop) judge_chain(segment, track, *previous, *stop);
       previous = stop;
     }
   }
 
   // Segments that cross at a small angle run within the tolerance of each other around the
-  // crossing, and their chains may meet anywhere there: the end of a step of the segment nearest to
-  // it.
+  // crossing, and their chains may meet anywhere there; so may those that merging has moved. The
+  // end of a step of the segment nearest to it.
   std::optional<std::uint32_t> meeting_near(std::uint32_t segment, const Track& track,
                                             std::uint32_t w) const {
     const double at = track.position(arrangement_.vertices().at(w));
-    const double reach = tolerance_ / std::max(smallest_sine(segment, w), 1e-15);
+    double least = reach(segment, w);
     std::optional<std::uint32_t> nearest;
-    double least = reach;
-    for (const Step& step : steps_between(segment, at - reach, at + reach)) {
+    for (const Step& step : steps_between(segment, 0, at + least)) {
       for (const auto& [vertex, position] :
            {std::pair{step.from, step.from_position}, std::pair{step.to, step.to_position}}) {
         if (std::fabs(position - at) > least) continue;
@@ -143,6 +167,19 @@ class ChainJudge {
                                         (std::hypot(u.x, u.y) * std::hypot(v.x, v.y)));
     }
     return smallest;
+  }
+
+  // Of edges that need not be in the mesh, any may be.
+  void allow(std::uint32_t segment, const Track& track, std::span<const std::uint32_t> run) {
+    const auto position = [&](std::uint32_t w) {
+      return track.position(arrangement_.vertices().at(w));
+    };
+    const double start = position(arrangement_.edges()[run.front()].u);
+    const double goal = position(arrangement_.edges()[run.back()].v);
+    for (const Step& step : steps_between(segment, start, goal)) {
+      state_[step.edge] = std::max(state_[step.edge], State::kUnclear);
+      lay(step);
+    }
   }
 
   void miss(std::uint32_t segment, std::uint32_t w) {
@@ -205,8 +242,13 @@ class ChainJudge {
     if (state_[step.edge] != State::kOnSegment)
       expected_marker_[step.edge] = marker_of(edge_at(step, track));
     state_[step.edge] = State::kOnSegment;
-    segments_.emplace_back(step.from, bent_.origin[step.segment]);
-    segments_.emplace_back(step.to, bent_.origin[step.segment]);
+    lay(step);
+  }
+
+  // The ends of the step are on its segment.
+  void lay(const Step& step) {
+    segments_.emplace_back(step.from, step.segment);
+    segments_.emplace_back(step.to, step.segment);
   }
 
   const BentDomain& bent_;

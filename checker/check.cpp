@@ -57,12 +57,14 @@ std::optional<FilledDomain> arrange(const BentDomain& bent, Findings& findings) 
   const Contacts contacts = find_contacts(points, segments, kMaxContacts);
   if (!complete(contacts, findings)) return std::nullopt;
   Arrangement arrangement(points, segments, contacts, bent.domain.segments.size());
-  std::vector<FaceRole> roles = fill_faces(bent.domain, arrangement, findings);
+  std::vector<FaceRole> roles = fill_faces(bent, arrangement, findings);
   if (findings.total(Rule::kDomain) > 0) return std::nullopt;
   JoinedFaces joined = join_faces(bent, arrangement, roles);
   std::vector<Need> needs(roles.size());
   for (std::uint32_t f = 0; f < roles.size(); ++f)
-    needs[f] = joined.is_sliver(f) ? Need::kEitherWay : roles[f].kept ? Need::kAll : Need::kNothing;
+    needs[f] = joined.is_sliver(f) || roles[f].open ? Need::kEitherWay
+               : roles[f].kept                      ? Need::kAll
+                                                    : Need::kNothing;
   return FilledDomain{std::move(arrangement), std::move(roles), std::move(joined),
                       std::move(needs)};
 }

@@ -108,7 +108,7 @@ std::vector<std::uint32_t> judge_coverage(const BentDomain& bent, const Arrangem
         return say("triangle ", patch.roundest, " lies across ",
                    name_of_edge(bent, arrangement, *place.edge));
       });
-    else if (!roles[place.face].kept)
+    else if (!roles[place.face].kept && !roles[place.face].open)
       findings.add(Rule::kCoverage, [&] {
         return say("triangle ", patch.roundest, " around ", centre, " lies ",
                    place.face == 0 ? "outside the domain" : "in a hole",
@@ -120,7 +120,8 @@ std::vector<std::uint32_t> judge_coverage(const BentDomain& bent, const Arrangem
   for (std::uint32_t g = 0; g < 2 * arrangement.edges().size(); ++g) {
     // Each face is named by the first half-edge that it has.
     const std::uint32_t f = joined.of[arrangement.face(g)];
-    if (!roles[f].kept || joined.is_sliver(f) || judged[f]) continue;
+    // Of an open face, parts that links divide are open one by one.
+    if (!roles[f].kept || roles[f].open || joined.is_sliver(f) || judged[f]) continue;
     judged[f] = 1;
     const JoinedFaces::Face& face = joined.faces[f];
     const double area = static_cast<double>(covered[f].total());
@@ -137,7 +138,8 @@ std::vector<std::uint32_t> judge_coverage(const BentDomain& bent, const Arrangem
     const std::uint32_t face = face_of_patch[patch];
     patches.of_triangle[t] = face;
     const std::int32_t region = mesh.regions.empty() ? 0 : mesh.regions[t];
-    if (!roles[face].kept || region == roles[face].region || is_sliver[patch]) continue;
+    if (!(roles[face].kept || roles[face].open) || region == roles[face].region || is_sliver[patch])
+      continue;
     findings.add(Rule::kRegions, [&] {
       return say("triangle ", t, " at ", centroid(mesh, static_cast<std::uint32_t>(t)),
                  " has the region id ", region, ", it lies in region ", roles[face].region);

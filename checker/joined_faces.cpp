@@ -9,6 +9,7 @@ namespace weft::check {
 
 JoinedFaces join_faces(const BentDomain& bent, const Arrangement& arrangement,
                        const std::vector<FaceRole>& roles) {
+  const std::vector<char> is_sliver = find_slivers(bent, arrangement);
   JoinedFaces result;
   result.of.resize(roles.size());
   std::iota(result.of.begin(), result.of.end(), 0u);
@@ -17,9 +18,10 @@ JoinedFaces join_faces(const BentDomain& bent, const Arrangement& arrangement,
     return f;
   };
   for (std::uint32_t e = 0; e < arrangement.edges().size(); ++e) {
-    const std::uint32_t f = find(arrangement.face(2 * e)), g = find(arrangement.face(2 * e + 1));
-    if (arrangement.covers(e).empty() && roles[f] == roles[g])
-      result.of[std::max(f, g)] = std::min(f, g);
+    const std::uint32_t left = arrangement.face(2 * e), right = arrangement.face(2 * e + 1);
+    if (!arrangement.covers(e).empty() || is_sliver[left] != is_sliver[right]) continue;
+    const std::uint32_t f = find(left), g = find(right);
+    if (roles[f] == roles[g]) result.of[std::max(f, g)] = std::min(f, g);
   }
   for (std::uint32_t f = 0; f < roles.size(); ++f) result.of[f] = find(f);
 
@@ -34,9 +36,7 @@ JoinedFaces join_faces(const BentDomain& bent, const Arrangement& arrangement,
     const Vec2 p = arrangement.vertices().at(edge.u), q = arrangement.vertices().at(edge.v);
     result.faces[face].perimeter += std::hypot(q.x - p.x, q.y - p.y);
     double& slack = result.faces[face].slack;
-    const auto covers = arrangement.covers(h / 2);
-    if (covers.empty()) slack = std::max(slack, bent.link_slack);
-    for (const std::uint32_t piece : covers) slack = std::max(slack, bent.slack[piece]);
+    slack = std::max(slack, bent.slack_of(arrangement.covers(h / 2)));
   }
   return result;
 }

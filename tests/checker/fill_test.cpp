@@ -21,9 +21,17 @@ class Filled {
         .line({low, high}, {low, low});
   }
   FaceRole at(Vec2 p) {
-    const Arrangement arrangement(domain.points, domain.segments,
-                                  find_contacts(domain.points, domain.segments, 1000));
-    return fill_faces(domain, arrangement, findings)[arrangement.locate(p).face];
+    const BentDomain bent = unbent(domain);
+    std::vector<Vec2> points = domain.points;
+    std::vector<SegmentEnds> segments = domain.segments;
+    for (const std::array<Vec2, 2>& link : bent.links) {
+      const auto first = static_cast<std::uint32_t>(points.size());
+      points.insert(points.end(), link.begin(), link.end());
+      segments.push_back({first, first + 1});
+    }
+    const Arrangement arrangement(points, segments, find_contacts(points, segments, 1000),
+                                  domain.segments.size());
+    return fill_faces(bent, arrangement, findings)[arrangement.locate(p).face];
   }
 
   Domain domain;
@@ -81,6 +89,32 @@ TEST(Fill, EvenOddOfTwoBoxesThatShareASideKeepsBoth) {
   both.domain.fill = Fill::kEvenOdd;
   EXPECT_TRUE(both.at({2, 2}).kept);
   EXPECT_TRUE(both.at({6, 2}).kept);
+}
+
+TEST(Fill, EvenOddLeadsNoPathThroughAGapThatRoundingHasOpened) {
+  Filled gap;
+  gap.line({0, 0}, {4, 0}).line({4, 0}, {4, 4}).line({4, 4}, {1, 4}).line({1, 4}, {1, 1e-15});
+  gap.domain.fill = Fill::kEvenOdd;
+  EXPECT_TRUE(gap.at({2, 2}).kept);
+  EXPECT_FALSE(gap.at({2, 2}).open);
+}
+
+// Two walls so near that they become one are no obstacle, but the one of the two has no end to
+// close it.
+TEST(Fill, EvenOddIsOpenWhereASliverDecides) {
+  Filled doubled;
+  doubled.box(0, 4).line({0, 1e-15}, {4, 1e-15});
+  doubled.domain.fill = Fill::kEvenOdd;
+  EXPECT_TRUE(doubled.at({2, 2}).open);
+  Filled closed;
+  closed.box(0, 4);
+  closed.line({4, 1e-15}, {8, 1e-15}).line({8, 1e-15}, {8, 4}).line({8, 4}, {4, 4});
+  closed.line({4, 4}, {4 - 1e-15, 1e-15}).line({4 - 1e-15, 1e-15}, {4, 1e-15});
+  closed.domain.fill = Fill::kEvenOdd;
+  EXPECT_FALSE(closed.at({2, 2}).open);
+  EXPECT_FALSE(closed.at({6, 2}).open);
+  EXPECT_TRUE(closed.at({2, 2}).kept);
+  EXPECT_TRUE(closed.at({6, 2}).kept);
 }
 
 TEST(Fill, EvenOddCarvesHoleSeedsOnTop) {
