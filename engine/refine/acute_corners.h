@@ -25,6 +25,11 @@
 //
 // An input vertex that ends an arm counts as on a shell, but two of them do not excuse a triangle:
 // a fan of equal arms is refined toward its corner.
+//
+// Needles. Where two arms meet at a small angle outside the domain, no triangle between them tells
+// that a vertex on one was rounded onto the other. So none is put where the arms are nearer to each
+// other than 16 units in the last place: 5 that a vertex may be beside its arm (split_segment in
+// refiner.h), twice, and room.
 #pragma once
 
 #include <array>
@@ -54,6 +59,10 @@ class AcuteCorners {
   // the middle. `apexes` face the piece from its two sides; kNone if a side has no triangle.
   Point split_point(const Mesh& mesh, Pair ends, Pair apexes) const;
 
+  // Whether a split there keeps the piece's segment apart from every other one that it meets at a
+  // small angle outside the domain.
+  bool keeps_apart(const Mesh& mesh, std::uint32_t subsegment, Point split) const;
+
   // Whether a skinny triangle is to stay because of a small input angle.
   bool excuses(const Mesh& mesh, const Triangle& triangle) const;
 
@@ -61,7 +70,8 @@ class AcuteCorners {
   std::uint32_t subsegment(const Mesh& mesh, std::uint32_t a, std::uint32_t b) const;
 
   std::uint64_t bytes() const {
-    return acute_.size() + by_ends_.size() * sizeof(Ends) + first_.size() * sizeof(std::uint32_t);
+    return flags_.size() + by_ends_.size() * sizeof(Ends) + first_.size() * sizeof(std::uint32_t) +
+           needles_.size() * sizeof(Needle);
   }
 
  private:
@@ -70,12 +80,24 @@ class AcuteCorners {
     std::uint32_t subsegment;
   };
 
+  // An end of a subsegment, and the distance from which on it is apart from the other arm.
+  struct Needle {
+    std::uint32_t subsegment, corner;
+    double distance;
+  };
+  static constexpr char kAcute = 1, kNeedle = 2;
+
   explicit AcuteCorners(const Domain& domain)
-      : subsegments_(&domain.subsegments), acute_(domain.vertices.size(), 0) {}
+      : subsegments_(&domain.subsegments), flags_(domain.vertices.size(), 0) {}
   std::optional<Error> find_acute_vertices(const Domain& domain, const ExecutionContext& context);
   std::optional<Error> sort_by_ends(const Domain& domain, const ExecutionContext& context);
 
-  bool acute(std::uint32_t vertex) const { return vertex < acute_.size() && acute_[vertex]; }
+  std::optional<Error> find_needles(const Domain& domain, const ExecutionContext& context);
+  void add_needles(const Domain& domain, std::uint32_t corner, std::vector<std::uint32_t> arms);
+
+  bool acute(std::uint32_t vertex) const {
+    return vertex < flags_.size() && (flags_[vertex] & kAcute) != 0;
+  }
   // The subsegment between two vertices of the domain, or kNone.
   std::uint32_t subsegment_between(std::uint32_t a, std::uint32_t b) const;
   // Whether the vertex lies on, or ends, an arm of the corner other than this subsegment.
@@ -88,9 +110,11 @@ class AcuteCorners {
   double dyadic_part(const Mesh& mesh, std::uint32_t subsegment, Point from, Point to) const;
 
   const std::vector<Subsegment>* subsegments_;
-  std::vector<char> acute_;           // per vertex of the domain
+  std::vector<char> flags_;           // per vertex of the domain: kAcute inside, kNeedle outside
   std::vector<Ends> by_ends_;         // by the lower end, then by the higher
   std::vector<std::uint32_t> first_;  // per vertex of the domain: its first in by_ends_
+  std::vector<Needle> needles_;       // by subsegment
+  double apart_ = 0;                  // how far apart arms outside the domain must be
 };
 
 }  // namespace weft

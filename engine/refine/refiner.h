@@ -43,6 +43,7 @@
 #include "engine/refine/quality_bounds.h"
 #include "engine/refine/setting.h"
 #include "engine/refine/slots.h"
+#include "engine/refine/star_check.h"
 #include "engine/refine/steiner_point.h"
 #include "engine/refine/triangle_judge.h"
 
@@ -146,7 +147,7 @@ class Refiner {
     kEncroaches,  // cavity_.encroached() are to be split first
     kNotOwned,
     kTooClose,  // an edge would be below the floor, or double precision ends
-    kFlat,      // a triangle would not be counter-clockwise
+    kFlat,      // a triangle would not be counter-clockwise, or not Delaunay
   };
 
   void refine(std::uint32_t t) {
@@ -178,7 +179,7 @@ class Refiner {
   // Why the star of a point was refused, by the edges that it would have had.
   [[gnu::noinline]] Excuse refusal() const {
     const auto& points = cavity_.ring().points;
-    const auto end = points.begin() + cavity_.ring().size;
+    const auto end = points.begin() + cavity_.ring().size + 1;  // of an open ring, the last end
     const auto nearest = std::min_element(
         points.begin(), end,
         [](const RingPoint& a, const RingPoint& b) { return a.length2 < b.length2; });
@@ -290,6 +291,8 @@ class Refiner {
 
     const Ring& ring = cavity_.ring();
     if (too_thin(half_edge(t, edge)) || (closed && too_thin(across))) return Outcome::kTooClose;
+    const std::uint32_t subsegment = corners_.subsegment(mesh_, a, b);
+    if (!corners_.keeps_apart(mesh_, subsegment, p)) return Outcome::kTooClose;
     const std::uint32_t near_side = closed ? cavity_.far_end() : ring.size;
     RingVerdict verdict =
         area_.judge(ring, 0, near_side, p, region_bound(t), quality_, judged_.data());
@@ -302,10 +305,12 @@ class Refiner {
       verdict.reach2 = std::max(verdict.reach2, far.reach2);
     }
     if (!acceptable(verdict, p)) return verdict.too_close ? Outcome::kTooClose : Outcome::kFlat;
+    if (!star_is_delaunay(mesh_, ring, 0, near_side, p) ||
+        (closed && !star_is_delaunay(mesh_, ring, near_side, ring.size, p))) [[unlikely]]
+      return Outcome::kFlat;
 
     const std::uint32_t near_region = triangle.region;
     const std::uint32_t far_region = closed ? mesh_.triangles[triangle_of(across)].region : 0;
-    const std::uint32_t subsegment = corners_.subsegment(mesh_, a, b);
     retriangulate(slots_->add_segment_vertex(mesh_, p, subsegment), p, verdict.reach2, closed);
     mark_segment(near_side, closed, near_region, far_region);
     return Outcome::kInserted;
