@@ -237,7 +237,7 @@ MeshCase decode_mesh_case(ByteSource bytes) {
   if (rarely % 8 == 1) request.min_edge = maker.extent() / static_cast<double>(1 + rarely);
   if (rarely % 8 == 2) made.budget.max_triangles = rarely;
   if (rarely % 8 == 3) {
-    constexpr std::array<double, 4> kSnaps{1e-9, 1e-6, 1e-3, 0.1};
+    constexpr std::array<double, 4> kSnaps{1e-9, 1e-6, 1e-4, 1e-3};
     request.pslg.snap = maker.extent() * kSnaps[rarely / 8 % kSnaps.size()];
   }
   made.plain = made.plain && request.pslg.snap == 0;

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a case asks beyond what can be decided, or met, in double precision. Looked at when a law is
+// broken, so nothing here need be fast.
+#pragma once
+
+#include "tests/fuzz/mesh_case.h"
+
+namespace weft::fuzz {
+
+// Whether features (points, segments, crossings) are about as far from each other as the merging
+// tolerance T, between T / 16 and 16 T. Then merging has a choice, and leads features to others,
+// one after the other; a judge who sees the mesh alone cannot always tell which segment became
+// which edges, above all where parts of them are carved away. The checker holds such a case to
+// what it can tell: its verdicts on chains, points, coverage and the like are open there.
+bool is_contested(const MeshCase& mesh_case);
+
+// Whether two segments meet at such a small angle, with such a fine feature beside the corner, that
+// no mesh in double precision meets the bounds: where triangles must be as small as the feature,
+// the segments are nearer to each other than refinement's floor (kEdgeFraction in
+// engine/domain/tolerance.h), times 4.
+bool is_too_fine(const MeshCase& mesh_case);
+
+}  // namespace weft::fuzz
