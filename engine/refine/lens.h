@@ -44,9 +44,9 @@
 // against the least is proven for Ruppert's disk, not for this.
 //
 //   us-east-coast, no size      20 deg    25 deg    30 deg    33 deg
-//   disk, vertices too          18,681    24,288    36,548    67,533
-//   lens, phi = theta           18,264    24,026    36,240    53,348
-//   this lens                   18,279    24,026    36,240    53,348
+//   disk                        17,869    23,049    33,463    60,703
+//   lens, phi = theta           17,853    23,065    33,337    45,609
+//   this lens                   17,856    23,065    33,337    45,609
 //
 // The mesh is constrained Delaunay, and not conforming Delaunay: the circumdisk of a triangle at a
 // segment may hold vertices beyond it. No cavity crosses a segment, so neither the ownership of

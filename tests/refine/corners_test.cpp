@@ -169,8 +169,8 @@ TEST_P(OfTheCoast, TrianglesAreFew) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Quality, OfTheCoast,
-                         testing::Values(Coast{20, 17'802, 1.03}, Coast{25, 23'074, 1.05},
-                                         Coast{30, 33'309, 1.09}, Coast{33, 45'260, 1.19}),
+                         testing::Values(Coast{20, 17'802, 1.01}, Coast{25, 23'074, 1.01},
+                                         Coast{30, 33'309, 1.01}, Coast{33, 45'260, 1.02}),
                          [](const auto& info) {
                            return std::to_string(static_cast<int>(info.param.min_angle_deg));
                          });

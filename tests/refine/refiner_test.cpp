@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -48,6 +49,15 @@ struct RefinedSquare {
     });
     EXPECT_FALSE(refiner.run());
     return refiner.deferred();
+  }
+
+  // Makes another triangle in a slot, with a vertex of its own first, and queues it as skinny.
+  void push_skinny(BadTriangles& bad, std::uint32_t slot, double shortest) {
+    Triangle& t = mesh.triangles[slot];
+    const std::array<Point, 3> corners{{{0, 0}, {shortest, 0}, {0, 4}}};
+    for (std::uint32_t i = 0; i < 3; ++i) t.vertex[i] = slots[0].add_vertex(mesh, corners[i]);
+    t.set_badness(kSkinny);
+    bad.push(slot, kSkinny);
   }
 
   template <class F>
@@ -178,6 +188,30 @@ TEST(BadTriangles, ComeWorstFirstAndLastInFirst) {
   }
   square.mesh.triangles[5].set_badness(kGood);
   for (const std::uint32_t t : {2u, 3u, 1u, 4u, 0u, kNone}) EXPECT_EQ(bad.pop(), t);
+}
+
+// A triangle of no matter what shape but for its shortest edge.
+struct OneTriangle {
+  std::uint32_t slot;
+  double shortest;
+};
+
+TEST(BadTriangles, ThatAreSkinnyComeShortestFirstAndLastInFirst) {
+  RefinedSquare square(1e-2);
+  BadTriangles bad(square.mesh, Order::kShortestFirst);
+  for (const auto& [slot, shortest] : {OneTriangle{0, 0.5}, {1, 0.25}, {2, 0.5}, {3, 1e-9}}) {
+    square.push_skinny(bad, slot, shortest);
+  }
+  for (const std::uint32_t t : {3u, 1u, 2u, 0u, kNone}) EXPECT_EQ(bad.pop(), t);
+}
+
+TEST(BadTriangles, DoNotComeInThePlaceOfOneThatHadTheirSlot) {
+  RefinedSquare square(1e-2);
+  BadTriangles bad(square.mesh, Order::kShortestFirst);
+  for (const auto& [slot, shortest] : {OneTriangle{0, 1e-6}, {1, 1e-3}, {0, 1}}) {
+    square.push_skinny(bad, slot, shortest);
+  }
+  for (const std::uint32_t t : {1u, 0u, kNone}) EXPECT_EQ(bad.pop(), t);
 }
 
 }  // namespace
