@@ -399,7 +399,7 @@ std::optional<Error> run_mesh(const MeshPlan& plan, const AreaBound& area, Chunk
                                   plan.expected_triangles, context);
       if (!mesh_made) return mesh_made.error();
       mesh.emplace(std::move(*mesh_made));
-      auto corners_made = AcuteCorners::build(plan.domain, context);
+      auto corners_made = AcuteCorners::build(plan.domain, plan.quality, context);
       if (!corners_made) return corners_made.error();
       corners.emplace(std::move(*corners_made));
       run.emplace(plan, area, sink, context, summary, *mesh, *corners, cut_off);

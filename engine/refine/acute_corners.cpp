@@ -33,9 +33,9 @@ bool below_60_degrees_apart(Vector u, Vector v) {
   return dot(u, v) > 0.5 * length(u) * length(v);
 }
 
-// Whether the angle from u counter-clockwise to v, known to be below 180 degrees, is below 60.
-bool below_60_degrees(Vector u, Vector v) {
-  return cross(u, v) > 0 && below_60_degrees_apart(u, v);
+// Whether they make an angle below 93 degrees: a right angle, after rounding.
+bool at_most_right_angle_apart(Vector u, Vector v) {
+  return dot(u, v) > -0.05 * length(u) * length(v);
 }
 
 // The multiple of the largest power of two in the middle third of [low, high]; of two, the nearer
@@ -93,18 +93,21 @@ double pseudo_angle(Vector u) {
 
 constexpr std::size_t kPollInterval = 1 << 16;
 
-Result<AcuteCorners> AcuteCorners::build(const Domain& domain, const ExecutionContext& context) {
+Result<AcuteCorners> AcuteCorners::build(const Domain& domain, const QualityBounds& quality,
+                                         const ExecutionContext& context) {
   AcuteCorners corners(domain);
-  if (auto error = corners.find_acute_vertices(domain, context)) return tl::unexpected(*error);
+  const bool above_30_degrees = quality.sin2 > 0.25;
+  if (auto error = corners.find_corners(domain, above_30_degrees, context))
+    return tl::unexpected(*error);
   if (auto error = corners.sort_by_ends(domain, context)) return tl::unexpected(*error);
   if (auto error = corners.find_needles(domain, context)) return tl::unexpected(*error);
   return corners;
 }
 
-// A sector between two segments that is below 60 degrees is made of triangles that are: turn
-// from each edge on a segment, through the triangles at its start, to the next such edge.
-std::optional<Error> AcuteCorners::find_acute_vertices(const Domain& domain,
-                                                       const ExecutionContext& context) {
+// A sector between two segments that is below an angle is made of triangles that are: turn from
+// each edge on a segment, through the triangles at its start, to the next such edge.
+std::optional<Error> AcuteCorners::find_corners(const Domain& domain, bool at_right_angles,
+                                                const ExecutionContext& context) {
   for (std::uint32_t t = 0; t < domain.triangles.size(); ++t) {
     if (t % kPollInterval == 0) {
       if (auto error = context.poll()) return error;
@@ -119,9 +122,11 @@ std::optional<Error> AcuteCorners::find_acute_vertices(const Domain& domain,
       while (true) {
         const Domain::Triangle& current = domain.triangles[triangle];
         const Vector to = domain.vertices[current.vertex[kPrevious[at_corner]]] - at;
-        if (!below_60_degrees(from, to)) break;
+        const bool acute = below_60_degrees_apart(from, to);
+        const bool counts = acute || (at_right_angles && at_most_right_angle_apart(from, to));
+        if (cross(from, to) <= 0 || !counts) break;
         if (current.subsegment[kNext[at_corner]] != kNone) {
-          flags_[corner] |= kAcute;
+          flags_[corner] |= acute ? kShells | kAcute : kShells;
           break;
         }
         triangle = current.neighbor[kNext[at_corner]];
@@ -252,7 +257,7 @@ Point AcuteCorners::split_point(const Mesh& mesh, Pair ends, Pair apexes) const 
   const Point to = mesh.vertices[ends[1]];
   const std::uint32_t s = subsegment(mesh, ends[0], ends[1]);
   double part = 0.5;
-  if (acute((*subsegments_)[s].a) || acute((*subsegments_)[s].b)) {
+  if (has_shells((*subsegments_)[s].a) || has_shells((*subsegments_)[s].b)) {
     const auto matching = matching_part(mesh, s, from, to, apexes);
     part = matching ? *matching : dyadic_part(mesh, s, from, to);
   }
@@ -269,7 +274,7 @@ std::optional<double> AcuteCorners::matching_part(const Mesh& mesh, std::uint32_
   double narrowest = kNarrow * dot(piece, piece);  // distance times the piece's length
   for (const std::uint32_t apex : apexes) {
     for (const std::uint32_t end : {s.a, s.b}) {
-      if (apex == kNone || !acute(end) || !on_other_arm(mesh, apex, end, subsegment)) continue;
+      if (apex == kNone || !has_shells(end) || !on_other_arm(mesh, apex, end, subsegment)) continue;
       const Point corner = mesh.vertices[end];
       const Point at = mesh.vertices[apex];
       const Point far = mesh.vertices[end == s.a ? s.b : s.a];
@@ -290,7 +295,7 @@ double AcuteCorners::dyadic_part(const Mesh& mesh, std::uint32_t subsegment, Poi
   const Point a = mesh.vertices[s.a];
   const Point b = mesh.vertices[s.b];
   const bool nearer_b = length(from - b) + length(to - b) < length(from - a) + length(to - a);
-  const Point corner = acute(s.a) && (!acute(s.b) || !nearer_b) ? a : b;
+  const Point corner = has_shells(s.a) && (!has_shells(s.b) || !nearer_b) ? a : b;
   const auto [low, high] = std::minmax({length(from - corner), length(to - corner)});
   const double part = part_of(dyadic_between(low, high), corner, from, to);
   return in_middle(part) ? part : 0.5;

@@ -114,7 +114,7 @@ Part part_with_a_bad_triangle(Badness badness, bool cut_off) {
   const ExecutionContext context;
   const Domain domain = *triangulate(square(), context);
   Mesh mesh = *Mesh::from(domain, 1000, 2, context);
-  const AcuteCorners corners = *AcuteCorners::build(domain, context);
+  const AcuteCorners corners = *AcuteCorners::build(domain, QualityBounds{}, context);
   Slots::of_domain(domain).number_vertices(mesh, 0);
   mesh.triangles[1].set_badness(badness);
   PartBuilder<ConstantArea> builder(mesh, domain, corners, ConstantArea(1), cut_off, context);

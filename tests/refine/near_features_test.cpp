@@ -59,8 +59,11 @@ TEST(FloorPlans, AreMeshedWithinTheirBounds) {
 }
 
 TEST(FloorPlans, AreMeshedWithinSteepBounds) {
-  for_plans(48, [](const FloorPlan& plan) {
-    within_bounds({.pslg = floor_plan(plan), .min_angle_deg = 30});
+  for_plans(100, [](const FloorPlan& plan) {
+    for (const double angle : {30.0, 33.0, 34.0}) {
+      SCOPED_TRACE(angle);
+      within_bounds({.pslg = floor_plan(plan), .min_angle_deg = angle});
+    }
   });
 }
 

@@ -23,7 +23,7 @@ constexpr Box kEverywhere{-2, -2, 3, 3};
 struct RefinedSquare {
   explicit RefinedSquare(double area)
       : domain(*triangulate(square(), context)),
-        corners(*AcuteCorners::build(domain, context)),
+        corners(*AcuteCorners::build(domain, kQuality, context)),
         mesh(*Mesh::from(domain, 1'000'000, 0, context)),
         slots({Slots::of_domain(domain)}) {
     Refiner<OwnsAll, ConstantArea> refiner(setting(), kQuality, ConstantArea(area));
