@@ -188,7 +188,8 @@ class Job {
                       std::to_string(budget.triangle_limit));
     }
     // Triangles come out at 0.64 of their bound on average.
-    by_size_ = std::max(1.55 * estimate.likely, static_cast<double>(domain_.triangles.size()));
+    const double by_size =
+        std::max(1.55 * estimate.likely, static_cast<double>(domain_.triangles.size()));
     const QualityBounds quality =
         QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(summary_.box));
     auto narrow = context_.compute([&] {
@@ -200,7 +201,7 @@ class Job {
       return tl::unexpected(too_narrow(*narrow));
     const double elsewhere =
         NarrowPlaces::elsewhere(quality) * static_cast<double>(domain_.triangles.size());
-    expected_ = std::max(by_size_, elsewhere) + narrow->likely();
+    expected_ = std::max(by_size, elsewhere) + narrow->likely();
     const double most = static_cast<double>(wants_cap() ? budget.max_triangles : kUncountable);
     context_.report_expected(static_cast<std::uint64_t>(std::min(expected_, most)));
     summary_.size_seconds = clock_.lap();
@@ -210,10 +211,9 @@ class Job {
     MeshPlan plan{.domain = domain_,
                   .box = summary_.box,
                   .quality = quality,
-                  .order = order(),
                   .narrow = *narrow,
                   .expected_triangles = expected_,
-                  .expected_by_size = by_size_,
+                  .expected_by_size = by_size,
                   .leaf_triangles = request_.leaf_triangles,
                   .least_triangles = std::max(estimate.least, narrow->least()),
                   .other_bytes = size_bytes + narrow->bytes()};
@@ -245,13 +245,6 @@ class Job {
     return wish <= context_.budget().triangle_limit && wish != Budget{}.max_triangles;
   }
 
-  // Where the size makes few triangles beyond the domain's own, quality makes most of them.
-  Order order() const {
-    const bool quality_rules = by_size_ < 8.0 * static_cast<double>(domain_.triangles.size());
-    return quality_rules || request_.min_angle_deg > 30 ? Order::kShortestFirst
-                                                        : Order::kLastInFirstOut;
-  }
-
   const MeshRequest& request_;
   ChunkSink& sink_;
   ExecutionContext& context_;
@@ -261,7 +254,6 @@ class Job {
   Domain domain_;
   std::optional<SizeMap> map_;
   double expected_ = 0;  // triangles
-  double by_size_ = 0;   // of these, what the size alone makes
   Summary summary_;
 };
 

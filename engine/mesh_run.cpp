@@ -65,7 +65,6 @@ class MeshRun {
                  corners,
                  plan.domain.regions,
                  context,
-                 plan.order,
                  plan.other_bytes + corners.bytes(),
                  cut_off ? context.budget().triangle_limit : limit(plan, context)},
         root_(Slots::of_domain(plan.domain)),

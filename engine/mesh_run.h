@@ -10,7 +10,6 @@
 #include "engine/context.h"
 #include "engine/domain/domain.h"
 #include "engine/error.h"
-#include "engine/refine/bad_triangles.h"
 #include "engine/refine/quality_bounds.h"
 #include "engine/schedule/narrow_places.h"
 #include "engine/summary.h"
@@ -21,7 +20,6 @@ struct MeshPlan {
   const Domain& domain;
   Box box;  // of the domain
   QualityBounds quality;
-  Order order;
   const NarrowPlaces& narrow;
   double expected_triangles;
   double expected_by_size;  // of these, what the size alone makes

@@ -10,7 +10,7 @@
 //
 // What makes it fast, each with its cost measured at 1 M triangles: no point location (a bad
 // triangle belongs to the cavity of its own Steiner point); the cavity's slots are reused; queue
-// entries are 4 bytes, and the triangle's own badness tells whether one is stale (two thirds are);
+// entries are a few bytes, and tell whether their triangle is still there (two thirds are stale);
 // the worst comes first, and of these the last in (bad_triangles.h).
 //
 // Ownership is a compile-time parameter (ownership.h). A task that meets what it does not own
@@ -66,7 +66,7 @@ class Refiner {
         poll_interval_(area_.poll_interval()),
         max_triangles_(max_triangles),
         cavity_(setting.mesh),
-        bad_(setting.mesh, setting.order) {
+        bad_(setting.mesh) {
     reserve_ring_buffers(kInitialRing);
   }
 

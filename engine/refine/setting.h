@@ -20,7 +20,6 @@ struct Setting {
   const AcuteCorners& corners;
   const std::vector<Region>& regions;
   ExecutionContext& context;
-  Order order;
   std::uint64_t other_bytes;     // that the job holds besides the mesh
   std::uint64_t triangle_limit;  // an error beyond
 };

@@ -33,9 +33,7 @@ struct RefinedSquare {
     EXPECT_TRUE(refiner.deferred().empty());
   }
 
-  Setting setting() {
-    return {mesh, corners, domain.regions, context, Order::kLastInFirstOut, 0, 10'000'000};
-  }
+  Setting setting() { return {mesh, corners, domain.regions, context, 0, 10'000'000}; }
 
   // Refines what the box owns, as the next owner; returns what was deferred.
   std::vector<BadTriangle> refine(const Box& box, double area) {
@@ -179,7 +177,7 @@ TEST(Cavity, OfThousandsOfTrianglesFits) {
 
 TEST(BadTriangles, ComeWorstFirstAndLastInFirst) {
   RefinedSquare square(1e-2);
-  BadTriangles bad(square.mesh, Order::kLastInFirstOut);
+  BadTriangles bad(square.mesh);
   const std::vector<std::pair<std::uint32_t, Badness>> pushed = {
       {0, kSkinny}, {1, 7}, {2, 200}, {3, 7}, {4, kSkinny}, {5, 64}};
   for (const auto& [t, badness] : pushed) {
@@ -198,7 +196,7 @@ struct OneTriangle {
 
 TEST(BadTriangles, ThatAreSkinnyComeShortestFirstAndLastInFirst) {
   RefinedSquare square(1e-2);
-  BadTriangles bad(square.mesh, Order::kShortestFirst);
+  BadTriangles bad(square.mesh);
   for (const auto& [slot, shortest] : {OneTriangle{0, 0.5}, {1, 0.25}, {2, 0.5}, {3, 1e-9}}) {
     square.push_skinny(bad, slot, shortest);
   }
@@ -207,7 +205,7 @@ TEST(BadTriangles, ThatAreSkinnyComeShortestFirstAndLastInFirst) {
 
 TEST(BadTriangles, DoNotComeInThePlaceOfOneThatHadTheirSlot) {
   RefinedSquare square(1e-2);
-  BadTriangles bad(square.mesh, Order::kShortestFirst);
+  BadTriangles bad(square.mesh);
   for (const auto& [slot, shortest] : {OneTriangle{0, 1e-6}, {1, 1e-3}, {0, 1}}) {
     square.push_skinny(bad, slot, shortest);
   }
