@@ -56,7 +56,7 @@ class Prelude {
     if (tree_.leaves().size() == 1) return std::nullopt;
     // Neither needs the other.
     std::optional<Error> error;
-    const LeafRadius radius(tree_, leaf_triangles_ / kBusy);
+    const LeafRadius radius(tree_, LeafRadius::busy_weight(tree_, leaf_triangles_ / kBusy));
     setting_.context.for_each(2, [&](std::size_t which) {
       if (which == 0) error = refine(no_angles, radius, box);
       if (which == 1) order_ = LeafOrder(tree_);
