@@ -86,6 +86,40 @@ class NarrowPlaces::Search {
         grading_(Grading::of(quality.sin2)),
         floor_(std::sqrt(quality.min_length2)) {}
 
+  // Triangles `first` to before `last`. Of most, neither they nor their neighbours may be thin.
+  void look_at(std::uint32_t first, std::uint32_t last,
+               const std::vector<std::uint8_t>& maybe_thin) {
+    const auto nobody = static_cast<std::uint32_t>(domain_.triangles.size());
+    for (std::uint32_t t = first; t < last; ++t) {
+      const auto& across = domain_.triangles[t].neighbor;
+      if ((maybe_thin[t] | maybe_thin[std::min(across[0], nobody)] |
+           maybe_thin[std::min(across[1], nobody)] | maybe_thin[std::min(across[2], nobody)]) != 0)
+        look_at(t);
+    }
+  }
+
+  // False for most triangles that are not thin over an edge on a segment, and never for one that
+  // is. Without a division, and without a branch: which edges are on a segment is hard to foresee.
+  static bool maybe_thin(const Domain& domain, std::uint32_t t) {
+    constexpr double kMaybe = 7;  // below kThin, for rounding
+    const Domain::Triangle& triangle = domain.triangles[t];
+    const Point a = domain.vertices[triangle.vertex[0]];
+    const Point b = domain.vertices[triangle.vertex[1]];
+    const Point c = domain.vertices[triangle.vertex[2]];
+    // At each corner, the product of the edges that meet there.
+    const double at_a = (b.x - a.x) * (c.x - a.x) + (b.y - a.y) * (c.y - a.y);
+    const double at_b = (c.x - b.x) * (a.x - b.x) + (c.y - b.y) * (a.y - b.y);
+    const double at_c = (a.x - c.x) * (b.x - c.x) + (a.y - c.y) * (b.y - c.y);
+    const double area = kMaybe * doubled_area(a, b, c);
+    const bool over_a = area < std::max(at_b, at_c), on_a = triangle.subsegment[0] != kNone;
+    const bool over_b = area < std::max(at_c, at_a), on_b = triangle.subsegment[1] != kNone;
+    const bool over_c = area < std::max(at_a, at_b), on_c = triangle.subsegment[2] != kNone;
+    return (over_a & on_a) | (over_b & on_b) | (over_c & on_c);
+  }
+
+  NarrowPlaces found;
+
+ private:
   void look_at(std::uint32_t t) {
     const Domain::Triangle& triangle = domain_.triangles[t];
     for (unsigned i = 0; i < 3; ++i) {
@@ -104,9 +138,6 @@ class NarrowPlaces::Search {
     }
   }
 
-  NarrowPlaces found;
-
- private:
   struct Side {
     std::uint32_t triangle;  // kNone outside
     unsigned edge;
@@ -272,6 +303,15 @@ Result<NarrowPlaces> NarrowPlaces::find(const Domain& domain, const QualityBound
   if (!(quality.sin2 > 0)) return all;
   const std::size_t n = domain.triangles.size();
   std::vector<NarrowPlaces> found((n + kAtATime - 1) / kAtATime);
+  const auto range = [&](std::size_t i) {
+    return std::pair{static_cast<std::uint32_t>(i * kAtATime),
+                     static_cast<std::uint32_t>(std::min(n, (i + 1) * kAtATime))};
+  };
+  std::vector<std::uint8_t> maybe_thin(n + 1);  // the last one stands for no neighbour
+  context.for_each(found.size(), [&](std::size_t i) {
+    const auto [first, last] = range(i);
+    for (std::uint32_t t = first; t < last; ++t) maybe_thin[t] = Search::maybe_thin(domain, t);
+  });
   std::atomic<bool> stopped = false;
   context.for_each(found.size(), [&](std::size_t i) {
     if (stopped) return;
@@ -280,8 +320,8 @@ Result<NarrowPlaces> NarrowPlaces::find(const Domain& domain, const QualityBound
       return;
     }
     Search search(domain, quality, likely_area);
-    for (std::size_t t = i * kAtATime; t < std::min(n, (i + 1) * kAtATime); ++t)
-      search.look_at(static_cast<std::uint32_t>(t));
+    const auto [first, last] = range(i);
+    search.look_at(first, last, maybe_thin);
     found[i] = std::move(search.found);
   });
   if (stopped) {
