@@ -2,6 +2,7 @@
 #include "engine/refine/acute_corners.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -31,6 +32,12 @@ double length(Vector u) {
 // Whether u and v make an angle below 60 degrees.
 bool below_60_degrees_apart(Vector u, Vector v) {
   return dot(u, v) > 0.5 * length(u) * length(v);
+}
+
+// Whether that may be so: false for most angles that are not, and never for one that is.
+bool maybe_below_60_degrees_apart(Vector u, Vector v) {
+  const double cosine = dot(u, v);
+  return (cosine > 0) & (cosine * cosine > 0.249 * dot(u, u) * dot(v, v));
 }
 
 // Whether they make an angle below 93 degrees: a right angle, after rounding.
@@ -108,12 +115,32 @@ Result<AcuteCorners> AcuteCorners::build(const Domain& domain, const QualityBoun
 // each edge on a segment, through the triangles at its start, to the next such edge.
 std::optional<Error> AcuteCorners::find_corners(const Domain& domain, bool at_right_angles,
                                                 const ExecutionContext& context) {
-  for (std::uint32_t t = 0; t < domain.triangles.size(); ++t) {
-    if (t % kPollInterval == 0) {
+  // The corners where a sector may begin, in rounds. Which do is hard to foresee: so there is no
+  // branch on it.
+  constexpr std::uint32_t kRound = 256;
+  std::array<HalfEdge, 3 * kRound + 1> begins;
+  for (std::uint32_t first = 0; first < domain.triangles.size(); first += kRound) {
+    if (first % kPollInterval == 0) {
       if (auto error = context.poll()) return error;
     }
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      if (domain.triangles[t].subsegment[kPrevious[i]] == kNone) continue;
+    const auto last =
+        static_cast<std::uint32_t>(std::min<std::size_t>(first + kRound, domain.triangles.size()));
+    std::uint32_t count = 0;
+    for (std::uint32_t t = first; t < last; ++t) {
+      const Domain::Triangle& triangle = domain.triangles[t];
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        const Point at = domain.vertices[triangle.vertex[i]];
+        const bool on_segment = triangle.subsegment[kPrevious[i]] != kNone;
+        begins[count] = half_edge(t, i);
+        const bool begins_sector =
+            maybe_below_60_degrees_apart(domain.vertices[triangle.vertex[kNext[i]]] - at,
+                                         domain.vertices[triangle.vertex[kPrevious[i]]] - at);
+        count += on_segment & (at_right_angles | begins_sector);
+      }
+    }
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const std::uint32_t t = triangle_of(begins[k]);
+      const std::uint32_t i = edge_of(begins[k]);
       const std::uint32_t corner = domain.triangles[t].vertex[i];
       const Point at = domain.vertices[corner];
       const Vector from = domain.vertices[domain.triangles[t].vertex[kNext[i]]] - at;

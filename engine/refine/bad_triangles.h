@@ -72,7 +72,12 @@ class BadTriangles {
         heads_[level] = skinny.next;
         skinny_[entry].next = free_;
         free_ = entry;
-        if (skinny.next == kNone) skinny_in_use_[first_word_] &= ~(std::uint64_t{1} << level % 64);
+        if (skinny.next == kNone) {
+          skinny_in_use_[first_word_] &= ~(std::uint64_t{1} << level % 64);
+        } else {
+          // The next one is anywhere in the mesh: it is fetched while this one is refined.
+          __builtin_prefetch(&mesh_.triangles[skinny_[skinny.next].triangle]);
+        }
         const Triangle& t = mesh_.triangles[skinny.triangle];
         if (t.badness() == kSkinny && t.vertex[0] == skinny.first_vertex) return skinny.triangle;
       }

@@ -12,20 +12,20 @@ constexpr std::uint32_t blocks_for(std::uint64_t count, std::uint32_t block) {
 
 // From the domain's triangle to the mesh's.
 Triangle linked(const Domain& domain, const Domain::Triangle& from) {
+  const auto last = static_cast<std::uint32_t>(domain.triangles.size() - 1);
   Triangle to{};
   to.region = from.region;
   for (std::uint32_t i = 0; i < 3; ++i) {
     to.vertex[i] = from.vertex[i];
-    to.neighbor[i] = kNone;
-    if (from.subsegment[i] != kNone) to.flags |= 1u << i;
-    if (from.neighbor[i] == kNone) continue;
-    const Domain::Triangle& across = domain.triangles[from.neighbor[i]];
-    for (std::uint32_t j = 0; j < 3; ++j) {
-      if (across.vertex[kNext[j]] == from.vertex[kPrevious[i]] &&
-          across.vertex[kPrevious[j]] == from.vertex[kNext[i]]) {
-        to.neighbor[i] = half_edge(from.neighbor[i], j);
-      }
-    }
+    to.flags |= static_cast<std::uint32_t>(from.subsegment[i] != kNone) << i;
+    // Which edge it is of the triangle across is hard to foresee: so there is no branch on it. The
+    // one before the corner where the edge ends, as seen from here.
+    const std::uint32_t is_open = from.neighbor[i] == kNone;  // then anybody stands in
+    const Domain::Triangle& across = domain.triangles[std::min(from.neighbor[i], last)];
+    const std::uint32_t end = from.vertex[kPrevious[i]];
+    const std::uint32_t corner = 1 * static_cast<std::uint32_t>(across.vertex[1] == end) +
+                                 2 * static_cast<std::uint32_t>(across.vertex[2] == end);
+    to.neighbor[i] = half_edge(from.neighbor[i], kPrevious[corner]) | (0 - is_open);
   }
   return to;
 }
