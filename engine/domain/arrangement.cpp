@@ -2,6 +2,7 @@
 #include "engine/domain/arrangement.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <sstream>
@@ -43,11 +44,11 @@ Arrangement extract(const std::vector<Point>& points, const Triangulation& t,
     pacer.step();
     face_number[f] = t.is_infinite(f) ? kNone : faces++;
   }
-  result.triangles.resize(faces);
+  result.triangles.reserve(faces);
   for (std::uint32_t f = 0; f < t.faces(); ++f) {
     pacer.step();
     if (face_number[f] == kNone) continue;
-    Arrangement::Triangle& to = result.triangles[face_number[f]];
+    Arrangement::Triangle& to = result.triangles.emplace_back();
     for (int i = 0; i < 3; ++i) {
       to.vertex[i] = number[t.vertex(f, i)];
       to.neighbor[i] = face_number[t.mirror({f, i}).face];
@@ -56,17 +57,6 @@ Arrangement extract(const std::vector<Point>& points, const Triangulation& t,
   }
   result.constraints = segments.take_constraints();
   return result;
-}
-
-bool has_edge_below(double length, const Triangulation& t, Pacer& pacer) {
-  for (std::uint32_t f = 0; f < t.faces(); ++f) {
-    pacer.step();
-    if (t.is_infinite(f)) continue;
-    const Point a = t.at(t.vertex(f, 0)), b = t.at(t.vertex(f, 1)), c = t.at(t.vertex(f, 2));
-    const double shortest2 = std::min({distance2(a, b), distance2(b, c), distance2(c, a)});
-    if (shortest2 < length * length) return true;
-  }
-  return false;
 }
 
 }  // namespace
@@ -92,18 +82,23 @@ Arrangement arrange(const Pslg& pslg, Pacer& pacer, std::uint64_t max_splits) {
     if (span.size < 3) throw Stopped{closed_by_merging(merging)};
     triangulation.emplace(pacer).build(points, span.point[0], span.point[1], span.point[2]);
   };
-  // The two nearest points of all are joined by an edge, so in most cases the triangulation tells
-  // that there is nothing to merge.
+  // In most cases the triangulation tells that there is nothing to merge.
   std::vector<Point> merged;
   const std::vector<Point>* points = &pslg.points;
   const bool wants_snapping = pslg.snap == merging.tolerance;
-  if (!wants_snapping) build(pslg.points);
-  if (wants_snapping || has_edge_below(merging.tolerance, *triangulation, pacer)) {
+  double spacing2 = 0;
+  if (!wants_snapping) {
+    build(pslg.points);
+    spacing2 = triangulation->nearest2();
+  }
+  if (wants_snapping || spacing2 < merging.tolerance * merging.tolerance) {
     merged = merge_points(pslg.points, merging, pacer);
     points = &merged;
     build(merged);
+    spacing2 = 0;
   }
-  SegmentInserter segments(pslg, *points, *triangulation, max_splits, merging, pacer);
+  const double spacing = std::max(merging.tolerance, std::sqrt(spacing2));
+  SegmentInserter segments(pslg, *points, *triangulation, spacing, max_splits, merging, pacer);
   segments.insert_all();
   Arrangement result = extract(*points, *triangulation, segments, pacer);
   result.merging = merging;

@@ -22,9 +22,9 @@ struct Faces {
 };
 
 // Floods from `start` across edges without a constraint. Whether a neighbour is new is hard to
-// foresee, so there is no branch on it; and first come, first served, so that a triangle is known
-// long before its turn. `queue` has room for all triangles and three more, of_triangle for one
-// more, which stands for what is beyond the hull.
+// foresee, so there is no branch on it (a choice of what to store would be compiled to one); and
+// first come, first served, so that a triangle is known long before its turn. `queue` has room for
+// all triangles and three more, of_triangle for one more, which stands for what is beyond the hull.
 void flood(const Arrangement& a, std::uint32_t start, std::uint32_t face, Faces& faces,
            std::vector<std::uint32_t>& queue, Pacer& pacer) {
   std::uint32_t* const of = faces.of_triangle.data();
@@ -38,10 +38,11 @@ void flood(const Arrangement& a, std::uint32_t start, std::uint32_t face, Faces&
     const Arrangement::Triangle& t = a.triangles[*first++];
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t n = std::min(t.neighbor[i], beyond);
-      const bool is_new = (t.constraint[i] == kNone) & (of[n] == kNone);
+      const std::uint32_t known = of[n];
+      const std::uint32_t is_new = (t.constraint[i] & known) == kNone;
       *last = n;
       last += is_new;
-      of[n] = is_new ? face : of[n];
+      of[n] = known ^ ((known ^ face) & (0 - is_new));
     }
   }
 }

@@ -9,6 +9,7 @@
 
 #include "engine/domain/arrangement.h"
 #include "engine/domain/carve.h"
+#include "engine/domain/face.h"
 #include "engine/domain/hilbert.h"
 #include "engine/domain/pacer.h"
 #include "engine/domain/validate.h"
@@ -19,19 +20,24 @@ namespace {
 // The triangles that stay, along a Hilbert curve through their centroids.
 std::vector<std::uint32_t> kept_triangles(const Arrangement& a, const Carving& carving,
                                           Pacer& pacer) {
-  std::vector<std::uint32_t> kept;
-  std::vector<Point> centroids;
   const auto count = static_cast<std::size_t>(
       a.triangles.size() -
       static_cast<std::size_t>(std::count(carving.region.begin(), carving.region.end(), kNone)));
-  kept.reserve(count);
-  centroids.reserve(count);
-  for (std::uint32_t t = 0; t < a.triangles.size(); ++t) {
+  // Whether a triangle stays is hard to foresee: so there is no branch on it, and those that do not
+  // are overwritten.
+  std::vector<std::uint32_t> kept(count + 1);
+  for (std::uint32_t t = 0, next = 0; t < a.triangles.size(); ++t) {
     pacer.step();
-    if (carving.region[t] == kNone) continue;
+    kept[next] = t;
+    next += carving.region[t] != kNone;
+  }
+  kept.resize(count);
+  std::vector<Point> centroids;
+  centroids.reserve(count);
+  for (const std::uint32_t t : kept) {
+    pacer.step();
     const auto& v = a.triangles[t].vertex;
     const Point p = a.vertices[v[0]], q = a.vertices[v[1]], r = a.vertices[v[2]];
-    kept.push_back(t);
     centroids.push_back({(p.x + q.x + r.x) / 3, (p.y + q.y + r.y) / 3});
   }
   std::vector<std::uint32_t> order = hilbert_order(centroids, pacer);
@@ -42,7 +48,7 @@ std::vector<std::uint32_t> kept_triangles(const Arrangement& a, const Carving& c
 // Keeps what the carving keeps, numbered without gaps.
 Domain extract(const Arrangement& a, Carving&& carving, Pacer& pacer) {
   const std::vector<std::uint32_t> kept = kept_triangles(a, carving, pacer);
-  std::vector<std::uint32_t> triangle_number(a.triangles.size(), kNone);
+  std::vector<std::uint32_t> triangle_number(a.triangles.size() + 1, kNone);
   std::vector<std::uint32_t> vertex_number(a.vertices.size(), kNone);
   for (std::uint32_t i = 0; i < kept.size(); ++i) {
     pacer.step();
@@ -53,7 +59,6 @@ Domain extract(const Arrangement& a, Carving&& carving, Pacer& pacer) {
   Domain domain;
   domain.vertices.reserve(a.vertices.size());
   domain.input_point.reserve(a.vertices.size());
-  domain.subsegments.reserve(a.constraints.size());
   for (std::uint32_t v = 0; v < a.vertices.size(); ++v) {
     pacer.step();
     if (vertex_number[v] == kNone) continue;
@@ -62,27 +67,42 @@ Domain extract(const Arrangement& a, Carving&& carving, Pacer& pacer) {
     domain.input_point.push_back(a.input_point[v]);
   }
 
-  std::vector<std::uint32_t> subsegment_number(a.constraints.size(), kNone);
-  domain.triangles.resize(kept.size());
-  for (std::size_t k = 0; k < kept.size(); ++k) {
+  // The last entries of these two stand for no constraint and no neighbour. Which edges carry a
+  // constraint, and which of them come first, is hard to foresee: so there is no branch on it.
+  const auto no_constraint = static_cast<std::uint32_t>(a.constraints.size());
+  const auto no_triangle = static_cast<std::uint32_t>(a.triangles.size());
+  std::vector<std::uint32_t> subsegment_number(a.constraints.size() + 1, kNone);
+  std::vector<std::uint32_t> constraint(a.constraints.size() + 1);  // per subsegment
+  std::uint32_t subsegments = 0;
+  domain.subsegments.resize(a.constraints.size() + 1);
+  domain.triangles.reserve(kept.size());
+  for (const std::uint32_t t : kept) {
     pacer.step();
-    const Arrangement::Triangle& from = a.triangles[kept[k]];
-    Domain::Triangle& to = domain.triangles[k];
-    for (int i = 0; i < 3; ++i) to.vertex[i] = vertex_number[from.vertex[i]];
+    const Arrangement::Triangle& from = a.triangles[t];
+    Domain::Triangle to;
     for (int i = 0; i < 3; ++i) {
-      to.neighbor[i] = from.neighbor[i] == kNone ? kNone : triangle_number[from.neighbor[i]];
-      to.subsegment[i] = kNone;
-      if (from.constraint[i] == kNone) continue;
-      std::uint32_t& number = subsegment_number[from.constraint[i]];
-      if (number == kNone) {
-        number = static_cast<std::uint32_t>(domain.subsegments.size());
-        const Arrangement::Constraint& c = a.constraints[from.constraint[i]];
-        domain.subsegments.push_back(
-            {to.vertex[(i + 1) % 3], to.vertex[(i + 2) % 3], c.segment, c.marker});
-      }
-      to.subsegment[i] = number;
+      to.vertex[i] = vertex_number[from.vertex[i]];
+      to.neighbor[i] = triangle_number[std::min(from.neighbor[i], no_triangle)];
     }
-    to.region = carving.region[kept[k]];
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t c = std::min(from.constraint[i], no_constraint);
+      const std::uint32_t known = subsegment_number[c];
+      const std::uint32_t is_new = (known == kNone) & (c != no_constraint);
+      to.subsegment[i] = known ^ ((known ^ subsegments) & (0 - is_new));
+      subsegment_number[c] = to.subsegment[i];
+      constraint[subsegments] = c;
+      domain.subsegments[subsegments].a = to.vertex[ccw(i)];
+      domain.subsegments[subsegments].b = to.vertex[cw(i)];
+      subsegments += is_new;
+    }
+    to.region = carving.region[t];
+    domain.triangles.push_back(to);
+  }
+  domain.subsegments.resize(subsegments);
+  for (std::uint32_t s = 0; s < subsegments; ++s) {
+    pacer.step();
+    domain.subsegments[s].segment = a.constraints[constraint[s]].segment;
+    domain.subsegments[s].marker = a.constraints[constraint[s]].marker;
   }
   domain.regions = std::move(carving.regions);
   domain.merging = a.merging;

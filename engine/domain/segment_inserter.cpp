@@ -31,11 +31,12 @@ void merge(Arrangement::Constraint& into, const Arrangement::Constraint& other) 
 }  // namespace
 
 SegmentInserter::SegmentInserter(const Pslg& pslg, const std::vector<Point>& points,
-                                 Triangulation& triangulation, std::uint64_t max_splits,
-                                 Merging& merging, Pacer& pacer)
+                                 Triangulation& triangulation, double spacing,
+                                 std::uint64_t max_splits, Merging& merging, Pacer& pacer)
     : pslg_(pslg),
       points_(points),
       t_(triangulation),
+      spacing_(spacing),
       max_splits_(max_splits),
       merging_(merging),
       pacer_(pacer),
@@ -78,6 +79,9 @@ void SegmentInserter::separate() {
     is_done = true;
     for (std::uint32_t f = 0; f < t_.faces(); ++f) {
       pacer_.step();
+      strip.set_spacing(crossings_ == 0 ? spacing_ : merging_.tolerance);
+      if (strip.is_clear(f)) [[likely]]
+        continue;
       for (int i = 0; i < 3; ++i) {
         const Edge edge{f, i};
         if (t_.constraint(edge) == kNone) continue;

@@ -21,9 +21,10 @@ namespace weft {
 class SegmentInserter {
  public:
   // `points` are those of the PSLG, after merging (merge_points in merging.h), `triangulation` is
-  // theirs. Adds to `merging`. All references must outlive the inserter.
+  // theirs. No two vertices are nearer to each other than `spacing`, the tolerance at least. Adds
+  // to `merging`. All references must outlive the inserter.
   SegmentInserter(const Pslg& pslg, const std::vector<Point>& points, Triangulation& triangulation,
-                  std::uint64_t max_splits, Merging& merging, Pacer& pacer);
+                  double spacing, std::uint64_t max_splits, Merging& merging, Pacer& pacer);
 
   // Afterwards no vertex is nearer to a constrained edge than half the tolerance. Throws Stopped.
   void insert_all();
@@ -85,6 +86,7 @@ class SegmentInserter {
   const Pslg& pslg_;
   const std::vector<Point>& points_;
   Triangulation& t_;
+  const double spacing_;  // of the vertices, as long as there is no crossing
   const std::uint64_t max_splits_;
   Merging& merging_;
   Pacer& pacer_;

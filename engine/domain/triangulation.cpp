@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/domain/hilbert.h"
+#include "engine/domain/snapping.h"
 
 namespace weft {
 namespace {
@@ -23,29 +24,6 @@ unsigned insertion_round(std::uint64_t rank) {
   h ^= h >> 31;
   const auto ones = static_cast<unsigned>(__builtin_ctzll(~h));
   return ones < kRounds - 1 ? kRounds - 1 - ones : 0;
-}
-
-bool before(Point p, Point q) {
-  return p.x < q.x || (p.x == q.x && p.y < q.y);
-}
-
-// For p on the line through a and b: whether it lies strictly between them.
-bool between(Point a, Point b, Point p) {
-  return a.x != b.x ? (a.x < p.x) == (p.x < b.x) && p.x != a.x && p.x != b.x
-                    : (a.y < p.y) == (p.y < b.y) && p.y != a.y && p.y != b.y;
-}
-
-// Where a, b, c and p are on one circle: whether p counts as inside. The point that is raised most,
-// the last in lexicographic order, decides. p itself, raised, is outside. Another one takes p in
-// if and only if p is on its side of the line through the other two; p is never on that line.
-bool inside_when_raised(Point a, Point b, Point c, Point p) {
-  Point last = p;
-  for (const Point q : {a, b, c})
-    if (before(last, q)) last = q;
-  if (last == p) return false;
-  if (last == a) return orientation(p, b, c) > 0;
-  if (last == b) return orientation(a, p, c) > 0;
-  return orientation(a, b, p) > 0;
 }
 
 }  // namespace
@@ -109,6 +87,7 @@ std::vector<Triangulation::Vertex> Triangulation::insertion_order() const {
 // The triangle of three vertices, and the three infinite faces around it.
 void Triangulation::make_first_triangle(Vertex u, Vertex v, Vertex w) {
   if (orientation(at(u), at(v), at(w)) < 0) std::swap(v, w);
+  nearest2_ = std::min({distance2(at(u), at(v)), distance2(at(v), at(w)), distance2(at(w), at(u))});
   faces_.push_back({{u, v, w}, {}});
   faces_.push_back({{w, v, kInfinite}, {}});
   faces_.push_back({{u, w, kInfinite}, {}});
@@ -121,23 +100,6 @@ void Triangulation::make_first_triangle(Vertex u, Vertex v, Vertex w) {
   face_of_[u] = face_of_[v] = face_of_[w] = 0;
 }
 
-// Whether the face cannot stay where p becomes a vertex. An infinite face can, unless p sees its
-// hull edge from outside, or lies on it.
-inline bool Triangulation::conflicts(const Face& face, Point p) const {
-  const Vertex a = face.vertex[0], b = face.vertex[1], c = face.vertex[2];
-  if (c == kInfinite || b == kInfinite || a == kInfinite) [[unlikely]] {
-    const int i = a == kInfinite ? 0 : b == kInfinite ? 1 : 2;
-    const Point q = at(face.vertex[ccw(i)]), r = at(face.vertex[cw(i)]);
-    const int side = orientation(q, r, p);
-    return side > 0 || (side == 0 && between(q, r, p));
-  }
-  const Point q = at(a), r = at(b), s = at(c);
-  const int side = in_circle(q, r, s, p);
-  if (side != 0) [[likely]]
-    return side > 0;
-  return inside_when_raised(q, r, s, p);
-}
-
 // Inserts v into the Delaunay triangulation, or makes it stand for the vertex that is there.
 void Triangulation::insert_delaunay(Vertex v, std::uint32_t start) {
   const Point p = points_[v];
@@ -148,11 +110,22 @@ void Triangulation::insert_delaunay(Vertex v, std::uint32_t start) {
     if (id_[v] < id_[coincident]) std::swap(id_[v], id_[coincident]);
     return;
   }
+  // The nearest of the vertices that are there is on the cavity's border.
+  if (cavity_.find(faces_.data(), points_.data(), p, first)) [[likely]] {
+    nearest2_ = std::min(nearest2_, cavity_.nearest2());
+    return fill_cavity(v, cavity_.faces(), cavity_.size(), cavity_.border());
+  }
   find_cavity(p, first);
-  fill_cavity(v);
+  for (const Border& edge : border_)
+    if (edge.from != kInfinite) nearest2_ = std::min(nearest2_, distance2(p, at(edge.from)));
+  const std::size_t count = dead_.size();
+  dead_.resize(count + 3);
+  border_.push_back(border_[0]);
+  fill_cavity(v, dead_.data(), count, border_.data());
 }
 
-// Collects the faces in conflict with p in dead_, and what is around them in border_. The faces
+// Collects the faces in conflict with p in dead_, and what is around them in border_: any number,
+// infinite ones, too. The faces
 // are a tree, because no vertex is inside the cavity: so none is met twice, nothing need be marked,
 // and the border comes out counter-clockwise.
 void Triangulation::find_cavity(Point p, std::uint32_t first) {
@@ -176,28 +149,28 @@ void Triangulation::find_cavity(Point p, std::uint32_t first) {
   }
 }
 
-// Replaces the cavity's faces by those from v to each edge of its border, which are two more.
-void Triangulation::fill_cavity(Vertex v) {
-  const std::size_t count = border_.size();
-  while (dead_.size() < count) {
-    dead_.push_back(static_cast<std::uint32_t>(faces_.size()));
+// Replaces the cavity's `count` faces by those from v to each edge of its border, which are two
+// more. There is room for three more faces, and the border ends with its first edge once more.
+void Triangulation::fill_cavity(Vertex v, std::uint32_t* dead, std::size_t count,
+                                const Border* border) {
+  for (std::size_t k = 0; k < 2; ++k) {
+    dead[count++] = static_cast<std::uint32_t>(faces_.size());
     faces_.push_back({});
   }
-  std::uint32_t previous = dead_[count - 1];
-  std::uint32_t current = dead_[0];
+  dead[count] = dead[0];
+  Face* const faces = faces_.data();
+  std::uint32_t previous = dead[count - 1];
   for (std::size_t k = 0; k < count; ++k) {
     pacer_.step();
-    const std::uint32_t next = k + 1 < count ? dead_[k + 1] : dead_[0];
-    const Vertex a = border_[k].from;
-    const Vertex b = k + 1 < count ? border_[k + 1].from : border_[0].from;
-    const std::uint32_t outside = border_[k].outside;
-    faces_[current] = {{v, a, b}, {outside, pack(next, 2), pack(previous, 1)}};
-    faces_[outside >> 2].neighbor[outside & 3] = pack(current, 0);
-    if (a != kInfinite) face_of_[a] = current;
+    const std::uint32_t current = dead[k];
+    const auto [from, outside] = border[k];
+    faces[current] = {{v, from, border[k + 1].from},
+                      {outside, pack(dead[k + 1], 2), pack(previous, 1)}};
+    faces[outside >> 2].neighbor[outside & 3] = pack(current, 0);
+    if (from != kInfinite) face_of_[from] = current;
     previous = current;
-    current = next;
   }
-  face_of_[v] = dead_[0];
+  face_of_[v] = dead[0];
 }
 
 // Walks to a face in conflict with p: one that contains it, or outside one whose edge it sees. Of

@@ -31,11 +31,14 @@
 // the pacer says so; the triangulation is then fit for destruction only.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "engine/domain/face.h"
 #include "engine/domain/filtered.h"
 #include "engine/domain/pacer.h"
+#include "engine/domain/small_cavity.h"
 #include "engine/geometry.h"
 
 namespace weft {
@@ -45,8 +48,8 @@ class Triangulation {
   using Vertex = std::uint32_t;
   static constexpr Vertex kInfinite = kNone;
 
-  static constexpr int ccw(int i) { return i == 2 ? 0 : i + 1; }
-  static constexpr int cw(int i) { return i == 0 ? 2 : i - 1; }
+  static constexpr int ccw(int i) { return weft::ccw(i); }
+  static constexpr int cw(int i) { return weft::cw(i); }
 
   // Edge i of a face is opposite its vertex i, from vertex ccw(i) to vertex cw(i): going across it
   // out of the face, the first is on the right.
@@ -66,6 +69,9 @@ class Triangulation {
   // Expected O(n log n), by a biased random order of insertion; 0.15 s for 300,000 random points,
   // 0.27 s for a grid of 500 x 500, where all is decided exactly (one core of 2023).
   void build(const std::vector<Point>& points, std::uint32_t a, std::uint32_t b, std::uint32_t c);
+
+  // The square of the distance between the two nearest of the vertices that `build` made.
+  double nearest2() const { return nearest2_; }
 
   // The vertex of an input point.
   Vertex vertex_of(std::uint32_t point) const { return vertex_of_point_[point]; }
@@ -123,17 +129,8 @@ class Triangulation {
   Vertex insert(Point p, std::uint32_t id, const Place& place);
 
  private:
-  struct Face {
-    Vertex vertex[3];
-    std::uint32_t neighbor[3];  // half-edges: face << 2 | edge
-  };
   struct OnEdges {
     std::uint32_t edge[3];
-  };
-  // Of a cavity: an edge by its first vertex, counter-clockwise, and the half-edge behind it.
-  struct Border {
-    Vertex from;
-    std::uint32_t outside;
   };
 
   static std::uint32_t pack(std::uint32_t face, int i) {
@@ -151,8 +148,10 @@ class Triangulation {
   void insert_delaunay(Vertex v, std::uint32_t start);
   std::uint32_t find_conflict(Point p, std::uint32_t start, Vertex& coincident) const;
   void find_cavity(Point p, std::uint32_t first);
-  void fill_cavity(Vertex v);
-  bool conflicts(const Face& face, Point p) const;
+  void fill_cavity(Vertex v, std::uint32_t* dead, std::size_t count, const Border* border);
+  bool conflicts(const Face& face, Point p) const {
+    return weft::conflicts(face, points_.data(), p);
+  }
 
   void split_face(std::uint32_t face, Vertex v);
   void split_edge(const Edge& edge, Vertex v);
@@ -169,10 +168,12 @@ class Triangulation {
   std::vector<std::uint32_t> id_;        // per vertex
   std::vector<Vertex> vertex_of_point_;  // per input point
 
+  double nearest2_ = 0;
+  SmallCavity cavity_;
   // Kept from one insertion to the next, for their memory.
   std::vector<std::uint32_t> stack_;  // half-edges
-  std::vector<std::uint32_t> dead_;   // the faces of the cavity
-  std::vector<Border> border_;        // of the cavity
+  std::vector<std::uint32_t> dead_;   // the faces of a cavity that is not small
+  std::vector<Border> border_;        // of such a cavity
 };
 
 }  // namespace weft

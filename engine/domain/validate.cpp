@@ -24,10 +24,14 @@ std::string text(const Parts&... parts) {
   return out.str();
 }
 
+bool is_coordinate(double value) {
+  const double magnitude = std::fabs(value);
+  return value == 0 || (magnitude >= kMinMagnitude && magnitude <= kMaxMagnitude);
+}
+
 std::optional<Error> check_coordinate(double value, const char* axis, std::string_view list,
                                       std::size_t i) {
-  const double magnitude = std::fabs(value);
-  if (value == 0 || (magnitude >= kMinMagnitude && magnitude <= kMaxMagnitude)) return {};
+  if (is_coordinate(value)) return {};
   const char* why = std::isfinite(value) ? "; magnitudes must be 0 or from 1e-100 to 1e50"
                                          : "; coordinates must be finite";
   return Error{ErrorCode::kBadCoordinate, element(list, i) + "." + axis,
@@ -35,6 +39,8 @@ std::optional<Error> check_coordinate(double value, const char* axis, std::strin
 }
 
 std::optional<Error> check_point(Point p, std::string_view list, std::size_t i) {
+  if (is_coordinate(p.x) && is_coordinate(p.y)) [[likely]]
+    return {};
   if (auto error = check_coordinate(p.x, "x", list, i)) return error;
   return check_coordinate(p.y, "y", list, i);
 }
