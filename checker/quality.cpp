@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "checker/size_expression.h"
 #include "checker/sum.h"
@@ -30,6 +32,7 @@ struct Shape {
   double area = 0;
   double largest_cotangent = 0;  // of the smallest angle
   double smallest_cotangent = 0;
+  double quality = 0;
   std::uint32_t smallest_corner = 0;
   Vec2 centroid;
 };
@@ -38,9 +41,11 @@ Shape shape_of(const std::array<Vec2, 3>& p) {
   const double cross =
       (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
   std::array<double, 3> dot;
+  double squares = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec2 v = p[i], next = p[(i + 1) % 3], previous = p[(i + 2) % 3];
     dot[i] = (next.x - v.x) * (previous.x - v.x) + (next.y - v.y) * (previous.y - v.y);
+    squares += (next.x - v.x) * (next.x - v.x) + (next.y - v.y) * (next.y - v.y);
   }
   const auto [least, most] = std::minmax_element(dot.begin(), dot.end());
   // The triangle is counter-clockwise; a product of differences may still round to 0 or below.
@@ -48,6 +53,7 @@ Shape shape_of(const std::array<Vec2, 3>& p) {
   return {positive / 2,
           *most / positive,
           *least / positive,
+          2 * std::numbers::sqrt3 * positive / squares,
           static_cast<std::uint32_t>(most - dot.begin()),
           {(p[0].x + p[1].x + p[2].x) / 3, (p[0].y + p[1].y + p[2].y) / 3}};
 }
@@ -75,6 +81,9 @@ class QualityJudge {
 
   void judge() {
     Sum area;
+    Sum quality;
+    std::vector<double> cotangents;
+    cotangents.reserve(mesh_.triangles.size());
     double largest_cotangent = -std::numeric_limits<double>::infinity();
     double smallest_cotangent = std::numeric_limits<double>::infinity();
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
@@ -82,6 +91,8 @@ class QualityJudge {
       for (std::size_t i = 0; i < 3; ++i) corners[i] = mesh_.vertices[mesh_.triangles[t][i]];
       const Shape shape = shape_of(corners);
       area.add(shape.area);
+      quality.add(shape.quality);
+      cotangents.push_back(shape.largest_cotangent);
       largest_cotangent = std::max(largest_cotangent, shape.largest_cotangent);
       smallest_cotangent = std::min(smallest_cotangent, shape.smallest_cotangent);
       const bool misses_angle = !judge_angle(t, shape);
@@ -91,6 +102,16 @@ class QualityJudge {
     facts_.area = static_cast<double>(area.total());
     facts_.min_angle_deg = degrees_of(largest_cotangent);
     facts_.max_angle_deg = degrees_of(smallest_cotangent);
+    if (!cotangents.empty()) {
+      const auto percentile =
+          cotangents.begin() + static_cast<std::ptrdiff_t>(cotangents.size() / 100);
+      std::nth_element(cotangents.begin(), percentile, cotangents.end(), std::greater<>());
+      facts_.min_angle_p1_deg = degrees_of(*percentile);
+      facts_.mean_quality =
+          static_cast<double>(quality.total()) / static_cast<double>(cotangents.size());
+    }
+    if (bounded_ > 0)
+      facts_.ideal_ratio = static_cast<double>(bounded_) / static_cast<double>(shares_.total());
     if (facts_.unrefined > requirements_.allowed_unrefined) findings_.merge(misses_);
   }
 
@@ -143,6 +164,8 @@ class QualityJudge {
         bound = std::min(fixed, largest_size_nearby(shape.centroid, corners));
     }
     if (std::isinf(bound)) return true;
+    ++bounded_;
+    shares_.add(shape.area / bound);
     facts_.worst_area_ratio = std::max(facts_.worst_area_ratio.value_or(0), shape.area / bound);
     if (shape.area <= bound * (1 + kAreaTolerance)) return true;
     misses_.add(Rule::kArea, [&] {
@@ -186,6 +209,8 @@ class QualityJudge {
   Findings misses_;  // violations, once there are more than allowed
   double cotangent_limit_;
   std::optional<SizeExpression> size_;
+  std::uint64_t bounded_ = 0;  // triangles
+  Sum shares_;                 // of their bounds
 };
 
 }  // namespace

@@ -49,14 +49,15 @@ std::vector<HandedOn> triangles_handed_on(const Mesh& mesh, const Slots& slots) 
 
 template <class AreaBound>
 PartBuilder<AreaBound>::PartBuilder(const Mesh& mesh, const Domain& domain,
-                                    const AcuteCorners& corners, AreaBound area, bool cut_off,
-                                    const ExecutionContext& context)
+                                    const AcuteCorners& corners, AreaBound area, bool lattice,
+                                    bool cut_off, const ExecutionContext& context)
     : mesh_(mesh),
       domain_(domain),
       corners_(corners),
       has_regions_(std::any_of(domain.regions.begin(), domain.regions.end(),
                                [](const Region& r) { return r.id != 0; })),
       area_(std::move(area)),
+      lattice_(lattice),
       cut_off_(cut_off),
       context_(context) {}
 
@@ -170,8 +171,12 @@ void PartBuilder<AreaBound>::add_block() {
   chunk_.box.merge(block_->box());
   block_->find_centroids();
   area_.bounds_at(n, block_->centroid_x, block_->centroid_y, block_->bound);
-  for (std::size_t i = 0; i < n; ++i)
+  for (std::size_t i = 0; i < n; ++i) {
     block_->bound[i] = std::min(block_->bound[i], region_bound_[i]);
+    block_->on_lattice[i] =
+        lattice_ && area_.on_lattice({block_->centroid_x[i], block_->centroid_y[i]},
+                                     block_->bound[i], region_bound_[i]);
+  }
   part_.statistics.add(*block_);
   block_->size = 0;
 }

@@ -50,13 +50,15 @@ std::vector<HandedOn> triangles_handed_on(const Mesh& mesh, const Slots& slots);
 
 // Builds one part. `AreaBound` gives the bounds for the size histogram: it has bounds_at, as
 // ConstantArea and MappedArea do. REQUIRES: what is added is final, and all vertices of triangles
-// have their numbers. A triangle that is still bad is counted for the budget if refinement was
-// `cut_off` by it; if not, it is one that was left for want of room while the mesh was streamed.
+// have their numbers; `lattice` tells whether Steiner points came from one
+// (refine/steiner_point.h). A triangle that is still bad is counted for the budget if refinement
+// was `cut_off` by it; if not, it is one that was left for want of room while the mesh was
+// streamed.
 template <class AreaBound>
 class PartBuilder {
  public:
   PartBuilder(const Mesh& mesh, const Domain& domain, const AcuteCorners& corners, AreaBound area,
-              bool cut_off, const ExecutionContext& context);
+              bool lattice, bool cut_off, const ExecutionContext& context);
 
   // About so many will be added: without it, vectors take up to twice what they need.
   void expect(std::size_t vertices, std::size_t triangles);
@@ -80,6 +82,7 @@ class PartBuilder {
   const AcuteCorners& corners_;
   const bool has_regions_;
   AreaBound area_;
+  const bool lattice_;
   const bool cut_off_;
   const ExecutionContext& context_;
   bool stopped_ = false;

@@ -14,6 +14,7 @@
 #include "engine/refine/mapped_area.h"
 #include "engine/schedule/narrow_places.h"
 #include "engine/size/expression.h"
+#include "engine/size/grain_map.h"
 #include "engine/size/size_map.h"
 #include "engine/text.h"
 
@@ -88,12 +89,6 @@ double triangles_asked(const Domain& domain, double bound) {
   return sum;
 }
 
-// How many triangles the size asks for: a lower bound, and what it comes to.
-struct Estimate {
-  double least;
-  double likely;
-};
-
 class Job {
  public:
   Job(const MeshRequest& request, ChunkSink& sink, ExecutionContext& context)
@@ -113,15 +108,25 @@ class Job {
     }
     if (Trace* const trace = context_.trace()) trace->start();
     if (auto error = context_.compute([this] { return prepare(); })) return tl::unexpected(*error);
-    if (map_) {
-      MappedArea area(*varying_size(), *map_);
-      return mesh(area, {map_->least_triangles(), map_->likely_triangles()},
-                  std::numeric_limits<double>::infinity(), map_->bytes() + raster_bytes());
-    }
     const auto bound = constant_bound();
     if (!bound) return tl::unexpected(bound.error());
-    ConstantArea area(*bound);
-    return mesh(area, {0, 0}, *bound, 0);
+    quality_ =
+        QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(summary_.box));
+    if (request_.placement == Placement::kLattice)
+      quality_.lattice = LatticeShape::for_angle(request_.min_angle_deg);
+    if (auto error = admit(*bound)) return tl::unexpected(*error);
+    if (!map_) return mesh(ConstantArea(*bound), 0);
+    GrainMap grains;
+    if (quality_.lattice.exists()) {
+      auto laid_out = context_.compute([&] {
+        return GrainMap::build(*varying_size(), *map_, summary_.box, quality_.lattice, context_);
+      });
+      if (!laid_out) return tl::unexpected(laid_out.error());
+      grains = std::move(*laid_out);
+    }
+    context_.end_stage("grains");
+    return mesh(MappedArea(*varying_size(), *map_, grains),
+                map_->bytes() + grains.bytes() + raster_bytes());
   }
 
  private:
@@ -159,8 +164,9 @@ class Job {
     return request_.size.raster->values.capacity() * sizeof(double) + raster_->bytes();
   }
 
-  // The bound when it is the same everywhere; infinity for none.
+  // The bound that is the same everywhere; infinity for none.
   Result<double> constant_bound() const {
+    if (map_) return std::numeric_limits<double>::infinity();
     if (request_.size.constant) return *request_.size.constant;
     if (!expression_) return std::numeric_limits<double>::infinity();
     const Point somewhere = domain_.vertices[0];
@@ -169,55 +175,62 @@ class Job {
     return fail(ErrorCode::kBadSizeValue, "size.expression", bad_size_message({somewhere, bound}));
   }
 
-  // `by_map` is what the size map asks for, `bound` holds everywhere.
-  template <class AreaBound>
-  Result<Summary> mesh(AreaBound& area, Estimate by_map, double bound, std::uint64_t size_bytes) {
+  // Estimates the mesh, for a size of `bound` everywhere or that of the map, and refuses what is
+  // over the limit.
+  std::optional<Error> admit(double bound) {
     const Budget& budget = context_.budget();
+    const auto over_limit = [](const char* field, std::string message) {
+      return Error{ErrorCode::kLimitExceeded, field, std::move(message)};
+    };
     const double by_bounds = triangles_asked(domain_, bound);
-    const Estimate estimate{std::max(by_map.least, by_bounds), std::max(by_map.likely, by_bounds)};
+    const double least = std::max(map_ ? map_->least_triangles() : 0, by_bounds);
+    const double likely = std::max(map_ ? map_->likely_triangles() : 0, by_bounds);
     if (domain_.triangles.size() > budget.triangle_limit) {
-      return fail(ErrorCode::kLimitExceeded, "domain",
-                  "the domain itself has " + std::to_string(domain_.triangles.size()) +
-                      " triangles, more than the limit of " +
-                      std::to_string(budget.triangle_limit));
+      return over_limit("domain", "the domain itself has " +
+                                      std::to_string(domain_.triangles.size()) +
+                                      " triangles, more than the limit of " +
+                                      std::to_string(budget.triangle_limit));
     }
-    if (!wants_cap() && estimate.least > static_cast<double>(budget.triangle_limit)) {
-      return fail(ErrorCode::kLimitExceeded, "size",
-                  "the size asks for at least " + text(std::ceil(estimate.least)) +
-                      " triangles, more than the limit of " +
-                      std::to_string(budget.triangle_limit));
+    if (!wants_cap() && least > static_cast<double>(budget.triangle_limit)) {
+      return over_limit("size", "the size asks for at least " + text(std::ceil(least)) +
+                                    " triangles, more than the limit of " +
+                                    std::to_string(budget.triangle_limit));
     }
-    // Triangles come out at 0.64 of their bound on average.
-    const double by_size =
-        std::max(1.55 * estimate.likely, static_cast<double>(domain_.triangles.size()));
-    const QualityBounds quality =
-        QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(summary_.box));
+    by_size_ = std::max(triangles_per_bound(quality_) * likely,
+                        static_cast<double>(domain_.triangles.size()));
     auto narrow = context_.compute([&] {
       return NarrowPlaces::find(
-          domain_, quality, [&](Point p) { return map_ ? map_->likely_size(p) : bound; }, context_);
+          domain_, quality_, [&](Point p) { return map_ ? map_->likely_size(p) : bound; },
+          context_);
     });
-    if (!narrow) return tl::unexpected(narrow.error());
-    if (!wants_cap() && narrow->least() > static_cast<double>(budget.triangle_limit))
-      return tl::unexpected(too_narrow(*narrow));
+    if (!narrow) return narrow.error();
+    narrow_ = std::move(*narrow);
+    if (!wants_cap() && narrow_.least() > static_cast<double>(budget.triangle_limit))
+      return too_narrow();
+    least_ = std::max(least, narrow_.least());
     const double elsewhere =
-        NarrowPlaces::elsewhere(quality) * static_cast<double>(domain_.triangles.size());
-    expected_ = std::max(by_size, elsewhere) + narrow->likely();
+        NarrowPlaces::elsewhere(quality_) * static_cast<double>(domain_.triangles.size());
+    expected_ = std::max(by_size_, elsewhere) + narrow_.likely();
     const double most = static_cast<double>(wants_cap() ? budget.max_triangles : kUncountable);
     context_.report_expected(static_cast<std::uint64_t>(std::min(expected_, most)));
-    summary_.size_seconds = clock_.lap();
     context_.end_stage("size map");
+    return std::nullopt;
+  }
 
+  template <class AreaBound>
+  Result<Summary> mesh(const AreaBound& area, std::uint64_t size_bytes) {
+    summary_.size_seconds = clock_.lap();
     context_.enter(Stage::kRefine);
     MeshPlan plan{.domain = domain_,
                   .box = summary_.box,
-                  .quality = quality,
-                  .narrow = *narrow,
+                  .quality = quality_,
+                  .narrow = narrow_,
                   .expected_triangles = expected_,
-                  .expected_by_size = by_size,
+                  .expected_by_size = by_size_,
                   .leaf_triangles = request_.leaf_triangles,
-                  .least_triangles = std::max(estimate.least, narrow->least()),
-                  .other_bytes = size_bytes + narrow->bytes()};
-    if (wants_cap()) plan.max_triangles = budget.max_triangles;
+                  .least_triangles = least_,
+                  .other_bytes = size_bytes + narrow_.bytes()};
+    if (wants_cap()) plan.max_triangles = context_.budget().max_triangles;
     if (auto error = run_mesh(plan, area, sink_, context_, summary_)) return tl::unexpected(*error);
     summary_.engine_seconds += summary_.triangulate_seconds + summary_.size_seconds;
     if (!request_.allow_unrefined) {
@@ -228,10 +241,10 @@ class Job {
     return summary_;
   }
 
-  Error too_narrow(const NarrowPlaces& narrow) const {
-    const NarrowPlaces::Costliest& worst = *narrow.costliest();
+  Error too_narrow() const {
+    const NarrowPlaces::Costliest& worst = *narrow_.costliest();
     return {ErrorCode::kLimitExceeded, "quality.min_angle_deg",
-            "the minimum angle asks for at least " + text(std::ceil(narrow.least())) +
+            "the minimum angle asks for at least " + text(std::ceil(narrow_.least())) +
                 " triangles where the domain is narrow, more than the limit of " +
                 std::to_string(context_.budget().triangle_limit) +
                 "; most of them between segments " + std::to_string(worst.segment) + " and " +
@@ -253,7 +266,11 @@ class Job {
   std::optional<RasterSize> raster_;
   Domain domain_;
   std::optional<SizeMap> map_;
+  QualityBounds quality_;
+  NarrowPlaces narrow_;
+  double least_ = 0;     // triangles, for certain
   double expected_ = 0;  // triangles
+  double by_size_ = 0;   // of these, what the size alone makes
   Summary summary_;
 };
 

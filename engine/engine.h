@@ -8,6 +8,7 @@
 //   Result<Summary> summary = generate_mesh(request, sink, context);
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,6 +37,15 @@ struct SizeSpec {
 
 inline constexpr double kMaxMinAngleDeg = 34;
 
+// Where the Steiner points of triangles that are too large go (refine/steiner_point.h).
+enum class Placement : std::uint8_t {
+  // To a hexagonal lattice that follows the size: a third fewer triangles, nearly all of them
+  // equilateral, along three directions. Above 31.5 degrees as kCircumcentre.
+  kLattice,
+  // To circumcentres: no direction in the mesh, and half as many triangles more.
+  kCircumcentre,
+};
+
 struct MeshRequest {
   Pslg pslg = {};
   SizeSpec size = {};
@@ -43,6 +53,7 @@ struct MeshRequest {
   double min_angle_deg = 20;
   // No edge shorter than this is made, in units. 0: only the floor of double precision.
   double min_edge = 0;
+  Placement placement = Placement::kLattice;
   // Whether a mesh with triangles that miss a bound without excuse (Unrefined::without_excuse) is a
   // result. If not, it ends with kBoundsNotMet, after its chunks.
   bool allow_unrefined = false;

@@ -349,8 +349,8 @@ class MeshRun {
   template <class F>
   std::optional<Part> build_part(F&& fill) {
     return emit_time_.measure([&] {
-      PartBuilder<AreaBound> builder(mesh_, plan_.domain, corners_, area_.again(), cut_off_,
-                                     context_);
+      PartBuilder<AreaBound> builder(mesh_, plan_.domain, corners_, area_.again(),
+                                     plan_.quality.lattice.exists(), cut_off_, context_);
       fill(builder);
       return builder.finish();
     });

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace weft {
 namespace {
@@ -46,6 +47,10 @@ std::size_t angle_bin(double t) {
   const std::size_t bin = kFirstBinOfCell[cell];
   return bin + (t <= kBorders[bin] ? 1 : 0);
 }
+
+// Smallest angles are counted by their t, from 1 down to 0.366 at 60 degrees, in steps of 0.07
+// degrees.
+constexpr double kFinePerT = 1600;
 
 constexpr std::array<double, 8> kAspects = {1.1, 1.25, 1.5, 2, 3, 5, 10, 100};
 
@@ -98,6 +103,8 @@ void QualityStatistics::add(const TriangleBlock& block) {
   alignas(16) std::int64_t aspect[kSize];  // its bin
   alignas(16) double ratio[kSize];
   alignas(16) double area[kSize];
+  alignas(16) double quality[kSize];
+  if (fine_.empty()) fine_.resize(2 * kFineBins);
   const std::size_t n = block.size;
   for (std::size_t i = 0; i < n; i += 2) {
     const auto edge = [i](const double(&coordinate)[3][kSize], std::size_t from, std::size_t to) {
@@ -108,13 +115,16 @@ void QualityStatistics::add(const TriangleBlock& block) {
     const Lanes ey[3] = {edge(block.y, 1, 2), edge(block.y, 2, 0), edge(block.y, 0, 1)};
     const Lanes doubled = ex[2] * ey[0] - ey[2] * ex[0];
     Lanes length[3];
+    Lanes sum2 = _mm_setzero_pd();
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t next = k == 2 ? 0 : k + 1;
       const std::size_t previous = k == 0 ? 2 : k - 1;
       const Lanes dot = -(ex[next] * ex[previous] + ey[next] * ey[previous]);
       const Lanes magnitude = _mm_andnot_pd(_mm_set1_pd(-0.0), dot);
       _mm_store_pd(&angle[k][i], dot / (doubled + magnitude));
-      length[k] = _mm_sqrt_pd(ex[k] * ex[k] + ey[k] * ey[k]);
+      const Lanes length2 = ex[k] * ex[k] + ey[k] * ey[k];
+      sum2 += length2;
+      length[k] = _mm_sqrt_pd(length2);
     }
     const Lanes longest = _mm_max_pd(length[0], _mm_max_pd(length[1], length[2]));
     const Lanes scaled = longest * (length[0] + length[1] + length[2]) * (0.5 / 1.7320508075688772);
@@ -124,25 +134,41 @@ void QualityStatistics::add(const TriangleBlock& block) {
     _mm_store_si128(reinterpret_cast<__m128i*>(&aspect[i]), bin);
     const Lanes half = 0.5 * doubled;
     _mm_store_pd(&area[i], half);
+    _mm_store_pd(&quality[i], (2 * 1.7320508075688772) * doubled / sum2);
     _mm_store_pd(&ratio[i], half / _mm_load_pd(&block.bound[i]) * 10);
   }
   // Neighbours fall into the same bins: were they the same counters, each would wait for the last.
   std::array<std::array<std::uint32_t, 18>, 3> angles{};
   double total = area_;
+  double on_lattice = 0;
+  double off_lattice = 0;
+  double mean = 0;
+  double least = 0;
   double smallest = smallest_angle_;
   double largest = largest_angle_;
   for (std::size_t i = 0; i < n; ++i) {
     total += area[i];
+    (block.on_lattice[i] ? on_lattice : off_lattice) += area[i];
+    mean += quality[i];
     for (std::size_t k = 0; k < 3; ++k) ++angles[k][angle_bin(angle[k][i])];
-    smallest = std::max(smallest, std::max(std::max(angle[0][i], angle[1][i]), angle[2][i]));
+    const double least_angle = std::max(std::max(angle[0][i], angle[1][i]), angle[2][i]);
+    smallest = std::max(smallest, least_angle);
+    // Neighbours are in the same bin here, too.
+    ++fine_[2 * static_cast<std::size_t>((1 - least_angle) * kFinePerT) + i % 2];
     largest = std::min(largest, std::min(std::min(angle[0][i], angle[1][i]), angle[2][i]));
     ++aspects_[static_cast<std::size_t>(aspect[i])];
     if (block.bound[i] < std::numeric_limits<double>::infinity()) {
       // Not a number, where the size field is bad, counts as exceeding.
       ++sizes_[ratio[i] < 9 ? static_cast<std::size_t>(ratio[i]) : 9];
+      least += ratio[i];
+      ++bounded_;
     }
   }
   area_ = total;
+  on_lattice_ += on_lattice;
+  off_lattice_ += off_lattice;
+  quality_ += mean;
+  least_ += least;
   smallest_angle_ = smallest;
   largest_angle_ = largest;
   for (std::size_t bin = 0; bin < angles_.size(); ++bin)
@@ -154,6 +180,15 @@ void QualityStatistics::add(const QualityStatistics& other) {
     for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
   };
   area_ += other.area_;
+  on_lattice_ += other.on_lattice_;
+  off_lattice_ += other.off_lattice_;
+  quality_ += other.quality_;
+  least_ += other.least_;
+  bounded_ += other.bounded_;
+  if (!other.fine_.empty()) {
+    fine_.resize(2 * kFineBins);
+    add_each(fine_, other.fine_);
+  }
   smallest_angle_ = std::max(smallest_angle_, other.smallest_angle_);
   largest_angle_ = std::min(largest_angle_, other.largest_angle_);
   add_each(angles_, other.angles_);
@@ -161,9 +196,27 @@ void QualityStatistics::add(const QualityStatistics& other) {
   add_each(sizes_, other.sizes_);
 }
 
+// So many triangles have a smaller smallest angle, in degrees; between the bins by their share.
+double QualityStatistics::percentile(double rank) const {
+  double below = 0;
+  for (std::size_t bin = 0; bin < kFineBins; ++bin) {
+    const auto here = static_cast<double>(fine_[2 * bin] + fine_[2 * bin + 1]);
+    if (here > 0 && below + here >= rank)
+      return degrees(1 - (static_cast<double>(bin) + (rank - below) / here) / kFinePerT);
+    below += here;
+  }
+  return 60;
+}
+
 void QualityStatistics::write(Summary& summary) const {
+  const auto triangles =
+      static_cast<double>(std::accumulate(aspects_.begin(), aspects_.end(), std::uint64_t{0}));
   summary.area = area_;
+  summary.lattice_share = on_lattice_ / (on_lattice_ + off_lattice_);
+  summary.mean_quality = quality_ / triangles;
+  summary.ideal_ratio = least_ > 0 ? static_cast<double>(bounded_) / (0.1 * least_) : 0;
   summary.min_angle_deg = degrees(smallest_angle_);
+  summary.min_angle_p1_deg = std::max(summary.min_angle_deg, percentile(0.01 * triangles));
   summary.max_angle_deg = degrees(largest_angle_);
   summary.angle_histogram = angles_;
   summary.aspect_histogram = aspects_;

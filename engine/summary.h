@@ -48,6 +48,16 @@ struct Summary {
 
   double min_angle_deg = 0;
   double max_angle_deg = 0;
+  // Of the triangles' smallest angles: 1 % of the triangles have a smaller one. To 0.1 degrees.
+  double min_angle_p1_deg = 0;
+  // Mean over the triangles of 4 sqrt(3) area / (sum of the squared edges): 1 for equilateral ones.
+  double mean_quality = 0;
+  // Triangles over the least number that their bounds allow, the integral of 1 / bound, taken at
+  // the centroids of the mesh. Regions without a bound count for neither; 0 if there is no bound.
+  double ideal_ratio = 0;
+  // How much of the area lies where Steiner points came from a lattice, 0 to 1: on grains of
+  // size/grain_map.h, or under one bound everywhere. The rest has circumcentres, or lies at steps.
+  double lattice_share = 0;
   std::array<std::uint64_t, 18> angle_histogram{};  // all angles, 10 degrees a bin
   // Aspect ratio = longest edge / (2 sqrt(3) inradius), 1 for equilateral; bins end at
   // 1.1, 1.25, 1.5, 2, 3, 5, 10, 100, infinity.

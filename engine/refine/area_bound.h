@@ -13,6 +13,7 @@
 #include "engine/geometry.h"
 #include "engine/refine/cavity.h"
 #include "engine/refine/quality_bounds.h"
+#include "engine/size/lattice.h"
 
 namespace weft {
 
@@ -46,6 +47,16 @@ class ConstantArea {
                       UniformAreaBound{2 * coarseness_ * std::min(bound_, region_bound)}, badness);
   }
 
+  // The point nearest to c of the lattice for the mesh that is asked for, whatever the coarseness.
+  LatticePoint nearest_of_lattice(Point c, double region_bound, const LatticeShape& shape) {
+    return lattice_.nearest(c, std::min(bound_, region_bound), shape);
+  }
+
+  // Whether there is one at p, where `bound` holds, that of the region included.
+  bool on_lattice(Point, double bound, double) const {
+    return bound < std::numeric_limits<double>::infinity();
+  }
+
   // Insertions that take about 0.1 ms, see ExecutionContext.
   static constexpr std::uint32_t poll_interval() { return 512; }
 
@@ -59,6 +70,7 @@ class ConstantArea {
  private:
   double bound_;
   double coarseness_;
+  UniformLattice lattice_;
   std::optional<BadSize> bad_size_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace weft {
 
@@ -109,6 +110,24 @@ RingVerdict MappedArea::judge_evaluated(const SizeMap::Place& place, const Ring&
     }
   }
   return verdict;
+}
+
+double MappedArea::bound_of_piece(Point c) const {
+  const double here = function_(c);
+  if (!(here > 0 && here < std::numeric_limits<double>::infinity())) return 0;
+  const double h = std::sqrt(here);
+  Lanes x;
+  Lanes y;
+  Lanes bound;
+  std::fill_n(x.values, SizeFunction::kLanes, c.x);
+  std::fill_n(y.values, SizeFunction::kLanes, c.y);
+  x.values[0] -= h;
+  x.values[1] += h;
+  y.values[2] -= h;
+  y.values[3] += h;
+  function_.evaluate(4, x.values, y.values, bound.values);
+  const double* const b = bound.values;
+  return (b[0] == here || b[1] == here) && (b[2] == here || b[3] == here) ? here : 0;
 }
 
 void MappedArea::bounds_at(std::size_t n, const double* x, const double* y, double* bound) {

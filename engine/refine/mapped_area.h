@@ -7,10 +7,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
 #include "engine/refine/area_bound.h"
+#include "engine/size/grain_map.h"
+#include "engine/size/lattice.h"
 #include "engine/size/size_map.h"
 
 namespace weft {
@@ -22,11 +25,16 @@ namespace weft {
 class MappedArea {
  public:
   // Bounds are multiplied by `coarseness`.
-  MappedArea(const SizeFunction& function, const SizeMap& map, double coarseness = 1)
-      : function_(function), map_(map), coarseness_(coarseness) {}
+  MappedArea(const SizeFunction& function, const SizeMap& map, const GrainMap& grains,
+             double coarseness = 1)
+      : function_(function),
+        map_(map),
+        grains_(grains),
+        grain_(&grains.grains().front()),
+        coarseness_(coarseness) {}
 
   // The same, for another thread or another coarseness.
-  MappedArea again(double coarseness = 1) const { return {function_, map_, coarseness}; }
+  MappedArea again(double coarseness = 1) const { return {function_, map_, grains_, coarseness}; }
 
   // A task begins whose rings lie in `box`, most of them.
   void begin(const Box& box);
@@ -42,6 +50,30 @@ class MappedArea {
     return judge_by_cell(ring, first, last, p, region_bound, quality, badness);
   }
 
+  // The point nearest to c of the lattice for the mesh that is asked for, whatever the coarseness.
+  // A region's bound has its own where it is below what the lattice of the size is laid out for.
+  LatticePoint nearest_of_lattice(Point c, double region_bound, const LatticeShape& shape) {
+    find_grain(c);
+    if (grain_->kind == GrainMap::Kind::kFit) {
+      const LatticePoint point = grain_->map.nearest(c, shape.jitter);
+      if (kEquilateral * point.spacing2 <= region_bound) [[likely]]
+        return point;
+      return lattice_.nearest(c, region_bound, shape);
+    }
+    double bound = 0;
+    if (grain_->kind == GrainMap::Kind::kConstant) bound = grain_->size;
+    if (grain_->kind == GrainMap::Kind::kStepped) bound = bound_of_piece(c);
+    if (bound == 0 && region_bound < kNoBound && region_bound <= function_(c)) bound = region_bound;
+    return lattice_.nearest(c, std::min(bound, region_bound), shape);
+  }
+
+  // Whether there is one at p, where `bound` holds, that of the region included.
+  bool on_lattice(Point p, double bound, double region_bound) {
+    find_grain(p);
+    return grain_->kind == GrainMap::Kind::kFit || grain_->kind == GrainMap::Kind::kConstant ||
+           region_bound <= bound;
+  }
+
   // Insertions between polls: fewer where the function is costly (4,096 powers take 1 ms a ring).
   std::uint32_t poll_interval() const {
     return 1 + static_cast<std::uint32_t>(512 / (1 + function_.operations() / 16));
@@ -54,6 +86,7 @@ class MappedArea {
 
  private:
   static constexpr std::size_t kGrid = 16;  // cells each way
+  static constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
   // The vectors that hold a function's batches.
   struct alignas(64) Lanes {
@@ -67,6 +100,13 @@ class MappedArea {
     SizeMap::Place place{};
   };
 
+  void find_grain(Point p) {
+    if (!(room_in(grain_->box, p) > 0)) [[unlikely]]
+      grain_ = &grains_.locate(p);
+  }
+  // At the border of constant pieces: the bound at c where it is the same an edge's length away, in
+  // x and in y, on one side at least; otherwise 0.
+  double bound_of_piece(Point c) const;
   UniformAreaBound uniform(double region_bound) const {
     return {2 * coarseness_ * std::min(size_, region_bound)};
   }
@@ -80,6 +120,9 @@ class MappedArea {
 
   const SizeFunction& function_;
   const SizeMap& map_;
+  const GrainMap& grains_;
+  const GrainMap::Grain* grain_;  // the last one asked for
+  UniformLattice lattice_;
   const double coarseness_;
   Box box_;          // where the function is constant; empty at first
   double size_ = 0;  // its value there

@@ -19,6 +19,7 @@
 #include "engine/refine/cavity.h"
 #include "engine/refine/lens.h"
 #include "engine/refine/mesh.h"
+#include "engine/size/lattice.h"
 
 namespace weft {
 
@@ -29,11 +30,20 @@ struct QualityBounds {
   double lens = kNoLens;   // what encroaches for skinny triangles (lens.h)
   double precision2 = 0;   // squared length below which double precision ends
   double min_length2 = 0;  // the larger of the two
+  LatticeShape lattice{};  // where points for triangles too large are taken from
 
   // No edge below min_edge, nor below `precision`, is made. REQUIRES: 0 <= min_angle_deg <=
   // kMaxMinAngleDeg.
   static QualityBounds from(double min_angle_deg, double min_edge, double precision);
 };
+
+// Triangles over the integral of 1 / bound, as they come out; and the area of most over the bound.
+inline double triangles_per_bound(const QualityBounds& quality) {
+  return quality.lattice.exists() ? 1.03 / quality.lattice.fill : 1.55;
+}
+inline double area_over_bound(const QualityBounds& quality) {
+  return quality.lattice.exists() ? quality.lattice.fill : 0.64;
+}
 
 // Squared circumradius of a counter-clockwise triangle.
 inline double circumradius2(Point a, Point b, Point c) {
@@ -49,6 +59,7 @@ struct RingVerdict {
   bool flat = false;       // a triangle may not be counter-clockwise: ask the exact predicate
   bool too_close = false;  // p is nearer to a point of the ring than the floor
   double reach2 = 0;       // squared distance from p to the farthest point of the ring
+  double nearest2 = 0;     // and to the nearest
 };
 
 // An area bound for every triangle of a ring. Two at once: those of triangles i and i + 1.
@@ -116,8 +127,9 @@ inline RingVerdict judge_ring(const Ring& ring, std::uint32_t first, std::uint32
                      _mm_shuffle_epi32(worse, _MM_SHUFFLE(3, 1, 2, 0)));
   }
   const auto any = [](__m128d mask) { return _mm_movemask_pd(mask) != 0; };
-  return {any(flat), any(_mm_cmplt_pd(nearest2, _mm_set1_pd(quality.min_length2))),
-          _mm_cvtsd_f64(_mm_max_sd(farthest2, _mm_unpackhi_pd(farthest2, farthest2)))};
+  const double closest2 = _mm_cvtsd_f64(_mm_min_sd(nearest2, _mm_unpackhi_pd(nearest2, nearest2)));
+  return {any(flat), closest2 < quality.min_length2,
+          _mm_cvtsd_f64(_mm_max_sd(farthest2, _mm_unpackhi_pd(farthest2, farthest2))), closest2};
 }
 
 }  // namespace weft

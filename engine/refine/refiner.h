@@ -158,10 +158,7 @@ class Refiner {
       triangle.set_excuse(Excuse::kSmallInputAngle);
       return;
     }
-    const Point p =
-        steiner_point(mesh_.vertices[triangle.vertex[0]], mesh_.vertices[triangle.vertex[1]],
-                      mesh_.vertices[triangle.vertex[2]], quality_);
-    switch (insert_in_triangle(t, p)) {
+    switch (insert_for(t)) {
       [[likely]] case Outcome::kInserted : return;
       case Outcome::kEncroaches:
         split_encroached(t);
@@ -174,6 +171,26 @@ class Refiner {
         triangle.set_excuse(refusal());
         return;
     }
+  }
+
+  // Inserts where t's Steiner point goes (steiner_point.h).
+  Outcome insert_for(std::uint32_t t) {
+    const Triangle& triangle = mesh_.triangles[t];
+    const Point a = mesh_.vertices[triangle.vertex[0]];
+    const Point b = mesh_.vertices[triangle.vertex[1]];
+    const Point c = mesh_.vertices[triangle.vertex[2]];
+    if (triangle.badness() == kSkinny || !quality_.lattice.exists())
+      return insert_in_triangle(t, steiner_point(a, b, c, quality_), 0);
+    const Point centre = steiner_point(a, b, c, 0.0);
+    const LatticePoint nearest =
+        area_.nearest_of_lattice(centre, region_bound(t), quality_.lattice);
+    if (takes_lattice_point(a, b, c, centre, nearest)) [[likely]] {
+      const Outcome outcome =
+          insert_in_triangle(t, nearest.at, kLatticeClearance2 * nearest.spacing2);
+      if (outcome != Outcome::kTooClose) [[likely]]
+        return outcome;
+    }
+    return insert_in_triangle(t, centre, 0);
   }
 
   // Why the star of a point was refused, by the edges that it would have had.
@@ -203,7 +220,8 @@ class Refiner {
     }
   }
 
-  Outcome insert_in_triangle(std::uint32_t t, Point p) {
+  // `clearance2` is the least squared distance from p to what it is joined to.
+  Outcome insert_in_triangle(std::uint32_t t, Point p, double clearance2) {
     while (true) {
       switch (cavity_.grow_from_triangle(t, p, lens_of(t))) {
         case Growth::kOverflow:
@@ -221,7 +239,7 @@ class Refiner {
     const Ring& ring = cavity_.ring();
     const RingVerdict verdict =
         area_.judge(ring, 0, ring.size, p, region_bound(t), quality_, judged_.data());
-    if (!acceptable(verdict, p)) [[unlikely]]
+    if (verdict.nearest2 < clearance2 || !acceptable(verdict, p)) [[unlikely]]
       return Outcome::kTooClose;
     retriangulate(slots_->add_vertex(mesh_, p), p, verdict.reach2, true);
     return Outcome::kInserted;

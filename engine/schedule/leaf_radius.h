@@ -20,13 +20,33 @@
 
 namespace weft {
 
-// Stands in for the grading function (refine/area_bound.h).
+// The weight from which on a leaf counts as busy: `busy`, or 0 if what all leaves together need
+// then is little of the mesh. So a mesh that fills most of its leaves has the criterion in all of
+// them, and may be streamed (Prelude::fits). us-east-coast with a size of 1e-4, where 67 of 736
+// leaves are light, takes 40.5 bytes a triangle so, and 43.3 if these are left out, because then
+// nothing leaves before all is refined.
+inline double busy_weight(const Quadtree& tree, double busy) {
+  constexpr double kInLeaf = 25;  // triangles
+  constexpr double kFew = 0.002;  // of all
+  double light = 0;
+  double all = 0;
+  for (const Quadtree::Leaf& leaf : tree.leaves()) {
+    all += leaf.weight;
+    if (leaf.weight < busy) light += kInLeaf;
+  }
+  return light <= kFew * all ? 0 : busy;
+}
+
+// Stands in for the grading function (refine/area_bound.h), but for its lattice: what is inserted
+// here is of the final mesh, too.
+template <class AreaBound>
 class LeafRadius {
  public:
   static constexpr double kPart = 0.25;
 
   // A leaf is busy from this weight on.
-  LeafRadius(const Quadtree& tree, double busy) : tree_(&tree), busy_near_(tree.leaves().size()) {
+  LeafRadius(const Quadtree& tree, double busy, const AreaBound& area)
+      : tree_(&tree), area_(area.again()), busy_near_(tree.leaves().size()) {
     const auto& leaves = tree.leaves();
     const auto is_busy = [&](std::uint32_t l) { return leaves[l].weight >= busy; };
     for (std::uint32_t l = 0; l < leaves.size(); ++l) {
@@ -34,23 +54,6 @@ class LeafRadius {
       busy_near_[l].push_back(l);
       for (const std::uint32_t other : tree.touching(l)) busy_near_[other].push_back(l);
     }
-  }
-
-  // The weight from which on a leaf counts as busy: `busy`, or 0 if what all leaves together need
-  // then is little of the mesh. So a mesh that fills most of its leaves has the criterion in all of
-  // them, and may be streamed (Prelude::fits). us-east-coast with a size of 1e-4, where 67 of 736
-  // leaves are light, takes 40.5 bytes a triangle so, and 43.3 if these are left out, because then
-  // nothing leaves before all is refined.
-  static double busy_weight(const Quadtree& tree, double busy) {
-    constexpr double kInLeaf = 25;  // triangles
-    constexpr double kFew = 0.002;  // of all
-    double light = 0;
-    double all = 0;
-    for (const Quadtree::Leaf& leaf : tree.leaves()) {
-      all += leaf.weight;
-      if (leaf.weight < busy) light += kInLeaf;
-    }
-    return light <= kFew * all ? 0 : busy;
   }
 
   // Of the circumradius of a triangle with this centroid.
@@ -86,6 +89,10 @@ class LeafRadius {
     return verdict;
   }
 
+  LatticePoint nearest_of_lattice(Point c, double region_bound, const LatticeShape& shape) {
+    return area_.nearest_of_lattice(c, region_bound, shape);
+  }
+
   static constexpr std::uint32_t poll_interval() { return 512; }
   const std::optional<BadSize>& bad_size() const { return bad_size_; }
 
@@ -94,6 +101,7 @@ class LeafRadius {
   static constexpr double kGrowth = 0.5;  // 1 doubles what is deferred and saves 0.1 %
 
   const Quadtree* tree_;
+  AreaBound area_;
   std::vector<std::vector<std::uint32_t>> busy_near_;  // per leaf: itself, and those it touches
   std::optional<BadSize> bad_size_;
 };

@@ -61,17 +61,15 @@ struct Grading {
     return grading;
   }
 
-  // Triangles a unit of length on one side of a segment, beyond those that the size `area` makes
+  // Triangles a unit of length on one side of a segment, beyond those of `area` that the size makes
   // anyway. The next thing on this side is at the distance w.
   double beside(double h, double w, double area) const {
-    const double natural = std::sqrt(kOfBound * area / c);  // edge
+    const double natural = std::sqrt(area / c);  // edge
     const double far = std::min(0.5 * w, (natural - h) / k);
     if (!(far > 0)) return 0;
     const double graded = (1 / h - 1 / (h + k * far)) / (c * k);
     return std::max(0.0, graded - far / (c * natural * natural));
   }
-
-  static constexpr double kOfBound = 0.64;  // of it triangles come out at
 };
 
 }  // namespace
@@ -83,6 +81,7 @@ class NarrowPlaces::Search {
          const std::function<double(Point)>& likely_area)
       : domain_(domain),
         likely_area_(likely_area),
+        area_over_bound_(area_over_bound(quality)),
         grading_(Grading::of(quality.sin2)),
         floor_(std::sqrt(quality.min_length2)) {}
 
@@ -252,7 +251,7 @@ class NarrowPlaces::Search {
           const double bound =
               std::min(area, domain_.regions[domain_.triangles[side.triangle].region].max_area);
           const double w = std::max(near.distance, h[i]);
-          likely += grading_.beside(h[i], w, bound) / kPoints;
+          likely += grading_.beside(h[i], w, area_over_bound_ * bound) / kPoints;
           quality_alone += grading_.beside(h[i], w, kInfinity) / kPoints;
         }
       }
@@ -289,6 +288,7 @@ class NarrowPlaces::Search {
 
   const Domain& domain_;
   const std::function<double(Point)>& likely_area_;
+  const double area_over_bound_;
   const Grading grading_;
   const double floor_;
   std::vector<Side> stack_;

@@ -56,7 +56,7 @@ class Prelude {
     if (tree_.leaves().size() == 1) return std::nullopt;
     // Neither needs the other.
     std::optional<Error> error;
-    const LeafRadius radius(tree_, LeafRadius::busy_weight(tree_, leaf_triangles_ / kBusy));
+    const LeafRadius<AreaBound> radius(tree_, busy_weight(tree_, leaf_triangles_ / kBusy), area_);
     setting_.context.for_each(2, [&](std::size_t which) {
       if (which == 0) error = refine(no_angles, radius, box);
       if (which == 1) order_ = LeafOrder(tree_);
@@ -125,10 +125,8 @@ class Prelude {
   }
 
   std::vector<Quadtree::Sample> samples(const Run& run) const {
-    // Triangles come out at 0.64 of their bound on average, and no smaller than the floor on their
-    // edges allows.
-    constexpr double kPerBound = 1.55;
-    constexpr double kEquilateral = 0.433;  // area over squared edge
+    // No smaller than the floor on their edges allows.
+    const double per_bound = triangles_per_bound(quality_);
     const double floor = kEquilateral * quality_.min_length2;
     static_assert(Mesh::kTriangleBlock <= TriangleBlock::kSize);
     const Mesh& mesh = setting_.mesh;
@@ -146,7 +144,7 @@ class Prelude {
                                  (block.y[1][i] - block.y[0][i]) * (block.x[2][i] - block.x[0][i]));
       const double bound =
           std::min(block.bound[i], region_bound(run.first + static_cast<std::uint32_t>(i)));
-      const double asked = bound > 0 ? size / std::max(bound / kPerBound, floor) : 1;
+      const double asked = bound > 0 ? size / std::max(bound / per_bound, floor) : 1;
       result.push_back({{block.centroid_x[i], block.centroid_y[i]}, std::max(asked, 1.0)});
     }
     return result;
@@ -187,7 +185,7 @@ class Prelude {
     const Point b = setting_.mesh.vertices[t.vertex[1]];
     const Point c = setting_.mesh.vertices[t.vertex[2]];
     const double limit =
-        LeafRadius::kPart * tree_.leaves()[tree_.leaf_at(centroid(a, b, c))].side();
+        LeafRadius<AreaBound>::kPart * tree_.leaves()[tree_.leaf_at(centroid(a, b, c))].side();
     return circumradius2(a, b, c) <= limit * limit;
   }
 

@@ -117,7 +117,8 @@ Part part_with_a_bad_triangle(Badness badness, bool cut_off) {
   const AcuteCorners corners = *AcuteCorners::build(domain, QualityBounds{}, context);
   Slots::of_domain(domain).number_vertices(mesh, 0);
   mesh.triangles[1].set_badness(badness);
-  PartBuilder<ConstantArea> builder(mesh, domain, corners, ConstantArea(1), cut_off, context);
+  PartBuilder<ConstantArea> builder(mesh, domain, corners, ConstantArea(1), false, cut_off,
+                                    context);
   builder.add_vertices(0, 4);
   builder.add_triangles(0, 2);
   return *builder.finish();

@@ -103,7 +103,7 @@ TEST_P(ParallelModels, GiveOneMeshAtEveryNumberOfThreads) {
 INSTANTIATE_TEST_SUITE_P(
     Of, ParallelModels,
     testing::Values(
-        Model{"Pipe", "pipe.poly", "0.4*sqrt((x-200)^2+(y-200)^2)+1", 20, 200, 30},
+        Model{"Pipe", "pipe.poly", "0.4*sqrt((x-200)^2+(y-200)^2)+1", 20, 110, 30},
         Model{"Key", "key.poly", "0.02*abs(y-46)+0.1", 30, 200, 60},
         Model{"Cylinder", "cylinder.poly",
               "(x>=0 && abs(y)<5) || (x<0 && x^2+y^2<25) ? 1.2e-3 : 1e-2", 20, 2000, 600},
@@ -316,7 +316,7 @@ TEST(Leaves, AddNoTrianglesAroundAFineSpot) {
   for (const double angle : {0, 20}) {
     std::size_t leaves = 0;
     EXPECT_LT(cost_of_leaves({.pslg = square(1000),
-                              .size = {.expression = "hypot(x-333.3,y-411.7)<1 ? 2e-4 : 1e9"},
+                              .size = {.expression = "hypot(x-333.3,y-411.7)<1 ? 1.3e-4 : 1e9"},
                               .min_angle_deg = angle},
                              &leaves),
               1.02);
@@ -328,7 +328,7 @@ TEST(Leaves, AddNoTrianglesAroundAFineSpot) {
 // left.
 TEST(Leaves, ThatAreNotBusyKeepTheGuarantee) {
   MeshRequest request{.pslg = square(1000),
-                      .size = {.expression = "hypot(x-333.3,y-411.7)<1 ? 2e-4 : 1e9"}};
+                      .size = {.expression = "hypot(x-333.3,y-411.7)<1 ? 1.3e-4 : 1e9"}};
   const auto summary = expect_one_mesh(request);
   ASSERT_TRUE(summary);
   EXPECT_GE(summary->leaves.size(), 64u);

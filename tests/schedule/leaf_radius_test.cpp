@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "engine/refine/area_bound.h"
 #include "engine/schedule/quadtree.h"
 
 namespace weft {
@@ -28,19 +29,19 @@ Quadtree tree_of(int side, double weight) {
 TEST(LeafRadius, AsksAllLeavesIfNearlyAllAreFull) {
   const Quadtree tree = tree_of(64, 10);
   ASSERT_GT(tree.leaves().size(), 256u);
-  EXPECT_EQ(LeafRadius::busy_weight(tree, kBusy), 0);
-  const LeafRadius radius(tree, LeafRadius::busy_weight(tree, kBusy));
+  EXPECT_EQ(busy_weight(tree, kBusy), 0);
+  const LeafRadius radius(tree, busy_weight(tree, kBusy), ConstantArea(1));
   for (const Quadtree::Leaf& leaf : tree.leaves()) {
     const Point middle{0.5 * (leaf.box.min_x + leaf.box.max_x),
                        0.5 * (leaf.box.min_y + leaf.box.max_y)};
-    EXPECT_EQ(radius.limit_at(middle), LeafRadius::kPart * leaf.side());
+    EXPECT_EQ(radius.limit_at(middle), LeafRadius<ConstantArea>::kPart * leaf.side());
   }
 }
 
 TEST(LeafRadius, SparesTheLightLeavesAroundASpot) {
   const Quadtree tree = tree_of(8, 10);
-  EXPECT_EQ(LeafRadius::busy_weight(tree, kBusy), kBusy);
-  const LeafRadius radius(tree, LeafRadius::busy_weight(tree, kBusy));
+  EXPECT_EQ(busy_weight(tree, kBusy), kBusy);
+  const LeafRadius radius(tree, busy_weight(tree, kBusy), ConstantArea(1));
   EXPECT_GT(radius.limit_at({63, 63}), 16);
 }
 

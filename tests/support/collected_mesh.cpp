@@ -47,19 +47,27 @@ std::string miscounted(const MeshRequest& request, const check::Mesh& mesh,
   const bool bounded_by_regions =
       std::any_of(request.pslg.regions.begin(), request.pslg.regions.end(),
                   [](const RegionSeed& r) { return r.max_area.has_value(); });
+  constexpr double kStep = 0.1;  // degrees: what the percentile is rounded by
+  double below_percentile = 0;
+  double up_to_percentile = 0;
   for (const auto& t : mesh.triangles) {
     double length[3];
     double area = 0;
+    double smallest = 180;
     for (int k = 0; k < 3; ++k) {
       const check::Vec2 a = mesh.vertices[t[k]];
       const check::Vec2 b = mesh.vertices[t[(k + 1) % 3]];
       const check::Vec2 c = mesh.vertices[t[(k + 2) % 3]];
       const double cross = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
       const double dot = (b.x - a.x) * (c.x - a.x) + (b.y - a.y) * (c.y - a.y);
-      angles.add(std::atan2(cross, dot) * (180 / std::acos(-1.0)));
+      const double angle = std::atan2(cross, dot) * (180 / std::acos(-1.0));
+      angles.add(angle);
+      smallest = std::min(smallest, angle);
       length[k] = std::hypot(b.x - a.x, b.y - a.y);
       if (k == 0) area = 0.5 * cross;
     }
+    below_percentile += smallest < summary.min_angle_p1_deg - kStep ? 1 : 0;
+    up_to_percentile += smallest < summary.min_angle_p1_deg + kStep ? 1 : 0;
     const double inradius = 2 * area / (length[0] + length[1] + length[2]);
     aspects.add(std::max({length[0], length[1], length[2]}) / (2 * std::sqrt(3.0) * inradius));
     if (request.size.constant) sizes.add(area / *request.size.constant);
@@ -68,6 +76,9 @@ std::string miscounted(const MeshRequest& request, const check::Mesh& mesh,
   if (!aspects.agrees_with(summary.aspect_histogram)) return "the summary miscounts aspect ratios";
   if (request.size.constant && !bounded_by_regions && !sizes.agrees_with(summary.size_histogram))
     return "the summary miscounts sizes";
+  const double rank = 0.01 * static_cast<double>(mesh.triangles.size());
+  if (!(below_percentile <= rank && rank <= up_to_percentile))
+    return "the summary mistakes the percentile of the smallest angles";
   return "";
 }
 
@@ -165,6 +176,13 @@ std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
       summary.unrefined.edge_floor + summary.unrefined.budget + summary.unrefined.without_excuse();
   const check::Report report = check::check(domain_of(request.pslg), collected.mesh, requirements);
   if (!report.ok()) return check::to_text(report);
+  const auto near = [](double a, double b, double by) { return std::fabs(a - b) <= by; };
+  if (!near(summary.mean_quality, report.facts.mean_quality, 1e-9))
+    return "the summary mistakes the mean quality";
+  const double ratio = report.facts.ideal_ratio.value_or(0);
+  // Of what is larger than its bound, the checker takes the largest bound near by.
+  if (report.facts.unrefined == 0 && !near(summary.ideal_ratio, ratio, 1e-6 * ratio))
+    return "the summary mistakes the least number of triangles";
   if (summary.triangles != report.facts.triangles) return "the summary miscounts triangles";
   if (summary.vertices != report.facts.vertices) return "the summary miscounts vertices";
   if (summary.edges != report.facts.edges) return "the summary miscounts edges";
