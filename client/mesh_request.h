@@ -26,6 +26,7 @@ struct MeshWishes {
   std::shared_ptr<const SizeGrid> size_grid{};
   std::optional<double> min_angle_deg{};
   std::optional<double> min_edge{};
+  std::optional<v1::Placement> placement{};
   std::optional<std::uint64_t> max_triangles{};
   std::optional<double> max_seconds{};
   std::optional<std::uint32_t> threads{};

@@ -146,6 +146,10 @@ std::optional<Failure> check_shape(const v1::GenerateMeshRequest& request) {
     return bad_option("quality.min_edge",
                       fmt::format("quality.min_edge is {}; it must be 0 or more, and finite",
                                   quality.min_edge()));
+  if (!v1::Placement_IsValid(quality.placement()))
+    return bad_option("quality.placement",
+                      fmt::format("quality.placement is {}, which is no Placement",
+                                  static_cast<int>(quality.placement())));
   if (!not_negative(request.budget().max_seconds()))
     return bad_option("budget.max_seconds",
                       fmt::format("budget.max_seconds is {}; it must be 0 or more, and finite",
@@ -183,6 +187,8 @@ MeshRequest to_engine(const v1::GenerateMeshRequest& request) {
   }
   if (request.quality().has_min_angle_deg()) out.min_angle_deg = request.quality().min_angle_deg();
   out.min_edge = request.quality().min_edge();
+  if (request.quality().placement() == v1::PLACEMENT_CIRCUMCENTRE)
+    out.placement = Placement::kCircumcentre;
   out.allow_unrefined = request.allow_unrefined();
   return out;
 }
@@ -253,6 +259,10 @@ v1::Summary to_wire(const Summary& summary, std::uint32_t threads) {
   message.set_engine_version(std::string(kEngineVersion));
   message.set_min_angle_deg(summary.min_angle_deg);
   message.set_max_angle_deg(summary.max_angle_deg);
+  message.set_min_angle_p1_deg(summary.min_angle_p1_deg);
+  message.set_mean_quality(summary.mean_quality);
+  message.set_ideal_ratio(summary.ideal_ratio);
+  message.set_lattice_share(summary.lattice_share);
   assign(*message.mutable_angle_histogram(), summary.angle_histogram);
   assign(*message.mutable_aspect_histogram(), summary.aspect_histogram);
   assign(*message.mutable_size_histogram(), summary.size_histogram);

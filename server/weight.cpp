@@ -18,7 +18,8 @@ constexpr double kBytesPerPoint = 300;
 constexpr double kBytesPerJob = 16 << 20;
 // A size raster's own, and those of its blocks (engine/size/raster.h).
 constexpr double kBytesPerRasterValue = 16;
-// Triangles of a uniform mesh times the bound over the area; angles alone ask for about ten
+// Triangles of a uniform mesh times the bound over the area, with circumcentres and where no
+// lattice fits the size: on a lattice there are a third fewer. Angles alone ask for about ten
 // triangles a point.
 constexpr double kTrianglesPerArea = 1.55;
 constexpr double kTrianglesPerPoint = 10;

@@ -57,6 +57,13 @@ DrawColor color_of(const YAML::Node& node) {
   throw Wrong{node.Mark(), "color: " + in_quotes(name) + " is not angle, region or none"};
 }
 
+v1::Placement placement_of(const YAML::Node& node) {
+  const std::string name = text_of(node, "placement");
+  if (name == "lattice") return v1::PLACEMENT_LATTICE;
+  if (name == "circumcentre") return v1::PLACEMENT_CIRCUMCENTRE;
+  throw Wrong{node.Mark(), "placement: " + in_quotes(name) + " is not lattice or circumcentre"};
+}
+
 void require(const YAML::Node& node, std::vector<QualityGate>& gates) {
   if (!node.IsMap()) throw Wrong{node.Mark(), "require: not a map of figures to bounds"};
   for (const auto& entry : node) {
@@ -84,6 +91,8 @@ const std::map<std::string, Setter>& common_keys() {
                        const auto&) { m.wishes.min_angle_deg = number_of(n, "min-angle"); }},
       {"min-edge",
        [](const auto& n, auto& m, const auto&) { m.wishes.min_edge = number_of(n, "min-edge"); }},
+      {"placement",
+       [](const auto& n, auto& m, const auto&) { m.wishes.placement = placement_of(n); }},
       {"snap", [](const auto& n, auto& m, const auto&) { m.wishes.snap = number_of(n, "snap"); }},
       {"allow-unrefined",
        [](const auto& n, auto& m, const auto&) {

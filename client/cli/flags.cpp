@@ -45,6 +45,16 @@ void add_domain_and_wishes(CLI::App& command, std::filesystem::path& input, Mesh
   command.add_option("--min-edge", wishes.min_edge, "Make no edge shorter than this")
       ->envname("WEFT_MIN_EDGE")
       ->type_name("LEN");
+  static const std::map<std::string, v1::Placement> kPlacements = {
+      {"lattice", v1::PLACEMENT_LATTICE}, {"circumcentre", v1::PLACEMENT_CIRCUMCENTRE}};
+  command
+      .add_option("--placement", wishes.placement,
+                  "Where points go that split triangles larger than their bound: to a lattice that "
+                  "follows the size, for a third fewer triangles, or to circumcentres, for a mesh "
+                  "without any direction. Default: lattice")
+      ->envname("WEFT_PLACEMENT")
+      ->transform(CLI::CheckedTransformer(kPlacements).description(""))
+      ->type_name("lattice|circumcentre");
   add_snap(command, wishes.snap,
            "Merge points and segments of the domain that are nearer together than this first. "
            "Default: only what double precision cannot keep apart");

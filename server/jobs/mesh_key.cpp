@@ -23,6 +23,8 @@ void make_canonical(v1::GenerateMeshRequest& request) {
   if (max_triangles != 0) request.mutable_budget()->set_max_triangles(max_triangles);
   v1::Quality& quality = *request.mutable_quality();
   if (!quality.has_min_angle_deg()) quality.set_min_angle_deg(MeshRequest{}.min_angle_deg);
+  if (quality.placement() == v1::PLACEMENT_UNSPECIFIED)
+    quality.set_placement(v1::PLACEMENT_LATTICE);
   if (request.size().field_case() == v1::SizeField::FIELD_NOT_SET) request.clear_size();
   v1::Domain& domain = *request.mutable_domain();
   if (domain.fill() == v1::FILL_UNSPECIFIED) domain.set_fill(v1::FILL_SEEDS);

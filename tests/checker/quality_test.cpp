@@ -24,12 +24,18 @@ TEST(Quality, MeasuresAnglesAndArea) {
   EXPECT_EQ(report.facts.edges, 16u);
   ASSERT_TRUE(report.facts.worst_area_ratio);
   EXPECT_EQ(*report.facts.worst_area_ratio, 1);
+  ASSERT_TRUE(report.facts.ideal_ratio);
+  EXPECT_NEAR(*report.facts.ideal_ratio, 1, 1e-12);
+  // Squared edges of 1, 5/4 and 5/4.
+  EXPECT_NEAR(report.facts.mean_quality, 4 * std::sqrt(3.0) * 0.5 / 3.5, 1e-12);
+  EXPECT_NEAR(report.facts.min_angle_p1_deg, kSmallestAngle, 1e-12);
 }
 
 TEST(Quality, WithoutBoundsThereIsNoRatio) {
   Problem problem = block(2);
   problem.requirements = {};
   EXPECT_FALSE(problem.check().facts.worst_area_ratio);
+  EXPECT_FALSE(problem.check().facts.ideal_ratio);
 }
 
 TEST(Angle, ASmallAngleIsAViolation) {

@@ -75,7 +75,8 @@ TEST_F(CommandLine, PrintsOneJsonObject) {
   EXPECT_EQ(json["leaves"], 1);
   EXPECT_EQ(json["deferred"], 3);
   EXPECT_EQ(json["rounds"], 2);
-  for (const char* key : {"min_angle_deg", "max_angle_deg", "first_chunk_seconds", "total_seconds",
+  for (const char* key : {"min_angle_deg", "max_angle_deg", "min_angle_p1_deg", "mean_quality",
+                          "ideal_ratio", "lattice_share", "first_chunk_seconds", "total_seconds",
                           "peak_engine_bytes", "bytes_received"})
     EXPECT_TRUE(json[key].is_number()) << key;
   EXPECT_EQ(err(), "");

@@ -161,6 +161,7 @@ TEST(MeshRequest, CarriesTheDomainAndTheWishes) {
   const auto request = make_request(domain, {.size = "x + 1",
                                              .min_angle_deg = 0,
                                              .min_edge = 0.5,
+                                             .placement = v1::PLACEMENT_CIRCUMCENTRE,
                                              .max_triangles = 7,
                                              .max_seconds = 2,
                                              .threads = 3,
@@ -178,6 +179,7 @@ TEST(MeshRequest, CarriesTheDomainAndTheWishes) {
   EXPECT_EQ(request.size().expression(), "x + 1");
   EXPECT_TRUE(request.quality().has_min_angle_deg());
   EXPECT_EQ(request.quality().min_edge(), 0.5);
+  EXPECT_EQ(request.quality().placement(), v1::PLACEMENT_CIRCUMCENTRE);
   EXPECT_EQ(request.budget().max_triangles(), 7u);
   EXPECT_EQ(request.budget().max_seconds(), 2);
   EXPECT_EQ(request.threads(), 3u);

@@ -40,12 +40,12 @@ TEST(Models, ThroughTheServerHoldTheirBoundsAndCounts) {
     return mesh_and_check(server, model(name), output, bounds).at("triangles").get<int>();
   };
   EXPECT_LE(triangles("pipe.poly", "pipe.vtu", {"--size", "0.4*sqrt((x-200)^2+(y-200)^2)+1"}),
-            3'750);
-  EXPECT_LE(triangles("key.poly", "key.msh", {"--size", "0.02*abs(y-46)+0.1"}), 7'200);
-  EXPECT_LE(triangles("cylinder.poly", "cylinder.vtu", {"--size", kCylinderSize}), 970'000);
+            3'000);
+  EXPECT_LE(triangles("key.poly", "key.msh", {"--size", "0.02*abs(y-46)+0.1"}), 5'700);
+  EXPECT_LE(triangles("cylinder.poly", "cylinder.vtu", {"--size", kCylinderSize}), 635'000);
   EXPECT_LE(triangles("us-east-coast.poly", "coast.node", {"--min-angle", "20"}), 20'000);
   EXPECT_LE(triangles("us-east-coast.geojson", "coast.vtu", {"--min-angle", "30"}), 40'000);
-  EXPECT_LE(triangles("us-east-coast.poly", "coast.vtu", {"--size", "1e-3"}), 500'000);
+  EXPECT_LE(triangles("us-east-coast.poly", "coast.vtu", {"--size", "1e-3"}), 333'000);
 }
 
 TEST(Models, HoldTheBoundsOfASizeGrid) {

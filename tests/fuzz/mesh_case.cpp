@@ -240,6 +240,7 @@ MeshCase decode_mesh_case(ByteSource bytes) {
     constexpr std::array<double, 4> kSnaps{1e-9, 1e-6, 1e-4, 1e-3};
     request.pslg.snap = maker.extent() * kSnaps[rarely / 8 % kSnaps.size()];
   }
+  if (rarely % 8 == 4) request.placement = Placement::kCircumcentre;
   made.plain = made.plain && request.pslg.snap == 0;
   made.budget.triangle_limit = kTriangleLimit;
   return made;
@@ -252,6 +253,7 @@ std::string to_text(const MeshCase& mesh_case) {
   if (request.size.constant) text += print(" --size %.17g", *request.size.constant);
   if (request.size.expression) text += " --size '" + *request.size.expression + "'";
   if (request.min_edge > 0) text += print(" --min-edge %.17g", request.min_edge);
+  if (request.placement == Placement::kCircumcentre) text += " --placement circumcentre";
   if (pslg.snap > 0) text += print(" --snap %.17g", pslg.snap);
   if (mesh_case.budget.max_triangles < kTriangleLimit)
     text += print(" --max-triangles %llu",

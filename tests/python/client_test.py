@@ -78,6 +78,17 @@ def test_options_reach_the_server(client):
         client.mesh(CYLINDER, size=1e-4, max_seconds=1e-3)
 
 
+def test_a_placement_reaches_the_server_and_the_summary_tells_what_it_gains(client):
+    lattice = client.mesh(KEY, size=0.01).summary
+    circumcentres = client.mesh(KEY, size=0.01, placement="circumcentre").summary
+    assert lattice.lattice_share == 1 and circumcentres.lattice_share == 0
+    assert lattice.ideal_ratio < 1.1 < circumcentres.ideal_ratio
+    assert lattice.mean_quality > circumcentres.mean_quality
+    assert lattice.min_angle_p1_deg > lattice.min_angle_deg
+    with pytest.raises(ValueError, match="'hexagons'; there are lattice, circumcentre"):
+        client.mesh(KEY, placement="hexagons")
+
+
 def test_a_mesh_that_misses_its_bounds_is_an_error_unless_it_is_allowed(client):
     corner = 1e6 + np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
     size = "min(1e-2, 1e-24 + 0.1*((x-1e6)^2 + (y-1e6)^2))"  # below the distance of doubles

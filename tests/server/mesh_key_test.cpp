@@ -24,6 +24,7 @@ TEST(MeshKey, IsTheSameForADefaultThatIsWrittenOut) {
   request.mutable_domain()->clear_segment_markers();
   const std::string key = mesh_key(request);
   request.mutable_quality()->set_min_angle_deg(20);
+  request.mutable_quality()->set_placement(v1::PLACEMENT_LATTICE);
   request.mutable_domain()->set_fill(v1::FILL_SEEDS);
   request.mutable_domain()->set_snap(-0.0);
   for (int i = 0; i < 4; ++i) request.mutable_domain()->add_segment_markers(0);
@@ -60,6 +61,8 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"Snap", [](auto& r) { r.mutable_domain()->set_snap(1e-3); }},
         Change{"AllowUnrefined", [](auto& r) { r.set_allow_unrefined(true); }},
         Change{"Edge", [](auto& r) { r.mutable_quality()->set_min_edge(1); }},
+        Change{"Placement",
+               [](auto& r) { r.mutable_quality()->set_placement(v1::PLACEMENT_CIRCUMCENTRE); }},
         Change{"Triangles", [](auto& r) { r.mutable_budget()->set_max_triangles(7); }}),
     [](const auto& info) { return std::string(info.param.name); });
 

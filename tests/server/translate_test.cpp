@@ -72,6 +72,10 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   summary.area = 5;
   summary.min_angle_deg = 6;
   summary.max_angle_deg = 7;
+  summary.min_angle_p1_deg = 41;
+  summary.mean_quality = 42;
+  summary.ideal_ratio = 43;
+  summary.lattice_share = 44;
   summary.angle_histogram[17] = 8;
   summary.aspect_histogram[8] = 9;
   summary.size_histogram[9] = 10;
@@ -99,6 +103,10 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   EXPECT_EQ(message.area(), 5);
   EXPECT_EQ(message.min_angle_deg(), 6);
   EXPECT_EQ(message.max_angle_deg(), 7);
+  EXPECT_EQ(message.min_angle_p1_deg(), 41);
+  EXPECT_EQ(message.mean_quality(), 42);
+  EXPECT_EQ(message.ideal_ratio(), 43);
+  EXPECT_EQ(message.lattice_share(), 44);
   ASSERT_EQ(message.angle_histogram_size(), 18);
   EXPECT_EQ(message.angle_histogram(17), 8u);
   ASSERT_EQ(message.aspect_histogram_size(), 9);

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, TypedDict
+from typing import Any, Literal, TypedDict
 
 from . import _protocol
 from .domain import Domain
@@ -17,6 +17,10 @@ class MeshOptions(TypedDict, total=False):
 
     min_edge: float
     """No edge shorter than this is made, in the unit of the points."""
+    placement: Literal["lattice", "circumcentre"]
+    """Where the points go that split triangles larger than their bound: to a lattice that follows
+    the size, with a third fewer triangles, or to circumcentres, without any direction in the mesh.
+    Default: lattice."""
     snap: float
     """Merge everything of the domain that lies nearer together than this first, in the unit of the
     points; `summary.merging` tells what moved."""
@@ -36,6 +40,7 @@ class MeshOptions(TypedDict, total=False):
 
 
 _Request = _protocol.message("weft.v1.GenerateMeshRequest")
+_PLACEMENTS = {"lattice": 1, "circumcentre": 2}
 _FILLS = {"seeds": 1, "even-odd": 2}
 
 
@@ -51,6 +56,11 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
     request.quality.min_angle_deg = min_angle
     if "min_edge" in options:
         request.quality.min_edge = options["min_edge"]
+    if "placement" in options:
+        if options["placement"] not in _PLACEMENTS:
+            raise ValueError(f"placement is {options['placement']!r}; there are "
+                             f"{', '.join(_PLACEMENTS)}")
+        request.quality.placement = _PLACEMENTS[options["placement"]]
     request.domain.snap = options.get("snap", 0)
     request.allow_unrefined = options.get("allow_unrefined", False)
     if "max_triangles" in options:

@@ -125,6 +125,14 @@ class Summary:
     """Squared units of the domain."""
     min_angle_deg: float
     max_angle_deg: float
+    min_angle_p1_deg: float
+    """1 % of the triangles have a smallest angle below this."""
+    mean_quality: float
+    """Of 4 sqrt(3) area / (sum of the squared edges), 1 for equilateral triangles."""
+    ideal_ratio: float
+    """Triangles over the least number that the bounds on their areas allow; 0 without a bound."""
+    lattice_share: float
+    """How much of the area lies where points came from a lattice, from 0 to 1."""
     angle_histogram: npt.NDArray[np.int64]
     """(18,): angles per 10 degrees."""
     aspect_histogram: npt.NDArray[np.int64]
