@@ -6,6 +6,7 @@
 
 #include "bench/engine_bench.h"
 #include "bench/load_bench.h"
+#include "bench/placement_bench.h"
 #include "bench/scaling_bench.h"
 #include "bench/stream_bench.h"
 
@@ -45,6 +46,20 @@ int main(int argc, char** argv) {
                            "Also the kernel alone: one leaf, no schedule");
   engine_command->add_flag("!--no-cgal", engine.with_cgal, "Leave CGAL out");
   engine_command->callback([&] { exit_code = weft::bench::run_engine_bench(engine); });
+
+  weft::bench::PlacementBenchOptions placement;
+  CLI::App* const placement_command =
+      app.add_subcommand("placement", "Points on a lattice beside circumcentres, in turn");
+  add_models(placement_command, placement.models);
+  placement_command->add_option("--only", placement.only, "Only rows with this in their name");
+  placement_command->add_option("--runs", placement.runs, "Runs after the warm-up; medians count")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  placement_command->add_option("--threads", placement.threads, "Numbers of threads")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1024))
+      ->default_str("1");
+  placement_command->callback([&] { exit_code = weft::bench::run_placement_bench(placement); });
 
   weft::bench::ScalingBenchOptions scaling;
   CLI::App* const scaling_command = app.add_subcommand(

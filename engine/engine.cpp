@@ -196,7 +196,7 @@ class Job {
                                     " triangles, more than the limit of " +
                                     std::to_string(budget.triangle_limit));
     }
-    by_size_ = std::max(triangles_per_bound(quality_) * likely,
+    by_size_ = std::max(triangles_per_bound(quality_.lattice) * likely,
                         static_cast<double>(domain_.triangles.size()));
     auto narrow = context_.compute([&] {
       return NarrowPlaces::find(

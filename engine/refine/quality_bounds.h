@@ -38,8 +38,8 @@ struct QualityBounds {
 };
 
 // Triangles over the integral of 1 / bound, as they come out; and the area of most over the bound.
-inline double triangles_per_bound(const QualityBounds& quality) {
-  return quality.lattice.exists() ? 1.03 / quality.lattice.fill : 1.55;
+inline double triangles_per_bound(const LatticeShape& lattice) {
+  return lattice.exists() ? 1.03 / lattice.fill : 1.55;
 }
 inline double area_over_bound(const QualityBounds& quality) {
   return quality.lattice.exists() ? quality.lattice.fill : 0.64;

@@ -125,8 +125,7 @@ class Prelude {
   }
 
   std::vector<Quadtree::Sample> samples(const Run& run) const {
-    // No smaller than the floor on their edges allows.
-    const double per_bound = triangles_per_bound(quality_);
+    // Triangles are no smaller than the floor on their edges allows.
     const double floor = kEquilateral * quality_.min_length2;
     static_assert(Mesh::kTriangleBlock <= TriangleBlock::kSize);
     const Mesh& mesh = setting_.mesh;
@@ -142,10 +141,13 @@ class Prelude {
     for (std::size_t i = 0; i < block.size; ++i) {
       const double size = 0.5 * ((block.x[1][i] - block.x[0][i]) * (block.y[2][i] - block.y[0][i]) -
                                  (block.y[1][i] - block.y[0][i]) * (block.x[2][i] - block.x[0][i]));
-      const double bound =
-          std::min(block.bound[i], region_bound(run.first + static_cast<std::uint32_t>(i)));
+      const Point at{block.centroid_x[i], block.centroid_y[i]};
+      const double by_region = region_bound(run.first + static_cast<std::uint32_t>(i));
+      const double bound = std::min(block.bound[i], by_region);
+      const double per_bound = triangles_per_bound(
+          area.on_lattice(at, bound, by_region) ? quality_.lattice : LatticeShape{});
       const double asked = bound > 0 ? size / std::max(bound / per_bound, floor) : 1;
-      result.push_back({{block.centroid_x[i], block.centroid_y[i]}, std::max(asked, 1.0)});
+      result.push_back({at, std::max(asked, 1.0)});
     }
     return result;
   }

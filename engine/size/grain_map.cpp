@@ -177,8 +177,26 @@ Result<GrainMap> GrainMap::build(const SizeFunction& size, const SizeMap& map, c
     }
     level = std::move(next);
   }
+  grains.join_mixed();
   if (auto error = grains.align(shape, context)) return tl::unexpected(*error);
   return grains;
+}
+
+void GrainMap::join_mixed() {
+  // Children come after their parents.
+  for (std::size_t n = nodes_.size(); n-- > 0;) {
+    Node& node = nodes_[n];
+    if (node.first_child == 0) continue;
+    const auto mixed = [&](unsigned c) {
+      const Node& child = nodes_[node.first_child + c];
+      return child.first_child == 0 && grains_[child.grain].kind == Kind::kMixed;
+    };
+    if (!(mixed(0) && mixed(1) && mixed(2) && mixed(3))) continue;
+    const Box last = grains_[nodes_[node.first_child + 3].grain].box;
+    node.grain = nodes_[node.first_child].grain;
+    node.first_child = 0;
+    grains_[node.grain].box.merge(last);
+  }
 }
 
 std::uint32_t GrainMap::index_at(Point p) const {
