@@ -23,7 +23,7 @@
 namespace weft {
 
 // Changes whenever the same request may give other bytes.
-inline constexpr std::string_view kEngineVersion = "3";
+inline constexpr std::string_view kEngineVersion = "4";
 
 // The grading function: an upper bound on a triangle's area at its centroid, squared units.
 // At most one of the three is set; none means no bound on the area.
