@@ -7,27 +7,10 @@
 #include <numeric>
 #include <utility>
 
-#include "engine/domain/tolerance.h"
+#include "engine/refine/vector.h"
 
 namespace weft {
 namespace {
-
-struct Vector {
-  double x, y;
-};
-
-Vector operator-(Point p, Point q) {
-  return {p.x - q.x, p.y - q.y};
-}
-double dot(Vector u, Vector v) {
-  return u.x * v.x + u.y * v.y;
-}
-double cross(Vector u, Vector v) {
-  return u.x * v.y - u.y * v.x;
-}
-double length(Vector u) {
-  return std::sqrt(dot(u, u));
-}
 
 // Whether u and v make an angle below 60 degrees.
 bool below_60_degrees_apart(Vector u, Vector v) {
@@ -83,19 +66,6 @@ bool on_shell(Point corner, Point p, Point q) {
          below_60_degrees_apart(p - corner, q - corner);
 }
 
-// A tangent from which on arms are so far apart wherever refinement makes edges (tolerance.h) that
-// nothing can be rounded across.
-constexpr double kNeedleTangent = 0.125;
-
-// How far apart arms must be, over the largest coordinate: 16 units in the last place.
-constexpr double kApart = 16 * 0x1p-53;
-
-// Grows with the angle from the direction of x, from 0 to 4.
-double pseudo_angle(Vector u) {
-  const double part = u.x / (std::fabs(u.x) + std::fabs(u.y));
-  return u.y >= 0 ? 1 - part : 3 + part;
-}
-
 }  // namespace
 
 constexpr std::size_t kPollInterval = 1 << 16;
@@ -107,7 +77,9 @@ Result<AcuteCorners> AcuteCorners::build(const Domain& domain, const QualityBoun
   if (auto error = corners.find_corners(domain, above_30_degrees, context))
     return tl::unexpected(*error);
   if (auto error = corners.sort_by_ends(domain, context)) return tl::unexpected(*error);
-  if (auto error = corners.find_needles(domain, context)) return tl::unexpected(*error);
+  auto needles = Needles::find(domain, context);
+  if (!needles) return tl::unexpected(needles.error());
+  corners.needles_ = std::move(*needles);
   return corners;
 }
 
@@ -153,7 +125,7 @@ std::optional<Error> AcuteCorners::find_corners(const Domain& domain, bool at_ri
         const bool counts = acute || (at_right_angles && at_most_right_angle_apart(from, to));
         if (cross(from, to) <= 0 || !counts) break;
         if (current.subsegment[kNext[at_corner]] != kNone) {
-          flags_[corner] |= acute ? kShells | kAcute : kShells;
+          corners_[corner] = std::max(corners_[corner], acute ? Corner::kAcute : Corner::kShells);
           break;
         }
         triangle = current.neighbor[kNext[at_corner]];
@@ -196,87 +168,6 @@ std::optional<Error> AcuteCorners::sort_by_ends(const Domain& domain,
     by_ends_[first_[by_high[i].low + 1]++] = {by_high[i].high, by_high[i].subsegment};
   }
   return std::nullopt;
-}
-
-// The ends of the domain's boundary edges, by corner: nearly all have two.
-std::optional<Error> AcuteCorners::find_needles(const Domain& domain,
-                                                const ExecutionContext& context) {
-  constexpr std::uint32_t kSeveral = kNone - 1;
-  apart_ = kApart * largest_coordinate(domain.vertices);
-  std::vector<std::uint32_t> next(domain.vertices.size(), kNone);  // along the boundary
-  using Arm = std::pair<std::uint32_t, std::uint32_t>;  // corner, the vertex at the other end
-  std::vector<Arm> arms;                                // of corners with several edges
-  const auto for_boundary = [&](auto&& f) -> std::optional<Error> {
-    for (std::uint32_t t = 0; t < domain.triangles.size(); ++t) {
-      if (t % kPollInterval == 0) {
-        if (auto error = context.poll()) return error;
-      }
-      const Domain::Triangle& triangle = domain.triangles[t];
-      for (std::uint32_t i = 0; i < 3; ++i)
-        if (triangle.neighbor[i] == kNone)
-          f(triangle.vertex[kNext[i]], triangle.vertex[kPrevious[i]]);
-    }
-    return std::nullopt;
-  };
-  if (auto error = for_boundary([&](std::uint32_t from, std::uint32_t to) {
-        next[from] = next[from] == kNone ? to : kSeveral;
-      })) {
-    return error;
-  }
-  if (auto error = for_boundary([&](std::uint32_t from, std::uint32_t to) {
-        if (next[from] == kSeveral) arms.emplace_back(from, to);
-        if (next[to] == kSeveral)
-          arms.emplace_back(to, from);
-        else
-          add_needles(domain, to, {from, next[to]});
-      })) {
-    return error;
-  }
-  std::sort(arms.begin(), arms.end());
-  std::vector<std::uint32_t> at_corner;
-  for (std::size_t i = 0; i < arms.size(); ++i) {
-    at_corner.push_back(arms[i].second);
-    if (i + 1 < arms.size() && arms[i + 1].first == arms[i].first) continue;
-    add_needles(domain, arms[i].first, at_corner);
-    at_corner.clear();
-  }
-  std::sort(needles_.begin(), needles_.end(),
-            [](const Needle& a, const Needle& b) { return a.subsegment < b.subsegment; });
-  return std::nullopt;
-}
-
-// Of arms that follow each other around a corner. Those of a needle inside the domain do no harm.
-void AcuteCorners::add_needles(const Domain& domain, std::uint32_t corner,
-                               std::vector<std::uint32_t> arms) {
-  const Point at = domain.vertices[corner];
-  const auto direction = [&](std::uint32_t arm) { return domain.vertices[arm] - at; };
-  if (arms.size() > 2) {
-    std::sort(arms.begin(), arms.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return std::pair{pseudo_angle(direction(a)), a} < std::pair{pseudo_angle(direction(b)), b};
-    });
-    arms.push_back(arms.front());
-  }
-  for (std::size_t i = 0; i + 1 < arms.size(); ++i) {
-    const Vector u = direction(arms[i]);
-    const Vector v = direction(arms[i + 1]);
-    const double tangent = std::fabs(cross(u, v)) / dot(u, v);
-    if (!(tangent >= 0 && tangent < kNeedleTangent)) continue;
-    flags_[corner] |= kNeedle;
-    for (const std::uint32_t arm : {arms[i], arms[i + 1]})
-      needles_.push_back({subsegment_between(corner, arm), corner, apart_ / tangent});
-  }
-}
-
-bool AcuteCorners::keeps_apart(const Mesh& mesh, std::uint32_t subsegment, Point split) const {
-  const Subsegment& s = (*subsegments_)[subsegment];
-  if (((flags_[s.a] | flags_[s.b]) & kNeedle) == 0) [[likely]]
-    return true;
-  const auto first = std::lower_bound(
-      needles_.begin(), needles_.end(), subsegment,
-      [](const Needle& needle, std::uint32_t value) { return needle.subsegment < value; });
-  for (auto needle = first; needle != needles_.end() && needle->subsegment == subsegment; ++needle)
-    if (length(split - mesh.vertices[needle->corner]) < needle->distance) return false;
-  return true;
 }
 
 Point AcuteCorners::split_point(const Mesh& mesh, Pair ends, Pair apexes) const {
@@ -334,7 +225,7 @@ bool AcuteCorners::on_other_arm(const Mesh& mesh, std::uint32_t vertex, std::uin
   if (on != kNone) {
     if ((*subsegments_)[on].a != corner && (*subsegments_)[on].b != corner) return false;
   } else {
-    if (vertex >= flags_.size() || vertex == corner) return false;
+    if (vertex >= corners_.size() || vertex == corner) return false;
     on = subsegment_between(vertex, corner);
   }
   return on != kNone && on != subsegment;

@@ -34,11 +34,6 @@
 //
 // An input vertex that ends an arm counts as on a shell, but two of them do not excuse a triangle:
 // a fan of equal arms is refined toward its corner.
-//
-// Needles. Where two arms meet at a small angle outside the domain, no triangle between them tells
-// that a vertex on one was rounded onto the other. So none is put where the arms are nearer to each
-// other than 16 units in the last place: 5 that a vertex may be beside its arm (split_segment in
-// refiner.h), twice, and room.
 #pragma once
 
 #include <array>
@@ -50,6 +45,7 @@
 #include "engine/domain/domain.h"
 #include "engine/error.h"
 #include "engine/refine/mesh.h"
+#include "engine/refine/needles.h"
 #include "engine/refine/quality_bounds.h"
 
 namespace weft {
@@ -71,9 +67,8 @@ class AcuteCorners {
   // the middle. `apexes` face the piece from its two sides; kNone if a side has no triangle.
   Point split_point(const Mesh& mesh, Pair ends, Pair apexes) const;
 
-  // Whether a split there keeps the piece's segment apart from every other one that it meets at a
-  // small angle outside the domain.
-  bool keeps_apart(const Mesh& mesh, std::uint32_t subsegment, Point split) const;
+  // Where two of the domain's segments meet at a small angle outside of it.
+  const Needles& needles() const { return needles_; }
 
   // Whether a skinny triangle is to stay because of a small input angle.
   bool excuses(const Mesh& mesh, const Triangle& triangle) const;
@@ -82,8 +77,8 @@ class AcuteCorners {
   std::uint32_t subsegment(const Mesh& mesh, std::uint32_t a, std::uint32_t b) const;
 
   std::uint64_t bytes() const {
-    return flags_.size() + by_ends_.size() * sizeof(Ends) + first_.size() * sizeof(std::uint32_t) +
-           needles_.size() * sizeof(Needle);
+    return corners_.size() + by_ends_.size() * sizeof(Ends) +
+           first_.size() * sizeof(std::uint32_t) + needles_.bytes();
   }
 
  private:
@@ -92,29 +87,20 @@ class AcuteCorners {
     std::uint32_t subsegment;
   };
 
-  // An end of a subsegment, and the distance from which on it is apart from the other arm.
-  struct Needle {
-    std::uint32_t subsegment, corner;
-    double distance;
-  };
-  // Of a vertex: two arms meet there at less than 60 degrees; at an angle that asks for shells, as
-  // every such one does; in a needle.
-  static constexpr char kAcute = 1, kShells = 2, kNeedle = 4;
+  // By the smallest angle at which two arms meet there.
+  enum class Corner : char { kPlain, kShells, kAcute };
 
   explicit AcuteCorners(const Domain& domain)
-      : subsegments_(&domain.subsegments), flags_(domain.vertices.size(), 0) {}
+      : subsegments_(&domain.subsegments), corners_(domain.vertices.size(), Corner::kPlain) {}
   std::optional<Error> find_corners(const Domain& domain, bool at_right_angles,
                                     const ExecutionContext& context);
   std::optional<Error> sort_by_ends(const Domain& domain, const ExecutionContext& context);
 
-  std::optional<Error> find_needles(const Domain& domain, const ExecutionContext& context);
-  void add_needles(const Domain& domain, std::uint32_t corner, std::vector<std::uint32_t> arms);
-
-  bool has(char flag, std::uint32_t vertex) const {
-    return vertex < flags_.size() && (flags_[vertex] & flag) != 0;
+  Corner corner(std::uint32_t vertex) const {
+    return vertex < corners_.size() ? corners_[vertex] : Corner::kPlain;
   }
-  bool acute(std::uint32_t vertex) const { return has(kAcute, vertex); }
-  bool has_shells(std::uint32_t vertex) const { return has(kShells, vertex); }
+  bool acute(std::uint32_t vertex) const { return corner(vertex) == Corner::kAcute; }
+  bool has_shells(std::uint32_t vertex) const { return corner(vertex) != Corner::kPlain; }
   // The subsegment between two vertices of the domain, or kNone.
   std::uint32_t subsegment_between(std::uint32_t a, std::uint32_t b) const;
   // Whether the vertex lies on, or ends, an arm of the corner other than this subsegment.
@@ -127,11 +113,10 @@ class AcuteCorners {
   double dyadic_part(const Mesh& mesh, std::uint32_t subsegment, Point from, Point to) const;
 
   const std::vector<Subsegment>* subsegments_;
-  std::vector<char> flags_;           // per vertex of the domain
+  std::vector<Corner> corners_;       // per vertex of the domain
   std::vector<Ends> by_ends_;         // by the lower end, then by the higher
   std::vector<std::uint32_t> first_;  // per vertex of the domain: its first in by_ends_
-  std::vector<Needle> needles_;       // by subsegment
-  double apart_ = 0;                  // how far apart arms outside the domain must be
+  Needles needles_;
 };
 
 }  // namespace weft

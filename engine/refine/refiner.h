@@ -310,7 +310,7 @@ class Refiner {
     const Ring& ring = cavity_.ring();
     if (too_thin(half_edge(t, edge)) || (closed && too_thin(across))) return Outcome::kTooClose;
     const std::uint32_t subsegment = corners_.subsegment(mesh_, a, b);
-    if (!corners_.keeps_apart(mesh_, subsegment, p)) return Outcome::kTooClose;
+    if (!corners_.needles().keep_apart(subsegment, p)) return Outcome::kTooClose;
     const std::uint32_t near_side = closed ? cavity_.far_end() : ring.size;
     RingVerdict verdict =
         area_.judge(ring, 0, near_side, p, region_bound(t), quality_, judged_.data());

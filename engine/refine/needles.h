@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Needles: where two segments, the arms, meet at a small angle outside the domain. No triangle
+// between them tells that a vertex on one was rounded onto the other. So none is put where the arms
+// are nearer to each other than 16 units in the last place: 5 that a vertex may be beside its arm
+// (split_segment in refiner.h), twice, and room.
+//
+//   const Result<Needles> needles = Needles::find(domain, context);
+//   if (!needles->keep_apart(subsegment, split)) ...
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/context.h"
+#include "engine/domain/domain.h"
+#include "engine/error.h"
+
+namespace weft {
+
+class Needles {
+ public:
+  // Errors: kCancelled, kDeadlineExceeded.
+  static Result<Needles> find(const Domain& domain, const ExecutionContext& context);
+
+  // Whether a split of the subsegment there stays apart from its needles' other arms.
+  bool keep_apart(std::uint32_t subsegment, Point split) const;
+
+  std::uint64_t bytes() const { return ends_.size() * sizeof(End); }
+
+ private:
+  // Of a subsegment, and the distance from it within which the other arm is too near.
+  struct End {
+    std::uint32_t subsegment;
+    Point corner;
+    double distance;
+  };
+  // A boundary edge, or an arm: the first end is the corner then.
+  struct Edge {
+    std::uint32_t from, to, subsegment;
+  };
+  using Edges = std::vector<Edge>;
+
+  static Result<Edges> boundary(const Domain& domain, const ExecutionContext& context);
+  void add_fan(const Domain& domain, Edges arms);
+  void add(const Domain& domain, const Edge& arm, const Edge& other);
+
+  double apart_ = 0;       // how far apart arms must be
+  std::vector<End> ends_;  // by subsegment
+};
+
+}  // namespace weft
