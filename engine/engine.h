@@ -35,7 +35,7 @@ struct SizeSpec {
   std::optional<Raster> raster = std::nullopt;
 };
 
-inline constexpr double kMaxMinAngleDeg = 34;
+inline constexpr double kMaxMinAngleDeg = 36;
 
 // Where the Steiner points of triangles that are too large go (refine/steiner_point.h).
 enum class Placement : std::uint8_t {

@@ -15,6 +15,10 @@ struct Point {
   friend bool operator==(const Point&, const Point&) = default;
 };
 
+inline double distance2(Point p, Point q) {
+  return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
+}
+
 inline Point centroid(Point a, Point b, Point c) {
   return {a.x + ((b.x - a.x) + (c.x - a.x)) * (1.0 / 3),
           a.y + ((b.y - a.y) + (c.y - a.y)) * (1.0 / 3)};

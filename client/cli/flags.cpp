@@ -39,7 +39,7 @@ void add_domain_and_wishes(CLI::App& command, std::filesystem::path& input, Mesh
       ->type_name("EXPR|FILE");
   command
       .add_option("--min-angle", wishes.min_angle_deg,
-                  "Lower bound on every angle, in degrees, 0 to 34. Default: 20")
+                  "Lower bound on every angle, in degrees, 0 to 36. Default: 20")
       ->envname("WEFT_MIN_ANGLE")
       ->type_name("DEG");
   command.add_option("--min-edge", wishes.min_edge, "Make no edge shorter than this")

@@ -9,10 +9,6 @@
 
 namespace weft {
 
-inline double distance2(Point p, Point q) {
-  return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
-}
-
 inline double distance(Point p, Point q) {
   return std::sqrt(distance2(p, q));
 }

@@ -155,6 +155,7 @@ class Cavity {
   const std::vector<SegmentEdge>& encroached() const { return encroached_; }
   // In the order of the walk. There is room for all triangles of the star, and one more.
   std::uint32_t* triangles() { return cavity_.data(); }
+  const std::uint32_t* triangles() const { return cavity_.data(); }
   std::uint32_t size() const { return cavity_size_; }
   // Whether all triangles of the cavity lie in slots of the task.
   bool in_own_slots() const { return foreign_ == 0; }

@@ -13,7 +13,7 @@ QualityBounds QualityBounds::from(double min_angle_deg, double min_edge, double 
   QualityBounds bounds;
   bounds.sin2 = sine * sine;
   // Üngör's off-centre: the apex over the shortest edge whose angle is the bound, a little inside.
-  bounds.off_centre = min_angle_deg > 0 ? 0.475 * std::sqrt((1 + cosine) / (1 - cosine)) : 0;
+  bounds.off_centre = min_angle_deg > 0 ? 0.495 * std::sqrt((1 + cosine) / (1 - cosine)) : 0;
   bounds.min_edge2 = min_edge * min_edge;
   bounds.lens = lens_for(sine);
   bounds.precision2 = precision * precision;

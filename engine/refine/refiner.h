@@ -40,9 +40,12 @@
 #include "engine/refine/lens.h"
 #include "engine/refine/mesh.h"
 #include "engine/refine/ownership.h"
+#include "engine/refine/petal.h"
+#include "engine/refine/petal_search.h"
 #include "engine/refine/quality_bounds.h"
 #include "engine/refine/setting.h"
 #include "engine/refine/slots.h"
+#include "engine/refine/star.h"
 #include "engine/refine/star_check.h"
 #include "engine/refine/steiner_point.h"
 #include "engine/refine/triangle_judge.h"
@@ -65,17 +68,17 @@ class Refiner {
         triangle_limit_(setting.triangle_limit),
         poll_interval_(area_.poll_interval()),
         max_triangles_(max_triangles),
-        cavity_(setting.mesh),
-        bad_(setting.mesh) {
-    reserve_ring_buffers(kInitialRing);
-  }
+        star_(setting.mesh),
+        petal_search_(setting.mesh),
+        bad_(setting.mesh) {}
 
   // Begins a task in `box`: new triangles and vertices go to `slots`.
   void begin(Slots& slots, const Ownership& ownership, const Box& box) {
     slots_ = &slots;
     area_.begin(box);
     ownership_ = ownership;
-    cavity_.begin(ownership, slots.owner());
+    star_.begin(ownership, slots.owner());
+    petal_search_.begin(ownership, slots.owner());
     bad_.clear();
     segments_.clear();
     deferred_.clear();
@@ -128,23 +131,24 @@ class Refiner {
   const std::vector<BadTriangle>& handed_over() const { return handed_over_; }
 
   RefinerFigures figures() const {
-    return {insertions_, cavity_.exact_predicates() + exact_, bytes()};
+    return {insertions_, star_.exact_predicates() + petal_search_.exact_predicates() + exact_,
+            bytes()};
   }
   std::uint64_t bytes() const {
-    return cavity_.bytes() + bad_.bytes() + segments_.capacity() * sizeof(segments_[0]) +
-           deferred_.capacity() * sizeof(deferred_[0]) + judged_.capacity() * sizeof(judged_[0]);
+    return star_.bytes() + petal_search_.bytes() + bad_.bytes() +
+           segments_.capacity() * sizeof(segments_[0]) +
+           deferred_.capacity() * sizeof(deferred_[0]);
   }
 
  private:
-  using Growth = typename Cavity<Ownership>::Growth;
+  using Growth = typename Star<Ownership>::Growth;
 
   static constexpr std::uint32_t kMaxGrowth = 2;  // triangles that an insertion adds
-  static constexpr std::size_t kInitialRing = 1024;
   static constexpr int kNudges = 4;  // to either side, of a point that splits a segment
 
   enum class Outcome {
     kInserted,
-    kEncroaches,  // cavity_.encroached() are to be split first
+    kEncroaches,  // star_.cavity().encroached() are to be split first
     kNotOwned,
     kTooClose,  // an edge would be below the floor, or double precision ends
     kFlat,      // a triangle would not be counter-clockwise, or not Delaunay
@@ -179,7 +183,8 @@ class Refiner {
     const Point a = mesh_.vertices[triangle.vertex[0]];
     const Point b = mesh_.vertices[triangle.vertex[1]];
     const Point c = mesh_.vertices[triangle.vertex[2]];
-    if (triangle.badness() == kSkinny || !quality_.lattice.exists())
+    if (triangle.badness() == kSkinny) return insert_for_skinny(t);
+    if (!quality_.lattice.exists())
       return insert_in_triangle(t, steiner_point(a, b, c, quality_), 0);
     const Point centre = steiner_point(a, b, c, 0.0);
     const LatticePoint nearest =
@@ -193,10 +198,31 @@ class Refiner {
     return insert_in_triangle(t, centre, 0);
   }
 
+  // At the place in the petal that is worth most (petal_search.h).
+  Outcome insert_for_skinny(std::uint32_t t) {
+    const Triangle& triangle = mesh_.triangles[t];
+    const Point a = mesh_.vertices[triangle.vertex[0]];
+    const Point b = mesh_.vertices[triangle.vertex[1]];
+    const Point c = mesh_.vertices[triangle.vertex[2]];
+    const Point standard = steiner_point(a, b, c, quality_);
+    const Outcome outcome = grow(star_, t, standard);
+    if (outcome != Outcome::kInserted) return outcome;
+    const RingVerdict verdict = judge_star(star_, t, standard);
+    if (!acceptable(verdict, standard)) return Outcome::kTooClose;
+    const auto look_at = [&](Star<Ownership>& star, Point p) -> std::optional<RingVerdict> {
+      if (grow(star, t, p) != Outcome::kInserted) return std::nullopt;
+      return judge_star(star, t, p);
+    };
+    const auto best =
+        petal_search_.run(star_, Petal(a, b, c, quality_), {standard, verdict}, quality_, look_at);
+    retriangulate(slots_->add_vertex(mesh_, best.at), best.at, best.verdict.reach2, true);
+    return Outcome::kInserted;
+  }
+
   // Why the star of a point was refused, by the edges that it would have had.
   [[gnu::noinline]] Excuse refusal() const {
-    const auto& points = cavity_.ring().points;
-    const auto end = points.begin() + cavity_.ring().size + 1;  // of an open ring, the last end
+    const auto& points = star_.ring().points;
+    const auto end = points.begin() + star_.ring().size + 1;  // of an open ring, the last end
     const auto nearest = std::min_element(
         points.begin(), end,
         [](const RingPoint& a, const RingPoint& b) { return a.length2 < b.length2; });
@@ -207,7 +233,8 @@ class Refiner {
   // still there; when none could be split, t stays as it is.
   void split_encroached(std::uint32_t t) {
     const std::uint32_t first_vertex = mesh_.triangles[t].vertex[0];
-    segments_.insert(segments_.end(), cavity_.encroached().begin(), cavity_.encroached().end());
+    segments_.insert(segments_.end(), star_.cavity().encroached().begin(),
+                     star_.cavity().encroached().end());
     const bool split = split_queued_segments();
     Triangle& after = mesh_.triangles[t];
     if (after.badness() == kGood || after.vertex[0] != first_vertex) return;
@@ -222,27 +249,25 @@ class Refiner {
 
   // `clearance2` is the least squared distance from p to what it is joined to.
   Outcome insert_in_triangle(std::uint32_t t, Point p, double clearance2) {
-    while (true) {
-      switch (cavity_.grow_from_triangle(t, p, lens_of(t))) {
-        case Growth::kOverflow:
-          enlarge();
-          continue;
-        case Growth::kEncroaches:
-          return Outcome::kEncroaches;
-        case Growth::kNotOwned:
-          return Outcome::kNotOwned;
-        case Growth::kComplete:
-          break;
-      }
-      break;
-    }
-    const Ring& ring = cavity_.ring();
-    const RingVerdict verdict =
-        area_.judge(ring, 0, ring.size, p, region_bound(t), quality_, judged_.data());
+    const Outcome outcome = grow(star_, t, p);
+    if (outcome != Outcome::kInserted) return outcome;
+    const RingVerdict verdict = judge_star(star_, t, p);
     if (verdict.nearest2 < clearance2 || !acceptable(verdict, p)) [[unlikely]]
       return Outcome::kTooClose;
     retriangulate(slots_->add_vertex(mesh_, p), p, verdict.reach2, true);
     return Outcome::kInserted;
+  }
+
+  // The star of a point for triangle t. kInserted if its cavity is complete.
+  Outcome grow(Star<Ownership>& star, std::uint32_t t, Point p) {
+    const Growth growth = star.grow_from_triangle(t, p, lens_of(t));
+    return growth == Growth::kComplete     ? Outcome::kInserted
+           : growth == Growth::kEncroaches ? Outcome::kEncroaches
+                                           : Outcome::kNotOwned;
+  }
+  RingVerdict judge_star(Star<Ownership>& star, std::uint32_t t, Point p) {
+    const Ring& ring = star.ring();
+    return area_.judge(ring, 0, ring.size, p, region_bound(t), quality_, star.judged());
   }
 
   // What encroaches upon a segment for the triangle's sake.
@@ -303,21 +328,19 @@ class Refiner {
     const std::uint32_t b = triangle.vertex[kPrevious[edge]];
     const HalfEdge across = triangle.neighbor[edge];
     const bool closed = across != kNone;
-    Growth growth;
-    while ((growth = cavity_.grow_from_segment(t, edge, p)) == Growth::kOverflow) enlarge();
-    if (growth == Growth::kNotOwned) return Outcome::kNotOwned;
+    if (star_.grow_from_segment(t, edge, p) == Growth::kNotOwned) return Outcome::kNotOwned;
 
-    const Ring& ring = cavity_.ring();
+    const Ring& ring = star_.ring();
     if (too_thin(half_edge(t, edge)) || (closed && too_thin(across))) return Outcome::kTooClose;
     const std::uint32_t subsegment = corners_.subsegment(mesh_, a, b);
     if (!corners_.needles().keep_apart(subsegment, p)) return Outcome::kTooClose;
-    const std::uint32_t near_side = closed ? cavity_.far_end() : ring.size;
+    const std::uint32_t near_side = closed ? star_.cavity().far_end() : ring.size;
     RingVerdict verdict =
-        area_.judge(ring, 0, near_side, p, region_bound(t), quality_, judged_.data());
+        area_.judge(ring, 0, near_side, p, region_bound(t), quality_, star_.judged());
     if (closed) {
       const RingVerdict far =
           area_.judge(ring, near_side, ring.size, p, region_bound(triangle_of(across)), quality_,
-                      judged_.data());
+                      star_.judged());
       verdict.flat |= far.flat;
       verdict.too_close |= far.too_close;
       verdict.reach2 = std::max(verdict.reach2, far.reach2);
@@ -330,113 +353,36 @@ class Refiner {
     const std::uint32_t near_region = triangle.region;
     const std::uint32_t far_region = closed ? mesh_.triangles[triangle_of(across)].region : 0;
     retriangulate(slots_->add_segment_vertex(mesh_, p, subsegment), p, verdict.reach2, closed);
-    mark_segment(near_side, closed, near_region, far_region);
+    star_.mark_segment(mesh_, near_side, closed, near_region, far_region);
     return Outcome::kInserted;
-  }
-
-  // The slots for the star of a point: those of the cavity, as far as they are this task's, then
-  // new ones. The first follows the last once more.
-  const std::uint32_t* take_star_slots() {
-    const std::uint32_t n = cavity_.ring().size;
-    std::uint32_t* const star = cavity_.triangles();
-    const std::uint32_t taken = cavity_.in_own_slots() ? cavity_.size() : drop_foreign_slots();
-    slots_->add_triangles(mesh_, n - taken, star + taken);
-    star[n] = star[0];
-    return star;
-  }
-
-  // Returns how many slots of the cavity are this task's, and come first now. The triangles in the
-  // others die.
-  [[gnu::noinline]] std::uint32_t drop_foreign_slots() {
-    std::uint32_t* const first = cavity_.triangles();
-    std::uint32_t* const own = std::remove_if(first, first + cavity_.size(), [&](std::uint32_t t) {
-      const bool foreign = mesh_.owner_of_triangle(t) != slots_->owner();
-      if (foreign) mesh_.triangles[t].die();
-      return foreign;
-    });
-    return static_cast<std::uint32_t>(own - first);
   }
 
   // Replaces the cavity by the star of its point p, now a vertex. `reach2` is the squared distance
   // to the farthest point of the ring.
   void retriangulate(std::uint32_t vertex, Point p, double reach2, bool closed) {
-    if (ownership_.core_holds(p, reach2)) [[likely]] {
-      make_star(vertex, closed,
-                [this](std::uint32_t t, Badness badness, std::uint32_t) { bad_.push(t, badness); });
-    } else {
-      make_star(vertex, closed, [&](std::uint32_t t, Badness badness, std::uint32_t edge) {
-        queue_or_hand_over(t, badness, vertex, p, edge);
-      });
-    }
-  }
-
-  // Links the star and calls `queue` for its bad triangles, with the edge of the ring. All in one
-  // loop, and the slots of the cavity stay where they are: the end of each loop over a ring is
-  // foretold badly. That saved an eighth of the branches that a simulated predictor gets wrong.
-  template <class Queue>
-  void make_star(std::uint32_t vertex, bool closed, Queue queue) {
-    Triangle* const triangles = mesh_.triangles.data();
-    const std::uint32_t n = cavity_.ring().size;
-    const std::uint32_t region = triangles[cavity_.triangles()[0]].region;
-    const std::uint32_t* const __restrict star = take_star_slots();
-    const Badness* const __restrict judged = judged_.data();
-    const RingPoint* const __restrict points = cavity_.ring().points.data();
-
-    HalfEdge previous = half_edge(star[n - 1], 1);
-    std::uint32_t start = points[0].vertex;
-    for (std::uint32_t i = 0; i < n; ++i) {
-      const RingPoint& end = points[i + 1];
-      Triangle& t = triangles[star[i]];
-      t.vertex[0] = vertex;
-      t.vertex[1] = start;
-      t.vertex[2] = end.vertex;
-      t.flags = end.constrained | judged[i] << 8;
-      t.neighbor[0] = end.outside;
-      t.neighbor[1] = half_edge(star[i + 1], 2);
-      t.neighbor[2] = previous;
-      t.region = region;
-      if (end.outside != kNone) [[likely]] {
-        triangles[triangle_of(end.outside)].neighbor[edge_of(end.outside)] = half_edge(star[i], 0);
-      }
-      if (judged[i] != kGood) queue(star[i], judged[i], i);
-      start = end.vertex;
-      previous = half_edge(star[i], 1);
-    }
-    if (!closed) {
-      triangles[star[0]].neighbor[2] = kNone;
-      triangles[star[n - 1]].neighbor[1] = kNone;
-    }
-    added_ += static_cast<std::int64_t>(n) - cavity_.size();
     ++insertions_;
+    if (ownership_.core_holds(p, reach2)) [[likely]] {
+      added_ += star_.make(
+          mesh_, *slots_, vertex, closed,
+          [this](std::uint32_t t, Badness badness, std::uint32_t) { bad_.push(t, badness); });
+    } else {
+      added_ += star_.make(mesh_, *slots_, vertex, closed,
+                           [&](std::uint32_t t, Badness badness, std::uint32_t edge) {
+                             queue_or_hand_over(t, badness, vertex, p, edge);
+                           });
+    }
   }
 
   // A bad triangle of the star of p, at an edge of the ring, that may lie outside the core.
   void queue_or_hand_over(std::uint32_t t, Badness badness, std::uint32_t vertex, Point p,
                           std::uint32_t edge) {
-    const RingPoint& a = cavity_.ring().points[edge];
-    const RingPoint& b = cavity_.ring().points[edge + 1];
+    const RingPoint& a = star_.ring().points[edge];
+    const RingPoint& b = star_.ring().points[edge + 1];
     if (ownership_.in_core(p.x + (a.x + b.x) * (1.0 / 3), p.y + (a.y + b.y) * (1.0 / 3))) {
       bad_.push(t, badness);
     } else {
       handed_over_.push_back({t, vertex});
     }
-  }
-
-  // The star of a point on a segment: its two pieces are on the segment, and each side keeps its
-  // region.
-  void mark_segment(std::uint32_t near_side, bool closed, std::uint32_t near_region,
-                    std::uint32_t far_region) {
-    Triangle* const triangles = mesh_.triangles.data();
-    const std::uint32_t* const star = cavity_.triangles();
-    const std::uint32_t n = cavity_.ring().size;
-    triangles[star[0]].flags |= 1u << 2;
-    triangles[star[near_side - 1]].flags |= 1u << 1;
-    if (closed) {
-      triangles[star[near_side]].flags |= 1u << 2;
-      triangles[star[n - 1]].flags |= 1u << 1;
-    }
-    for (std::uint32_t i = 0; i < n; ++i)
-      triangles[star[i]].region = i < near_side ? near_region : far_region;
   }
 
   // Splits the queued segments. Returns whether any was split.
@@ -474,7 +420,7 @@ class Refiner {
       return false;
     if (!verdict.flat) [[likely]]
       return true;
-    const Ring& ring = cavity_.ring();
+    const Ring& ring = star_.ring();
     for (std::uint32_t i = 0; i < ring.size; ++i) {
       ++exact_;
       if (orientation_exact(p, mesh_.vertices[ring.points[i].vertex],
@@ -521,13 +467,6 @@ class Refiner {
     return regions_[mesh_.triangles[t].region].max_area;
   }
 
-  void enlarge() {
-    cavity_.enlarge();
-    reserve_ring_buffers(2 * judged_.size());
-  }
-
-  void reserve_ring_buffers(std::size_t capacity) { judged_.resize(capacity); }
-
   void tick() {
     if (--until_poll_ != 0) [[likely]]
       return;
@@ -566,7 +505,8 @@ class Refiner {
   const std::uint64_t max_triangles_;
   Slots* slots_ = nullptr;
   Ownership ownership_{};
-  Cavity<Ownership> cavity_;
+  Star<Ownership> star_;
+  PetalSearch<Ownership> petal_search_;
   TriangleJudge judge_;
 
   BadTriangles bad_;
@@ -574,7 +514,6 @@ class Refiner {
   std::vector<BadTriangle> deferred_;
   std::vector<SegmentEdge> deferred_segments_;
   std::vector<BadTriangle> handed_over_;
-  std::vector<Badness> judged_;  // of the triangle at each edge of the ring
   bool segments_deferred_ = false;
   // Why segments of the last call of split_queued_segments were not split; precision over the
   // caller's floor.

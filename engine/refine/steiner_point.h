@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a bad triangle's Steiner point goes.
 //
-// If it is skinny, or there is no lattice: to its circumcentre, or its off-centre where that is
-// nearer to the shortest edge (A. Üngör, "Off-centers", 2004). Off-centres cost 5 % at 20 degrees
-// and pay from about 32.
+// If it is skinny, or there is no lattice: to its circumcentre, or to its off-centre if that is
+// nearer to the shortest edge (A. Üngör, "Off-centers", 2004). Of a skinny triangle this is only
+// the first of the places that are tried (petal.h), the nearest to the edge's bisector.
 //
 // If it is too large: to the point of the lattice (size/lattice.h) nearest to its circumcentre,
 // provided that this point
@@ -33,9 +33,6 @@ inline constexpr double kLatticeClearance2 = 0.55 * 0.55;
 
 // The circumcentre if `off_centre` is 0, otherwise the off-centre of QualityBounds.
 inline Point steiner_point(Point a, Point b, Point c, double off_centre) {
-  const auto distance2 = [](Point p, Point q) {
-    return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
-  };
   const double opposite_a = distance2(b, c);
   const double opposite_b = distance2(c, a);
   const double opposite_c = distance2(a, b);
@@ -82,9 +79,6 @@ inline Point steiner_point(Point a, Point b, Point c, const QualityBounds& quali
 inline bool takes_lattice_point(Point a, Point b, Point c, Point circumcentre,
                                 const LatticePoint& nearest) {
   constexpr double kInside = 0.96;  // of the squared radius
-  const auto distance2 = [](Point p, Point q) {
-    return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
-  };
   const Point p = nearest.at;
   const double clear2 = std::min(std::min(distance2(p, a), distance2(p, b)), distance2(p, c));
   return nearest.spacing2 > 0 && clear2 >= kLatticeClearance2 * nearest.spacing2 &&

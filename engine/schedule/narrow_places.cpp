@@ -35,13 +35,13 @@ double distance_to_segment(Point p, Point a, Point b) {
 // at the distance y from it, and a triangle for each c times an edge's square. With c and K from
 // what was measured, in triangles a square of h x h:
 //
-//   minimum angle                5     10    15    20    25    30    33
-//   in the strip, from          0.16  0.32  0.48  0.65  0.71  0.95  1.3
-//                 to            0.24  0.48  0.71  0.95  1.3   1.4   2.0
-//   2.2 tan                     0.19  0.39  0.59  0.80  1.0   1.3   1.4
-//   strip and both sides, from  0.35  0.86  1.4   2.3   4.4   6.5   12
-//                         to    0.55  1.3   2.2   3.8   6.6   11    26
-//   + 3.5 tan / (1 - tan / .78) 0.54  1.2   2.0   3.2   5.1   9.1   15
+//   minimum angle                5     10    15    20    25    30    33    36
+//   in the strip, from          0.14  0.29  0.40  0.58  0.77  0.88  1.0   1.0
+//                 to            0.22  0.44  0.77  0.88  1.2   1.6   1.8   9.2
+//   2.05 tan                    0.18  0.36  0.55  0.75  0.96  1.2   1.3   1.5
+//   strip and both sides, from  0.33  0.70  1.1   1.7   2.3   3.5   4.3   5.2
+//                         to    0.52  1.1   2.1   2.7   3.7   6.2   7.8   28
+//   + 2.45 tan / (1 - tan/.97)  0.41  0.89  1.5   2.2   3.2   4.7   6.1   8.6
 struct Grading {
   double k;
   double c;
@@ -49,8 +49,8 @@ struct Grading {
 
   static Grading of(double sin2) {
     const double tangent = std::sqrt(sin2 / (1 - sin2));
-    const double in_strip = 2.2 * tangent;
-    const double at_side = 1.75 * tangent / (1 - tangent / 0.78);
+    const double in_strip = 2.05 * tangent;
+    const double at_side = 1.225 * tangent / (1 - tangent / 0.97);
     // The sum over the distance y, of the strip up to the middle: 1 / (c (1 + K/2)) = in_strip; to
     // infinity: 1 / (c K) = at_side.
     Grading grading{};
@@ -284,7 +284,7 @@ class NarrowPlaces::Search {
   }
 
   static constexpr double kAlike = 1.5;
-  static constexpr double kCertain = 0.4;
+  static constexpr double kCertain = 0.35;
 
   const Domain& domain_;
   const std::function<double(Point)>& likely_area_;
@@ -339,7 +339,7 @@ Result<NarrowPlaces> NarrowPlaces::find(const Domain& domain, const QualityBound
 
 double NarrowPlaces::elsewhere(const QualityBounds& quality) {
   if (!(quality.sin2 > 0)) return 1;
-  return std::max(1.0, 0.5 * Grading::of(quality.sin2).per_square);
+  return std::max(1.0, 0.6 * Grading::of(quality.sin2).per_square);
 }
 
 void NarrowPlaces::add_samples(double grain, std::vector<Quadtree::Sample>& samples) const {

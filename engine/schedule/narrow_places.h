@@ -61,7 +61,7 @@ class NarrowPlaces {
   const std::optional<Costliest>& costliest() const { return costliest_; }
 
   // What the bound on angles makes of a triangle of the domain elsewhere, on average: measured on
-  // coasts at 20 to 33 degrees, 1.9 to 5.6.
+  // coasts at 20 to 33 degrees, 1.7 to 3.1.
   static double elsewhere(const QualityBounds& quality);
 
   // Adds the triangles where they are expected, at most `grain` a sample, or in more than 2^17

@@ -125,7 +125,7 @@ std::vector<Case> cases() {
       {.name = "ExpressionNested10000Deep",
        .arguments = {"--size", std::string(10'000, '(') + "1" + std::string(10'000, ')')},
        .says = {"size.expression", "256"}},
-      {.name = "MinimumAngleOf61", .arguments = {"--min-angle", "61"}, .says = {"61", "34"}},
+      {.name = "MinimumAngleOf61", .arguments = {"--min-angle", "61"}, .says = {"61", "36"}},
       {.name = "SizeZero", .arguments = {"--size", "0"}, .says = {"positive"}},
       {.name = "SizeNegative", .arguments = {"--size", "-1"}, .says = {"positive"}},
       {.name = "SizeThatNeeds10ToThe12Triangles",

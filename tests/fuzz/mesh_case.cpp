@@ -227,7 +227,7 @@ MeshCase decode_mesh_case(ByteSource bytes) {
   const std::size_t bounds = bytes.byte();
   ByteSource size_bytes = bytes;
   bytes.take(6);
-  constexpr std::array<double, 9> kAngles{20, 20, 0, 25, 30, 33, 34, 12.5, 1};
+  constexpr std::array<double, 9> kAngles{20, 20, 0, 25, 30, 33, 36, 12.5, 1};
   request.min_angle_deg = kAngles[bounds % kAngles.size()];
   request.leaf_triangles = bytes.one_of<double>({16'000, 50, 50, 100, 300});
   const std::size_t rarely = bytes.byte();

@@ -219,7 +219,7 @@ def test_threads_may_share_a_client(client):
 
 def test_the_server_tells_what_it_is(client):
     info = client.server_info()
-    assert info.limits.max_min_angle_deg == 34
+    assert info.limits.max_min_angle_deg == 36
     assert info.threads >= 1
 
 

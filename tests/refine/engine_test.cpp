@@ -40,7 +40,7 @@ TEST(Options, AboveTheLargestMinimumAngleAreRefusedWithTheLimit) {
   EXPECT_EQ(error.code, ErrorCode::kBadOption);
   EXPECT_EQ(error.field, "quality.min_angle_deg");
   EXPECT_NE(error.message.find("61"), std::string::npos) << error.message;
-  EXPECT_NE(error.message.find("34"), std::string::npos) << error.message;
+  EXPECT_NE(error.message.find("36"), std::string::npos) << error.message;
 }
 
 TEST(Options, OfANegativeShortestEdgeAreRefused) {
@@ -323,7 +323,7 @@ TEST(Determinism, GivesTheRecordedDigestOnEveryMachineAndCompiler) {
     constexpr char kDigits[] = "0123456789abcdef";
     hex += {kDigits[byte >> 4], kDigits[byte & 15]};
   }
-  EXPECT_EQ(hex, "efa2cc138694917d94229382892611e67a8604e9dbf8a04d93a30d5d14a50b33");
+  EXPECT_EQ(hex, "5587b9c75ef9a85bb6d0a693a93145829189c0445b98766897f180bafde467ab");
 }
 
 TEST(Memory, AtThePeakIsAtMost45BytesATriangle) {

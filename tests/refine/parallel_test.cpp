@@ -97,7 +97,7 @@ TEST_P(ParallelModels, GiveOneMeshAtEveryNumberOfThreads) {
   if (!m.size.empty()) request.size.expression = (kSanitized ? "9*(" : "(") + m.size + ")";
   const auto summary = expect_one_mesh(request);
   ASSERT_TRUE(summary);
-  EXPECT_GE(summary->leaves.size(), kSanitized ? m.least_leaves / 10 : m.least_leaves);
+  EXPECT_GE(summary->leaves.size(), kSanitized ? m.least_leaves / 15 : m.least_leaves);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -292,7 +292,7 @@ TEST_P(ParallelSegments, HaveLeavesThatHardlyWaitForEachOther) {
     request.size.constant = GetParam();
     const auto summary = expect_one_mesh(request);
     ASSERT_TRUE(summary);
-    EXPECT_GE(summary->leaves.size(), kSanitized ? 20u : 100u);
+    EXPECT_GE(summary->leaves.size(), kSanitized ? 20u : 60u);
     if (kSanitized) continue;
     EXPECT_LT(100 * summary->deferred, summary->insertions);
   }

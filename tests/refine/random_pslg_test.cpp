@@ -26,7 +26,7 @@ SizeSpec size(Random& random) {
 class RandomPslg : public testing::TestWithParam<Kind> {};
 
 TEST_P(RandomPslg, IsMeshedWithinBounds) {
-  constexpr double kAngles[] = {0, 15, 20, 25, 30, 33, 34};
+  constexpr double kAngles[] = {0, 15, 20, 25, 30, 33, 34, 36};
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     Random random(seed);
     MeshRequest request;

@@ -322,7 +322,7 @@ TEST(GetServerInfo, TellsVersionsThreadsAndLimits) {
   EXPECT_EQ(info.threads(), 3u);
   EXPECT_EQ(info.limits().max_points(), 123u);
   EXPECT_EQ(info.limits().max_concurrent_jobs(), 2u);
-  EXPECT_EQ(info.limits().max_min_angle_deg(), 34);
+  EXPECT_EQ(info.limits().max_min_angle_deg(), 36);
   EXPECT_EQ(info.limits().max_expression_bytes(), 65536u);
   EXPECT_EQ(info.limits().max_raster_values(), 16777216u);
   EXPECT_FALSE(info.has_jobs()) << "there is no store";

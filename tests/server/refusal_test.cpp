@@ -181,11 +181,11 @@ INSTANTIATE_TEST_SUITE_P(
              },
              "size.raster.dx", "is 0"},
         Case{"AngleOver", [](Request& r) { r.mutable_quality()->set_min_angle_deg(61); },
-             "quality.min_angle_deg", "is 61; it must be from 0 to 34 degrees"},
+             "quality.min_angle_deg", "is 61; it must be from 0 to 36 degrees"},
         Case{"AngleUnder", [](Request& r) { r.mutable_quality()->set_min_angle_deg(-1); },
-             "quality.min_angle_deg", "from 0 to 34"},
+             "quality.min_angle_deg", "from 0 to 36"},
         Case{"AngleNan", [](Request& r) { r.mutable_quality()->set_min_angle_deg(kNan); },
-             "quality.min_angle_deg", "from 0 to 34"},
+             "quality.min_angle_deg", "from 0 to 36"},
         Case{"EdgeNegative", [](Request& r) { r.mutable_quality()->set_min_edge(-1); },
              "quality.min_edge", "is -1"},
         Case{"EdgeNan", [](Request& r) { r.mutable_quality()->set_min_edge(kNan); },
@@ -205,7 +205,7 @@ TEST(Refusal, AdmitsWhatIsExactlyAtTheLimits) {
   v1::GenerateMeshRequest request = valid_request();
   request.mutable_domain()->mutable_points()->Resize(200, 0);
   request.mutable_domain()->mutable_holes()->Resize(160, 0);
-  request.mutable_quality()->set_min_angle_deg(34);
+  request.mutable_quality()->set_min_angle_deg(36);
   request.mutable_budget()->set_max_triangles(60);
   request.mutable_budget()->set_max_bytes(50);
   request.mutable_budget()->set_max_seconds(40);

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// The search of a petal (petal.h): the star of each place is grown and judged, and the best one is
+// kept. Nothing of the mesh changes.
+//
+// us-east-coast at 20 degrees: 3.2 places are looked at for each skinny triangle, their cavities
+// have 7 triangles each, and refinement takes 6.6 ms instead of 3.2. A bound on what a place may be
+// worth, from the circumdisks of the bad triangles around, rules out only 9 % of the places, and
+// costs as much as that saves.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "engine/geometry.h"
+#include "engine/refine/mesh.h"
+#include "engine/refine/petal.h"
+#include "engine/refine/quality_bounds.h"
+#include "engine/refine/star.h"
+#include "engine/refine/triangle_judge.h"
+
+namespace weft {
+
+template <class Ownership>
+class PetalSearch {
+ public:
+  struct Place {
+    Point at;
+    RingVerdict verdict;  // of the star there
+  };
+
+  explicit PetalSearch(const Mesh& mesh) : mesh_(mesh), other_(mesh) {}
+
+  // As for a star.
+  void begin(const Ownership& ownership, std::uint32_t owner) { other_.begin(ownership, owner); }
+
+  // Returns the best place, with its star in `star`, which is that of the standard place before,
+  // grown and judged. `look_at(other, p)` grows and judges `other` at p, and returns nothing if p
+  // is not a possible place.
+  template <class LookAt>
+  Place run(Star<Ownership>& star, const Petal& petal, const Place& standard,
+            const QualityBounds& quality, LookAt&& look_at) {
+    Place best = standard;
+    StarWorth worth = worth_of(star, standard.verdict);
+    const std::int32_t all_bad = bad_around(star);
+    remember_ring(star);
+    search_petal(quality, [&](double half_tangent) {
+      if (worth.fewer_bad >= all_bad) return false;
+      const Point p = petal.place(half_tangent);
+      if (petal.same_place(p, standard.at) || near_ring(p, petal.shortest2())) return false;
+      const std::optional<RingVerdict> there = look_at(other_, p);
+      if (!there || there->flat || there->too_close || there->nearest2 < petal.shortest2())
+        return false;
+      const StarWorth its = worth_of(other_, *there);
+      if (!(its > worth)) return false;
+      best = {p, *there};
+      worth = its;
+      std::swap(star, other_);
+      return true;
+    });
+    return best;
+  }
+
+  std::uint64_t exact_predicates() const { return other_.exact_predicates(); }
+  std::uint64_t bytes() const { return other_.bytes() + ring_.capacity() * sizeof(ring_[0]); }
+
+ private:
+  StarWorth worth_of(Star<Ownership>& star, const RingVerdict& verdict) const {
+    std::int32_t fewer = bad_in_cavity(star);
+    for (std::uint32_t i = 0; i < star.ring().size; ++i) fewer -= star.judged()[i] != kGood;
+    return {fewer, verdict.nearest2};
+  }
+
+  std::int32_t bad_in_cavity(const Star<Ownership>& star) const {
+    const Cavity<Ownership>& cavity = star.cavity();
+    return static_cast<std::int32_t>(
+        std::count_if(cavity.triangles(), cavity.triangles() + cavity.size(),
+                      [&](std::uint32_t t) { return mesh_.triangles[t].badness() != kGood; }));
+  }
+
+  // And in the triangles across the ring: hardly a place is worth more.
+  std::int32_t bad_around(const Star<Ownership>& star) const {
+    std::int32_t bad = bad_in_cavity(star);
+    for (std::uint32_t i = 1; i <= star.ring().size; ++i) {
+      const RingPoint& point = star.ring().points[i];
+      if (point.constrained == 0)
+        bad += mesh_.triangles[triangle_of(point.outside)].badness() != kGood;
+    }
+    return bad;
+  }
+
+  void remember_ring(const Star<Ownership>& star) {
+    ring_.clear();
+    for (std::uint32_t i = 0; i < star.ring().size; ++i)
+      ring_.push_back(mesh_.vertices[star.ring().points[i].vertex]);
+  }
+  bool near_ring(Point p, double least2) const {
+    return std::any_of(ring_.begin(), ring_.end(),
+                       [&](Point q) { return distance2(p, q) < least2; });
+  }
+
+  const Mesh& mesh_;
+  Star<Ownership> other_;    // of the place that is looked at
+  std::vector<Point> ring_;  // of the standard place
+};
+
+}  // namespace weft
