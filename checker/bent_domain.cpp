@@ -17,6 +17,16 @@
 namespace weft::check {
 namespace {
 
+// Those of one segment. REQUIRES: they are sorted by segment.
+template <class T>
+std::span<const T> of_segment(const std::vector<T>& sorted, std::uint32_t segment) {
+  const auto begin = std::partition_point(
+      sorted.begin(), sorted.end(), [&](const T& element) { return element.segment < segment; });
+  const auto end = std::partition_point(
+      begin, sorted.end(), [&](const T& element) { return element.segment == segment; });
+  return {begin, end};
+}
+
 class Bender {
  public:
   Bender(const Domain& domain, const NearFeatures& near, const Mesh& mesh,
@@ -28,6 +38,7 @@ class Bender {
         images_(images_of_points(domain, near, mesh)),
         steps_(steps_along_segments(domain, mesh, listed, near.bend)),
         is_stop_(mesh.vertices.size(), 0),
+        touches_(near.touches),
         first_piece_(domain.segments.size() + 1, 0) {
     result_.domain.holes = domain.holes;
     result_.domain.regions = domain.regions;
@@ -38,17 +49,14 @@ class Bender {
     result_.rounding = near.rounding;
     for (std::size_t i = 0; i < images_.size(); ++i)
       if (images_[i]) result_.domain.points[i] = mesh.vertices[*images_[i]];
+    std::stable_sort(touches_.begin(), touches_.end(),
+                     [](const auto& t, const auto& u) { return t.segment < u.segment; });
     find_stops(listed);
   }
 
   BentDomain bend() {
-    auto step = steps_.begin();
-    for (std::uint32_t s = 0; s < domain_.segments.size(); ++s) {
-      auto end = step;
-      while (end != steps_.end() && end->segment == s) ++end;
-      bend_segment(s, {step, end});
-      step = end;
-    }
+    for (std::uint32_t s = 0; s < domain_.segments.size(); ++s)
+      bend_segment(s, of_segment(steps_, s));
     link_points();
     link_touches();
     for (const std::array<Vec2, 2>& link : links_across_gaps(result_.domain))
@@ -80,9 +88,9 @@ class Bender {
     const bool is_bent = near_.is_bent(s);
     if (is_bent)
       for (const Step& step : steps) result_.beside.emplace_back(step.edge, marker(s));
+    const Track track = track_of(domain_, s);
     const std::vector<ChainStop> chain =
-        bent_chain(mesh_, track_of(domain_, s), steps, near_.bend[s],
-                   {images_[from], result_.domain.points[from]},
+        bent_chain(mesh_, track, steps, near_.bend[s], {images_[from], result_.domain.points[from]},
                    {images_[to], result_.domain.points[to]}, jumps_last_[s]);
     std::uint32_t last = from;
     for (std::size_t k = 1; k < chain.size(); ++k) {
@@ -90,17 +98,38 @@ class Bender {
       const bool is_end = k + 1 == chain.size();
       if (!is_end && !is_stop_[*stop.vertex] && !stop.jumped && !chain[k + 1].jumped) continue;
       const std::uint32_t next = is_end ? to : junction(*stop.vertex);
-      add_piece(s, last, next, stop.jumped && is_bent);
+      if (stop.jumped && is_bent) {
+        add_gap(s, track, last, next);
+      } else {
+        add_piece(s, last, next, false, false);
+      }
       last = next;
     }
   }
 
-  // Points of the bent domain.
-  void add_piece(std::uint32_t s, std::uint32_t from, std::uint32_t to, bool is_gap) {
+  // What the mesh seems not to have is led through the points that it must be merged with: they may
+  // be in the mesh for the sake of other segments.
+  void add_gap(std::uint32_t s, const Track& track, std::uint32_t from, std::uint32_t to) {
     const Vec2 p = result_.domain.points[from], q = result_.domain.points[to];
-    if (p == q) return;
+    std::vector<std::pair<double, std::uint32_t>> between;
+    for (const Contacts::Touch& touch : of_segment(touches_, s)) {
+      const double position = track.position(result_.domain.points[touch.point]);
+      if (position > track.position(p) && position < track.position(q))
+        between.emplace_back(position, touch.point);
+    }
+    std::sort(between.begin(), between.end());
     // Two chains that the search could not join are torn by no more than this.
-    const bool is_tear = is_gap && std::hypot(q.x - p.x, q.y - p.y) <= 2 * near_.bend[s];
+    const bool is_tear = std::hypot(q.x - p.x, q.y - p.y) <= 2 * near_.bend[s];
+    for (const auto& [position, point] : between) {
+      add_piece(s, from, point, true, is_tear);
+      from = point;
+    }
+    add_piece(s, from, to, true, is_tear);
+  }
+
+  // Points of the bent domain.
+  void add_piece(std::uint32_t s, std::uint32_t from, std::uint32_t to, bool is_gap, bool is_tear) {
+    if (result_.domain.points[from] == result_.domain.points[to]) return;
     result_.is_gap.push_back(is_gap);
     result_.is_tear.push_back(is_tear);
     result_.domain.segments.push_back({from, to});
@@ -161,6 +190,7 @@ class Bender {
   std::vector<std::optional<std::uint32_t>> images_;  // per point: its mesh vertex
   std::vector<Step> steps_;
   std::vector<char> is_stop_;               // per mesh vertex
+  std::vector<Contacts::Touch> touches_;    // by segment
   std::vector<std::uint32_t> junctions_;    // per mesh vertex: its number, or kNone
   std::vector<std::uint32_t> first_piece_;  // per segment
   BentDomain result_;

@@ -8,7 +8,8 @@
 //   - a point that has another one within T may be a vertex within T of it instead of its own;
 //   - a segment that has something near may be a path of listed edges within kMaxBend * T of it
 //     that never turns back, from the vertex that its one end has become to that of the other;
-//   - between the input points and the junctions on that path it is straight, to rounding.
+//   - between the input points and the junctions on that path it is straight, to rounding; where
+//     the mesh has none of it, it goes through the points that it must be merged with.
 // A mesh can gain no more from a wrong choice than T: what must be merged and is not divides faces
 // all the same (`links`).
 #pragma once

@@ -92,7 +92,8 @@ class NearFeatureFinder {
       const auto [a, b] = ends(crossing.first);
       const auto [c, d] = ends(crossing.second);
       visit_near(crossing_of(a, b, c, d), [&](std::uint32_t s, double distance) {
-        if (s == crossing.first || s == crossing.second || distance <= rounding_) return;
+        const auto [e, f] = ends(s);
+        if (s == crossing.first || s == crossing.second || distance <= snap_distance(e, f)) return;
         const std::array three{crossing.first, crossing.second, s};
         const auto is_bent = [&](std::uint32_t t) { return found.is_bent(t); };
         if (distance > perhaps_near_ && std::none_of(three.begin(), three.end(), is_bent)) return;

@@ -204,6 +204,57 @@ TEST(Merging, AChainBendsOnlyAtWhatPullsIt) {
   EXPECT_TRUE(problem.check().ok()) << to_text(problem.check());
 }
 
+// A square far from the origin, all of it holes but for a triangle, whose tip is by so much of T
+// below the square's lower side. If `beyond`, two segments cross at the tip and go on.
+Problem tip(double below, bool beyond) {
+  constexpr double kFar = 1e6;
+  const double y = -below * 0x1p-40 * kFar;
+  Problem problem;
+  Domain& domain = problem.domain;
+  domain.points = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {1.9, 3}, {2.1, 3}, {2, y}};
+  domain.segments = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 4}};
+  if (beyond) {
+    domain.points[6] = {2.1, 2 * y - 3};
+    domain.points.push_back({1.9, 2 * y - 3});
+    domain.segments = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 7}, {6, 4}};
+  }
+  domain.holes = {{1, 1}};
+  problem.mesh.vertices = {{1.9, 3}, {2, y}, {2.1, 3}};
+  problem.mesh.triangles = {{0, 1, 2}};
+  problem.mesh.edges = {{0, 1, 0}, {1, 2, 0}, {2, 0, 0}};
+  for (std::vector<Vec2>* points : {&domain.points, &domain.holes, &problem.mesh.vertices})
+    for (Vec2& p : *points) p = {kFar + p.x, kFar + p.y};
+  return problem;
+}
+
+TEST(Merging, ASegmentOutsideIsLedThroughWhatItPasses) {
+  for (const bool beyond : {false, true}) {
+    for (const double below : {-0.9, -0.4, -0.02, 0.02, 0.04, 0.4, 0.9}) {
+      const Report report = tip(below, beyond).check();
+      EXPECT_TRUE(report.ok()) << beyond << " " << below << "\n" << to_text(report);
+    }
+    EXPECT_FALSE(tip(100, beyond).check().ok()) << beyond;
+  }
+}
+
+// Three segments through one point but for 6 units in the last place, in a mesh that has a vertex
+// 12 units from that point.
+TEST(Merging, RoundingMayLeadThreeSegmentsThroughOneVertex) {
+  Problem problem;
+  problem.domain.points = {{0, 2}, {4, 2}, {2, 0}, {2, 4}, {0, 8e-15}, {4, 4 + 8e-15}};
+  problem.domain.segments = {{0, 1}, {2, 3}, {4, 5}};
+  problem.domain.segments.insert(problem.domain.segments.end(),
+                                 {{0, 4}, {4, 2}, {2, 1}, {1, 5}, {5, 3}, {3, 0}});
+  problem.mesh.vertices = problem.domain.points;
+  problem.mesh.vertices.push_back({2, 2 - 1.3e-14});
+  problem.mesh.triangles = {{6, 0, 4}, {6, 4, 2}, {6, 2, 1}, {6, 1, 5}, {6, 5, 3}, {6, 3, 0}};
+  problem.mesh.edges = {{0, 6, 0}, {6, 1, 0}, {2, 6, 0}, {6, 3, 0}, {4, 6, 0}, {6, 5, 0},
+                        {0, 4, 0}, {4, 2, 0}, {2, 1, 0}, {1, 5, 0}, {5, 3, 0}, {3, 0, 0}};
+  EXPECT_TRUE(problem.check().ok()) << to_text(problem.check());
+  problem.mesh.vertices.back().y = 2 - 1e-10;
+  EXPECT_FALSE(problem.check().ok());
+}
+
 TEST(Merging, ChangesNothingWhereNothingIsNear) {
   for (Problem problem : {block(5), block_with_hole(), block_with_regions()}) {
     problem.domain.snap = kSnap;
