@@ -88,11 +88,10 @@ bool is_too_fine(const MeshCase& mesh_case) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     for (std::size_t j = 0; j < lines.size(); ++j) {
       if (i == j || !(sine(lines[i], lines[j]) < 0.1)) continue;
-      std::vector<Point> corners;
-      if (const auto p = crossing(lines[i], lines[j], 4 * tolerance)) corners.push_back(*p);
-      for (const Point end : {lines[i].a, lines[i].b})
-        if (distance(end, lines[j]) <= 4 * tolerance) corners.push_back(end);
-      for (const Point corner : corners) {
+      for (const Point corner : vertices) {
+        if (distance(corner, lines[i]) > 4 * tolerance ||
+            distance(corner, lines[j]) > 4 * tolerance)
+          continue;
         double finest = std::numeric_limits<double>::infinity();
         const auto see = [&](double d) {
           if (d > 4 * tolerance) finest = std::min(finest, d);

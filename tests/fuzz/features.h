@@ -17,7 +17,8 @@ bool is_contested(const MeshCase& mesh_case);
 // Whether two segments meet at such a small angle, with such a fine feature beside the corner, that
 // no mesh in double precision meets the bounds: where triangles must be as small as the feature,
 // the segments are nearer to each other than refinement's floor (kEdgeFraction in
-// engine/domain/tolerance.h), times 4.
+// engine/domain/tolerance.h), times 4. The corner may be any vertex that both pass: merging leads
+// two segments at a small angle through one vertex where a third crosses both.
 bool is_too_fine(const MeshCase& mesh_case);
 
 }  // namespace weft::fuzz

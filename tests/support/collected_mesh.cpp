@@ -82,8 +82,19 @@ std::string miscounted(const MeshRequest& request, const check::Mesh& mesh,
   return "";
 }
 
-// Degrees. The engine keeps cosines, whose rounding hides that much of an angle near 0 or 180.
-constexpr double kAngleRounding = 4e-6;
+// What rounding explains of an angle, in degrees: the area of its triangle is off by 2^-51 or so of
+// the longest edges' product, which in a needle is much of the product of the edges at the angle.
+double angle_rounding(const check::Mesh& mesh) {
+  double result = 0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const check::Vec2 p = mesh.vertices[a], q = mesh.vertices[b], r = mesh.vertices[c];
+    const auto [shortest, longest] =
+        std::minmax({std::hypot(q.x - p.x, q.y - p.y), std::hypot(r.x - p.x, r.y - p.y),
+                     std::hypot(r.x - q.x, r.y - q.y)});
+    result = std::max(result, longest / shortest);
+  }
+  return 1e-9 + 0x1p-50 * result * (180 / std::acos(-1.0));
+}
 
 // What rounding explains of a sum of areas: of each triangle, the products of its edges, which
 // cancel in a needle.
@@ -186,9 +197,10 @@ std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
   if (summary.triangles != report.facts.triangles) return "the summary miscounts triangles";
   if (summary.vertices != report.facts.vertices) return "the summary miscounts vertices";
   if (summary.edges != report.facts.edges) return "the summary miscounts edges";
-  if (std::fabs(summary.min_angle_deg - report.facts.min_angle_deg) > kAngleRounding)
+  const double angle_error = angle_rounding(collected.mesh);
+  if (!near(summary.min_angle_deg, report.facts.min_angle_deg, angle_error))
     return "the summary has another smallest angle";
-  if (std::fabs(summary.max_angle_deg - report.facts.max_angle_deg) > kAngleRounding)
+  if (!near(summary.max_angle_deg, report.facts.max_angle_deg, angle_error))
     return "the summary has another largest angle";
   if (std::fabs(summary.area - report.facts.area) >
       1e-9 * report.facts.area + area_rounding(collected.mesh))
