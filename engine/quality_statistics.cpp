@@ -113,7 +113,9 @@ void QualityStatistics::add(const TriangleBlock& block) {
     // Edge k is opposite corner k.
     const Lanes ex[3] = {edge(block.x, 1, 2), edge(block.x, 2, 0), edge(block.x, 0, 1)};
     const Lanes ey[3] = {edge(block.y, 1, 2), edge(block.y, 2, 0), edge(block.y, 0, 1)};
-    const Lanes doubled = ex[2] * ey[0] - ey[2] * ex[0];
+    // Of a triangle that turns left by less than rounding it may come out negative, and then its
+    // angles of 0 and 180 degrees would be taken for each other.
+    const Lanes doubled = _mm_max_pd(ex[2] * ey[0] - ey[2] * ex[0], _mm_setzero_pd());
     Lanes length[3];
     Lanes sum2 = _mm_setzero_pd();
     for (std::size_t k = 0; k < 3; ++k) {

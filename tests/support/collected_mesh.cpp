@@ -58,7 +58,8 @@ std::string miscounted(const MeshRequest& request, const check::Mesh& mesh,
       const check::Vec2 a = mesh.vertices[t[k]];
       const check::Vec2 b = mesh.vertices[t[(k + 1) % 3]];
       const check::Vec2 c = mesh.vertices[t[(k + 2) % 3]];
-      const double cross = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+      // Of a flat triangle it may round to less than 0.
+      const double cross = std::max((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x), 0.0);
       const double dot = (b.x - a.x) * (c.x - a.x) + (b.y - a.y) * (c.y - a.y);
       const double angle = std::atan2(cross, dot) * (180 / std::acos(-1.0));
       angles.add(angle);
