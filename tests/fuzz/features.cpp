@@ -94,7 +94,8 @@ bool is_too_fine(const MeshCase& mesh_case) {
           continue;
         double finest = std::numeric_limits<double>::infinity();
         const auto see = [&](double d) {
-          if (d > 4 * tolerance) finest = std::min(finest, d);
+          // What is nearer is merged, unless merging moves it apart.
+          if (d > tolerance / 2) finest = std::min(finest, d);
         };
         for (const Point p : vertices) see(distance(p, corner));
         for (const Line& s : lines) see(distance(corner, s));
