@@ -24,6 +24,12 @@ Vec2 crossing_of(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
   return {static_cast<double>(a.x + t * ux), static_cast<double>(a.y + t * uy)};
 }
 
+// Of the angle between two segments.
+double sine_of(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
+  const double ux = b.x - a.x, uy = b.y - a.y, vx = d.x - c.x, vy = d.y - c.y;
+  return std::fabs(ux * vy - uy * vx) / (std::hypot(ux, uy) * std::hypot(vx, vy));
+}
+
 class NearFeatureFinder {
  public:
   explicit NearFeatureFinder(const Domain& domain)
@@ -91,9 +97,13 @@ class NearFeatureFinder {
     for (const Contacts::Crossing& crossing : crossings) {
       const auto [a, b] = ends(crossing.first);
       const auto [c, d] = ends(crossing.second);
+      // Rounding moves where two cross by so many units in the last place over the sine.
+      constexpr double kSharp = 0.25;
+      const bool is_sharp = sine_of(a, b, c, d) < kSharp;
       visit_near(crossing_of(a, b, c, d), [&](std::uint32_t s, double distance) {
+        if (s == crossing.first || s == crossing.second) return;
         const auto [e, f] = ends(s);
-        if (s == crossing.first || s == crossing.second || distance <= snap_distance(e, f)) return;
+        if (distance <= snap_distance(e, f) && !is_sharp) return;
         const std::array three{crossing.first, crossing.second, s};
         const auto is_bent = [&](std::uint32_t t) { return found.is_bent(t); };
         if (distance > perhaps_near_ && std::none_of(three.begin(), three.end(), is_bent)) return;

@@ -35,8 +35,9 @@ struct NearFeatures {
   bool is_bent(std::uint32_t segment) const { return bend[segment] > rounding; }
 };
 
-// A point or a crossing that a segment passes within a few units in the last place is no finding:
-// gaps.h. REQUIRES: a domain that judge_domain accepts, and all of its contacts.
+// A point or a crossing that a segment passes within a few units in the last place is no finding
+// (gaps.h), unless those that cross do so at a small angle, where their vertex may be farther off.
+// REQUIRES: a domain that judge_domain accepts, and all of its contacts.
 NearFeatures find_near_features(const Domain& domain, const Contacts& contacts);
 
 }  // namespace weft::check

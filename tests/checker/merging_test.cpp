@@ -237,22 +237,34 @@ TEST(Merging, ASegmentOutsideIsLedThroughWhatItPasses) {
   }
 }
 
-// Three segments through one point but for 6 units in the last place, in a mesh that has a vertex
-// 12 units from that point.
-TEST(Merging, RoundingMayLeadThreeSegmentsThroughOneVertex) {
+// Three segments from points 0, 1, 2 to 3, 4, 5, which stand around counter-clockwise, in a mesh
+// that joins all to `meeting`.
+Problem star_of(const std::vector<Vec2>& points, Vec2 meeting) {
   Problem problem;
-  problem.domain.points = {{0, 2}, {4, 2}, {2, 0}, {2, 4}, {0, 8e-15}, {4, 4 + 8e-15}};
-  problem.domain.segments = {{0, 1}, {2, 3}, {4, 5}};
-  problem.domain.segments.insert(problem.domain.segments.end(),
-                                 {{0, 4}, {4, 2}, {2, 1}, {1, 5}, {5, 3}, {3, 0}});
-  problem.mesh.vertices = problem.domain.points;
-  problem.mesh.vertices.push_back({2, 2 - 1.3e-14});
-  problem.mesh.triangles = {{6, 0, 4}, {6, 4, 2}, {6, 2, 1}, {6, 1, 5}, {6, 5, 3}, {6, 3, 0}};
-  problem.mesh.edges = {{0, 6, 0}, {6, 1, 0}, {2, 6, 0}, {6, 3, 0}, {4, 6, 0}, {6, 5, 0},
-                        {0, 4, 0}, {4, 2, 0}, {2, 1, 0}, {1, 5, 0}, {5, 3, 0}, {3, 0, 0}};
-  EXPECT_TRUE(problem.check().ok()) << to_text(problem.check());
-  problem.mesh.vertices.back().y = 2 - 1e-10;
-  EXPECT_FALSE(problem.check().ok());
+  problem.domain.points = problem.mesh.vertices = points;
+  problem.domain.segments = {{0, 3}, {1, 4}, {2, 5}};
+  problem.mesh.vertices.push_back(meeting);
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    const std::uint32_t next = (i + 1) % 6;
+    problem.domain.segments.push_back({i, next});
+    problem.mesh.triangles.push_back({6, i, next});
+    problem.mesh.edges.insert(problem.mesh.edges.end(), {{i, 6, 0}, {i, next, 0}});
+  }
+  return problem;
+}
+
+TEST(Merging, RoundingMayLeadThreeSegmentsThroughOneVertex) {
+  // Through one point but for 6 units in the last place, and a vertex 12 units from it.
+  const std::vector<Vec2> at_large_angles{{4, 2}, {4, 4 + 8e-15}, {2, 4},
+                                          {0, 2}, {0, 0 + 8e-15}, {2, 0}};
+  Report report = star_of(at_large_angles, {2, 2 - 1.3e-14}).check();
+  EXPECT_TRUE(report.ok()) << to_text(report);
+  EXPECT_FALSE(star_of(at_large_angles, {2, 2 - 1e-10}).check().ok());
+  // Two at a small angle: their vertex may be far along both.
+  const std::vector<Vec2> at_a_small_angle{{4, 2}, {2.2, 4}, {2, 4}, {0, 2}, {1.8, 0}, {2, 0}};
+  report = star_of(at_a_small_angle, {2, 2 + 1.6e-14}).check();
+  EXPECT_TRUE(report.ok()) << to_text(report);
+  EXPECT_FALSE(star_of(at_a_small_angle, {2, 2 + 1e-10}).check().ok());
 }
 
 TEST(Merging, ChangesNothingWhereNothingIsNear) {
