@@ -131,8 +131,6 @@ if [[ $all ]]; then
   step "tests, threads" run_ctest tsan -L threads --timeout 600
   needed "configure, fuzzers" cmake --preset fuzz -DWEFT_WERROR=ON
   needed "build, fuzzers" cmake --build --preset fuzz --target fuzz-targets
-  # The engine's target is left to runs on demand: bench/README.md says which laws its cases still
-  # break. Its corpus is replayed by the tests above.
-  step "fuzzers" tests/fuzz/run.sh 20 expression formats manifest store wire
+  step "fuzzers" tests/fuzz/run.sh 20
 fi
 finish

@@ -136,7 +136,8 @@ TEST(Unrefined, AsManyAsAreAllowedAreNoViolation) {
 
 TEST(Area, OfARasterIsBoundAtTheCentroids) {
   Problem problem = block(4);  // triangles of area 0.5 on [0, 4] x [0, 4]
-  problem.requirements = {.raster = SizeRaster{{0, 0}, 4, 4, 2, 2, {0.5, 0.5, 0.5, 0.5}}};
+  problem.requirements = {};
+  problem.requirements.raster = SizeRaster{{0, 0}, 4, 4, 2, 2, {0.5, 0.5, 0.5, 0.5}};
   EXPECT_TRUE(problem.check().ok());
   problem.requirements.raster->values = {0.5, 0.4, 0.5, 0.5};
   EXPECT_EQ(violated(problem.check()), Rules{Rule::kArea});
