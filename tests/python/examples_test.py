@@ -35,6 +35,13 @@ def test_poisson_converges_with_order_two():
     assert said.count("triangles") == 4, said
 
 
+def test_a_lattice_lowers_the_errors_of_poisson_and_of_advection():
+    rows = [line.split() for line in run("placement.py").splitlines()[1:]]
+    assert [row[0] for row in rows] == ["poisson"] * 4 + ["advection"] * 4 + ["graded"] * 4
+    for row in rows[3::4]:
+        assert float(row[-2]) < 0.8 and float(row[-1]) < 0.95, row
+
+
 def test_the_drag_of_a_cylinder_is_that_of_the_benchmark(tmp_path):
     angle = np.linspace(0, 2 * np.pi, 96, endpoint=False)
     ring = np.column_stack([0.2 + 0.05 * np.cos(angle), 0.2 + 0.05 * np.sin(angle)])
