@@ -92,6 +92,7 @@ v1::GenerateMeshRequest make_request(const Domain& domain, const MeshWishes& wis
   if (wishes.min_angle_deg) request.mutable_quality()->set_min_angle_deg(*wishes.min_angle_deg);
   if (wishes.min_edge) request.mutable_quality()->set_min_edge(*wishes.min_edge);
   if (wishes.placement) request.mutable_quality()->set_placement(*wishes.placement);
+  if (wishes.optimise) request.mutable_quality()->set_optimise(*wishes.optimise);
   if (wishes.max_triangles) request.mutable_budget()->set_max_triangles(*wishes.max_triangles);
   if (wishes.max_seconds) request.mutable_budget()->set_max_seconds(*wishes.max_seconds);
   if (wishes.threads) request.set_threads(*wishes.threads);

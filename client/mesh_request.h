@@ -27,6 +27,7 @@ struct MeshWishes {
   std::optional<double> min_angle_deg{};
   std::optional<double> min_edge{};
   std::optional<v1::Placement> placement{};
+  std::optional<std::uint32_t> optimise{};  // sweeps of smoothing
   std::optional<std::uint64_t> max_triangles{};
   std::optional<double> max_seconds{};
   std::optional<std::uint32_t> threads{};

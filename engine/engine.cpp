@@ -46,6 +46,11 @@ std::optional<Error> check_options(const MeshRequest& request) {
     return bad("quality.min_edge", "the shortest edge is " + text(request.min_edge) +
                                        ", but must be 0 or more, and finite");
   }
+  if (request.sweeps.value_or(0) > kMaxSweeps) {
+    return bad("quality.optimise", "there are " + std::to_string(*request.sweeps) +
+                                       " sweeps of smoothing, but must be at most " +
+                                       std::to_string(kMaxSweeps));
+  }
   if (request.size.constant.has_value() + request.size.expression.has_value() +
           request.size.raster.has_value() >
       1) {
@@ -229,6 +234,7 @@ class Job {
                   .expected_by_size = by_size_,
                   .leaf_triangles = request_.leaf_triangles,
                   .least_triangles = least_,
+                  .sweeps = sweeps(),
                   .other_bytes = size_bytes + narrow_.bytes()};
     if (wants_cap()) plan.max_triangles = context_.budget().max_triangles;
     if (auto error = run_mesh(plan, area, sink_, context_, summary_)) return tl::unexpected(*error);
@@ -239,6 +245,14 @@ class Job {
     }
     context_.enter(Stage::kDone);
     return summary_;
+  }
+
+  std::uint32_t sweeps() const {
+    constexpr std::uint32_t kDefault = 2;
+    constexpr double kNearlyAll = 4;  // triangles that the size makes, over those of the domain
+    const bool worth_it = quality_.lattice.exists() &&
+                          by_size_ > kNearlyAll * static_cast<double>(domain_.triangles.size());
+    return request_.sweeps.value_or(worth_it ? kDefault : 0);
   }
 
   Error too_narrow() const {

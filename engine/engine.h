@@ -36,6 +36,7 @@ struct SizeSpec {
 };
 
 inline constexpr double kMaxMinAngleDeg = 36;
+inline constexpr std::uint32_t kMaxSweeps = 16;
 
 // Where the Steiner points of triangles that are too large go (refine/steiner_point.h).
 enum class Placement : std::uint8_t {
@@ -54,6 +55,9 @@ struct MeshRequest {
   // No edge shorter than this is made, in units. 0: only the floor of double precision.
   double min_edge = 0;
   Placement placement = Placement::kLattice;
+  // Sweeps of smoothing (refine/smoother.h), at most kMaxSweeps. Unset: two where the size makes
+  // nearly all triangles, on a lattice; otherwise none.
+  std::optional<std::uint32_t> sweeps = std::nullopt;
   // Whether a mesh with triangles that miss a bound without excuse (Unrefined::without_excuse) is a
   // result. If not, it ends with kBoundsNotMet, after its chunks.
   bool allow_unrefined = false;

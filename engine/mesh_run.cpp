@@ -15,6 +15,7 @@
 #include "engine/refine/area_bound.h"
 #include "engine/refine/mapped_area.h"
 #include "engine/refine/refiner.h"
+#include "engine/refine/smoother.h"
 #include "engine/schedule/leaf_graph.h"
 #include "engine/schedule/leaf_tasks.h"
 #include "engine/schedule/prelude.h"
@@ -144,8 +145,15 @@ class MeshRun {
       auto error = refiner.queue_all();
       if (!error) error = refiner.run();
       add(refiner.figures());
+      if (!error && plan_.sweeps > 0 && !cut_off_) error = smooth_alone();
       return error;
     });
+  }
+
+  std::optional<Error> smooth_alone() {
+    Smoother<OwnsAll, AreaBound> smoother(setting_, plan_.quality, area_.again());
+    smoother.begin(OwnsAll{}, plan_.box, static_cast<std::uint32_t>(plan_.domain.vertices.size()));
+    return smoother.run(root_, plan_.sweeps);
   }
 
   void add(const RefinerFigures& figures) {
@@ -220,6 +228,7 @@ class MeshRun {
     numbers_ = root_.number_vertices(mesh_, 0);
     handed_on_.resize(n);
     settled_.resize(n);
+    smoothed_.resize(n);
     final_leaves_ = streams_ ? n : 0;
     if (streams_) send_opening();
     context_.end_stage("opening part");
@@ -234,6 +243,7 @@ class MeshRun {
                    if (step < LeafGraph::kRounds) refine(leaf, step);
                    if (!streams_) return;  // nothing to settle yet
                    if (task == LeafGraph::settle(leaf)) settled_[leaf] = is_settled(leaf);
+                   if (task == LeafGraph::smooth(leaf) && may_be_final(leaf)) smooth(leaf, 0);
                    if (task == LeafGraph::number(leaf) && !may_be_final(leaf))
                      final_leaves_ = std::min(final_leaves_.load(), leaf);
                    if (leaf < final_leaves_) send_leaf(task, leaf);
@@ -248,8 +258,10 @@ class MeshRun {
       if (!parts_.stopped()) {
         parts_.run(LeafGraph::kName, std::move(graph), first, n, LeafGraph::part,
                    [this, first](std::uint32_t task) {
-                     if (task / LeafGraph::kTasks >= first)
-                       send_leaf(task, task / LeafGraph::kTasks);
+                     const std::uint32_t leaf = task / LeafGraph::kTasks;
+                     if (leaf < first) return;
+                     if (task == LeafGraph::smooth(leaf) && !smoothed_[leaf]) smooth(leaf, first);
+                     send_leaf(task, leaf);
                    });
       }
     }
@@ -270,6 +282,14 @@ class MeshRun {
         trace->skip(LeafGraph::round(leaf, later), LeafGraph::round(leaf, round));
       parts_.skip(LeafGraph::round(leaf, later));
     }
+  }
+
+  void smooth(std::uint32_t leaf, std::uint32_t frozen) {
+    smoothed_[leaf] = true;
+    if (plan_.sweeps == 0) return;
+    if (auto error =
+            refine_time_.measure([&] { return leaves_->smooth(leaf, plan_.sweeps, frozen); }))
+      parts_.stop(*error);
   }
 
   bool is_settled(std::uint32_t leaf) const {
@@ -378,7 +398,8 @@ class MeshRun {
 
   std::uint32_t numbers_ = 0;                     // of vertices, given so far
   std::vector<std::vector<HandedOn>> handed_on_;  // per leaf
-  std::vector<char> settled_;  // per leaf: it and its conflicts have nothing left
+  std::vector<char> settled_;   // per leaf: it and its conflicts have nothing left
+  std::vector<char> smoothed_;  // per leaf
   // How many leaves may be sent before the clean-up.
   std::atomic<std::uint32_t> final_leaves_ = 0;
 };

@@ -22,9 +22,10 @@ struct MeshPlan {
   QualityBounds quality;
   const NarrowPlaces& narrow;
   double expected_triangles;
-  double expected_by_size;  // of these, what the size alone makes
-  double leaf_triangles;    // of the final mesh, in a leaf of the quadtree at most
-  double least_triangles;   // for certain
+  double expected_by_size;   // of these, what the size alone makes
+  double leaf_triangles;     // of the final mesh, in a leaf of the quadtree at most
+  double least_triangles;    // for certain
+  std::uint32_t sweeps = 0;  // of smoothing
   // Stop with what there is at so many: one task refines in order, then. Where fewer are enough,
   // the mesh is the same as without; nothing is sent before that is known.
   std::optional<std::uint64_t> max_triangles = std::nullopt;

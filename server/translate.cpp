@@ -150,6 +150,10 @@ std::optional<Failure> check_shape(const v1::GenerateMeshRequest& request) {
     return bad_option("quality.placement",
                       fmt::format("quality.placement is {}, which is no Placement",
                                   static_cast<int>(quality.placement())));
+  if (quality.optimise() > kMaxSweeps)
+    return bad_option("quality.optimise",
+                      fmt::format("quality.optimise is {}; it must be from 0 to {} sweeps",
+                                  quality.optimise(), kMaxSweeps));
   if (!not_negative(request.budget().max_seconds()))
     return bad_option("budget.max_seconds",
                       fmt::format("budget.max_seconds is {}; it must be 0 or more, and finite",
@@ -189,6 +193,7 @@ MeshRequest to_engine(const v1::GenerateMeshRequest& request) {
   out.min_edge = request.quality().min_edge();
   if (request.quality().placement() == v1::PLACEMENT_CIRCUMCENTRE)
     out.placement = Placement::kCircumcentre;
+  if (request.quality().has_optimise()) out.sweeps = request.quality().optimise();
   out.allow_unrefined = request.allow_unrefined();
   return out;
 }

@@ -93,6 +93,10 @@ const std::map<std::string, Setter>& common_keys() {
        [](const auto& n, auto& m, const auto&) { m.wishes.min_edge = number_of(n, "min-edge"); }},
       {"placement",
        [](const auto& n, auto& m, const auto&) { m.wishes.placement = placement_of(n); }},
+      {"optimise",
+       [](const auto& n, auto& m, const auto&) {
+         m.wishes.optimise = scalar<std::uint32_t>(n, "optimise", "a count of sweeps");
+       }},
       {"snap", [](const auto& n, auto& m, const auto&) { m.wishes.snap = number_of(n, "snap"); }},
       {"allow-unrefined",
        [](const auto& n, auto& m, const auto&) {

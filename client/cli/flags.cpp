@@ -55,6 +55,13 @@ void add_domain_and_wishes(CLI::App& command, std::filesystem::path& input, Mesh
       ->envname("WEFT_PLACEMENT")
       ->transform(CLI::CheckedTransformer(kPlacements).description(""))
       ->type_name("lattice|circumcentre");
+  command
+      .add_option("--optimise", wishes.optimise,
+                  "Sweeps of smoothing, 0 to 16: vertices around angles below 48 degrees move to "
+                  "where the smallest angle around them is largest. Default: 2 if the size makes "
+                  "nearly all triangles, on a lattice; otherwise 0")
+      ->envname("WEFT_OPTIMISE")
+      ->type_name("N");
   add_snap(command, wishes.snap,
            "Merge points and segments of the domain that are nearer together than this first. "
            "Default: only what double precision cannot keep apart");

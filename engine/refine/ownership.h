@@ -4,9 +4,10 @@
 // The rule: a task touches a triangle, to read it or to write it, only if it owns at least two of
 // its vertices. It replaces a triangle only if it owns all three; of one across the border of a
 // cavity, whose two common vertices it owns, it reads the third and writes the link to what is new.
-// Concurrent tasks own disjoint boxes, and vertices never move: of three vertices no two tasks own
-// two each, so at any time at most one task may touch a triangle, and the mesh needs no lock and no
-// atomic.
+// Concurrent tasks own disjoint boxes: of three vertices no two tasks own two each, so at any time
+// at most one task may touch a triangle, and the mesh needs no lock and no atomic. Vertices move in
+// smoothing alone (smoother.h): by a task that owns all vertices around, and within the boxes that
+// they are in.
 //
 // That each insertion is that of the sequential algorithm follows by induction over the moments at
 // which cavities are replaced, of all tasks in one order. Let the mesh be constrained Delaunay
@@ -28,6 +29,7 @@ namespace weft {
 struct OwnsAll {
   static constexpr bool kRestricted = false;
   constexpr bool owns(Point) const { return true; }
+  constexpr bool may_move(Point, Point) const { return true; }
   constexpr bool in_core(double, double) const { return true; }
   constexpr bool core_holds(Point, double) const { return true; }
 };

@@ -35,6 +35,7 @@
 
 #include "engine/refine/refiner.h"
 #include "engine/refine/slots.h"
+#include "engine/refine/smoother.h"
 #include "engine/schedule/leaf_graph.h"
 #include "engine/schedule/leaf_order.h"
 #include "engine/schedule/quadtree.h"
@@ -55,6 +56,27 @@ struct OwnsUnfrozen {
   }
   constexpr bool in_core(double, double) const { return true; }
   constexpr bool core_holds(Point, double) const { return true; }
+};
+
+// A leaf's ownership while it is smoothed: its grown box but for those of frozen leaves.
+struct OwnsBoxUnfrozen {
+  static constexpr bool kRestricted = true;
+  Box box;
+  const std::vector<Box>* others =
+      nullptr;  // grown boxes that overlap `box`, the frozen ones first
+  std::size_t frozen = 0;
+  bool owns(Point p) const {
+    return OwnsBox::contains(box, p.x, p.y) &&
+           std::none_of(others->begin(), others->begin() + static_cast<std::ptrdiff_t>(frozen),
+                        [&](const Box& b) { return OwnsBox::contains(b, p.x, p.y); });
+  }
+  // Whether a vertex that is owned may move so: not out of any grown box. What a leaf has made lies
+  // in its grown box, and for that the clean-up keeps off those of the frozen leaves.
+  bool may_move(Point from, Point to) const {
+    return owns(to) && std::none_of(others->begin(), others->end(), [&](const Box& b) {
+             return OwnsBox::contains(b, from.x, from.y) && !OwnsBox::contains(b, to.x, to.y);
+           });
+  }
 };
 
 template <class AreaBound>
@@ -113,6 +135,23 @@ class LeafTasks {
     return error;
   }
 
+  // Smooths a leaf, in so many sweeps. REQUIRES: nobody refines in its grown box any more, and the
+  // conflicts before it are smoothed or not to be smoothed. What the leaves before `frozen` have
+  // made stays as it is.
+  std::optional<Error> smooth(std::uint32_t leaf, std::uint32_t sweeps, std::uint32_t frozen) {
+    std::vector<Box> others;
+    std::size_t frozen_others = 0;
+    for (const std::uint32_t other : order_.conflicts(leaf)) {
+      others.push_back(tree_.leaves()[other].grown);
+      if (other < frozen) std::swap(others.back(), others[frozen_others++]);
+    }
+    const Lease worker(*this);
+    auto& smoother = worker->smoother;
+    const Box& box = tree_.leaves()[leaf].grown;
+    smoother.begin(OwnsBoxUnfrozen{box, &others, frozen_others}, box, 0);
+    return smoother.run(leaves_[leaf].slots, sweeps);
+  }
+
   // Refines what is left after the last round, without touching what the leaves before `frozen`
   // have made. What lies too near to these stays as it is.
   std::optional<Error> clean_up(std::uint32_t frozen) {
@@ -158,7 +197,7 @@ class LeafTasks {
   }
   std::uint64_t bytes() const {
     std::uint64_t bytes = leaves_.capacity() * sizeof(Leaf);
-    for (const auto& w : workers_) bytes += w->refiner.bytes();
+    for (const auto& w : workers_) bytes += w->refiner.bytes() + w->smoother.bytes();
     for (const Leaf& l : leaves_) {
       bytes += l.slots.bytes() + l.left.capacity() * sizeof(BadTriangle) +
                l.handed_over.capacity() * sizeof(l.handed_over[0]);
@@ -187,6 +226,7 @@ class LeafTasks {
   // The buffers of a thread at work, in cache lines that no other thread writes.
   struct alignas(128) Worker {
     LeafRefiner refiner;
+    Smoother<OwnsBoxUnfrozen, AreaBound> smoother;
     std::thread::id last_user{};
   };
 
@@ -198,7 +238,8 @@ class LeafTasks {
       const std::lock_guard lock(tasks_.mutex_);
       if (tasks_.idle_.empty()) {
         tasks_.workers_.push_back(std::make_unique<Worker>(
-            Worker{LeafRefiner(tasks_.setting_, tasks_.quality_, tasks_.area_.again())}));
+            Worker{{tasks_.setting_, tasks_.quality_, tasks_.area_.again()},
+                   {tasks_.setting_, tasks_.quality_, tasks_.area_.again()}}));
         tasks_.idle_.reserve(tasks_.workers_.size());  // so that giving back cannot fail
         tasks_.idle_.push_back(tasks_.workers_.back().get());
       }

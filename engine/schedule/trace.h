@@ -36,7 +36,7 @@ struct Trace {
   // Of a stage that is a graph: its name, and what its tasks do, which repeats with the tasks'
   // numbers.
   struct GraphName {
-    static constexpr std::size_t kMaxKinds = 8;
+    static constexpr std::size_t kMaxKinds = 9;
     const char* stage;
     std::array<const char*, kMaxKinds> kinds;  // up to the first nullptr
     constexpr std::size_t period() const {

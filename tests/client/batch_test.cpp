@@ -87,7 +87,7 @@ TEST_F(Manifest, TakesTheFlagsOfMeshAndPathsFromWhereItLies) {
   const auto meshes = read(R"(
 meshes:
   - {name: a, input: in/a.poly, size: x + 1, min-angle: 25, min-edge: 0.5, placement: circumcentre, max-triangles: 9,
-     snap: 0.125, allow-unrefined: true, max-seconds: 4, output: [o/a.vtu, o/a.msh], draw: a.png, color: angle, order: 2,
+     optimise: 3, snap: 0.125, allow-unrefined: true, max-seconds: 4, output: [o/a.vtu, o/a.msh], draw: a.png, color: angle, order: 2,
      require: {min-angle: 25}}
   - {name: b, input: /b.geojson, size: depth.asc}
 )");
@@ -101,6 +101,8 @@ meshes:
   EXPECT_EQ(a.wishes.min_edge, 0.5);
   EXPECT_EQ(a.wishes.placement, v1::PLACEMENT_CIRCUMCENTRE);
   EXPECT_FALSE(meshes->back().wishes.placement);
+  EXPECT_EQ(a.wishes.optimise, 3u);
+  EXPECT_FALSE(meshes->back().wishes.optimise);
   EXPECT_EQ(a.wishes.snap, 0.125);
   EXPECT_TRUE(a.wishes.allow_unrefined);
   EXPECT_FALSE(meshes->back().wishes.allow_unrefined);

@@ -162,6 +162,7 @@ TEST(MeshRequest, CarriesTheDomainAndTheWishes) {
                                              .min_angle_deg = 0,
                                              .min_edge = 0.5,
                                              .placement = v1::PLACEMENT_CIRCUMCENTRE,
+                                             .optimise = 0,
                                              .max_triangles = 7,
                                              .max_seconds = 2,
                                              .threads = 3,
@@ -180,6 +181,8 @@ TEST(MeshRequest, CarriesTheDomainAndTheWishes) {
   EXPECT_TRUE(request.quality().has_min_angle_deg());
   EXPECT_EQ(request.quality().min_edge(), 0.5);
   EXPECT_EQ(request.quality().placement(), v1::PLACEMENT_CIRCUMCENTRE);
+  EXPECT_TRUE(request.quality().has_optimise());
+  EXPECT_FALSE(make_request(domain, {}).quality().has_optimise());
   EXPECT_EQ(request.budget().max_triangles(), 7u);
   EXPECT_EQ(request.budget().max_seconds(), 2);
   EXPECT_EQ(request.threads(), 3u);

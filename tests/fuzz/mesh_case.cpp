@@ -241,6 +241,7 @@ MeshCase decode_mesh_case(ByteSource bytes) {
     request.pslg.snap = maker.extent() * kSnaps[rarely / 8 % kSnaps.size()];
   }
   if (rarely % 8 == 4) request.placement = Placement::kCircumcentre;
+  if (rarely % 8 == 5) request.sweeps = rarely / 8 % 4;
   made.plain = made.plain && request.pslg.snap == 0;
   made.budget.triangle_limit = kTriangleLimit;
   return made;
@@ -254,6 +255,7 @@ std::string to_text(const MeshCase& mesh_case) {
   if (request.size.expression) text += " --size '" + *request.size.expression + "'";
   if (request.min_edge > 0) text += print(" --min-edge %.17g", request.min_edge);
   if (request.placement == Placement::kCircumcentre) text += " --placement circumcentre";
+  if (request.sweeps) text += print(" --optimise %u", *request.sweeps);
   if (pslg.snap > 0) text += print(" --snap %.17g", pslg.snap);
   if (mesh_case.budget.max_triangles < kTriangleLimit)
     text += print(" --max-triangles %llu",

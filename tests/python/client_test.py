@@ -89,6 +89,15 @@ def test_a_placement_reaches_the_server_and_the_summary_tells_what_it_gains(clie
         client.mesh(KEY, placement="hexagons")
 
 
+def test_smoothing_reaches_the_server_and_raises_small_angles(client):
+    rough, usual, smooth = (client.mesh(KEY, size=0.01, **options).summary
+                            for options in ({"optimise": 0}, {}, {"optimise": 8}))
+    assert rough.triangles == usual.triangles == smooth.triangles
+    assert rough.min_angle_p1_deg < usual.min_angle_p1_deg < smooth.min_angle_p1_deg
+    with pytest.raises(weft.InvalidRequest, match="quality.optimise is 17"):
+        client.mesh(KEY, optimise=17)
+
+
 def test_a_mesh_that_misses_its_bounds_is_an_error_unless_it_is_allowed(client):
     corner = 1e6 + np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
     size = "min(1e-2, 1e-24 + 0.1*((x-1e6)^2 + (y-1e6)^2))"  # below the distance of doubles

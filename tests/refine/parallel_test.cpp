@@ -149,6 +149,7 @@ TEST_P(ParallelPslgs, GiveOneMeshAtEveryNumberOfThreads) {
     request.size.expression = graded_size(box_of(request.pslg), random);
     request.min_angle_deg = kAngles[random.below(std::size(kAngles))];
     request.leaf_triangles = 50 * std::pow(40, random.unit());
+    request.sweeps = static_cast<std::uint32_t>(seed % 4);
     cases.add(request, "seed " + std::to_string(seed));
   }
   cases.expect_the_same_on_threads();
@@ -366,7 +367,7 @@ double fraction_at_first_triangles(const MeshRequest& request, std::size_t* leav
 
 TEST(Streaming, OfManyLeavesBeginsLongBeforeTheEnd) {
   std::size_t leaves = 0;
-  EXPECT_LT(fraction_at_first_triangles(busy_square(60'000, 200), &leaves), 0.2);
+  EXPECT_LT(fraction_at_first_triangles(busy_square(60'000, 200), &leaves), 0.25);
   EXPECT_GE(leaves, 64u);
 }
 

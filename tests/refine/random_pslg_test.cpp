@@ -33,6 +33,7 @@ TEST_P(RandomPslg, IsMeshedWithinBounds) {
     request.pslg = GetParam().generate(random);
     request.size = size(random);
     request.min_angle_deg = kAngles[random.below(std::size(kAngles))];
+    request.sweeps = static_cast<std::uint32_t>(seed % 4);
     // Up to 30 degrees the bound is met everywhere, small input angles aside.
     request.allow_unrefined = request.min_angle_deg > 30;
     CollectedMesh mesh;

@@ -63,6 +63,7 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"Edge", [](auto& r) { r.mutable_quality()->set_min_edge(1); }},
         Change{"Placement",
                [](auto& r) { r.mutable_quality()->set_placement(v1::PLACEMENT_CIRCUMCENTRE); }},
+        Change{"Optimise", [](auto& r) { r.mutable_quality()->set_optimise(0); }},
         Change{"Triangles", [](auto& r) { r.mutable_budget()->set_max_triangles(7); }}),
     [](const auto& info) { return std::string(info.param.name); });
 

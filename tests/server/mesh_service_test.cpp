@@ -274,6 +274,7 @@ TEST(GenerateMesh, HandsTheWholeRequestToTheEngine) {
   request.mutable_quality()->set_min_angle_deg(0);
   request.mutable_quality()->set_min_edge(1e-3);
   request.mutable_quality()->set_placement(v1::PLACEMENT_CIRCUMCENTRE);
+  request.mutable_quality()->set_optimise(5);
   request.mutable_domain()->set_snap(0.125);
   request.set_allow_unrefined(true);
   request.mutable_budget()->set_max_triangles(1000);
@@ -295,6 +296,7 @@ TEST(GenerateMesh, HandsTheWholeRequestToTheEngine) {
     EXPECT_EQ(got.min_angle_deg, 0);
     EXPECT_EQ(got.min_edge, 1e-3);
     EXPECT_EQ(got.placement, Placement::kCircumcentre);
+    EXPECT_EQ(got.sweeps, 5u);
     EXPECT_EQ(got.pslg.snap, 0.125);
     EXPECT_TRUE(got.allow_unrefined);
     EXPECT_EQ(context.budget().max_triangles, 1000u);

@@ -130,7 +130,7 @@ TEST(Process, ServesAMeshOfARealDomain) {
   const testing::Outcome outcome =
       testing::call(*connect(weftd.address()), testing::valid_request());
   ASSERT_TRUE(outcome.status.ok()) << outcome.status.error_message();
-  EXPECT_DOUBLE_EQ(outcome.messages.back().summary().area(), 16);
+  EXPECT_NEAR(outcome.messages.back().summary().area(), 16, 1e-12);
   weftd.signal(SIGTERM);
   EXPECT_EQ(weftd.wait(), 0);
   EXPECT_NE(weftd.log().find("event=job_ended"), std::string::npos);

@@ -186,6 +186,8 @@ INSTANTIATE_TEST_SUITE_P(
              "quality.min_angle_deg", "from 0 to 36"},
         Case{"AngleNan", [](Request& r) { r.mutable_quality()->set_min_angle_deg(kNan); },
              "quality.min_angle_deg", "from 0 to 36"},
+        Case{"SweepsOver", [](Request& r) { r.mutable_quality()->set_optimise(17); },
+             "quality.optimise", "is 17; it must be from 0 to 16 sweeps"},
         Case{"EdgeNegative", [](Request& r) { r.mutable_quality()->set_min_edge(-1); },
              "quality.min_edge", "is -1"},
         Case{"EdgeNan", [](Request& r) { r.mutable_quality()->set_min_edge(kNan); },
@@ -206,6 +208,7 @@ TEST(Refusal, AdmitsWhatIsExactlyAtTheLimits) {
   request.mutable_domain()->mutable_points()->Resize(200, 0);
   request.mutable_domain()->mutable_holes()->Resize(160, 0);
   request.mutable_quality()->set_min_angle_deg(36);
+  request.mutable_quality()->set_optimise(16);
   request.mutable_budget()->set_max_triangles(60);
   request.mutable_budget()->set_max_bytes(50);
   request.mutable_budget()->set_max_seconds(40);
