@@ -55,6 +55,7 @@
 #include "engine/domain/predicates.h"
 #include "engine/error.h"
 #include "engine/geometry.h"
+#include "engine/refine/area_bound.h"
 #include "engine/refine/cavity.h"
 #include "engine/refine/mesh.h"
 #include "engine/refine/quality_bounds.h"
@@ -84,7 +85,8 @@ class Smoother {
     first_free_ = first_free;
   }
 
-  // Looks for stars at the triangles in `slots`.
+  // Looks for stars at the triangles in `slots`. Errors: kBadSizeValue at a centroid that a move
+  // would make, kCancelled, kDeadlineExceeded.
   std::optional<Error> run(const Slots& slots, std::uint32_t sweeps) {
     next_.clear();
     seen_.clear();
@@ -102,11 +104,11 @@ class Smoother {
       for (std::size_t i = 0; i < now_.size(); ++i) {
         smooth(now_[i]);
         if (i % kPollInterval == 0) {
-          if (auto stopped = context_.poll()) return stopped;
+          if (auto stopped = poll()) return stopped;
         }
       }
     }
-    return std::nullopt;
+    return poll();
   }
 
   std::uint64_t bytes() const {
@@ -140,6 +142,12 @@ class Smoother {
     double worth;
     double over;
   };
+
+  std::optional<Error> poll() const {
+    if (const auto& bad = area_.bad_size())
+      return Error{ErrorCode::kBadSizeValue, "size", bad_size_message(*bad)};
+    return context_.poll();
+  }
 
   bool may_move(std::uint32_t vertex) const {
     const Mesh::VertexBlock& block = mesh_.block_of_vertex(vertex);
