@@ -177,7 +177,7 @@ class Job {
     const Point somewhere = domain_.vertices[0];
     const double bound = (*expression_)(somewhere);
     if (bound > 0 && std::isfinite(bound)) return bound;
-    return fail(ErrorCode::kBadSizeValue, "size.expression", bad_size_message({somewhere, bound}));
+    return tl::unexpected(bad_size_error({somewhere, bound}, "size.expression"));
   }
 
   // Estimates the mesh, for a size of `bound` everywhere or that of the map, and refuses what is

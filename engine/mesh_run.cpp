@@ -235,7 +235,7 @@ class MeshRun {
     {
       TaskGraph graph(n * LeafGraph::kTasks);
       LeafGraph::add_refinement(order_, graph);
-      if (streams_) LeafGraph::add_parts(order_, graph);
+      if (streams_) LeafGraph::add_parts(order_, graph, plan_.sweeps > 0);
       parts_.run(LeafGraph::kName, std::move(graph), 0, final_leaves_, LeafGraph::part,
                  [this](std::uint32_t task) {
                    const std::uint32_t leaf = task / LeafGraph::kTasks;
@@ -254,7 +254,7 @@ class MeshRun {
       if (!streams_ && !parts_.stopped()) send_opening();
       const std::uint32_t first = final_leaves_.exchange(n);
       TaskGraph graph(n * LeafGraph::kTasks);
-      LeafGraph::add_parts(order_, graph);
+      LeafGraph::add_parts(order_, graph, plan_.sweeps > 0);
       if (!parts_.stopped()) {
         parts_.run(LeafGraph::kName, std::move(graph), first, n, LeafGraph::part,
                    [this, first](std::uint32_t task) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/error.h"
 #include "engine/geometry.h"
 #include "engine/refine/cavity.h"
 #include "engine/refine/quality_bounds.h"
@@ -23,8 +24,8 @@ struct BadSize {
   double value;
 };
 
-// A sentence that names the point.
-std::string bad_size_message(const BadSize& bad);
+// kBadSizeValue of the field, with a sentence that names the point.
+Error bad_size_error(const BadSize& bad, std::string field = "size");
 
 // The same bound everywhere; infinity is no bound.
 class ConstantArea {

@@ -47,11 +47,8 @@ inline double area_over_bound(const QualityBounds& quality) {
 
 // Squared circumradius of a counter-clockwise triangle.
 inline double circumradius2(Point a, Point b, Point c) {
-  const auto length2 = [](Point p, Point q) {
-    return (q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y);
-  };
   const double doubled = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-  return length2(a, b) / doubled * (length2(b, c) / doubled) * length2(c, a) / 4;
+  return distance2(a, b) / doubled * (distance2(b, c) / doubled) * distance2(c, a) / 4;
 }
 
 // What one look at a ring of new triangles tells. Badness is per triangle, the rest for the ring.

@@ -183,7 +183,7 @@ class Refiner {
     const Point a = mesh_.vertices[triangle.vertex[0]];
     const Point b = mesh_.vertices[triangle.vertex[1]];
     const Point c = mesh_.vertices[triangle.vertex[2]];
-    if (triangle.badness() == kSkinny) return insert_for_skinny(t);
+    if (triangle.badness() == kSkinny) return insert_for_skinny(t, a, b, c);
     if (!quality_.lattice.exists())
       return insert_in_triangle(t, steiner_point(a, b, c, quality_), 0);
     const Point centre = steiner_point(a, b, c, 0.0);
@@ -198,12 +198,8 @@ class Refiner {
     return insert_in_triangle(t, centre, 0);
   }
 
-  // At the place in the petal that is worth most (petal_search.h).
-  Outcome insert_for_skinny(std::uint32_t t) {
-    const Triangle& triangle = mesh_.triangles[t];
-    const Point a = mesh_.vertices[triangle.vertex[0]];
-    const Point b = mesh_.vertices[triangle.vertex[1]];
-    const Point c = mesh_.vertices[triangle.vertex[2]];
+  // At the place in the petal of t = a, b, c that is worth most (petal_search.h).
+  Outcome insert_for_skinny(std::uint32_t t, Point a, Point b, Point c) {
     const Point standard = steiner_point(a, b, c, quality_);
     const Outcome outcome = grow(star_, t, standard);
     if (outcome != Outcome::kInserted) return outcome;
@@ -279,23 +275,6 @@ class Refiner {
     return mesh_.triangles[triangle_of(h)].vertex[edge_of(h)];
   }
 
-  // Whether the vertex opposite is nearer to the edge than double precision can mend: two segments
-  // that almost coincide would split each other down to the floor. A vertex beyond the edge's ends
-  // does not count: where a split was rounded, the next piece of the same segment is on its line
-  // but for a unit in the last place.
-  bool too_thin(HalfEdge h) const {
-    const Triangle& triangle = mesh_.triangles[triangle_of(h)];
-    const Point apex = mesh_.vertices[apex_of(h)];
-    const Point a = mesh_.vertices[triangle.vertex[kNext[edge_of(h)]]];
-    const Point b = mesh_.vertices[triangle.vertex[kPrevious[edge_of(h)]]];
-    const double x = b.x - a.x;
-    const double y = b.y - a.y;
-    const double length2 = x * x + y * y;
-    const double along = x * (apex.x - a.x) + y * (apex.y - a.y);
-    const double cross = x * (apex.y - a.y) - y * (apex.x - a.x);
-    return along > 0 && along < length2 && cross * cross < quality_.precision2 * length2;
-  }
-
   // Splits edge `edge` of triangle t, which lies on a segment. The next piece of the same segment
   // may be in line with the edge but for rounding; if then the point is on the wrong side of that
   // line, a triangle would be flat. So the point gives way, by a few units in the last place.
@@ -331,7 +310,9 @@ class Refiner {
     if (star_.grow_from_segment(t, edge, p) == Growth::kNotOwned) return Outcome::kNotOwned;
 
     const Ring& ring = star_.ring();
-    if (too_thin(half_edge(t, edge)) || (closed && too_thin(across))) return Outcome::kTooClose;
+    if (too_thin(mesh_, half_edge(t, edge), quality_.precision2) ||
+        (closed && too_thin(mesh_, across, quality_.precision2)))
+      return Outcome::kTooClose;
     const std::uint32_t subsegment = corners_.subsegment(mesh_, a, b);
     if (!corners_.needles().keep_apart(subsegment, p)) return Outcome::kTooClose;
     const std::uint32_t near_side = closed ? star_.cavity().far_end() : ring.size;
@@ -420,15 +401,8 @@ class Refiner {
       return false;
     if (!verdict.flat) [[likely]]
       return true;
-    const Ring& ring = star_.ring();
-    for (std::uint32_t i = 0; i < ring.size; ++i) {
-      ++exact_;
-      if (orientation_exact(p, mesh_.vertices[ring.points[i].vertex],
-                            mesh_.vertices[ring.points[i + 1].vertex]) <= 0) {
-        return false;
-      }
-    }
-    return true;
+    exact_ += star_.ring().size;
+    return star_turns_left(mesh_, star_.ring(), p);
   }
 
   // Judges a triangle that was not made by an insertion here, and queues it if it is bad.
@@ -476,9 +450,7 @@ class Refiner {
 
   std::optional<Error> poll() {
     const std::uint64_t triangles = context_.add_triangles(std::exchange(added_, 0));
-    if (const auto& bad = area_.bad_size()) {
-      return Error{ErrorCode::kBadSizeValue, "size", bad_size_message(*bad)};
-    }
+    if (const auto& bad = area_.bad_size()) return bad_size_error(*bad);
     if (mesh_.bytes() + bytes() + other_bytes_ > context_.budget().max_bytes) {
       return Error{ErrorCode::kBudgetExceeded, "budget.max_bytes",
                    "the mesh needs more than the budget of " +

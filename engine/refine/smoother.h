@@ -7,21 +7,21 @@
 //   std::optional<Error> stopped = smoother.run(slots, 2);   // two sweeps
 //
 // A lattice (size/lattice.h) makes nearly equilateral triangles, except in the rows where it meets
-// a segment or another lattice. There are nearly all angles below 45 degrees, and a few vertices in
-// a hundred to move.
+// a segment or another lattice. Nearly all angles below 45 degrees are in these rows, so that only
+// a few vertices in a hundred have to move.
 //
 // A star's worth is that of its worst triangle: the squared sine of the smallest angle, a quarter
 // of it if the largest is over 122.7 degrees. A vertex of a triangle that is worth less than an
 // angle of 48 degrees is moved: first toward the mean of the equilateral apexes over its link's
-// edges, weighted by how bad each triangle is, then in steps in six directions. It stays if that
-// gains less than 1 %.
+// edges, weighted by how bad each triangle is, then in steps in six directions. It stays where it
+// is if that gains less than 1 %.
 //
 // What is kept:
 //   - All bounds: a move is made only if every triangle of the star is good after it.
 //   - The constrained Delaunay property: only if every edge of the star and of its link is still
 //     locally Delaunay. So no edge is flipped, and no triangle is written.
-//   - Input points and vertices on segments do not move. Nor do those of owner 0 if there are
-//     other tasks: they are sent first.
+//   - Input points and vertices on segments do not move. If there are leaves, nor do the vertices
+//     of owner 0, because these are sent first.
 //   - Ownership (ownership.h): the whole link must be owned. Then no other task at work may touch a
 //     triangle of the star, and none reads the vertex while it moves.
 // A sweep looks at the stars in the order of the slots, so the mesh depends on the request alone.
@@ -102,7 +102,7 @@ class Smoother {
       next_.clear();
       seen_.clear();
       for (std::size_t i = 0; i < now_.size(); ++i) {
-        smooth(now_[i]);
+        smooth(now_[i], sweep + 1 < sweeps);
         if (i % kPollInterval == 0) {
           if (auto stopped = poll()) return stopped;
         }
@@ -123,8 +123,9 @@ class Smoother {
   };
 
   static constexpr std::uint32_t kMostEdges = 16;  // of a link
-  static constexpr double kPoor = 0.5523;          // squared sine of 48 degrees
-  static constexpr double kObtuse = 4 * 0.2919;    // 4 times the squared cosine of 122.7 degrees
+  static_assert(kMostEdges % SizeFunction::kLanes == 0);
+  static constexpr double kPoor = 0.5523;        // squared sine of 48 degrees
+  static constexpr double kObtuse = 4 * 0.2919;  // 4 times the squared cosine of 122.7 degrees
   static constexpr double kLeastGain = 1.01;
   static constexpr int kRounds = 4;                  // of steps in all directions
   static constexpr double kFirstStep = 0.25;         // in edges of the mean triangle
@@ -144,8 +145,7 @@ class Smoother {
   };
 
   std::optional<Error> poll() const {
-    if (const auto& bad = area_.bad_size())
-      return Error{ErrorCode::kBadSizeValue, "size", bad_size_message(*bad)};
+    if (const auto& bad = area_.bad_size()) return bad_size_error(*bad);
     return context_.poll();
   }
 
@@ -173,14 +173,15 @@ class Smoother {
     }
   }
 
-  void smooth(Corner corner) {
+  // Moves a vertex if that gains anything. `again`: what stays poor is for the next sweep.
+  void smooth(Corner corner, bool again) {
     if (!find_star(corner)) return;
     const double before = worth_at({0, 0}, 0);
     if (before < kPoor && before > 0) {
       const Offset best = search(before);
       if (best.worth > kLeastGain * before) move(best);
     }
-    for (std::uint32_t i = 0; i < size_; ++i) {
+    for (std::uint32_t i = 0; again && i < size_; ++i) {
       if (poor(mesh_.triangles[triangles_[i]])) queue_corners(triangles_[i]);
     }
   }
@@ -249,9 +250,9 @@ class Smoother {
     }
   }
 
-  // What the star is worth with its vertex at p, if that is more than `least`; otherwise nothing
-  // that is more, -1 if a triangle is flat or too large. Begins at the triangle that was the first
-  // to be too bad the last time: it decides most calls.
+  // What the star is worth with its vertex at p; -1 if that is at most `least`, or a triangle is
+  // flat or too large. The triangle that decided the last call is the first to be looked at,
+  // because it decides most.
   double worth_at(Point p, double least) {
     double worst = 1;
     for (std::uint32_t n = 0, i = first_; n < size_; ++n, i = i + 1 == size_ ? 0 : i + 1) {
@@ -391,7 +392,7 @@ class Smoother {
   std::uint32_t vertex_ = 0;
   Point centre_;
   std::uint32_t size_ = 0;
-  std::uint32_t first_ = 0;  // where `worth_at` begins
+  std::uint32_t first_ = 0;  // the triangle at which `worth_at` begins
   std::array<std::uint32_t, kMostEdges> triangles_{};
   std::array<double, kMostEdges + 1> x_{};  // of the link, relative to the centre
   std::array<double, kMostEdges + 1> y_{};

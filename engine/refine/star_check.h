@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the star of a point on a segment is Delaunay.
+// What rounding may spoil, and is looked at where it may: stars that do not turn left, edges that
+// are too thin to be split, and stars of points on segments that are not Delaunay.
 //
 // The point that splits a segment is rounded, so it lies beside the segment, by a unit in the last
 // place or so. Bowyer-Watson's lemma, that a cavity and the star of its point are Delaunay, holds
@@ -43,6 +44,34 @@ inline bool star_is_delaunay(const Mesh& mesh, const Ring& ring, std::uint32_t f
     }
   }
   return true;
+}
+
+// Whether all triangles of the star of p turn left, exactly.
+inline bool star_turns_left(const Mesh& mesh, const Ring& ring, Point p) {
+  for (std::uint32_t i = 0; i < ring.size; ++i) {
+    if (orientation_exact(p, mesh.vertices[ring.points[i].vertex],
+                          mesh.vertices[ring.points[i + 1].vertex]) <= 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Whether the vertex opposite is nearer to the edge than double precision can mend, the root of
+// `precision2`: two segments that almost coincide would split each other down to the floor. A
+// vertex beyond the edge's ends does not count: where a split was rounded, the next piece of the
+// same segment is on its line but for a unit in the last place.
+inline bool too_thin(const Mesh& mesh, HalfEdge h, double precision2) {
+  const Triangle& triangle = mesh.triangles[triangle_of(h)];
+  const Point apex = mesh.vertices[triangle.vertex[edge_of(h)]];
+  const Point a = mesh.vertices[triangle.vertex[kNext[edge_of(h)]]];
+  const Point b = mesh.vertices[triangle.vertex[kPrevious[edge_of(h)]]];
+  const double x = b.x - a.x;
+  const double y = b.y - a.y;
+  const double length2 = x * x + y * y;
+  const double along = x * (apex.x - a.x) + y * (apex.y - a.y);
+  const double cross = x * (apex.y - a.y) - y * (apex.x - a.x);
+  return along > 0 && along < length2 && cross * cross < precision2 * length2;
 }
 
 }  // namespace weft

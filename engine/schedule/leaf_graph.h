@@ -5,7 +5,7 @@
 //
 //   TaskGraph graph(order.size() * LeafGraph::kTasks);
 //   LeafGraph::add_refinement(order, graph);
-//   LeafGraph::add_parts(order, graph);
+//   LeafGraph::add_parts(order, graph, true);
 #pragma once
 
 #include <cstdint>
@@ -55,8 +55,8 @@ struct LeafGraph {
 
   // A leaf is final once all that own a part of its grown box are done, and none of them, nor of
   // their own conflicts, has left anything to the clean-up: that must have room to work. Then it is
-  // smoothed, and leaves once its conflicts are.
-  static void add_parts(const LeafOrder& order, TaskGraph& graph) {
+  // smoothed if the mesh is to be, and leaves once its conflicts are, too.
+  static void add_parts(const LeafOrder& order, TaskGraph& graph, bool smooths) {
     for (std::uint32_t l = 0; l < order.size(); ++l) {
       graph.add_dependency(round(l, kRounds - 1), settle(l));
       graph.add_dependency(settle(l), smooth(l));
@@ -67,8 +67,8 @@ struct LeafGraph {
       for (const std::uint32_t other : order.conflicts(l)) {
         graph.add_dependency(round(other, kRounds - 1), settle(l));
         graph.add_dependency(settle(other), smooth(l));
-        if (order.before(other, l)) graph.add_dependency(smooth(other), smooth(l));
-        graph.add_dependency(smooth(other), part(l));
+        if (smooths && order.before(other, l)) graph.add_dependency(smooth(other), smooth(l));
+        if (smooths) graph.add_dependency(smooth(other), part(l));
         if (other < l) graph.add_dependency(hand_on(other), part(l));
       }
     }

@@ -62,8 +62,8 @@ struct OwnsUnfrozen {
 struct OwnsBoxUnfrozen {
   static constexpr bool kRestricted = true;
   Box box;
-  const std::vector<Box>* others =
-      nullptr;  // grown boxes that overlap `box`, the frozen ones first
+  // Grown boxes that overlap `box`. Those of frozen leaves come first, so many.
+  const std::vector<Box>* others = nullptr;
   std::size_t frozen = 0;
   bool owns(Point p) const {
     return OwnsBox::contains(box, p.x, p.y) &&

@@ -158,7 +158,7 @@ class Prelude {
     std::vector<Found> found(all.size());
     setting_.context.for_each(all.size(), [&](std::size_t r) { found[r] = judge(all[r], box); });
     for (const Found& f : found) {
-      if (f.bad_size) return Error{ErrorCode::kBadSizeValue, "size", bad_size_message(*f.bad_size)};
+      if (f.bad_size) return bad_size_error(*f.bad_size);
       bad_.insert(bad_.end(), f.bad.begin(), f.bad.end());
       fits_ = fits_ && f.fits;
     }

@@ -11,24 +11,11 @@
 #include "engine/engine.h"
 #include "engine/size/lattice.h"
 #include "tests/domain/shapes.h"
-#include "tests/refine/parallel.h"
-#include "tests/support/collected_mesh.h"
+#include "tests/refine/sound.h"
 #include "tests/support/poly.h"
 
 namespace weft {
 namespace {
-
-// The summary of a mesh that the checker has nothing against, at most 5 M triangles.
-Summary sound(const MeshRequest& request) {
-  CollectedMesh mesh;
-  const auto summary = mesh_on(nullptr, request, mesh);
-  if (!summary) {
-    ADD_FAILURE() << summary.error().message;
-    return {};
-  }
-  EXPECT_EQ(verdict(request, mesh, *summary), "");
-  return *summary;
-}
 
 MeshRequest sized_square(const std::string& expression, double min_angle_deg = 20) {
   return {.pslg = square(10), .size = {.expression = expression}, .min_angle_deg = min_angle_deg};
@@ -57,12 +44,12 @@ class Placements : public testing::TestWithParam<Case> {};
 
 TEST_P(Placements, OnALatticeMakeAThirdFewerTriangles) {
   const Case& c = GetParam();
-  const Summary lattice = sound(c.request);
+  const Summary lattice = sound(c.request).summary;
   EXPECT_LE(lattice.ideal_ratio, c.most);
   EXPECT_GE(lattice.mean_quality, c.quality);
   MeshRequest request = c.request;
   request.placement = Placement::kCircumcentre;
-  const Summary circumcentres = sound(request);
+  const Summary circumcentres = sound(request).summary;
   EXPECT_NEAR(circumcentres.ideal_ratio, 1.48, 0.08);
   EXPECT_EQ(circumcentres.lattice_share, 0);
   EXPECT_LT(lattice.triangles, 0.8 * static_cast<double>(circumcentres.triangles));
@@ -89,22 +76,23 @@ TEST(Placement, FollowsTheBoundsOfRegions) {
   add_segment(request.pslg, {0, 3}, {10, 3}, 1);
   request.pslg.regions = {{{1, 1}, 1, 1e-3}, {{6, 1}, 2, 3e-3}, {{1, 6}, 3, 2e-3}};
   request.pslg.regions.push_back({{6, 6}, 4, 5e-3});
-  const Summary by_regions = sound(request);
+  const Summary by_regions = sound(request).summary;
   EXPECT_LE(by_regions.ideal_ratio, 1.04);
   EXPECT_EQ(by_regions.lattice_share, 1);
   // Below and above the size of the function.
   for (const char* size : {"2.5e-3", "1.5e-3*(1+0.1*x)", "1e-2*(1.2+sin(20*x)*sin(20*y))"}) {
     request.size.expression = size;
-    EXPECT_LE(sound(request).ideal_ratio, size[3] == '-' && size[4] == '2' ? 1.3 : 1.08) << size;
+    EXPECT_LE(sound(request).summary.ideal_ratio, size[3] == '-' && size[4] == '2' ? 1.3 : 1.08)
+        << size;
   }
 }
 
 TEST(Placement, TellsHowMuchLiesOnALattice) {
-  EXPECT_EQ(sound({.pslg = square(10), .size = {.constant = 1e-2}}).lattice_share, 1);
-  EXPECT_EQ(sound(sized_square("1e-2*(1.2+sin(30*x)*sin(30*y))")).lattice_share, 0);
-  EXPECT_EQ(sound({.pslg = square(10)}).lattice_share, 0);
-  EXPECT_EQ(sound({.pslg = square(10)}).ideal_ratio, 0);
-  const double stepped = sound(sized_square("x < 3.3 ? 1e-3 : 1e-2")).lattice_share;
+  EXPECT_EQ(sound({.pslg = square(10), .size = {.constant = 1e-2}}).summary.lattice_share, 1);
+  EXPECT_EQ(sound(sized_square("1e-2*(1.2+sin(30*x)*sin(30*y))")).summary.lattice_share, 0);
+  EXPECT_EQ(sound({.pslg = square(10)}).summary.lattice_share, 0);
+  EXPECT_EQ(sound({.pslg = square(10)}).summary.ideal_ratio, 0);
+  const double stepped = sound(sized_square("x < 3.3 ? 1e-3 : 1e-2")).summary.lattice_share;
   EXPECT_GT(stepped, 0.7);
   EXPECT_LT(stepped, 1);
 }
@@ -114,13 +102,13 @@ TEST(Placement, DoesNotFeedACascadeAt30Degrees) {
   for (const double angle : {29.5, 29.9, 30.0, 30.5, 31.0, 31.5}) {
     MeshRequest request{.pslg = square(10), .size = {.constant = 2e-3}, .min_angle_deg = angle};
     add_segment(request.pslg, {3.1, 4.1}, {3.12, 4.11}, 1);  // far shorter than the lattice's edges
-    EXPECT_LE(sound(request).ideal_ratio, angle <= 30 ? 1.1 : 1.38) << angle;
+    EXPECT_LE(sound(request).summary.ideal_ratio, angle <= 30 ? 1.1 : 1.38) << angle;
   }
 }
 
 TEST(Placement, AboveTheLatticesLastAngleIsTheCircumcentre) {
   MeshRequest request{.pslg = square(10), .size = {.constant = 5e-3}, .min_angle_deg = 33};
-  const Summary lattice = sound(request);
+  const Summary lattice = sound(request).summary;
   request.placement = Placement::kCircumcentre;
   EXPECT_EQ(outcome(lattice), outcome(mesh_on(nullptr, request)));
 }
@@ -128,9 +116,9 @@ TEST(Placement, AboveTheLatticesLastAngleIsTheCircumcentre) {
 TEST(Placement, OfALatticePointThatIsTooCloseIsTheCircumcentre) {
   // Every edge is to be longer than the lattice's.
   MeshRequest request{.pslg = square(10), .size = {.constant = 1e-2}, .min_edge = 0.08};
-  const Summary coarse = sound(request);
+  const Summary coarse = sound(request).summary;
   request.placement = Placement::kCircumcentre;
-  EXPECT_LE(coarse.triangles, sound(request).triangles);
+  EXPECT_LE(coarse.triangles, sound(request).summary.triangles);
 }
 
 // A lattice through the origin whose points lie exactly on segments and on the borders of leaves,
@@ -141,7 +129,7 @@ TEST(Placement, OnALatticeInLineWithTheSegmentsNeedsFewExactPredicates) {
   MeshRequest request{.pslg = square(16), .size = {.constant = bound}, .leaf_triangles = 2000};
   add_segment(request.pslg, {0, 4}, {16, 4}, 1);
   add_segment(request.pslg, {4, 4}, {4, 16}, 1);
-  const Summary summary = sound(request);
+  const Summary summary = sound(request).summary;
   EXPECT_GT(summary.triangles, 100'000u);
   EXPECT_LE(summary.ideal_ratio, 1.04);
   EXPECT_LT(1000 * summary.exact_predicates, summary.insertions);
@@ -189,7 +177,7 @@ TEST(Placement, GivesTheSameMeshOfHundredsOfComponentsInTinyLeaves) {
   for (int i = 0; i < 15; ++i) {
     for (int j = 0; j < 15; ++j) add_box(request.pslg, {i + 0.0, j + 0.0}, {i + 0.71, j + 0.63});
   }
-  const Summary summary = sound(request);
+  const Summary summary = sound(request).summary;
   EXPECT_LE(summary.ideal_ratio, 1.3);
   Arena arena(3);
   EXPECT_EQ(outcome(mesh_on(&arena, request)), outcome(summary));

@@ -13,30 +13,16 @@
 #include "engine/engine.h"
 #include "engine/refine/vertex_set.h"
 #include "tests/domain/shapes.h"
-#include "tests/refine/parallel.h"
-#include "tests/support/collected_mesh.h"
+#include "tests/refine/sound.h"
+#include "tests/support/floor_plan.h"
 #include "tests/support/poly.h"
 
 namespace weft {
 namespace {
 
-struct Made {
-  CollectedMesh mesh;
-  Summary summary;
-};
-
-// A mesh that the checker has nothing against.
-Made sound(MeshRequest request, std::optional<std::uint32_t> sweeps) {
+Sound sound(MeshRequest request, std::optional<std::uint32_t> sweeps) {
   request.sweeps = sweeps;
-  Made made;
-  const auto summary = mesh_on(nullptr, request, made.mesh);
-  if (!summary) {
-    ADD_FAILURE() << summary.error().message;
-    return made;
-  }
-  made.summary = *summary;
-  EXPECT_EQ(verdict(request, made.mesh, *summary), "");
-  return made;
+  return weft::sound(request);
 }
 
 MeshRequest cylinder() {
@@ -63,8 +49,8 @@ TEST(Smoothing, RaisesSmallAnglesAndLowersLargeOnes) {
 
 TEST(Smoothing, MovesVerticesAndChangesNothingElse) {
   for (const MeshRequest& request : {cylinder(), key()}) {
-    const Made rough = sound(request, 0);
-    const Made smooth = sound(request, 3);
+    const Sound rough = sound(request, 0);
+    const Sound smooth = sound(request, 3);
     EXPECT_EQ(rough.mesh.mesh.triangles, smooth.mesh.mesh.triangles);
     const std::vector<check::Vec2>& before = rough.mesh.mesh.vertices;
     const std::vector<check::Vec2>& after = smooth.mesh.mesh.vertices;
@@ -102,6 +88,21 @@ TEST(Smoothing, KeepsTheBoundsOfRegionsAndShortestEdges) {
   request.pslg.segments.push_back({4, 5, 0});
   request.pslg.regions = {{{1, 1}, 1, 4e-3}, {{9, 9}, 2, std::nullopt}};
   EXPECT_GT(sound(request, 6).summary.triangles, 10'000u);
+}
+
+// Ends of partitions are beside their walls by what rounding left, and triangles as small as that.
+TEST(Smoothing, KeepsAllLawsOfRoundedFloorPlans) {
+  constexpr double kOffsets[] = {0, 1e5, 1e6};
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    const int decimals = 2 + static_cast<int>(seed % 8);
+    MeshRequest request{.pslg = floor_plan({seed, kOffsets[seed % 3], decimals}),
+                        .size = {.constant = 0.1},
+                        .min_angle_deg = seed % 2 == 0 ? 20.0 : 33.0,
+                        .leaf_triangles = 200};
+    if (seed % 4 == 0) request.size = {};
+    EXPECT_NE(sound(request, 4).summary.digest, sound(request, 0).summary.digest);
+  }
 }
 
 TEST(VertexSet, HoldsEachVertexOnceUntilItIsCleared) {
