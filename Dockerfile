@@ -26,8 +26,7 @@ COPY deploy/install-deps.sh /tmp/
 # drawings, and libraries beside those that the programs load, such as protobuf's compiler.
 RUN printf 'path-exclude=%s\n' '/usr/share/doc/*' '/usr/share/man/*' '/usr/share/info/*' \
       '/usr/share/locale/*' '/usr/share/lintian/*' '/usr/share/X11/*' '/usr/share/fonts/*.ttf' \
-      '*/libgrpc*_unsecure.so*' '*/libgrpcpp_channelz.so*' \
-      '*/libgrpc_plugin_support.so*' '*/libprotoc.so*' '*/libsleefgnuabi.so*' '*/libbrotlienc.so*' \
+      '*/libprotoc.so*' '*/libsleefgnuabi.so*' '*/libbrotlienc.so*' \
       >/etc/dpkg/dpkg.cfg.d/small \
  && echo 'path-include=*/DejaVuSans.ttf' >>/etc/dpkg/dpkg.cfg.d/small \
  && /tmp/install-deps.sh runtime \

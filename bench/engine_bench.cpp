@@ -87,7 +87,7 @@ std::vector<Row> rows() {
 }
 
 struct Figures {
-  double refine_work = 0;  // seconds: size field, prelude, leaves' rounds
+  double refine_work = 0;  // seconds: size field, coarse phase, leaves' rounds
   double engine = 0;
   Summary summary;
 };
@@ -111,7 +111,7 @@ std::optional<Figures> measure(const Row& row, const Pslg& pslg, int threads, in
     }
     figures.summary = *result;
     if (run == 0) continue;
-    // The prelude of a mesh of one leaf is its refinement.
+    // The coarse phase of a mesh of one leaf is its refinement.
     const double rounds = result->leaves.empty() ? 0 : result->refine_seconds;
     refine.push_back(result->size_seconds + result->prelude_seconds + rounds);
     engine.push_back(result->engine_seconds);

@@ -33,14 +33,19 @@ class ListScheduling {
     }
     // Beyond this many threads the window no longer binds.
     const auto parts = static_cast<std::uint32_t>(graph.part_tasks.size());
-    ahead_ = parts_ahead(std::min(threads, 1 << 20));
+    const int most_threads = std::min(threads, 1 << 20);
+    ahead_ = parts_ahead(most_threads);
+    begun_ahead_ = parts_begun(parts, most_threads);
+    const auto period = static_cast<std::uint32_t>(graph.name.period());
+    undone_.resize(size() / period + 1, period);
+    has_begun_.resize(undone_.size(), 0);
     for (std::uint32_t part = 0; part < parts; ++part) part_of_[graph.part_tasks[part]] = part;
     for (std::uint32_t part = ahead_; part < parts; ++part) ++waits_for_[graph.part_tasks[part]];
   }
 
   Schedule run() {
     for (std::uint32_t t = 0; t < size(); ++t) {
-      if (waits_for_[t] == 0 && !skipped(t)) ready_.push(t);
+      if (waits_for_[t] == 0 && !skipped(t)) ready_.push(keyed(t));
     }
     std::uint32_t last = kNone;
     start_tasks();
@@ -59,7 +64,7 @@ class ListScheduling {
       }
       start_tasks();
     }
-    Schedule result{now_, {}};
+    Schedule result{now_, {}, most_begun_};
     for (std::uint32_t t = last; t != kNone; t = released_by_[t]) result.chain.push_back(t);
     std::reverse(result.chain.begin(), result.chain.end());
     return result;
@@ -78,22 +83,36 @@ class ListScheduling {
   std::uint32_t size() const { return static_cast<std::uint32_t>(graph_.seconds.size()); }
   bool skipped(std::uint32_t task) const { return graph_.skipped_by[task] != kNone; }
 
+  std::uint64_t keyed(std::uint32_t task) const {
+    return graph_.needs.empty() ? task : std::uint64_t{graph_.needs[task]} << 32 | task;
+  }
+
+  bool may_begin() const {
+    if (ready_.empty()) return false;
+    return running_ == 0 || ready_.top() >> 32 <= std::uint64_t{next_part_} + begun_ahead_;
+  }
+  std::size_t group_of(std::uint32_t task) const { return task / graph_.name.period(); }
+
   void start_tasks() {
-    for (; running_ < threads_ && !ready_.empty(); ++running_) {
-      events_.push({now_ + graph_.seconds[ready_.top()], ready_.top(), false});
+    for (; running_ < threads_ && may_begin(); ++running_) {
+      const auto task = static_cast<std::uint32_t>(ready_.top());
+      if (!std::exchange(has_begun_[group_of(task)], 1))
+        most_begun_ = std::max(most_begun_, ++begun_);
+      events_.push({now_ + graph_.seconds[task], task, false});
       ready_.pop();
     }
   }
 
   void finish(std::uint32_t task, std::uint32_t by) {
     done_[task] = 1;
+    if (--undone_[group_of(task)] == 0) --begun_;
     for (const std::uint32_t next : successors_[task]) release(next, by);
   }
 
   void release(std::uint32_t task, std::uint32_t by) {
     if (--waits_for_[task] > 0 || skipped(task)) return;
     released_by_[task] = by;
-    ready_.push(task);
+    ready_.push(keyed(task));
   }
 
   void send_next() {
@@ -121,12 +140,17 @@ class ListScheduling {
   std::vector<std::uint32_t> released_by_;
   std::vector<char> done_;
   std::uint32_t ahead_ = 0;
+  std::uint32_t begun_ahead_ = 0;
+  std::vector<std::uint32_t> undone_;  // tasks, per group
+  std::vector<char> has_begun_;        // per group
+  std::uint32_t begun_ = 0;            // groups that are not done
+  std::uint32_t most_begun_ = 0;
 
   double now_ = 0;
   int running_ = 0;
   std::uint32_t next_part_ = 0;
   bool sending_ = false;
-  std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> ready_;
+  std::priority_queue<std::uint64_t, std::vector<std::uint64_t>, std::greater<>> ready_;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
 };
 

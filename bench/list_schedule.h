@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the recorded tasks of a stage would go on other numbers of threads.
 //
-// The rules are those of GraphRun (engine/schedule/task_graph.h): a task is ready when all that it
-// waits for are done; a free thread takes the ready task with the lowest number; what waits for a
-// skipped task waits for the one that skipped it; parts wait for room as parts_ahead says. A task
-// takes the seconds that were recorded, so what threads do to each other (memory bandwidth, caches,
-// clock rates, the scheduler's lock) is not seen.
+// The rules are those of GraphRun (engine/base/task_graph.h): a task is ready when all that it
+// waits for are done; a free thread takes the ready task that is needed first, and of equal ones
+// the one with the lowest number; what waits for a skipped task waits for the one that skipped it;
+// parts wait for room as parts_ahead says, and tasks that later parts need as parts_begun says, for
+// a reader who takes parts at once. A task takes the seconds that were recorded, so what threads do
+// to each other (memory bandwidth, caches, clock rates, the scheduler's lock) is not seen.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/schedule/trace.h"
+#include "engine/base/trace.h"
 
 namespace weft::bench {
 
@@ -26,6 +27,9 @@ struct Schedule {
   // A chain of tasks, each begun when the one before ended, that ends with the last task: with
   // unbounded threads, the critical path.
   std::vector<std::uint32_t> chain;
+  // The most groups of tasks, one of each kind, of which one had begun while not all were done: of
+  // a graph of leaves, those in memory.
+  std::uint32_t most_begun = 0;
 };
 
 // `send_seconds` go by between a part's being next and its having been sent, on a thread of its

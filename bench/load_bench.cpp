@@ -29,7 +29,7 @@ double seconds_since(Clock::time_point start) {
 // The grading of the paper's pipe.
 constexpr const char* kPipeSize = "0.4*hypot(x-200, y-200) + 1";
 
-// False where the call failed.
+// False if the call failed.
 bool mesh_once(v1::MeshService::Stub& stub, const v1::GenerateMeshRequest& request) {
   grpc::ClientContext context;
   const auto stream = stub.GenerateMesh(&context, request);
@@ -53,7 +53,7 @@ class Caller {
             latencies_.push_back(seconds_since(start));
           }
         }) {}
-  // The seconds of each call; nothing where one failed.
+  // The seconds of each call; nothing if one failed.
   std::optional<std::vector<double>> join() {
     thread_.join();
     if (!ok_) return std::nullopt;

@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   app.footer(
       "Examples:\n  weft-bench engine --only cylinder --threads 1,2\n"
       "  weft-bench scaling --triangles 1e6,1e7\n"
-      "  weft-bench stream\n"
+      "  weft-bench stream\n  weft-bench stream --memory --triangles 1e6,1e7,1e8\n"
       "  weft-bench load --connections 16");
   int exit_code = 0;
 
@@ -88,8 +88,10 @@ int main(int argc, char** argv) {
   stream_command->add_option("--weftd", stream.weftd, "The server; default: beside weft-bench");
   stream_command->add_option("--triangles", stream.triangles, "Sizes of the meshes")
       ->delimiter(',')
-      ->check(CLI::Range(1e4, 1e9))
+      ->check(CLI::Range(1e4, 4e9))
       ->default_str("1e6,1e7");
+  stream_command->add_flag("--memory", stream.memory,
+                           "How much memory the server takes, once for each mesh and reader");
   stream_command->add_option("--threads", stream.threads, "Of the server")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

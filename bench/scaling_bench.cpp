@@ -105,8 +105,9 @@ void keep_fastest(Trace& best, const Trace& other) {
 // The stages of a run, those with the same name added up.
 struct Stages {
   std::map<std::string, double> serial;
-  double work = 0;                 // of the tasks
-  std::map<int, double> parallel;  // per number of threads
+  double work = 0;                          // of the tasks
+  std::map<int, double> parallel;           // per number of threads
+  std::map<int, std::uint32_t> most_begun;  // leaves, of those stages that have any
   double serial_seconds() const {
     return std::accumulate(serial.begin(), serial.end(), 0.0,
                            [](double sum, const auto& s) { return sum + s.second; });
@@ -126,8 +127,12 @@ Stages stages_of(const Recorded& run) {
       continue;
     }
     result.work += stage.seconds;
-    for (const int threads : kThreads)
-      result.parallel[threads] += schedule(*stage.graph, threads, send_seconds(stage)).seconds;
+    for (const int threads : kThreads) {
+      const Schedule predicted = schedule(*stage.graph, threads, send_seconds(stage));
+      result.parallel[threads] += predicted.seconds;
+      auto& most = result.most_begun[threads];
+      if (!stage.graph->needs.empty()) most = std::max(most, predicted.most_begun);
+    }
   }
   return result;
 }
@@ -184,8 +189,8 @@ void print_graphs(const Recorded& run) {
 void print_speed_up(const Stages& stages, const std::map<int, double>& measured) {
   std::printf(
       "\n| threads | serial ms | tasks ms | threads busy | whole run ms "
-      "| simulated speed-up | measured here, ms | measured speed-up |\n"
-      "|---|---|---|---|---|---|---|---|\n");
+      "| simulated speed-up | leaves begun at most | measured here, ms | measured speed-up |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
   const auto print_measured = [&](int threads) {
     if (const auto found = measured.find(threads); found != measured.end()) {
       std::printf(" %.2f | %.2f |\n", milli(found->second), measured.at(1) / found->second);
@@ -194,7 +199,7 @@ void print_speed_up(const Stages& stages, const std::map<int, double>& measured)
     }
   };
   const double serial = stages.serial_seconds();
-  std::printf("| 1, recorded | %.2f | %.2f | | %.2f | 1 |", milli(serial), milli(stages.work),
+  std::printf("| 1, recorded | %.2f | %.2f | | %.2f | 1 | |", milli(serial), milli(stages.work),
               milli(stages.one_thread()));
   print_measured(1);
   for (const int threads : kThreads) {
@@ -202,6 +207,12 @@ void print_speed_up(const Stages& stages, const std::map<int, double>& measured)
     std::printf("| %d | %.2f | %.2f | %.0f %% | %.2f | %.1f |", threads, milli(serial),
                 milli(parallel), 100 * stages.work / (parallel * threads),
                 milli(stages.on(threads)), stages.one_thread() / stages.on(threads));
+    const auto begun = stages.most_begun.find(threads);
+    if (begun == stages.most_begun.end()) {
+      std::printf(" |");
+    } else {
+      std::printf(" %u |", begun->second);
+    }
     print_measured(threads);
   }
 }

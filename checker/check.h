@@ -14,7 +14,7 @@
 
 #include "checker/domain.h"
 #include "checker/mesh.h"
-#include "checker/quality.h"
+#include "checker/mesh/quality.h"
 #include "checker/report.h"
 
 namespace weft::check {

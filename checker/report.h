@@ -51,9 +51,9 @@ struct Facts {
   double mean_quality = 0;      // of 4 sqrt(3) area / (sum of the squared edges)
   double min_angle_p1_deg = 0;  // 1 % of the triangles have a smaller smallest angle
   // Triangles that have a bound on their area over the sum of the shares of their bounds that they
-  // take: how many times the least number there are. None where nothing bounds any.
+  // take: how many times the least number there are. None if nothing bounds any.
   std::optional<double> ideal_ratio;
-  std::optional<double> worst_area_ratio;  // of area to its bound; none where nothing bounds it
+  std::optional<double> worst_area_ratio;  // of area to its bound; none if nothing bounds it
   // Triangles below the angle bound that a small input angle excuses: those that have the corner
   // itself, and those whose shortest edge joins its two segments at equal distance from it.
   std::uint64_t excused_corner = 0;

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // weft: the command line of the meshing service. cli/ knows the flags; commands/ does the work.
+#include <grpc/support/log.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 
+#include "client/base/signals.h"
 #include "client/cli/command_groups.h"
 #include "client/cli/flags.h"
-#include "client/signals.h"
+#include "client/cli/suggest.h"
 
 namespace {
 
@@ -28,7 +32,12 @@ constexpr char kExitCodes[] = R"(Exit codes:
   128 + n  stopped by signal n
 
 Flags that name a variable in their help, such as (Env:WEFT_SERVER), are also read
-from it. WEFT_WEFTD is the weftd that is started where no server is named.)";
+from it. WEFT_WEFTD is the weftd that is started if no server is named.)";
+
+// gRPC's own log lines: what they tell of a call, its status tells, too.
+void silence_grpc_log() {
+  if (std::getenv("GRPC_VERBOSITY") == nullptr) gpr_set_log_function([](gpr_log_func_args*) {});
+}
 
 int run(int argc, char** argv) {
   CLI::App app("Graded, guaranteed-quality Delaunay meshes of planar domains.", "weft");
@@ -45,7 +54,10 @@ int run(int argc, char** argv) {
     for (const CLI::App* command : app.get_subcommands())
       refuse_idle_flags(*command, {argv, static_cast<std::size_t>(argc)});
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
+    if (app.exit(error) == 0) return 0;
+    const std::string meant = suggestion(app, {argv, static_cast<std::size_t>(argc)});
+    if (!meant.empty()) std::fprintf(stderr, "weft: %s\n", meant.c_str());
+    return static_cast<int>(ExitCode::kUsage);
   }
 
   Signals signals;
@@ -64,6 +76,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
+    silence_grpc_log();
     return run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "weft: %s\n", error.what());

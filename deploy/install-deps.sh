@@ -23,7 +23,7 @@ build=(
   libgtest-dev libgmock-dev librapidcheck-dev                            # tests
 )
 runtime=(
-  libgrpc++1.51 libprotobuf32 libgmp10 libgmpxx4ldbl libmpfr6 libtbb12 libsleef3 libspdlog1.10
+  libprotobuf32 libgmp10 libgmpxx4ldbl libmpfr6 libtbb12 libsleef3 libspdlog1.10
   libfmt9 libatomic1 libssl3 libsqlite3-0 libpq5 libprometheus-cpp-core1.0
   libcairo2 zlib1g libshp2 libmuparser2v5 libyaml-cpp0.7 libpugixml1v5 fonts-dejavu-core
 )

@@ -5,7 +5,7 @@
     docs/generate.py BUILD [--check]
 
 BUILD is the folder of weftd and weft, such as build/release. With --check nothing is written: the
-exit code is 1 where a page is not what it would be.
+exit code is 1 if a page is not what it would be.
 """
 import os
 import pathlib
@@ -116,17 +116,24 @@ def help_of(program, *words):
                           env=environment).stdout
     # Programs name themselves as they were called; defaults that the machine decides are left out.
     text = text.replace(str(program), pathlib.Path(program).name)
-    text = re.sub(r"^(  --(?:threads|memory|max-bytes) .*)=\d+ \(", r"\1 (", text, flags=re.M)
+    text = re.sub(r"^(  --threads .*)=\d+ \(", r"\1 (", text, flags=re.M)
     return "\n".join(line.rstrip() for line in text.strip().splitlines())
+
+
+def variables(text):
+    return set(re.findall(r"\(Env:(\w+)\)", text))
 
 
 def flags(build):
     weft, weftd = build / "weft", build / "weftd"
     commands = re.findall(r"^  ([a-z-]+)  ", help_of(weft).split("Subcommands:")[1], re.M)
     lines = ["# Flags", "", "As the programs tell them; made by `docs/generate.py`.", ""]
-    for title, text in [("weftd", help_of(weftd))] + [
+    of_server = help_of(weftd)
+    for title, text in [("weftd", of_server)] + [
             (f"weft {command}", help_of(weft, command)) for command in commands]:
         lines += [f"## {title}", "", "```", text, "```", ""]
+        if text is not of_server and (shared := variables(of_server) & variables(text)):
+            sys.exit(f"weftd and {title} both read {', '.join(sorted(shared))}")
     return "\n".join(lines).rstrip() + "\n"
 
 

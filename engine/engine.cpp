@@ -6,17 +6,21 @@
 #include <memory>
 #include <new>
 
-#include "engine/bounds_error.h"
+#include "engine/base/failure.h"
+#include "engine/base/text.h"
 #include "engine/domain/domain.h"
 #include "engine/domain/tolerance.h"
-#include "engine/mesh_run.h"
+#include "engine/options.h"
+#include "engine/output/bounds_error.h"
 #include "engine/refine/area_bound.h"
 #include "engine/refine/mapped_area.h"
+#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/reserved_memory.h"
+#include "engine/schedule/mesh_run.h"
 #include "engine/schedule/narrow_places.h"
-#include "engine/size/expression.h"
-#include "engine/size/grain_map.h"
+#include "engine/size/expression/expression.h"
+#include "engine/size/lattice/grain_map.h"
 #include "engine/size/size_map.h"
-#include "engine/text.h"
 
 namespace weft {
 namespace {
@@ -32,37 +36,6 @@ class StageClock {
  private:
   ExecutionContext::Clock::time_point start_ = ExecutionContext::Clock::now();
 };
-
-std::optional<Error> check_options(const MeshRequest& request) {
-  const auto bad = [](const char* field, std::string message) {
-    return Error{ErrorCode::kBadOption, field, std::move(message)};
-  };
-  if (!(request.min_angle_deg >= 0 && request.min_angle_deg <= kMaxMinAngleDeg)) {
-    return bad("quality.min_angle_deg", "the minimum angle is " + text(request.min_angle_deg) +
-                                            " degrees, but must be from 0 to " +
-                                            text(kMaxMinAngleDeg));
-  }
-  if (!(request.min_edge >= 0 && std::isfinite(request.min_edge))) {
-    return bad("quality.min_edge", "the shortest edge is " + text(request.min_edge) +
-                                       ", but must be 0 or more, and finite");
-  }
-  if (request.sweeps.value_or(0) > kMaxSweeps) {
-    return bad("quality.optimise", "there are " + std::to_string(*request.sweeps) +
-                                       " sweeps of smoothing, but must be at most " +
-                                       std::to_string(kMaxSweeps));
-  }
-  if (request.size.constant.has_value() + request.size.expression.has_value() +
-          request.size.raster.has_value() >
-      1) {
-    return bad("size", "the size is more than one of a constant, an expression and a raster");
-  }
-  if (const auto& constant = request.size.constant;
-      constant && !(*constant > 0 && std::isfinite(*constant))) {
-    return Error{ErrorCode::kBadSizeValue, "size.constant",
-                 "the size is " + text(*constant) + ", but must be positive and finite"};
-  }
-  return std::nullopt;
-}
 
 // From this extent on the sixth powers of edges, which the angle test multiplies, are normal
 // numbers; kMaxMagnitude (domain/validate.h) keeps them finite.
@@ -100,27 +73,26 @@ class Job {
       : request_(request), sink_(sink), context_(context) {}
 
   Result<Summary> run() {
-    if (auto error = check_options(request_)) return tl::unexpected(*error);
-    if (request_.size.expression) {
-      auto parsed = Expression::parse(*request_.size.expression);
-      if (!parsed) return tl::unexpected(parsed.error());
-      expression_.emplace(std::move(*parsed));
-    }
+    auto expression = read_options(request_);
+    if (!expression) return tl::unexpected(expression.error());
+    expression_ = std::move(*expression);
     if (request_.size.raster) {
+      if (auto error =
+              context_.need_bytes(kBytesPerRasterValue * request_.size.raster->values.size()))
+        return tl::unexpected(*error);
       auto raster = RasterSize::make(*request_.size.raster);
       if (!raster) return tl::unexpected(raster.error());
       raster_.emplace(std::move(*raster));
     }
     if (Trace* const trace = context_.trace()) trace->start();
     if (auto error = context_.compute([this] { return prepare(); })) return tl::unexpected(*error);
-    const auto bound = constant_bound();
-    if (!bound) return tl::unexpected(bound.error());
+    const double bound = constant_bound();
     quality_ =
         QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(summary_.box));
     if (request_.placement == Placement::kLattice)
       quality_.lattice = LatticeShape::for_angle(request_.min_angle_deg);
-    if (auto error = admit(*bound)) return tl::unexpected(*error);
-    if (!map_) return mesh(ConstantArea(*bound), 0);
+    if (auto error = admit(bound)) return tl::unexpected(*error);
+    if (!map_) return mesh(ConstantArea(bound), 0);
     GrainMap grains;
     if (quality_.lattice.exists()) {
       auto laid_out = context_.compute([&] {
@@ -128,6 +100,7 @@ class Job {
       });
       if (!laid_out) return tl::unexpected(laid_out.error());
       grains = std::move(*laid_out);
+      lattices_ = grains.lattices_that_vary();
     }
     context_.end_stage("grains");
     return mesh(MappedArea(*varying_size(), *map_, grains),
@@ -135,6 +108,8 @@ class Job {
   }
 
  private:
+  // Its own, and those of the raster's blocks (size/raster.h).
+  static constexpr std::uint64_t kBytesPerRasterValue = 16;
   static constexpr std::uint64_t kUncountable = 1'000'000'000'000'000'000;
 
   // The domain's triangulation, and the map of a size that varies.
@@ -170,14 +145,10 @@ class Job {
   }
 
   // The bound that is the same everywhere; infinity for none.
-  Result<double> constant_bound() const {
-    if (map_) return std::numeric_limits<double>::infinity();
+  double constant_bound() const {
     if (request_.size.constant) return *request_.size.constant;
-    if (!expression_) return std::numeric_limits<double>::infinity();
-    const Point somewhere = domain_.vertices[0];
-    const double bound = (*expression_)(somewhere);
-    if (bound > 0 && std::isfinite(bound)) return bound;
-    return tl::unexpected(bad_size_error({somewhere, bound}, "size.expression"));
+    if (expression_ && expression_->is_constant()) return (*expression_)(Point{0, 0});
+    return std::numeric_limits<double>::infinity();
   }
 
   // Estimates the mesh, for a size of `bound` everywhere or that of the map, and refuses what is
@@ -200,6 +171,13 @@ class Job {
       return over_limit("size", "the size asks for at least " + text(std::ceil(least)) +
                                     " triangles, more than the limit of " +
                                     std::to_string(budget.triangle_limit));
+    }
+    if (!wants_cap() && !may_stream() && least > static_cast<double>(Mesh::kMaxTriangles)) {
+      return over_limit("size", "the size asks for at least " + text(std::ceil(least)) +
+                                    " triangles; a mesh with a minimum angle above " +
+                                    text(kMaxStreamingAngleDeg) + " degrees has at most " +
+                                    std::to_string(Mesh::kMaxTriangles) +
+                                    ", because all of it is in memory at the same time");
     }
     by_size_ = std::max(triangles_per_bound(quality_.lattice) * likely,
                         static_cast<double>(domain_.triangles.size()));
@@ -232,7 +210,8 @@ class Job {
                   .narrow = narrow_,
                   .expected_triangles = expected_,
                   .expected_by_size = by_size_,
-                  .leaf_triangles = request_.leaf_triangles,
+                  .may_stream = may_stream(),
+                  .leaf_triangles = request_.leaf_triangles.value_or(leaf_triangles_for(by_size_)),
                   .least_triangles = least_,
                   .sweeps = sweeps(),
                   .other_bytes = size_bytes + narrow_.bytes()};
@@ -252,7 +231,21 @@ class Job {
     constexpr double kNearlyAll = 4;  // triangles that the size makes, over those of the domain
     const bool worth_it = quality_.lattice.exists() &&
                           by_size_ > kNearlyAll * static_cast<double>(domain_.triangles.size());
-    return request_.sweeps.value_or(worth_it ? kDefault : 0);
+    return request_.sweeps.value_or(worth_it && sweeps_cost_little() ? kDefault : 0);
+  }
+
+  // Smoothing takes time for each triangle in the rows where two lattices meet. If there are `n` of
+  // them in a mesh of N triangles, these rows hold about 3 sqrt(n / N) of the triangles:
+  //
+  //                   pipe   slope  hollow  long waves  ring    short waves
+  //   sqrt(n / N)     0.010  0.009  0.018   0.033       0.057   0.049
+  //   time, 2 sweeps  1.1    1.3    1.3     1.5         2.8     4.2   times that without
+  //
+  // In a small mesh the time does not matter, and the angles do.
+  bool sweeps_cost_little() const {
+    constexpr double kSmall = 1e5;  // triangles
+    constexpr double kFewFaults = 0.012;
+    return by_size_ < kSmall || static_cast<double>(lattices_) < kFewFaults * kFewFaults * by_size_;
   }
 
   Error too_narrow() const {
@@ -265,6 +258,8 @@ class Job {
                 std::to_string(worst.other) + ", " + text(worst.width) + " apart at (" +
                 text(worst.at.x) + ", " + text(worst.at.y) + ")"};
   }
+
+  bool may_stream() const { return request_.min_angle_deg <= kMaxStreamingAngleDeg; }
 
   // Whether the client asked for a cap of its own: then reaching it is no error.
   bool wants_cap() const {
@@ -282,18 +277,25 @@ class Job {
   std::optional<SizeMap> map_;
   QualityBounds quality_;
   NarrowPlaces narrow_;
-  double least_ = 0;     // triangles, for certain
-  double expected_ = 0;  // triangles
-  double by_size_ = 0;   // of these, what the size alone makes
+  double least_ = 0;          // triangles, for certain
+  double expected_ = 0;       // triangles
+  double by_size_ = 0;        // of these, what the size alone makes
+  std::size_t lattices_ = 0;  // that the size bends, or where none fits
   Summary summary_;
 };
 
 }  // namespace
 
+void keep_memory_at_most(std::uint64_t bytes) {
+  ReservedMemory::keep_at_most(bytes);
+}
+
 Result<Summary> generate_mesh(const MeshRequest& request, ChunkSink& sink,
                               ExecutionContext& context) {
   try {
     return Job(request, sink, context).run();
+  } catch (const Failure& failure) {
+    return tl::unexpected(failure.error());
   } catch (const std::bad_alloc&) {
     return fail(ErrorCode::kOutOfMemory, "", "memory ran out");
   } catch (const std::exception& e) {

@@ -13,17 +13,17 @@
 #include <string>
 #include <string_view>
 
-#include "engine/chunk.h"
-#include "engine/context.h"
+#include "engine/base/context.h"
+#include "engine/base/error.h"
 #include "engine/domain/pslg.h"
-#include "engine/error.h"
+#include "engine/output/chunk.h"
+#include "engine/output/summary.h"
 #include "engine/size/raster.h"
-#include "engine/summary.h"
 
 namespace weft {
 
 // Changes whenever the same request may give other bytes.
-inline constexpr std::string_view kEngineVersion = "4";
+inline constexpr std::string_view kEngineVersion = "5";
 
 // The grading function: an upper bound on a triangle's area at its centroid, squared units.
 // At most one of the three is set; none means no bound on the area.
@@ -55,21 +55,31 @@ struct MeshRequest {
   // No edge shorter than this is made, in units. 0: only the floor of double precision.
   double min_edge = 0;
   Placement placement = Placement::kLattice;
-  // Sweeps of smoothing (refine/smoother.h), at most kMaxSweeps. Unset: two where the size makes
-  // nearly all triangles, on a lattice; otherwise none.
+  // Sweeps of smoothing (refine/smoother.h), at most kMaxSweeps. Unset: two if the size makes
+  // nearly all triangles, on a lattice that has few faults or in a mesh below 100,000 triangles;
+  // otherwise none.
   std::optional<std::uint32_t> sweeps = std::nullopt;
   // Whether a mesh with triangles that miss a bound without excuse (Unrefined::without_excuse) is a
   // result. If not, it ends with kBoundsNotMet, after its chunks.
   bool allow_unrefined = false;
-  // Triangles of the final mesh that a leaf of the quadtree holds at most. About 16,000 are
-  // fastest; another number gives another mesh. Not on the wire: for tests and measurements.
-  double leaf_triangles = 16'000;
+  // Triangles of the final mesh that a leaf of the quadtree holds at most. Another number gives
+  // another mesh. Not on the wire: for tests and measurements. Unset: see leaf_triangles_for.
+  std::optional<double> leaf_triangles = std::nullopt;
 };
+
+// Judges all that generate_mesh refuses before it looks at coordinates and raster values: ranges of
+// the options, the constant of the size, the syntax and the limits of its expression. Does not read
+// `pslg` and the raster's values.
+std::optional<Error> check_options(const MeshRequest& request);
 
 // Computes in the context's arena; calls the sink on the calling thread. Errors carry the field
 // path of the request as the wire spells it; what the sink took before an error is no mesh. Never
 // throws.
 Result<Summary> generate_mesh(const MeshRequest& request, ChunkSink& sink,
                               ExecutionContext& context);
+
+// Bounds the memory that ended jobs leave for later ones, in all of the process: 1 GiB unless this
+// sets another bound. Jobs that have ended already keep theirs. Thread-safe.
+void keep_memory_at_most(std::uint64_t bytes);
 
 }  // namespace weft

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The first word of the file as a number; nothing where there is no file or no number ("max").
+// The first word of the file as a number; nothing if there is no file or no number ("max").
 std::optional<double> read_number(const fs::path& file) {
   std::ifstream in(file);
   double value = 0;

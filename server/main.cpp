@@ -15,13 +15,13 @@
 #include <thread>
 
 #include "engine/engine.h"
-#include "server/log.h"
 #include "server/machine.h"
+#include "server/observe/log.h"
 #include "server/options.h"
 #include "server/server.h"
 #include "server/stop_events.h"
-#include "server/store/postgres_store.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/postgres/postgres_store.h"
+#include "server/store/sqlite/sqlite_store.h"
 #include "server/version.h"
 
 namespace weft::server {
@@ -45,7 +45,7 @@ bool write_port_file(const std::filesystem::path& path, const Server& server) {
   return !error;
 }
 
-// Null where jobs are kept nowhere.
+// Null if jobs are kept nowhere.
 StoreResult<std::unique_ptr<JobStore>> open_store(const Options& options) {
   if (!options.data.empty()) return SqliteStore::open({.folder = options.data});
   if (!options.store.empty()) return PostgresStore::open({.uri = options.store});
@@ -83,6 +83,7 @@ int serve(Options options) {
   // OpenSSL keeps a state for the thread that uses it first. At the end it is freed for this one,
   // and would not be for one of the arena.
   OPENSSL_init_crypto(OPENSSL_INIT_LOAD_CONFIG, nullptr);
+  keep_memory_at_most(options.server.memory / 16);  // what is kept is beside what runs are granted
   adopt_grpc_logs(options.log_format);
   const Logger log = make_logger(options.log_level, options.log_format);
   ServiceOptions& service = options.server.service;

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/options.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
+#include "server/net/listen.h"
 #include "server/version.h"
 
 namespace weft::server {
 namespace {
 
-// Flags that say nothing where no jobs are kept.
+// Flags that have no effect if no jobs are kept.
 constexpr const char* kOfTheStore[] = {"--role",      "--max-queued",   "--max-queued-per-client",
                                        "--lease",     "--max-attempts", "--keep",
                                        "--keep-bytes"};
@@ -22,6 +26,22 @@ std::string environment_name(std::string flag) {
   for (char& c : name)
     c = c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   return name;
+}
+
+// A size as --help shows it: 256MiB.
+std::string size_text(std::uint64_t bytes) {
+  constexpr const char* kUnits[] = {"B", "KiB", "MiB", "GiB", "TiB"};
+  std::size_t unit = 0;
+  while (bytes != 0 && bytes % 1024 == 0 && unit + 1 < std::size(kUnits)) {
+    bytes /= 1024;
+    ++unit;
+  }
+  return std::to_string(bytes) + (unit == 0 ? "" : kUnits[unit]);
+}
+
+// Checks without a word in the help: the type's name and the text say it there.
+CLI::Validator silent(CLI::Validator validator) {
+  return validator.description("");
 }
 
 // CLI::Range lets NaN pass.
@@ -44,31 +64,46 @@ CLI::Validator is_postgres_uri() {
       "");
 }
 
-// Adds flags that all have an environment variable.
+// Adds flags that all have an environment variable, in groups of the help.
 class Flags {
  public:
   explicit Flags(CLI::App& app) : app_(app) {}
 
+  void begin_group(const std::string& name) { group_ = name; }
+
   template <class T>
-  CLI::Option* value(const std::string& flag, T& target, const std::string& help) {
+  CLI::Option* value(const std::string& flag, T& target, const std::string& type,
+                     const std::string& help) {
     return app_.add_option(flag, target, help)
         ->envname(environment_name(flag))
-        ->capture_default_str();
+        ->capture_default_str()
+        ->type_name(type)
+        ->group(group_);
+  }
+  CLI::Option* flag(const std::string& flags, bool& target, const std::string& help) {
+    return app_.add_flag(flags, target, help)
+        ->envname(environment_name(flags.substr(0, flags.find(','))))
+        ->group(group_);
   }
   void count(const std::string& flag, std::uint64_t& target, const std::string& help) {
-    value(flag, target, help)->check(CLI::PositiveNumber);
+    value(flag, target, "N", help)->check(silent(CLI::PositiveNumber));
   }
-  CLI::Option* bytes(const std::string& flag, std::uint64_t& target, const std::string& help) {
-    return value(flag, target, help + ", such as 256MiB")
-        ->transform(CLI::AsSizeValue(false))
-        ->check(CLI::PositiveNumber);
+  // `unless` says what holds without the flag if that depends on the machine.
+  CLI::Option* bytes(const std::string& flag, std::uint64_t& target, const std::string& help,
+                     const std::string& unless = "") {
+    CLI::Option* option =
+        value(flag, target, "SIZE", help + (unless.empty() ? "" : ". Default: " + unless));
+    return option->default_str(unless.empty() ? size_text(target) : "")
+        ->transform(silent(CLI::AsSizeValue(false)))
+        ->check(silent(CLI::PositiveNumber));
   }
   void seconds(const std::string& flag, double& target, const std::string& help) {
-    value(flag, target, help + ", in seconds")->check(CLI::Range(0.0, 1e9))->check(is_a_number());
+    value(flag, target, "SECONDS", help)->check(silent(CLI::Range(0.0, 1e9)))->check(is_a_number());
   }
 
  private:
   CLI::App& app_;
+  std::string group_;
 };
 
 std::chrono::steady_clock::duration to_duration(double seconds) {
@@ -76,134 +111,267 @@ std::chrono::steady_clock::duration to_duration(double seconds) {
       std::chrono::duration<double>(seconds));
 }
 
+// Leaves one place of four to others.
+constexpr double kDefaultClientShare = 0.75;
+
+// What Options has in another form than the flags.
+struct Given {
+  std::uint32_t jobs = 0;  // 0: chosen from the number of threads
+  double stall_timeout = 60;
+  double request_timeout = 120;
+  double lease = 30;
+  double keep = 7 * 24 * 3600.0;
+  double drain = 30;
+  std::vector<std::string> roles{"api", "worker"};
+  std::string log_format = "text";
+  CLI::Option* share_across_clients = nullptr;
+  CLI::Option* client_share = nullptr;
+  CLI::Option* max_bytes = nullptr;
+};
+
+// Defaults, some of which depend on the machine.
+Options defaults(const Machine& machine) {
+  Options options;
+  ServiceOptions& service = options.server.service;
+  options.server.listen = {"127.0.0.1:7421"};
+  service.cache_bytes = std::uint64_t{64} << 20;
+  service.threads = machine.threads;
+  options.server.jobs.runner.keep.bytes = std::uint64_t{16} << 30;
+  if (machine.memory != 0) options.server.memory = machine.memory / 4 * 3;
+  return options;
+}
+
+void add_listening(Flags& flags, Options& options) {
+  ServerOptions& server = options.server;
+  flags.begin_group("Listening");
+  flags
+      .value("--listen", server.listen, "ADDRESS",
+             "Address to listen on: HOST:PORT, with port 0 for any free one, or unix:PATH. May be "
+             "repeated, or separated by commas")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  CLI::Option* tls_cert =
+      flags.value("--tls-cert", server.tls.certificate, "FILE",
+                  "Encrypt TCP addresses with this certificate, followed by those up to its CA "
+                  "(PEM)");
+  CLI::Option* tls_key = flags.value("--tls-key", server.tls.key, "FILE",
+                                     "Private key of the certificate in --tls-cert (PEM)");
+  tls_cert->needs(tls_key);
+  tls_key->needs(tls_cert);
+  flags
+      .value("--tls-client-ca", server.tls.client_ca, "FILE",
+             "Require client certificates signed by one of these CAs (PEM)")
+      ->needs(tls_cert);
+  flags.value("--tokens", server.tokens, "FILE",
+              "Require a bearer token listed in this file, one NAME TOKEN per line");
+  flags.flag("--insecure", server.insecure,
+             "Allow unencrypted addresses that other machines can reach");
+  flags.value("--metrics", server.metrics, "HOST:PORT",
+              "Serve /metrics for Prometheus and /healthz at this address, over HTTP, without "
+              "identification. Requires --insecure if other machines can reach it");
+  flags.value("--port-file", options.port_file, "FILE",
+              "Write the bound addresses to this file, one per line, and that of --metrics as "
+              "metrics=HOST:PORT");
+}
+
+void add_work(Flags& flags, Options& options, Given& given) {
+  ServiceOptions& service = options.server.service;
+  flags.begin_group("Work");
+  flags
+      .value("--threads", service.threads, "N",
+             "Threads that compute, 1 to 4096. Default: what the machine grants")
+      ->check(silent(CLI::Range(1u, 4096u)));
+  flags
+      .value("--jobs", given.jobs, "N",
+             "Runs of the engine at the same time, 1 to 4096, which share the threads. Default: "
+             "the number of threads, at least 4")
+      ->check(silent(CLI::Range(1u, 4096u)))
+      ->default_str("");
+  flags
+      .value("--queue", service.queue, "N",
+             "Calls and jobs that may wait for a run, 0 to 1000000; more are refused")
+      ->check(silent(CLI::Range(0u, 1'000'000u)));
+  flags.bytes("--memory", options.server.memory,
+              "Memory shared by all runs, and by requests that wait for theirs",
+              "three quarters of the machine's");
+  given.client_share =
+      flags
+          .value(
+              "--client-share", service.client_share, "PART",
+              "Part of the queue, of the runs at the same time and of the memory that one client "
+              "may have, above 0 to 1. Default: 0.75 if clients are identified, by --tokens or "
+              "--tls-client-ca, or an address can be reached from other machines; otherwise 1")
+          ->check(silent(CLI::Range(1e-6, 1.0)))
+          ->check(is_a_number())
+          ->default_str("");
+  flags
+      .value("--cache-bytes", service.cache_bytes, "SIZE",
+             "Memory for finished meshes, to answer the same request again; 0 "
+             "keeps none")
+      ->default_str(size_text(service.cache_bytes))
+      ->transform(silent(CLI::AsSizeValue(false)))
+      ->check(silent(CLI::NonNegativeNumber));
+  given.share_across_clients = flags.flag(
+      "--share-across-clients,!--no-share-across-clients", service.share_across_clients,
+      "Answer a client with meshes that another client asked for. Default: only if clients are not "
+      "identified, by --tokens or --tls-client-ca");
+}
+
+void add_store(Flags& flags, Options& options, Given& given) {
+  JobOptions& jobs = options.server.jobs;
+  flags.begin_group("Jobs that are kept");
+  flags.value("--data", options.data, "DIR", "Keep jobs and their meshes in this folder");
+  flags
+      .value("--store", options.store, "URI",
+             "Keep jobs and their meshes in this PostgreSQL database, postgres://...")
+      ->check(is_postgres_uri())
+      ->excludes("--data");
+  flags
+      .value("--role", given.roles, "api|worker",
+             "What this server does with jobs: api accepts and shows them, worker runs them. May "
+             "be separated by commas")
+      ->delimiter(',')
+      ->check(silent(CLI::IsMember({"api", "worker"})));
+  flags.count("--max-queued", jobs.service.max_queued, "Maximum jobs that wait in the store");
+  flags.count("--max-queued-per-client", jobs.service.max_queued_of_owner,
+              "Maximum jobs of one client that wait in the store");
+  flags
+      .value("--max-attempts", jobs.retry.max_attempts, "N",
+             "Maximum attempts at a job whose workers are lost, 1 to 100")
+      ->check(silent(CLI::Range(1u, 100u)));
+  flags.seconds("--lease", given.lease, "Silence after which a worker is considered lost");
+  flags.seconds("--keep", given.keep,
+                "Time to keep jobs that ended, and meshes that nobody asks for");
+  flags.bytes("--keep-bytes", jobs.runner.keep.bytes,
+              "Maximum size of all meshes that are kept; those asked for longest ago go first");
+}
+
+void add_limits(Flags& flags, Options& options, Given& given) {
+  Limits& limits = options.server.service.limits;
+  flags.begin_group("Limits of a request");
+  flags.count("--max-points", limits.max_points, "Maximum points per request");
+  flags.count("--max-segments", limits.max_segments, "Maximum segments per request");
+  flags.count("--max-seeds", limits.max_seeds, "Maximum seeds of holes and regions per request");
+  flags.count("--max-raster-values", limits.max_raster_values, "Maximum values of a size raster");
+  flags.value("--max-triangles", limits.max_triangles, "N", "Maximum triangles per mesh")
+      ->check(CLI::Range(std::uint64_t{1}, kMostTriangles).description(""));
+  given.max_bytes =
+      flags.bytes("--max-bytes", limits.max_bytes,
+                  "Maximum memory of the engine per run; --jobs times that must not be more than "
+                  "--memory",
+                  "--memory divided by --jobs");
+  flags.seconds("--max-seconds", limits.max_seconds, "Maximum time of work per run");
+  flags.bytes("--max-request-bytes", limits.max_request_bytes, "Maximum size of a request message")
+      ->check(silent(CLI::Range(1.0, double{std::numeric_limits<int>::max()})));  // gRPC's range
+  flags.seconds("--request-timeout", given.request_timeout,
+                "Maximum time for a request message to arrive");
+  flags.value("--max-resets", options.server.admission.max_resets, "N",
+              "Maximum calls that a connection may reset in a second before it is closed; 0: no "
+              "limit");
+}
+
+void add_readers(Flags& flags, Options& options, Given& given) {
+  flags.begin_group("Readers of meshes");
+  flags.bytes("--stream-buffer", options.server.service.limits.stream_buffer,
+              "Maximum bytes of a mesh that wait for its reader. Then refinement pauses, and "
+              "another run takes its place");
+  flags.seconds("--stall-timeout", given.stall_timeout,
+                "Time after which a client that reads nothing is cut off");
+  flags.value("--min-rate", options.server.service.patience.least_rate, "BYTES",
+              "Bytes per second that a client must read of what waits for it, on average over "
+              "--stall-timeout; 0: any");
+}
+
+void add_process(Flags& flags, Options& options, Given& given) {
+  flags.begin_group("Process");
+  flags.seconds("--drain", given.drain, "Time for open calls to finish after SIGTERM");
+  flags
+      .value("--log-level", options.log_level, "LEVEL",
+             "Least level of messages on standard error: trace, debug, info, warning, error, "
+             "critical or off")
+      ->check(
+          silent(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"})));
+  flags.value("--log-format", given.log_format, "text|json", "Format of the log")
+      ->check(silent(CLI::IsMember({"text", "json"})));
+  flags.flag("--exit-with-stdin", options.exit_with_stdin,
+             "Drain at the end of standard input, as after SIGTERM");
+}
+
+// As many runs as there may be at the same time can all take what one may: defaults give way, what
+// was given does not. Throws CLI::ValidationError.
+void settle_memory(const Given& given, Options& options) {
+  ServiceOptions& service = options.server.service;
+  std::uint64_t& max_bytes = service.limits.max_bytes;
+  const std::uint64_t memory = options.server.memory;
+  // A small request must not wait for one huge run to end.
+  constexpr std::uint32_t kFewestRuns = 4;
+  service.jobs = given.jobs != 0 ? given.jobs : std::max(service.threads, kFewestRuns);
+  if (given.max_bytes->count() == 0) {
+    max_bytes = std::max<std::uint64_t>(memory / service.jobs, 1);
+  } else if (given.jobs == 0) {
+    service.jobs =
+        static_cast<std::uint32_t>(std::clamp<std::uint64_t>(memory / max_bytes, 1, service.jobs));
+  }
+  if (max_bytes <= memory / service.jobs) return;
+  throw CLI::ValidationError(
+      "--max-bytes", fmt::format("{} bytes for each of {} runs (--jobs) are more than --memory, "
+                                 "which is {} bytes",
+                                 max_bytes, service.jobs, memory));
+}
+
+void settle(const Given& given, Options& options) {
+  ServiceOptions& service = options.server.service;
+  JobOptions& jobs = options.server.jobs;
+  const auto has_role = [&](const char* role) {
+    return std::find(given.roles.begin(), given.roles.end(), role) != given.roles.end();
+  };
+  service.light_jobs = 2;
+  service.patience.stall_timeout = to_duration(given.stall_timeout);
+  options.server.admission.request_timeout = to_duration(given.request_timeout);
+  const bool identified = !options.server.tokens.empty() || !options.server.tls.client_ca.empty();
+  const bool local =
+      std::all_of(options.server.listen.begin(), options.server.listen.end(), is_local);
+  if (given.share_across_clients->count() == 0) service.share_across_clients = !identified;
+  if (given.client_share->count() == 0)
+    service.client_share = identified || !local ? kDefaultClientShare : 1;
+  jobs.serves = has_role("api");
+  jobs.works = has_role("worker");
+  jobs.runner.lease =
+      std::chrono::milliseconds(std::max<std::int64_t>(1, std::llround(given.lease * 1000)));
+  jobs.runner.renewal = std::min(jobs.runner.renewal, jobs.runner.lease / 3);
+  jobs.runner.keep.age = std::chrono::seconds(std::llround(given.keep));
+  options.log_format = given.log_format == "json" ? LogFormat::kJson : LogFormat::kText;
+  options.drain = std::chrono::duration<double>(given.drain);
+}
+
 }  // namespace
 
 std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
                                           const Machine& machine) {
-  Options options;
-  ServiceOptions& service = options.server.service;
-  Limits& limits = service.limits;
-  options.server.listen = {"127.0.0.1:7421"};
-  service.cache_bytes = std::uint64_t{64} << 20;
-  service.threads = machine.threads;
-  if (machine.memory != 0) limits.max_bytes = machine.memory / 2;
-  std::uint32_t jobs = 0;
-  double drain = 30;
-  double stall_timeout = 60;
-  options.server.memory = machine.memory != 0 ? machine.memory / 4 * 3 : options.server.memory;
-  std::vector<std::string> roles{"api", "worker"};
-  JobOptions& kept = options.server.jobs;
-  double lease = 30;
-  double keep = 7 * 24 * 3600.0;
-  kept.runner.keep.bytes = std::uint64_t{16} << 30;
-  std::string log_format = "text";
-
+  Options options = defaults(machine);
+  Given given;
   CLI::App app("weftd: graded, guaranteed-quality Delaunay meshes over gRPC", "weftd");
   app.set_version_flag("--version", "weftd " + std::string(kVersion));
   Flags flags(app);
-  flags
-      .value("--listen", options.server.listen,
-             "HOST:PORT (0: any free port) or unix:PATH; may be repeated, or separated by commas")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  CLI::Option* tls_cert =
-      flags.value("--tls-cert", options.server.tls.certificate,
-                  "Encrypt TCP addresses; own certificate and those up to its CA, PEM");
-  CLI::Option* tls_key =
-      flags.value("--tls-key", options.server.tls.key, "Private key of --tls-cert, PEM");
-  tls_cert->needs(tls_key);
-  tls_key->needs(tls_cert);
-  flags
-      .value("--tls-client-ca", options.server.tls.client_ca,
-             "Want of clients a certificate of one of these CAs, PEM")
-      ->needs(tls_cert);
-  flags.value("--tokens", options.server.tokens,
-              "Want of callers a bearer token of this file, lines of NAME TOKEN");
-  app.add_flag("--insecure", options.server.insecure,
-               "Listen unencrypted where other machines can connect")
-      ->envname(environment_name("--insecure"));
-  flags.value("--port-file", options.port_file,
-              "File for the bound addresses, one a line; that of --metrics as metrics=HOST:PORT");
-  flags.value("--metrics", options.server.metrics,
-              "HOST:PORT for /metrics of Prometheus and /healthz, over HTTP and to everyone");
-  flags
-      .value("--threads", service.threads, "Threads that compute; default: what the machine grants")
-      ->check(CLI::Range(1u, 4096u));
-  flags
-      .value("--jobs", jobs,
-             "Jobs that run at once and share the threads; default: as many as threads, at least 4")
-      ->check(CLI::Range(1u, 4096u))
-      ->default_str("");
-  flags.value("--queue", service.queue, "Jobs that wait; more are refused")
-      ->check(CLI::Range(0u, 1'000'000u));
-  flags.bytes("--memory", options.server.memory,
-              "Memory promised to jobs at the same time; default: three quarters of the memory");
-  flags.value("--data", options.data, "Folder that keeps jobs and their meshes")->type_name("DIR");
-  flags
-      .value("--store", options.store,
-             "PostgreSQL server that keeps jobs and their meshes, as postgres://...")
-      ->check(is_postgres_uri())
-      ->excludes("--data");
-  flags
-      .value("--role", roles,
-             "With a store: api takes and shows jobs, worker does them; separated by commas")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"api", "worker"}));
-  flags.count("--max-queued", kept.service.max_queued, "Meshes that wait in the store");
-  flags.count("--max-queued-per-client", kept.service.max_queued_of_owner,
-              "Meshes of one client that wait in the store");
-  flags
-      .value("--max-attempts", kept.retry.max_attempts, "Attempts at a job whose workers are lost")
-      ->check(CLI::Range(1u, 100u));
-  flags.seconds("--lease", lease, "Silence after which a worker counts as lost");
-  flags.seconds("--keep", keep, "How long ended jobs and meshes that nobody asks for are kept");
-  flags.bytes("--keep-bytes", kept.runner.keep.bytes, "Meshes that are kept");
-  flags
-      .value("--cache-bytes", service.cache_bytes,
-             "Meshes of calls kept in memory for the same request, such as 64MiB; 0: none")
-      ->transform(CLI::AsSizeValue(false))
-      ->check(CLI::NonNegativeNumber);
-  flags.count("--max-points", limits.max_points, "Points a request");
-  flags.count("--max-segments", limits.max_segments, "Segments a request");
-  flags.count("--max-seeds", limits.max_seeds, "Hole and region seeds a request");
-  flags.count("--max-raster-values", limits.max_raster_values, "Values of a size raster");
-  flags.count("--max-triangles", limits.max_triangles, "Triangles a mesh");
-  flags.bytes("--max-bytes", limits.max_bytes, "Engine memory a job; default: half of the memory");
-  flags.bytes("--max-request-bytes", limits.max_request_bytes, "Request message")
-      ->check(CLI::Range(1.0, double{std::numeric_limits<int>::max()}));  // gRPC's own range
-  flags.seconds("--max-seconds", limits.max_seconds, "Work a job");
-  flags.seconds("--stall-timeout", stall_timeout, "Patience with a client that reads nothing");
-  flags.seconds("--drain", drain, "After SIGTERM, time for open calls to finish");
-  flags.value("--log-level", options.log_level, "Least level of the log, on stderr")
-      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}));
-  flags.value("--log-format", log_format, "Form of its lines")
-      ->check(CLI::IsMember({"text", "json"}));
-  app.add_flag("--exit-with-stdin", options.exit_with_stdin,
-               "Drain at the end of standard input, too")
-      ->envname(environment_name("--exit-with-stdin"));
-  app.footer("Every flag is also read from the environment: --max-points is WEFT_MAX_POINTS.");
-
+  add_listening(flags, options);
+  add_work(flags, options, given);
+  add_store(flags, options, given);
+  add_limits(flags, options, given);
+  add_readers(flags, options, given);
+  add_process(flags, options, given);
+  app.footer(
+      "SIZE is a number of bytes, or one with a unit: 256MiB, 2GiB.\n"
+      "Every flag is also read from the environment: --max-points is WEFT_MAX_POINTS.");
   try {
     app.parse(argc, argv);
     if (options.data.empty() && options.store.empty())
       for (const char* name : kOfTheStore)
         if (app.count(name) != 0) throw CLI::RequiresError(name, "--data or --store");
+    settle_memory(given, options);
   } catch (const CLI::ParseError& error) {
     return Exit{app.exit(error) == 0 ? 0 : kExitUsage};
   }
-  // A small job must not wait for one huge job to end.
-  constexpr std::uint32_t kFewestJobs = 4;
-  service.jobs = jobs != 0 ? jobs : std::max(service.threads, kFewestJobs);
-  service.light_jobs = 2;
-  service.stall_timeout = to_duration(stall_timeout);
-  kept.serves = std::find(roles.begin(), roles.end(), "api") != roles.end();
-  kept.works = std::find(roles.begin(), roles.end(), "worker") != roles.end();
-  kept.runner.lease =
-      std::chrono::milliseconds(std::max<std::int64_t>(1, std::llround(lease * 1000)));
-  kept.runner.renewal = std::min(kept.runner.renewal, kept.runner.lease / 3);
-  kept.runner.keep.age = std::chrono::seconds(std::llround(keep));
-  options.log_format = log_format == "json" ? LogFormat::kJson : LogFormat::kText;
-  options.drain = std::chrono::duration<double>(drain);
+  settle(given, options);
   return options;
 }
 

@@ -2,17 +2,17 @@
 #include "server/server.h"
 
 #include <fmt/format.h>
-#include <grpcpp/ext/proto_server_reflection_plugin.h>
-#include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/resource_quota.h>
 #include <grpcpp/security/server_credentials.h>
 #include <grpcpp/server_builder.h>
 
+#include <algorithm>
 #include <utility>
 
-#include "server/connections.h"
-#include "server/listen.h"
-#include "server/server_info.h"
+#include "server/admission/memory_estimate.h"
+#include "server/mesh/server_info.h"
+#include "server/net/connections.h"
+#include "server/net/listen.h"
 #include "server/version.h"
 
 namespace weft::server {
@@ -29,18 +29,51 @@ constexpr seconds kLastWords{1};
 // Streams of other services, such as Health.Watch, do not end by themselves.
 constexpr milliseconds kOthersGrace{100};
 
-void configure(grpc::ServerBuilder& builder, const Limits& limits) {
+// What requests may take of memory on their way in, and again until their runs have ended: an
+// eighth of what there is, and enough for two of the largest, but no more than half.
+std::uint64_t request_bytes(const ServerOptions& options) {
+  const std::uint64_t two = 2 * options.service.limits.max_request_bytes;
+  return std::max(options.memory / 8, std::min(two, options.memory / 2));
+}
+
+AdmissionOptions admission_options(const ServerOptions& options, MemoryGate& gate) {
+  AdmissionOptions admission = options.admission;
+  admission.request_bytes = request_bytes(options);
+  admission.memory = &gate;
+  return admission;
+}
+
+// What reflection lists.
+std::vector<std::string> services(bool keeps_jobs) {
+  std::vector<std::string> names{"grpc.health.v1.Health", "grpc.reflection.v1.ServerReflection",
+                                 "grpc.reflection.v1alpha.ServerReflection", kMeshServiceName};
+  if (keeps_jobs) names.push_back(kJobServiceName);
+  return names;
+}
+
+// A sixteenth is kept for light runs, but no more than all of their places take.
+MemoryGate::Options gate_options(const ServerOptions& options) {
+  const ServiceOptions& service = options.service;
+  const std::uint64_t light = most_light(service.limits);
+  MemoryGate::Options gate{.capacity = options.memory,
+                           .for_light = std::min(options.memory / 16, service.light_jobs * light)};
+  if (service.client_share < 1)
+    gate.of_client =
+        static_cast<std::uint64_t>(service.client_share * static_cast<double>(options.memory));
+  return gate;
+}
+
+void configure(grpc::ServerBuilder& builder, const ServerOptions& options) {
+  const Limits& limits = options.service.limits;
   builder.SetMaxReceiveMessageSize(static_cast<int>(limits.max_request_bytes));
   // Two servers must not share a port unnoticed.
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   // The limit on message bytes holds before decompression: 256 MiB of gzip could be 256 GiB.
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_GZIP, false);
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_DEFLATE, false);
-  // Reflection is a synchronous service, whose threads are otherwise as many as its calls.
-  builder.SetSyncServerOption(grpc::ServerBuilder::NUM_CQS, 1);
-  builder.SetSyncServerOption(grpc::ServerBuilder::MAX_POLLERS, 2);
   grpc::ResourceQuota quota("weftd");
   quota.SetMaxThreads(16);
+  quota.Resize(request_bytes(options));
   builder.SetResourceQuota(quota);
 }
 
@@ -58,10 +91,15 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
       tokens_(std::move(tokens)),
       authenticator_(tokens_.get()),
       metrics_(kVersion, kEngineVersion),
+      gate_(gate_options(options), [this] { service_.notify(); }),
+      admission_(admission_options(options, gate_), authenticator_, metrics_, log_),
+      health_(admission_),
+      reflection_(ReflectionService::Version::kV1, admission_, services(store != nullptr)),
+      reflection_alpha_(ReflectionService::Version::kV1Alpha, admission_,
+                        services(store != nullptr)),
       arena_(static_cast<int>(options.service.threads)),
-      gate_(options.memory, [this] { service_.notify(); }),
-      service_(with_info(options, store != nullptr), authenticator_, metrics_, engine, arena_,
-               gate_, log_) {
+      service_(with_info(options, store != nullptr), admission_, metrics_, engine, arena_, gate_,
+               log_) {
   metrics_.add_queue("calls", [this] {
     QueueFigures figures = service_.figures();
     const double of_jobs = jobs_ ? jobs_->figures().admitted_bytes : 0;
@@ -71,10 +109,12 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
   if (!store) return;
   JobOptions jobs = options.jobs;
   jobs.service.limits = options.service.limits;
-  jobs.service.stall_timeout = options.service.stall_timeout;
+  jobs.service.share_across_clients = options.service.share_across_clients;
+  jobs.service.patience = options.service.patience;
   jobs.runner.worker = options.service.instance;
   jobs.runner.slots = options.service.jobs;
-  jobs_.emplace(std::move(store), std::move(jobs), authenticator_, metrics_, engine, arena_, gate_,
+  jobs.runner.light_slots = options.service.light_jobs;
+  jobs_.emplace(std::move(store), std::move(jobs), admission_, metrics_, engine, arena_, gate_,
                 log_);
   metrics_.add_queue("jobs", [this] { return jobs_->figures(); });
 }
@@ -88,6 +128,11 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
 
   auto credentials = credentials_for(options.listen, options.tls, options.insecure);
   if (!credentials) return tl::unexpected(credentials.error());
+  if (!options.metrics.empty() && !options.insecure && !is_local(options.metrics))
+    return tl::unexpected(fmt::format(
+        "{} would show the metrics to other machines, unencrypted and to everyone: "
+        "give --metrics an address of this machine alone, or --insecure to do it anyway",
+        options.metrics));
   std::unique_ptr<TokenFile> tokens;
   if (!options.tokens.empty()) {
     auto opened = TokenFile::open(options.tokens, log);
@@ -95,19 +140,17 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
     tokens = std::move(*opened);
   }
 
-  // The default health service and reflection are switched on for all builders of the process.
-  grpc::EnableDefaultHealthCheckService(true);
-  grpc::reflection::InitProtoReflectionServerBuilderPlugin();
-
   std::unique_ptr<Server> server(
       new Server(options, std::move(tokens), std::move(engine), std::move(log), std::move(store)));
   grpc::ServerBuilder builder;
-  configure(builder, options.service.limits);
+  configure(builder, options);
   limit_connections(builder);
-  if (server->tokens_ != nullptr) leave_out_reflection(builder);
   std::vector<int> ports(options.listen.size());
   for (std::size_t i = 0; i < ports.size(); ++i)
     builder.AddListeningPort(options.listen[i], (*credentials)[i], &ports[i]);
+  builder.RegisterService(&server->health_);
+  builder.RegisterService(&server->reflection_);
+  builder.RegisterService(&server->reflection_alpha_);
   builder.RegisterService(&server->service_);
   JobService* const job_service = server->job_service();
   if (job_service != nullptr) builder.RegisterService(job_service);
@@ -116,9 +159,9 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
     if (ports[i] == 0) return tl::unexpected(fmt::format("cannot listen on {}", options.listen[i]));
     server->addresses_.push_back(bound_address(options.listen[i], ports[i]));
   }
-  grpc::HealthCheckServiceInterface& health = *server->server_->GetHealthCheckService();
-  health.SetServingStatus(kMeshServiceName, true);
-  if (job_service != nullptr) health.SetServingStatus(kJobServiceName, true);
+  server->health_.set("", true);
+  server->health_.set(kMeshServiceName, true);
+  if (job_service != nullptr) server->health_.set(kJobServiceName, true);
   server->serving_ = true;
   if (!options.metrics.empty()) {
     auto endpoint = MetricsEndpoint::start(
@@ -137,7 +180,7 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
 
 void Server::drain(std::chrono::steady_clock::duration at_most) {
   const auto end = std::chrono::steady_clock::now() + at_most;
-  server_->GetHealthCheckService()->SetServingStatus(false);
+  health_.set_all(false);
   serving_ = false;
   service_.gate().close();
   if (jobs_) jobs_->close();

@@ -18,26 +18,30 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "server/caller.h"
+#include "server/admission/admission.h"
 #include "server/jobs/job_system.h"
-#include "server/mesh_service.h"
-#include "server/metrics.h"
-#include "server/metrics_endpoint.h"
-#include "server/tls.h"
-#include "server/tokens.h"
+#include "server/mesh/mesh_service.h"
+#include "server/net/caller.h"
+#include "server/net/health_service.h"
+#include "server/net/reflection_service.h"
+#include "server/net/tls.h"
+#include "server/net/tokens.h"
+#include "server/observe/metrics.h"
+#include "server/observe/metrics_endpoint.h"
 
 namespace weft::server {
 
 struct ServerOptions {
   std::vector<std::string> listen;  // see listen.h
   ServiceOptions service{};
+  AdmissionOptions admission{};  // its request_bytes are filled in
   // Bytes that are promised to jobs at the same time.
   std::uint64_t memory = std::uint64_t{8} << 30;
   // Where there is a store. Their limits are those of `service`.
   JobOptions jobs{};
   TlsOptions tls{};      // of TCP addresses; a unix socket is guarded by its folder
   std::string tokens{};  // the file, see tokens.h; empty: whoever can connect may call
-  // Listen unencrypted even where other machines can connect.
+  // Listen unencrypted even if other machines can connect, and show the metrics to them.
   bool insecure = false;
   std::string metrics{};  // HOST:PORT to show them on, see metrics_endpoint.h; empty: nowhere
 };
@@ -70,14 +74,18 @@ class Server {
  private:
   Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, EngineFn engine,
          Logger log, std::unique_ptr<JobStore> store);
-  JobService* job_service();  // null where there is none
+  JobService* job_service();  // null if there is none
 
   const Logger log_;
   const std::unique_ptr<TokenFile> tokens_;  // may be null
   const Authenticator authenticator_;
   Metrics metrics_;
-  Arena arena_;
   MemoryGate gate_;
+  Admission admission_;
+  HealthService health_;
+  ReflectionService reflection_;
+  ReflectionService reflection_alpha_;
+  Arena arena_;
   MeshService service_;
   std::optional<JobSystem> jobs_;
   std::unique_ptr<grpc::Server> server_;

@@ -3,8 +3,8 @@
 # From a fresh Debian 12 machine to all tests run: installs what is missing, builds with warnings as
 # errors, runs every test, then those labelled `sanitize` again under AddressSanitizer and
 # UndefinedBehaviorSanitizer and those labelled `threads` under ThreadSanitizer, fuzzes, builds and
-# runs the container, and checks formatting, licences, protocol and scripts. Prints each step with its
-# seconds, and the closing lines of ctest last. Fails when any step failed.
+# runs the container, and checks formatting, includes, licences, protocol and scripts. Prints each
+# step with its seconds, and the closing lines of ctest last. Fails when any step failed.
 #
 #   tests/run.sh [--quick]     --quick leaves sanitizers, fuzzers and the container out
 set -uo pipefail
@@ -89,7 +89,12 @@ check_protocol() {
 check_deployment() {
   local overlay
   docker-compose -f deploy/compose.yaml config --quiet || return
-  docker-compose -f deploy/compose.yaml --profile cluster config --quiet || return
+  POSTGRES_PASSWORD=x GRAFANA_PASSWORD=y \
+    docker-compose -f deploy/compose.cluster.yaml config --quiet || return
+  if docker-compose -f deploy/compose.cluster.yaml config --quiet 2>/dev/null; then
+    echo "deploy/compose.cluster.yaml: starts without passwords"
+    return 1
+  fi
   if ! kubectl version --client 2>/dev/null | grep -q '^Kustomize Version: v[4-9]'; then
     echo "deploy/kubernetes: not checked, for want of kubectl 1.21 or later"
     return
@@ -113,6 +118,7 @@ export TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp
 needed "install packages" deploy/install-deps.sh
 step "formatting" check_format
 step "shell scripts" check_shell
+step "includes" tests/includes.py
 needed "install linters" install_linters
 step "protocol" check_protocol
 step "deployment" check_deployment

@@ -6,7 +6,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
-#include "client/text.h"
+#include "client/base/text.h"
 
 namespace weft::client {
 namespace {

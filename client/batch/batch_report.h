@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "client/error.h"
+#include "client/base/error.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {
 
 struct BatchOutcome {
   std::string name;
-  std::optional<v1::Summary> summary{};  // nothing where there is no mesh
+  std::optional<v1::Summary> summary{};  // nothing if there is no mesh
   std::optional<Error> error{};          // why there is none
   std::vector<std::string> failures{};   // gates and the lock
   std::filesystem::path drawing{};       // empty: none

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "client/atomic_file.h"
-#include "client/text.h"
+#include "client/base/atomic_file.h"
+#include "client/base/text.h"
 
 namespace weft::client {
 

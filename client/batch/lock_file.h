@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "client/error.h"
+#include "client/base/error.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {

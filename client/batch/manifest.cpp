@@ -8,10 +8,10 @@
 #include <map>
 #include <set>
 
+#include "client/base/text.h"
 #include "client/drawing/draw.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
-#include "client/text.h"
 
 namespace weft::client {
 namespace {
@@ -84,30 +84,36 @@ const std::map<std::string, Setter>& common_keys() {
   static const std::map<std::string, Setter> keys = {
       {"size",
        [](const auto& n, auto& m, const auto& folder) {
-         m.wishes.size = text_of(n, "size");
-         if (is_size_grid_path(m.wishes.size)) m.wishes.size = folder / m.wishes.size;
+         m.request_options.size = text_of(n, "size");
+         if (is_size_grid_path(m.request_options.size))
+           m.request_options.size = folder / m.request_options.size;
        }},
-      {"min-angle", [](const auto& n, auto& m,
-                       const auto&) { m.wishes.min_angle_deg = number_of(n, "min-angle"); }},
-      {"min-edge",
-       [](const auto& n, auto& m, const auto&) { m.wishes.min_edge = number_of(n, "min-edge"); }},
+      {"min-angle",
+       [](const auto& n, auto& m, const auto&) {
+         m.request_options.min_angle_deg = number_of(n, "min-angle");
+       }},
+      {"min-edge", [](const auto& n, auto& m,
+                      const auto&) { m.request_options.min_edge = number_of(n, "min-edge"); }},
       {"placement",
-       [](const auto& n, auto& m, const auto&) { m.wishes.placement = placement_of(n); }},
+       [](const auto& n, auto& m, const auto&) { m.request_options.placement = placement_of(n); }},
       {"optimise",
        [](const auto& n, auto& m, const auto&) {
-         m.wishes.optimise = scalar<std::uint32_t>(n, "optimise", "a count of sweeps");
+         m.request_options.optimise = scalar<std::uint32_t>(n, "optimise", "a count of sweeps");
        }},
-      {"snap", [](const auto& n, auto& m, const auto&) { m.wishes.snap = number_of(n, "snap"); }},
+      {"snap",
+       [](const auto& n, auto& m, const auto&) { m.request_options.snap = number_of(n, "snap"); }},
       {"allow-unrefined",
        [](const auto& n, auto& m, const auto&) {
-         m.wishes.allow_unrefined = scalar<bool>(n, "allow-unrefined", "true or false");
+         m.request_options.allow_unrefined = scalar<bool>(n, "allow-unrefined", "true or false");
        }},
       {"max-triangles",
        [](const auto& n, auto& m, const auto&) {
-         m.wishes.max_triangles = scalar<std::uint64_t>(n, "max-triangles", "a count");
+         m.request_options.max_triangles = scalar<std::uint64_t>(n, "max-triangles", "a count");
        }},
-      {"max-seconds", [](const auto& n, auto& m,
-                         const auto&) { m.wishes.max_seconds = number_of(n, "max-seconds"); }},
+      {"max-seconds",
+       [](const auto& n, auto& m, const auto&) {
+         m.request_options.max_seconds = number_of(n, "max-seconds");
+       }},
       {"order",
        [](const auto& n, auto& m, const auto&) {
          m.output.writing.order = scalar<int>(n, "order", "1 or 2");

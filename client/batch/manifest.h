@@ -16,17 +16,17 @@
 #include <string>
 #include <vector>
 
+#include "client/base/error.h"
 #include "client/batch/quality_gate.h"
-#include "client/error.h"
-#include "client/mesh_output.h"
-#include "client/mesh_request.h"
+#include "client/call/mesh_request.h"
+#include "client/report/mesh_output.h"
 
 namespace weft::client {
 
 struct BatchMesh {
   std::string name;  // unique
   std::filesystem::path input{};
-  MeshWishes wishes{};
+  RequestOptions request_options{};
   MeshOutputOptions output{};
   std::vector<QualityGate> gates{};
 };

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "client/text.h"
+#include "client/base/text.h"
 
 namespace weft::client {
 namespace {

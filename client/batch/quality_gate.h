@@ -13,7 +13,7 @@
 #include <string>
 #include <string_view>
 
-#include "client/error.h"
+#include "client/base/error.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "client/cli/command_groups.h"
+#include "client/cli/connect_flags.h"
 #include "client/cli/flags.h"
 #include "client/commands/commands.h"
-#include "client/connect_flags.h"
 
 namespace weft::client {
 namespace {
@@ -42,12 +42,12 @@ void add_batch_command(CLI::App& app, Chosen& chosen) {
   const auto kept = std::make_shared<Kept>();
   BatchOptions& options = kept->options;
   CLI::App& batch =
-      *app.add_subcommand("batch", "Mesh what a manifest lists, and judge the meshes");
+      *app.add_subcommand("batch", "Mesh the domains that a manifest lists, and check the meshes");
   batch.footer(kExamples);
   batch.add_option("MANIFEST", options.manifest, "List of meshes: .yaml")->required();
   batch
       .add_option("--require", kept->gates,
-                  "What every mesh must satisfy, such as min-angle=20; may be repeated")
+                  "Bound that every mesh must satisfy, such as min-angle=20; may be repeated")
       ->allow_extra_args(false)
       ->check(CLI::Validator(
           [](const std::string& text) {
@@ -58,7 +58,7 @@ void add_batch_command(CLI::App& app, Chosen& chosen) {
       ->type_name("FIGURE=BOUND");
   batch
       .add_flag("--locked", options.locked,
-                "Fail where a mesh is not that of the lock file, and leave the file alone")
+                "Fail if a mesh differs from the lock file, and do not write the file")
       ->envname("WEFT_LOCKED");
   batch
       .add_option("--lock", options.lock,
@@ -70,15 +70,15 @@ void add_batch_command(CLI::App& app, Chosen& chosen) {
       .add_option("--summary", options.summary,
                   "Page to write, as Markdown, with the drawings of the meshes")
       ->type_name("FILE");
-  batch.add_option("--jobs", options.jobs, "Meshes that are made at a time")
-      ->envname("WEFT_JOBS")
+  batch.add_option("--jobs", options.jobs, "Meshes made at the same time")
+      ->envname("WEFT_CLIENT_JOBS")
       ->check(CLI::Range(1u, 256u))
       ->capture_default_str()
       ->type_name("N");
   add_server_flags(batch, options.server, WithoutServer::kPrivate);
-  add_timeout(batch, options.timeout_seconds,
-              "Give up on a mesh that takes longer. Default: never");
-  batch.add_flag("--quiet,-q", options.quiet, "Tell of meshes that fail alone")
+  add_timeout(batch, options.timeout_seconds, "Maximum time per mesh. Default: none");
+  add_retries(batch, options.retries);
+  batch.add_flag("--quiet,-q", options.quiet, "Report only meshes that fail")
       ->envname("WEFT_QUIET");
   batch.callback([kept, &chosen] {
     for (const std::string& gate : kept->gates)

@@ -8,7 +8,7 @@
 #include <stop_token>
 #include <string>
 
-#include "client/error.h"
+#include "client/base/error.h"
 
 namespace weft::client {
 

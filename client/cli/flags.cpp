@@ -21,70 +21,84 @@ void add_timeout(CLI::App& command, std::optional<double>& seconds, const std::s
       ->type_name("S");
 }
 
+void add_retries(CLI::App& command, std::uint32_t& retries) {
+  command
+      .add_option("--retries", retries,
+                  "Maximum retries, with growing waits, while the server is unavailable or busy")
+      ->envname("WEFT_RETRIES")
+      ->capture_default_str()
+      ->type_name("N");
+}
+
 void add_snap(CLI::App& command, std::optional<double>& snap, const std::string& help) {
   command.add_option("--snap", snap, help)->envname("WEFT_SNAP")->type_name("D");
 }
 
-void add_domain_and_wishes(CLI::App& command, std::filesystem::path& input, MeshWishes& wishes) {
+void add_domain_and_request_options(CLI::App& command, std::filesystem::path& input,
+                                    RequestOptions& request_options) {
   command
       .add_option("INPUT", input,
                   "Domain: " + domain_extensions() +
                       "; or a mesh, to mesh its domain anew: " + read_mesh_extensions())
       ->required();
   command
-      .add_option(
-          "--size", wishes.size,
-          "Upper bound on the area of a triangle at its centroid: a number, an expression in "
-          "x and y, or a grid of such bounds as .asc (ESRI ASCII). Default: no bound")
+      .add_option("--size", request_options.size,
+                  "Maximum area of a triangle, taken at its centroid: a number, an expression in x "
+                  "and y, or a grid of areas in an .asc file (ESRI ASCII). Default: no bound")
       ->type_name("EXPR|FILE");
   command
-      .add_option("--min-angle", wishes.min_angle_deg,
-                  "Lower bound on every angle, in degrees, 0 to 36. Default: 20")
+      .add_option("--min-angle", request_options.min_angle_deg,
+                  "Minimum angle of every triangle, in degrees, 0 to 36. Default: 20")
       ->envname("WEFT_MIN_ANGLE")
       ->type_name("DEG");
-  command.add_option("--min-edge", wishes.min_edge, "Make no edge shorter than this")
+  command
+      .add_option("--min-edge", request_options.min_edge,
+                  "Shortest edge that refinement may make; angle and area give way to it")
       ->envname("WEFT_MIN_EDGE")
       ->type_name("LEN");
   static const std::map<std::string, v1::Placement> kPlacements = {
       {"lattice", v1::PLACEMENT_LATTICE}, {"circumcentre", v1::PLACEMENT_CIRCUMCENTRE}};
   command
-      .add_option("--placement", wishes.placement,
-                  "Where points go that split triangles larger than their bound: to a lattice that "
-                  "follows the size, for a third fewer triangles, or to circumcentres, for a mesh "
-                  "without any direction. Default: lattice")
+      .add_option("--placement", request_options.placement,
+                  "Where new points go in triangles that are too large: lattice follows the size "
+                  "and makes a third fewer triangles, circumcentre makes a mesh without any "
+                  "direction. Default: lattice")
       ->envname("WEFT_PLACEMENT")
       ->transform(CLI::CheckedTransformer(kPlacements).description(""))
       ->type_name("lattice|circumcentre");
   command
-      .add_option("--optimise", wishes.optimise,
+      .add_option("--optimise", request_options.optimise,
                   "Sweeps of smoothing, 0 to 16: vertices around angles below 48 degrees move to "
                   "where the smallest angle around them is largest. Default: 2 if the size makes "
-                  "nearly all triangles, on a lattice; otherwise 0")
+                  "nearly all triangles, on a lattice with few faults or in a mesh below 100,000 "
+                  "triangles; otherwise 0")
       ->envname("WEFT_OPTIMISE")
       ->type_name("N");
-  add_snap(command, wishes.snap,
-           "Merge points and segments of the domain that are nearer together than this first. "
+  add_snap(command, request_options.snap,
+           "First merge points and segments of the domain that are nearer together than this. "
            "Default: only what double precision cannot keep apart");
   command
-      .add_flag("--allow-unrefined", wishes.allow_unrefined,
-                "Take a mesh with triangles that miss a bound though neither the domain nor a flag "
-                "excuses them; without it, such a mesh is an error")
+      .add_flag("--allow-unrefined", request_options.allow_unrefined,
+                "Accept a mesh with triangles that miss a bound although neither the domain nor a "
+                "flag forces them to. Default: such a mesh is an error")
       ->envname("WEFT_ALLOW_UNREFINED");
   command
-      .add_option("--max-triangles", wishes.max_triangles,
+      .add_option("--max-triangles", request_options.max_triangles,
                   "Stop refining at this number of triangles")
-      ->envname("WEFT_MAX_TRIANGLES")
+      ->envname("WEFT_CLIENT_MAX_TRIANGLES")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
-  command.add_option("--max-seconds", wishes.max_seconds, "Give up when the work takes longer")
-      ->envname("WEFT_MAX_SECONDS")
+  command
+      .add_option("--max-seconds", request_options.max_seconds,
+                  "Maximum time of work; then the call fails")
+      ->envname("WEFT_CLIENT_MAX_SECONDS")
       ->check(seconds_range())
       ->type_name("S");
   command
       .add_option(
-          "--threads", wishes.threads,
-          "Threads that compute; the mesh does not depend on it. Default: all of the server")
-      ->envname("WEFT_THREADS")
+          "--threads", request_options.threads,
+          "Threads of the server that compute; the mesh does not depend on them. Default: all")
+      ->envname("WEFT_CLIENT_THREADS")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
 }
@@ -92,7 +106,8 @@ void add_domain_and_wishes(CLI::App& command, std::filesystem::path& input, Mesh
 void add_writing(CLI::App& command, MeshWriteOptions& writing) {
   command
       .add_option("--order", writing.order,
-                  "2 writes six-node triangles, with straight sides, to .vtu, .msh and .node")
+                  "Order of the triangles written: 2 writes six-node triangles with straight "
+                  "sides, to .vtu, .msh and .node")
       ->envname("WEFT_ORDER")
       ->check(CLI::Range(1, 2))
       ->capture_default_str()
@@ -122,14 +137,14 @@ void add_output(CLI::App& command, MeshOutputOptions& output) {
       ->type_name("FILE");
   add_writing(command, output.writing);
   command
-      .add_option("--draw", output.drawings,
-                  "Drawing to write: .png, .svg or .pdf; may be repeated")
+      .add_option("--draw", output.drawings, "Drawing to write, may be repeated: .png, .svg, .pdf")
       ->allow_extra_args(false)
       ->type_name("FILE");
   static const std::map<std::string, DrawColor> kColors = {
       {"angle", DrawColor::kAngle}, {"region", DrawColor::kRegion}, {"none", DrawColor::kNone}};
   command
-      .add_option("--color", output.color, "Colour triangles of drawings by angle, region or none")
+      .add_option("--color", output.color,
+                  "Colour of the triangles in drawings: by angle, by region or none")
       ->envname("WEFT_COLOR")
       ->transform(CLI::CheckedTransformer(kColors).description(""))
       ->type_name("angle|region|none");
@@ -175,7 +190,7 @@ void add_json(CLI::App& command, bool& json, const std::string& help) {
 }
 
 void add_quiet(CLI::App& command, bool& quiet) {
-  command.add_flag("--quiet,-q", quiet, "No progress and no summary")->envname("WEFT_QUIET");
+  command.add_flag("--quiet,-q", quiet, "Print no progress and no summary")->envname("WEFT_QUIET");
 }
 
 }  // namespace weft::client

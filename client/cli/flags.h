@@ -7,8 +7,8 @@
 #include <span>
 #include <string>
 
-#include "client/mesh_output.h"
-#include "client/mesh_request.h"
+#include "client/call/mesh_request.h"
+#include "client/report/mesh_output.h"
 
 namespace weft::client {
 
@@ -17,12 +17,15 @@ CLI::Range seconds_range();
 
 void add_timeout(CLI::App& command, std::optional<double>& seconds, const std::string& help);
 
+void add_retries(CLI::App& command, std::uint32_t& retries);
+
 void add_snap(CLI::App& command, std::optional<double>& snap, const std::string& help);
 
 // INPUT, and what its mesh must satisfy.
-void add_domain_and_wishes(CLI::App& command, std::filesystem::path& input, MeshWishes& wishes);
+void add_domain_and_request_options(CLI::App& command, std::filesystem::path& input,
+                                    RequestOptions& request_options);
 
-// How meshes are written, where their format leaves a choice.
+// How meshes are written, if their format leaves a choice.
 void add_writing(CLI::App& command, MeshWriteOptions& writing);
 
 // Files to write, and drawings.

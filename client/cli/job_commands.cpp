@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "client/cli/command_groups.h"
+#include "client/cli/connect_flags.h"
 #include "client/cli/flags.h"
-#include "client/connect_flags.h"
 
 namespace weft::client {
 namespace {
@@ -26,8 +26,8 @@ constexpr char kListExamples[] = R"(Examples:
   weft list --limit 20 --json | jq -r '.jobs[].id')";
 
 constexpr char kWatchExamples[] =
-    R"(Ends as the job does: 0 where it succeeded, 64 + the gRPC code of its error where it
-failed, 65 where it was cancelled.
+    R"(Exits as the job does: 0 if it succeeded, 64 + the gRPC code of its error if it
+failed, 65 if it was cancelled.
 
 Examples:
   weft watch 01JCZ3V5K2M7Q8R9S0T1V2W3X4 && weft fetch 01JCZ3V5K2M7Q8R9S0T1V2W3X4 -o coast.vtu
@@ -39,7 +39,7 @@ constexpr char kCancelExamples[] = R"(Example:
 constexpr char kDeleteExamples[] = R"(Example:
   weft list --state failed --json | jq -r '.jobs[].id' | xargs weft delete)";
 
-constexpr char kFetchExamples[] = R"(A download that breaks goes on where it broke.
+constexpr char kFetchExamples[] = R"(A download that breaks is resumed where it broke.
 
 Examples:
   weft fetch 01JCZ3V5K2M7Q8R9S0T1V2W3X4 -o coast.vtu --draw coast.png --color angle
@@ -61,18 +61,12 @@ CLI::App& add_command(CLI::App& app, const char* name, const char* help, const c
 void add_calls(CLI::App& command, JobServerOptions& calls, const std::string& timeout_help) {
   add_server_flags(command, calls.server, WithoutServer::kRefused);
   add_timeout(command, calls.timeout_seconds, timeout_help);
-  command
-      .add_option("--retries", calls.retries,
-                  "Times to try again, with growing waits, while the server is away and nothing "
-                  "new comes")
-      ->envname("WEFT_RETRIES")
-      ->capture_default_str()
-      ->type_name("N");
+  add_retries(command, calls.retries);
 }
 
-constexpr char kWholeTimeout[] = "Give up when all of it takes longer. Default: never";
+constexpr char kWholeTimeout[] = "Maximum time of the whole command. Default: none";
 constexpr double kShortTimeout = 30;
-constexpr char kCallTimeout[] = "Give up when it takes longer. Default: 30";
+constexpr char kCallTimeout[] = "Maximum time of the command. Default: 30";
 
 // Has the command run so with its options.
 template <class Options>
@@ -94,19 +88,19 @@ std::string check_request_id(const std::string& id) {
 
 void add_submit(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<SubmitOptions>();
-  CLI::App& command = add_command(
-      app, "submit", "Have a server mesh a domain, and print the id of the job", kSubmitExamples);
-  add_domain_and_wishes(command, options->input, options->wishes);
+  CLI::App& command =
+      add_command(app, "submit", "Submit a domain to a server as a job, and print the job's id",
+                  kSubmitExamples);
+  add_domain_and_request_options(command, options->input, options->request_options);
   add_calls(command, options->calls, kWholeTimeout);
   command
-      .add_option(
-          "--request-id", options->request_id,
-          "Name of the submission: sent again, it finds the same job. Default: a random one")
+      .add_option("--request-id", options->request_id,
+                  "Name of the submission: the same name finds the same job. Default: a random one")
       ->envname("WEFT_REQUEST_ID")
       ->check(CLI::Validator(check_request_id, "", ""))
       ->type_name("ID");
   command
-      .add_flag("--no-cache", options->no_cache, "Make the mesh anew, even if the server keeps it")
+      .add_flag("--no-cache", options->no_cache, "Make the mesh again, even if the server keeps it")
       ->envname("WEFT_NO_CACHE");
   command
       .add_flag("--wait", options->wait,
@@ -123,7 +117,7 @@ void add_submit(CLI::App& app, Chosen& chosen) {
 void add_get(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<JobOptions>();
   options->calls.timeout_seconds = kShortTimeout;
-  CLI::App& command = add_command(app, "get", "Say where a job is", kGetExamples);
+  CLI::App& command = add_command(app, "get", "Show the state of a job", kGetExamples);
   command.add_option("ID", options->id, "Job")->required();
   add_calls(command, options->calls, kCallTimeout);
   add_json(command, options->json, "Print the job as one JSON object");
@@ -148,7 +142,7 @@ void add_list(CLI::App& app, Chosen& chosen) {
       ->allow_extra_args(false)
       ->transform(CLI::CheckedTransformer(kStates).description(""))
       ->type_name("STATE");
-  command.add_option("--limit", options->limit, "Only so many. Default: all")
+  command.add_option("--limit", options->limit, "Maximum jobs to list. Default: all")
       ->envname("WEFT_LIMIT")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
@@ -184,8 +178,8 @@ void add_fetch(CLI::App& app, Chosen& chosen) {
   add_output(command, options->output);
   command
       .add_option("--domain", options->domain,
-                  "Domain that was submitted: its markers of points go into .node, and what the "
-                  "mesh says of it is checked")
+                  "Domain that was submitted: the markers of its points are written to .node, and "
+                  "the mesh is checked against it")
       ->type_name("INPUT");
   command.add_flag("--wait", options->wait, "Wait for the job to end")->envname("WEFT_WAIT");
   add_calls(command, options->calls, kWholeTimeout);
@@ -217,7 +211,7 @@ void add_job_commands(CLI::App& app, Chosen& chosen) {
   add_list(app, chosen);
   add_watch(app, chosen);
   add_fetch(app, chosen);
-  add_of_several(app, "cancel", "End jobs that have not ended", kCancelExamples, run_cancel,
+  add_of_several(app, "cancel", "Cancel jobs that have not ended", kCancelExamples, run_cancel,
                  chosen);
   add_of_several(app, "delete", "Forget jobs that have ended", kDeleteExamples, run_delete, chosen);
   add_top(app, chosen);

@@ -3,10 +3,10 @@
 #include <memory>
 
 #include "client/cli/command_groups.h"
+#include "client/cli/connect_flags.h"
 #include "client/cli/flags.h"
 #include "client/commands/commands.h"
 #include "client/commands/job_commands.h"
-#include "client/connect_flags.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
 
@@ -49,9 +49,10 @@ Result<ExitCode> detach(const MeshOptions& options, std::stop_token stop) {
                 "fetch it later with `weft fetch ID -o FILE`");
   SubmitOptions submit;
   submit.input = options.input;
-  submit.wishes = options.wishes;
+  submit.request_options = options.request_options;
   submit.calls.server = options.server;
   submit.calls.timeout_seconds = options.timeout_seconds;
+  submit.calls.retries = options.retries;
   submit.json = options.json;
   submit.quiet = options.quiet;
   return run_submit(submit, std::move(stop));
@@ -66,17 +67,16 @@ void add_mesh(CLI::App& app, Chosen& chosen) {
   MeshOptions& options = kept->options;
   CLI::App& mesh = *app.add_subcommand("mesh", "Mesh a domain and write the mesh to files");
   mesh.footer(kMeshExamples);
-  add_domain_and_wishes(mesh, options.input, options.wishes);
+  add_domain_and_request_options(mesh, options.input, options.request_options);
   add_server_flags(mesh, options.server, WithoutServer::kPrivate);
-  add_timeout(mesh, options.timeout_seconds,
-              "Give up when the whole call takes longer. Default: never");
+  add_timeout(mesh, options.timeout_seconds, "Maximum time of the whole call. Default: none");
+  add_retries(mesh, options.retries);
   add_output(mesh, options.output);
-  mesh.add_flag("--no-cache", options.wishes.no_cache,
-                "Make the mesh anew, even if the server has it at hand")
+  mesh.add_flag("--no-cache", options.request_options.no_cache,
+                "Make the mesh again, even if the server has it in its cache")
       ->envname("WEFT_NO_CACHE");
   mesh.add_flag("--detach", kept->detach,
-                "Leave the work to the server, print the id of its job and end, as `weft submit` "
-                "does; needs --server");
+                "Submit a job, print its id and end, as `weft submit` does; needs --server");
   add_json(mesh, options.json, "Print one JSON object on standard output");
   add_quiet(mesh, options.quiet);
   mesh.callback([kept, &chosen] {
@@ -90,7 +90,7 @@ void add_mesh(CLI::App& app, Chosen& chosen) {
 void add_check(CLI::App& app, Chosen& chosen) {
   const auto kept = std::make_shared<CheckOptions>();
   CheckOptions& options = *kept;
-  CLI::App& check = *app.add_subcommand("check", "Judge a mesh by the independent checker");
+  CLI::App& check = *app.add_subcommand("check", "Check a mesh with the independent checker");
   check.footer(kCheckExamples);
   check.add_option("MESH", options.mesh, "Mesh: " + read_mesh_extensions())->required();
   check.add_option("--domain", options.domain, "Domain that was meshed: " + domain_extensions())
@@ -135,7 +135,7 @@ void add_convert(CLI::App& app, Chosen& chosen) {
 
 void add_info(CLI::App& app, Chosen& chosen) {
   const auto file = std::make_shared<std::filesystem::path>();
-  CLI::App& info = *app.add_subcommand("info", "Say what a mesh or a domain holds");
+  CLI::App& info = *app.add_subcommand("info", "Describe a mesh or a domain");
   info.add_option("FILE", *file, "Mesh or domain")->required();
   info.callback(
       [file, &chosen] { chosen.run = [file](std::stop_token) { return run_info(*file); }; });

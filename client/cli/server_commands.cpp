@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "client/cli/command_groups.h"
+#include "client/cli/connect_flags.h"
 #include "client/cli/flags.h"
 #include "client/commands/commands.h"
-#include "client/connect_flags.h"
 
 namespace weft::client {
 namespace {
@@ -16,7 +16,7 @@ void add(CLI::App& app, const char* name, const char* help, Run run, Chosen& cho
   const auto options = std::make_shared<ServerOptions>();
   CLI::App& command = *app.add_subcommand(name, help);
   add_server_flags(command, options->server, WithoutServer::kPrivate);
-  command.add_option("--timeout", options->timeout_seconds, "Give up after this many seconds")
+  command.add_option("--timeout", options->timeout_seconds, "Maximum time of the command")
       ->envname("WEFT_TIMEOUT")
       ->check(seconds_range())
       ->capture_default_str()
@@ -29,8 +29,8 @@ void add(CLI::App& app, const char* name, const char* help, Run run, Chosen& cho
 }  // namespace
 
 void add_server_commands(CLI::App& app, Chosen& chosen) {
-  add(app, "health", "Ask whether the server takes work", run_health, chosen);
-  add(app, "server-info", "Say what the server is and what it admits", run_server_info, chosen);
+  add(app, "health", "Check whether the server accepts work", run_health, chosen);
+  add(app, "server-info", "Show the version and the limits of the server", run_server_info, chosen);
 }
 
 }  // namespace weft::client

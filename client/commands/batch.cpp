@@ -6,13 +6,13 @@
 #include <mutex>
 #include <thread>
 
+#include "client/base/text.h"
 #include "client/batch/batch_report.h"
 #include "client/batch/lock_file.h"
 #include "client/batch/manifest.h"
 #include "client/commands/commands.h"
+#include "client/commands/mesh_into.h"
 #include "client/formats/domain_formats.h"
-#include "client/mesh_into.h"
-#include "client/text.h"
 
 namespace weft::client {
 namespace {
@@ -46,8 +46,8 @@ Result<v1::Summary> make_mesh(const BatchMesh& mesh, const Connection& connectio
                               const BatchOptions& options, const std::stop_token& stop) {
   const auto domain = read_domain(mesh.input);
   if (!domain) return tl::unexpected(domain.error());
-  const auto wishes = with_size_grid(mesh.wishes);
-  if (!wishes) return tl::unexpected(wishes.error());
+  const auto request_options = with_size_grid(mesh.request_options);
+  if (!request_options) return tl::unexpected(request_options.error());
   std::optional<MeshOutput> output;
   if (!mesh.output.empty()) {
     make_folders(mesh.output);
@@ -56,7 +56,8 @@ Result<v1::Summary> make_mesh(const BatchMesh& mesh, const Connection& connectio
     output.emplace(std::move(*opened));
   }
   const auto report = mesh_into(
-      connection, *domain, *wishes, {.timeout_seconds = options.timeout_seconds},
+      connection, *domain, *request_options,
+      {.timeout_seconds = options.timeout_seconds, .retries = options.retries},
       output ? &*output : nullptr, [] {}, stop);
   if (!report) return tl::unexpected(report.error());
   return report->summary;

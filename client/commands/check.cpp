@@ -7,11 +7,11 @@
 #include <cmath>
 #include <utility>
 
+#include "client/base/text.h"
 #include "client/commands/commands.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/size_grid.h"
-#include "client/text.h"
 
 namespace weft::client {
 namespace {
@@ -70,7 +70,11 @@ Result<ExitCode> run_check(const CheckOptions& options) {
     double constant = 0;
     const char* end = options.size.data() + options.size.size();
     const auto [stop, problem] = std::from_chars(options.size.data(), end, constant);
-    if (problem == std::errc() && stop == end) {
+    if (stop == end && problem != std::errc::invalid_argument) {
+      // No area exceeds NaN or infinity: the check could not fail.
+      if (problem != std::errc() || !(std::isfinite(constant) && constant > 0))
+        return fail(ExitCode::kUsage,
+                    "--size is " + options.size + "; it must be positive and finite");
       requirements.max_area = constant;
     } else {
       requirements.size = options.size;

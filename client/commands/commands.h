@@ -10,20 +10,21 @@
 #include <string>
 #include <vector>
 
+#include "client/base/error.h"
 #include "client/batch/quality_gate.h"
-#include "client/connect_options.h"
-#include "client/error.h"
-#include "client/mesh_call.h"
-#include "client/mesh_output.h"
+#include "client/call/connect_options.h"
+#include "client/call/mesh_call.h"
+#include "client/report/mesh_output.h"
 
 namespace weft::client {
 
 struct MeshOptions {
   std::filesystem::path input;
   MeshOutputOptions output;
-  MeshWishes wishes;
+  RequestOptions request_options;
   ConnectOptions server;
   std::optional<double> timeout_seconds;
+  std::uint32_t retries = RetryOptions{}.attempts;
   bool json = false;
   bool quiet = false;
 };
@@ -32,13 +33,14 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop);
 struct BatchOptions {
   std::filesystem::path manifest;
   ConnectOptions server;
-  std::optional<double> timeout_seconds;  // of each call
-  std::uint32_t jobs = 4;                 // meshes at a time
-  std::vector<QualityGate> gates;         // of all meshes, on top of their own
-  std::filesystem::path lock;             // empty: beside the manifest
-  bool locked = false;                    // the lock file is held to, not written
-  std::filesystem::path junit;            // empty: none
-  std::filesystem::path summary;          // empty: none
+  std::optional<double> timeout_seconds;  // of each mesh
+  std::uint32_t retries = RetryOptions{}.attempts;
+  std::uint32_t jobs = 4;          // meshes at a time
+  std::vector<QualityGate> gates;  // of all meshes, on top of their own
+  std::filesystem::path lock;      // empty: beside the manifest
+  bool locked = false;             // the lock file is held to, not written
+  std::filesystem::path junit;     // empty: none
+  std::filesystem::path summary;   // empty: none
   bool quiet = false;
 };
 // kCheckFailed where a mesh fails a gate or is not the locked one.

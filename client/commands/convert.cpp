@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // `weft convert`: a mesh into another format, or a domain into a .poly file.
+#include <string>
 #include <utility>
 
+#include "client/base/text.h"
 #include "client/commands/commands.h"
 #include "client/formats/domain_formats.h"
+#include "client/formats/domains/seeded.h"
 #include "client/formats/mesh_formats.h"
-#include "client/formats/seeded.h"
-#include "client/formats/triangle_poly.h"
-#include "client/text.h"
+#include "client/formats/triangle/triangle_poly.h"
+#include "client/report/marker_warnings.h"
 
 namespace weft::client {
 namespace {
@@ -46,8 +48,13 @@ Result<ExitCode> convert_mesh(const ConvertOptions& options, const std::stop_tok
   if (auto written = output->write(mesh->view(), none); !written)
     return tl::unexpected(written.error());
   if (options.quiet) return ExitCode::kOk;
+  std::string warnings;
+  for (const std::string& warning :
+       open_boundary_warnings(markers_of(mesh->view()), options.writing.open_boundaries))
+    warnings += "WARNING: " + warning + "\n";
   return print(with_separators(mesh->view().triangle_count()) + " triangles, " +
-               with_separators(mesh->view().vertex_count()) + " vertices\n" + output->text(none));
+               with_separators(mesh->view().vertex_count()) + " vertices\n" + output->text(none) +
+               warnings);
 }
 
 Result<ExitCode> convert_domain(const ConvertOptions& options, std::stop_token stop) {

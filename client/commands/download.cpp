@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "client/jobs/fetch_mesh.h"
-#include "client/jobs/job_text.h"
-#include "client/jobs/watch_job.h"
+#include "client/call/fetch_mesh.h"
+#include "client/report/job_text.h"
+#include "client/report/watch_job.h"
 
 namespace weft::client {
 
@@ -17,7 +17,7 @@ Result<v1::Job> wait_for_job(JobServer& server, const std::string& id, ProgressB
 
 Result<MeshReport> download(JobServer& server, const v1::Job& job, const Domain* domain,
                             MeshOutput& output, ProgressBar& progress, MeshTimes& times) {
-  const auto spool = MeshSpool::create(output.folder());
+  const auto spool = output.make_spool();
   if (!spool) return tl::unexpected(spool.error());
   FetchMeshOptions options;
   if (domain != nullptr)

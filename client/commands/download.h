@@ -5,12 +5,12 @@
 
 #include <string>
 
-#include "client/error.h"
+#include "client/base/error.h"
+#include "client/call/job_server.h"
 #include "client/formats/domain.h"
-#include "client/jobs/job_server.h"
-#include "client/mesh_output.h"
-#include "client/mesh_report.h"
-#include "client/progress_bar.h"
+#include "client/report/mesh_output.h"
+#include "client/report/mesh_report.h"
+#include "client/report/progress_bar.h"
 
 namespace weft::client {
 

@@ -7,7 +7,7 @@
 #include "client/commands/job_commands.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
-#include "client/jobs/job_text.h"
+#include "client/report/job_text.h"
 
 namespace weft::client {
 namespace {

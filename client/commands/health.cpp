@@ -11,9 +11,9 @@
 
 #include <chrono>
 
+#include "client/call/connection.h"
+#include "client/call/server_error.h"
 #include "client/commands/commands.h"
-#include "client/connection.h"
-#include "client/server_error.h"
 
 namespace weft::client {
 namespace {

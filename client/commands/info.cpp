@@ -6,12 +6,12 @@
 #include <map>
 #include <span>
 
+#include "client/base/text.h"
 #include "client/commands/commands.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
-#include "client/mesh_angles.h"
-#include "client/mesh_report.h"
-#include "client/text.h"
+#include "client/report/mesh_angles.h"
+#include "client/report/mesh_report.h"
 
 namespace weft::client {
 namespace {

@@ -10,16 +10,16 @@
 #include <string>
 #include <vector>
 
-#include "client/error.h"
-#include "client/jobs/job_server.h"
-#include "client/mesh_output.h"
-#include "client/mesh_request.h"
+#include "client/base/error.h"
+#include "client/call/job_server.h"
+#include "client/call/mesh_request.h"
+#include "client/report/mesh_output.h"
 
 namespace weft::client {
 
 struct SubmitOptions {
   std::filesystem::path input;
-  MeshWishes wishes;
+  RequestOptions request_options;
   MeshOutputOptions output;  // needs `wait`
   std::string request_id;    // empty: one is made up
   bool no_cache = false;

@@ -1,12 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 // `weft mesh`: reads a domain, has it meshed, writes files and drawings.
+#include <cstdio>
+#include <string>
+#include <utility>
+
 #include "client/commands/commands.h"
+#include "client/commands/mesh_into.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
-#include "client/mesh_into.h"
-#include "client/progress_bar.h"
+#include "client/report/marker_warnings.h"
+#include "client/report/progress_bar.h"
 
 namespace weft::client {
+namespace {
+
+void add_warnings(const MeshOptions& options, const Domain& domain, MeshReport& report) {
+  if (auto warning = budget_warning(report.summary, options.request_options.max_triangles))
+    report.warnings.push_back(std::move(*warning));
+  for (auto& warnings :
+       {open_boundary_warnings(report.markers, options.output.writing.open_boundaries),
+        hidden_marker_warnings(report.markers, domain)})
+    report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
+}
+
+}  // namespace
 
 Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   MeshTimes times;
@@ -15,27 +32,36 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   if (!output) return tl::unexpected(output.error());
   const auto domain = read_domain(options.input);
   if (!domain) return tl::unexpected(domain.error());
-  auto wishes = with_size_grid(options.wishes);
-  if (!wishes) return tl::unexpected(wishes.error());
+  auto request_options = with_size_grid(options.request_options);
+  if (!request_options) return tl::unexpected(request_options.error());
   times.read = MeshTimes::Clock::now();
 
-  const auto connection = connect(options.server, stop);
+  ConnectOptions one_mesh = options.server;
+  one_mesh.one_mesh = true;
+  const auto connection = connect(one_mesh, stop);
   if (!connection) return tl::unexpected(connection.error());
   times.connected = MeshTimes::Clock::now();
 
   ProgressBar progress(stderr, options.quiet ? ProgressStyle::kNone : progress_style_of(stderr));
   const MeshCallOptions call{
       .timeout_seconds = options.timeout_seconds,
-      .on_progress = [&progress](const v1::Progress& p) { progress.update(p); }};
-  wishes->quadtree = options.output.draw_quadtree;
+      .retries = options.retries,
+      .on_progress = [&progress](const v1::Progress& p) { progress.update(p); },
+      .on_away =
+          [&progress](const std::string& what) {
+            progress.clear();
+            std::fprintf(stderr, "weft: %s\n", what.c_str());
+          }};
+  request_options->quadtree = options.output.draw_quadtree;
   const auto received = [&] {
     times.received = MeshTimes::Clock::now();
     if (output->draws()) progress.say("drawing");
   };
-  const auto report = mesh_into(*connection, *domain, *wishes, call, &*output, received, stop);
+  auto report = mesh_into(*connection, *domain, *request_options, call, &*output, received, stop);
   if (!report) return tl::unexpected(report.error());
   times.written = MeshTimes::Clock::now();
   progress.clear();
+  add_warnings(options, *domain, *report);
 
   if (options.json) {
     Json json = mesh_json(*report, times);

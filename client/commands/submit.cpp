@@ -5,13 +5,13 @@
 #include <optional>
 #include <random>
 
+#include "client/base/text.h"
 #include "client/commands/commands.h"
 #include "client/commands/download.h"
 #include "client/commands/job_commands.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
-#include "client/jobs/job_text.h"
-#include "client/text.h"
+#include "client/report/job_text.h"
 
 namespace weft::client {
 namespace {
@@ -39,11 +39,11 @@ Result<std::optional<MeshOutput>> open_output(const SubmitOptions& options,
 
 Result<v1::Job> submit(JobServer& server, const Domain& domain, const SubmitOptions& options) {
   if (auto ok = check_sendable(domain); !ok) return tl::unexpected(ok.error());
-  auto wishes = with_size_grid(options.wishes);
-  if (!wishes) return tl::unexpected(wishes.error());
-  wishes->quadtree = options.output.draw_quadtree;
+  auto request_options = with_size_grid(options.request_options);
+  if (!request_options) return tl::unexpected(request_options.error());
+  request_options->quadtree = options.output.draw_quadtree;
   v1::SubmitJobRequest request;
-  *request.mutable_mesh() = make_request(domain, *wishes);
+  *request.mutable_mesh() = make_request(domain, *request_options);
   request.set_request_id(options.request_id.empty() ? random_request_id() : options.request_id);
   request.set_no_cache(options.no_cache);
   auto job = server.submit(request, &domain);

@@ -2,15 +2,18 @@
 // `weft top`: the caller's jobs and the server's throughput, live where there is a terminal.
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <iterator>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include "client/commands/commands.h"
 #include "client/commands/job_commands.h"
-#include "client/jobs/top_view.h"
-#include "client/terminal_screen.h"
+#include "client/report/terminal_screen.h"
+#include "client/report/top_view.h"
 
 namespace weft::client {
 namespace {
@@ -23,13 +26,19 @@ Result<TopSample> look(JobServer& server) {
   if (!info) return tl::unexpected(info.error());
   auto open = server.list({v1::JOB_STATE_QUEUED, v1::JOB_STATE_RUNNING}, std::nullopt);
   if (!open) return tl::unexpected(open.error());
-  auto ended = server.list({v1::JOB_STATE_SUCCEEDED, v1::JOB_STATE_FAILED, v1::JOB_STATE_CANCELLED},
-                           kMostEnded);
-  if (!ended) return tl::unexpected(ended.error());
-  const bool left_out = ended->size() == kMostEnded;
+  // Each state by itself: many that succeeded do not hide one that failed.
+  std::vector<v1::Job> ended;
+  std::set<v1::JobState> left_out;
+  for (const v1::JobState state :
+       {v1::JOB_STATE_SUCCEEDED, v1::JOB_STATE_FAILED, v1::JOB_STATE_CANCELLED}) {
+    auto jobs = server.list({state}, kMostEnded);
+    if (!jobs) return tl::unexpected(jobs.error());
+    if (jobs->size() == kMostEnded) left_out.insert(state);
+    std::ranges::move(*jobs, std::back_inserter(ended));
+  }
   const double now = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
-  TopSample sample = top_sample(now, std::move(*info), std::move(*open), std::move(*ended));
-  sample.ended_left_out = left_out;
+  TopSample sample = top_sample(now, std::move(*info), std::move(*open), std::move(ended));
+  sample.left_out = std::move(left_out);
   return sample;
 }
 

@@ -3,9 +3,9 @@
 #include "client/commands/commands.h"
 #include "client/commands/download.h"
 #include "client/commands/job_commands.h"
-#include "client/jobs/job_text.h"
-#include "client/jobs/watch_job.h"
-#include "client/mesh_report.h"
+#include "client/report/job_text.h"
+#include "client/report/mesh_report.h"
+#include "client/report/watch_job.h"
 
 namespace weft::client {
 

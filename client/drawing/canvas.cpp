@@ -6,24 +6,28 @@
 
 namespace weft::client {
 
-Canvas::Canvas(const MeshView& mesh, double long_side, double margin) {
-  double max_x = 0;
-  double min_y = 0;
-  for (std::size_t i = 0; i + 1 < mesh.coordinates.size(); i += 2) {
-    const double x = mesh.coordinates[i];
-    const double y = mesh.coordinates[i + 1];
-    min_x_ = i == 0 ? x : std::min(min_x_, x);
-    max_x = i == 0 ? x : std::max(max_x, x);
-    min_y = i == 0 ? y : std::min(min_y, y);
-    max_y_ = i == 0 ? y : std::max(max_y_, y);
+void Extent::add(std::span<const double> coordinates) {
+  for (std::size_t i = 0; i + 1 < coordinates.size(); i += 2) {
+    min_x = std::min(min_x, coordinates[i]);
+    max_x = std::max(max_x, coordinates[i]);
+    min_y = std::min(min_y, coordinates[i + 1]);
+    max_y = std::max(max_y, coordinates[i + 1]);
   }
+}
+
+Canvas::Canvas(const Extent& extent, double long_side, double margin) {
+  const bool empty = extent.max_x < extent.min_x;
+  min_x_ = empty ? 0 : extent.min_x;
+  max_y_ = empty ? 0 : extent.max_y;
+  const double across = empty ? 0 : extent.max_x - extent.min_x;
+  const double up = empty ? 0 : extent.max_y - extent.min_y;
   const double room = long_side - 2 * margin;
-  const double extent = std::max(max_x - min_x_, max_y_ - min_y);
-  scale_ = extent > 0 ? room / extent : 1;
-  width_ = std::ceil((max_x - min_x_) * scale_ + 2 * margin);
-  height_ = std::ceil((max_y_ - min_y) * scale_ + 2 * margin);
-  left_ = (width_ - (max_x - min_x_) * scale_) / 2;
-  top_ = (height_ - (max_y_ - min_y) * scale_) / 2;
+  const double longest = std::max(across, up);
+  scale_ = longest > 0 ? room / longest : 1;
+  width_ = std::ceil(across * scale_ + 2 * margin);
+  height_ = std::ceil(up * scale_ + 2 * margin);
+  left_ = (width_ - across * scale_) / 2;
+  top_ = (height_ - up * scale_) / 2;
 }
 
 }  // namespace weft::client

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <span>
 
 #include "client/formats/mesh.h"
 
@@ -14,9 +16,19 @@ struct PagePoint {
   double y = 0;
 };
 
+// The box of points; empty until one is added.
+struct Extent {
+  void add(std::span<const double> coordinates);
+
+  double min_x = std::numeric_limits<double>::infinity();
+  double min_y = std::numeric_limits<double>::infinity();
+  double max_x = -std::numeric_limits<double>::infinity();
+  double max_y = -std::numeric_limits<double>::infinity();
+};
+
 class Canvas {
  public:
-  Canvas(const MeshView& mesh, double long_side, double margin);
+  Canvas(const Extent& extent, double long_side, double margin);
 
   double width() const { return width_; }
   double height() const { return height_; }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rasterises a mesh whose triangles are about as small as pixels. Each pixel takes the mean colour
-// of the triangles in it; each edge leaves ink along its length, and a pixel with ink i is covered
-// to the part 1 - exp(-i), so that edges blend to grey and dense parts get darker without clogging.
+// Rasterises a mesh whose triangles are about as small as pixels, piece by piece. Each pixel takes
+// the mean colour of the triangles in it; each edge leaves ink along its length, and a pixel with
+// ink i is covered to the part 1 - exp(-i), so that edges blend to grey and dense parts get darker
+// without clogging. The width of the lines follows from the length of all edges, so it is applied
+// at the end. Takes 4 bytes for a pixel, and 16 more where triangles are coloured.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +11,7 @@
 #include <vector>
 
 #include "client/drawing/canvas.h"
+#include "client/drawing/coloring.h"
 #include "client/drawing/colors.h"
 #include "client/formats/mesh.h"
 
@@ -21,8 +24,40 @@ struct Raster {
   std::vector<std::uint32_t> pixels;
 };
 
-// `palette_index` has one entry of `palette` per triangle; empty: triangles are not coloured.
-Raster rasterize(const MeshView& mesh, const Canvas& canvas, const std::vector<Color>& palette,
-                 const std::vector<std::uint8_t>& palette_index);
+class DenseRaster {
+ public:
+  // `coloring` outlives it.
+  DenseRaster(const Canvas& canvas, const Coloring& coloring);
+
+  // The triangles of a piece, with all the vertices that they refer to. Together, the triangles
+  // name each edge between two of them once in either direction.
+  void add(const MeshView& piece);
+  // Of the edges between two triangles, in pixels.
+  double mean_edge() const;
+  Raster raster() const;
+
+ private:
+  // Sums of the colours in a pixel, and how many.
+  struct Paint {
+    float red = 0;
+    float green = 0;
+    float blue = 0;
+    float weight = 0;
+
+    void add(const Color& color, float amount);
+  };
+  void fill(const PagePoint (&corners)[3], const Color& color);
+  void stroke(PagePoint a, PagePoint b);
+  void drop(double x, double y, float amount);
+
+  const Canvas canvas_;
+  const Coloring& coloring_;
+  const std::size_t width_;
+  const std::size_t height_;
+  std::vector<float> ink_;  // of lines as wide as a pixel
+  std::vector<Paint> paint_;
+  double length_ = 0;
+  std::size_t edges_ = 0;
+};
 
 }  // namespace weft::client

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "client/drawing/canvas.h"
+#include "client/drawing/coloring.h"
 #include "client/drawing/colors.h"
 #include "client/drawing/dense.h"
-#include "client/mesh_angles.h"
 
 namespace weft::client {
 namespace {
@@ -37,8 +37,8 @@ cairo_status_t write_to_file(void* file, const unsigned char* bytes, unsigned si
   return CAIRO_STATUS_SUCCESS;  // the file keeps its failure
 }
 
-Surface make_surface(const DrawOptions& options, const Canvas& canvas, OutputFile& file) {
-  switch (options.format) {
+Surface make_surface(DrawFormat format, const Canvas& canvas, OutputFile& file) {
+  switch (format) {
     case DrawFormat::kPng:
       return Surface(cairo_image_surface_create(
           CAIRO_FORMAT_RGB24, static_cast<int>(canvas.width()), static_cast<int>(canvas.height())));
@@ -54,35 +54,6 @@ Surface make_surface(const DrawOptions& options, const Canvas& canvas, OutputFil
 
 void set_color(cairo_t* cairo, const Color& color, double alpha = 1) {
   cairo_set_source_rgba(cairo, color.red, color.green, color.blue, alpha);
-}
-
-// The colours in use, and which one each triangle has.
-struct Coloring {
-  std::vector<Color> palette;
-  std::vector<std::uint8_t> index;  // empty: triangles are not coloured
-};
-
-Coloring color_triangles(const MeshView& mesh, DrawColor by) {
-  Coloring coloring;
-  if (by == DrawColor::kNone) return coloring;
-  coloring.index.resize(mesh.triangle_count());
-  if (by == DrawColor::kAngle) {
-    constexpr int kSteps = 120;  // half a degree each
-    for (int i = 0; i <= kSteps; ++i)
-      coloring.palette.push_back(viridis(static_cast<double>(i) / kSteps));
-    for (std::size_t t = 0; t < coloring.index.size(); ++t)
-      coloring.index[t] =
-          static_cast<std::uint8_t>(std::lround(triangle_angles(mesh, t).min_deg / 60 * kSteps));
-    return coloring;
-  }
-  constexpr std::int32_t kPeriod = 8;  // region 0, then the ids modulo the number of colours
-  for (std::int32_t id = 0; id <= kPeriod; ++id) coloring.palette.push_back(region_color(id));
-  for (std::size_t t = 0; t < coloring.index.size(); ++t) {
-    const std::int64_t id = mesh.regions[t];
-    if (id != 0)
-      coloring.index[t] = static_cast<std::uint8_t>(((id - 1) % kPeriod + kPeriod) % kPeriod + 1);
-  }
-  return coloring;
 }
 
 // Mean length of the inner edges, on the page.
@@ -103,10 +74,7 @@ void line(cairo_t* cairo, PagePoint a, PagePoint b) {
   cairo_line_to(cairo, b.x, b.y);
 }
 
-void draw_raster(cairo_t* cairo, const MeshView& mesh, const DrawOptions& options,
-                 const Coloring& coloring, const Canvas& page) {
-  const Canvas canvas(mesh, options.long_side, options.long_side / kMarginsPerSide);
-  Raster raster = rasterize(mesh, canvas, coloring.palette, coloring.index);
+void draw_raster(cairo_t* cairo, Raster raster, const Canvas& page) {
   const Surface image(cairo_image_surface_create_for_data(
       reinterpret_cast<unsigned char*>(raster.pixels.data()), CAIRO_FORMAT_RGB24,
       static_cast<int>(raster.width), static_cast<int>(raster.height),
@@ -120,15 +88,65 @@ void draw_raster(cairo_t* cairo, const MeshView& mesh, const DrawOptions& option
   cairo_surface_flush(cairo_get_target(cairo));
 }
 
-void fill_triangles(cairo_t* cairo, const MeshView& mesh, const Coloring& coloring,
-                    const Canvas& canvas) {
+void stroke_boxes(cairo_t* cairo, std::span<const double> boxes, const Canvas& canvas) {
+  for (std::size_t i = 0; i + 3 < boxes.size(); i += 4) {
+    const PagePoint low = canvas.at(boxes[i], boxes[i + 1]);
+    const PagePoint high = canvas.at(boxes[i + 2], boxes[i + 3]);
+    cairo_rectangle(cairo, low.x, high.y, high.x - low.x, low.y - high.y);
+    cairo_stroke(cairo);
+  }
+}
+
+}  // namespace
+
+Drawing::Drawing(DrawColor color, double long_side)
+    : coloring_(std::make_unique<Coloring>(color)), long_side_(long_side) {}
+
+Drawing::~Drawing() = default;
+
+Canvas Drawing::canvas(double long_side) const {
+  return {extent_, long_side, long_side / kMarginsPerSide};
+}
+
+void Drawing::keep(const MeshView& piece) {
+  const auto append = [](auto& to, auto values) {
+    to.insert(to.end(), values.begin(), values.end());
+  };
+  const auto vertices = piece.coordinates.subspan(mesh_.coordinates.size());
+  extent_.add(vertices);
+  append(mesh_.coordinates, vertices);
+  append(mesh_.triangles, piece.triangles);
+  append(mesh_.regions, piece.regions);
+  mesh_.regions.resize(mesh_.triangles.size() / 3);
+}
+
+void Drawing::rasterize() {
+  raster_ = std::make_unique<DenseRaster>(canvas(long_side_), *coloring_);
+  raster_->add(mesh_.view());
+  mesh_ = {};
+}
+
+void Drawing::add(const MeshView& piece) {
+  triangles_ += piece.triangle_count();
+  for (const std::uint32_t v : piece.edges) {
+    boundary_.push_back(piece.coordinates[2 * std::size_t{v}]);
+    boundary_.push_back(piece.coordinates[2 * std::size_t{v} + 1]);
+  }
+  if (raster_) return raster_->add(piece);
+  keep(piece);
+  if (triangles_ > kMostVectors) rasterize();
+}
+
+void Drawing::fill_triangles(cairo_t* cairo, const Canvas& canvas) const {
+  const MeshView mesh = mesh_.view();
+  const std::vector<Color>& palette = coloring_->palette();
   // By colour: one path for many triangles.
-  std::vector<std::vector<std::uint32_t>> of_color(coloring.palette.size());
-  for (std::uint32_t t = 0; t < coloring.index.size(); ++t)
-    of_color[coloring.index[t]].push_back(t);
+  std::vector<std::vector<std::uint32_t>> of_color(palette.size());
+  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t)
+    of_color[coloring_->of(mesh, t)].push_back(t);
   cairo_set_antialias(cairo, CAIRO_ANTIALIAS_NONE);  // no seams between neighbours
   for (std::size_t c = 0; c < of_color.size(); ++c) {
-    set_color(cairo, coloring.palette[c]);
+    set_color(cairo, palette[c]);
     for (std::size_t i = 0; i < of_color[c].size(); ++i) {
       const std::uint32_t* corner = &mesh.triangles[3 * std::size_t{of_color[c][i]}];
       for (int k = 0; k < 3; ++k) {
@@ -143,7 +161,8 @@ void fill_triangles(cairo_t* cairo, const MeshView& mesh, const Coloring& colori
   cairo_set_antialias(cairo, CAIRO_ANTIALIAS_DEFAULT);
 }
 
-void stroke_inner_edges(cairo_t* cairo, const MeshView& mesh, const Canvas& canvas) {
+void Drawing::stroke_inner_edges(cairo_t* cairo, const Canvas& canvas) const {
+  const MeshView mesh = mesh_.view();
   std::size_t count = 0;
   for_each_inner_edge(mesh, [&](std::uint32_t a, std::uint32_t b) {
     line(cairo, canvas.vertex(mesh, a), canvas.vertex(mesh, b));
@@ -152,56 +171,50 @@ void stroke_inner_edges(cairo_t* cairo, const MeshView& mesh, const Canvas& canv
   cairo_stroke(cairo);
 }
 
-void stroke_boundary(cairo_t* cairo, const MeshView& mesh, const Canvas& canvas) {
-  for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
-    line(cairo, canvas.vertex(mesh, mesh.edges[2 * e]), canvas.vertex(mesh, mesh.edges[2 * e + 1]));
+void Drawing::stroke_boundary(cairo_t* cairo, const Canvas& canvas) const {
+  for (std::size_t e = 0; e < boundary_.size() / 4; ++e) {
+    const double* ends = &boundary_[4 * e];
+    line(cairo, canvas.at(ends[0], ends[1]), canvas.at(ends[2], ends[3]));
     if ((e + 1) % kEdgesPerPath == 0) cairo_stroke(cairo);
   }
   cairo_stroke(cairo);
 }
 
-void stroke_boxes(cairo_t* cairo, std::span<const double> boxes, const Canvas& canvas) {
-  for (std::size_t i = 0; i + 3 < boxes.size(); i += 4) {
-    const PagePoint low = canvas.at(boxes[i], boxes[i + 1]);
-    const PagePoint high = canvas.at(boxes[i + 2], boxes[i + 3]);
-    cairo_rectangle(cairo, low.x, high.y, high.x - low.x, low.y - high.y);
-    cairo_stroke(cairo);
-  }
-}
-
-}  // namespace
-
-Result<void> draw(const MeshView& mesh, const DrawOptions& options, OutputFile& file) {
-  const double pixel = options.format == DrawFormat::kPng ? 1 : 0.5;  // in units of the page
-  const double long_side = options.long_side * pixel;
-  const Canvas canvas(mesh, long_side, long_side / kMarginsPerSide);
-  const Surface surface = make_surface(options, canvas, file);
+Result<void> Drawing::draw(DrawFormat format, std::span<const double> boxes,
+                           OutputFile& file) const {
+  const double pixel = format == DrawFormat::kPng ? 1 : 0.5;  // in units of the page
+  const Canvas page = canvas(long_side_ * pixel);
+  const Surface surface = make_surface(format, page, file);
   const Context context(cairo_create(surface.get()));
   cairo_t* cairo = context.get();
   set_color(cairo, kPaper);
   cairo_paint(cairo);
   cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
 
-  const Coloring coloring = color_triangles(mesh, options.color);
-  const double edge = mean_edge(mesh, canvas) / pixel;
+  const double edge = raster_ ? raster_->mean_edge() : mean_edge(mesh_.view(), page) / pixel;
   constexpr double kDenseEdge = 5;  // pixels
-  if (edge < kDenseEdge) {
-    draw_raster(cairo, mesh, options, coloring, canvas);
+  if (raster_) {
+    draw_raster(cairo, raster_->raster(), page);
+  } else if (edge < kDenseEdge) {
+    DenseRaster raster(canvas(long_side_), *coloring_);
+    raster.add(mesh_.view());
+    draw_raster(cairo, raster.raster(), page);
   } else {
-    if (!coloring.index.empty()) fill_triangles(cairo, mesh, coloring, canvas);
-    set_color(cairo, kEdgeInk, coloring.index.empty() ? 1 : 0.6);
+    const bool colored = !coloring_->palette().empty();
+    if (colored) fill_triangles(cairo, page);
+    set_color(cairo, kEdgeInk, colored ? 0.6 : 1);
     cairo_set_line_width(cairo, pixel * std::clamp(0.07 * edge, 0.3, 1.2));
-    stroke_inner_edges(cairo, mesh, canvas);
+    stroke_inner_edges(cairo, page);
   }
   set_color(cairo, kBoundaryInk);
   cairo_set_line_width(cairo, pixel * std::clamp(0.15 * edge, 1.3, 2.6));
-  stroke_boundary(cairo, mesh, canvas);
+  stroke_boundary(cairo, page);
   set_color(cairo, kBoxInk);
   cairo_set_line_width(cairo, pixel * kBoxLine);
-  stroke_boxes(cairo, options.boxes, canvas);
+  stroke_boxes(cairo, boxes, page);
 
   cairo_status_t status = cairo_status(cairo);
-  if (status == CAIRO_STATUS_SUCCESS && options.format == DrawFormat::kPng)
+  if (status == CAIRO_STATUS_SUCCESS && format == DrawFormat::kPng)
     status = cairo_surface_write_to_png_stream(surface.get(), write_to_file, &file);
   cairo_surface_finish(surface.get());
   if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface.get());

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "client/formats/region_values.h"
+#include "client/formats/domains/region_values.h"
 
 namespace weft::client {
 

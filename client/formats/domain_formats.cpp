@@ -5,14 +5,14 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "client/formats/csv_rings.h"
-#include "client/formats/geojson.h"
+#include "client/base/text.h"
+#include "client/formats/domains/csv_rings.h"
+#include "client/formats/domains/geojson.h"
+#include "client/formats/domains/shapefile.h"
+#include "client/formats/domains/wkt.h"
 #include "client/formats/mesh_domain.h"
 #include "client/formats/mesh_formats.h"
-#include "client/formats/shapefile.h"
-#include "client/formats/triangle_poly.h"
-#include "client/formats/wkt.h"
-#include "client/text.h"
+#include "client/formats/triangle/triangle_poly.h"
 
 namespace weft::client {
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "client/error.h"
+#include "client/base/error.h"
 #include "client/formats/domain.h"
 
 namespace weft::client {

@@ -9,7 +9,7 @@
 #include <memory>
 #include <string_view>
 
-#include "client/error.h"
+#include "client/base/error.h"
 
 namespace weft::client {
 

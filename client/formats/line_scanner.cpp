@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "client/text.h"
+#include "client/base/text.h"
 
 namespace weft::client {
 

@@ -2,13 +2,17 @@
 // A triangle mesh as files hold it. Vertices are numbered from 0; triangles are counter-clockwise.
 //
 // Writers take a MeshView: spans over arrays that somebody else keeps (vectors, or files mapped
-// into memory), so a mesh larger than memory can be written.
+// into memory), so a mesh larger than memory can be written. For that they go through its arrays by
+// `up_to` and `in_pieces`, in their order or nearly, and keep what grows with the mesh in
+// ScratchArrays of its `pages`.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include "client/base/paged_memory.h"
 
 namespace weft::client {
 
@@ -24,6 +28,10 @@ struct MeshView {
   std::span<const std::int32_t> input_point_markers;
   // 2: a node in the middle of every side, after the corners; see second_order.h.
   std::size_t order = 1;
+  PagedMemory* pages = nullptr;  // of arrays in mapped files; null: all of it is in memory
+
+  // 0, 1, ... count - 1, with steps of the pages in between.
+  Numbers up_to(std::size_t count) const { return {pages, count}; }
 
   std::size_t triangle_nodes() const { return 3 * order; }
   std::size_t edge_nodes() const { return 1 + order; }

@@ -77,7 +77,7 @@ void add_regions(const std::string& name, const MeshView& mesh, const MeshEdges&
 
 Domain domain_of_mesh(const std::string& name, const MeshView& mesh) {
   const MeshEdges edges(mesh);
-  const std::vector<std::int32_t> markers = edge_markers(mesh, edges);
+  const ScratchArray<std::int32_t> markers = edge_markers(mesh, edges);
   const std::vector<std::uint32_t> at_edge = triangles_at_edges(mesh, edges);
   std::vector<bool> is_segment(edges.size(), false);
   for (std::size_t i = 0; i < mesh.edge_count(); ++i) is_segment[edges.of_input_edge(i)] = true;

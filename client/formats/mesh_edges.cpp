@@ -2,13 +2,19 @@
 #include "client/formats/mesh_edges.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <limits>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 namespace weft::client {
 
 MeshEdges::MeshEdges(const MeshView& mesh)
-    : sides_(mesh.triangles.size()), edge_of_side_(sides_ + mesh.edge_count()) {
+    : sides_(mesh.triangles.size()), edge_of_side_(mesh.pages, sides_ + mesh.edge_count()) {
+  const std::size_t count = edge_of_side_.size();
+  if (count > std::numeric_limits<std::uint32_t>::max())
+    throw std::system_error(EOVERFLOW, std::generic_category());
   const auto ends_of = [&](std::size_t side) -> std::pair<std::uint32_t, std::uint32_t> {
     if (side >= sides_) {
       const std::size_t i = side - sides_;
@@ -17,45 +23,49 @@ MeshEdges::MeshEdges(const MeshView& mesh)
     return std::minmax(mesh.triangles[side], mesh.triangles[side % 3 == 2 ? side - 2 : side + 1]);
   };
   // Sides by their lower vertex: a counting sort, then a sort of the few that share it.
-  std::vector<std::uint32_t> starts(mesh.vertex_count() + 1, 0);
-  for (std::size_t side = 0; side < edge_of_side_.size(); ++side) ++starts[ends_of(side).first + 1];
-  for (std::size_t v = 1; v < starts.size(); ++v) starts[v] += starts[v - 1];
-  std::vector<std::uint32_t> sides(edge_of_side_.size());
-  std::vector<std::uint32_t> next(starts.begin(), starts.end() - 1);
-  for (std::size_t side = 0; side < sides.size(); ++side)
-    sides[next[ends_of(side).first]++] = static_cast<std::uint32_t>(side);
-  next = {};
+  const std::size_t vertices = mesh.vertex_count();
+  ScratchArray<std::uint32_t> ends(mesh.pages, vertices);  // in `sides`, of those of each vertex
+  for (const std::size_t side : mesh.up_to(count)) ++ends[ends_of(side).first];
+  std::uint32_t before = 0;
+  for (const std::size_t v : mesh.up_to(vertices)) before += std::exchange(ends[v], before);
+  ScratchArray<std::uint32_t> sides(mesh.pages, count);
+  for (const std::size_t side : mesh.up_to(count))
+    sides[ends[ends_of(side).first]++] = static_cast<std::uint32_t>(side);
 
-  ends_.reserve(sides.size() + 2);
-  triangles_at_.reserve(sides.size() / 2 + 1);
+  ends_ = ScratchArray<std::uint32_t>(mesh.pages, 2 * count);
+  triangles_at_ = ScratchArray<std::uint8_t>(mesh.pages, count);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> at_vertex;  // higher vertex, side
-  for (std::size_t low = 0; low + 1 < starts.size(); ++low) {
+  Jumps jumps(mesh.pages);  // the first vertices have sides all over the mesh
+  std::size_t first = 0;
+  for (const std::size_t low : mesh.up_to(vertices)) {
     at_vertex.clear();
-    for (std::size_t i = starts[low]; i < starts[low + 1]; ++i)
-      at_vertex.emplace_back(ends_of(sides[i]).second, sides[i]);
+    for (; first < ends[low]; ++first) {
+      jumps.to(sides[first]);
+      at_vertex.emplace_back(ends_of(sides[first]).second, sides[first]);
+    }
     std::sort(at_vertex.begin(), at_vertex.end());
     for (std::size_t i = 0; i < at_vertex.size(); ++i) {
       const auto [high, side] = at_vertex[i];
       if (i == 0 || high != at_vertex[i - 1].first) {
-        ends_.push_back(static_cast<std::uint32_t>(low));
-        ends_.push_back(high);
-        triangles_at_.push_back(0);
+        ends_[2 * size_] = static_cast<std::uint32_t>(low);
+        ends_[2 * size_ + 1] = high;
+        ++size_;
       }
-      edge_of_side_[side] = static_cast<std::uint32_t>(triangles_at_.size() - 1);
-      if (side < sides_ && triangles_at_.back() < 2) ++triangles_at_.back();
+      edge_of_side_[side] = static_cast<std::uint32_t>(size_ - 1);
+      if (side < sides_ && triangles_at_[size_ - 1] < 2) ++triangles_at_[size_ - 1];
     }
   }
 }
 
-std::vector<std::int32_t> edge_markers(const MeshView& mesh, const MeshEdges& edges) {
-  std::vector<std::int32_t> markers(edges.size(), 0);
-  for (std::size_t i = 0; i < mesh.edge_count(); ++i)
+ScratchArray<std::int32_t> edge_markers(const MeshView& mesh, const MeshEdges& edges) {
+  ScratchArray<std::int32_t> markers(mesh.pages, edges.size());
+  for (const std::size_t i : mesh.up_to(mesh.edge_count()))
     markers[edges.of_input_edge(i)] = mesh.edge_markers[i];
   return markers;
 }
 
 BoundaryRings boundary_rings(const MeshView& mesh, const MeshEdges& edges) {
-  const std::vector<std::int32_t> markers = edge_markers(mesh, edges);
+  const ScratchArray<std::int32_t> markers = edge_markers(mesh, edges);
   struct Side {
     std::uint32_t from;
     std::uint32_t to;
@@ -63,7 +73,7 @@ BoundaryRings boundary_rings(const MeshView& mesh, const MeshEdges& edges) {
     bool used;
   };
   std::vector<Side> sides;
-  for (std::size_t side = 0; side < mesh.triangles.size(); ++side) {
+  for (const std::size_t side : mesh.up_to(mesh.triangles.size())) {
     const std::uint32_t e = edges.of_side(side);
     if (edges.on_boundary(e))
       sides.push_back({mesh.triangles[side], mesh.triangles[side % 3 == 2 ? side - 2 : side + 1],

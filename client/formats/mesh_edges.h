@@ -4,7 +4,8 @@
 //
 // Edges are numbered by their lower vertex, then by their higher one, so the numbers depend on the
 // vertices alone. Side k of triangle t runs from its corner k to its corner (k + 1) % 3. Takes time
-// and room linear in the triangles, 40 bytes for each.
+// and room linear in the triangles, 40 bytes for each, in the mesh's pages. Sides have 32 bits:
+// more than a third of 2^32 triangles are a std::system_error (EOVERFLOW).
 //
 //   const MeshEdges edges(mesh);
 //   edges.of_side(3 * t + k), edges.of_input_edge(i), edges.low(e), edges.high(e)
@@ -23,7 +24,7 @@ class MeshEdges {
   // REQUIRES: mesh.order is 1, vertex numbers are in range.
   explicit MeshEdges(const MeshView& mesh);
 
-  std::size_t size() const { return triangles_at_.size(); }
+  std::size_t size() const { return size_; }
   std::uint32_t low(std::size_t e) const { return ends_[2 * e]; }
   std::uint32_t high(std::size_t e) const { return ends_[2 * e + 1]; }
   std::uint32_t of_side(std::size_t side) const { return edge_of_side_[side]; }
@@ -32,14 +33,15 @@ class MeshEdges {
   bool on_boundary(std::size_t e) const { return triangles_at_[e] == 1; }
 
  private:
-  std::size_t sides_ = 0;                    // of triangles
-  std::vector<std::uint32_t> ends_;          // two per edge, the lower first
-  std::vector<std::uint8_t> triangles_at_;   // per edge: 0, 1, or 2 for more than one
-  std::vector<std::uint32_t> edge_of_side_;  // of the triangles' sides, then of the mesh's edges
+  std::size_t sides_ = 0;                     // of triangles
+  std::size_t size_ = 0;                      // edges; the next two have room for more
+  ScratchArray<std::uint32_t> ends_;          // two per edge, the lower first
+  ScratchArray<std::uint8_t> triangles_at_;   // per edge: 0, 1, or 2 for more than one
+  ScratchArray<std::uint32_t> edge_of_side_;  // of the triangles' sides, then of the mesh's edges
 };
 
 // The marker of every edge: that of the mesh's own edge, otherwise 0.
-std::vector<std::int32_t> edge_markers(const MeshView& mesh, const MeshEdges& edges);
+ScratchArray<std::int32_t> edge_markers(const MeshView& mesh, const MeshEdges& edges);
 
 // The boundary of a mesh as closed rings, with the triangles on their left: counter-clockwise
 // around the outside, clockwise around holes. A ring visits no vertex twice; holes that share a

@@ -2,21 +2,23 @@
 #include "client/formats/mesh_formats.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <new>
 #include <stdexcept>
+#include <system_error>
 
-#include "client/formats/adcirc.h"
-#include "client/formats/geojson_mesh.h"
-#include "client/formats/msh.h"
-#include "client/formats/npz.h"
+#include "client/base/text.h"
+#include "client/formats/meshes/adcirc.h"
+#include "client/formats/meshes/geojson_mesh.h"
+#include "client/formats/meshes/msh.h"
+#include "client/formats/meshes/npz.h"
+#include "client/formats/meshes/su2.h"
+#include "client/formats/meshes/surface_formats.h"
+#include "client/formats/meshes/vtu.h"
 #include "client/formats/second_order.h"
-#include "client/formats/su2.h"
-#include "client/formats/surface_formats.h"
-#include "client/formats/triangle_edges.h"
-#include "client/formats/triangle_mesh.h"
-#include "client/formats/vtu.h"
-#include "client/text.h"
+#include "client/formats/triangle/triangle_edges.h"
+#include "client/formats/triangle/triangle_mesh.h"
 
 namespace weft::client {
 namespace {
@@ -123,11 +125,20 @@ std::vector<std::filesystem::path> mesh_files(const std::filesystem::path& path)
 
 void write_mesh(const MeshFormat& format, const MeshView& mesh, std::span<OutputFile> files,
                 const MeshWriteOptions& options) {
-  if (options.order == 2) {
-    const SecondOrderMesh second(mesh);
-    format.write(second.view(), files, options);
-  } else {
-    format.write(mesh, files, options);
+  const auto fail_all = [files](int problem) {
+    for (OutputFile& file : files) file.fail(problem);
+  };
+  try {
+    if (options.order == 2) {
+      const SecondOrderMesh second(mesh);
+      format.write(second.view(), files, options);
+    } else {
+      format.write(mesh, files, options);
+    }
+  } catch (const std::system_error& failure) {
+    fail_all(failure.code().value());
+  } catch (const std::bad_alloc&) {
+    fail_all(ENOMEM);
   }
 }
 

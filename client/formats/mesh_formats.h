@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "client/atomic_file.h"
-#include "client/error.h"
+#include "client/base/atomic_file.h"
+#include "client/base/error.h"
 #include "client/formats/domain.h"
 #include "client/formats/mesh.h"
 
@@ -22,7 +22,7 @@ namespace weft::client {
 
 enum class MshVersion { k22, k41 };
 
-// How meshes are written, where their format leaves a choice.
+// How meshes are written, if their format leaves a choice.
 struct MeshWriteOptions {
   int order = 1;  // 2: six-node triangles, for formats of second order
   MshVersion msh_version = MshVersion::k41;
@@ -34,12 +34,12 @@ struct MeshWriteOptions {
 struct MeshFormat {
   std::string_view extension;  // lower case, ".vtu"
   bool second_order = false;
-  // Null where the format is only read, or only written.
+  // Null if the format is only read, or only written.
   void (*write)(const MeshView&, std::span<OutputFile>, const MeshWriteOptions&) = nullptr;
   Result<Mesh> (*read)(const std::filesystem::path&) = nullptr;
 };
 
-// By extension, in any case; null where there is none.
+// By extension, in any case; null if there is none.
 const MeshFormat* mesh_format(const std::filesystem::path& path);
 
 // ".vtu, .msh, .node, ...": those that are written, and those that are read.

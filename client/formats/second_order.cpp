@@ -1,38 +1,50 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/formats/second_order.h"
 
+#include <cerrno>
+#include <limits>
+#include <system_error>
+
 #include "client/formats/mesh_edges.h"
 
 namespace weft::client {
 
 SecondOrderMesh::SecondOrderMesh(const MeshView& mesh) : mesh_(mesh) {
   const MeshEdges edges(mesh);
+  if (mesh.vertex_count() + edges.size() > std::numeric_limits<std::uint32_t>::max())
+    throw std::system_error(EOVERFLOW, std::generic_category());
   const auto vertices = static_cast<std::uint32_t>(mesh.vertex_count());
-  coordinates_.reserve(mesh.coordinates.size() + 2 * edges.size());
-  coordinates_.assign(mesh.coordinates.begin(), mesh.coordinates.end());
-  for (std::size_t e = 0; e < edges.size(); ++e)
+  coordinates_ = ScratchArray<double>(mesh.pages, mesh.coordinates.size() + 2 * edges.size());
+  std::size_t next = 0;
+  for (const std::size_t i : mesh.up_to(mesh.coordinates.size()))
+    coordinates_[next++] = mesh.coordinates[i];
+  Jumps jumps(mesh.pages);
+  for (const std::size_t e : mesh.up_to(edges.size())) {
+    jumps.to(edges.high(e));
     for (std::size_t axis = 0; axis < 2; ++axis)
-      coordinates_.push_back(mesh.coordinates[2 * std::size_t{edges.low(e)} + axis] / 2 +
-                             mesh.coordinates[2 * std::size_t{edges.high(e)} + axis] / 2);
-
-  triangles_.reserve(2 * mesh.triangles.size());
-  for (std::size_t first = 0; first < mesh.triangles.size(); first += 3) {
-    for (std::size_t k = 0; k < 3; ++k) triangles_.push_back(mesh.triangles[first + k]);
-    for (std::size_t k = 0; k < 3; ++k) triangles_.push_back(vertices + edges.of_side(first + k));
+      coordinates_[next++] = mesh.coordinates[2 * std::size_t{edges.low(e)} + axis] / 2 +
+                             mesh.coordinates[2 * std::size_t{edges.high(e)} + axis] / 2;
   }
-  edges_.reserve(3 * mesh.edge_count());
-  for (std::size_t i = 0; i < mesh.edge_count(); ++i) {
-    edges_.push_back(mesh.edges[2 * i]);
-    edges_.push_back(mesh.edges[2 * i + 1]);
-    edges_.push_back(vertices + edges.of_input_edge(i));
+
+  triangles_ = ScratchArray<std::uint32_t>(mesh.pages, 2 * mesh.triangles.size());
+  for (const std::size_t t : mesh.up_to(mesh.triangle_count()))
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangles_[6 * t + k] = mesh.triangles[3 * t + k];
+      triangles_[6 * t + 3 + k] = vertices + edges.of_side(3 * t + k);
+    }
+  edges_ = ScratchArray<std::uint32_t>(mesh.pages, 3 * mesh.edge_count());
+  for (const std::size_t i : mesh.up_to(mesh.edge_count())) {
+    edges_[3 * i] = mesh.edges[2 * i];
+    edges_[3 * i + 1] = mesh.edges[2 * i + 1];
+    edges_[3 * i + 2] = vertices + edges.of_input_edge(i);
   }
 }
 
 MeshView SecondOrderMesh::view() const {
   MeshView view = mesh_;
-  view.coordinates = coordinates_;
-  view.triangles = triangles_;
-  view.edges = edges_;
+  view.coordinates = coordinates_.values();
+  view.triangles = triangles_.values();
+  view.edges = edges_.values();
   view.order = 2;
   return view;
 }

@@ -4,11 +4,12 @@
 //
 // Nodes are the vertices, with the numbers that they have, then the midside nodes in the order of
 // MeshEdges. A triangle has its corners 0, 1, 2, then the nodes between 0 and 1, 1 and 2, 2 and 0,
-// as VTK and Gmsh want them; an edge has its ends, then its middle. Takes 70 bytes for a triangle.
+// as VTK and Gmsh want them; an edge has its ends, then its middle. Takes 56 bytes for a triangle
+// in the mesh's pages, and 40 more for a while. Nodes have 32 bits: more are a std::system_error
+// (EOVERFLOW).
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "client/formats/mesh.h"
 
@@ -23,9 +24,9 @@ class SecondOrderMesh {
 
  private:
   MeshView mesh_;
-  std::vector<double> coordinates_;
-  std::vector<std::uint32_t> triangles_;  // six nodes each
-  std::vector<std::uint32_t> edges_;      // three nodes each
+  ScratchArray<double> coordinates_;
+  ScratchArray<std::uint32_t> triangles_;  // six nodes each
+  ScratchArray<std::uint32_t> edges_;      // three nodes each
 };
 
 }  // namespace weft::client

@@ -6,10 +6,10 @@
 #include <string>
 #include <string_view>
 
+#include "client/base/text.h"
 #include "client/formats/file_contents.h"
 #include "client/formats/line_scanner.h"
 #include "client/formats/mesh_formats.h"
-#include "client/text.h"
 
 namespace weft::client {
 namespace {

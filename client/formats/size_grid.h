@@ -22,7 +22,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "client/error.h"
+#include "client/base/error.h"
 
 namespace weft::client {
 

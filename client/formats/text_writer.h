@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "client/atomic_file.h"
+#include "client/base/atomic_file.h"
 
 namespace weft::client {
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Meshes what a manifest lists, in a pipeline: `weft batch` where weft is installed, or else in its
 # container. Leaves a report (JUnit XML) and a page with pictures (Markdown) for the pipeline to
-# show, and fails where a mesh fails.
+# show, and fails if a mesh fails.
 #
 #   mesh.sh MANIFEST [FLAG OF weft batch]...
 #   mesh.sh meshes.yaml --locked --require min-angle=20

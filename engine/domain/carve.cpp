@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "engine/domain/hilbert.h"
-#include "engine/domain/locate.h"
+#include "engine/domain/triangulation/hilbert.h"
+#include "engine/domain/triangulation/locate.h"
 
 namespace weft {
 namespace {
@@ -26,7 +26,7 @@ struct Faces {
 // first come, first served, so that a triangle is known long before its turn. `queue` has room for
 // all triangles and three more, of_triangle for one more, which stands for what is beyond the hull.
 void flood(const Arrangement& a, std::uint32_t start, std::uint32_t face, Faces& faces,
-           std::vector<std::uint32_t>& queue, Pacer& pacer) {
+           std::vector<std::uint32_t>& queue, StopPoller& poller) {
   std::uint32_t* const of = faces.of_triangle.data();
   const auto beyond = static_cast<std::uint32_t>(a.triangles.size());
   of[start] = face;
@@ -34,7 +34,7 @@ void flood(const Arrangement& a, std::uint32_t start, std::uint32_t face, Faces&
   std::uint32_t* last = first;
   *last++ = start;
   while (first != last) {
-    pacer.step();
+    poller.step();
     const Arrangement::Triangle& t = a.triangles[*first++];
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t n = std::min(t.neighbor[i], beyond);
@@ -47,7 +47,7 @@ void flood(const Arrangement& a, std::uint32_t start, std::uint32_t face, Faces&
   }
 }
 
-Faces find_faces(const Arrangement& a, Pacer& pacer) {
+Faces find_faces(const Arrangement& a, StopPoller& poller) {
   Faces faces;
   faces.of_triangle.assign(a.triangles.size() + 1, kNone);
   faces.of_triangle.back() = Faces::kUnbounded;
@@ -59,15 +59,15 @@ Faces find_faces(const Arrangement& a, Pacer& pacer) {
   };
   for (std::uint32_t t = 0; t < a.triangles.size(); ++t)
     if (faces.of_triangle[t] == kNone && open_to_the_outside(a.triangles[t]))
-      flood(a, t, Faces::kUnbounded, faces, queue, pacer);
+      flood(a, t, Faces::kUnbounded, faces, queue, poller);
   for (std::uint32_t t = 0; t < a.triangles.size(); ++t)
-    if (faces.of_triangle[t] == kNone) flood(a, t, faces.count++, faces, queue, pacer);
+    if (faces.of_triangle[t] == kNone) flood(a, t, faces.count++, faces, queue, poller);
   return faces;
 }
 
 // Per face: whether the fewest segments between it and infinity are an odd number. Coincident
 // segments count once each, so an even stack of them may be passed for nothing.
-std::vector<bool> find_odd_faces(const Arrangement& a, const Faces& faces, Pacer& pacer) {
+std::vector<bool> find_odd_faces(const Arrangement& a, const Faces& faces, StopPoller& poller) {
   struct Step {
     std::uint32_t from, to;
     bool odd;
@@ -76,7 +76,7 @@ std::vector<bool> find_odd_faces(const Arrangement& a, const Faces& faces, Pacer
   std::vector<Step> steps;
   const auto for_each_step = [&](auto&& visit) {
     for (std::size_t t = 0; t < a.triangles.size(); ++t) {
-      pacer.step();
+      poller.step();
       for (int i = 0; i < 3; ++i) {
         const std::uint32_t c = a.triangles[t].constraint[i];
         if (c == kNone) continue;
@@ -103,7 +103,7 @@ std::vector<bool> find_odd_faces(const Arrangement& a, const Faces& faces, Pacer
   std::deque<std::uint32_t> queue{Faces::kUnbounded};
   depth[Faces::kUnbounded] = 0;
   while (!queue.empty()) {
-    pacer.step();
+    poller.step();
     const std::uint32_t f = queue.front();
     queue.pop_front();
     if (done[f]) continue;
@@ -136,17 +136,18 @@ std::string coordinates(Point p) {
 // before lies.
 class SeedLocator {
  public:
-  SeedLocator(const Arrangement& arrangement, const Faces& faces, const Pslg& pslg, Pacer& pacer)
+  SeedLocator(const Arrangement& arrangement, const Faces& faces, const Pslg& pslg,
+              StopPoller& poller)
       : faces_(faces), tolerance_(arrangement.merging.tolerance), seeds_(pslg.holes) {
     for (const RegionSeed& region : pslg.regions) seeds_.push_back(region.at);
     locations_.resize(seeds_.size());
     is_near_.resize(seeds_.size());
     std::uint32_t start = 0;
-    for (const std::uint32_t seed : hilbert_order(seeds_, pacer)) {
-      locations_[seed] = locate(arrangement, seeds_[seed], start, pacer);
+    for (const std::uint32_t seed : hilbert_order(seeds_, poller)) {
+      locations_[seed] = locate(arrangement, seeds_[seed], start, poller);
       if (locations_[seed].triangle == kNone) continue;
       start = locations_[seed].triangle;
-      is_near_[seed] = is_near(arrangement, seeds_[seed], start, tolerance_, pacer);
+      is_near_[seed] = is_near(arrangement, seeds_[seed], start, tolerance_, poller);
     }
   }
 
@@ -197,13 +198,13 @@ Error empty_domain(const Pslg& pslg, const Merging& merging, const Faces& faces)
 
 }  // namespace
 
-Result<Carving> carve(const Arrangement& arrangement, const Pslg& pslg, Pacer& pacer) {
-  const Faces faces = find_faces(arrangement, pacer);
+Result<Carving> carve(const Arrangement& arrangement, const Pslg& pslg, StopPoller& poller) {
+  const Faces faces = find_faces(arrangement, poller);
   std::vector<bool> inside(faces.count, true);
-  if (pslg.fill == Fill::kEvenOdd) inside = find_odd_faces(arrangement, faces, pacer);
+  if (pslg.fill == Fill::kEvenOdd) inside = find_odd_faces(arrangement, faces, poller);
   inside[Faces::kUnbounded] = false;
 
-  const SeedLocator locator(arrangement, faces, pslg, pacer);
+  const SeedLocator locator(arrangement, faces, pslg, poller);
   for (std::size_t i = 0; i < pslg.holes.size(); ++i) {
     const auto face = locator.face(i, [i] { return "domain.holes[" + std::to_string(i) + "]"; });
     if (!face) return tl::unexpected(face.error());
@@ -230,7 +231,7 @@ Result<Carving> carve(const Arrangement& arrangement, const Pslg& pslg, Pacer& p
     if (!inside[face]) region_of_face[face] = kNone;
   carving.region.resize(arrangement.triangles.size());
   for (std::size_t t = 0; t < carving.region.size(); ++t) {
-    pacer.step();
+    poller.step();
     carving.region[t] = region_of_face[faces.of_triangle[t]];
   }
   return carving;

@@ -8,11 +8,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/domain/arrangement.h"
+#include "engine/base/error.h"
+#include "engine/domain/arrangement/arrangement.h"
 #include "engine/domain/domain.h"
-#include "engine/domain/pacer.h"
 #include "engine/domain/pslg.h"
-#include "engine/error.h"
+#include "engine/domain/stop_poller.h"
 
 namespace weft {
 
@@ -23,6 +23,6 @@ struct Carving {
 };
 
 // Errors: kSeedOutsideDomain, kSeedOnSegment, kEmptyDomain. Throws Stopped.
-Result<Carving> carve(const Arrangement& arrangement, const Pslg& pslg, Pacer& pacer);
+Result<Carving> carve(const Arrangement& arrangement, const Pslg& pslg, StopPoller& poller);
 
 }  // namespace weft

@@ -7,11 +7,11 @@
 #include <new>
 #include <utility>
 
-#include "engine/domain/arrangement.h"
+#include "engine/domain/arrangement/arrangement.h"
 #include "engine/domain/carve.h"
 #include "engine/domain/face.h"
-#include "engine/domain/hilbert.h"
-#include "engine/domain/pacer.h"
+#include "engine/domain/stop_poller.h"
+#include "engine/domain/triangulation/hilbert.h"
 #include "engine/domain/validate.h"
 
 namespace weft {
@@ -19,7 +19,7 @@ namespace {
 
 // The triangles that stay, along a Hilbert curve through their centroids.
 std::vector<std::uint32_t> kept_triangles(const Arrangement& a, const Carving& carving,
-                                          Pacer& pacer) {
+                                          StopPoller& poller) {
   const auto count = static_cast<std::size_t>(
       a.triangles.size() -
       static_cast<std::size_t>(std::count(carving.region.begin(), carving.region.end(), kNone)));
@@ -27,7 +27,7 @@ std::vector<std::uint32_t> kept_triangles(const Arrangement& a, const Carving& c
   // are overwritten.
   std::vector<std::uint32_t> kept(count + 1);
   for (std::uint32_t t = 0, next = 0; t < a.triangles.size(); ++t) {
-    pacer.step();
+    poller.step();
     kept[next] = t;
     next += carving.region[t] != kNone;
   }
@@ -35,23 +35,23 @@ std::vector<std::uint32_t> kept_triangles(const Arrangement& a, const Carving& c
   std::vector<Point> centroids;
   centroids.reserve(count);
   for (const std::uint32_t t : kept) {
-    pacer.step();
+    poller.step();
     const auto& v = a.triangles[t].vertex;
     const Point p = a.vertices[v[0]], q = a.vertices[v[1]], r = a.vertices[v[2]];
     centroids.push_back({(p.x + q.x + r.x) / 3, (p.y + q.y + r.y) / 3});
   }
-  std::vector<std::uint32_t> order = hilbert_order(centroids, pacer);
+  std::vector<std::uint32_t> order = hilbert_order(centroids, poller);
   for (std::uint32_t& i : order) i = kept[i];
   return order;
 }
 
 // Keeps what the carving keeps, numbered without gaps.
-Domain extract(const Arrangement& a, Carving&& carving, Pacer& pacer) {
-  const std::vector<std::uint32_t> kept = kept_triangles(a, carving, pacer);
+Domain extract(const Arrangement& a, Carving&& carving, StopPoller& poller) {
+  const std::vector<std::uint32_t> kept = kept_triangles(a, carving, poller);
   std::vector<std::uint32_t> triangle_number(a.triangles.size() + 1, kNone);
   std::vector<std::uint32_t> vertex_number(a.vertices.size(), kNone);
   for (std::uint32_t i = 0; i < kept.size(); ++i) {
-    pacer.step();
+    poller.step();
     triangle_number[kept[i]] = i;
     for (const std::uint32_t v : a.triangles[kept[i]].vertex) vertex_number[v] = 0;
   }
@@ -60,7 +60,7 @@ Domain extract(const Arrangement& a, Carving&& carving, Pacer& pacer) {
   domain.vertices.reserve(a.vertices.size());
   domain.input_point.reserve(a.vertices.size());
   for (std::uint32_t v = 0; v < a.vertices.size(); ++v) {
-    pacer.step();
+    poller.step();
     if (vertex_number[v] == kNone) continue;
     vertex_number[v] = static_cast<std::uint32_t>(domain.vertices.size());
     domain.vertices.push_back(a.vertices[v]);
@@ -77,7 +77,7 @@ Domain extract(const Arrangement& a, Carving&& carving, Pacer& pacer) {
   domain.subsegments.resize(a.constraints.size() + 1);
   domain.triangles.reserve(kept.size());
   for (const std::uint32_t t : kept) {
-    pacer.step();
+    poller.step();
     const Arrangement::Triangle& from = a.triangles[t];
     Domain::Triangle to;
     for (int i = 0; i < 3; ++i) {
@@ -100,7 +100,7 @@ Domain extract(const Arrangement& a, Carving&& carving, Pacer& pacer) {
   }
   domain.subsegments.resize(subsegments);
   for (std::uint32_t s = 0; s < subsegments; ++s) {
-    pacer.step();
+    poller.step();
     domain.subsegments[s].segment = a.constraints[constraint[s]].segment;
     domain.subsegments[s].marker = a.constraints[constraint[s]].marker;
   }
@@ -109,21 +109,21 @@ Domain extract(const Arrangement& a, Carving&& carving, Pacer& pacer) {
   return domain;
 }
 
-Result<Domain> run(const Pslg& pslg, Pacer& pacer) {
-  pacer.poll();
-  if (auto error = validate(pslg, pacer)) return tl::unexpected(*std::move(error));
-  const Arrangement arrangement = arrange(pslg, pacer);
-  Result<Carving> carving = carve(arrangement, pslg, pacer);
+Result<Domain> run(const Pslg& pslg, StopPoller& poller) {
+  poller.poll();
+  if (auto error = validate(pslg, poller)) return tl::unexpected(*std::move(error));
+  const Arrangement arrangement = arrange(pslg, poller);
+  Result<Carving> carving = carve(arrangement, pslg, poller);
   if (!carving) return tl::unexpected(std::move(carving).error());
-  return extract(arrangement, *std::move(carving), pacer);
+  return extract(arrangement, *std::move(carving), poller);
 }
 
 }  // namespace
 
 Result<Domain> triangulate(const Pslg& pslg, const ExecutionContext& context) {
   try {
-    Pacer pacer(context);
-    return run(pslg, pacer);
+    StopPoller poller(context);
+    return run(pslg, poller);
   } catch (Stopped& stopped) {
     return tl::unexpected(std::move(stopped.error));
   } catch (const std::bad_alloc&) {

@@ -27,11 +27,11 @@
 #include <limits>
 #include <vector>
 
-#include "engine/context.h"
-#include "engine/domain/merging.h"
+#include "engine/base/context.h"
+#include "engine/base/error.h"
+#include "engine/base/geometry.h"
+#include "engine/domain/arrangement/merging.h"
 #include "engine/domain/pslg.h"
-#include "engine/error.h"
-#include "engine/geometry.h"
 
 namespace weft {
 
@@ -40,7 +40,7 @@ struct Subsegment {
   std::uint32_t a = 0;  // index into Domain::vertices
   std::uint32_t b = 0;
   std::uint32_t segment = 0;  // index into Pslg::segments; the lowest where several overlap
-  std::int32_t marker = 0;  // that segment's marker; the first that is not 0 where several overlap
+  std::int32_t marker = 0;    // that segment's marker; the first that is not 0 if several overlap
 };
 
 // A face of the arrangement that a region seed flooded. Region 0 is the rest: id 0, no bound.
@@ -59,7 +59,7 @@ struct Domain {
 
   std::vector<Point> vertices;
   std::vector<std::uint32_t> input_point;  // per vertex: its index in Pslg::points (the lowest of
-                                           // the coincident ones), or kNone where segments cross
+                                           // the coincident ones), or kNone if segments cross
   std::vector<Triangle> triangles;
   std::vector<Subsegment> subsegments;
   std::vector<Region> regions;  // regions[0] is the default region

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "engine/domain/filtered.h"
-#include "engine/geometry.h"
+#include "engine/base/geometry.h"
+#include "engine/domain/triangulation/filtered.h"
 
 namespace weft {
 

@@ -17,7 +17,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/geometry.h"
+#include "engine/base/geometry.h"
 
 namespace weft {
 

@@ -18,8 +18,8 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/base/geometry.h"
 #include "engine/domain/pslg.h"
-#include "engine/geometry.h"
 
 namespace weft {
 

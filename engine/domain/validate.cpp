@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/domain/predicates.h"
+#include "engine/domain/triangulation/predicates.h"
 
 namespace weft {
 namespace {
@@ -86,8 +86,8 @@ std::optional<Error> check_counts(const Pslg& pslg) {
   return {};
 }
 
-std::optional<Error> check_span(const std::vector<Point>& points, Pacer& pacer) {
-  const Span span = spanning_points(points, pacer);
+std::optional<Error> check_span(const std::vector<Point>& points, StopPoller& poller) {
+  const Span span = spanning_points(points, poller);
   if (span.size < 2 || points.size() < 3)
     return Error{ErrorCode::kTooFewPoints, "domain.points",
                  text("there are ", points.size(), " points, ", span.size,
@@ -108,32 +108,32 @@ std::optional<Error> check_span(const std::vector<Point>& points, Pacer& pacer) 
 
 }  // namespace
 
-std::optional<Error> validate(const Pslg& pslg, Pacer& pacer) {
+std::optional<Error> validate(const Pslg& pslg, StopPoller& poller) {
   if (auto error = check_counts(pslg)) return error;
   for (std::size_t i = 0; i < pslg.points.size(); ++i) {
-    pacer.step();
+    poller.step();
     if (auto error = check_point(pslg.points[i], "points", i)) return error;
   }
   for (std::size_t i = 0; i < pslg.segments.size(); ++i) {
-    pacer.step();
+    poller.step();
     if (auto error = check_segment(pslg, i)) return error;
   }
   for (std::size_t i = 0; i < pslg.holes.size(); ++i) {
-    pacer.step();
+    poller.step();
     if (auto error = check_point(pslg.holes[i], "holes", i)) return error;
   }
   for (std::size_t i = 0; i < pslg.regions.size(); ++i) {
-    pacer.step();
+    poller.step();
     if (auto error = check_region(pslg.regions[i], i)) return error;
   }
   if (auto error = check_snap(pslg.snap)) return error;
-  return check_span(pslg.points, pacer);
+  return check_span(pslg.points, poller);
 }
 
-Span spanning_points(const std::vector<Point>& points, Pacer& pacer) {
+Span spanning_points(const std::vector<Point>& points, StopPoller& poller) {
   Span span;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
-    pacer.step();
+    poller.step();
     const Point p = points[i];
     if (span.size == 1 && p == points[span.point[0]]) continue;
     if (span.size == 2 && orientation_exact(points[span.point[0]], points[span.point[1]], p) == 0)

@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "engine/domain/pacer.h"
+#include "engine/base/error.h"
+#include "engine/base/geometry.h"
 #include "engine/domain/pslg.h"
-#include "engine/error.h"
-#include "engine/geometry.h"
+#include "engine/domain/stop_poller.h"
 
 namespace weft {
 
@@ -23,14 +23,14 @@ inline constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 28;
 inline constexpr std::uint64_t kMaxSegments = std::uint64_t{1} << 30;
 
 // The first offender, in the order: points, segments, holes, regions, snap, then the points as a
-// whole. Nothing where the PSLG is sound. Throws Stopped.
-std::optional<Error> validate(const Pslg& pslg, Pacer& pacer);
+// whole. Nothing if the PSLG is sound. Throws Stopped.
+std::optional<Error> validate(const Pslg& pslg, StopPoller& poller);
 
 // The first points that are distinct (2) and not on a line (3); fewer where there are none.
 struct Span {
   std::array<std::uint32_t, 3> point{};
   unsigned size = 0;
 };
-Span spanning_points(const std::vector<Point>& points, Pacer& pacer);
+Span spanning_points(const std::vector<Point>& points, StopPoller& poller);
 
 }  // namespace weft

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "engine/refine/vector.h"
+#include "engine/refine/storage/vector.h"
 
 namespace weft {
 namespace {

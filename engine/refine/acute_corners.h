@@ -21,7 +21,7 @@
 // place at most: 3 of its part of the piece, 4 of two distances, 3 of coordinates. Nothing more is
 // needed, and anything more is harmful: a triangle that has the third vertex between the two arms'
 // vertices has an angle of nearly 180 degrees, and must not stay. The checker allows twice that
-// (checker/excuse.h).
+// (checker/mesh/exemption.h).
 //
 // Right angles. Where the bound on angles is above 30 degrees, arms that meet at less than 93 are
 // split on shells, too; nothing is excused for that. Four arms meet at right angles where a wall
@@ -41,12 +41,12 @@
 #include <optional>
 #include <vector>
 
-#include "engine/context.h"
+#include "engine/base/context.h"
+#include "engine/base/error.h"
 #include "engine/domain/domain.h"
-#include "engine/error.h"
-#include "engine/refine/mesh.h"
 #include "engine/refine/needles.h"
 #include "engine/refine/quality_bounds.h"
+#include "engine/refine/storage/mesh.h"
 
 namespace weft {
 

@@ -10,11 +10,11 @@
 #include <optional>
 #include <string>
 
-#include "engine/error.h"
-#include "engine/geometry.h"
+#include "engine/base/error.h"
+#include "engine/base/geometry.h"
 #include "engine/refine/cavity.h"
 #include "engine/refine/quality_bounds.h"
-#include "engine/size/lattice.h"
+#include "engine/size/lattice/lattice.h"
 
 namespace weft {
 
@@ -25,7 +25,7 @@ struct BadSize {
 };
 
 // kBadSizeValue of the field, with a sentence that names the point.
-Error bad_size_error(const BadSize& bad, std::string field = "size");
+Error bad_size_error(const BadSize& bad);
 
 // The same bound everywhere; infinity is no bound.
 class ConstantArea {

@@ -35,7 +35,7 @@
 #include <limits>
 #include <vector>
 
-#include "engine/refine/mesh.h"
+#include "engine/refine/storage/mesh.h"
 
 namespace weft {
 

@@ -34,11 +34,11 @@
 #include <memory>
 #include <vector>
 
-#include "engine/domain/predicates.h"
-#include "engine/geometry.h"
+#include "engine/base/geometry.h"
+#include "engine/domain/triangulation/predicates.h"
 #include "engine/refine/lens.h"
-#include "engine/refine/mesh.h"
 #include "engine/refine/ownership.h"
+#include "engine/refine/storage/mesh.h"
 
 namespace weft {
 
@@ -52,7 +52,7 @@ struct alignas(16) RingPoint {
   double cross;               // point before x this one: twice the area of the new triangle
   std::uint32_t vertex;       // of the mesh
   HalfEdge outside;           // across the edge; kNone outside the domain
-  std::uint32_t constrained;  // 1 where the edge lies on a segment, 0 elsewhere
+  std::uint32_t constrained;  // 1 if the edge lies on a segment, 0 elsewhere
 };
 
 // Edge i goes from point i to point i + 1. A closed ring repeats its first point at the end. Of
@@ -414,7 +414,7 @@ class Cavity {
   std::vector<Frame> stack_;
   std::vector<std::uint32_t> cavity_;
   std::uint32_t cavity_size_ = 0;
-  std::uint32_t foreign_ = 0;  // not 0 where the cavity has slots of other owners
+  std::uint32_t foreign_ = 0;  // not 0 if the cavity has slots of other owners
   Ring ring_;
   std::uint32_t far_end_ = 0;
   double lens_ = kDiametralDisk;

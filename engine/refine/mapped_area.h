@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A grading function that is not the same everywhere: evaluated for a ring of triangles at a time,
-// and only where the size map's bounds leave a doubt (size/size_map.h).
+// and only if the size map's bounds leave a doubt (size/size_map.h).
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "engine/refine/area_bound.h"
-#include "engine/size/grain_map.h"
-#include "engine/size/lattice.h"
+#include "engine/size/lattice/grain_map.h"
+#include "engine/size/lattice/lattice.h"
 #include "engine/size/size_map.h"
 
 namespace weft {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "engine/domain/tolerance.h"
-#include "engine/refine/mesh.h"
-#include "engine/refine/vector.h"
+#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/vector.h"
 
 namespace weft {
 namespace {

@@ -11,9 +11,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/context.h"
+#include "engine/base/context.h"
+#include "engine/base/error.h"
 #include "engine/domain/domain.h"
-#include "engine/error.h"
 
 namespace weft {
 

@@ -21,7 +21,7 @@
 // that no task writes that may run at the same time (leaf_tasks.h, may_look_at).
 #pragma once
 
-#include "engine/geometry.h"
+#include "engine/base/geometry.h"
 
 namespace weft {
 

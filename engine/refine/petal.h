@@ -36,7 +36,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "engine/geometry.h"
+#include "engine/base/geometry.h"
 #include "engine/refine/quality_bounds.h"
 
 namespace weft {

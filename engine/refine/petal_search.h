@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
-#include "engine/geometry.h"
-#include "engine/refine/mesh.h"
+#include "engine/base/geometry.h"
 #include "engine/refine/petal.h"
 #include "engine/refine/quality_bounds.h"
 #include "engine/refine/star.h"
+#include "engine/refine/storage/mesh.h"
 #include "engine/refine/triangle_judge.h"
 
 namespace weft {

@@ -18,8 +18,8 @@
 
 #include "engine/refine/cavity.h"
 #include "engine/refine/lens.h"
-#include "engine/refine/mesh.h"
-#include "engine/size/lattice.h"
+#include "engine/refine/storage/mesh.h"
+#include "engine/size/lattice/lattice.h"
 
 namespace weft {
 

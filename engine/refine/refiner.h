@@ -3,7 +3,7 @@
 // is bad (too large or too skinny), insert its Steiner point by Bowyer-Watson; if the point would
 // encroach upon a segment, split the segment instead.
 //
-//   Refiner<OwnsAll, ConstantArea> refiner(setting, quality, ConstantArea(1e-3));
+//   Refiner<OwnsAll, ConstantArea> refiner(refinement, quality, ConstantArea(1e-3));
 //   refiner.begin(slots, OwnsAll{}, box);
 //   refiner.queue_all();                              // the bad triangles
 //   std::optional<Error> stopped = refiner.run();     // nothing: all is refined or excused
@@ -31,23 +31,23 @@
 #include <utility>
 #include <vector>
 
-#include "engine/context.h"
-#include "engine/domain/predicates.h"
+#include "engine/base/context.h"
+#include "engine/domain/triangulation/predicates.h"
 #include "engine/refine/acute_corners.h"
 #include "engine/refine/area_bound.h"
 #include "engine/refine/bad_triangles.h"
 #include "engine/refine/cavity.h"
 #include "engine/refine/lens.h"
-#include "engine/refine/mesh.h"
 #include "engine/refine/ownership.h"
 #include "engine/refine/petal.h"
 #include "engine/refine/petal_search.h"
 #include "engine/refine/quality_bounds.h"
-#include "engine/refine/setting.h"
-#include "engine/refine/slots.h"
+#include "engine/refine/refinement_context.h"
 #include "engine/refine/star.h"
 #include "engine/refine/star_check.h"
 #include "engine/refine/steiner_point.h"
+#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/slots.h"
 #include "engine/refine/triangle_judge.h"
 
 namespace weft {
@@ -56,21 +56,22 @@ template <class Ownership, class AreaBound>
 class Refiner {
  public:
   // Stops with what it has once `max_triangles` are reached. REQUIRES: nobody else refines, then.
-  Refiner(const Setting& setting, const QualityBounds& quality, AreaBound area,
+  Refiner(const RefinementContext& refinement, const QualityBounds& quality, AreaBound area,
           std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max())
-      : mesh_(setting.mesh),
-        corners_(setting.corners),
-        regions_(setting.regions),
+      : mesh_(refinement.mesh),
+        corners_(refinement.corners),
+        regions_(refinement.regions),
         quality_(quality),
         area_(std::move(area)),
-        context_(setting.context),
-        other_bytes_(setting.other_bytes),
-        triangle_limit_(setting.triangle_limit),
+        context_(refinement.context),
+        held_(refinement.context.held_bytes(), 0),
+        other_bytes_(refinement.other_bytes),
+        triangle_limit_(refinement.triangle_limit),
         poll_interval_(area_.poll_interval()),
         max_triangles_(max_triangles),
-        star_(setting.mesh),
-        petal_search_(setting.mesh),
-        bad_(setting.mesh) {}
+        star_(refinement.mesh),
+        petal_search_(refinement.mesh),
+        bad_(refinement.mesh) {}
 
   // Begins a task in `box`: new triangles and vertices go to `slots`.
   void begin(Slots& slots, const Ownership& ownership, const Box& box) {
@@ -451,17 +452,9 @@ class Refiner {
   std::optional<Error> poll() {
     const std::uint64_t triangles = context_.add_triangles(std::exchange(added_, 0));
     if (const auto& bad = area_.bad_size()) return bad_size_error(*bad);
-    if (mesh_.bytes() + bytes() + other_bytes_ > context_.budget().max_bytes) {
-      return Error{ErrorCode::kBudgetExceeded, "budget.max_bytes",
-                   "the mesh needs more than the budget of " +
-                       std::to_string(context_.budget().max_bytes) + " bytes, at " +
-                       std::to_string(triangles) + " triangles"};
-    }
-    if (triangles > triangle_limit_) {
-      return Error{ErrorCode::kLimitExceeded, "size",
-                   "the mesh needs more than the limit of " + std::to_string(triangle_limit_) +
-                       " triangles"};
-    }
+    held_.grow_to(bytes());  // its vectors never shrink
+    const std::uint64_t held = mesh_.bytes() + context_.held_bytes().now() + other_bytes_;
+    if (auto error = check_budget(context_, triangles, triangle_limit_, held)) return error;
     return context_.poll();
   }
 
@@ -471,7 +464,8 @@ class Refiner {
   const QualityBounds quality_;
   AreaBound area_;
   ExecutionContext& context_;
-  const std::uint64_t other_bytes_;  // that the job holds besides the mesh
+  HeldBytes::Part held_;
+  const std::uint64_t other_bytes_;  // that the job holds all the time
   const std::uint64_t triangle_limit_;
   const std::uint32_t poll_interval_;  // insertions
   const std::uint64_t max_triangles_;

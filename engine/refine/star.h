@@ -14,10 +14,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/geometry.h"
+#include "engine/base/geometry.h"
 #include "engine/refine/cavity.h"
-#include "engine/refine/mesh.h"
-#include "engine/refine/slots.h"
+#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/slots.h"
 
 namespace weft {
 

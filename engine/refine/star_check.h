@@ -19,9 +19,9 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "engine/domain/predicates.h"
+#include "engine/domain/triangulation/predicates.h"
 #include "engine/refine/cavity.h"
-#include "engine/refine/mesh.h"
+#include "engine/refine/storage/mesh.h"
 
 namespace weft {
 

@@ -22,9 +22,9 @@
 
 #include <algorithm>
 
-#include "engine/geometry.h"
+#include "engine/base/geometry.h"
 #include "engine/refine/quality_bounds.h"
-#include "engine/size/lattice.h"
+#include "engine/size/lattice/lattice.h"
 
 namespace weft {
 

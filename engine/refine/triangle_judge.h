@@ -7,8 +7,8 @@
 #include <cstdint>
 
 #include "engine/refine/cavity.h"
-#include "engine/refine/mesh.h"
 #include "engine/refine/quality_bounds.h"
+#include "engine/refine/storage/mesh.h"
 
 namespace weft {
 
@@ -18,14 +18,21 @@ class TriangleJudge {
   template <class AreaBound>
   Badness operator()(const Mesh& mesh, std::uint32_t t, double region_bound,
                      const QualityBounds& quality, AreaBound& area) {
-    const Triangle& triangle = mesh.triangles[t];
-    const Point p = mesh.vertices[triangle.vertex[0]];
+    const auto& v = mesh.triangles[t].vertex;
+    return (*this)(mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]], region_bound,
+                   quality, area);
+  }
+
+  // Of the triangle p, q, r, which need not be one of a mesh.
+  template <class AreaBound>
+  Badness operator()(Point p, Point q, Point r, double region_bound, const QualityBounds& quality,
+                     AreaBound& area) {
+    const Point ends[2] = {q, r};
     ring_.size = 2;
     for (std::uint32_t i = 0; i < 2; ++i) {
-      const Point q = mesh.vertices[triangle.vertex[i + 1]];
       RingPoint& point = ring_.points[i];
-      point.x = q.x - p.x;
-      point.y = q.y - p.y;
+      point.x = ends[i].x - p.x;
+      point.y = ends[i].y - p.y;
       point.length2 = point.x * point.x + point.y * point.y;
     }
     const RingPoint& a = ring_.points[0];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The prelude's criterion, after the paper's eq. 5: refine until every circumradius is below a
+// The coarse phase's criterion, after the paper's eq. 5: refine until every circumradius is below a
 // quarter of the side of the leaf where the triangle's centroid lies. Vertices are never removed,
 // so once it holds, circumdisks stay small, and a leaf's task rarely meets what it does not own.
 //
@@ -12,9 +12,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "engine/base/context.h"
 #include "engine/refine/area_bound.h"
 #include "engine/schedule/quadtree.h"
 
@@ -22,7 +25,7 @@ namespace weft {
 
 // The weight from which on a leaf counts as busy: `busy`, or 0 if what all leaves together need
 // then is little of the mesh. So a mesh that fills most of its leaves has the criterion in all of
-// them, and may be streamed (Prelude::fits). us-east-coast with a size of 1e-4, where 67 of 736
+// them, and may be streamed (CoarsePhase::fits). us-east-coast with a size of 1e-4, where 67 of 736
 // leaves are light, takes 40.5 bytes a triangle so, and 43.3 if these are left out, because then
 // nothing leaves before all is refined.
 inline double busy_weight(const Quadtree& tree, double busy) {
@@ -44,24 +47,37 @@ class LeafRadius {
  public:
   static constexpr double kPart = 0.25;
 
-  // A leaf is busy from this weight on.
-  LeafRadius(const Quadtree& tree, double busy, const AreaBound& area)
-      : tree_(&tree), area_(area.again()), busy_near_(tree.leaves().size()) {
+  // A leaf is busy from this weight on. REQUIRES: the tree outlives this, and all like it.
+  LeafRadius(const Quadtree& tree, double busy, const AreaBound& area,
+             const ExecutionContext& context)
+      : tree_(&tree), area_(area.again()) {
+    constexpr std::size_t kAtOnce = 512;
     const auto& leaves = tree.leaves();
     const auto is_busy = [&](std::uint32_t l) { return leaves[l].weight >= busy; };
-    for (std::uint32_t l = 0; l < leaves.size(); ++l) {
-      if (!is_busy(l)) continue;
-      busy_near_[l].push_back(l);
-      for (const std::uint32_t other : tree.touching(l)) busy_near_[other].push_back(l);
-    }
+    std::vector<Near> near(leaves.size());
+    context.for_each((leaves.size() + kAtOnce - 1) / kAtOnce, [&](std::size_t batch) {
+      if (context.poll()) return;  // whoever asked for this looks, too
+      const std::size_t end = std::min((batch + 1) * kAtOnce, leaves.size());
+      for (auto l = static_cast<std::uint32_t>(batch * kAtOnce); l < end; ++l) {
+        if (is_busy(l)) near[l].push_back(l);
+        for (const std::uint32_t other : tree.touching(l)) {
+          const bool counts = !is_busy(l) || leaves[other].depth > leaves[l].depth;
+          if (counts && is_busy(other)) near[l].push_back(other);
+        }
+      }
+    });
+    busy_near_ = std::make_shared<const std::vector<Near>>(std::move(near));
   }
+
+  // The same, for another thread.
+  LeafRadius again() const { return *this; }
 
   // Of the circumradius of a triangle with this centroid.
   double limit_at(Point centroid) const {
     const auto& leaves = tree_->leaves();
     const std::uint32_t leaf = tree_->leaf_at(centroid);
     double limit = kElsewhere * leaves[leaf].side();
-    for (const std::uint32_t l : busy_near_[leaf]) {
+    for (const std::uint32_t l : (*busy_near_)[leaf]) {
       const double away = std::max(0.0, -room_in(leaves[l].box, centroid));
       limit = std::min(limit, kPart * leaves[l].side() + kGrowth * away);
     }
@@ -93,6 +109,12 @@ class LeafRadius {
     return area_.nearest_of_lattice(c, region_bound, shape);
   }
 
+  std::uint64_t bytes() const {
+    std::uint64_t bytes = busy_near_->capacity() * sizeof(Near);
+    for (const Near& near : *busy_near_) bytes += near.capacity() * sizeof(near[0]);
+    return bytes;
+  }
+
   static constexpr std::uint32_t poll_interval() { return 512; }
   const std::optional<BadSize>& bad_size() const { return bad_size_; }
 
@@ -100,9 +122,13 @@ class LeafRadius {
   static constexpr double kElsewhere = 2;
   static constexpr double kGrowth = 0.5;  // 1 doubles what is deferred and saves 0.1 %
 
+  // Of a leaf, the busy ones among itself and those that it touches. In a busy one, only smaller
+  // ones set a lower limit than its own.
+  using Near = std::vector<std::uint32_t>;
+
   const Quadtree* tree_;
   AreaBound area_;
-  std::vector<std::vector<std::uint32_t>> busy_near_;  // per leaf: itself, and those it touches
+  std::shared_ptr<const std::vector<Near>> busy_near_;  // per leaf
   std::optional<BadSize> bad_size_;
 };
 

@@ -11,8 +11,8 @@
 // from those after it in the next. In the last two a task refines all that it owns. What no task
 // could refine, because it reaches beyond the grown box, is handed to the leaf of its Steiner
 // point, or waits for the next round. About 11 % of the insertions are handed over; 0.02 to 0.3 %
-// wait, where a size makes the mesh and where two parallel segments do. A leaf with nothing left
-// after the third round has no further ones.
+// wait, where a size makes the mesh and where two parallel segments do. A leaf that has nothing
+// left and is handed nothing skips the later rounds.
 //
 // What is left after the rounds is cleaned up by one task that owns all but what has been sent: the
 // leaves before `frozen`, and what lies in their grown boxes.
@@ -33,9 +33,10 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/held_bytes.h"
 #include "engine/refine/refiner.h"
-#include "engine/refine/slots.h"
-#include "engine/refine/smoother.h"
+#include "engine/refine/smoothing/smoother.h"
+#include "engine/refine/storage/slots.h"
 #include "engine/schedule/leaf_graph.h"
 #include "engine/schedule/leaf_order.h"
 #include "engine/schedule/quadtree.h"
@@ -82,32 +83,61 @@ struct OwnsBoxUnfrozen {
 template <class AreaBound>
 class LeafTasks {
  public:
-  // Leaf l is owner l + 1 of slots; the clean-up is the owner after the last leaf. `seeds` are the
-  // bad triangles to begin with.
-  LeafTasks(const Setting& setting, const QualityBounds& quality, const AreaBound& area,
-            const Quadtree& tree, const LeafOrder& order, const std::vector<BadTriangle>& seeds)
-      : setting_(setting),
+  // Leaf l is owner `first_owner` + l of slots; the clean-up is the owner after the last leaf.
+  LeafTasks(const RefinementContext& refinement, const QualityBounds& quality,
+            const AreaBound& area, const Quadtree& tree, const LeafOrder& order,
+            std::uint32_t first_owner)
+      : refinement_(refinement),
         quality_(quality),
         area_(area),
         tree_(tree),
         order_(order),
+        first_owner_(first_owner),
         leaves_(order.size()) {
-    for (std::uint32_t l = 0; l < size(); ++l) leaves_[l].slots = Slots(l + 1);
-    for (const BadTriangle& t : seeds)
-      leaves_[tree_.leaf_at(centroid_of(t.triangle))].left.push_back(t);
-    clean_up_slots_ = Slots(size() + 1);
+    for (std::uint32_t l = 0; l < size(); ++l) leaves_[l].slots = Slots(first_owner_ + l);
+    clean_up_slots_ = Slots(first_owner_ + size());
   }
 
+  // Bad triangles to begin with: whose centroids lie in a leaf, in their order. Before its first
+  // round.
+  void seed(std::uint32_t leaf, const std::vector<BadTriangle>& seeds) {
+    gave(leaves_[leaf].bytes());
+    leaves_[leaf].left.insert(leaves_[leaf].left.end(), seeds.begin(), seeds.end());
+    took(leaves_[leaf].bytes());
+  }
+  // The same for all leaves.
+  void seed(const std::vector<BadTriangle>& seeds) {
+    for (const BadTriangle& t : seeds)
+      leaves_[tree_.leaf_at(centroid_of(t.triangle))].left.push_back(t);
+    for (const Leaf& l : leaves_) took(l.bytes());
+  }
+
+  ~LeafTasks() { refinement_.context.held_bytes().remove(held_.now()); }
+  LeafTasks(const LeafTasks&) = delete;
+  LeafTasks& operator=(const LeafTasks&) = delete;
+
   std::uint32_t size() const { return static_cast<std::uint32_t>(leaves_.size()); }
+  std::uint32_t first_owner() const { return first_owner_; }
   const Slots& slots(std::uint32_t leaf) const { return leaves_[leaf].slots; }
+  // All but the vertices; and these. REQUIRES: nobody reads them any more (leaf_release.h).
   void give_back_triangles(std::uint32_t leaf) {
-    leaves_[leaf].slots.give_back_triangles(setting_.mesh);
+    gave(leaves_[leaf].bytes());
+    Slots slots = std::move(leaves_[leaf].slots);
+    slots.give_back_triangles(refinement_.mesh);
+    leaves_[leaf] = Leaf{.slots = std::move(slots)};
+    took(leaves_[leaf].bytes());
+  }
+  void give_back_vertices(std::uint32_t leaf) {
+    gave(leaves_[leaf].bytes());
+    leaves_[leaf].slots.give_back_vertices(refinement_.mesh);
+    took(leaves_[leaf].bytes());
   }
   const Slots& clean_up_slots() const { return clean_up_slots_; }
 
   std::optional<Error> refine(std::uint32_t leaf, std::uint32_t round) {
     Leaf& l = leaves_[leaf];
     if (!has_work(leaf, round)) return std::nullopt;
+    const std::uint64_t before = l.bytes();
     rounds_[round].store(true, std::memory_order_relaxed);
     const Lease worker(*this);
     auto& refiner = worker->refiner;
@@ -127,15 +157,17 @@ class LeafTasks {
     for (const BadTriangle& t : refiner.deferred()) hand_on(leaf, round, t, steiner_point_of(t));
     for (const SegmentEdge& s : refiner.deferred_segments()) hand_on(leaf, round, s);
     for (const BadTriangle& t : refiner.handed_over()) {
-      if (setting_.mesh.triangles[t.triangle].vertex[0] == t.first_vertex)
+      if (refinement_.mesh.triangles[t.triangle].vertex[0] == t.first_vertex)
         hand_on(leaf, round, t, centroid_of(t.triangle));
     }
     deferred_.fetch_add(refiner.deferred().size() + refiner.deferred_segments().size(),
                         std::memory_order_relaxed);
+    gave(before);
+    took(l.bytes());
     return error;
   }
 
-  // Smooths a leaf, in so many sweeps. REQUIRES: nobody refines in its grown box any more, and the
+  // Smooths a leaf, in so many sweeps. REQUIRES: no other task refines in its grown box, and the
   // conflicts before it are smoothed or not to be smoothed. What the leaves before `frozen` have
   // made stays as it is.
   std::optional<Error> smooth(std::uint32_t leaf, std::uint32_t sweeps, std::uint32_t frozen) {
@@ -148,7 +180,7 @@ class LeafTasks {
     const Lease worker(*this);
     auto& smoother = worker->smoother;
     const Box& box = tree_.leaves()[leaf].grown;
-    smoother.begin(OwnsBoxUnfrozen{box, &others, frozen_others}, box, 0);
+    smoother.begin(OwnsBoxUnfrozen{box, &others, frozen_others}, box, 0, first_owner_);
     return smoother.run(leaves_[leaf].slots, sweeps);
   }
 
@@ -162,7 +194,7 @@ class LeafTasks {
         if (other < frozen) frozen_near[l].push_back(other);
       }
     }
-    Refiner<OwnsUnfrozen, AreaBound> refiner(setting_, quality_, area_.again());
+    Refiner<OwnsUnfrozen, AreaBound> refiner(refinement_, quality_, area_.again());
     refiner.begin(clean_up_slots_, OwnsUnfrozen{&tree_, &frozen_near}, tree_.box());
     for (const Leaf& l : leaves_) {
       for (const BadTriangle& t : l.left) refiner.queue(t);
@@ -173,9 +205,18 @@ class LeafTasks {
     return error;
   }
 
-  // Whether `leaf` has anything left for the rounds after the second.
+  // Whether `leaf` has anything left for a later round.
   bool has_left(std::uint32_t leaf) const {
     return !leaves_[leaf].left.empty() || !leaves_[leaf].segments_left.empty();
+  }
+  // Whether there is anything to do for it in a round. REQUIRES: what that waits for is done.
+  bool has_work(std::uint32_t leaf, std::uint32_t round) const {
+    bool any = has_left(leaf);
+    for_handed_to(leaf, round, [&](const auto&) {
+      any = true;
+      return false;
+    });
+    return any;
   }
 
   // Bad triangles and encroached segments that wait for another round, or the clean-up.
@@ -195,18 +236,24 @@ class LeafTasks {
     for (const auto& w : workers_) sum += w->refiner.figures();
     return sum;
   }
+  // At the peak.
   std::uint64_t bytes() const {
-    std::uint64_t bytes = leaves_.capacity() * sizeof(Leaf);
+    std::uint64_t bytes = leaves_.capacity() * sizeof(Leaf) + held_.peak();
     for (const auto& w : workers_) bytes += w->refiner.bytes() + w->smoother.bytes();
-    for (const Leaf& l : leaves_) {
-      bytes += l.slots.bytes() + l.left.capacity() * sizeof(BadTriangle) +
-               l.handed_over.capacity() * sizeof(l.handed_over[0]);
-    }
     return bytes;
   }
 
  private:
   using LeafRefiner = Refiner<OwnsBox, AreaBound>;
+
+  void took(std::uint64_t bytes) {
+    held_.add(bytes);
+    refinement_.context.held_bytes().add(bytes);
+  }
+  void gave(std::uint64_t bytes) {
+    held_.remove(bytes);
+    refinement_.context.held_bytes().remove(bytes);
+  }
 
   template <class What>
   struct HandedOver {
@@ -216,11 +263,17 @@ class LeafTasks {
   };
 
   struct Leaf {
-    Slots slots;
-    std::vector<BadTriangle> left;
-    std::vector<SegmentEdge> segments_left;
-    std::vector<HandedOver<BadTriangle>> handed_over;
-    std::vector<HandedOver<SegmentEdge>> segments_handed_over;
+    Slots slots = {};
+    std::vector<BadTriangle> left = {};
+    std::vector<SegmentEdge> segments_left = {};
+    std::vector<HandedOver<BadTriangle>> handed_over = {};
+    std::vector<HandedOver<SegmentEdge>> segments_handed_over = {};
+    std::uint64_t bytes() const {
+      return slots.bytes() + left.capacity() * sizeof(left[0]) +
+             segments_left.capacity() * sizeof(segments_left[0]) +
+             handed_over.capacity() * sizeof(handed_over[0]) +
+             segments_handed_over.capacity() * sizeof(segments_handed_over[0]);
+    }
   };
 
   // The buffers of a thread at work, in cache lines that no other thread writes.
@@ -237,9 +290,9 @@ class LeafTasks {
     explicit Lease(LeafTasks& tasks) : tasks_(tasks) {
       const std::lock_guard lock(tasks_.mutex_);
       if (tasks_.idle_.empty()) {
-        tasks_.workers_.push_back(std::make_unique<Worker>(
-            Worker{{tasks_.setting_, tasks_.quality_, tasks_.area_.again()},
-                   {tasks_.setting_, tasks_.quality_, tasks_.area_.again()}}));
+        tasks_.workers_.emplace_back(
+            new Worker{{tasks_.refinement_, tasks_.quality_, tasks_.area_.again()},
+                       {tasks_.refinement_, tasks_.quality_, tasks_.area_.again()}});
         tasks_.idle_.reserve(tasks_.workers_.size());  // so that giving back cannot fail
         tasks_.idle_.push_back(tasks_.workers_.back().get());
       }
@@ -270,28 +323,21 @@ class LeafTasks {
   // Calls f for what neighbours have left for this leaf, as long as it returns true.
   template <class F>
   void for_handed_to(std::uint32_t leaf, std::uint32_t round, F&& f) const {
-    if (!LeafGraph::may_be_handed(round)) return;
+    if (round > LeafGraph::kHandOverRounds) return;
     for (const std::uint32_t other : order_.conflicts(leaf)) {
-      // Its last task before this one.
-      const bool before = order_.before(other, leaf);
-      if (!before && round == 0) continue;
-      const std::uint32_t last = before ? round : round - 1;
+      // In the first task of this leaf that comes after the one that handed over.
+      const auto is_due = [&](const auto& h) {
+        if (h.leaf != leaf) return false;
+        return round ==
+               (order_.before(other, leaf, LeafOrder::phase_of(h.round)) ? h.round : h.round + 1);
+      };
       for (const auto& h : leaves_[other].handed_over) {
-        if (h.leaf == leaf && h.round == last && !f(h.what)) return;
+        if (is_due(h) && !f(h.what)) return;
       }
       for (const auto& h : leaves_[other].segments_handed_over) {
-        if (h.leaf == leaf && h.round == last && !f(h.what)) return;
+        if (is_due(h) && !f(h.what)) return;
       }
     }
-  }
-
-  bool has_work(std::uint32_t leaf, std::uint32_t round) const {
-    bool any = has_left(leaf);
-    for_handed_to(leaf, round, [&](const auto&) {
-      any = true;
-      return false;
-    });
-    return any;
   }
 
   // To the leaf where the next vertex goes, whose task owns what is around it.
@@ -306,8 +352,8 @@ class LeafTasks {
   }
   void hand_on(std::uint32_t from, std::uint32_t round, const SegmentEdge& s) {
     Leaf& l = leaves_[from];
-    const Point a = setting_.mesh.vertices[s.a];
-    const Point b = setting_.mesh.vertices[s.b];
+    const Point a = refinement_.mesh.vertices[s.a];
+    const Point b = refinement_.mesh.vertices[s.b];
     const std::uint32_t to = tree_.leaf_at({a.x + 0.5 * (b.x - a.x), a.y + 0.5 * (b.y - a.y)});
     if (may_hand_over(from, round, to) && may_look_at(to, s.triangle)) {
       l.segments_handed_over.push_back({to, round, s});
@@ -319,31 +365,35 @@ class LeafTasks {
     return LeafGraph::hands_over(round) && order_.in_conflict(from, to);
   }
 
-  // Whether a leaf's task may read the vertices in a slot at any time: nobody writes those of owner
-  // 0, and those of a leaf only its task.
+  // Whether a leaf's task may read the vertices in a slot at any time: nobody writes those of
+  // earlier owners, and those of a leaf only its task.
   bool may_look_at(std::uint32_t leaf, std::uint32_t slot) const {
-    const std::uint32_t owner = setting_.mesh.owner_of_triangle(slot);
-    return owner == 0 || owner == leaf + 1 || order_.in_conflict(leaf, owner - 1);
+    const std::uint32_t owner = refinement_.mesh.owner_of_triangle(slot);
+    return owner < first_owner_ || owner == first_owner_ + leaf ||
+           order_.in_conflict(leaf, owner - first_owner_);
   }
 
   Point steiner_point_of(const BadTriangle& bad) const {
-    const Triangle& t = setting_.mesh.triangles[bad.triangle];
-    return steiner_point(setting_.mesh.vertices[t.vertex[0]], setting_.mesh.vertices[t.vertex[1]],
-                         setting_.mesh.vertices[t.vertex[2]], quality_);
+    const Triangle& t = refinement_.mesh.triangles[bad.triangle];
+    return steiner_point(refinement_.mesh.vertices[t.vertex[0]],
+                         refinement_.mesh.vertices[t.vertex[1]],
+                         refinement_.mesh.vertices[t.vertex[2]], quality_);
   }
   Point centroid_of(std::uint32_t triangle) const {
-    const Triangle& t = setting_.mesh.triangles[triangle];
-    return centroid(setting_.mesh.vertices[t.vertex[0]], setting_.mesh.vertices[t.vertex[1]],
-                    setting_.mesh.vertices[t.vertex[2]]);
+    const Triangle& t = refinement_.mesh.triangles[triangle];
+    return centroid(refinement_.mesh.vertices[t.vertex[0]], refinement_.mesh.vertices[t.vertex[1]],
+                    refinement_.mesh.vertices[t.vertex[2]]);
   }
 
-  const Setting setting_;
+  const RefinementContext refinement_;
   const QualityBounds quality_;
   const AreaBound area_;
   const Quadtree& tree_;
   const LeafOrder& order_;
+  const std::uint32_t first_owner_;
   std::vector<Leaf> leaves_;
   Slots clean_up_slots_;
+  HeldBytes held_;  // by the vectors of the leaves
   std::atomic<std::uint64_t> deferred_{0};
   RefinerFigures clean_up_figures_;
   std::array<std::atomic<bool>, LeafGraph::kRounds> rounds_{};  // those that found work

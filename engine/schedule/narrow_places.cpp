@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "engine/refine/mesh.h"
+#include "engine/refine/storage/mesh.h"
 
 namespace weft {
 namespace {

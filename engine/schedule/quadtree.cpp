@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 #include <unordered_set>
+#include <utility>
 
 namespace weft {
 namespace {
 
-constexpr unsigned kMaxDepth = 31;  // what Morton codes of 64 bits have room for
+constexpr unsigned kMaxDepth = Quadtree::kMaxDepth;
 
 // Spreads the bits of v to the even places.
 std::uint64_t spread(std::uint64_t v) {
@@ -94,6 +97,25 @@ void balance(Splits& splits) {
   }
 }
 
+// The most that the leaves weigh that a line across a direction cuts: `place` is theirs along it.
+double most_cut(const std::vector<Quadtree::Leaf>& leaves, std::uint32_t Quadtree::Leaf::*place) {
+  std::vector<std::pair<std::uint32_t, double>> changes;
+  changes.reserve(2 * leaves.size());
+  for (const Quadtree::Leaf& leaf : leaves) {
+    const unsigned shift = kMaxDepth - leaf.depth;
+    changes.push_back({leaf.*place << shift, leaf.weight});
+    changes.push_back({(leaf.*place + 1) << shift, -leaf.weight});
+  }
+  std::sort(changes.begin(), changes.end());  // at the same place, what ends comes first
+  double cut = 0;
+  double most = 0;
+  for (const auto& [at, change] : changes) {
+    cut += change;
+    most = std::max(most, cut);
+  }
+  return most;
+}
+
 }  // namespace
 
 Quadtree Quadtree::build(const Box& domain, std::vector<Sample> samples, double target) {
@@ -125,7 +147,8 @@ Quadtree Quadtree::build(const Box& domain, std::vector<Sample> samples, double 
       const unsigned shift = 2 * (kMaxDepth - depth);
       double weight = 0;
       for (; next != keyed.end() && next->code >> shift == code; ++next) weight += next->weight;
-      tree.leaves_.push_back({grid.box(x0, y0, x0 + side, y0 + side), grown, weight});
+      tree.leaves_.push_back({grid.box(x0, y0, x0 + side, y0 + side), grown, weight, depth,
+                              static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)});
       return;
     }
     const auto first = static_cast<std::uint32_t>(tree.nodes_.size());
@@ -137,7 +160,37 @@ Quadtree Quadtree::build(const Box& domain, std::vector<Sample> samples, double 
   tree.box_ = grid.box(0, 0, std::int64_t{2} << kMaxDepth, std::int64_t{2} << kMaxDepth);
   tree.nodes_.resize(1);
   add(add, 0, 0, 0, 0);
+  tree.sweep();
   return tree;
+}
+
+// Sorts the leaves, which so far have their columns and rows for `along` and `across`.
+void Quadtree::sweep() {
+  const double along_x = most_cut(leaves_, &Leaf::along);
+  const double along_y = most_cut(leaves_, &Leaf::across);
+  if (along_y < along_x) {
+    for (Leaf& leaf : leaves_) std::swap(leaf.along, leaf.across);
+  }
+  const auto key = [&](std::uint32_t l) {
+    const Leaf& leaf = leaves_[l];
+    const std::uint32_t middle = (2 * leaf.along + 1) << (kMaxDepth - leaf.depth);
+    return std::tuple(middle, leaf.across);  // those with the same middle are equally large
+  };
+  std::vector<std::uint32_t> order(leaves_.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  std::vector<std::uint32_t> place(order.size());
+  std::vector<Leaf> sorted;
+  sorted.reserve(order.size());
+  for (const std::uint32_t l : order) {
+    place[l] = static_cast<std::uint32_t>(sorted.size());
+    sorted.push_back(leaves_[l]);
+  }
+  leaves_ = std::move(sorted);
+  for (Node& node : nodes_) {
+    if (node.first_child == 0) node.leaf = place[node.leaf];
+  }
 }
 
 std::uint32_t Quadtree::leaf_at(Point p) const {
@@ -166,27 +219,17 @@ std::vector<std::uint32_t> Quadtree::touching(std::uint32_t leaf) const {
       result.push_back(node.leaf);
     }
   }
+  std::sort(result.begin(), result.end());
   return result;
 }
 
 std::vector<std::vector<std::uint32_t>> Quadtree::conflicts() const {
-  const auto overlap = [](const Box& a, const Box& b) {
-    return a.min_x < b.max_x && b.min_x < a.max_x && a.min_y < b.max_y && b.min_y < a.max_y;
-  };
   std::vector<std::vector<std::uint32_t>> result(leaves_.size());
-  std::vector<std::uint32_t> stack;
   for (std::uint32_t l = 0; l < leaves_.size(); ++l) {
-    stack.push_back(0);
-    while (!stack.empty()) {
-      const Node& node = nodes_[stack.back()];
-      stack.pop_back();
-      if (!overlap(node.grown, leaves_[l].grown)) continue;
-      if (node.first_child != 0) {
-        for (std::uint32_t child = 4; child-- > 0;) stack.push_back(node.first_child + child);
-      } else if (node.leaf != l) {
-        result[l].push_back(node.leaf);
-      }
-    }
+    for_overlapping(leaves_[l].grown, [&](std::uint32_t other) {
+      if (other != l) result[l].push_back(other);
+    });
+    std::sort(result[l].begin(), result[l].end());
   }
   return result;
 }

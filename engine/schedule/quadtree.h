@@ -6,6 +6,10 @@
 // A node is split while its samples weigh more than the target; then nodes are split until sides
 // of leaves that touch differ by a factor of two at most.
 //
+// Leaves are numbered as a sweep over the domain meets their middles, because the mesh is sent in
+// this order (leaf_order.h). The sweep goes in the direction in which the leaves that a line across
+// it cuts weigh less, at the most: what lies there has to be in memory at the same time.
+//
 // Borders between boxes are computed from integers, so boxes that touch share the same doubles.
 #pragma once
 
@@ -13,7 +17,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/geometry.h"
+#include "engine/base/geometry.h"
 
 namespace weft {
 
@@ -25,10 +29,15 @@ class Quadtree {
     double weight;
   };
 
+  static constexpr unsigned kMaxDepth = 31;  // what Morton codes of 64 bits have room for
+
   struct Leaf {
-    Box box;        // half-open
-    Box grown;      // by half of its side in each direction
-    double weight;  // of the samples in it
+    Box box;         // half-open
+    Box grown;       // by half of its side in each direction
+    double weight;   // of the samples in it
+    unsigned depth;  // its side is that of the square over 2^depth
+    // Its place among the squares of its depth, in the direction of the sweep and across it.
+    std::uint32_t along, across;
     double side() const { return box.max_x - box.min_x; }
   };
 
@@ -36,7 +45,7 @@ class Quadtree {
   // alone or is 2^31 times smaller than the square.
   static Quadtree build(const Box& domain, std::vector<Sample> samples, double target);
 
-  // In Morton order.
+  // In the order of the sweep.
   const std::vector<Leaf>& leaves() const { return leaves_; }
   // The square. REQUIRES: built.
   Box box() const { return box_; }
@@ -44,6 +53,20 @@ class Quadtree {
   std::uint32_t leaf_at(Point p) const;
   // The other leaves whose boxes touch that of a leaf, in order.
   std::vector<std::uint32_t> touching(std::uint32_t leaf) const;
+  // Calls f(leaf) for the leaves whose grown boxes overlap `box`, which is open, in any order.
+  template <class F>
+  void for_overlapping(const Box& box, F&& f) const {
+    const auto visit = [&](auto& self, const Node& node) -> void {
+      if (!(node.grown.min_x < box.max_x && box.min_x < node.grown.max_x &&
+            node.grown.min_y < box.max_y && box.min_y < node.grown.max_y)) {
+        return;
+      }
+      if (node.first_child == 0) return f(node.leaf);
+      for (std::uint32_t child = 0; child < 4; ++child)
+        self(self, nodes_[node.first_child + child]);
+    };
+    visit(visit, nodes_.front());
+  }
   // Per leaf, the others whose grown boxes overlap its own, in order.
   std::vector<std::vector<std::uint32_t>> conflicts() const;
 
@@ -58,6 +81,8 @@ class Quadtree {
     std::uint32_t first_child;  // of four, in Morton order; 0 for a leaf
     std::uint32_t leaf;         // its index, for a leaf
   };
+
+  void sweep();
 
   Box box_;
   std::vector<Node> nodes_;

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "engine/text.h"
+#include "engine/base/text.h"
 
 namespace weft {
 namespace {
@@ -27,16 +27,22 @@ void add(Interval& to, const Interval& other) {
 
 }  // namespace
 
-Result<RasterSize> RasterSize::make(const Raster& raster) {
-  for (std::size_t i = 0; i < raster.values.size(); ++i) {
-    const double value = raster.values[i];
+std::optional<Error> check_raster_values(std::span<const double> values, std::uint32_t columns) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double value = values[i];
     if (value > 0 && std::isfinite(value)) continue;
     const std::string field = "size.raster.values[" + std::to_string(i) + "]";
-    return fail(ErrorCode::kBadSizeValue, field,
-                field + " is " + text(value) + ", at column " + std::to_string(i % raster.columns) +
-                    " of row " + std::to_string(i / raster.columns) +
-                    "; a size must be positive and finite");
+    return Error{ErrorCode::kBadSizeValue, field,
+                 field + " is " + text(value) + ", at column " + std::to_string(i % columns) +
+                     " of row " + std::to_string(i / columns) +
+                     "; a size must be positive and finite"};
   }
+  return std::nullopt;
+}
+
+Result<RasterSize> RasterSize::make(const Raster& raster) {
+  if (auto error = check_raster_values(raster.values, raster.columns))
+    return tl::unexpected(*error);
   RasterSize size(raster);
   size.add_levels();
   return size;

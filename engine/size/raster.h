@@ -15,9 +15,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
-#include "engine/error.h"
+#include "engine/base/error.h"
 #include "engine/size/size_function.h"
 
 namespace weft {
@@ -31,11 +33,14 @@ struct Raster {
   std::vector<double> values;  // by rows from the lowest: that of node (i, j) is [j * columns + i]
 };
 
+// kBadSizeValue with the field "size.raster.values[i]" for the first value that is not positive and
+// finite.
+std::optional<Error> check_raster_values(std::span<const double> values, std::uint32_t columns);
+
 class RasterSize final : public SizeFunction {
  public:
   // REQUIRES: the raster stays where it is; origin, dx and dy are finite, dx and dy positive;
-  // columns * rows values, one at least. Errors: kBadSizeValue with the field
-  // "size.raster.values[i]" for a value that is not positive and finite.
+  // columns * rows values, one at least. Errors: those of check_raster_values.
   static Result<RasterSize> make(const Raster& raster);
 
   void evaluate(std::size_t n, const double* x, const double* y,

@@ -8,8 +8,8 @@
 
 #include <cstddef>
 
-#include "engine/geometry.h"
-#include "engine/size/interval.h"
+#include "engine/base/geometry.h"
+#include "engine/size/expression/interval.h"
 
 namespace weft {
 

@@ -24,10 +24,10 @@
 #include <optional>
 #include <vector>
 
-#include "engine/context.h"
+#include "engine/base/context.h"
+#include "engine/base/error.h"
+#include "engine/base/geometry.h"
 #include "engine/domain/domain.h"
-#include "engine/error.h"
-#include "engine/geometry.h"
 #include "engine/size/size_function.h"
 
 namespace weft {

@@ -3,17 +3,26 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 #include <memory>
 #include <new>
 #include <utility>
 
+#include "server/admission/memory_estimate.h"
+
 namespace weft::server {
+namespace {
+
+// How often a run that waits for another slot asks whether it is to end.
+constexpr std::chrono::milliseconds kAsk{50};
+
+}  // namespace
 
 // A run is among those at work for as long as this lives.
 class JobRunner::Listed {
  public:
-  Listed(JobRunner& runner, std::shared_ptr<TaskRun> run) : runner_(runner), run_(std::move(run)) {
+  Listed(JobRunner& runner, std::shared_ptr<Attempt> run) : runner_(runner), run_(std::move(run)) {
     std::lock_guard lock(runner_.mutex_);
     runner_.runs_.insert(run_);
     if (runner_.stopping_) run_->stop();
@@ -27,13 +36,68 @@ class JobRunner::Listed {
 
  private:
   JobRunner& runner_;
-  const std::shared_ptr<TaskRun> run_;
+  const std::shared_ptr<Attempt> run_;
+};
+
+// A run has a slot of a lane for as long as this lives.
+class JobRunner::Placed {
+ public:
+  Placed(JobRunner& runner, Lane lane) : runner_(runner), light_(lane == Lane::kLight) {
+    std::lock_guard lock(runner_.mutex_);
+    ++slots().running;
+  }
+  ~Placed() {
+    {
+      std::lock_guard lock(runner_.mutex_);
+      --slots().running;
+      if (lent_) --runner_.lent_;
+      if (runner_.moving_ == 0) return;
+    }
+    runner_.changed_.notify_all();
+  }
+  Placed(const Placed&) = delete;
+  Placed& operator=(const Placed&) = delete;
+
+  // Waits until there is a slot in the main lane, or the run is to end.
+  void leave_light_lane(const ExecutionContext& run) {
+    std::unique_lock lock(runner_.mutex_);
+    if (!light_) return;
+    --runner_.light_.running;
+    ++runner_.moving_;
+    ++runner_.lent_;
+    ++runner_.wakes_;
+    lent_ = true;
+    runner_.add_light_worker_if_short();
+    runner_.changed_.notify_all();
+    while (runner_.main_.running >= runner_.main_.places && !runner_.stopping_) {
+      runner_.changed_.wait_for(lock, kAsk);
+      lock.unlock();
+      const bool stopped = run.poll().has_value();
+      lock.lock();
+      if (stopped) break;
+    }
+    --runner_.moving_;
+    light_ = false;
+    ++runner_.main_.running;
+  }
+
+ private:
+  Slots& slots() { return light_ ? runner_.light_ : runner_.main_; }
+
+  JobRunner& runner_;
+  bool light_;
+  bool lent_ = false;
 };
 
 JobRunner::JobRunner(const RunEnvironment& environment, MemoryGate& gate, RunnerOptions options)
-    : environment_(environment), gate_(gate), options_(std::move(options)) {
-  threads_.reserve(options_.slots + 2);
-  for (std::uint32_t i = 0; i < options_.slots; ++i) threads_.emplace_back([this] { work(); });
+    : environment_(environment),
+      gate_(gate),
+      options_(std::move(options)),
+      main_{.places = options_.slots},
+      light_{.places = options_.light_slots} {
+  std::lock_guard lock(mutex_);
+  for (std::uint32_t i = 0; i < options_.slots; ++i) add_worker(Lane::kMain);
+  for (std::uint32_t i = 0; i < options_.light_slots; ++i) add_worker(Lane::kLight);
   threads_.emplace_back([this] { renew_and_reap(); });
   threads_.emplace_back([this] { collect(); });
 }
@@ -51,21 +115,37 @@ void JobRunner::wake() {
 }
 
 void JobRunner::stop() {
+  std::vector<std::thread> threads;
   {
     std::lock_guard lock(mutex_);
-    stopping_ = true;
+    stopping_ = true;  // so that there are no more threads
+    threads.swap(threads_);
     for (const auto& run : runs_) run->stop();
   }
   changed_.notify_all();
-  for (std::thread& thread : threads_)
-    if (thread.joinable()) thread.join();
+  for (std::thread& thread : threads) thread.join();
+}
+
+// REQUIRES: mutex_ is held.
+void JobRunner::add_worker(Lane lane) {
+  threads_.emplace_back([this, lane] { work(lane); });
+  if (lane == Lane::kLight) ++light_threads_;
+}
+
+// REQUIRES: mutex_ is held.
+void JobRunner::add_light_worker_if_short() {
+  try {
+    if (light_threads_ < light_.places + lent_ && !stopping_) add_worker(Lane::kLight);
+  } catch (const std::exception&) {
+    // No thread or no memory for one: the slot stays empty until a run ends.
+  }
 }
 
 QueueFigures JobRunner::figures() const {
   QueueFigures figures;
   std::lock_guard lock(mutex_);
   figures.running = static_cast<double>(runs_.size());
-  for (const auto& run : runs_) figures.admitted_bytes += static_cast<double>(run->weight());
+  for (const auto& run : runs_) figures.admitted_bytes += static_cast<double>(run->share_bytes());
   return figures;
 }
 
@@ -80,27 +160,36 @@ bool JobRunner::guarded(F&& step) {
   }
 }
 
-void JobRunner::work() {
+void JobRunner::work(Lane lane) {
   std::uint64_t seen = 0;
   do {
-    while (guarded([this] { return work_once(); })) continue;
+    while (guarded([&] { return work_once(lane); })) continue;
   } while (wait_for_wake(seen));
 }
 
-// True where there may be more to do.
-bool JobRunner::work_once() {
+// True if there may be more to do.
+bool JobRunner::work_once(Lane lane) {
   std::unique_lock claiming(claiming_);
   {
     std::lock_guard lock(mutex_);
-    if (stopping_) return false;
+    const Slots& slots = lane == Lane::kLight ? light_ : main_;
+    const std::size_t moving = lane == Lane::kLight ? 0 : moving_;  // these come first
+    if (stopping_ || slots.running + moving >= slots.places) return false;
   }
-  auto claim = environment_.store.claim(options_.worker, options_.lease, gate_.room());
+  const std::uint64_t room = lane == Lane::kLight
+                                 ? std::min(gate_.room(true), most_light(environment_.limits))
+                                 : gate_.room(false);
+  auto claim = environment_.store.claim(options_.worker, options_.lease, room);
   if (!claim) {
     environment_.log->warn("event=claim_failed message={}", log_value(claim.error().message));
     return false;
   }
   if (!*claim) return false;
-  const auto share = gate_.take((*claim)->weight);
+  const bool light =
+      options_.light_slots > 0 && (*claim)->estimate <= most_light(environment_.limits);
+  auto share =
+      gate_.take({.estimate = (*claim)->estimate, .client = (*claim)->owner, .light = light});
+  Placed placed(*this, lane);
   claiming.unlock();
   if (!share) {  // calls took the room meanwhile
     (void)environment_.store.release((*claim)->ref, options_.poll, false);
@@ -108,7 +197,14 @@ bool JobRunner::work_once() {
   }
   const Claim name{.ref = (*claim)->ref, .job_id = (*claim)->job_id, .tries = (*claim)->tries};
   try {
-    const auto run = std::make_shared<TaskRun>(environment_, std::move(**claim));
+    Attempt::LeaveLightLane leave;
+    if (light)
+      leave = [&placed](MemoryGate::Share& share, const ExecutionContext& run) {
+        share.turn_heavy();
+        placed.leave_light_lane(run);
+      };
+    const auto run = std::make_shared<Attempt>(environment_, std::move(**claim), std::move(*share),
+                                               std::move(leave));
     const Listed listed(*this, run);
     run->run();
   } catch (const std::bad_alloc&) {  // none for the request, or for what came of it
@@ -127,7 +223,7 @@ void JobRunner::give_up(const Claim& claim, const Failure& failure) {
   if (claim.tries < retry.max_attempts) {
     (void)environment_.store.release(claim.ref, delay_after(retry, claim.tries), true);
   } else {
-    (void)environment_.store.fail(claim.ref, to_status(failure, claim.job_id).error_details());
+    (void)environment_.store.fail(claim.ref, to_status(failure, "").error_details());
     environment_.metrics.job_became("failed");
   }
 }
@@ -140,7 +236,7 @@ void JobRunner::renew_and_reap() {
 }
 
 bool JobRunner::renew() {
-  std::vector<std::shared_ptr<TaskRun>> runs;
+  std::vector<std::shared_ptr<Attempt>> runs;
   {
     std::lock_guard lock(mutex_);
     runs.assign(runs_.begin(), runs_.end());
@@ -152,6 +248,7 @@ bool JobRunner::renew() {
 bool JobRunner::reap() {
   const auto reaped = environment_.store.reap(environment_.retry);
   if (!reaped || reaped->requeued + reaped->failed == 0) return false;
+  environment_.metrics.leases_lost(reaped->requeued + reaped->failed);
   for (std::uint64_t i = 0; i < reaped->failed; ++i) environment_.metrics.job_became("failed");
   environment_.log->warn("event=leases_lost requeued={} failed={}", reaped->requeued,
                          reaped->failed);

@@ -20,14 +20,17 @@
 #include <thread>
 #include <vector>
 
-#include "server/jobs/task_run.h"
-#include "server/memory_gate.h"
+#include "server/admission/memory_gate.h"
+#include "server/jobs/attempt.h"
 
 namespace weft::server {
 
 struct RunnerOptions {
   std::string worker{};     // of its tasks' records; tells the servers of a store apart
   std::uint32_t slots = 1;  // tasks at once. REQUIRES: >= 1
+  // Tasks on top of these that are light (memory_estimate.h). One that turns out heavy leaves its
+  // slot to another, and goes on when one of the others is free.
+  std::uint32_t light_slots = 0;
   std::chrono::milliseconds lease{30'000};
   // Between two renewals, which carry the progress.
   std::chrono::milliseconds renewal{1'000};
@@ -55,11 +58,17 @@ class JobRunner {
   QueueFigures figures() const;
 
  private:
+  enum class Lane { kMain, kLight };
   class Listed;
+  class Placed;
+  struct Slots {
+    std::size_t places;
+    std::size_t running = 0;
+  };
 
-  // What the threads do again and again; false where there was nothing to do, or it failed.
-  void work();
-  bool work_once();
+  // What the threads do again and again; false if there was nothing to do, or it failed.
+  void work(Lane lane);
+  bool work_once(Lane lane);
   void renew_and_reap();
   bool renew();
   bool reap();
@@ -68,6 +77,8 @@ class JobRunner {
   // The step's answer; false where it throws.
   template <class F>
   bool guarded(F&& step);
+  void add_worker(Lane lane);
+  void add_light_worker_if_short();
   // Ends a claim whose run has thrown.
   void give_up(const Claim& claim, const Failure& failure);
   // Returns at the next `wake`; `seen` counts those that the caller knows of. False once the runner
@@ -80,13 +91,18 @@ class JobRunner {
   MemoryGate& gate_;
   const RunnerOptions options_;
 
-  mutable std::mutex mutex_;  // guards the three below
-  std::set<std::shared_ptr<TaskRun>> runs_;
+  mutable std::mutex mutex_;  // guards all below but claiming_
+  Slots main_;
+  Slots light_;
+  std::size_t moving_ = 0;  // from the light lane to the main one
+  std::size_t lent_ = 0;    // threads of the light lane that run in the main one, or are about to
+  std::set<std::shared_ptr<Attempt>> runs_;
   std::uint64_t wakes_ = 0;
   bool stopping_ = false;
+  std::size_t light_threads_ = 0;
+  std::vector<std::thread> threads_;
   std::condition_variable changed_;
   std::mutex claiming_;  // from asking how much room there is to taking it
-  std::vector<std::thread> threads_;
 };
 
 }  // namespace weft::server

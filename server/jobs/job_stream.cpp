@@ -5,9 +5,9 @@
 
 #include <utility>
 
-#include "server/jobs/job_wire.h"
-#include "server/translate.h"
-#include "server/work.h"
+#include "server/admission/queued_function.h"
+#include "server/wire/job_wire.h"
+#include "server/wire/translate.h"
 
 namespace weft::server {
 namespace {
@@ -29,23 +29,21 @@ grpc::ByteBuffer to_buffer(std::string bytes) {
 
 }  // namespace
 
-JobStream::JobStream(const StreamEnvironment& environment, grpc::CallbackServerContext* context,
-                     const char* method, StreamedJob job, DrainGate::Pass pass)
-    : MessageStream(context, kReadAhead),
+JobStream::JobStream(const StreamEnvironment& environment, AdmittedCall& call, std::string id)
+    : MessageStream(call.call, kReadAhead),
       environment_(environment),
-      job_(std::move(job)),
-      method_(method),
-      pass_(std::move(pass)) {}
+      job_{call.caller, std::move(id)},
+      method_(call.method),
+      pass_(std::exchange(call.pass, std::nullopt)) {}
 
 void JobStream::start() {
   soon([this] { begin(); });
 }
 
 void JobStream::tick(Clock::time_point now) {
-  if (waiting_for_client(now) < environment_.stall_timeout) return;
-  fail({Reason::kReaderStalled, "",
-        fmt::format("the client read nothing for {} s",
-                    Seconds(environment_.stall_timeout).count())});
+  auto slowness = too_slow(now, environment_.patience);
+  if (!slowness) return;
+  fail({Reason::kReaderStalled, "", *std::move(slowness)});
   kill();
 }
 
@@ -173,7 +171,7 @@ bool FetchStream::send_chunk(const std::string& sha256) {
   if (!chunk) return fail(failure_of(chunk.error())), false;
   if (!*chunk) return fail(mesh_gone(job_.id)), false;
   bytes_ += (*chunk)->size();
-  environment_.metrics.chunk_sent((*chunk)->size(), 0);
+  environment_.metrics.chunk_sent((*chunk)->size());
   return send(to_buffer(std::move(**chunk)));
 }
 

@@ -14,22 +14,22 @@
 #include <optional>
 #include <string>
 
-#include "server/caller.h"
-#include "server/drain.h"
-#include "server/errors.h"
-#include "server/job_queue.h"
-#include "server/log.h"
-#include "server/message_stream.h"
-#include "server/metrics.h"
+#include "server/admission/admission.h"
+#include "server/admission/work_queue.h"
+#include "server/net/caller.h"
+#include "server/net/message_stream.h"
+#include "server/observe/log.h"
+#include "server/observe/metrics.h"
 #include "server/store/job_store.h"
+#include "server/wire/errors.h"
 
 namespace weft::server {
 
 // What all streams share; outlives them.
 struct StreamEnvironment {
   JobStore& store;
-  JobQueue& threads;  // that may wait for the store
-  std::chrono::steady_clock::duration stall_timeout;
+  WorkQueue& threads;  // that may wait for the store
+  ReaderPatience patience;
   Metrics& metrics;
   Logger log;
   std::function<void(MessageStream&)> forget;  // drops the owner's pointer to the stream
@@ -55,8 +55,7 @@ class JobStream : public MessageStream, public std::enable_shared_from_this<JobS
   void stop() { fail({Reason::kStopping, "", "the server is stopping"}); }
 
  protected:
-  JobStream(const StreamEnvironment& environment, grpc::CallbackServerContext* context,
-            const char* method, StreamedJob job, DrainGate::Pass pass);
+  JobStream(const StreamEnvironment& environment, AdmittedCall& call, std::string id);
 
   virtual void begin() = 0;
   void fail(const Failure& failure);
@@ -75,18 +74,18 @@ class JobStream : public MessageStream, public std::enable_shared_from_this<JobS
 
  private:
   void client_gone() override { fail({Reason::kCancelled, "", "the client cancelled the call"}); }
-  void done() override { environment_.forget(*this); }
+  void ended_for_good() override { environment_.forget(*this); }
 
   const char* const method_;
-  const DrainGate::Pass pass_;
+  const std::optional<DrainGate::Pass> pass_;
   const Clock::time_point began_ = Clock::now();
 };
 
 class WatchStream final : public JobStream {
  public:
-  WatchStream(const StreamEnvironment& environment, grpc::CallbackServerContext* context,
-              StreamedJob job, DrainGate::Pass pass)
-      : JobStream(environment, context, "WatchJob", std::move(job), std::move(pass)) {}
+  // Each takes the parts of the call but its bytes.
+  WatchStream(const StreamEnvironment& environment, AdmittedCall& call, std::string id)
+      : JobStream(environment, call, std::move(id)) {}
 
   void tick(Clock::time_point now) override;
   void drain() override { stop(); }
@@ -101,16 +100,15 @@ class WatchStream final : public JobStream {
 
 class FetchStream final : public JobStream {
  public:
-  FetchStream(const StreamEnvironment& environment, grpc::CallbackServerContext* context,
-              StreamedJob job, std::uint32_t first_chunk, DrainGate::Pass pass)
-      : JobStream(environment, context, "FetchMesh", std::move(job), std::move(pass)),
-        next_(first_chunk) {}
+  FetchStream(const StreamEnvironment& environment, AdmittedCall& call, std::string id,
+              std::uint32_t first_chunk)
+      : JobStream(environment, call, std::move(id)), next_(first_chunk) {}
 
  private:
   void begin() override;
   void wrote() override;
   void send_what_fits();
-  // False where the call has ended by that.
+  // False if the call has ended by that.
   bool send_chunk(const std::string& sha256);
 
   // Of whoever has set busy_.

@@ -10,12 +10,12 @@
 #include <mutex>
 #include <optional>
 
-#include "engine/arena.h"
-#include "server/engine_call.h"
+#include "engine/base/arena.h"
+#include "server/admission/memory_gate.h"
 #include "server/jobs/job_runner.h"
 #include "server/jobs/job_service.h"
-#include "server/log.h"
-#include "server/memory_gate.h"
+#include "server/mesh/engine_call.h"
+#include "server/observe/log.h"
 #include "server/store/job_store.h"
 
 namespace weft::server {
@@ -30,12 +30,12 @@ struct JobOptions {
 
 class JobSystem {
  public:
-  JobSystem(std::unique_ptr<JobStore> store, JobOptions options, const Authenticator& authenticator,
+  JobSystem(std::unique_ptr<JobStore> store, JobOptions options, Admission& admission,
             Metrics& metrics, const EngineFn& engine, Arena& arena, MemoryGate& gate,
             const Logger& log);
   ~JobSystem();
 
-  // Null where this server does not serve.
+  // Null if this server does not serve.
   JobService* service() { return service_ ? &*service_ : nullptr; }
 
   // Asks the store.

@@ -9,8 +9,8 @@
 //   mesh   a mesh that was made: a summary and chunks, each known by its SHA-256
 //
 // The store does not look into requests, progress, errors, summaries and chunks: they are bytes.
-// `key` names a mesh: 32 bytes, a digest of the request and the engine version. Jobs of the same
-// key share a task, and find the mesh once it is made.
+// `key` names a mesh: 32 bytes, a digest of the request and the engine version, and of the owner if
+// clients share nothing. Jobs of the same key share a task, and find the mesh once it is made.
 //
 // Laws, whatever fails and whenever:
 //   1. A job whose submission was answered is there, and reaches exactly one final state.
@@ -20,7 +20,7 @@
 //      has settled its task may settle it the same way again, and is told kHeld: whoever got no
 //      answer asks once more.
 //   3. A mesh is whole: `finish` settles the mesh, the task and all jobs in one transaction, and
-//      only where every chunk is there.
+//      only if every chunk is there.
 //   4. No transaction is open between two calls.
 //
 // Errors: see StoreError. Every function may block on the disk or the network: none is called on a
@@ -28,8 +28,8 @@
 //
 //   auto store = SqliteStore::open({.folder = "/var/lib/weft"});
 //   if (!store) return complain(store.error());
-//   auto job = (*store)->submit({.owner = "ann", .key = key, .request = bytes, .weight = 1 << 20});
-//   auto claim = (*store)->claim("worker-1", std::chrono::seconds(30), 1 << 30);
+//   auto job = (*store)->submit({.owner = "ann", .key = key, .request = bytes, .estimate = 1 <<
+//   20}); auto claim = (*store)->claim("worker-1", std::chrono::seconds(30), 1 << 30);
 //   ... (*store)->put_chunk(sha256, chunk) ... (*store)->finish(claim->ref, mesh) ...
 #pragma once
 
@@ -57,7 +57,7 @@ using WallTime = std::chrono::system_clock::time_point;  // stored to the micros
 
 struct JobRecord {
   std::string id;          // given by the store: unique for ever, 26 characters, sorts by time
-  std::string owner;       // empty where callers are not told apart
+  std::string owner;       // empty if callers are not told apart
   std::string request_id;  // empty: none
   std::string key;
   JobState state = JobState::kQueued;
@@ -73,14 +73,23 @@ struct JobRecord {
   std::string brief;                 // of its mesh; empty unless succeeded, and the mesh is kept
 };
 
+// What the work on a task may use.
+struct WorkBudget {
+  std::uint64_t bytes = 0;  // of engine memory
+  std::chrono::microseconds time{0};
+};
+
 struct Submission {
   std::string owner{};
   std::string request_id{};
   std::string key{};
-  std::string request{};     // what a worker needs
-  std::uint64_t weight = 0;  // bytes of memory that the work is expected to take
-  std::string trace{};       // of the call, for the log of whoever does the work
-  // Make a mesh even where one is kept, and share no task. What comes of it replaces what is kept.
+  std::string request{};       // what a worker needs
+  std::uint64_t estimate = 0;  // bytes of memory that the work is expected to take
+  // The job joins a task of its key only if that may use as much. Otherwise it makes a task that
+  // later jobs join in the other's stead.
+  WorkBudget budget{};
+  std::string trace{};  // of the call, for the log of whoever does the work
+  // Make a mesh even if one is kept, and share no task. What comes of it replaces what is kept.
   bool no_cache = false;
   // Tasks that wait, of all and of this owner; at these numbers no further one is taken. Jobs that
   // join a task or find a mesh are always taken.
@@ -112,7 +121,7 @@ struct Claim {
   std::string key{};
   std::string owner{};  // of the job that made the task
   std::string request{};
-  std::uint64_t weight = 0;
+  std::uint64_t estimate = 0;
   std::string job_id{};     // of the job that made the task
   std::string trace{};      // of its submission
   std::uint32_t tries = 0;  // attempts that count, this one included
@@ -180,7 +189,7 @@ struct Collected {
 struct StoreFigures {
   std::uint64_t queued = 0;  // tasks
   std::uint64_t running = 0;
-  std::uint64_t queued_weight = 0;
+  std::uint64_t queued_estimate = 0;
   double oldest_queued_seconds = 0;
   std::uint64_t meshes = 0;
   std::uint64_t chunk_bytes = 0;
@@ -192,7 +201,7 @@ class JobStore {
 
   // --- for clients ---
   virtual StoreResult<Submitted> submit(const Submission& submission) = 0;
-  // Nothing where the owner has no such job; the same below.
+  // Nothing if the owner has no such job; the same below.
   virtual StoreResult<std::optional<JobRecord>> get(const std::string& owner,
                                                     const std::string& id) = 0;
   // The youngest first.
@@ -209,17 +218,17 @@ class JobStore {
   virtual StoreResult<std::optional<std::string>> chunk(const std::string& sha256) = 0;
 
   // --- for workers ---
-  // Of the tasks that are due and of at most this weight: the owner with the fewest claims comes
-  // first, then the owner who was served longest ago, then the oldest task. Nothing where there is
+  // Of the tasks that are due and of at most this estimate: the owner with the fewest claims comes
+  // first, then the owner who was served longest ago, then the oldest task. Nothing if there is
   // none.
   virtual StoreResult<std::optional<Claim>> claim(const std::string& worker,
                                                   std::chrono::milliseconds lease,
-                                                  std::uint64_t max_weight) = 0;
+                                                  std::uint64_t max_estimate) = 0;
   virtual StoreResult<Held> renew(const ClaimRef& claim, std::chrono::milliseconds lease,
                                   const std::string& progress) = 0;
-  // Does nothing where the chunk is there. `sha256` is of `bytes`.
+  // Does nothing if the chunk is there. `sha256` is of `bytes`.
   virtual StoreResult<void> put_chunk(const std::string& sha256, std::string_view bytes) = 0;
-  // All jobs of the task have succeeded. kUnavailable where a chunk is missing.
+  // All jobs of the task have succeeded. kUnavailable if a chunk is missing.
   virtual StoreResult<Held> finish(const ClaimRef& claim, const StoredMesh& mesh) = 0;
   // All jobs of the task have failed.
   virtual StoreResult<Held> fail(const ClaimRef& claim, const std::string& error) = 0;
@@ -234,7 +243,7 @@ class JobStore {
   virtual StoreResult<StoreFigures> figures() = 0;
 
   // Called, on any thread, when something may have changed: a job, its progress, a task to claim. A
-  // hint: changes go unannounced where a connection is down, and come without one. Set once, before
+  // hint: changes go unannounced if a connection is down, and come without one. Set once, before
   // the store is used by others; may be called until the store is destroyed.
   virtual void on_change(std::function<void()> listener) = 0;
 };

@@ -38,6 +38,12 @@ TEST(ListSchedule, TheReadyTaskWithTheLowestNumberGoesFirst) {
   EXPECT_DOUBLE_EQ(schedule(graph, 2, 0).seconds, 4);
 }
 
+TEST(ListSchedule, TheReadyTaskThatIsNeededFirstGoesFirst) {
+  auto graph = graph_of({1, 1, 1, 2}, {{2, 3}});
+  graph.needs = {1, 1, 0, 0};
+  EXPECT_DOUBLE_EQ(schedule(graph, 2, 0).seconds, 3);
+}
+
 TEST(ListSchedule, WhatWaitsForASkippedTaskWaitsForTheOneThatSkippedIt) {
   // Task 1 would have waited for 2; 3 waits for 1, which 0 skips.
   auto graph = graph_of({1, 0, 5, 1}, {{0, 1}, {2, 1}, {1, 3}});
@@ -67,6 +73,22 @@ TEST(ListSchedule, PartsWaitForRoomBeforeTheFirstUnsentOne) {
   for (std::uint32_t t = 0; t < 2 * ahead; ++t) graph.part_tasks.push_back(t);
   // Then those that waited, ahead + 1 in all, go on both threads.
   EXPECT_DOUBLE_EQ(schedule(graph, 2, 0).seconds, 10.0 * ahead + ahead / 2.0);
+}
+
+TEST(ListSchedule, WhatHasBegunAheadOfTheNextPartIsBounded) {
+  // Leaves of one task, each of which makes a part; that of the first takes long.
+  const std::uint32_t begun = parts_begun(10'000, 2);
+  std::vector<double> seconds(10'000, 1.0);
+  seconds[0] = 1e6;
+  auto graph = graph_of(std::move(seconds), {});
+  graph.name = {"stage", {"part"}};
+  for (std::uint32_t t = 0; t < 10'000; ++t) {
+    graph.part_tasks.push_back(t);
+    graph.needs.push_back(t);
+  }
+  const Schedule result = schedule(graph, 2, 0);
+  EXPECT_LE(result.most_begun, begun);
+  EXPECT_GE(result.seconds, 1e6 + 0.5 * (10'000 - 2 * begun));
 }
 
 TEST(ListSchedule, SendingIsOneAfterTheOther) {

@@ -43,7 +43,7 @@ TEST_F(CommandLine, MeshesThroughAPrivateServerAndEndsIt) {
   EXPECT_EQ(read_mesh(folder_ / "out" / "m.vtu").value(), square_mesh(4));
   EXPECT_TRUE(out().starts_with("32 triangles, 25 vertices, angles 45.00 to 90.00 degrees\n"))
       << out();
-  EXPECT_EQ(err(), "weft: refining 10 of about 100 triangles\nweft: drawing\n");
+  EXPECT_EQ(err(), "weft: refining, 10 triangles so far\nweft: drawing\n");
 }
 
 TEST_F(CommandLine, PrintsOneJsonObject) {
@@ -75,6 +75,7 @@ TEST_F(CommandLine, PrintsOneJsonObject) {
   EXPECT_EQ(json["leaves"], 1);
   EXPECT_EQ(json["deferred"], 3);
   EXPECT_EQ(json["rounds"], 2);
+  EXPECT_EQ(json["streamed"], false);
   for (const char* key : {"min_angle_deg", "max_angle_deg", "min_angle_p1_deg", "mean_quality",
                           "ideal_ratio", "lattice_share", "first_chunk_seconds", "total_seconds",
                           "peak_engine_bytes", "bytes_received"})
@@ -191,18 +192,18 @@ TEST_F(CommandLine, TakesTheServerFromTheEnvironment) {
 }
 
 TEST_F(CommandLine, ShowsWhyThePrivateServerDidNotStart) {
-  EXPECT_EQ(run(mesh_to("m.vtu"), {"WEFT_FAKE=die"}), 6);
+  EXPECT_EQ(run(mesh_to("m.vtu"), {"FAKE_WEFTD=die"}), 6);
   EXPECT_NE(err().find("no luck today"), std::string::npos);
   expect_nothing_left();
 }
 
 TEST_F(CommandLine, WritesNothingWhenTheServerIsKilledMidStream) {
-  EXPECT_EQ(run(mesh_to("m.vtu"), {"WEFT_FAKE=vanish"}), 78) << err();
+  EXPECT_EQ(run(mesh_to("m.vtu"), {"FAKE_WEFTD=vanish"}), 78) << err();
   expect_nothing_left();
 }
 
 TEST_F(CommandLine, WritesNothingWhenTheStreamIsDamaged) {
-  EXPECT_EQ(run(mesh_to("m.vtu"), {"WEFT_FAKE=damage"}), 79);
+  EXPECT_EQ(run(mesh_to("m.vtu"), {"FAKE_WEFTD=damage"}), 79);
   EXPECT_NE(err().find("chunk 1 does not match its SHA-256"), std::string::npos);
   expect_nothing_left();
 }
@@ -210,7 +211,7 @@ TEST_F(CommandLine, WritesNothingWhenTheStreamIsDamaged) {
 TEST_F(CommandLine, GivesUpAfterItsTimeout) {
   Words words = mesh_to("m.vtu");
   words.insert(words.end(), {"--timeout", "0.2"});
-  EXPECT_EQ(run(words, {"WEFT_FAKE=hang"}), 68);
+  EXPECT_EQ(run(words, {"FAKE_WEFTD=hang"}), 68);
   expect_nothing_left();
 }
 
@@ -224,7 +225,7 @@ void wait_for_file(const std::filesystem::path& path) {
 TEST_F(CommandLine, EndsItsServerWhenInterrupted) {
   for (const int signal : {SIGINT, SIGTERM}) {
     std::filesystem::remove(folder_ / "pid");
-    const pid_t pid = start(mesh_to("m.vtu"), {"WEFT_FAKE=hang"});
+    const pid_t pid = start(mesh_to("m.vtu"), {"FAKE_WEFTD=hang"});
     wait_for_file(folder_ / "pid");
     ::kill(pid, signal);
     EXPECT_EQ(end_of(pid), 128 + signal);
@@ -238,7 +239,7 @@ TEST_F(CommandLine, LeavesNothingWhenTheDiskIsFull) {
   ::getrlimit(RLIMIT_FSIZE, &old);
   const rlimit small{100'000, old.rlim_max};
   ::setrlimit(RLIMIT_FSIZE, &small);
-  const pid_t pid = start(mesh_to("m.vtu"), {"WEFT_FAKE=large"});
+  const pid_t pid = start(mesh_to("m.vtu"), {"FAKE_WEFTD=large"});
   ::setrlimit(RLIMIT_FSIZE, &old);
   EXPECT_EQ(end_of(pid), 5);
   EXPECT_NE(err().find("File too large"), std::string::npos) << err();
@@ -255,6 +256,30 @@ TEST_F(CommandLine, ChecksAMesh) {
   strict.insert(strict.end(), {"--min-angle", "50"});
   EXPECT_EQ(run(strict), 3);
   EXPECT_NE(out().find("angle"), std::string::npos) << out();
+}
+
+TEST_F(CommandLine, ChecksNoMeshAgainstASizeThatNothingExceeds) {
+  ASSERT_EQ(run(mesh_to("m.vtu")), 0);
+  for (const char* size : {"nan", "-nan", "inf", "-1", "0", "1e999"}) {
+    EXPECT_EQ(run({"check", folder_ / "out" / "m.vtu", "--domain", folder_ / "in.poly",
+                   std::string("--size=") + size}),
+              2)
+        << size;
+    EXPECT_NE(err().find("must be positive and finite"), std::string::npos) << err();
+  }
+}
+
+TEST_F(CommandLine, SuggestsWhatWasProbablyMeant) {
+  EXPECT_EQ(run({"mseh", "a.poly"}), 2);
+  EXPECT_NE(err().find("weft: did you mean `mesh`?\n"), std::string::npos) << err();
+  EXPECT_EQ(run({"mesh", "a.poly", "--sise", "1"}), 2);
+  EXPECT_NE(err().find("weft: did you mean `--size`?\n"), std::string::npos) << err();
+  EXPECT_EQ(run({"mesh", "a.poly", "--min-angel=20"}), 2);
+  EXPECT_NE(err().find("`--min-angle`"), std::string::npos) << err();
+  EXPECT_EQ(run({"mesh", "a.poly", "--wondrous"}), 2);
+  EXPECT_EQ(err().find("did you mean"), std::string::npos) << err();
+  EXPECT_EQ(run({"xy"}), 2);
+  EXPECT_EQ(err().find("did you mean"), std::string::npos) << err();
 }
 
 TEST_F(CommandLine, DescribesMeshesAndDomains) {

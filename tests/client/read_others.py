@@ -86,7 +86,7 @@ def write_csv(path):
 
 
 def gmsh_model(triangles, version, binary=0):
-    """Physical curves 5, around the plate, and 6, around the triangle; the hole has none where the
+    """Physical curves 5, around the plate, and 6, around the triangle; the hole has none if the
     triangles tell of it. Physical surfaces 7 and 8."""
     def write(path):
         gmsh.initialize(["gmsh", "-v", "2"])

@@ -5,7 +5,7 @@ fails or prints something else than the page shows.
     documents.py BUILD [--anew] [PAGE...]
 
 BUILD is the folder of weft, weftd and python/, such as build/release. Pages are README.md,
-docs/**/*.md and client/python/README.md, but for those that docs/generate.py makes. With --anew the
+CONTRIBUTING.md, docs/**/*.md and client/python/README.md, but for those that docs/generate.py makes. With --anew the
 pages get what their commands print and draw now, for a person to look at.
 
 A page is run from its top in an empty folder that stands for the root of the repository: tests/,
@@ -25,7 +25,8 @@ What varies from run to run and from machine to machine is in printed.py; a line
 number of lines.
 
 A picture that a page shows must be one that its commands have drawn, in a file of that name, and
-must look like it. A link to a file, or a heading, of the repository must lead to one.
+must look like it. A link to a file, or a heading, of the repository must lead to one, and a source
+that the text names, such as `engine/engine.h`, must be there.
 """
 
 from __future__ import annotations
@@ -69,6 +70,8 @@ def run_page(build: pathlib.Path, path: pathlib.Path, anew: bool) -> tuple[bool,
         pages.rewrite(path, session.changes)
         for line, target in pages.broken(page):
             raise Failed(line, f"the link leads nowhere: {target}")
+        for line, source in pages.missing(page):
+            raise Failed(line, f"there is no {source}")
     except pictures.Differs as error:
         return False, f"{name}:{line}: {error}"
     except Failed as error:
@@ -90,7 +93,7 @@ def main() -> None:
     parser.add_argument("--anew", action="store_true")
     arguments = parser.parse_intermixed_args()
     paths = [p.resolve() for p in arguments.pages] or [
-        ROOT / "README.md", ROOT / "client/python/README.md",
+        ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "client/python/README.md",
         *sorted(p for p in (ROOT / "docs").rglob("*.md") if p.name not in GENERATED)]
     start = time.monotonic()
     failed = 0

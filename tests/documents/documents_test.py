@@ -29,6 +29,7 @@ WRONG = {
     "a picture of something else": (DRAWING + "![a](pictures/key.png)\n", 5, "does not look like"),
     "a link to no file": ("[a](none.md)\n", 1, "leads nowhere: none.md"),
     "a link to no heading": ("# A\n\n[a](#a)\n[b](#b)\n", 4, "leads nowhere: #b"),
+    "a source that is not there": ("\n`engine/engine.h` and `engine/none.h`\n", 2, "there is no engine/none.h"),
     "commands that nobody runs": ("```bash\nweft info a\n```\n", 2, "are not run"),
     "output of nothing": ("```text\n1\n```\n", 2, "no block above"),
     "a block without an end": ("```sh\ntrue\n", 2, "no end"),

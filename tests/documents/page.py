@@ -12,6 +12,8 @@ from interpreter import Failed
 FENCE = re.compile(r"```(\w*)")
 NOT_RUN = re.compile(r"<!-- not run: (.+) -->")
 FILE_NAME = re.compile(r"# ([\w./-]+\.\w+)")
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOMS = "proto|engine|server|client|checker|tests|bench|deploy|docs"
 LINK = re.compile(r"(!?)\[[^\]]*\]\(([^)\s]+)\)")
 
 
@@ -93,6 +95,16 @@ def broken(page: Page) -> list[tuple[int, str]]:
         if not path.exists() or (anchor and anchor not in anchors(path)):
             found.append((line, target))
     return found
+
+
+def missing(page: Page) -> list[tuple[int, str]]:
+    """Line and path of the sources that the text names in `code`, from the root, and that are not there."""
+    text = re.sub(r"^```.*?^```$", lambda block: "\n" * block[0].count("\n"), page.path.read_text(),
+                  flags=re.M | re.S)
+    return [(number, name)
+            for number, line in enumerate(text.splitlines(), 1)
+            for name in re.findall(rf"`((?:{ROOMS})/[\w./-]*)`", line)
+            if not (ROOT / name).exists()]
 
 
 def anchors(path: pathlib.Path) -> set[str]:

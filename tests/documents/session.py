@@ -13,10 +13,10 @@ import time
 import interpreter
 import page as pages
 from interpreter import Failed
+from page import ROOT
 from postgres import Postgres
 from printed import is_as_shown, without_progress
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 DATABASE = "postgres://weft@db/weft"  # as pages call the one that they are given
 
 addresses = (f"127.{n >> 16 & 127 | 64}.{n >> 8 & 255}.{n & 255}"  # no two pages share one

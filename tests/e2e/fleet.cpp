@@ -11,8 +11,8 @@
 #include <chrono>
 #include <cstdlib>
 
+#include "client/call/mesh_call.h"
 #include "client/formats/domain_formats.h"
-#include "client/mesh_call.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 
@@ -53,9 +53,9 @@ std::shared_ptr<grpc::Channel> connect(const std::string& address) {
 
 v1::GenerateMeshRequest repeated_request(int number) {
   static const auto domain = client::read_domain(model("cylinder.poly")).value();
-  client::MeshWishes wishes;
-  wishes.size = std::to_string(0.12 / (1 + number % 20));
-  return client::make_request(domain, wishes);
+  client::RequestOptions request_options;
+  request_options.size = std::to_string(0.12 / (1 + number % 20));
+  return client::make_request(domain, request_options);
 }
 
 v1::GenerateMeshRequest mixed_request(int number) {
@@ -69,9 +69,9 @@ v1::GenerateMeshRequest mixed_request(int number) {
   static const std::array kinds{kind("cylinder.poly", 0.4), kind("pipe.poly", 20),
                                 kind("key.poly", 0.3), kind("us-east-coast.poly", 0.1)};
   const Kind& chosen = kinds[static_cast<std::size_t>(number) % kinds.size()];
-  client::MeshWishes wishes;
-  wishes.size = std::to_string(chosen.largest / (1 + number % 23 + 1e-3 * number));
-  return client::make_request(chosen.domain, wishes);
+  client::RequestOptions request_options;
+  request_options.size = std::to_string(chosen.largest / (1 + number % 23 + 1e-3 * number));
+  return client::make_request(chosen.domain, request_options);
 }
 
 v1::Summary Reference::summary(const v1::GenerateMeshRequest& request) {

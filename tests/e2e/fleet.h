@@ -60,11 +60,11 @@ class Reference {
 // A refusal by a server that is full, which says when to come again.
 bool is_full(const grpc::Status& status);
 
-// The job once it has ended, through deaths of the server; nothing where there is no such job.
+// The job once it has ended, through deaths of the server; nothing if there is no such job.
 std::optional<v1::Job> wait_for_job(v1::JobService::Stub& stub, const std::string& id);
 
 // The digest of the mesh that a stream carried, from its chunks: so what arrived is judged, and not
-// what is said of it. Empty where the two disagree.
+// what is said of it. Empty if the two disagree.
 template <class Reader, class Message>
 std::string digest_of_stream(Reader& reader, Message& message);
 std::string sha256(const std::string& bytes);
@@ -82,7 +82,7 @@ class Jobs {
  public:
   explicit Jobs(Requests requests) : requests_(requests) {}
 
-  // Submits one more job, and the same one again where the answer was lost. False where no server
+  // Submits one more job, and the same one again where the answer was lost. False if no server
   // answers.
   bool submit(const std::string& address);
   // Whether none is queued or at work, as far as a server answers.

@@ -42,7 +42,7 @@ class SqliteFile {
   SqliteFile(const SqliteFile&) = delete;
   SqliteFile& operator=(const SqliteFile&) = delete;
 
-  // What a statement answers; 0 where that is nothing.
+  // What a statement answers; 0 if that is nothing.
   std::int64_t number(const char* sql) const {
     sqlite3_stmt* statement = nullptr;
     EXPECT_EQ(sqlite3_prepare_v2(connection_, sql, -1, &statement, nullptr), SQLITE_OK) << sql;

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <thread>
 
-#include "client/jobs/fetch_mesh.h"
+#include "client/call/fetch_mesh.h"
 #include "tests/client/support/torn_relay.h"
 #include "tests/e2e/programs.h"
 
@@ -52,15 +52,15 @@ class Jobs : public testing::Test {
 };
 
 TEST_F(Jobs, MadeWhileNobodyWaitsAreTheFilesThatMeshWrites) {
-  const Words wishes = {"--size", "0.4*hypot(x-200, y-200) + 1"};
+  const Words request_options = {"--size", "0.4*hypot(x-200, y-200) + 1"};
   Words words = {pipe_};
-  words.insert(words.end(), wishes.begin(), wishes.end());
+  words.insert(words.end(), request_options.begin(), request_options.end());
   const std::string id = submit(words);
   const Outcome fetched = weft({"fetch", id, "--wait", "--domain", pipe_, "-o", folder_ / "f.vtu",
                                 "-o", folder_ / "f.node"});
   ASSERT_EQ(fetched.exit_code, 0) << fetched.err;
   Words mesh = {"mesh", pipe_, "-o", folder_ / "m.vtu", "-o", folder_ / "m.node"};
-  mesh.insert(mesh.end(), wishes.begin(), wishes.end());
+  mesh.insert(mesh.end(), request_options.begin(), request_options.end());
   ASSERT_EQ(weft(mesh).exit_code, 0);
   for (const char* extension : {".vtu", ".node", ".ele", ".poly"}) {
     const std::string made = client::contents_of(folder_ / (std::string("m") + extension));

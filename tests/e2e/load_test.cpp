@@ -126,7 +126,7 @@ class Client {
                                           : tally_.wrong);
   }
 
-  // Empty where the server is full.
+  // Empty if the server is full.
   std::string submit_job() {
     v1::SubmitJobRequest request;
     *request.mutable_mesh() = request_;

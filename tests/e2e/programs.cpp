@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -50,18 +51,26 @@ pid_t start(const std::string& program, const std::vector<std::string>& argument
   return pid;
 }
 
-int wait_for(pid_t pid) {
+// The exit code, or 128 + the signal.
+int wait_for(pid_t pid, rusage* usage = nullptr) {
   int status = 0;
-  waitpid(pid, &status, 0);
+  wait4(pid, &status, 0, usage);
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
 }  // namespace
 
+pid_t start_weft(const std::vector<std::string>& arguments) {
+  return start(WEFT_BINARY, arguments, "/dev/null", "/dev/null");
+}
+
 Outcome run_weft(const std::vector<std::string>& arguments) {
   const Folder folder;
   Outcome outcome;
-  outcome.exit_code = wait_for(start(WEFT_BINARY, arguments, folder / "out", folder / "err"));
+  rusage usage{};
+  outcome.exit_code =
+      wait_for(start(WEFT_BINARY, arguments, folder / "out", folder / "err"), &usage);
+  outcome.peak_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
   outcome.out = contents(folder / "out");
   outcome.err = contents(folder / "err");
   return outcome;
@@ -120,6 +129,23 @@ std::uint64_t Server::resident_bytes() const {
   std::uint64_t resident = 0;
   statm >> total >> resident;
   return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+std::uint64_t Server::peak_bytes() const {
+  std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+  for (std::string word; status >> word;) {
+    std::uint64_t kibibytes = 0;
+    if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
+  }
+  return 0;
+}
+
+std::string Server::log() const {
+  return contents(folder_ / "err");
+}
+
+std::uint64_t Server::logged_bytes() const {
+  return std::filesystem::file_size(folder_ / "err");
 }
 
 std::size_t Server::open_files() const {

@@ -14,10 +14,14 @@ namespace weft::e2e {
 
 using Folder = client::TempFolder;
 
+// Starts build/.../weft with these arguments; what it says goes to nobody.
+pid_t start_weft(const std::vector<std::string>& arguments);
+
 struct Outcome {
   int exit_code = -1;  // 128 + n for a signal
   std::string out;
   std::string err;
+  std::uint64_t peak_bytes = 0;  // of its resident memory
 };
 
 // Runs build/.../weft with these arguments and waits.
@@ -40,6 +44,11 @@ class Server {
   // Starts it again, where it was and as it was. REQUIRES: killed.
   void start();
   std::uint64_t resident_bytes() const;
+  // The most that it ever had.
+  std::uint64_t peak_bytes() const;
+  // What it wrote to stderr since it was started last.
+  std::string log() const;
+  std::uint64_t logged_bytes() const;
   std::size_t open_files() const;
   // The value of a metric, see value_of. REQUIRES: --metrics.
   double metric(const std::string& series) const;

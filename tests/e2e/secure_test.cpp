@@ -42,12 +42,12 @@ class Secure : public ::testing::Test {
     ca_file_ = folder_.write("ca.pem", ca_.pem());
     cert_file_ = folder_.write("ann.pem", ann.pem);
     key_file_ = folder_.write("ann.key", ann.key);
-    token_file_ = folder_.write("ann.token", "secret-a\n");
+    token_file_ = folder_.write("ann.token", "secret-of-ann-16\n");
     server_.emplace(Words{"--listen", "127.0.0.1:0",                                       //
                           "--tls-cert", folder_.write("server.pem", server.pem).string(),  //
                           "--tls-key", folder_.write("server.key", server.key).string(),   //
                           "--tls-client-ca", ca_file_,                                     //
-                          "--tokens", folder_.write("tokens", "ann secret-a\n").string()});
+                          "--tokens", folder_.write("tokens", "ann secret-of-ann-16\n").string()});
     address_ = server_->addresses().at(1);
   }
 
@@ -83,7 +83,7 @@ TEST_F(Secure, MeshesForWhoeverHasACertificateAndAToken) {
 }
 
 TEST_F(Secure, TakesTheTokenFromTheEnvironment) {
-  const Variable token("WEFT_TOKEN", "secret-a");
+  const Variable token("WEFT_TOKEN", "secret-of-ann-16");
   EXPECT_EQ(weft({"server-info"}, certificate()).exit_code, 0);
 }
 
@@ -91,7 +91,7 @@ TEST_F(Secure, EndsWith80WithoutTheRightToken) {
   const Outcome without = weft({"server-info"}, certificate());
   EXPECT_EQ(without.exit_code, kUnauthenticated);
   EXPECT_NE(without.err.find("UNAUTHENTICATED"), std::string::npos) << without.err;
-  const Variable token("WEFT_TOKEN", "secret-b");
+  const Variable token("WEFT_TOKEN", "secret-of-bob-16");
   EXPECT_EQ(weft({"server-info"}, certificate()).exit_code, kUnauthenticated);
 }
 
@@ -103,11 +103,15 @@ TEST_F(Secure, EndsWith78WhereTheTwoDoNotTrustEachOther) {
   const TestCa other("another CA");
   const std::string other_file = folder_.write("other.pem", other.pem()).string();
   EXPECT_EQ(weft({"health"}, {"--tls-ca", ca_file_}).exit_code, kUnavailable);
-  EXPECT_EQ(weft({"health"}, {}).exit_code, kUnavailable);
+  const Outcome plain = weft({"health"}, {});
+  EXPECT_EQ(plain.exit_code, kUnavailable);
+  EXPECT_NE(plain.err.find("if it encrypts, give --tls or --tls-ca FILE"), std::string::npos)
+      << plain.err;
   const Outcome outcome =
       weft({"health"}, {"--tls-ca", other_file, "--tls-cert", cert_file_, "--tls-key", key_file_});
   EXPECT_EQ(outcome.exit_code, kUnavailable);
-  EXPECT_NE(outcome.err.find(address_), std::string::npos) << outcome.err;
+  EXPECT_TRUE(outcome.err.starts_with("weft: the server " + address_)) << outcome.err;
+  EXPECT_NE(outcome.err.find("--tls-ca FILE names who has"), std::string::npos) << outcome.err;
 }
 
 TEST_F(Secure, WantsTheNameThatItIsTold) {
@@ -115,7 +119,10 @@ TEST_F(Secure, WantsTheNameThatItIsTold) {
   words.insert(words.end(), {"--tls-server-name", "mesh.example.org"});
   EXPECT_EQ(weft({"health"}, words).exit_code, 0);
   words.back() = "other.example.org";
-  EXPECT_EQ(weft({"health"}, words).exit_code, kUnavailable);
+  const Outcome outcome = weft({"health"}, words);
+  EXPECT_EQ(outcome.exit_code, kUnavailable);
+  EXPECT_NE(outcome.err.find("--tls-server-name NAME gives that name"), std::string::npos)
+      << outcome.err;
 }
 
 TEST_F(Secure, TrustsWhomTheSystemTrustsWithTls) {
@@ -144,7 +151,7 @@ TEST(ConnectionFlags, RefuseWhatIsNoToken) {
 }
 
 TEST(ConnectionFlags, SendNoTokenUnencryptedToAnotherMachine) {
-  const Variable token("WEFT_TOKEN", "secret-a");
+  const Variable token("WEFT_TOKEN", "secret-of-ann-16");
   for (const char* server : {"mesh.example.org:1", "127.example.org:1", "0.0.0.0:1", "[2::1]:1"}) {
     const Outcome outcome = run_weft({"health", "--server", server});
     EXPECT_EQ(outcome.exit_code, 2) << server;
@@ -163,10 +170,12 @@ TEST(ConnectionFlags, SendNoTokenUnencryptedToAnotherMachine) {
   }
 }
 
-TEST(PrivateServers, KnowNothingOfCertificatesAndTokensOfOthers) {
+TEST(PrivateServers, KnowNothingOfWhatConfiguresOtherServers) {
   const Variable cert("WEFT_TLS_CERT", "/no/such");
   const Variable key("WEFT_TLS_KEY", "/no/such");
   const Variable tokens("WEFT_TOKENS", "/no/such");
+  const Variable data("WEFT_DATA", "/proc/no/such");
+  const Variable triangles("WEFT_MAX_TRIANGLES", "nonsense");
   EXPECT_EQ(run_weft({"health"}).exit_code, 0);
 }
 

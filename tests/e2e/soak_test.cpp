@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "client/call/mesh_call.h"
 #include "client/formats/domain_formats.h"
-#include "client/mesh_call.h"
 #include "tests/e2e/fleet.h"
 #include "tests/e2e/programs.h"
 
@@ -24,9 +24,9 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 // The pipe at its coarsest, and no two the same.
 v1::GenerateMeshRequest small_request(int number) {
   static const auto domain = client::read_domain(model("pipe.poly")).value();
-  client::MeshWishes wishes;
-  wishes.size = std::to_string(500 + number);
-  return client::make_request(domain, wishes);
+  client::RequestOptions request_options;
+  request_options.size = std::to_string(500 + number);
+  return client::make_request(domain, request_options);
 }
 
 void submit(v1::JobService::Stub& stub, const v1::GenerateMeshRequest& mesh) {
@@ -241,11 +241,11 @@ TEST(Soak, SlowReadersOfMeshesInTheMakingHoldLittleBesidesTheEngineAndHoldNobody
   for (auto& slow : readers)
     slow.reader =
         v1::MeshService::NewStub(connect(server.address()))->GenerateMesh(&slow.context, large);
-  EXPECT_TRUE(server.shows("weft_running_jobs{queue=\"calls\"}", kReaders));
+  EXPECT_TRUE(server.shows("weft_pausing_jobs{queue=\"calls\"}", kReaders));
   let_settle(server);
   const std::uint64_t grown = growth(before, peak, kReaders, mesh_bytes);
   EXPECT_TRUE(read_large());
-  EXPECT_TRUE(server.shows("weft_running_jobs{queue=\"calls\"}", kReaders));
+  EXPECT_TRUE(server.shows("weft_pausing_jobs{queue=\"calls\"}", kReaders));
   read_slowly(readers, milliseconds(few_or_many(2, 100)));
   if (kMemoryTells) {
     EXPECT_LT(grown, static_cast<std::uint64_t>(kReaders) * (engine_bytes + mesh_bytes / 2));

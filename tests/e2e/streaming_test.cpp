@@ -7,15 +7,18 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
+#include <random>
 #include <string>
 #include <thread>
 
+#include "client/call/mesh_call.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
-#include "client/mesh_call.h"
 #include "tests/e2e/programs.h"
 #include "weft/v1/mesh_service.grpc.pb.h"
 
@@ -31,8 +34,9 @@ std::unique_ptr<Stub> stub_of(const Server& server) {
       grpc::CreateCustomChannel(server.address(), grpc::InsecureChannelCredentials(), arguments));
 }
 
-v1::GenerateMeshRequest request_for(const std::string& domain, const client::MeshWishes& wishes) {
-  return client::make_request(client::read_domain(model(domain)).value(), wishes);
+v1::GenerateMeshRequest request_for(const std::string& domain,
+                                    const client::RequestOptions& request_options) {
+  return client::make_request(client::read_domain(model(domain)).value(), request_options);
 }
 
 // A call read to its end.
@@ -82,6 +86,52 @@ TEST(FirstChunk, GivesTheRestOfTheSameMeshByteForByteOnOtherThreads) {
   const Stream beyond = call(*stub, request);
   EXPECT_EQ(beyond.status.error_code(), grpc::StatusCode::OUT_OF_RANGE);
   EXPECT_TRUE(beyond.chunks.empty());
+}
+
+// Reads up to `last` chunks of a mesh and leaves, with a stall before each that `stalls` names.
+void read_with_stalls(Stub& stub, const v1::GenerateMeshRequest& request, std::uint32_t last,
+                      const std::function<bool()>& stalls, Stream& stream) {
+  grpc::ClientContext context;
+  const auto reader = stub.GenerateMesh(&context, request);
+  v1::GenerateMeshResponse message;
+  while (reader->Read(&message)) {
+    if (message.has_summary()) stream.summary = message.summary();
+    if (!message.has_chunk()) continue;
+    stream.chunks[message.chunk().index()] = message.chunk().SerializeAsString();
+    if (message.chunk().index() + 1 == last) context.TryCancel();
+    if (stalls()) std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+  (void)reader->Finish();
+}
+
+// Meanwhile the run pauses: the buffer is smaller than a chunk.
+TEST(Readers, ThatStallAtRandomAndComeBackInTheMiddleGetTheSameMesh) {
+  const auto request_of = [](std::uint32_t threads) {
+    v1::GenerateMeshRequest request = request_for("us-east-coast.poly", {.size = "5e-4"});
+    request.set_no_cache(true);
+    request.set_threads(threads);
+    return request;
+  };
+  const Server server({"--threads", "3", "--stream-buffer", "256KiB"});
+  const auto stub = stub_of(server);
+  const Stream whole = call(*stub, request_of(3));
+  ASSERT_TRUE(whole.status.ok()) << whole.status.error_message();
+  ASSERT_TRUE(whole.summary.streamed());
+  ASSERT_GE(whole.chunks.size(), 20u);
+  std::mt19937 random(7);
+  for (const std::uint32_t threads : {1u, 2u, 3u}) {
+    const auto stalls = [&] { return random() % 6 == 0; };
+    const auto half = static_cast<std::uint32_t>(whole.chunks.size() / 2);
+    Stream pieces;
+    read_with_stalls(*stub, request_of(threads), half, stalls, pieces);
+    ASSERT_GE(pieces.chunks.size(), half);
+    ASSERT_FALSE(pieces.summary.has_timings()) << "it left in the middle";
+    v1::GenerateMeshRequest rest = request_of(4 - threads);
+    rest.set_first_chunk(static_cast<std::uint32_t>(pieces.chunks.size()));
+    read_with_stalls(*stub, rest, UINT32_MAX, stalls, pieces);
+    EXPECT_EQ(pieces.chunks, whole.chunks) << threads << " threads";
+    EXPECT_EQ(pieces.summary.sha256(), whole.summary.sha256()) << threads << " threads";
+  }
 }
 
 TEST(Quadtree, IsSentWhereItIsWantedAndCoversTheDomain) {

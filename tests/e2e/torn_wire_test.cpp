@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/client/support/temp_folder.h"
 #include "tests/client/support/torn_relay.h"
 #include "tests/e2e/fleet.h"
 #include "tests/e2e/programs.h"
@@ -141,6 +142,23 @@ TEST(TornWire, FetchMeshIsResumedByteForByte) {
     fetch.set_first_chunk(first_chunk);
     return v1::JobService::NewStub(connect_closely(address))->FetchMesh(&context, fetch);
   });
+}
+
+TEST(TornWire, WeftMeshGoesOnAsOftenAsTheWireTears) {
+  const Folder folder;
+  const Server server;
+  client::TornRelay relay(folder / "wire", server.address().substr(5), {100'000, 400'000, 900'000});
+  const auto mesh = [&](const std::string& address, const std::string& file) {
+    return run_weft({"mesh", model("cylinder.poly"), "--size", "5e-3", "--no-cache", "--quiet",
+                     "--server", address, "-o", folder / file});
+  };
+  const Outcome whole = mesh(server.address(), "whole.npz");
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  const Outcome torn = mesh(relay.address(), "torn.npz");
+  ASSERT_EQ(torn.exit_code, 0) << torn.err;
+  EXPECT_EQ(relay.torn(), 3u);
+  EXPECT_NE(torn.err.find("trying again"), std::string::npos) << torn.err;
+  EXPECT_EQ(client::contents_of(folder / "torn.npz"), client::contents_of(folder / "whole.npz"));
 }
 
 }  // namespace

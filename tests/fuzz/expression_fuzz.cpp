@@ -17,8 +17,8 @@
 #include <string>
 #include <string_view>
 
-#include "checker/size_expression.h"
-#include "engine/size/expression.h"
+#include "checker/size/size_expression.h"
+#include "engine/size/expression/expression.h"
 #include "tests/fuzz/byte_source.h"
 #include "tests/fuzz/law.h"
 

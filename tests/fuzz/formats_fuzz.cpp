@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "client/formats/domain_formats.h"
+#include "client/formats/domains/seeded.h"
 #include "client/formats/mesh_formats.h"
-#include "client/formats/seeded.h"
 #include "client/formats/size_grid.h"
 #include "tests/client/support/temp_folder.h"
 #include "tests/fuzz/byte_source.h"

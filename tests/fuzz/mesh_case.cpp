@@ -260,9 +260,10 @@ std::string to_text(const MeshCase& mesh_case) {
   if (mesh_case.budget.max_triangles < kTriangleLimit)
     text += print(" --max-triangles %llu",
                   static_cast<unsigned long long>(mesh_case.budget.max_triangles));
-  text += print("   (leaf_triangles %g, fill %s, triangle_limit %llu)\n", request.leaf_triangles,
-                pslg.fill == Fill::kSeeds ? "seeds" : "even-odd",
-                static_cast<unsigned long long>(mesh_case.budget.triangle_limit));
+  text +=
+      print("   (leaf_triangles %g, fill %s, triangle_limit %llu)\n",
+            request.leaf_triangles.value_or(0), pslg.fill == Fill::kSeeds ? "seeds" : "even-odd",
+            static_cast<unsigned long long>(mesh_case.budget.triangle_limit));
   if (const auto& raster = request.size.raster) {
     text += print("# raster: origin %.17g %.17g, step %.17g %.17g, %u x %u:", raster->origin.x,
                   raster->origin.y, raster->dx, raster->dy, raster->columns, raster->rows);

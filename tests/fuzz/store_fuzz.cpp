@@ -16,9 +16,9 @@
 #include <string_view>
 #include <vector>
 
-#include "server/jobs/job_wire.h"
-#include "server/store/sqlite_store.h"
-#include "server/translate.h"
+#include "server/store/sqlite/sqlite_store.h"
+#include "server/wire/job_wire.h"
+#include "server/wire/translate.h"
 #include "tests/client/support/temp_folder.h"
 #include "tests/fuzz/byte_source.h"
 #include "tests/fuzz/law.h"
@@ -174,7 +174,7 @@ class Caller {
                                           .request_id = "r",
                                           .key = std::string(kKeys[0]),
                                           .request = "bytes",
-                                          .weight = 1});
+                                          .estimate = 1});
     if (submitted) tell(submitted->job);
     const auto claim = store_.claim("worker", milliseconds(1000), 1 << 20);
     if (claim && *claim) {

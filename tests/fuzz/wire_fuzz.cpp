@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bytes of a request, on their way through the server: counted, parsed, checked, weighed, named
-// and meshed. The first byte chooses whether the rest is a SubmitJobRequest as it stands, or the
-// choices that make one, whose bytes may then be damaged. Asserts:
-//   regions    as many regions are counted before the message is parsed as it then has
+// The bytes of a request, on their way through the server's own admission: scanned, freed of
+// unknown fields, parsed, checked, weighed, named and meshed. A byte chooses whether the rest is a
+// SubmitJobRequest as it stands, or the choices that make one, whose bytes may then be damaged, or
+// those of bytes that are nearly one (strange_wire.h). Asserts:
+//   malformed  what protobuf parses is not called malformed
+//   counts     as much is counted before the message is parsed as it then has, or more
+//   unknown    what is left without unknown fields is the same message without them, and no longer
+//   admission  a request is admitted if it parses and passes the checks, as the message that it is
 //   failure    a refusal has a sentence, and a status that clients can take
 //   budget     an admitted job may use no more than the limits allow, and weighs no more
 //   key        the key has 32 bytes, and is the same once more and for its canonical spelling
@@ -13,14 +17,17 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
-#include "server/jobs/mesh_key.h"
-#include "server/limits.h"
-#include "server/translate.h"
-#include "server/weight.h"
-#include "server/wire_scan.h"
+#include "server/admission/memory_estimate.h"
+#include "server/wire/limits.h"
+#include "server/wire/request_key.h"
+#include "server/wire/request_reader.h"
+#include "server/wire/translate.h"
+#include "server/wire/wire_scan.h"
 #include "tests/fuzz/law.h"
 #include "tests/fuzz/random_message.h"
+#include "tests/fuzz/strange_wire.h"
 #include "tests/support/collected_mesh.h"
 #include "weft/v1/job_service.pb.h"
 
@@ -48,9 +55,34 @@ grpc::ByteBuffer buffer_of(const std::string& bytes, std::size_t cut) {
   return {slices, 2};
 }
 
+std::string text_of(const grpc::ByteBuffer& buffer) {
+  grpc::Slice slice;
+  if (!buffer.DumpToSingleSlice(&slice).ok()) return "";
+  return {reinterpret_cast<const char*>(slice.begin()), slice.size()};
+}
+
+// At any depth.
+bool has_unknown_fields(const google::protobuf::Message& message) {
+  const google::protobuf::Reflection& reflection = *message.GetReflection();
+  if (!reflection.GetUnknownFields(message).empty()) return true;
+  std::vector<const google::protobuf::FieldDescriptor*> fields;
+  reflection.ListFields(message, &fields);
+  for (const auto* field : fields) {
+    if (field->cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE) continue;
+    if (!field->is_repeated()) {
+      if (has_unknown_fields(reflection.GetMessage(message, field))) return true;
+      continue;
+    }
+    for (int i = 0; i < reflection.FieldSize(message, field); ++i)
+      if (has_unknown_fields(reflection.GetRepeatedMessage(message, field, i))) return true;
+  }
+  return false;
+}
+
 std::string request_of(ByteSource& bytes) {
   const std::size_t mode = bytes.byte();
   if (mode % 4 == 0) return std::string(bytes.rest());
+  if (mode % 4 == 2) return strange_wire(*v1::SubmitJobRequest::descriptor(), bytes);
   std::string damage(mode % 4 == 3 ? bytes.take(8) : std::string_view());
   v1::SubmitJobRequest request;
   fill(request, bytes);
@@ -74,23 +106,51 @@ void judge(const std::uint8_t* data, std::size_t size) {
          "failure", failure.message);
   };
 
-  const std::uint64_t counted = count_submitted_regions(buffer_of(whole, cut));
-  if (auto failure = check_seed_count(counted, kLimits)) return refuse(*failure);
+  const auto& type = *v1::SubmitJobRequest::descriptor();
+  const grpc::ByteBuffer buffer = buffer_of(whole, cut);
+  const WireScan scan = scan_wire(buffer, type);
   v1::SubmitJobRequest submission;
-  if (!submission.ParseFromString(whole)) return;
-  shown = submission.ShortDebugString();
+  const bool parses = submission.ParseFromString(whole);
+  if (parses) shown = submission.ShortDebugString();
+  must(!(parses && scan.malformed), "malformed", "it parses");
+  if (!scan.malformed) {
+    const grpc::ByteBuffer known = without_unknown_fields(buffer, type);
+    must(known.Length() <= whole.size(), "unknown", "longer than before");
+    must(scan_wire(known, type).unknown_fields == 0, "unknown", "some are left");
+    v1::SubmitJobRequest of_known;
+    must(of_known.ParseFromString(text_of(known)) || !parses, "unknown", "no longer parses");
+    // Not the other way: what a later member of a oneof replaces is scanned, and not kept.
+    must(!parses || scan.unknown_fields != 0 || !has_unknown_fields(submission), "unknown",
+         "one was missed");
+    submission.DiscardUnknownFields();
+    must(!parses || of_known.SerializeAsString() == submission.SerializeAsString(), "unknown",
+         "another message");
+  }
+  const auto read = read_submission(buffer, kLimits);
+  if (!read) refuse(read.error());
+  // What protobuf alone refuses is forgiven where it is taken out, such as groups too deep.
+  if (!parses) return must(!read || scan.unknown_fields != 0, "admission", "it does not parse");
   const v1::GenerateMeshRequest& request = submission.mesh();
-  const auto regions = static_cast<std::uint64_t>(request.domain().regions_size());
-  must(counted == regions, "regions", std::to_string(counted));
-  must(count_regions(buffer_of(request.SerializeAsString(), cut)) == regions, "regions", "alone");
-  if (auto failure = check_shape(request)) return refuse(*failure);
+  const v1::Domain& domain = request.domain();
+  const auto counted = [&](int field) { return scan.count(*v1::Domain::descriptor(), field); };
+  const auto held = [](int elements) { return static_cast<std::uint64_t>(elements); };
+  must(counted(v1::Domain::kRegionsFieldNumber) == held(domain.regions_size()) &&
+           counted(v1::Domain::kPointsFieldNumber) == held(domain.points_size()) &&
+           counted(v1::Domain::kSegmentsFieldNumber) == held(domain.segments_size()) &&
+           counted(v1::Domain::kSegmentMarkersFieldNumber) == held(domain.segment_markers_size()) &&
+           counted(v1::Domain::kHolesFieldNumber) == held(domain.holes_size()) &&
+           scan.count(*v1::Raster::descriptor(), v1::Raster::kValuesFieldNumber) >=
+               held(request.size().raster().values_size()),
+       "counts", std::to_string(counted(v1::Domain::kRegionsFieldNumber)));
+  if (!read) return;
+  must(read->SerializeAsString() == submission.SerializeAsString(), "admission", "another message");
+  must(!check_shape(request) && !check_limits(request, kLimits), "admission", "it passes no check");
 
   const std::string key = mesh_key(request);
   v1::GenerateMeshRequest again;
   must(again.ParseFromString(request.SerializeAsString()), "key", "no longer parses");
   again.DiscardUnknownFields();
   must(key.size() == 32 && key == mesh_key(again), "key", "another key");
-  if (auto failure = check_limits(request, kLimits)) return refuse(*failure);
 
   const Budget budget = to_budget(request.budget(), kLimits);
   const double seconds = to_seconds(request.budget(), kLimits);

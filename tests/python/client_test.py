@@ -247,6 +247,14 @@ def test_a_private_server_that_does_not_start_says_why():
         weft.LocalServer("/no/such/weftd")
 
 
+def test_a_server_of_ones_own_inherits_nothing_that_configures_others(monkeypatch):
+    monkeypatch.setenv("WEFT_DATA", "/proc/no/such")
+    monkeypatch.setenv("WEFT_MAX_POINTS", "nonsense")
+    monkeypatch.setenv("WEFT_TOKEN", "not for it")
+    with weft.local() as client:
+        assert client.server_info().threads >= 1
+
+
 def test_no_server_at_all_is_said(monkeypatch):
     monkeypatch.delenv("WEFT_SERVER", raising=False)
     with pytest.raises(weft.WeftError, match="no server is named"):

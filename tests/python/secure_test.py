@@ -12,7 +12,7 @@ from conftest import KEY
 def guarded(tmp_path_factory):
     """A server that wants tokens, over TLS and over its socket; its TLS address and certificate."""
     folder = tmp_path_factory.mktemp("guarded")
-    (folder / "tokens").write_text("ada secret-of-ada\n")
+    (folder / "tokens").write_text("ada secret-of-ada-0016\n")
     subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt",
                     "ec_paramgen_curve:prime256v1", "-nodes", "-days", "1", "-subj", "/CN=weft.test",
                     "-addext", "subjectAltName=DNS:weft.test", "-keyout", folder / "key.pem",
@@ -27,7 +27,7 @@ def guarded(tmp_path_factory):
 
 
 def test_a_token_lets_in(guarded):
-    with weft.Client(guarded.target, token="secret-of-ada") as client:
+    with weft.Client(guarded.target, token="secret-of-ada-0016") as client:
         assert client.mesh(KEY).digest
         assert client.server_info().version
 
@@ -40,7 +40,7 @@ def test_no_token_and_a_wrong_one_are_refused(guarded, token):
 
 
 def test_the_token_of_the_environment_is_taken(guarded, monkeypatch):
-    monkeypatch.setenv("WEFT_TOKEN", "secret-of-ada\n")
+    monkeypatch.setenv("WEFT_TOKEN", "secret-of-ada-0016\n")
     monkeypatch.setenv("WEFT_SERVER", guarded.target)
     with weft.Client() as client:
         assert client.server_info().version
@@ -48,7 +48,7 @@ def test_the_token_of_the_environment_is_taken(guarded, monkeypatch):
 
 def test_tls_trusts_the_ca_it_is_given(guarded):
     tls = weft.TLS(ca=guarded.certificate, server_name="weft.test")
-    with weft.Client(guarded.tcp, tls=tls, token="secret-of-ada") as client:
+    with weft.Client(guarded.tcp, tls=tls, token="secret-of-ada-0016") as client:
         assert client.mesh(KEY).digest
 
 

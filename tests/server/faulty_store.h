@@ -48,9 +48,9 @@ class FaultyStore final : public JobStore {
   }
   StoreResult<std::optional<Claim>> claim(const std::string& worker,
                                           std::chrono::milliseconds lease,
-                                          std::uint64_t max_weight) override {
+                                          std::uint64_t max_estimate) override {
     return unless<std::optional<Claim>>("claim",
-                                        [&] { return store_->claim(worker, lease, max_weight); });
+                                        [&] { return store_->claim(worker, lease, max_estimate); });
   }
   StoreResult<Held> renew(const ClaimRef& claim, std::chrono::milliseconds lease,
                           const std::string& progress) override {

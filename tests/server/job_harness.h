@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/store/sqlite_store.h"
+#include "server/store/sqlite/sqlite_store.h"
 #include "tests/client/support/temp_folder.h"
 #include "tests/server/logged_server.h"
 #include "weft/v1/job_service.grpc.pb.h"

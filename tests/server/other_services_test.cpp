@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // grpc.health.v1 and reflection, with requests and responses spelled in wire bytes.
+#include <memory>
+#include <optional>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "tests/server/harness.h"
 #include "tests/server/raw_call.h"
@@ -52,23 +57,99 @@ TEST(Health, SaysNotServingWhileTheServerDrains) {
   drainer.join();
 }
 
-TEST(Reflection, ListsTheService) {
+// A stream of reflection, of either version.
+class Reflection {
+ public:
+  Reflection(std::shared_ptr<grpc::Channel> channel, const std::string& version,
+             const std::string& token = "")
+      : method_("/grpc.reflection." + version + ".ServerReflection/ServerReflectionInfo"),
+        channel_(std::move(channel)),
+        rpc_(method_.c_str(), grpc::internal::RpcMethod::BIDI_STREAMING, channel_) {
+    if (!token.empty()) context_.AddMetadata("authorization", "Bearer " + token);
+    stream_.reset(
+        grpc::internal::ClientReaderWriterFactory<grpc::ByteBuffer, grpc::ByteBuffer>::Create(
+            channel_.get(), rpc_, &context_));
+  }
+
+  // Nothing if the stream has ended.
+  std::optional<std::string> ask(const std::string& request) {
+    grpc::ByteBuffer answer;
+    if (!stream_->Write(to_buffer(request)) || !stream_->Read(&answer)) return std::nullopt;
+    return to_string(answer);
+  }
+  grpc::Status end() {
+    stream_->WritesDone();
+    grpc::ByteBuffer more;
+    while (stream_->Read(&more)) continue;
+    return stream_->Finish();
+  }
+
+ private:
+  const std::string method_;
+  const std::shared_ptr<grpc::Channel> channel_;
+  const grpc::internal::RpcMethod rpc_;
+  grpc::ClientContext context_;
+  std::unique_ptr<grpc::ClientReaderWriter<grpc::ByteBuffer, grpc::ByteBuffer>> stream_;
+};
+
+// ServerReflectionRequest, with one field of text.
+std::string request(int field, const std::string& text) {
+  return std::string{static_cast<char>(field << 3 | 2), static_cast<char>(text.size())} + text;
+}
+constexpr int kByName = 3;
+constexpr int kBySymbol = 4;
+constexpr int kListServices = 7;
+
+bool holds(const std::optional<std::string>& answer, const std::string& text) {
+  return answer && answer->find(text) != std::string::npos;
+}
+
+TEST(Reflection, ListsTheServicesInBothVersions) {
+  TestServer server(idle());
+  for (const char* version : {"v1", "v1alpha"}) {
+    Reflection reflection(server.channel(), version);
+    const auto answer = reflection.ask(request(kListServices, ""));
+    EXPECT_TRUE(holds(answer, "weft.v1.MeshService")) << version;
+    EXPECT_TRUE(holds(answer, "grpc.health.v1.Health")) << version;
+    EXPECT_FALSE(holds(answer, "weft.v1.JobService")) << version;  // no jobs are kept
+    EXPECT_TRUE(reflection.end().ok());
+  }
+}
+
+TEST(Reflection, AnswersOneRequestAfterAnotherWithAFileAndWhatItImports) {
+  TestServer server(idle());
+  Reflection reflection(server.channel(), "v1");
+  const auto by_symbol = reflection.ask(request(kBySymbol, "weft.v1.JobService.SubmitJob"));
+  EXPECT_TRUE(holds(by_symbol, "weft/v1/job_service.proto"));
+  EXPECT_TRUE(holds(by_symbol, "weft/v1/mesh_service.proto"));
+  EXPECT_TRUE(holds(by_symbol, "google/protobuf/timestamp.proto"));
+  EXPECT_TRUE(holds(reflection.ask(request(kByName, "google/rpc/status.proto")), "Status"));
+  EXPECT_TRUE(
+      holds(reflection.ask(request(kBySymbol, "weft.v1.None")), "this server has no such thing"));
+  EXPECT_TRUE(reflection.end().ok());
+}
+
+TEST(Reflection, RefusesWhatIsNoRequest) {
+  TestServer server(idle());
+  Reflection reflection(server.channel(), "v1");
+  EXPECT_FALSE(reflection.ask("\x0a\xff"));
+  EXPECT_EQ(reflection.end().error_code(), grpc::INVALID_ARGUMENT);
+}
+
+TEST(Reflection, BoundsTheStreamsThatAreOpen) {
   TestServer server(idle());
   const auto channel = server.channel();
-  grpc::ClientContext context;
-  const grpc::internal::RpcMethod rpc(
-      "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo",
-      grpc::internal::RpcMethod::BIDI_STREAMING, channel);
-  const std::unique_ptr<grpc::ClientReaderWriter<grpc::ByteBuffer, grpc::ByteBuffer>> stream(
-      grpc::internal::ClientReaderWriterFactory<grpc::ByteBuffer, grpc::ByteBuffer>::Create(
-          channel.get(), rpc, &context));
-  const std::string list_services("\x3a\x00", 2);
-  ASSERT_TRUE(stream->Write(to_buffer(list_services)));
-  grpc::ByteBuffer answer;
-  ASSERT_TRUE(stream->Read(&answer));
-  EXPECT_NE(to_string(answer).find("weft.v1.MeshService"), std::string::npos);
-  stream->WritesDone();
-  EXPECT_TRUE(stream->Finish().ok());
+  std::vector<std::unique_ptr<Reflection>> open;
+  for (int i = 0; i < 64; ++i) {
+    open.push_back(std::make_unique<Reflection>(channel, "v1"));
+    ASSERT_TRUE(open.back()->ask(request(kListServices, ""))) << i;
+  }
+  Reflection one_more(channel, "v1alpha");  // each version has its own bound
+  EXPECT_TRUE(one_more.ask(request(kListServices, "")));
+  Reflection too_many(channel, "v1");
+  EXPECT_FALSE(too_many.ask(request(kListServices, "")));
+  EXPECT_EQ(too_many.end().error_code(), grpc::RESOURCE_EXHAUSTED);
+  for (const auto& each : open) EXPECT_TRUE(each->end().ok());
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ class Weftd {
     std::fclose(output_);
   }
 
-  // Reads the log up to a line that contains the text, and returns that line; empty where the
+  // Reads the log up to a line that contains the text, and returns that line; empty if the
   // output ends before.
   std::string read_until(const std::string& text) {
     char* line = nullptr;

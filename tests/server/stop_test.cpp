@@ -8,11 +8,13 @@
 #include <thread>
 
 #include "tests/server/harness.h"
+#include "tests/server/logged_server.h"
 
 namespace weft::server::testing {
 namespace {
 
 using std::chrono::milliseconds;
+using std::chrono::seconds;
 
 // An engine that works until it is stopped, and keeps what it was told.
 struct StoppableEngine {
@@ -117,12 +119,49 @@ TEST(Stop, ASlowReaderHoldsUpItsOwnJobOnlyAndMemoryStaysBounded) {
   EXPECT_TRUE(refused.wait());
 }
 
+// More clients than there are places, none of which reads: another one's call does not wait for
+// them.
+TEST(Stop, ClientsThatReadNothingKeepNobodyFromAPlace) {
+  constexpr int kStalled = 6;
+  std::atomic<int> streams{0};
+  std::atomic<std::uint32_t> sent{0};
+  ServiceOptions options;
+  options.jobs = 2;
+  options.light_jobs = 1;
+  options.queue = 10;
+  options.limits.stream_buffer = std::uint64_t{1} << 20;
+  TestServer server(
+      [&](const auto&, ChunkSink& sink, auto&) {
+        if (streams++ < kStalled) return send_until_refused(sink, sent);
+        return send_chunks(sink, 20, kMaxChunkBytes);
+      },
+      options);
+  struct Stalled {
+    std::unique_ptr<v1::MeshService::Stub> stub;
+    grpc::ClientContext context;
+    std::unique_ptr<grpc::ClientReader<v1::GenerateMeshResponse>> reader;
+  };
+  std::vector<Stalled> stalled(kStalled);
+  for (Stalled& client : stalled) {
+    client.stub = server.stub();
+    client.reader = client.stub->GenerateMesh(&client.context, valid_request());
+  }
+  EXPECT_TRUE(eventually([&] { return streams == kStalled; }));
+  const Outcome other = call(*server.stub(), valid_request());
+  EXPECT_TRUE(other.status.ok()) << other.status.error_message();
+  EXPECT_EQ(other.chunk_indices().size(), 20u);
+  for (Stalled& client : stalled) {
+    client.context.TryCancel();
+    EXPECT_EQ(read_all(*client.reader).status.error_code(), grpc::StatusCode::CANCELLED);
+  }
+}
+
 TEST(Stop, AClientThatReadsNothingIsCutOff) {
   std::atomic<std::uint32_t> sent{0};
   Event refused;
   ServiceOptions options;
   options.tick = milliseconds(10);
-  options.stall_timeout = milliseconds(200);
+  options.patience.stall_timeout = milliseconds(200);
   TestServer server(
       [&](const auto&, ChunkSink& sink, auto&) {
         auto result = send_until_refused(sink, sent);
@@ -141,7 +180,7 @@ TEST(Stop, AClientThatReadsNothingOfAFinishedMeshIsCutOff) {
   Event finished;
   ServiceOptions options;
   options.tick = milliseconds(10);
-  options.stall_timeout = milliseconds(200);
+  options.patience.stall_timeout = milliseconds(200);
   TestServer server(
       [&](const auto&, ChunkSink& sink, auto&) {
         auto result = send_chunks(sink, 8, kMaxChunkBytes);  // the hand-over takes them all
@@ -155,6 +194,28 @@ TEST(Stop, AClientThatReadsNothingOfAFinishedMeshIsCutOff) {
   ASSERT_TRUE(finished.wait());
   server->drain(std::chrono::seconds(30));  // returns as soon as no call is open
   EXPECT_FALSE(read_all(*reader).status.ok());
+}
+
+// A client that reads a chunk of 1 MiB every 40 ms, of a mesh of 64: how its call ends.
+grpc::Status read_slowly(std::uint64_t least_rate) {
+  ServiceOptions options;
+  options.tick = milliseconds(10);
+  options.patience = {.stall_timeout = seconds(1), .least_rate = least_rate};
+  TestServer server(
+      [&](const auto&, ChunkSink& sink, auto&) { return send_chunks(sink, 64, kMaxChunkBytes); },
+      options);
+  auto stub = server.stub();
+  grpc::ClientContext context;
+  auto reader = stub->GenerateMesh(&context, valid_request());
+  v1::GenerateMeshResponse message;
+  while (reader->Read(&message)) std::this_thread::sleep_for(milliseconds(40));
+  return reader->Finish();
+}
+
+TEST(Stop, AClientThatReadsBelowTheLeastRateIsCutOff) {
+  EXPECT_EQ(read_slowly(1'000'000'000).error_code(), grpc::StatusCode::CANCELLED);
+  const grpc::Status patient = read_slowly(0);
+  EXPECT_TRUE(patient.ok()) << patient.error_message();
 }
 
 // A connection that the test can cut under gRPC's feet.

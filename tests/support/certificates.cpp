@@ -75,13 +75,13 @@ TestCa::TestCa(const std::string& name)
   pem_ = pem_of(certificate_.get());
 }
 
-TestCertificate TestCa::issue(const CertificateWishes& wishes) const {
+TestCertificate TestCa::issue(const CertificateOptions& options) const {
   const Key key(make_key(), &EVP_PKEY_free);
-  const X509Ptr certificate(make_certificate(wishes.common_name, key.get(), wishes.days),
+  const X509Ptr certificate(make_certificate(options.common_name, key.get(), options.days),
                             &X509_free);
   X509_set_issuer_name(certificate.get(), X509_get_subject_name(certificate_.get()));
   std::string names;
-  for (const std::string& name : wishes.names) names += (names.empty() ? "" : ",") + name;
+  for (const std::string& name : options.names) names += (names.empty() ? "" : ",") + name;
   if (!names.empty())
     add_extension(certificate.get(), certificate_.get(), NID_subject_alt_name, names);
   demand(X509_sign(certificate.get(), key_.get(), EVP_sha256()) != 0);

@@ -19,7 +19,7 @@ struct TestCertificate {
   std::string key;  // PEM
 };
 
-struct CertificateWishes {
+struct CertificateOptions {
   std::string common_name{};         // empty: none
   std::vector<std::string> names{};  // alternative names, as OpenSSL writes them: "DNS:localhost"
   int days = 1;                      // until it expires; -1: it expired yesterday
@@ -30,7 +30,7 @@ class TestCa {
   explicit TestCa(const std::string& name);
 
   const std::string& pem() const { return pem_; }
-  TestCertificate issue(const CertificateWishes& wishes) const;
+  TestCertificate issue(const CertificateOptions& options) const;
 
  private:
   using Key = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "checker/check.h"
-#include "engine/chunk.h"
 #include "engine/engine.h"
+#include "engine/output/chunk.h"
 
 namespace weft {
 

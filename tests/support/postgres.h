@@ -72,7 +72,7 @@ class PostgresServer {
 class PostgresSession {
  public:
   explicit PostgresSession(const std::string& uri);
-  // The first value of the answer, as text; empty where there is none. Throws where it fails.
+  // The first value of the answer, as text; empty if there is none. Throws if it fails.
   std::string run(const std::string& sql);
 
  private:

@@ -3,7 +3,7 @@
 linear pressures (Taylor and Hood) on a mesh that is finer around the cylinder and in its wake.
 
 The benchmark 2D-1 of Schaefer and Turek (1996): channel 2.2 x 0.41, cylinder of diameter 0.1 at
-(0.2, 0.2), parabolic inflow of mean velocity 0.2, viscosity 0.001. Exits with 1 where the drag is
+(0.2, 0.2), parabolic inflow of mean velocity 0.2, viscosity 0.001. Exits with 1 if the drag is
 farther than 1 % from the reference. Needs python3-scipy.
 
     python3 cylinder_flow.py DOMAIN [PICTURE]      DOMAIN with the markers below, such as channel.poly

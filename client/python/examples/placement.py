@@ -9,7 +9,7 @@ advection   b . grad u = 0 with b = (y, -x) in a quarter of a ring, so a profile
 graded      the same on meshes that are finer where the profile is
 
 A row is one bound on the areas. The gain compares the lattice's error with what circumcentres have at as
-many triangles, between two of their meshes: 0.80 is an error less by a fifth. Exits with 1 where the lattice
+many triangles, between two of their meshes: 0.80 is an error less by a fifth. Exits with 1 if the lattice
 gains nothing on its finest mesh. Needs python3-scipy.
 
     python3 placement.py

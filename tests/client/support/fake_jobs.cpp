@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "client/jobs/job_text.h"
+#include "client/report/job_text.h"
 #include "google/rpc/error_details.pb.h"
 #include "tests/client/support/sample_mesh.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stands in for weftd: takes the flags with which weft starts a private server, and misbehaves as
-// the variable WEFT_FAKE says:
+// the variable FAKE_WEFTD says:
 //   (unset)      streams a good mesh of 32 triangles
 //   large        streams a good mesh of a million triangles
 //   die          ends at start, with a word on stderr
@@ -9,7 +9,8 @@
 //   vanish       is killed in the middle of the stream
 //   hang         streams nothing and waits for the call to be cancelled
 //   damage       streams a chunk whose digest is wrong
-// The process id is written to the file that WEFT_FAKE_PID names.
+// The process id is written to the file that FAKE_WEFTD_PID names, the environment, a line feed
+// before each variable, to that of FAKE_WEFTD_ENVIRONMENT.
 #include <poll.h>
 #include <unistd.h>
 
@@ -65,9 +66,13 @@ Script script_for(const std::string& behaviour) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string behaviour = variable("WEFT_FAKE");
-  if (const std::string file = variable("WEFT_FAKE_PID"); !file.empty())
+  const std::string behaviour = variable("FAKE_WEFTD");
+  if (const std::string file = variable("FAKE_WEFTD_PID"); !file.empty())
     std::ofstream(file) << ::getpid();
+  if (const std::string file = variable("FAKE_WEFTD_ENVIRONMENT"); !file.empty()) {
+    std::ofstream out(file);
+    for (char** each = environ; *each != nullptr; ++each) out << '\n' << *each;
+  }
   if (behaviour == "die") {
     std::fputs("event=starting\nevent=cannot_listen message=\"no luck today\"\n", stderr);
     return 3;

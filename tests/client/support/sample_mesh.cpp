@@ -7,7 +7,7 @@
 #include <bit>
 #include <string>
 
-#include "client/mesh_angles.h"
+#include "client/report/mesh_angles.h"
 
 namespace weft::client {
 namespace {

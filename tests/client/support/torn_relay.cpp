@@ -29,7 +29,7 @@ sockaddr_un name_of(const std::filesystem::path& path) {
   return name;
 }
 
-// False where the other end is gone.
+// False if the other end is gone.
 bool send_all(int socket, const char* bytes, std::size_t size) {
   while (size > 0) {
     const ssize_t sent = ::send(socket, bytes, size, MSG_NOSIGNAL);

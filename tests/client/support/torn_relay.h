@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "client/atomic_file.h"
+#include "client/base/atomic_file.h"
 
 namespace weft::client {
 

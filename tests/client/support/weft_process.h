@@ -34,7 +34,7 @@ class WeftProcess : public testing::Test {
     Words arguments = {WEFT_BINARY};
     arguments.insert(arguments.end(), words.begin(), words.end());
     Words environment = {"WEFT_WEFTD=" WEFT_FAKE_WEFTD, "TMPDIR=" + (folder_ / "tmp").string(),
-                         "WEFT_FAKE_PID=" + (folder_ / "pid").string()};
+                         "FAKE_WEFTD_PID=" + (folder_ / "pid").string()};
     environment.insert(environment.end(), variables.begin(), variables.end());
     const auto pointers = [](Words& list) {
       std::vector<char*> out;

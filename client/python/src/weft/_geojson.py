@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A domain from a GeoJSON object, by the rules of client/formats/geojson.h: the same file gives the
+"""A domain from a GeoJSON object, by the rules of client/formats/domains/geojson.h: the same file gives the
 same request, and so the same mesh, as the command line does. A ring that crosses itself is taken as
 it is, inside by the even-odd rule.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""When a call is made again, as client/jobs/retry.h has it: where the server was away (UNAVAILABLE)
+"""When a call is made again, as client/call/retry.h has it: where the server was away (UNAVAILABLE)
 and where it says itself that the same call may succeed later, as when its queue is full. Each wait
 is twice as long as the one before, as long as nothing new comes, and at least as long as the server
 asks for; a quarter more or less by chance.

@@ -42,7 +42,7 @@ class Chunk:
     triangles: Ints
     """(m, 3) int32: vertex numbers, counter-clockwise."""
     regions: Ints
-    """(m,) int32: region id per triangle, 0 where there is none."""
+    """(m,) int32: region id per triangle, 0 if there is none."""
     edges: Ints
     """(k, 2) int32: vertex numbers of the edges that lie on input segments."""
     edge_markers: Ints
@@ -52,7 +52,7 @@ class Chunk:
     input_points: Ints
     """(p, 2) int32: vertex number and index of the input point."""
     box: Floats
-    """(4,) float64: min x, min y, max x, max y of the triangles; empty where there are none."""
+    """(4,) float64: min x, min y, max x, max y of the triangles; empty if there are none."""
     sha256: bytes
     """The digest that came with it; it was verified."""
 

@@ -64,7 +64,7 @@ class ServerError(WeftError):
         self.code = code
         """Name of the gRPC status code, such as `INVALID_ARGUMENT`."""
         self.reason = reason
-        """From the table in server/errors.h, such as `BAD_OPTION`; empty where weft did not say."""
+        """From the table in server/wire/errors.h, such as `BAD_OPTION`; empty if weft did not say."""
         self.detail = detail
         """What the server says in words."""
         self.violations = violations

@@ -19,10 +19,6 @@ from .errors import LocalServerError
 
 _START_SECONDS = 30.0
 _STOP_SECONDS = 5.0
-# What concerns servers that others use, too: this one has no certificate, asks for no token and
-# shows no metrics.
-_NOT_FOR_IT = ("WEFT_TLS_CERT", "WEFT_TLS_KEY", "WEFT_TLS_CLIENT_CA", "WEFT_TOKENS", "WEFT_TOKEN",
-               "WEFT_METRICS")
 
 
 class LocalServer:
@@ -67,7 +63,10 @@ class LocalServer:
             self.close()
 
     def _spawn(self, program: str, arguments: Sequence[str]) -> subprocess.Popen[bytes]:
-        environment = {k: v for k, v in os.environ.items() if k not in _NOT_FOR_IT}
+        # Nothing that configures servers that others use, too: this one has its own limits, keeps no
+        # jobs and has no certificate. A token is for a server that is named.
+        environment = {k: v for k, v in os.environ.items()
+                       if not k.startswith("WEFT_")}
         with open(self.folder / "log", "wb") as log:
             try:
                 # A group of its own, so that Ctrl-C reaches us alone.

@@ -40,7 +40,7 @@ class Mesh:
     triangles: Ints
     """(m, 3) int32: vertex numbers, counter-clockwise."""
     regions: Ints
-    """(m,) int32: region id per triangle, 0 where there is none."""
+    """(m,) int32: region id per triangle, 0 if there is none."""
     edges: Ints
     """(k, 2) int32: vertex numbers of the edges that lie on input segments."""
     edge_markers: Ints

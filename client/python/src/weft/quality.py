@@ -30,12 +30,12 @@ class Quality:
 
     @property
     def min_angle(self) -> float:
-        """The smallest angle of all, in degrees; NaN where there are no triangles."""
+        """The smallest angle of all, in degrees; NaN if there are no triangles."""
         return float(self.min_angles.min()) if len(self.min_angles) else float("nan")
 
     @property
     def max_angle(self) -> float:
-        """The largest angle of all, in degrees; NaN where there are no triangles."""
+        """The largest angle of all, in degrees; NaN if there are no triangles."""
         return float(self.max_angles.max()) if len(self.max_angles) else float("nan")
 
     @property

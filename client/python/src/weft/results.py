@@ -133,6 +133,9 @@ class Summary:
     """Triangles over the least number that the bounds on their areas allow; 0 without a bound."""
     lattice_share: float
     """How much of the area lies where points came from a lattice, from 0 to 1."""
+    streamed: bool
+    """Whether the mesh left the server's engine while it was refined, so that only a strip of it was
+    in memory at a time."""
     angle_histogram: npt.NDArray[np.int64]
     """(18,): angles per 10 degrees."""
     aspect_histogram: npt.NDArray[np.int64]
@@ -151,7 +154,7 @@ class Summary:
     deferred: int
     rounds: int
     leaves: int
-    """Of the quadtree; 0 where the mesh was made without one."""
+    """Of the quadtree; 0 if the mesh was made without one."""
     leaf_boxes: npt.NDArray[np.float64]
     """(leaves, 4): min x, min y, max x, max y; empty unless `quadtree=True` asked for them."""
     engine_version: str
@@ -221,7 +224,7 @@ class Job:
     """When work on it first began; None where it has not, or where the mesh was kept already."""
     end_time: datetime.datetime | None
     attempts: int
-    """More than 1 where a worker was lost."""
+    """More than 1 if a worker was lost."""
     worker: str
     progress: Progress | None
     """While it is running."""

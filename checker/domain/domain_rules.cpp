@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "checker/domain/domain_rules.h"
+
+#include <cmath>
+
+#include "checker/text.h"
+
+namespace weft::check {
+
+bool is_usable(double coordinate) {
+  const double magnitude = std::fabs(coordinate);
+  return magnitude == 0 || (magnitude >= kMinMagnitude && magnitude <= kMaxMagnitude);
+}
+
+bool judge_domain(const Domain& domain, Findings& findings) {
+  const auto bad = [&](auto&&... parts) {
+    findings.add(Rule::kDomain, [&] { return say(parts...); });
+  };
+  const auto usable = [](Vec2 p) { return is_usable(p.x) && is_usable(p.y); };
+  constexpr std::string_view kUnusable = ": not finite, or of a magnitude beyond 1e-150 to 1e150";
+
+  for (std::size_t i = 0; i < domain.points.size(); ++i)
+    if (!usable(domain.points[i])) bad("point ", i, " is at ", domain.points[i], kUnusable);
+  for (std::size_t i = 0; i < domain.holes.size(); ++i)
+    if (!usable(domain.holes[i])) bad("hole seed ", i, " is at ", domain.holes[i], kUnusable);
+  for (std::size_t i = 0; i < domain.regions.size(); ++i) {
+    const RegionSeed& seed = domain.regions[i];
+    if (!usable(seed.at)) bad("region seed ", i, " is at ", seed.at, kUnusable);
+    if (seed.max_area && !(*seed.max_area > 0))
+      bad("region seed ", i, " has the area bound ", *seed.max_area, ", which is not positive");
+  }
+  for (std::size_t i = 0; i < domain.segments.size(); ++i) {
+    const auto [a, b] = domain.segments[i];
+    if (a >= domain.points.size() || b >= domain.points.size())
+      bad("segment ", i, " joins points ", a, " and ", b, ", but there are ", domain.points.size());
+    else if (domain.points[a] == domain.points[b])
+      bad("segment ", i, " joins points ", a, " and ", b, ", both at ", domain.points[a]);
+  }
+  if (!(domain.snap >= 0 && domain.snap <= kMaxMagnitude))
+    bad("the merging distance ", domain.snap, " is not finite or below 0");
+  if (!domain.markers.empty() && domain.markers.size() != domain.segments.size())
+    bad(domain.markers.size(), " markers for ", domain.segments.size(), " segments");
+  return findings.total(Rule::kDomain) == 0;
+}
+
+}  // namespace weft::check

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "checker/geometry/fill.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <numeric>
+
+#include "checker/domain/slivers.h"
+#include "checker/text.h"
+
+namespace weft::check {
+namespace {
+
+// How many segments a path from the unbounded face to each other one must cross.
+class EvenOdd {
+ public:
+  EvenOdd(const BentDomain& bent, const Arrangement& arrangement)
+      : bent_(bent),
+        arrangement_(arrangement),
+        first_(arrangement.faces().size() + 1, 0),
+        is_sliver_(find_slivers(bent, arrangement)) {
+    const auto half_edges = static_cast<std::uint32_t>(2 * arrangement.edges().size());
+    for (std::uint32_t h = 0; h < half_edges; ++h) ++first_[arrangement.face(h) + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    around_.resize(half_edges);
+    std::vector<std::uint32_t> next = first_;
+    for (std::uint32_t h = 0; h < half_edges; ++h) around_[next[arrangement.face(h)]++] = h;
+  }
+
+  // Whether all paths to a face cross an even number of segments, or all an odd one: an even number
+  // of edges meets at every vertex.
+  bool is_closed() const {
+    for (std::uint32_t v = 0; v < arrangement_.vertices().size(); ++v) {
+      std::uint32_t parity = 0;
+      for (const std::uint32_t h : arrangement_.half_edges_at(v)) parity ^= parity_of(h);
+      if (parity != 0) return false;
+    }
+    return true;
+  }
+
+  // Per face, kUnreached for some slivers. Where merging has closed a sliver, one edge is left; an
+  // even number of segments on it is no obstacle. So parities count within slivers, and the price
+  // is paid on leaving. No path leads across a link: in the mesh there is no gap.
+  std::vector<std::uint32_t> through_slivers() const {
+    std::vector<std::uint32_t> depth(2 * arrangement_.faces().size(), kUnreached);
+    search(depth, [&](std::uint32_t place, std::uint32_t h) {
+      const std::uint32_t beyond = arrangement_.face(h ^ 1u);
+      const std::uint32_t parity = (place & 1u) ^ parity_of(h);
+      if (arrangement_.covers(h / 2).empty()) return Move{place, 0};
+      return is_sliver_[beyond] ? Move{2 * beyond + parity, 0} : Move{2 * beyond, parity};
+    });
+    std::vector<std::uint32_t> result(arrangement_.faces().size());
+    for (std::size_t f = 0; f < result.size(); ++f)
+      result[f] = std::min(depth[2 * f], depth[2 * f + 1]);
+    return result;
+  }
+
+  // Per face, kUnreached where every path crosses a sliver, or a link, or an edge as short as one.
+  std::vector<std::uint32_t> around_slivers() const {
+    std::vector<std::uint32_t> depth(2 * arrangement_.faces().size(), kUnreached);
+    search(depth, [&](std::uint32_t place, std::uint32_t h) {
+      const std::uint32_t beyond = arrangement_.face(h ^ 1u);
+      return is_sliver_[beyond] || is_short(h) ? Move{place, 0} : Move{2 * beyond, parity_of(h)};
+    });
+    std::vector<std::uint32_t> result(arrangement_.faces().size());
+    for (std::size_t f = 0; f < result.size(); ++f) result[f] = depth[2 * f];
+    return result;
+  }
+
+  static constexpr auto kUnreached = std::numeric_limits<std::uint32_t>::max();
+
+ private:
+  struct Move {
+    std::uint32_t place;  // twice the face, plus a parity
+    std::uint32_t price;  // 0 or 1
+  };
+
+  std::uint32_t parity_of(std::uint32_t h) const {
+    return static_cast<std::uint32_t>(arrangement_.covers(h / 2).size() % 2);
+  }
+
+  bool is_short(std::uint32_t h) const {
+    const auto covers = arrangement_.covers(h / 2);
+    const Arrangement::Edge& edge = arrangement_.edges()[h / 2];
+    const Vec2 p = arrangement_.vertices().at(edge.u), q = arrangement_.vertices().at(edge.v);
+    return covers.empty() || std::hypot(q.x - p.x, q.y - p.y) <= 2 * bent_.slack_of(covers);
+  }
+
+  // Least prices of all places. move(place, h): where the half-edge h leads to from there.
+  template <class F>
+  void search(std::vector<std::uint32_t>& least, F&& move) const {
+    std::vector<char> done(least.size(), 0);
+    std::deque<std::uint32_t> queue = {0};
+    least[0] = 0;
+    while (!queue.empty()) {
+      const std::uint32_t place = queue.front();
+      queue.pop_front();
+      if (done[place]) continue;
+      done[place] = 1;
+      for (std::uint32_t k = first_[place / 2]; k < first_[place / 2 + 1]; ++k) {
+        const Move to = move(place, around_[k]);
+        if (least[place] + to.price >= least[to.place]) continue;
+        least[to.place] = least[place] + to.price;
+        if (to.price == 0)
+          queue.push_front(to.place);
+        else
+          queue.push_back(to.place);
+      }
+    }
+  }
+
+  const BentDomain& bent_;
+  const Arrangement& arrangement_;
+  std::vector<std::uint32_t> first_;   // per face: its first half-edge in around_
+  std::vector<std::uint32_t> around_;  // half-edges, by face
+  std::vector<char> is_sliver_;        // per face
+};
+
+std::vector<FaceRole> fill_even_odd(const BentDomain& bent, const Arrangement& arrangement) {
+  const EvenOdd even_odd(bent, arrangement);
+  const std::vector<std::uint32_t> least = even_odd.through_slivers();
+  std::vector<FaceRole> roles(least.size());
+  for (std::size_t f = 1; f < roles.size(); ++f) roles[f].kept = least[f] % 2 == 1;
+  if (even_odd.is_closed()) return roles;
+  const std::vector<std::uint32_t> most = even_odd.around_slivers();
+  for (std::size_t f = 1; f < roles.size(); ++f) roles[f].open = least[f] != most[f];
+  return roles;
+}
+
+}  // namespace
+
+std::vector<FaceRole> fill_faces(const BentDomain& bent, const Arrangement& arrangement,
+                                 Findings& findings) {
+  const Domain& domain = bent.domain;
+  std::vector<FaceRole> roles;
+  if (domain.fill == Fill::kEvenOdd) {
+    roles = fill_even_odd(bent, arrangement);
+  } else {
+    roles.assign(arrangement.faces().size(), {.kept = true});
+    roles[0].kept = false;
+  }
+  const auto face_at = [&](std::string_view kind, std::size_t i, Vec2 seed) -> FaceRole* {
+    const Arrangement::Place place = arrangement.locate(seed);
+    if (!place.edge) return &roles[place.face];
+    findings.add(Rule::kDomain, [&] {
+      const auto covers = arrangement.covers(*place.edge);
+      return say(kind, " seed ", i, " at ", seed, " lies on ",
+                 covers.empty() ? "the end of a segment" : say("segment ", covers[0]),
+                 ": its face is ambiguous");
+    });
+    return nullptr;
+  };
+  for (std::size_t i = 0; i < domain.holes.size(); ++i)
+    if (FaceRole* role = face_at("hole", i, domain.holes[i])) role->kept = role->open = false;
+  for (std::size_t i = 0; i < domain.regions.size(); ++i) {
+    const RegionSeed& seed = domain.regions[i];
+    FaceRole* role = face_at("region", i, seed.at);
+    if (role == nullptr) continue;
+    role->region = seed.id;
+    role->max_area = seed.max_area.value_or(std::numeric_limits<double>::infinity());
+  }
+  return roles;
+}
+
+}  // namespace weft::check

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which faces of the arrangement are meshed, and in which region each lies.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "checker/domain/bent_domain.h"
+#include "checker/geometry/arrangement.h"
+#include "checker/report.h"
+
+namespace weft::check {
+
+struct FaceRole {
+  bool kept = false;
+  bool open = false;  // the mesher's choice: all of the face is meshed, or nothing
+  std::int32_t region = 0;
+  double max_area = std::numeric_limits<double>::infinity();
+  friend bool operator==(const FaceRole&, const FaceRole&) = default;
+};
+
+// One role per face. Fill::kEvenOdd keeps the faces that a path from infinity reaches by crossing
+// an odd number of segments; where paths differ (segments that do not close) the one that crosses
+// fewest counts. Coincident segments count once each. A seed on a segment is a violation of
+// kDomain: its face is ambiguous.
+//
+// Where paths differ, what merging has done to a sliver decides which one crosses fewest. Then a
+// face is open if two bounds on that number differ: paths that enter no sliver, and paths that
+// cross slivers at the price of the one edge that a sliver becomes, 0 or 1.
+// REQUIRES: the arrangement of the bent domain and its links.
+std::vector<FaceRole> fill_faces(const BentDomain& bent, const Arrangement& arrangement,
+                                 Findings& findings);
+
+}  // namespace weft::check

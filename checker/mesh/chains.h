@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Segments and listed edges against each other. The domain is as the mesh has bent it
+// (bent_domain.h); a violation names the segment and the point of the input.
+//
+// Wherever a segment has a kept face of the arrangement on a side, it must be a chain of listed
+// edges, through all input points on it, each edge within the tolerance (tolerance.h) of the
+// segment and each step forward along it. Conversely every listed edge must be part of such a
+// chain. So a listed edge in a hole or outside is a violation, and so is a gap.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "checker/domain/bent_domain.h"
+#include "checker/geometry/arrangement.h"
+#include "checker/geometry/fill.h"
+#include "checker/mesh.h"
+#include "checker/mesh/listed_edges.h"
+#include "checker/mesh/mesh_points.h"
+#include "checker/report.h"
+
+namespace weft::check {
+
+// Which segments of the input the mesh vertices lie on: (vertex, segment), sorted, distinct.
+using SegmentsOfVertices = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+// What the mesh owes a face: nothing if it is not kept; to have it, or, for a sliver, whichever way
+// it likes (joined_faces.h).
+enum class Need : std::uint8_t { kNothing, kEitherWay, kAll };
+
+// kPoints: every one of the first `count` points that is in the closure of a needed face (`needs`
+// has one entry per face) is a vertex, exactly.
+void judge_points(const BentDomain& bent, std::size_t count, const Arrangement& arrangement,
+                  const std::vector<Need>& needs, const InputPoints& input_points,
+                  Findings& findings);
+
+// kChains, kMarkers, and of kEdges: listed edges that lie on no segment. An input point that a
+// chain has lost is left to kPoints. REQUIRES: no overlap.
+SegmentsOfVertices judge_chains(const BentDomain& bent, const Arrangement& arrangement,
+                                const std::vector<Need>& needs, const Mesh& mesh,
+                                const ListedEdges& listed, const InputPoints& input_points,
+                                Findings& findings);
+
+}  // namespace weft::check

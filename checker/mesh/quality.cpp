@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "checker/mesh/quality.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "checker/geometry/sum.h"
+#include "checker/size/size_expression.h"
+#include "checker/text.h"
+
+namespace weft::check {
+namespace {
+
+constexpr double kAngleTolerance = 1e-7;  // degrees
+constexpr double kAreaTolerance = 1e-9;   // relative
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+// Angles are compared by their cotangents, which fall as the angle grows.
+double cotangent(double degrees) {
+  return std::tan((90 - degrees) / kDegrees);
+}
+double degrees_of(double cotangent) {
+  return std::atan2(1.0, cotangent) * kDegrees;
+}
+
+struct Shape {
+  double area = 0;
+  double largest_cotangent = 0;  // of the smallest angle
+  double smallest_cotangent = 0;
+  double quality = 0;
+  std::uint32_t smallest_corner = 0;
+  Vec2 centroid;
+};
+
+Shape shape_of(const std::array<Vec2, 3>& p) {
+  const double cross =
+      (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
+  std::array<double, 3> dot;
+  double squares = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec2 v = p[i], next = p[(i + 1) % 3], previous = p[(i + 2) % 3];
+    dot[i] = (next.x - v.x) * (previous.x - v.x) + (next.y - v.y) * (previous.y - v.y);
+    squares += (next.x - v.x) * (next.x - v.x) + (next.y - v.y) * (next.y - v.y);
+  }
+  const auto [least, most] = std::minmax_element(dot.begin(), dot.end());
+  // The triangle is counter-clockwise; a product of differences may still round to 0 or below.
+  const double positive = std::max(cross, std::numeric_limits<double>::min());
+  return {positive / 2,
+          *most / positive,
+          *least / positive,
+          2 * std::numbers::sqrt3 * positive / squares,
+          static_cast<std::uint32_t>(most - dot.begin()),
+          {(p[0].x + p[1].x + p[2].x) / 3, (p[0].y + p[1].y + p[2].y) / 3}};
+}
+
+class QualityJudge {
+ public:
+  QualityJudge(const Mesh& mesh, const Requirements& requirements, const QualityContext& context,
+               Facts& facts, Findings& findings)
+      : mesh_(mesh),
+        requirements_(requirements),
+        context_(context),
+        facts_(facts),
+        findings_(findings),
+        misses_(requirements.listed_violations),
+        cotangent_limit_(requirements.min_angle_deg.value_or(0) > kAngleTolerance
+                             ? cotangent(*requirements.min_angle_deg - kAngleTolerance)
+                             : std::numeric_limits<double>::infinity()) {
+    if (!requirements.size) return;
+    auto size = SizeExpression::parse(*requirements.size);
+    if (size)
+      size_ = std::move(*size);
+    else
+      findings_.add(Rule::kSize, [&] { return size.error(); });
+  }
+
+  void judge() {
+    Sum area;
+    Sum quality;
+    std::vector<double> cotangents;
+    cotangents.reserve(mesh_.triangles.size());
+    double largest_cotangent = -std::numeric_limits<double>::infinity();
+    double smallest_cotangent = std::numeric_limits<double>::infinity();
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      std::array<Vec2, 3> corners;
+      for (std::size_t i = 0; i < 3; ++i) corners[i] = mesh_.vertices[mesh_.triangles[t][i]];
+      const Shape shape = shape_of(corners);
+      area.add(shape.area);
+      quality.add(shape.quality);
+      cotangents.push_back(shape.largest_cotangent);
+      largest_cotangent = std::max(largest_cotangent, shape.largest_cotangent);
+      smallest_cotangent = std::min(smallest_cotangent, shape.smallest_cotangent);
+      const bool misses_angle = !judge_angle(t, shape);
+      const bool misses_area = !judge_area(t, shape, corners);
+      if (misses_angle || misses_area) note_unrefined(t, shape.centroid);
+    }
+    facts_.area = static_cast<double>(area.total());
+    facts_.min_angle_deg = degrees_of(largest_cotangent);
+    facts_.max_angle_deg = degrees_of(smallest_cotangent);
+    if (!cotangents.empty()) {
+      const auto percentile =
+          cotangents.begin() + static_cast<std::ptrdiff_t>(cotangents.size() / 100);
+      std::nth_element(cotangents.begin(), percentile, cotangents.end(), std::greater<>());
+      facts_.min_angle_p1_deg = degrees_of(*percentile);
+      facts_.mean_quality =
+          static_cast<double>(quality.total()) / static_cast<double>(cotangents.size());
+    }
+    if (bounded_ > 0)
+      facts_.ideal_ratio = static_cast<double>(bounded_) / static_cast<double>(shares_.total());
+    if (facts_.unrefined > requirements_.allowed_unrefined) findings_.merge(misses_);
+  }
+
+ private:
+  void note_unrefined(std::uint32_t t, Vec2 at) {
+    if (facts_.unrefined++ > 0) return;
+    facts_.first_unrefined = t;
+    facts_.first_unrefined_at = at;
+  }
+
+  bool judge_angle(std::uint32_t t, const Shape& shape) {
+    if (shape.largest_cotangent <= cotangent_limit_) return true;
+    if (requirements_.allow_small_input_angles) {
+      if (context_.small_input_angles == nullptr) return true;
+      switch (context_.small_input_angles->exemption(t, shape.smallest_corner)) {
+        case Exemption::kCorner:
+          ++facts_.excused_corner;
+          return true;
+        case Exemption::kShell:
+          ++facts_.excused_shell;
+          return true;
+        case Exemption::kNone:
+          break;
+      }
+    }
+    misses_.add(Rule::kAngle, [&] {
+      return say(name(t), " has an angle of ", degrees_of(shape.largest_cotangent),
+                 " degrees at vertex ", mesh_.triangles[t][shape.smallest_corner],
+                 ", the bound is ", *requirements_.min_angle_deg);
+    });
+    return false;
+  }
+
+  bool judge_area(std::uint32_t t, const Shape& shape, const std::array<Vec2, 3>& corners) {
+    double fixed = requirements_.max_area.value_or(std::numeric_limits<double>::infinity());
+    if (!context_.faces.empty())
+      fixed = std::min(fixed, context_.roles[context_.faces[t]].max_area);
+    double bound = fixed;
+    if (size_ || requirements_.raster) {
+      const double size = size_at(shape.centroid);
+      if (!(size > 0) || std::isinf(size)) {
+        findings_.add(Rule::kSize, [&] {
+          return say("the size is ", size, " at ", shape.centroid, ", the centroid of triangle ",
+                     t);
+        });
+        return true;
+      }
+      bound = std::min(fixed, size);
+      if (shape.area > bound * (1 + kAreaTolerance))
+        bound = std::min(fixed, largest_size_nearby(shape.centroid, corners));
+    }
+    if (std::isinf(bound)) return true;
+    ++bounded_;
+    shares_.add(shape.area / bound);
+    facts_.worst_area_ratio = std::max(facts_.worst_area_ratio.value_or(0), shape.area / bound);
+    if (shape.area <= bound * (1 + kAreaTolerance)) return true;
+    misses_.add(Rule::kArea, [&] {
+      return say(name(t), " has the area ", shape.area, ", the bound at its centroid ",
+                 shape.centroid, " is ", bound);
+    });
+    return false;
+  }
+
+  // REQUIRES: there is a size. NaN if one of the two is.
+  double size_at(Vec2 p) const {
+    const double by_raster =
+        requirements_.raster ? (*requirements_.raster)(p) : std::numeric_limits<double>::infinity();
+    if (!size_) return by_raster;
+    const double size = (*size_)(p);
+    return by_raster < size ? by_raster : size;
+  }
+
+  double largest_size_nearby(Vec2 centroid, const std::array<Vec2, 3>& corners) const {
+    double magnitude = 0;
+    for (const Vec2 p : corners) magnitude = std::max({magnitude, std::fabs(p.x), std::fabs(p.y)});
+    const double step = 4 * 0x1p-53 * magnitude;
+    double largest = 0;
+    for (const double dx : {-step, 0.0, step})
+      for (const double dy : {-step, 0.0, step})
+        largest = std::max(largest, size_at({centroid.x + dx, centroid.y + dy}));
+    return largest;
+  }
+
+  std::string name(std::uint32_t t) const {
+    const auto [a, b, c] = mesh_.triangles[t];
+    return say("triangle ", t, " (", a, ", ", b, ", ", c, ") at ", mesh_.vertices[a], ", ",
+               mesh_.vertices[b], ", ", mesh_.vertices[c]);
+  }
+
+  const Mesh& mesh_;
+  const Requirements& requirements_;
+  const QualityContext& context_;
+  Facts& facts_;
+  Findings& findings_;
+  Findings misses_;  // violations, once there are more than allowed
+  double cotangent_limit_;
+  std::optional<SizeExpression> size_;
+  std::uint64_t bounded_ = 0;  // triangles
+  Sum shares_;                 // of their bounds
+};
+
+}  // namespace
+
+void judge_quality(const Mesh& mesh, const Requirements& requirements,
+                   const QualityContext& context, Facts& facts, Findings& findings) {
+  QualityJudge(mesh, requirements, context, facts, findings).judge();
+}
+
+}  // namespace weft::check

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "checker/size/size_expression.h"
+
+#include <muParserBase.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "checker/text.h"
+
+namespace weft::check {
+namespace {
+
+// The character classes of the grammar, whatever the locale.
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+// Bytes of the number that `text` starts with: digits, fraction, exponent; 0 if there is none.
+std::size_t number_length(std::string_view text) {
+  std::size_t i = 0;
+  std::size_t digits = 0;
+  while (i < text.size() && is_digit(text[i])) ++i, ++digits;
+  if (i < text.size() && text[i] == '.') {
+    ++i;
+    while (i < text.size() && is_digit(text[i])) ++i, ++digits;
+  }
+  if (digits == 0) return 0;
+  if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
+    std::size_t j = i + 1;
+    if (j < text.size() && (text[j] == '+' || text[j] == '-')) ++j;
+    if (j < text.size() && is_digit(text[j])) {
+      while (j < text.size() && is_digit(text[j])) ++j;
+      i = j;
+    }
+  }
+  return i;
+}
+
+// muParser's hook for literals: consumes a number at the start of the text.
+int read_number(const char* text, int* position, double* value) {
+  const std::size_t length = number_length(text);
+  if (length == 0) return 0;
+  std::from_chars(text, text + length, *value);
+  *position += static_cast<int>(length);
+  return 1;
+}
+
+constexpr std::array<std::string_view, 19> kNames = {
+    "x",   "y",   "pi",  "e",     "sqrt", "abs",   "exp",   "log", "sin",  "cos",
+    "tan", "min", "max", "floor", "ceil", "atan2", "hypot", "pow", "clamp"};
+constexpr std::array<std::string_view, 19> kSymbols = {"<=", ">=", "==", "!=", "&&", "||", "+",
+                                                       "-",  "*",  "/",  "^",  "<",  ">",  "!",
+                                                       "?",  ":",  "(",  ")",  ","};
+
+// A run of unary operators comes down to at most one -, over at most two !.
+class UnaryRun {
+ public:
+  void add(char operation) { operations_ += operation; }
+  bool empty() const { return operations_.empty(); }
+  void clear() { operations_.clear(); }
+  std::string folded() const {
+    bool minus = false;
+    std::size_t nots = 0;
+    for (auto c = operations_.rbegin(); c != operations_.rend(); ++c) {
+      if (*c == '-') minus = !minus;
+      if (*c == '!') {
+        minus = false;  // a value is 0 or not, whatever its sign
+        nots = nots == 2 ? 1 : nots + 1;
+      }
+    }
+    std::string result;
+    if (minus) result += '-';
+    return result.append(nots, '!');
+  }
+
+ private:
+  std::string operations_;
+};
+
+// Makes of a source what muParser reads as the grammar means it: what the grammar does not have is
+// refused, as muParser would take more, such as a < b < c; runs of unary operators, which it does
+// not take, are folded; white space is blanks, but a function moves up to its parenthesis. All
+// other tokens keep their columns.
+class Translator {
+ public:
+  explicit Translator(std::string_view source) : source_(source), text_(source.size(), ' ') {}
+
+  tl::expected<std::string, std::string> translate() {
+    UnaryRun run;
+    bool operand_next = true;  // so that + - ! are unary
+    std::string_view name;     // the last token, if it is one
+    std::size_t i = 0;
+    while (i < source_.size()) {
+      if (std::string_view(" \t\n\r").find(source_[i]) != std::string_view::npos) {
+        ++i;
+        continue;
+      }
+      const auto length = token_length(i);
+      if (!length) return tl::unexpected(length.error());
+      const std::string_view token = source_.substr(i, *length);
+      if (chains(token)) return tl::unexpected(say("comparisons do not chain, at column ", i + 1));
+      if (token == "(" && !name.empty()) {
+        text_.replace(static_cast<std::size_t>(name.data() - source_.data()), name.size(),
+                      name.size(), ' ');
+        text_.replace(i - name.size(), name.size(), name);
+      }
+      name = is_letter(token[0]) ? token : std::string_view();
+      if (operand_next && (token == "+" || token == "-" || token == "!")) {
+        run.add(token[0]);
+      } else {
+        const std::string unary = run.folded();
+        text_.replace(i - unary.size(), unary.size(), unary);
+        text_.replace(i, *length, token);
+        run.clear();
+        const char last = token.back();
+        operand_next = !is_digit(last) && !is_letter(last) && last != '.' && last != ')';
+      }
+      i += *length;
+    }
+    if (!run.empty()) return tl::unexpected(std::string("it ends with an operator"));
+    return std::move(text_);
+  }
+
+ private:
+  // Whether the token is a comparison of what a comparison gives, without parentheses between.
+  bool chains(std::string_view token) {
+    if (token == "(") compared_.push_back(false);
+    if (token == ")" && compared_.size() > 1) compared_.pop_back();
+    if (token == "&&" || token == "||" || token == "?" || token == ":" || token == ",")
+      compared_.back() = false;
+    if (token != "<" && token != "<=" && token != ">" && token != ">=" && token != "==" &&
+        token != "!=")
+      return false;
+    const bool twice = compared_.back();
+    compared_.back() = true;
+    return twice;
+  }
+
+  tl::expected<std::size_t, std::string> token_length(std::size_t i) const {
+    const auto refuse = [i](const auto&... parts) {
+      return tl::unexpected(say(parts..., " at column ", i + 1));
+    };
+    const std::string_view rest = source_.substr(i);
+    if (const std::size_t length = number_length(rest); length > 0) {
+      double value = 0;
+      if (std::from_chars(rest.data(), rest.data() + length, value).ec != std::errc())
+        return refuse("a number that no double holds");
+      if (length < rest.size() && (is_letter(rest[length]) || rest[length] == '.'))
+        return refuse("a number that does not end");
+      return length;
+    }
+    if (is_letter(rest[0])) {
+      std::size_t length = 1;
+      while (length < rest.size() && (is_letter(rest[length]) || is_digit(rest[length]))) ++length;
+      const std::string_view name = rest.substr(0, length);
+      if (std::find(kNames.begin(), kNames.end(), name) == kNames.end())
+        return refuse("unknown name '", name, "'");
+      return length;
+    }
+    const auto symbol =
+        std::find_if(kSymbols.begin(), kSymbols.end(),
+                     [&](std::string_view candidate) { return rest.starts_with(candidate); });
+    if (symbol == kSymbols.end()) return refuse("unexpected '", rest.substr(0, 1), "'");
+    return symbol->size();
+  }
+
+  std::string_view source_;
+  std::string text_;
+  std::vector<bool> compared_{false};  // per open parenthesis: whether its operand is a comparison
+};
+
+// muParser with nothing but the grammar's functions, constants and unary operators. The binary
+// operators are its built-in ones, whose precedence and association are the grammar's.
+class GrammarParser : public mu::ParserBase {
+ public:
+  GrammarParser() {
+    InitCharSets();
+    InitFun();
+    InitConst();
+    InitOprt();
+    AddValIdent(read_number);
+    EnableOptimizer(false);  // it reorders arithmetic
+  }
+
+ protected:
+  void InitCharSets() override {
+    DefineNameChars("0123456789_abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
+    DefineOprtChars("+-*^/?<>=!&|");
+    DefineInfixOprtChars("-!");
+  }
+  void InitFun() override {
+    using Unary = double (*)(double);
+    using Binary = double (*)(double, double);
+    using Variadic = double (*)(const double*, int);
+    DefineFun("sqrt", static_cast<Unary>(std::sqrt));
+    DefineFun("abs", static_cast<Unary>(std::fabs));
+    DefineFun("exp", static_cast<Unary>(std::exp));
+    DefineFun("log", static_cast<Unary>(std::log));
+    DefineFun("sin", static_cast<Unary>(std::sin));
+    DefineFun("cos", static_cast<Unary>(std::cos));
+    DefineFun("tan", static_cast<Unary>(std::tan));
+    DefineFun("floor", static_cast<Unary>(std::floor));
+    DefineFun("ceil", static_cast<Unary>(std::ceil));
+    DefineFun("pow", static_cast<Binary>(std::pow));
+    DefineFun("atan2", static_cast<Binary>(std::atan2));
+    DefineFun("hypot", static_cast<Binary>(std::hypot));
+    DefineFun("min", static_cast<Variadic>(minimum));
+    DefineFun("max", static_cast<Variadic>(maximum));
+    DefineFun("clamp", static_cast<double (*)(double, double, double)>(clamp));
+  }
+  void InitConst() override {
+    DefineConst("pi", std::numbers::pi);
+    DefineConst("e", std::numbers::e);
+  }
+  void InitOprt() override {
+    DefineInfixOprt("-", [](double v) { return -v; });
+    DefineInfixOprt("!", [](double v) { return v == 0 ? 1.0 : 0.0; });
+    DefineInfixOprt("!!", [](double v) { return v == 0 ? 0.0 : 1.0; });
+    DefineInfixOprt("-!", [](double v) { return v == 0 ? -1.0 : 0.0; });
+    DefineInfixOprt("-!!", [](double v) { return v == 0 ? 0.0 : -1.0; });
+  }
+
+ private:
+  // One argument is refused: the grammar wants two or more.
+  static void require_two(int count) {
+    if (count < 2) throw mu::ParserError("min and max take two arguments or more");
+  }
+  static double minimum(const double* values, int count) {
+    require_two(count);
+    return *std::min_element(values, values + count);
+  }
+  static double maximum(const double* values, int count) {
+    require_two(count);
+    return *std::max_element(values, values + count);
+  }
+  static double clamp(double value, double low, double high) {
+    return std::min(std::max(value, low), high);
+  }
+};
+
+}  // namespace
+
+struct SizeExpression::Evaluator {
+  GrammarParser parser;
+  double x = 0;
+  double y = 0;
+};
+
+SizeExpression::SizeExpression(std::unique_ptr<Evaluator> evaluator)
+    : evaluator_(std::move(evaluator)) {}
+SizeExpression::SizeExpression(SizeExpression&&) noexcept = default;
+SizeExpression& SizeExpression::operator=(SizeExpression&&) noexcept = default;
+SizeExpression::~SizeExpression() = default;
+
+tl::expected<SizeExpression, std::string> SizeExpression::parse(std::string_view source) {
+  if (source.size() > kMaxLength)
+    return tl::unexpected(say("the size expression has ", source.size(),
+                              " bytes, the checker reads at most ", kMaxLength));
+  const auto text = Translator(source).translate();
+  if (!text) return tl::unexpected(say("the size expression does not parse: ", text.error()));
+  try {
+    auto evaluator = std::make_unique<Evaluator>();
+    evaluator->parser.DefineVar("x", &evaluator->x);
+    evaluator->parser.DefineVar("y", &evaluator->y);
+    evaluator->parser.SetExpr(*text);
+    int results = 0;
+    evaluator->parser.Eval(results);
+    if (results != 1) return tl::unexpected(say("the size expression has ", results, " values"));
+    return SizeExpression(std::move(evaluator));
+  } catch (const mu::ParserError& error) {
+    return tl::unexpected(say("the size expression does not parse: ", error.GetMsg()));
+  }
+}
+
+double SizeExpression::operator()(Vec2 p) const noexcept {
+  evaluator_->x = p.x;
+  evaluator_->y = p.y;
+  try {
+    return evaluator_->parser.Eval();
+  } catch (const mu::ParserError&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+}  // namespace weft::check

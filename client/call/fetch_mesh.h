@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Downloads the mesh of a job that succeeded into a spool (mesh_download.h).
+//
+// Errors: as JobServer's; kDataLoss for a stream that lies, kUnwritableOutput if the spool fails.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "client/base/error.h"
+#include "client/call/job_server.h"
+#include "client/call/mesh_receiver.h"
+#include "client/call/mesh_spool.h"
+#include "client/report/mesh_report.h"
+
+namespace weft::client {
+
+struct FetchMeshOptions {
+  // Of the domain that was submitted. If it is not known, the input points and segments that a
+  // mesh refers to are taken as they come: nothing here is read by their numbers.
+  std::optional<DomainCounts> domain{};
+  // After every chunk, the triangles so far; may be empty.
+  std::function<void(std::uint64_t)> on_triangles{};
+};
+
+Result<MeshReport> fetch_mesh(JobServer& server, const std::string& id, MeshSpool& spool,
+                              const FetchMeshOptions& options);
+
+}  // namespace weft::client

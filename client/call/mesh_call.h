@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The call GenerateMesh: sends a domain and what its mesh must satisfy, and receives the mesh into
+// a spool.
+//
+// If a server that the user named goes away, or is busy, the call is made again (retry.h), for the
+// chunks that are missing; the server must be of the same engine version.
+//
+// Errors: 64 + gRPC status for a refusal or a lost server, kDataLoss for a stream that lies,
+// kUnwritableOutput if the spool fails; after any of them the call is cancelled. A stop that is
+// asked for cancels the call, too.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "client/base/error.h"
+#include "client/call/connection.h"
+#include "client/call/mesh_request.h"
+#include "client/call/mesh_spool.h"
+#include "client/call/retry.h"
+#include "client/formats/domain.h"
+#include "client/report/mesh_report.h"
+#include "weft/v1/mesh_service.pb.h"
+
+namespace weft::client {
+
+struct MeshCallOptions {
+  std::optional<double> timeout_seconds{};  // of the call, with all its retries
+  std::uint32_t retries = RetryOptions{}.attempts;
+  std::function<void(const v1::Progress&)> on_progress{};  // on the calling thread; may be empty
+  // Told when the server is away, once for several failures in a row. DEFAULT: a line on stderr.
+  std::function<void(const std::string&)> on_away{};
+};
+
+Result<MeshReport> call_generate_mesh(const Connection& connection, const Domain& domain,
+                                      const RequestOptions& request_options,
+                                      const MeshCallOptions& options, MeshSpool& spool,
+                                      std::stop_token stop);
+
+}  // namespace weft::client

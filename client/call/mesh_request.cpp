@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/call/mesh_request.h"
+
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace weft::client {
+namespace {
+
+// The value of a text that is nothing but a finite number.
+std::optional<double> as_number(const std::string& text) {
+  double value = 0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+void fill(const Domain& domain, v1::Domain& out) {
+  auto* points = out.mutable_points();
+  points->Reserve(static_cast<int>(2 * domain.points.size()));
+  for (const Point& point : domain.points) {
+    points->AddAlreadyReserved(point.x);
+    points->AddAlreadyReserved(point.y);
+  }
+  bool marked = false;
+  auto* segments = out.mutable_segments();
+  segments->Reserve(static_cast<int>(2 * domain.segments.size()));
+  for (const Domain::Segment& segment : domain.segments) {
+    segments->AddAlreadyReserved(segment.a);
+    segments->AddAlreadyReserved(segment.b);
+    marked |= segment.marker != 0;
+  }
+  if (marked)
+    for (const Domain::Segment& segment : domain.segments) out.add_segment_markers(segment.marker);
+  for (const Point& hole : domain.holes) {
+    out.add_holes(hole.x);
+    out.add_holes(hole.y);
+  }
+  for (const Domain::Region& region : domain.regions) {
+    v1::Region& seed = *out.add_regions();
+    seed.set_x(region.at.x);
+    seed.set_y(region.at.y);
+    seed.set_id(region.id);
+    if (region.max_area) seed.set_max_area(*region.max_area);
+  }
+  out.set_fill(domain.fill == Domain::Fill::kEvenOdd ? v1::FILL_EVEN_ODD : v1::FILL_SEEDS);
+}
+
+void fill(const SizeGrid& grid, v1::Raster& out) {
+  out.set_x(grid.x);
+  out.set_y(grid.y);
+  out.set_dx(grid.dx);
+  out.set_dy(grid.dy);
+  out.set_columns(grid.columns);
+  out.set_rows(grid.rows);
+  out.mutable_values()->Add(grid.values.begin(), grid.values.end());
+}
+
+}  // namespace
+
+Result<RequestOptions> with_size_grid(RequestOptions request_options) {
+  if (!is_size_grid_path(request_options.size)) return request_options;
+  auto grid = read_size_grid(request_options.size);
+  if (!grid) return tl::unexpected(grid.error());
+  request_options.size_grid = std::make_shared<const SizeGrid>(std::move(*grid));
+  return request_options;
+}
+
+Result<void> check_sendable(const Domain& domain) {
+  // A message of gRPC ends at 2 GiB.
+  constexpr std::size_t kMostPoints = std::size_t{1} << 26;
+  if (domain.points.size() <= kMostPoints && domain.segments.size() <= kMostPoints) return {};
+  return fail(ExitCode::kUnreadableInput,
+              "the domain has " + std::to_string(domain.points.size()) + " points and " +
+                  std::to_string(domain.segments.size()) + " segments, a request takes " +
+                  std::to_string(kMostPoints) + " of each");
+}
+
+v1::GenerateMeshRequest make_request(const Domain& domain, const RequestOptions& request_options) {
+  v1::GenerateMeshRequest request;
+  fill(domain, *request.mutable_domain());
+  if (request_options.size_grid) {
+    fill(*request_options.size_grid, *request.mutable_size()->mutable_raster());
+  } else if (const auto constant = as_number(request_options.size)) {
+    request.mutable_size()->set_constant(*constant);
+  } else if (!request_options.size.empty()) {
+    request.mutable_size()->set_expression(request_options.size);
+  }
+  if (request_options.min_angle_deg)
+    request.mutable_quality()->set_min_angle_deg(*request_options.min_angle_deg);
+  if (request_options.min_edge) request.mutable_quality()->set_min_edge(*request_options.min_edge);
+  if (request_options.placement)
+    request.mutable_quality()->set_placement(*request_options.placement);
+  if (request_options.optimise) request.mutable_quality()->set_optimise(*request_options.optimise);
+  if (request_options.max_triangles)
+    request.mutable_budget()->set_max_triangles(*request_options.max_triangles);
+  if (request_options.max_seconds)
+    request.mutable_budget()->set_max_seconds(*request_options.max_seconds);
+  if (request_options.threads) request.set_threads(*request_options.threads);
+  if (request_options.snap) request.mutable_domain()->set_snap(*request_options.snap);
+  request.set_allow_unrefined(request_options.allow_unrefined);
+  request.set_want_quadtree(request_options.quadtree);
+  request.set_no_cache(request_options.no_cache);
+  return request;
+}
+
+}  // namespace weft::client

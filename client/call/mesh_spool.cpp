@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/call/mesh_spool.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <system_error>
+
+namespace weft::client {
+
+template <class T>
+void SpooledArray<T>::Unmap::operator()(T* address) const {
+  ::munmap(address, kInMemory);
+}
+
+template <class T>
+Result<void> SpooledArray<T>::open(const std::filesystem::path& folder) {
+  auto file = open_unlinked(folder);
+  if (!file) return tl::unexpected(file.error());
+  file_ = std::move(*file);
+  void* room = ::mmap(nullptr, kInMemory, PROT_READ | PROT_WRITE,
+                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room != MAP_FAILED) memory_.reset(static_cast<T*>(room));
+  return {};
+}
+
+template <class T>
+bool SpooledArray<T>::spill(std::size_t size) {
+  if (!write_all(file_.get(), memory_.get(), size * sizeof(T))) return false;
+  memory_.reset();
+  values_ = nullptr;
+  mapped_ = 0;
+  return true;
+}
+
+template <class T>
+bool SpooledArray<T>::append(std::span<const T> values) {
+  const std::size_t before = std::exchange(size_, size_ + values.size());
+  if (memory_ && size_ * sizeof(T) <= kInMemory) {
+    std::copy(values.begin(), values.end(), memory_.get() + before);
+    return true;
+  }
+  if (memory_ && !spill(before)) return false;
+  return write_all(file_.get(), values.data(), values.size_bytes());
+}
+
+template <class T>
+bool SpooledArray<T>::append_zeros(std::size_t count) {
+  const std::size_t before = std::exchange(size_, size_ + count);
+  if (memory_ && size_ * sizeof(T) <= kInMemory) return true;
+  if (memory_ && !spill(before)) return false;
+  return ::lseek(file_.get(), static_cast<off_t>(count * sizeof(T)), SEEK_CUR) >= 0;
+}
+
+template <class T>
+bool SpooledArray<T>::map(PagedMemory& pages) {
+  if (memory_) {
+    values_ = memory_.get();
+    mapped_ = size_;
+  }
+  if (size_ == mapped_) return true;
+  // Zeros at the end are not in the file yet.
+  if (::ftruncate(file_.get(), static_cast<off_t>(size_ * sizeof(T))) != 0) return false;
+  if (size_ > room_) {
+    const std::size_t room = mapped_ == 0 ? size_ : 2 * size_;
+    try {
+      if (values_ != nullptr) pages.free(values_);
+      values_ = nullptr;
+      mapped_ = room_ = 0;
+      values_ = static_cast<const T*>(pages.map(file_.get(), room * sizeof(T)));
+    } catch (const std::system_error& failure) {
+      errno = failure.code().value();
+      return false;
+    }
+    room_ = room;
+  }
+  mapped_ = size_;
+  return true;
+}
+
+template class SpooledArray<double>;
+template class SpooledArray<std::uint32_t>;
+template class SpooledArray<std::int32_t>;
+
+Result<std::unique_ptr<MeshSpool>> MeshSpool::create(const std::filesystem::path& folder,
+                                                     MeshSpoolOptions options) {
+  std::unique_ptr<MeshSpool> spool(new MeshSpool(folder, std::move(options)));
+  for (const auto& opened : {spool->coordinates_.open(folder), spool->triangles_.open(folder),
+                             spool->regions_.open(folder), spool->edges_.open(folder),
+                             spool->edge_markers_.open(folder), spool->input_points_.open(folder)})
+    if (!opened) return tl::unexpected(opened.error());
+  return spool;
+}
+
+tl::unexpected<Error> MeshSpool::failed() const {
+  return fail(
+      ExitCode::kUnwritableOutput,
+      folder_.string() + ": the mesh cannot be kept while it arrives: " + std::strerror(errno));
+}
+
+Result<void> MeshSpool::append(const MeshView& piece) {
+  const auto append_or_zeros = [](auto& array, auto values, std::size_t count) {
+    return values.empty() ? array.append_zeros(count) : array.append(values);
+  };
+  const auto append_rest = [&] {
+    return triangles_.append(piece.triangles) &&
+           append_or_zeros(regions_, piece.regions, piece.triangle_count()) &&
+           edges_.append(piece.edges) &&
+           append_or_zeros(edge_markers_, piece.edge_markers, piece.edge_count()) &&
+           input_points_.append(piece.input_points);
+  };
+  triangle_count_ += piece.triangle_count();
+  edge_count_ += piece.edge_count();
+  if (!coordinates_.append(piece.coordinates) || !(options_.vertices_only || append_rest()))
+    return failed();
+  return options_.on_piece ? show(piece) : Result<void>();
+}
+
+Result<void> MeshSpool::show(MeshView piece) {
+  if (!coordinates_.map(pages_)) return failed();
+  piece.coordinates = coordinates_.values();
+  options_.on_piece(piece);
+  try {
+    pages_.release();
+  } catch (const std::system_error& failure) {
+    errno = failure.code().value();
+    return failed();
+  }
+  return {};
+}
+
+Result<MeshView> MeshSpool::view() {
+  if (!(coordinates_.map(pages_) && triangles_.map(pages_) && regions_.map(pages_) &&
+        edges_.map(pages_) && edge_markers_.map(pages_) && input_points_.map(pages_)))
+    return failed();
+  return MeshView{.coordinates = coordinates_.values(),
+                  .triangles = triangles_.values(),
+                  .regions = regions_.values(),
+                  .edges = edges_.values(),
+                  .edge_markers = edge_markers_.values(),
+                  .input_points = input_points_.values(),
+                  .input_point_markers = {},
+                  .order = 1,
+                  .pages = &pages_};
+}
+
+}  // namespace weft::client

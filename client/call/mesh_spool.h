@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Holds a mesh while it arrives, outside of memory unless it is small: one nameless file per array,
+// which vanishes with the process, mapped into memory once the mesh is complete. (Small is a
+// million triangles; then there is no need of the disk. The time of the processor is about the
+// same.) Who watches sees the pieces as they come, with all vertices before them; for a drawing,
+// the rest need not be held.
+//
+// Errors (kUnwritableOutput): the folder is missing, not writable or full. Not thread-safe.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stop_token>
+#include <utility>
+
+#include "client/base/atomic_file.h"
+#include "client/base/error.h"
+#include "client/base/paged_memory.h"
+#include "client/formats/mesh.h"
+
+namespace weft::client {
+
+// An array of T, on disk if it is larger than kInMemory bytes. Appended to, and mapped.
+template <class T>
+class SpooledArray {
+ public:
+  static constexpr std::size_t kInMemory = std::size_t{16} << 20;
+
+  Result<void> open(const std::filesystem::path& folder);
+  // Both false with errno set on failure. Zeros take no room: they are pages that nobody touches,
+  // or a hole of the file.
+  bool append(std::span<const T> values);
+  bool append_zeros(std::size_t count);
+  std::size_t size() const { return size_; }
+  // What was appended so far; no more than that when something is appended, until this is called
+  // again. False with errno set on failure. REQUIRES: the same `pages` every time, and the array
+  // outlives them.
+  bool map(PagedMemory& pages);
+  std::span<const T> values() const { return {values_, mapped_}; }
+
+ private:
+  struct Unmap {
+    void operator()(T* address) const;
+  };
+  // Moves the first `size` values to the file.
+  bool spill(std::size_t size);
+
+  FileDescriptor file_;
+  std::unique_ptr<T, Unmap> memory_;  // room for kInMemory bytes; null: all is in the file
+  std::size_t size_ = 0;
+  const T* values_ = nullptr;
+  std::size_t mapped_ = 0;  // values
+  std::size_t room_ = 0;    // values that the mapping can come to hold
+};
+
+extern template class SpooledArray<double>;
+extern template class SpooledArray<std::uint32_t>;
+extern template class SpooledArray<std::int32_t>;
+
+struct MeshSpoolOptions {
+  bool vertices_only = false;  // nothing else is held: the view is of no use
+  // Called after every piece: its triangles, regions and edges, with the coordinates of all
+  // vertices so far; may be empty. The spans end with the call.
+  std::function<void(const MeshView&)> on_piece{};
+  std::stop_token stop{};  // ends what goes through the view, see paged_memory.h
+};
+
+class MeshSpool {
+ public:
+  static Result<std::unique_ptr<MeshSpool>> create(const std::filesystem::path& folder,
+                                                   MeshSpoolOptions options = {});
+
+  // Appends a piece; its arrays are as MeshView has them, regions and markers empty if all are 0.
+  Result<void> append(const MeshView& piece);
+
+  // The whole mesh, valid as long as the spool. REQUIRES: nothing is appended any more.
+  Result<MeshView> view();
+
+  std::uint64_t vertices() const { return coordinates_.size() / 2; }
+  std::uint64_t triangles() const { return triangle_count_; }
+  std::uint64_t edges() const { return edge_count_; }
+
+ private:
+  MeshSpool(std::filesystem::path folder, MeshSpoolOptions options)
+      : folder_(std::move(folder)), options_(std::move(options)), pages_(folder_, options_.stop) {}
+  tl::unexpected<Error> failed() const;
+  Result<void> show(MeshView piece);
+
+  std::filesystem::path folder_;
+  MeshSpoolOptions options_;
+  std::uint64_t triangle_count_ = 0;
+  std::uint64_t edge_count_ = 0;
+  SpooledArray<double> coordinates_;
+  SpooledArray<std::uint32_t> triangles_;
+  SpooledArray<std::int32_t> regions_;
+  SpooledArray<std::uint32_t> edges_;
+  SpooledArray<std::int32_t> edge_markers_;
+  SpooledArray<std::uint32_t> input_points_;
+  PagedMemory pages_;
+};
+
+}  // namespace weft::client

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// A weftd of our own, on a unix socket in a fresh folder that only we may enter.
+//
+// It never outlives us: the destructor stops it (SIGTERM, then SIGKILL after a time-out) and
+// removes the folder; should this process be killed, the pipe to its standard input closes, and
+// `--exit-with-stdin` ends it.
+//
+//   auto server = PrivateServer::start({}, stop);
+//   if (!server) return tl::unexpected(server.error());
+//   auto channel = grpc::CreateChannel((*server)->address(), ...);
+//
+// Errors (kServerNotStarted): no weftd is found, it cannot be run, it ends at start (with its last
+// lines of log) or is not ready in time.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "client/base/atomic_file.h"
+#include "client/base/error.h"
+
+namespace weft::client {
+
+struct PrivateServerOptions {
+  // DEFAULT: $WEFT_WEFTD, or weftd beside our own binary, or weftd in the PATH.
+  std::optional<std::filesystem::path> weftd;
+  // Runs at the same time, each of which may take that part of the memory. DEFAULT: weftd's own.
+  std::optional<int> jobs = std::nullopt;
+  std::chrono::milliseconds start_timeout{30'000};
+  std::chrono::milliseconds stop_timeout{5'000};
+};
+
+class PrivateServer {
+ public:
+  static Result<std::unique_ptr<PrivateServer>> start(const PrivateServerOptions& options,
+                                                      std::stop_token stop);
+  ~PrivateServer();
+  PrivateServer(const PrivateServer&) = delete;
+  PrivateServer& operator=(const PrivateServer&) = delete;
+
+  // As gRPC takes it: "unix:/tmp/weft-x1y2z3/socket".
+  std::string address() const { return "unix:" + (folder_ / "socket").string(); }
+  pid_t pid() const { return pid_; }
+  // The last lines that it wrote to stderr, indented; empty when there are none.
+  std::string last_log_lines() const;
+
+ private:
+  explicit PrivateServer(const PrivateServerOptions& options) : options_(options) {}
+  Result<void> make_folder();
+  Result<void> spawn(const std::filesystem::path& weftd);
+  Result<void> wait_until_ready(const std::filesystem::path& weftd, std::stop_token stop);
+  // Whether it ended within the time.
+  bool wait_for_end(std::chrono::milliseconds at_most);
+
+  PrivateServerOptions options_;
+  std::filesystem::path folder_;
+  FileDescriptor input_;    // our end of its standard input
+  FileDescriptor process_;  // a pidfd: readable when it has ended
+  pid_t pid_ = 0;
+};
+
+}  // namespace weft::client

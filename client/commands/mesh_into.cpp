@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/commands/mesh_into.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "client/call/mesh_spool.h"
+#include "client/report/marker_warnings.h"
+
+namespace weft::client {
+
+Result<MeshReport> mesh_into(const Connection& connection, const Domain& domain,
+                             const RequestOptions& request_options, const MeshCallOptions& call,
+                             MeshOutput* output, const std::function<void()>& received,
+                             std::stop_token stop) {
+  std::error_code ignored;
+  const auto spool = output != nullptr
+                         ? output->make_spool()
+                         : MeshSpool::create(std::filesystem::temp_directory_path(ignored));
+  if (!spool) return tl::unexpected(spool.error());
+  auto report =
+      call_generate_mesh(connection, domain, request_options, call, **spool, std::move(stop));
+  if (!report) {
+    Error error = report.error();
+    constexpr int kUnavailable = 14;
+    if (connection.server && error.exit == exit_code_of_status(kUnavailable))
+      error.message += "\n  its last lines:\n" + connection.server->last_log_lines();
+    return tl::unexpected(error);
+  }
+  received();
+  if (output == nullptr) return report;
+  auto mesh = (*spool)->view();
+  if (!mesh) return tl::unexpected(mesh.error());
+  mesh->input_point_markers = domain.point_markers;
+  report->markers = markers_of(*mesh);
+  if (auto written = output->write(*mesh, report->summary); !written)
+    return tl::unexpected(written.error());
+  return report;
+}
+
+}  // namespace weft::client

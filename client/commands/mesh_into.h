@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// One mesh, from the call to the files.
+#pragma once
+
+#include <functional>
+#include <stop_token>
+
+#include "client/base/error.h"
+#include "client/call/connection.h"
+#include "client/call/mesh_call.h"
+#include "client/formats/domain.h"
+#include "client/report/mesh_output.h"
+#include "client/report/mesh_report.h"
+
+namespace weft::client {
+
+// Has `domain` meshed and writes `output`; null: nothing is written. `received` is called before
+// anything is. Errors: those of call_generate_mesh and of MeshOutput; where a private server went
+// away, with its last lines.
+Result<MeshReport> mesh_into(const Connection& connection, const Domain& domain,
+                             const RequestOptions& request_options, const MeshCallOptions& call,
+                             MeshOutput* output, const std::function<void()>& received,
+                             std::stop_token stop);
+
+}  // namespace weft::client

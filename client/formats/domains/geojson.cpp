@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/formats/domains/geojson.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "client/base/text.h"
+#include "client/formats/domains/geometry_builder.h"
+#include "client/formats/file_contents.h"
+#include "client/formats/json_text.h"
+
+namespace weft::client {
+namespace {
+
+using Json = nlohmann::json;
+
+// Parsed JSON takes up to twenty times the room of its text.
+constexpr std::uint64_t kMaxJsonBytes = std::uint64_t{512} << 20;
+constexpr int kMaxJsonDepth = 64;
+
+using Properties = GeometryProperties;
+
+class Reader {
+ public:
+  explicit Reader(const std::string& name) : builder_(name) {}
+
+  Result<Domain> read(const Json& root) {
+    if (auto read = object(root, "", {}); !read) return tl::unexpected(read.error());
+    return builder_.finish();
+  }
+
+ private:
+  tl::unexpected<Error> bad(const std::string& path, const std::string& what) const {
+    return builder_.bad(path, what);
+  }
+  static std::string member(const std::string& path, const char* name) {
+    return path.empty() ? name : path + "." + name;
+  }
+  static std::string element(const std::string& path, std::size_t i) {
+    return path + "[" + std::to_string(i) + "]";
+  }
+
+  // Reads members `name` of `parent`, an array of GeoJSON objects.
+  Result<void> objects(const Json& parent, const char* name, const std::string& path,
+                       const Properties& properties) {
+    const auto found = parent.find(name);
+    if (found == parent.end() || !found->is_array())
+      return bad(path, std::string("has no array \"") + name + "\"");
+    for (std::size_t i = 0; i < found->size(); ++i)
+      if (auto read = object((*found)[i], element(member(path, name), i), properties); !read)
+        return read;
+    return {};
+  }
+
+  Result<void> object(const Json& json, const std::string& path, const Properties& properties) {
+    if (!json.is_object()) return bad(path, "is not a GeoJSON object");
+    const auto type = json.find("type");
+    if (type == json.end() || !type->is_string()) return bad(path, "has no string \"type\"");
+    const auto& name = type->get_ref<const std::string&>();
+    if (name == "FeatureCollection") return objects(json, "features", path, properties);
+    if (name == "GeometryCollection") return objects(json, "geometries", path, properties);
+    if (name == "Feature") {
+      const auto geometry = json.find("geometry");
+      if (geometry == json.end()) return bad(path, "has no \"geometry\"");
+      if (geometry->is_null()) return {};
+      const auto own = feature_properties(json, path);
+      if (!own) return tl::unexpected(own.error());
+      return object(*geometry, member(path, "geometry"), *own);
+    }
+    return geometry(json, name, path, properties);
+  }
+
+  Result<Properties> feature_properties(const Json& feature, const std::string& path) const {
+    Properties out;
+    const auto found = feature.find("properties");
+    if (found == feature.end() || !found->is_object()) return out;
+    const std::string where = member(path, "properties");
+    const auto integer = [&](const char* name) -> Result<std::optional<std::int32_t>> {
+      const auto value = found->find(name);
+      if (value == found->end() || !value->is_number()) return std::nullopt;
+      const double number = value->get<double>();
+      constexpr double kMax = std::numeric_limits<std::int32_t>::max();
+      if (!(number >= -kMax - 1 && number <= kMax) ||
+          number != static_cast<double>(static_cast<std::int32_t>(number)))
+        return bad(member(where, name), "is " + shortest(number) + ", not an integer of 32 bits");
+      return static_cast<std::int32_t>(number);
+    };
+    const auto marker = integer("marker");
+    if (!marker) return tl::unexpected(marker.error());
+    out.marker = marker->value_or(0);
+    const auto region = integer("region");
+    if (!region) return tl::unexpected(region.error());
+    out.region = *region;
+    const auto area = found->find("max_area");
+    if (area != found->end() && area->is_number()) {
+      out.max_area = area->get<double>();
+      if (!(*out.max_area > 0))
+        return bad(member(where, "max_area"), "is " + shortest(*out.max_area) + ", not positive");
+    }
+    return out;
+  }
+
+  Result<void> geometry(const Json& json, const std::string& type, const std::string& path,
+                        const Properties& properties) {
+    using Part = Result<void> (Reader::*)(const Json&, const std::string&, const Properties&);
+    struct Kind {
+      std::string_view name;
+      Part part;
+      bool many;
+    };
+    static constexpr Kind kKinds[] = {
+        {"Point", &Reader::point, false},     {"MultiPoint", &Reader::point, true},
+        {"LineString", &Reader::line, false}, {"MultiLineString", &Reader::line, true},
+        {"Polygon", &Reader::polygon, false}, {"MultiPolygon", &Reader::polygon, true},
+    };
+    const auto kind = std::find_if(std::begin(kKinds), std::end(kKinds),
+                                   [&type](const Kind& k) { return k.name == type; });
+    if (kind == std::end(kKinds))
+      return bad(path, "has the type " + in_quotes(type) + ", which is not GeoJSON's");
+    const auto coordinates = json.find("coordinates");
+    if (coordinates == json.end() || !coordinates->is_array())
+      return bad(path, "has no array \"coordinates\"");
+    const std::string where = member(path, "coordinates");
+    if (coordinates->empty()) return {};  // RFC 7946 allows it: no geometry
+    if (!kind->many) return (this->*kind->part)(*coordinates, where, properties);
+    for (std::size_t i = 0; i < coordinates->size(); ++i)
+      if (auto read = (this->*kind->part)((*coordinates)[i], element(where, i), properties); !read)
+        return read;
+    return {};
+  }
+
+  Result<Point> position(const Json& json, const std::string& path) const {
+    if (!json.is_array() || json.size() < 2 || !json[0].is_number() || !json[1].is_number())
+      return bad(path, "is not a position [x, y]");
+    return Point{json[0].get<double>(), json[1].get<double>()};
+  }
+
+  Result<std::vector<Point>> positions(const Json& json, const std::string& path) const {
+    if (!json.is_array()) return bad(path, "is not an array of positions");
+    std::vector<Point> points;
+    points.reserve(json.size());
+    for (std::size_t i = 0; i < json.size(); ++i) {
+      const auto at = position(json[i], element(path, i));
+      if (!at) return tl::unexpected(at.error());
+      points.push_back(*at);
+    }
+    return points;
+  }
+
+  Result<void> point(const Json& json, const std::string& path, const Properties&) {
+    const auto at = position(json, path);
+    if (!at) return tl::unexpected(at.error());
+    return builder_.point(*at, path);
+  }
+
+  Result<void> line(const Json& json, const std::string& path, const Properties& properties) {
+    const auto points = positions(json, path);
+    if (!points) return tl::unexpected(points.error());
+    return builder_.line(*points, path, properties);
+  }
+
+  Result<void> polygon(const Json& json, const std::string& path, const Properties& properties) {
+    if (!json.is_array()) return bad(path, "is not an array of rings");
+    builder_.begin_polygon();
+    for (std::size_t i = 0; i < json.size(); ++i) {
+      const auto points = positions(json[i], element(path, i));
+      if (!points) return tl::unexpected(points.error());
+      if (auto added = builder_.ring(*points, element(path, i), properties); !added) return added;
+    }
+    builder_.end_polygon(path, properties);
+    return {};
+  }
+
+  GeometryBuilder builder_;
+};
+
+}  // namespace
+
+Result<Domain> read_geojson(const std::filesystem::path& path) {
+  const auto contents = read_file(path, kMaxJsonBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  try {
+    const auto json = parse_json(path.string(), contents->text(), kMaxJsonDepth);
+    if (!json) return tl::unexpected(json.error());
+    return Reader(path.string()).read(*json);
+  } catch (const std::bad_alloc&) {
+    return fail(ExitCode::kUnreadableInput, path.string() + ": not enough memory to read it");
+  }
+}
+
+}  // namespace weft::client

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads a domain from GeoJSON (RFC 7946): every geometry type, Feature, FeatureCollection,
+// GeometryCollection. Coordinates are taken as they are (no projection; altitudes are dropped).
+//
+// What is meshed: see geometry_builder.h.
+//
+// Members of a Feature's `properties` that are numbers and mean something here:
+//   marker    integer: marks the segments of the feature
+//   region    integer: id of the triangles inside the feature's polygons
+//   max_area  positive: bound on the area of these triangles
+//
+// Errors (kUnreadableInput) name the line and column where the text is not JSON, otherwise the path
+// of the offender ("features[3].geometry.coordinates[0]"): wrong types, a ring that is not closed,
+// has fewer than 3 distinct points or crosses itself, nesting deeper than 64 levels.
+#pragma once
+
+#include <filesystem>
+
+#include "client/base/error.h"
+#include "client/formats/domain.h"
+
+namespace weft::client {
+
+Result<Domain> read_geojson(const std::filesystem::path& path);
+
+}  // namespace weft::client

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/formats/domains/geometry_builder.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "client/base/text.h"
+#include "client/formats/domains/ring_crossing.h"
+
+namespace weft::client {
+
+tl::unexpected<Error> GeometryBuilder::bad(const std::string& path, const std::string& what) const {
+  return fail(ExitCode::kUnreadableInput, file_ + ": " + (path.empty() ? "" : path + " ") + what);
+}
+
+bool GeometryBuilder::is_usable(Point at) {
+  // The limit of the service, and what keeps the predicates from overflow.
+  constexpr double kLargest = 1e50;
+  return std::abs(at.x) <= kLargest && std::abs(at.y) <= kLargest;
+}
+
+tl::unexpected<Error> GeometryBuilder::unusable(Point at, const std::string& path) const {
+  return bad(path, "is " + coordinates(at.x, at.y) + ", magnitudes go up to 1e50");
+}
+
+Result<GeometryBuilder::Chain> GeometryBuilder::chain(std::span<const Point> positions,
+                                                      const std::string& path,
+                                                      const GeometryProperties& properties,
+                                                      std::span<const std::int32_t> markers) const {
+  Chain out;
+  out.points.reserve(positions.size());
+  out.numbers.reserve(positions.size());
+  out.markers.reserve(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (!is_usable(positions[i]))
+      return unusable(positions[i], path + "[" + std::to_string(i) + "]");
+    const std::int32_t marker = markers.empty() ? properties.marker : markers[i];
+    if (!out.points.empty() && out.points.back() == positions[i]) {
+      out.markers.back() = marker;  // of the segment that leaves the place
+      continue;
+    }
+    out.points.push_back(positions[i]);
+    out.numbers.push_back(i);
+    out.markers.push_back(marker);
+  }
+  return out;
+}
+
+Result<void> GeometryBuilder::add(const Chain& chain, bool closed, const std::string& path) {
+  const std::size_t first = domain_.points.size();
+  const std::size_t size = chain.points.size();
+  if (size > std::numeric_limits<std::uint32_t>::max() - first)
+    return bad(path, "makes more than 4294967295 points");
+  const auto starts_run = [&chain](std::size_t i) {
+    return i == 0 || chain.numbers[i] != chain.numbers[i - 1] + 1;
+  };
+  for (std::size_t i = 0; i < size; ++i)
+    if (starts_run(i))
+      domain_.point_places.add(first + i, file_ + ": " + path + "[", chain.numbers[i], "]");
+  domain_.points.insert(domain_.points.end(), chain.points.begin(), chain.points.end());
+  for (std::size_t i = 0; i < size - (closed ? 0 : 1); ++i) {
+    if (starts_run(i))
+      domain_.segment_places.add(domain_.segments.size(), file_ + ": " + path + ", edge from [",
+                                 chain.numbers[i], "]");
+    const std::size_t next = i + 1 < size ? i + 1 : 0;
+    domain_.segments.push_back({static_cast<std::uint32_t>(first + i),
+                                static_cast<std::uint32_t>(first + next), chain.markers[i]});
+  }
+  return {};
+}
+
+Result<void> GeometryBuilder::point(Point at, const std::string& path) {
+  if (!is_usable(at)) return unusable(at, path);
+  domain_.point_places.add(domain_.points.size(), file_ + ": " + path + ", point ", 0, "");
+  domain_.points.push_back(at);
+  return {};
+}
+
+Result<void> GeometryBuilder::line(std::span<const Point> positions, const std::string& path,
+                                   const GeometryProperties& properties,
+                                   std::span<const std::int32_t> markers) {
+  const auto line = chain(positions, path, properties, markers);
+  if (!line) return tl::unexpected(line.error());
+  if (line->points.size() < 2) return bad(path, "is a line with fewer than 2 distinct points");
+  const std::size_t first = domain_.segments.size();
+  if (auto added = add(*line, false, path); !added) return added;
+  lines_.push_back({first, domain_.segments.size(), path});
+  return {};
+}
+
+Result<void> GeometryBuilder::check_crossing(const Chain& ring, const std::string& path) const {
+  const auto crossing = find_crossing(ring.points);
+  if (!crossing) return {};
+  const auto edge = [&ring](std::uint32_t i) {
+    const Point a = ring.points[i];
+    const Point b = ring.points[i + 1 < ring.points.size() ? i + 1 : 0];
+    return "edge " + std::to_string(ring.numbers[i]) + " from " + coordinates(a.x, a.y) + " to " +
+           coordinates(b.x, b.y);
+  };
+  return bad(path, "is a ring that crosses itself: " + edge(crossing->first) + " crosses " +
+                       edge(crossing->second));
+}
+
+Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::string& path,
+                                   const GeometryProperties& properties,
+                                   std::span<const std::int32_t> markers, bool must_close) {
+  auto ring = chain(positions, path, properties, markers);
+  if (!ring) return tl::unexpected(ring.error());
+  if (must_close && positions.size() < 4)
+    return bad(path, "is a ring of " + std::to_string(positions.size()) + " positions, it needs 4");
+  std::vector<Point>& points = ring->points;
+  const bool closed = points.size() > 1 && points.front() == points.back();
+  if (must_close && points.front() != points.back())
+    return bad(path, "is a ring that is not closed: it starts at " +
+                         coordinates(points.front().x, points.front().y) + " and ends at " +
+                         coordinates(points.back().x, points.back().y));
+  if (closed) points.pop_back();
+  if (points.size() < 3) return bad(path, "is a ring with fewer than 3 distinct points");
+  if (auto ok = check_crossing(*ring, path); !ok) return ok;
+  return add(*ring, true, path);
+}
+
+void GeometryBuilder::end_polygon(const std::string& path, const GeometryProperties& properties) {
+  domain_.fill = Domain::Fill::kEvenOdd;
+  if (properties.region || properties.max_area)
+    region_polygons_.push_back({{polygon_start_, domain_.segments.size()}, properties, path});
+}
+
+Result<Domain> GeometryBuilder::finish() {
+  if (domain_.points.empty()) return bad("", "holds no geometry");
+  std::vector<PolygonRange> ranges;
+  for (const RegionPolygon& polygon : region_polygons_) ranges.push_back(polygon.range);
+  const auto seeds = interior_points(domain_, ranges);
+  if (!seeds) return bad("", seeds.error().message);
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const RegionPolygon& polygon = region_polygons_[i];
+    if (!(*seeds)[i]) return bad(polygon.path, "is a polygon with a region but without area");
+    domain_.region_places.add(i, file_ + ": the region of " + polygon.path + ", seed ", 0, "");
+    domain_.regions.push_back(
+        {*(*seeds)[i], polygon.properties.region.value_or(0), polygon.properties.max_area});
+  }
+  if (domain_.fill == Domain::Fill::kEvenOdd) {
+    for (const Line& line : lines_) {
+      domain_.segment_places.add(domain_.segments.size(),
+                                 file_ + ": " + line.path + ", edge number ", 0, "");
+      for (std::size_t s = line.first_segment; s < line.end_segment; ++s)
+        domain_.segments.push_back(Domain::Segment(domain_.segments[s]));
+    }
+  }
+  return std::move(domain_);
+}
+
+}  // namespace weft::client

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Makes a domain of points, lines and polygons, as GeoJSON, WKT and shapefiles have them.
+//
+// What is meshed:
+//   - With polygons: the points inside an odd number of rings (Fill::kEvenOdd), so rings of holes
+//     are holes, and polygons that share an edge are both filled.
+//   - Lines beside polygons become edges inside the domain. Each is sent twice, for two coincident
+//     segments leave the parity of even-odd filling alone.
+//   - Lines only: every bounded face (Fill::kSeeds).
+//   - Points become vertices.
+// Positions that repeat their predecessor are dropped. A region floods from a point inside its
+// polygon up to the nearest segments.
+//
+// `path` names a part in its file ("features[3].geometry.coordinates[0]"); its position i is then
+// path[i]. Errors (kUnreadableInput) name the file and the path: magnitudes beyond 1e50, a ring
+// that is not closed, has fewer than 3 distinct points or crosses itself.
+//
+//   GeometryBuilder builder("coast.wkt");
+//   builder.begin_polygon();
+//   if (auto added = builder.ring(positions, "polygon 1, ring 0", {}); !added) ...
+//   builder.end_polygon("polygon 1", {.region = 7});
+//   Result<Domain> domain = builder.finish();
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "client/base/error.h"
+#include "client/formats/domain.h"
+#include "client/formats/domains/interior_point.h"
+
+namespace weft::client {
+
+// What a file says of a geometry.
+struct GeometryProperties {
+  std::int32_t marker = 0;             // of its segments
+  std::optional<std::int32_t> region;  // of the triangles inside its polygons
+  std::optional<double> max_area;      // of these triangles, positive
+};
+
+class GeometryBuilder {
+ public:
+  explicit GeometryBuilder(std::string file) : file_(std::move(file)) {}
+
+  Result<void> point(Point at, const std::string& path);
+  // `markers`: one for each position, of the segment that starts there; or empty:
+  // properties.marker.
+  Result<void> line(std::span<const Point> positions, const std::string& path,
+                    const GeometryProperties& properties,
+                    std::span<const std::int32_t> markers = {});
+
+  // A polygon is the rings between these two calls.
+  void begin_polygon() { polygon_start_ = domain_.segments.size(); }
+  // The last position repeats the first; where `must_close` is false it may be left out.
+  Result<void> ring(std::span<const Point> positions, const std::string& path,
+                    const GeometryProperties& properties,
+                    std::span<const std::int32_t> markers = {}, bool must_close = true);
+  void end_polygon(const std::string& path, const GeometryProperties& properties);
+
+  // An error when nothing was added. Ends the use of the builder.
+  Result<Domain> finish();
+
+  // "coast.wkt: polygon 1 is ...".
+  tl::unexpected<Error> bad(const std::string& path, const std::string& what) const;
+
+ private:
+  struct Line {
+    std::size_t first_segment;
+    std::size_t end_segment;
+    std::string path;
+  };
+  struct RegionPolygon {
+    PolygonRange range;
+    GeometryProperties properties;
+    std::string path;
+  };
+  // Positions without repetitions: each with its number in the file, and its marker.
+  struct Chain {
+    std::vector<Point> points;
+    std::vector<std::size_t> numbers;
+    std::vector<std::int32_t> markers;
+  };
+
+  Result<Chain> chain(std::span<const Point> positions, const std::string& path,
+                      const GeometryProperties& properties,
+                      std::span<const std::int32_t> markers) const;
+  static bool is_usable(Point at);
+  tl::unexpected<Error> unusable(Point at, const std::string& path) const;
+  Result<void> check_crossing(const Chain& ring, const std::string& path) const;
+  Result<void> add(const Chain& chain, bool closed, const std::string& path);
+
+  std::string file_;
+  Domain domain_;
+  std::size_t polygon_start_ = 0;
+  std::vector<Line> lines_;
+  std::vector<RegionPolygon> region_polygons_;
+};
+
+}  // namespace weft::client

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/formats/domains/shapefile.h"
+
+#include <shapefil.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/base/text.h"
+#include "client/formats/domains/geometry_builder.h"
+
+namespace weft::client {
+namespace {
+
+struct CloseShapes {
+  void operator()(SHPInfo* shapes) const { ::SHPClose(shapes); }
+};
+struct CloseTable {
+  void operator()(DBFInfo* table) const { ::DBFClose(table); }
+};
+struct DestroyShape {
+  void operator()(SHPObject* shape) const { ::SHPDestroyObject(shape); }
+};
+
+// Files as Shapelib opens them, which says nothing on stderr: the caller reports.
+SAHooks quiet_hooks() {
+  SAHooks hooks;
+  ::SASetupDefaultHooks(&hooks);
+  hooks.Error = [](const char*) {};
+  return hooks;
+}
+
+// The attributes of records.
+class Table {
+ public:
+  // An error if there is a table that cannot be read; none without one.
+  Result<void> open(const std::filesystem::path& path, const SAHooks& hooks) {
+    std::error_code ignored;
+    for (const char* extension : {".dbf", ".DBF"}) {
+      const auto name = std::filesystem::path(path).replace_extension(extension);
+      if (!std::filesystem::exists(name, ignored)) continue;
+      table_.reset(::DBFOpenLL(name.c_str(), "rb", const_cast<SAHooks*>(&hooks)));
+      if (!table_)
+        return fail(ExitCode::kUnreadableInput, name.string() + ": is not a dBASE table");
+      return {};
+    }
+    return {};
+  }
+
+  std::optional<double> number(int record, const char* field) const {
+    if (!table_ || record >= ::DBFGetRecordCount(table_.get())) return std::nullopt;
+    const int index = ::DBFGetFieldIndex(table_.get(), field);
+    if (index < 0 || ::DBFIsAttributeNULL(table_.get(), record, index) != 0) return std::nullopt;
+    const DBFFieldType type = ::DBFGetFieldInfo(table_.get(), index, nullptr, nullptr, nullptr);
+    if (type != FTInteger && type != FTDouble) return std::nullopt;
+    return ::DBFReadDoubleAttribute(table_.get(), record, index);
+  }
+
+ private:
+  std::unique_ptr<DBFInfo, CloseTable> table_;
+};
+
+class Reader {
+ public:
+  Reader(const std::filesystem::path& path, const SAHooks& hooks)
+      : path_(path), hooks_(hooks), builder_(path.string()) {}
+
+  Result<Domain> read() {
+    const std::unique_ptr<SHPInfo, CloseShapes> shapes(
+        ::SHPOpenLL(path_.c_str(), "rb", const_cast<SAHooks*>(&hooks_)));
+    if (!shapes)
+      return builder_.bad("",
+                          "is not a shapefile, or it is damaged, or there is no .shx beside it");
+    if (auto opened = table_.open(path_, hooks_); !opened) return tl::unexpected(opened.error());
+    int count = 0;
+    int kind = 0;
+    ::SHPGetInfo(shapes.get(), &count, &kind, nullptr, nullptr);
+    for (int i = 0; i < count; ++i) {
+      const std::unique_ptr<SHPObject, DestroyShape> shape(::SHPReadObject(shapes.get(), i));
+      const std::string path = "record " + std::to_string(i);
+      if (!shape) return builder_.bad(path, "is damaged");
+      const auto properties = read_properties(i, path);
+      if (!properties) return tl::unexpected(properties.error());
+      if (auto added = add(*shape, path, *properties); !added) return tl::unexpected(added.error());
+    }
+    return builder_.finish();
+  }
+
+ private:
+  Result<std::optional<std::int32_t>> integer(int record, const std::string& path,
+                                              const char* field) const {
+    const auto value = table_.number(record, field);
+    if (!value) return std::nullopt;
+    constexpr double kMax = std::numeric_limits<std::int32_t>::max();
+    if (!(std::abs(*value) <= kMax) || *value != std::nearbyint(*value))
+      return builder_.bad(path + ", field " + field,
+                          "is " + shortest(*value) + ", not an integer of 32 bits");
+    return static_cast<std::int32_t>(*value);
+  }
+
+  Result<GeometryProperties> read_properties(int record, const std::string& path) const {
+    GeometryProperties out;
+    const auto marker = integer(record, path, "marker");
+    if (!marker) return tl::unexpected(marker.error());
+    out.marker = marker->value_or(0);
+    const auto region = integer(record, path, "region");
+    if (!region) return tl::unexpected(region.error());
+    out.region = *region;
+    out.max_area = table_.number(record, "max_area");
+    if (out.max_area && !(*out.max_area > 0))
+      return builder_.bad(path + ", field max_area",
+                          "is " + shortest(*out.max_area) + ", not positive");
+    return out;
+  }
+
+  // The points of a part; empty for one that the record does not hold.
+  static std::vector<Point> part(const SHPObject& shape, int i) {
+    const int first = shape.panPartStart[i];
+    const int end = i + 1 < shape.nParts ? shape.panPartStart[i + 1] : shape.nVertices;
+    std::vector<Point> points;
+    for (int v = first; v >= 0 && v < end && v < shape.nVertices; ++v)
+      points.push_back({shape.padfX[v], shape.padfY[v]});
+    return points;
+  }
+
+  Result<void> add(const SHPObject& shape, const std::string& path,
+                   const GeometryProperties& properties) {
+    switch (shape.nSHPType) {
+      case SHPT_NULL:
+        return {};
+      case SHPT_POINT:
+      case SHPT_POINTZ:
+      case SHPT_POINTM:
+      case SHPT_MULTIPOINT:
+      case SHPT_MULTIPOINTZ:
+      case SHPT_MULTIPOINTM:
+        for (int v = 0; v < shape.nVertices; ++v)
+          if (auto added = builder_.point({shape.padfX[v], shape.padfY[v]},
+                                          path + ", position " + std::to_string(v));
+              !added)
+            return added;
+        return {};
+      case SHPT_ARC:
+      case SHPT_ARCZ:
+      case SHPT_ARCM:
+        for (int i = 0; i < shape.nParts; ++i)
+          if (auto added =
+                  builder_.line(part(shape, i), path + ", line " + std::to_string(i), properties);
+              !added)
+            return added;
+        return {};
+      case SHPT_POLYGON:
+      case SHPT_POLYGONZ:
+      case SHPT_POLYGONM:
+        builder_.begin_polygon();
+        for (int i = 0; i < shape.nParts; ++i)
+          if (auto added =
+                  builder_.ring(part(shape, i), path + ", ring " + std::to_string(i), properties);
+              !added)
+            return added;
+        builder_.end_polygon(path, properties);
+        return {};
+      default:
+        return builder_.bad(path, "has the type " + std::to_string(shape.nSHPType) +
+                                      ", which is no polygon, polyline, point or multipoint");
+    }
+  }
+
+  std::filesystem::path path_;
+  const SAHooks& hooks_;
+  Table table_;
+  GeometryBuilder builder_;
+};
+
+}  // namespace
+
+Result<Domain> read_shapefile(const std::filesystem::path& path) {
+  if (std::error_code missing; !std::filesystem::is_regular_file(path, missing))
+    return fail(ExitCode::kUnreadableInput,
+                path.string() + ": " + (missing ? missing.message() : "is not a regular file"));
+  const SAHooks hooks = quiet_hooks();
+  return Reader(path, hooks).read();
+}
+
+}  // namespace weft::client

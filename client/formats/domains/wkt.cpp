@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/formats/domains/wkt.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "client/base/text.h"
+#include "client/formats/domains/geometry_builder.h"
+#include "client/formats/file_contents.h"
+#include "client/formats/triangle/triangle_points.h"
+
+namespace weft::client {
+namespace {
+
+constexpr int kMaxDepth = 64;  // of collections in collections
+constexpr std::string_view kBlanks = " \t\r\n\f\v";
+
+// Thrown and caught in this file alone.
+struct Malformed {
+  Error error;
+};
+
+class Reader {
+ public:
+  Reader(const std::string& name, std::string_view text)
+      : name_(name), whole_(text), rest_(text), builder_(name) {}
+
+  Result<Domain> read() {
+    try {
+      for (std::size_t i = 0; !at_end(); ++i) {
+        geometry("geometry " + std::to_string(i), 0);
+        while (take(';')) {
+        }
+      }
+      return builder_.finish();
+    } catch (const Malformed& malformed) {
+      return tl::unexpected(malformed.error);
+    }
+  }
+
+ private:
+  [[noreturn]] void fail_here(const std::string& what) const {
+    const std::string_view before = whole_.substr(0, whole_.size() - rest_.size());
+    const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 is 0
+    throw Malformed{{ExitCode::kUnreadableInput,
+                     name_ + ":" + std::to_string(line()) + ":" +
+                         std::to_string(before.size() - line_start + 1) + ": " + what}};
+  }
+  static void must(const Result<void>& done) {
+    if (!done) throw Malformed{done.error()};
+  }
+  // Lines up to here; counts on from where it was asked last.
+  std::size_t line() const {
+    const std::size_t here = whole_.size() - rest_.size();
+    lines_ += static_cast<std::size_t>(
+        std::count(whole_.begin() + static_cast<std::ptrdiff_t>(counted_),
+                   whole_.begin() + static_cast<std::ptrdiff_t>(here), '\n'));
+    counted_ = here;
+    return lines_ + 1;
+  }
+
+  void skip_blanks() {
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(kBlanks), rest_.size()));
+  }
+  bool at_end() {
+    skip_blanks();
+    return rest_.empty();
+  }
+  bool take(char c) {
+    skip_blanks();
+    if (!rest_.starts_with(c)) return false;
+    rest_.remove_prefix(1);
+    return true;
+  }
+  void expect(char c) {
+    if (take(c)) return;
+    fail_here(std::string("expected '") + c + "', found " + found());
+  }
+  std::string found() const {
+    return rest_.empty() ? "the end of the file"
+                         : in_quotes(rest_.substr(0, rest_.find_first_of("(), \t\r\n", 1)));
+  }
+  // Letters, in upper case; nothing is read where there are none.
+  std::string word() {
+    skip_blanks();
+    std::string out;
+    while (!rest_.empty()) {
+      const char c = static_cast<char>(rest_[0] & ~0x20);
+      if (c < 'A' || c > 'Z') break;
+      out += c;
+      rest_.remove_prefix(1);
+    }
+    return out;
+  }
+  bool take_empty() {
+    const std::string_view before = rest_;
+    if (word() == "EMPTY") return true;
+    rest_ = before;
+    return false;
+  }
+
+  double number() {
+    skip_blanks();
+    std::string_view digits = rest_;
+    if (digits.starts_with('+')) digits.remove_prefix(1);
+    double value = 0;
+    const auto [end, problem] =
+        std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (problem != std::errc() || !std::isfinite(value))
+      fail_here("expected a finite number, found " + found());
+    rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
+    return value;
+  }
+
+  // Two numbers, and up to two more that are dropped.
+  Point position() {
+    Point at;
+    at.x = number();
+    at.y = number();
+    for (int more = 0; more < 2; ++more) {
+      skip_blanks();
+      if (rest_.empty() || rest_[0] == ',' || rest_[0] == ')') break;
+      number();
+    }
+    return at;
+  }
+
+  std::vector<Point> positions() {
+    std::vector<Point> out;
+    expect('(');
+    do out.push_back(position());
+    while (take(','));
+    expect(')');
+    return out;
+  }
+
+  std::string at_line(const std::string& path) const {
+    return "line " + std::to_string(line()) + ", " + path;
+  }
+
+  void point(const std::string& path) {
+    skip_blanks();
+    const std::string place = at_line(path);
+    const bool bare = !rest_.starts_with('(');  // MULTIPOINT(1 2, 3 4)
+    if (!bare) expect('(');
+    must(builder_.point(position(), place));
+    if (!bare) expect(')');
+  }
+
+  void line_string(const std::string& path) {
+    skip_blanks();
+    const std::string place = at_line(path);
+    must(builder_.line(positions(), place, {}));
+  }
+
+  void polygon(const std::string& path) {
+    builder_.begin_polygon();
+    expect('(');
+    std::size_t ring = 0;
+    do {
+      skip_blanks();
+      const std::string place = at_line(path + ", ring " + std::to_string(ring++));
+      must(builder_.ring(positions(), place, {}));
+    } while (take(','));
+    expect(')');
+    builder_.end_polygon(path, {});
+  }
+
+  void geometry(const std::string& path, int depth) {
+    std::string kind = word();
+    if (kind == "SRID") {
+      expect('=');
+      number();
+      expect(';');
+      kind = word();
+    }
+    using Part = void (Reader::*)(const std::string&);
+    struct Kind {
+      std::string_view name;
+      Part part;
+      const char* parts;  // of several: what each is called
+    };
+    static constexpr Kind kKinds[] = {
+        {"POINT", &Reader::point, nullptr},
+        {"LINESTRING", &Reader::line_string, nullptr},
+        {"LINEARRING", &Reader::line_string, nullptr},
+        {"POLYGON", &Reader::polygon, nullptr},
+        {"TRIANGLE", &Reader::polygon, nullptr},
+        {"MULTIPOINT", &Reader::point, ", point "},
+        {"MULTILINESTRING", &Reader::line_string, ", line "},
+        {"MULTIPOLYGON", &Reader::polygon, ", polygon "},
+        {"GEOMETRYCOLLECTION", nullptr, ", geometry "},
+    };
+    const auto known = std::find_if(std::begin(kKinds), std::end(kKinds), [&kind](const Kind& k) {
+      if (!kind.starts_with(k.name)) return false;
+      const std::string_view tag = std::string_view(kind).substr(k.name.size());
+      return tag.empty() || tag == "Z" || tag == "M" || tag == "ZM";
+    });
+    if (known == std::end(kKinds))
+      fail_here("expected a geometry of well-known text, found " +
+                (kind.empty() ? found() : in_quotes(kind)));
+    const std::string_view before = rest_;
+    const std::string tag = word();
+    if (tag != "Z" && tag != "M" && tag != "ZM") rest_ = before;
+    if (take_empty()) return;
+    if (known->parts == nullptr) return (this->*known->part)(path);
+    if (depth == kMaxDepth) fail_here("is nested deeper than 64 levels");
+    expect('(');
+    std::size_t i = 0;
+    do {
+      const std::string part = path + known->parts + std::to_string(i++);
+      if (known->part == nullptr) {
+        geometry(part, depth + 1);
+      } else if (!take_empty()) {
+        (this->*known->part)(part);
+      }
+    } while (take(','));
+    expect(')');
+  }
+
+  std::string name_;
+  std::string_view whole_;
+  std::string_view rest_;
+  mutable std::size_t counted_ = 0;  // bytes whose line ends are in lines_
+  mutable std::size_t lines_ = 0;
+  GeometryBuilder builder_;
+};
+
+}  // namespace
+
+Result<Domain> read_wkt(const std::filesystem::path& path) {
+  const auto contents = read_file(path, kMaxTextBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  return Reader(path.string(), contents->text()).read();
+}
+
+}  // namespace weft::client

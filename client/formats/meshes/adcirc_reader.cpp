@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <string>
+#include <utility>
+
+#include "client/formats/file_contents.h"
+#include "client/formats/line_scanner.h"
+#include "client/formats/mesh_formats.h"
+#include "client/formats/meshes/adcirc.h"
+#include "client/formats/triangle/triangle_points.h"
+
+namespace weft::client {
+namespace {
+
+constexpr std::int32_t kOpenMarker = 1;
+constexpr std::int32_t kLandMarker = 2;
+constexpr std::int32_t kIslandMarker = 3;
+
+// The number after the word "marker".
+std::int32_t marker_of(std::string_view comment, std::int32_t otherwise) {
+  constexpr std::string_view kWord = "marker ";
+  const std::size_t at = comment.rfind(kWord);
+  if (at == std::string_view::npos) return otherwise;
+  comment.remove_prefix(at + kWord.size());
+  std::int32_t marker = otherwise;
+  std::from_chars(comment.data(), comment.data() + comment.size(), marker);
+  return marker;
+}
+
+Result<void> read_nodes(LineScanner& scanner, std::uint64_t count, Mesh& mesh) {
+  mesh.coordinates.reserve(2 * count);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    if (auto line = scanner.next_line("a node"); !line) return line;
+    if (auto number = expect_number(scanner, "the node number", static_cast<std::int64_t>(i + 1));
+        !number)
+      return number;
+    for (const char* what : {"the x coordinate", "the y coordinate"}) {
+      const auto value = scanner.real(what);
+      if (!value) return tl::unexpected(value.error());
+      mesh.coordinates.push_back(*value);
+    }
+  }
+  return {};
+}
+
+Result<void> read_elements(LineScanner& scanner, std::uint64_t count, Mesh& mesh) {
+  const std::size_t vertices = mesh.coordinates.size() / 2;
+  mesh.triangles.reserve(3 * count);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    if (auto line = scanner.next_line("an element"); !line) return line;
+    if (auto number = scanner.integer("the element number"); !number)
+      return tl::unexpected(number.error());
+    const auto corners = scanner.integer("the nodes per element");
+    if (!corners) return tl::unexpected(corners.error());
+    if (*corners != 3)
+      return scanner.error("the nodes per element are " + std::to_string(*corners) +
+                           ", only 3 are read");
+    for (int k = 0; k < 3; ++k) {
+      const auto v = read_index(scanner, "a corner", 1, vertices);
+      if (!v) return tl::unexpected(v.error());
+      mesh.triangles.push_back(*v);
+    }
+  }
+  return {};
+}
+
+Result<void> read_boundaries(LineScanner& scanner, bool open, Mesh& mesh) {
+  if (!scanner.try_next_line()) return {};  // grids may end before
+  const auto count = scanner.count("the boundary count");
+  if (!count) return tl::unexpected(count.error());
+  if (auto line = scanner.next_line("the boundary node count"); !line) return line;
+  const std::size_t vertices = mesh.coordinates.size() / 2;
+  for (std::uint64_t i = 0; i < *count; ++i) {
+    if (auto line = scanner.next_line("the nodes of a boundary"); !line) return line;
+    const auto nodes = scanner.integer("the nodes of a boundary");
+    if (!nodes) return tl::unexpected(nodes.error());
+    std::int64_t type = 0;
+    if (!open) {
+      const auto value = scanner.integer("the boundary's type");
+      if (!value) return tl::unexpected(value.error());
+      type = *value;
+    }
+    const bool island = type % 10 == 1;
+    const std::int32_t marker = marker_of(scanner.rest_of_line(), open     ? kOpenMarker
+                                                                  : island ? kIslandMarker
+                                                                           : kLandMarker);
+    std::uint32_t first = 0;
+    std::uint32_t last = 0;
+    const auto add_edge = [&](std::uint32_t from, std::uint32_t to) {
+      mesh.edges.insert(mesh.edges.end(), {from, to});
+      mesh.edge_markers.push_back(marker);
+    };
+    for (std::int64_t k = 0; k < *nodes; ++k) {
+      if (auto line = scanner.next_line("a boundary node"); !line) return line;
+      const auto v = read_index(scanner, "a boundary node", 1, vertices);
+      if (!v) return tl::unexpected(v.error());
+      if (k == 0) first = *v;
+      if (k > 0) add_edge(last, *v);
+      last = *v;
+    }
+    if (island && last != first) add_edge(last, first);
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Mesh> read_adcirc(const std::filesystem::path& path) {
+  const auto contents = read_file(path, kMaxTextBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  LineScanner scanner(path.string(), contents->text(), {.comment = '!'});
+  scanner.skip_line();  // the title
+  if (auto line = scanner.next_line("the element count"); !line)
+    return tl::unexpected(line.error());
+  const auto elements = scanner.count("the element count");
+  if (!elements) return tl::unexpected(elements.error());
+  const auto nodes = scanner.count("the node count");
+  if (!nodes) return tl::unexpected(nodes.error());
+  Mesh mesh;
+  if (auto read = read_nodes(scanner, *nodes, mesh); !read) return tl::unexpected(read.error());
+  if (auto read = read_elements(scanner, *elements, mesh); !read)
+    return tl::unexpected(read.error());
+  for (const bool open : {true, false})
+    if (auto read = read_boundaries(scanner, open, mesh); !read)
+      return tl::unexpected(read.error());
+  return validated(path, std::move(mesh));
+}
+
+}  // namespace weft::client

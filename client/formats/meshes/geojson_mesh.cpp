@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/formats/meshes/geojson_mesh.h"
+
+#include <cstdint>
+#include <string_view>
+
+namespace weft::client {
+
+void write_geojson_mesh(const MeshView& mesh, OutputFile& file) {
+  const auto put_position = [&](std::uint32_t vertex) {
+    file.put('[');
+    file.number(mesh.coordinates[2 * std::size_t{vertex}]);
+    file.put(',');
+    file.number(mesh.coordinates[2 * std::size_t{vertex} + 1]);
+    file.put(']');
+  };
+  bool first = true;
+  const auto open_feature = [&](std::string_view property, std::int32_t value,
+                                std::string_view geometry) {
+    file.put(first ? "\n" : ",\n");
+    first = false;
+    file.put(R"({"type":"Feature","properties":{")");
+    file.put(property);
+    file.put("\":");
+    file.number(std::int64_t{value});
+    file.put(R"(},"geometry":{"type":")");
+    file.put(geometry);
+    file.put("\",\"coordinates\":[");
+  };
+  file.put(R"({"type":"FeatureCollection","features":[)");
+  for (const std::size_t t : mesh.up_to(mesh.triangle_count())) {
+    open_feature("region", mesh.regions[t], "Polygon");
+    for (std::size_t k = 0; k < 4; ++k) {
+      file.put(k == 0 ? '[' : ',');
+      put_position(mesh.triangles[3 * t + k % 3]);
+    }
+    file.put("]]}}");
+  }
+  for (const std::size_t e : mesh.up_to(mesh.edge_count())) {
+    open_feature("marker", mesh.edge_markers[e], "LineString");
+    put_position(mesh.edges[2 * e]);
+    file.put(',');
+    put_position(mesh.edges[2 * e + 1]);
+    file.put("]}}");
+  }
+  file.put("\n]}\n");
+}
+
+}  // namespace weft::client

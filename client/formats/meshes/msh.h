@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Gmsh's mesh formats 4.1, written binary, and 2.2, which older programs read, written as text
+// (https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format).
+//
+// Each region is a surface entity, each marker a curve entity, with a physical group
+// (msh_groups.h). In 4.1, vertices on edges belong to a curve, the others to a surface. Vertex i
+// has the tag i + 1.
+#pragma once
+
+#include <filesystem>
+
+#include "client/base/atomic_file.h"
+#include "client/base/error.h"
+#include "client/formats/mesh.h"
+
+namespace weft::client {
+
+void write_msh(const MeshView& mesh, OutputFile& file);
+void write_msh22(const MeshView& mesh, OutputFile& file);
+
+// Reads triangles, lines (and points, which are dropped) of a 4.1 or 2.2 file, binary or ASCII. The
+// name or else the tag of an element's first physical group is its region or marker.
+Result<Mesh> read_msh(const std::filesystem::path& path);
+
+}  // namespace weft::client

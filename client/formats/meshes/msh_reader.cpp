@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "client/base/text.h"
+#include "client/formats/file_contents.h"
+#include "client/formats/mesh_formats.h"
+#include "client/formats/meshes/msh.h"
+
+namespace weft::client {
+namespace {
+
+constexpr std::uint64_t kMaxFileBytes = std::uint64_t{64} << 30;
+constexpr std::string_view kBlanks = " \t\r\n";
+
+// Types of elements; the first two are the dimensions, too.
+constexpr std::int32_t kLine = 1;
+constexpr std::int32_t kTriangle = 2;
+constexpr std::int32_t kPoint = 15;
+
+// Thrown and caught in this file alone: a format of nested counts reads best without a check after
+// every field.
+struct Malformed {
+  std::string why;
+};
+
+class Reader {
+ public:
+  Reader(std::filesystem::path path, std::string_view text)
+      : path_(std::move(path)), whole_(text), rest_(text) {}
+
+  Result<Mesh> read() {
+    try {
+      read_sections();
+    } catch (const Malformed& malformed) {
+      return fail(ExitCode::kUnreadableInput, path_.string() + ": byte " +
+                                                  std::to_string(whole_.size() - rest_.size()) +
+                                                  ": " + malformed.why);
+    }
+    return validated(path_, std::move(mesh_));
+  }
+
+ private:
+  using Tag = std::pair<std::int32_t, std::int32_t>;  // dimension, number
+
+  void read_sections() {
+    bool has_format = false;
+    for (std::string_view line = next_line(); !line.empty(); line = next_line()) {
+      if (line == "$MeshFormat") {
+        read_format();
+        has_format = true;
+      } else if (!has_format) {
+        throw Malformed{"is not a Gmsh mesh: it does not start with $MeshFormat"};
+      } else if (line == "$PhysicalNames") {
+        read_names();
+      } else if (line == "$Entities") {
+        read_entities();
+      } else if (line == "$Nodes") {
+        is_22_ ? read_nodes_22() : read_nodes();
+      } else if (line == "$Elements") {
+        is_22_ ? read_elements_22() : read_elements();
+      } else if (line.starts_with("$")) {
+        skip_to("$End" + std::string(line.substr(1)));
+        continue;
+      } else {
+        throw Malformed{"a section should start here, found " + in_quotes(line)};
+      }
+      expect("$End" + std::string(line.substr(1)));
+    }
+    if (!has_format) throw Malformed{"is empty"};
+    if (!has_nodes_ || !has_elements_) throw Malformed{"has no $Nodes or no $Elements"};
+  }
+
+  // The next line that is not blank; empty at the end.
+  std::string_view next_line() {
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(kBlanks), rest_.size()));
+    std::string_view line = rest_.substr(0, rest_.find('\n'));
+    rest_.remove_prefix(line.size());
+    while (line.ends_with('\r') || line.ends_with(' ')) line.remove_suffix(1);
+    return line;
+  }
+
+  void expect(const std::string& marker) {
+    const std::string_view line = next_line();
+    if (line != marker) throw Malformed{"expected " + marker + ", found " + in_quotes(line)};
+  }
+
+  void skip_to(const std::string& marker) {
+    const std::size_t at = rest_.find(marker);
+    if (at == std::string_view::npos) throw Malformed{"a section does not end with " + marker};
+    rest_.remove_prefix(at + marker.size());
+  }
+
+  template <class T>
+  T text_number() {
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(kBlanks), rest_.size()));
+    T value{};
+    const auto [end, problem] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
+    if (problem != std::errc())
+      throw Malformed{"expected a number, found " +
+                      in_quotes(rest_.substr(0, rest_.find_first_of(kBlanks)))};
+    rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
+    return value;
+  }
+
+  template <class T>
+  T next() {
+    if (!binary_) return text_number<T>();
+    if (rest_.size() < sizeof(T)) throw Malformed{"the file ends inside a section"};
+    T value;
+    std::memcpy(&value, rest_.data(), sizeof value);
+    rest_.remove_prefix(sizeof value);
+    return value;
+  }
+
+  // A number of items to come, each of at least one byte.
+  std::uint64_t count() {
+    const auto value = next<std::uint64_t>();
+    if (value > rest_.size())
+      throw Malformed{"announces " + std::to_string(value) + " items, more than the file can hold"};
+    return value;
+  }
+
+  // Binary data starts right after the line that opens the section.
+  void start_data() {
+    if (!binary_) return;
+    if (rest_.starts_with('\r')) rest_.remove_prefix(1);
+    if (rest_.starts_with('\n')) rest_.remove_prefix(1);
+  }
+
+  void read_format() {
+    const auto version = text_number<double>();
+    if (version != 4.1 && version != 2.2)
+      throw Malformed{"has the version " + shortest(version) + ", only 4.1 and 2.2 are read"};
+    is_22_ = version == 2.2;
+    binary_ = text_number<int>() == 1;
+    if (text_number<int>() != 8) throw Malformed{"its numbers are not of 8 bytes"};
+    start_data();
+    if (binary_ && next<std::int32_t>() != 1) throw Malformed{"is big-endian"};
+  }
+
+  void read_names() {
+    const auto names = text_number<std::uint64_t>();
+    for (std::uint64_t i = 0; i < names; ++i) {
+      const auto dimension = text_number<std::int32_t>();
+      const auto tag = text_number<std::int32_t>();
+      const std::string_view line = next_line();
+      if (line.size() < 2 || !line.starts_with('"') || !line.ends_with('"'))
+        throw Malformed{"a physical name is not in quotes"};
+      std::string_view name = line.substr(1, line.size() - 2);
+      for (const std::string_view word : {"region ", "marker "}) {
+        if (!name.starts_with(word)) continue;
+        name.remove_prefix(word.size());
+        std::int32_t id = 0;
+        const auto [end, problem] = std::from_chars(name.data(), name.data() + name.size(), id);
+        if (problem == std::errc() && end == name.data() + name.size())
+          id_of_group_[{dimension, tag}] = id;
+        break;
+      }
+    }
+  }
+
+  void read_entities() {
+    start_data();
+    std::uint64_t counts[4];
+    for (auto& n : counts) n = count();
+    for (std::int32_t dimension = 0; dimension < 4; ++dimension) {
+      for (std::uint64_t i = 0; i < counts[dimension]; ++i) {
+        const auto tag = next<std::int32_t>();
+        for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) next<double>();
+        const std::uint64_t groups = count();
+        for (std::uint64_t g = 0; g < groups; ++g) {
+          const auto group = next<std::int32_t>();
+          if (g == 0) group_of_entity_[{dimension, tag}] = group;
+        }
+        if (dimension == 0) continue;
+        const std::uint64_t bounding = count();
+        for (std::uint64_t b = 0; b < bounding; ++b) next<std::int32_t>();
+      }
+    }
+  }
+
+  // The region or marker of an entity: 0 where it has no group.
+  std::int32_t id_of(Tag entity) const {
+    const auto group = group_of_entity_.find(entity);
+    if (group == group_of_entity_.end()) return 0;
+    return id_of_group(entity.first, group->second);
+  }
+  std::int32_t id_of_group(std::int32_t dimension, std::int32_t group) const {
+    const auto id = id_of_group_.find({dimension, group});
+    return id != id_of_group_.end() ? id->second : group;
+  }
+
+  void read_nodes() {
+    start_data();
+    has_nodes_ = true;
+    const std::uint64_t blocks = count();
+    const std::uint64_t total = count();
+    if (total > std::numeric_limits<std::uint32_t>::max()) throw Malformed{"has too many nodes"};
+    next<std::uint64_t>();
+    next<std::uint64_t>();
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> place_of_tag;  // tag, place in the file
+    std::vector<double> coordinates;
+    place_of_tag.reserve(total);
+    coordinates.reserve(2 * total);
+    for (std::uint64_t block = 0; block < blocks; ++block) {
+      const auto dimension = next<std::int32_t>();
+      next<std::int32_t>();
+      const bool parametric = next<std::int32_t>() != 0;
+      const std::uint64_t nodes = count();
+      for (std::uint64_t i = 0; i < nodes; ++i) {
+        const auto tag = next<std::uint64_t>();
+        place_of_tag.emplace_back(tag, place_of_tag.size());
+      }
+      for (std::uint64_t i = 0; i < nodes; ++i) {
+        const auto x = next<double>();
+        const auto y = next<double>();
+        next<double>();
+        coordinates.insert(coordinates.end(), {x, y});
+        for (std::int32_t k = 0; parametric && k < dimension; ++k) next<double>();
+      }
+    }
+    take_nodes(place_of_tag, coordinates);
+  }
+
+  void read_nodes_22() {
+    has_nodes_ = true;
+    const auto nodes = text_count();
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> place_of_tag;
+    std::vector<double> coordinates;
+    place_of_tag.reserve(nodes);
+    coordinates.reserve(2 * nodes);
+    for (std::uint64_t i = 0; i < nodes; ++i) {
+      const auto tag = next<std::int32_t>();
+      place_of_tag.emplace_back(static_cast<std::uint32_t>(tag), i);
+      const auto x = next<double>();
+      const auto y = next<double>();
+      next<double>();
+      coordinates.insert(coordinates.end(), {x, y});
+    }
+    take_nodes(place_of_tag, coordinates);
+  }
+
+  // A number of items to come, as text even in binary files of 2.2.
+  std::uint64_t text_count() {
+    const auto value = text_number<std::uint64_t>();
+    if (value > rest_.size() || value > std::numeric_limits<std::uint32_t>::max())
+      throw Malformed{"announces " + std::to_string(value) + " items, more than the file can hold"};
+    start_data();
+    return value;
+  }
+
+  // `place_of_tag`: tag of a node, its place in `coordinates`.
+  void take_nodes(std::vector<std::pair<std::uint64_t, std::uint64_t>>& place_of_tag,
+                  const std::vector<double>& coordinates) {
+    // Vertices go by tag, so that a mesh comes back in the order in which it was written.
+    std::sort(place_of_tag.begin(), place_of_tag.end());
+    for (const auto& [tag, place] : place_of_tag) {
+      if (!tags_.empty() && tags_.back() == tag)
+        throw Malformed{"has two nodes with the tag " + std::to_string(tag)};
+      tags_.push_back(tag);
+      mesh_.coordinates.insert(mesh_.coordinates.end(),
+                               {coordinates[2 * place], coordinates[2 * place + 1]});
+    }
+  }
+
+  std::uint32_t vertex(std::uint64_t tag) const {
+    if (tags_.empty()) throw Malformed{"has elements before nodes"};
+    // Where tags have no gaps, the number follows from the tag.
+    if (tag >= tags_.front() && tag - tags_.front() < tags_.size() &&
+        tags_[tag - tags_.front()] == tag)
+      return static_cast<std::uint32_t>(tag - tags_.front());
+    const auto found = std::lower_bound(tags_.begin(), tags_.end(), tag);
+    if (found == tags_.end() || *found != tag)
+      throw Malformed{"an element names the node " + std::to_string(tag) + ", which is missing"};
+    return static_cast<std::uint32_t>(found - tags_.begin());
+  }
+
+  void read_elements() {
+    start_data();
+    has_elements_ = true;
+    const std::uint64_t blocks = count();
+    for (int k = 0; k < 3; ++k) next<std::uint64_t>();
+    for (std::uint64_t block = 0; block < blocks; ++block) {
+      const auto dimension = next<std::int32_t>();
+      const auto entity = next<std::int32_t>();
+      const auto type = next<std::int32_t>();
+      const std::uint64_t elements = count();
+      check_type(type);
+      const std::int32_t id = id_of({dimension, entity});
+      for (std::uint64_t i = 0; i < elements; ++i) {
+        next<std::uint64_t>();
+        read_element<std::uint64_t>(type, id);
+      }
+    }
+  }
+
+  // Text: number, type, tags, nodes. Binary: blocks that start with type, elements, tags.
+  void read_elements_22() {
+    has_elements_ = true;
+    const auto elements = text_count();
+    std::int32_t type = 0;
+    std::int32_t tags = 0;
+    std::int32_t in_block = 0;
+    for (std::uint64_t i = 0; i < elements; ++i) {
+      if (binary_ && in_block == 0) {
+        type = next<std::int32_t>();
+        in_block = next<std::int32_t>();
+        tags = next<std::int32_t>();
+        if (in_block <= 0) throw Malformed{"has a block of no elements"};
+      }
+      --in_block;
+      next<std::int32_t>();
+      if (!binary_) {
+        type = next<std::int32_t>();
+        tags = next<std::int32_t>();
+      }
+      check_type(type);
+      std::int32_t group = 0;
+      for (std::int32_t k = 0; k < tags; ++k) {
+        const auto tag = next<std::int32_t>();
+        if (k == 0) group = tag;
+      }
+      read_element<std::int32_t>(type, id_of_group(type == kPoint ? 0 : type, group));
+    }
+  }
+
+  static void check_type(std::int32_t type) {
+    if (type != kLine && type != kTriangle && type != kPoint)
+      throw Malformed{"has elements of type " + std::to_string(type) +
+                      ", which are no triangles, lines or points"};
+  }
+
+  template <class NodeTag>
+  void read_element(std::int32_t type, std::int32_t id) {
+    for (int corner = 0; corner < (type == kPoint ? 1 : type + 1); ++corner) {
+      const auto tag = next<NodeTag>();
+      const std::uint32_t v = vertex(static_cast<std::make_unsigned_t<NodeTag>>(tag));
+      if (type == kTriangle) mesh_.triangles.push_back(v);
+      if (type == kLine) mesh_.edges.push_back(v);
+    }
+    if (type == kTriangle) mesh_.regions.push_back(id);
+    if (type == kLine) mesh_.edge_markers.push_back(id);
+  }
+
+  std::filesystem::path path_;
+  std::string_view whole_;
+  std::string_view rest_;
+  bool binary_ = false;
+  bool is_22_ = false;
+  bool has_nodes_ = false;
+  bool has_elements_ = false;
+  std::map<Tag, std::int32_t> id_of_group_;
+  std::map<Tag, std::int32_t> group_of_entity_;
+  std::vector<std::uint64_t> tags_;  // of the vertices, ascending
+  Mesh mesh_;
+};
+
+}  // namespace
+
+Result<Mesh> read_msh(const std::filesystem::path& path) {
+  const auto contents = read_file(path, kMaxFileBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  return Reader(path, contents->text()).read();
+}
+
+}  // namespace weft::client

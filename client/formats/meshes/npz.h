@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// NumPy's archive of arrays (https://numpy.org/doc/stable/reference/generated/numpy.savez.html), as
+// numpy.load opens it:
+//   points        (vertices, 2)   float64
+//   triangles     (triangles, 3)  uint32, rows of `points`
+//   regions       (triangles,)    int32
+//   edges         (edges, 2)      uint32: the edges on input segments
+//   edge_markers  (edges,)        int32
+// Written uncompressed, with 64-bit sizes.
+#pragma once
+
+#include <filesystem>
+
+#include "client/base/atomic_file.h"
+#include "client/base/error.h"
+#include "client/formats/mesh.h"
+
+namespace weft::client {
+
+void write_npz(const MeshView& mesh, OutputFile& file);
+
+// Reads archives of numpy.savez and numpy.savez_compressed that hold `points` (of 2 or 3 columns,
+// the third is dropped) and `triangles`, and perhaps the others; little-endian, in C order, floats
+// of 4 or 8 bytes, integers of 4 or 8 bytes.
+Result<Mesh> read_npz(const std::filesystem::path& path);
+
+}  // namespace weft::client

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <zlib.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "client/base/text.h"
+#include "client/formats/file_contents.h"
+#include "client/formats/mesh_formats.h"
+#include "client/formats/meshes/npz.h"
+
+namespace weft::client {
+namespace {
+
+constexpr std::uint64_t kMaxFileBytes = std::uint64_t{64} << 30;
+
+// Thrown and caught in this file alone.
+struct Malformed {
+  std::string why;
+};
+
+// Little-endian numbers at places that a file names.
+template <class T>
+T number_at(std::string_view bytes, std::uint64_t at) {
+  T value;
+  if (at > bytes.size() || bytes.size() - at < sizeof value)
+    throw Malformed{"the archive is cut short"};
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+std::string_view piece(std::string_view bytes, std::uint64_t at, std::uint64_t size) {
+  if (at > bytes.size() || bytes.size() - at < size) throw Malformed{"the archive is cut short"};
+  return bytes.substr(at, size);
+}
+
+std::string inflated(std::string_view packed, std::uint64_t size) {
+  // Deflate shrinks to no less than a thousandth: what claims more is refused before it gets
+  // memory.
+  constexpr std::uint64_t kMostGrowth = 1100;
+  if (size / kMostGrowth > packed.size() + 1) throw Malformed{"an array claims an absurd size"};
+  std::string out(size, '\0');
+  z_stream stream{};
+  if (::inflateInit2(&stream, -MAX_WBITS) != Z_OK) throw Malformed{"zlib does not start"};
+  std::size_t read = 0;
+  std::size_t written = 0;
+  int state = Z_OK;
+  while (state == Z_OK) {
+    constexpr std::size_t kStep = std::size_t{1} << 30;
+    const std::size_t in = std::min(kStep, packed.size() - read);
+    const std::size_t room = std::min(kStep, out.size() - written);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data() + read));
+    stream.avail_in = static_cast<uInt>(in);
+    stream.next_out = reinterpret_cast<Bytef*>(out.data() + written);
+    stream.avail_out = static_cast<uInt>(room);
+    state = ::inflate(&stream, Z_NO_FLUSH);
+    read += in - stream.avail_in;
+    written += room - stream.avail_out;
+  }
+  ::inflateEnd(&stream);
+  if (state != Z_STREAM_END || written != size)
+    throw Malformed{"an array does not unpack to the size that it claims"};
+  return out;
+}
+
+// The arrays of an archive, by name less ".npy".
+class Archive {
+ public:
+  explicit Archive(std::string_view bytes) : bytes_(bytes) {
+    constexpr std::size_t kEnd = 22;
+    const std::string_view mark("PK\5\6", 4);
+    const std::size_t end = bytes.rfind(mark);
+    if (end == std::string_view::npos || bytes.size() - end < kEnd)
+      throw Malformed{"is not a zip archive, or it is cut short"};
+    std::uint64_t count = number_at<std::uint16_t>(bytes, end + 10);
+    std::uint64_t at = number_at<std::uint32_t>(bytes, end + 16);
+    constexpr std::size_t kLocator = 20;
+    if (end >= kLocator && bytes.substr(end - kLocator, 4) == std::string_view("PK\6\7", 4)) {
+      const auto end64 = number_at<std::uint64_t>(bytes, end - kLocator + 8);
+      count = number_at<std::uint64_t>(bytes, plus(end64, 32));
+      at = number_at<std::uint64_t>(bytes, plus(end64, 48));
+    }
+    for (std::uint64_t i = 0; i < count; ++i) at = read_entry(at);
+  }
+
+  bool has(const std::string& name) const { return entries_.contains(name); }
+  std::string_view array(const std::string& name) {
+    const auto found = entries_.find(name);
+    if (found == entries_.end()) throw Malformed{"holds no array " + in_quotes(name)};
+    const Entry& entry = found->second;
+    const auto name_size = number_at<std::uint16_t>(bytes_, plus(entry.header, 26));
+    const auto extra_size = number_at<std::uint16_t>(bytes_, plus(entry.header, 28));
+    const std::string_view packed =
+        piece(bytes_, plus(entry.header, 30u + name_size + extra_size), entry.packed_size);
+    if (entry.method == 0) return packed;
+    if (entry.method != 8)
+      throw Malformed{"array " + in_quotes(name) + " is packed by the method " +
+                      std::to_string(entry.method) + ", only 0 and 8 are read"};
+    return unpacked_.emplace(name, inflated(packed, entry.size)).first->second;
+  }
+
+ private:
+  struct Entry {
+    std::uint16_t method;
+    std::uint64_t packed_size;
+    std::uint64_t size;
+    std::uint64_t header;
+  };
+
+  static std::uint64_t plus(std::uint64_t at, std::uint64_t more) {
+    if (at > std::numeric_limits<std::uint64_t>::max() - more)
+      throw Malformed{"the archive is cut short"};
+    return at + more;
+  }
+
+  // Reads the entry of the central directory at `at`, and returns where the next is.
+  std::uint64_t read_entry(std::uint64_t at) {
+    if (piece(bytes_, at, 4) != std::string_view("PK\1\2", 4))
+      throw Malformed{"the directory of the archive is damaged"};
+    Entry entry{
+        number_at<std::uint16_t>(bytes_, at + 10), number_at<std::uint32_t>(bytes_, at + 20),
+        number_at<std::uint32_t>(bytes_, at + 24), number_at<std::uint32_t>(bytes_, at + 42)};
+    const auto name_size = number_at<std::uint16_t>(bytes_, at + 28);
+    const auto extra_size = number_at<std::uint16_t>(bytes_, at + 30);
+    const auto comment_size = number_at<std::uint16_t>(bytes_, at + 32);
+    std::string_view name = piece(bytes_, at + 46, name_size);
+    read_extra(piece(bytes_, at + 46 + name_size, extra_size), entry);
+    if (name.ends_with(".npy")) name.remove_suffix(4);
+    entries_.emplace(name, entry);
+    return at + 46 + name_size + extra_size + comment_size;
+  }
+
+  // 64-bit sizes stand, in this order, for those whose 32 bits are all set.
+  static void read_extra(std::string_view extra, Entry& entry) {
+    while (extra.size() >= 4) {
+      const auto id = number_at<std::uint16_t>(extra, 0);
+      const auto size = number_at<std::uint16_t>(extra, 2);
+      std::string_view field = piece(extra, 4, size);
+      extra.remove_prefix(4u + size);
+      if (id != 1) continue;
+      for (std::uint64_t* value : {&entry.size, &entry.packed_size, &entry.header}) {
+        if (*value != 0xffffffff) continue;
+        *value = number_at<std::uint64_t>(field, 0);
+        field.remove_prefix(8);
+      }
+    }
+  }
+
+  std::string_view bytes_;
+  std::map<std::string, Entry, std::less<>> entries_;
+  std::map<std::string, std::string> unpacked_;
+};
+
+// A .npy file: its head, taken apart, and its values.
+struct Array {
+  std::string type;                  // "<f8"
+  std::vector<std::uint64_t> shape;  // one or two
+  std::string_view values;
+  std::size_t item() const { return static_cast<std::size_t>(type[2] - '0'); }
+};
+
+Array parse_npy(const std::string& name, std::string_view bytes) {
+  const auto bad = [&name](const std::string& why) {
+    return Malformed{"array " + in_quotes(name) + " " + why};
+  };
+  if (!bytes.starts_with("\x93NUMPY") || bytes.size() < 12) throw bad("is not in NumPy's format");
+  const bool short_head = bytes[6] == 1;
+  const std::uint64_t size = short_head ? number_at<std::uint16_t>(bytes, 8)
+                                        : std::uint64_t{number_at<std::uint32_t>(bytes, 8)};
+  const std::uint64_t start = short_head ? 10 : 12;
+  const std::string_view head = piece(bytes, start, size);
+  const auto after = [&](std::string_view key) {
+    const std::size_t at = head.find(key);
+    if (at == std::string_view::npos) throw bad("has a head without " + std::string(key));
+    return head.substr(at + key.size());
+  };
+  Array array;
+  const std::string_view type = after("'descr': '");
+  array.type = type.substr(0, type.find('\''));
+  const bool known = array.type == "<f8" || array.type == "<f4" || array.type == "<i4" ||
+                     array.type == "<i8" || array.type == "<u4" || array.type == "<u8";
+  if (!known) throw bad("has the type " + in_quotes(array.type) + ", which is not read");
+  if (after("'fortran_order': ").starts_with("True")) throw bad("is in Fortran's order");
+  std::string_view shape = after("'shape': (");
+  shape = shape.substr(0, shape.find(')'));
+  std::uint64_t count = 1;
+  while (!shape.empty()) {
+    std::uint64_t extent = 0;
+    const auto [end, problem] = std::from_chars(shape.data(), shape.data() + shape.size(), extent);
+    if (problem != std::errc() || (extent != 0 && count > kMaxFileBytes / extent))
+      throw bad("has a shape that is not read");
+    count *= extent;
+    array.shape.push_back(extent);
+    shape.remove_prefix(static_cast<std::size_t>(end - shape.data()));
+    shape.remove_prefix(std::min(shape.find_first_not_of(", "), shape.size()));
+  }
+  array.values = bytes.substr(start + size);
+  if (array.values.size() / array.item() < count) throw bad("is cut short");
+  return array;
+}
+
+template <class Stored, class Out>
+void convert(const std::string& name, const Array& array, std::size_t columns, std::size_t stride,
+             std::vector<Out>& out) {
+  const std::uint64_t rows = array.shape[0];
+  out.reserve(rows * columns);
+  for (std::uint64_t row = 0; row < rows; ++row) {
+    for (std::size_t k = 0; k < columns; ++k) {
+      Stored value;
+      std::memcpy(&value, array.values.data() + (row * stride + k) * sizeof value, sizeof value);
+      if constexpr (std::is_integral_v<Stored>) {
+        if (!std::in_range<Out>(value))
+          throw Malformed{"array " + in_quotes(name) + " has " + std::to_string(value) +
+                          " in row " + std::to_string(row) + ", out of range"};
+      }
+      out.push_back(static_cast<Out>(value));
+    }
+  }
+}
+
+// Takes the first `columns` columns of the array.
+template <class Out>
+std::vector<Out> column_values(Archive& archive, const std::string& name, std::size_t columns) {
+  const Array array = parse_npy(name, archive.array(name));
+  const std::size_t stride = array.shape.size() == 2 ? array.shape[1] : 1;
+  const bool fits = columns == 1 ? array.shape.size() == 1
+                                 : array.shape.size() == 2 &&
+                                       (stride == columns || (name == "points" && stride == 3));
+  if (!fits)
+    throw Malformed{"array " + in_quotes(name) + " does not have " + std::to_string(columns) +
+                    (columns == 1 ? " column" : " columns")};
+  std::vector<Out> out;
+  if constexpr (std::is_floating_point_v<Out>) {
+    if (array.type == "<f8") return convert<double>(name, array, columns, stride, out), out;
+    if (array.type == "<f4") return convert<float>(name, array, columns, stride, out), out;
+  } else {
+    if (array.type == "<i4") return convert<std::int32_t>(name, array, columns, stride, out), out;
+    if (array.type == "<i8") return convert<std::int64_t>(name, array, columns, stride, out), out;
+    if (array.type == "<u4") return convert<std::uint32_t>(name, array, columns, stride, out), out;
+    if (array.type == "<u8") return convert<std::uint64_t>(name, array, columns, stride, out), out;
+  }
+  throw Malformed{"array " + in_quotes(name) + " has the type " + in_quotes(array.type) +
+                  ", which does not fit"};
+}
+
+}  // namespace
+
+Result<Mesh> read_npz(const std::filesystem::path& path) {
+  const auto contents = read_file(path, kMaxFileBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  const auto refuse = [&path](const std::string& why) {
+    return fail(ExitCode::kUnreadableInput, path.string() + ": " + why);
+  };
+  try {
+    Archive archive(contents->text());
+    Mesh mesh;
+    mesh.coordinates = column_values<double>(archive, "points", 2);
+    mesh.triangles = column_values<std::uint32_t>(archive, "triangles", 3);
+    if (archive.has("regions")) mesh.regions = column_values<std::int32_t>(archive, "regions", 1);
+    if (archive.has("edges")) mesh.edges = column_values<std::uint32_t>(archive, "edges", 2);
+    if (archive.has("edge_markers"))
+      mesh.edge_markers = column_values<std::int32_t>(archive, "edge_markers", 1);
+    return validated(path, std::move(mesh));
+  } catch (const Malformed& malformed) {
+    return refuse(malformed.why);
+  }
+}
+
+}  // namespace weft::client

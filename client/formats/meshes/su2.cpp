@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/formats/meshes/su2.h"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/base/text.h"
+#include "client/formats/file_contents.h"
+#include "client/formats/line_scanner.h"
+#include "client/formats/mesh_edges.h"
+#include "client/formats/mesh_formats.h"
+#include "client/formats/text_writer.h"
+#include "client/formats/triangle/triangle_points.h"
+
+namespace weft::client {
+namespace {
+
+// VTK's numbers for the kinds of elements.
+constexpr int kLine = 3;
+constexpr int kTriangle = 5;
+
+class Reader {
+ public:
+  Reader(const std::filesystem::path& path, std::string_view text)
+      : scanner_(path.string(), text, {.blanks = " \t\r\f\v,=", .comment = '%'}) {}
+
+  Result<Mesh> read(const std::filesystem::path& path) {
+    while (scanner_.try_next_line()) {
+      const auto key = scanner_.word("a keyword");
+      if (!key) return tl::unexpected(key.error());
+      if (auto done = section(*key); !done) return tl::unexpected(done.error());
+    }
+    if (!has_points_ || !has_elements_)
+      return fail(ExitCode::kUnreadableInput, path.string() + ": has no NPOIN or no NELEM");
+    name_markers();
+    return validated(path, std::move(mesh_));
+  }
+
+ private:
+  Result<void> section(std::string_view key) {
+    if (key == "NDIME") {
+      const auto dimension = scanner_.integer("the dimension");
+      if (!dimension) return tl::unexpected(dimension.error());
+      if (*dimension != 2)
+        return scanner_.error("the dimension is " + std::to_string(*dimension) +
+                              ", only 2 is read");
+      return {};
+    }
+    if (key == "NELEM") return elements("the element count", kTriangle, mesh_.triangles);
+    if (key == "NPOIN") return points();
+    if (key == "NMARK") return {};
+    if (key == "MARKER_TAG") return tag();
+    if (key == "MARKER_ELEMS") return marker_elements();
+    return scanner_.error("expected a keyword of SU2's two-dimensional meshes, found " +
+                          in_quotes(key));
+  }
+
+  Result<void> elements(std::string_view what, int type, std::vector<std::uint32_t>& vertices) {
+    const auto count = scanner_.count(what);
+    if (!count) return tl::unexpected(count.error());
+    has_elements_ |= type == kTriangle;
+    for (std::uint64_t i = 0; i < *count; ++i) {
+      if (auto line = scanner_.next_line("an element"); !line) return line;
+      const auto found = scanner_.integer("the element's type");
+      if (!found) return tl::unexpected(found.error());
+      if (*found != type)
+        return scanner_.error("the element's type is " + std::to_string(*found) + ", only " +
+                              std::to_string(type) + " is read here");
+      for (int k = 0; k < (type == kTriangle ? 3 : 2); ++k) {
+        // Points may follow: their numbers are judged at the end.
+        const auto v = read_index(scanner_, "a point of the element", 0,
+                                  std::numeric_limits<std::uint32_t>::max());
+        if (!v) return tl::unexpected(v.error());
+        vertices.push_back(*v);
+      }
+    }
+    return {};
+  }
+
+  Result<void> points() {
+    const auto count = scanner_.count("the point count");
+    if (!count) return tl::unexpected(count.error());
+    has_points_ = true;
+    mesh_.coordinates.reserve(2 * *count);
+    for (std::uint64_t i = 0; i < *count; ++i) {
+      if (auto line = scanner_.next_line("a point"); !line) return line;
+      for (const char* what : {"the x coordinate", "the y coordinate"}) {
+        const auto value = scanner_.real(what);
+        if (!value) return tl::unexpected(value.error());
+        mesh_.coordinates.push_back(*value);
+      }
+    }
+    return {};
+  }
+
+  Result<void> tag() {
+    const auto name = scanner_.word("the marker's tag");
+    if (!name) return tl::unexpected(name.error());
+    tags_.emplace_back(*name);
+    first_edges_.push_back(mesh_.edges.size() / 2);
+    return {};
+  }
+
+  Result<void> marker_elements() {
+    if (tags_.empty()) return scanner_.error("MARKER_ELEMS stands before any MARKER_TAG");
+    return elements("the marker's element count", kLine, mesh_.edges);
+  }
+
+  void name_markers() {
+    const auto number = [](const std::string& tag) -> std::optional<std::int32_t> {
+      std::int32_t value = 0;
+      const auto [end, problem] = std::from_chars(tag.data(), tag.data() + tag.size(), value);
+      if (problem != std::errc() || end != tag.data() + tag.size()) return std::nullopt;
+      return value;
+    };
+    std::set<std::int32_t> taken;
+    for (const std::string& tag : tags_)
+      if (const auto value = number(tag)) taken.insert(*value);
+    std::map<std::string, std::int32_t> marker_of;
+    std::int32_t next = 1;
+    mesh_.edge_markers.resize(mesh_.edges.size() / 2);
+    for (std::size_t i = 0; i < tags_.size(); ++i) {
+      const auto [found, is_new] = marker_of.try_emplace(tags_[i], 0);
+      if (is_new) {
+        while (taken.contains(next)) ++next;
+        const auto value = number(tags_[i]);
+        found->second = value ? *value : next++;
+      }
+      std::fill(mesh_.edge_markers.begin() + static_cast<std::ptrdiff_t>(first_edges_[i]),
+                mesh_.edge_markers.end(), found->second);
+    }
+  }
+
+  LineScanner scanner_;
+  bool has_points_ = false;
+  bool has_elements_ = false;
+  std::vector<std::string> tags_;
+  std::vector<std::size_t> first_edges_;  // of each tag
+  Mesh mesh_;
+};
+
+}  // namespace
+
+void write_su2(const MeshView& mesh, OutputFile& file) {
+  put_line(file, "NDIME= 2");
+  put_line(file, "NELEM=", mesh.triangle_count());
+  for (const std::size_t t : mesh.up_to(mesh.triangle_count())) {
+    const std::uint32_t* corner = &mesh.triangles[3 * t];
+    put_line(file, kTriangle, corner[0], corner[1], corner[2], t);
+  }
+  put_line(file, "NPOIN=", mesh.vertex_count());
+  for (const std::size_t v : mesh.up_to(mesh.vertex_count()))
+    put_line(file, mesh.coordinates[2 * v], mesh.coordinates[2 * v + 1], v);
+
+  const BoundaryRings rings = boundary_rings(mesh, MeshEdges(mesh));
+  using Edge = std::pair<std::uint32_t, std::uint32_t>;
+  std::map<std::int32_t, std::vector<Edge>> by_marker;
+  for (std::size_t r = 0; r < rings.size(); ++r)
+    for (std::size_t i = rings.starts[r]; i < rings.starts[r + 1]; ++i)
+      by_marker[rings.markers[i]].emplace_back(
+          rings.vertices[i], rings.vertices[i + 1 < rings.starts[r + 1] ? i + 1 : rings.starts[r]]);
+  put_line(file, "NMARK=", by_marker.size());
+  for (const auto& [marker, edges] : by_marker) {
+    put_line(file, "MARKER_TAG=", marker);
+    put_line(file, "MARKER_ELEMS=", edges.size());
+    for (const auto& [a, b] : edges) put_line(file, kLine, a, b);
+  }
+}
+
+Result<Mesh> read_su2(const std::filesystem::path& path) {
+  const auto contents = read_file(path, kMaxTextBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  return Reader(path, contents->text()).read(path);
+}
+
+}  // namespace weft::client

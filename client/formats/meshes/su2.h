@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// SU2's native mesh (https://su2code.github.io/docs_v7/Mesh-File/), two-dimensional: triangles,
+// points, and the boundary by marker, the tag being the number. Every edge of the boundary is in
+// one; those without a marker are in 0. Edges inside the domain are left out, SU2 knows none;
+// regions are lost.
+#pragma once
+
+#include <filesystem>
+
+#include "client/base/atomic_file.h"
+#include "client/base/error.h"
+#include "client/formats/mesh.h"
+
+namespace weft::client {
+
+void write_su2(const MeshView& mesh, OutputFile& file);
+
+// Tags that are integers are the markers; other tags get the lowest numbers from 1 on that are
+// free, in the order of the file.
+Result<Mesh> read_su2(const std::filesystem::path& path);
+
+}  // namespace weft::client

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Formats of surfaces in space, for viewers and printers; z is 0.
+//   .obj  Wavefront: triangles in groups "region_<id>", edges as lines in groups "marker_<value>"
+//   .off  Object file format: vertices and triangles; no regions, no edges
+//   .ply  Stanford polygons, binary: vertices in double precision, faces with `region`; no edges,
+//   for
+//         some readers refuse them
+//   .stl  binary: triangles in single precision, each on its own; no regions, no edges
+#pragma once
+
+#include <filesystem>
+
+#include "client/base/atomic_file.h"
+#include "client/base/error.h"
+#include "client/formats/mesh.h"
+
+namespace weft::client {
+
+void write_obj(const MeshView& mesh, OutputFile& file);
+void write_off(const MeshView& mesh, OutputFile& file);
+void write_ply(const MeshView& mesh, OutputFile& file);
+void write_stl(const MeshView& mesh, OutputFile& file);
+
+// Faces must be triangles; z, normals, textures and materials are dropped.
+Result<Mesh> read_obj(const std::filesystem::path& path);
+Result<Mesh> read_off(const std::filesystem::path& path);
+
+}  // namespace weft::client

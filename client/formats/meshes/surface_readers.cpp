@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <string>
+#include <utility>
+
+#include "client/base/text.h"
+#include "client/formats/file_contents.h"
+#include "client/formats/line_scanner.h"
+#include "client/formats/mesh_formats.h"
+#include "client/formats/meshes/surface_formats.h"
+#include "client/formats/triangle/triangle_points.h"
+
+namespace weft::client {
+namespace {
+
+Result<void> read_xy(LineScanner& scanner, Mesh& mesh) {
+  for (const char* what : {"the x coordinate", "the y coordinate"}) {
+    const auto value = scanner.real(what);
+    if (!value) return tl::unexpected(value.error());
+    mesh.coordinates.push_back(*value);
+  }
+  return {};
+}
+
+class ObjReader {
+ public:
+  explicit ObjReader(LineScanner scanner) : scanner_(std::move(scanner)) {}
+
+  Result<Mesh> read() {
+    while (scanner_.try_next_line()) {
+      const auto key = scanner_.word("a keyword");
+      if (!key) return tl::unexpected(key.error());
+      Result<void> done;
+      if (*key == "v") done = read_xy(scanner_, mesh_);
+      if (*key == "f") done = face();
+      if (*key == "l") done = line();
+      if (*key == "g") group();
+      if (!done) return tl::unexpected(done.error());
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  // "7", "7/1", "7//3": the vertex, from 1 on, or backwards from the last one if negative.
+  Result<std::uint32_t> vertex() {
+    const auto field = scanner_.word("a vertex");
+    if (!field) return tl::unexpected(field.error());
+    const std::string_view digits = field->substr(0, field->find('/'));
+    const auto count = static_cast<std::int64_t>(mesh_.coordinates.size() / 2);
+    std::int64_t number = 0;
+    const auto [end, problem] =
+        std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (problem != std::errc() || end != digits.data() + digits.size())
+      return scanner_.error("expected a vertex, found " + in_quotes(*field));
+    const std::int64_t index = number < 0 ? count + number : number - 1;
+    if (index < 0 || index >= count)
+      return scanner_.error("the vertex is " + std::to_string(number) + ", so far there are " +
+                            std::to_string(count));
+    return static_cast<std::uint32_t>(index);
+  }
+
+  Result<void> face() {
+    for (int k = 0; k < 3; ++k) {
+      const auto v = vertex();
+      if (!v) return tl::unexpected(v.error());
+      mesh_.triangles.push_back(*v);
+    }
+    if (!scanner_.at_line_end()) return scanner_.error("the face is not a triangle");
+    mesh_.regions.push_back(region_);
+    return {};
+  }
+
+  Result<void> line() {
+    auto from = vertex();
+    if (!from) return tl::unexpected(from.error());
+    do {
+      const auto to = vertex();
+      if (!to) return tl::unexpected(to.error());
+      mesh_.edges.insert(mesh_.edges.end(), {*from, *to});
+      mesh_.edge_markers.push_back(marker_);
+      from = to;
+    } while (!scanner_.at_line_end());
+    return {};
+  }
+
+  void group() {
+    region_ = marker_ = 0;
+    const std::string_view name = scanner_.rest_of_line();
+    const auto number = [name](std::string_view word, std::int32_t& value) {
+      if (name.starts_with(word))
+        std::from_chars(name.data() + word.size(), name.data() + name.size(), value);
+    };
+    number("region_", region_);
+    number("marker_", marker_);
+  }
+
+  LineScanner scanner_;
+  std::int32_t region_ = 0;
+  std::int32_t marker_ = 0;
+  Mesh mesh_;
+};
+
+}  // namespace
+
+Result<Mesh> read_obj(const std::filesystem::path& path) {
+  const auto contents = read_file(path, kMaxTextBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  auto mesh = ObjReader(LineScanner(path.string(), contents->text())).read();
+  if (!mesh) return mesh;
+  return validated(path, std::move(*mesh));
+}
+
+Result<Mesh> read_off(const std::filesystem::path& path) {
+  const auto contents = read_file(path, kMaxTextBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  LineScanner scanner(path.string(), contents->text());
+  if (auto line = scanner.next_line("the word OFF"); !line) return tl::unexpected(line.error());
+  const auto word = scanner.word("the word OFF");
+  if (!word) return tl::unexpected(word.error());
+  if (*word != "OFF") return scanner.error("expected the word OFF, found " + in_quotes(*word));
+  if (scanner.at_line_end())
+    if (auto line = scanner.next_line("the vertex count"); !line)
+      return tl::unexpected(line.error());
+  const auto vertices = scanner.count("the vertex count");
+  if (!vertices) return tl::unexpected(vertices.error());
+  const auto faces = scanner.count("the face count");
+  if (!faces) return tl::unexpected(faces.error());
+
+  Mesh mesh;
+  mesh.coordinates.reserve(2 * *vertices);
+  for (std::uint64_t i = 0; i < *vertices; ++i) {
+    if (auto line = scanner.next_line("a vertex"); !line) return tl::unexpected(line.error());
+    if (auto read = read_xy(scanner, mesh); !read) return tl::unexpected(read.error());
+  }
+  mesh.triangles.reserve(3 * *faces);
+  for (std::uint64_t i = 0; i < *faces; ++i) {
+    if (auto line = scanner.next_line("a face"); !line) return tl::unexpected(line.error());
+    const auto corners = scanner.integer("the corners of the face");
+    if (!corners) return tl::unexpected(corners.error());
+    if (*corners != 3)
+      return scanner.error("the face has " + std::to_string(*corners) +
+                           " corners, only triangles are read");
+    for (int k = 0; k < 3; ++k) {
+      const auto v = read_index(scanner, "a corner", 0, *vertices);
+      if (!v) return tl::unexpected(v.error());
+      mesh.triangles.push_back(*v);
+    }
+  }
+  return validated(path, std::move(mesh));
+}
+
+}  // namespace weft::client

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// VTK's unstructured grid, XML with raw appended data (VTK file formats, "XML file formats"):
+// points in 3D with z = 0; the triangles, then the edges on input segments as line cells; cell data
+// `region` (0 on lines) and `marker` (0 on triangles), both Int32. Of second order: quadratic
+// triangles and quadratic edges.
+#pragma once
+
+#include <filesystem>
+
+#include "client/base/atomic_file.h"
+#include "client/base/error.h"
+#include "client/formats/mesh.h"
+
+namespace weft::client {
+
+void write_vtu(const MeshView& mesh, OutputFile& file);
+
+// Reads what write_vtu writes, and grids of triangles, lines and vertices by others as long as they
+// are little-endian, uncompressed, and raw appended or ASCII.
+Result<Mesh> read_vtu(const std::filesystem::path& path);
+
+}  // namespace weft::client

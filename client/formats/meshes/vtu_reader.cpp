@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "client/base/text.h"
+#include "client/formats/file_contents.h"
+#include "client/formats/mesh_formats.h"
+#include "client/formats/meshes/vtu.h"
+
+namespace weft::client {
+namespace {
+
+constexpr std::uint64_t kMaxFileBytes = std::uint64_t{64} << 30;
+constexpr std::string_view kBlanks = " \t\r\n";
+
+using Attributes = std::map<std::string_view, std::string_view>;
+
+// A start tag and what follows it.
+struct Tag {
+  std::string_view name;
+  Attributes attributes;
+  std::string_view text;  // up to the next '<'
+};
+
+// An array of the grid, its values not yet read.
+struct Array {
+  std::string_view type;
+  bool ascii = false;
+  std::string_view text;     // of an ASCII array
+  std::uint64_t offset = 0;  // of an appended one
+};
+
+class Reader {
+ public:
+  Reader(std::filesystem::path path, std::string_view text) : path_(std::move(path)), rest_(text) {}
+
+  Result<Mesh> read() {
+    if (auto scanned = scan(); !scanned) return tl::unexpected(scanned.error());
+    const auto points = values<double>("Points", 3 * points_);
+    if (!points) return tl::unexpected(points.error());
+    const auto types = values<std::uint64_t>("types", cells_);
+    if (!types) return tl::unexpected(types.error());
+    const auto offsets = values<std::uint64_t>("offsets", cells_);
+    if (!offsets) return tl::unexpected(offsets.error());
+    const auto corners =
+        values<std::uint64_t>("connectivity", offsets->empty() ? 0 : offsets->back());
+    if (!corners) return tl::unexpected(corners.error());
+    const auto regions = optional_values("region");
+    if (!regions) return tl::unexpected(regions.error());
+    const auto markers = optional_values("marker");
+    if (!markers) return tl::unexpected(markers.error());
+
+    Mesh mesh;
+    mesh.coordinates.reserve(2 * points_);
+    for (std::size_t i = 0; i < points_; ++i)
+      mesh.coordinates.insert(mesh.coordinates.end(), {(*points)[3 * i], (*points)[3 * i + 1]});
+    std::uint64_t first = 0;
+    for (std::size_t cell = 0; cell < cells_; ++cell) {
+      const std::uint64_t end = (*offsets)[cell];
+      const std::uint64_t type = (*types)[cell];
+      constexpr std::uint64_t kCorners[] = {0, 1, 0, 2, 0, 3};  // vertex, line and triangle
+      if (type >= std::size(kCorners) || kCorners[type] == 0)
+        return refuse("cell " + std::to_string(cell) + " has the type " + std::to_string(type) +
+                      ", which is no vertex, line or triangle");
+      if (end < first || end - first != kCorners[type] || end > corners->size())
+        return refuse("cell " + std::to_string(cell) + " has a wrong offset");
+      auto& list = type == 5 ? mesh.triangles : mesh.edges;
+      for (; first < end; ++first) {
+        const std::uint64_t v = (*corners)[first];
+        if (v >= points_)
+          return refuse("cell " + std::to_string(cell) + " has vertex " + std::to_string(v) +
+                        " of " + std::to_string(points_));
+        if (type != 1) list.push_back(static_cast<std::uint32_t>(v));
+      }
+      if (type == 5) mesh.regions.push_back(regions->empty() ? 0 : (*regions)[cell]);
+      if (type == 3) mesh.edge_markers.push_back(markers->empty() ? 0 : (*markers)[cell]);
+    }
+    return validated(path_, std::move(mesh));
+  }
+
+ private:
+  tl::unexpected<Error> refuse(const std::string& why) const {
+    return fail(ExitCode::kUnreadableInput, path_.string() + ": " + why);
+  }
+
+  static std::optional<std::uint64_t> number(std::string_view text) {
+    std::uint64_t value = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+  }
+
+  // The next start tag; none at the end of the text.
+  Result<std::optional<Tag>> next_tag() {
+    for (;;) {
+      const std::size_t open = rest_.find('<');
+      if (open == std::string_view::npos) return std::nullopt;
+      rest_.remove_prefix(open + 1);
+      if (!rest_.starts_with('/') && !rest_.starts_with('?') && !rest_.starts_with('!')) break;
+    }
+    const std::size_t close = rest_.find('>');
+    if (close == std::string_view::npos) return refuse("a tag does not end");
+    std::string_view inside = rest_.substr(0, close);
+    rest_.remove_prefix(close + 1);
+    Tag tag;
+    tag.text = rest_.substr(0, rest_.find('<'));
+    tag.name = inside.substr(0, inside.find_first_of(" \t\r\n/"));
+    inside.remove_prefix(tag.name.size());
+    for (;;) {
+      const std::size_t start = inside.find_first_not_of(kBlanks);
+      if (start == std::string_view::npos || inside[start] == '/') return tag;
+      inside.remove_prefix(start);
+      const std::size_t equals = inside.find('=');
+      if (equals == std::string_view::npos || equals + 1 >= inside.size())
+        return refuse("the tag " + in_quotes(tag.name) + " is malformed");
+      const char quote = inside[equals + 1];
+      const std::size_t end = inside.find(quote, equals + 2);
+      if ((quote != '"' && quote != '\'') || end == std::string_view::npos)
+        return refuse("the tag " + in_quotes(tag.name) + " is malformed");
+      tag.attributes[inside.substr(0, equals)] = inside.substr(equals + 2, end - equals - 2);
+      inside.remove_prefix(end + 1);
+    }
+  }
+
+  // Finds the counts, the arrays and the appended data.
+  Result<void> scan() {
+    bool is_grid = false;
+    bool in_points = false;
+    for (;;) {
+      const auto next = next_tag();
+      if (!next) return tl::unexpected(next.error());
+      if (!*next) return is_grid ? Result<void>{} : refuse("is not a VTK unstructured grid");
+      Tag tag = **next;
+      if (tag.name == "VTKFile") {
+        is_grid = tag.attributes["type"] == "UnstructuredGrid";
+        if (!is_grid) return refuse("is not a VTK unstructured grid");
+        if (tag.attributes["byte_order"] == "BigEndian") return refuse("is big-endian");
+        if (tag.attributes.contains("compressor")) return refuse("is compressed");
+        wide_headers_ = tag.attributes["header_type"] == "UInt64";
+      } else if (tag.name == "Piece") {
+        const auto points = number(tag.attributes["NumberOfPoints"]);
+        const auto cells = number(tag.attributes["NumberOfCells"]);
+        if (!points || !cells || *points > std::numeric_limits<std::uint32_t>::max() ||
+            *cells > std::numeric_limits<std::uint32_t>::max())
+          return refuse("its piece has no valid counts of points and cells");
+        if (has_piece_) return refuse("has more than one piece");
+        has_piece_ = true;
+        points_ = *points;
+        cells_ = *cells;
+      } else if (tag.name == "Points") {
+        in_points = true;
+      } else if (tag.name == "DataArray") {
+        if (auto kept = keep(tag, in_points); !kept) return kept;
+        in_points = false;
+      } else if (tag.name == "AppendedData") {
+        if (tag.attributes["encoding"] != "raw") return refuse("its appended data is not raw");
+        const std::size_t start = rest_.find('_');
+        if (start == std::string_view::npos) return refuse("its appended data is missing");
+        appended_ = rest_.substr(start + 1);
+        return {};
+      }
+    }
+  }
+
+  Result<void> keep(Tag& tag, bool is_points) {
+    Array array;
+    array.type = tag.attributes["type"];
+    const std::string_view format = tag.attributes["format"];
+    const std::string_view name = is_points ? "Points" : tag.attributes["Name"];
+    if (format == "ascii") {
+      array.ascii = true;
+      array.text = tag.text;
+    } else if (const auto offset = number(tag.attributes["offset"]);
+               format == "appended" && offset) {
+      array.offset = *offset;
+    } else {
+      return refuse("the array " + in_quotes(name) + " is neither ASCII nor appended");
+    }
+    arrays_[name] = array;
+    return {};
+  }
+
+  // Converts one value; none when it does not fit in T.
+  template <class T, class From>
+  static std::optional<T> convert(From value) {
+    if constexpr (std::is_floating_point_v<T>) {
+      return static_cast<T>(value);
+    } else {
+      const auto number = static_cast<long double>(value);  // holds all integers of 64 bits
+      if (!(number >= static_cast<long double>(std::numeric_limits<T>::min()) &&
+            number <= static_cast<long double>(std::numeric_limits<T>::max())))
+        return std::nullopt;
+      return static_cast<T>(value);
+    }
+  }
+
+  template <class T, class From>
+  bool append_raw(std::string_view bytes, std::vector<T>& out) const {
+    for (std::size_t at = 0; at + sizeof(From) <= bytes.size(); at += sizeof(From)) {
+      From value;
+      std::memcpy(&value, bytes.data() + at, sizeof value);
+      const auto converted = convert<T>(value);
+      if (!converted) return false;
+      out.push_back(*converted);
+    }
+    return true;
+  }
+
+  template <class T>
+  static bool append_text(std::string_view text, std::vector<T>& out) {
+    for (;;) {
+      const std::size_t start = text.find_first_not_of(kBlanks);
+      if (start == std::string_view::npos) return true;
+      text.remove_prefix(start);
+      T value{};
+      const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (problem != std::errc()) return false;
+      out.push_back(value);
+      text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    }
+  }
+
+  template <class T>
+  Result<std::vector<T>> values(std::string_view name, std::uint64_t count) const {
+    const auto found = arrays_.find(name);
+    if (found == arrays_.end()) return refuse("has no array " + in_quotes(name));
+    const Array& array = found->second;
+    std::vector<T> out;
+    bool read = false;
+    if (array.ascii) {
+      read = append_text(array.text, out);
+    } else {
+      const std::size_t header = wide_headers_ ? 8 : 4;
+      if (array.offset > appended_.size() || appended_.size() - array.offset < header)
+        return refuse("the array " + in_quotes(name) + " lies beyond the end of the file");
+      std::uint64_t size = 0;
+      std::memcpy(&size, appended_.data() + array.offset, header);
+      if (size > appended_.size() - array.offset - header)
+        return refuse("the array " + in_quotes(name) + " goes on beyond the end of the file");
+      const std::string_view bytes = appended_.substr(array.offset + header, size);
+      if (array.type == "Float64") read = append_raw<T, double>(bytes, out);
+      if (array.type == "Float32") read = append_raw<T, float>(bytes, out);
+      if (array.type == "Int64") read = append_raw<T, std::int64_t>(bytes, out);
+      if (array.type == "UInt64") read = append_raw<T, std::uint64_t>(bytes, out);
+      if (array.type == "Int32") read = append_raw<T, std::int32_t>(bytes, out);
+      if (array.type == "UInt32") read = append_raw<T, std::uint32_t>(bytes, out);
+      if (array.type == "Int16") read = append_raw<T, std::int16_t>(bytes, out);
+      if (array.type == "UInt16") read = append_raw<T, std::uint16_t>(bytes, out);
+      if (array.type == "Int8") read = append_raw<T, std::int8_t>(bytes, out);
+      if (array.type == "UInt8") read = append_raw<T, std::uint8_t>(bytes, out);
+    }
+    if (!read)
+      return refuse("the array " + in_quotes(name) + " of type " + in_quotes(array.type) +
+                    " holds a value that does not belong there");
+    if (out.size() != count)
+      return refuse("the array " + in_quotes(name) + " has " + std::to_string(out.size()) +
+                    " values, it should have " + std::to_string(count));
+    return out;
+  }
+
+  Result<std::vector<std::int32_t>> optional_values(std::string_view name) const {
+    if (!arrays_.contains(name)) return std::vector<std::int32_t>{};
+    return values<std::int32_t>(name, cells_);
+  }
+
+  std::filesystem::path path_;
+  std::string_view rest_;
+  std::map<std::string_view, Array> arrays_;
+  std::string_view appended_;
+  bool has_piece_ = false;
+  bool wide_headers_ = false;
+  std::uint64_t points_ = 0;
+  std::uint64_t cells_ = 0;
+};
+
+}  // namespace
+
+Result<Mesh> read_vtu(const std::filesystem::path& path) {
+  const auto contents = read_file(path, kMaxFileBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  return Reader(path, contents->text()).read();
+}
+
+}  // namespace weft::client

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/formats/triangle/triangle_mesh.h"
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/formats/domains/region_values.h"
+#include "client/formats/file_contents.h"
+#include "client/formats/line_scanner.h"
+#include "client/formats/mesh_formats.h"
+#include "client/formats/text_writer.h"
+#include "client/formats/triangle/triangle_points.h"
+
+namespace weft::client {
+namespace {
+
+// The marker of the input point if there is one that is not 0, else of the first edge whose is not
+// 0, else 1 on edges.
+ScratchArray<std::int32_t> vertex_markers(const MeshView& mesh) {
+  ScratchArray<std::int32_t> markers(mesh.pages, mesh.vertex_count());
+  if (!mesh.input_point_markers.empty())
+    for (const std::size_t i : mesh.up_to(mesh.input_points.size() / 2))
+      markers[mesh.input_points[2 * i]] = mesh.input_point_markers[mesh.input_points[2 * i + 1]];
+  const auto mark_ends = [&](const auto& marker_of) {
+    for (const std::size_t i : mesh.up_to(mesh.edges.size()))
+      if (std::int32_t& marker = markers[mesh.edges[i]]; marker == 0) marker = marker_of(i);
+  };
+  mark_ends([&](std::size_t i) { return mesh.edge_markers[i / mesh.edge_nodes()]; });
+  mark_ends([](std::size_t) { return 1; });
+  return markers;
+}
+
+Result<void> read_triangles(const std::filesystem::path& path, std::int64_t base, Mesh& mesh) {
+  const auto contents = read_file(path, kMaxTextBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  LineScanner scanner(path.string(), contents->text());
+  if (auto line = scanner.next_line("the triangle count"); !line) return line;
+  const auto count = scanner.count("the triangle count");
+  if (!count) return tl::unexpected(count.error());
+  std::int64_t attributes = 0;
+  if (!scanner.at_line_end()) {
+    const auto corners = scanner.integer("the corners per triangle");
+    if (!corners) return tl::unexpected(corners.error());
+    if (*corners != 3)
+      return scanner.error("the corners per triangle are " + std::to_string(*corners) +
+                           ", only 3 are read");
+    if (!scanner.at_line_end()) {
+      const auto value = scanner.integer("the attribute count");
+      if (!value) return tl::unexpected(value.error());
+      attributes = *value;
+    }
+  }
+  const std::size_t vertices = mesh.coordinates.size() / 2;
+  mesh.triangles.reserve(*count * 3);
+  mesh.regions.reserve(*count);
+  std::vector<double> regions;
+  regions.reserve(*count);
+  for (std::uint64_t i = 0; i < *count; ++i) {
+    if (auto line = scanner.next_line("a triangle"); !line) return line;
+    if (auto number = scanner.integer("the triangle number"); !number)
+      return tl::unexpected(number.error());
+    for (int corner = 0; corner < 3; ++corner) {
+      const auto v = read_index(scanner, "a corner", base, vertices);
+      if (!v) return tl::unexpected(v.error());
+      mesh.triangles.push_back(*v);
+    }
+    double attribute = 0;
+    if (attributes > 0) {
+      const auto value = scanner.real("the triangle's attribute");
+      if (!value) return tl::unexpected(value.error());
+      attribute = *value;
+    }
+    regions.push_back(attribute);
+  }
+  const RegionIds ids(regions);
+  std::transform(regions.begin(), regions.end(), std::back_inserter(mesh.regions),
+                 [&ids](double attribute) { return ids.of(attribute); });
+  return {};
+}
+
+Result<void> read_edges(const std::filesystem::path& path, std::int64_t base, Mesh& mesh) {
+  const auto contents = read_file(path, kMaxTextBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  LineScanner scanner(path.string(), contents->text());
+  if (auto points = read_triangle_points(scanner); !points) return tl::unexpected(points.error());
+  if (auto line = scanner.next_line("the segment count"); !line) return line;
+  const auto count = scanner.count("the segment count");
+  if (!count) return tl::unexpected(count.error());
+  bool has_markers = false;
+  if (!scanner.at_line_end()) {
+    const auto markers = scanner.integer("the marker count");
+    if (!markers) return tl::unexpected(markers.error());
+    has_markers = *markers == 1;
+  }
+  const std::size_t vertices = mesh.coordinates.size() / 2;
+  for (std::uint64_t i = 0; i < *count; ++i) {
+    if (auto line = scanner.next_line("a segment"); !line) return line;
+    if (auto number = scanner.integer("the segment number"); !number)
+      return tl::unexpected(number.error());
+    for (int end = 0; end < 2; ++end) {
+      const auto v = read_index(scanner, "the segment's end", base, vertices);
+      if (!v) return tl::unexpected(v.error());
+      mesh.edges.push_back(*v);
+    }
+    std::int32_t marker = 0;
+    if (has_markers) {
+      const auto value = scanner.marker("the segment marker");
+      if (!value) return tl::unexpected(value.error());
+      marker = *value;
+    }
+    mesh.edge_markers.push_back(marker);
+  }
+  return {};
+}
+
+}  // namespace
+
+void write_triangle_mesh(const MeshView& mesh, OutputFile& node, OutputFile& ele,
+                         OutputFile& poly) {
+  const ScratchArray<std::int32_t> markers = vertex_markers(mesh);
+  put_line(node, mesh.vertex_count(), 2, 0, 1);
+  for (const std::size_t v : mesh.up_to(mesh.vertex_count()))
+    put_line(node, v + 1, mesh.coordinates[2 * v], mesh.coordinates[2 * v + 1], markers[v]);
+  const std::size_t nodes = mesh.triangle_nodes();
+  put_line(ele, mesh.triangle_count(), nodes, 1);
+  constexpr std::size_t kOrder[] = {0, 1, 2, 4, 5, 3};  // node 4 is opposite corner 1
+  for (const std::size_t t : mesh.up_to(mesh.triangle_count())) {
+    ele.number(static_cast<std::int64_t>(t + 1));
+    ele.put(' ');
+    for (std::size_t k = 0; k < nodes; ++k) {
+      ele.number(mesh.triangles[nodes * t + kOrder[k]] + std::int64_t{1});
+      ele.put(' ');
+    }
+    put_line(ele, mesh.regions[t]);
+  }
+  put_line(poly, 0, 2, 0, 1);
+  put_line(poly, mesh.edge_count(), 1);
+  for (const std::size_t e : mesh.up_to(mesh.edge_count())) {
+    const std::uint32_t* ends = &mesh.edges[mesh.edge_nodes() * e];
+    put_line(poly, e + 1, ends[0] + std::int64_t{1}, ends[1] + std::int64_t{1},
+             mesh.edge_markers[e]);
+  }
+  put_line(poly, 0);
+}
+
+Result<Mesh> read_triangle_mesh(const std::filesystem::path& path) {
+  std::filesystem::path base = path;
+  auto points = read_node_file(base.replace_extension(".node"));
+  if (!points) return tl::unexpected(points.error());
+  Mesh mesh;
+  mesh.coordinates.reserve(points->points.size() * 2);
+  for (const Point& point : points->points) {
+    mesh.coordinates.push_back(point.x);
+    mesh.coordinates.push_back(point.y);
+  }
+  if (auto read = read_triangles(base.replace_extension(".ele"), points->base, mesh); !read)
+    return tl::unexpected(read.error());
+  std::error_code ignored;
+  if (std::filesystem::exists(base.replace_extension(".poly"), ignored))
+    if (auto read = read_edges(base, points->base, mesh); !read)
+      return tl::unexpected(read.error());
+  return validated(path, std::move(mesh));
+}
+
+}  // namespace weft::client

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/formats/triangle/triangle_poly.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/base/text.h"
+#include "client/formats/file_contents.h"
+#include "client/formats/line_scanner.h"
+#include "client/formats/text_writer.h"
+#include "client/formats/triangle/triangle_points.h"
+
+namespace weft::client {
+namespace {
+
+Result<void> read_segments(LineScanner& scanner, std::int64_t base, Domain& domain) {
+  if (auto line = scanner.next_line("the segment count"); !line) return line;
+  const auto count = scanner.count("the segment count");
+  if (!count) return tl::unexpected(count.error());
+  bool has_markers = false;
+  if (!scanner.at_line_end()) {
+    const auto markers = scanner.integer("the marker count");
+    if (!markers) return tl::unexpected(markers.error());
+    if (*markers != 0 && *markers != 1)
+      return scanner.error("the marker count is " + std::to_string(*markers) +
+                           ", it must be 0 or 1");
+    has_markers = *markers == 1;
+  }
+  domain.segments.reserve(*count);
+  for (std::uint64_t i = 0; i < *count; ++i) {
+    if (auto line = scanner.next_line("a segment"); !line) return line;
+    if (auto number = scanner.integer("the segment number"); !number)
+      return tl::unexpected(number.error());
+    const auto a = read_index(scanner, "the segment's first point", base, domain.points.size());
+    if (!a) return tl::unexpected(a.error());
+    const auto b = read_index(scanner, "the segment's second point", base, domain.points.size());
+    if (!b) return tl::unexpected(b.error());
+    std::int32_t marker = 0;
+    if (has_markers) {
+      const auto value = scanner.marker("the segment marker");
+      if (!value) return tl::unexpected(value.error());
+      marker = *value;
+    }
+    domain.segment_places.extend(i, scanner.name() + ":", scanner.line());
+    domain.segments.push_back({*a, *b, marker});
+  }
+  return {};
+}
+
+Result<Point> read_seed(LineScanner& scanner) {
+  if (auto number = scanner.integer("the seed number"); !number)
+    return tl::unexpected(number.error());
+  const auto x = scanner.real("the x coordinate");
+  if (!x) return tl::unexpected(x.error());
+  const auto y = scanner.real("the y coordinate");
+  if (!y) return tl::unexpected(y.error());
+  return Point{*x, *y};
+}
+
+Result<void> read_holes(LineScanner& scanner, Domain& domain) {
+  if (auto line = scanner.next_line("the hole count"); !line) return line;
+  const auto count = scanner.count("the hole count");
+  if (!count) return tl::unexpected(count.error());
+  for (std::uint64_t i = 0; i < *count; ++i) {
+    if (auto line = scanner.next_line("a hole"); !line) return line;
+    const auto seed = read_seed(scanner);
+    if (!seed) return tl::unexpected(seed.error());
+    domain.hole_places.extend(i, scanner.name() + ":", scanner.line());
+    domain.holes.push_back(*seed);
+  }
+  return {};
+}
+
+// The optional last section.
+Result<void> read_regions(LineScanner& scanner, Domain& domain) {
+  if (!scanner.try_next_line()) return {};
+  const auto count = scanner.count("the region count");
+  if (!count) return tl::unexpected(count.error());
+  std::vector<double> attributes;
+  for (std::uint64_t i = 0; i < *count; ++i) {
+    if (auto line = scanner.next_line("a region"); !line) return line;
+    const auto seed = read_seed(scanner);
+    if (!seed) return tl::unexpected(seed.error());
+    const auto attribute = scanner.real("the region's attribute");
+    if (!attribute) return tl::unexpected(attribute.error());
+    attributes.push_back(*attribute);
+    double max_area = *attribute;  // a lone value is both
+    if (!scanner.at_line_end()) {
+      const auto area = scanner.real("the region's maximum area");
+      if (!area) return tl::unexpected(area.error());
+      max_area = *area;
+    }
+    Domain::Region region{*seed, 0, std::nullopt};
+    if (max_area > 0) region.max_area = max_area;
+    domain.region_places.extend(i, scanner.name() + ":", scanner.line());
+    domain.regions.push_back(region);
+  }
+  const RegionIds ids(attributes);
+  for (std::size_t i = 0; i < attributes.size(); ++i) domain.regions[i].id = ids.of(attributes[i]);
+  domain.region_values = ids.assigned();
+  if (scanner.try_next_line()) return scanner.error("the file goes on after its last region");
+  return {};
+}
+
+// What the file that the domain came from has in the place of a region's id, if that is another
+// number.
+std::optional<double> value_of(const Domain& domain, std::int32_t id) {
+  const auto found = std::find_if(domain.region_values.begin(), domain.region_values.end(),
+                                  [id](const RegionValue& known) { return known.id == id; });
+  if (found == domain.region_values.end()) return std::nullopt;
+  return found->value;
+}
+
+}  // namespace
+
+Result<Domain> read_triangle_poly(const std::filesystem::path& path) {
+  const auto contents = read_file(path, kMaxTextBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  LineScanner scanner(path.string(), contents->text());
+
+  auto points = read_triangle_points(scanner);
+  if (!points) return tl::unexpected(points.error());
+  if (points->points.empty()) {
+    points = read_node_file(std::filesystem::path(path).replace_extension(".node"));
+    if (!points) return tl::unexpected(points.error());
+  }
+  Domain domain;
+  domain.points = std::move(points->points);
+  domain.point_markers = std::move(points->markers);
+  domain.point_places = std::move(points->places);
+
+  if (auto read = read_segments(scanner, points->base, domain); !read)
+    return tl::unexpected(read.error());
+  if (auto read = read_holes(scanner, domain); !read) return tl::unexpected(read.error());
+  if (auto read = read_regions(scanner, domain); !read) return tl::unexpected(read.error());
+  return domain;
+}
+
+void write_triangle_poly(const Domain& domain, OutputFile& file) {
+  const bool marked = !domain.point_markers.empty();
+  put_line(file, domain.points.size(), 2, 0, marked ? 1 : 0);
+  for (std::size_t i = 0; i < domain.points.size(); ++i) {
+    const Point& at = domain.points[i];
+    marked ? put_line(file, i + 1, at.x, at.y, domain.point_markers[i])
+           : put_line(file, i + 1, at.x, at.y);
+  }
+  put_line(file, domain.segments.size(), 1);
+  for (std::size_t i = 0; i < domain.segments.size(); ++i) {
+    const Domain::Segment& segment = domain.segments[i];
+    put_line(file, i + 1, segment.a + std::int64_t{1}, segment.b + std::int64_t{1}, segment.marker);
+  }
+  put_line(file, domain.holes.size());
+  for (std::size_t i = 0; i < domain.holes.size(); ++i)
+    put_line(file, i + 1, domain.holes[i].x, domain.holes[i].y);
+  put_line(file, domain.regions.size());
+  for (std::size_t i = 0; i < domain.regions.size(); ++i) {
+    const Domain::Region& region = domain.regions[i];
+    const double max_area = region.max_area.value_or(-1);
+    const auto value = value_of(domain, region.id);
+    value ? put_line(file, i + 1, region.at.x, region.at.y, *value, max_area)
+          : put_line(file, i + 1, region.at.x, region.at.y, region.id, max_area);
+  }
+}
+
+}  // namespace weft::client

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a caller should know about the markers of a mesh: those that were asked for, or that the
+// input has, and that no edge of the mesh carries.
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "client/formats/domain.h"
+#include "client/formats/mesh.h"
+
+namespace weft::client {
+
+// The markers of the edges on input segments.
+std::set<std::int32_t> markers_of(const MeshView& mesh);
+
+// "no edge of the mesh carries marker 7 of --open-boundary", at most one line; empty if all are
+// there.
+std::vector<std::string> open_boundary_warnings(const std::set<std::int32_t>& in_mesh,
+                                                std::span<const std::int32_t> open_boundaries);
+
+// "no edge of the mesh carries marker 7 of the input: ...", at most one line; 0 is no marker. Where
+// segments overlap the mesh's edges carry the marker of one of them.
+std::vector<std::string> hidden_marker_warnings(const std::set<std::int32_t>& in_mesh,
+                                                const Domain& domain);
+
+}  // namespace weft::client

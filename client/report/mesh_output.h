@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// The files that a mesh is written to: meshes in their formats, and drawings. All of them appear
+// complete, or none.
+//
+//   auto output = MeshOutput::open({.files = {"key.vtu"}}, "key.poly", stop);
+//   auto spool = output->make_spool();
+//   ... the mesh arrives in the spool ...
+//   if (auto written = output->write(view, summary); !written) ...
+//   print(output->text());
+//
+// Errors: kUsage if there is nothing to write, an extension is unknown, a name is given twice or
+// is the input's; kUnwritableOutput where a file cannot be written. Not thread-safe.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "client/base/atomic_file.h"
+#include "client/base/error.h"
+#include "client/call/mesh_spool.h"
+#include "client/drawing/draw.h"
+#include "client/formats/mesh.h"
+#include "client/formats/mesh_formats.h"
+#include "weft/v1/mesh_service.pb.h"
+
+namespace weft::client {
+
+struct MeshOutputOptions {
+  std::vector<std::filesystem::path> files{};
+  MeshWriteOptions writing{};  // of the files
+  std::vector<std::filesystem::path> drawings{};
+  DrawColor color = DrawColor::kNone;
+  bool draw_quadtree = false;  // over the drawings
+
+  bool empty() const { return files.empty() && drawings.empty(); }
+};
+
+class MeshOutput {
+ public:
+  // Nothing is written yet, but all can be. `input`, where there is one, is not replaced.
+  static Result<MeshOutput> open(const MeshOutputOptions& options,
+                                 const std::optional<std::filesystem::path>& input,
+                                 const std::stop_token& stop);
+
+  // Holds the mesh while it arrives, beside the first file, and draws it; what is only drawn is not
+  // held. This outlives it.
+  Result<std::unique_ptr<MeshSpool>> make_spool();
+  bool draws() const { return drawing_ != nullptr; }
+  // `mesh` is the spool's view; any other, if nothing is drawn.
+  Result<void> write(const MeshView& mesh, const v1::Summary& summary);
+  // "wrote key.vtu, 1.2 MB\n" of each, after what was drawn of the quadtree. REQUIRES: written.
+  std::string text(const v1::Summary& summary) const;
+
+ private:
+  MeshOutput(MeshOutputOptions options, std::vector<OutputFile> files, std::stop_token stop);
+
+  MeshOutputOptions options_;
+  std::vector<OutputFile> files_;  // those of options_.files, then the drawings
+  std::stop_token stop_;
+  std::unique_ptr<Drawing> drawing_;  // of which all drawings are made; null if there are none
+};
+
+}  // namespace weft::client

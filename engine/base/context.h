@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one thing that travels with a job: cancellation, deadline, budgets, progress, and where it
+// computes.
+//
+// Thread-safety: `cancel` and `progress` may be called from any thread at any time; the setters
+// only before the job starts. Code at work calls `poll` at least every few milliseconds (the
+// kernel: every 512 insertions, about 0.1 ms), so a stop is noticed within 50 ms. Where both a
+// cancellation and the deadline hold, the cancellation wins.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "engine/base/arena.h"
+#include "engine/base/error.h"
+#include "engine/base/held_bytes.h"
+#include "engine/base/memory_source.h"
+#include "engine/base/trace.h"
+
+namespace weft {
+
+enum class Stage : std::uint8_t { kQueued, kTriangulate, kSize, kRefine, kDone };
+
+// A snapshot for whoever watches. `expected_triangles` is an estimate from the size field.
+struct Progress {
+  Stage stage = Stage::kQueued;
+  std::uint64_t triangles = 0;
+  std::uint64_t expected_triangles = 0;
+  double fraction = 0;  // of the work that is done, 0 to 1; never falls
+};
+
+// What a job may use. DEFAULT: unbounded.
+struct Budget {
+  // Triangles of the mesh. Refinement stops there and returns the mesh that it has; what still
+  // misses its bounds is counted as `budget` in the summary.
+  std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();
+  // A job whose estimate is over this is refused before refinement, and one that grows past it
+  // stops with kLimitExceeded. This is the operator's cap, max_triangles the client's wish.
+  std::uint64_t triangle_limit = std::numeric_limits<std::uint64_t>::max();
+  // Bytes of engine memory. Over it the job stops with kBudgetExceeded.
+  std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
+};
+
+class ExecutionContext {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  ExecutionContext() = default;
+  explicit ExecutionContext(const Budget& budget) : budget_(budget) {}
+  ExecutionContext(const ExecutionContext&) = delete;
+  ExecutionContext& operator=(const ExecutionContext&) = delete;
+
+  void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
+  void set_deadline(Clock::time_point deadline) noexcept { deadline_ = deadline; }
+  // Where the job computes; the caller's own thread without one. The arena outlives the job. The
+  // job takes at most `threads` of it at a time; 0 is all.
+  void set_arena(Arena& arena, int threads = 0) noexcept {
+    arena_ = &arena;
+    threads_ = threads > 0 ? std::min(threads, arena.threads()) : arena.threads();
+  }
+  // Where the job notes what it did when. The trace outlives the job.
+  void set_trace(Trace& trace) noexcept { trace_ = &trace; }
+  // Where the job gets its memory from, beside its budget. The source outlives the job. `granted`
+  // bytes it has already.
+  void set_memory(MemorySource& source, std::uint64_t granted) noexcept {
+    memory_ = &source;
+    granted_.store(granted, std::memory_order_relaxed);
+  }
+  // Calls `f` once, at the first poll after `when`, on the thread that polls; `f` may wait.
+  // REQUIRES: the job computes on one thread.
+  void call_at(Clock::time_point when, std::function<void()> f) {
+    call_at_ = when;
+    call_ = std::move(f);
+  }
+  const Budget& budget() const noexcept { return budget_; }
+
+  // Nothing while the job may go on, otherwise the error to stop with.
+  std::optional<Error> poll() const {
+    pulse_.store(pulse_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+    if (cancelled_.load(std::memory_order_relaxed))
+      return Error{ErrorCode::kCancelled, "", "the job was cancelled"};
+    if (!deadline_ && !call_) return std::nullopt;
+    const Clock::time_point now = Clock::now();
+    if (call_ && now >= call_at_ && !called_.exchange(true, std::memory_order_relaxed)) call_();
+    if (deadline_ && now >= *deadline_)
+      return Error{ErrorCode::kDeadlineExceeded, "", "the job's deadline passed"};
+    return std::nullopt;
+  }
+
+  // To be called with all bytes that the job holds, or is about to. Waits until it has been granted
+  // so many; returns the error to stop with if it will not be. Thread-safe.
+  std::optional<Error> need_bytes(std::uint64_t bytes) const {
+    if (memory_ == nullptr || bytes <= granted_.load(std::memory_order_relaxed))
+      return std::nullopt;
+    const auto ask = [&] { return memory_->grant(bytes, *this); };
+    const Result<std::uint64_t> now = arena_ ? arena_->rest(ask) : ask();
+    if (!now) return now.error();
+    std::uint64_t before = granted_.load(std::memory_order_relaxed);
+    while (before < *now &&
+           !granted_.compare_exchange_weak(before, *now, std::memory_order_relaxed)) {
+    }
+    return std::nullopt;
+  }
+
+  // What the job holds besides the mesh and what does not change while it is refined. Thread-safe.
+  HeldBytes& held_bytes() noexcept { return held_; }
+
+  // Another number than before says that the job is at work, and not stuck. Thread-safe.
+  std::uint64_t pulse() const noexcept { return pulse_.load(std::memory_order_relaxed); }
+
+  Progress progress() const noexcept {
+    Progress now{stage_.load(std::memory_order_relaxed), triangles_.load(std::memory_order_relaxed),
+                 expected_.load(std::memory_order_relaxed),
+                 fraction_.load(std::memory_order_relaxed)};
+    now.fraction +=
+        share_of_triangles_.load(std::memory_order_relaxed) *
+        std::min(1.0, static_cast<double>(now.triangles) /
+                          static_cast<double>(std::max<std::uint64_t>(now.expected_triangles, 1)));
+    now.fraction = std::min(1.0, now.fraction);
+    return now;
+  }
+
+  // For the engine at work.
+  Arena* arena() const noexcept { return arena_; }
+  int threads() const noexcept { return threads_; }
+  Trace* trace() const noexcept { return trace_; }
+  void end_stage(const char* name) const {
+    if (trace_) trace_->end_stage(name);
+  }
+  template <class F>
+  auto compute(F&& f) const {
+    return arena_ ? arena_->run(std::forward<F>(f)) : f();
+  }
+  // Calls f(0) to f(n - 1), on as many threads as the job may take.
+  template <class F>
+  void for_each(std::size_t n, F&& f) const {
+    if (arena_ && threads_ > 1) {
+      arena_->for_each(n, static_cast<int>(std::min<std::size_t>(n, threads_)), std::forward<F>(f));
+    } else if (trace_) {
+      trace_->time_loop(n, std::forward<F>(f));
+    } else {
+      for (std::size_t i = 0; i < n; ++i) f(i);
+    }
+  }
+  void enter(Stage stage) noexcept { stage_.store(stage, std::memory_order_relaxed); }
+  // Returns how many there are now. Thread-safe.
+  std::uint64_t add_triangles(std::int64_t n) noexcept {
+    const auto delta = static_cast<std::uint64_t>(n);
+    return triangles_.fetch_add(delta, std::memory_order_relaxed) + delta;
+  }
+  std::uint64_t triangles() const noexcept { return triangles_.load(std::memory_order_relaxed); }
+  // Thread-safe.
+  void add_fraction(double f) noexcept { fraction_.fetch_add(f, std::memory_order_relaxed); }
+  // To this part, work is done as triangles are made.
+  void count_triangles_as(double part) noexcept {
+    share_of_triangles_.store(part, std::memory_order_relaxed);
+  }
+  void report_expected(std::uint64_t n) noexcept { expected_.store(n, std::memory_order_relaxed); }
+
+ private:
+  Budget budget_;
+  std::optional<Clock::time_point> deadline_;
+  Arena* arena_ = nullptr;
+  int threads_ = 1;
+  Trace* trace_ = nullptr;
+  MemorySource* memory_ = nullptr;
+  mutable std::atomic<std::uint64_t> granted_{0};
+  HeldBytes held_;
+  Clock::time_point call_at_;
+  std::function<void()> call_;
+  mutable std::atomic<bool> called_{false};
+  std::atomic<bool> cancelled_{false};
+  mutable std::atomic<std::uint64_t> pulse_{0};  // about one for every poll
+  std::atomic<Stage> stage_{Stage::kQueued};
+  std::atomic<std::uint64_t> triangles_{0};
+  std::atomic<std::uint64_t> expected_{0};
+  std::atomic<double> fraction_{0};
+  std::atomic<double> share_of_triangles_{0};
+};
+
+}  // namespace weft

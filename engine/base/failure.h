@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// An Error on its way through code that has no room for one in what it returns. Whoever catches
+// std::bad_alloc inside the engine catches this, too: it does not leave the engine.
+#pragma once
+
+#include <exception>
+#include <utility>
+
+#include "engine/base/error.h"
+
+namespace weft {
+
+class Failure : public std::exception {
+ public:
+  explicit Failure(Error error) : error_(std::move(error)) {}
+  const Error& error() const noexcept { return error_; }
+  const char* what() const noexcept override { return error_.message.c_str(); }
+
+ private:
+  Error error_;
+};
+
+}  // namespace weft

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bytes that several threads take and give back, and the most of them at any time. Thread-safe.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <utility>
+
+namespace weft {
+
+class HeldBytes {
+ public:
+  // So many are held while this lives.
+  class Part {
+   public:
+    Part(HeldBytes& held, std::uint64_t bytes) : held_(held), bytes_(bytes) { held_.add(bytes_); }
+    ~Part() { held_.remove(bytes_); }
+    Part(const Part&) = delete;
+    Part& operator=(const Part&) = delete;
+
+    // Does nothing if it is not more. Of one thread at a time.
+    void grow_to(std::uint64_t bytes) {
+      if (bytes > bytes_) held_.add(bytes - std::exchange(bytes_, bytes));
+    }
+
+   private:
+    HeldBytes& held_;
+    std::uint64_t bytes_;
+  };
+
+  void add(std::uint64_t bytes) {
+    const std::uint64_t now = now_.fetch_add(bytes, std::memory_order_relaxed) + bytes;
+    for (std::uint64_t peak = peak_.load(std::memory_order_relaxed); peak < now;) {
+      if (peak_.compare_exchange_weak(peak, now, std::memory_order_relaxed)) break;
+    }
+  }
+  void remove(std::uint64_t bytes) { now_.fetch_sub(bytes, std::memory_order_relaxed); }
+  std::uint64_t now() const { return now_.load(std::memory_order_relaxed); }
+  std::uint64_t peak() const { return peak_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<std::uint64_t> now_{0};
+  std::atomic<std::uint64_t> peak_{0};
+};
+
+}  // namespace weft

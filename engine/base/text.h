@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers as error messages spell them.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <string>
+
+namespace weft {
+
+// The shortest decimal that reads back as the same double. The sign of a NaN means nothing, so both
+// read the same.
+inline std::string text(double value) {
+  if (std::isnan(value)) return "not a number";
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value);
+  return {buffer, end.ptr};
+}
+
+}  // namespace weft

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Keeps long loops stoppable: cancellation, deadline and the byte budget, polled every so many
+// steps.
+//
+// Inside engine/domain a stop travels as the exception `Stopped`, because it leaves from the depth
+// of nested loops and nothing half-built is worth keeping; `triangulate` turns it into an Error, so
+// it never crosses the library's border. Not thread-safe: one poller, one thread.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "engine/base/context.h"
+#include "engine/base/error.h"
+
+namespace weft {
+
+struct Stopped {
+  Error error;
+};
+
+class StopPoller {
+ public:
+  explicit StopPoller(const ExecutionContext& context) : context_(context) {}
+
+  // One step of work, at most about 10 microseconds. Throws Stopped.
+  void step() {
+    if (++steps_ % kStepsPerPoll == 0) poll();
+  }
+
+  // Throws Stopped.
+  void poll() const {
+    if (auto error = context_.poll()) throw Stopped{*error};
+  }
+
+  // Throws Stopped with kBudgetExceeded where `bytes`, an estimate of the peak, is over the budget,
+  // or with what need_bytes says.
+  void require(std::uint64_t bytes) const {
+    const std::uint64_t limit = context_.budget().max_bytes;
+    if (bytes > limit)
+      throw Stopped{{ErrorCode::kBudgetExceeded, "",
+                     "triangulating the domain takes about " + std::to_string(bytes) +
+                         " bytes, the limit is " + std::to_string(limit)}};
+    if (auto error = context_.need_bytes(bytes)) throw Stopped{*error};
+  }
+
+ private:
+  static constexpr std::uint32_t kStepsPerPoll = 256;
+
+  const ExecutionContext& context_;
+  std::uint32_t steps_ = 0;
+};
+
+}  // namespace weft

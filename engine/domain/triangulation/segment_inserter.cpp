@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/domain/triangulation/segment_inserter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "engine/domain/arrangement/crossing.h"
+#include "engine/domain/arrangement/snapping.h"
+#include "engine/domain/arrangement/strip_search.h"
+#include "engine/domain/tolerance.h"
+
+namespace weft {
+namespace {
+
+// Whether ab and cd cross in a point interior to both.
+bool properly_cross(Point a, Point b, Point c, Point d) {
+  return orientation_exact(a, b, c) * orientation_exact(a, b, d) < 0 &&
+         orientation_exact(c, d, a) * orientation_exact(c, d, b) < 0;
+}
+
+void merge(Arrangement::Constraint& into, const Arrangement::Constraint& other) {
+  into.segment = std::min(into.segment, other.segment);
+  if (other.marker_segment < into.marker_segment) {
+    into.marker_segment = other.marker_segment;
+    into.marker = other.marker;
+  }
+  into.odd = into.odd != other.odd;
+}
+
+}  // namespace
+
+SegmentInserter::SegmentInserter(const Pslg& pslg, const std::vector<Point>& points,
+                                 Triangulation& triangulation, double spacing,
+                                 std::uint64_t max_splits, Merging& merging, StopPoller& poller)
+    : pslg_(pslg),
+      points_(points),
+      t_(triangulation),
+      spacing_(spacing),
+      max_splits_(max_splits),
+      merging_(merging),
+      poller_(poller),
+      tolerance2_(merging.tolerance * merging.tolerance) {
+  constexpr double kRounding = 0x1p-50;  // 4 to 8 units in the last place
+  rounding_ = kRounding * largest_coordinate(pslg.points);
+  constraints_.reserve(pslg.segments.size());
+}
+
+void SegmentInserter::insert_all() {
+  for (std::uint32_t i = 0; i < pslg_.segments.size(); ++i) {
+    const Segment& s = pslg_.segments[i];
+    const Piece whole{
+        t_.vertex_of(s.a), t_.vertex_of(s.b), {i, s.marker, s.marker != 0 ? i : kNone, true}};
+    if (whole.u == whole.v) {
+      shrunk_.emplace_back(s.a, s.b);
+      continue;
+    }
+    insert(whole);
+    insert_pieces();
+  }
+  separate();
+  count_faces();
+}
+
+void SegmentInserter::insert_pieces() {
+  while (!pieces_.empty()) {
+    const Piece piece = pieces_.back();
+    pieces_.pop_back();
+    insert(piece);
+  }
+}
+
+// Leads every edge through the vertices beside it, until none is left: an edge that was inserted
+// early knows nothing of the vertices that came later, and none of those beside the triangles that
+// it passes through.
+void SegmentInserter::separate() {
+  StripSearch strip(t_, 0.5 * merging_.tolerance, poller_);
+  for (bool is_done = false; !is_done;) {
+    is_done = true;
+    for (std::uint32_t f = 0; f < t_.faces(); ++f) {
+      poller_.step();
+      strip.set_spacing(crossings_ == 0 ? spacing_ : merging_.tolerance);
+      if (strip.is_clear(f)) [[likely]]
+        continue;
+      for (int i = 0; i < 3; ++i) {
+        const Edge edge{f, i};
+        if (t_.constraint(edge) == kNone) continue;
+        if (strip.is_clear(edge)) continue;
+        const Vertex apex = t_.apex(edge);
+        const Piece piece{t_.right(edge), t_.left(edge), constraints_[t_.constraint(edge)]};
+        const Vertex w = touches(apex, piece) ? apex : strip.nearest(edge);
+        if (w == Triangulation::kInfinite || !shortens(piece.u, at(w), piece.v)) continue;
+        unconstrain(edge);
+        merge_through(w, piece);
+        insert_pieces();
+        is_done = false;
+        i = -1;  // another face by now
+      }
+    }
+  }
+}
+
+// Looks from both ends in turn, so that a hub of many segments does not cost its degree each time.
+void SegmentInserter::insert(const Piece& piece) {
+  poller_.step();
+  if (const Edge edge = t_.find_edge(piece.u, piece.v); edge.face != kNone) {
+    // The edge is there, but may pass by a vertex within the snapping distance, a corner of the
+    // needle beside it.
+    for (const Edge& side : {edge, t_.mirror(edge)}) {
+      const Vertex apex = t_.apex(side);
+      if (apex != Triangulation::kInfinite && touches(apex, piece))
+        return merge_through(apex, piece);
+    }
+    return remember(edge, piece);
+  }
+  LineProbe from_u(t_, piece.u, piece.v);
+  LineProbe from_v(t_, piece.v, piece.u);
+  for (bool u_is_next = true;; u_is_next = !u_is_next) {
+    poller_.step();
+    LineProbe& probe = u_is_next ? from_u : from_v;
+    switch (probe.turn()) {
+      case LineProbe::Sees::kNothingYet:
+      case LineProbe::Sees::kEdge:
+        break;
+      case LineProbe::Sees::kVertex:
+        return merge_through(probe.vertex(), piece);
+      case LineProbe::Sees::kCrossing:
+        return walk(probe, piece);
+    }
+  }
+}
+
+// Follows the piece through the triangles that it crosses, up to the first thing in its way.
+void SegmentInserter::walk(const LineProbe& probe, const Piece& piece) {
+  const Point a = at(probe.from());
+  const Point b = at(probe.to());
+
+  Edge edge = probe.edge();
+  Vertex right = t_.right(edge);
+  Vertex left = t_.left(edge);
+  if (touches(right, piece)) return merge_through(right, piece);
+  if (touches(left, piece)) return merge_through(left, piece);
+  for (;;) {
+    poller_.step();
+    if (t_.constraint(edge) != kNone) return cross(edge, piece);
+    const Edge next = t_.mirror(edge);
+    const Vertex w = t_.apex(next);
+    if (w == probe.to()) return remember(t_.insert_edge(probe.from(), w, probe.edge()), piece);
+    const int side = orientation(a, b, at(w));
+    if (side == 0 || touches(w, piece)) return merge_through(w, piece);
+    // w replaces the end on its side; the next edge crossed is opposite to the one replaced.
+    Vertex& replaced = side > 0 ? left : right;
+    edge = {next.face, t_.index(next.face, replaced)};
+    replaced = w;
+  }
+}
+
+bool SegmentInserter::splits_cleanly(Edge edge, Point p) const {
+  const Edge mirror = t_.mirror(edge);
+  if (t_.apex(edge) == kNone || t_.apex(mirror) == kNone) return false;
+  const Point r = at(t_.right(edge));
+  const Point l = at(t_.left(edge));
+  const Point near = at(t_.apex(edge));
+  const Point far = at(t_.apex(mirror));
+  return orientation(near, r, p) > 0 && orientation(near, p, l) > 0 && orientation(far, p, r) > 0 &&
+         orientation(far, l, p) > 0 && in_circle(near, r, l, p) > 0 && in_circle(far, l, r, p) > 0;
+}
+
+// Makes the piece and the constrained edge that it crosses meet in a vertex.
+void SegmentInserter::cross(Edge edge, const Piece& piece) {
+  const Point u = at(piece.u), v = at(piece.v), r = at(t_.right(edge)), l = at(t_.left(edge));
+  const auto [a, b] = segment(piece.constraint);
+  const auto [c, d] = segment(constraints_[t_.constraint(edge)]);
+  if (properly_cross(a, b, c, d)) {
+    const Point p = crossing_point(a, b, c, d);
+    const bool is_near = distance_to_line(p, u, v) < merging_.tolerance &&
+                         distance_to_line(p, r, l) < merging_.tolerance;
+    if (is_near && meet_at(p, edge, piece)) return;
+  }
+  // Merging has bent the two, so that they cross elsewhere than their segments, if these do.
+  const Point p = crossing_point(u, v, r, l);
+  if (!meet_at(p, edge, piece)) meet_in_new_vertex(p, edge, piece);
+}
+
+// Declines if one of the two would not become shorter.
+bool SegmentInserter::meet_at(Point p, Edge edge, const Piece& piece) {
+  const Vertex right = t_.right(edge);
+  const Vertex left = t_.left(edge);
+  const Vertex w = near(p);
+  if (w == Triangulation::kInfinite) {
+    if (!shortens(piece.u, p, piece.v) || !shortens(right, p, left)) return false;
+    meet_in_new_vertex(p, edge, piece);
+  } else {
+    if (!shortens_or_is_end(piece.u, w, piece.v) || !shortens_or_is_end(right, w, left))
+      return false;
+    meet_in(w, edge, piece);
+  }
+  return true;
+}
+
+// The two are led through w, unless it is an end.
+void SegmentInserter::meet_in(Vertex w, Edge edge, const Piece& piece) {
+  if (w == piece.u || w == piece.v) {
+    push(piece.u, piece.v, piece.constraint);
+  } else {
+    merge_through(w, piece);
+  }
+  if (is_end(w, edge)) return;
+  const Vertex right = t_.right(edge);
+  const Vertex left = t_.left(edge);
+  merge_through(w, {right, left, unconstrain(edge)});
+}
+
+// All vertices are in the grid from the first crossing on.
+SegmentInserter::Vertex SegmentInserter::near(Point p) {
+  if (!vertices_) {
+    vertices_.emplace(merging_.tolerance);
+    for (Vertex v = 0; v < t_.vertices(); ++v) {
+      poller_.step();
+      if (t_.exists(v)) vertices_->insert(v, at(v));
+    }
+  }
+  return vertices_->nearest(p);
+}
+
+void SegmentInserter::meet_in_new_vertex(Point p, Edge edge, const Piece& piece) {
+  const Vertex right = t_.right(edge);
+  const Vertex left = t_.left(edge);
+  const auto id = static_cast<std::uint32_t>(pslg_.points.size()) + crossings_;
+  Vertex w;
+  if (splits_cleanly(edge, p)) {
+    // As if p lay on the edge. The general way gives the same; this one spares the triangles
+    // around a long edge from losing its constraint and getting it back.
+    count_split();
+    insert_on(edge, p, id, w);
+  } else {
+    const std::uint32_t hint = edge.face;
+    const Constraint other = unconstrain(edge);
+    w = insert_crossing(p, id, hint);
+    push_through(w, {right, left, other});
+  }
+  if (t_.id(w) == id) {
+    ++crossings_;
+    vertices_->insert(w, p);
+  }
+  push_through(w, piece);
+  poller_.require(estimated_bytes(pslg_.points.size() + crossings_, constraints_.size()));
+}
+
+// Inserts p, or finds the vertex that is there already.
+SegmentInserter::Vertex SegmentInserter::insert_crossing(Point p, std::uint32_t id,
+                                                         std::uint32_t hint) {
+  const Triangulation::Place place = t_.locate(p, hint);
+  if (place.at == Triangulation::At::kVertex) return t_.apex(place.edge);
+  if (place.at != Triangulation::At::kEdge || t_.constraint(place.edge) == kNone)
+    return t_.insert(p, id, place);
+  Vertex w;
+  insert_on(place.edge, p, id, w);
+  return w;
+}
+
+// Splits a constrained edge, whose halves may come to differ.
+void SegmentInserter::insert_on(Edge edge, Point p, std::uint32_t id, Vertex& w) {
+  const Vertex right = t_.right(edge);
+  const Constraint constraint = constraints_[t_.constraint(edge)];
+  w = t_.insert(p, id, {Triangulation::At::kEdge, edge});
+  t_.constrain(t_.find_edge(right, w), static_cast<std::uint32_t>(constraints_.size()));
+  constraints_.push_back(constraint);
+}
+
+void SegmentInserter::push(Vertex u, Vertex v, const Constraint& constraint) {
+  if (u != v) pieces_.push_back({u, v, constraint});
+}
+
+// u to w comes first.
+void SegmentInserter::push_through(Vertex w, const Piece& piece) {
+  count_split();
+  push(w, piece.v, piece.constraint);
+  push(piece.u, w, piece.constraint);
+}
+
+// The same, and takes note of how far that moves the segment.
+void SegmentInserter::merge_through(Vertex w, const Piece& piece) {
+  const auto [a, b] = input_segment(piece.constraint);
+  if (const double off = distance_to_segment(at(w), a, b); off > rounding_) {
+    merging_.add_move(off, at(w));
+    is_moved_.resize(pslg_.segments.size());
+    if (!is_moved_[piece.constraint.segment]) ++merging_.segments;
+    is_moved_[piece.constraint.segment] = true;
+  }
+  push_through(w, piece);
+}
+
+// The piece has become an edge.
+void SegmentInserter::remember(Edge edge, const Piece& piece) {
+  if (const std::uint32_t constraint = t_.constraint(edge); constraint != kNone) {
+    Constraint& other = constraints_[constraint];
+    const auto [a, b] = input_segment(other);
+    const auto [c, d] = input_segment(piece.constraint);
+    const bool overlap = orientation_exact(a, b, c) == 0 && orientation_exact(a, b, d) == 0;
+    if (!overlap && other.segment != piece.constraint.segment)
+      coincident_.emplace_back(piece.u, piece.v);
+    return merge(other, piece.constraint);
+  }
+  t_.constrain(edge, static_cast<std::uint32_t>(constraints_.size()));
+  constraints_.push_back(piece.constraint);
+}
+
+SegmentInserter::Constraint SegmentInserter::unconstrain(Edge edge) {
+  const Constraint constraint = constraints_[t_.constraint(edge)];
+  t_.unconstrain(edge);
+  return constraint;
+}
+
+void SegmentInserter::count_split() {
+  if (++splits_ > max_splits_)
+    throw Stopped{{ErrorCode::kLimitExceeded, "domain.segments",
+                   "the segments cross and overlap more than " + std::to_string(max_splits_) +
+                       " times, which is the limit"}};
+}
+
+// Within the tolerance of both the piece and its input segment; or within half of it of the piece,
+// however far earlier merges have led this from its segment.
+bool SegmentInserter::touches(Vertex w, const Piece& piece) const {
+  const Point u = at(piece.u), v = at(piece.v), p = at(w);
+  const double x = v.x - u.x, y = v.y - u.y;
+  const double cross = x * (p.y - u.y) - y * (p.x - u.x);
+  const double length2 = x * x + y * y;
+  if (cross * cross > tolerance2_ * length2) [[likely]]
+    return false;
+  // Squares of tiny coordinates underflow, lengths do not.
+  const double off = std::fabs(cross) / std::sqrt(length2);
+  if (off >= merging_.tolerance || !shortens(piece.u, p, piece.v)) return false;
+  if (off < 0.5 * merging_.tolerance) return true;
+  const auto [a, b] = input_segment(piece.constraint);
+  return distance_to_segment(p, a, b) < merging_.tolerance;
+}
+
+bool SegmentInserter::shortens(Vertex u, Point p, Vertex v) const {
+  const double whole2 = distance2(at(u), at(v));
+  return distance2(at(u), p) < whole2 && distance2(p, at(v)) < whole2;
+}
+
+// What was between segments and is gone.
+void SegmentInserter::count_faces() {
+  const Connectivity loops = connectivity(shrunk_, poller_);
+  const Connectivity runs = connectivity(coincident_, poller_);
+  merging_.vanished_faces = loops.loops + runs.components;
+  if (loops.loops > 0) {
+    merging_.vanished_at = at(t_.vertex_of(shrunk_[loops.first_loop].first));
+  } else if (runs.components > 0) {
+    merging_.vanished_at = at(coincident_.front().first);
+  }
+}
+
+std::pair<Point, Point> SegmentInserter::segment(const Constraint& constraint) const {
+  const Segment& s = pslg_.segments[constraint.segment];
+  return {points_[s.a], points_[s.b]};
+}
+
+std::pair<Point, Point> SegmentInserter::input_segment(const Constraint& constraint) const {
+  const Segment& s = pslg_.segments[constraint.segment];
+  return {pslg_.points[s.a], pslg_.points[s.b]};
+}
+
+}  // namespace weft

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// A piece of the finished mesh, and where it goes.
+//
+// Chunks are numbered from 0 and come in order; together they are the whole mesh. Vertices and
+// triangles are numbered from 0 across the mesh, in the order in which chunks carry them. A chunk
+// refers only to vertices of itself and of earlier chunks. Same request, same chunks, byte for
+// byte.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/base/geometry.h"
+
+namespace weft {
+
+using Digest = std::array<std::uint8_t, 32>;  // SHA-256
+
+struct Chunk {
+  // An edge of the mesh that lies on an input segment; its two triangles, if it has two, may be in
+  // different chunks, the edge is carried once.
+  struct Edge {
+    std::uint32_t a = 0;  // mesh vertex
+    std::uint32_t b = 0;
+    std::uint32_t segment = 0;  // index of the input segment
+    std::int32_t marker = 0;
+  };
+
+  std::uint32_t index = 0;
+  std::uint32_t first_vertex = 0;
+  std::uint32_t first_triangle = 0;
+  std::vector<double> coordinates;       // x0, y0, x1, y1, ... of the vertices from first_vertex
+  std::vector<std::uint32_t> triangles;  // three mesh vertices each, counter-clockwise
+  std::vector<std::int32_t> regions;     // region id per triangle; empty when every id is 0
+  std::vector<Edge> edges;
+  // (mesh vertex, index of the input point) for the vertices of this chunk that are input points.
+  std::vector<std::array<std::uint32_t, 2>> input_points;
+  Box box;          // of this chunk's triangles
+  Digest digest{};  // SHA-256 of the chunk's canonical bytes, see chunk_digest
+};
+
+// At most this many bytes of coordinates, triangles, regions, edges and input points a chunk.
+inline constexpr std::size_t kMaxChunkBytes = std::size_t{1} << 20;
+
+// SHA-256 over, little-endian and without padding: coordinates, triangles, regions (written out
+// even when all are 0), edges (a, b, segment, marker), input_points.
+Digest chunk_digest(const Chunk& chunk);
+
+// Receives the chunks in order, on the thread that called `generate_mesh`. `accept` may block: only
+// its own job waits. Returning false stops the job with kCancelled.
+class ChunkSink {
+ public:
+  virtual ~ChunkSink() = default;
+  virtual bool accept(Chunk&& chunk) = 0;
+};
+
+}  // namespace weft

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sends the parts of a mesh in their order, and adds up what they tell.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "engine/base/context.h"
+#include "engine/base/error.h"
+#include "engine/output/chunk.h"
+#include "engine/output/digest.h"
+#include "engine/output/emit.h"
+#include "engine/output/quality_statistics.h"
+#include "engine/output/summary.h"
+
+namespace weft {
+
+class Delivery {
+ public:
+  Delivery(ChunkSink& sink, const ExecutionContext& context, Summary& summary)
+      : sink_(sink), context_(context), summary_(summary) {}
+
+  // Gives the chunks their numbers, and the sink the chunks.
+  std::optional<Error> send(Part&& part) {
+    statistics_.add(part.statistics);
+    if (summary_.unrefined.without_excuse() == 0) summary_.unrefined_at = part.unrefined_at;
+    summary_.unrefined += part.unrefined;
+    summary_.edges += part.edges;
+    for (Chunk& chunk : part.chunks) {
+      chunk.index = summary_.chunks++;
+      chunk.first_vertex = static_cast<std::uint32_t>(summary_.vertices);
+      chunk.first_triangle = static_cast<std::uint32_t>(summary_.triangles);
+      summary_.vertices += chunk.coordinates.size() / 2;
+      summary_.triangles += chunk.triangles.size() / 3;
+      digest_.add(chunk.digest.data(), chunk.digest.size());
+      if (sink_.accept(std::move(chunk))) continue;
+      if (auto error = context_.poll()) return error;
+      return Error{ErrorCode::kCancelled, "", "nobody takes the mesh any more"};
+    }
+    return std::nullopt;
+  }
+
+  // After the last part.
+  void finish() {
+    statistics_.write(summary_);
+    summary_.digest = digest_.finish();
+  }
+
+ private:
+  ChunkSink& sink_;
+  const ExecutionContext& context_;
+  Summary& summary_;
+  QualityStatistics statistics_;
+  Sha256 digest_;
+};
+
+}  // namespace weft

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the refined mesh to the chunks that leave: part by part, each on any thread.
+//
+// Vertices are numbered by owner and then in the order in which the owner made them
+// (Slots::number_vertices). A triangle goes with the last of its vertices: the part of the owner
+// whose number is the highest among them. So a chunk refers only to vertices of itself and of
+// earlier ones, no two parts have to agree on anything, and there is no table of numbers. As a slot
+// only ever holds triangles with a vertex of the slot's owner, most triangles stay where they are;
+// 2 % are handed on, to a neighbour (`handed_on`).
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "engine/base/context.h"
+#include "engine/base/error.h"
+#include "engine/domain/domain.h"
+#include "engine/output/chunk.h"
+#include "engine/output/quality_statistics.h"
+#include "engine/output/summary.h"
+#include "engine/refine/acute_corners.h"
+#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/slots.h"
+
+namespace weft {
+
+// Chunks without their place in the mesh: `index`, `first_vertex` and `first_triangle` are for
+// whoever puts the parts in order.
+struct Part {
+  std::vector<Chunk> chunks;
+  QualityStatistics statistics;
+  Unrefined unrefined;
+  Point unrefined_at;  // as Summary::unrefined_at, of this part
+  std::uint64_t edges = 0;
+
+  std::uint64_t bytes() const;  // of what it points to
+};
+
+// A triangle that goes with the part of another owner. (A Triangle is aligned to 32 bytes, which
+// would make this one 64 bytes long.)
+struct HandedOn {
+  HandedOn(std::uint32_t owner, std::uint32_t slot, const Triangle& triangle)
+      : owner(owner), slot(slot), copy(std::bit_cast<Copy>(triangle)) {}
+  Triangle triangle() const { return std::bit_cast<Triangle>(copy); }
+
+  using Copy = std::array<std::uint32_t, sizeof(Triangle) / sizeof(std::uint32_t)>;
+  std::uint32_t owner;
+  std::uint32_t slot;
+  Copy copy;
+};
+
+// Those of an owner's triangles, in the order of its slots. REQUIRES: they are final.
+std::vector<HandedOn> triangles_handed_on(const Mesh& mesh, const Slots& slots);
+
+// Builds one part. `AreaBound` gives the bounds for the size histogram: it has bounds_at, as
+// ConstantArea and MappedArea do. REQUIRES: what is added is final, and all vertices of triangles
+// have their numbers; `lattice` tells whether Steiner points came from one
+// (refine/steiner_point.h). A triangle that is still bad is counted for the budget if refinement
+// was `cut_off` by it; if not, it is one that was left for want of room while the mesh was
+// streamed.
+template <class AreaBound>
+class PartBuilder {
+ public:
+  PartBuilder(const Mesh& mesh, const Domain& domain, const AcuteCorners& corners, AreaBound area,
+              bool lattice, bool cut_off, const ExecutionContext& context);
+
+  // About so many will be added: without it, vectors take up to twice what they need.
+  void expect(std::size_t vertices, std::size_t triangles);
+  // The vertices in slots `first` to before `last`.
+  void add_vertices(std::uint32_t first, std::uint32_t last);
+  // The triangles in slots `first` to before `last`.
+  void add_triangles(std::uint32_t first, std::uint32_t last);
+  void add_triangle(const Triangle& triangle);
+
+  // Nothing if the context says stop.
+  std::optional<Part> finish();
+
+ private:
+  void count_unrefined(const Triangle& triangle);
+  void make_room(std::size_t bytes);
+  void close_chunk();
+  void add_block();
+
+  const Mesh& mesh_;
+  const Domain& domain_;
+  const AcuteCorners& corners_;
+  const bool has_regions_;
+  AreaBound area_;
+  const bool lattice_;
+  const bool cut_off_;
+  const ExecutionContext& context_;
+  bool stopped_ = false;
+  Part part_;
+  Chunk chunk_;
+  std::size_t bytes_ = 0;  // in chunk_, with those of the block
+  // Triangles that are yet to be measured and put into chunk_, all at once.
+  std::unique_ptr<TriangleBlock> block_ = std::make_unique<TriangleBlock>();
+  std::uint32_t numbers_[3 * TriangleBlock::kSize];  // of their vertices
+  double region_bound_[TriangleBlock::kSize];
+};
+
+}  // namespace weft

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the tasks of a job share, and what they tell and hand on.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/context.h"
+#include "engine/domain/domain.h"
+#include "engine/refine/acute_corners.h"
+#include "engine/refine/quality_bounds.h"
+#include "engine/refine/storage/mesh.h"
+
+namespace weft {
+
+// What all tasks of a job share.
+struct RefinementContext {
+  Mesh& mesh;
+  const AcuteCorners& corners;
+  const std::vector<Region>& regions;
+  ExecutionContext& context;
+  std::uint64_t other_bytes;     // that the job holds all the time, besides the mesh
+  std::uint64_t triangle_limit;  // an error beyond
+};
+
+// Nothing if the job may hold so many bytes, for which it may have to wait, and make so many
+// triangles.
+inline std::optional<Error> check_budget(const ExecutionContext& context, std::uint64_t triangles,
+                                         std::uint64_t triangle_limit, std::uint64_t bytes) {
+  if (bytes > context.budget().max_bytes) {
+    return Error{ErrorCode::kBudgetExceeded, "budget.max_bytes",
+                 "the mesh needs more than the budget of " +
+                     std::to_string(context.budget().max_bytes) + " bytes, at " +
+                     std::to_string(triangles) + " triangles"};
+  }
+  if (triangles > triangle_limit) {
+    return Error{
+        ErrorCode::kLimitExceeded, "size",
+        "the mesh needs more than the limit of " + std::to_string(triangle_limit) + " triangles"};
+  }
+  return context.need_bytes(bytes);
+}
+
+// What refiners have done.
+struct RefinerFigures {
+  std::uint64_t insertions = 0;
+  std::uint64_t exact_predicates = 0;
+  std::uint64_t bytes = 0;  // of one refiner, at the peak
+
+  RefinerFigures& operator+=(const RefinerFigures& other) {
+    insertions += other.insertions;
+    exact_predicates += other.exact_predicates;
+    bytes = std::max(bytes, other.bytes);
+    return *this;
+  }
+};
+
+// A bad triangle as tasks hand it on: gone if the slot has another first vertex.
+struct BadTriangle {
+  std::uint32_t triangle;
+  std::uint32_t first_vertex;
+};
+
+}  // namespace weft

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// The grading function as users write it: an expression in x and y, parsed once, compiled to a
+// batch program.
+//
+// Grammar, loosest first; binary operators associate to the left, but ^ and ?: to the right:
+//   condition ? a : b
+//   ||                  &&
+//   < <= > >= == !=     (do not chain: 0 < x < 5 is refused)
+//   + -                 * /
+//   unary - + !         ^        -x^2 is -(x^2), 2^-1 is 0.5
+//   numbers (1, .5, 1e-3), x, y, pi, e, ( )
+//   sqrt abs exp log sin cos tan floor ceil (1 argument; log is natural, angles are in radians),
+//   pow atan2 hypot (2), min max (2 or more), clamp(v, lo, hi) = min(max(v, lo), hi)
+// Spaces, tabs and newlines are free.
+//
+// Truths: comparisons, &&, || and ! give 1 or 0; as a condition 0 is false and all else true, NaN
+// included. Both sides of every operator are computed; the side of ?: not taken has no effect.
+//
+// NaN and infinities are IEEE's: 1/0 is infinite, sqrt(-1) is NaN, comparisons with NaN are false
+// (!= is true). min, max and clamp of a NaN are NaN, so that an undefined size is found.
+//
+// Determinism: a value depends on x and y alone, never on the batch, the machine or the compiler:
+// arithmetic is IEEE without contraction, transcendental functions are SLEEF's width-independent
+// (cinz) ones, within 3.5 units in the last place (1 for exp and pow). Powers with a whole constant
+// exponent from -16 to 16 are products, a^0.5 is sqrt(a), e^a is exp(a); pow is the same as ^.
+//
+//   Result<Expression> size = Expression::parse("x^2 + y^2 < 25 ? 1e-3 : 1e-2");
+//   double bound = (*size)({3, 4});                      // 1e-2
+//   double least = size->bounds({0, 0, 3, 3}).lo;        // 1e-3
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string_view>
+
+#include "engine/base/error.h"
+#include "engine/base/geometry.h"
+#include "engine/size/expression/interval.h"
+#include "engine/size/size_function.h"
+
+namespace weft {
+
+class Expression final : public SizeFunction {
+ public:
+  static constexpr std::size_t kMaxLength = 65536;  // bytes of source
+  // Nesting of parentheses, arguments, unary operators, exponents, and what is between ? and :.
+  // Sums, products and chains a ? b : c ? d : ... do not nest.
+  static constexpr std::size_t kMaxDepth = 256;
+  static constexpr std::size_t kMaxOperations = 4096;  // after folding; equal ones count once
+  static constexpr std::size_t kMaxRegisters = 256;    // values alive at once, x and y included
+
+  // Errors: kExpressionSyntax with "line, column" and a caret under the offender in the message,
+  // kExpressionTooComplex with the limit; the field is "size.expression". Any bytes are safe.
+  static Result<Expression> parse(std::string_view source);
+
+  Expression(Expression&&) noexcept;
+  Expression& operator=(Expression&&) noexcept;
+  ~Expression() override;
+
+  // Cost of 8 lanes: about 1 ns an operation, 3 a division or sqrt, 14 to 60 a transcendental
+  // function, 220 a pow (lanes.h, threaded_code.h).
+  void evaluate(std::size_t n, const double* x, const double* y,
+                double* out) const noexcept override;
+
+  // Without transcendental functions nothing is widened, so where the expression is piecewise
+  // constant and the box lies in one piece, lo == hi.
+  Interval bounds(const Box& box) const noexcept override;
+
+  // Whether the value is the same everywhere by the look of the expression: no x and y are left
+  // after folding.
+  bool is_constant() const noexcept;
+
+  // At most kMaxOperations.
+  std::size_t operations() const noexcept override;
+
+ private:
+  struct Program;
+  explicit Expression(std::unique_ptr<const Program> program);
+  std::unique_ptr<const Program> program_;
+};
+
+}  // namespace weft

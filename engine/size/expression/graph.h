@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// A size expression as a directed acyclic graph: equal subexpressions are one node, and what does
+// not depend on x and y is folded while the graph is built.
+//
+// Folding and rewriting keep every bit of the value: constants are computed by the operations of
+// lanes.h, and the only algebra is that of truths. An argument is converted between number and
+// truth where the operation wants the other (a number is true unless it is 0; a truth is 1 or 0).
+//
+//   Graph graph;
+//   NodeId r2 = graph.binary(Op::kAdd, graph.power(graph.x(), graph.constant(2)), ...);
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "engine/size/expression/operation.h"
+
+namespace weft::expr {
+
+using NodeId = std::uint32_t;
+
+struct Node {
+  Op op = Op::kConstant;
+  int exponent = 0;              // of kPowN
+  std::array<NodeId, 3> args{};  // the first arity(op) count; each is less than the node's own id
+  double value = 0;              // of kConstant
+};
+
+class Graph {
+ public:
+  NodeId constant(double value);
+  NodeId x();
+  NodeId y();
+  NodeId unary(Op op, NodeId a);
+  NodeId binary(Op op, NodeId a, NodeId b);
+  NodeId select(NodeId condition, NodeId a, NodeId b);
+  // a^b. A product for a whole constant b from -16 to 16, sqrt for 0.5, exp for the base e.
+  NodeId power(NodeId a, NodeId b);
+  // `a` as a number.
+  NodeId number(NodeId a);
+
+  const Node& operator[](NodeId id) const { return nodes_[id]; }
+  std::size_t size() const { return nodes_.size(); }
+
+ private:
+  using Key = std::tuple<Op, int, NodeId, NodeId, NodeId, std::uint64_t>;
+
+  NodeId truth(NodeId a);
+  NodeId truth_constant(bool value);
+  NodeId logical(Op op, NodeId a, NodeId b);
+  NodeId intern(const Node& node);
+  bool is_constant(NodeId id) const { return nodes_[id].op == Op::kConstant; }
+
+  std::vector<Node> nodes_;
+  std::map<Key, NodeId> ids_;
+};
+
+}  // namespace weft::expr

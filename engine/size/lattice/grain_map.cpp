@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/size/lattice/grain_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "engine/size/lattice/harmonic_fit.h"
+
+namespace weft {
+namespace {
+
+using Grain = GrainMap::Grain;
+using Kind = GrainMap::Kind;
+
+// A square whose fate is to be decided.
+struct Pending {
+  std::uint32_t node = 0;
+  Point centre{};
+  double half = 0;
+};
+
+// What a look at a square tells: its grain, and whether smaller ones would be better.
+struct Look {
+  Grain grain;
+  bool split = false;
+};
+
+// The values of the size at a square's samples.
+struct alignas(64) Sampled {
+  double x[HarmonicFitter::kSamples];
+  double y[HarmonicFitter::kSamples];
+  double size[HarmonicFitter::kSamples];
+};
+static_assert(HarmonicFitter::kSamples % SizeFunction::kLanes == 0);
+
+// Whether a quarter of the samples is bit for bit that to the right and that above.
+bool mostly_equal(const double* size) {
+  constexpr std::size_t kGrid = HarmonicFitter::kGrid;
+  std::size_t equal = 0;
+  for (std::size_t j = 0; j + 1 < kGrid; ++j) {
+    for (std::size_t i = 0; i + 1 < kGrid; ++i) {
+      const double* const s = size + j * kGrid + i;
+      equal += s[0] == s[1] && s[0] == s[kGrid] ? 1 : 0;
+    }
+  }
+  return 4 * equal >= (kGrid - 1) * (kGrid - 1);
+}
+
+// Looks at squares, on any thread.
+class Surveyor {
+ public:
+  Surveyor(const SizeFunction& size, const SizeMap& map, const LatticeShape& shape)
+      : size_(size), map_(map), scale_(std::sqrt(shape.fill)) {}
+
+  Look look_at(const Pending& square) const {
+    const Point centre = square.centre;
+    const double half = square.half;
+    Look look;
+    Grain& grain = look.grain;
+    grain.box = {centre.x - half, centre.y - half, centre.x + half, centre.y + half};
+    const SizeMap::Place place = map_.locate(grain.box);
+    if (place.node->leaf() && !place.node->meets_domain) {
+      grain.kind = Kind::kOutside;
+      return look;
+    }
+    if (const auto uniform = map_.uniform_size(place, grain.box)) {
+      grain.kind = Kind::kConstant;
+      grain.size = *uniform;
+      return look;
+    }
+    Sampled at;
+    for (std::size_t s = 0; s < HarmonicFitter::kSamples; ++s) {
+      const Point p = fitter_.sample(s, centre, half);
+      at.x[s] = p.x;
+      at.y[s] = p.y;
+    }
+    size_.evaluate(HarmonicFitter::kSamples, at.x, at.y, at.size);
+    HarmonicFitter::Samples edges;
+    double lo = kMostSize;
+    double hi = kLeastSize;
+    bool sizes = true;
+    for (std::size_t s = 0; s < HarmonicFitter::kSamples; ++s) {
+      const double size = at.size[s];
+      if (!(size > kLeastSize && size < kMostSize)) {
+        sizes = false;
+        continue;
+      }
+      lo = std::min(lo, size);
+      hi = std::max(hi, size);
+      edges[s] = std::sqrt(size / kEquilateral);
+    }
+    const double rows = 2 * half / std::sqrt(hi / kEquilateral);
+    const bool small = rows < GrainMap::kSmallRows;
+    const bool none = lo > hi;
+    look.split = none ? !place.node->leaf() : rows >= GrainMap::kFewRows;
+    if (mostly_equal(at.size)) {
+      grain.kind = Kind::kStepped;
+      return look;
+    }
+    // The indices of the lattice are exact far beyond: so many rows no mesh has.
+    if (!sizes || hi > kMostRatio * lo || !(rows < kMostRows)) return look;
+    if (!small && missed(size_.bounds(grain.box), lo, hi)) return look;
+
+    HarmonicFit fit = fitter_.fit(edges);
+    const double bend = fit.bend();
+    const double most_bend = small ? ConformalMap::kMostBend : GrainMap::kFewBends;
+    const double most =
+        small ? GrainMap::kAnyFit : std::max(GrainMap::kGoodFit, GrainMap::kGoodFitRows / rows);
+    if (!(bend < most_bend && fit.deviation() <= most)) return look;
+    look.split = false;
+    fit.u[0].re -= fit.above;
+    grain.kind = Kind::kFit;
+    grain.map = ConformalMap(centre, half * 1.4142135623730951, fit.u, scale_);
+    return look;
+  }
+
+ private:
+  // Roots, squares and quotients of such sizes are normal numbers.
+  static constexpr double kLeastSize = 1e-150;
+  static constexpr double kMostSize = 1e150;
+  static constexpr double kMostRatio = 20;  // of the samples: no polynomial of degree 5 follows
+  static constexpr double kMostRows = 1e9;
+
+  static bool missed(const Interval& bounds, double lo, double hi) {
+    return bounds.may_be_nan || !(bounds.hi <= GrainMap::kMissed * hi) ||
+           !(bounds.lo * GrainMap::kMissed >= lo);
+  }
+
+  const SizeFunction& size_;
+  const SizeMap& map_;
+  const double scale_;  // of the lattice's edges, by its fill
+  const HarmonicFitter fitter_;
+};
+
+}  // namespace
+
+Result<GrainMap> GrainMap::build(const SizeFunction& size, const SizeMap& map, const Box& domain,
+                                 const LatticeShape& shape, const ExecutionContext& context) {
+  constexpr std::size_t kAtATime = 16;  // squares: about 100 us
+  const Surveyor surveyor(size, map, shape);
+  GrainMap grains;
+  grains.grains_.clear();
+  grains.centre_ = {0.5 * domain.min_x + 0.5 * domain.max_x,
+                    0.5 * domain.min_y + 0.5 * domain.max_y};
+  grains.half_ = 0.5 * std::max(domain.width(), domain.height()) * (1 + 1e-9);
+  std::vector<Pending> level{{0, grains.centre_, grains.half_}};
+  std::vector<Look> looks;
+  for (int depth = 0; !level.empty(); ++depth) {
+    looks.resize(level.size());
+    context.for_each((level.size() + kAtATime - 1) / kAtATime, [&](std::size_t group) {
+      if (context.poll()) return;
+      const std::size_t end = std::min((group + 1) * kAtATime, level.size());
+      for (std::size_t i = group * kAtATime; i < end; ++i) looks[i] = surveyor.look_at(level[i]);
+    });
+    if (auto error = context.poll()) return tl::unexpected(*error);
+    std::vector<Pending> next;
+    for (std::size_t i = 0; i < level.size(); ++i) {
+      const Pending& square = level[i];
+      // Squares whose turn is still to come are grains at least.
+      const std::size_t known = grains.grains_.size() + (level.size() - i) + next.size();
+      if (!looks[i].split || depth == kMaxDepth || known + 3 > kMaxGrains) {
+        grains.nodes_[square.node].grain = static_cast<std::uint32_t>(grains.grains_.size());
+        grains.grains_.push_back(looks[i].grain);
+        continue;
+      }
+      const auto child = static_cast<std::uint32_t>(grains.nodes_.size());
+      grains.nodes_[square.node].first_child = child;
+      grains.nodes_.resize(child + 4);
+      const double half = 0.5 * square.half;
+      for (unsigned c = 0; c < 4; ++c) {
+        next.push_back(
+            {child + c,
+             {square.centre.x + (c & 1 ? half : -half), square.centre.y + (c & 2 ? half : -half)},
+             half});
+      }
+    }
+    level = std::move(next);
+  }
+  grains.join_mixed();
+  if (auto error = grains.align(shape, context)) return tl::unexpected(*error);
+  return grains;
+}
+
+void GrainMap::join_mixed() {
+  // Children come after their parents.
+  for (std::size_t n = nodes_.size(); n-- > 0;) {
+    Node& node = nodes_[n];
+    if (node.first_child == 0) continue;
+    const auto mixed = [&](unsigned c) {
+      const Node& child = nodes_[node.first_child + c];
+      return child.first_child == 0 && grains_[child.grain].kind == Kind::kMixed;
+    };
+    if (!(mixed(0) && mixed(1) && mixed(2) && mixed(3))) continue;
+    const Box last = grains_[nodes_[node.first_child + 3].grain].box;
+    node.grain = nodes_[node.first_child].grain;
+    node.first_child = 0;
+    grains_[node.grain].box.merge(last);
+  }
+}
+
+std::size_t GrainMap::lattices_that_vary() const {
+  return static_cast<std::size_t>(std::count_if(grains_.begin(), grains_.end(), [](const Grain& g) {
+    return g.kind == Kind::kFit || g.kind == Kind::kMixed;
+  }));
+}
+
+std::uint32_t GrainMap::index_at(Point p) const {
+  Point centre = centre_;
+  double half = half_;
+  const Node* node = nodes_.data();
+  while (node->first_child != 0) {
+    half *= 0.5;
+    const bool right = p.x >= centre.x;
+    const bool up = p.y >= centre.y;
+    node = &nodes_[node->first_child + (right ? 1 : 0) + (up ? 2 : 0)];
+    centre.x += right ? half : -half;
+    centre.y += up ? half : -half;
+  }
+  return node->grain;
+}
+
+std::vector<GrainMap::Contact> GrainMap::contacts_of(std::uint32_t grain) const {
+  std::vector<Contact> contacts;
+  const Box& box = grains_[grain].box;
+  const double beyond = 1e-6 * box.width();
+  for (const bool across_x : {true, false}) {
+    const double first = across_x ? box.min_y : box.min_x;
+    const double last = across_x ? box.max_y : box.max_x;
+    for (const double out : {across_x ? box.max_x + beyond : box.max_y + beyond,
+                             across_x ? box.min_x - beyond : box.min_y - beyond}) {
+      const auto place = [&](double along) {
+        return across_x ? Point{out, along} : Point{along, out};
+      };
+      for (double along = first + beyond; along < last;) {
+        const std::uint32_t other = index_at(place(along));
+        const Box& next = grains_[other].box;
+        const double from = across_x ? next.min_y : next.min_x;
+        const double to = across_x ? next.max_y : next.max_x;
+        if (other != grain && grains_[other].kind == Kind::kFit)
+          contacts.push_back({other, place(0.5 * (std::max(first, from) + std::min(last, to)))});
+        if (!(to >= along)) break;  // the side ends outside of the whole, or in rounding
+        along = to + beyond;
+      }
+    }
+  }
+  return contacts;
+}
+
+std::optional<Error> GrainMap::align(const LatticeShape& shape, const ExecutionContext& context) {
+  constexpr std::size_t kAtATime = 64;  // grains: about 20 us
+  const auto has_lattice = [](const Grain& g) {
+    return g.kind == Kind::kConstant || g.kind == Kind::kFit;
+  };
+  std::vector<std::vector<Contact>> contacts(grains_.size());
+  context.for_each((grains_.size() + kAtATime - 1) / kAtATime, [&](std::size_t group) {
+    const std::size_t end = std::min((group + 1) * kAtATime, grains_.size());
+    for (std::size_t g = group * kAtATime; g < end; ++g) {
+      if (has_lattice(grains_[g])) contacts[g] = contacts_of(static_cast<std::uint32_t>(g));
+    }
+  });
+  if (auto error = context.poll()) return error;
+
+  std::vector<char> aligned(grains_.size());
+  std::vector<std::uint32_t> queue;
+  for (std::uint32_t g = 0; g < grains_.size(); ++g) {
+    if (grains_[g].kind == Kind::kConstant) queue.push_back(g);
+  }
+  std::size_t head = 0;
+  for (std::uint32_t first = 0; first <= grains_.size(); ++first) {
+    while (head < queue.size()) {
+      const std::uint32_t from = queue[head++];
+      for (const Contact& contact : contacts[from]) {
+        if (aligned[contact.grain]) continue;
+        continue_lattice(grains_[from], grains_[contact.grain], contact.at, shape.fill);
+        aligned[contact.grain] = true;
+        queue.push_back(contact.grain);
+      }
+    }
+    if (first == grains_.size()) break;
+    if (grains_[first].kind == Kind::kFit && !aligned[first]) {
+      aligned[first] = true;
+      queue.push_back(first);
+    }
+  }
+  return std::nullopt;
+}
+
+void GrainMap::continue_lattice(const Grain& from, Grain& to, Point at, double fill) {
+  ConformalMap::Value there;
+  if (from.kind == Kind::kConstant) {
+    const double per_unit = 1 / std::sqrt(fill * from.size / kEquilateral);
+    there = {{at.x * per_unit, at.y * per_unit}, {per_unit, 0}};
+  } else {
+    there = from.map.at(at);
+  }
+  const ConformalMap::Value own = to.map.at(at);
+  Complex turn = there.slope * inverse(own.slope);
+  turn = (1 / modulus(turn)) * turn;
+  to.map.move(turn, there.w - turn * own.w);
+}
+
+}  // namespace weft

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/admission/admission.h"
+
+#include <fmt/format.h>
+#include <grpcpp/impl/codegen/server_callback_handlers.h>
+#include <grpcpp/impl/rpc_service_method.h>
+#include <grpcpp/support/server_callback.h>
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <utility>
+#include <vector>
+
+#include "server/net/grpc_tsan_hints.h"
+
+namespace weft::server {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Of late messages and of lines that were left out.
+constexpr std::chrono::milliseconds kTick{250};
+// Messages up to here are parsed without a share.
+constexpr std::size_t kMostWithoutShare = kSmallRequest;
+// A message and what is parsed of it: numbers of one byte become four.
+constexpr std::uint64_t kTimesTheBytes = 5;
+
+double seconds_of(Clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+}  // namespace
+
+Admission::Admission(const AdmissionOptions& options, const Authenticator& authenticator,
+                     Metrics& metrics, Logger log)
+    : options_(options),
+      authenticator_(authenticator),
+      metrics_(metrics),
+      log_(std::move(log)),
+      refusals_(log_, "call_refused", options.refusal_lines),
+      closings_(log_, "connection_closed", options.refusal_lines),
+      resets_(options.max_resets),
+      gate_({.capacity = options.request_bytes}, [] {}),
+      ticker_([this] { tick_until_stopped(); }) {}
+
+Admission::~Admission() {
+  take_from_grpc(this);  // gRPC's Shutdown has waited for every call's end
+  {
+    std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  stopped_.notify_all();
+  ticker_.join();
+}
+
+RawCall* Admission::open(grpc::CallbackServerContext* context, const Method& method,
+                         DrainGate* gate) {
+  const auto raw = RawCall::make(context, *this);
+  if (resets_.began(raw->peer()))
+    close_connections(raw->peer(), "calls_without_end", ResetGuard::kMostOpen);
+  const auto call = std::make_shared<AdmittedCall>(
+      AdmittedCall{raw, method.name, Authenticator::unverified(*context), std::nullopt});
+  const auto refused = [&](const Failure& failure) {
+    refuse(*call, failure);
+    return raw->given_to_grpc();
+  };
+  auto caller = authenticator_.identify(*context);
+  if (!caller && method.for_strangers) {
+    received(call, method, grpc::ByteBuffer());
+    return raw->given_to_grpc();
+  }
+  if (!caller) return refused(caller.error());
+  call->caller = std::move(*caller);
+  if (gate != nullptr) {
+    auto pass = gate->enter();
+    if (!pass) return refused({Reason::kStopping, "", "the server is stopping"});
+    call->pass.emplace(std::move(*pass));
+  }
+  Place place;
+  {
+    std::lock_guard lock(mutex_);
+    place = reading_.insert(reading_.end(), {call, Clock::now() + options_.request_timeout});
+  }
+  raw->read([this, call, place, &method](RawCall&, std::optional<grpc::ByteBuffer> bytes) {
+    {
+      std::lock_guard lock(mutex_);
+      reading_.erase(place);
+    }
+    received(call, method, std::move(bytes));
+  });
+  return raw->given_to_grpc();
+}
+
+void Admission::received(const std::shared_ptr<AdmittedCall>& call, const Method& method,
+                         std::optional<grpc::ByteBuffer> bytes) {
+  if (!bytes) return refuse(*call, {Reason::kMalformedRequest, "", "the call carries no message"});
+  if (bytes->Length() > method.most_bytes)
+    return refuse(*call, {Reason::kLimitExceeded, "",
+                          fmt::format("the request has {} bytes; the limit of {} is {}",
+                                      bytes->Length(), method.name, method.most_bytes)});
+  try {
+    handle(call, method, std::move(*bytes));
+  } catch (const std::bad_alloc&) {
+    refuse(*call, {Reason::kOutOfMemory, "", "no memory is left for the request"});
+  } catch (const std::exception& error) {
+    refuse(*call, {Reason::kInternal, "", error.what()});
+  }
+}
+
+void Admission::handle(const std::shared_ptr<AdmittedCall>& call, const Method& method,
+                       grpc::ByteBuffer bytes) {
+  if (const std::size_t length = bytes.Length(); length > kMostWithoutShare) {
+    const MemoryGate::Ask ask{.estimate = length * kTimesTheBytes, .request = true};
+    auto of_requests = gate_.take(ask);
+    if (!of_requests)
+      return refuse(*call, {Reason::kOutOfMemory, "",
+                            "other large requests take the memory that there is for them"});
+    call->share.of_requests = std::move(*of_requests);
+    if (options_.memory != nullptr) {
+      auto of_all = options_.memory->take(ask);
+      if (!of_all)
+        return refuse(*call, {Reason::kOutOfMemory, "",
+                              "runs take the memory that there is for them and for requests"});
+      call->share.of_all = std::move(*of_all);
+    }
+  }
+  call->bytes = std::move(bytes);
+  method.handler(call);
+}
+
+void Admission::refuse(const AdmittedCall& call, const Failure& failure) {
+  try {
+    note(call, failure);
+    call.call->finish(to_status(failure, ""));
+  } catch (const std::bad_alloc&) {
+    call.call->finish({grpc::RESOURCE_EXHAUSTED, "out of memory"});  // so short that it needs none
+  }
+}
+
+void Admission::answer(const AdmittedCall& call, grpc::ByteBuffer message) {
+  metrics_.call_ended(call.method, grpc::OK, call.caller.seconds_since());
+  call.call->answer(std::move(message));
+}
+
+void Admission::note(const AdmittedCall& call, const Failure& failure) {
+  const ErrorRow& row = row_of(failure.reason);
+  metrics_.call_ended(call.method, row.code, call.caller.seconds_since());
+  if (!refusals_.take()) return;
+  log_->info("event=call_refused {} method={} status={} reason={} field={}",
+             log_fields(call.caller), call.method, code_name(row.code), row.name,
+             log_value(failure.field.empty() ? "-" : failure.field));
+}
+
+void Admission::cancelled(RawCall& call) {
+  if (resets_.was_reset(call.peer())) close_connections(call.peer(), "resets", options_.max_resets);
+}
+
+void Admission::ended(RawCall& call) {
+  resets_.ended(call.peer());
+  give_to_grpc(this);
+}
+
+void Admission::close_connections(const std::string& peer, const char* cause, std::uint64_t most) {
+  if (close_connections_of(peer) != 0 && closings_.take())
+    log_->warn("event=connection_closed peer={} cause={} most={}", log_value(peer), cause, most);
+}
+
+void Admission::give_up_late_ones(Clock::time_point now) {
+  std::vector<std::pair<std::shared_ptr<AdmittedCall>, Place>> late;
+  {
+    std::lock_guard lock(mutex_);
+    for (auto each = reading_.begin(); each != reading_.end() && each->until <= now; ++each)
+      late.emplace_back(each->call, each);
+  }
+  const Failure failure{
+      Reason::kDeadlineExceeded, "",
+      fmt::format("the request did not arrive within {} s", seconds_of(options_.request_timeout))};
+  for (const auto& [call, place] : late) {
+    if (!call->call->give_up_reading(to_status(failure, ""))) continue;  // it came, and was erased
+    note(*call, failure);
+    std::lock_guard lock(mutex_);
+    reading_.erase(place);
+  }
+}
+
+void Admission::tick_until_stopped() {
+  std::unique_lock lock(mutex_);
+  const auto tick =
+      std::clamp<Clock::duration>(options_.request_timeout, std::chrono::milliseconds(1), kTick);
+  while (!stopped_.wait_for(lock, tick, [this] { return stopping_; })) {
+    lock.unlock();
+    try {
+      give_up_late_ones(Clock::now());
+      refusals_.tell_of_rest();
+      closings_.tell_of_rest();
+    } catch (const std::bad_alloc&) {
+      // The next tick does it.
+    }
+    lock.lock();
+  }
+}
+
+void RawService::add(Admission::Method method, bool gated) {
+  Entry& entry = methods_.emplace_back(Entry{name_ + method.name, std::move(method)});
+  const int index = static_cast<int>(methods_.size()) - 1;
+  using grpc::internal::RpcMethod;
+  AddMethod(
+      new grpc::internal::RpcServiceMethod(entry.path.c_str(), RpcMethod::BIDI_STREAMING, nullptr));
+  DrainGate* const gate = gated ? &gate_ : nullptr;
+  MarkMethodRawCallback(index,
+                        new grpc::internal::CallbackBidiHandler<grpc::ByteBuffer, grpc::ByteBuffer>(
+                            [this, &entry, gate](grpc::CallbackServerContext* context) {
+                              return admission_.open(context, entry.method, gate);
+                            }));
+}
+
+}  // namespace weft::server

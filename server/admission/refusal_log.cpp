@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/admission/refusal_log.h"
+
+#include <utility>
+
+namespace weft::server {
+
+bool RefusalLog::take(Clock::time_point now) {
+  std::lock_guard lock(mutex_);
+  turn(now);
+  if (lines_ < most_) return ++lines_, true;
+  ++left_out_;
+  return false;
+}
+
+void RefusalLog::tell_of_rest(Clock::time_point now) {
+  std::lock_guard lock(mutex_);
+  turn(now);
+}
+
+void RefusalLog::turn(Clock::time_point now) {
+  if (now - second_ < std::chrono::seconds(1)) return;
+  second_ = now;
+  lines_ = 0;
+  if (const std::uint64_t count = std::exchange(left_out_, 0); count != 0)
+    log_->info("event=lines_left_out count={} of={}", count, event_);
+}
+
+}  // namespace weft::server

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/jobs/attempt.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "server/admission/memory_estimate.h"
+#include "server/net/caller.h"
+#include "server/wire/job_wire.h"
+#include "server/wire/request_key.h"
+#include "server/wire/translate.h"
+
+namespace weft::server {
+namespace {
+
+using std::chrono::milliseconds;
+using Seconds = std::chrono::duration<double>;
+
+// A store that is away for longer loses the run: its lease has run out meanwhile.
+// The store did not take the task back: it is taken up once the lease has run out.
+constexpr std::string_view kStillLeased = "leased";
+constexpr std::chrono::seconds kPatience{60};
+constexpr milliseconds kFirstPause{50};
+constexpr milliseconds kLongestPause{2000};
+
+// An empty one if there is none to work on: the run then ends before it has begun.
+const v1::GenerateMeshRequest& shown(
+    const tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure>& request) {
+  return request ? **request : v1::GenerateMeshRequest::default_instance();
+}
+
+std::string label_of(const Claim& claim) {
+  const std::string who = log_fields({.name = claim.owner, .trace = claim.trace});
+  return fmt::format("task={} job={} attempt={}{}{}", claim.ref.task, claim.job_id,
+                     claim.ref.attempt, who.empty() ? "" : " ", who);
+}
+
+// Of these the same task may be done another time, or elsewhere: they are of the machine, not of
+// the request.
+bool is_of_the_machine(Reason reason) {
+  return reason == Reason::kInternal || row_of(reason).retryable;
+}
+
+}  // namespace
+
+Attempt::Attempt(const RunEnvironment& environment, Claim claim, MemoryGate::Share share,
+                 LeaveLightLane leave_light_lane)
+    : environment_(environment),
+      claim_(std::move(claim)),
+      label_(label_of(claim_)),
+      request_(read_request(claim_)),
+      share_(std::move(share)),
+      memory_(share_, bytes_of_request(claim_.request.size()) + bytes_besides(environment.limits)),
+      max_seconds_(to_seconds(shown(request_).budget(), environment.limits)),
+      threads_(to_threads(shown(request_).threads(), environment.arena.threads())),
+      context_(to_budget(shown(request_).budget(), environment.limits)) {
+  claim_.request = {};
+  context_.set_deadline(seconds_from_now(max_seconds_));
+  if (leave_light_lane) {
+    const auto leave = [this, leave_light_lane = std::move(leave_light_lane)] {
+      leave_light_lane(share_, context_);
+    };
+    memory_.tell_beyond(kLightBytes, leave);
+    context_.call_at(Clock::now() + kLightTime, leave);
+  } else {
+    context_.set_arena(environment.arena, static_cast<int>(threads_));
+  }
+  context_.set_memory(memory_, memory_.granted());
+}
+
+void Attempt::run() {
+  environment_.log->info("event=task_started {}", label_);
+  environment_.metrics.job_became("running");
+  if (const auto made = make_mesh(); !made) return settle(made.error());
+  const auto held = insist([&] { return environment_.store.finish(claim_.ref, mesh_); });
+  if (!held) return settle(failure_of(held.error()));
+  if (*held == Held::kHeld) environment_.metrics.job_became("succeeded");
+  log_end(*held == Held::kHeld ? "succeeded" : "lost", "-");
+}
+
+tl::expected<void, Failure> Attempt::make_mesh() {
+  if (!request_) return tl::unexpected(request_.error());
+  auto summary = call_engine(environment_.engine, std::move(*request_), *this, context_);
+  if (store_error_) return tl::unexpected(failure_of(*store_error_));
+  if (!summary && summary.error().reason == Reason::kDeadlineExceeded)
+    summary.error().message =
+        fmt::format("the job worked for {} s, which is its limit", max_seconds_);
+  if (!summary) return tl::unexpected(summary.error());
+  environment_.metrics.refined(summary->engine_seconds);
+  v1::Summary message = to_wire(*summary, threads_);
+  mesh_.brief = message.SerializeAsString();
+  add_quadtree(*summary, message);
+  mesh_.summary = message.SerializeAsString();
+  return {};
+}
+
+// What is stored is what FetchMesh sends.
+bool Attempt::accept(Chunk&& chunk) {
+  environment_.metrics.triangles_made(chunk.triangles.size() / 3);
+  to_wire(chunk, *chunk_message_.mutable_chunk());
+  const std::string bytes = chunk_message_.SerializeAsString();
+  StoredChunk stored{sha256(bytes), bytes.size()};
+  const auto put = insist([&] { return environment_.store.put_chunk(stored.sha256, bytes); });
+  if (!put) {
+    store_error_ = put.error();
+    return false;
+  }
+  bytes_ += bytes.size();
+  mesh_.chunks.push_back(std::move(stored));
+  ++chunks_stored_;
+  return true;
+}
+
+void Attempt::settle(const Failure& failure) {
+  bool stopping = false;
+  {
+    std::lock_guard lock(mutex_);
+    if (lost_) return log_end("lost", "-");
+    stopping = stopping_;
+  }
+  const std::string_view reason = row_of(failure.reason).name;
+  if (stopping) {
+    const auto released = environment_.store.release(claim_.ref, milliseconds(0), false);
+    return log_end(released ? "requeued" : kStillLeased, "-");
+  }
+  if (is_of_the_machine(failure.reason) && claim_.tries < environment_.retry.max_attempts) {
+    const auto released = insist([&] {
+      return environment_.store.release(claim_.ref, delay_after(environment_.retry, claim_.tries),
+                                        true);
+    });
+    return log_end(released ? "requeued" : kStillLeased, reason);
+  }
+  (void)insist(
+      [&] { return environment_.store.fail(claim_.ref, to_status(failure, "").error_details()); });
+  environment_.metrics.job_became("failed");
+  log_end("failed", reason);
+}
+
+void Attempt::stop() {
+  {
+    std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  ended_.notify_all();
+  context_.cancel();
+}
+
+void Attempt::lose() {
+  {
+    std::lock_guard lock(mutex_);
+    if (std::exchange(lost_, true)) return;
+  }
+  ended_.notify_all();
+  context_.cancel();
+}
+
+void Attempt::renew(milliseconds lease) {
+  const Clock::time_point now = Clock::now();
+  const std::uint64_t pulse = context_.pulse() + chunks_stored_;
+  // A job that waits for a thread of the arena is not stuck.
+  if (pulse != last_pulse_ || context_.progress().stage == Stage::kQueued) {
+    last_pulse_ = pulse;
+    last_moved_ = now;
+  }
+  if (now - last_moved_ > lease) return;
+  tell_progress(context_.progress(), Seconds(now - began_).count(), told_);
+  const auto held = environment_.store.renew(claim_.ref, lease, told_.SerializeAsString());
+  if (held && *held == Held::kLost) lose();
+}
+
+template <class F>
+std::invoke_result_t<F> Attempt::insist(F&& call) {
+  const Clock::time_point end = Clock::now() + kPatience;
+  milliseconds wait = kFirstPause;
+  while (true) {
+    auto answer = call();
+    if (answer || answer.error().kind != StoreErrorKind::kUnavailable) return answer;
+    if (Clock::now() >= end || !pause(wait)) return answer;
+    wait = std::min(2 * wait, kLongestPause);
+  }
+}
+
+// False if the run is to end.
+bool Attempt::pause(milliseconds at_most) {
+  std::unique_lock lock(mutex_);
+  return !ended_.wait_for(lock, at_most, [this] { return lost_ || stopping_; });
+}
+
+void Attempt::log_end(std::string_view outcome, std::string_view reason) const {
+  environment_.log->info(
+      "event=task_ended {} outcome={} reason={} triangles={} chunks={} bytes={} seconds={:.3f}",
+      label_, outcome, reason, context_.progress().triangles, chunks_stored_.load(), bytes_,
+      Seconds(Clock::now() - began_).count());
+}
+
+}  // namespace weft::server

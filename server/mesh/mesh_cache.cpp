@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/mesh/mesh_cache.h"
+
+#include <iterator>
+
+namespace weft::server {
+
+void MeshRecording::add(const grpc::ByteBuffer& message) {
+  if (!mesh_) return;
+  mesh_->bytes += message.Length() + sizeof(grpc::ByteBuffer);
+  if (mesh_->bytes > largest_) {
+    mesh_.reset();
+  } else {
+    mesh_->chunks.push_back(message);
+  }
+}
+
+std::shared_ptr<const FinishedMesh> MeshRecording::finish(const Summary& summary) && {
+  if (!mesh_) return nullptr;
+  mesh_->summary = summary;
+  mesh_->bytes += sizeof(FinishedMesh) + summary.leaves.size() * sizeof(summary.leaves[0]);
+  return mesh_->bytes <= largest_ ? std::move(mesh_) : nullptr;
+}
+
+std::shared_ptr<const FinishedMesh> MeshCache::find(const std::string& key) {
+  const std::lock_guard lock(mutex_);
+  const auto found = by_key_.find(key);
+  if (found == by_key_.end()) return nullptr;
+  entries_.splice(entries_.begin(), entries_, found->second);
+  return found->second->second;
+}
+
+void MeshCache::keep(const std::string& key, std::shared_ptr<const FinishedMesh> mesh) {
+  if (!mesh || mesh->bytes > capacity_) return;
+  std::list<Entry> dropped;  // destroyed without the lock
+  const std::lock_guard lock(mutex_);
+  if (const auto found = by_key_.find(key); found != by_key_.end()) {
+    entries_.splice(entries_.begin(), entries_, found->second);  // the same mesh
+    return;
+  }
+  bytes_ += mesh->bytes;
+  entries_.emplace_front(key, std::move(mesh));
+  by_key_.emplace(key, entries_.begin());
+  while (bytes_ > capacity_) {
+    bytes_ -= entries_.back().second->bytes;
+    by_key_.erase(entries_.back().first);
+    dropped.splice(dropped.begin(), entries_, std::prev(entries_.end()));
+  }
+}
+
+std::uint64_t MeshCache::bytes() const {
+  const std::lock_guard lock(mutex_);
+  return bytes_;
+}
+
+}  // namespace weft::server

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/mesh/mesh_call.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <new>
+#include <utility>
+
+#include "server/admission/memory_estimate.h"
+#include "server/wire/translate.h"
+
+namespace weft::server {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+grpc::ByteBuffer accepted_message(const std::string& id, std::uint32_t threads) {
+  v1::GenerateMeshResponse message;
+  v1::Accepted& accepted = *message.mutable_accepted();
+  accepted.set_job_id(id);
+  accepted.set_engine_version(std::string(kEngineVersion));
+  accepted.set_threads(threads);
+  return serialize(message);
+}
+
+// Messages of a mesh at hand share its bytes, and so may all be queued.
+constexpr ChunkQueue::Bounds kNoBounds{std::numeric_limits<std::size_t>::max(),
+                                       std::numeric_limits<std::size_t>::max()};
+
+// Of a job's place with its reader.
+constexpr std::chrono::milliseconds kPatience{5};
+
+// Who is to have turns of his own: a caller with a name, or else a host.
+std::string client_of(const Caller& caller) {
+  if (!caller.name.empty()) return caller.name;
+  return caller.peer.substr(0, caller.peer.rfind(':'));  // of ipv4:HOST:PORT and the like
+}
+
+}  // namespace
+
+MeshCall::MeshCall(const CallEnvironment& environment, AdmittedCall& call, std::string id,
+                   std::unique_ptr<v1::GenerateMeshRequest> request, Origin origin)
+    : MessageStream(
+          call.call,
+          accepted_message(id, to_threads(request->threads(), environment.arena.threads())),
+          origin.at_hand ? kNoBounds
+                         : ChunkQueue::Bounds::of_bytes(environment.limits.stream_buffer)),
+      environment_(environment),
+      id_(std::move(id)),
+      caller_(log_fields(call.caller)),
+      client_(client_of(call.caller)),
+      call_deadline_(call.call->context()->deadline()),
+      max_seconds_(to_seconds(request->budget(), environment.limits)),
+      threads_(to_threads(request->threads(), environment.arena.threads())),
+      first_chunk_(request->first_chunk()),
+      wants_quadtree_(request->want_quadtree()),
+      origin_(std::move(origin)),
+      pass_(std::exchange(call.pass, std::nullopt)),
+      context_(to_budget(request->budget(), environment.limits)),
+      request_share_(std::move(call.share)),
+      request_(std::move(request)) {
+  request_share_.shrink_to(request_->SpaceUsedLong());
+}
+
+void MeshCall::start() noexcept try {
+  const v1::Domain& domain = request_->domain();
+  environment_.log->info(
+      "event=job_queued job={} {} method=GenerateMesh points={} segments={} seeds={}", id_, caller_,
+      domain.points_size() / 2, domain.segments_size() / 2,
+      domain.holes_size() / 2 + domain.regions_size());
+  if (origin_.at_hand) {
+    send_what_is_at_hand();
+    return;
+  }
+  WorkQueue& queue = environment_.queue;
+  estimate_ = expected_bytes(*request_, environment_.limits) + bytes_besides(environment_.limits);
+  switch (queue.push(shared_from_this(), {.client = client_, .estimate = estimate_})) {
+    case WorkQueue::Pushed::kYes:
+      return pump();
+    case WorkQueue::Pushed::kQueueFull:
+      return fail({Reason::kQueueFull, "",
+                   fmt::format("{} jobs wait already; this server's limit is {}", queue.capacity(),
+                               queue.capacity())});
+    case WorkQueue::Pushed::kClientFull:
+      return fail({Reason::kQueueFull, "",
+                   fmt::format("{} jobs of yours wait already; this server's limit for one client "
+                               "is {}",
+                               queue.capacity_of_client(), queue.capacity_of_client())});
+  }
+} catch (const std::bad_alloc&) {
+  kill();
+}
+
+void MeshCall::send_what_is_at_hand() {
+  const FinishedMesh& mesh = *origin_.at_hand;
+  request_.reset();
+  if (auto failure = check_first_chunk(mesh.summary)) return fail(*failure);
+  context_.add_triangles(static_cast<std::int64_t>(mesh.summary.triangles));
+  for (std::size_t i = first_chunk_; i < mesh.chunks.size(); ++i) {
+    if (!send(mesh.chunks[i])) return;
+    sent(mesh.chunks[i].Length());
+  }
+  succeed(mesh.summary);
+}
+
+void MeshCall::stop(StopCause cause) {
+  fail(failure_of_cause(cause));  // before the engine learns of it, and calls itself cancelled
+  context_.cancel();
+  environment_.queue.remove(*this);
+  if (cause == StopCause::kReaderStalled) kill();
+}
+
+void MeshCall::tick(Clock::time_point now) {
+  std::optional<Clock::time_point> deadline;
+  {
+    std::lock_guard lock(mutex_);
+    deadline = work_deadline_;
+  }
+  if (auto slowness = too_slow(now, environment_.patience)) {
+    fail({Reason::kReaderStalled, "", *std::move(slowness)});
+    stop(StopCause::kReaderStalled);
+  } else if (deadline && now >= *deadline) {
+    stop(StopCause::kTimeUp);
+  } else if (!origin_.at_hand) {
+    offer(progress_message(now));
+  }
+}
+
+// There is no memory even for saying so: the client sees the call cancelled.
+void MeshCall::run(WorkQueue::Place& place) noexcept try {
+  if (context_.poll()) return;  // stopped meanwhile, and the call ended by that
+  const tl::expected<Summary, Failure> outcome = work(place);
+  if (outcome) {
+    succeed(*outcome);
+  } else if (outcome.error().reason == Reason::kDeadlineExceeded) {
+    fail(failure_of_cause(StopCause::kTimeUp));
+  } else {
+    fail(outcome.error());
+  }
+} catch (const std::bad_alloc&) {
+  kill();
+}
+
+tl::expected<Summary, Failure> MeshCall::work(WorkQueue::Place& place) {
+  place_ = &place;
+  const Seconds until_call_deadline = call_deadline_ - std::chrono::system_clock::now();
+  const Clock::time_point deadline =
+      seconds_from_now(std::min(max_seconds_, until_call_deadline.count()));
+  context_.set_deadline(deadline);
+  // A light run would wait in the arena for the turns of heavy ones, longer than it takes itself.
+  const bool light =
+      environment_.queue.has_light_lane() && estimate_ <= most_light(environment_.limits);
+  if (!light) context_.set_arena(environment_.arena, static_cast<int>(threads_));
+  RunMemory memory(place.memory(), bytes_besides(environment_.limits));
+  const auto turn_heavy = [&] {
+    place.leave_light_lane([this] { return context_.poll().has_value(); });
+  };
+  if (light) {
+    memory.tell_beyond(kLightBytes, turn_heavy);
+    context_.call_at(Clock::now() + kLightTime, turn_heavy);
+  }
+  context_.set_memory(memory, memory.granted());
+  {
+    std::lock_guard lock(mutex_);
+    work_deadline_ = deadline;
+  }
+  const double waited = Seconds(Clock::now() - admitted_).count();
+  environment_.metrics.waited(waited);
+  environment_.log->info("event=job_started job={} {} waited_seconds={:.3f}", id_, caller_, waited);
+  if (!origin_.key.empty() && first_chunk_ == 0) recording_.emplace(environment_.cache.largest());
+  auto summary = call_engine(environment_.engine, std::move(request_), *this, context_);
+  request_share_ = {};
+  if (!summary) return summary;
+  if (recording_) environment_.cache.keep(origin_.key, std::move(*recording_).finish(*summary));
+  environment_.metrics.refined(summary->engine_seconds);
+  if (auto failure = check_first_chunk(*summary)) return tl::unexpected(*failure);
+  return summary;
+}
+
+std::optional<Failure> MeshCall::check_first_chunk(const Summary& summary) const {
+  if (first_chunk_ <= summary.chunks) return std::nullopt;
+  return Failure{
+      Reason::kChunkOutOfRange, "first_chunk",
+      fmt::format("first_chunk is {}, but the mesh has {} chunks", first_chunk_, summary.chunks)};
+}
+
+void MeshCall::succeed(const Summary& summary) {
+  v1::GenerateMeshResponse message;
+  *message.mutable_summary() = to_wire(summary, threads_);
+  message.mutable_summary()->set_cached(origin_.at_hand != nullptr);
+  if (wants_quadtree_) add_quadtree(summary, *message.mutable_summary());
+  grpc::ByteBuffer last = serialize(message);
+  if (when_there_is_room(last.Length(), [&] { return finish(std::move(last)); }))
+    tell_end(grpc::StatusCode::OK, "-");
+}
+
+void MeshCall::fail(const Failure& failure) {
+  const ErrorRow& row = row_of(failure.reason);
+  if (abort(to_status(failure, id_))) tell_end(row.code, row.name);
+}
+
+Failure MeshCall::failure_of_cause(StopCause cause) const {
+  const bool call_is_late = std::chrono::system_clock::now() >= call_deadline_;
+  switch (cause) {
+    case StopCause::kClientGone:
+      if (call_is_late) break;
+      return {Reason::kCancelled, "", "the client cancelled the call"};
+    case StopCause::kTimeUp:
+      if (call_is_late) break;
+      return {Reason::kDeadlineExceeded, "",
+              fmt::format("the job worked for {} s, which is its limit", max_seconds_)};
+    case StopCause::kReaderStalled:
+      return {Reason::kReaderStalled, "", "the client reads too slowly"};
+    case StopCause::kStopping:
+      return {Reason::kStopping, "", "the server is stopping"};
+  }
+  return {Reason::kDeadlineExceeded, "", "the call's deadline passed"};
+}
+
+// Calls `send`, which waits for room for a message of so many bytes. A job that waits for its
+// reader leaves its place to another.
+template <class Send>
+bool MeshCall::when_there_is_room(std::size_t bytes, Send&& send) {
+  if (has_room_within(kPatience, bytes)) return send();
+  const WorkQueue::Pause pause(*place_);
+  return send();
+}
+
+bool MeshCall::accept(Chunk&& chunk) {
+  environment_.metrics.triangles_made(chunk.triangles.size() / 3);
+  if (chunk.index < first_chunk_) return true;
+  to_wire(chunk, *chunk_message_.mutable_chunk());
+  grpc::ByteBuffer bytes = serialize(chunk_message_);
+  const std::size_t length = bytes.Length();
+  if (recording_) recording_->add(bytes);
+  if (!when_there_is_room(length, [&] { return send(std::move(bytes)); })) return false;
+  sent(length);
+  return true;
+}
+
+void MeshCall::sent(std::size_t bytes) {
+  environment_.metrics.chunk_sent(bytes);
+  if (chunks_++ == 0) environment_.metrics.first_chunk(Seconds(Clock::now() - admitted_).count());
+  bytes_ += bytes;
+}
+
+grpc::ByteBuffer MeshCall::progress_message(Clock::time_point now) {
+  {
+    std::lock_guard lock(mutex_);
+    if (work_deadline_) told_.set_stage(std::max(told_.stage(), v1::STAGE_TRIANGULATE));
+  }
+  tell_progress(context_.progress(), Seconds(now - admitted_).count(), told_);
+  v1::GenerateMeshResponse message;
+  *message.mutable_progress() = told_;
+  return serialize(message);
+}
+
+void MeshCall::tell_end(grpc::StatusCode code, std::string_view reason) const {
+  const double seconds = Seconds(Clock::now() - admitted_).count();
+  environment_.metrics.call_ended("GenerateMesh", code, seconds);
+  environment_.log->info(
+      "event=job_ended job={} {} method=GenerateMesh status={} reason={} cached={} "
+      "triangles={} chunks={} bytes={} seconds={:.3f}",
+      id_, caller_, code_name(code), reason, origin_.at_hand ? "yes" : "no",
+      context_.progress().triangles, chunks_.load(), bytes_.load(), seconds);
+}
+
+}  // namespace weft::server

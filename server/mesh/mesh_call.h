@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// One GenerateMesh call that was admitted: it waits in the job queue, runs the engine on a worker
+// thread, hands the chunks to its stream, and ends exactly once, whatever stops it. One whose mesh
+// is at hand does none of that but the last.
+//
+// What can stop it, and what its call then ends with: see StopCause. The first cause wins, and the
+// call ends at once; the engine notices within 50 ms.
+//
+// Thread-safety: `stop` and `tick` may be called from any thread at any time.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/base/arena.h"
+#include "server/admission/admission.h"
+#include "server/admission/run_memory.h"
+#include "server/admission/work_queue.h"
+#include "server/mesh/engine_call.h"
+#include "server/mesh/mesh_cache.h"
+#include "server/net/caller.h"
+#include "server/net/message_stream.h"
+#include "server/observe/log.h"
+#include "server/observe/metrics.h"
+#include "server/wire/errors.h"
+#include "server/wire/limits.h"
+#include "weft/v1/mesh_service.pb.h"
+
+namespace weft::server {
+
+enum class StopCause {
+  kClientGone,     // CANCELLED, or DEADLINE_EXCEEDED where the call's deadline has passed
+  kTimeUp,         // DEADLINE_EXCEEDED
+  kReaderStalled,  // CANCELLED
+  kStopping,       // UNAVAILABLE
+};
+
+// What all jobs share; outlives them.
+struct CallEnvironment {
+  EngineFn engine;
+  Arena& arena;  // where they compute
+  Limits limits;
+  ReaderPatience patience;
+  Logger log;
+  WorkQueue& queue;
+  Metrics& metrics;
+  MeshCache& cache;
+  std::function<void(MessageStream&)> forget;  // drops the owner's pointer to the job
+};
+
+// Where a job's mesh comes from and goes to: the cache, by its key.
+struct Origin {
+  std::string key{};                              // empty: it is not to be kept
+  std::shared_ptr<const FinishedMesh> at_hand{};  // null: it is to be made
+};
+
+class MeshCall final : public MessageStream,
+                       public WorkQueue::Item,
+                       public std::enable_shared_from_this<MeshCall>,
+                       private ChunkSink {
+ public:
+  // Takes the parts of the call but its bytes.
+  MeshCall(const CallEnvironment& environment, AdmittedCall& call, std::string id,
+           std::unique_ptr<v1::GenerateMeshRequest> request, Origin origin);
+
+  // Joins the queue, or ends with QUEUE_FULL; sends what is at hand. Call once.
+  void start() noexcept;
+
+  void stop(StopCause cause);
+
+  // Called a few times a second: sends progress, ends the job at its deadline, cuts off a client
+  // that reads nothing.
+  void tick(Clock::time_point now);
+
+ private:
+  void run(WorkQueue::Place& place) noexcept override;
+  void send_what_is_at_hand();
+  tl::expected<Summary, Failure> work(WorkQueue::Place& place);
+  std::optional<Failure> check_first_chunk(const Summary& summary) const;
+  // Counts a chunk whose message was taken by the stream.
+  void sent(std::size_t bytes);
+  template <class Send>
+  bool when_there_is_room(std::size_t bytes, Send&& send);
+  // Of these, the first decides how the call ends, and logs it.
+  void succeed(const Summary& summary);
+  void fail(const Failure& failure);
+
+  Failure failure_of_cause(StopCause cause) const;
+  grpc::ByteBuffer progress_message(Clock::time_point now);
+  void tell_end(grpc::StatusCode code, std::string_view reason) const;
+
+  bool accept(Chunk&& chunk) override;
+  void client_gone() override { stop(StopCause::kClientGone); }
+  void ended_for_good() override { environment_.forget(*this); }
+
+  const CallEnvironment& environment_;
+  const std::string id_;
+  const std::string caller_;  // as a line of the log tells it
+  const std::string client_;  // has turns of its own
+  const std::chrono::system_clock::time_point call_deadline_;
+  const double max_seconds_;  // of work
+  const std::uint32_t threads_;
+  const std::uint32_t first_chunk_;  // those before it are not sent
+  const bool wants_quadtree_;
+  const Origin origin_;
+  WorkQueue::Place* place_ = nullptr;  // the worker's own
+  const Clock::time_point admitted_ = Clock::now();
+  const std::optional<DrainGate::Pass> pass_;
+  ExecutionContext context_;
+  std::atomic<std::uint64_t> chunks_{0};  // handed to the stream
+  std::atomic<std::uint64_t> bytes_{0};
+
+  // Of the request, until the run has ended.
+  RequestShare request_share_;
+
+  // The worker's own.
+  std::uint64_t estimate_ = 0;  // of memory
+  std::unique_ptr<v1::GenerateMeshRequest> request_;
+  v1::GenerateMeshResponse chunk_message_;  // kept for the memory of its arrays
+  std::optional<MeshRecording> recording_;
+
+  // The ticking thread's own: what was last told, since progress never goes back.
+  v1::Progress told_;
+
+  mutable std::mutex mutex_;                        // guards the one below
+  std::optional<Clock::time_point> work_deadline_;  // set when the job begins
+};
+
+}  // namespace weft::server

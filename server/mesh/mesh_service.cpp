@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/mesh/mesh_service.h"
+
+#include <fmt/format.h>
+
+#include <new>
+#include <utility>
+
+#include "server/admission/memory_estimate.h"
+#include "server/wire/request_key.h"
+#include "server/wire/request_reader.h"
+#include "server/wire/translate.h"
+
+namespace weft::server {
+namespace {
+
+// Requests up to here are looked up in the cache: the key of a larger one costs gRPC's thread over
+// a millisecond.
+constexpr std::size_t kMostKeyedBytes = std::size_t{1} << 20;
+
+}  // namespace
+
+MeshService::MeshService(const ServiceOptions& options, Admission& admission, Metrics& metrics,
+                         EngineFn engine, Arena& arena, MemoryGate& gate, Logger log)
+    : RawService("/weft.v1.MeshService/", admission),
+      options_(options),
+      metrics_(metrics),
+      log_(std::move(log)),
+      cache_(options.cache_bytes),
+      environment_{
+          std::move(engine), arena,  options.limits,
+          options.patience,  log_,   queue_,
+          metrics_,          cache_, [this](MessageStream& stream) { calls_.forget(stream); }},
+      queue_({.workers = options.jobs,
+              .workers_for_light = options.light_jobs,
+              .capacity = options.queue,
+              .light = most_light(options.limits),
+              .gate = &gate,
+              .client_share = options.client_share}),
+      ticker_([this] { tick_until_stopped(); }) {
+  add({"GenerateMesh", options.limits.max_request_bytes,
+       [this](const auto& call) { generate_mesh(*call); }});
+  add({"GetServerInfo", kSmallRequest, [this](const auto& call) { tell_server_info(*call); }});
+}
+
+MeshService::~MeshService() {
+  {
+    std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  ticker_.join();
+}
+
+void MeshService::stop_all() {
+  for (const auto& call : calls_.all()) call->stop(StopCause::kStopping);
+}
+
+QueueFigures MeshService::figures() const {
+  return {.waiting = static_cast<double>(queue_.waiting()),
+          .running = static_cast<double>(queue_.running()),
+          .pausing = static_cast<double>(queue_.pausing())};
+}
+
+void MeshService::generate_mesh(AdmittedCall& call) {
+  const std::size_t size = call.bytes.Length();
+  auto request = read_mesh_request(std::exchange(call.bytes, {}), options_.limits);
+  if (!request) return admission().refuse(call, request.error());
+  Origin origin = origin_of(**request, size, call.caller);
+  std::shared_ptr<MeshCall> job;
+  {
+    std::lock_guard lock(mutex_);
+    job = std::make_shared<MeshCall>(environment_, call,
+                                     fmt::format("{}-{}", options_.instance, ++last_number_),
+                                     std::move(*request), std::move(origin));
+    calls_.add(job);
+  }
+  changed_.notify_all();
+  job->take_call();
+  job->start();
+}
+
+void MeshService::tell_server_info(AdmittedCall& call) {
+  v1::GetServerInfoRequest request;
+  if (auto failure = read_small(std::exchange(call.bytes, {}), request))
+    return admission().refuse(call, *failure);
+  admission().answer(call, serialize(options_.info));
+}
+
+Origin MeshService::origin_of(const v1::GenerateMeshRequest& request, std::size_t bytes,
+                              const Caller& caller) {
+  Origin origin;
+  if (request.no_cache() || bytes > kMostKeyedBytes || cache_.largest() == 0) return origin;
+  origin.key = mesh_key(request);
+  if (!options_.share_across_clients) origin.key = key_of_client(origin.key, caller.name);
+  origin.at_hand = cache_.find(origin.key);
+  origin.at_hand ? metrics_.cache_hit() : metrics_.cache_missed();
+  return origin;
+}
+
+void MeshService::tick_until_stopped() {
+  std::unique_lock lock(mutex_);
+  while (!stopping_) {
+    if (calls_.empty()) {
+      changed_.wait(lock, [this] { return stopping_ || !calls_.empty(); });
+      continue;
+    }
+    changed_.wait_for(lock, options_.tick, [this] { return stopping_; });
+    lock.unlock();
+    const auto now = MessageStream::Clock::now();
+    try {
+      for (const auto& call : calls_.all()) call->tick(now);
+    } catch (const std::bad_alloc&) {
+      // The next tick tells of it.
+    }
+    lock.lock();
+  }
+}
+
+}  // namespace weft::server

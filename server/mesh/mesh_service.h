@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// weft.v1.MeshService on gRPC's callback API. A call is parsed, checked against the limits and
+// admitted on gRPC's thread; all the rest happens on workers (work_queue.h). One more thread ticks
+// the jobs a few times a second, for progress, deadlines and stalled clients.
+//
+// Both methods come in through the Admission: messages are made and unmade with our checks, and
+// gRPC carries bytes.
+//
+// Outlives the gRPC server that it is registered with.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "engine/base/arena.h"
+#include "server/admission/admission.h"
+#include "server/admission/memory_gate.h"
+#include "server/admission/work_queue.h"
+#include "server/mesh/mesh_cache.h"
+#include "server/mesh/mesh_call.h"
+#include "server/net/open_streams.h"
+#include "server/observe/log.h"
+#include "server/wire/limits.h"
+#include "weft/v1/mesh_service.pb.h"
+
+namespace weft::server {
+
+struct ServiceOptions {
+  // Threads that compute, in one arena for all jobs. REQUIRES: >= 1.
+  std::uint32_t threads = 1;
+  // Jobs that run at once, and that wait for their turn. REQUIRES: jobs >= 1.
+  std::uint32_t jobs = 1;
+  std::uint32_t queue = 64;
+  // Jobs on top of these that are light (memory_estimate.h), so that they do not wait for the
+  // others. Each computes on a thread of its own.
+  std::uint32_t light_jobs = 0;
+  // Of the queue, the places and the memory, what one client may have (work_queue.h). 1: all.
+  double client_share = 1;
+  Limits limits{};
+  // Finished meshes that are kept in memory to answer the same request again (mesh_cache.h).
+  std::uint64_t cache_bytes = 0;
+  // Whether a client may be answered with a mesh that another client's call made.
+  bool share_across_clients = true;
+  // A client that reads more slowly is cut off.
+  ReaderPatience patience{};
+  // Between progress messages.
+  std::chrono::steady_clock::duration tick = std::chrono::milliseconds(250);
+  // Tells this process's jobs from another's: job ids are INSTANCE-NUMBER.
+  std::string instance = "0";
+  v1::GetServerInfoResponse info{};  // what GetServerInfo answers
+};
+
+class MeshService final : public RawService {
+ public:
+  // The admission, the metrics, the arena and the gate outlive the service.
+  MeshService(const ServiceOptions& options, Admission& admission, Metrics& metrics,
+              EngineFn engine, Arena& arena, MemoryGate& gate, Logger log);
+  // REQUIRES: no call is open.
+  ~MeshService() override;
+
+  // The gate has room again.
+  void notify() { queue_.notify(); }
+
+  // Ends every open call with UNAVAILABLE.
+  void stop_all();
+
+  QueueFigures figures() const;
+
+ private:
+  void generate_mesh(AdmittedCall& call);
+  void tell_server_info(AdmittedCall& call);
+  Origin origin_of(const v1::GenerateMeshRequest& request, std::size_t bytes, const Caller& caller);
+  void tick_until_stopped();
+
+  const ServiceOptions options_;
+  Metrics& metrics_;
+  const Logger log_;
+  MeshCache cache_;
+  const CallEnvironment environment_;
+  WorkQueue queue_;  // destroyed first: it waits for the workers, who use all of the above
+
+  OpenStreams<MeshCall> calls_;
+  std::mutex mutex_;  // guards the two below
+  std::uint64_t last_number_ = 0;
+  bool stopping_ = false;
+  std::condition_variable changed_;
+  std::thread ticker_;
+};
+
+}  // namespace weft::server

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/net/caller.h"
+
+#include <fmt/format.h>
+#include <grpc/grpc_security_constants.h>
+#include <strings.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "server/observe/log.h"
+
+namespace weft::server {
+namespace {
+
+std::string_view view(const grpc::string_ref& text) {
+  return {text.data(), text.size()};
+}
+
+// Nothing if the caller sent none, or more than one.
+std::optional<std::string_view> header(const grpc::ServerContextBase& context, const char* name) {
+  const auto [first, end] = context.client_metadata().equal_range(name);
+  if (first == end || std::next(first) != end) return std::nullopt;
+  return view(first->second);
+}
+
+std::optional<std::string_view> bearer_token(const grpc::ServerContextBase& context) {
+  constexpr std::string_view kScheme = "Bearer ";
+  auto value = header(context, "authorization");
+  if (!value || value->size() <= kScheme.size() ||
+      ::strncasecmp(value->data(), kScheme.data(), kScheme.size()) != 0)
+    return std::nullopt;
+  return value->substr(kScheme.size());
+}
+
+// Connections without a certificate, or one that nobody checked, have no such properties.
+std::string name_in_certificate(const grpc::ServerContextBase& context) {
+  const auto connection = context.auth_context();
+  if (connection == nullptr) return "";
+  for (const char* property : {GRPC_X509_CN_PROPERTY_NAME, GRPC_X509_SAN_PROPERTY_NAME})
+    for (const grpc::string_ref& value : connection->FindPropertyValues(property))
+      if (!value.empty()) return std::string(view(value));
+  return "";
+}
+
+bool all_lower_hex(std::string_view text) {
+  return std::all_of(text.begin(), text.end(),
+                     [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
+}
+
+bool all_zero(std::string_view text) {
+  return text.find_first_not_of('0') == std::string_view::npos;
+}
+
+}  // namespace
+
+std::string log_fields(const Caller& caller) {
+  std::string fields;
+  const auto add = [&fields](const char* key, const std::string& value) {
+    if (value.empty()) return;
+    if (!fields.empty()) fields += ' ';
+    fields += fmt::format("{}={}", key, log_value(value));
+  };
+  add("client", caller.name);
+  add("peer", caller.peer);
+  add("trace", caller.trace);
+  return fields;
+}
+
+std::string trace_id(std::string_view traceparent) {
+  // VERSION-TRACE-PARENT-FLAGS; versions after the first may append to it.
+  constexpr std::size_t kLength = 2 + 1 + 32 + 1 + 16 + 1 + 2;
+  if (traceparent.size() < kLength) return "";
+  const std::string_view version = traceparent.substr(0, 2);
+  const std::string_view trace = traceparent.substr(3, 32);
+  const std::string_view parent = traceparent.substr(36, 16);
+  const bool form =
+      traceparent[2] == '-' && traceparent[35] == '-' && traceparent[52] == '-' &&
+      (traceparent.size() == kLength || (version != "00" && traceparent[kLength] == '-'));
+  const bool digits = all_lower_hex(version) && all_lower_hex(trace) && all_lower_hex(parent) &&
+                      all_lower_hex(traceparent.substr(53, 2));
+  if (!form || !digits || version == "ff" || all_zero(trace) || all_zero(parent)) return "";
+  return std::string(trace);
+}
+
+Caller Authenticator::unverified(const grpc::ServerContextBase& context) {
+  return {.name = {},
+          .peer = context.peer(),
+          .trace = trace_id(header(context, "traceparent").value_or(""))};
+}
+
+tl::expected<Caller, Failure> Authenticator::identify(
+    const grpc::ServerContextBase& context) const {
+  Caller caller = unverified(context);
+  if (tokens_ == nullptr) {
+    caller.name = name_in_certificate(context);
+    return caller;
+  }
+  const auto token = bearer_token(context);
+  if (!token)
+    return tl::unexpected(Failure{Reason::kUnauthenticated, "",
+                                  "this server wants a token: `authorization: Bearer TOKEN`"});
+  auto name = tokens_->table()->name_of(*token);
+  if (!name)
+    return tl::unexpected(
+        Failure{Reason::kUnauthenticated, "", "this server does not know the token"});
+  caller.name = std::move(*name);
+  return caller;
+}
+
+}  // namespace weft::server

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who calls. The Admission (net/admission.h) asks first, before a byte of the message is read:
+//
+//   const auto caller = authenticator.identify(*context);
+//   if (!caller) return refuse(caller.error());      // UNAUTHENTICATED, reason UNAUTHENTICATED
+//   ... caller->name ...                             // the owner of jobs
+//
+// The check stands there because nowhere else in gRPC 1.51 it holds for every call: an
+// AuthMetadataProcessor is not asked on unencrypted connections and cannot send an ErrorInfo, an
+// interceptor cannot end a call with a status. A test calls every method of every service without a
+// token. grpc.health.v1 needs none.
+//
+// What a stranger has sent by then is at most HTTP/2's first window, 64 KiB for each stream: gRPC
+// takes no more until the message is wanted. If that is too much, ask for client certificates,
+// too: without one no stream is opened.
+#pragma once
+
+#include <grpcpp/server_context.h>
+
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+
+#include "server/net/tokens.h"
+#include "server/wire/errors.h"
+
+namespace weft::server {
+
+struct Caller {
+  // The token's; else the subject's common name, or first alternative name, of the client's
+  // certificate; else empty: callers are not told apart.
+  std::string name{};
+  std::string peer{};   // the address, as gRPC writes it
+  std::string trace{};  // W3C trace id, 32 hexadecimal digits; empty if the caller sent none
+  std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();  // of the call
+
+  double seconds_since() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
+  }
+};
+
+// `client=`, `peer=` and `trace=` for a line of the log, without those that are empty.
+std::string log_fields(const Caller& caller);
+
+// The trace id in a `traceparent` header; empty if that is malformed.
+// Source: https://www.w3.org/TR/trace-context/
+std::string trace_id(std::string_view traceparent);
+
+// Thread-safe.
+class Authenticator {
+ public:
+  // `tokens` outlives the authenticator; null: whoever can connect may call.
+  explicit Authenticator(const TokenFile* tokens) : tokens_(tokens) {}
+
+  tl::expected<Caller, Failure> identify(const grpc::ServerContextBase& context) const;
+
+  // Who calls, whether or not he may.
+  static Caller unverified(const grpc::ServerContextBase& context);
+
+ private:
+  const TokenFile* const tokens_;
+};
+
+}  // namespace weft::server

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/net/connections.h"
+
+#include <fmt/format.h>
+
+#include "server/net/listen.h"
+
+namespace weft::server {
+tl::expected<std::vector<std::shared_ptr<grpc::ServerCredentials>>, std::string> credentials_for(
+    const std::vector<std::string>& addresses, const TlsOptions& tls, bool insecure) {
+  const bool encrypts = !tls.certificate.empty();
+  std::shared_ptr<grpc::ServerCredentials> encrypted;
+  if (encrypts) {
+    auto made = tls_credentials(tls);
+    if (!made) return tl::unexpected(made.error());
+    encrypted = std::move(*made);
+  }
+  std::vector<std::shared_ptr<grpc::ServerCredentials>> credentials;
+  for (const std::string& address : addresses) {
+    const bool plain = !encrypts || is_unix(address);
+    if (plain && !insecure && !is_local(address))
+      return tl::unexpected(
+          fmt::format("will not listen on {} unencrypted, where other machines can connect: give "
+                      "--tls-cert and --tls-key, or --insecure to do it anyway",
+                      address));
+    credentials.push_back(plain ? grpc::InsecureServerCredentials() : encrypted);
+  }
+  return credentials;
+}
+
+const char* security_of(const std::string& address, const TlsOptions& tls) {
+  if (tls.certificate.empty() || is_unix(address)) return "none";
+  return tls.client_ca.empty() ? "tls" : "mtls";
+}
+
+void limit_connections(grpc::ServerBuilder& builder) {
+  // A client that vanished without a word is noticed, also where no call is open.
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 30'000);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10'000);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
+  // Clients may ping as often as that, and not more: a ping costs them less than us. Three that
+  // come too early, with nothing sent in between, end the connection.
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 10'000);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PING_STRIKES, 2);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMostStreams);
+  // What a call may send before its caller is known: HTTP/2's own 64 KiB. A probe of the line would
+  // let gRPC raise it to megabytes. Once a message is wanted, the window is opened for it.
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+  // A descriptor is not held by one who never finishes his handshake, or makes no call.
+  builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, 20'000);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, 600'000);
+}
+
+}  // namespace weft::server

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bearer tokens and whose they are, from a file of lines `NAME TOKEN`. Empty lines and lines that
+// begin with # say nothing; a name may have several tokens, so that one can replace another.
+//
+//   # /etc/weft/tokens
+//   ann 3f9c0e...
+//   ci  b81d77...
+//
+// Only digests of tokens are kept, and all of them are compared in constant time: how long an
+// answer takes tells nothing about how much of a token was right.
+//
+//   auto file = TokenFile::open("/etc/weft/tokens", log);
+//   if (!file) return complain(file.error());
+//   if (auto name = (*file)->table()->name_of(token)) ...
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "server/observe/log.h"
+
+namespace weft::server {
+
+class TokenTable {
+ public:
+  // The error names the line, and never repeats a token. A table without tokens is an error.
+  static tl::expected<TokenTable, std::string> parse(std::string_view text);
+
+  std::optional<std::string> name_of(std::string_view token) const;
+  std::size_t size() const { return entries_.size(); }
+
+ private:
+  struct Entry {
+    std::string name;
+    std::array<unsigned char, 32> digest;
+  };
+  std::vector<Entry> entries_;
+};
+
+// The table in a file, read again once a second. While the file is missing or wrong, an empty one
+// included, the table stays as it was, and the log says so once. Thread-safe.
+class TokenFile {
+ public:
+  static tl::expected<std::unique_ptr<TokenFile>, std::string> open(
+      const std::filesystem::path& path, Logger log,
+      std::chrono::milliseconds between_looks = std::chrono::seconds(1));
+  ~TokenFile();
+  TokenFile(const TokenFile&) = delete;
+  TokenFile& operator=(const TokenFile&) = delete;
+
+  std::shared_ptr<const TokenTable> table() const;
+
+ private:
+  TokenFile(std::filesystem::path path, Logger log, std::chrono::milliseconds between_looks);
+  // Nothing if the file says what it said the last time.
+  tl::expected<std::optional<TokenTable>, std::string> read();
+  void look_until_stopped();
+
+  const std::filesystem::path path_;
+  const Logger log_;
+  const std::chrono::milliseconds between_looks_;
+  std::string last_seen_;  // the watching thread's own: a digest of what the file said
+
+  mutable std::mutex mutex_;  // guards the two below
+  std::shared_ptr<const TokenTable> table_;
+  bool stopping_ = false;
+  std::condition_variable stopped_;
+  std::thread watcher_;
+};
+
+}  // namespace weft::server

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/observe/metrics.h"
+
+#include <prometheus/gauge.h>
+#include <prometheus/text_serializer.h>
+
+#include <sstream>
+#include <utility>
+
+#include "server/observe/process_metrics.h"
+#include "server/wire/errors.h"
+
+namespace weft::server {
+namespace {
+
+using prometheus::Counter;
+using prometheus::Family;
+using prometheus::Histogram;
+using prometheus::Registry;
+
+// From a small mesh over a unix socket to the longest job, two or three to a decade.
+const Histogram::BucketBoundaries kSeconds = {0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1,
+                                              0.25,  0.5,    1,     2.5,  5,     10,   30,
+                                              60,    120,    300,   600,  1800,  3600};
+
+Family<Counter>& counters(Registry& registry, const char* name, const char* help) {
+  return prometheus::BuildCounter().Name(name).Help(help).Register(registry);
+}
+
+Counter& counter(Registry& registry, const char* name, const char* help) {
+  return counters(registry, name, help).Add({});
+}
+
+Family<Histogram>& histograms(Registry& registry, const char* name, const char* help) {
+  return prometheus::BuildHistogram().Name(name).Help(help).Register(registry);
+}
+
+Histogram& histogram(Registry& registry, const char* name, const char* help) {
+  return histograms(registry, name, help).Add({}, kSeconds);
+}
+
+prometheus::MetricFamily gauge_family(const char* name, const char* help) {
+  return {name, help, prometheus::MetricType::Gauge, {}};
+}
+
+void add_gauge(prometheus::MetricFamily& family, const std::string& queue, double value) {
+  prometheus::ClientMetric metric;
+  metric.label = {{"queue", queue}};
+  metric.gauge.value = value;
+  family.metric.push_back(std::move(metric));
+}
+
+}  // namespace
+
+Metrics::Metrics(std::string_view version, std::string_view engine_version)
+    : requests_(counters(registry_, "weft_requests_total", "Calls that have ended")),
+      request_seconds_(
+          histograms(registry_, "weft_request_seconds", "From a call to the end of its answer")),
+      jobs_(
+          counters(registry_, "weft_jobs_total",
+                   "Times that jobs came into a state; of those that share a mesh, the mesh counts "
+                   "once it is worked on")),
+      queue_seconds_(
+          histogram(registry_, "weft_queue_seconds", "From being accepted to being worked on")),
+      refine_seconds_(histogram(registry_, "weft_refine_seconds",
+                                "The engine's time on a mesh, without waiting for readers")),
+      first_chunk_seconds_(histogram(registry_, "weft_first_chunk_seconds",
+                                     "From a call to the first chunk of its mesh")),
+      triangles_(counter(registry_, "weft_triangles_total",
+                         "Triangles that the engine has made, for calls and jobs")),
+      streamed_bytes_(counter(registry_, "weft_streamed_bytes_total",
+                              "Bytes of messages with chunks handed to streams")),
+      cache_hits_(counter(registry_, "weft_cache_hits_total",
+                          "Requests answered with a mesh that was kept, or is being made")),
+      cache_misses_(
+          counter(registry_, "weft_cache_misses_total", "Requests whose mesh had to be made")),
+      leases_lost_(counter(
+          registry_, "weft_leases_lost_total",
+          "Attempts at a mesh whose lease ran out, because their worker was lost or hung")) {
+  // So that the first of a kind shows as an increase, too.
+  for (const char* state : {"queued", "running", "succeeded", "failed", "cancelled"})
+    jobs_.Add({{"state", state}});
+  prometheus::BuildGauge()
+      .Name("weft_build_info")
+      .Help("Always 1; the versions are in the labels")
+      .Register(registry_)
+      .Add({{"version", std::string(version)}, {"engine", std::string(engine_version)}})
+      .Set(1);
+}
+
+void Metrics::call_ended(std::string_view method, grpc::StatusCode code, double seconds) {
+  const std::string name(method);
+  requests_.Add({{"method", name}, {"code", std::string(code_name(code))}}).Increment();
+  request_seconds_.Add({{"method", name}}, kSeconds).Observe(seconds);
+}
+
+void Metrics::job_became(std::string_view state) {
+  jobs_.Add({{"state", std::string(state)}}).Increment();
+}
+
+void Metrics::add_queue(std::string name, std::function<QueueFigures()> figures) {
+  std::lock_guard lock(mutex_);
+  queues_.push_back({std::move(name), std::move(figures)});
+}
+
+std::string Metrics::text() const {
+  std::vector<Queue> queues;
+  {
+    std::lock_guard lock(mutex_);
+    queues = queues_;
+  }
+  auto waiting = gauge_family("weft_queue_length", "Jobs that wait for their turn");
+  auto running = gauge_family("weft_running_jobs", "Jobs that are worked on");
+  auto pausing = gauge_family("weft_pausing_jobs", "Jobs that wait for whoever reads their mesh");
+  auto bytes = gauge_family("weft_admission_bytes", "Memory that running jobs were admitted with");
+  for (const Queue& queue : queues) {
+    const QueueFigures figures = queue.figures();
+    add_gauge(waiting, queue.name, figures.waiting);
+    add_gauge(running, queue.name, figures.running);
+    add_gauge(pausing, queue.name, figures.pausing);
+    add_gauge(bytes, queue.name, figures.admitted_bytes);
+  }
+  std::vector<prometheus::MetricFamily> families = registry_.Collect();
+  for (auto* family : {&waiting, &running, &pausing, &bytes})
+    families.push_back(std::move(*family));
+  for (auto& family : process_metrics()) families.push_back(std::move(family));
+  std::ostringstream out;
+  prometheus::TextSerializer().Serialize(out, families);
+  return std::move(out).str();
+}
+
+}  // namespace weft::server

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// The functions of the PostgreSQL store: for clients in postgres_clients.cpp, for workers in
+// postgres_workers.cpp, for the house-keeping in postgres_garbage_collection.cpp.
+//
+// Who locks what, in this order, so that nobody waits for somebody who waits for him: a request_id
+// (advisory), the queue (advisory), a task, its jobs, a mesh, chunks. A job joins a task under
+// FOR KEY SHARE, and a task ends under FOR UPDATE: so no job joins one that has ended.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/store/job_id.h"
+#include "server/store/job_store.h"
+#include "server/store/postgres/postgres_core.h"
+
+namespace weft::server {
+
+class PostgresJobs final : public JobStore {
+ public:
+  explicit PostgresJobs(std::unique_ptr<PostgresCore> core) : core_(std::move(core)) {}
+
+  StoreResult<Submitted> submit(const Submission& submission) override;
+  StoreResult<std::optional<JobRecord>> get(const std::string& owner,
+                                            const std::string& id) override;
+  StoreResult<std::vector<JobRecord>> list(const ListQuery& query) override;
+  StoreResult<std::optional<JobRecord>> cancel(const std::string& owner,
+                                               const std::string& id) override;
+  StoreResult<std::optional<JobRecord>> remove(const std::string& owner,
+                                               const std::string& id) override;
+  StoreResult<std::optional<StoredMesh>> mesh(const std::string& key) override;
+  StoreResult<std::optional<std::string>> chunk(const std::string& sha256) override;
+
+  StoreResult<std::optional<Claim>> claim(const std::string& worker,
+                                          std::chrono::milliseconds lease,
+                                          std::uint64_t max_estimate) override;
+  StoreResult<Held> renew(const ClaimRef& claim, std::chrono::milliseconds lease,
+                          const std::string& progress) override;
+  StoreResult<void> put_chunk(const std::string& sha256, std::string_view bytes) override;
+  StoreResult<Held> finish(const ClaimRef& claim, const StoredMesh& mesh) override;
+  StoreResult<Held> fail(const ClaimRef& claim, const std::string& error) override;
+  StoreResult<Held> release(const ClaimRef& claim, std::chrono::milliseconds delay,
+                            bool counts) override;
+
+  StoreResult<Reaped> reap(const RetryPolicy& policy) override;
+  StoreResult<Collected> collect(const KeepPolicy& policy) override;
+  StoreResult<StoreFigures> figures() override;
+
+  void on_change(std::function<void()> listener) override { core_->on_change(std::move(listener)); }
+
+ private:
+  Submitted submit_in(postgres::Transaction& transaction, const Submission& submission,
+                      const std::string& id);
+  void insert_job(postgres::Transaction& transaction, const Submission& submission,
+                  const std::string& id, std::optional<std::int64_t> task);
+
+  const std::unique_ptr<PostgresCore> core_;
+  JobIds ids_;
+};
+
+// Ends the jobs of a task, or one of them where `job` is not empty; the task itself, which must be
+// locked, stays.
+void settle_jobs(postgres::Transaction& transaction, std::int64_t task, const std::string& job,
+                 JobState state, const std::string& error);
+
+}  // namespace weft::server

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tables of the PostgreSQL store, by version.
+#pragma once
+
+#include "server/store/postgres/postgres.h"
+
+namespace weft::server {
+
+// Brings a database, new or old, to the version of this program; several servers may begin at once.
+// kBroken where it is of a newer one.
+StoreResult<void> migrate(postgres::Connection& connection);
+
+}  // namespace weft::server

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/store/sqlite/sqlite_core.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "server/store/sqlite/sqlite_schema.h"
+
+namespace weft::server {
+namespace {
+
+// The page size and the vacuum hold for a file that is new, the others for the connection. The log
+// is cut back to what a checkpoint usually leaves, and foreign keys are what keeps a chunk that a
+// mesh refers to.
+constexpr const char* kWriterSettings = R"sql(
+PRAGMA page_size = 16384;
+PRAGMA auto_vacuum = INCREMENTAL;
+PRAGMA journal_mode = WAL;
+PRAGMA synchronous = FULL;
+PRAGMA wal_autocheckpoint = 1024;
+PRAGMA journal_size_limit = 67108864;
+PRAGMA foreign_keys = ON;
+)sql";
+
+constexpr std::int64_t kVacuumStep = 512;  // pages: 8 MiB, some tens of milliseconds
+
+StoreError failed_at(const std::string& path) {
+  const int error = errno;
+  return {error == ENOSPC || error == EDQUOT ? StoreErrorKind::kFull : StoreErrorKind::kUnavailable,
+          path + ": " + std::strerror(error)};
+}
+
+StoreResult<void> make_folder(const std::string& folder) {
+  const std::filesystem::path parent = std::filesystem::absolute(folder).parent_path();
+  std::error_code error;
+  std::filesystem::create_directories(parent, error);
+  if (mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) {
+    return tl::unexpected(failed_at(folder));
+  }
+  return {};
+}
+
+StoreResult<FileHandle> lock_folder(const std::string& folder) {
+  const std::string path = folder + "/weft.lock";
+  FileHandle file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  if (file.get() < 0) return tl::unexpected(failed_at(path));
+  if (flock(file.get(), LOCK_EX | LOCK_NB) == 0) return file;
+  if (errno != EWOULDBLOCK) return tl::unexpected(failed_at(path));
+  return tl::unexpected(
+      StoreError{StoreErrorKind::kUnavailable, folder + " is in use by another weftd"});
+}
+
+// SQLite makes a new file as the umask says, and the files beside it as that one.
+StoreResult<void> make_private(const std::string& path) {
+  const FileHandle file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  if (file.get() < 0) return tl::unexpected(failed_at(path));
+  return {};
+}
+
+}  // namespace
+
+FileHandle::~FileHandle() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+StoreResult<std::unique_ptr<SqliteCore>> SqliteCore::open(SqliteStore::Options options) {
+  if (const auto made = make_folder(options.folder); !made) return tl::unexpected(made.error());
+  StoreResult<FileHandle> lock = lock_folder(options.folder);
+  if (!lock) return tl::unexpected(lock.error());
+
+  const std::string path = options.folder + "/weft.db";
+  std::unique_ptr<SqliteCore> core(new SqliteCore(std::move(*lock), std::move(options.clock)));
+  if (const auto made = make_private(path); !made) return tl::unexpected(made.error());
+  auto writer = sqlite::Connection::open(path, sqlite::Access::kWrite);
+  if (!writer) return tl::unexpected(writer.error());
+  if (const auto set = (*writer)->execute(kWriterSettings); !set) {
+    return tl::unexpected(StoreError{set.error().kind, path + ": " + set.error().message});
+  }
+  if (const auto done = migrate(**writer, path); !done) return tl::unexpected(done.error());
+  core->writer_ = std::move(*writer);
+
+  for (std::size_t i = 0; i < options.readers; ++i) {
+    auto reader = sqlite::Connection::open(path, sqlite::Access::kRead);
+    if (!reader) return tl::unexpected(reader.error());
+    core->idle_readers_.push_back(std::move(*reader));
+  }
+  return core;
+}
+
+SqliteCore::Reader::Reader(SqliteCore& from) : core(from) {
+  std::unique_lock lock(core.reading_);
+  core.reader_returned_.wait(lock, [&] { return !core.idle_readers_.empty(); });
+  connection = std::move(core.idle_readers_.back());
+  core.idle_readers_.pop_back();
+}
+
+SqliteCore::Reader::~Reader() {
+  {
+    const std::lock_guard lock(core.reading_);
+    core.idle_readers_.push_back(std::move(connection));
+  }
+  core.reader_returned_.notify_one();
+}
+
+StoreResult<void> SqliteCore::wait_for_disk(bool wait) {
+  if (wait == waits_for_disk_) return {};
+  auto set = writer_->execute(wait ? "PRAGMA synchronous = FULL" : "PRAGMA synchronous = NORMAL");
+  if (set) waits_for_disk_ = wait;
+  return set;
+}
+
+StoreResult<void> SqliteCore::give_space_back() {
+  const std::string step = "PRAGMA incremental_vacuum(" + std::to_string(kVacuumStep) + ")";
+  while (true) {
+    const std::lock_guard lock(writing_);
+    const auto free_pages = writer_->pragma("PRAGMA freelist_count");
+    if (!free_pages) return tl::unexpected(free_pages.error());
+    if (*free_pages == 0) break;
+    if (auto done = writer_->execute(step.c_str()); !done) return done;
+  }
+  // The file shrinks at a checkpoint. This one waits for those who read, and empties the log, which
+  // with readers at all times would otherwise only grow.
+  const std::lock_guard lock(writing_);
+  return writer_->execute("PRAGMA wal_checkpoint(TRUNCATE)");
+}
+
+}  // namespace weft::server

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/store/sqlite/sqlite_store.h"
+
+#include <utility>
+
+#include "server/store/sqlite/sqlite_core.h"
+#include "server/store/sqlite/sqlite_jobs.h"
+
+namespace weft::server {
+
+StoreResult<std::unique_ptr<JobStore>> SqliteStore::open(Options options) {
+  auto core = SqliteCore::open(std::move(options));
+  if (!core) return tl::unexpected(core.error());
+  // Who holds a lease was the server before this one, and is gone: nobody need wait for its end.
+  const auto expired = (*core)->write(Durability::kLater, [](sqlite::Transaction& transaction) {
+    return transaction.change("UPDATE task SET lease_end = 0 WHERE lease_end IS NOT NULL");
+  });
+  if (!expired) return tl::unexpected(expired.error());
+  return std::make_unique<SqliteJobs>(std::move(*core));
+}
+
+}  // namespace weft::server

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/wire/job_wire.h"
+
+#include <fmt/format.h>
+#include <google/protobuf/stubs/common.h>
+#include <google/protobuf/util/time_util.h>
+
+#include <algorithm>
+
+#include "google/rpc/error_details.pb.h"
+#include "server/wire/translate.h"
+
+namespace weft::server {
+namespace {
+
+google::protobuf::Timestamp to_wire(WallTime time) {
+  return google::protobuf::util::TimeUtil::MicrosecondsToTimestamp(
+      std::chrono::duration_cast<std::chrono::microseconds>(time.time_since_epoch()).count());
+}
+
+// What a damaged row holds must not keep a client from reading the message, with all the other jobs
+// in it. Texts that are no UTF-8 would, and messages that do not parse.
+std::string text_of(const std::string& stored) {
+  using google::protobuf::internal::IsStructurallyValidUTF8;
+  if (IsStructurallyValidUTF8(stored.data(), static_cast<int>(stored.size()))) return stored;
+  std::string text = stored;
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return (c & 0x80) != 0; }, '?');
+  return text;
+}
+
+template <class Message>
+void parse_into(Message& message, const std::string& stored) {
+  if (!message.ParseFromString(stored)) message.Clear();
+}
+
+// The error is that of the work, which jobs may share: each tells of itself alone.
+void name_job(google::rpc::Status& error, const std::string& id) {
+  for (google::protobuf::Any& detail : *error.mutable_details()) {
+    google::rpc::ErrorInfo info;
+    if (!detail.Is<google::rpc::ErrorInfo>() || !detail.UnpackTo(&info)) continue;
+    (*info.mutable_metadata())["job_id"] = id;
+    detail.PackFrom(info);
+  }
+}
+
+Reason reason_of(StoreErrorKind kind) {
+  switch (kind) {
+    case StoreErrorKind::kUnavailable:
+      return Reason::kStoreUnavailable;
+    case StoreErrorKind::kFull:
+      return Reason::kStoreFull;
+    case StoreErrorKind::kBroken:
+      return Reason::kStoreBroken;
+  }
+  return Reason::kInternal;
+}
+
+}  // namespace
+
+Failure failure_of(const StoreError& error) {
+  return {reason_of(error.kind), "", error.message};
+}
+
+Failure no_such_job(std::string_view id) {
+  return {Reason::kNoSuchJob, "id", fmt::format("there is no job '{}'", id)};
+}
+
+Failure mesh_gone(std::string_view id) {
+  return {Reason::kMeshGone, "", fmt::format("the mesh of job {} is no longer kept", id)};
+}
+
+v1::Job to_wire(const JobRecord& record) {
+  v1::Job job;
+  job.set_id(text_of(record.id));
+  job.set_request_id(text_of(record.request_id));
+  job.set_state(to_wire(record.state));
+  *job.mutable_create_time() = to_wire(record.created);
+  if (record.started) *job.mutable_start_time() = to_wire(*record.started);
+  if (record.ended) *job.mutable_end_time() = to_wire(*record.ended);
+  job.set_attempts(record.attempts);
+  job.set_worker(text_of(record.worker));
+  if (!record.progress.empty()) parse_into(*job.mutable_progress(), record.progress);
+  if (!record.error.empty()) {
+    parse_into(*job.mutable_error(), record.error);
+    name_job(*job.mutable_error(), job.id());
+  }
+  job.set_from_store(record.from_store);
+  if (!record.brief.empty()) {
+    parse_into(*job.mutable_summary(), record.brief);
+    job.mutable_summary()->clear_leaf_boxes();  // of meshes that older servers made
+  }
+  return job;
+}
+
+tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure> read_request(const Claim& claim) {
+  auto request = std::make_unique<v1::GenerateMeshRequest>();
+  if (!request->ParseFromString(claim.request))
+    return tl::unexpected(Failure{Reason::kStoreBroken, "", "the stored request does not parse"});
+  if (const auto failure = check_shape(*request))
+    return tl::unexpected(
+        Failure{Reason::kStoreBroken, "", "the stored request is damaged: " + failure->message});
+  return request;
+}
+
+tl::expected<v1::Summary, Failure> read_summary(const StoredMesh& mesh) {
+  v1::Summary summary;
+  if (!summary.ParseFromString(mesh.summary))
+    return tl::unexpected(Failure{Reason::kStoreBroken, "", "the stored summary does not parse"});
+  return summary;
+}
+
+std::string_view state_name(JobState state) {
+  switch (state) {
+    case JobState::kQueued:
+      return "queued";
+    case JobState::kRunning:
+      return "running";
+    case JobState::kSucceeded:
+      return "succeeded";
+    case JobState::kFailed:
+      return "failed";
+    case JobState::kCancelled:
+      return "cancelled";
+  }
+  return "unknown";
+}
+
+v1::JobState to_wire(JobState state) {
+  switch (state) {
+    case JobState::kQueued:
+      return v1::JOB_STATE_QUEUED;
+    case JobState::kRunning:
+      return v1::JOB_STATE_RUNNING;
+    case JobState::kSucceeded:
+      return v1::JOB_STATE_SUCCEEDED;
+    case JobState::kFailed:
+      return v1::JOB_STATE_FAILED;
+    case JobState::kCancelled:
+      return v1::JOB_STATE_CANCELLED;
+  }
+  return v1::JOB_STATE_UNSPECIFIED;
+}
+
+std::optional<JobState> from_wire(v1::JobState state) {
+  for (const JobState known : {JobState::kQueued, JobState::kRunning, JobState::kSucceeded,
+                               JobState::kFailed, JobState::kCancelled})
+    if (to_wire(known) == state) return known;
+  return std::nullopt;
+}
+
+}  // namespace weft::server

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/wire/limits.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+namespace weft::server {
+namespace {
+
+template <class Number>
+std::optional<Failure> over(std::string_view field, std::string_view unit, Number value,
+                            Number limit) {
+  if (value <= limit) return std::nullopt;
+  return Failure{Reason::kLimitExceeded, std::string(field),
+                 fmt::format("{}: {} {}; this server's limit is {}", field, value, unit, limit)};
+}
+
+// What takes memory.
+struct Amounts {
+  std::uint64_t points = 0;
+  std::uint64_t segments = 0;
+  std::uint64_t markers = 0;
+  std::uint64_t seeds = 0;
+  std::uint64_t expression_bytes = 0;
+  std::uint64_t raster_values = 0;
+};
+
+std::optional<Failure> check(const Amounts& amounts, const Limits& limits) {
+  if (auto f = over("domain.points", "points", amounts.points, limits.max_points)) return f;
+  if (auto f = over("domain.segments", "segments", amounts.segments, limits.max_segments)) return f;
+  if (auto f = over("domain.segment_markers", "markers", amounts.markers, limits.max_segments))
+    return f;
+  if (amounts.seeds > limits.max_seeds)
+    return Failure{Reason::kLimitExceeded, "domain.regions",
+                   fmt::format("the domain has {} hole and region seeds; this server's limit is {}",
+                               amounts.seeds, limits.max_seeds)};
+  if (auto f =
+          over("size.expression", "bytes", amounts.expression_bytes, limits.max_expression_bytes))
+    return f;
+  return over("size.raster.values", "values", amounts.raster_values, limits.max_raster_values);
+}
+
+}  // namespace
+
+std::optional<Failure> check_limits(const WireScan& scan, const Limits& limits) {
+  const auto of_domain = [&](int field) { return scan.count(*v1::Domain::descriptor(), field); };
+  const Amounts amounts{
+      .points = of_domain(v1::Domain::kPointsFieldNumber) / 2,
+      .segments = of_domain(v1::Domain::kSegmentsFieldNumber) / 2,
+      .markers = of_domain(v1::Domain::kSegmentMarkersFieldNumber),
+      .seeds =
+          of_domain(v1::Domain::kHolesFieldNumber) / 2 + of_domain(v1::Domain::kRegionsFieldNumber),
+      .expression_bytes =
+          scan.count(*v1::SizeField::descriptor(), v1::SizeField::kExpressionFieldNumber),
+      .raster_values = scan.count(*v1::Raster::descriptor(), v1::Raster::kValuesFieldNumber)};
+  return check(amounts, limits);
+}
+
+std::optional<Failure> check_limits(const v1::GenerateMeshRequest& request, const Limits& limits) {
+  const v1::Domain& domain = request.domain();
+  const v1::Budget& budget = request.budget();
+  const auto count = [](int size, int width) { return static_cast<std::uint64_t>(size / width); };
+  const Amounts amounts{.points = count(domain.points_size(), 2),
+                        .segments = count(domain.segments_size(), 2),
+                        .markers = count(domain.segment_markers_size(), 1),
+                        .seeds = count(domain.holes_size(), 2) + count(domain.regions_size(), 1),
+                        .expression_bytes = request.size().expression().size(),
+                        .raster_values = count(request.size().raster().values_size(), 1)};
+  if (auto f = check(amounts, limits)) return f;
+  if (auto f = over("budget.max_triangles", "triangles", std::uint64_t{budget.max_triangles()},
+                    limits.max_triangles))
+    return f;
+  if (auto f =
+          over("budget.max_bytes", "bytes", std::uint64_t{budget.max_bytes()}, limits.max_bytes))
+    return f;
+  return over("budget.max_seconds", "seconds", budget.max_seconds(), limits.max_seconds);
+}
+
+}  // namespace weft::server

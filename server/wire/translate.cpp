@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/wire/translate.h"
+
+#include <fmt/format.h>
+#include <grpcpp/impl/codegen/proto_utils.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+namespace weft::server {
+namespace {
+
+Failure bad_option(std::string field, std::string message) {
+  return {Reason::kBadOption, std::move(field), std::move(message)};
+}
+
+std::optional<Failure> check_pairs(std::string_view field, int size, std::string_view what) {
+  if (size % 2 == 0) return std::nullopt;
+  return Failure{Reason::kBadArray, std::string(field),
+                 fmt::format("{} holds {} numbers; {} come in pairs", field, size, what)};
+}
+
+bool positive(double value) {
+  return std::isfinite(value) && value > 0;
+}
+bool not_negative(double value) {
+  return std::isfinite(value) && value >= 0;
+}
+
+std::optional<Failure> check_domain(const v1::Domain& domain) {
+  if (auto f = check_pairs("domain.points", domain.points_size(), "coordinates")) return f;
+  if (auto f = check_pairs("domain.segments", domain.segments_size(), "point indices")) return f;
+  if (auto f = check_pairs("domain.holes", domain.holes_size(), "coordinates")) return f;
+  const int segments = domain.segments_size() / 2;
+  const int markers = domain.segment_markers_size();
+  if (markers != 0 && markers != segments)
+    return Failure{Reason::kBadArray, "domain.segment_markers",
+                   fmt::format("domain.segment_markers holds {} markers for {} segments; give one "
+                               "per segment, or none",
+                               markers, segments)};
+  for (int i = 0; i < domain.regions_size(); ++i) {
+    const v1::Region& region = domain.regions(i);
+    if (region.has_max_area() && !positive(region.max_area()))
+      return bad_option(fmt::format("domain.regions[{}].max_area", i),
+                        fmt::format("domain.regions[{}].max_area is {}; it must be positive and "
+                                    "finite",
+                                    i, region.max_area()));
+  }
+  if (!v1::Fill_IsValid(domain.fill()))
+    return bad_option("domain.fill", fmt::format("domain.fill is {}, which is no Fill",
+                                                 static_cast<int>(domain.fill())));
+  return std::nullopt;
+}
+
+std::optional<Failure> check_raster(const v1::Raster& raster) {
+  for (const auto& [name, value] : {std::pair{"x", raster.x()}, std::pair{"y", raster.y()}})
+    if (!std::isfinite(value))
+      return bad_option(fmt::format("size.raster.{}", name),
+                        fmt::format("size.raster.{} is {}; it must be finite", name, value));
+  for (const auto& [name, value] : {std::pair{"dx", raster.dx()}, std::pair{"dy", raster.dy()}})
+    if (!positive(value))
+      return bad_option(
+          fmt::format("size.raster.{}", name),
+          fmt::format("size.raster.{} is {}; it must be positive and finite", name, value));
+  const std::uint64_t nodes = std::uint64_t{raster.columns()} * raster.rows();
+  if (nodes == 0 || nodes != static_cast<std::uint64_t>(raster.values_size()))
+    return Failure{Reason::kBadArray, "size.raster.values",
+                   fmt::format("size.raster.values holds {} values for {} columns and {} rows; it "
+                               "takes one a node, and one node at least",
+                               raster.values_size(), raster.columns(), raster.rows())};
+  return std::nullopt;
+}
+
+std::vector<Point> to_points(const google::protobuf::RepeatedField<double>& pairs) {
+  std::vector<Point> points(static_cast<std::size_t>(pairs.size() / 2));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double* pair = pairs.data() + 2 * i;
+    points[i] = {pair[0], pair[1]};
+  }
+  return points;
+}
+
+// All of a request but its domain and its raster.
+MeshRequest options_of(const v1::GenerateMeshRequest& request) {
+  MeshRequest out;
+  if (request.size().has_constant()) out.size.constant = request.size().constant();
+  if (request.size().has_expression()) out.size.expression = request.size().expression();
+  if (request.quality().has_min_angle_deg()) out.min_angle_deg = request.quality().min_angle_deg();
+  out.min_edge = request.quality().min_edge();
+  if (request.quality().placement() == v1::PLACEMENT_CIRCUMCENTRE)
+    out.placement = Placement::kCircumcentre;
+  if (request.quality().has_optimise()) out.sweeps = request.quality().optimise();
+  out.allow_unrefined = request.allow_unrefined();
+  return out;
+}
+
+template <class Array, class Values>
+void assign(Array& array, const Values& values) {
+  array.Clear();
+  array.Add(values.data(), values.data() + values.size());
+}
+
+void write_unrefined(const Summary& summary, v1::Unrefined& message) {
+  const Unrefined& unrefined = summary.unrefined;
+  message.set_small_input_angle(unrefined.small_input_angle);
+  message.set_edge_floor(unrefined.edge_floor);
+  message.set_budget(unrefined.budget);
+  message.set_precision(unrefined.precision);
+  message.set_streaming(unrefined.streaming);
+  message.set_too_large(unrefined.too_large);
+  if (unrefined.without_excuse() == 0) return;
+  message.set_x(summary.unrefined_at.x);
+  message.set_y(summary.unrefined_at.y);
+}
+
+void write_merging(const Merging& merging, v1::Merging& message) {
+  message.set_tolerance(merging.tolerance);
+  message.set_points(merging.points);
+  message.set_segments(merging.segments);
+  message.set_farthest(merging.farthest);
+  if (merging.farthest > 0) {
+    message.set_farthest_x(merging.farthest_at.x);
+    message.set_farthest_y(merging.farthest_at.y);
+  }
+  message.set_vanished_faces(merging.vanished_faces);
+  if (merging.vanished_faces > 0) {
+    message.set_vanished_x(merging.vanished_at.x);
+    message.set_vanished_y(merging.vanished_at.y);
+  }
+}
+
+template <class Bytes>
+std::string to_string(const Bytes& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+}  // namespace
+
+std::optional<Failure> check_shape(const v1::GenerateMeshRequest& request) {
+  if (!request.has_domain()) return bad_option("domain", "domain is missing; it is required");
+  if (auto f = check_domain(request.domain())) return f;
+
+  if (request.size().has_raster())
+    if (auto f = check_raster(request.size().raster())) return f;
+  const v1::Quality& quality = request.quality();
+  if (!v1::Placement_IsValid(quality.placement()))
+    return bad_option("quality.placement",
+                      fmt::format("quality.placement is {}, which is no Placement",
+                                  static_cast<int>(quality.placement())));
+  if (!not_negative(request.budget().max_seconds()))
+    return bad_option("budget.max_seconds",
+                      fmt::format("budget.max_seconds is {}; it must be 0 or more, and finite",
+                                  request.budget().max_seconds()));
+  return std::nullopt;
+}
+
+std::optional<Failure> check_values(const v1::GenerateMeshRequest& request) {
+  auto error = check_options(options_of(request));
+  if (!error && request.size().has_raster()) {
+    const v1::Raster& raster = request.size().raster();
+    error = check_raster_values(
+        {raster.values().data(), raster.values().data() + raster.values_size()}, raster.columns());
+  }
+  return error ? std::optional(failure_of(*error)) : std::nullopt;
+}
+
+MeshRequest to_engine(const v1::GenerateMeshRequest& request) {
+  const v1::Domain& domain = request.domain();
+  MeshRequest out = options_of(request);
+  out.pslg.points = to_points(domain.points());
+  out.pslg.holes = to_points(domain.holes());
+  out.pslg.segments.resize(static_cast<std::size_t>(domain.segments_size() / 2));
+  const bool marked = domain.segment_markers_size() != 0;
+  for (std::size_t i = 0; i < out.pslg.segments.size(); ++i) {
+    const std::uint32_t* ends = domain.segments().data() + 2 * i;
+    out.pslg.segments[i] = {ends[0], ends[1], marked ? domain.segment_markers().data()[i] : 0};
+  }
+  out.pslg.regions.reserve(static_cast<std::size_t>(domain.regions_size()));
+  for (const v1::Region& region : domain.regions())
+    out.pslg.regions.push_back(
+        {{region.x(), region.y()},
+         region.id(),
+         region.has_max_area() ? std::optional(region.max_area()) : std::nullopt});
+  out.pslg.fill = domain.fill() == v1::FILL_EVEN_ODD ? Fill::kEvenOdd : Fill::kSeeds;
+  out.pslg.snap = domain.snap();
+
+  if (request.size().has_raster()) {
+    const v1::Raster& raster = request.size().raster();
+    out.size.raster = Raster{
+        {raster.x(), raster.y()}, raster.dx(),   raster.dy(),
+        raster.columns(),         raster.rows(), {raster.values().begin(), raster.values().end()}};
+  }
+  return out;
+}
+
+Budget to_budget(const v1::Budget& budget, const Limits& limits) {
+  Budget out;
+  if (budget.max_triangles() != 0) out.max_triangles = budget.max_triangles();
+  out.triangle_limit = limits.max_triangles;
+  out.max_bytes = budget.max_bytes() != 0 ? budget.max_bytes() : limits.max_bytes;
+  return out;
+}
+
+double to_seconds(const v1::Budget& budget, const Limits& limits) {
+  return budget.max_seconds() != 0 ? budget.max_seconds() : limits.max_seconds;
+}
+
+std::uint32_t to_threads(std::uint32_t wanted, int available) {
+  const auto all = static_cast<std::uint32_t>(available);
+  return wanted == 0 ? all : std::min(wanted, all);
+}
+
+void to_wire(const Chunk& chunk, v1::Chunk& message) {
+  message.set_index(chunk.index);
+  message.set_first_vertex(chunk.first_vertex);
+  message.set_first_triangle(chunk.first_triangle);
+  assign(*message.mutable_coordinates(), chunk.coordinates);
+  assign(*message.mutable_triangles(), chunk.triangles);
+  assign(*message.mutable_regions(), chunk.regions);
+
+  auto& ends = *message.mutable_edges();
+  auto& markers = *message.mutable_edge_markers();
+  auto& segments = *message.mutable_edge_segments();
+  ends.Clear();
+  markers.Clear();
+  segments.Clear();
+  const int edges = static_cast<int>(chunk.edges.size());
+  ends.Reserve(2 * edges);
+  segments.Reserve(edges);
+  const bool marked = std::any_of(chunk.edges.begin(), chunk.edges.end(),
+                                  [](const Chunk::Edge& edge) { return edge.marker != 0; });
+  if (marked) markers.Reserve(edges);
+  for (const Chunk::Edge& edge : chunk.edges) {
+    ends.AddAlreadyReserved(edge.a);
+    ends.AddAlreadyReserved(edge.b);
+    segments.AddAlreadyReserved(edge.segment);
+    if (marked) markers.AddAlreadyReserved(edge.marker);
+  }
+
+  auto& input_points = *message.mutable_input_points();
+  input_points.Clear();
+  input_points.Reserve(2 * static_cast<int>(chunk.input_points.size()));
+  for (const auto& [vertex, point] : chunk.input_points) {
+    input_points.AddAlreadyReserved(vertex);
+    input_points.AddAlreadyReserved(point);
+  }
+  assign(*message.mutable_box(),
+         std::array{chunk.box.min_x, chunk.box.min_y, chunk.box.max_x, chunk.box.max_y});
+  message.set_sha256(to_string(chunk.digest));
+}
+
+v1::Summary to_wire(const Summary& summary, std::uint32_t threads) {
+  v1::Summary message;
+  message.set_vertices(summary.vertices);
+  message.set_triangles(summary.triangles);
+  message.set_edges(summary.edges);
+  message.set_chunks(summary.chunks);
+  message.set_area(summary.area);
+  message.set_engine_version(std::string(kEngineVersion));
+  message.set_min_angle_deg(summary.min_angle_deg);
+  message.set_max_angle_deg(summary.max_angle_deg);
+  message.set_min_angle_p1_deg(summary.min_angle_p1_deg);
+  message.set_mean_quality(summary.mean_quality);
+  message.set_ideal_ratio(summary.ideal_ratio);
+  message.set_lattice_share(summary.lattice_share);
+  message.set_streamed(summary.streamed);
+  assign(*message.mutable_angle_histogram(), summary.angle_histogram);
+  assign(*message.mutable_aspect_histogram(), summary.aspect_histogram);
+  assign(*message.mutable_size_histogram(), summary.size_histogram);
+  write_unrefined(summary, *message.mutable_unrefined());
+  write_merging(summary.merging, *message.mutable_merging());
+  v1::Timings& timings = *message.mutable_timings();
+  timings.set_triangulate_seconds(summary.triangulate_seconds);
+  timings.set_size_seconds(summary.size_seconds);
+  timings.set_prelude_seconds(summary.prelude_seconds);
+  timings.set_refine_seconds(summary.refine_seconds);
+  timings.set_emit_seconds(summary.emit_seconds);
+  timings.set_engine_seconds(summary.engine_seconds);
+  message.set_peak_engine_bytes(summary.peak_bytes);
+  message.set_insertions(summary.insertions);
+  message.set_exact_predicates(summary.exact_predicates);
+  message.set_sha256(to_string(summary.digest));
+  message.set_threads(threads);
+  message.set_deferred(summary.deferred);
+  message.set_rounds(summary.rounds);
+  message.set_leaves(static_cast<std::uint32_t>(summary.leaves.size()));
+  return message;
+}
+
+void add_quadtree(const Summary& summary, v1::Summary& message) {
+  if (summary.leaves.size() > kMaxLeafBoxes) return;
+  auto& boxes = *message.mutable_leaf_boxes();
+  boxes.Reserve(4 * static_cast<int>(summary.leaves.size()));
+  for (const Box& box : summary.leaves)
+    for (const double side : {box.min_x, box.min_y, box.max_x, box.max_y})
+      boxes.AddAlreadyReserved(side);
+}
+
+v1::Stage to_wire(Stage stage) {
+  switch (stage) {
+    case Stage::kQueued:
+      return v1::STAGE_QUEUED;
+    case Stage::kTriangulate:
+      return v1::STAGE_TRIANGULATE;
+    case Stage::kSize:
+      return v1::STAGE_SIZE;
+    case Stage::kRefine:
+      return v1::STAGE_REFINE;
+    case Stage::kDone:
+      return v1::STAGE_EMIT;
+  }
+  return v1::STAGE_UNSPECIFIED;
+}
+
+void tell_progress(const Progress& now, double elapsed_seconds, v1::Progress& told) {
+  told.set_stage(std::max(told.stage(), to_wire(now.stage)));
+  told.set_triangles(std::max<std::uint64_t>(told.triangles(), now.triangles));
+  told.set_expected_triangles(now.expected_triangles);
+  told.set_fraction(std::max(told.fraction(), now.fraction));
+  told.set_elapsed_seconds(elapsed_seconds);
+}
+
+grpc::ByteBuffer serialize(const google::protobuf::MessageLite& message) {
+  grpc::ByteBuffer bytes;
+  bool own_buffer = false;
+  const grpc::Status status =
+      grpc::GenericSerialize<grpc::ProtoBufferWriter, google::protobuf::MessageLite>(
+          message, &bytes, &own_buffer);
+  // Only a message of more than 2 GiB does not serialize, and none here comes near.
+  if (!status.ok()) throw std::length_error(status.error_message());
+  return bytes;
+}
+
+}  // namespace weft::server

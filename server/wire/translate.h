@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Between the wire and the engine: the only place that knows both.
+//
+// What an array's length tells is checked here, and the engine judges the options and the size,
+// both before a job is admitted; what needs the coordinates or a raster's values (a
+// NaN, an index, a seed) the engine finds when it works. Errors carry the path of the field as the
+// wire spells it.
+#pragma once
+
+#include <grpcpp/support/byte_buffer.h>
+
+#include <optional>
+
+#include "engine/engine.h"
+#include "server/wire/errors.h"
+#include "server/wire/limits.h"
+#include "weft/v1/mesh_service.pb.h"
+
+namespace weft::server {
+
+// Leaves of a quadtree whose boxes are sent, at most: 2 MiB, half of what a client of gRPC takes in
+// a message by default.
+inline constexpr std::size_t kMaxLeafBoxes = 65'536;
+
+// Threads of `available` that a job takes at most, of which `wanted` are asked for; 0 is all.
+std::uint32_t to_threads(std::uint32_t wanted, int available);
+
+// Refuses arrays of impossible lengths and what only the wire has (enums, the grid of a raster, the
+// budget), in constant time but for the regions.
+std::optional<Failure> check_shape(const v1::GenerateMeshRequest& request);
+
+// Refuses what the engine would refuse before it looks at coordinates: options outside their
+// ranges, an expression with a fault, values of a raster that are no sizes. REQUIRES:
+// check_shape(request) and check_limits(request, limits) found nothing.
+std::optional<Failure> check_values(const v1::GenerateMeshRequest& request);
+
+// REQUIRES: check_shape(request) and check_limits(request, limits) found nothing.
+MeshRequest to_engine(const v1::GenerateMeshRequest& request);
+Budget to_budget(const v1::Budget& budget, const Limits& limits);
+double to_seconds(const v1::Budget& budget, const Limits& limits);
+
+// Writes over what `message` holds; its arrays keep their memory for the next chunk.
+void to_wire(const Chunk& chunk, v1::Chunk& message);
+// The summary of a job on so many threads, without the boxes of the quadtree's leaves.
+v1::Summary to_wire(const Summary& summary, std::uint32_t threads);
+// Adds those boxes, unless there are more than kMaxLeafBoxes.
+void add_quadtree(const Summary& summary, v1::Summary& message);
+v1::Stage to_wire(Stage stage);
+// Writes what is new over what was told before: nothing goes back.
+void tell_progress(const Progress& now, double elapsed_seconds, v1::Progress& told);
+
+// The bytes of a message, as one gRPC buffer.
+grpc::ByteBuffer serialize(const google::protobuf::MessageLite& message);
+
+}  // namespace weft::server

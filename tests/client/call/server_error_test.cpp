@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/call/server_error.h"
+
+#include <gtest/gtest.h>
+
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+
+namespace weft::client {
+namespace {
+
+grpc::Status refusal(const std::string& field, const std::string& message) {
+  google::rpc::Status details;
+  google::rpc::ErrorInfo info;
+  info.set_reason("ZERO_LENGTH_SEGMENT");
+  details.add_details()->PackFrom(info);
+  google::rpc::BadRequest bad;
+  bad.add_field_violations()->set_field(field);
+  details.add_details()->PackFrom(bad);
+  return {grpc::StatusCode::INVALID_ARGUMENT, message, details.SerializeAsString()};
+}
+
+Domain domain_with_places() {
+  Domain domain;
+  domain.points.resize(3);
+  domain.segments.resize(3);
+  domain.point_places.add(0, "coast.poly:", 2, "");
+  domain.segment_places.add(0, "coast.poly:", 6, "");
+  domain.segment_places.add(2, "coast.poly:", 10, "");
+  return domain;
+}
+
+TEST(ServerError, NamesReasonFieldAndPlaceInTheFile) {
+  const Domain domain = domain_with_places();
+  const Error error = error_of(refusal("domain.segments[2].b", "segment 2 joins point 1 to itself"),
+                               "unix:/s", &domain);
+  EXPECT_EQ(static_cast<int>(error.exit), 67);
+  EXPECT_EQ(error.message,
+            "the server unix:/s answers INVALID_ARGUMENT (ZERO_LENGTH_SEGMENT)\n"
+            "  field domain.segments[2].b, at coast.poly:10\n"
+            "  segment 2 joins point 1 to itself");
+}
+
+TEST(ServerError, KeepsACaretUnderItsColumn) {
+  const Error error =
+      error_of(refusal("size.expression", "unexpected ')'\nx + )\n    ^"), "a", nullptr);
+  EXPECT_TRUE(error.message.ends_with("\n  unexpected ')'\n  x + )\n      ^"));
+}
+
+TEST(ServerError, HintsAtTheFlagsOfAConnectionThatDidNotComeAbout) {
+  const auto message = [](grpc::StatusCode code, const std::string& why) {
+    return error_of(grpc::Status(code, "failed to connect to all addresses; last error: " + why),
+                    "a", nullptr)
+        .message;
+  };
+  const auto unavailable = grpc::StatusCode::UNAVAILABLE;
+  EXPECT_TRUE(message(unavailable, "Ssl handshake failed: SSL_ERROR_SSL: certificate verify failed")
+                  .ends_with("--tls-ca FILE names who has"));
+  EXPECT_TRUE(message(unavailable, "Peer name a is not in peer certificate")
+                  .ends_with("--tls-server-name NAME gives that name"));
+  EXPECT_TRUE(message(unavailable, "Ssl handshake failed: SSL_ERROR_SSL: wrong version number")
+                  .ends_with("leave out --tls and --tls-ca"));
+  EXPECT_TRUE(message(unavailable, "Socket closed").ends_with("give --tls or --tls-ca FILE"));
+  EXPECT_TRUE(message(unavailable, "Connection refused").ends_with("Connection refused"));
+  EXPECT_TRUE(message(grpc::StatusCode::INTERNAL, "Socket closed").ends_with("Socket closed"));
+}
+
+TEST(ServerError, SaysWhichFlagTakesAMeshThatMissesItsBounds) {
+  google::rpc::Status details;
+  google::rpc::ErrorInfo info;
+  info.set_reason("BOUNDS_NOT_MET");
+  details.add_details()->PackFrom(info);
+  const Error error = error_of(
+      {grpc::StatusCode::FAILED_PRECONDITION, "12 triangles miss", details.SerializeAsString()},
+      "a", nullptr);
+  EXPECT_EQ(static_cast<int>(error.exit), 73);
+  EXPECT_EQ(error.message,
+            "the server a answers FAILED_PRECONDITION (BOUNDS_NOT_MET)\n"
+            "  12 triangles miss\n"
+            "  --allow-unrefined takes such a mesh all the same");
+}
+
+TEST(ServerError, LetsNoControlCharactersReachTheTerminal) {
+  const Error error = error_of({grpc::StatusCode::UNKNOWN, "\x1b[2Jboo"}, "a", nullptr);
+  EXPECT_EQ(error.message, "the server a answers UNKNOWN\n  ?[2Jboo");
+}
+
+TEST(ServerError, LivesWithDetailsThatAreGarbage) {
+  const Error error =
+      error_of({grpc::StatusCode::UNAVAILABLE, "gone", "\xff\xff garbage"}, "a", nullptr);
+  EXPECT_EQ(static_cast<int>(error.exit), 78);
+}
+
+TEST(ServerError, LocatesNothingWhereTheFieldIsNotOfAList) {
+  const Domain domain = domain_with_places();
+  EXPECT_EQ(locate_field("domain.points[1].x", domain), "coast.poly:3");
+  EXPECT_EQ(locate_field("size.constant", domain), "");
+  EXPECT_EQ(locate_field("domain.points[", domain), "");
+  EXPECT_EQ(locate_field("domain.points[-1]", domain), "");
+  EXPECT_EQ(locate_field("domain.holes[0]", domain), "");
+}
+
+}  // namespace
+}  // namespace weft::client

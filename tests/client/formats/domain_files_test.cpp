@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// Domains from well-known text, shapefiles, tables of rings and meshes, and back to .poly.
+#include <gtest/gtest.h>
+
+#include "client/formats/domain_formats.h"
+#include "client/formats/domains/seeded.h"
+#include "client/formats/mesh_domain.h"
+#include "tests/client/support/mesh_files.h"
+#include "tests/client/support/sample_mesh.h"
+#include "tests/client/support/shapefile_writer.h"
+
+namespace weft::client {
+namespace {
+
+class DomainFile : public testing::Test {
+ protected:
+  Domain read(const std::string& name, const std::string& text) {
+    const auto domain = read_domain(folder_.write(name, text));
+    EXPECT_TRUE(domain) << domain.error().message;
+    return domain ? *domain : Domain{};
+  }
+  std::string refusal(const std::string& name, const std::string& text) {
+    const auto domain = read_domain(folder_.write(name, text));
+    return domain ? "it was read" : refusal_of(domain.error());
+  }
+  std::string refusal_of(const Error& error) {
+    EXPECT_EQ(error.exit, ExitCode::kUnreadableInput);
+    return error.message.substr(folder_.path().string().size() + 1);
+  }
+  static std::vector<std::int32_t> markers(const Domain& domain) {
+    std::vector<std::int32_t> out;
+    for (const auto& segment : domain.segments) out.push_back(segment.marker);
+    return out;
+  }
+  TempFolder folder_;
+};
+
+TEST_F(DomainFile, WktHoldsGeometriesOfEveryKind) {
+  const Domain domain = read("d.wkt",
+                             "SRID=4326;POLYGON Z((0 0 9, 8 0 9, 8 8 9, 0 8 9, 0 0 9),\n"
+                             " (1 1 0, 2 1 0, 2 2 0, 1 1 0));\n"
+                             "multipoint(3 3, (4 4)) LineString EMPTY\n"
+                             "GEOMETRYCOLLECTION(LINESTRINGM(5 5 1, 6 6 1), MULTIPOLYGON(EMPTY,"
+                             "((20 0, 21 0, 20 1, 20 0))), POINT EMPTY)");
+  EXPECT_EQ(domain.fill, Domain::Fill::kEvenOdd);
+  EXPECT_EQ(domain.points.size(), 4u + 3 + 2 + 2 + 3);
+  EXPECT_EQ(domain.segments.size(), 4u + 3 + 2 * 1 + 3);
+  EXPECT_TRUE(domain.point_places.locate(5).ends_with("d.wkt: line 2, geometry 0, ring 1[1]"))
+      << domain.point_places.locate(5);
+}
+
+TEST_F(DomainFile, WktTellsWhereItIsWrong) {
+  EXPECT_EQ(refusal("d.wkt", "POLYGON((0 0, 1 0,\n  1 x, 0 0))"),
+            "d.wkt:2:5: expected a finite number, found 'x'");
+  EXPECT_EQ(refusal("d.wkt", "POLYGON((0 0, 1 0, nan 1, 0 0))"),
+            "d.wkt:1:20: expected a finite number, found 'nan'");
+  EXPECT_EQ(refusal("d.wkt", "POLYGON((0 0, 1 0"),
+            "d.wkt:1:18: expected ')', found the end of the file");
+  EXPECT_EQ(refusal("d.wkt", "CIRCLE(0 0, 1 0)"),
+            "d.wkt:1:7: expected a geometry of well-known text, found 'CIRCLE'");
+  EXPECT_EQ(
+      refusal("d.wkt", "\nPOLYGON((0 0, 1 0, 1 1, 0 1))"),
+      "d.wkt: line 2, geometry 0, ring 0 is a ring that is not closed: it starts at (0, 0) and "
+      "ends at (0, 1)");
+  EXPECT_EQ(refusal("d.wkt", " \n"), "d.wkt: holds no geometry");
+  std::string deep;
+  for (int i = 0; i < 100; ++i) deep += "GEOMETRYCOLLECTION(";
+  EXPECT_NE(refusal("d.wkt", deep).find("is nested deeper than 64 levels"), std::string::npos);
+}
+
+TEST_F(DomainFile, CsvRingsEndAtBlankLinesAndAtANewNumber) {
+  const Domain plain = read("d.csv", "0,0\n4,0\n4,4\n0,4\n0,0\n\n# a hole\n1;1\n2;1\n2;2\n");
+  EXPECT_EQ(plain.points.size(), 7u);
+  EXPECT_EQ(plain.segments.size(), 7u);
+  EXPECT_EQ(plain.fill, Domain::Fill::kEvenOdd);
+  const Domain named = read(
+      "d.csv", "Ring,LAT,lon,marker\n1,0,10,5\n1,0,14,6\n1,4,14,7\n2,1,11,8\n2,1,12,8\n2,2,12,8\n");
+  EXPECT_EQ(named.points[1], (Point{14, 0}));
+  EXPECT_EQ(markers(named), (std::vector<std::int32_t>{5, 6, 7, 8, 8, 8}));
+}
+
+TEST_F(DomainFile, CsvRingsTellWhereTheyAreWrong) {
+  EXPECT_EQ(refusal("d.csv", "x,y\n0,0\n1,a\n"), "d.csv:3:3: expected the y coordinate, found 'a'");
+  EXPECT_EQ(refusal("d.csv", "x,y\n0,0\n1\n"),
+            "d.csv:3:1: the line ends where the y coordinate should follow");
+  EXPECT_EQ(refusal("d.csv", "x,z\n"),
+            "d.csv:1:3: the column is 'z', only x, y, ring and marker are read");
+  EXPECT_EQ(refusal("d.csv", "x,x\n"), "d.csv:1:3: the column 'x' comes twice");
+  EXPECT_EQ(refusal("d.csv", "x,marker\n"), "d.csv:1:3: the columns x and y must be there");
+  EXPECT_EQ(refusal("d.csv", "0,0,1\n"), "d.csv:1:3: the line goes on after its 2 columns");
+  EXPECT_EQ(refusal("d.csv", "0,0\n1,0\n\n0,0\n1,0\n1,1\n"),
+            "d.csv: the ring from line 1 is a ring with fewer than 3 distinct points");
+  EXPECT_EQ(refusal("d.csv", "\n"), "d.csv: holds no geometry");
+}
+
+TEST_F(DomainFile, ShapefilesBringTheirAttributes) {
+  write_sample_shapefile(folder_ / "d");
+  const auto domain = read_domain(folder_ / "d.shp");
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->fill, Domain::Fill::kEvenOdd);
+  EXPECT_EQ(markers(*domain), (std::vector<std::int32_t>{3, 3, 3, 3, 3, 3, 3, 4, 4, 4}));
+  ASSERT_EQ(domain->regions.size(), 1u);
+  EXPECT_EQ(domain->regions[0].id, 7);
+  EXPECT_EQ(domain->regions[0].max_area, 0.5);
+  EXPECT_TRUE(domain->point_places.locate(5).ends_with("d.shp: record 0, ring 1[1]"));
+  std::filesystem::remove(folder_ / "d.dbf");
+  EXPECT_EQ(markers(read_domain(folder_ / "d.shp").value()), std::vector<std::int32_t>(10, 0));
+}
+
+TEST_F(DomainFile, ShapefilesTellWhatIsMissing) {
+  write_sample_shapefile(folder_ / "d");
+  std::filesystem::remove(folder_ / "d.shx");
+  EXPECT_EQ(refusal_of(read_domain(folder_ / "d.shp").error()),
+            "d.shp: is not a shapefile, or it is damaged, or there is no .shx beside it");
+  EXPECT_EQ(refusal_of(read_domain(folder_ / "none.shp").error()),
+            "none.shp: No such file or directory");
+}
+
+TEST_F(DomainFile, AMeshIsADomainWithItsSegmentsAndRegions) {
+  ASSERT_TRUE(write_files(square_mesh(4).view(), folder_ / "m.msh"));
+  const auto domain = read_domain(folder_ / "m.msh");
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->fill, Domain::Fill::kEvenOdd);
+  EXPECT_EQ(domain->points.size(), 16u + 3);
+  EXPECT_EQ(domain->segments.size(), 16u + 2 * 4);  // between the regions twice
+  ASSERT_EQ(domain->regions.size(), 1u);
+  EXPECT_EQ(domain->regions[0].id, 7);
+  EXPECT_GT(domain->regions[0].at.x, 2);
+}
+
+TEST_F(DomainFile, AMeshOfLinesIsFilledBetweenThem) {
+  const Domain domain =
+      read("m.msh",
+           "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 "
+           "0\n$EndNodes\n$Elements\n3\n1 1 2 5 1 1 2\n2 1 2 6 1 2 3\n3 1 2 7 1 3 "
+           "1\n$EndElements\n");
+  EXPECT_EQ(domain.fill, Domain::Fill::kSeeds);
+  EXPECT_EQ(domain.points.size(), 3u);
+  EXPECT_EQ(markers(domain), (std::vector<std::int32_t>{5, 7, 6}));
+}
+
+TEST_F(DomainFile, HolesGetSeedsAndWhatIsSharedIsWrittenOnce) {
+  // A ring in a ring in a ring, a second polygon that shares a side with the first, a line.
+  const Domain even_odd = read("d.wkt",
+                               "POLYGON((0 0, 9 0, 9 9, 0 9, 0 0), (1 1, 8 1, 8 8, 1 8, 1 1))\n"
+                               "POLYGON((2 2, 7 2, 7 7, 2 7, 2 2), (3 3, 6 3, 6 6, 3 6, 3 3))\n"
+                               "POLYGON((9 0, 12 0, 12 9, 9 9, 9 0)) LINESTRING(9.5 1, 11 2)");
+  const auto domain = seeded(even_odd);
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->fill, Domain::Fill::kSeeds);
+  EXPECT_EQ(domain->points.size(), 16u + 2 + 2);
+  EXPECT_EQ(domain->segments.size(), 16u + 3 + 1);
+  ASSERT_EQ(domain->holes.size(), 2u);
+  const auto within = [](Point p, double low, double high) {
+    return p.x > low && p.x < high && p.y > low && p.y < high;
+  };
+  int moat = 0;
+  int pond = 0;
+  for (const Point hole : domain->holes) {
+    moat += within(hole, 1, 8) && !within(hole, 2, 7);
+    pond += within(hole, 3, 6);
+  }
+  EXPECT_EQ(moat, 1);
+  EXPECT_EQ(pond, 1);
+}
+
+TEST_F(DomainFile, HolesThatShareACornerGetASeedEach) {
+  const auto domain = seeded(read("d.wkt",
+                                  "POLYGON((0 0, 9 0, 9 9, 0 9, 0 0), (1 1, 4 1, 4 4, 1 4, 1 1),"
+                                  "(4 4, 7 4, 7 7, 4 7, 4 4))"));
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->points.size(), 11u);
+  EXPECT_EQ(domain->holes.size(), 2u);
+}
+
+}  // namespace
+}  // namespace weft::client

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/formats/domains/geojson.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/client/support/temp_folder.h"
+
+namespace weft::client {
+namespace {
+
+class GeoJson : public testing::Test {
+ protected:
+  Result<Domain> read(std::string_view text) {
+    return read_geojson(folder_.write("map.geojson", text));
+  }
+  // What is said of a text that must be refused, less the folder.
+  std::string refusal(std::string_view text) {
+    const auto domain = read(text);
+    if (domain) return "it was read";
+    EXPECT_EQ(domain.error().exit, ExitCode::kUnreadableInput);
+    return domain.error().message.substr(folder_.path().string().size() + 1);
+  }
+  TempFolder folder_;
+};
+
+TEST_F(GeoJson, ReadsAPolygonWithAHoleAsEvenOddRings) {
+  const auto domain = read(R"({"type": "Polygon", "coordinates": [
+      [[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]], [[1, 1], [1, 2], [2, 2, 99], [1, 1]]]})");
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->points.size(), 7u);
+  EXPECT_EQ(domain->points[6], (Point{2, 2}));
+  EXPECT_EQ(domain->segments,
+            (std::vector<Domain::Segment>{
+                {0, 1, 0}, {1, 2, 0}, {2, 3, 0}, {3, 0, 0}, {4, 5, 0}, {5, 6, 0}, {6, 4, 0}}));
+  EXPECT_EQ(domain->fill, Domain::Fill::kEvenOdd);
+  EXPECT_TRUE(domain->holes.empty());
+}
+
+TEST_F(GeoJson, MarksTheSegmentsOfAFeature) {
+  const auto domain = read(R"({"type": "FeatureCollection", "features": [
+      {"type": "Feature", "geometry": null, "properties": {"marker": 9}},
+      {"type": "Feature", "properties": {"marker": -5, "region": "Maine"}, "geometry":
+        {"type": "LineString", "coordinates": [[0, 0], [1, 0], [0, 1], [0, 0]]}},
+      {"type": "Feature", "properties": null, "geometry":
+        {"type": "MultiLineString", "coordinates": [[[5, 5], [6, 6]]]}}]})");
+  ASSERT_TRUE(domain) << domain.error().message;
+  ASSERT_EQ(domain->segments.size(), 4u);
+  EXPECT_EQ(domain->segments[0].marker, -5);
+  EXPECT_EQ(domain->segments[3].marker, 0);
+  EXPECT_EQ(domain->fill, Domain::Fill::kSeeds);
+  EXPECT_TRUE(domain->regions.empty());
+}
+
+TEST_F(GeoJson, SendsLinesBesidePolygonsTwiceSoThatParityStays) {
+  const auto domain = read(R"({"type": "GeometryCollection", "geometries": [
+      {"type": "LineString", "coordinates": [[1, 1], [3, 3]]},
+      {"type": "Polygon", "coordinates": [[[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]]]},
+      {"type": "MultiPoint", "coordinates": [[2, 1], [3, 1]]}]})");
+  ASSERT_TRUE(domain) << domain.error().message;
+  ASSERT_EQ(domain->segments.size(), 6u);
+  EXPECT_EQ(domain->segments[0], domain->segments[5]);
+  EXPECT_EQ(domain->fill, Domain::Fill::kEvenOdd);
+  EXPECT_EQ(domain->points.size(), 8u);
+}
+
+TEST_F(GeoJson, SeedsTheRegionOfEachPolygonInsideOfIt) {
+  // A U, so that neither the mean of its points nor the middle of its box is inside; a line passes
+  // through the middle of its base.
+  const auto domain = read(R"({"type": "FeatureCollection", "features": [
+      {"type": "Feature", "properties": {"region": 3, "max_area": 0.5}, "geometry": {"type":
+        "MultiPolygon", "coordinates": [
+          [[[0, 0], [9, 0], [9, 9], [8, 9], [8, 1], [1, 1], [1, 9], [0, 9], [0, 0]]],
+          [[[20, 0], [30, 0], [25, 8], [20, 0]]]]}},
+      {"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coordinates":
+        [[0.5, 5], [0.5, 0.5], [8.5, 0.5]]}}]})");
+  ASSERT_TRUE(domain) << domain.error().message;
+  ASSERT_EQ(domain->regions.size(), 2u);
+  const Point u = domain->regions[0].at;
+  EXPECT_TRUE((u.x > 0 && u.x < 1) || (u.x > 8 && u.x < 9) || (u.y > 0 && u.y < 1));
+  EXPECT_FALSE(u.x == 0.5 && u.y <= 5);
+  EXPECT_NE(u.y, 0.5);
+  EXPECT_GT(domain->regions[1].at.x, 20);
+  EXPECT_EQ(domain->regions[1].id, 3);
+  EXPECT_EQ(domain->regions[1].max_area, 0.5);
+}
+
+TEST_F(GeoJson, DropsPositionsThatRepeatAndKeepsTheirNumbers) {
+  const auto domain = read(R"({"type": "Polygon", "coordinates":
+      [[[0, 0], [4, 0], [4, 0], [4, 4], [0, 0], [0, 0]]]})");
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->points.size(), 3u);
+  EXPECT_TRUE(domain->point_places.locate(2).ends_with("map.geojson: coordinates[0][3]"));
+  EXPECT_TRUE(domain->segment_places.locate(2).ends_with("coordinates[0], edge from [3]"));
+}
+
+TEST_F(GeoJson, ReadsTheCoast) {
+  const auto domain = read_geojson(WEFT_MODELS "/us-east-coast.geojson");
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->points.size(), 9370u);
+}
+
+TEST_F(GeoJson, RefusesAnUnclosedRing) {
+  EXPECT_EQ(refusal(R"({"type": "FeatureCollection", "features": [
+      {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates":
+        [[[0, 0], [4, 0], [4, 4], [0, 4]]]}}]})"),
+            "map.geojson: features[0].geometry.coordinates[0] is a ring that is not closed: it "
+            "starts at (0, 0) and ends at (0, 4)");
+}
+
+TEST_F(GeoJson, RefusesARingThatCrossesItselfAndNamesTheEdges) {
+  EXPECT_EQ(refusal(R"({"type": "Polygon", "coordinates":
+      [[[0, 0], [4, 4], [4, 0], [0, 4], [0, 0]]]})"),
+            "map.geojson: coordinates[0] is a ring that crosses itself: edge 0 from (0, 0) to (4, "
+            "4) crosses edge 2 from (4, 0) to (0, 4)");
+}
+
+TEST_F(GeoJson, RefusesARingWithTooFewPositions) {
+  EXPECT_EQ(refusal(R"({"type": "Polygon", "coordinates": [[[0, 0], [4, 4], [0, 0]]]})"),
+            "map.geojson: coordinates[0] is a ring of 3 positions, it needs 4");
+  EXPECT_EQ(refusal(R"({"type": "Polygon", "coordinates": [[[0, 0], [4, 4], [4, 4], [0, 0]]]})"),
+            "map.geojson: coordinates[0] is a ring with fewer than 3 distinct points");
+}
+
+TEST_F(GeoJson, RefusesWrongTypes) {
+  EXPECT_EQ(refusal("[]"), "map.geojson: is not a GeoJSON object");
+  EXPECT_EQ(refusal("{}"), "map.geojson: has no string \"type\"");
+  EXPECT_EQ(refusal(R"({"type": "Topology"})"),
+            "map.geojson: has the type 'Topology', which is not GeoJSON's");
+  EXPECT_EQ(refusal(R"({"type": "Polygon"})"), "map.geojson: has no array \"coordinates\"");
+  EXPECT_EQ(refusal(R"({"type": "Polygon", "coordinates": [7]})"),
+            "map.geojson: coordinates[0] is not an array of positions");
+  EXPECT_EQ(refusal(R"({"type": "LineString", "coordinates": [[0, 0], ["a", 1]]})"),
+            "map.geojson: coordinates[1] is not a position [x, y]");
+  EXPECT_EQ(refusal(R"({"type": "LineString", "coordinates": [[0, 0], [0, 0]]})"),
+            "map.geojson: coordinates is a line with fewer than 2 distinct points");
+  EXPECT_EQ(refusal(R"({"type": "FeatureCollection", "features": []})"),
+            "map.geojson: holds no geometry");
+}
+
+TEST_F(GeoJson, RefusesPropertiesThatCannotBeMeant) {
+  const auto with = [this](const std::string& properties) {
+    return refusal(R"({"type": "Feature", "properties": )" + properties +
+                   R"(, "geometry": {"type": "Point", "coordinates": [0, 0]}})");
+  };
+  EXPECT_EQ(with(R"({"marker": 1.5})"),
+            "map.geojson: properties.marker is 1.5, not an integer of 32 bits");
+  EXPECT_EQ(with(R"({"region": 1e10})"),
+            "map.geojson: properties.region is 1e+10, not an integer of 32 bits");
+  EXPECT_EQ(with(R"({"max_area": 0})"), "map.geojson: properties.max_area is 0, not positive");
+}
+
+TEST_F(GeoJson, SaysWhereTheTextIsNotJson) {
+  EXPECT_TRUE(refusal("{\n  \"type\": oops}").starts_with("map.geojson:2:11: syntax error"))
+      << refusal("{\n  \"type\": oops}");
+  EXPECT_TRUE(refusal("").starts_with("map.geojson:1:1: syntax error"));
+}
+
+TEST_F(GeoJson, RefusesADepthBomb) {
+  EXPECT_EQ(refusal(std::string(1'000'000, '[')), "map.geojson:1:65: nested deeper than 64 levels");
+}
+
+TEST_F(GeoJson, BracketsInStringsAreNoDepth) {
+  const auto domain = read(R"({"type": "Point", "coordinates": [1, 2], "name": ")" +
+                           std::string(1000, '[') + R"(\"[["})");
+  EXPECT_TRUE(domain) << domain.error().message;
+}
+
+TEST_F(GeoJson, RefusesGiantNumbers) {
+  EXPECT_TRUE(refusal(R"({"type": "Point", "coordinates": [1e999, 2]})")
+                  .find("number overflow parsing '1e999'") != std::string::npos);
+  EXPECT_EQ(refusal(R"({"type": "Point", "coordinates": [1e200, 2]})"),
+            "map.geojson: coordinates is (1e+200, 2), magnitudes go up to 1e50");
+}
+
+}  // namespace
+}  // namespace weft::client

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files that were damaged on the way, or made to do damage: reading gives an error or a valid mesh,
+// and never crashes, hangs or takes all memory. The sanitizers watch.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <random>
+
+#include "client/formats/domain_formats.h"
+#include "client/formats/domains/seeded.h"
+#include "tests/client/support/mesh_files.h"
+#include "tests/client/support/sample_mesh.h"
+#include "tests/client/support/shapefile_writer.h"
+
+namespace weft::client {
+namespace {
+
+// Damages the file in a few hundred ways and has each read.
+void damage(const std::filesystem::path& path, const std::function<bool()>& read) {
+  const std::string whole = contents_of(path);
+  const auto write = [&path](const std::string& text) {
+    std::filesystem::remove(path);  // some file systems flush what is truncated
+    std::ofstream(path, std::ios::binary) << text;
+  };
+  std::mt19937 random(99);
+  const auto below = [&random](std::size_t n) {
+    return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
+  };
+  constexpr std::string_view kNasty[] = {"-1",    "4294967296",
+                                         "nan",   "99999999999999999999",
+                                         "1e999", "\"",
+                                         "[",     "<",
+                                         "$",     "\xff\xff\xff\xff\xff\xff\xff\x7f"};
+  int refused = 0;
+  for (int round = 0; round < 400; ++round) {
+    std::string text = whole;
+    switch (round % 4) {
+      case 0:
+        text.resize(below(text.size()));
+        break;
+      case 1:
+        for (int k = 0; k < 4; ++k) text[below(text.size())] = static_cast<char>(below(256));
+        break;
+      case 2: {
+        const std::string_view nasty = kNasty[below(std::size(kNasty))];
+        text.replace(below(text.size()), nasty.size(), nasty);
+        break;
+      }
+      case 3:
+        text.erase(below(text.size()), below(40));
+        break;
+    }
+    write(text);
+    refused += !read();
+  }
+  EXPECT_GT(refused, 50);
+  write(whole);
+  EXPECT_TRUE(read());
+}
+
+class HostileMesh : public testing::TestWithParam<const char*> {};
+
+TEST_P(HostileMesh, IsRefusedOrRead) {
+  TempFolder folder;
+  const Mesh mesh = square_mesh(3);
+  for (const char* name : {"m.node", "m.vtu", "m.msh", "m.14", "m.su2", "m.npz", "m.obj", "m.off"})
+    ASSERT_TRUE(write_files(mesh.view(), folder / name));
+  const std::filesystem::path path = folder / GetParam();
+  damage(path, [&path] {
+    const auto read = read_mesh(path.extension() == ".poly"
+                                    ? std::filesystem::path(path).replace_extension(".node")
+                                    : path);
+    if (!read) return false;
+    for (const std::uint32_t v : read->triangles) EXPECT_LT(v, read->coordinates.size() / 2);
+    EXPECT_EQ(read->regions.size(), read->triangles.size() / 3);
+    EXPECT_EQ(read->edge_markers.size(), read->edges.size() / 2);
+    return true;
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, HostileMesh,
+                         testing::Values("m.node", "m.ele", "m.poly", "m.vtu", "m.msh", "m.14",
+                                         "m.su2", "m.npz", "m.obj", "m.off"));
+
+TEST(HostileMesh, OfGmsh22IsRefusedOrRead) {
+  TempFolder folder;
+  const auto path = folder / "m.msh";
+  std::vector<OutputFile> files;
+  files.push_back(OutputFile::create(path, {}).value());
+  write_mesh(*mesh_format(path), square_mesh(3).view(), files, {.msh_version = MshVersion::k22});
+  ASSERT_TRUE(commit(files));
+  damage(path, [&path] { return read_mesh(path).has_value(); });
+}
+
+TEST(HostileDomain, PolyIsRefusedOrRead) {
+  TempFolder folder;
+  const auto path =
+      folder.write("d.poly",
+                   "3 2 1 1\n1 0 0 1 1\n2 1 0 1 1\n3 0 1 1 1\n3 1\n1 1 2 5\n2 2 3 6\n3 3 1 7\n"
+                   "1\n1 0.1 0.1\n1\n1 0.2 0.2 3 0.5\n");
+  damage(path, [&path] { return read_domain(path).has_value(); });
+}
+
+TEST(HostileDomain, GeoJsonIsRefusedOrRead) {
+  TempFolder folder;
+  const auto path =
+      folder.write("d.geojson", R"({"type": "FeatureCollection", "features": [{"type": "Feature",
+      "properties": {"marker": 3, "region": 4, "max_area": 0.5}, "geometry": {"type":
+      "MultiPolygon", "coordinates": [[[[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]],
+      [[1, 1], [2, 1], [2, 2], [1, 1]]]]}}, {"type": "Feature", "properties": null, "geometry":
+      {"type": "LineString", "coordinates": [[0.5, 0.5], [3.5, 0.5]]}}]})");
+  damage(path, [&path] { return read_domain(path).has_value(); });
+}
+
+TEST(HostileDomain, WktIsRefusedOrRead) {
+  TempFolder folder;
+  const auto path = folder.write(
+      "d.wkt",
+      "MULTIPOLYGON(((0 0, 4 0, 4 4, 0 4, 0 0), (1 1, 2 1, 2 2, 1 1)), ((9 0, 12 0, 9 1, 9 0)));\n"
+      "GEOMETRYCOLLECTION(LINESTRING(0.5 0.5, 3.5 0.5), POINT Z(3 3 3))\n");
+  damage(path, [&path] { return read_domain(path).has_value(); });
+}
+
+TEST(HostileDomain, CsvIsRefusedOrRead) {
+  TempFolder folder;
+  const auto path = folder.write(
+      "d.csv", "ring,x,y,marker\n1,0,0,1\n1,4,0,2\n1,4,4,3\n2,1,1,5\n2,2,1,5\n2,2,2,5\n");
+  damage(path, [&path] { return read_domain(path).has_value(); });
+}
+
+TEST(HostileDomain, ShapefileIsRefusedOrRead) {
+  TempFolder folder;
+  write_sample_shapefile(folder / "d");
+  for (const char* part : {"d.shp", "d.shx", "d.dbf"})
+    damage(folder / part, [&folder] { return read_domain(folder / "d.shp").has_value(); });
+}
+
+TEST(HostileDomain, MeshIsRefusedOrRead) {
+  TempFolder folder;
+  const auto path = folder / "m.14";
+  ASSERT_TRUE(write_files(square_mesh(3).view(), path));
+  damage(path, [&path] {
+    const auto domain = read_domain(path);
+    return domain && seeded(*domain).has_value();
+  });
+}
+
+}  // namespace
+}  // namespace weft::client

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/report/marker_warnings.h"
+
+#include <gtest/gtest.h>
+
+namespace weft::client {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+Domain domain_with(const std::vector<std::int32_t>& markers) {
+  Domain domain;
+  for (const std::int32_t marker : markers) domain.segments.push_back({0, 1, marker});
+  return domain;
+}
+
+TEST(MarkerWarnings, FindEveryMarkerOfTheMesh) {
+  Mesh mesh;
+  mesh.edge_markers = {3, 3, 1, 3, 0};
+  EXPECT_EQ(markers_of(mesh.view()), (std::set<std::int32_t>{0, 1, 3}));
+}
+
+TEST(MarkerWarnings, NameOpenBoundariesThatMatchNothing) {
+  EXPECT_EQ(open_boundary_warnings({1, 2}, std::vector<std::int32_t>{1}), Texts());
+  EXPECT_EQ(open_boundary_warnings({1, 2}, std::vector<std::int32_t>{1, 7}),
+            Texts{"no edge of the mesh carries marker 7 of --open-boundary"});
+}
+
+TEST(MarkerWarnings, NameMarkersThatOtherSegmentsHide) {
+  EXPECT_EQ(hidden_marker_warnings({0, 1, 2}, domain_with({1, 2, 0})), Texts());
+  EXPECT_EQ(hidden_marker_warnings({1}, domain_with({0, 1, 5, 5})),
+            Texts{"no edge of the mesh carries marker 5 of the input: other segments lie on "
+                  "theirs, or they are not part of what is meshed"});
+  const Texts many = hidden_marker_warnings({}, domain_with({1, 2, 3, 4, 5, 6, 7}));
+  ASSERT_EQ(many.size(), 1);
+  EXPECT_TRUE(many[0].starts_with("no edge of the mesh carries markers 1, 2, 3, 4, 5 and 2 more "))
+      << many[0];
+}
+
+}  // namespace
+}  // namespace weft::client

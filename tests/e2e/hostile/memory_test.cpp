@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Work that is far heavier than it looks: it takes no memory beyond --memory, and none of the time
+// of those whose work is light.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/e2e/fleet.h"
+
+namespace weft::e2e {
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+
+v1::GenerateMeshRequest square() {
+  v1::GenerateMeshRequest request;
+  request.set_no_cache(true);
+  for (const double x : {0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0})
+    request.mutable_domain()->add_points(x);
+  for (const std::uint32_t i : {0u, 1u, 1u, 2u, 2u, 3u, 3u, 0u})
+    request.mutable_domain()->add_segments(i);
+  return request;
+}
+
+// A region that is finer than anything else tells of: 170 M triangles.
+v1::GenerateMeshRequest region_of_crumbs() {
+  v1::GenerateMeshRequest request = square();
+  v1::Region& region = *request.mutable_domain()->add_regions();
+  region.set_x(0.5);
+  region.set_y(0.5);
+  region.set_max_area(1e-8);
+  return request;
+}
+
+// A spike between the middles of the picture's cells: 20 M triangles on a thousandth of the square.
+v1::GenerateMeshRequest spike() {
+  v1::GenerateMeshRequest request = square();
+  request.mutable_size()->set_expression("hypot(x-0.5,y-0.5)<0.0065?4e-12:0.01");
+  return request;
+}
+
+grpc::Status call(const std::string& address, const v1::GenerateMeshRequest& request) {
+  const auto stub = v1::MeshService::NewStub(connect(address));
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + std::chrono::minutes(2));
+  const auto reader = stub->GenerateMesh(&context, request);
+  v1::GenerateMeshResponse message;
+  while (reader->Read(&message)) continue;
+  return reader->Finish();
+}
+
+// What callers of that do who come six at a time, and what becomes of others meanwhile.
+void expect_bounds_against(const v1::GenerateMeshRequest& hostile) {
+  const Server server({"--memory", "300MiB", "--cache-bytes", "0"});
+  std::vector<std::thread> callers;
+  std::vector<grpc::Status> statuses(6);
+  std::atomic<int> at_work{0};
+  for (grpc::Status& status : statuses) {
+    ++at_work;
+    callers.emplace_back([&] {
+      status = call(server.address(), hostile);
+      --at_work;
+    });
+  }
+  v1::GenerateMeshRequest light = square();
+  light.mutable_size()->set_constant(1e-3);
+  std::vector<double> seconds;
+  while (at_work > 0) {
+    const auto begun = std::chrono::steady_clock::now();
+    const grpc::Status status = call(server.address(), light);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    seconds.push_back(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
+  }
+  for (std::thread& caller : callers) caller.join();
+  for (const grpc::Status& status : statuses)
+    EXPECT_EQ(status.error_code(), grpc::RESOURCE_EXHAUSTED) << status.error_message();
+  std::sort(seconds.begin(), seconds.end());
+  EXPECT_LT(seconds[seconds.size() / 2], 1.0) << seconds.size() << " light calls";
+  EXPECT_LT(seconds.back(), 5.0) << seconds.size() << " light calls";
+  if (kMemoryTells) {
+    EXPECT_LT(server.peak_bytes(), (300 + 200) * kMiB);  // gRPC, chunks on their way, kept pages
+  }
+}
+
+TEST(HostileWork, OfARegionOfCrumbsStaysWithinTheMemory) {
+  expect_bounds_against(region_of_crumbs());
+}
+
+TEST(HostileWork, OfASpikeBetweenTheSamplesStaysWithinTheMemory) {
+  expect_bounds_against(spike());
+}
+
+}  // namespace
+}  // namespace weft::e2e

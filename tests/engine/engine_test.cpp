@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: Apache-2.0
+// The engine's promises other than the mesh's quality: errors, budgets, stopping, determinism.
+#include "engine/engine.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "tests/engine/domain/shapes.h"
+#include "tests/support/collected_mesh.h"
+#include "tests/support/poly.h"
+
+namespace weft {
+namespace {
+
+Result<Summary> mesh_of(const MeshRequest& request, const Budget& budget = {}) {
+  CollectedMesh mesh;
+  ExecutionContext context(budget);
+  auto summary = generate_mesh(request, mesh, context);
+  if (summary) {
+    EXPECT_EQ(verdict(request, mesh, *summary), "");
+  }
+  return summary;
+}
+
+Error error_of(const MeshRequest& request, const Budget& budget = {}) {
+  CollectedMesh mesh;
+  ExecutionContext context(budget);
+  const auto summary = generate_mesh(request, mesh, context);
+  EXPECT_FALSE(summary);
+  // What refinement runs into may show when chunks have left already.
+  if (!summary && summary.error().code != ErrorCode::kBudgetExceeded) {
+    EXPECT_EQ(mesh.chunks, 0u);
+  }
+  return summary ? Error{} : summary.error();
+}
+
+TEST(Options, AboveTheLargestMinimumAngleAreRefusedWithTheLimit) {
+  const Error error = error_of({.pslg = square(), .min_angle_deg = 61});
+  EXPECT_EQ(error.code, ErrorCode::kBadOption);
+  EXPECT_EQ(error.field, "quality.min_angle_deg");
+  EXPECT_NE(error.message.find("61"), std::string::npos) << error.message;
+  EXPECT_NE(error.message.find("36"), std::string::npos) << error.message;
+}
+
+TEST(Options, OfTooManySweepsAreRefusedWithTheLimit) {
+  const Error error = error_of({.pslg = square(), .sweeps = 17});
+  EXPECT_EQ(error.code, ErrorCode::kBadOption);
+  EXPECT_EQ(error.field, "quality.optimise");
+  EXPECT_NE(error.message.find("17"), std::string::npos) << error.message;
+  EXPECT_NE(error.message.find("16"), std::string::npos) << error.message;
+}
+
+TEST(Options, OfANegativeShortestEdgeAreRefused) {
+  EXPECT_EQ(error_of({.pslg = square(), .min_edge = -1}).field, "quality.min_edge");
+}
+
+TEST(Range, OfCoordinatesIsKeptAtBothEnds) {
+  EXPECT_EQ(error_of({.pslg = square(1e60)}).code, ErrorCode::kBadCoordinate);
+  EXPECT_EQ(error_of({.pslg = square(1e-60)}).code, ErrorCode::kBadCoordinate);
+  EXPECT_TRUE(mesh_of({.pslg = square(1e49), .size = {.constant = 1e95}}));
+  EXPECT_TRUE(mesh_of({.pslg = square(1e-39), .size = {.constant = 1e-81}}));
+}
+
+TEST(Size, OfZeroIsRefused) {
+  const Error error = error_of({.pslg = square(), .size = {.constant = 0}});
+  EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
+  EXPECT_EQ(error.field, "size.constant");
+}
+
+TEST(Size, ThatIsAConstantExpressionBelowZeroIsRefused) {
+  const Error error = error_of({.pslg = square(), .size = {.expression = "1-2"}});
+  EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
+  EXPECT_NE(error.message.find("-1"), std::string::npos) << error.message;
+}
+
+TEST(Options, AreJudgedAsTheRunJudgesThem) {
+  for (const MeshRequest& request : {MeshRequest{.pslg = square(), .size = {.constant = -1}},
+                                     MeshRequest{.pslg = square(), .size = {.expression = "1-2"}},
+                                     MeshRequest{.pslg = square(), .size = {.expression = "1+"}},
+                                     MeshRequest{.pslg = square(), .min_angle_deg = 61},
+                                     MeshRequest{.pslg = square(), .min_edge = -1},
+                                     MeshRequest{.pslg = square(), .sweeps = 17}}) {
+    const auto judged = check_options(request);
+    ASSERT_TRUE(judged);
+    const Error met = error_of(request);
+    EXPECT_EQ(judged->code, met.code) << judged->message;
+    EXPECT_EQ(judged->field, met.field);
+    EXPECT_EQ(judged->message, met.message);
+  }
+  EXPECT_FALSE(check_options({.pslg = square(), .size = {.expression = "1+x"}}));
+}
+
+TEST(Size, ThatDividesByZeroNamesThePoint) {
+  const Error error = error_of({.pslg = square(), .size = {.expression = "1/(x-x)"}});
+  EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
+  EXPECT_NE(error.message.find("the size at ("), std::string::npos) << error.message;
+}
+
+TEST(Size, ThatIsNegativeInAPartOfTheDomainIsFoundThere) {
+  const Error error =
+      error_of({.pslg = square(10), .size = {.expression = "(x-9)^2+(y-9)^2 < 0.01 ? -1 : 1"}});
+  EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
+}
+
+TEST(Size, ThatIsInfiniteInAPartOfTheDomainNamesThePoint) {
+  MeshRequest request{.pslg = square()};
+  add_box(request.pslg, {8, 0}, {9, 1});  // no triangle straddles the step
+  request.size.expression = "x > 5 ? 1/0 : 0.01";
+  const Error error = error_of(request);
+  EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
+  EXPECT_NE(error.message.find("is inf"), std::string::npos) << error.message;
+}
+
+TEST(Size, ThatNeedsATrillionTrianglesIsRefusedByEstimate) {
+  const Error error =
+      error_of({.pslg = square(), .size = {.constant = 1e-12}}, {.triangle_limit = 1'000'000});
+  EXPECT_EQ(error.code, ErrorCode::kLimitExceeded);
+  EXPECT_NE(error.message.find("1000000"), std::string::npos) << error.message;
+  const Error graded = error_of({.pslg = square(), .size = {.expression = "1e-12*(1+x)"}},
+                                {.triangle_limit = 1'000'000});
+  EXPECT_EQ(graded.code, ErrorCode::kLimitExceeded);
+}
+
+TEST(Size, OfARegionThatNeedsATrillionTrianglesIsRefusedByEstimate) {
+  MeshRequest request{.pslg = square()};
+  request.pslg.regions.push_back({{0.5, 0.5}, 1, 1e-12});
+  EXPECT_EQ(error_of(request, {.triangle_limit = 1'000'000}).code, ErrorCode::kLimitExceeded);
+}
+
+TEST(Size, ThatIsNowherePositiveIsABadSizeAndNoLimit) {
+  const Error error =
+      error_of({.pslg = square(), .size = {.expression = "log(x)"}}, {.triangle_limit = 1'000'000});
+  EXPECT_EQ(error.code, ErrorCode::kBadSizeValue) << error.message;
+}
+
+TEST(Size, WithASpotFinerThanOneHugeTriangleIsFollowed) {
+  // The box has two triangles; no centroid of theirs is near the disc.
+  MeshRequest request;
+  add_box(request.pslg, {0, 0}, {65, 40});
+  request.size.expression = "(x-50)^2+(y-11)^2 < 1 ? 1e-3 : 1e6";
+  const auto summary = mesh_of(request);
+  ASSERT_TRUE(summary);
+  // The disc alone needs pi / 1e-3 triangles.
+  EXPECT_GT(summary->triangles, 3141u);
+}
+
+// Over the box [0, 65] x [0, 40]: 1, but finer towards the nodes around (50, 11).
+Raster raster_with_a_spot() {
+  Raster raster{{0, 0}, 1, 1, 66, 41, std::vector<double>(66 * 41, 1)};
+  for (const std::size_t j : {11, 12})
+    for (const std::size_t i : {50, 51}) raster.values[j * 66 + i] = 1e-3;
+  return raster;
+}
+
+TEST(Size, OfARasterIsKeptAndFollowed) {
+  MeshRequest request;
+  add_box(request.pslg, {0, 0}, {65, 40});
+  request.size.raster = raster_with_a_spot();
+  const auto summary = mesh_of(request);
+  ASSERT_TRUE(summary);
+  // The spot alone is a square of area 1.
+  EXPECT_GT(summary->triangles, 1'000u + 2'600u);
+  EXPECT_LT(summary->triangles, 15'000u);
+}
+
+TEST(Size, OfARasterThatEndsInsideTheDomainGoesOnAsItEnds) {
+  MeshRequest request;
+  add_box(request.pslg, {-10, -10}, {10, 10});
+  request.size.raster = Raster{{0, 0}, 1, 1, 2, 1, {0.01, 1}};
+  const auto summary = mesh_of(request);
+  ASSERT_TRUE(summary);
+  EXPECT_GT(summary->triangles, 20'000u);  // the left half
+}
+
+TEST(Size, OfARasterBesideAConstantIsRefused) {
+  MeshRequest request{.pslg = square(), .size = {.constant = 1}};
+  request.size.raster = raster_with_a_spot();
+  EXPECT_EQ(error_of(request).field, "size");
+}
+
+TEST(Size, OfARasterWithAValueThatIsNoneNamesIt) {
+  MeshRequest request{.pslg = square()};
+  request.size.raster = raster_with_a_spot();
+  request.size.raster->values[17] = 0;
+  const Error error = error_of(request);
+  EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
+  EXPECT_EQ(error.field, "size.raster.values[17]");
+}
+
+TEST(Size, ThatReachesZeroInAHoleDoesNoHarm) {
+  MeshRequest request;
+  add_box(request.pslg, {-4, -4}, {4, 4});
+  add_box(request.pslg, {-1, -1}, {1, 1});
+  request.pslg.holes.push_back({0, 0});
+  request.size.expression = "0.1*(x^2+y^2)^2";
+  const auto summary = mesh_of(request);
+  ASSERT_TRUE(summary);
+  EXPECT_LT(summary->triangles, 2'000u);
+}
+
+TEST(Size, OfRegionsIsKeptBesideTheField) {
+  MeshRequest request;
+  add_box(request.pslg, {0, 0}, {2, 1});
+  add_segment(request.pslg, {1, 0}, {1, 1}, 7);
+  request.pslg.regions = {{{0.5, 0.5}, 3, 0.001}, {{1.5, 0.5}, 4, {}}};
+  request.size.constant = 0.01;
+  const auto summary = mesh_of(request);
+  ASSERT_TRUE(summary);
+  EXPECT_GT(summary->triangles, 1'000u + 100u);
+}
+
+TEST(Budget, OfTrianglesGivesTheMeshThatThereIs) {
+  const auto summary =
+      mesh_of({.pslg = square(), .size = {.constant = 1e-12}}, {.max_triangles = 1000});
+  ASSERT_TRUE(summary) << summary.error().message;
+  EXPECT_LE(summary->triangles, 1000u);
+  EXPECT_GT(summary->triangles, 900u);
+  EXPECT_GT(summary->unrefined.budget, 0u);
+}
+
+TEST(Budget, ThatAMeshFitsExactlyIsNoError) {
+  // The square has two triangles and needs no more.
+  EXPECT_TRUE(mesh_of({.pslg = square()}, {.triangle_limit = 2}));
+  const auto summary = mesh_of({.pslg = square(), .size = {.constant = 0.01}});
+  ASSERT_TRUE(summary);
+  EXPECT_TRUE(mesh_of({.pslg = square(), .size = {.constant = 0.01}},
+                      {.triangle_limit = summary->triangles + 1}));
+}
+
+TEST(Budget, OfTrianglesMayBeTheLimitItself) {
+  const auto summary = mesh_of({.pslg = square(), .size = {.constant = 0.01}},
+                               {.max_triangles = 100, .triangle_limit = 100});
+  ASSERT_TRUE(summary);
+  EXPECT_GT(summary->unrefined.budget, 0u);
+}
+
+TEST(Budget, OfTrianglesThatIsNotReachedChangesNothing) {
+  const MeshRequest request{.pslg = square(), .size = {.constant = 1e-4}, .leaf_triangles = 500};
+  const auto uncapped = mesh_of(request);
+  ASSERT_TRUE(uncapped);
+  const auto capped = mesh_of(request, {.max_triangles = uncapped->triangles});
+  ASSERT_TRUE(capped);
+  EXPECT_EQ(capped->digest, uncapped->digest);
+  const auto cut_off = mesh_of(request, {.max_triangles = uncapped->triangles - 1});
+  ASSERT_TRUE(cut_off);
+  EXPECT_LT(cut_off->triangles, uncapped->triangles);
+}
+
+TEST(Budget, OfTheShortestEdgeFarAboveTheSizeMakesASmallMesh) {
+  const MeshRequest request{.pslg = square(), .size = {.constant = 5e-9}, .min_edge = 0.01};
+  const auto summary = mesh_of(request);
+  ASSERT_TRUE(summary);
+  EXPECT_LT(summary->triangles, 40'000u);
+  EXPECT_LT(summary->leaves.size(), 64u);
+  EXPECT_GT(summary->unrefined.edge_floor, 0u);
+}
+
+TEST(Budget, OfNumbersEndsAMeshThatCannotStream) {
+  MeshRequest request{.pslg = square(), .size = {.constant = 5e-10}, .min_angle_deg = 31};
+  const Error error = error_of(request, {});
+  EXPECT_EQ(error.code, ErrorCode::kLimitExceeded);
+  EXPECT_EQ(error.field, "size");
+  EXPECT_NE(error.message.find("at most 1073741823"), std::string::npos) << error.message;
+}
+
+TEST(Budget, OfBytesIsNamedWhenItRunsOut) {
+  const Error error =
+      error_of({.pslg = square(), .size = {.constant = 1e-6}}, {.max_bytes = 4 << 20});
+  EXPECT_EQ(error.code, ErrorCode::kBudgetExceeded);
+  EXPECT_NE(error.message.find("4194304"), std::string::npos) << error.message;
+}
+
+TEST(Budget, OfTheShortestEdgeIsKeptAndCounted) {
+  MeshRequest request{.pslg = square(), .size = {.constant = 1e-4}, .min_edge = 0.1};
+  CollectedMesh mesh;
+  ExecutionContext context;
+  const auto summary = generate_mesh(request, mesh, context);
+  ASSERT_TRUE(summary);
+  EXPECT_EQ(verdict(request, mesh, *summary), "");
+  EXPECT_GT(summary->unrefined.edge_floor, 0u);
+  for (const auto& t : mesh.mesh.triangles) {
+    for (int i = 0; i < 3; ++i) {
+      const check::Vec2 a = mesh.mesh.vertices[t[i]];
+      const check::Vec2 b = mesh.mesh.vertices[t[(i + 1) % 3]];
+      EXPECT_GE((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y), 0.1 * 0.1);
+    }
+  }
+}
+
+TEST(Stopping, ByTheDeadlineEndsTheJobWithinFiftyMilliseconds) {
+  CollectedMesh mesh;
+  ExecutionContext context;
+  context.set_deadline(ExecutionContext::Clock::now() + std::chrono::milliseconds(30));
+  const auto start = ExecutionContext::Clock::now();
+  const auto summary = generate_mesh({.pslg = square(), .size = {.constant = 1e-8}}, mesh, context);
+  const auto took = ExecutionContext::Clock::now() - start;
+  ASSERT_FALSE(summary);
+  EXPECT_EQ(summary.error().code, ErrorCode::kDeadlineExceeded);
+  // Generous: the machine that runs the tests may be busy.
+  EXPECT_LT(took, std::chrono::milliseconds(30 + 500));
+}
+
+TEST(Stopping, ByCancellationWinsOverTheDeadline) {
+  CollectedMesh mesh;
+  ExecutionContext context;
+  context.set_deadline(ExecutionContext::Clock::now());
+  context.cancel();
+  const auto summary = generate_mesh({.pslg = square()}, mesh, context);
+  ASSERT_FALSE(summary);
+  EXPECT_EQ(summary.error().code, ErrorCode::kCancelled);
+}
+
+TEST(Stopping, FromAnotherThreadReachesEachStage) {
+  for (const Stage stage : {Stage::kTriangulate, Stage::kRefine}) {
+    CollectedMesh mesh;
+    ExecutionContext context;
+    std::thread canceller([&] {
+      while (context.progress().stage < stage) std::this_thread::yield();
+      context.cancel();
+    });
+    const auto summary =
+        generate_mesh({.pslg = square(), .size = {.constant = 1e-8}}, mesh, context);
+    canceller.join();
+    ASSERT_FALSE(summary);
+    EXPECT_EQ(summary.error().code, ErrorCode::kCancelled);
+  }
+}
+
+TEST(Stopping, ByTheSinkEndsTheJob) {
+  struct Refuses : ChunkSink {
+    bool accept(Chunk&&) override { return false; }
+  } sink;
+  ExecutionContext context;
+  const auto summary = generate_mesh({.pslg = square()}, sink, context);
+  ASSERT_FALSE(summary);
+  EXPECT_EQ(summary.error().code, ErrorCode::kCancelled);
+}
+
+TEST(Determinism, GivesTheSameDigestOnEveryRun) {
+  const MeshRequest request{.pslg = read_poly(model("us-east-coast.poly")),
+                            .size = {.expression = "1e-3*(1.5+sin(x)*cos(y))"}};
+  const auto first = mesh_of(request);
+  const auto second = mesh_of(request);
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->digest, second->digest);
+}
+
+TEST(Determinism, GivesTheRecordedDigestOnEveryMachineAndCompiler) {
+  MeshRequest request{.pslg = read_poly(model("pipe.poly")),
+                      .size = {.expression = "0.4*sqrt((x-200)^2+(y-200)^2)+1+sin(x)^2*exp(-y)"}};
+  const auto summary = mesh_of(request);
+  ASSERT_TRUE(summary);
+  std::string hex;
+  for (unsigned byte : summary->digest) {
+    constexpr char kDigits[] = "0123456789abcdef";
+    hex += {kDigits[byte >> 4], kDigits[byte & 15]};
+  }
+  EXPECT_EQ(hex, "5587b9c75ef9a85bb6d0a693a93145829189c0445b98766897f180bafde467ab");
+}
+
+TEST(Memory, AtThePeakIsAtMost48BytesATriangle) {
+  const auto summary = mesh_of({.pslg = square(), .size = {.constant = 1e-6}});
+  ASSERT_TRUE(summary);
+  EXPECT_LE(static_cast<double>(summary->peak_bytes) / static_cast<double>(summary->triangles), 48);
+}
+
+}  // namespace
+}  // namespace weft

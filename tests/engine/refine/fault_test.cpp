@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Memory that runs out, at any moment and on any thread, ends the job with a typed error and leaves
+// the arena fit for the next.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <limits>
+#include <new>
+#include <random>
+
+#include "tests/engine/refine/parallel.h"
+
+namespace {
+
+constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+
+// The allocations that still succeed.
+std::atomic<std::int64_t> allocations_left{kNever};
+// Whether all that follow fail too.
+std::atomic<bool> for_good{false};
+
+void* allocate(std::size_t size, std::size_t alignment) {
+  const std::int64_t left = allocations_left.fetch_sub(1, std::memory_order_relaxed);
+  if (left == 1 || (left < 1 && for_good.load(std::memory_order_relaxed))) throw std::bad_alloc();
+  const std::size_t rounded = (size + alignment) / alignment * alignment;
+  void* const p = alignment > alignof(std::max_align_t) ? std::aligned_alloc(alignment, rounded)
+                                                        : std::malloc(rounded);
+  if (!p) throw std::bad_alloc();
+  return p;
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  return allocate(size, 1);
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return allocate(size, static_cast<std::size_t>(alignment));
+}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  try {
+    return allocate(size, 1);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
+// Inlined, g++ takes them for a free of what new has returned.
+[[gnu::noinline]] void operator delete(void* p) noexcept {
+  std::free(p);
+}
+[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept {
+  std::free(p);
+}
+[[gnu::noinline]] void operator delete(void* p, const std::nothrow_t&) noexcept {
+  std::free(p);
+}
+[[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept {
+  std::free(p);
+}
+[[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
+}
+
+namespace weft {
+namespace {
+
+// While it lives, the n-th allocation fails; with `forever`, all after it as well.
+class Fault {
+ public:
+  Fault(std::int64_t n, bool forever) {
+    for_good = forever;
+    allocations_left = n;
+  }
+  ~Fault() { allocations_left = kNever; }
+  Fault(const Fault&) = delete;
+  Fault& operator=(const Fault&) = delete;
+};
+
+std::int64_t allocations_of(Arena& arena, const MeshRequest& request) {
+  allocations_left = kNever;
+  EXPECT_TRUE(mesh_on(&arena, request));
+  return kNever - allocations_left.exchange(kNever);
+}
+
+class Faults : public testing::TestWithParam<bool> {};
+
+TEST_P(Faults, InATaskEndTheJobWithATypedErrorAndLeaveTheArenaSound) {
+  // With segments, regions and a graded size, in leaves enough to stream.
+  MeshRequest request{.pslg = square(), .leaf_triangles = 100};
+  request.size.expression = "1.3e-4+6e-4*x^2";
+  add_segment(request.pslg, {0.1, 0.1}, {0.9, 0.8}, 1);
+  Arena arena(4);
+  const auto whole = mesh_on(&arena, request);
+  ASSERT_TRUE(whole);
+  ASSERT_GE(whole->leaves.size(), 64u);
+  const std::int64_t allocations = allocations_of(arena, request);
+  std::mt19937_64 random(5);
+  int failed = 0;
+  constexpr int kFaults = kSanitized ? 100 : 400;
+  for (int i = 0; i < kFaults; ++i) {
+    // Each part of the run has its share.
+    const std::int64_t slice = allocations / kFaults + 1;
+    const std::int64_t n =
+        1 + i * slice + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(slice));
+    SCOPED_TRACE(n);
+    const auto summary = [&] {
+      const Fault fault(n, GetParam());
+      return mesh_on(&arena, request);
+    }();
+    if (summary) {
+      EXPECT_EQ(summary->digest, whole->digest);
+    } else {
+      ++failed;
+      EXPECT_EQ(summary.error().code, ErrorCode::kOutOfMemory) << summary.error().message;
+    }
+    if (i % 10 == 0) {
+      ASSERT_EQ(outcome(mesh_on(&arena, request)), outcome(whole));
+    }
+  }
+  EXPECT_GT(failed, kFaults / 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Faults, testing::Bool(), [](const auto& info) {
+  return info.param ? "AllAllocationsFromOneOn" : "OneAllocation";
+});
+
+}  // namespace
+}  // namespace weft

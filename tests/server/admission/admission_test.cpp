@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// How calls come in: who is asked what, how much and how long he may send, what is logged of it.
+#include "server/admission/admission.h"
+
+#include "server/admission/refusal_log.h"
+#include "server/net/reset_guard.h"
+#include "tests/client/support/temp_folder.h"
+#include "tests/server/logged_server.h"
+#include "tests/server/raw_call.h"
+
+namespace weft::server::testing {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using Bidi = grpc::ClientReaderWriter<grpc::ByteBuffer, grpc::ByteBuffer>;
+
+constexpr const char* kInfo = "/weft.v1.MeshService/GetServerInfo";
+constexpr const char* kCheck = "/grpc.health.v1.Health/Check";
+
+ServerOptions local() {
+  return {.listen = {"127.0.0.1:0"}, .service = {}};
+}
+
+std::shared_ptr<grpc::Channel> plain(const LoggedServer& server) {
+  return channel_to(server.address(), grpc::InsecureChannelCredentials());
+}
+
+std::size_t times(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+// A call whose message never comes.
+grpc::Status never_ending(const LoggedServer& server, const char* method) {
+  const auto channel = plain(server);
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + seconds(30));
+  const grpc::internal::RpcMethod rpc(method, grpc::internal::RpcMethod::BIDI_STREAMING, channel);
+  const std::unique_ptr<Bidi> stream(
+      grpc::internal::ClientReaderWriterFactory<grpc::ByteBuffer, grpc::ByteBuffer>::Create(
+          channel.get(), rpc, &context));
+  grpc::ByteBuffer none;
+  EXPECT_FALSE(stream->Read(&none));
+  return stream->Finish();
+}
+
+TEST(Admission, GivesUpAMessageThatDoesNotCome) {
+  ServerOptions options = local();
+  options.admission.request_timeout = milliseconds(100);
+  LoggedServer server(options);
+  for (const char* method : {kInfo, "/weft.v1.MeshService/GenerateMesh", kCheck}) {
+    const grpc::Status status = never_ending(server, method);
+    EXPECT_EQ(status.error_code(), grpc::DEADLINE_EXCEEDED) << method;
+    EXPECT_NE(status.error_message().find("did not arrive within 0.1 s"), std::string::npos)
+        << status.error_message();
+  }
+  EXPECT_TRUE(ask(plain(server)).ok());
+  server->drain(seconds(5));
+  EXPECT_FALSE(server.log().contains("reason=STOPPING")) << "a call was kept";
+}
+
+TEST(Admission, RefusesAStrangerBeforeHisMessageComes) {
+  const client::TempFolder folder;
+  ServerOptions options = local();
+  options.tokens = folder.write("tokens", "ann secret-of-ann-16\n").string();
+  LoggedServer server(options);
+  EXPECT_EQ(never_ending(server, kInfo).error_code(), grpc::UNAUTHENTICATED);
+  EXPECT_EQ(never_ending(server, "/weft.v1.MeshService/GenerateMesh").error_code(),
+            grpc::UNAUTHENTICATED);
+}
+
+TEST(Admission, TellsAStrangerOfTheWholeServerWithoutReadingHisMessage) {
+  const client::TempFolder folder;
+  ServerOptions options = local();
+  options.tokens = folder.write("tokens", "ann secret-of-ann-16\n").string();
+  LoggedServer server(options);
+  const auto [status, answer] = raw_unary(plain(server), kCheck, std::string(100'000, '\xff'));
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(answer, std::string("\x08\x01", 2));
+}
+
+TEST(Admission, KeepsSmallRequestsSmall) {
+  LoggedServer server(local());
+  const std::string unknown(kSmallRequest / 2, '\x78');  // field 15, a number, of 0x78
+  EXPECT_TRUE(raw_unary(plain(server), kInfo, unknown + unknown).first.ok());
+  const grpc::Status status = raw_unary(plain(server), kInfo, unknown + unknown + "\x78\x78").first;
+  EXPECT_EQ(status.error_code(), grpc::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(status.error_message(),
+            "the request has 65538 bytes; the limit of GetServerInfo is 65536");
+}
+
+TEST(Admission, CountsRefusalsThatItDoesNotLog) {
+  const client::TempFolder folder;
+  ServerOptions options = local();
+  options.tokens = folder.write("tokens", "ann secret-of-ann-16\n").string();
+  options.admission.refusal_lines = 3;
+  LoggedServer server(options);
+  const auto channel = plain(server);
+  for (int i = 0; i < 200; ++i) EXPECT_FALSE(ask(channel).ok());
+  EXPECT_TRUE(eventually([&] { return server.log().contains("event=lines_left_out count="); }));
+  EXPECT_LE(times(server.log().text(), "event=call_refused"), 100u);
+}
+
+TEST(RefusalLog, TellsHowManyLinesWereLeftOut) {
+  Log log;
+  RefusalLog refusals(log.logger(), "call_refused", 2);
+  const RefusalLog::Clock::time_point start{seconds(100)};
+  int taken = 0;
+  for (int i = 0; i < 10; ++i) taken += refusals.take(start + milliseconds(10 * i));
+  EXPECT_EQ(taken, 2);
+  refusals.tell_of_rest(start + milliseconds(999));
+  EXPECT_EQ(log.text(), "");
+  refusals.tell_of_rest(start + seconds(1));
+  EXPECT_EQ(log.text(), "event=lines_left_out count=8 of=call_refused\n");
+  EXPECT_TRUE(refusals.take(start + seconds(1)));
+  refusals.tell_of_rest(start + seconds(3));
+  EXPECT_EQ(times(log.text(), "left_out"), 1u) << "none were left out since";
+}
+
+TEST(ResetGuard, NamesAPeerOnceASecondWhenItResetsTooMuch) {
+  ResetGuard guard(3);
+  const ResetGuard::Clock::time_point start{seconds(100)};
+  int named = 0;
+  for (int i = 0; i < 10; ++i) {
+    named += guard.was_reset("ipv4:10.0.0.1:1", start + milliseconds(i));
+    if (i < 3) {
+      EXPECT_FALSE(guard.was_reset("ipv4:10.0.0.2:1", start + milliseconds(i)));
+    }
+  }
+  EXPECT_EQ(named, 1);
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(guard.was_reset("ipv4:10.0.0.1:1", start + seconds(2)));
+  EXPECT_TRUE(guard.was_reset("ipv4:10.0.0.1:1", start + seconds(2)));
+}
+
+TEST(ResetGuard, KnowsNoBoundAtZero) {
+  ResetGuard guard(0);
+  for (int i = 0; i < 1000; ++i) EXPECT_FALSE(guard.was_reset("ipv4:10.0.0.1:1"));
+  for (std::uint64_t i = 0; i <= ResetGuard::kMostOpen; ++i)
+    EXPECT_FALSE(guard.began("ipv4:10.0.0.1:1"));
+}
+
+TEST(ResetGuard, CountsNoCallsOfUnixSockets) {
+  ResetGuard guard(3);
+  for (std::uint64_t i = 0; i <= ResetGuard::kMostOpen; ++i) {
+    EXPECT_FALSE(guard.began("unix:"));
+    EXPECT_FALSE(guard.was_reset("unix:"));
+  }
+}
+
+TEST(ResetGuard, NamesAPeerWhoseCallsDoNotEnd) {
+  ResetGuard guard(1000);
+  for (std::uint64_t i = 0; i < 3 * ResetGuard::kMostOpen; ++i) {
+    EXPECT_FALSE(guard.began("ipv4:10.0.0.2:1"));
+    guard.ended("ipv4:10.0.0.2:1");
+  }
+  for (std::uint64_t i = 0; i < ResetGuard::kMostOpen; ++i)
+    ASSERT_FALSE(guard.began("ipv4:10.0.0.1:1"));
+  EXPECT_TRUE(guard.began("ipv4:10.0.0.1:1"));
+  EXPECT_FALSE(guard.began("ipv4:10.0.0.1:1")) << "once";
+}
+
+TEST(ResetGuard, ClosesTheConnectionOfACallersPeer) {
+  ServerOptions options = local();
+  options.admission.max_resets = 5;
+  LoggedServer server(options);
+  const auto guilty = plain(server);
+  const auto other = plain(server);
+  ASSERT_TRUE(ask(other).ok());
+  for (int i = 0; i < 6; ++i) {
+    grpc::ClientContext context;
+    const grpc::internal::RpcMethod rpc("/grpc.health.v1.Health/Watch",
+                                        grpc::internal::RpcMethod::SERVER_STREAMING, guilty);
+    const std::unique_ptr<grpc::ClientReader<grpc::ByteBuffer>> watch(
+        grpc::internal::ClientReaderFactory<grpc::ByteBuffer>::Create(guilty.get(), rpc, &context,
+                                                                      to_buffer("")));
+    grpc::ByteBuffer status;
+    EXPECT_TRUE(watch->Read(&status));
+    context.TryCancel();
+    (void)watch->Finish();
+  }
+  EXPECT_TRUE(eventually([&] { return server.log().contains("event=connection_closed peer="); }));
+  EXPECT_EQ(other->GetState(false), GRPC_CHANNEL_READY);
+  EXPECT_TRUE(ask(other).ok());
+  EXPECT_TRUE(eventually([&] { return ask(guilty).ok(); })) << "it may connect again";
+}
+
+}  // namespace
+}  // namespace weft::server::testing

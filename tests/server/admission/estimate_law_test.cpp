@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// The memory estimate against the engine: never below what the engine takes for the meshes of the
+// benchmarks, and not far above.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <ostream>
+#include <string>
+
+#include "engine/engine.h"
+#include "server/admission/memory_estimate.h"
+#include "server/wire/translate.h"
+#include "tests/support/poly.h"
+
+namespace weft::server {
+namespace {
+
+// Of what any run takes, however small its mesh.
+constexpr double kFixed = 2e6;
+
+struct Discard : ChunkSink {
+  bool accept(Chunk&&) override { return true; }
+};
+
+v1::Domain to_wire(const Pslg& pslg) {
+  v1::Domain domain;
+  for (const Point p : pslg.points) {
+    domain.add_points(p.x);
+    domain.add_points(p.y);
+  }
+  for (const Segment& s : pslg.segments) {
+    domain.add_segments(s.a);
+    domain.add_segments(s.b);
+  }
+  for (const Point p : pslg.holes) {
+    domain.add_holes(p.x);
+    domain.add_holes(p.y);
+  }
+  return domain;
+}
+
+v1::Domain square(double side) {
+  v1::Domain domain;
+  for (const double x : {0.0, 0.0, side, 0.0, side, side, 0.0, side}) domain.add_points(x);
+  for (const std::uint32_t i : {0u, 1u, 1u, 2u, 2u, 3u, 3u, 0u}) domain.add_segments(i);
+  return domain;
+}
+
+struct Case {
+  std::string name;
+  std::string model;  // empty: a square of side 100
+  std::string size;   // empty: none
+  double angle = 20;
+  bool on_lattice = true;
+  bool raster = false;
+  bool region = false;
+
+  friend void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+};
+
+void add_waves(v1::Raster& raster) {
+  constexpr int kNodes = 64;
+  constexpr double kStep = 100.0 / (kNodes - 1);
+  raster.set_dx(kStep);
+  raster.set_dy(kStep);
+  raster.set_columns(kNodes);
+  raster.set_rows(kNodes);
+  for (int j = 0; j < kNodes; ++j)
+    for (int i = 0; i < kNodes; ++i)
+      raster.add_values(0.01 * (1.5 + std::sin(i * kStep / 9) * std::cos(j * kStep / 11)));
+}
+
+v1::GenerateMeshRequest request_of(const Case& c) {
+  v1::GenerateMeshRequest request;
+  *request.mutable_domain() =
+      c.model.empty() ? square(100) : to_wire(read_poly(model(c.model + ".poly")));
+  if (c.raster) add_waves(*request.mutable_size()->mutable_raster());
+  if (!c.size.empty()) request.mutable_size()->set_expression(c.size);
+  if (c.region) {
+    v1::Region& region = *request.mutable_domain()->add_regions();
+    region.set_x(50);
+    region.set_y(50);
+    region.set_max_area(0.01);
+  }
+  request.mutable_quality()->set_min_angle_deg(c.angle);
+  if (!c.on_lattice) request.mutable_quality()->set_placement(v1::PLACEMENT_CIRCUMCENTRE);
+  return request;
+}
+
+class EstimateLaw : public ::testing::TestWithParam<Case> {};
+
+TEST_P(EstimateLaw, IsNotBelowThePeakNorFarAbove) {
+  const v1::GenerateMeshRequest request = request_of(GetParam());
+  const auto estimate = static_cast<double>(expected_bytes(request, {}));
+  Arena arena(2);
+  ExecutionContext context;
+  context.set_arena(arena);
+  Discard sink;
+  const auto summary = generate_mesh(to_engine(request), sink, context);
+  ASSERT_TRUE(summary) << summary.error().message;
+  const auto peak = static_cast<double>(summary->peak_bytes);
+  RecordProperty("triangles", std::to_string(summary->triangles));
+  RecordProperty("estimate_over_peak", std::to_string(estimate / peak));
+  EXPECT_GE(estimate, peak) << summary->triangles << " triangles";
+  EXPECT_LE(estimate, 2 * peak + kFixed) << summary->triangles << " triangles";
+}
+
+const std::string kPipe = "(0.4*sqrt((x-200)^2+(y-200)^2)+1)";
+const std::string kWake = "(x>=0 && abs(y)<5) || (x<0 && x^2+y^2<25) ? ";
+
+INSTANTIATE_TEST_SUITE_P(
+    Benchmarks, EstimateLaw,
+    ::testing::Values(
+        Case{"pipe", "pipe", kPipe}, Case{"pipe30", "pipe", kPipe, 30},
+        Case{"key", "key", "0.02*abs(y-46)+0.1"}, Case{"key30", "key", "0.02*abs(y-46)+0.1", 30},
+        Case{"pipe1M", "pipe", kPipe + "/300"}, Case{"pipe1M30", "pipe", kPipe + "/300", 30},
+        Case{"pipe10M", "pipe", kPipe + "/3000"},
+        Case{"cylinder1M", "cylinder", kWake + "0.0012 : 0.01"},
+        Case{"cylinder1M30", "cylinder", kWake + "0.0012 : 0.01", 30},
+        Case{"cylinder1M33", "cylinder", kWake + "0.0012 : 0.01", 33},
+        Case{"cylinder10M", "cylinder", kWake + "0.00012 : 0.001"},
+        Case{"cylinder10M30", "cylinder", kWake + "0.00012 : 0.001", 30},
+        Case{"cylinderEven1M", "cylinder", "4e-3"},
+        Case{"cylinderEven1MCircumcentres", "cylinder", "4e-3", 20, false},
+        Case{"cylinderEven10M", "cylinder", "4e-4"}, Case{"coast", "us-east-coast", ""},
+        Case{"coast30", "us-east-coast", "", 30}, Case{"coast1e3", "us-east-coast", "1e-3"},
+        Case{"coast1e4", "us-east-coast", "1e-4"},
+        Case{"coast1e4at30", "us-east-coast", "1e-4", 30},
+        Case{"hollow", "", "0.002+0.05*(1-exp(-((x-50)^2+(y-40)^2)/400))"},
+        Case{"longWaves", "", "0.01*(1.5+sin(x/5)*cos(y/7))"},
+        Case{"slope", "", "0.001+0.0005*x+0.0002*y"},
+        Case{"twoPoints", "", "0.001+0.01*min(hypot(x-20,y-30),hypot(x-70,y-60))"},
+        Case{"ring", "", "0.002+0.01*abs(hypot(x-50,y-50)-30)"},
+        Case{"shortWaves", "", "0.01*(1.2+sin(3*x)*sin(3*y))"},
+        Case{.name = "raster", .model = "", .size = "", .raster = true},
+        Case{.name = "region", .model = "", .size = "", .region = true}),
+    [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace weft::server

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Jobs that are light, or were judged so, beside heavy ones.
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "tests/server/job_harness.h"
+
+namespace weft::server::testing {
+namespace {
+
+constexpr double kHeavySize = 1e-9;
+constexpr double kImpostorAngle = 1;
+
+v1::GenerateMeshRequest request(double size, double angle) {
+  v1::GenerateMeshRequest request = valid_request();
+  request.mutable_size()->set_constant(size);
+  request.mutable_quality()->set_min_angle_deg(angle);
+  return request;
+}
+
+// One slot, and one for light jobs.
+TEST(LightSlot, IsLeftByAJobThatTurnsOutHeavy) {
+  Event heavy_runs;
+  Event heavy_may_end;
+  Event impostor_runs;
+  std::atomic<bool> impostor_may_end{false};
+  std::atomic<bool> light_in_arena{false};
+  ServiceOptions service;
+  service.jobs = 1;
+  service.light_jobs = 1;
+  JobServer server(
+      [&](const MeshRequest& request, ChunkSink& sink,
+          ExecutionContext& context) -> Result<Summary> {
+        if (request.size.constant == kHeavySize) {
+          heavy_runs.set();
+          EXPECT_TRUE(heavy_may_end.wait());
+          return send_chunks(sink, 1);
+        }
+        if (context.arena() != nullptr) light_in_arena = true;
+        if (request.min_angle_deg == kImpostorAngle) {
+          impostor_runs.set();
+          while (!impostor_may_end) {
+            if (auto error = context.poll()) return tl::unexpected(*error);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+          }
+        }
+        return send_chunks(sink, 1);
+      },
+      quick_jobs(), {}, service);
+  JobClient client = server.client();
+  const auto heavy = client.submit(request(kHeavySize, 35));
+  ASSERT_TRUE(heavy_runs.wait());
+  const auto impostor = client.submit(request(1, kImpostorAngle));
+  ASSERT_TRUE(impostor_runs.wait());
+  const v1::Job light = client.wait(client.submit(request(1, 20)));
+  EXPECT_EQ(light.state(), v1::JOB_STATE_SUCCEEDED);
+  EXPECT_FALSE(light_in_arena);
+  impostor_may_end = true;
+  heavy_may_end.set();
+  EXPECT_EQ(client.wait(heavy).state(), v1::JOB_STATE_SUCCEEDED);
+  EXPECT_EQ(client.wait(impostor).state(), v1::JOB_STATE_SUCCEEDED);
+}
+
+}  // namespace
+}  // namespace weft::server::testing
