@@ -17,14 +17,14 @@ std::uint32_t channel(double value) {
 
 }  // namespace
 
-void DenseRaster::Paint::add(const Color& color, float amount) {
+void DenseImage::Paint::add(const Color& color, float amount) {
   red += static_cast<float>(color.red) * amount;
   green += static_cast<float>(color.green) * amount;
   blue += static_cast<float>(color.blue) * amount;
   weight += amount;
 }
 
-DenseRaster::DenseRaster(const Canvas& canvas, const Coloring& coloring)
+DenseImage::DenseImage(const Canvas& canvas, const Coloring& coloring)
     : canvas_(canvas),
       coloring_(coloring),
       width_(pixels_of(canvas.width())),
@@ -34,7 +34,7 @@ DenseRaster::DenseRaster(const Canvas& canvas, const Coloring& coloring)
 
 // Adds the colour to the pixels whose centres lie in the triangle, or, where there are none, a
 // little of it to the pixel of the centroid.
-void DenseRaster::fill(const PagePoint (&p)[3], const Color& color) {
+void DenseImage::fill(const PagePoint (&p)[3], const Color& color) {
   const auto [left, right] = std::minmax({p[0].x, p[1].x, p[2].x});
   const auto [top, bottom] = std::minmax({p[0].y, p[1].y, p[2].y});
   const auto first = [](double low) { return static_cast<long>(std::ceil(low - 0.5)); };
@@ -67,7 +67,7 @@ void DenseRaster::fill(const PagePoint (&p)[3], const Color& color) {
 }
 
 // Leaves `amount` of ink at a point, shared by the four pixels around it.
-void DenseRaster::drop(double x, double y, float amount) {
+void DenseImage::drop(double x, double y, float amount) {
   const double column = std::clamp(x - 0.5, 0.0, static_cast<double>(width_) - 1.001);
   const double row = std::clamp(y - 0.5, 0.0, static_cast<double>(height_) - 1.001);
   const auto c = static_cast<std::size_t>(column);
@@ -81,7 +81,7 @@ void DenseRaster::drop(double x, double y, float amount) {
   at[width_ + 1] += amount * u * v;
 }
 
-void DenseRaster::stroke(PagePoint a, PagePoint b) {
+void DenseImage::stroke(PagePoint a, PagePoint b) {
   constexpr double kDropsPerPixel = 1.5;
   const double length = std::hypot(b.x - a.x, b.y - a.y);
   const auto drops = static_cast<int>(length * kDropsPerPixel) + 1;
@@ -94,7 +94,7 @@ void DenseRaster::stroke(PagePoint a, PagePoint b) {
   ++edges_;
 }
 
-void DenseRaster::add(const MeshView& piece) {
+void DenseImage::add(const MeshView& piece) {
   for (std::size_t t = 0; t < piece.triangle_count(); ++t) {
     const std::uint32_t* corner = &piece.triangles[3 * t];
     const PagePoint p[3] = {canvas_.vertex(piece, corner[0]), canvas_.vertex(piece, corner[1]),
@@ -106,11 +106,11 @@ void DenseRaster::add(const MeshView& piece) {
   }
 }
 
-double DenseRaster::mean_edge() const {
+double DenseImage::mean_edge() const {
   return edges_ > 0 ? length_ / static_cast<double>(edges_) : 0;
 }
 
-Raster DenseRaster::raster() const {
+Image DenseImage::image() const {
   // Lines as wide as leaves the page grey on average.
   constexpr double kMeanInk = 0.45;
   constexpr double kWidest = 0.7;
@@ -118,18 +118,18 @@ Raster DenseRaster::raster() const {
   const double line_width = std::min(kWidest, kMeanInk * area / std::max(length_, 1.0));
   // Over colours, edges are only hinted at.
   const double strength = paint_.empty() ? 1 : 0.45;
-  Raster raster{width_, height_, std::vector<std::uint32_t>(width_ * height_)};
-  for (std::size_t i = 0; i < raster.pixels.size(); ++i) {
+  Image image{width_, height_, std::vector<std::uint32_t>(width_ * height_)};
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     Color color = kPaper;
     if (!paint_.empty() && paint_[i].weight > 0)
       color = {paint_[i].red / paint_[i].weight, paint_[i].green / paint_[i].weight,
                paint_[i].blue / paint_[i].weight};
     const double cover = strength * (1 - std::exp(-line_width * double{ink_[i]}));
-    raster.pixels[i] = channel(color.red + cover * (kEdgeInk.red - color.red)) << 16 |
-                       channel(color.green + cover * (kEdgeInk.green - color.green)) << 8 |
-                       channel(color.blue + cover * (kEdgeInk.blue - color.blue));
+    image.pixels[i] = channel(color.red + cover * (kEdgeInk.red - color.red)) << 16 |
+                      channel(color.green + cover * (kEdgeInk.green - color.green)) << 8 |
+                      channel(color.blue + cover * (kEdgeInk.blue - color.blue));
   }
-  return raster;
+  return image;
 }
 
 }  // namespace weft::client

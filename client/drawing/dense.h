@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rasterises a mesh whose triangles are about as small as pixels, piece by piece. Each pixel takes
-// the mean colour of the triangles in it; each edge leaves ink along its length, and a pixel with
-// ink i is covered to the part 1 - exp(-i), so that edges blend to grey and dense parts get darker
-// without clogging. The width of the lines follows from the length of all edges, so it is applied
-// at the end. Takes 4 bytes for a pixel, and 16 more where triangles are coloured.
+// Draws a mesh whose triangles are about as small as pixels, piece by piece. Each pixel takes the
+// mean colour of the triangles in it; each edge leaves ink along its length, and a pixel with ink i
+// is covered to the part 1 - exp(-i), so that edges blend to grey and dense parts get darker without
+// clogging. The width of the lines follows from the length of all edges, so it is applied at the
+// end. Takes 4 bytes for a pixel, and 16 more if triangles are coloured.
 #pragma once
 
 #include <cstddef>
@@ -18,23 +18,23 @@
 namespace weft::client {
 
 // Pixels as cairo's RGB24: 0x00RRGGBB, rows from the top.
-struct Raster {
+struct Image {
   std::size_t width = 0;
   std::size_t height = 0;
   std::vector<std::uint32_t> pixels;
 };
 
-class DenseRaster {
+class DenseImage {
  public:
   // `coloring` outlives it.
-  DenseRaster(const Canvas& canvas, const Coloring& coloring);
+  DenseImage(const Canvas& canvas, const Coloring& coloring);
 
   // The triangles of a piece, with all the vertices that they refer to. Together, the triangles
   // name each edge between two of them once in either direction.
   void add(const MeshView& piece);
   // Of the edges between two triangles, in pixels.
   double mean_edge() const;
-  Raster raster() const;
+  Image image() const;
 
  private:
   // Sums of the colours in a pixel, and how many.

@@ -74,15 +74,15 @@ void line(cairo_t* cairo, PagePoint a, PagePoint b) {
   cairo_line_to(cairo, b.x, b.y);
 }
 
-void draw_raster(cairo_t* cairo, Raster raster, const Canvas& page) {
-  const Surface image(cairo_image_surface_create_for_data(
-      reinterpret_cast<unsigned char*>(raster.pixels.data()), CAIRO_FORMAT_RGB24,
-      static_cast<int>(raster.width), static_cast<int>(raster.height),
-      static_cast<int>(raster.width * sizeof(std::uint32_t))));
+void draw_image(cairo_t* cairo, Image image, const Canvas& page) {
+  const Surface surface(cairo_image_surface_create_for_data(
+      reinterpret_cast<unsigned char*>(image.pixels.data()), CAIRO_FORMAT_RGB24,
+      static_cast<int>(image.width), static_cast<int>(image.height),
+      static_cast<int>(image.width * sizeof(std::uint32_t))));
   cairo_save(cairo);
-  cairo_scale(cairo, page.width() / static_cast<double>(raster.width),
-              page.height() / static_cast<double>(raster.height));
-  cairo_set_source_surface(cairo, image.get(), 0, 0);
+  cairo_scale(cairo, page.width() / static_cast<double>(image.width),
+              page.height() / static_cast<double>(image.height));
+  cairo_set_source_surface(cairo, surface.get(), 0, 0);
   cairo_paint(cairo);
   cairo_restore(cairo);
   cairo_surface_flush(cairo_get_target(cairo));
@@ -120,9 +120,9 @@ void Drawing::keep(const MeshView& piece) {
   mesh_.regions.resize(mesh_.triangles.size() / 3);
 }
 
-void Drawing::rasterize() {
-  raster_ = std::make_unique<DenseRaster>(canvas(long_side_), *coloring_);
-  raster_->add(mesh_.view());
+void Drawing::draw_as_image() {
+  image_ = std::make_unique<DenseImage>(canvas(long_side_), *coloring_);
+  image_->add(mesh_.view());
   mesh_ = {};
 }
 
@@ -132,9 +132,9 @@ void Drawing::add(const MeshView& piece) {
     boundary_.push_back(piece.coordinates[2 * std::size_t{v}]);
     boundary_.push_back(piece.coordinates[2 * std::size_t{v} + 1]);
   }
-  if (raster_) return raster_->add(piece);
+  if (image_) return image_->add(piece);
   keep(piece);
-  if (triangles_ > kMostVectors) rasterize();
+  if (triangles_ > kMostVectors) draw_as_image();
 }
 
 void Drawing::fill_triangles(cairo_t* cairo, const Canvas& canvas) const {
@@ -191,14 +191,14 @@ Result<void> Drawing::draw(DrawFormat format, std::span<const double> boxes,
   cairo_paint(cairo);
   cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
 
-  const double edge = raster_ ? raster_->mean_edge() : mean_edge(mesh_.view(), page) / pixel;
+  const double edge = image_ ? image_->mean_edge() : mean_edge(mesh_.view(), page) / pixel;
   constexpr double kDenseEdge = 5;  // pixels
-  if (raster_) {
-    draw_raster(cairo, raster_->raster(), page);
+  if (image_) {
+    draw_image(cairo, image_->image(), page);
   } else if (edge < kDenseEdge) {
-    DenseRaster raster(canvas(long_side_), *coloring_);
-    raster.add(mesh_.view());
-    draw_raster(cairo, raster.raster(), page);
+    DenseImage image(canvas(long_side_), *coloring_);
+    image.add(mesh_.view());
+    draw_image(cairo, image.image(), page);
   } else {
     const bool colored = !coloring_->palette().empty();
     if (colored) fill_triangles(cairo, page);

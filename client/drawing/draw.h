@@ -3,10 +3,10 @@
 // asked for, the triangles coloured by their smallest angle (0 dark to 60 degrees bright) or by
 // region, and boxes over all. The page takes the aspect ratio of the mesh.
 //
-// Meshes whose triangles are a few pixels small are rasterised (dense.h), so that edges blend to
-// grey by their density; in SVG and PDF the raster is embedded under a boundary of vectors. A mesh
-// of more than kMostVectors triangles always is, piece by piece while it arrives: of it, no more is
-// kept than the raster and the boundary. So memory does not grow with the mesh.
+// Meshes whose triangles are a few pixels small are drawn into an image (dense.h), so that edges
+// blend to grey by their density; in SVG and PDF the image is embedded under a boundary of vectors.
+// A mesh of more than kMostVectors triangles always is, piece by piece while it arrives: of it, no
+// more is kept than the image and the boundary. So memory does not grow with the mesh.
 //
 //   Drawing drawing(DrawColor::kAngle);
 //   ... drawing.add(piece) ...
@@ -36,14 +36,14 @@ enum class DrawColor { kNone, kAngle, kRegion };
 // By extension, in any case.
 std::optional<DrawFormat> draw_format(const std::filesystem::path& path);
 
-class DenseRaster;
+class DenseImage;
 class Coloring;
 
 class Drawing {
  public:
   static constexpr std::size_t kMostVectors = std::size_t{1} << 19;
 
-  // `long_side` is in pixels of a PNG, or of the raster of a dense mesh; pages of SVG and PDF have
+  // `long_side` is in pixels of a PNG, or of the image of a dense mesh; pages of SVG and PDF have
   // half as many points.
   explicit Drawing(DrawColor color, double long_side = 1800);
   Drawing(const Drawing&) = delete;
@@ -63,7 +63,7 @@ class Drawing {
 
  private:
   void keep(const MeshView& piece);
-  void rasterize();
+  void draw_as_image();
   Canvas canvas(double long_side) const;
   void fill_triangles(cairo_t* cairo, const Canvas& canvas) const;
   void stroke_inner_edges(cairo_t* cairo, const Canvas& canvas) const;
@@ -74,7 +74,7 @@ class Drawing {
   std::size_t triangles_ = 0;
   Extent extent_;
   Mesh mesh_;                            // while it is small; without edges
-  std::unique_ptr<DenseRaster> raster_;  // from then on
+  std::unique_ptr<DenseImage> image_;  // from then on
   std::vector<double> boundary_;         // x, y of both ends of each edge on an input segment
 };
 
