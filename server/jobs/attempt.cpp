@@ -71,7 +71,7 @@ Attempt::Attempt(const RunEnvironment& environment, Claim claim, MemoryGate::Sha
 }
 
 void Attempt::run() {
-  environment_.log->info("event=task_started {}", label_);
+  environment_.log->info("event=attempt_started {}", label_);
   environment_.metrics.job_became("running");
   if (const auto made = make_mesh(); !made) return settle(made.error());
   const auto held = insist([&] { return environment_.store.finish(claim_.ref, mesh_); });
@@ -190,7 +190,7 @@ bool Attempt::pause(milliseconds at_most) {
 
 void Attempt::log_end(std::string_view outcome, std::string_view reason) const {
   environment_.log->info(
-      "event=task_ended {} outcome={} reason={} triangles={} chunks={} bytes={} seconds={:.3f}",
+      "event=attempt_ended {} outcome={} reason={} triangles={} chunks={} bytes={} seconds={:.3f}",
       label_, outcome, reason, context_.progress().triangles, chunks_stored_.load(), bytes_,
       Seconds(Clock::now() - began_).count());
 }

@@ -216,7 +216,7 @@ bool JobRunner::work_once(Lane lane) {
 }
 
 void JobRunner::give_up(const Claim& claim, const Failure& failure) {
-  environment_.log->error("event=task_broken_off task={} job={} attempt={} message={}",
+  environment_.log->error("event=attempt_broken_off task={} job={} attempt={} message={}",
                           claim.ref.task, claim.job_id, claim.ref.attempt,
                           log_value(failure.message));
   const RetryPolicy& retry = environment_.retry;

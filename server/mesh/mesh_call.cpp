@@ -67,7 +67,7 @@ MeshCall::MeshCall(const CallEnvironment& environment, AdmittedCall& call, std::
 void MeshCall::start() noexcept try {
   const v1::Domain& domain = request_->domain();
   environment_.log->info(
-      "event=job_queued job={} {} method=GenerateMesh points={} segments={} seeds={}", id_, caller_,
+      "event=call_queued call={} {} method=GenerateMesh points={} segments={} seeds={}", id_, caller_,
       domain.points_size() / 2, domain.segments_size() / 2,
       domain.holes_size() / 2 + domain.regions_size());
   if (origin_.at_hand) {
@@ -168,7 +168,7 @@ tl::expected<Summary, Failure> MeshCall::work(WorkQueue::Place& place) {
   }
   const double waited = Seconds(Clock::now() - admitted_).count();
   environment_.metrics.waited(waited);
-  environment_.log->info("event=job_started job={} {} waited_seconds={:.3f}", id_, caller_, waited);
+  environment_.log->info("event=call_started call={} {} waited_seconds={:.3f}", id_, caller_, waited);
   if (!origin_.key.empty() && first_chunk_ == 0) recording_.emplace(environment_.cache.largest());
   auto summary = call_engine(environment_.engine, std::move(request_), *this, context_);
   request_share_ = {};
@@ -261,7 +261,7 @@ void MeshCall::tell_end(grpc::StatusCode code, std::string_view reason) const {
   const double seconds = Seconds(Clock::now() - admitted_).count();
   environment_.metrics.call_ended("GenerateMesh", code, seconds);
   environment_.log->info(
-      "event=job_ended job={} {} method=GenerateMesh status={} reason={} cached={} "
+      "event=call_ended call={} {} method=GenerateMesh status={} reason={} cached={} "
       "triangles={} chunks={} bytes={} seconds={:.3f}",
       id_, caller_, code_name(code), reason, origin_.at_hand ? "yes" : "no",
       context_.progress().triangles, chunks_.load(), bytes_.load(), seconds);

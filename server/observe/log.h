@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Logs: lines on stderr, one per job transition, as key=value or as JSON. Bodies are never logged.
+// Logs: lines on stderr, one per step of a call or a job, as key=value or as JSON. Bodies are never logged.
 //
 // Whoever logs writes key=value, strings by log_value; the JSON of a line has the same keys in the
 // same order, with values that are written as numbers as numbers:
-//   time=2026-01-02T03:04:05.678Z level=info event=job_ended job=1f-7 status=OK seconds=0.012
-//   {"time":"2026-01-02T03:04:05.678Z","level":"info","event":"job_ended","job":"1f-7", ...}
+//   time=2026-01-02T03:04:05.678Z level=info event=call_ended call=1f-7 status=OK seconds=0.012
+//   {"time":"2026-01-02T03:04:05.678Z","level":"info","event":"call_ended","call":"1f-7", ...}
 #pragma once
 
 #include <spdlog/logger.h>

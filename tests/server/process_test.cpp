@@ -133,7 +133,7 @@ TEST(Process, ServesAMeshOfARealDomain) {
   EXPECT_NEAR(outcome.messages.back().summary().area(), 16, 1e-12);
   weftd.signal(SIGTERM);
   EXPECT_EQ(weftd.wait(), 0);
-  EXPECT_NE(weftd.log().find("event=job_ended"), std::string::npos);
+  EXPECT_NE(weftd.log().find("event=call_ended"), std::string::npos);
   EXPECT_NE(weftd.log().find("status=OK"), std::string::npos);
 }
 
@@ -151,12 +151,12 @@ TEST(Process, LogsLinesOfJsonWhereAsked) {
     EXPECT_EQ(json.at("level"), "info") << line;
     EXPECT_EQ(json.at("time").get<std::string>().size(), 24u) << line;
     events.insert(json.at("event"));
-    if (json.at("event") == "job_ended") {
+    if (json.at("event") == "call_ended") {
       EXPECT_GT(json.at("triangles"), 0) << line;
     }
   }
   for (const char* event :
-       {"starting", "listening", "job_queued", "job_started", "job_ended", "draining", "stopped"})
+       {"starting", "listening", "call_queued", "call_started", "call_ended", "draining", "stopped"})
     EXPECT_TRUE(events.contains(event)) << event;
 }
 

@@ -73,8 +73,8 @@ TEST(JobLogs, CarryTheTraceOfTheCallThroughTheWork) {
   ASSERT_TRUE(client.stub().SubmitJob(&context, request, &response).ok());
   client.wait(response.job().id());
   // The last line may come after the answer.
-  EXPECT_TRUE(eventually([&] { return server.log().contains("event=task_ended"); }));
-  for (const char* event : {"job_submitted", "task_started", "task_ended"})
+  EXPECT_TRUE(eventually([&] { return server.log().contains("event=attempt_ended"); }));
+  for (const char* event : {"job_submitted", "attempt_started", "attempt_ended"})
     EXPECT_EQ(field_of(line_of(server.log().text(), event, response.job().id()), "trace"), kTrace)
         << server.log().text();
 }
@@ -94,7 +94,7 @@ TEST(JobLogs, LeadFromEveryJobToTheTaskThatItShares) {
   release.set();
   client.wait(second);
   const std::string log = server.log().text();
-  const std::string task = field_of(line_of(log, "task_started", "job=" + first), "task");
+  const std::string task = field_of(line_of(log, "attempt_started", "job=" + first), "task");
   EXPECT_FALSE(task.empty()) << log;
   EXPECT_EQ(field_of(line_of(log, "job_submitted", "job=" + first), "task"), task) << log;
   EXPECT_EQ(field_of(line_of(log, "job_submitted", "job=" + second), "task"), task) << log;

@@ -192,8 +192,8 @@ TEST_F(Tokens, NameTheClientInTheLogAndNeverAppearThere) {
   const auto stub = v1::MeshService::NewStub(channel_);
   EXPECT_TRUE(read_all(*stub->GenerateMesh(&context, valid_request())).status.ok());
   // The last line may come after the answer.
-  EXPECT_TRUE(eventually([&] { return server_.log().contains("event=job_ended"); }));
-  for (const char* event : {"event=job_queued", "event=job_started", "event=job_ended"}) {
+  EXPECT_TRUE(eventually([&] { return server_.log().contains("event=call_ended"); }));
+  for (const char* event : {"event=call_queued", "event=call_started", "event=call_ended"}) {
     const std::string log = server_.log().text();
     const std::string line = log.substr(log.find(event), log.find('\n', log.find(event)));
     EXPECT_NE(line.find(" client=ann "), std::string::npos) << line;

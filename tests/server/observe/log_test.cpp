@@ -32,8 +32,8 @@ TEST(LogValue, QuotesATextThatWouldBeReadAsANumber) {
 }
 
 TEST(LogJson, HasTheSameKeysInTheSameOrder) {
-  EXPECT_EQ(json_of_fields("b=x a=2 event=job_ended c=-"),
-            R"({"b":"x","a":2,"event":"job_ended","c":"-"})");
+  EXPECT_EQ(json_of_fields("b=x a=2 event=call_ended c=-"),
+            R"({"b":"x","a":2,"event":"call_ended","c":"-"})");
 }
 
 TEST(LogJson, WritesNumbersAsNumbersAndAllElseAsText) {
