@@ -39,7 +39,7 @@ Row pipe(const char* name, double angle, double scale, Cgal cgal) {
   return {name,
           "pipe.poly",
           angle,
-          {.expression = "(0.4*sqrt((x-200)^2+(y-200)^2)+1)/" + shortest_text(scale)},
+          "(0.4*sqrt((x-200)^2+(y-200)^2)+1)/" + shortest_text(scale),
           [scale](double x, double y) {
             return (0.4 * std::sqrt((x - 200) * (x - 200) + (y - 200) * (y - 200)) + 1) / scale;
           },
@@ -49,7 +49,7 @@ Row cylinder(const char* name, double angle, double triangles, Cgal cgal) {
   return {name,
           "cylinder.poly",
           angle,
-          {.expression = cylinder_size(triangles)},
+          cylinder_size(triangles),
           [triangles](double x, double y) {
             const bool fine = (x >= 0 && std::fabs(y) < 5) || (x < 0 && x * x + y * y < 25);
             return fine ? 1200 / triangles : 1e4 / triangles;
@@ -57,11 +57,11 @@ Row cylinder(const char* name, double angle, double triangles, Cgal cgal) {
           cgal};
 }
 Row constant(const char* name, const char* model, double angle, double size, Cgal cgal) {
-  return {name, model, angle, {.constant = size}, [size](double, double) { return size; }, cgal};
+  return {name, model, angle, size, [size](double, double) { return size; }, cgal};
 }
 
 std::vector<Row> rows() {
-  const SizeSpec key_size{.expression = "0.02*abs(y-46)+0.1"};
+  const SizeSpec key_size = "0.02*abs(y-46)+0.1";
   return {
       pipe("pipe", 20, 1, Cgal::kMedian),
       pipe("pipe", 30, 1, Cgal::kMedian),

@@ -39,8 +39,7 @@ Raster waves_on_a_grid(std::uint32_t nodes) {
 std::vector<Row> rows(const std::string& models) {
   const auto of_model = [&](const char* model) { return read_poly(models + "/" + model); };
   const auto sized = [](Pslg pslg, const std::string& size, double angle) {
-    return MeshRequest{
-        .pslg = std::move(pslg), .size = {.expression = size}, .min_angle_deg = angle};
+    return MeshRequest{.pslg = std::move(pslg), .size = size, .min_angle_deg = angle};
   };
   const std::string pipe = "(0.4*sqrt((x-200)^2+(y-200)^2)+1)/";
   std::vector<Row> rows;
@@ -62,7 +61,7 @@ std::vector<Row> rows(const std::string& models) {
   on_square("long waves", "0.01*(1.5+sin(x/5)*cos(y/7))");
   on_square("slope", "0.001+0.0005*x+0.0002*y");
   on_square("two points", "0.001+0.01*min(hypot(x-20,y-30),hypot(x-70,y-60))");
-  rows.push_back({"raster", {.pslg = square(100), .size = {.raster = waves_on_a_grid(64)}}});
+  rows.push_back({"raster", {.pslg = square(100), .size = waves_on_a_grid(64)}});
   on_square("ring", "0.002+0.01*abs(hypot(x-50,y-50)-30)");
   on_square("short waves", "0.01*(1.2+sin(3*x)*sin(3*y))");
   return rows;

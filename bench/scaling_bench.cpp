@@ -247,7 +247,7 @@ int run_scaling_bench(const ScalingBenchOptions& options) {
   MeshRequest request{.pslg = read_poly(options.models + "/cylinder.poly")};
   std::vector<Recorded> recorded;
   for (const double triangles : options.triangles) {
-    request.size.expression = cylinder_size(triangles);
+    request.size = cylinder_size(triangles);
     std::optional<Recorded> best;
     for (int run = 0; run <= options.runs; ++run) {
       auto result = record(request);

@@ -86,7 +86,7 @@ double engine_seconds_alone(const Pslg& pslg, const std::string& size, int threa
     ExecutionContext context;
     context.set_arena(arena);
     const auto start = Clock::now();
-    const auto summary = generate_mesh({.pslg = pslg, .size = {.expression = size}}, sink, context);
+    const auto summary = generate_mesh({.pslg = pslg, .size = size}, sink, context);
     if (summary && run > 0)
       seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
   }

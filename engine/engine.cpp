@@ -10,7 +10,6 @@
 #include "engine/base/text.h"
 #include "engine/domain/domain.h"
 #include "engine/domain/tolerance.h"
-#include "engine/options.h"
 #include "engine/output/bounds_error.h"
 #include "engine/refine/area_bound.h"
 #include "engine/refine/mapped_area.h"
@@ -18,7 +17,6 @@
 #include "engine/refine/storage/reserved_memory.h"
 #include "engine/schedule/mesh_run.h"
 #include "engine/schedule/narrow_places.h"
-#include "engine/size/expression/expression.h"
 #include "engine/size/lattice/grain_map.h"
 #include "engine/size/size_map.h"
 
@@ -73,20 +71,15 @@ class Job {
       : request_(request), sink_(sink), context_(context) {}
 
   Result<Summary> run() {
-    auto expression = read_options(request_);
-    if (!expression) return tl::unexpected(expression.error());
-    expression_ = std::move(*expression);
-    if (request_.size.raster) {
-      if (auto error =
-              context_.need_bytes(kBytesPerRasterValue * request_.size.raster->values.size()))
-        return tl::unexpected(*error);
-      auto raster = RasterSize::make(*request_.size.raster);
-      if (!raster) return tl::unexpected(raster.error());
-      raster_.emplace(std::move(*raster));
-    }
+    if (auto error = check_options(request_)) return tl::unexpected(*error);
+    if (auto error = context_.need_bytes(bytes_to_make(request_.size)))
+      return tl::unexpected(*error);
+    auto size = make_size(request_.size);
+    if (!size) return tl::unexpected(size.error());
+    size_ = std::move(*size);
     if (Trace* const trace = context_.trace()) trace->start();
     if (auto error = context_.compute([this] { return prepare(); })) return tl::unexpected(*error);
-    const double bound = constant_bound();
+    const double bound = size_->constant().value_or(std::numeric_limits<double>::infinity());
     quality_ =
         QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(summary_.box));
     if (request_.placement == Placement::kLattice)
@@ -95,21 +88,17 @@ class Job {
     if (!map_) return mesh(ConstantArea(bound), 0);
     GrainMap grains;
     if (quality_.lattice.exists()) {
-      auto laid_out = context_.compute([&] {
-        return GrainMap::build(*varying_size(), *map_, summary_.box, quality_.lattice, context_);
-      });
+      auto laid_out = context_.compute(
+          [&] { return GrainMap::build(*size_, *map_, summary_.box, quality_.lattice, context_); });
       if (!laid_out) return tl::unexpected(laid_out.error());
       grains = std::move(*laid_out);
       lattices_ = grains.lattices_that_vary();
     }
     context_.end_stage("grains");
-    return mesh(MappedArea(*varying_size(), *map_, grains),
-                map_->bytes() + grains.bytes() + raster_bytes());
+    return mesh(MappedArea(*size_, *map_, grains), map_->bytes() + grains.bytes() + size_->bytes());
   }
 
  private:
-  // Its own, and those of the raster's blocks (size/raster.h).
-  static constexpr std::uint64_t kBytesPerRasterValue = 16;
   static constexpr std::uint64_t kUncountable = 1'000'000'000'000'000'000;
 
   // The domain's triangulation, and the map of a size that varies.
@@ -125,30 +114,11 @@ class Job {
     context_.end_stage("triangulation");
 
     context_.enter(Stage::kSize);
-    const SizeFunction* const size = varying_size();
-    if (!size) return std::nullopt;
-    auto map = SizeMap::build(*size, domain_, context_);
+    if (size_->constant()) return std::nullopt;
+    auto map = SizeMap::build(*size_, domain_, context_);
     if (!map) return map.error();
     map_.emplace(std::move(*map));
     return std::nullopt;
-  }
-
-  // The size where it is not the same everywhere; null where it is.
-  const SizeFunction* varying_size() const {
-    if (raster_) return &*raster_;
-    return expression_ && !expression_->is_constant() ? &*expression_ : nullptr;
-  }
-
-  std::uint64_t raster_bytes() const {
-    if (!raster_) return 0;
-    return request_.size.raster->values.capacity() * sizeof(double) + raster_->bytes();
-  }
-
-  // The bound that is the same everywhere; infinity for none.
-  double constant_bound() const {
-    if (request_.size.constant) return *request_.size.constant;
-    if (expression_ && expression_->is_constant()) return (*expression_)(Point{0, 0});
-    return std::numeric_limits<double>::infinity();
   }
 
   // Estimates the mesh, for a size of `bound` everywhere or that of the map, and refuses what is
@@ -271,8 +241,7 @@ class Job {
   ChunkSink& sink_;
   ExecutionContext& context_;
   StageClock clock_;
-  std::optional<Expression> expression_;
-  std::optional<RasterSize> raster_;
+  std::unique_ptr<const SizeFunction> size_;
   Domain domain_;
   std::optional<SizeMap> map_;
   QualityBounds quality_;

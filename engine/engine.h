@@ -4,7 +4,7 @@
 // Delaunay Mesh Refinement", 2006.
 //
 //   ExecutionContext context;
-//   MeshRequest request{.pslg = square, .size = {.expression = "0.01 + x^2"}};
+//   MeshRequest request{.pslg = square, .size = "0.01 + x^2"};
 //   Result<Summary> summary = generate_mesh(request, sink, context);
 #pragma once
 
@@ -18,22 +18,12 @@
 #include "engine/domain/pslg.h"
 #include "engine/output/chunk.h"
 #include "engine/output/summary.h"
-#include "engine/size/raster.h"
+#include "engine/size/size_spec.h"
 
 namespace weft {
 
 // Changes whenever the same request may give other bytes.
 inline constexpr std::string_view kEngineVersion = "5";
-
-// The grading function: an upper bound on a triangle's area at its centroid, squared units.
-// At most one of the three is set; none means no bound on the area.
-struct SizeSpec {
-  std::optional<double> constant = std::nullopt;         // > 0
-  std::optional<std::string> expression = std::nullopt;  // of x and y, see size/expression.h
-  // See size/raster.h. REQUIRES: its spacing is positive and finite, its origin finite, it has
-  // columns * rows values, one at least.
-  std::optional<Raster> raster = std::nullopt;
-};
 
 inline constexpr double kMaxMinAngleDeg = 36;
 inline constexpr std::uint32_t kMaxSweeps = 16;
@@ -67,10 +57,13 @@ struct MeshRequest {
   std::optional<double> leaf_triangles = std::nullopt;
 };
 
-// Judges all that generate_mesh refuses before it looks at coordinates and raster values: ranges of
-// the options, the constant of the size, the syntax and the limits of its expression. Does not read
-// `pslg` and the raster's values.
+// Judges the ranges of the options: all that generate_mesh refuses before it looks at the size and
+// the domain. Does not read `pslg` and `size`.
 std::optional<Error> check_options(const MeshRequest& request);
+
+// Judges what generate_mesh refuses of a PSLG before it triangulates: counts, coordinates, indices,
+// segments without length, region bounds, points on one line. Linear time.
+std::optional<Error> check_pslg(const Pslg& pslg);
 
 // Computes in the context's arena; calls the sink on the calling thread. Errors carry the field
 // path of the request as the wire spells it; what the sink took before an error is no mesh. Never

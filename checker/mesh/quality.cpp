@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "checker/geometry/sum.h"
-#include "checker/size/size_expression.h"
 #include "checker/text.h"
 
 namespace weft::check {
@@ -71,8 +70,7 @@ class QualityJudge {
         cotangent_limit_(requirements.min_angle_deg.value_or(0) > kAngleTolerance
                              ? cotangent(*requirements.min_angle_deg - kAngleTolerance)
                              : std::numeric_limits<double>::infinity()) {
-    if (!requirements.size) return;
-    auto size = SizeExpression::parse(*requirements.size);
+    auto size = size_function(requirements.size);
     if (size)
       size_ = std::move(*size);
     else
@@ -150,8 +148,8 @@ class QualityJudge {
     if (!context_.faces.empty())
       fixed = std::min(fixed, context_.roles[context_.faces[t]].max_area);
     double bound = fixed;
-    if (size_ || requirements_.raster) {
-      const double size = size_at(shape.centroid);
+    if (size_) {
+      const double size = size_(shape.centroid);
       if (!(size > 0) || std::isinf(size)) {
         findings_.add(Rule::kSize, [&] {
           return say("the size is ", size, " at ", shape.centroid, ", the centroid of triangle ",
@@ -175,15 +173,6 @@ class QualityJudge {
     return false;
   }
 
-  // REQUIRES: there is a size. NaN if one of the two is.
-  double size_at(Vec2 p) const {
-    const double by_raster =
-        requirements_.raster ? (*requirements_.raster)(p) : std::numeric_limits<double>::infinity();
-    if (!size_) return by_raster;
-    const double size = (*size_)(p);
-    return by_raster < size ? by_raster : size;
-  }
-
   double largest_size_nearby(Vec2 centroid, const std::array<Vec2, 3>& corners) const {
     double magnitude = 0;
     for (const Vec2 p : corners) magnitude = std::max({magnitude, std::fabs(p.x), std::fabs(p.y)});
@@ -191,7 +180,7 @@ class QualityJudge {
     double largest = 0;
     for (const double dx : {-step, 0.0, step})
       for (const double dy : {-step, 0.0, step})
-        largest = std::max(largest, size_at({centroid.x + dx, centroid.y + dy}));
+        largest = std::max(largest, size_({centroid.x + dx, centroid.y + dy}));
     return largest;
   }
 
@@ -208,9 +197,9 @@ class QualityJudge {
   Findings& findings_;
   Findings misses_;  // violations, once there are more than allowed
   double cotangent_limit_;
-  std::optional<SizeExpression> size_;
-  std::uint64_t bounded_ = 0;  // triangles
-  Sum shares_;                 // of their bounds
+  std::function<double(Vec2)> size_;  // empty if there is none
+  std::uint64_t bounded_ = 0;         // triangles
+  Sum shares_;                        // of their bounds
 };
 
 }  // namespace

@@ -11,18 +11,15 @@
 #include "checker/mesh.h"
 #include "checker/mesh/exemption.h"
 #include "checker/report.h"
-#include "checker/size/size_raster.h"
+#include "checker/size/size.h"
 
 namespace weft::check {
 
 struct Requirements {
   // Upper bound on every triangle's area, squared units. Default: none.
   std::optional<double> max_area;
-  // Upper bound on a triangle's area at its centroid, of x and y (size_expression.h). Default:
-  // none.
-  std::optional<std::string> size;
-  // The same, of values on a grid; with `size`, both bounds hold. Default: none.
-  std::optional<SizeRaster> raster;
+  // Upper bound on a triangle's area at its centroid; with `max_area`, both hold. Default: none.
+  SizeSpec size;
   // Lower bound on every angle, degrees. Default: none.
   std::optional<double> min_angle_deg;
   // Whether small input angles excuse (exemption.h).

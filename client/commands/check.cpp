@@ -45,7 +45,7 @@ check::Mesh to_checker(const Mesh& mesh) {
   return out;
 }
 
-check::SizeRaster to_checker(SizeGrid&& grid) {
+check::Raster to_checker(SizeGrid&& grid) {
   return {{grid.x, grid.y}, grid.dx, grid.dy, grid.columns, grid.rows, std::move(grid.values)};
 }
 
@@ -65,7 +65,7 @@ Result<ExitCode> run_check(const CheckOptions& options) {
   if (is_size_grid_path(options.size)) {
     auto grid = read_size_grid(options.size);
     if (!grid) return tl::unexpected(grid.error());
-    requirements.raster = to_checker(std::move(*grid));
+    requirements.size = to_checker(std::move(*grid));
   } else if (!options.size.empty()) {
     double constant = 0;
     const char* end = options.size.data() + options.size.size();

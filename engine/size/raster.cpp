@@ -71,7 +71,7 @@ void RasterSize::add_levels() {
 }
 
 std::size_t RasterSize::bytes() const noexcept {
-  std::size_t bytes = 0;
+  std::size_t bytes = raster_->values.capacity() * sizeof(double);
   for (const Level& level : levels_) bytes += level.blocks.capacity() * sizeof(Interval);
   return bytes;
 }

@@ -52,8 +52,11 @@ class RasterSize final : public SizeFunction {
 
   std::size_t operations() const noexcept override { return 64; }
 
-  // What it holds beyond the raster.
-  std::size_t bytes() const noexcept;
+  // Of the raster, too.
+  std::size_t bytes() const noexcept override;
+
+  // What `make` takes at most for each value, the raster itself not counted.
+  static constexpr std::uint64_t kBytesPerValue = 16;
 
  private:
   static constexpr std::uint32_t kAtATime = 4;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "engine/base/geometry.h"
 #include "engine/size/expression/interval.h"
@@ -30,6 +31,12 @@ class SizeFunction {
   // Bounds over the box of what `evaluate` returns, bit for bit: rounding included. A box that is
   // empty or NaN gives anything.
   virtual Interval bounds(const Box& box) const noexcept = 0;
+
+  // The value, if it is known to be the same everywhere; infinity for no bound.
+  virtual std::optional<double> constant() const noexcept { return std::nullopt; }
+
+  // Bytes of memory that grow with the request: what it holds, and what it was made from.
+  virtual std::size_t bytes() const noexcept { return 0; }
 
   // What an evaluation costs, in operations of about 1 ns for kLanes points: for callers that pace
   // their polling by it.

@@ -3,14 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
-#include <utility>
 
 #include "engine/base/geometry.h"
 #include "engine/engine.h"
-#include "engine/size/expression/expression.h"
 #include "server/admission/domain_picture.h"
+#include "server/wire/size_field.h"
 
 namespace weft::server {
 namespace {
@@ -21,8 +18,6 @@ constexpr double kBytesPerTriangle = 48;
 constexpr double kBytesPerPoint = 300;
 // Of the largest chunk, tables and buffers, in any run.
 constexpr double kBytesPerRun = 1.5e6;
-// A size raster's own, and those of its blocks (engine/size/raster.h).
-constexpr double kBytesPerRasterValue = 16;
 // Triangles times the bound over the area, at circumcentres: 1.55 if the size is the same
 // everywhere. Where it changes within a few triangles there are up to half more. Angles alone ask
 // for about four triangles a point.
@@ -61,15 +56,20 @@ double fill_of_lattice(const v1::GenerateMeshRequest& request) {
   return angle <= 29.5 ? 0.99 : 0.968 - 0.11 * std::max(0.0, angle - 30);
 }
 
-// The integral of 1 / bound over the domain, for the bounds of each row of the picture that
-// `of_row` writes and those of its regions.
-template <class OfRow>
-double integral_of_rows(const DomainPicture& picture, OfRow&& of_row) {
+// The integral of 1 / bound over the domain, for the size and the bounds of its regions.
+double integral(const DomainPicture& picture, const SizeFunction& size) {
   constexpr int kCells = DomainPicture::kCells;
   double sum = 0;
   for (int row = 0; row < kCells; ++row) {
+    alignas(64) double xs[kCells];
+    alignas(64) double ys[kCells];
     alignas(64) double bounds[kCells];
-    of_row(row, bounds);
+    for (int column = 0; column < kCells; ++column) {
+      const Point middle = picture.middle(column, row);
+      xs[column] = middle.x;
+      ys[column] = middle.y;
+    }
+    size.evaluate(kCells, xs, ys, bounds);
     for (int column = 0; column < kCells; ++column)
       sum += picture.part_inside(column, row) *
              std::max(inverse(bounds[column]), inverse(picture.max_area(column, row)));
@@ -77,46 +77,10 @@ double integral_of_rows(const DomainPicture& picture, OfRow&& of_row) {
   return sum * picture.area_of_cell();
 }
 
-double integral(const DomainPicture& picture, double bound) {
-  return integral_of_rows(
-      picture, [bound](int, double* bounds) { std::fill_n(bounds, DomainPicture::kCells, bound); });
-}
-
-double integral(const DomainPicture& picture, const Expression& size) {
-  constexpr int kCells = DomainPicture::kCells;
-  return integral_of_rows(picture, [&](int row, double* bounds) {
-    alignas(64) double xs[kCells];
-    alignas(64) double ys[kCells];
-    for (int column = 0; column < kCells; ++column) {
-      const Point middle = picture.middle(column, row);
-      xs[column] = middle.x;
-      ys[column] = middle.y;
-    }
-    size.evaluate(kCells, xs, ys, bounds);
-  });
-}
-
-// Up to kSamples of the raster's nodes stand for it.
-double mean_inverse(const v1::Raster& raster) {
-  constexpr int kSamples = 1024;
-  const int step = 1 + raster.values_size() / kSamples;
-  double sum = 0;
-  int count = 0;
-  for (int i = 0; i < raster.values_size(); i += step, ++count) sum += inverse(raster.values(i));
-  return sum / count;
-}
-
 // What the size and the regions ask for.
 double triangles_by_size(const v1::GenerateMeshRequest& request) {
-  const v1::SizeField& size = request.size();
   const DomainPicture picture = DomainPicture::of(request.domain());
-  double bound = std::numeric_limits<double>::infinity();
-  std::optional<Expression> expression;
-  if (size.has_constant()) bound = size.constant();
-  if (size.has_raster()) bound = 1 / mean_inverse(size.raster());
-  if (size.has_expression())
-    if (auto parsed = Expression::parse(size.expression())) expression = std::move(*parsed);
-  const double over_bound = expression ? integral(picture, *expression) : integral(picture, bound);
+  const double over_bound = integral(picture, *size_to_estimate_by(request.size()));
   const double fill = fill_of_lattice(request);
   return over_bound * (fill > 0 ? kOnLattice / fill : kTrianglesPerArea);
 }
@@ -147,8 +111,7 @@ std::uint64_t expected_bytes(const v1::GenerateMeshRequest& request, const Limit
   const double triangles = std::min(triangles_by_size(request) + kTrianglesPerPoint * points,
                                     static_cast<double>(most_triangles));
   const bool may_stream = !capped && min_angle_of(request) <= kMostStreamingAngleDeg;
-  const double bytes = kBytesPerRun + kBytesPerPoint * points +
-                       kBytesPerRasterValue * request.size().raster().values_size() +
+  const double bytes = kBytesPerRun + kBytesPerPoint * points + bytes_to_expect(request.size()) +
                        bytes_of_mesh(triangles, may_stream);
   // Not `min` alone: coordinates that are not finite make it NaN.
   return bytes < static_cast<double>(most) ? static_cast<std::uint64_t>(bytes) : most;

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "engine/size/expression/expression.h"
+#include "engine/engine.h"
 #include "server/wire/errors.h"
 #include "server/wire/wire_scan.h"
 #include "weft/v1/mesh_service.pb.h"

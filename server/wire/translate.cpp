@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "server/wire/size_field.h"
+
 namespace weft::server {
 namespace {
 
@@ -23,9 +25,6 @@ std::optional<Failure> check_pairs(std::string_view field, int size, std::string
                  fmt::format("{} holds {} numbers; {} come in pairs", field, size, what)};
 }
 
-bool positive(double value) {
-  return std::isfinite(value) && value > 0;
-}
 bool not_negative(double value) {
   return std::isfinite(value) && value >= 0;
 }
@@ -43,7 +42,7 @@ std::optional<Failure> check_domain(const v1::Domain& domain) {
                                markers, segments)};
   for (int i = 0; i < domain.regions_size(); ++i) {
     const v1::Region& region = domain.regions(i);
-    if (region.has_max_area() && !positive(region.max_area()))
+    if (region.has_max_area() && !(std::isfinite(region.max_area()) && region.max_area() > 0))
       return bad_option(fmt::format("domain.regions[{}].max_area", i),
                         fmt::format("domain.regions[{}].max_area is {}; it must be positive and "
                                     "finite",
@@ -52,25 +51,6 @@ std::optional<Failure> check_domain(const v1::Domain& domain) {
   if (!v1::Fill_IsValid(domain.fill()))
     return bad_option("domain.fill", fmt::format("domain.fill is {}, which is no Fill",
                                                  static_cast<int>(domain.fill())));
-  return std::nullopt;
-}
-
-std::optional<Failure> check_raster(const v1::Raster& raster) {
-  for (const auto& [name, value] : {std::pair{"x", raster.x()}, std::pair{"y", raster.y()}})
-    if (!std::isfinite(value))
-      return bad_option(fmt::format("size.raster.{}", name),
-                        fmt::format("size.raster.{} is {}; it must be finite", name, value));
-  for (const auto& [name, value] : {std::pair{"dx", raster.dx()}, std::pair{"dy", raster.dy()}})
-    if (!positive(value))
-      return bad_option(
-          fmt::format("size.raster.{}", name),
-          fmt::format("size.raster.{} is {}; it must be positive and finite", name, value));
-  const std::uint64_t nodes = std::uint64_t{raster.columns()} * raster.rows();
-  if (nodes == 0 || nodes != static_cast<std::uint64_t>(raster.values_size()))
-    return Failure{Reason::kBadArray, "size.raster.values",
-                   fmt::format("size.raster.values holds {} values for {} columns and {} rows; it "
-                               "takes one a node, and one node at least",
-                               raster.values_size(), raster.columns(), raster.rows())};
   return std::nullopt;
 }
 
@@ -83,11 +63,9 @@ std::vector<Point> to_points(const google::protobuf::RepeatedField<double>& pair
   return points;
 }
 
-// All of a request but its domain and its raster.
+// All of a request but its domain and its size.
 MeshRequest options_of(const v1::GenerateMeshRequest& request) {
   MeshRequest out;
-  if (request.size().has_constant()) out.size.constant = request.size().constant();
-  if (request.size().has_expression()) out.size.expression = request.size().expression();
   if (request.quality().has_min_angle_deg()) out.min_angle_deg = request.quality().min_angle_deg();
   out.min_edge = request.quality().min_edge();
   if (request.quality().placement() == v1::PLACEMENT_CIRCUMCENTRE)
@@ -143,8 +121,7 @@ std::optional<Failure> check_shape(const v1::GenerateMeshRequest& request) {
   if (!request.has_domain()) return bad_option("domain", "domain is missing; it is required");
   if (auto f = check_domain(request.domain())) return f;
 
-  if (request.size().has_raster())
-    if (auto f = check_raster(request.size().raster())) return f;
+  if (auto f = check_shape(request.size())) return f;
   const v1::Quality& quality = request.quality();
   if (!v1::Placement_IsValid(quality.placement()))
     return bad_option("quality.placement",
@@ -158,41 +135,40 @@ std::optional<Failure> check_shape(const v1::GenerateMeshRequest& request) {
 }
 
 std::optional<Failure> check_values(const v1::GenerateMeshRequest& request) {
-  auto error = check_options(options_of(request));
-  if (!error && request.size().has_raster()) {
-    const v1::Raster& raster = request.size().raster();
-    error = check_raster_values(
-        {raster.values().data(), raster.values().data() + raster.values_size()}, raster.columns());
-  }
+  if (const auto error = check_options(options_of(request))) return failure_of(*error);
+  return check_values(request.size());
+}
+
+std::optional<Failure> check_coordinates(const v1::Domain& domain) {
+  const auto error = check_pslg(to_engine(domain));
   return error ? std::optional(failure_of(*error)) : std::nullopt;
 }
 
-MeshRequest to_engine(const v1::GenerateMeshRequest& request) {
-  const v1::Domain& domain = request.domain();
-  MeshRequest out = options_of(request);
-  out.pslg.points = to_points(domain.points());
-  out.pslg.holes = to_points(domain.holes());
-  out.pslg.segments.resize(static_cast<std::size_t>(domain.segments_size() / 2));
+Pslg to_engine(const v1::Domain& domain) {
+  Pslg out;
+  out.points = to_points(domain.points());
+  out.holes = to_points(domain.holes());
+  out.segments.resize(static_cast<std::size_t>(domain.segments_size() / 2));
   const bool marked = domain.segment_markers_size() != 0;
-  for (std::size_t i = 0; i < out.pslg.segments.size(); ++i) {
+  for (std::size_t i = 0; i < out.segments.size(); ++i) {
     const std::uint32_t* ends = domain.segments().data() + 2 * i;
-    out.pslg.segments[i] = {ends[0], ends[1], marked ? domain.segment_markers().data()[i] : 0};
+    out.segments[i] = {ends[0], ends[1], marked ? domain.segment_markers().data()[i] : 0};
   }
-  out.pslg.regions.reserve(static_cast<std::size_t>(domain.regions_size()));
+  out.regions.reserve(static_cast<std::size_t>(domain.regions_size()));
   for (const v1::Region& region : domain.regions())
-    out.pslg.regions.push_back(
+    out.regions.push_back(
         {{region.x(), region.y()},
          region.id(),
          region.has_max_area() ? std::optional(region.max_area()) : std::nullopt});
-  out.pslg.fill = domain.fill() == v1::FILL_EVEN_ODD ? Fill::kEvenOdd : Fill::kSeeds;
-  out.pslg.snap = domain.snap();
+  out.fill = domain.fill() == v1::FILL_EVEN_ODD ? Fill::kEvenOdd : Fill::kSeeds;
+  out.snap = domain.snap();
+  return out;
+}
 
-  if (request.size().has_raster()) {
-    const v1::Raster& raster = request.size().raster();
-    out.size.raster = Raster{
-        {raster.x(), raster.y()}, raster.dx(),   raster.dy(),
-        raster.columns(),         raster.rows(), {raster.values().begin(), raster.values().end()}};
-  }
+MeshRequest to_engine(const v1::GenerateMeshRequest& request) {
+  MeshRequest out = options_of(request);
+  out.pslg = to_engine(request.domain());
+  out.size = to_engine(request.size());
   return out;
 }
 

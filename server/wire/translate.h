@@ -2,9 +2,8 @@
 // Between the wire and the engine: the only place that knows both.
 //
 // What an array's length tells is checked here, and the engine judges the options and the size,
-// both before a job is admitted; what needs the coordinates or a raster's values (a
-// NaN, an index, a seed) the engine finds when it works. Errors carry the path of the field as the
-// wire spells it.
+// both before a request is admitted. The engine judges coordinates and indices when it works, but
+// those of a job before it is kept. Errors carry the path of the field as the wire spells it.
 #pragma once
 
 #include <grpcpp/support/byte_buffer.h>
@@ -25,17 +24,22 @@ inline constexpr std::size_t kMaxLeafBoxes = 65'536;
 // Threads of `available` that a job takes at most, of which `wanted` are asked for; 0 is all.
 std::uint32_t to_threads(std::uint32_t wanted, int available);
 
-// Refuses arrays of impossible lengths and what only the wire has (enums, the grid of a raster, the
-// budget), in constant time but for the regions.
+// Refuses arrays of impossible lengths and what only the wire has (enums, the budget), in constant
+// time but for the regions.
 std::optional<Failure> check_shape(const v1::GenerateMeshRequest& request);
 
-// Refuses what the engine would refuse before it looks at coordinates: options outside their
-// ranges, an expression with a fault, values of a raster that are no sizes. REQUIRES:
-// check_shape(request) and check_limits(request, limits) found nothing.
+// Refuses what the engine would refuse before it looks at the domain: options outside their ranges,
+// and a size with a fault. REQUIRES: check_shape(request) and check_limits(request, limits) found
+// nothing.
 std::optional<Failure> check_values(const v1::GenerateMeshRequest& request);
 
-// REQUIRES: check_shape(request) and check_limits(request, limits) found nothing.
+// Refuses what the engine would refuse before it triangulates: check_pslg. Takes linear time, and
+// memory for a copy of the domain meanwhile. REQUIRES: as check_values.
+std::optional<Failure> check_coordinates(const v1::Domain& domain);
+
+// REQUIRES: as check_values.
 MeshRequest to_engine(const v1::GenerateMeshRequest& request);
+Pslg to_engine(const v1::Domain& domain);
 Budget to_budget(const v1::Budget& budget, const Limits& limits);
 double to_seconds(const v1::Budget& budget, const Limits& limits);
 

@@ -18,7 +18,7 @@ struct Discard : ChunkSink {
 MeshRequest square() {
   return {.pslg = {.points = {{0, 0}, {1, 0}, {1, 1}, {0, 1}},
                    .segments = {{0, 1}, {1, 2}, {2, 3}, {3, 0}}},
-          .size = {.constant = 5e-5},
+          .size = 5e-5,
           .leaf_triangles = 500};
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <thread>
 
 #include "tests/engine/domain/shapes.h"
@@ -58,67 +59,89 @@ TEST(Options, OfANegativeShortestEdgeAreRefused) {
 TEST(Range, OfCoordinatesIsKeptAtBothEnds) {
   EXPECT_EQ(error_of({.pslg = square(1e60)}).code, ErrorCode::kBadCoordinate);
   EXPECT_EQ(error_of({.pslg = square(1e-60)}).code, ErrorCode::kBadCoordinate);
-  EXPECT_TRUE(mesh_of({.pslg = square(1e49), .size = {.constant = 1e95}}));
-  EXPECT_TRUE(mesh_of({.pslg = square(1e-39), .size = {.constant = 1e-81}}));
+  EXPECT_TRUE(mesh_of({.pslg = square(1e49), .size = 1e95}));
+  EXPECT_TRUE(mesh_of({.pslg = square(1e-39), .size = 1e-81}));
 }
 
 TEST(Size, OfZeroIsRefused) {
-  const Error error = error_of({.pslg = square(), .size = {.constant = 0}});
+  const Error error = error_of({.pslg = square(), .size = 0.0});
   EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
   EXPECT_EQ(error.field, "size.constant");
 }
 
 TEST(Size, ThatIsAConstantExpressionBelowZeroIsRefused) {
-  const Error error = error_of({.pslg = square(), .size = {.expression = "1-2"}});
+  const Error error = error_of({.pslg = square(), .size = "1-2"});
   EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
   EXPECT_NE(error.message.find("-1"), std::string::npos) << error.message;
 }
 
+// What the run says is what was said before it.
+void expect_same(const std::optional<Error>& judged, const MeshRequest& request) {
+  ASSERT_TRUE(judged);
+  const Error met = error_of(request);
+  EXPECT_EQ(judged->code, met.code) << judged->message;
+  EXPECT_EQ(judged->field, met.field);
+  EXPECT_EQ(judged->message, met.message);
+}
+
 TEST(Options, AreJudgedAsTheRunJudgesThem) {
-  for (const MeshRequest& request : {MeshRequest{.pslg = square(), .size = {.constant = -1}},
-                                     MeshRequest{.pslg = square(), .size = {.expression = "1-2"}},
-                                     MeshRequest{.pslg = square(), .size = {.expression = "1+"}},
-                                     MeshRequest{.pslg = square(), .min_angle_deg = 61},
-                                     MeshRequest{.pslg = square(), .min_edge = -1},
-                                     MeshRequest{.pslg = square(), .sweeps = 17}}) {
-    const auto judged = check_options(request);
-    ASSERT_TRUE(judged);
-    const Error met = error_of(request);
-    EXPECT_EQ(judged->code, met.code) << judged->message;
-    EXPECT_EQ(judged->field, met.field);
-    EXPECT_EQ(judged->message, met.message);
+  for (const MeshRequest& request :
+       {MeshRequest{.pslg = square(), .min_angle_deg = 61},
+        MeshRequest{.pslg = square(), .min_edge = -1}, MeshRequest{.pslg = square(), .sweeps = 17}})
+    expect_same(check_options(request), request);
+  EXPECT_FALSE(check_options({.pslg = square(), .size = "1+x"}));
+}
+
+TEST(Size, IsJudgedAsTheRunJudgesIt) {
+  for (const SizeSpec& size : {SizeSpec{-1.0}, SizeSpec{"1-2"}, SizeSpec{"1+"},
+                               SizeSpec{Raster{{0, 0}, 1, 1, 2, 1, {1, 0}}}}) {
+    const auto judged = make_size(size);
+    ASSERT_FALSE(judged);
+    expect_same(judged.error(), {.pslg = square(), .size = size});
   }
-  EXPECT_FALSE(check_options({.pslg = square(), .size = {.expression = "1+x"}}));
+  EXPECT_TRUE(make_size("1+x"));
+}
+
+TEST(Domain, IsJudgedAsTheRunJudgesIt) {
+  Pslg not_a_number = square();
+  not_a_number.points[2].y = std::numeric_limits<double>::quiet_NaN();
+  Pslg no_point = square();
+  no_point.segments[1].b = 4;
+  Pslg no_length = square();
+  no_length.segments[1].b = no_length.segments[1].a;
+  Pslg line;
+  line.points = {{0, 0}, {1, 1}, {2, 2}};
+  for (const Pslg& pslg : {not_a_number, no_point, no_length, line})
+    expect_same(check_pslg(pslg), {.pslg = pslg});
+  EXPECT_FALSE(check_pslg(square()));
 }
 
 TEST(Size, ThatDividesByZeroNamesThePoint) {
-  const Error error = error_of({.pslg = square(), .size = {.expression = "1/(x-x)"}});
+  const Error error = error_of({.pslg = square(), .size = "1/(x-x)"});
   EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
   EXPECT_NE(error.message.find("the size at ("), std::string::npos) << error.message;
 }
 
 TEST(Size, ThatIsNegativeInAPartOfTheDomainIsFoundThere) {
-  const Error error =
-      error_of({.pslg = square(10), .size = {.expression = "(x-9)^2+(y-9)^2 < 0.01 ? -1 : 1"}});
+  const Error error = error_of({.pslg = square(10), .size = "(x-9)^2+(y-9)^2 < 0.01 ? -1 : 1"});
   EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
 }
 
 TEST(Size, ThatIsInfiniteInAPartOfTheDomainNamesThePoint) {
   MeshRequest request{.pslg = square()};
   add_box(request.pslg, {8, 0}, {9, 1});  // no triangle straddles the step
-  request.size.expression = "x > 5 ? 1/0 : 0.01";
+  request.size = "x > 5 ? 1/0 : 0.01";
   const Error error = error_of(request);
   EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
   EXPECT_NE(error.message.find("is inf"), std::string::npos) << error.message;
 }
 
 TEST(Size, ThatNeedsATrillionTrianglesIsRefusedByEstimate) {
-  const Error error =
-      error_of({.pslg = square(), .size = {.constant = 1e-12}}, {.triangle_limit = 1'000'000});
+  const Error error = error_of({.pslg = square(), .size = 1e-12}, {.triangle_limit = 1'000'000});
   EXPECT_EQ(error.code, ErrorCode::kLimitExceeded);
   EXPECT_NE(error.message.find("1000000"), std::string::npos) << error.message;
-  const Error graded = error_of({.pslg = square(), .size = {.expression = "1e-12*(1+x)"}},
-                                {.triangle_limit = 1'000'000});
+  const Error graded =
+      error_of({.pslg = square(), .size = "1e-12*(1+x)"}, {.triangle_limit = 1'000'000});
   EXPECT_EQ(graded.code, ErrorCode::kLimitExceeded);
 }
 
@@ -129,8 +152,7 @@ TEST(Size, OfARegionThatNeedsATrillionTrianglesIsRefusedByEstimate) {
 }
 
 TEST(Size, ThatIsNowherePositiveIsABadSizeAndNoLimit) {
-  const Error error =
-      error_of({.pslg = square(), .size = {.expression = "log(x)"}}, {.triangle_limit = 1'000'000});
+  const Error error = error_of({.pslg = square(), .size = "log(x)"}, {.triangle_limit = 1'000'000});
   EXPECT_EQ(error.code, ErrorCode::kBadSizeValue) << error.message;
 }
 
@@ -138,7 +160,7 @@ TEST(Size, WithASpotFinerThanOneHugeTriangleIsFollowed) {
   // The box has two triangles; no centroid of theirs is near the disc.
   MeshRequest request;
   add_box(request.pslg, {0, 0}, {65, 40});
-  request.size.expression = "(x-50)^2+(y-11)^2 < 1 ? 1e-3 : 1e6";
+  request.size = "(x-50)^2+(y-11)^2 < 1 ? 1e-3 : 1e6";
   const auto summary = mesh_of(request);
   ASSERT_TRUE(summary);
   // The disc alone needs pi / 1e-3 triangles.
@@ -156,7 +178,7 @@ Raster raster_with_a_spot() {
 TEST(Size, OfARasterIsKeptAndFollowed) {
   MeshRequest request;
   add_box(request.pslg, {0, 0}, {65, 40});
-  request.size.raster = raster_with_a_spot();
+  request.size = raster_with_a_spot();
   const auto summary = mesh_of(request);
   ASSERT_TRUE(summary);
   // The spot alone is a square of area 1.
@@ -167,22 +189,16 @@ TEST(Size, OfARasterIsKeptAndFollowed) {
 TEST(Size, OfARasterThatEndsInsideTheDomainGoesOnAsItEnds) {
   MeshRequest request;
   add_box(request.pslg, {-10, -10}, {10, 10});
-  request.size.raster = Raster{{0, 0}, 1, 1, 2, 1, {0.01, 1}};
+  request.size = Raster{{0, 0}, 1, 1, 2, 1, {0.01, 1}};
   const auto summary = mesh_of(request);
   ASSERT_TRUE(summary);
   EXPECT_GT(summary->triangles, 20'000u);  // the left half
 }
 
-TEST(Size, OfARasterBesideAConstantIsRefused) {
-  MeshRequest request{.pslg = square(), .size = {.constant = 1}};
-  request.size.raster = raster_with_a_spot();
-  EXPECT_EQ(error_of(request).field, "size");
-}
-
 TEST(Size, OfARasterWithAValueThatIsNoneNamesIt) {
   MeshRequest request{.pslg = square()};
-  request.size.raster = raster_with_a_spot();
-  request.size.raster->values[17] = 0;
+  request.size = raster_with_a_spot();
+  std::get<Raster>(request.size).values[17] = 0;
   const Error error = error_of(request);
   EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
   EXPECT_EQ(error.field, "size.raster.values[17]");
@@ -193,7 +209,7 @@ TEST(Size, ThatReachesZeroInAHoleDoesNoHarm) {
   add_box(request.pslg, {-4, -4}, {4, 4});
   add_box(request.pslg, {-1, -1}, {1, 1});
   request.pslg.holes.push_back({0, 0});
-  request.size.expression = "0.1*(x^2+y^2)^2";
+  request.size = "0.1*(x^2+y^2)^2";
   const auto summary = mesh_of(request);
   ASSERT_TRUE(summary);
   EXPECT_LT(summary->triangles, 2'000u);
@@ -204,15 +220,14 @@ TEST(Size, OfRegionsIsKeptBesideTheField) {
   add_box(request.pslg, {0, 0}, {2, 1});
   add_segment(request.pslg, {1, 0}, {1, 1}, 7);
   request.pslg.regions = {{{0.5, 0.5}, 3, 0.001}, {{1.5, 0.5}, 4, {}}};
-  request.size.constant = 0.01;
+  request.size = 0.01;
   const auto summary = mesh_of(request);
   ASSERT_TRUE(summary);
   EXPECT_GT(summary->triangles, 1'000u + 100u);
 }
 
 TEST(Budget, OfTrianglesGivesTheMeshThatThereIs) {
-  const auto summary =
-      mesh_of({.pslg = square(), .size = {.constant = 1e-12}}, {.max_triangles = 1000});
+  const auto summary = mesh_of({.pslg = square(), .size = 1e-12}, {.max_triangles = 1000});
   ASSERT_TRUE(summary) << summary.error().message;
   EXPECT_LE(summary->triangles, 1000u);
   EXPECT_GT(summary->triangles, 900u);
@@ -222,21 +237,21 @@ TEST(Budget, OfTrianglesGivesTheMeshThatThereIs) {
 TEST(Budget, ThatAMeshFitsExactlyIsNoError) {
   // The square has two triangles and needs no more.
   EXPECT_TRUE(mesh_of({.pslg = square()}, {.triangle_limit = 2}));
-  const auto summary = mesh_of({.pslg = square(), .size = {.constant = 0.01}});
+  const auto summary = mesh_of({.pslg = square(), .size = 0.01});
   ASSERT_TRUE(summary);
-  EXPECT_TRUE(mesh_of({.pslg = square(), .size = {.constant = 0.01}},
-                      {.triangle_limit = summary->triangles + 1}));
+  EXPECT_TRUE(
+      mesh_of({.pslg = square(), .size = 0.01}, {.triangle_limit = summary->triangles + 1}));
 }
 
 TEST(Budget, OfTrianglesMayBeTheLimitItself) {
-  const auto summary = mesh_of({.pslg = square(), .size = {.constant = 0.01}},
-                               {.max_triangles = 100, .triangle_limit = 100});
+  const auto summary =
+      mesh_of({.pslg = square(), .size = 0.01}, {.max_triangles = 100, .triangle_limit = 100});
   ASSERT_TRUE(summary);
   EXPECT_GT(summary->unrefined.budget, 0u);
 }
 
 TEST(Budget, OfTrianglesThatIsNotReachedChangesNothing) {
-  const MeshRequest request{.pslg = square(), .size = {.constant = 1e-4}, .leaf_triangles = 500};
+  const MeshRequest request{.pslg = square(), .size = 1e-4, .leaf_triangles = 500};
   const auto uncapped = mesh_of(request);
   ASSERT_TRUE(uncapped);
   const auto capped = mesh_of(request, {.max_triangles = uncapped->triangles});
@@ -248,7 +263,7 @@ TEST(Budget, OfTrianglesThatIsNotReachedChangesNothing) {
 }
 
 TEST(Budget, OfTheShortestEdgeFarAboveTheSizeMakesASmallMesh) {
-  const MeshRequest request{.pslg = square(), .size = {.constant = 5e-9}, .min_edge = 0.01};
+  const MeshRequest request{.pslg = square(), .size = 5e-9, .min_edge = 0.01};
   const auto summary = mesh_of(request);
   ASSERT_TRUE(summary);
   EXPECT_LT(summary->triangles, 40'000u);
@@ -257,7 +272,7 @@ TEST(Budget, OfTheShortestEdgeFarAboveTheSizeMakesASmallMesh) {
 }
 
 TEST(Budget, OfNumbersEndsAMeshThatCannotStream) {
-  MeshRequest request{.pslg = square(), .size = {.constant = 5e-10}, .min_angle_deg = 31};
+  MeshRequest request{.pslg = square(), .size = 5e-10, .min_angle_deg = 31};
   const Error error = error_of(request, {});
   EXPECT_EQ(error.code, ErrorCode::kLimitExceeded);
   EXPECT_EQ(error.field, "size");
@@ -265,14 +280,13 @@ TEST(Budget, OfNumbersEndsAMeshThatCannotStream) {
 }
 
 TEST(Budget, OfBytesIsNamedWhenItRunsOut) {
-  const Error error =
-      error_of({.pslg = square(), .size = {.constant = 1e-6}}, {.max_bytes = 4 << 20});
+  const Error error = error_of({.pslg = square(), .size = 1e-6}, {.max_bytes = 4 << 20});
   EXPECT_EQ(error.code, ErrorCode::kBudgetExceeded);
   EXPECT_NE(error.message.find("4194304"), std::string::npos) << error.message;
 }
 
 TEST(Budget, OfTheShortestEdgeIsKeptAndCounted) {
-  MeshRequest request{.pslg = square(), .size = {.constant = 1e-4}, .min_edge = 0.1};
+  MeshRequest request{.pslg = square(), .size = 1e-4, .min_edge = 0.1};
   CollectedMesh mesh;
   ExecutionContext context;
   const auto summary = generate_mesh(request, mesh, context);
@@ -293,7 +307,7 @@ TEST(Stopping, ByTheDeadlineEndsTheJobWithinFiftyMilliseconds) {
   ExecutionContext context;
   context.set_deadline(ExecutionContext::Clock::now() + std::chrono::milliseconds(30));
   const auto start = ExecutionContext::Clock::now();
-  const auto summary = generate_mesh({.pslg = square(), .size = {.constant = 1e-8}}, mesh, context);
+  const auto summary = generate_mesh({.pslg = square(), .size = 1e-8}, mesh, context);
   const auto took = ExecutionContext::Clock::now() - start;
   ASSERT_FALSE(summary);
   EXPECT_EQ(summary.error().code, ErrorCode::kDeadlineExceeded);
@@ -319,8 +333,7 @@ TEST(Stopping, FromAnotherThreadReachesEachStage) {
       while (context.progress().stage < stage) std::this_thread::yield();
       context.cancel();
     });
-    const auto summary =
-        generate_mesh({.pslg = square(), .size = {.constant = 1e-8}}, mesh, context);
+    const auto summary = generate_mesh({.pslg = square(), .size = 1e-8}, mesh, context);
     canceller.join();
     ASSERT_FALSE(summary);
     EXPECT_EQ(summary.error().code, ErrorCode::kCancelled);
@@ -339,7 +352,7 @@ TEST(Stopping, ByTheSinkEndsTheJob) {
 
 TEST(Determinism, GivesTheSameDigestOnEveryRun) {
   const MeshRequest request{.pslg = read_poly(model("us-east-coast.poly")),
-                            .size = {.expression = "1e-3*(1.5+sin(x)*cos(y))"}};
+                            .size = "1e-3*(1.5+sin(x)*cos(y))"};
   const auto first = mesh_of(request);
   const auto second = mesh_of(request);
   ASSERT_TRUE(first && second);
@@ -348,7 +361,7 @@ TEST(Determinism, GivesTheSameDigestOnEveryRun) {
 
 TEST(Determinism, GivesTheRecordedDigestOnEveryMachineAndCompiler) {
   MeshRequest request{.pslg = read_poly(model("pipe.poly")),
-                      .size = {.expression = "0.4*sqrt((x-200)^2+(y-200)^2)+1+sin(x)^2*exp(-y)"}};
+                      .size = "0.4*sqrt((x-200)^2+(y-200)^2)+1+sin(x)^2*exp(-y)"};
   const auto summary = mesh_of(request);
   ASSERT_TRUE(summary);
   std::string hex;
@@ -360,7 +373,7 @@ TEST(Determinism, GivesTheRecordedDigestOnEveryMachineAndCompiler) {
 }
 
 TEST(Memory, AtThePeakIsAtMost48BytesATriangle) {
-  const auto summary = mesh_of({.pslg = square(), .size = {.constant = 1e-6}});
+  const auto summary = mesh_of({.pslg = square(), .size = 1e-6});
   ASSERT_TRUE(summary);
   EXPECT_LE(static_cast<double>(summary->peak_bytes) / static_cast<double>(summary->triangles), 48);
 }

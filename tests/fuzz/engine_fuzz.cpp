@@ -92,8 +92,8 @@ void judge(const std::uint8_t* data, std::size_t size) {
     const Error& error = one.summary.error();
     must(error.code != ErrorCode::kInternal, "internal", error.message);
     const bool endless = error.code == ErrorCode::kLimitExceeded && made.plain &&
-                         !made.request.size.constant && !made.request.size.expression &&
-                         !made.request.size.raster && made.request.min_angle_deg <= 25;
+                         std::holds_alternative<std::monostate>(made.request.size) &&
+                         made.request.min_angle_deg <= 25;
     must(!endless, "explosion", error.message);
   }
   // The arena is never freed: its threads would have to be waited for as the process ends.

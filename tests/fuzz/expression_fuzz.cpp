@@ -136,7 +136,7 @@ void judge(const std::uint8_t* data, std::size_t size) {
     must(inside, "bounds", [&] {
       return shown() + " is not in [" + print(bounds.lo) + ", " + print(bounds.hi) + "]";
     });
-    if (parsed->is_constant()) must(same(value, points.value[0]), "constant", shown);
+    if (parsed->constant()) must(same(value, *parsed->constant()), "constant", shown);
   }
 
   const Point p{points.x[chosen], points.y[chosen]};
@@ -144,7 +144,7 @@ void judge(const std::uint8_t* data, std::size_t size) {
   if (source.find('^') == std::string_view::npos && source.find("pow") == std::string_view::npos) {
     const auto folded = Expression::parse(substituted(source, p.x, p.y));
     if (folded)
-      must(folded->is_constant() && same((*folded)(p), value), "folding",
+      must(folded->constant() && same((*folded)(p), value), "folding",
            [&] { return print((*folded)(p)) + " for " + print(value); });
     else
       must(folded.error().code == ErrorCode::kExpressionTooComplex, "folding",

@@ -173,30 +173,28 @@ SizeSpec read_size(ByteSource& bytes, double extent, const Pslg& pslg) {
   const Point at = pslg.points.empty() ? Point{} : pslg.points[bytes.below(pslg.points.size())];
   switch (kind) {
     case 4:
-      size.constant = area;
+      size = area;
       break;
     case 5: {
       const double step = extent / 8;
       switch (bytes.below(6)) {
         case 0:
-          size.expression =
-              print("%.17g + %.17g*hypot(x-%.17g, y-%.17g)", area / 4, step, at.x, at.y);
+          size = print("%.17g + %.17g*hypot(x-%.17g, y-%.17g)", area / 4, step, at.x, at.y);
           break;
         case 1:
-          size.expression = print("x < %.17g ? %.17g : %.17g", at.x + step, area, area / 5);
+          size = print("x < %.17g ? %.17g : %.17g", at.x + step, area, area / 5);
           break;
         case 2:
-          size.expression =
-              print("hypot(x-%.17g,y-%.17g) < %.17g ? %.17g : 1e30", at.x, at.y, step, area / 6);
+          size = print("hypot(x-%.17g,y-%.17g) < %.17g ? %.17g : 1e30", at.x, at.y, step, area / 6);
           break;
         case 3:
-          size.expression = print("%.17g + abs(y-%.17g)*%.17g", area / 3, at.y, step);
+          size = print("%.17g + abs(y-%.17g)*%.17g", area / 3, at.y, step);
           break;
         case 4:
-          size.expression = print("%.17g", area);
+          size = print("%.17g", area);
           break;
         default:
-          size.expression = print("max(%.17g, (x-%.17g)^2)", area / 4, at.x);
+          size = print("max(%.17g, (x-%.17g)^2)", area / 4, at.x);
       }
       break;
     }
@@ -209,7 +207,7 @@ SizeSpec read_size(ByteSource& bytes, double extent, const Pslg& pslg) {
                     .values = {}};
       for (std::size_t i = 0; i < std::size_t{raster.columns} * raster.rows; ++i)
         raster.values.push_back(extent * extent / static_cast<double>(1 + bytes.byte()));
-      size.raster = std::move(raster);
+      size = std::move(raster);
       break;
     }
     default:
@@ -251,8 +249,10 @@ std::string to_text(const MeshCase& mesh_case) {
   const MeshRequest& request = mesh_case.request;
   const Pslg& pslg = request.pslg;
   std::string text = print("# --min-angle %.17g", request.min_angle_deg);
-  if (request.size.constant) text += print(" --size %.17g", *request.size.constant);
-  if (request.size.expression) text += " --size '" + *request.size.expression + "'";
+  if (const auto* const constant = std::get_if<double>(&request.size))
+    text += print(" --size %.17g", *constant);
+  if (const auto* const expression = std::get_if<std::string>(&request.size))
+    text += " --size '" + *expression + "'";
   if (request.min_edge > 0) text += print(" --min-edge %.17g", request.min_edge);
   if (request.placement == Placement::kCircumcentre) text += " --placement circumcentre";
   if (request.sweeps) text += print(" --optimise %u", *request.sweeps);
@@ -264,7 +264,7 @@ std::string to_text(const MeshCase& mesh_case) {
       print("   (leaf_triangles %g, fill %s, triangle_limit %llu)\n",
             request.leaf_triangles.value_or(0), pslg.fill == Fill::kSeeds ? "seeds" : "even-odd",
             static_cast<unsigned long long>(mesh_case.budget.triangle_limit));
-  if (const auto& raster = request.size.raster) {
+  if (const auto* const raster = std::get_if<Raster>(&request.size)) {
     text += print("# raster: origin %.17g %.17g, step %.17g %.17g, %u x %u:", raster->origin.x,
                   raster->origin.y, raster->dx, raster->dy, raster->columns, raster->rows);
     for (const double value : raster->values) text += print(" %.17g", value);

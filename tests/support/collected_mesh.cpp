@@ -47,6 +47,7 @@ std::string miscounted(const MeshRequest& request, const check::Mesh& mesh,
   const bool bounded_by_regions =
       std::any_of(request.pslg.regions.begin(), request.pslg.regions.end(),
                   [](const RegionSeed& r) { return r.max_area.has_value(); });
+  const auto* const constant = std::get_if<double>(&request.size);
   constexpr double kStep = 0.1;  // degrees: what the percentile is rounded by
   double below_percentile = 0;
   double up_to_percentile = 0;
@@ -71,11 +72,11 @@ std::string miscounted(const MeshRequest& request, const check::Mesh& mesh,
     up_to_percentile += smallest < summary.min_angle_p1_deg + kStep ? 1 : 0;
     const double inradius = 2 * area / (length[0] + length[1] + length[2]);
     aspects.add(std::max({length[0], length[1], length[2]}) / (2 * std::sqrt(3.0) * inradius));
-    if (request.size.constant) sizes.add(area / *request.size.constant);
+    if (constant) sizes.add(area / *constant);
   }
   if (!angles.agrees_with(summary.angle_histogram)) return "the summary miscounts angles";
   if (!aspects.agrees_with(summary.aspect_histogram)) return "the summary miscounts aspect ratios";
-  if (request.size.constant && !bounded_by_regions && !sizes.agrees_with(summary.size_histogram))
+  if (constant && !bounded_by_regions && !sizes.agrees_with(summary.size_histogram))
     return "the summary miscounts sizes";
   const double rank = 0.01 * static_cast<double>(mesh.triangles.size());
   if (!(below_percentile <= rank && rank <= up_to_percentile))
@@ -173,15 +174,17 @@ std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
                     const Summary& summary) {
   if (!collected.broken_law.empty()) return "broken law: " + collected.broken_law;
   check::Requirements requirements;
-  requirements.max_area = request.size.constant;
-  requirements.size = request.size.expression;
-  if (const auto& raster = request.size.raster)
-    requirements.raster = {{raster->origin.x, raster->origin.y},
-                           raster->dx,
-                           raster->dy,
-                           raster->columns,
-                           raster->rows,
-                           raster->values};
+  if (const auto* const constant = std::get_if<double>(&request.size))
+    requirements.max_area = *constant;
+  if (const auto* const expression = std::get_if<std::string>(&request.size))
+    requirements.size = *expression;
+  if (const auto* const raster = std::get_if<Raster>(&request.size))
+    requirements.size = check::Raster{{raster->origin.x, raster->origin.y},
+                                      raster->dx,
+                                      raster->dy,
+                                      raster->columns,
+                                      raster->rows,
+                                      raster->values};
   requirements.min_angle_deg = request.min_angle_deg;
   // What the engine declares it could not refine may miss its bounds, no more.
   requirements.allowed_unrefined =

@@ -48,8 +48,9 @@ Interval Expression::bounds(const Box& box) const noexcept {
   return expr::bounds(program_->code, box);
 }
 
-bool Expression::is_constant() const noexcept {
-  return program_->is_constant;
+std::optional<double> Expression::constant() const noexcept {
+  if (!program_->is_constant) return std::nullopt;
+  return (*this)(Point{0, 0});
 }
 
 std::size_t Expression::operations() const noexcept {

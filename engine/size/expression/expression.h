@@ -31,6 +31,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include "engine/base/error.h"
@@ -66,9 +67,8 @@ class Expression final : public SizeFunction {
   // constant and the box lies in one piece, lo == hi.
   Interval bounds(const Box& box) const noexcept override;
 
-  // Whether the value is the same everywhere by the look of the expression: no x and y are left
-  // after folding.
-  bool is_constant() const noexcept;
+  // The value if no x and y are left after folding.
+  std::optional<double> constant() const noexcept override;
 
   // At most kMaxOperations.
   std::size_t operations() const noexcept override;

@@ -98,7 +98,7 @@ TEST(Area, AJumpOfTheSizeAtTheCentroidItselfIsForgiven) {
 
 TEST(Area, ConstantAndExpressionHoldTogether) {
   Problem problem = block(1);
-  problem.requirements.size.emplace("1");
+  problem.requirements.size = "1";
   EXPECT_TRUE(problem.check().ok());
   problem.requirements.max_area = 0.1;
   EXPECT_EQ(violated(problem.check()), Rules{Rule::kArea});
@@ -137,12 +137,14 @@ TEST(Unrefined, AsManyAsAreAllowedAreNoViolation) {
 TEST(Area, OfARasterIsBoundAtTheCentroids) {
   Problem problem = block(4);  // triangles of area 0.5 on [0, 4] x [0, 4]
   problem.requirements = {};
-  problem.requirements.raster = SizeRaster{{0, 0}, 4, 4, 2, 2, {0.5, 0.5, 0.5, 0.5}};
+  Raster raster{{0, 0}, 4, 4, 2, 2, {0.5, 0.5, 0.5, 0.5}};
+  problem.requirements.size = raster;
   EXPECT_TRUE(problem.check().ok());
-  problem.requirements.raster->values = {0.5, 0.4, 0.5, 0.5};
+  raster.values[1] = 0.4;
+  problem.requirements.size = raster;
   EXPECT_EQ(violated(problem.check()), Rules{Rule::kArea});
-  problem.requirements.raster->values[1] = 0;
-  problem.requirements.raster->values[3] = -1;
+  raster.values = {0.5, 0, 0.5, -1};
+  problem.requirements.size = raster;
   EXPECT_TRUE(violated(problem.check()).contains(Rule::kSize));
 }
 

@@ -24,7 +24,7 @@ namespace {
 MeshRequest below_precision(const std::string& largest = "1e-3") {
   MeshRequest request{.pslg = square()};
   for (Point& p : request.pslg.points) p = {p.x + 1e6, p.y + 1e6};
-  request.size.expression = "min(" + largest + ", 1e-24 + 0.1*((x-1e6)^2 + (y-1e6)^2))";
+  request.size = "min(" + largest + ", 1e-24 + 0.1*((x-1e6)^2 + (y-1e6)^2))";
   return request;
 }
 
@@ -87,7 +87,7 @@ TEST(BoundsError, ComesIfTheShortestEdgeThatTheCallerAllowsIsBelowPrecision) {
 }
 
 TEST(BoundsError, IsNoneForWhatTheCallersBudgetLeaves) {
-  MeshRequest request{.pslg = square(), .size = {.constant = 1e-6}};
+  MeshRequest request{.pslg = square(), .size = 1e-6};
   CollectedMesh mesh;
   ExecutionContext context({.max_triangles = 1000});
   const auto summary = generate_mesh(request, mesh, context);

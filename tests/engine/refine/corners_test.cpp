@@ -145,9 +145,9 @@ TEST(BoundOfZero, InsertsWhatASizeAsksForAlone) {
   Pslg pslg = square();
   add_segment(pslg, {0.25, 0.25}, {0.75, 0.25});
   add_segment(pslg, {0.25, 0.25 + 1e-6}, {0.75, 0.25 + 1e-6});
-  EXPECT_EQ(mesh(pslg, 0, {.constant = 1}).insertions, 0u);
+  EXPECT_EQ(mesh(pslg, 0, 1.0).insertions, 0u);
   // A triangle has 0.64 of the size on average.
-  EXPECT_LT(mesh(pslg, 0, {.constant = 1e-3}).triangles, 2'000u);
+  EXPECT_LT(mesh(pslg, 0, 1e-3).triangles, 2'000u);
 }
 
 struct Coast {

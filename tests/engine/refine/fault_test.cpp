@@ -88,7 +88,7 @@ class Faults : public testing::TestWithParam<bool> {};
 TEST_P(Faults, InATaskEndTheJobWithATypedErrorAndLeaveTheArenaSound) {
   // With segments, regions and a graded size, in leaves enough to stream.
   MeshRequest request{.pslg = square(), .leaf_triangles = 100};
-  request.size.expression = "1.3e-4+6e-4*x^2";
+  request.size = "1.3e-4+6e-4*x^2";
   add_segment(request.pslg, {0.1, 0.1}, {0.9, 0.8}, 1);
   Arena arena(4);
   const auto whole = mesh_on(&arena, request);

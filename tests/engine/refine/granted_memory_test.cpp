@@ -57,8 +57,7 @@ TEST(GrantedMemory, IsNearlyAllThatTheSummaryTellsOf) {
     Stingy source;
     context.set_memory(source, 0);
     ForgetfulSink sink;
-    const auto summary =
-        generate_mesh({.pslg = square(), .size = {.constant = 1.04 / triangles}}, sink, context);
+    const auto summary = generate_mesh({.pslg = square(), .size = 1.04 / triangles}, sink, context);
     ASSERT_TRUE(summary);
     const auto peak = static_cast<double>(summary->peak_bytes);
     const auto asked = static_cast<double>(source.most());

@@ -174,7 +174,7 @@ TEST(ReservedMemory, IsGivenUpWhereThereIsNoRoomForMore) {
 }
 
 TEST(ReservedMemory, ThatAnotherJobLeftChangesNoMesh) {
-  const MeshRequest request{.pslg = square(), .size = {.constant = 2e-5}};
+  const MeshRequest request{.pslg = square(), .size = 2e-5};
   Budget budget;
   budget.triangle_limit = 1'000'000;
   std::optional<Digest> digest;

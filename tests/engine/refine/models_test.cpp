@@ -43,12 +43,12 @@ TEST_P(Models, AreMeshedWithinBounds) {
 
 INSTANTIATE_TEST_SUITE_P(
     OfThePaper, Models,
-    testing::Values(Case{"Pipe", "pipe.poly", {.expression = kPipeSize}, 20, 3'750},
-                    Case{"Key", "key.poly", {.expression = kKeySize}, 20, 7'200},
-                    Case{"Cylinder", "cylinder.poly", {.expression = kCylinderSize}, 20, 970'000},
+    testing::Values(Case{"Pipe", "pipe.poly", kPipeSize, 20, 3'750},
+                    Case{"Key", "key.poly", kKeySize, 20, 7'200},
+                    Case{"Cylinder", "cylinder.poly", kCylinderSize, 20, 970'000},
                     Case{"Coast20", "us-east-coast.poly", {}, 20, 20'000},
                     Case{"Coast30", "us-east-coast.poly", {}, 30, 40'000},
-                    Case{"CoastFine", "us-east-coast.poly", {.constant = 1e-3}, 20, 500'000}),
+                    Case{"CoastFine", "us-east-coast.poly", 1e-3, 20, 500'000}),
     [](const auto& info) { return info.param.name; });
 
 }  // namespace

@@ -55,7 +55,7 @@ void for_plans(int count, Check&& check) {
 TEST(FloorPlans, AreMeshedWithinTheirBounds) {
   for_plans(500, [](const FloorPlan& plan) {
     within_bounds({.pslg = floor_plan(plan)});
-    within_bounds({.pslg = floor_plan(plan), .size = {.constant = 1}});
+    within_bounds({.pslg = floor_plan(plan), .size = 1.0});
   });
 }
 
@@ -95,8 +95,8 @@ TEST(FloorPlans, TakeAFewMoreTrianglesThanUnroundedIfASizeIsAsked) {
     const auto triangles = [](const FloorPlan& drawn) {
       CollectedMesh collected;
       ExecutionContext context;
-      const auto summary = generate_mesh({.pslg = floor_plan(drawn), .size = {.constant = 0.05}},
-                                         collected, context);
+      const auto summary =
+          generate_mesh({.pslg = floor_plan(drawn), .size = 0.05}, collected, context);
       return summary ? static_cast<double>(summary->triangles) : std::nan("");
     };
     const double mesh = triangles(plan), reference = triangles(exact);
@@ -113,7 +113,7 @@ TEST(FloorPlans, TakeAFewMoreTrianglesThanUnroundedIfASizeIsAsked) {
 TEST(NearFeatures, OfAPartitionThatEndsOnAWallInUtmCoordinates) {
   for (int decimals = 2; decimals <= 12; ++decimals) {
     SCOPED_TRACE(decimals);
-    MeshRequest request{.size = {.constant = 10}};
+    MeshRequest request{.size = 10.0};
     const double end = rounded(4649846 + 140.0 / 3, decimals);
     add_box(request.pslg, {499900, 4649800}, {500400, 4650000});
     add_segment(request.pslg, {500000, 4649846}, {500300, 4649946});
@@ -123,7 +123,7 @@ TEST(NearFeatures, OfAPartitionThatEndsOnAWallInUtmCoordinates) {
 }
 
 TEST(NearFeatures, OfAPointAboveTheToleranceBesideASegment) {
-  MeshRequest request{.size = {.constant = 1e-3}};
+  MeshRequest request{.size = 1e-3};
   add_box(request.pslg, {1, 1}, {1.9, 1.9});
   add_segment(request.pslg, {1.05, 1.1}, {1.85, 1.37});
   request.pslg.points.push_back({1.4, 1.2181250000000112});

@@ -53,8 +53,7 @@ inline std::string outcome(const Result<Summary>& result) {
 
 // A square on which the size asks for about so many triangles.
 inline MeshRequest busy_square(double triangles, double leaf_triangles) {
-  return {
-      .pslg = square(), .size = {.constant = 1.04 / triangles}, .leaf_triangles = leaf_triangles};
+  return {.pslg = square(), .size = 1.04 / triangles, .leaf_triangles = leaf_triangles};
 }
 
 }  // namespace weft

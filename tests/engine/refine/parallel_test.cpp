@@ -94,7 +94,7 @@ TEST_P(ParallelModels, GiveOneMeshAtEveryNumberOfThreads) {
   MeshRequest request{.pslg = read_poly(model(m.file)),
                       .min_angle_deg = m.min_angle_deg,
                       .leaf_triangles = m.leaf_triangles};
-  if (!m.size.empty()) request.size.expression = (kSanitized ? "9*(" : "(") + m.size + ")";
+  if (!m.size.empty()) request.size = (kSanitized ? "9*(" : "(") + m.size + ")";
   const auto summary = expect_one_mesh(request);
   ASSERT_TRUE(summary);
   EXPECT_GE(summary->leaves.size(), kSanitized ? m.least_leaves / 15 : m.least_leaves);
@@ -146,7 +146,7 @@ TEST_P(ParallelPslgs, GiveOneMeshAtEveryNumberOfThreads) {
     Random random(1000 + seed);
     MeshRequest request;
     request.pslg = GetParam().generate(random);
-    request.size.expression = graded_size(box_of(request.pslg), random);
+    request.size = graded_size(box_of(request.pslg), random);
     request.min_angle_deg = kAngles[random.below(std::size(kAngles))];
     request.leaf_triangles = 50 * std::pow(40, random.unit());
     request.sweeps = static_cast<std::uint32_t>(seed % 4);
@@ -233,7 +233,7 @@ TEST(Parallel, ASizeThatJumpsAMillionfoldAtALeafBorderGivesOneMesh) {
   MeshRequest request{.pslg = square(), .leaf_triangles = 50};
   const std::string x = text(middle->x);
   const std::string y = text(middle->y);
-  request.size.expression = "x < " + x + " && y < " + y + " && x > 0.45 && y > 0.45 ? 1e-6 : 1";
+  request.size = "x < " + x + " && y < " + y + " && x > 0.45 && y > 0.45 ? 1e-6 : 1";
   const auto summary = expect_one_mesh(request);
   ASSERT_TRUE(summary);
   EXPECT_GT(summary->triangles, 2'500u);
@@ -254,7 +254,7 @@ TEST(Parallel, SegmentsThatCrossManyLeavesGiveOneMesh) {
 }
 
 TEST(Parallel, ManySmallComponentsGiveOneMesh) {
-  MeshRequest request{.size = {.constant = 0.003}, .leaf_triangles = 100};
+  MeshRequest request{.size = 0.003, .leaf_triangles = 100};
   for (int i = 0; i < 20; ++i) {
     for (int j = 0; j < 20; ++j)
       add_box(request.pslg, {1.0 * i, 1.0 * j}, {i + 0.3 + 0.03 * j, j + 0.2}, i);
@@ -285,12 +285,12 @@ MeshRequest parallel_segments(double gap, double shift) {
   return request;
 }
 
-class ParallelSegments : public testing::TestWithParam<std::optional<double>> {};
+class ParallelSegments : public testing::TestWithParam<SizeSpec> {};
 
 TEST_P(ParallelSegments, HaveLeavesThatHardlyWaitForEachOther) {
   for (const double shift : {0.0, 0.0013}) {
     MeshRequest request = parallel_segments(kSanitized ? 0.02 : 0.0023, shift);
-    request.size.constant = GetParam();
+    request.size = GetParam();
     const auto summary = expect_one_mesh(request);
     ASSERT_TRUE(summary);
     EXPECT_GE(summary->leaves.size(), kSanitized ? 20u : 60u);
@@ -299,8 +299,10 @@ TEST_P(ParallelSegments, HaveLeavesThatHardlyWaitForEachOther) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, ParallelSegments, testing::Values(std::nullopt, 8.0),
-                         [](const auto& info) { return info.param ? "ASize" : "NoSize"; });
+INSTANTIATE_TEST_SUITE_P(Of, ParallelSegments, testing::Values(SizeSpec{}, SizeSpec{8.0}),
+                         [](const auto& info) {
+                           return info.param.index() != 0 ? "ASize" : "NoSize";
+                         });
 
 // What leaves add to the triangles of one leaf: 1.02 is 2 %.
 double cost_of_leaves(MeshRequest request, std::size_t* leaves) {
@@ -317,7 +319,7 @@ TEST(Leaves, AddNoTrianglesAroundAFineSpot) {
   for (const double angle : {0, 20}) {
     std::size_t leaves = 0;
     EXPECT_LT(cost_of_leaves({.pslg = square(1000),
-                              .size = {.expression = "hypot(x-333.3,y-411.7)<1 ? 1.3e-4 : 1e9"},
+                              .size = "hypot(x-333.3,y-411.7)<1 ? 1.3e-4 : 1e9",
                               .min_angle_deg = angle},
                              &leaves),
               1.02);
@@ -328,8 +330,7 @@ TEST(Leaves, AddNoTrianglesAroundAFineSpot) {
 // What is cleaned up around leaves with large triangles needs room far around: nothing may have
 // left.
 TEST(Leaves, ThatAreNotBusyKeepTheGuarantee) {
-  MeshRequest request{.pslg = square(1000),
-                      .size = {.expression = "hypot(x-333.3,y-411.7)<1 ? 1.3e-4 : 1e9"}};
+  MeshRequest request{.pslg = square(1000), .size = "hypot(x-333.3,y-411.7)<1 ? 1.3e-4 : 1e9"};
   const auto summary = expect_one_mesh(request);
   ASSERT_TRUE(summary);
   EXPECT_GE(summary->leaves.size(), 64u);
@@ -338,9 +339,8 @@ TEST(Leaves, ThatAreNotBusyKeepTheGuarantee) {
 
 TEST(Leaves, AreSmallerThanAMillionthOfTheDomainWhereASpotIs) {
   std::size_t leaves = 0;
-  EXPECT_LT(cost_of_leaves({.pslg = square(),
-                            .size = {.expression = "hypot(x-0.3333,y-0.4117)<3e-8 ? 9e-20 : 1e9"}},
-                           &leaves),
+  EXPECT_LT(cost_of_leaves(
+                {.pslg = square(), .size = "hypot(x-0.3333,y-0.4117)<3e-8 ? 9e-20 : 1e9"}, &leaves),
             1.02);
   EXPECT_GT(leaves, 10u);
 }
@@ -383,7 +383,7 @@ TEST(Parallel, OfARasterIsOneMesh) {
   for (int j = 0; j < 79; ++j)
     for (int i = 0; i < 79; ++i) raster.values.push_back(0.2 + (i * 37 + j * 11) % 10 * 0.2);
   MeshRequest request{.pslg = read_poly(model("pipe.poly"))};
-  request.size.raster = raster;
+  request.size = raster;
   request.leaf_triangles = 2'000;
   const auto summary = expect_one_mesh(request);
   ASSERT_TRUE(summary);

@@ -18,7 +18,7 @@ namespace weft {
 namespace {
 
 MeshRequest sized_square(const std::string& expression, double min_angle_deg = 20) {
-  return {.pslg = square(10), .size = {.expression = expression}, .min_angle_deg = min_angle_deg};
+  return {.pslg = square(10), .size = expression, .min_angle_deg = min_angle_deg};
 }
 
 MeshRequest sized_square(const std::function<double(double, double)>& size, std::uint32_t nodes) {
@@ -27,7 +27,7 @@ MeshRequest sized_square(const std::function<double(double, double)>& size, std:
     for (std::uint32_t i = 0; i < nodes; ++i)
       raster.values.push_back(size(i * raster.dx, j * raster.dy));
   }
-  return {.pslg = square(10), .size = {.raster = raster}};
+  return {.pslg = square(10), .size = raster};
 }
 
 struct Case {
@@ -58,7 +58,7 @@ TEST_P(Placements, OnALatticeMakeAThirdFewerTriangles) {
 INSTANTIATE_TEST_SUITE_P(
     Of, Placements,
     testing::Values(
-        Case{"Constant", {.pslg = square(10), .size = {.constant = 2e-3}}, 1.03, 0.99},
+        Case{"Constant", {.pslg = square(10), .size = 2e-3}, 1.03, 0.99},
         Case{"Stepped", sized_square("hypot(x-5,y-5)<3 ? 1e-3 : 1e-2"), 1.06, 0.985},
         Case{"Smooth", sized_square("1e-3*(1+hypot(x-12,y-5))"), 1.05, 0.985},
         Case{"Exponential", sized_square("5e-4*exp(0.4*x)"), 1.03, 0.99},
@@ -81,14 +81,14 @@ TEST(Placement, FollowsTheBoundsOfRegions) {
   EXPECT_EQ(by_regions.lattice_share, 1);
   // Below and above the size of the function.
   for (const char* size : {"2.5e-3", "1.5e-3*(1+0.1*x)", "1e-2*(1.2+sin(20*x)*sin(20*y))"}) {
-    request.size.expression = size;
+    request.size = size;
     EXPECT_LE(sound(request).summary.ideal_ratio, size[3] == '-' && size[4] == '2' ? 1.3 : 1.08)
         << size;
   }
 }
 
 TEST(Placement, TellsHowMuchLiesOnALattice) {
-  EXPECT_EQ(sound({.pslg = square(10), .size = {.constant = 1e-2}}).summary.lattice_share, 1);
+  EXPECT_EQ(sound({.pslg = square(10), .size = 1e-2}).summary.lattice_share, 1);
   EXPECT_EQ(sound(sized_square("1e-2*(1.2+sin(30*x)*sin(30*y))")).summary.lattice_share, 0);
   EXPECT_EQ(sound({.pslg = square(10)}).summary.lattice_share, 0);
   EXPECT_EQ(sound({.pslg = square(10)}).summary.ideal_ratio, 0);
@@ -100,14 +100,14 @@ TEST(Placement, TellsHowMuchLiesOnALattice) {
 // Amid a perfect lattice a vertex too much would start a cascade at 30 degrees.
 TEST(Placement, DoesNotFeedACascadeAt30Degrees) {
   for (const double angle : {29.5, 29.9, 30.0, 30.5, 31.0, 31.5}) {
-    MeshRequest request{.pslg = square(10), .size = {.constant = 2e-3}, .min_angle_deg = angle};
+    MeshRequest request{.pslg = square(10), .size = 2e-3, .min_angle_deg = angle};
     add_segment(request.pslg, {3.1, 4.1}, {3.12, 4.11}, 1);  // far shorter than the lattice's edges
     EXPECT_LE(sound(request).summary.ideal_ratio, angle <= 30 ? 1.1 : 1.38) << angle;
   }
 }
 
 TEST(Placement, AboveTheLatticesLastAngleIsTheCircumcentre) {
-  MeshRequest request{.pslg = square(10), .size = {.constant = 5e-3}, .min_angle_deg = 33};
+  MeshRequest request{.pslg = square(10), .size = 5e-3, .min_angle_deg = 33};
   const Summary lattice = sound(request).summary;
   request.placement = Placement::kCircumcentre;
   EXPECT_EQ(outcome(lattice), outcome(mesh_on(nullptr, request)));
@@ -115,7 +115,7 @@ TEST(Placement, AboveTheLatticesLastAngleIsTheCircumcentre) {
 
 TEST(Placement, OfALatticePointThatIsTooCloseIsTheCircumcentre) {
   // Every edge is to be longer than the lattice's.
-  MeshRequest request{.pslg = square(10), .size = {.constant = 1e-2}, .min_edge = 0.08};
+  MeshRequest request{.pslg = square(10), .size = 1e-2, .min_edge = 0.08};
   const Summary coarse = sound(request).summary;
   request.placement = Placement::kCircumcentre;
   EXPECT_LE(coarse.triangles, sound(request).summary.triangles);
@@ -126,7 +126,7 @@ TEST(Placement, OfALatticePointThatIsTooCloseIsTheCircumcentre) {
 TEST(Placement, OnALatticeInLineWithTheSegmentsNeedsFewExactPredicates) {
   constexpr double kEdge = 0.0625;
   const double bound = kEdge * kEdge * kEquilateral / LatticeShape::for_angle(20).fill;
-  MeshRequest request{.pslg = square(16), .size = {.constant = bound}, .leaf_triangles = 2000};
+  MeshRequest request{.pslg = square(16), .size = bound, .leaf_triangles = 2000};
   add_segment(request.pslg, {0, 4}, {16, 4}, 1);
   add_segment(request.pslg, {4, 4}, {4, 16}, 1);
   const Summary summary = sound(request).summary;
@@ -160,7 +160,7 @@ TEST(Placement, IsTheSameAtEveryNumberOfThreads) {
   std::vector<MeshRequest> requests{sized_square("1e-3*(1.5+sin(x)*cos(y))", 30),
                                     sized_square("hypot(x-5,y-5)<3 ? 1e-3 : 1e-2"),
                                     sized_square("1e-3*(1+hypot(x-12,y-5))", 25),
-                                    {.pslg = square(10), .size = {.constant = 2e-3}}};
+                                    {.pslg = square(10), .size = 2e-3}};
   requests.push_back(sized_square([](double x, double y) { return 2e-3 * (1 + 0.1 * x * y); }, 9));
   for (MeshRequest& request : requests) {
     request.leaf_triangles = 500;
@@ -173,7 +173,7 @@ TEST(Placement, IsTheSameAtEveryNumberOfThreads) {
 }
 
 TEST(Placement, GivesTheSameMeshOfHundredsOfComponentsInTinyLeaves) {
-  MeshRequest request{.size = {.expression = "1e-3*(1+0.3*x)"}, .leaf_triangles = 300};
+  MeshRequest request{.size = "1e-3*(1+0.3*x)", .leaf_triangles = 300};
   for (int i = 0; i < 15; ++i) {
     for (int j = 0; j < 15; ++j) add_box(request.pslg, {i + 0.0, j + 0.0}, {i + 0.71, j + 0.63});
   }

@@ -43,8 +43,7 @@ std::vector<double> fractions_of(const MeshRequest& request, const Budget& budge
 }
 
 TEST(Fraction, RisesToOneWhileLeavesAreRefinedAndSent) {
-  const auto fractions =
-      fractions_of({.pslg = square(), .size = {.constant = 2e-5}, .leaf_triangles = 500});
+  const auto fractions = fractions_of({.pslg = square(), .size = 2e-5, .leaf_triangles = 500});
   EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
   EXPECT_LT(fractions.front(), 0.5);
   EXPECT_TRUE(std::any_of(fractions.begin(), fractions.end(),
@@ -53,7 +52,7 @@ TEST(Fraction, RisesToOneWhileLeavesAreRefinedAndSent) {
 }
 
 TEST(Fraction, IsOneAtTheEndOfAMeshOfOneTask) {
-  EXPECT_EQ(fractions_of({.pslg = square(), .size = {.constant = 1e-3}}).back(), 1);
+  EXPECT_EQ(fractions_of({.pslg = square(), .size = 1e-3}).back(), 1);
 }
 
 TEST(Fraction, OfAMeshThatIsCutOffIsOfTheTrianglesAllowed) {
@@ -61,7 +60,7 @@ TEST(Fraction, OfAMeshThatIsCutOffIsOfTheTrianglesAllowed) {
   budget.max_triangles = 5'000;
   ExecutionContext context(budget);
   CollectedMesh mesh;
-  const MeshRequest request{.pslg = square(), .size = {.constant = 1e-6}};
+  const MeshRequest request{.pslg = square(), .size = 1e-6};
   ASSERT_TRUE(generate_mesh(request, mesh, context));
   EXPECT_EQ(context.progress().expected_triangles, 5'000u);
   EXPECT_EQ(context.progress().fraction, 1);

@@ -15,11 +15,11 @@ SizeSpec size(Random& random) {
     case 0:
       return {};
     case 1:
-      return {.constant = 0.02 + random.unit()};
+      return 0.02 + random.unit();
     case 2:
-      return {.expression = "0.01 + 0.02*((x-3)^2 + (y-4)^2)"};
+      return "0.01 + 0.02*((x-3)^2 + (y-4)^2)";
     default:
-      return {.expression = "abs(x-3) < 0.5 && y > 2 ? 0.002 : 1"};
+      return "abs(x-3) < 0.5 && y > 2 ? 0.002 : 1";
   }
 }
 

@@ -142,7 +142,7 @@ struct StallsAtRandom : ChunkSink {
 
 TEST(Streaming, GivesOneMeshWhateverItsReaderDoes) {
   MeshRequest request{.pslg = read_poly(model("cylinder.poly")),
-                      .size = {.expression = "0.02 + 0.002*(x^2+y^2)"},
+                      .size = "0.02 + 0.002*(x^2+y^2)",
                       .leaf_triangles = kSanitized ? 100.0 : 200.0};
   const std::string expected = outcome(mesh_on(nullptr, request));
   for (const int threads : {1, 2, 3, 7, 16}) {
@@ -155,7 +155,7 @@ TEST(Streaming, GivesOneMeshWhateverItsReaderDoes) {
 // The clean-up must come before the rest: nothing is held then, and nothing waits for ever.
 TEST(Streaming, GoesOnWhereTheCleanUpComesFirst) {
   MeshRequest request{.pslg = read_poly(model("us-east-coast.poly")),
-                      .size = {.expression = "1e-2*(1.5+sin(x)*cos(y))"},
+                      .size = "1e-2*(1.5+sin(x)*cos(y))",
                       .min_angle_deg = 29,
                       .allow_unrefined = true,
                       .leaf_triangles = 60};

@@ -3,6 +3,7 @@
 #include <google/protobuf/util/message_differencer.h>
 
 #include <atomic>
+#include <cmath>
 #include <random>
 #include <thread>
 
@@ -287,7 +288,8 @@ TEST(JobService, ListsJobsYoungestFirstInPages) {
 
 TEST(JobService, ListsJobsOfAState) {
   JobServer server([](const MeshRequest& request, ChunkSink& sink, auto&) -> Result<Summary> {
-    if (*request.size.constant == 1) return weft::fail(ErrorCode::kEmptyDomain, "domain", "empty");
+    if (std::get<double>(request.size) == 1)
+      return weft::fail(ErrorCode::kEmptyDomain, "domain", "empty");
     return send_chunks(sink, 1);
   });
   JobClient client = server.client();
@@ -365,6 +367,25 @@ TEST(JobService, ChecksAJobBeforeItIsAccepted) {
   request.set_request_id("a\nb");
   EXPECT_EQ(details_of(client.submit(request).status).bad_request->field_violations(0).field(),
             "request_id");
+  EXPECT_EQ(runs, 0);
+}
+
+TEST(JobService, ChecksTheCoordinatesOfAJobBeforeItIsAccepted) {
+  std::atomic<int> runs{0};
+  JobServer server(counting_engine(runs), quick_jobs());
+  JobClient client = server.client();
+  const auto refusal = [&](auto&& change) {
+    v1::SubmitJobRequest request;
+    *request.mutable_mesh() = valid_request();
+    change(*request.mutable_mesh()->mutable_domain());
+    const Details details = details_of(client.submit(request).status);
+    return details.error_info.reason() + " " + details.bad_request->field_violations(0).field();
+  };
+  EXPECT_EQ(refusal([](v1::Domain& d) { d.set_points(5, std::nan("")); }),
+            "BAD_COORDINATE domain.points[2].y");
+  EXPECT_EQ(refusal([](v1::Domain& d) { d.set_segments(3, 1000); }),
+            "INDEX_OUT_OF_RANGE domain.segments[1].b");
+  EXPECT_EQ(refusal([](v1::Domain& d) { d.set_snap(-1); }), "BAD_OPTION domain.snap");
   EXPECT_EQ(runs, 0);
 }
 

@@ -32,7 +32,7 @@ TEST(LightSlot, IsLeftByAJobThatTurnsOutHeavy) {
   JobServer server(
       [&](const MeshRequest& request, ChunkSink& sink,
           ExecutionContext& context) -> Result<Summary> {
-        if (request.size.constant == kHeavySize) {
+        if (std::get<double>(request.size) == kHeavySize) {
           heavy_runs.set();
           EXPECT_TRUE(heavy_may_end.wait());
           return send_chunks(sink, 1);

@@ -111,7 +111,9 @@ TEST(UnknownFields, AreThoseOfAnotherWireType) {
 
 TEST(UnknownFields, OfANewerClientAreIgnored) {
   v1::SubmitJobRequest valid = request();
-  valid.mutable_mesh()->mutable_domain()->clear_segment_markers();
+  v1::Domain& domain = *valid.mutable_mesh()->mutable_domain();
+  domain.clear_segment_markers();
+  domain.set_segments(5, 0);
   const auto read = read_submission(to_buffer(valid.SerializeAsString() + kUnknown), {});
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->SerializeAsString(), valid.SerializeAsString());

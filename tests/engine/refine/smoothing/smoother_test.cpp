@@ -27,11 +27,11 @@ Sound sound(MeshRequest request, std::optional<std::uint32_t> sweeps) {
 
 MeshRequest cylinder() {
   return {.pslg = read_poly(model("cylinder.poly")),
-          .size = {.expression = "(x>=0 && abs(y)<5) || (x<0 && x^2+y^2<25) ? 1.2e-2 : 1e-1"},
+          .size = "(x>=0 && abs(y)<5) || (x<0 && x^2+y^2<25) ? 1.2e-2 : 1e-1",
           .leaf_triangles = 2'000};
 }
 MeshRequest key() {
-  return {.pslg = read_poly(model("key.poly")), .size = {.expression = "0.02*abs(y-46)+0.1"}};
+  return {.pslg = read_poly(model("key.poly")), .size = "0.02*abs(y-46)+0.1"};
 }
 
 TEST(Smoothing, RaisesSmallAnglesAndLowersLargeOnes) {
@@ -71,7 +71,7 @@ TEST(Smoothing, IsDoneTwiceWhereASizeMakesTheTriangles) {
 // Of a large mesh. Not judged: the other tests are for that.
 TEST(Smoothing, IsLeftOutUnlessAskedForWhereManyLatticesMeet) {
   const auto digest = [](const char* size, std::optional<std::uint32_t> sweeps) {
-    const MeshRequest request{.pslg = square(100), .size = {.expression = size}, .sweeps = sweeps};
+    const MeshRequest request{.pslg = square(100), .size = size, .sweeps = sweeps};
     CollectedMesh mesh;
     ExecutionContext context;
     const Result<Summary> summary = generate_mesh(request, mesh, context);
@@ -99,7 +99,7 @@ TEST(Smoothing, IsLeftOutUnlessAskedForWhereAnglesOrCircumcentresMakeTheTriangle
 }
 
 TEST(Smoothing, KeepsTheBoundsOfRegionsAndShortestEdges) {
-  MeshRequest request{.pslg = square(10), .size = {.constant = 1e-2}, .min_edge = 0.08};
+  MeshRequest request{.pslg = square(10), .size = 1e-2, .min_edge = 0.08};
   request.pslg.points.insert(request.pslg.points.end(), {{3, 0}, {4, 10}});
   request.pslg.segments.push_back({4, 5, 0});
   request.pslg.regions = {{{1, 1}, 1, 4e-3}, {{9, 9}, 2, std::nullopt}};
@@ -113,10 +113,10 @@ TEST(Smoothing, KeepsAllLawsOfRoundedFloorPlans) {
     SCOPED_TRACE(seed);
     const int decimals = 2 + static_cast<int>(seed % 8);
     MeshRequest request{.pslg = floor_plan({seed, kOffsets[seed % 3], decimals}),
-                        .size = {.constant = 0.1},
+                        .size = 0.1,
                         .min_angle_deg = seed % 2 == 0 ? 20.0 : 33.0,
                         .leaf_triangles = 200};
-    if (seed % 4 == 0) request.size.constant.reset();
+    if (seed % 4 == 0) request.size = {};
     EXPECT_NE(sound(request, 4).summary.digest, sound(request, 0).summary.digest);
   }
 }

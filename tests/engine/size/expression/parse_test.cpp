@@ -139,10 +139,10 @@ TEST(Grammar, SpacesTabsAndNewlinesAreFree) {
 TEST(Grammar, ConstantsFoldAndSayThatTheyAreConstant) {
   for (const char* source : {"1", "2*pi", "sin(1)^2 + cos(1)^2", "1 < 2 ? 3 : x", "x^0",
                              "0 && x ? x : 2", "1 || y ? 1 : x", "min(1, 2)", "!1 + !0"}) {
-    EXPECT_TRUE(Expression::parse(source)->is_constant()) << source;
+    EXPECT_TRUE(Expression::parse(source)->constant()) << source;
   }
   for (const char* source : {"x", "x - x", "x < 1 ? 3 : 4", "0*y"}) {
-    EXPECT_FALSE(Expression::parse(source)->is_constant()) << source;
+    EXPECT_FALSE(Expression::parse(source)->constant()) << source;
   }
 }
 

@@ -193,7 +193,7 @@ class ExpressionMaker {
   // Which definition holds depends on what is constant, and on that the engine is asked.
   static Function power_value(const Sample& a, const Sample& b) {
     const auto is_constant = [](const Sample& s) {
-      return Expression::parse(s.text)->is_constant();
+      return Expression::parse(s.text)->constant().has_value();
     };
     const double n = b.value(0, 0);
     if (is_constant(b) && n == 0.5) return one(expr::Op::kSqrt, a);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "checker/size/size_raster.h"
+#include "checker/size/raster.h"
 
 #include <algorithm>
 #include <array>
@@ -24,7 +24,7 @@ Weighted around(double steps, std::size_t count) {
 
 }  // namespace
 
-double SizeRaster::operator()(Vec2 p) const {
+double Raster::operator()(Vec2 p) const {
   const Weighted x = around((p.x - origin.x) / dx, columns);
   const Weighted y = around((p.y - origin.y) / dy, rows);
   double sum = 0;

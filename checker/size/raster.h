@@ -11,7 +11,7 @@
 namespace weft::check {
 
 // REQUIRES: dx and dy are positive; columns * rows values, one at least.
-struct SizeRaster {
+struct Raster {
   Vec2 origin;  // of the first node
   double dx = 1;
   double dy = 1;
