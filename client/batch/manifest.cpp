@@ -3,15 +3,17 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <algorithm>
 #include <functional>
 #include <map>
 #include <set>
 
+#include "client/base/did_you_mean.h"
 #include "client/base/text.h"
+#include "client/call/request_rows.h"
 #include "client/drawing/draw.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
+#include "client/report/output_rows.h"
 
 namespace weft::client {
 namespace {
@@ -22,46 +24,24 @@ struct Wrong {
   std::string what;
 };
 
-template <class T>
-T scalar(const YAML::Node& node, const std::string& key, const char* what) {
-  T value{};
-  if (!node.IsScalar() || !YAML::convert<T>::decode(node, value))
-    throw Wrong{node.Mark(), key + ": " +
-                                 (node.IsScalar() ? in_quotes(node.Scalar()) : "a list or a map") +
-                                 " is not " + what};
-  return value;
-}
-
 std::string text_of(const YAML::Node& node, const std::string& key) {
-  return scalar<std::string>(node, key, "a text");
+  if (!node.IsScalar()) throw Wrong{node.Mark(), key + ": not a single value"};
+  return node.Scalar();
 }
 
-double number_of(const YAML::Node& node, const std::string& key) {
-  return scalar<double>(node, key, "a number");
+// One text, or a list of them.
+std::vector<std::string> texts_of(const YAML::Node& node, const std::string& key) {
+  if (!node.IsSequence()) return {text_of(node, key)};
+  std::vector<std::string> texts;
+  for (const YAML::Node& one : node) texts.push_back(text_of(one, key));
+  return texts;
 }
 
-// One path, or a list of them.
 std::vector<std::filesystem::path> paths_of(const YAML::Node& node, const std::string& key,
                                             const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> paths;
-  if (!node.IsSequence()) return {folder / text_of(node, key)};
-  for (const YAML::Node& one : node) paths.push_back(folder / text_of(one, key));
+  for (const std::string& text : texts_of(node, key)) paths.push_back(folder / text);
   return paths;
-}
-
-DrawColor color_of(const YAML::Node& node) {
-  const std::string name = text_of(node, "color");
-  if (name == "none") return DrawColor::kNone;
-  if (name == "angle") return DrawColor::kAngle;
-  if (name == "region") return DrawColor::kRegion;
-  throw Wrong{node.Mark(), "color: " + in_quotes(name) + " is not angle, region or none"};
-}
-
-v1::Placement placement_of(const YAML::Node& node) {
-  const std::string name = text_of(node, "placement");
-  if (name == "lattice") return v1::PLACEMENT_LATTICE;
-  if (name == "circumcentre") return v1::PLACEMENT_CIRCUMCENTRE;
-  throw Wrong{node.Mark(), "placement: " + in_quotes(name) + " is not lattice or circumcentre"};
 }
 
 void require(const YAML::Node& node, std::vector<QualityGate>& gates) {
@@ -79,50 +59,28 @@ void require(const YAML::Node& node, std::vector<QualityGate>& gates) {
 using Setter =
     std::function<void(const YAML::Node&, BatchMesh&, const std::filesystem::path& folder)>;
 
+// A key of each row; `part` points to the options of a mesh that they set.
+template <class Options, class Part>
+void add_rows(std::map<std::string, Setter>& keys, const OptionRows<Options>& rows, Part part) {
+  for (const OptionRow<Options>& row : rows)
+    keys[row.name] = [&row, part](const auto& node, auto& mesh, const auto& folder) {
+      const auto texts = row.value.arity == Arity::kList ? texts_of(node, row.name)
+                                                         : std::vector{text_of(node, row.name)};
+      const std::string fault = row.value.read(texts, folder, *part(mesh));
+      if (!fault.empty()) throw Wrong{node.Mark(), row.name + ": " + fault};
+    };
+}
+
 // The keys that defaults may have, too.
 const std::map<std::string, Setter>& common_keys() {
-  static const std::map<std::string, Setter> keys = {
-      {"size",
-       [](const auto& n, auto& m, const auto& folder) {
-         m.request_options.size = text_of(n, "size");
-         if (is_size_grid_path(m.request_options.size))
-           m.request_options.size = folder / m.request_options.size;
-       }},
-      {"min-angle",
-       [](const auto& n, auto& m, const auto&) {
-         m.request_options.min_angle_deg = number_of(n, "min-angle");
-       }},
-      {"min-edge", [](const auto& n, auto& m,
-                      const auto&) { m.request_options.min_edge = number_of(n, "min-edge"); }},
-      {"placement",
-       [](const auto& n, auto& m, const auto&) { m.request_options.placement = placement_of(n); }},
-      {"optimise",
-       [](const auto& n, auto& m, const auto&) {
-         m.request_options.optimise = scalar<std::uint32_t>(n, "optimise", "a count of sweeps");
-       }},
-      {"snap",
-       [](const auto& n, auto& m, const auto&) { m.request_options.snap = number_of(n, "snap"); }},
-      {"allow-unrefined",
-       [](const auto& n, auto& m, const auto&) {
-         m.request_options.allow_unrefined = scalar<bool>(n, "allow-unrefined", "true or false");
-       }},
-      {"max-triangles",
-       [](const auto& n, auto& m, const auto&) {
-         m.request_options.max_triangles = scalar<std::uint64_t>(n, "max-triangles", "a count");
-       }},
-      {"max-seconds",
-       [](const auto& n, auto& m, const auto&) {
-         m.request_options.max_seconds = number_of(n, "max-seconds");
-       }},
-      {"order",
-       [](const auto& n, auto& m, const auto&) {
-         m.output.writing.order = scalar<int>(n, "order", "1 or 2");
-         if (m.output.writing.order != 1 && m.output.writing.order != 2)
-           throw Wrong{n.Mark(), "order: " + in_quotes(n.Scalar()) + " is not 1 or 2"};
-       }},
-      {"color", [](const auto& n, auto& m, const auto&) { m.output.color = color_of(n); }},
-      {"require", [](const auto& n, auto& m, const auto&) { require(n, m.gates); }},
-  };
+  static const std::map<std::string, Setter> keys = [] {
+    std::map<std::string, Setter> all;
+    add_rows(all, request_rows(), [](BatchMesh& m) { return &m.request_options; });
+    add_rows(all, writing_rows(), [](BatchMesh& m) { return &m.output.writing; });
+    add_rows(all, drawing_rows(), [](BatchMesh& m) { return &m.output; });
+    all["require"] = [](const auto& n, auto& m, const auto&) { require(n, m.gates); };
+    return all;
+  }();
   return keys;
 }
 
@@ -152,13 +110,23 @@ const std::map<std::string, Setter>& mesh_keys() {
   return keys;
 }
 
+std::vector<std::string> names_of(const std::map<std::string, Setter>& keys) {
+  std::vector<std::string> names;
+  for (const auto& [name, setter] : keys) names.push_back(name);
+  return names;
+}
+
 void set_all(const YAML::Node& node, const std::map<std::string, Setter>& keys, BatchMesh& mesh,
              const std::filesystem::path& folder) {
   if (!node.IsMap()) throw Wrong{node.Mark(), "not a map of keys to values"};
   for (const auto& entry : node) {
     const std::string name = text_of(entry.first, "a key");
     const auto found = keys.find(name);
-    if (found == keys.end()) throw Wrong{entry.first.Mark(), in_quotes(name) + " is no key here"};
+    if (found == keys.end()) {
+      const std::string meant = did_you_mean(name, names_of(keys));
+      throw Wrong{entry.first.Mark(),
+                  in_quotes(name) + " is no key here" + (meant.empty() ? "" : ": " + meant)};
+    }
     found->second(entry.second, mesh, folder);
   }
 }
@@ -181,6 +149,8 @@ std::vector<BatchMesh> meshes_of(const YAML::Node& root, const std::filesystem::
   for (const YAML::Node& node : list) {
     BatchMesh mesh = defaults;
     set_all(node, mesh_keys(), mesh, folder);
+    // Like `color`, a default that a mesh without a drawing has no use for.
+    if (mesh.output.drawings.empty()) mesh.output.draw_quadtree = false;
     if (mesh.name.empty()) throw Wrong{node.Mark(), "a mesh without a name"};
     if (mesh.input.empty()) throw Wrong{node.Mark(), mesh.name + ": a mesh without an input"};
     if (!names.insert(mesh.name).second)
@@ -191,6 +161,10 @@ std::vector<BatchMesh> meshes_of(const YAML::Node& root, const std::filesystem::
 }
 
 }  // namespace
+
+std::vector<std::string> manifest_keys() {
+  return names_of(common_keys());
+}
 
 Result<std::vector<BatchMesh>> read_manifest(const std::filesystem::path& file) {
   const auto wrong = [&](const YAML::Mark& where, const std::string& what) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The meshes that a pipeline wants, as a YAML file. The keys are the flags of `weft mesh`; paths
-// are relative to the file; `defaults` hold where a mesh has no such key.
+// The meshes that a pipeline wants, as a YAML file. The keys are the flags of `weft mesh`, made
+// from the same rows (call/request_rows.h, report/output_rows.h); paths are relative to the file;
+// `defaults` hold if a mesh has no such key.
 //
 //   defaults: {min-angle: 20, require: {min-angle: 20}}
 //   meshes:
@@ -30,6 +31,9 @@ struct BatchMesh {
   MeshOutputOptions output{};
   std::vector<QualityGate> gates{};
 };
+
+// The keys of a mesh that `defaults` may have, too, sorted.
+std::vector<std::string> manifest_keys();
 
 // At least one mesh, in the order of the file. An error (kUnreadableInput) names file, line, key
 // and value.

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "client/batch/manifest.h"
 #include "client/cli/command_groups.h"
 #include "client/cli/connect_flags.h"
 #include "client/cli/flags.h"
@@ -12,7 +13,7 @@
 namespace weft::client {
 namespace {
 
-constexpr char kExamples[] =
+constexpr char kManifest[] =
     R"(The manifest, in YAML; its keys are flags of `weft mesh`, its paths are relative to
 it, and what is under `defaults` holds for all:
   defaults: {min-angle: 20}
@@ -24,13 +25,33 @@ it, and what is under `defaults` holds for all:
       draw: out/pipe.png
       require: {max-triangles: 5000}
 
-Figures that --require and `require` know: min-angle, max-angle, min-triangles,
+Keys of a mesh: name, input, output, draw, and those that `defaults` may have, too:
+)";
+
+constexpr char kFiguresAndExamples[] =
+    R"(Figures that --require and `require` know: min-angle, max-angle, min-triangles,
 max-triangles, max-vertices, max-unrefined.
 
 Examples:
   weft batch meshes.yaml                    # makes meshes.lock, too: commit it
   weft batch meshes.yaml --locked --require min-angle=20 \
     --junit report.xml --summary summary.md)";
+
+// "  allow-unrefined, color, ...", in lines of a terminal.
+std::string list_of_keys() {
+  constexpr std::size_t kColumns = 80;
+  std::string list;
+  std::string line = " ";
+  for (const std::string& key : manifest_keys()) {
+    if (line.size() + key.size() + 2 > kColumns) {
+      list += line + "\n";
+      line = " ";
+    }
+    line += " " + key + ",";
+  }
+  line.back() = '\n';
+  return list + line;
+}
 
 }  // namespace
 
@@ -43,7 +64,7 @@ void add_batch_command(CLI::App& app, Chosen& chosen) {
   BatchOptions& options = kept->options;
   CLI::App& batch =
       *app.add_subcommand("batch", "Mesh the domains that a manifest lists, and check the meshes");
-  batch.footer(kExamples);
+  batch.footer(kManifest + list_of_keys() + "\n" + kFiguresAndExamples);
   batch.add_option("MANIFEST", options.manifest, "List of meshes: .yaml")->required();
   batch
       .add_option("--require", kept->gates,

@@ -19,8 +19,6 @@ void add_timeout(CLI::App& command, std::optional<double>& seconds, const std::s
 
 void add_retries(CLI::App& command, std::uint32_t& retries);
 
-void add_snap(CLI::App& command, std::optional<double>& snap, const std::string& help);
-
 // INPUT, and what its mesh must satisfy.
 void add_domain_and_request_options(CLI::App& command, std::filesystem::path& input,
                                     RequestOptions& request_options);

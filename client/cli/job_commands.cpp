@@ -100,9 +100,6 @@ void add_submit(CLI::App& app, Chosen& chosen) {
       ->check(CLI::Validator(check_request_id, "", ""))
       ->type_name("ID");
   command
-      .add_flag("--no-cache", options->no_cache, "Make the mesh again, even if the server keeps it")
-      ->envname("WEFT_NO_CACHE");
-  command
       .add_flag("--wait", options->wait,
                 "Wait for the job to end; with -o and --draw, write its mesh")
       ->envname("WEFT_WAIT");

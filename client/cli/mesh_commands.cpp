@@ -72,9 +72,6 @@ void add_mesh(CLI::App& app, Chosen& chosen) {
   add_timeout(mesh, options.timeout_seconds, "Maximum time of the whole call. Default: none");
   add_retries(mesh, options.retries);
   add_output(mesh, options.output);
-  mesh.add_flag("--no-cache", options.request_options.no_cache,
-                "Make the mesh again, even if the server has it in its cache")
-      ->envname("WEFT_NO_CACHE");
   mesh.add_flag("--detach", kept->detach,
                 "Submit a job, print its id and end, as `weft submit` does; needs --server");
   add_json(mesh, options.json, "Print one JSON object on standard output");
@@ -103,8 +100,11 @@ void add_check(CLI::App& app, Chosen& chosen) {
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str()
       ->type_name("DEG");
-  add_snap(check, options.snap,
-           "Distance within which features were merged, as given to `weft mesh`");
+  check
+      .add_option("--snap", options.snap,
+                  "Distance within which features were merged, as given to `weft mesh`")
+      ->envname("WEFT_SNAP")
+      ->type_name("D");
   check
       .add_option("--max-unrefined", options.max_unrefined,
                   "Triangles that may miss a bound, as `weft mesh` counted them (all but small "

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands of `weft` on jobs that a server keeps. As commands.h says of the others; all of them
-// need a server that is named.
+// The commands of `weft` on jobs that a server keeps. They follow the rules of commands.h; all of
+// them need a named server.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,7 @@ struct SubmitOptions {
   std::filesystem::path input;
   RequestOptions request_options;
   MeshOutputOptions output;  // needs `wait`
-  std::string request_id;    // empty: one is made up
-  bool no_cache = false;
+  std::string request_id;    // empty: a random one
   bool wait = false;
   JobServerOptions calls;
   bool json = false;
@@ -54,7 +53,7 @@ struct JobsOptions {
   JobServerOptions calls;
   bool json = false;
 };
-// All are tried; the exit code is that of the first that fails.
+// Tries all; the exit code is that of the first failure.
 Result<ExitCode> run_cancel(const JobsOptions& options, std::stop_token stop);
 Result<ExitCode> run_delete(const JobsOptions& options, std::stop_token stop);
 
@@ -69,7 +68,7 @@ Result<ExitCode> run_list(const ListOptions& options, std::stop_token stop);
 struct TopOptions {
   double interval_seconds = 1;
   bool once = false;
-  JobServerOptions calls;  // the time-out is that of each look at the server
+  JobServerOptions calls;  // the time-out is that of each poll of the server
 };
 Result<ExitCode> run_top(const TopOptions& options, std::stop_token stop);
 

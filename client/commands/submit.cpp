@@ -42,10 +42,11 @@ Result<v1::Job> submit(JobServer& server, const Domain& domain, const SubmitOpti
   auto request_options = with_size_grid(options.request_options);
   if (!request_options) return tl::unexpected(request_options.error());
   request_options->quadtree = options.output.draw_quadtree;
+  request_options->no_cache = false;  // a job has a field of its own for it
   v1::SubmitJobRequest request;
   *request.mutable_mesh() = make_request(domain, *request_options);
   request.set_request_id(options.request_id.empty() ? random_request_id() : options.request_id);
-  request.set_no_cache(options.no_cache);
+  request.set_no_cache(options.request_options.no_cache);
   auto job = server.submit(request, &domain);
   if (job) return job;
   Error error = job.error();

@@ -133,9 +133,29 @@ meshes:
     EXPECT_EQ(gate.violation(summary_of(11, 20)).has_value(), gate.figure() == "max-triangles");
 }
 
+TEST_F(Manifest, TakesDefaultsThatOneOfItsMeshesHasNoUseFor) {
+  const auto meshes = read(R"(
+defaults: {draw-quadtree: true, open-boundary: [1, 2]}
+meshes:
+  - {name: a, input: a.poly, output: a.14}
+  - {name: b, input: b.poly, draw: b.png, open-boundary: 3}
+)");
+  ASSERT_TRUE(meshes) << meshes.error().message;
+  EXPECT_FALSE(meshes->front().output.draw_quadtree);
+  EXPECT_TRUE(meshes->back().output.draw_quadtree);
+  EXPECT_EQ(meshes->front().output.writing.open_boundaries, (std::vector<std::int32_t>{1, 2}));
+  EXPECT_EQ(meshes->back().output.writing.open_boundaries, (std::vector<std::int32_t>{3}));
+}
+
 TEST_F(Manifest, NamesLineAndKeyOfWhatItDoesNotUnderstand) {
   EXPECT_EQ(error("meshes:\n  - name: a\n    input: a.poly\n    siez: 1\n"),
-            ":4: 'siez' is no key here");
+            ":4: 'siez' is no key here: did you mean `size`?");
+  EXPECT_EQ(error("meshes:\n  - name: a\n    input: a.poly\n    wondrous: 1\n"),
+            ":4: 'wondrous' is no key here");
+  EXPECT_EQ(error("defaults: {min-agle: 20}\nmeshes: [{name: a, input: a.poly}]\n"),
+            ":1: 'min-agle' is no key here: did you mean `min-angle`?");
+  EXPECT_EQ(error("meshes:\n  - name: a\n    input: a.poly\n    min-angle: [20]\n"),
+            ":4: min-angle: not a single value");
   EXPECT_EQ(error("meshes:\n  - name: a\n    input: a.poly\n    min-angle: much\n"),
             ":4: min-angle: 'much' is not a number");
   EXPECT_EQ(error("meshes:\n  - name: a\n    input: a.poly\n    max-triangles: -5\n"),

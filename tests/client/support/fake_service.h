@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,8 +33,7 @@ class FakeService final : public v1::MeshService::Service {
 
   grpc::Status GenerateMesh(grpc::ServerContext* context, const v1::GenerateMeshRequest* request,
                             grpc::ServerWriter<v1::GenerateMeshResponse>* writer) override {
-    const Script& script = scripts_[std::min(requests_.size(), scripts_.size() - 1)];
-    requests_.push_back(*request);
+    const Script& script = script_for(*request);
     for (const auto& message : script.messages) {
       if (message.has_chunk() && message.chunk().index() < request->first_chunk()) continue;
       if (!writer->Write(message)) return grpc::Status::CANCELLED;
@@ -47,12 +47,22 @@ class FakeService final : public v1::MeshService::Service {
     response->mutable_limits()->set_max_points(1234567);
     return grpc::Status::OK;
   }
-  // One a call. REQUIRES: no call is open.
-  const std::vector<v1::GenerateMeshRequest>& requests() const { return requests_; }
+  // One a call.
+  std::vector<v1::GenerateMeshRequest> requests() const {
+    const std::lock_guard lock(mutex_);
+    return requests_;
+  }
 
  private:
+  const Script& script_for(const v1::GenerateMeshRequest& request) {
+    const std::lock_guard lock(mutex_);
+    requests_.push_back(request);
+    return scripts_[std::min(requests_.size(), scripts_.size()) - 1];
+  }
+
   const std::vector<Script> scripts_;
-  std::vector<v1::GenerateMeshRequest> requests_;
+  mutable std::mutex mutex_;
+  std::vector<v1::GenerateMeshRequest> requests_;  // guarded by mutex_
 };
 
 class FakeServer {

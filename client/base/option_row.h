@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// An option that a flag of the command line and a key of a manifest set alike: a table has one row
+// for it, which holds its name, its help and how its value is read. cli/flags.h makes flags of the
+// rows, batch/manifest.h keys.
+//
+//   const OptionRows<RequestOptions> rows = {
+//       {"min-angle", "WEFT_MIN_ANGLE", "Minimum angle of every triangle, in degrees", "20",
+//        number("DEG", &RequestOptions::min_angle_deg)}};
+//   rows[0].value.read({"25"}, "", options);    // ""; options.min_angle_deg is 25
+//   rows[0].value.read({"much"}, "", options);  // "'much' is not a number"
+#pragma once
+
+#include <CLI/TypeTools.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "client/base/text.h"
+
+namespace weft::client {
+
+enum class Arity { kSwitch, kOne, kList };  // a flag without a value; with one; may be repeated
+
+// How an option is read from text.
+template <class Options>
+struct OptionValue {
+  std::string unit;   // what help calls the value, such as "DEG"
+  std::string range;  // such as "1 or more"; empty: any value
+  Arity arity = Arity::kOne;
+  // Sets the option and returns an empty text, or leaves the option alone and returns what is
+  // wrong with which text. Paths in texts are relative to `folder`. REQUIRES: exactly one text,
+  // unless it is a list.
+  std::function<std::string(const std::vector<std::string>& texts,
+                            const std::filesystem::path& folder, Options& options)>
+      read;
+};
+
+template <class Options>
+struct OptionRow {
+  std::string name;          // of the key; the flag is --name
+  std::string variable;      // of the environment; empty: none
+  std::string about;         // what it is or does, without a full stop
+  std::string default_text;  // the default, for people; empty: help does not name one
+  OptionValue<Options> value;
+
+  std::string help() const {
+    std::string text = about;
+    if (!value.range.empty()) text += ". Range: " + value.range;
+    if (!default_text.empty()) text += ". Default: " + default_text;
+    return text;
+  }
+};
+
+template <class Options>
+using OptionRows = std::vector<OptionRow<Options>>;
+
+// The value of a text; nullopt if it has another form. Numbers are rounded to the nearest, counts
+// may be hexadecimal.
+template <class T>
+std::optional<T> value_of(const std::string& text) {
+  T value{};
+  if constexpr (std::is_same_v<T, double>) {
+    char* end = nullptr;
+    value = std::strtod(text.c_str(), &end);
+    if (text.empty() || end != text.c_str() + text.size()) return std::nullopt;
+  } else {
+    // Of an unsigned number, lexical_cast takes a minus for a wrap.
+    if (std::is_unsigned_v<T> && text.find('-') != std::string::npos) return std::nullopt;
+    if (!CLI::detail::lexical_cast(text, value)) return std::nullopt;
+  }
+  return value;
+}
+
+// A number if T is double, a count if T is unsigned, an integer otherwise.
+template <class Options, class T>
+OptionValue<Options> number(std::string unit, std::optional<T> Options::*field,
+                            std::type_identity_t<T> least = std::numeric_limits<T>::lowest(),
+                            std::type_identity_t<T> most = std::numeric_limits<T>::max()) {
+  const auto as_text = [](T bound) { return shortest(static_cast<double>(bound)); };
+  std::string range;
+  if (most != std::numeric_limits<T>::max())
+    range = as_text(least) + " to " + as_text(most);
+  else if (least != std::numeric_limits<T>::lowest())
+    range = as_text(least) + " or more";
+  return {std::move(unit), range, Arity::kOne,
+          [=](const auto& texts, const auto&, Options& options) -> std::string {
+            const auto value = value_of<T>(texts.front());
+            if (!value)
+              return in_quotes(texts.front()) + " is not a " +
+                     (std::is_unsigned_v<T> ? "count" : "number");
+            if (!range.empty() && !(*value >= least && *value <= most))
+              return in_quotes(texts.front()) + " is not in the range " + range;
+            options.*field = value;
+            return "";
+          }};
+}
+
+// A list of integers.
+template <class Options, class T>
+OptionValue<Options> integers(std::string unit, std::vector<T> Options::*field) {
+  return {std::move(unit), "", Arity::kList,
+          [=](const auto& texts, const auto&, Options& options) -> std::string {
+            std::vector<T> values;
+            for (const std::string& text : texts) {
+              const auto value = value_of<T>(text);
+              if (!value) return in_quotes(text) + " is not an integer";
+              values.push_back(*value);
+            }
+            options.*field = std::move(values);
+            return "";
+          }};
+}
+
+// True or false; as a flag, true if it is given.
+template <class Options>
+OptionValue<Options> on_or_off(bool Options::*field) {
+  return {"", "", Arity::kSwitch,
+          [=](const auto& texts, const auto&, Options& options) -> std::string {
+            const auto value = value_of<bool>(texts.front());
+            if (!value) return in_quotes(texts.front()) + " is not true or false";
+            options.*field = *value;
+            return "";
+          }};
+}
+
+// One of several names.
+template <class Options, class T>
+OptionValue<Options> one_of(T Options::*field,
+                            std::vector<std::pair<std::string, std::type_identity_t<T>>> values) {
+  std::string unit;
+  std::string list;  // "angle, region or none"
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    unit += (i == 0 ? "" : "|") + values[i].first;
+    list += (i == 0 ? "" : i + 1 == values.size() ? " or " : ", ") + values[i].first;
+  }
+  return {unit, "", Arity::kOne,
+          [=](const auto& texts, const auto&, Options& options) -> std::string {
+            for (const auto& [name, value] : values) {
+              if (name != texts.front()) continue;
+              options.*field = value;
+              return "";
+            }
+            return in_quotes(texts.front()) + " is not " + list;
+          }};
+}
+
+}  // namespace weft::client

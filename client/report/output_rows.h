@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tables of how meshes are written and drawn, as call/request_rows.h is of what is asked of a
+// mesh. The files themselves are no rows: a manifest judges their names where it reads them.
+#pragma once
+
+#include "client/base/option_row.h"
+#include "client/report/mesh_output.h"
+
+namespace weft::client {
+
+const OptionRows<MeshWriteOptions>& writing_rows();
+const OptionRows<MeshOutputOptions>& drawing_rows();
+
+}  // namespace weft::client

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every row of the tables, as a flag of `weft mesh` and `weft submit`, as a variable of the
+// environment, and as a key of a manifest: all of them ask for the same.
+#include "client/call/request_rows.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "client/batch/manifest.h"
+#include "client/report/output_rows.h"
+#include "tests/client/support/fake_service.h"
+#include "tests/client/support/job_commands.h"
+#include "tests/client/support/sample_mesh.h"
+
+namespace weft::client {
+namespace {
+
+// What of a row does not depend on whose it is.
+struct Row {
+  std::string name;
+  std::string variable;
+  Arity arity;
+  bool has_range;
+  bool of_request;
+};
+
+std::vector<Row> all_rows() {
+  std::vector<Row> all;
+  const auto add = [&all](const auto& rows, bool of_request) {
+    for (const auto& row : rows)
+      all.push_back(
+          {row.name, row.variable, row.value.arity, !row.value.range.empty(), of_request});
+  };
+  add(request_rows(), true);
+  add(writing_rows(), false);
+  add(drawing_rows(), false);
+  return all;
+}
+
+// A value that is not the default, and a file on which it tells.
+struct Sample {
+  std::string value;
+  std::string file = "m.vtu";
+};
+
+// A new row wants a sample here.
+const std::map<std::string, Sample>& samples() {
+  static const std::map<std::string, Sample> all = {{"size", {"x + 1"}},
+                                                    {"min-angle", {"25"}},
+                                                    {"min-edge", {"0.0010549"}},
+                                                    {"placement", {"circumcentre"}},
+                                                    {"optimise", {"3"}},
+                                                    {"snap", {"0.0014385"}},
+                                                    {"allow-unrefined", {"true"}},
+                                                    {"max-triangles", {"9"}},
+                                                    {"max-seconds", {"4.5"}},
+                                                    {"threads", {"3"}},
+                                                    {"no-cache", {"true"}},
+                                                    {"order", {"2"}},
+                                                    {"msh-version", {"2.2", "m.msh"}},
+                                                    {"open-boundary", {"1", "m.14"}},
+                                                    {"color", {"angle", "m.svg"}},
+                                                    {"draw-quadtree", {"true", "m.svg"}}};
+  return all;
+}
+
+class RequestRows : public JobCommands {
+ protected:
+  // What the server was asked for, and the file that was written.
+  using Made = std::pair<std::string, std::string>;
+
+  Words flag(const Row& row, const std::string& value) const {
+    if (row.arity == Arity::kSwitch && value == "true") return {"--" + row.name};
+    return {"--" + row.name + "=" + value};
+  }
+  static bool is_drawing(const std::string& file) { return file.ends_with(".svg"); }
+
+  Made made(const std::string& file) const {
+    const auto requests = meshes_.service().requests();
+    EXPECT_FALSE(requests.empty());
+    return {requests.empty() ? "" : requests.back().SerializeAsString(),
+            contents_of(out_file(file))};
+  }
+  Made mesh(const std::string& file, const Words& flags, const Words& variables = {}) {
+    std::filesystem::remove(out_file(file));
+    Words words = {"mesh",
+                   folder_ / "in.poly",
+                   "--server",
+                   address_,
+                   is_drawing(file) ? "--draw" : "-o",
+                   out_file(file)};
+    words.insert(words.end(), flags.begin(), flags.end());
+    EXPECT_EQ(run(words, variables), 0) << err();
+    return made(file);
+  }
+  std::string manifest(const std::string& file, const std::string& key,
+                       const std::string& value) const {
+    return folder_.write("m.yaml", "meshes:\n  - name: m\n    input: in.poly\n    " +
+                                       std::string(is_drawing(file) ? "draw: " : "output: ") +
+                                       "out/" + file + "\n    " + key + ": " + value + "\n");
+  }
+  Made batch(const std::string& file, const std::string& key, const std::string& value) {
+    std::filesystem::remove(out_file(file));
+    EXPECT_EQ(run({"batch", manifest(file, key, value), "--server", address_}), 0) << err();
+    return made(file);
+  }
+
+  const std::string address_ = "unix:" + (folder_ / "meshes").string();
+  mutable FakeServer meshes_{Script{stream_of(square_mesh(4), 3)}, address_};
+};
+
+TEST_F(RequestRows, AskForTheSameAsFlagVariableAndKey) {
+  for (const Row& row : all_rows()) {
+    SCOPED_TRACE(row.name);
+    ASSERT_TRUE(samples().contains(row.name));
+    const auto& [value, file] = samples().at(row.name);
+    const Made by_flag = mesh(file, flag(row, value));
+    EXPECT_NE(by_flag, mesh(file, {}));
+    EXPECT_EQ(by_flag, batch(file, row.name, value));
+    if (!row.variable.empty()) {
+      EXPECT_EQ(by_flag, mesh(file, {}, {row.variable + "=" + value}));
+    }
+  }
+}
+
+TEST_F(RequestRows, AskForTheSameAsFlagsOfSubmit) {
+  for (const Row& row : all_rows()) {
+    if (!row.of_request) continue;
+    SCOPED_TRACE(row.name);
+    const auto& [value, file] = samples().at(row.name);
+    v1::GenerateMeshRequest asked;
+    ASSERT_TRUE(asked.ParseFromString(mesh(file, flag(row, value)).first));
+    ASSERT_EQ(ask(submit(flag(row, value))), 0) << err();
+    const v1::SubmitJobRequest job = jobs_.submissions().back();
+    EXPECT_EQ(job.no_cache(), asked.no_cache());
+    asked.clear_no_cache();
+    EXPECT_EQ(job.mesh().SerializeAsString(), asked.SerializeAsString());
+  }
+}
+
+TEST_F(RequestRows, RefuseABadValueInTheSameWords) {
+  for (const Row& row : all_rows()) {
+    if (row.name == "size") continue;  // it is the server that reads it
+    for (const std::string value : {"?", "0"}) {
+      if (value == "0" && !row.has_range) continue;
+      SCOPED_TRACE(row.name + " " + value);
+      const std::string path = manifest("m.vtu", row.name, "'" + value + "'");
+      const auto read = read_manifest(path);
+      ASSERT_FALSE(read);
+      EXPECT_EQ(read.error().exit, ExitCode::kUnreadableInput);
+      const std::string place = path + ":5: ";
+      ASSERT_TRUE(read.error().message.starts_with(place + row.name + ": '" + value + "' is not "))
+          << read.error().message;
+      Words words = {"mesh", "in.poly"};
+      for (const std::string& word : flag(row, value)) words.push_back(word);
+      EXPECT_EQ(run(words), 2);
+      EXPECT_TRUE(err().starts_with("--" + read.error().message.substr(place.size()) + "\n"))
+          << err();
+    }
+  }
+  EXPECT_TRUE(meshes_.service().requests().empty());
+}
+
+TEST_F(RequestRows, AreListedByTheHelpOfBatch) {
+  EXPECT_EQ(run({"batch", "--help"}), 0);
+  const std::string help = out();
+  const std::string keys = help.substr(help.find("Keys of a mesh"));
+  for (const Row& row : all_rows())
+    EXPECT_NE(keys.substr(0, keys.find("\n\n")).find(" " + row.name), std::string::npos)
+        << row.name;
+}
+
+}  // namespace
+}  // namespace weft::client
