@@ -7,9 +7,9 @@
 //   const Report report = check(domain, mesh, {.size = "0.01 + x^2", .min_angle_deg = 20});
 //   if (!report.ok()) std::cerr << to_text(report);
 //
-// Hostile input (NaN, indices out of range, nothing at all) is a violation, nothing worse. Rules
-// build on each other: where one that others need is violated, those are not judged, and
-// Report::not_judged says so. Below a second and 100 MB a million triangles. Thread-safe.
+// Hostile input (NaN, indices out of range, empty lists) is a violation, nothing worse. Rules
+// build on each other: if a rule is violated, rules that need it are not judged, and
+// Report::not_judged lists them. Below a second and 100 MB per million triangles. Thread-safe.
 #pragma once
 
 #include "checker/domain.h"
@@ -19,7 +19,7 @@
 
 namespace weft::check {
 
-// Points where segments meet other than at their ends, at most; a domain with more is not judged.
+// Maximum points where segments meet other than at their ends; a domain with more is not judged.
 inline constexpr std::size_t kMaxContacts = 2'000'000;
 
 Report check(const Domain& domain, const Mesh& mesh, const Requirements& requirements = {});

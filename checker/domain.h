@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was asked to be meshed, as the checker sees it: a planar straight-line graph with seeds.
+// The domain to be meshed, as the checker sees it: a planar straight-line graph with seeds.
 // Coordinates are in one unit of the caller's choice; indices count from 0.
 #pragma once
 
@@ -21,7 +21,7 @@ inline bool lexicographically_less(Vec2 p, Vec2 q) {
   return p.x < q.x || (p.x == q.x && p.y < q.y);
 }
 
-// Floods the face that `at` lies in, up to the segments; where seeds share a face the last wins.
+// Floods the face that `at` lies in, up to the segments; if seeds share a face, the last wins.
 struct RegionSeed {
   Vec2 at;
   std::int32_t id = 0;
@@ -30,8 +30,8 @@ struct RegionSeed {
 
 // Which faces of the segments' arrangement are meshed.
 enum class Fill : std::uint8_t {
-  kSeeds,    // every bounded face but those that hold a hole seed
-  kEvenOdd,  // those an odd number of segments away from infinity, but those that hold a hole seed
+  kSeeds,    // every bounded face without a hole seed
+  kEvenOdd,  // faces without a hole seed, an odd number of segments away from infinity
 };
 
 struct Domain {
@@ -41,7 +41,7 @@ struct Domain {
   std::vector<Vec2> holes;
   std::vector<RegionSeed> regions;
   Fill fill = Fill::kSeeds;
-  double snap = 0;  // features nearer than this are to be merged (tolerance.h); at least 0
+  double snap = 0;  // features nearer than this must be merged (tolerance.h); at least 0
 };
 
 }  // namespace weft::check

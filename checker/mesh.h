@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mesh that is judged. Nothing is assumed of it: indices may be out of range and coordinates
-// NaN; that is for `check` to say.
+// The mesh that is judged. Nothing is assumed: indices may be out of range and coordinates NaN;
+// `check` reports that.
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise
   std::vector<std::int32_t> regions;                    // one per triangle, or empty: all 0
   std::vector<Edge> edges;                              // each once, in either direction
-  // Mesh vertices that stand for input points: (vertex, the lowest point that it stands for), or
-  // empty: the checker finds them by their places.
+  // Mesh vertices that represent input points: (vertex, the lowest point that it represents); or
+  // empty: the checker finds them by their coordinates.
   std::vector<std::array<std::uint32_t, 2>> input_points;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the checker found: violations, each a sentence that names its offender, and measured facts.
+// The checker's findings: violations, each a sentence that names its offender, and measured facts.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ enum class Rule : std::uint8_t {
   kCoverage,  // the triangles cover the domain, all of it and nothing else
   kRegions,   // a triangle carries the id of the region that it lies in
   kDelaunay,  // across every unlisted edge, no corner lies inside the other circumcircle
-  kAngle,     // no angle is below the bound, but those that small input angles excuse
+  kAngle,     // no angle is below the bound, except those that small input angles excuse
   kArea,      // no triangle is larger than the size field, or its region, allows
 };
 inline constexpr std::size_t kRules = 15;
@@ -40,7 +40,7 @@ struct Violation {
   std::string sentence;
 };
 
-// What was measured. Angles and area are meaningful when no triangle is degenerate.
+// The measures of a mesh. Angles and area are valid if no triangle is degenerate.
 struct Facts {
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
@@ -50,11 +50,11 @@ struct Facts {
   double area = 0;
   double mean_quality = 0;      // of 4 sqrt(3) area / (sum of the squared edges)
   double min_angle_p1_deg = 0;  // 1 % of the triangles have a smaller smallest angle
-  // Triangles that have a bound on their area over the sum of the shares of their bounds that they
-  // take: how many times the least number there are. None if nothing bounds any.
+  // The number of triangles with a bound on their area, over the sum of their areas over their
+  // bounds: how many times the least number there are. nullopt if no triangle has a bound.
   std::optional<double> ideal_ratio;
-  std::optional<double> worst_area_ratio;  // of area to its bound; none if nothing bounds it
-  // Triangles below the angle bound that a small input angle excuses: those that have the corner
+  std::optional<double> worst_area_ratio;  // of area to its bound; nullopt if there is no bound
+  // Triangles below the angle bound that a small input angle excuses: those with the corner
   // itself, and those whose shortest edge joins its two segments at equal distance from it.
   std::uint64_t excused_corner = 0;
   std::uint64_t excused_shell = 0;
@@ -75,11 +75,11 @@ struct Report {
   std::uint64_t total(Rule rule) const { return totals[static_cast<std::size_t>(rule)]; }
 };
 
-// The facts, then one line per violation ("coverage: ..."), then what was not judged. Ends with a
-// line feed.
+// The facts, then one line per violation ("coverage: ..."), then the rules that were not judged.
+// Ends with a line feed.
 std::string to_text(const Report& report);
 
-// Collects violations: counts all, writes out the first `listed` of each rule.
+// Collects violations: counts all, and writes out the first `listed` of each rule.
 class Findings {
  public:
   explicit Findings(std::uint64_t listed) : listed_(listed) {}

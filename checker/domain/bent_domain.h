@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The domain as the mesh has it: its own points and segments where nothing is near, merged and bent
-// where features are nearer to each other than the merging distance T (tolerance.h) allows.
+// The domain as the mesh has it: unchanged where no features are near, merged and bent where
+// features are nearer to each other than the merging distance T (tolerance.h) allows.
 //
-// A mesher may choose which point of two stands for both, and through which vertices a segment is
-// led. So the judge takes the choice from the mesh, holds it to T, and judges everything else
-// against the outcome, exactly and as strictly as against a domain with nothing to merge:
+// A mesher may choose which of two points replaces both, and through which vertices a segment is
+// led. So the checker takes the choice from the mesh, checks it against T, and judges everything
+// else against the result, exactly and as strictly as against a domain with nothing to merge:
 //   - a point that has another one within T may be a vertex within T of it instead of its own;
-//   - a segment that has something near may be a path of listed edges within kMaxBend * T of it
+//   - a segment with near features may be a path of listed edges within kMaxBend * T of it
 //     that never turns back, from the vertex that its one end has become to that of the other;
-//   - between the input points and the junctions on that path it is straight, to rounding; where
+//   - between the input points and the junctions on that path it is straight, to rounding; if
 //     the mesh has none of it, it goes through the points that it must be merged with.
-// A mesh can gain no more from a wrong choice than T: what must be merged and is not divides faces
-// all the same (`links`).
+// A wrong choice can gain a mesh no more than T: features that must be merged and are not divide
+// faces nonetheless (`links`).
 #pragma once
 
 #include <array>
@@ -28,23 +28,23 @@
 namespace weft::check {
 
 struct BentDomain {
-  // Points: those of the input, in order, where they are now; then junctions. Segments: pieces of
-  // the input's, in their order, with their markers; none for one whose ends have become one.
+  // Points: those of the input, in order, at their new places; then junctions. Segments: pieces of
+  // the input's, in their order, with their markers; none for a segment whose ends have become one.
   Domain domain;
   std::vector<std::uint32_t> origin;  // per piece: the input's segment
-  std::vector<char> is_gap;           // per piece: whether the mesh seems not to have it
+  std::vector<char> is_gap;           // per piece: whether the mesh seems to lack it
   std::vector<char> is_tear;          // per piece: a gap so short that the mesh need not have it
-  // Per piece: by how much its place is uncertain because of merging; 0 if nothing is near.
+  // Per piece: the uncertainty of its place because of merging; 0 if nothing is near.
   std::vector<double> slack;
   std::vector<std::array<Vec2, 2>> links;  // bound faces, but are not in the mesh
   double link_slack = 0;                   // the slack of the links
   double rounding = 0;                     // of every place: on_segment_tolerance
   // Listed edges beside bent segments, each with the marker of such a segment; sorted, distinct.
-  // With several chains beside each other, which edge belongs to which segment is open.
+  // If several chains are beside each other, it is undefined which edge belongs to which segment.
   std::vector<std::pair<std::uint32_t, std::int32_t>> beside;
 
-  // By how much the place of an edge of the arrangement is uncertain, by the pieces that it is part
-  // of; none on a link.
+  // The uncertainty of the place of an edge of the arrangement. `covers`: the pieces that it is
+  // part of; empty for a link.
   double slack_of(std::span<const std::uint32_t> covers) const;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a domain is well formed, so that a mesh of it can be judged at all.
+// Checks that a domain is well formed, so that a mesh of it can be judged at all.
 #pragma once
 
 #include "checker/domain.h"
@@ -12,7 +12,7 @@ inline constexpr double kMinMagnitude = 1e-150;
 inline constexpr double kMaxMagnitude = 1e150;
 bool is_usable(double coordinate);
 
-// Adds a violation of kDomain for every offender; false if there is one.
+// Adds a violation of kDomain for every offender; returns false if there is one.
 bool judge_domain(const Domain& domain, Findings& findings);
 
 }  // namespace weft::check

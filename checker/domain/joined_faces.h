@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The faces of a bent domain's arrangement, as far as they are certain. Links (gaps.h,
-// bent_domain.h) divide faces; where the roles on both sides are the same, that does not matter,
-// and the faces count as one; but a sliver counts by itself, because the mesh need not have it. And
-// a face that merging may close is a sliver: it may have any role in the mesh, or be gone.
+// bent_domain.h) divide faces. If the roles on both sides are the same, the faces count as one; but
+// a sliver counts by itself, because the mesh need not have it. A face that merging may close is a
+// sliver: it may have any role in the mesh, or be missing.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace weft::check {
 struct JoinedFaces {
   struct Face {
     double area = 0;
-    double perimeter = 0;  // towards others: what has the face on both sides does not count
+    double perimeter = 0;  // towards others: edges with the face on both sides do not count
     double slack = 0;      // the largest of the pieces and links there, at least rounding
   };
   std::vector<std::uint32_t> of;  // per face of the arrangement: the lowest one joined with it

@@ -9,12 +9,12 @@
 
 namespace weft::check {
 
-// The largest area of a sliver: between boundaries that are each uncertain by `slack`.
+// The largest area of a sliver, which lies between boundaries that are each uncertain by `slack`.
 inline double sliver_area(double perimeter, double slack) {
   return slack * (perimeter + 4 * slack);
 }
 
-// Per face, whether it is one by itself. REQUIRES: the arrangement of the bent domain and its
+// Per face, whether it is a sliver by itself. REQUIRES: the arrangement of the bent domain and its
 // links.
 std::vector<char> find_slivers(const BentDomain& bent, const Arrangement& arrangement);
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What "on a segment" means, and what "merged" means. Steiner points and crossings are rounded to
+// Defines "on a segment" and "merged". Steiner points and crossings are rounded to
 // doubles, so they lie beside their segment, by half a unit in the last place each time that a
 // piece is halved. Features of the domain that are nearer to each other than the merging distance T
 // become one: a point may move onto another one, a segment may be bent to pass through a vertex
-// nearby (near_features.h says which ones may, bent_domain.h what is made of it).
+// nearby (near_features.h says which ones may, bent_domain.h how they are judged).
 #pragma once
 
 #include <algorithm>
@@ -25,20 +25,19 @@ inline double on_segment_tolerance(const Domain& domain) {
   return 32 * 0x1p-53 * largest_coordinate(domain);
 }
 
-// T: what the caller asks for, and at least 2^-40 times the largest coordinate.
+// T: Domain::snap, but at least 2^-40 times the largest coordinate.
 inline double merging_distance(const Domain& domain) {
   return std::max(domain.snap, 0x1p-40 * largest_coordinate(domain));
 }
 
-// How far the chain of a segment may run from it, in units of T, if there is something to bend it:
-// an end may move by T, and each vertex that pulls a piece of the segment pulls it by T at most
-// from where others have pulled it before.
+// How far the chain of a segment may run from it, in units of T, if something bends it: an end may
+// move by T, and each further vertex pulls a piece of the segment by at most T from its place.
 inline constexpr double kMaxBend = 4;
 
-// A face whose width is at most twice as many T may be gone after merging.
+// A face whose width is at most twice as many T may be missing after merging.
 inline constexpr double kSliver = 2;
 
-// Distances that are compared with T are rounded, by the mesher and here.
+// A margin for distances that are compared with T, because the mesher and the checker round them.
 inline constexpr double kMergingSlack = 0x1p-10;
 
 // A directed segment, measured in more than double precision.

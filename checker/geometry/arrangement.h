@@ -32,7 +32,7 @@ class Arrangement {
     std::uint32_t first_cover, end_cover;
   };
   struct Face {
-    double area = 0;       // of the unbounded face: minus that of what it surrounds
+    double area = 0;       // of the unbounded face: minus that of all others
     double perimeter = 0;  // an edge with the face on both sides counts twice
   };
   // A face's inside, or an edge that the point lies on.
@@ -53,7 +53,7 @@ class Arrangement {
   const std::vector<Edge>& edges() const { return edges_; }
   const std::vector<Face>& faces() const { return faces_; }
   std::uint32_t face(std::uint32_t half_edge) const { return face_[half_edge]; }
-  // The segments that an edge is part of, ascending; none if it is part of links only.
+  // The segments that an edge is part of, ascending; empty if it is part of links only.
   std::span<const std::uint32_t> covers(std::uint32_t edge) const {
     return {covers_.data() + edges_[edge].first_cover, covers_.data() + edges_[edge].end_cover};
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hierarchy of bounding boxes over a fixed set of boxes: which of them meet a given one. Halved
-// at the median, so that clusters and outliers do not hurt. Thread-safe after construction.
+// A hierarchy of bounding boxes over a fixed set of boxes, which finds those that meet a given one.
+// Halved at the median, so that clusters and outliers do no harm. Thread-safe after construction.
 #pragma once
 
 #include <array>
@@ -33,12 +33,12 @@ class BoxTree {
   explicit BoxTree(std::vector<Box> boxes);
 
   // Calls visit(i) for every box i that meets `query`, those far to the right first. `visit` may
-  // shrink `query` as it learns more: what no longer meets it is skipped.
+  // shrink `query`: boxes that no longer meet it are skipped.
   template <class Visit>
   void visit(const Box& query, Visit&& visit) const;
 
  private:
-  static constexpr std::uint32_t kLeaf = 6;  // boxes a leaf, at most
+  static constexpr std::uint32_t kLeaf = 6;  // maximum boxes per leaf
 
   struct Node {
     Box box;

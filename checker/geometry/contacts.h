@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where segments meet other than at their ends: all such pairs, exactly. Pairs are proposed by a
-// box tree and decided by orientation tests.
+// Finds all pairs of segments that meet other than at their ends, exactly. A box tree proposes
+// pairs, orientation tests decide them.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ struct Contacts {
   // touches, the latter are no contact.
   std::vector<Touch> touches;  // may repeat
   std::vector<Crossing> crossings;
-  bool complete = true;  // false: more than the limit, the rest was not looked for
+  bool complete = true;  // false: there are more than the limit, and the search ended
 };
 
 // REQUIRES: finite coordinates, valid indices, no segment of zero length.

@@ -14,20 +14,20 @@ namespace weft::check {
 
 struct FaceRole {
   bool kept = false;
-  bool open = false;  // the mesher's choice: all of the face is meshed, or nothing
+  bool open = false;  // the mesher may choose whether the whole face is meshed
   std::int32_t region = 0;
   double max_area = std::numeric_limits<double>::infinity();
   friend bool operator==(const FaceRole&, const FaceRole&) = default;
 };
 
 // One role per face. Fill::kEvenOdd keeps the faces that a path from infinity reaches by crossing
-// an odd number of segments; where paths differ (segments that do not close) the one that crosses
+// an odd number of segments; if paths differ (segments that do not close), the one that crosses
 // fewest counts. Coincident segments count once each. A seed on a segment is a violation of
-// kDomain: its face is ambiguous.
+// kDomain, because its face is ambiguous.
 //
-// Where paths differ, what merging has done to a sliver decides which one crosses fewest. Then a
-// face is open if two bounds on that number differ: paths that enter no sliver, and paths that
-// cross slivers at the price of the one edge that a sliver becomes, 0 or 1.
+// If paths differ, the way in which slivers were merged decides which path crosses fewest. Then a
+// face is open if two bounds on that number differ: that of paths that enter no sliver, and that of
+// paths that cross slivers, each for the one edge, 0 or 1, that the sliver becomes.
 // REQUIRES: the arrangement of the bent domain and its links.
 std::vector<FaceRole> fill_faces(const BentDomain& bent, const Arrangement& arrangement,
                                  Findings& findings);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exact signs of geometric determinants. Each is first computed in double with a bound on its
 // rounding error (J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust
-// Geometric Predicates", 1997, bounds A); where the bound does not decide, in integers.
-// REQUIRES: finite coordinates. Any magnitude will do. Thread-safe.
+// Geometric Predicates", 1997, bounds A); if the bound does not decide, in integers.
+// REQUIRES: finite coordinates, of any magnitude. Thread-safe.
 #pragma once
 
 #include "checker/domain.h"

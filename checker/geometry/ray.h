@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Point location by a ray: the edge of an arrangement that is nearest to the left of a point, at
-// the point's height or, so that no vertex is met, infinitesimally above. Exact.
+// Point location by a ray: finds the edge of an arrangement nearest to the left of a point, at
+// the point's height or, to avoid vertices, infinitesimally above. Exact.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct RayHit {
       half_edge;  // of the nearest edge, the one with the point on its left
 };
 
-// `tree` holds a box of each edge. Needs the vertices and edges of the arrangement only.
+// `tree` holds a box of each edge. Uses only the vertices and edges of the arrangement.
 RayHit nearest_to_the_left(const Arrangement& arrangement, const BoxTree& tree, Vec2 p);
 
 }  // namespace weft::check

@@ -3,7 +3,7 @@
 // which are rational. They are numbered in lexicographic order (x, then y), exactly, and points
 // that coincide have one number. Along a segment the numbers rise or fall.
 //
-// Crossing points are compared by their nearest doubles first, by integers where those are close.
+// Crossing points are compared by their nearest doubles first, by integers if those are close.
 #pragma once
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -29,7 +29,7 @@ class VertexOrder {
   Vec2 at(std::uint32_t vertex) const { return vertices_[vertex].at; }
   bool is_crossing(std::uint32_t vertex) const { return vertices_[vertex].exact != kDouble; }
 
-  // Exact: < 0, 0 or > 0 as the vertex is lower than, level with or higher than y.
+  // Exact: < 0, 0 or > 0 if the vertex is lower than, level with or higher than y.
   int compare_y(std::uint32_t vertex, double y) const;
   // Exact, in lexicographic order.
   int compare(std::uint32_t vertex, Vec2 p) const;

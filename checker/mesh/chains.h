@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments and listed edges against each other. The domain is as the mesh has bent it
-// (bent_domain.h); a violation names the segment and the point of the input.
+// Compares segments and listed edges. The domain is as the mesh has bent it (bent_domain.h); a
+// violation names the segment and the point of the input.
 //
 // Wherever a segment has a kept face of the arrangement on a side, it must be a chain of listed
 // edges, through all input points on it, each edge within the tolerance (tolerance.h) of the
@@ -25,8 +25,8 @@ namespace weft::check {
 // Which segments of the input the mesh vertices lie on: (vertex, segment), sorted, distinct.
 using SegmentsOfVertices = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-// What the mesh owes a face: nothing if it is not kept; to have it, or, for a sliver, whichever way
-// it likes (joined_faces.h).
+// Whether the mesh must have a face: not if it is not kept; if it is a sliver, the mesh may choose
+// (joined_faces.h).
 enum class Need : std::uint8_t { kNothing, kEitherWay, kAll };
 
 // kPoints: every one of the first `count` points that is in the closure of a needed face (`needs`
@@ -35,8 +35,8 @@ void judge_points(const BentDomain& bent, std::size_t count, const Arrangement& 
                   const std::vector<Need>& needs, const InputPoints& input_points,
                   Findings& findings);
 
-// kChains, kMarkers, and of kEdges: listed edges that lie on no segment. An input point that a
-// chain has lost is left to kPoints. REQUIRES: no overlap.
+// Judges kChains, kMarkers, and the listed edges of kEdges that lie on no segment. An input point
+// that a chain has lost is left to kPoints. REQUIRES: no overlap.
 SegmentsOfVertices judge_chains(const BentDomain& bent, const Arrangement& arrangement,
                                 const std::vector<Need>& needs, const Mesh& mesh,
                                 const ListedEdges& listed, const InputPoints& input_points,

@@ -10,8 +10,8 @@
 namespace weft::check {
 
 // Adds a violation of kDelaunay for each unlisted edge with two triangles of which one has its
-// third corner strictly inside the circumcircle of the other. In a triangulation without overlap,
-// that no edge has makes it the constrained Delaunay triangulation (D. T. Lee and A. K. Lin, 1986).
+// third corner strictly inside the circumcircle of the other. A triangulation without overlap and
+// without such edges is the constrained Delaunay triangulation (D. T. Lee and A. K. Lin, 1986).
 // REQUIRES: structure, orientation and conformity hold.
 void judge_delaunay(const Mesh& mesh, const HalfEdges& half_edges, const ListedEdges& listed,
                     Findings& findings);

@@ -8,8 +8,8 @@
 //     why Ruppert's algorithm works", 2003).
 // Both hold to within rounding. The 60 degrees may be exceeded by 1e-9 in the cosine. The distances
 // may differ by 2^-46 of the largest coordinate of the mesh, in absolute value: that is 128 units
-// in the last place, twice what the engine allows itself. A tolerance relative to the distance, as
-// Triangle's of 1e-3, would excuse angles of nearly 180 degrees where the segments are nearer to
+// in the last place, twice what the engine allows itself. A tolerance relative to the distance,
+// such as Triangle's 1e-3, would excuse angles of nearly 180 degrees if the segments are nearer to
 // each other than that.
 #pragma once
 
@@ -39,7 +39,7 @@ class SmallInputAngles {
   double same_distance_ = 0;  // the largest difference
   const ListedEdges& listed_;
   SegmentsOfVertices segments_;
-  SegmentsOfVertices vertices_;  // the other way round: (segment, vertex)
+  SegmentsOfVertices vertices_;  // reversed: (segment, vertex)
 };
 
 }  // namespace weft::check

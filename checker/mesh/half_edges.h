@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the triangles of a mesh hang together. Half-edge 3t + i runs from corner i of triangle t to
-// its next corner, with the triangle on its left. About 16 bytes a half-edge.
+// How the triangles of a mesh are connected. Half-edge 3t + i runs from corner i of triangle t to
+// its next corner, with the triangle on its left. About 16 bytes per half-edge.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ class HalfEdges {
   explicit HalfEdges(const Mesh& mesh);
 
   // Adds a violation of kConformity for every edge with more than two triangles, or with two on the
-  // same side; false if there is one. `twin` and `find` are meaningful after true.
+  // same side; returns false if there is one. `twin` and `find` may be called only after true.
   bool judge_conformity(Findings& findings);
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(twin_.size()); }

@@ -13,7 +13,7 @@
 namespace weft::check {
 
 struct ListedEdges {
-  // Per listed edge: one of its half-edges; none if the triangles do not have the edge, or if it
+  // Per listed edge: one of its half-edges; nullopt if the triangles do not have the edge, or if it
   // was listed before.
   std::vector<std::optional<std::uint32_t>> half_edge;
   std::vector<bool> listed;  // per half-edge, both directions

@@ -18,7 +18,7 @@
 
 namespace weft::check {
 
-// Adds a violation of kOverlap for whatever stops the proof; false if there is one.
+// Adds a violation of kOverlap wherever the proof fails; returns false if there is one.
 // REQUIRES: structure, orientation and conformity hold.
 bool judge_overlap(const Mesh& mesh, const HalfEdges& half_edges, const ListedEdges& listed,
                    Findings& findings);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bounds that a caller sets on the triangles, and what the triangles measure.
+// The caller's bounds on triangles, and the measures of triangles.
 #pragma once
 
 #include <cstdint>
@@ -24,15 +24,15 @@ struct Requirements {
   std::optional<double> min_angle_deg;
   // Whether small input angles excuse (exemption.h).
   bool allow_small_input_angles = true;
-  // Triangles that may miss the angle or the area bound without excuse: what the engine declared as
-  // unrefined because of a budget or the floor on edge lengths.
+  // Maximum triangles that may miss the angle or the area bound without excuse: those that the
+  // engine declared as unrefined because of a budget or the floor on edge lengths.
   std::uint64_t allowed_unrefined = 0;
   // Violations written out per rule; the rest is counted.
   std::uint64_t listed_violations = 10;
 };
 
-// What the bounds need beyond the triangles; absent where other violations stand in the way: then
-// an angle that might be excused is not judged, and no region bounds an area.
+// Data that the bounds need besides the triangles. It is absent if other violations prevent it:
+// then an angle that might be excused is not judged, and no region bounds an area.
 struct QualityContext {
   const SmallInputAngles* small_input_angles = nullptr;
   std::span<const std::uint32_t> faces;  // per triangle
@@ -43,7 +43,7 @@ struct QualityContext {
 //   - An angle may be below the bound by 1e-7 degrees.
 //   - An area may exceed its bound by 1e-9 of it. The bound at the centroid is the largest of the
 //     nine values at distances 0 and 4 * 2^-53 * (largest coordinate of the triangle) along x and
-//     y: whoever computes the centroid rounds, and the size may be discontinuous there.
+//     y, because centroids are rounded, and the size may be discontinuous there.
 // REQUIRES: structure and orientation hold.
 void judge_quality(const Mesh& mesh, const Requirements& requirements,
                    const QualityContext& context, Facts& facts, Findings& findings);

@@ -35,11 +35,11 @@ std::vector<Step> steps_along_segments(const Domain& domain, const Mesh& mesh,
 
 struct Walk {
   std::vector<std::size_t> path;  // steps from start to goal, last first; empty if there is none
-  std::uint32_t farthest;         // the vertex reached that is farthest along
+  std::uint32_t farthest;         // the reached vertex that is farthest along
 };
 
 // A path of the given steps of one segment, which are sorted, from one mesh vertex to another.
-// `slack` is by how much positions of one vertex may differ.
+// `slack` bounds how much positions of one vertex may differ.
 Walk walk(std::span<const Step> steps, std::uint32_t start, double start_position,
           std::uint32_t goal, double slack);
 

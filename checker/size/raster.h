@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grading function as values at the nodes of a grid, bilinear between them; outside the grid it
-// is that of the nearest point of the grid. Independent of the engine's.
+// The grading function as values at the nodes of a grid, bilinear between them; outside the grid,
+// that of the nearest point of the grid. Independent of the engine's.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace weft::check {
 
-// REQUIRES: dx and dy are positive; columns * rows values, one at least.
+// REQUIRES: dx and dy are positive; columns * rows values, at least one.
 struct Raster {
   Vec2 origin;  // of the first node
   double dx = 1;

@@ -4,7 +4,7 @@
 // The grammar is the service's: cond ? a : b, ||, &&, comparisons, + -, * /, unary - + !, ^ (to the
 // right), from loose to tight, so that -x^2 is -(x^2) and 2^-1 is 0.5; numbers, x, y, pi, e; sqrt
 // abs exp log (natural) sin cos tan floor ceil, pow atan2 hypot, min max (two or more), clamp(v,
-// lo, hi). Whatever else muParser knows (assignment, strings, lists, its own names) is refused.
+// lo, hi). Other features of muParser (assignment, strings, lists, its own names) are refused.
 //
 //   auto size = SizeExpression::parse("0.01 + x^2");
 //   if (!size) return size.error();
@@ -28,7 +28,7 @@ class SizeExpression {
  public:
   static constexpr std::size_t kMaxLength = 19999;
 
-  // Errors: a sentence that says what was not understood, and where.
+  // Errors: a sentence that says what is wrong, and where.
   static tl::expected<SizeExpression, std::string> parse(std::string_view source);
 
   SizeExpression(SizeExpression&&) noexcept;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that appear complete or not at all.
 //
-// An OutputFile is written without a name in the folder of its target (O_TMPFILE; where the file
-// system knows no such files, under a hidden name that is removed again), so nothing is left
+// An OutputFile is written without a name in the folder of its target (O_TMPFILE; if the file
+// system has no such files, under a hidden name that is removed again), so nothing is left
 // behind, whatever ends the process. `commit` then moves all files of a set into place: each
 // replaces an older file in one step, and no name appears before all contents are complete.
 //
@@ -48,7 +48,7 @@ class FileDescriptor {
   int fd_ = kClosed;
 };
 
-// A nameless file in `folder` for reading and writing. Where that needs a name for a while, `name`
+// A nameless file in `folder` for reading and writing. If it needs a name for a while, `name`
 // receives it and the caller removes it.
 Result<FileDescriptor> open_nameless(const std::filesystem::path& folder,
                                      std::filesystem::path& name);
@@ -56,11 +56,11 @@ Result<FileDescriptor> open_nameless(const std::filesystem::path& folder,
 // The same without any name: it vanishes with its descriptor, whatever ends the process.
 Result<FileDescriptor> open_unlinked(const std::filesystem::path& folder);
 
-// Writes all bytes at the descriptor's position; false with errno set on failure.
+// Writes all bytes at the descriptor's position; returns false with errno set on failure.
 bool write_all(int fd, const void* bytes, std::size_t size);
 
-// Whether a file can be put at `target`: its folder exists and is writable, and what bears the name
-// already is a regular file.
+// Succeeds if a file can be put at `target`: its folder exists and is writable, and an existing
+// `target` is a regular file.
 Result<void> check_target(const std::filesystem::path& target);
 
 class OutputFile {
@@ -83,14 +83,14 @@ class OutputFile {
   void put_raw(const T& value) {
     write(&value, sizeof value);
   }
-  // Numbers as the shortest text that reads back the same.
+  // Appends a number as the shortest text that reads back the same.
   void number(double value);
   void number(std::int64_t value);
 
   // Keeps this failure, an errno, unless there was one before.
   void fail(int problem) { failure_ = failure_ == 0 ? problem : failure_; }
 
-  // Flushes; the first failure of any write, if there was one. A stop that was asked for counts.
+  // Flushes; returns the first failure of any write, if there was one. A requested stop counts.
   Result<void> finish();
   const std::filesystem::path& target() const { return target_; }
 
@@ -114,8 +114,8 @@ class OutputFile {
   int failure_ = 0;  // errno of the first failed write
 };
 
-// Moves every file into place, or none as far as the file system allows: all are complete and named
-// before the first is moved.
+// Moves every file into place, or none, as far as the file system allows: all are complete and
+// named before the first is moved.
 Result<void> commit(std::vector<OutputFile>& files);
 
 }  // namespace weft::client

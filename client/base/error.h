@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can go wrong in the client: the exit code to end with, and a sentence for the user that
-// names the offender (file:line:column, option, address). No exception leaves a function that
-// returns a Result.
+// The client's errors: the exit code to end with, and a sentence for the user that names the
+// offender (file:line:column, option, address). No exception leaves a function that returns a
+// Result.
 #pragma once
 
 #include <string>

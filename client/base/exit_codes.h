@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `weft` says to the shell. `weft --help` prints this table.
+// The exit codes of `weft`. `weft --help` prints this table.
 //
 //   0        all went well
 //   1        a fault of weft itself

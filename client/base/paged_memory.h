@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Room for arrays that may be larger than memory. Each lies in a nameless file that is mapped, so
-// the kernel keeps what is used and writes the rest to disk; the file vanishes with the process,
+// Storage for arrays that may be larger than memory. Each is in a nameless mapped file, so the
+// kernel keeps pages in use and writes the others to disk; the file vanishes with the process,
 // whatever ends it.
 //
-// Pages that a loop touches count as this process's own, and only `step` or `release` takes them
-// from it: a loop over an array calls it every kStride turns, best by `for (i : numbers(pages,
-// count))`. Arrays that are small together are left as they are. Between two steps a loop that goes
-// through arrays in their order, or nearly, touches a few megabytes; one that jumps at random
-// touches a page at every turn.
+// Pages that a loop touches count as this process's memory, and only `step` or `release` takes them
+// from it: a loop over an array calls it every kStride iterations, best by `for (i : numbers(pages,
+// count))`. Arrays that are small together stay in memory. Between two steps a loop that goes
+// through arrays in order, or nearly, touches a few megabytes; one that jumps at random
+// touches a page per iteration.
 //
-// Errors: std::system_error if there is no room on the disk (ENOSPC) and if a stop was asked for
-// (ECANCELED). Disk is reserved when an array is made, so that no later write fails. Not
+// Errors: std::system_error if there is no room on the disk (ENOSPC) and if a stop was requested
+// (ECANCELED). Disk space is reserved when an array is made, so that no later write fails. Not
 // thread-safe.
 //
 //   PagedMemory pages("out", stop);
@@ -36,7 +36,7 @@ class PagedMemory {
   static constexpr std::size_t kStride = std::size_t{1} << 16;
   static constexpr std::size_t kSmall = std::size_t{32} << 20;
 
-  // `small`: bytes of mapped files that may stay, and bytes of arrays that are in no files.
+  // `small`: bytes of mapped files that may stay in memory, and bytes of arrays without a file.
   explicit PagedMemory(std::filesystem::path folder, std::stop_token stop = {},
                        std::size_t small = kSmall)
       : folder_(std::move(folder)), stop_(std::move(stop)), small_(small) {}
@@ -44,24 +44,24 @@ class PagedMemory {
   PagedMemory& operator=(const PagedMemory&) = delete;
   ~PagedMemory();
 
-  // So many bytes, all 0, to be read and written. REQUIRES: bytes > 0.
+  // Returns so many bytes, all 0, for reading and writing. REQUIRES: bytes > 0.
   void* allocate(std::size_t bytes);
-  // The first bytes of a file, to be read; the file stays open as long. REQUIRES: bytes > 0.
+  // Maps the first bytes of a file for reading; the file must stay open. REQUIRES: bytes > 0.
   const void* map(int file, std::size_t bytes);
-  // Ends what one of the two began.
+  // Frees what one of the two returned.
   void free(const void* address);
 
   // Takes all pages of files out of this process's resident memory, unless they are small; the
   // contents stay.
   void release();
-  // The same, but ends in an error if a stop was asked for.
+  // The same, but throws if a stop was requested.
   void step();
 
  private:
   struct Mapping {
     void* address;
     std::size_t bytes;
-    int file;              // -1: memory that is in no file
+    int file;              // -1: memory without a file
     FileDescriptor own{};  // of `allocate`
   };
   Mapping& add(std::size_t bytes, int file, int protection);
@@ -74,7 +74,7 @@ class PagedMemory {
   std::size_t in_memory_ = 0;
 };
 
-// So many values, all 0 at first; without PagedMemory, in ordinary memory.
+// An array of values, all 0 at first; without PagedMemory, in ordinary memory.
 template <class T>
 class ScratchArray {
  public:
@@ -142,8 +142,8 @@ inline Numbers numbers(PagedMemory* pages, std::size_t count) {
   return {pages, count};
 }
 
-// For a loop whose places in an array jump, some of the time: told of each, it steps after so many
-// jumps that they have touched a few megabytes.
+// For a loop that sometimes jumps in an array: given each position, it steps after the jumps have
+// touched a few megabytes.
 class Jumps {
  public:
   explicit Jumps(PagedMemory* pages) : pages_(pages) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SHA-256, in pieces.
+// SHA-256, computed incrementally.
 #pragma once
 
 #include <openssl/evp.h>
@@ -18,7 +18,7 @@ class Sha256 {
   void add(const void* bytes, std::size_t size) {
     if (size > 0) EVP_DigestUpdate(context_.get(), bytes, size);
   }
-  // The digest, 32 bytes; the next one starts afresh.
+  // Returns the digest, 32 bytes, and starts a new one.
   std::string finish() {
     std::string digest(32, '\0');
     EVP_DigestFinal_ex(context_.get(), reinterpret_cast<unsigned char*>(digest.data()), nullptr);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns SIGINT, SIGTERM and SIGHUP into a request to stop, so that whatever is under way is undone
-// by the destructors of those who did it. A second signal ends the process at once.
+// Turns SIGINT, SIGTERM and SIGHUP into a request to stop, so that destructors undo unfinished
+// work. A second signal ends the process at once.
 //
 //   Signals signals;                      // before any other thread starts
 //   int code = run(signals.stop());
@@ -18,16 +18,16 @@ namespace weft::client {
 class Signals {
  public:
   // Blocks the signals in this thread and those that it starts. Ignores SIGPIPE and SIGXFSZ: writes
-  // report these. One instance a process.
+  // report these. One instance per process.
   Signals();
   ~Signals();
   Signals(const Signals&) = delete;
   Signals& operator=(const Signals&) = delete;
 
   std::stop_token stop() const { return source_.get_token(); }
-  // The first signal that came; 0 when none did.
+  // The first signal received; 0 if there was none.
   int received() const { return received_; }
-  // Ends the process by the signal that came. REQUIRES: received().
+  // Ends the process by the received signal. REQUIRES: received().
   [[noreturn]] void die();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers and strings as people read them.
+// Formats numbers and strings for people.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 
 namespace weft::client {
 
-// 'text', shortened to 32 bytes, what is not printable ASCII as \xNN.
+// 'text', shortened to 32 bytes; bytes that are not printable ASCII become \xNN.
 std::string in_quotes(std::string_view text);
 
-// A server's text, fit for a terminal: '?' for control characters but line feeds.
+// A server's text, safe for a terminal: control characters except line feeds become '?'.
 std::string harmless(std::string_view text);
 
 // The shortest text that reads back as the same number.

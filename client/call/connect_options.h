@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which server to use and how: what every command that speaks to one takes.
+// Which server to use and how: the options of every command that connects to one.
 #pragma once
 
 #include <filesystem>
@@ -8,22 +8,22 @@
 namespace weft::client {
 
 struct ConnectOptions {
-  // As gRPC takes it ("host:port", "unix:/path"); empty: a private server, for which only
-  // `one_mesh` matters.
+  // As gRPC takes it ("host:port", "unix:/path"); empty: a private server, which uses only
+  // `one_mesh`.
   std::string server{};
-  // Whether there is one mesh to make: a private server then lets it have all of its memory.
+  // Whether there is only one mesh to make: a private server then gives it all of its memory.
   bool one_mesh = false;
 
   // Encryption. With any of `tls`, `tls_ca`, `tls_cert` and `tls_server_name` the connection is
   // encrypted and the server's certificate verified.
   bool tls = false;
-  std::filesystem::path tls_ca{};      // PEM: whom to trust; empty: whom the system trusts
-  std::filesystem::path tls_cert{};    // PEM: our own certificate, where the server wants one
+  std::filesystem::path tls_ca{};      // PEM: trusted CAs; empty: those of the system
+  std::filesystem::path tls_cert{};    // PEM: the client's certificate, if the server requires one
   std::filesystem::path tls_key{};     // PEM: its key
   std::string tls_server_name{};       // the name in the certificate; empty: the host of `server`
   std::filesystem::path token_file{};  // holds the bearer token; empty: $WEFT_TOKEN, or none
 
-  // Send the token even if strangers may read it: unencrypted, to another machine.
+  // Send the token even if others may read it: unencrypted, to another machine.
   bool insecure = false;
 };
 

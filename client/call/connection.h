@@ -5,8 +5,8 @@
 // read when connecting.
 //
 // Errors: kUnreadableInput names the file that is missing or malformed; kUsage says that the token
-// would travel unencrypted; kServerNotStarted as private_server.h says. An encrypted connection
-// that the two sides do not agree on ends the first call with UNAVAILABLE.
+// would be sent unencrypted; kServerNotStarted as private_server.h says. If the TLS handshake
+// fails, the first call ends with UNAVAILABLE.
 #pragma once
 
 #include <grpcpp/channel.h>
@@ -22,12 +22,12 @@
 namespace weft::client {
 
 struct Connection {
-  std::unique_ptr<PrivateServer> server;  // null when the user named one
+  std::unique_ptr<PrivateServer> server;  // null if the user named one
   std::shared_ptr<grpc::Channel> channel;
   std::string address;
 };
 
-// Does not wait for a named server: the first call finds out.
+// Does not wait for a named server: the first call finds out whether it is there.
 Result<Connection> connect(const ConnectOptions& options, std::stop_token stop);
 
 }  // namespace weft::client

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Downloads the mesh of a job that succeeded into a spool (mesh_download.h).
 //
-// Errors: as JobServer's; kDataLoss for a stream that lies, kUnwritableOutput if the spool fails.
+// Errors: as JobServer's; kDataLoss for an inconsistent stream, kUnwritableOutput if the spool
+// fails.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +19,8 @@
 namespace weft::client {
 
 struct FetchMeshOptions {
-  // Of the domain that was submitted. If it is not known, the input points and segments that a
-  // mesh refers to are taken as they come: nothing here is read by their numbers.
+  // Of the submitted domain. If it is not known, references to input points and segments are not
+  // checked: nothing here is indexed by them.
   std::optional<DomainCounts> domain{};
   // After every chunk, the triangles so far; may be empty.
   std::function<void(std::uint64_t)> on_triangles{};

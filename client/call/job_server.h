@@ -2,8 +2,8 @@
 // The calls of JobService, made again while the server is away (see retry.h). Each of them may be
 // repeated without harm: a submission carries a request id.
 //
-// Errors: kUsage if no server is named, for a private one keeps no jobs; otherwise 64 + gRPC
-// status. A stop that is asked for cancels a call. Not thread-safe.
+// Errors: kUsage if no server is named, because a private one keeps no jobs; otherwise 64 + gRPC
+// status. A requested stop cancels a call. Not thread-safe.
 //
 //   auto server = JobServer::connect({.server = {.server = "unix:/run/weftd"}}, stop);
 //   if (!server) return tl::unexpected(server.error());
@@ -41,19 +41,19 @@ class JobServer {
   // The time-out counts from now.
   void set_limits(std::uint32_t retries, std::optional<double> timeout_seconds);
 
-  // `domain`, where there is one, tells the places of fields at fault. REQUIRES: a request_id.
+  // `domain`, if there is one, gives the places of fields at fault. REQUIRES: a request_id.
   Result<v1::Job> submit(const v1::SubmitJobRequest& request, const Domain* domain);
   Result<v1::Job> get(const std::string& id);
-  // As it is afterwards.
+  // Returns the job as it is afterwards.
   Result<v1::Job> cancel(const std::string& id);
   Result<void> remove(const std::string& id);
-  // Those in one of the states, or all where none is named; the youngest first, `limit` at most.
+  // Jobs in one of the states, or all if none is named; the youngest first, at most `limit`.
   Result<std::vector<v1::Job>> list(const std::vector<v1::JobState>& states,
                                     std::optional<std::uint64_t> limit);
-  // GetServerInfo of the MeshService beside it.
+  // GetServerInfo of the same server's MeshService.
   Result<v1::GetServerInfoResponse> info();
 
-  // For calls that are streams. A call that lives as long as this.
+  // One streaming call, which lives as long as this.
   class Attempt {
    public:
     explicit Attempt(const JobServer& server);
@@ -74,7 +74,7 @@ class JobServer {
   Error error_of(const grpc::Status& status, const Domain* domain) const;
 
   const Connection& connection() const { return connection_; }
-  // Told of the first of several failures in a row. DEFAULT: a line on stderr.
+  // Sets what is called with the first of several failures in a row. DEFAULT: a line on stderr.
   void on_away(std::function<void(const std::string&)> listener) {
     retry_.on_away = std::move(listener);
   }

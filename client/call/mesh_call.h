@@ -2,12 +2,12 @@
 // The call GenerateMesh: sends a domain and what its mesh must satisfy, and receives the mesh into
 // a spool.
 //
-// If a server that the user named goes away, or is busy, the call is made again (retry.h), for the
-// chunks that are missing; the server must be of the same engine version.
+// If a server that the user named goes away, or is busy, the call is repeated (retry.h), for the
+// missing chunks; the server must have the same engine version.
 //
-// Errors: 64 + gRPC status for a refusal or a lost server, kDataLoss for a stream that lies,
-// kUnwritableOutput if the spool fails; after any of them the call is cancelled. A stop that is
-// asked for cancels the call, too.
+// Errors: 64 + gRPC status for a refusal or a lost server, kDataLoss for an inconsistent stream,
+// kUnwritableOutput if the spool fails; after any of them the call is cancelled. A requested stop
+// cancels the call, too.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ struct MeshCallOptions {
   std::optional<double> timeout_seconds{};  // of the call, with all its retries
   std::uint32_t retries = RetryOptions{}.attempts;
   std::function<void(const v1::Progress&)> on_progress{};  // on the calling thread; may be empty
-  // Told when the server is away, once for several failures in a row. DEFAULT: a line on stderr.
+  // Called when the server is away, once for several failures in a row. DEFAULT: a line on stderr.
   std::function<void(const std::string&)> on_away{};
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One mesh, received over as many streams as it takes: a stream that breaks is followed by another
-// one that begins at the first missing chunk, as often as a chunk comes in between and a few times
-// more (retry.h). GenerateMesh and FetchMesh answer alike, so both go through here.
+// Receives one mesh over as many streams as needed: a broken stream is followed by another one that
+// begins at the first missing chunk, as long as new chunks arrive, and a few times more (retry.h).
+// GenerateMesh and FetchMesh have the same stream, so both use this.
 //
 //   MeshReceiver receiver(spool, domain);
 //   auto report = download_mesh<v1::FetchMeshResponse>(
@@ -9,8 +9,8 @@
 //       [&](grpc::ClientContext* context, std::uint32_t first_chunk) { ... the stream ... },
 //       [&](const v1::FetchMeshResponse& message) { ... });
 //
-// Errors: the status of the last stream as `Ended::status`; kDataLoss for a stream that lies,
-// kUnwritableOutput if the spool fails. A stop that is asked for cancels the stream.
+// Errors: the status of the last stream as `Ended::status`; kDataLoss for an inconsistent stream,
+// kUnwritableOutput if the spool fails. A requested stop cancels the stream.
 #pragma once
 
 #include <grpcpp/client_context.h>
@@ -35,8 +35,8 @@ struct Download {
   MeshReport report{};
 };
 
-// `open(context, first_chunk)` begins a stream of Response; `on_message(message)` sees every
-// message that was sound.
+// `open(context, first_chunk)` begins a stream of Response; `on_message(message)` gets every valid
+// message.
 template <class Response, class Open, class OnMessage>
 Result<Download> download_mesh(MeshReceiver& receiver, Retry retry,
                                std::optional<Deadline> deadline, const std::stop_token& stop,
@@ -72,7 +72,7 @@ Result<Download> download_mesh(MeshReceiver& receiver, Retry retry,
       return tl::unexpected(sound.error());
     }
     download.status = stream->Finish();
-    // What follows the summary does not matter: the mesh is whole.
+    // A failure after the summary does not matter: the mesh is complete.
     if (download.status.ok() || receiver.summary()) break;
     if (!retry.again(download.status)) return download;
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes the messages of a GenerateMesh or FetchMesh stream, one by one, and believes none: the
+// Takes the messages of a GenerateMesh or FetchMesh stream, one by one, and checks all of them: the
 // order of messages, the numbering of chunks, the shape of their arrays, the range of every index,
-// the digest of every chunk, and at the end the counts and the digest of the whole. What holds is
-// appended to the spool.
+// the digest of every chunk, and at the end the counts and the digest of the whole. Valid chunks
+// are appended to the spool.
 //
 // Errors: kDataLoss names the chunk and what is wrong with it; kUnwritableOutput comes from the
 // spool.
@@ -26,7 +26,7 @@
 
 namespace weft::client {
 
-// What was submitted: the range of the indices that come back.
+// The size of the submitted domain: the range of the indices that the mesh refers to.
 struct DomainCounts {
   std::uint64_t points = 0;
   std::uint64_t segments = 0;
@@ -34,16 +34,16 @@ struct DomainCounts {
 
 class MeshReceiver {
  public:
-  // Where `domain` is not known, what refers to it is not checked.
+  // If `domain` is not known, references to it are not checked.
   MeshReceiver(MeshSpool& spool, std::optional<DomainCounts> domain)
       : spool_(spool), domain_(domain) {}
 
   Result<void> receive(const v1::GenerateMeshResponse& message);
   Result<void> receive(const v1::FetchMeshResponse& message);
-  // From here on the messages are those of another call, which asked for the chunks that are
-  // missing: a first_chunk of `chunks()`.
+  // Call before the messages of another call, which asked for the missing chunks with
+  // first_chunk = `chunks()`.
   void resume() { resuming_ = true; }
-  // REQUIRES: the stream ended with OK. An error when no summary came.
+  // Returns an error if no summary arrived. REQUIRES: the stream ended with OK.
   Result<void> finish() const;
 
   const std::optional<v1::Accepted>& accepted() const { return accepted_; }
@@ -64,13 +64,13 @@ class MeshReceiver {
   MeshSpool& spool_;
   std::optional<DomainCounts> domain_;
   std::optional<v1::Accepted> accepted_;
-  bool resuming_ = false;  // another `accepted` is to come
+  bool resuming_ = false;  // whether another `accepted` is expected
   std::optional<v1::Summary> summary_;
   std::uint32_t chunks_ = 0;
   std::uint64_t bytes_ = 0;
   Sha256 hash_;
   Sha256 mesh_hash_;                  // over the digests of the chunks
-  std::vector<std::int32_t> zeros_;   // stand-in for regions that are all 0
+  std::vector<std::int32_t> zeros_;   // hashed instead of regions if all are 0
   std::vector<std::uint32_t> edges_;  // as hashed
 };
 

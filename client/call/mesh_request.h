@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A domain and what its mesh must satisfy, as the message that a server takes.
+// Makes the request message for a domain and what its mesh must satisfy.
 //
 //   if (auto ok = check_sendable(domain); !ok) return tl::unexpected(ok.error());
 //   const auto request = make_request(domain, {.size = "0.01", .min_angle_deg = 30});
@@ -17,12 +17,12 @@
 
 namespace weft::client {
 
-// What the mesh must satisfy. DEFAULT of all that is optional: the server's.
+// What the mesh must satisfy. DEFAULT of all optionals: the server's.
 struct RequestOptions {
   // A number, an expression in x and y, or the path of a grid (formats/size_grid.h); empty: no
   // bound.
   std::string size{};
-  // What that path holds: see with_size_grid.
+  // The contents of that grid: see with_size_grid.
   std::shared_ptr<const SizeGrid> size_grid{};
   std::optional<double> min_angle_deg{};
   std::optional<double> min_edge{};
@@ -31,19 +31,19 @@ struct RequestOptions {
   std::optional<std::uint64_t> max_triangles{};
   std::optional<double> max_seconds{};
   std::optional<std::uint32_t> threads{};
-  std::optional<double> snap{};  // what lies nearer together is merged first
-  bool allow_unrefined = false;  // a mesh that misses its bounds without excuse is taken
-  bool quadtree = false;         // of the summary, to draw it
-  bool no_cache = false;         // made anew, even if the server has it at hand
+  std::optional<double> snap{};  // features nearer together are merged first
+  bool allow_unrefined = false;  // accept a mesh that misses its bounds without excuse
+  bool quadtree = false;         // ask for the quadtree, to draw it
+  bool no_cache = false;         // make it anew, even if the server has it in memory
 };
 
-// Reads the grid whose path the size is, where it is one.
+// Reads the grid if the size is the path of one.
 Result<RequestOptions> with_size_grid(RequestOptions request_options);
 
-// An error (kUnreadableInput) where the domain is too large for any message.
+// Returns an error (kUnreadableInput) if the domain is too large for any message.
 Result<void> check_sendable(const Domain& domain);
 
-// REQUIRES: the size is no path, or its grid was read.
+// REQUIRES: the size is not a path, or its grid was read.
 v1::GenerateMeshRequest make_request(const Domain& domain, const RequestOptions& request_options);
 
 }  // namespace weft::client

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Holds a mesh while it arrives, outside of memory unless it is small: one nameless file per array,
-// which vanishes with the process, mapped into memory once the mesh is complete. (Small is a
-// million triangles; then there is no need of the disk. The time of the processor is about the
-// same.) Who watches sees the pieces as they come, with all vertices before them; for a drawing,
-// the rest need not be held.
+// Holds a mesh while it arrives, on disk unless it is small: one nameless file per array,
+// which vanishes with the process, mapped into memory once the mesh is complete. (Meshes of up to a
+// million triangles need no disk. Processor time is about the same.) `on_piece` gets the pieces as
+// they arrive, with all vertices before them; for a drawing, only the vertices need be held.
 //
 // Errors (kUnwritableOutput): the folder is missing, not writable or full. Not thread-safe.
 #pragma once
@@ -31,14 +30,14 @@ class SpooledArray {
   static constexpr std::size_t kInMemory = std::size_t{16} << 20;
 
   Result<void> open(const std::filesystem::path& folder);
-  // Both false with errno set on failure. Zeros take no room: they are pages that nobody touches,
-  // or a hole of the file.
+  // Both return false with errno set on failure. Zeros take no room: they are untouched pages or a
+  // hole in the file.
   bool append(std::span<const T> values);
   bool append_zeros(std::size_t count);
   std::size_t size() const { return size_; }
-  // What was appended so far; no more than that when something is appended, until this is called
-  // again. False with errno set on failure. REQUIRES: the same `pages` every time, and the array
-  // outlives them.
+  // Maps what was appended so far; values appended later are not mapped until this is called
+  // again. Returns false with errno set on failure. REQUIRES: the same `pages` every time, and the
+  // array outlives them.
   bool map(PagedMemory& pages);
   std::span<const T> values() const { return {values_, mapped_}; }
 
@@ -63,10 +62,10 @@ extern template class SpooledArray<std::int32_t>;
 
 struct MeshSpoolOptions {
   bool vertices_only = false;  // nothing else is held: the view is of no use
-  // Called after every piece: its triangles, regions and edges, with the coordinates of all
-  // vertices so far; may be empty. The spans end with the call.
+  // Called after every piece, with its triangles, regions and edges and the coordinates of all
+  // vertices so far; may be empty. The spans are valid during the call.
   std::function<void(const MeshView&)> on_piece{};
-  std::stop_token stop{};  // ends what goes through the view, see paged_memory.h
+  std::stop_token stop{};  // ends loops over the view, see paged_memory.h
 };
 
 class MeshSpool {
@@ -77,7 +76,7 @@ class MeshSpool {
   // Appends a piece; its arrays are as MeshView has them, regions and markers empty if all are 0.
   Result<void> append(const MeshView& piece);
 
-  // The whole mesh, valid as long as the spool. REQUIRES: nothing is appended any more.
+  // Returns the whole mesh, valid as long as the spool. REQUIRES: nothing is appended any more.
   Result<MeshView> view();
 
   std::uint64_t vertices() const { return coordinates_.size() / 2; }

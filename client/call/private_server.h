@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A weftd of our own, on a unix socket in a fresh folder that only we may enter.
+// A weftd that only this process uses, on a unix socket in a new folder that only this user may
+// enter.
 //
-// It never outlives us: the destructor stops it (SIGTERM, then SIGKILL after a time-out) and
-// removes the folder; should this process be killed, the pipe to its standard input closes, and
+// It never outlives this process: the destructor stops it (SIGTERM, then SIGKILL after a time-out)
+// and removes the folder; if this process is killed, the pipe to its standard input closes, and
 // `--exit-with-stdin` ends it.
 //
 //   auto server = PrivateServer::start({}, stop);
@@ -28,7 +29,7 @@
 namespace weft::client {
 
 struct PrivateServerOptions {
-  // DEFAULT: $WEFT_WEFTD, or weftd beside our own binary, or weftd in the PATH.
+  // DEFAULT: $WEFT_WEFTD, or weftd beside this program's binary, or weftd in the PATH.
   std::optional<std::filesystem::path> weftd;
   // Runs at the same time, each of which may take that part of the memory. DEFAULT: weftd's own.
   std::optional<int> jobs = std::nullopt;
@@ -47,7 +48,7 @@ class PrivateServer {
   // As gRPC takes it: "unix:/tmp/weft-x1y2z3/socket".
   std::string address() const { return "unix:" + (folder_ / "socket").string(); }
   pid_t pid() const { return pid_; }
-  // The last lines that it wrote to stderr, indented; empty when there are none.
+  // The last lines that it wrote to stderr, indented; empty if there are none.
   std::string last_log_lines() const;
 
  private:
@@ -60,7 +61,7 @@ class PrivateServer {
 
   PrivateServerOptions options_;
   std::filesystem::path folder_;
-  FileDescriptor input_;    // our end of its standard input
+  FileDescriptor input_;    // this process's end of its standard input
   FileDescriptor process_;  // a pidfd: readable when it has ended
   pid_t pid_ = 0;
 };

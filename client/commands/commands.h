@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands of `weft`. Each prints its result on stdout and returns how the process should end;
-// an error is for the caller to print.
+// The commands of `weft`. Each prints its result on stdout and returns the exit code; the caller
+// prints errors.
 #pragma once
 
 #include <cstdint>
@@ -36,14 +36,14 @@ struct BatchOptions {
   std::optional<double> timeout_seconds;  // of each mesh
   std::uint32_t retries = RetryOptions{}.attempts;
   std::uint32_t jobs = 4;          // meshes at a time
-  std::vector<QualityGate> gates;  // of all meshes, on top of their own
+  std::vector<QualityGate> gates;  // of all meshes, in addition to their own
   std::filesystem::path lock;      // empty: beside the manifest
-  bool locked = false;             // the lock file is held to, not written
+  bool locked = false;             // check against the lock file, do not write it
   std::filesystem::path junit;     // empty: none
   std::filesystem::path summary;   // empty: none
   bool quiet = false;
 };
-// kCheckFailed where a mesh fails a gate or is not the locked one.
+// kCheckFailed if a mesh fails a gate or is not the locked one.
 Result<ExitCode> run_batch(const BatchOptions& options, std::stop_token stop);
 
 struct CheckOptions {
@@ -73,7 +73,7 @@ struct ServerOptions {
 Result<ExitCode> run_health(const ServerOptions& options, std::stop_token stop);
 Result<ExitCode> run_server_info(const ServerOptions& options, std::stop_token stop);
 
-// Writes to stdout; an error when that fails.
+// Writes to stdout; returns an error if that fails.
 Result<ExitCode> print(const std::string& text);
 
 }  // namespace weft::client

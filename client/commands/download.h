@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `weft submit --wait` and `weft fetch` share: to wait for a job, and to bring its mesh into
+// Shared by `weft submit --wait` and `weft fetch`: waits for a job, and downloads its mesh into
 // files.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace weft::client {
 
-// The job as it ended.
+// Waits for a job to end, and returns it.
 Result<v1::Job> wait_for_job(JobServer& server, const std::string& id, ProgressBar& progress);
 
 // `domain` may be null. Sets `times.received` and `times.written`. REQUIRES: the job succeeded.

@@ -14,9 +14,9 @@
 
 namespace weft::client {
 
-// Has `domain` meshed and writes `output`; null: nothing is written. `received` is called before
-// anything is. Errors: those of call_generate_mesh and of MeshOutput; where a private server went
-// away, with its last lines.
+// Requests a mesh of `domain` and writes `output`; null: nothing is written. `received` is called
+// before anything is written. Errors: those of call_generate_mesh and of MeshOutput; if a private
+// server went away, with the last lines of its log.
 Result<MeshReport> mesh_into(const Connection& connection, const Domain& domain,
                              const RequestOptions& request_options, const MeshCallOptions& call,
                              MeshOutput* output, const std::function<void()>& received,

@@ -49,8 +49,8 @@ class Canvas {
   double height_ = 0;
 };
 
-// Calls edge(a, b) once for each edge between two triangles. (Counter-clockwise triangles name it
-// once in either direction; an edge of one triangle may be left out.)
+// Calls edge(a, b) once for each edge between two triangles. (Counter-clockwise triangles name such
+// an edge once in each direction; edges of only one triangle may be left out.)
 template <class Edge>
 void for_each_inner_edge(const MeshView& mesh, Edge&& edge) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {

@@ -17,7 +17,7 @@ class Coloring {
 
   // Empty: triangles are not coloured.
   const std::vector<Color>& palette() const { return palette_; }
-  // The place of triangle t's colour in the palette. REQUIRES: the palette is not empty.
+  // The index of triangle t's colour in the palette. REQUIRES: the palette is not empty.
   std::size_t of(const MeshView& mesh, std::size_t t) const;
 
  private:

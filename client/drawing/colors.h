@@ -21,8 +21,8 @@ inline constexpr Color kBoxInk{0.84, 0.15, 0.10};
 // The perceptually uniform map viridis (S. van der Walt and N. Smith, 2015, CC0), t from 0 to 1.
 Color viridis(double t);
 
-// Of a region: grey for 0, otherwise one of eight that the colour-blind can tell apart (M. Okabe
-// and K. Ito, 2008), lightened.
+// The colour of a region: grey for 0, otherwise one of eight that the colour-blind can tell apart
+// (M. Okabe and K. Ito, 2008), lightened.
 Color region_color(std::int32_t id);
 
 }  // namespace weft::client

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws a mesh whose triangles are about as small as pixels, piece by piece. Each pixel takes the
-// mean colour of the triangles in it; each edge leaves ink along its length, and a pixel with ink i
-// is covered to the part 1 - exp(-i), so that edges blend to grey and dense parts get darker without
-// clogging. The width of the lines follows from the length of all edges, so it is applied at the
-// end. Takes 4 bytes for a pixel, and 16 more if triangles are coloured.
+// Draws a mesh whose triangles are about as small as pixels, piece by piece. Each pixel takes
+// the mean colour of the triangles in it; each edge leaves ink along its length, and a pixel with
+// ink i is covered to the fraction 1 - exp(-i), so that edges blend to grey and dense parts get
+// darker without clogging. The width of the lines depends on the length of all edges, so it is
+// applied at the end. Takes 4 bytes per pixel, and 16 more if triangles are coloured.
 #pragma once
 
 #include <cstddef>
@@ -26,13 +26,13 @@ struct Image {
 
 class DenseImage {
  public:
-  // `coloring` outlives it.
+  // `coloring` must outlive it.
   DenseImage(const Canvas& canvas, const Coloring& coloring);
 
-  // The triangles of a piece, with all the vertices that they refer to. Together, the triangles
-  // name each edge between two of them once in either direction.
+  // Adds the triangles of a piece, with all the vertices that they refer to. All triangles together
+  // must name each edge between two of them once in each direction.
   void add(const MeshView& piece);
-  // Of the edges between two triangles, in pixels.
+  // Mean length of the edges between two triangles, in pixels.
   double mean_edge() const;
   Image image() const;
 

@@ -5,8 +5,8 @@
 //
 // Meshes whose triangles are a few pixels small are drawn into an image (dense.h), so that edges
 // blend to grey by their density; in SVG and PDF the image is embedded under a boundary of vectors.
-// A mesh of more than kMostVectors triangles always is, piece by piece while it arrives: of it, no
-// more is kept than the image and the boundary. So memory does not grow with the mesh.
+// A mesh of more than kMostVectors triangles always is, piece by piece while it arrives: only the
+// image and the boundary are kept of it. So memory does not grow with the mesh.
 //
 //   Drawing drawing(DrawColor::kAngle);
 //   ... drawing.add(piece) ...
@@ -33,7 +33,7 @@ namespace weft::client {
 enum class DrawFormat { kPng, kSvg, kPdf };
 enum class DrawColor { kNone, kAngle, kRegion };
 
-// By extension, in any case.
+// The format of an extension, in upper or lower case.
 std::optional<DrawFormat> draw_format(const std::filesystem::path& path);
 
 class DenseImage;
@@ -50,14 +50,14 @@ class Drawing {
   Drawing& operator=(const Drawing&) = delete;
   ~Drawing();
 
-  // The next piece of the mesh: its triangles, their regions (none: all are 0) and its edges, with
-  // the coordinates of all vertices so far. All corners of the mesh are among the vertices before
-  // triangle kMostVectors; what lies beyond their box is put on the margin.
+  // Adds the next piece of the mesh: its triangles, their regions (none: all are 0) and its edges,
+  // with the coordinates of all vertices so far. All corners of the mesh should be among the
+  // vertices before triangle kMostVectors; points outside their box are put on the margin.
   void add(const MeshView& piece);
   std::size_t triangles() const { return triangles_; }
 
   // Draws what was added. `boxes` are min x, min y, max x, max y of each, in the unit of the mesh;
-  // what lies off the page is cut off. Failures to write stay in the file; an error (kInternal) is
+  // parts outside the page are cut off. Failures to write stay in the file; an error (kInternal) is
   // cairo's.
   Result<void> draw(DrawFormat format, std::span<const double> boxes, OutputFile& file) const;
 
@@ -73,9 +73,9 @@ class Drawing {
   const double long_side_;
   std::size_t triangles_ = 0;
   Extent extent_;
-  Mesh mesh_;                            // while it is small; without edges
+  Mesh mesh_;                          // while it is small; without edges
   std::unique_ptr<DenseImage> image_;  // from then on
-  std::vector<double> boundary_;         // x, y of both ends of each edge on an input segment
+  std::vector<double> boundary_;       // x, y of both ends of each edge on an input segment
 };
 
 }  // namespace weft::client

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A domain as a file describes it: a planar straight-line graph with seeds, and where in the file
-// each part was found. Indices count from 0 whatever the file counts from.
+// A domain as a file describes it: a planar straight-line graph with seeds, and the place of each
+// part in the file. Indices count from 0, whatever the file counts from.
 #pragma once
 
 #include <cstddef>
@@ -19,16 +19,16 @@ struct Point {
   friend bool operator==(const Point&, const Point&) = default;
 };
 
-// Where the elements of a list stand in a file, run-length coded: element i of a run that starts at
+// The places of a list's elements in a file, run-length coded: element i of a run that starts at
 // `first` is at prefix + (number + i - first) + suffix, as in "coast.poly:" 17 "" or
 // "coast.geojson: features[3].geometry.coordinates[0][" 17 "]".
 class Provenance {
  public:
   // REQUIRES: `first` does not decrease from call to call.
   void add(std::size_t first, std::string prefix, std::uint64_t number, std::string suffix);
-  // As `add`, unless the last run goes on through (first, number).
+  // As `add`, unless the last run already continues through (first, number).
   void extend(std::size_t first, const std::string& prefix, std::uint64_t number);
-  // Empty when the element has no known place.
+  // Empty if the element's place is not known.
   std::string locate(std::size_t i) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Domain files: which formats there are, and how each is read. docs/formats.md tells what each
+// Domain files: which formats there are, and how each is read. docs/formats.md says what each
 // carries. A mesh that can be read is a domain, too (mesh_domain.h).
 #pragma once
 
@@ -17,7 +17,7 @@ Result<Domain> read_domain(const std::filesystem::path& path);
 // Whether the extension is that of a domain, or of a mesh that can be read as one.
 bool is_domain_path(const std::filesystem::path& path);
 
-// ".poly, .geojson, ...": those of domains and nothing else.
+// ".poly, .geojson, ...": the extensions of domains only.
 std::string domain_extensions();
 // Whether the extension is one of these.
 bool is_plain_domain_path(const std::filesystem::path& path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parses JSON that nobody vouches for. Errors (kUnreadableInput) carry file:line:column.
+// Parses untrusted JSON. Errors (kUnreadableInput) carry file:line:column.
 #pragma once
 
 #include <nlohmann/json.hpp>

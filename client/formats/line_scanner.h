@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads text files that are lines of numbers and words between blanks, such as Triangle's: `#`
-// starts a comment, blank lines do not count. Errors (kUnreadableInput) read "file:line:column:
+// starts a comment, blank lines are ignored. Errors (kUnreadableInput) read "file:line:column:
 // expected the x coordinate, found 'abc'".
 //
 //   LineScanner scanner("box.poly", text);
@@ -28,11 +28,11 @@ class LineScanner {
   LineScanner(std::string name, std::string_view text, LineSyntax syntax = {})
       : name_(std::move(name)), rest_(text), syntax_(syntax) {}
 
-  // Moves to the next line that holds something; an error at the end of the file names `what`.
+  // Moves to the next line that is not empty; an error at the end of the file names `what`.
   Result<void> next_line(std::string_view what);
-  // Moves to the next line that holds something; false at the end of the file.
+  // Moves to the next line that is not empty; returns false at the end of the file.
   bool try_next_line();
-  // Moves to the next line, whatever it holds; false at the end of the file.
+  // Moves to the next line, even if it is empty; returns false at the end of the file.
   bool skip_line();
   // Whether the line has no more fields.
   bool at_line_end() const { return field_.empty(); }
@@ -42,10 +42,10 @@ class LineScanner {
   Result<std::int64_t> integer(std::string_view what);
   Result<std::int32_t> marker(std::string_view what);
   Result<double> real(std::string_view what);  // finite
-  // A number of lines to come; refused when so many cannot fit in the rest of the file.
+  // A number of lines to come; refused if so many cannot fit in the rest of the file.
   Result<std::uint64_t> count(std::string_view what);
 
-  // What the line holds from its next field on; reads none of it.
+  // The line from its next field on; reads none of it.
   std::string_view rest_of_line() const;
 
   // An error at the field that was read last.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle mesh as files hold it. Vertices are numbered from 0; triangles are counter-clockwise.
+// A triangle mesh as in files. Vertices are numbered from 0; triangles are counter-clockwise.
 //
-// Writers take a MeshView: spans over arrays that somebody else keeps (vectors, or files mapped
+// Writers take a MeshView: spans over arrays that the caller owns (vectors, or files mapped
 // into memory), so a mesh larger than memory can be written. For that they go through its arrays by
-// `up_to` and `in_pieces`, in their order or nearly, and keep what grows with the mesh in
+// `up_to` and `in_pieces`, in their order or nearly, and keep data that grows with the mesh in
 // ScratchArrays of its `pages`.
 #pragma once
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The domain of which a mesh is one: to mesh it anew.
+// Makes the domain of a mesh, to mesh it anew.
 //
 // Segments are the mesh's own edges (a Gmsh file's lines), the boundary of its triangles, and the
 // sides between triangles of different regions; those without a marker have 0. Points are the ends
-// of segments. With triangles, what they cover is filled (Fill::kEvenOdd; segments inside go twice,
-// which leaves the parity alone), and each part between segments whose region is not 0 gets a seed.
-// Without triangles every bounded face is filled (Fill::kSeeds).
+// of segments. If there are triangles, the area that they cover is filled (Fill::kEvenOdd; segments
+// inside are listed twice, which does not change the parity), and each part between segments whose
+// region is not 0 gets a seed. Without triangles every bounded face is filled (Fill::kSeeds).
 #pragma once
 
 #include <string>

@@ -2,9 +2,9 @@
 // The edges of a triangle mesh, each once, whatever the number of triangles at it: the sides of the
 // triangles and the mesh's own edges (those on input segments).
 //
-// Edges are numbered by their lower vertex, then by their higher one, so the numbers depend on the
-// vertices alone. Side k of triangle t runs from its corner k to its corner (k + 1) % 3. Takes time
-// and room linear in the triangles, 40 bytes for each, in the mesh's pages. Sides have 32 bits:
+// Edges are numbered by their lower vertex, then by their higher one, so the numbers depend only on
+// the vertices. Side k of triangle t runs from its corner k to its corner (k + 1) % 3. Takes time
+// and room linear in the triangles, 40 bytes each, in the mesh's pages. Sides have 32 bits:
 // more than a third of 2^32 triangles are a std::system_error (EOVERFLOW).
 //
 //   const MeshEdges edges(mesh);
@@ -29,7 +29,7 @@ class MeshEdges {
   std::uint32_t high(std::size_t e) const { return ends_[2 * e + 1]; }
   std::uint32_t of_side(std::size_t side) const { return edge_of_side_[side]; }
   std::uint32_t of_input_edge(std::size_t i) const { return edge_of_side_[sides_ + i]; }
-  // One triangle and no more has it as a side.
+  // Whether it is a side of exactly one triangle.
   bool on_boundary(std::size_t e) const { return triangles_at_[e] == 1; }
 
  private:

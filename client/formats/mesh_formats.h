@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mesh files: which formats there are, and how each is read and written. docs/formats.md tells what
+// Mesh files: which formats there are, and how each is read and written. docs/formats.md says what
 // each carries.
 //
 //   const MeshFormat* format = mesh_format("key.vtu");
@@ -22,7 +22,7 @@ namespace weft::client {
 
 enum class MshVersion { k22, k41 };
 
-// How meshes are written, if their format leaves a choice.
+// How to write meshes, if their format has a choice.
 struct MeshWriteOptions {
   int order = 1;  // 2: six-node triangles, for formats of second order
   MshVersion msh_version = MshVersion::k41;
@@ -39,7 +39,7 @@ struct MeshFormat {
   Result<Mesh> (*read)(const std::filesystem::path&) = nullptr;
 };
 
-// By extension, in any case; null if there is none.
+// The format of an extension, in upper or lower case; null if there is none.
 const MeshFormat* mesh_format(const std::filesystem::path& path);
 
 // ".vtu, .msh, .node, ...": those that are written, and those that are read.
@@ -49,7 +49,7 @@ std::string read_mesh_extensions();
 // "'.stp' is not that of a mesh format that is written: .vtu, .msh, .node, ..." (kUsage).
 tl::unexpected<Error> unknown_mesh_format(const std::filesystem::path& path);
 
-// Whether meshes can be written to `path` in this way; otherwise kUsage.
+// Succeeds if meshes can be written to `path` in this way; otherwise kUsage.
 Result<void> check_writable(const std::filesystem::path& path, const MeshWriteOptions& options);
 
 // The files that writing to `path` makes. REQUIRES: the format is known.
@@ -65,7 +65,7 @@ void write_mesh(const MeshFormat& format, const MeshView& mesh, std::span<Output
 // regions and markers as triangles and edges; nothing else is promised.
 Result<Mesh> read_mesh(const std::filesystem::path& path);
 
-// The common last check of readers: the promises of read_mesh.
+// The last check of all readers: ensures the promises of read_mesh.
 Result<Mesh> validated(const std::filesystem::path& path, Mesh mesh);
 
 // The extension in lower case.

@@ -8,7 +8,7 @@
 
 namespace weft::client {
 
-// 1 when a, b, c turn counter-clockwise, -1 when clockwise, 0 when they are collinear.
+// 1 if a, b, c turn counter-clockwise, -1 if clockwise, 0 if they are collinear.
 int orientation(Point a, Point b, Point c);
 
 }  // namespace weft::client

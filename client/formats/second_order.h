@@ -4,7 +4,7 @@
 //
 // Nodes are the vertices, with the numbers that they have, then the midside nodes in the order of
 // MeshEdges. A triangle has its corners 0, 1, 2, then the nodes between 0 and 1, 1 and 2, 2 and 0,
-// as VTK and Gmsh want them; an edge has its ends, then its middle. Takes 56 bytes for a triangle
+// as VTK and Gmsh require; an edge has its ends, then its middle. Takes 56 bytes per triangle
 // in the mesh's pages, and 40 more for a while. Nodes have 32 bits: more are a std::system_error
 // (EOVERFLOW).
 #pragma once

@@ -13,7 +13,7 @@
 //
 // A value is that of the centre of its cell: the upper bound on the area of a triangle there, in
 // squared units of the coordinates. Every one must be positive; a cell without a value is refused,
-// for the bound there would be a guess.
+// because the bound there would be a guess.
 //
 //   Result<SizeGrid> grid = read_size_grid("coast.asc");
 #pragma once
@@ -36,7 +36,7 @@ struct SizeGrid {
   std::vector<double> values{};  // by rows, from the southmost
 };
 
-// By extension, in any case. No expression ends so.
+// Whether the path has the extension, in upper or lower case. No expression ends with it.
 bool is_size_grid_path(const std::filesystem::path& path);
 
 // Errors (kUnreadableInput) name file, line and column.

@@ -9,8 +9,8 @@
 
 namespace weft::client {
 
-// The fields with blanks between them: numbers in the shortest text that reads back the same, and
-// texts as they are.
+// Writes the fields with blanks between them: numbers as the shortest text that reads back the
+// same, and texts as they are.
 template <class First, class... Rest>
 void put_line(OutputFile& file, const First& first, const Rest&... rest) {
   const auto put = [&file](const auto& field) {

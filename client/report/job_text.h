@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Jobs as people and programs read them. Times are RFC 3339 in UTC.
+// Formats jobs for people and programs. Times are RFC 3339 in UTC.
 #pragma once
 
 #include <optional>
@@ -18,27 +18,27 @@ constexpr bool is_final(v1::JobState state) {
          state == v1::JOB_STATE_CANCELLED;
 }
 
-// "queued", "running", "succeeded", "failed", "cancelled"; "unknown" for one of a newer server.
+// "queued", "running", "succeeded", "failed", "cancelled"; "unknown" for states of newer servers.
 const char* state_name(v1::JobState state);
 
 // "2026-11-20T16:16:09Z", to the second.
 std::string time_text(const google::protobuf::Timestamp& time);
 
-// The fields of Job by their names, those that are unset left out; states and stages in lower case.
+// The fields of Job by name, without unset ones; states and stages in lower case.
 Json job_json(const v1::Job& job);
 
-// One field a line.
+// One field per line.
 std::string job_text(const v1::Job& job);
 
-// One job a line, under a heading.
+// One job per line, under a heading.
 std::string job_table(std::span<const v1::Job> jobs);
 
-// How far the job is, as a progress bar shows it; of one that waits, too.
+// The job's progress for a progress bar, also while it waits.
 v1::Progress progress_of(const v1::Job& job);
 
-// Nothing if the job succeeded. For one that failed the exit code of its error, for one that was
-// cancelled that of CANCELLED, and for one that has not ended that of FAILED_PRECONDITION.
-// `domain`, where it is known, tells the places of fields at fault.
+// Returns nullopt if the job succeeded. If it failed, the exit code is that of its error; if it was
+// cancelled, that of CANCELLED; if it has not ended, that of FAILED_PRECONDITION.
+// `domain`, if it is known, gives the places of fields at fault.
 std::optional<Error> job_error(const v1::Job& job, const Domain* domain);
 
 }  // namespace weft::client

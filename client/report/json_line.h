@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON as it is printed: an object on one line, in ASCII, with U+FFFD for what is no UTF-8.
+// Prints JSON: an object on one line, in ASCII, with U+FFFD for bytes that are not UTF-8.
 #pragma once
 
 #include <nlohmann/json.hpp>

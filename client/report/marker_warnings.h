@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a caller should know about the markers of a mesh: those that were asked for, or that the
-// input has, and that no edge of the mesh carries.
+// Warnings about markers that the user asked for, or that the input has, but that no edge of the
+// mesh carries.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ std::set<std::int32_t> markers_of(const MeshView& mesh);
 std::vector<std::string> open_boundary_warnings(const std::set<std::int32_t>& in_mesh,
                                                 std::span<const std::int32_t> open_boundaries);
 
-// "no edge of the mesh carries marker 7 of the input: ...", at most one line; 0 is no marker. Where
-// segments overlap the mesh's edges carry the marker of one of them.
+// "no edge of the mesh carries marker 7 of the input: ...", at most one line; 0 is not a marker. If
+// segments overlap, the mesh's edges carry the marker of one of them.
 std::vector<std::string> hidden_marker_warnings(const std::set<std::int32_t>& in_mesh,
                                                 const Domain& domain);
 

@@ -14,10 +14,10 @@ struct AngleRange {
   double max_deg = 0;
 };
 
-// Of one triangle. A degenerate one has 0 and 180.
+// The angles of one triangle. A degenerate one has 0 and 180.
 AngleRange triangle_angles(const MeshView& mesh, std::size_t triangle);
 
-// Of all triangles.
+// The angles of all triangles.
 AngleRange mesh_angles(const MeshView& mesh);
 
 }  // namespace weft::client

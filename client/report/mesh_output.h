@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files that a mesh is written to: meshes in their formats, and drawings. All of them appear
-// complete, or none.
+// Writes a mesh to files: meshes in their formats, and drawings. All of them appear complete, or
+// none.
 //
 //   auto output = MeshOutput::open({.files = {"key.vtu"}}, "key.poly", stop);
 //   auto spool = output->make_spool();
@@ -9,7 +9,7 @@
 //   print(output->text());
 //
 // Errors: kUsage if there is nothing to write, an extension is unknown, a name is given twice or
-// is the input's; kUnwritableOutput where a file cannot be written. Not thread-safe.
+// is the input's; kUnwritableOutput if a file cannot be written. Not thread-safe.
 #pragma once
 
 #include <filesystem>
@@ -41,18 +41,19 @@ struct MeshOutputOptions {
 
 class MeshOutput {
  public:
-  // Nothing is written yet, but all can be. `input`, where there is one, is not replaced.
+  // Checks that all files can be written, and writes nothing yet. `input`, if any, is not replaced.
   static Result<MeshOutput> open(const MeshOutputOptions& options,
                                  const std::optional<std::filesystem::path>& input,
                                  const std::stop_token& stop);
 
-  // Holds the mesh while it arrives, beside the first file, and draws it; what is only drawn is not
-  // held. This outlives it.
+  // Makes a spool that holds the mesh while it arrives, beside the first file, and draws it; a mesh
+  // that is only drawn is not held. This must outlive the spool.
   Result<std::unique_ptr<MeshSpool>> make_spool();
   bool draws() const { return drawing_ != nullptr; }
-  // `mesh` is the spool's view; any other, if nothing is drawn.
+  // `mesh` is the spool's view; any view if nothing is drawn.
   Result<void> write(const MeshView& mesh, const v1::Summary& summary);
-  // "wrote key.vtu, 1.2 MB\n" of each, after what was drawn of the quadtree. REQUIRES: written.
+  // "wrote key.vtu, 1.2 MB\n" for each file, after a line on the quadtree if it was drawn.
+  // REQUIRES: written.
   std::string text(const v1::Summary& summary) const;
 
  private:
@@ -61,7 +62,7 @@ class MeshOutput {
   MeshOutputOptions options_;
   std::vector<OutputFile> files_;  // those of options_.files, then the drawings
   std::stop_token stop_;
-  std::unique_ptr<Drawing> drawing_;  // of which all drawings are made; null if there are none
+  std::unique_ptr<Drawing> drawing_;  // source of all drawings; null if there are none
 };
 
 }  // namespace weft::client

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said of a mesh that came from a server, for people and for programs.
+// The report on a mesh that a server made, for people and for programs.
 #pragma once
 
 #include <chrono>
@@ -38,14 +38,14 @@ struct MeshTimes {
   Clock::time_point written = start;    // the files
 };
 
-// The figures of the mesh alone.
+// The figures of the mesh only.
 Json summary_json(const v1::Summary& summary);
 
-// Those, and what the client measured.
+// These figures, and what the client measured.
 Json mesh_json(const MeshReport& report, const MeshTimes& times);
 
-// "943,075 triangles, 472,520 vertices, angles 20.04 to 139.72 degrees\n", and a line for each
-// reason why triangles miss a bound, and what was merged.
+// "943,075 triangles, 472,520 vertices, angles 20.04 to 139.72 degrees\n", a line for each reason
+// why triangles miss a bound, and lines on what was merged.
 std::string summary_text(const v1::Summary& summary);
 
 // "WARNING: 12 triangles without excuse, 9 above the bound on their area and 3 below the minimum
@@ -56,17 +56,17 @@ std::string unrefined_warning(const v1::Unrefined& unrefined);
 // the input vanished, one at (1, 2)\n"; empty if nothing was merged.
 std::string merging_text(const v1::Merging& merging);
 
-// "region 1 = 0.35\n", a line each.
+// "region 1 = 0.35\n", one line per region.
 std::string region_values_text(std::span<const RegionValue> values);
 // {"1": 0.35}
 Json region_values_json(std::span<const RegionValue> values);
 
-// What to say of a mesh with more triangles than `max_triangles` of its budget; nullopt if it keeps
-// to it. The domain's own triangulation, without refinement, is never cut down.
+// A warning if the mesh has more triangles than `max_triangles` of its budget, because the domain's
+// own triangulation is never reduced; nullopt if it has not.
 std::optional<std::string> budget_warning(const v1::Summary& summary,
                                           std::optional<std::uint64_t> max_triangles);
 
-// summary_text, a line on where the time went, and one for each of the warnings.
+// summary_text, a line on where the time went, and one line per warning.
 std::string mesh_text(const MeshReport& report, const MeshTimes& times);
 
 }  // namespace weft::client

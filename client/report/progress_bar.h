@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows on stderr where a job is: a bar that redraws itself on a terminal, otherwise one plain line
-// per stage and one every few seconds.
+// Shows on stderr how far a job is: a bar that redraws itself on a terminal, otherwise one plain
+// line per stage and one every few seconds.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@ namespace weft::client {
 
 enum class ProgressStyle { kNone, kLines, kBar };
 
-// kBar where the stream is a terminal, kLines where it is not.
+// kBar if the stream is a terminal, kLines if it is not.
 ProgressStyle progress_style_of(std::FILE* stream);
 
 class ProgressBar {
@@ -24,9 +24,9 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void update(const v1::Progress& progress);
-  // Something that is not a job of the server: "reading coast.poly".
+  // Shows work that is not a job of the server: "reading coast.poly".
   void say(const std::string& what);
-  // Takes the bar off the terminal.
+  // Removes the bar from the terminal.
   void clear();
 
  private:
@@ -39,12 +39,12 @@ class ProgressBar {
   bool shown_ = false;
 };
 
-// Progress.fraction as a server should send it: from 0 to 1, a number.
+// Progress.fraction, made valid: a number from 0 to 1.
 double done_of(const v1::Progress& progress);
 
 // "refining [#####.....] 720,000 triangles so far", or without a bar "refining, 50 % done, 720,000
-// triangles so far". Bar and percentage tell the work, of which a third follows when most triangles
-// are there; so the triangles are not told as a share of those that are expected.
+// triangles so far". Bar and percentage show the work, a third of which follows when most triangles
+// are made; so triangles are not shown as a share of the expected number.
 std::string progress_text(const v1::Progress& progress, bool with_bar);
 
 }  // namespace weft::client

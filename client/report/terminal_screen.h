@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A screen of its own on the terminal, drawn anew in place. What was on the terminal before, the
-// cursor and the echo of keys come back with the destructor.
+// A separate screen on the terminal, redrawn in place. The destructor restores the terminal's
+// contents, the cursor and the echo of keys.
 //
 //   TerminalScreen screen;
 //   do screen.show(text(screen.size()));
 //   while (screen.wait(std::chrono::seconds(1), stop));
 //
-// REQUIRES: stdout is a terminal. One instance a process; not thread-safe.
+// REQUIRES: stdout is a terminal. One instance per process; not thread-safe.
 #pragma once
 
 #include <termios.h>
@@ -28,16 +28,16 @@ class TerminalScreen {
   TerminalScreen& operator=(const TerminalScreen&) = delete;
 
   ScreenSize size() const;
-  // `text` is lines that fit into the size. False if the terminal takes it no more.
+  // `text` is lines that fit into the size. Returns false if the terminal cannot be written to.
   bool show(const std::string& text);
-  // False as soon as a stop was asked for or `q` was typed, true when the time is over.
+  // Returns false as soon as a stop is requested or `q` is typed, true when the time is over.
   bool wait(std::chrono::milliseconds time, const std::stop_token& stop);
 
  private:
-  std::optional<termios> before_;  // of stdin, where that is a terminal
+  std::optional<termios> before_;  // of stdin, if it is a terminal
 };
 
-// `text` as it is sent to a terminal to replace all that its screen shows, without flicker.
+// The bytes that replace a terminal's screen by `text` without flicker.
 std::string redraw(const std::string& text);
 
 }  // namespace weft::client

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `weft top` shows: counts by state, jobs at work, throughput, and what ended last. Knows no
-// terminal and no clock: samples go in, lines come out.
+// The view of `weft top`: counts by state, running jobs, throughput, and the jobs that ended last.
+// It uses no terminal and no clock: it turns samples into lines.
 //
-// Throughput is the growth of the triangles of jobs from one sample to the next: of those at work,
+// Throughput is the growth of the triangles of jobs from one sample to the next: of running jobs,
 // and of those that ended in between. Jobs that share their work count once each.
 //
 //   TopView view;
@@ -30,10 +30,10 @@ struct TopSample {
   double at_seconds = 0;        // of a clock that never goes back
   std::vector<v1::Job> jobs{};  // those that have not ended, and the youngest that have
   v1::GetServerInfoResponse info{};
-  std::set<v1::JobState> left_out{};  // final states of which there are older jobs, too
+  std::set<v1::JobState> left_out{};  // final states that have older jobs, too
 };
 
-// `open` and `ended` as two lists, asked for one after the other, have them.
+// Makes a sample of the lists `open` and `ended`, which were requested one after the other.
 TopSample top_sample(double at_seconds, v1::GetServerInfoResponse info, std::vector<v1::Job> open,
                      std::vector<v1::Job> ended);
 
@@ -42,11 +42,11 @@ class TopView {
   explicit TopView(std::string address) : address_(std::move(address)) {}
 
   void add(TopSample sample);
-  // What went wrong with the last look at the server; empty: nothing.
+  // Sets the problem of the last poll of the server; empty: none.
   void set_problem(std::string problem) { problem_ = std::move(problem); }
 
-  // Lines that end in line feeds, cut to the size between two fields; without a size all of them,
-  // uncut.
+  // Lines that end in line feeds, cut between two fields to fit the size; without a size, all
+  // lines, uncut.
   std::string text(const std::optional<ScreenSize>& size) const;
 
  private:
@@ -59,15 +59,15 @@ class TopView {
   std::vector<std::string> running() const;
   std::vector<std::string> ended(std::size_t most) const;
 
-  // Triangles that jobs which ended since the last sample made since then.
+  // Triangles made since the last sample by jobs that ended since then.
   std::uint64_t ended_growth(const TopSample& sample) const;
 
   std::string address_;
   std::string problem_;
   TopSample sample_;
   double ended_per_second_ = 0;
-  bool compared_ = false;                 // there are two samples
-  std::map<std::string, Growth> growth_;  // of jobs at work, by id
+  bool compared_ = false;                 // whether there are two samples
+  std::map<std::string, Growth> growth_;  // of running jobs, by id
 };
 
 }  // namespace weft::client

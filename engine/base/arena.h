@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The threads that compute. This is the only header that knows TBB; all else speaks of an Arena.
 //
-// One arena serves a process: however many jobs there are, no more than its threads compute at
-// the same time, so a container's CPU quota is kept. Thread-safe.
+// One arena serves a process: whatever the number of jobs, at most its threads compute at the same
+// time, so a container's CPU quota is kept. Thread-safe.
 //
 //   Arena arena(4);
 //   arena.run([&] { refine(); });      // on one of the four, the caller waits
@@ -34,18 +34,18 @@ class Arena {
       : threads_(threads),
         workers_(at_most(threads + kMostResting)),
         arena_(threads + kMostResting, kReservedForCallers) {
-    arena_.initialize();  // TBB warns of an arena that is larger than what is allowed
+    arena_.initialize();  // TBB warns if an arena is larger than allowed
     workers_ = at_most(threads);
   }
 
   int threads() const { return threads_; }
 
   // Runs f in the arena once a slot is free, and returns when it is done; at once if the caller
-  // is in the arena already. What f throws, this throws.
+  // is in the arena already. Throws what f throws.
   //
-  // A caller from outside only waits. Were its thread to take the slot, there would be one thread
-  // more than processors, and the system made two of them share one for up to 4 ms after the
-  // caller went back to sleep: 2 % of the time of two threads at 1 M triangles.
+  // A caller from outside only waits. If its thread took the slot, there would be one thread more
+  // than processors, and the system made two of them share one for up to 4 ms after the caller
+  // went back to sleep: 2 % of the time of two threads at 1 M triangles.
   template <class F>
   auto run(F&& f) {
     if (inside_ == this) return f();
@@ -55,8 +55,7 @@ class Arena {
     return result.get();
   }
 
-  // Calls f(0) to f(n - 1) in any order, at most `threads` at the same time. What f throws, this
-  // throws.
+  // Calls f(0) to f(n - 1) in any order, at most `threads` at the same time. Throws what f throws.
   template <class F>
   void for_each(std::size_t n, int threads, F&& f) {
     std::atomic<std::size_t> next{0};
@@ -80,8 +79,9 @@ class Arena {
   }
 
   // Returns f(), which waits for something outside the arena. If the caller is one of the arena's
-  // threads, another one computes in its stead meanwhile, for up to kMostResting at a time. When f
-  // returns the caller computes at once: for a while, one thread more does than the arena has.
+  // threads, another thread computes in its place meanwhile, for up to kMostResting callers at a
+  // time. When f returns, the caller computes at once, so for a while one thread more computes than
+  // the arena has.
   template <class F>
   auto rest(F&& f) {
     if (inside_ != this) return f();
@@ -93,7 +93,7 @@ class Arena {
   static constexpr unsigned kReservedForCallers = 0;
   static constexpr int kMostResting = 64;
 
-  // TBB counts the calling thread in, which here only waits; and by itself it makes no more threads
+  // TBB counts the calling thread, which only waits here; and by default it makes no more threads
   // than the machine has.
   using Workers = std::unique_ptr<tbb::global_control>;
   static Workers at_most(int threads) {
@@ -101,8 +101,8 @@ class Arena {
                                                  static_cast<std::size_t>(threads) + 1);
   }
 
-  // A thread rests while this lives. Of several limits TBB keeps the lowest: a new one is in force
-  // once the old one is gone, or at once if it is lower.
+  // A thread rests while this lives. TBB applies the lowest of several limits: a new one takes
+  // effect once the old one is gone, or at once if it is lower.
   class Rest {
    public:
     explicit Rest(Arena& arena) : arena_(arena) { arena_.change_resting(1); }

@@ -3,9 +3,9 @@
 // computes.
 //
 // Thread-safety: `cancel` and `progress` may be called from any thread at any time; the setters
-// only before the job starts. Code at work calls `poll` at least every few milliseconds (the
-// kernel: every 512 insertions, about 0.1 ms), so a stop is noticed within 50 ms. Where both a
-// cancellation and the deadline hold, the cancellation wins.
+// only before the job starts. Running code calls `poll` at least every few milliseconds (the
+// kernel: every 512 insertions, about 0.1 ms), so a stop is noticed within 50 ms. If the run is
+// cancelled and past its deadline, the cancellation wins.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ namespace weft {
 
 enum class Stage : std::uint8_t { kQueued, kTriangulate, kSize, kRefine, kDone };
 
-// A snapshot for whoever watches. `expected_triangles` is an estimate from the size field.
+// A snapshot for observers. `expected_triangles` is an estimate from the size field.
 struct Progress {
   Stage stage = Stage::kQueued;
   std::uint64_t triangles = 0;
@@ -38,11 +38,11 @@ struct Progress {
 
 // What a job may use. DEFAULT: unbounded.
 struct Budget {
-  // Triangles of the mesh. Refinement stops there and returns the mesh that it has; what still
-  // misses its bounds is counted as `budget` in the summary.
+  // Triangles of the mesh. Refinement stops there and returns the mesh that it has; triangles that
+  // still miss a bound are counted as `budget` in the summary.
   std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();
   // A job whose estimate is over this is refused before refinement, and one that grows past it
-  // stops with kLimitExceeded. This is the operator's cap, max_triangles the client's wish.
+  // stops with kLimitExceeded. The operator sets this cap, the client sets max_triangles.
   std::uint64_t triangle_limit = std::numeric_limits<std::uint64_t>::max();
   // Bytes of engine memory. Over it the job stops with kBudgetExceeded.
   std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
@@ -65,10 +65,10 @@ class ExecutionContext {
     arena_ = &arena;
     threads_ = threads > 0 ? std::min(threads, arena.threads()) : arena.threads();
   }
-  // Where the job notes what it did when. The trace outlives the job.
+  // Where the job records what it does and when. The trace must outlive the job.
   void set_trace(Trace& trace) noexcept { trace_ = &trace; }
-  // Where the job gets its memory from, beside its budget. The source outlives the job. `granted`
-  // bytes it has already.
+  // Where the job gets its memory from, within its budget. The source must outlive the job, which
+  // has `granted` bytes already.
   void set_memory(MemorySource& source, std::uint64_t granted) noexcept {
     memory_ = &source;
     granted_.store(granted, std::memory_order_relaxed);
@@ -81,7 +81,7 @@ class ExecutionContext {
   }
   const Budget& budget() const noexcept { return budget_; }
 
-  // Nothing while the job may go on, otherwise the error to stop with.
+  // Returns nullopt while the job may go on, otherwise the error to stop with.
   std::optional<Error> poll() const {
     pulse_.store(pulse_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     if (cancelled_.load(std::memory_order_relaxed))
@@ -94,8 +94,8 @@ class ExecutionContext {
     return std::nullopt;
   }
 
-  // To be called with all bytes that the job holds, or is about to. Waits until it has been granted
-  // so many; returns the error to stop with if it will not be. Thread-safe.
+  // Call it with all bytes that the job holds, or is about to hold. Waits until they are granted;
+  // returns the error to stop with if they will not be. Thread-safe.
   std::optional<Error> need_bytes(std::uint64_t bytes) const {
     if (memory_ == nullptr || bytes <= granted_.load(std::memory_order_relaxed))
       return std::nullopt;
@@ -112,7 +112,7 @@ class ExecutionContext {
   // What the job holds besides the mesh and what does not change while it is refined. Thread-safe.
   HeldBytes& held_bytes() noexcept { return held_; }
 
-  // Another number than before says that the job is at work, and not stuck. Thread-safe.
+  // Changes while the job makes progress, and stays the same if it is stuck. Thread-safe.
   std::uint64_t pulse() const noexcept { return pulse_.load(std::memory_order_relaxed); }
 
   Progress progress() const noexcept {
@@ -150,7 +150,7 @@ class ExecutionContext {
     }
   }
   void enter(Stage stage) noexcept { stage_.store(stage, std::memory_order_relaxed); }
-  // Returns how many there are now. Thread-safe.
+  // Returns the new number of triangles. Thread-safe.
   std::uint64_t add_triangles(std::int64_t n) noexcept {
     const auto delta = static_cast<std::uint64_t>(n);
     return triangles_.fetch_add(delta, std::memory_order_relaxed) + delta;
@@ -158,7 +158,7 @@ class ExecutionContext {
   std::uint64_t triangles() const noexcept { return triangles_.load(std::memory_order_relaxed); }
   // Thread-safe.
   void add_fraction(double f) noexcept { fraction_.fetch_add(f, std::memory_order_relaxed); }
-  // To this part, work is done as triangles are made.
+  // This part of the work counts as done in proportion to the triangles made.
   void count_triangles_as(double part) noexcept {
     share_of_triangles_.store(part, std::memory_order_relaxed);
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can go wrong in the engine, and the one table of what it is called.
+// The engine's errors and their codes.
 //
 // No exception leaves the engine: every public function that can fail returns a Result<T>. An
 // Error names the offender twice: `field` is a path in the request as the wire spells it
-// ("domain.segments[17].b", empty when no field is at fault), `message` is a sentence with the
+// ("domain.segments[17].b", empty if no field is at fault), `message` is a sentence with the
 // value, the index and the limit.
 //
 //   Result<Domain> domain = triangulate(pslg, context);
@@ -30,15 +30,15 @@ enum class ErrorCode {
   kExpressionSyntax,      // the size expression does not parse (column and caret in the message)
   kExpressionTooComplex,  // the size expression is too long or too deep
   kBadSizeValue,          // the size field is not finite or not positive at a point of the domain
-  // The request is larger than what it may use.
+  // The request needs more than it may use.
   kLimitExceeded,   // refused before work: an input or an estimate is over a limit
-  kBudgetExceeded,  // stopped at work: bytes ran out
+  kBudgetExceeded,  // stopped during work: bytes ran out
   // The machine is short of something; the same request may succeed later.
   kOutOfMemory,
   // The request was stopped from outside.
   kDeadlineExceeded,
   kCancelled,
-  // The mesh was made and is not what was asked for: a triangle misses a bound though neither an
+  // The mesh was made but is not what was asked for: a triangle misses a bound, and neither an
   // angle of the input nor the caller's own budget or shortest edge excuses it.
   kBoundsNotMet,
   // The engine is wrong.

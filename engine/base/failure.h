@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An Error on its way through code that has no room for one in what it returns. Whoever catches
-// std::bad_alloc inside the engine catches this, too: it does not leave the engine.
+// Carries an Error through code that cannot return one. Code of the engine that catches
+// std::bad_alloc must catch this, too: it does not leave the engine.
 #pragma once
 
 #include <exception>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plain types that every part of the engine speaks of.
+// The plain types that every part of the engine uses.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes that several threads take and give back, and the most of them at any time. Thread-safe.
+// Counts bytes that several threads take and give back, and their peak. Thread-safe.
 #pragma once
 
 #include <atomic>
@@ -10,7 +10,7 @@ namespace weft {
 
 class HeldBytes {
  public:
-  // So many are held while this lives.
+  // Holds `bytes` while it lives.
   class Part {
    public:
     Part(HeldBytes& held, std::uint64_t bytes) : held_(held), bytes_(bytes) { held_.add(bytes_); }
@@ -18,7 +18,7 @@ class HeldBytes {
     Part(const Part&) = delete;
     Part& operator=(const Part&) = delete;
 
-    // Does nothing if it is not more. Of one thread at a time.
+    // Does nothing if `bytes` is not more. One thread at a time may call it.
     void grow_to(std::uint64_t bytes) {
       if (bytes > bytes_) held_.add(bytes - std::exchange(bytes_, bytes));
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a run gets its memory from, if several runs share some.
 //
-// A run has a budget of its own (Budget::max_bytes). Whoever runs several at the same time may also
-// grant each what it takes as it grows: a run that has less than it needs asks, and waits.
+// A run has a budget of its own (Budget::max_bytes). A caller with several runs at the same time
+// may also grant each its memory as it grows: a run that needs more than it has asks, and waits.
 #pragma once
 
 #include <cstdint>

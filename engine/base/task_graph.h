@@ -8,21 +8,22 @@
 //   run.start();
 //   while (run.step()) {}
 //
-// A task becomes ready when all that it waits for are done; of the ready ones the one that is
-// needed first runs first (TaskGraph::set_needs), and of equal ones the one with the lowest number.
-// There is no barrier: a slow or preempted task holds back only what depends on it.
+// A task becomes ready when all tasks that it waits for are done. Among ready tasks, the one that
+// is needed first runs first (TaskGraph::set_needs), then the one with the lowest number. There is
+// no barrier: a slow or preempted task holds back only what depends on it.
 //
-// The hold (`begin_up_to`): what makes parts that leave in order keeps its results in memory until
-// they have left. So a task that is needed by parts far ahead of the next one does not begin while
-// the caller of `step` does something else, sends a part, say: a reader who stalls stops the tasks.
-// While the caller waits in `step`, tasks may begin further ahead, but there is a bound, too:
-// otherwise many threads would begin whatever is ready. Beyond it the first ready task begins only
-// if no other one is at work. So tasks cannot wait for ever: if the caller waits in `step`, either
-// a task is at work, or none is ready, and then all are done, or held, or wait for one another.
+// The hold (`begin_up_to`): tasks that make parts which leave in order keep their results in memory
+// until these have left. So a task that is needed only by parts far ahead of the next one does not
+// begin while the caller of `step` does something else, such as sending a part: a reader that
+// stalls stops the tasks. While the caller waits in `step`, tasks may begin further ahead, but only
+// up to another bound, because otherwise many threads would begin whatever is ready. Beyond that
+// bound, the first ready task begins only if no other task runs. So tasks cannot wait for ever: if
+// the caller waits in `step`, either a task runs, or none is ready, and then all are done, or held,
+// or wait for one another.
 //
 // Fairness: a thread gives the arena's slot back after kSlice and queues for the next, so the jobs
-// of an arena take turns. It wakes who waits in `step` then, and not in between: waking it for each
-// part of a mesh took two threads 1.5 % of their time at 1 M triangles.
+// of an arena take turns. Only then does it wake the caller that waits in `step`: waking it for
+// each part of a mesh took two threads 1.5 % of their time at 1 M triangles.
 #pragma once
 
 #include <atomic>
@@ -52,8 +53,8 @@ class TaskGraph {
   }
   // `task` also waits for a call of GraphRun::release.
   void hold(std::uint32_t task) { ++waits_for_[task]; }
-  // Per task, the first part that needs it, for tasks that make parts of something that leaves in
-  // order. DEFAULT: all are needed by the first one.
+  // Per task, the first part that needs it, if the tasks make parts that leave in order. DEFAULT:
+  // the first part needs all tasks.
   void set_needs(std::vector<std::uint32_t> needs) { needs_ = std::move(needs); }
 
   struct Edge {
@@ -61,7 +62,7 @@ class TaskGraph {
   };
   std::uint32_t size() const { return static_cast<std::uint32_t>(waits_for_.size()); }
   const std::vector<Edge>& edges() const { return edges_; }
-  const std::vector<std::uint32_t>& needs() const { return needs_; }  // none if not set
+  const std::vector<std::uint32_t>& needs() const { return needs_; }  // empty if not set
 
  private:
   friend class GraphRun;
@@ -71,15 +72,15 @@ class TaskGraph {
   std::vector<std::uint32_t> needs_;
 };
 
-// Runs the tasks of a graph, on at most `threads` threads of an arena; without one, on the caller's
-// own thread, in `step`.
+// Runs the tasks of a graph on at most `threads` threads of an arena; without an arena, on the
+// caller's thread, in `step`.
 class GraphRun {
  public:
   // The task must not throw.
   using Task = std::function<void(std::uint32_t)>;
 
   GraphRun(const TaskGraph& graph, Arena* arena, int threads, Task task);
-  // Waits for the tasks that run; those that have not begun are dropped.
+  // Waits for the running tasks; drops those that have not begun.
   ~GraphRun();
   GraphRun(const GraphRun&) = delete;
   GraphRun& operator=(const GraphRun&) = delete;
@@ -94,27 +95,28 @@ class GraphRun {
   // No task begins any more. Thread-safe.
   void stop();
 
-  // One thing less that `task` waits for. Thread-safe.
+  // Ends one hold of `task`. Thread-safe.
   void release(std::uint32_t task);
 
-  // Drops a task for which there is nothing to do: what waits for it waits no longer, though others
-  // that it would have waited for may not be done. To be called by a task that `task` waits for;
-  // of several that wait for one another, the last first.
+  // Drops a task that has nothing to do: tasks that wait for it wait no longer, even if tasks that
+  // it would have waited for are not done. Must be called by a task that `task` waits for. If
+  // several of the dropped tasks wait for one another, drop the last one first.
   void skip(std::uint32_t task);
 
-  // Goes on until something was done, or `notify` was called: without an arena, runs a task. False
-  // once all tasks are done, or nothing runs that could make another one ready, or after `stop`.
+  // Waits until a task calls `notify` or no thread works any more; without an arena, runs a task.
+  // Returns false once all tasks are done, or no running task could make another one ready, or
+  // after `stop`.
   bool step();
   std::uint64_t bytes() const;
-  // Whether ready tasks were given up because no thread could be started for them.
+  // Whether ready tasks were dropped because no thread could be started for them.
   bool starved() const { return starved_; }
-  // Since when no thread works, if none does; always, without an arena.
+  // Since when no thread works; nullopt if one does. Without an arena, none ever does.
   std::optional<std::chrono::steady_clock::time_point> idle_since();
-  // Makes `step` return, when the slice of a thread at work ends. To be called by a task.
+  // Makes `step` return when the slice of a working thread ends. Must be called by a task.
   void notify();
 
  private:
-  // Of pairs in one word: the first part that needs a task, and the task.
+  // Each entry is a pair in one word: the first part that needs a task, and the task.
   using Ready = std::priority_queue<std::uint64_t, std::vector<std::uint64_t>, std::greater<>>;
   static constexpr std::chrono::milliseconds kSlice{2};
 
@@ -145,12 +147,12 @@ class GraphRun {
   std::mutex mutex_;  // guards all below
   std::condition_variable changed_;
   Ready ready_;
-  int running_ = 0;  // threads that work, or are queued for
+  int running_ = 0;  // threads that work or are queued
   std::chrono::steady_clock::time_point idle_since_;
   bool starved_ = false;
   std::uint32_t while_away_ = 0;
   std::uint32_t while_waiting_ = 0;
-  bool waiting_ = false;  // the caller, in `step`
+  bool waiting_ = false;  // whether the caller waits in `step`
   bool notified_ = false;
   bool stopping_ = false;
 };

@@ -8,8 +8,7 @@
 
 namespace weft {
 
-// The shortest decimal that reads back as the same double. The sign of a NaN means nothing, so both
-// read the same.
+// The shortest decimal that reads back as the same double. Both signs of a NaN give the same text.
 inline std::string text(double value) {
   if (std::isnan(value)) return "not a number";
   char buffer[32];

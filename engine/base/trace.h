@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run did and for how long: stages one after the other, and the tasks of those that are a
-// graph of tasks. From a run on one thread one can tell how it would go on many
-// (`weft-bench scaling`).
+// Records what a run does and for how long: the stages in order, and the tasks of stages that are
+// task graphs. From the trace of a run on one thread, `weft-bench scaling` computes how it would go
+// on many.
 //
-// A context without a trace pays for a test of a pointer per stage and task.
+// A context without a trace costs one test of a pointer per stage and task.
 //
 //   Trace trace;
 //   ExecutionContext context;
@@ -11,8 +11,8 @@
 //   generate_mesh(request, sink, context);
 //   for (const Trace::Stage& stage : trace.stages) print(stage.name, stage.seconds);
 //
-// Thread-safety: `time` of different tasks and `skip` of different ones may be called at the same
-// time; all else belongs to the thread that runs the job.
+// Thread-safety: `time` and `skip` may be called at the same time for different tasks; only the
+// thread that runs the job may call the rest.
 #pragma once
 
 #include <algorithm>
@@ -34,12 +34,12 @@ struct Trace {
   using Clock = std::chrono::steady_clock;
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-  // Of a stage that is a graph: its name, and what its tasks do, which repeats with the tasks'
+  // The name of a stage that is a graph, and the kinds of its tasks, which repeat with the tasks'
   // numbers.
   struct GraphName {
     static constexpr std::size_t kMaxKinds = 10;
     const char* stage;
-    std::array<const char*, kMaxKinds> kinds;  // up to the first nullptr
+    std::array<const char*, kMaxKinds> kinds;  // ends at the first nullptr
     constexpr std::size_t period() const {
       return static_cast<std::size_t>(std::find(kinds.begin(), kinds.end(), nullptr) -
                                       kinds.begin());
@@ -48,13 +48,13 @@ struct Trace {
 
   struct Graph {
     GraphName name;
-    std::vector<double> seconds;  // per task; 0 for one that was skipped
-    // Per task, the one that found that there is nothing to do for it, or kNone: what waits for
-    // it waited for that one instead.
+    std::vector<double> seconds;  // per task; 0 if it was skipped
+    // Per task, the task that skipped it, or kNone. Tasks that wait for the skipped one waited for
+    // that task instead.
     std::vector<std::uint32_t> skipped_by;
     std::vector<TaskGraph::Edge> edges;
     // The tasks that build the parts, in the order in which parts are sent. Each waits until the
-    // one parts_ahead(threads) before it has been sent.
+    // part parts_ahead(threads) before its own has been sent.
     std::vector<std::uint32_t> part_tasks;
     std::vector<std::uint32_t> needs = {};  // of TaskGraph::set_needs
   };
@@ -62,7 +62,7 @@ struct Trace {
   struct Stage {
     const char* name;
     double seconds;              // of wall time
-    std::optional<Graph> graph;  // nothing if the stage has no tasks
+    std::optional<Graph> graph;  // nullopt if the stage has no tasks
     // The seconds of the steps of each loop that may run on many threads, from a run on one.
     std::vector<std::vector<double>> loops = {};
   };
@@ -79,7 +79,7 @@ struct Trace {
                       std::exchange(graph_, std::nullopt), std::exchange(loops_, {})});
   }
 
-  // A loop of the stage at work, of so many steps; f(i) does one.
+  // Times a loop of the current stage; f(i) does one step.
   template <class F>
   void time_loop(std::size_t n, F&& f) {
     std::vector<double>& seconds = loops_.emplace_back(n);
@@ -90,7 +90,7 @@ struct Trace {
     }
   }
 
-  // The stage that begins is a graph. What the trace costs here is left out.
+  // Begins a stage that is a graph. The time that the trace itself takes here is left out.
   void begin_graph(const GraphName& name, const TaskGraph& graph) {
     graph_ = Graph{name,
                    std::vector<double>(graph.size(), 0.0),
@@ -115,17 +115,17 @@ struct Trace {
   std::optional<Graph> graph_;
 };
 
-// Parts that may be built ahead of the one to be sent next: a slow reader holds back no more. While
-// a part is being sent, tasks that later ones than these need do not begin.
+// How many parts may be built ahead of the one to be sent next, so that a slow reader holds back no
+// more than these. While a part is being sent, tasks that only later parts need do not begin.
 inline std::uint32_t parts_ahead(int threads) {
   return 32 + 4 * static_cast<std::uint32_t>(threads);
 }
 
-// How far ahead of the next part tasks may begin while it is waited for, if there are so many in
-// all: two columns of the leaves and something to do for each thread. So the front between what is
-// sent and what has not begun is bounded at any number of threads. In schedules of the recorded
-// tasks of 10 M triangles (leaf_order.h), with and without the bound, what has begun and is not
-// sent, in percent of the mesh, and the time with the bound over that without:
+// How many parts ahead of the next one tasks may begin while the caller waits for that one, if the
+// mesh has `parts` parts: two columns of the leaves, and some work for each thread. So the front
+// between parts that are sent and parts that are not begun is bounded at any number of threads. For
+// schedules of the recorded tasks of 10 M triangles (leaf_order.h): the share of the mesh that has
+// begun and is not sent, in percent, with and without the bound, and the ratio of times:
 //
 //   threads      2                   16                  64
 //   cylinder     13.6  13.6  1.00    16.6  16.6  1.00    60.3  71.2  1.00

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells ThreadSanitizer what TBB guarantees: what a thread wrote before it gave a function to the
-// arena is seen by the thread that runs it, and what that one wrote by whoever waited for it.
-// Debian builds libtbb without ThreadSanitizer, which therefore does not see it. In other builds
-// nothing is left of this.
+// Tells ThreadSanitizer what TBB guarantees: the thread that runs a function sees what was written
+// before the function was given to the arena, and a thread that waited for the function sees what
+// the function wrote. ThreadSanitizer cannot see that itself, because Debian builds libtbb without
+// it. In other builds these functions do nothing.
 //
 //   arena.enqueue(handed_over(f));
 //   run_handed_over<int>(f, [&](auto&& g) { tbb::parallel_for(0, n, g); });
 //
-// Each hand-over is told of by its own address, so nothing is told that TBB does not guarantee.
+// Each hand-over has its own address, so the hints state nothing that TBB does not guarantee.
 #pragma once
 
 #include <utility>
@@ -50,7 +50,7 @@ auto handed_over(F&& f) {
   return HandedOver<F>(std::forward<F>(f));
 }
 
-// What travels through TBB: pointers alone, and a short name, for the symbolizer.
+// The function that TBB gets: it holds only pointers, and has a short name for the symbolizer.
 template <class... Args>
 struct Trampoline {
   void* call;
@@ -58,7 +58,7 @@ struct Trampoline {
   __attribute__((no_sanitize("thread"))) void operator()(Args... args) const { run(call, args...); }
 };
 
-// `execute` may call what it gets with Args, several times, on any threads.
+// `execute` may call its argument with Args, several times, on any threads.
 template <class... Args, class F, class Execute>
 void run_handed_over(F&& f, Execute&& execute) {
   struct Call {

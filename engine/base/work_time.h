@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Seconds of work that several threads add up. Thread-safe.
+// Sums the seconds of work of several threads. Thread-safe.
 #pragma once
 
 #include <atomic>

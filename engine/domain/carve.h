@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which faces of an arrangement belong to the domain, and to which region.
 //
-// A face is a maximal set of triangles connected across edges without a constraint. What is outside
+// A face is a maximal set of triangles connected across edges without a constraint. The outside of
 // the convex hull belongs to the unbounded face.
 #pragma once
 
@@ -17,7 +17,7 @@
 namespace weft {
 
 struct Carving {
-  // Per triangle of the arrangement: an index into `regions`, or kNone where it is carved away.
+  // Per triangle of the arrangement: an index into `regions`, or kNone if it is carved away.
   std::vector<std::uint32_t> region;
   std::vector<Region> regions;  // regions[0] is the default
 };

@@ -8,7 +8,7 @@
 // is computed exactly and rounded once, and both are led through the rounded point. Features nearer
 // than one tolerance are merged (tolerance.h, arrangement.h): so a T-junction whose end was rounded
 // still is a junction, and several segments that nearly meet in one point do meet in one. "Lies on"
-// below means: within that tolerance, or a few times it where dozens of segments nearly meet.
+// below means: within that tolerance, or a few times it if dozens of segments nearly meet.
 //
 // Laws that a Domain obeys (checked by tests):
 //   - every triangle is counter-clockwise and refers to three distinct vertices;
@@ -39,7 +39,7 @@ namespace weft {
 struct Subsegment {
   std::uint32_t a = 0;  // index into Domain::vertices
   std::uint32_t b = 0;
-  std::uint32_t segment = 0;  // index into Pslg::segments; the lowest where several overlap
+  std::uint32_t segment = 0;  // index into Pslg::segments; the lowest if several overlap
   std::int32_t marker = 0;    // that segment's marker; the first that is not 0 if several overlap
 };
 
@@ -71,7 +71,7 @@ struct Domain {
   }
 };
 
-// Validates the PSLG and triangulates it. Seeds that flood the same face: the last one wins.
+// Validates the PSLG and triangulates it. If several seeds flood a face, the last one wins.
 // regions[i + 1] is the face of pslg.regions[i].
 //
 // Errors, each naming the first offender:
@@ -82,15 +82,15 @@ struct Domain {
 //                       finite or below 0
 //   kTooFewPoints, kCollinearPoints                domain.points
 //   kSeedOutsideDomain, kSeedOnSegment             domain.holes[i], domain.regions[i]
-//   kEmptyDomain        domain.segments where no face is enclosed, domain.holes where they carve
+//   kEmptyDomain        domain.segments if no face is enclosed, domain.holes if they carve
 //                       everything away
 //   kLimitExceeded      domain.points, domain.segments: more than can be numbered, or more than
 //                       2^25 crossings, overlaps and touchings (arrangement.h)
 //   kBudgetExceeded     240 bytes a vertex and 40 a subsegment, about the peak, are over
 //                       Budget::max_bytes
 //   kOutOfMemory        the machine has none left
-//   kCancelled, kDeadlineExceeded  noticed within 50 ms, of a million points; to free what these
-//                       have taken takes some 20 ms more
+//   kCancelled, kDeadlineExceeded  noticed within 50 ms at a million points; freeing their memory
+//                       takes some 20 ms more
 //
 // Never throws. Thread-safe: calls share nothing.
 //

@@ -36,9 +36,9 @@ inline bool between(Point a, Point b, Point p) {
                     : (a.y < p.y) == (p.y < b.y) && p.y != a.y && p.y != b.y;
 }
 
-// Where a, b, c and p are on one circle: whether p counts as inside. The point that is raised most,
-// the last in lexicographic order, decides. p itself, raised, is outside. Another one takes p in
-// if and only if p is on its side of the line through the other two; p is never on that line.
+// For a, b, c and p on one circle: whether p counts as inside. The point that is raised most, the
+// last in lexicographic order, decides. If it is p, p is outside. Otherwise p is inside if and only
+// if p and that point are on the same side of the line through the other two; p is never on it.
 inline bool inside_when_raised(Point a, Point b, Point c, Point p) {
   const auto before = [](Point q, Point r) { return q.x < r.x || (q.x == r.x && q.y < r.y); };
   Point last = p;

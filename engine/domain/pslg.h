@@ -8,9 +8,10 @@
 //     (flooding stops at segments). This is Triangle's rule.
 //   - Fill::kEvenOdd: the points whose rays to infinity cross the segments an odd number of times
 //     (GeoJSON polygons, whose holes are rings). Coincident segments count once each, so two
-//     copies cancel. Where segments do not close up to rings, the ray that crosses the fewest
-//     decides. Hole seeds carve as above, on top.
-// Points outside what is meshed vanish; a point inside that no segment names becomes a vertex.
+//     copies cancel. If segments do not close to rings, the ray that crosses the fewest decides.
+//     Hole seeds carve as above, on top.
+// Points outside the meshed faces are dropped; a point inside that no segment names becomes a
+// vertex.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps long loops stoppable: cancellation, deadline and the byte budget, polled every so many
-// steps.
+// Lets long loops stop: polls cancellation, deadline and the byte budget every kStepsPerPoll steps.
 //
 // Inside engine/domain a stop travels as the exception `Stopped`, because it leaves from the depth
 // of nested loops and nothing half-built is worth keeping; `triangulate` turns it into an Error, so
@@ -33,8 +32,8 @@ class StopPoller {
     if (auto error = context_.poll()) throw Stopped{*error};
   }
 
-  // Throws Stopped with kBudgetExceeded where `bytes`, an estimate of the peak, is over the budget,
-  // or with what need_bytes says.
+  // Throws Stopped with kBudgetExceeded if `bytes`, an estimate of the peak, is over the budget, or
+  // with the error that need_bytes returns.
   void require(std::uint64_t bytes) const {
     const std::uint64_t limit = context_.budget().max_bytes;
     if (bytes > limit)

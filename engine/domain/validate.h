@@ -22,11 +22,12 @@ inline constexpr double kMaxMagnitude = 1e50;
 inline constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 28;
 inline constexpr std::uint64_t kMaxSegments = std::uint64_t{1} << 30;
 
-// The first offender, in the order: points, segments, holes, regions, snap, then the points as a
-// whole. Nothing if the PSLG is sound. Throws Stopped.
+// Returns the error of the first offender, in the order: points, segments, holes, regions, snap,
+// then the points as a whole; nullopt if the PSLG is valid. Throws Stopped.
 std::optional<Error> validate(const Pslg& pslg, StopPoller& poller);
 
-// The first points that are distinct (2) and not on a line (3); fewer where there are none.
+// The first two points that are distinct, and the first that is not on their line; fewer if there
+// are none.
 struct Span {
   std::array<std::uint32_t, 3> point{};
   unsigned size = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The honest end of a mesh that is not what was asked for.
+// The error of a mesh that is not what was asked for.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace weft {
 
-// kBoundsNotMet if a triangle of a finished mesh misses a bound without excuse: with how many,
-// which bound, why, and where the first one is.
+// kBoundsNotMet if triangles of a finished mesh miss a bound without an excuse; nullopt otherwise.
+// The message says how many, which bound, why, and where the first one is.
 //
 //   12 triangles miss the minimum angle of 20 degrees because double precision ends; the first is
 //   at (0.25, 1e+06)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sends the parts of a mesh in their order, and adds up what they tell.
+// Sends the parts of a mesh in their order, and sums up their figures.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class Delivery {
   Delivery(ChunkSink& sink, const ExecutionContext& context, Summary& summary)
       : sink_(sink), context_(context), summary_(summary) {}
 
-  // Gives the chunks their numbers, and the sink the chunks.
+  // Numbers the chunks of the part and gives them to the sink.
   std::optional<Error> send(Part&& part) {
     statistics_.add(part.statistics);
     if (summary_.unrefined.without_excuse() == 0) summary_.unrefined_at = part.unrefined_at;
@@ -41,7 +41,7 @@ class Delivery {
     return std::nullopt;
   }
 
-  // After the last part.
+  // Call after the last part.
   void finish() {
     statistics_.write(summary_);
     summary_.digest = digest_.finish();

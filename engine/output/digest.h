@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SHA-256, as it runs over a mesh.
+// SHA-256 of a mesh, computed incrementally.
 #pragma once
 
 #include <openssl/types.h>
@@ -15,7 +15,7 @@ class Sha256 {
  public:
   Sha256();
   void add(const void* bytes, std::size_t size);
-  Digest finish();  // once
+  Digest finish();  // call once
 
  private:
   std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context_;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the refined mesh to the chunks that leave: part by part, each on any thread.
+// Turns the refined mesh into chunks, part by part, each on any thread.
 //
 // Vertices are numbered by owner and then in the order in which the owner made them
 // (Slots::number_vertices). A triangle goes with the last of its vertices: the part of the owner
-// whose number is the highest among them. So a chunk refers only to vertices of itself and of
-// earlier ones, no two parts have to agree on anything, and there is no table of numbers. As a slot
-// only ever holds triangles with a vertex of the slot's owner, most triangles stay where they are;
-// 2 % are handed on, to a neighbour (`handed_on`).
+// whose number is the highest among them. So a chunk refers only to its own vertices and to those
+// of earlier chunks, no two parts have to agree on anything, and there is no table of numbers. A
+// slot only ever holds triangles with a vertex of the slot's owner, so most triangles stay in their
+// part; 2 % are handed on to a neighbour (`handed_on`).
 #pragma once
 
 #include <array>
@@ -28,8 +28,8 @@
 
 namespace weft {
 
-// Chunks without their place in the mesh: `index`, `first_vertex` and `first_triangle` are for
-// whoever puts the parts in order.
+// Chunks without their place in the mesh: Delivery sets `index`, `first_vertex` and
+// `first_triangle`.
 struct Part {
   std::vector<Chunk> chunks;
   QualityStatistics statistics;
@@ -37,7 +37,7 @@ struct Part {
   Point unrefined_at;  // as Summary::unrefined_at, of this part
   std::uint64_t edges = 0;
 
-  std::uint64_t bytes() const;  // of what it points to
+  std::uint64_t bytes() const;  // of the memory that it points to
 };
 
 // A triangle that goes with the part of another owner. (A Triangle is aligned to 32 bytes, which
@@ -53,30 +53,30 @@ struct HandedOn {
   Copy copy;
 };
 
-// Those of an owner's triangles, in the order of its slots. REQUIRES: they are final.
+// Returns an owner's triangles that go with other parts, in the order of its slots. REQUIRES: they
+// are final.
 std::vector<HandedOn> triangles_handed_on(const Mesh& mesh, const Slots& slots);
 
 // Builds one part. `AreaBound` gives the bounds for the size histogram: it has bounds_at, as
-// ConstantArea and MappedArea do. REQUIRES: what is added is final, and all vertices of triangles
-// have their numbers; `lattice` tells whether Steiner points came from one
-// (refine/steiner_point.h). A triangle that is still bad is counted for the budget if refinement
-// was `cut_off` by it; if not, it is one that was left for want of room while the mesh was
-// streamed.
+// ConstantArea and MappedArea do. REQUIRES: all added slots are final, and all vertices of
+// triangles have their numbers; `lattice` says whether Steiner points came from one
+// (refine/steiner_point.h). A triangle that is still bad counts as `budget` if the budget `cut_off`
+// refinement; otherwise as `streaming`, because its surroundings had been sent.
 template <class AreaBound>
 class PartBuilder {
  public:
   PartBuilder(const Mesh& mesh, const Domain& domain, const AcuteCorners& corners, AreaBound area,
               bool lattice, bool cut_off, const ExecutionContext& context);
 
-  // About so many will be added: without it, vectors take up to twice what they need.
+  // Reserves room for about so many: without it, vectors take up to twice what they need.
   void expect(std::size_t vertices, std::size_t triangles);
-  // The vertices in slots `first` to before `last`.
+  // Adds the vertices in slots first <= i < last.
   void add_vertices(std::uint32_t first, std::uint32_t last);
-  // The triangles in slots `first` to before `last`.
+  // Adds the triangles in slots first <= i < last.
   void add_triangles(std::uint32_t first, std::uint32_t last);
   void add_triangle(const Triangle& triangle);
 
-  // Nothing if the context says stop.
+  // Returns nullopt if the context stops the run.
   std::optional<Part> finish();
 
  private:
@@ -97,7 +97,7 @@ class PartBuilder {
   Part part_;
   Chunk chunk_;
   std::size_t bytes_ = 0;  // in chunk_, with those of the block
-  // Triangles that are yet to be measured and put into chunk_, all at once.
+  // Triangles that are still to be measured and put into chunk_, all at once.
   std::unique_ptr<TriangleBlock> block_ = std::make_unique<TriangleBlock>();
   std::uint32_t numbers_[3 * TriangleBlock::kSize];  // of their vertices
   double region_bound_[TriangleBlock::kSize];

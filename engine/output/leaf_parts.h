@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of the mesh that finished leaves make (emit.h), and what is given back once they are
-// built (schedule/leaf_release.h).
+// Makes the parts of finished leaves (emit.h), and gives back the memory that is no longer needed
+// once they are built (schedule/leaf_release.h).
 //
 //   LeafParts<ConstantArea> parts(mesh, order, leaves, numbers);
 //   parts.number(l);           // in the order of the leaves
@@ -8,7 +8,7 @@
 //   parts.fill(l, builder);    // once those in conflict with l have handed on
 //   parts.built(l);
 //
-// Thread-safety: as LeafGraph has these steps wait for one another.
+// Thread-safety: the steps may run in any order that LeafGraph permits.
 #pragma once
 
 #include <algorithm>
@@ -37,8 +37,8 @@ struct EarlierOwner {
 template <class AreaBound>
 class LeafParts {
  public:
-  // The leaves' vertices are numbered from `first_number` on. `earlier_owners` are in the order of
-  // their leaves.
+  // Numbers the leaves' vertices from `first_number` on. `earlier_owners` are in the order of their
+  // leaves.
   LeafParts(Mesh& mesh, const LeafOrder& order, LeafTasks<AreaBound>& leaves,
             std::uint32_t first_number, std::vector<EarlierOwner> earlier_owners)
       : mesh_(mesh),
@@ -52,7 +52,7 @@ class LeafParts {
   void number(std::uint32_t leaf) {
     for_slots(leaf, [&](const Slots& s) { numbers_ = s.number_vertices(mesh_, numbers_); });
   }
-  // Of vertices, given so far.
+  // The number after the last vertex numbered so far.
   std::uint32_t numbers() const { return numbers_; }
 
   // Copies the triangles that go with other parts.
@@ -98,7 +98,7 @@ class LeafParts {
         [&](std::uint32_t b) { leaves_.give_back_vertices(b); });
   }
 
-  // What the clean-up has made is sent last: keeps the vertices that it uses.
+  // Keeps the vertices that the clean-up's triangles use, because these are sent last.
   void keep_vertices_of(const Slots& cleaned_up) {
     cleaned_up.for_triangles([&](std::uint32_t first, std::uint32_t last) {
       for (std::uint32_t t = first; t < last; ++t) {
@@ -112,13 +112,13 @@ class LeafParts {
     });
   }
 
-  // At the peak.
+  // Bytes at the peak.
   std::uint64_t bytes() const {
     return release_.bytes() + handed_on_.capacity() * sizeof(handed_on_[0]) + copies_.peak();
   }
 
  private:
-  // Those whose vertices leave with the part of a leaf, in order.
+  // Calls f for the owners whose vertices leave with the part of a leaf, in order.
   template <class F>
   void for_slots(std::uint32_t leaf, F&& f) const {
     auto earlier =

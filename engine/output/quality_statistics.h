@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The figures of a mesh: angles, aspect ratios, mean quality, areas over their bounds. They are
-// gathered while the mesh is sent, a block of triangles at a time: two at once as far as that goes,
-// and counted where no count waits for the one before. One by one they took 13 % of the whole run.
+// gathered while the mesh is sent, in blocks of triangles: two at once where possible, in counters
+// that do not wait for one another. One triangle at a time took 13 % of the whole run.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ struct TriangleBlock {
   alignas(64) double centroid_x[kSize];
   alignas(64) double centroid_y[kSize];
   alignas(64) double bound[kSize];  // upper bound on the area; infinity is none
-  bool on_lattice[kSize];           // whether the centroid lies where there is a lattice
+  bool on_lattice[kSize];           // whether there is a lattice at the centroid
 
   void add(Point a, Point b, Point c) {
     const Point corner[3] = {a, b, c};
@@ -34,7 +34,7 @@ struct TriangleBlock {
     }
     ++size;
   }
-  // Fills the centroids, also those of the lanes up to the next multiple of SizeFunction::kLanes.
+  // Computes the centroids, also of the lanes up to the next multiple of SizeFunction::kLanes.
   void find_centroids();
   // REQUIRES: there is a triangle.
   Box box() const;
@@ -44,13 +44,13 @@ class QualityStatistics {
  public:
   void add(const TriangleBlock& block);
   void add(const QualityStatistics& other);
-  // All figures into the summary. REQUIRES: there is a triangle.
+  // Writes all figures into the summary. REQUIRES: there is a triangle.
   void write(Summary& summary) const;
 
  private:
   double percentile(double rank) const;
 
-  // Triangles by their smallest angle, in two columns. The part that counts nothing has none.
+  // Triangles by their smallest angle, in two columns. A part without triangles has none.
   static constexpr std::size_t kFineBins = 1024;
 
   double area_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the engine says of a finished mesh.
+// The engine's report on a finished mesh.
 #pragma once
 
 #include <array>
@@ -11,15 +11,15 @@
 
 namespace weft {
 
-// Triangles that miss a bound, by the reason why. Each triangle counts once, under the first
-// reason that holds.
+// Triangles that miss a bound, by reason. Each triangle counts once, under the first reason that
+// holds.
 struct Unrefined {
   std::uint64_t small_input_angle = 0;  // its smallest angle is forced by two segments that meet
   std::uint64_t edge_floor = 0;         // splitting it would make edges below MeshRequest::min_edge
   std::uint64_t budget = 0;             // max_triangles was reached
-  std::uint64_t precision = 0;          // splitting it would make edges where double precision ends
-  std::uint64_t streaming = 0;          // what is around it had been sent when it was to be split
-  // Of the last two, those that are larger than their bound; the others are below the angle alone.
+  std::uint64_t precision = 0;          // its split would make edges too short for double precision
+  std::uint64_t streaming = 0;          // its surroundings had been sent when it was to be split
+  // Triangles of the last two that are larger than their bound; the others miss only the angle.
   std::uint64_t too_large = 0;
 
   Unrefined& operator+=(const Unrefined& other) {
@@ -34,7 +34,7 @@ struct Unrefined {
   std::uint64_t total() const {
     return small_input_angle + edge_floor + budget + precision + streaming;
   }
-  // Those that neither the input nor the request excuses.
+  // Triangles that neither the input nor the request excuses.
   std::uint64_t without_excuse() const { return precision + streaming; }
 };
 
@@ -43,29 +43,29 @@ struct Summary {
   std::uint64_t triangles = 0;
   std::uint64_t edges = 0;  // on input segments
   std::uint32_t chunks = 0;
-  // Whether the mesh left while it was refined, so that only a strip of it was in memory at a time;
-  // if not, all of it was.
+  // Whether the mesh was sent while it was refined, so that only a strip of it was in memory at a
+  // time; if not, all of it was.
   bool streamed = false;
   double area = 0;  // sum over the triangles, squared units
   Box box;
 
   double min_angle_deg = 0;
   double max_angle_deg = 0;
-  // Of the triangles' smallest angles: 1 % of the triangles have a smaller one. To 0.1 degrees.
+  // 1 % of the triangles have a smallest angle below this; to 0.1 degrees.
   double min_angle_p1_deg = 0;
   // Mean over the triangles of 4 sqrt(3) area / (sum of the squared edges): 1 for equilateral ones.
   double mean_quality = 0;
   // Triangles over the least number that their bounds allow, the integral of 1 / bound, taken at
   // the centroids of the mesh. Regions without a bound count for neither; 0 if there is no bound.
   double ideal_ratio = 0;
-  // How much of the area lies where Steiner points came from a lattice, 0 to 1: on grains of
+  // Share of the area where Steiner points came from a lattice, 0 to 1: on grains of
   // size/grain_map.h, or under one bound everywhere. The rest has circumcentres, or lies at steps.
   double lattice_share = 0;
-  std::array<std::uint64_t, 18> angle_histogram{};  // all angles, 10 degrees a bin
+  std::array<std::uint64_t, 18> angle_histogram{};  // all angles, 10 degrees per bin
   // Aspect ratio = longest edge / (2 sqrt(3) inradius), 1 for equilateral; bins end at
   // 1.1, 1.25, 1.5, 2, 3, 5, 10, 100, infinity.
   std::array<std::uint64_t, 9> aspect_histogram{};
-  // Area over its bound, ten bins of 0.1; the last also holds what exceeds the bound. All 0 if
+  // Area over its bound, ten bins of 0.1; the last also counts triangles above the bound. All 0 if
   // there is no bound.
   std::array<std::uint64_t, 10> size_histogram{};
   Unrefined unrefined;
@@ -78,7 +78,7 @@ struct Summary {
   double triangulate_seconds = 0;
   double size_seconds = 0;     // the boxes of the size field
   double prelude_seconds = 0;  // the coarse mesh and the quadtree; all of a mesh of one leaf
-  double engine_seconds = 0;   // all of it; time spent blocked in the sink left out
+  double engine_seconds = 0;   // the whole run, without time blocked in the sink
   // Seconds of work, summed over the threads; the two overlap.
   double refine_seconds = 0;
   double emit_seconds = 0;  // numbering, quality, digests

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small input angles. Where two segments, the arms, meet at less than 60 degrees inside the domain,
+// Small input angles. If two segments, the arms, meet at less than 60 degrees inside the domain,
 // splitting one at its midpoint may encroach upon the other for ever. So arms are split at equal
 // distances from their corner (concentric shells: Ruppert 1995), and a skinny triangle whose
 // shortest edge joins two arms at the same distance is left as it is (Miller, Pav and Walkington
@@ -7,30 +7,30 @@
 //
 // Where a piece of an arm is split:
 //   - at the distance of the vertex that faces it, if that vertex is on another arm of the corner,
-//     the distance in the middle half of the piece, and the vertex nearer to the piece than a
-//     tenth of its length. So an arm that ends at any distance, or that another corner has split,
-//     is matched by one vertex. Without it the other arm is split down to the width between them,
-//     30 times in a wedge of 1e-9 rad; with vertices farther away, twice as many triangles of
-//     us-east-coast stay;
+//     the distance is in the middle half of the piece, and the vertex is nearer to the piece than a
+//     tenth of its length. So one vertex matches an arm that ends at any distance, or that another
+//     corner has split. Without this rule the other arm is split down to the width between them,
+//     30 times in a wedge of 1e-9 rad; if vertices farther away counted, twice as many triangles
+//     of us-east-coast would stay;
 //   - otherwise at the coarsest multiple of a power of two in the middle third of its distances,
 //     from the nearer corner if both ends of the arm have shells. Pieces of arms of unequal lengths
 //     get equal distances, and a piece at the corner ends at a power of two.
 //
 // Two vertices are at the same distance if rounding explains the difference: 2^-47 of the largest
-// coordinate of the three points. A vertex on an arm is off its distance by 10 units in the last
-// place at most: 3 of its part of the piece, 4 of two distances, 3 of coordinates. Nothing more is
-// needed, and anything more is harmful: a triangle that has the third vertex between the two arms'
+// coordinate of the three points. A vertex on an arm is off its distance by at most 10 units in the
+// last place: 3 of its part of the piece, 4 of two distances, 3 of coordinates. A larger tolerance
+// is harmful: a triangle that has the third vertex between the two arms'
 // vertices has an angle of nearly 180 degrees, and must not stay. The checker allows twice that
 // (checker/mesh/exemption.h).
 //
-// Right angles. Where the bound on angles is above 30 degrees, arms that meet at less than 93 are
-// split on shells, too; nothing is excused for that. Four arms meet at right angles where a wall
-// crosses another by what rounding left, and triangles join pieces at the corner. If pieces are
+// Right angles. If the bound on angles is above 30 degrees, arms that meet at less than 93 are
+// split on shells, too, but this excuses no triangle. Four arms meet at right angles where a wall
+// crosses another by a rounding error, and triangles join pieces at the corner. If pieces are
 // halved, the logarithms of their lengths have fixed fractions: for 0, 1/4, 1/2 and 3/4 the four
 // ratios cannot all be below 2^(3/4), and the triangle with that ratio has an angle of 30.7
 // degrees. So halving went round the corner for ever: of 500 rounded floor plans, 17 ended at the
-// precision floor at 33 degrees, 52 at 34; with shells none does. At 20 to 30 degrees, where none
-// does anyway, shells there make up to 1 % more triangles.
+// precision floor at 33 degrees, 52 at 34; with shells none does. At 20 to 30 degrees none does
+// without shells either, and shells make up to 1 % more triangles.
 //
 // An input vertex that ends an arm counts as on a shell, but two of them do not excuse a triangle:
 // a fan of equal arms is refined toward its corner.
@@ -67,10 +67,10 @@ class AcuteCorners {
   // the middle. `apexes` face the piece from its two sides; kNone if a side has no triangle.
   Point split_point(const Mesh& mesh, Pair ends, Pair apexes) const;
 
-  // Where two of the domain's segments meet at a small angle outside of it.
+  // The places where two of the domain's segments meet at a small angle outside of it.
   const Needles& needles() const { return needles_; }
 
-  // Whether a skinny triangle is to stay because of a small input angle.
+  // Whether a skinny triangle stays because of a small input angle.
   bool excuses(const Mesh& mesh, const Triangle& triangle) const;
 
   // Index into Domain::subsegments of the edge a-b, which must lie on a segment.
@@ -87,7 +87,7 @@ class AcuteCorners {
     std::uint32_t subsegment;
   };
 
-  // By the smallest angle at which two arms meet there.
+  // The kind of a corner, by the smallest angle at which two arms meet there.
   enum class Corner : char { kPlain, kShells, kAcute };
 
   explicit AcuteCorners(const Domain& domain)
@@ -107,7 +107,8 @@ class AcuteCorners {
   bool on_other_arm(const Mesh& mesh, std::uint32_t vertex, std::uint32_t corner,
                     std::uint32_t subsegment) const;
 
-  // Parts of the way from one end of a piece to the other.
+  // These return the place of a split as a fraction of the way from one end of a piece to the
+  // other.
   std::optional<double> matching_part(const Mesh& mesh, std::uint32_t subsegment, Point from,
                                       Point to, Pair apexes) const;
   double dyadic_part(const Mesh& mesh, std::uint32_t subsegment, Point from, Point to) const;

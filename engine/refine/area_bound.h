@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the kernel asks of a grading function: the bounds on the areas of a ring of new triangles.
+// The kernel's view of a grading function: bounds on the areas of a ring of new triangles.
 // The kernel is a template over this, so that a constant costs nothing.
 #pragma once
 
@@ -24,7 +24,7 @@ struct BadSize {
   double value;
 };
 
-// kBadSizeValue of the field, with a sentence that names the point.
+// The error kBadSizeValue, with a message that names the point.
 Error bad_size_error(const BadSize& bad);
 
 // The same bound everywhere; infinity is no bound.
@@ -34,10 +34,10 @@ class ConstantArea {
   explicit ConstantArea(double bound, double coarseness = 1)
       : bound_(bound), coarseness_(coarseness) {}
 
-  // The same, for another thread or another coarseness.
+  // A copy for another thread or another coarseness.
   ConstantArea again(double coarseness = 1) const { return ConstantArea(bound_, coarseness); }
 
-  // A task begins whose rings lie in `box`, most of them.
+  // Begins a task most of whose rings lie in `box`.
   void begin(const Box&) {}
 
   // Judges the triangles first <= i < last of the ring around p, none of which may exceed
@@ -48,17 +48,17 @@ class ConstantArea {
                       UniformAreaBound{2 * coarseness_ * std::min(bound_, region_bound)}, badness);
   }
 
-  // The point nearest to c of the lattice for the mesh that is asked for, whatever the coarseness.
+  // The lattice point nearest to c. The lattice is that of the final mesh, whatever the coarseness.
   LatticePoint nearest_of_lattice(Point c, double region_bound, const LatticeShape& shape) {
     return lattice_.nearest(c, std::min(bound_, region_bound), shape);
   }
 
-  // Whether there is one at p, where `bound` holds, that of the region included.
+  // Whether there is a lattice at p. `bound` is the bound there, that of the region included.
   bool on_lattice(Point, double bound, double) const {
     return bound < std::numeric_limits<double>::infinity();
   }
 
-  // Insertions that take about 0.1 ms, see ExecutionContext.
+  // The number of insertions that take about 0.1 ms, see ExecutionContext.
   static constexpr std::uint32_t poll_interval() { return 512; }
 
   // The bound at n points.

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bad triangles that wait to be refined, and their order.
 //
-// Too large ones come first, by how much too large they are (four levels an octave), the last in
-// first within a level. Against a single stack that makes 1.7 % fewer triangles of the cylinder
-// model, and the same speed while a task's mesh stays in the cache.
+// Too large ones come first, by how much too large they are (four levels per octave), last in first
+// out within a level. Compared with a single stack, the cylinder model has 1.7 % fewer triangles,
+// and the speed is the same while a task's mesh stays in the cache.
 //
-// Then come the skinny ones, the smallest first: small triangles are followed by larger ones around
-// them, and few of either are needed. What is small is told by the longest edge times the cube of
-// the shortest; at 20, 25, 30 and 33 degrees, without a size, and of two more models at 33:
+// Then come the skinny ones, the smallest first: refining these makes larger triangles around them,
+// and few of either are needed. The measure is the longest edge times the cube of the shortest.
+// Triangles without a size, at 20, 25, 30 and 33 degrees, and of two more models at 33:
 //
 //                              us-east-coast                  pipe     cylinder
 //   last in first out          16,884 21,043 29,799 48,049    2,526    1,314
@@ -15,13 +15,13 @@
 //   shortest times longest     15,703 18,670 23,881 29,353    1,826      469
 //   shortest cubed, longest    15,582 18,544 23,531 29,057    1,830      470
 //
-// Where a size makes nearly all triangles the order costs nothing: 0.4 % more instructions of the
+// If a size makes nearly all triangles, the order costs little: 0.4 % more instructions of the
 // whole engine at 20 degrees, and none at 30 (cylinder, 40,000 triangles).
 //
-// Nothing is ever searched for or removed: entries go stale when their triangle dies (two thirds
-// do). An entry of a too large triangle is 4 bytes, and the badness of what is in the slot now
-// tells whether it counts. One of a skinny triangle keeps the first vertex as well, which names the
-// triangle (refiner.h). Without it the slot's next triangle, skinny too, but larger by far, came in
+// Nothing is ever searched for or removed: an entry goes stale when its triangle dies (two thirds
+// do). The entry of a too large triangle has 4 bytes, and is valid if the slot's triangle still has
+// that badness. The entry of a skinny triangle has the first vertex as well, which names the
+// triangle (refiner.h). Without it the slot's next triangle, skinny too, but much larger, took
 // the place of the one that died: 2, 9 and 18 % more triangles of us-east-coast at 20, 30 and 33
 // degrees, and 33 % more of floor plans with narrow gaps at 30.
 #pragma once
@@ -53,7 +53,7 @@ class BadTriangles {
     in_use_[badness / 64] |= std::uint64_t{1} << badness % 64;
   }
 
-  // The next one that is still as bad, or kNone.
+  // Removes and returns the next triangle that is still as bad; kNone if there is none.
   std::uint32_t pop() {
     for (std::size_t word = in_use_.size(); word-- > 0;) {
       while (in_use_[word] != 0) {
@@ -79,7 +79,7 @@ class BadTriangles {
         if (skinny.next == kNone) {
           skinny_in_use_[first_word_] &= ~(std::uint64_t{1} << level % 64);
         } else {
-          // The next one is anywhere in the mesh: it is fetched while this one is refined.
+          // The next one may be anywhere in the mesh: prefetch it while this one is refined.
           __builtin_prefetch(&mesh_.triangles[skinny_[skinny.next].triangle]);
         }
         const Triangle& t = mesh_.triangles[skinny.triangle];
@@ -89,7 +89,7 @@ class BadTriangles {
     return kNone;
   }
 
-  // Forgets all that waits.
+  // Removes all entries.
   void clear() {
     for (auto& entries : levels_) entries.clear();
     in_use_ = {};
@@ -107,8 +107,7 @@ class BadTriangles {
   }
 
  private:
-  // Skinny triangles by their size, eight levels an octave of it; last in first
-  // out within a level.
+  // Skinny triangles by size, eight levels per octave; last in first out within a level.
   struct Skinny {
     std::uint32_t triangle;
     std::uint32_t first_vertex;
@@ -150,10 +149,10 @@ class BadTriangles {
 
   const Mesh& mesh_;
   std::array<std::vector<std::uint32_t>, kWorst + 1> levels_;  // by badness
-  std::array<std::uint64_t, (kWorst + 64) / 64> in_use_{};     // a bit a level
+  std::array<std::uint64_t, (kWorst + 64) / 64> in_use_{};     // a bit per level
   std::vector<Skinny> skinny_;
   std::uint32_t free_ = kNone;
-  std::vector<std::uint32_t> heads_;  // meaningless where skinny_in_use_ has no bit
+  std::vector<std::uint32_t> heads_;  // valid if skinny_in_use_ has the bit
   std::array<std::uint64_t, kSkinnyWords> skinny_in_use_{};
   std::size_t first_word_ = kSkinnyWords;
 };

@@ -2,18 +2,18 @@
 // The cavity of a point p: the triangles whose open circumdisk contains p (Bowyer-Watson), and the
 // ring of edges around it, in counter-clockwise order.
 //
-// The cavity grows by a depth-first walk over half-edges, in order: of a triangle that joins, the
-// walk takes the edge that comes next around p first. So the ring's edges come out in cyclic order
-// and the new triangles link to each other without hashing. With exact predicates the dual of a
-// cavity is a tree (no vertex lies inside it), so the walk needs no visited marks.
+// The cavity grows by a depth-first walk over half-edges: from a triangle that joins, the walk
+// first takes the edge that comes next around p. So the ring's edges come out in cyclic order,
+// and the new triangles are linked to each other without hashing. With exact predicates the dual of
+// a cavity is a tree (no vertex lies inside it), so the walk needs no visited marks.
 //
-// Shared arithmetic: everything is relative to p. The cross products and squared lengths that the
-// walk needs are those of the in-circle filter, and then of the area and angle tests of the new
-// triangles (quality_bounds.h).
+// Shared arithmetic: everything is relative to p. The in-circle filter computes the cross products
+// and squared lengths; the area and angle tests of the new triangles use them again
+// (quality_bounds.h).
 //
-// Of a triangle that joins, the triangles across its other two edges are tested at once, each in
-// its own lane of SSE registers. That halves the arithmetic, and the walk knows which way it goes
-// before it gets there. With quality_bounds.h, 8 % less refinement time at 1 M triangles.
+// When a triangle joins, the triangles across its other two edges are tested at once, each in
+// its own lane of SSE registers. That halves the arithmetic, and the walk knows its direction
+// in advance. With quality_bounds.h, this takes 8 % less refinement time at 1 M triangles.
 //
 // The in-circle test of d against the ring edge a-b is the sign of
 //     |a|^2 (d x b) + |b|^2 (a x d) - |d|^2 (a x b),
@@ -23,8 +23,8 @@
 // predicate decides: 8 to 140 times in 480,000 insertions. Deciding each with CGAL's filtered
 // predicate instead costs 25 % (g++) to 105 % (clang++).
 //
-// Nothing of the mesh is modified while a cavity grows. With a restricted Ownership a triangle that
-// must join but has a vertex that is not owned abandons the insertion (ownership.h).
+// Growing a cavity does not modify the mesh. With a restricted Ownership the insertion is abandoned
+// if a triangle must join but has a vertex that is not owned (ownership.h).
 #pragma once
 
 #include <smmintrin.h>
@@ -55,8 +55,8 @@ struct alignas(16) RingPoint {
   std::uint32_t constrained;  // 1 if the edge lies on a segment, 0 elsewhere
 };
 
-// Edge i goes from point i to point i + 1. A closed ring repeats its first point at the end. Of
-// point 0 nothing is known about an edge that ends there.
+// Edge i goes from point i to point i + 1. A closed ring repeats its first point at the end. The
+// edge of point 0 is not set.
 struct Ring {
   explicit Ring(std::size_t capacity) : points(capacity + 1) {}
 
@@ -64,7 +64,7 @@ struct Ring {
   std::vector<RingPoint> points;  // size + 1 in use
 };
 
-// Edge `edge` of `triangle`, on a segment, with its end points to tell whether it is still there.
+// Edge `edge` of `triangle`, on a segment; its end points tell whether the edge still exists.
 struct SegmentEdge {
   std::uint32_t triangle, edge, a, b;
 };
@@ -75,7 +75,7 @@ class Cavity {
   enum class Growth {
     kComplete,
     kEncroaches,  // p encroaches upon, or is behind, the segments in `encroached()`
-    kNotOwned,    // the cavity reaches into what the task does not own
+    kNotOwned,    // the cavity reaches triangles that the task does not own
     kOverflow,    // out of room: call `enlarge` and try again
   };
 
@@ -87,14 +87,14 @@ class Cavity {
     resize(kInitialCapacity);
   }
 
-  // A task begins, which owns the slots of `owner`.
+  // Begins a task that owns the slots of `owner`.
   void begin(const Ownership& ownership, std::uint32_t owner) {
     ownership_ = ownership;
     owner_ = owner;
   }
 
-  // The cavity of `p`, which must lie in the circumdisk of `seed` and out of the segments' lenses
-  // (lens.h). REQUIRES: the seed's vertices are owned.
+  // Grows the cavity of `p`, which must lie in the circumdisk of `seed` and outside the segments'
+  // lenses (lens.h). REQUIRES: the seed's vertices are owned.
   Growth grow_from_triangle(std::uint32_t seed, Point p, double lens) {
     lens_ = lens;
     const Triangle& t = triangles_[seed];
@@ -117,8 +117,8 @@ class Cavity {
     return growth;
   }
 
-  // The cavity of a point `p` of the segment that edge `edge` of `triangle` lies on. The ring is
-  // closed where the segment has triangles on both sides; `far_end()` is then the ring's index of
+  // Grows the cavity of a point `p` of the segment that edge `edge` of `triangle` lies on. The ring
+  // is closed if the segment has triangles on both sides; `far_end()` is then the ring's index of
   // the segment's other end, and the ring starts at vertex[edge + 2].
   Growth grow_from_segment(std::uint32_t triangle, std::uint32_t edge, Point p) {
     const Triangle& t = triangles_[triangle];
@@ -174,7 +174,7 @@ class Cavity {
   static constexpr std::size_t kInitialCapacity = 1024;
   static constexpr std::size_t kSlack = 4;
 
-  // What `constrained` says of an edge whose triangle across joins the cavity.
+  // The value of `constrained` for an edge whose triangle across joins the cavity.
   static constexpr std::uint32_t kJoins = 2;
 
   // An edge of the cavity that the walk has yet to reach, and the triangle across, already tested.
@@ -185,7 +185,7 @@ class Cavity {
     double cross_with_start;  // start x apex
     double cross_with_end;    // apex x end
     double apex_length2;
-    HalfEdge inside;  // the edge itself, where it is constrained
+    HalfEdge inside;  // the edge itself, if it is constrained
   };
 
   // An end of an edge, relative to p.
@@ -258,7 +258,7 @@ class Cavity {
     second.end.outside = second_across;
     const std::uint32_t segments = triangle.segment_bits();
     if (segments != 0) [[unlikely]] {
-      // Nobody looks across a segment: the triangle's own corner stands in.
+      // The triangle across a segment is not used, so its own corner is a valid substitute.
       if (triangle.on_segment(kNext[corner])) first_across = half_edge(t, corner);
       if (triangle.on_segment(kPrevious[corner])) second_across = half_edge(t, corner);
     }
@@ -269,7 +269,7 @@ class Cavity {
     const __m128d first_apex = _mm_sub_pd(_mm_loadu_pd(&vertices[first_vertex].x), origin);
     const __m128d second_apex = _mm_sub_pd(_mm_loadu_pd(&vertices[second_vertex].x), origin);
 
-    // One lane an edge: a is its start, b its end, d the apex across.
+    // One lane per edge: a is its start, b its end, d the apex across.
     const __m128d ax = _mm_unpacklo_pd(start.at, at.at);
     const __m128d ay = _mm_unpackhi_pd(start.at, at.at);
     const __m128d bx = _mm_unpacklo_pd(at.at, end.at);
@@ -326,7 +326,7 @@ class Cavity {
     return in_circle_exact(vertices_[a], vertices_[b], vertices_[c], p) ? 1 : 0;
   }
 
-  // Notes the segment that a constrained edge lies on, if p encroaches upon it.
+  // Records the segment that a constrained edge lies on, if p encroaches upon it.
   [[gnu::noinline, gnu::cold]] void watch(const RingPoint& start, const Frame& edge) {
     const RingPoint& end = edge.end;
     if (end.cross <= 0 || in_lens(start.x, start.y, end.x, end.y, lens_)) {
@@ -335,8 +335,8 @@ class Cavity {
     }
   }
 
-  // If p is behind a segment, as seen from a point of the seed: of all that it encroaches upon,
-  // keeps the nearest such.
+  // If segments hide p from a point of the seed, keeps only the nearest of these as encroached
+  // upon.
   [[gnu::noinline, gnu::cold]] void keep_what_hides(Point from, Point p) {
     const auto side = [](Point a, Point b, Point c) {
       return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -355,8 +355,8 @@ class Cavity {
     }
   }
 
-  // Field by field as they were written a moment ago: a processor forwards a store to a load that
-  // it covers, but not two stores to one load.
+  // Copies field by field, as they were written a moment ago: a processor forwards a store to a
+  // load that it covers, but not two stores to one load.
   static void copy(const RingPoint& from, RingPoint& to) {
     _mm_store_pd(&to.x, _mm_load_pd(&from.x));
     _mm_store_pd(&to.length2, _mm_load_pd(&from.length2));

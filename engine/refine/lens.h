@@ -1,29 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// What encroaches upon a piece of a segment, so that the piece is split instead:
+// The points that encroach upon a piece of a segment, so that the piece is split instead:
 //   - a Steiner point of a triangle that is only skinny, in the piece's diametral lens: where the
 //     piece is seen at 180 - 2 phi degrees or more (J. R. Shewchuk, "Delaunay refinement algorithms
 //     for triangular mesh generation", 2002);
-//   - a Steiner point of a triangle that is too large, in the diametral disk: nothing else keeps it
-//     from the segment;
-//   - any Steiner point on the far side of the piece. Of all that it encroaches upon, only the
-//     piece that hides it from its triangle is split.
-// A vertex that is there already encroaches upon nothing. So no segment is split except for a bad
-// triangle, and with an angle bound of 0 and no size none is.
+//   - a Steiner point of a triangle that is too large, in the diametral disk, because nothing else
+//     keeps it away from the segment;
+//   - any Steiner point on the far side of the piece. Then only the piece that hides it from its
+//     triangle is split, and none of the others that it encroaches upon.
+// Existing vertices encroach upon nothing. So segments are split only for bad triangles, and with
+// an angle bound of 0 and no size none is split.
 //
 // The lens. With theta the bound on angles, s = sin(theta):
 //     sin(phi)^2 = max(4 s^2, s)    while that is at most 1/2, up to theta = 20.7 degrees,
 //     phi = theta                   beyond.
-// The first is the least that the proof below needs, the second the least of all: phi = theta is
-// Shewchuk's lens, where the triangle that encroaches is skinny itself. He deletes the free
-// vertices in the diametral disk before a split, and has a proof up to 26.5 degrees; here vertices
-// stay, because the schedule relies on it (schedule/leaf_radius.h).
+// The first is the least that the proof below needs. The second is Shewchuk's lens, the least
+// possible. He deletes the free vertices in the diametral disk before a split, and has a proof up
+// to 26.5 degrees; here vertices stay, because the schedule relies on it (schedule/leaf_radius.h).
 //
 // What is proven. Let theta be at most 20.7 degrees, and all angles between segments at least 90.
 // Then refinement ends. Let D be a lower bound on the distance of any two vertices that see each
 // other, small against the distances between features of the input and against the root of the
-// least size. No insertion makes a smaller distance, so only so many fit into the domain:
+// least size. No insertion makes a smaller distance, so only finitely many fit into the domain:
 //   - A point at the standard place for a skinny triangle (steiner_point.h) is at least D / (2 s)
-//     from every vertex that it sees, one of a triangle too large at least the triangle's
+//     from every vertex that it sees, one for a triangle that is too large at least the triangle's
 //     circumradius. Another place (petal.h) is taken only if it is at least the triangle's shortest
 //     edge away from what it sees, so at least D, and only if the standard one encroaches upon
 //     nothing. So only points at standard places split segments: v below is such a point.
@@ -37,15 +36,16 @@
 //     r >= D / (2 s), cuts the piece in a chord, and a corner of t is on its arc before the piece.
 //     If it is free, it sees the chord at 180 - 2 phi at most, so 2R >= 2 r sin(2 phi), and
 //     R tan(phi) >= 2 r sin(phi)^2 >= D. If not, R is at least the distance between features.
-//   - A free vertex may lie in the lens if a vertex of another feature hid it from the piece, being
-//     in the lens, too. It is above the circle through that vertex and the ends of the piece, so
-//     it is at least D times a constant from what splits the piece. Such a piece is longer than the
-//     distance between the features: there are only so many of them, and D falls so often at most.
+//   - A free vertex may lie in the lens if a vertex of another feature, in the lens, too, hid it
+//     from the piece. It is above the circle through that vertex and the ends of the piece, so
+//     it is at least D times a constant from the point that splits the piece. Such a piece is
+//     longer than the distance between the features, so there are finitely many, and D falls at
+//     most as often.
 // What is observed. Beyond 20.7 degrees, and with angles below 90 (acute_corners.h), nothing is
 // proven. Up to 34 degrees everything tried has ended: floor plans with rounded coordinates,
 // wedges, stars of 360 rays. At 36, 3 of 500 such plans end at the precision floor, and a star of
-// 200 rays of unequal lengths does not end; at 34 it takes 56,815 triangles, at 20 4,503. How many
-// triangles there are against the least is proven for Ruppert's disk, not for this.
+// 200 rays of unequal lengths does not end; at 34 it takes 56,815 triangles, at 20 4,503. The
+// bound on the number of triangles against the least is proven for Ruppert's disk, not for this.
 //
 //   us-east-coast, no size,
 //   the standard place alone    20 deg    25 deg    30 deg    33 deg
@@ -54,15 +54,15 @@
 //   this lens                   17,856    23,065    33,337    45,289
 //
 // The mesh is constrained Delaunay, and not conforming Delaunay: the circumdisk of a triangle at a
-// segment may hold vertices beyond it. No cavity crosses a segment, so neither the ownership of
-// triangles (ownership.h) nor the bound on circumradii (schedule/leaf_radius.h) notices.
+// segment may hold vertices beyond it. No cavity crosses a segment, so this affects neither the
+// ownership of triangles (ownership.h) nor the bound on circumradii (schedule/leaf_radius.h).
 #pragma once
 
 #include <algorithm>
 
 namespace weft {
 
-// Squared cosines of the angle at which a piece is seen by what encroaches upon it.
+// Squared cosines of the least angle at which an encroaching point sees the piece.
 inline constexpr double kDiametralDisk = 0;
 inline constexpr double kNoLens = 2;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A grading function that is not the same everywhere: evaluated for a ring of triangles at a time,
-// and only if the size map's bounds leave a doubt (size/size_map.h).
+// A grading function that varies: evaluated for a ring of triangles at a time,
+// and only if the size map's bounds do not decide (size/size_map.h).
 #pragma once
 
 #include <algorithm>
@@ -18,10 +18,10 @@
 
 namespace weft {
 
-// One a task at a time. `begin` lays a grid over the task's box; a cell knows, once a ring needed
-// it, whether the function is constant in the cell and those around it. Most rings lie in the box
-// of the last one, most others in such a cell: 6 % of the rings are evaluated with the step
-// function of the cylinder model.
+// Used by one task at a time. `begin` lays a grid over the task's box; once a ring needed a cell,
+// the cell knows whether the function is constant in it and the cells around it. Most rings lie in
+// the constant box of the last one, most others in such a cell: with the step function of the
+// cylinder model, 6 % of the rings are evaluated.
 class MappedArea {
  public:
   // Bounds are multiplied by `coarseness`.
@@ -33,10 +33,10 @@ class MappedArea {
         grain_(&grains.grains().front()),
         coarseness_(coarseness) {}
 
-  // The same, for another thread or another coarseness.
+  // A copy for another thread or another coarseness.
   MappedArea again(double coarseness = 1) const { return {function_, map_, grains_, coarseness}; }
 
-  // A task begins whose rings lie in `box`, most of them.
+  // Begins a task most of whose rings lie in `box`.
   void begin(const Box& box);
 
   RingVerdict judge(const Ring& ring, std::uint32_t first, std::uint32_t last, Point p,
@@ -50,8 +50,8 @@ class MappedArea {
     return judge_by_cell(ring, first, last, p, region_bound, quality, badness);
   }
 
-  // The point nearest to c of the lattice for the mesh that is asked for, whatever the coarseness.
-  // A region's bound has its own where it is below what the lattice of the size is laid out for.
+  // The lattice point nearest to c. The lattice is that of the final mesh, whatever the coarseness.
+  // A region has its own lattice where its bound is below that of the size's lattice.
   LatticePoint nearest_of_lattice(Point c, double region_bound, const LatticeShape& shape) {
     find_grain(c);
     if (grain_->kind == GrainMap::Kind::kFit) {
@@ -67,14 +67,14 @@ class MappedArea {
     return lattice_.nearest(c, std::min(bound, region_bound), shape);
   }
 
-  // Whether there is one at p, where `bound` holds, that of the region included.
+  // Whether there is a lattice at p. `bound` is the bound there, that of the region included.
   bool on_lattice(Point p, double bound, double region_bound) {
     find_grain(p);
     return grain_->kind == GrainMap::Kind::kFit || grain_->kind == GrainMap::Kind::kConstant ||
            region_bound <= bound;
   }
 
-  // Insertions between polls: fewer where the function is costly (4,096 powers take 1 ms a ring).
+  // Insertions between polls: fewer if the function is costly (4,096 powers take 1 ms per ring).
   std::uint32_t poll_interval() const {
     return 1 + static_cast<std::uint32_t>(512 / (1 + function_.operations() / 16));
   }
@@ -96,7 +96,7 @@ class MappedArea {
   // A cell and those around it.
   struct Cell {
     bool known = false;
-    double size = 0;  // the function's value where it is constant; 0 elsewhere
+    double size = 0;  // the function's value if it is constant; otherwise 0
     SizeMap::Place place{};
   };
 
@@ -104,13 +104,13 @@ class MappedArea {
     if (!(room_in(grain_->box, p) > 0)) [[unlikely]]
       grain_ = &grains_.locate(p);
   }
-  // At the border of constant pieces: the bound at c where it is the same an edge's length away, in
-  // x and in y, on one side at least; otherwise 0.
+  // At the border of constant pieces: the bound at c if it is the same an edge's length away, in x
+  // and in y, on at least one side; otherwise 0.
   double bound_of_piece(Point c) const;
   UniformAreaBound uniform(double region_bound) const {
     return {2 * coarseness_ * std::min(size_, region_bound)};
   }
-  // As the cell of p has it; a ring that reaches beyond the cells around is looked up in the map.
+  // Judges by the cell of p; looks the ring up in the map if it reaches beyond the cells around.
   RingVerdict judge_by_cell(const Ring& ring, std::uint32_t first, std::uint32_t last, Point p,
                             double region_bound, const QualityBounds& quality, Badness* badness);
   // Evaluates the function at the centroids.
@@ -127,7 +127,7 @@ class MappedArea {
   Box box_;          // where the function is constant; empty at first
   double size_ = 0;  // its value there
   Box grid_;
-  double cells_per_x_ = 0;  // cells a unit
+  double cells_per_x_ = 0;  // cells per unit
   double cells_per_y_ = 0;
   std::array<Cell, kGrid * kGrid> cells_;
   std::vector<Lanes> x_, y_, bound_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Needles: where two segments, the arms, meet at a small angle outside the domain. No triangle
-// between them tells that a vertex on one was rounded onto the other. So none is put where the arms
-// are nearer to each other than 16 units in the last place: 5 that a vertex may be beside its arm
-// (split_segment in refiner.h), twice, and room.
+// Needles: places where two segments, the arms, meet at a small angle outside the domain. There is
+// no triangle between the arms to show that a vertex on one was rounded onto the other. So no
+// vertex is put where the arms are nearer to each other than 16 units in the last place: twice the
+// 5 that a vertex may be off its arm (split_segment in refiner.h), and a margin.
 //
 //   const Result<Needles> needles = Needles::find(domain, context);
 //   if (!needles->keep_apart(subsegment, split)) ...
@@ -28,7 +28,7 @@ class Needles {
   std::uint64_t bytes() const { return ends_.size() * sizeof(End); }
 
  private:
-  // Of a subsegment, and the distance from it within which the other arm is too near.
+  // An end of a subsegment, and the distance from it within which the other arm is too near.
   struct End {
     std::uint32_t subsegment;
     Point corner;

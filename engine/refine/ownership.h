@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which vertices a refinement task may use: a compile-time parameter of the kernel.
 //
-// The rule: a task touches a triangle, to read it or to write it, only if it owns at least two of
-// its vertices. It replaces a triangle only if it owns all three; of one across the border of a
-// cavity, whose two common vertices it owns, it reads the third and writes the link to what is new.
-// Concurrent tasks own disjoint boxes: of three vertices no two tasks own two each, so at any time
-// at most one task may touch a triangle, and the mesh needs no lock and no atomic. Vertices move in
-// smoothing alone (smoother.h): by a task that owns all vertices around, and within the boxes that
-// they are in.
+// The rule: a task reads or writes a triangle only if it owns at least two of its vertices. It
+// replaces a triangle only if it owns all three. Of a triangle across the border of a cavity, it
+// owns the two common vertices, reads the third, and writes the link to the new neighbour.
+// Concurrent tasks own disjoint boxes, and two tasks cannot each own two of three vertices. So at
+// any time at most one task may touch a triangle, and the mesh needs no lock and no atomic.
+// Vertices move only in smoothing (smoother.h): by a task that owns all vertices around, and within
+// the boxes that they are in.
 //
 // That each insertion is that of the sequential algorithm follows by induction over the moments at
 // which cavities are replaced, of all tasks in one order. Let the mesh be constrained Delaunay
-// before such a moment. The task has looked at triangles only that no other task at work may touch,
-// so they are still as it found them, and the cavity is that of its point in this mesh: replacing
+// before such a moment. The task has looked only at triangles that no other running task may touch,
+// so they are unchanged, and the cavity is that of its point in this mesh: replacing
 // it is an insertion by Bowyer-Watson, and the mesh is constrained Delaunay after it. The vertices
 // of the cavity's border lie in the task's box; the box is convex, so the point does, too, and all
-// new triangles have three vertices of this task. So nothing is new to any other task at work.
+// new triangles have three vertices of this task. So no other running task sees a change.
 //
-// Beside that, a task that begins asks whether a triangle handed on to it is still there: of slots
-// that no task writes that may run at the same time (leaf_tasks.h, may_look_at).
+// In addition, a task that begins checks whether a triangle handed on to it still exists: only in
+// slots that no concurrent task writes (leaf_tasks.h, may_look_at).
 #pragma once
 
 #include "engine/base/geometry.h"
 
 namespace weft {
 
-// One task has all, and all slots are its own: the sequential engine. Costs nothing.
+// One task owns all vertices and slots: the sequential engine. Costs nothing.
 struct OwnsAll {
   static constexpr bool kRestricted = false;
   constexpr bool owns(Point) const { return true; }
@@ -34,8 +34,8 @@ struct OwnsAll {
   constexpr bool core_holds(Point, double) const { return true; }
 };
 
-// A task has the vertices of a half-open box, beside others. It refines what has its centroid in
-// the core, and hands the rest over.
+// A task owns the vertices of a half-open box, beside other tasks. It refines triangles with their
+// centroid in the core, and hands the others over.
 struct OwnsBox {
   static constexpr bool kRestricted = true;
   Box box;
@@ -43,7 +43,7 @@ struct OwnsBox {
 
   bool owns(Point p) const { return contains(box, p.x, p.y); }
   bool in_core(double x, double y) const { return contains(core, x, y); }
-  // Whether all within the root of `reach2` of p lies in the core.
+  // Whether the disk around p of squared radius `reach2` lies in the core.
   bool core_holds(Point p, double reach2) const {
     const double room = room_in(core, p);
     return room > 0 && reach2 <= room * room;

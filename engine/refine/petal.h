@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a skinny triangle's Steiner point goes: to the one of several places that is worth most.
+// Chooses a skinny triangle's Steiner point: the best of several places.
 //
 // The petal of the triangle's shortest edge is the disk from whose points, on the triangle's side,
 // the edge is seen at the bound on angles or more (H. Erten and A. Üngör, "Quality triangulations
 // with locally optimal Steiner points", 2009). On that side it lies in the triangle's circumdisk.
 // So a point there removes the triangle, and the new triangle at the edge has an angle within the
 // bound. The first place is the standard one (steiner_point.h), the others are on the petal's outer
-// arc. The place is taken whose star leaves the fewest bad triangles: those that its cavity has,
-// less those that its star would have. Of several such it is the one farthest from what it would be
+// arc. The best place removes the most bad triangles: those in its cavity less those that its star
+// would have. Among equal places, it is the one farthest from the vertices that it would be
 // joined to.
 //
-// A place counts only if what it would be joined to is no nearer than the shortest edge is long, so
-// that no distance is made that is smaller than those that are there (lens.h). If a point at the
-// standard place encroaches upon a segment, or is not this task's to insert, then there is no
-// search. Any other place that does so is left out. The search ends early if all bad triangles
-// around are gone already.
+// A place is admitted only if the vertices that it would be joined to are at least as far away as
+// the shortest edge is long, so that no smaller distance arises (lens.h). If a point at the
+// standard place encroaches upon a segment, or this task may not insert it, then there is no
+// search. Other places of that kind are left out. The search ends early if a place removes all bad
+// triangles around.
 //
 // Triangles without a size, at 20, 25, 30 and 33 degrees, and of three more models at 33:
 //
@@ -24,8 +24,9 @@
 //   5 places on the arc         15,582 18,544 23,531 29,057   1,830   405      470
 //   13, and 15 on inner arcs    15,319 18,117 22,654 27,264   1,972   408      483
 //
-// The last row is of the shortest edge first (bad_triangles.h). Segments split at the best of five
-// places would save 0.5 to 1.5 % more of us-east-coast, but the proof in lens.h needs the middle.
+// The last row was measured with the shortest edge first (bad_triangles.h). Splitting segments at
+// the best of five places would save 0.5 to 1.5 % more of us-east-coast, but the proof in lens.h
+// needs the middle.
 // Refinement takes 1.7 to 2.2 times as long as with the standard place alone. With a size that
 // makes nearly all triangles, few are ever skinny, and the search changes little: neither their
 // number nor the time.
@@ -43,7 +44,7 @@ namespace weft {
 
 class Petal {
  public:
-  // Of the triangle a, b, c. REQUIRES: the bound on angles is above 0.
+  // The petal of the triangle a, b, c. REQUIRES: the bound on angles is above 0.
   Petal(Point a, Point b, Point c, const QualityBounds& quality) {
     const double opposite_a = distance2(b, c);
     const double opposite_b = distance2(c, a);
@@ -64,7 +65,7 @@ class Petal {
   // Squared length of the triangle's shortest edge.
   double shortest2() const { return shortest2_; }
 
-  // Whether two places are hardly apart.
+  // Whether two places are nearly the same.
   bool same_place(Point p, Point q) const { return distance2(p, q) < 0.01 * shortest2_; }
 
   // The place that is seen from the centre at an angle from the edge's bisector, given by the
@@ -80,14 +81,14 @@ class Petal {
 
  private:
   static constexpr double kReach =
-      0.99;  // of the radius, so that rounding makes no angle too small
+      0.99;  // fraction of the radius, so that rounding makes no angle too small
 
   double shortest2_;
   Point centre_;
-  Point along_;  // the edge's direction, as long as the places are away from the centre
+  Point along_;  // the edge's direction, with the distance of the places from the centre as length
 };
 
-// What the star of a point is worth.
+// The value of a point's star.
 struct StarWorth {
   std::int32_t fewer_bad;  // triangles
   double nearest2;         // squared distance from the point to what it is joined to

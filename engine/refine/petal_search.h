@@ -2,9 +2,9 @@
 // The search of a petal (petal.h): the star of each place is grown and judged, and the best one is
 // kept. Nothing of the mesh changes.
 //
-// us-east-coast at 20 degrees: 3.2 places are looked at for each skinny triangle, their cavities
-// have 7 triangles each, and refinement takes 6.6 ms instead of 3.2. A bound on what a place may be
-// worth, from the circumdisks of the bad triangles around, rules out only 9 % of the places, and
+// us-east-coast at 20 degrees: 3.2 places are tried for each skinny triangle, their cavities
+// have 7 triangles each, and refinement takes 6.6 ms instead of 3.2. A bound on the value of a
+// place, from the circumdisks of the bad triangles around, rules out only 9 % of the places, and
 // costs as much as that saves.
 #pragma once
 
@@ -33,12 +33,12 @@ class PetalSearch {
 
   explicit PetalSearch(const Mesh& mesh) : mesh_(mesh), other_(mesh) {}
 
-  // As for a star.
+  // See Star::begin.
   void begin(const Ownership& ownership, std::uint32_t owner) { other_.begin(ownership, owner); }
 
-  // Returns the best place, with its star in `star`, which is that of the standard place before,
-  // grown and judged. `look_at(other, p)` grows and judges `other` at p, and returns nothing if p
-  // is not a possible place.
+  // Returns the best place, with its star in `star`. Before the call, `star` is that of the
+  // standard place, grown and judged. `look_at(other, p)` grows and judges `other` at p, and
+  // returns nullopt if p is not an admissible place.
   template <class LookAt>
   Place run(Star<Ownership>& star, const Petal& petal, const Place& standard,
             const QualityBounds& quality, LookAt&& look_at) {
@@ -80,7 +80,7 @@ class PetalSearch {
                       [&](std::uint32_t t) { return mesh_.triangles[t].badness() != kGood; }));
   }
 
-  // And in the triangles across the ring: hardly a place is worth more.
+  // Counts bad triangles in the cavity and across the ring; few places have a larger value.
   std::int32_t bad_around(const Star<Ownership>& star) const {
     std::int32_t bad = bad_in_cavity(star);
     for (std::uint32_t i = 1; i <= star.ring().size; ++i) {
@@ -102,7 +102,7 @@ class PetalSearch {
   }
 
   const Mesh& mesh_;
-  Star<Ownership> other_;    // of the place that is looked at
+  Star<Ownership> other_;    // of the place being tried
   std::vector<Point> ring_;  // of the standard place
 };
 

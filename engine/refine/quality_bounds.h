@@ -3,9 +3,9 @@
 //
 // With edges a, b from p, e = b - a, and A2 = a x b twice the area, the smallest angle is opposite
 // the shortest edge m, and sin^2 = A2^2 m^2 / (|a|^2 |b|^2 |e|^2). So no root and no division is
-// needed, the products are those of the walk (cavity.h), and one loop without branches, two
-// triangles a step in the lanes of SSE registers, serves the ring: 25 % fewer instructions than one
-// triangle a step.
+// needed, the products are those of the walk (cavity.h), and one loop without branches judges the
+// ring, two triangles per step in the lanes of SSE registers: 25 % fewer instructions than one
+// triangle per step.
 #pragma once
 
 #include <smmintrin.h>
@@ -27,12 +27,12 @@ struct QualityBounds {
   double sin2 = 0;         // of the minimum angle
   double off_centre = 0;   // see steiner_point.h
   double min_edge2 = 0;    // squared floor on the length of new edges that the caller asks for
-  double lens = kNoLens;   // what encroaches for skinny triangles (lens.h)
+  double lens = kNoLens;   // the lens for skinny triangles (lens.h)
   double precision2 = 0;   // squared length below which double precision ends
   double min_length2 = 0;  // the larger of the two
-  LatticeShape lattice{};  // where points for triangles too large are taken from
+  LatticeShape lattice{};  // of the points for triangles that are too large
 
-  // No edge below min_edge, nor below `precision`, is made. REQUIRES: 0 <= min_angle_deg <=
+  // Refinement makes no edge below min_edge or `precision`. REQUIRES: 0 <= min_angle_deg <=
   // kMaxMinAngleDeg.
   static QualityBounds from(double min_angle_deg, double min_edge, double precision);
 };
@@ -51,9 +51,9 @@ inline double circumradius2(Point a, Point b, Point c) {
   return distance2(a, b) / doubled * (distance2(b, c) / doubled) * distance2(c, a) / 4;
 }
 
-// What one look at a ring of new triangles tells. Badness is per triangle, the rest for the ring.
+// The result of judging a ring of new triangles. Badness is per triangle, the rest is for the ring.
 struct RingVerdict {
-  bool flat = false;       // a triangle may not be counter-clockwise: ask the exact predicate
+  bool flat = false;       // a triangle may not be counter-clockwise: use the exact predicate
   bool too_close = false;  // p is nearer to a point of the ring than the floor
   double reach2 = 0;       // squared distance from p to the farthest point of the ring
   double nearest2 = 0;     // and to the nearest
@@ -65,18 +65,19 @@ struct UniformAreaBound {
   __m128d two_from(std::uint32_t) const { return _mm_set1_pd(doubled); }
 };
 
-// The badness of a triangle that is larger than its bound: four levels an octave of the ratio, off
-// the difference of the numbers' bits, which is a logarithm to 9 %. REQUIRES: 0 < bound < area.
+// The badness of a triangle that is larger than its bound: four levels per octave of the ratio,
+// from the difference of the numbers' bits, which is a logarithm to 9 %. REQUIRES: 0 < bound <
+// area.
 inline Badness badness_of_size(double area, double bound) {
   const std::uint64_t quarters =
       (std::bit_cast<std::uint64_t>(area) - std::bit_cast<std::uint64_t>(bound)) >> 50;
   return kLarge + std::min(static_cast<std::uint32_t>(quarters), kWorst - kLarge);
 }
 
-// badness[i] of the triangles first <= i < last. `doubled_bound` has twice the upper bound on the
-// area of each. REQUIRES: at least two triangles.
+// Sets badness[i] of the triangles first <= i < last. `doubled_bound` has twice the upper bound on
+// the area of each. REQUIRES: at least two triangles.
 //
-// Two triangles a step; of an odd number, the last step judges one again.
+// Judges two triangles per step; if their number is odd, the last step judges one again.
 template <class AreaBound>
 inline RingVerdict judge_ring(const Ring& ring, std::uint32_t first, std::uint32_t last,
                               const QualityBounds& quality, const AreaBound& doubled_bound,

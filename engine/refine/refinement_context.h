@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tasks of a job share, and what they tell and hand on.
+// What the tasks of a job share, what they report, and what they hand on.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace weft {
 
-// What all tasks of a job share.
+// Shared by all tasks of a job.
 struct RefinementContext {
   Mesh& mesh;
   const AcuteCorners& corners;
@@ -26,8 +26,8 @@ struct RefinementContext {
   std::uint64_t triangle_limit;  // an error beyond
 };
 
-// Nothing if the job may hold so many bytes, for which it may have to wait, and make so many
-// triangles.
+// Returns nullopt if the job may hold so many bytes and make so many triangles; it may wait for the
+// bytes.
 inline std::optional<Error> check_budget(const ExecutionContext& context, std::uint64_t triangles,
                                          std::uint64_t triangle_limit, std::uint64_t bytes) {
   if (bytes > context.budget().max_bytes) {
@@ -58,7 +58,7 @@ struct RefinerFigures {
   }
 };
 
-// A bad triangle as tasks hand it on: gone if the slot has another first vertex.
+// A bad triangle that a task hands on. It is gone if the slot has another first vertex.
 struct BadTriangle {
   std::uint32_t triangle;
   std::uint32_t first_vertex;

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// Delaunay refinement of a region of the mesh, as the paper's Section 2 tells it: while a triangle
+// Delaunay refinement of a region of the mesh, as in the paper's Section 2: while a triangle
 // is bad (too large or too skinny), insert its Steiner point by Bowyer-Watson; if the point would
 // encroach upon a segment, split the segment instead.
 //
 //   Refiner<OwnsAll, ConstantArea> refiner(refinement, quality, ConstantArea(1e-3));
 //   refiner.begin(slots, OwnsAll{}, box);
 //   refiner.queue_all();                              // the bad triangles
-//   std::optional<Error> stopped = refiner.run();     // nothing: all is refined or excused
+//   std::optional<Error> stopped = refiner.run();     // nullopt: all is refined or excused
 //
 // What makes it fast, each with its cost measured at 1 M triangles: no point location (a bad
 // triangle belongs to the cavity of its own Steiner point); the cavity's slots are reused; queue
-// entries are a few bytes, and tell whether their triangle is still there (two thirds are stale);
-// the worst comes first, and of these the last in (bad_triangles.h).
+// entries have a few bytes, and show whether their triangle still exists (two thirds are stale);
+// the worst comes first, last in first out among equals (bad_triangles.h).
 //
-// Ownership is a compile-time parameter (ownership.h). A task that meets what it does not own
-// leaves the mesh as it was and keeps the triangle in `deferred()`; what it makes outside its core
-// goes to `handed_over()`. One Refiner serves many tasks, one after the other.
+// Ownership is a compile-time parameter (ownership.h). If an insertion meets a triangle that the
+// task does not own, the task leaves the mesh as it was and keeps the bad triangle in `deferred()`.
+// Bad triangles that it makes outside its core go to `handed_over()`. One Refiner serves many
+// tasks, one after the other.
 //
-// A triangle is named across tasks by its slot and first vertex: only the slot's owner writes
-// vertices, each time another first one. So a task may look whether a triangle is still there
-// before it knows that it owns it (flags are read after that).
+// Tasks name a triangle by its slot and first vertex: only the slot's owner writes vertices, and
+// the first one differs each time. So a task may check whether a triangle still exists before it
+// knows that it owns it (it reads the flags after that).
 #pragma once
 
 #include <algorithm>
@@ -55,7 +56,8 @@ namespace weft {
 template <class Ownership, class AreaBound>
 class Refiner {
  public:
-  // Stops with what it has once `max_triangles` are reached. REQUIRES: nobody else refines, then.
+  // Stops once the mesh has `max_triangles`. REQUIRES: if there is such a limit, no other task
+  // refines.
   Refiner(const RefinementContext& refinement, const QualityBounds& quality, AreaBound area,
           std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max())
       : mesh_(refinement.mesh),
@@ -87,7 +89,7 @@ class Refiner {
     handed_over_.clear();
   }
 
-  // Queues what another task has left, where it is still there; what is not owned is deferred.
+  // Queues a triangle that another task has left, if it still exists; defers it if it is not owned.
   void queue(const BadTriangle& left) {
     const Triangle& t = mesh_.triangles[left.triangle];
     if (t.vertex[0] != left.first_vertex) return;
@@ -107,7 +109,7 @@ class Refiner {
     return stopped_;
   }
 
-  // Refines until the queue is empty, `max_triangles` are reached, or the context says stop.
+  // Refines until the queue is empty, `max_triangles` are reached, or the context stops it.
   std::optional<Error> run() {
     split_queued_segments();
     while (!full() && !stopped_) {
@@ -120,7 +122,7 @@ class Refiner {
     return stopped_;
   }
 
-  // No room for another insertion: what is still queued stays bad.
+  // Whether there is no room for another insertion: queued triangles then stay bad.
   bool full() const {
     return max_triangles_ != std::numeric_limits<std::uint64_t>::max() &&
            context_.triangles() + static_cast<std::uint64_t>(added_) + kMaxGrowth > max_triangles_;
@@ -128,7 +130,7 @@ class Refiner {
 
   const std::vector<BadTriangle>& deferred() const { return deferred_; }
   const std::vector<SegmentEdge>& deferred_segments() const { return deferred_segments_; }
-  // Some of these are gone meanwhile.
+  // Some of these may no longer exist.
   const std::vector<BadTriangle>& handed_over() const { return handed_over_; }
 
   RefinerFigures figures() const {
@@ -145,13 +147,13 @@ class Refiner {
   using Growth = typename Star<Ownership>::Growth;
 
   static constexpr std::uint32_t kMaxGrowth = 2;  // triangles that an insertion adds
-  static constexpr int kNudges = 4;  // to either side, of a point that splits a segment
+  static constexpr int kNudges = 4;  // of a point that splits a segment, to either side
 
   enum class Outcome {
     kInserted,
-    kEncroaches,  // star_.cavity().encroached() are to be split first
+    kEncroaches,  // star_.cavity().encroached() must be split first
     kNotOwned,
-    kTooClose,  // an edge would be below the floor, or double precision ends
+    kTooClose,  // an edge would be too short for the floor or for double precision
     kFlat,      // a triangle would not be counter-clockwise, or not Delaunay
   };
 
@@ -178,7 +180,7 @@ class Refiner {
     }
   }
 
-  // Inserts where t's Steiner point goes (steiner_point.h).
+  // Inserts t's Steiner point (steiner_point.h).
   Outcome insert_for(std::uint32_t t) {
     const Triangle& triangle = mesh_.triangles[t];
     const Point a = mesh_.vertices[triangle.vertex[0]];
@@ -199,7 +201,7 @@ class Refiner {
     return insert_in_triangle(t, centre, 0);
   }
 
-  // At the place in the petal of t = a, b, c that is worth most (petal_search.h).
+  // Inserts a point at the best place in the petal of t = a, b, c (petal_search.h).
   Outcome insert_for_skinny(std::uint32_t t, Point a, Point b, Point c) {
     const Point standard = steiner_point(a, b, c, quality_);
     const Outcome outcome = grow(star_, t, standard);
@@ -226,8 +228,8 @@ class Refiner {
     return nearest->length2 < quality_.min_edge2 ? Excuse::kEdgeFloor : Excuse::kPrecision;
   }
 
-  // The Steiner point of t encroaches upon segments: split them and let t try again, if it is
-  // still there; when none could be split, t stays as it is.
+  // Splits the segments that t's Steiner point encroaches upon, and queues t again if it still
+  // exists. If none can be split, t stays as it is.
   void split_encroached(std::uint32_t t) {
     const std::uint32_t first_vertex = mesh_.triangles[t].vertex[0];
     segments_.insert(segments_.end(), star_.cavity().encroached().begin(),
@@ -244,7 +246,7 @@ class Refiner {
     }
   }
 
-  // `clearance2` is the least squared distance from p to what it is joined to.
+  // `clearance2` is the least admissible squared distance from p to the vertices of its star.
   Outcome insert_in_triangle(std::uint32_t t, Point p, double clearance2) {
     const Outcome outcome = grow(star_, t, p);
     if (outcome != Outcome::kInserted) return outcome;
@@ -255,7 +257,7 @@ class Refiner {
     return Outcome::kInserted;
   }
 
-  // The star of a point for triangle t. kInserted if its cavity is complete.
+  // Grows the star of a point for triangle t. Returns kInserted if the cavity is complete.
   Outcome grow(Star<Ownership>& star, std::uint32_t t, Point p) {
     const Growth growth = star.grow_from_triangle(t, p, lens_of(t));
     return growth == Growth::kComplete     ? Outcome::kInserted
@@ -267,7 +269,7 @@ class Refiner {
     return area_.judge(ring, 0, ring.size, p, region_bound(t), quality_, star.judged());
   }
 
-  // What encroaches upon a segment for the triangle's sake.
+  // The lens of the Steiner points of triangle t (lens.h).
   double lens_of(std::uint32_t t) const {
     return mesh_.triangles[t].badness() == kSkinny ? quality_.lens : kDiametralDisk;
   }
@@ -277,8 +279,8 @@ class Refiner {
   }
 
   // Splits edge `edge` of triangle t, which lies on a segment. The next piece of the same segment
-  // may be in line with the edge but for rounding; if then the point is on the wrong side of that
-  // line, a triangle would be flat. So the point gives way, by a few units in the last place.
+  // may be in line with the edge except for rounding; if the point is then on the wrong side of
+  // that line, a triangle would be flat. So the point is moved by a few units in the last place.
   Outcome split_segment(std::uint32_t t, std::uint32_t edge) {
     const Triangle& triangle = mesh_.triangles[t];
     const std::uint32_t a = triangle.vertex[kNext[edge]];
@@ -355,7 +357,8 @@ class Refiner {
     }
   }
 
-  // A bad triangle of the star of p, at an edge of the ring, that may lie outside the core.
+  // Queues a bad triangle of the star of p, at an edge of the ring, or hands it over if it lies
+  // outside the core.
   void queue_or_hand_over(std::uint32_t t, Badness badness, std::uint32_t vertex, Point p,
                           std::uint32_t edge) {
     const RingPoint& a = star_.ring().points[edge];
@@ -396,7 +399,7 @@ class Refiner {
     return any;
   }
 
-  // Whether the star of p may be made. A flat triangle arises only where double precision ends.
+  // Whether the star of p may be made. Flat triangles arise only at the limit of double precision.
   bool acceptable(const RingVerdict& verdict, Point p) {
     if (verdict.too_close) [[unlikely]]
       return false;
@@ -465,7 +468,7 @@ class Refiner {
   AreaBound area_;
   ExecutionContext& context_;
   HeldBytes::Part held_;
-  const std::uint64_t other_bytes_;  // that the job holds all the time
+  const std::uint64_t other_bytes_;  // held by the job all the time
   const std::uint64_t triangle_limit_;
   const std::uint32_t poll_interval_;  // insertions
   const std::uint64_t max_triangles_;
@@ -481,12 +484,12 @@ class Refiner {
   std::vector<SegmentEdge> deferred_segments_;
   std::vector<BadTriangle> handed_over_;
   bool segments_deferred_ = false;
-  // Why segments of the last call of split_queued_segments were not split; precision over the
-  // caller's floor.
+  // Why segments of the last call of split_queued_segments were not split; precision takes
+  // precedence over the caller's floor.
   Excuse segments_refused_ = Excuse::kNone;
   std::optional<Error> stopped_;
   std::uint32_t until_poll_ = 1;
-  std::int64_t added_ = 0;  // triangles that the context does not know of
+  std::int64_t added_ = 0;  // triangles that are not reported to the context yet
   std::uint64_t insertions_ = 0;
   std::uint64_t exact_ = 0;
 };

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The star of a point that is to be inserted: its cavity, what its triangles would be worth, and
-// the act of putting them into the mesh.
+// The star of a point to be inserted: grows its cavity, holds the badness of its triangles, and
+// puts them into the mesh.
 //
 //   if (star.grow_from_triangle(t, p, lens) == Growth::kComplete) {
 //     area.judge(star.ring(), 0, star.ring().size, p, bound, quality, star.judged());
 //     star.make(mesh, slots, slots.add_vertex(mesh, p), true, queue);
 //   }
 //
-// Nothing of the mesh changes before `make`, so a point may be tried and left.
+// The mesh does not change before `make`, so a point may be tried and discarded.
 #pragma once
 
 #include <algorithm>
@@ -28,10 +28,10 @@ class Star {
 
   explicit Star(const Mesh& mesh) : cavity_(mesh), judged_(kInitialRing) {}
 
-  // A task begins, which owns the slots of `owner`.
+  // Begins a task that owns the slots of `owner`.
   void begin(const Ownership& ownership, std::uint32_t owner) { cavity_.begin(ownership, owner); }
 
-  // As those of the cavity, with room made for it: never kOverflow.
+  // As in Cavity, but these make room: they never return kOverflow.
   Growth grow_from_triangle(std::uint32_t seed, Point p, double lens) {
     Growth growth;
     while ((growth = cavity_.grow_from_triangle(seed, p, lens)) == Growth::kOverflow)
@@ -47,16 +47,15 @@ class Star {
 
   const Ring& ring() const { return cavity_.ring(); }
   const Cavity<Ownership>& cavity() const { return cavity_; }
-  // Of the triangle at each edge of the ring; there is room for all.
+  // The badness of the triangle at each edge of the ring; there is room for all.
   Badness* judged() { return judged_.data(); }
 
   // Replaces the cavity by the star of its point, now a vertex, and calls queue(triangle, badness,
   // edge) for its bad triangles, with the edge of the ring. Returns how many triangles the mesh has
   // gained. REQUIRES: the star has been judged.
   //
-  // All in one loop, and the slots of the cavity stay where they are: the end of each loop over a
-  // ring is foretold badly. That saved an eighth of the branches that a simulated predictor gets
-  // wrong.
+  // Uses one loop, and the slots of the cavity stay in place, because processors mispredict the end
+  // of each loop over a ring. That saved an eighth of the mispredictions in a simulated predictor.
   template <class Queue>
   std::int64_t make(Mesh& mesh, Slots& slots, std::uint32_t vertex, bool closed, Queue queue) {
     Triangle* const triangles = mesh.triangles.data();
@@ -93,8 +92,8 @@ class Star {
     return static_cast<std::int64_t>(n) - cavity_.size();
   }
 
-  // Of a star just made around a point on a segment: its two pieces are on the segment, and each
-  // side keeps its region. The ring's first `near_side` edges are on one side.
+  // Marks the two pieces of a segment, after a star was made around a point on it; each side keeps
+  // its region. The ring's first `near_side` edges are on one side.
   void mark_segment(Mesh& mesh, std::uint32_t near_side, bool closed, std::uint32_t near_region,
                     std::uint32_t far_region) {
     Triangle* const triangles = mesh.triangles.data();
@@ -121,8 +120,8 @@ class Star {
     judged_.resize(2 * judged_.size());
   }
 
-  // The slots for the star: those of the cavity, as far as they are this task's, then new ones. The
-  // first follows the last once more.
+  // The slots for the star: those of the cavity that are this task's, then new ones. The first is
+  // repeated after the last.
   const std::uint32_t* take_slots(Mesh& mesh, Slots& slots) {
     const std::uint32_t n = ring().size;
     std::uint32_t* const star = cavity_.triangles();
@@ -133,8 +132,8 @@ class Star {
     return star;
   }
 
-  // Returns how many slots of the cavity are this task's, and come first now. The triangles in the
-  // others die.
+  // Moves the cavity's slots of this task to the front, and returns their number. The triangles in
+  // the others die.
   [[gnu::noinline]] std::uint32_t drop_foreign_slots(Mesh& mesh, std::uint32_t owner) {
     std::uint32_t* const first = cavity_.triangles();
     std::uint32_t* const own = std::remove_if(first, first + cavity_.size(), [&](std::uint32_t t) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What rounding may spoil, and is looked at where it may: stars that do not turn left, edges that
-// are too thin to be split, and stars of points on segments that are not Delaunay.
+// Checks for what rounding may spoil: stars that do not turn left, edges that are too thin to be
+// split, and stars of points on segments that are not Delaunay.
 //
 // The point that splits a segment is rounded, so it lies beside the segment, by a unit in the last
 // place or so. Bowyer-Watson's lemma, that a cavity and the star of its point are Delaunay, holds
 // for points in the cavity alone. If the circumcircle of a triangle at the segment is so large that
 // its arc beyond the segment is flatter than that unit, a point beyond the segment may lie outside
-// the circle, and the star is no Delaunay triangulation. That happens where a segment is split
-// beside a wedge of 1e-8 radians; nowhere else was it seen.
+// the circle, and the star is not Delaunay. That was seen only if a segment is split beside a wedge
+// of 1e-8 radians.
 //
 // Whether the edge from p to a point b of the ring is locally Delaunay, between the points a and c
 // of the ring, is the sign of
@@ -25,7 +25,8 @@
 
 namespace weft {
 
-// Of the star of p over the ring's edges first <= i < last. REQUIRES: its triangles turn left.
+// Whether the star of p over the ring's edges first <= i < last is Delaunay. REQUIRES: its
+// triangles turn left.
 inline bool star_is_delaunay(const Mesh& mesh, const Ring& ring, std::uint32_t first,
                              std::uint32_t last, Point p) {
   for (std::uint32_t i = first + 1; i < last; ++i) {
@@ -57,10 +58,10 @@ inline bool star_turns_left(const Mesh& mesh, const Ring& ring, Point p) {
   return true;
 }
 
-// Whether the vertex opposite is nearer to the edge than double precision can mend, the root of
+// Whether the vertex opposite is too near to the edge for double precision, nearer than the root of
 // `precision2`: two segments that almost coincide would split each other down to the floor. A
-// vertex beyond the edge's ends does not count: where a split was rounded, the next piece of the
-// same segment is on its line but for a unit in the last place.
+// vertex beyond the edge's ends does not count: if a split was rounded, the next piece of the
+// same segment is on its line except for a unit in the last place.
 inline bool too_thin(const Mesh& mesh, HalfEdge h, double precision2) {
   const Triangle& triangle = mesh.triangles[triangle_of(h)];
   const Point apex = mesh.vertices[triangle.vertex[edge_of(h)]];

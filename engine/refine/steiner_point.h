@@ -2,7 +2,7 @@
 // Where a bad triangle's Steiner point goes.
 //
 // If it is skinny, or there is no lattice: to its circumcentre, or to its off-centre if that is
-// nearer to the shortest edge (A. Üngör, "Off-centers", 2004). Of a skinny triangle this is only
+// nearer to the shortest edge (A. Üngör, "Off-centers", 2004). For a skinny triangle this is only
 // the first of the places that are tried (petal.h), the nearest to the edge's bisector.
 //
 // If it is too large: to the point of the lattice (size/lattice.h) nearest to its circumcentre,
@@ -11,10 +11,10 @@
 //     insertion removes the triangle;
 //   - keeps kClearance spacings from the triangle's corners, and later from all vertices that it
 //     would be joined to.
-// In a lattice that is complete but for some points these always hold. Where two lattices, or a
+// In a lattice that lacks only some points these always hold. Where two lattices, or a
 // lattice and a segment, meet, points too close to others are left out, and circumcentres close the
-// gap. Refinement ends as before: a point keeps kClearance spacings from what it sees, or the
-// circumradius of a triangle too large.
+// gap. Refinement ends as before: a point keeps kClearance spacings from the vertices that it sees,
+// or the circumradius of a triangle that is too large.
 //
 // kClearance, triangles over the least number: on the cylinder model 1.075 without, 1.018 at 0.45
 // to 0.55, far worse from 0.65 on.
@@ -28,7 +28,7 @@
 
 namespace weft {
 
-// Squared, in squared spacings.
+// The square of kClearance, in squared spacings.
 inline constexpr double kLatticeClearance2 = 0.55 * 0.55;
 
 // The circumcentre if `off_centre` is 0, otherwise the off-centre of QualityBounds.
@@ -74,8 +74,8 @@ inline Point steiner_point(Point a, Point b, Point c, const QualityBounds& quali
   return steiner_point(a, b, c, quality.off_centre);
 }
 
-// Whether a triangle too large takes `nearest`, of the lattice, instead of its circumcentre. What
-// else it would be joined to is not known yet.
+// Whether a triangle that is too large takes the lattice point `nearest` instead of its
+// circumcentre. The other vertices that this would be joined to are not known yet.
 inline bool takes_lattice_point(Point a, Point b, Point c, Point circumcentre,
                                 const LatticePoint& nearest) {
   constexpr double kInside = 0.96;  // of the squared radius

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The badness of a triangle that no insertion here has made: as a ring around its first vertex, of
-// its edge there and back, for rings are judged two triangles at a time (quality_bounds.h).
+// The badness of a triangle that no insertion here has made. It is judged as a ring around its
+// first vertex, made of the opposite edge there and back, because rings are judged two triangles at
+// a time (quality_bounds.h).
 #pragma once
 
 #include <array>
@@ -12,7 +13,7 @@
 
 namespace weft {
 
-// One a thread.
+// Not thread-safe: one per thread.
 class TriangleJudge {
  public:
   template <class AreaBound>
@@ -23,7 +24,7 @@ class TriangleJudge {
                    quality, area);
   }
 
-  // Of the triangle p, q, r, which need not be one of a mesh.
+  // The badness of the triangle p, q, r, which need not be in a mesh.
   template <class AreaBound>
   Badness operator()(Point p, Point q, Point r, double region_bound, const QualityBounds& quality,
                      AreaBound& area) {

@@ -4,11 +4,11 @@
 // leaves.
 //
 //   const BlocksNear near(block_tree, tree);
-//   Result<TaskGraph> graph = BlockGraph::of_run(order, true, smooths, &block_order, &near,
-//   context);
+//   Result<TaskGraph> graph =
+//       BlockGraph::of_run(order, true, smooths, &block_order, &near, context);
 //
-// A block has two rounds, and is judged; its other tasks are empty. Each of these waits for the
-// blocks in conflict, and the leaves' first round for the blocks that are judged around.
+// A block has two rounds and a judging task; its other tasks are empty. Each of these waits for the
+// blocks in conflict, and the leaves' first round waits until the blocks around are judged.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ class BlocksNear {
   BlocksNear(const Quadtree& blocks, const Quadtree& leaves);
 
   std::uint32_t leaves() const { return static_cast<std::uint32_t>(first_.size() - 1); }
-  // In any order.
+  // The blocks of a leaf, in any order.
   std::span<const std::uint32_t> operator[](std::uint32_t leaf) const {
     return {blocks_.data() + first_[leaf], blocks_.data() + first_[leaf + 1]};
   }
@@ -45,20 +45,20 @@ class BlocksNear {
 };
 
 struct BlockGraph {
-  // By the number of the block, which is counted from that of the leaves on.
+  // The task of a block. Blocks are numbered after the leaves.
   static std::uint32_t round(std::uint32_t number, std::uint32_t round) {
     return LeafGraph::round(number, round);
   }
   static std::uint32_t judge(std::uint32_t number) { return LeafGraph::round(number, kRounds); }
   static constexpr std::uint32_t kRounds = LeafGraph::kHandOverRounds;
 
-  // All that is done while a mesh is refined: also the parts of the leaves, if it `streams`, and
-  // the blocks' tasks, if there are blocks. Errors: kCancelled, kDeadlineExceeded.
+  // The graph of all tasks that run while a mesh is refined: with the parts of the leaves if it
+  // `streams`, and the blocks' tasks if there are blocks. Errors: kCancelled, kDeadlineExceeded.
   static Result<TaskGraph> of_run(const LeafOrder& leaves, bool streams, bool smooths,
                                   const LeafOrder* blocks, const BlocksNear* near,
                                   const ExecutionContext& context);
   static void add(const LeafOrder& blocks, const BlocksNear& near, TaskGraph& graph);
-  // Appends those of the blocks to those of the leaves.
+  // Appends the needs of the blocks' tasks to those of the leaves.
   static void add_needs(const LeafOrder& blocks, const BlocksNear& near,
                         std::vector<std::uint32_t>& needs);
 };

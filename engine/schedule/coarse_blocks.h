@@ -1,35 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
-// The coarse mesh of a mesh with many leaves, block by block, so that the first leaves are refined
-// and sent before most of the coarse mesh is made.
+// Makes the coarse mesh of a mesh with many leaves block by block, so that the first leaves are
+// refined and sent before most of the coarse mesh is made.
 //
 // A block is a node of the leaves' quadtree, with some dozens of leaves below it. Blocks are the
 // leaves of a coarser tree of the same boxes, and are refined as leaves are (leaf_tasks.h), by
-// tasks of the same graph: first the coarse mesh as a whole for the blocks, by one thread, and then
-// each block for its leaves (leaf_radius.h). What a block's rounds leave is left to the leaves.
+// tasks of the same graph: first one thread refines the coarse mesh as a whole for the blocks, then
+// each block is refined for its leaves (leaf_radius.h). The leaves refine what a block's rounds
+// leave.
 //
 //   CoarseBlocks<ConstantArea> blocks(refinement, quality, area, tree, box, 1e6);
 //   if (auto error = blocks.begin(slots, box)) return error;
 //   if (blocks.fit()) BlockGraph::add(blocks.order(), blocks.near(), graph);
 //   ... blocks.refine(b, 0), blocks.refine(b, 1), blocks.judge(b), blocks.seed(l, leaves) ...
 //
-// A block has two rounds, of those in which what is bad outside of the block is handed over. Few
-// triangles are left over by the second, and these are the leaves' to refine.
+// A block has two rounds, in both of which it hands over bad triangles outside the block. The
+// second leaves few triangles, which the leaves refine.
 //
-// Then the triangles in the slots of the block are judged by the bounds of the mesh that is asked
-// for, and those of owner 0 with centroids in the block. Only tasks of the block and of those in
-// conflict with it touch them, and these are done: a triangle in a slot of block b lies in b's
-// grown box (leaf_release.h, 2), and so does one of owner 0 (`fit`).
+// Then the triangles in the slots of the block, and those of owner 0 with centroids in the block,
+// are judged by the bounds of the final mesh. Only tasks of the block and of blocks in conflict
+// with it touch them, and these are done: a triangle in a slot of block b lies in b's grown box
+// (leaf_release.h, 2), and so does one of owner 0 (`fit`).
 //
-// A leaf begins when the blocks are judged whose grown boxes overlap its own: only these have
+// A leaf begins when all blocks whose grown boxes overlap its own are judged: only these have
 // triangles with two vertices there, or with centroids in the leaf, and no task of any other block
 // touches these.
 //
-// Once the parts of all these leaves around a block are built, nobody reads the triangles in its
-// slots any more: a leaf's part waits for the tasks of the leaves in conflict with it, to which it
+// Once the parts of all these leaves around a block are built, the triangles in its slots are no
+// longer read: a leaf's part waits for the tasks of the leaves in conflict with it, to which it
 // may have handed a triangle on. Nearly always all of them are dead, and their slots are given
 // back. Vertices stay.
 //
-// Thread-safety: as BlockGraph has the steps wait for one another.
+// Thread-safety: the steps may run in any order that BlockGraph permits.
 #pragma once
 
 #include <algorithm>
@@ -86,7 +87,7 @@ class CoarseBlocks {
 
   static constexpr std::uint32_t kFirstOwner = 1;  // of slots; the leaves' come after the blocks'
 
-  // Refines the coarse mesh in `slots`, which has all triangles, for the blocks.
+  // Refines the coarse mesh for the blocks. `slots` has all triangles.
   std::optional<Error> begin(Slots& slots, const Box& box) {
     Refiner<OwnsAll, LeafRadius<AreaBound>> refiner(refinement_, no_angles_, block_radius_);
     refiner.begin(slots, OwnsAll{}, box);
@@ -97,8 +98,8 @@ class CoarseBlocks {
     return error;
   }
 
-  // Whether each triangle of owner 0 lies in the grown box of the block of its centroid: otherwise
-  // there can be no tasks of blocks.
+  // Whether each triangle of owner 0 lies in the grown box of the block of its centroid. If not,
+  // blocks cannot be refined by tasks.
   bool fit() const { return fit_; }
 
   std::uint32_t size() const { return tasks_.size(); }
@@ -128,7 +129,7 @@ class CoarseBlocks {
     return refinement_.context.poll();
   }
 
-  // Gives a leaf the bad triangles to begin with. Once for each.
+  // Gives a leaf the bad triangles to begin with. Call once per leaf.
   void seed(std::uint32_t leaf, LeafTasks<AreaBound>& leaves) {
     std::vector<BadTriangle> seeds;
     for (const std::uint32_t b : near_[leaf]) {
@@ -144,15 +145,14 @@ class CoarseBlocks {
     leaves.seed(leaf, seeds);
   }
 
-  // Whether of the triangles of the coarse mesh in a leaf none is left with a circumradius of more
-  // than a quarter of the leaf's side: then what is cleaned up stays near. REQUIRES: the leaf's
-  // rounds are done.
+  // Whether no triangle of the coarse mesh is left in a leaf with a circumradius of more than a
+  // quarter of the leaf's side: then the clean-up stays near. REQUIRES: the leaf's rounds are done.
   bool leaf_fits(std::uint32_t leaf) const {
     return std::all_of(unfit_[leaf].begin(), unfit_[leaf].end(),
                        [&](std::uint32_t t) { return refinement_.mesh.triangles[t].dead(); });
   }
 
-  // The part of a leaf is built.
+  // Call when the part of a leaf is built.
   void built(std::uint32_t leaf) {
     for (const std::uint32_t b : near_[leaf]) {
       if (unbuilt_[b].fetch_sub(1, std::memory_order_acq_rel) == 1 && all_dead(slots(b)))
@@ -165,7 +165,7 @@ class CoarseBlocks {
     sum += tasks_.figures();
     return sum;
   }
-  // At the peak, but for what is judged.
+  // Bytes at the peak, without the judged triangles.
   std::uint64_t bytes() const {
     return tasks_.bytes() + order_.bytes() + tree_.bytes() + radius_.bytes() + near_.bytes() +
            unfit_.capacity() * sizeof(unfit_[0]);
@@ -190,7 +190,8 @@ class CoarseBlocks {
     return quality;
   }
 
-  // From one sample for each leaf: so nodes are split that are split in the leaves' tree.
+  // Builds the blocks' tree from one sample per leaf, so only nodes are split that are split in the
+  // leaves' tree.
   static Quadtree blocks_over(const Quadtree& leaves, const Box& box, double weight) {
     std::vector<Quadtree::Sample> samples;
     samples.reserve(leaves.leaves().size());
@@ -219,7 +220,7 @@ class CoarseBlocks {
     return dead;
   }
 
-  // Owner 0's triangles, to the blocks.
+  // Distributes owner 0's triangles to the blocks.
   void spread(const Slots& slots) {
     const Mesh& mesh = refinement_.mesh;
     LeafRadius<AreaBound> radius = radius_.again();
@@ -270,7 +271,8 @@ class CoarseBlocks {
   std::vector<std::vector<std::uint32_t>> base_;  // per block, owner 0's triangles, until judged
   const BlocksNear near_;
   std::vector<std::vector<Judged>> judged_;  // per block, until its leaves are seeded
-  // Per block, of the leaves near it: that are not seeded, and whose parts are not built.
+  // Per block, the number of leaves near it that are not seeded, and of those whose parts are not
+  // built.
   std::vector<std::atomic<std::uint32_t>> unseeded_;
   std::vector<std::atomic<std::uint32_t>> unbuilt_;
   std::vector<std::vector<std::uint32_t>> unfit_;  // per leaf

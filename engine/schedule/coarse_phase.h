@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What comes before the leaves' tasks: a coarse mesh, the quadtree from it and the order of its
-// leaves, circumradii that fit them (the paper's eq. 5), and the bad triangles to begin with.
+// The phase before the leaves' tasks: makes a coarse mesh, the quadtree from it and the order of
+// its leaves, circumradii that fit them (the paper's eq. 5), and the list of bad triangles to begin
+// with.
 //
 //   CoarsePhase<ConstantArea> coarse_phase(refinement, quality, area, narrow_places, 16'000, 1,
 //                                          slots);
@@ -9,12 +10,13 @@
 //   if (auto error = coarse_phase.fit(*tree, box)) return error;
 //   LeafOrder order = coarse_phase.take_order();
 //
-// The coarse mesh obeys the grading function, multiplied, and no bound on angles. So it follows the
-// grading wherever the domain is, and misses none of its features. What the bound on angles will
-// make at narrow places is not in it: these add samples of their own.
+// The coarse mesh obeys a multiple of the grading function, and no bound on angles. So it follows
+// the grading everywhere in the domain, and misses none of its features. It does not show the
+// triangles that the bound on angles will make at narrow places: these add samples of their own.
 //
 // If there are many leaves, the coarse mesh is coarser still, and its triangles are cut into pieces
-// that obey the same bound, as samples alone. Then it is refined block by block (coarse_blocks.h).
+// that obey the same bound, which serve only as samples. Then it is refined block by block
+// (coarse_blocks.h).
 #pragma once
 
 #include <algorithm>
@@ -39,8 +41,8 @@ namespace weft {
 template <class AreaBound>
 class CoarsePhase {
  public:
-  // `slots` has all triangles of the mesh, and takes those that are made. Triangles of the coarse
-  // mesh are cut into about so many `pieces`.
+  // `slots` has all triangles of the mesh, and takes new ones. Each triangle of the coarse mesh is
+  // cut into about `pieces` pieces.
   CoarsePhase(const RefinementContext& refinement, const QualityBounds& quality,
               const AreaBound& area, const NarrowPlaces& narrow, double leaf_triangles,
               double pieces, Slots& slots)
@@ -68,12 +70,12 @@ class CoarsePhase {
     return tree;
   }
 
-  // The circumradii, the order of the leaves, and the bad triangles, if there is more than one
+  // Fits the circumradii, orders the leaves, and finds the bad triangles, if there is more than one
   // leaf.
   std::optional<Error> fit(const Quadtree& tree, const Box& box) {
     std::optional<Error> error;
     const LeafRadius<AreaBound> radius(tree, least_busy(tree), area_, refinement_.context);
-    // Neither needs the other.
+    // These two are independent.
     refinement_.context.for_each(2, [&](std::size_t which) {
       if (which == 0) error = refine(radius, box);
       if (which == 1) order_ = LeafOrder(tree);
@@ -85,23 +87,22 @@ class CoarsePhase {
     return error;
   }
 
-  // Whether all leaves are to have the criterion of the circumradius.
+  // Whether the criterion of the circumradius applies to all leaves.
   bool all_busy(const Quadtree& tree) const { return least_busy(tree) == 0; }
 
   LeafOrder take_order() { return std::move(order_); }
   // In the order of the slots.
   const std::vector<BadTriangle>& bad_triangles() const { return bad_; }
-  // Whether every circumradius is below a quarter of its leaf's side, in leaves that are not busy
-  // too: then what is cleaned up stays near.
+  // Whether every circumradius is below a quarter of its leaf's side, even in leaves that are not
+  // busy: then the clean-up stays near.
   bool fits() const { return fits_; }
   const RefinerFigures& figures() const { return figures_; }
 
  private:
-  // A coarse triangle stands for one in so many of a leaf: it takes a dozen of them to place the
-  // leaves' borders well.
+  // The number of coarse triangles per leaf: a dozen are needed to place the leaves' borders well.
   static constexpr double kCoarseTrianglesPerLeaf = 16;
-  // A leaf is busy with one in so many of the triangles that it has room for: those that a bound on
-  // the circumradius makes are few among them.
+  // A leaf is busy if it expects one in kBusy of the triangles that it has room for: a bound on the
+  // circumradius adds few to these.
   static constexpr double kBusy = 16;
 
   using Run = std::pair<std::uint32_t, std::uint32_t>;  // of slots: first, and one past the last
@@ -136,7 +137,7 @@ class CoarsePhase {
     return result;
   }
 
-  // The coarse triangles, or their pieces, each with the number that it will be split into.
+  // The coarse triangles, or their pieces, each with its estimate of final triangles.
   std::vector<Quadtree::Sample> samples() const {
     const std::vector<Run> all = runs();
     std::vector<std::vector<Quadtree::Sample>> found(all.size());
@@ -191,7 +192,7 @@ class CoarsePhase {
     return result;
   }
 
-  // Of a triangle, so that there is an end however small the size is in it.
+  // The maximum of pieces per triangle, so that cutting ends however small the size is.
   double most_pieces() const {
     constexpr double kUnevenness = 64;  // of the size in a triangle of the coarse mesh
     return pieces_ > 1 ? kUnevenness * pieces_ : 1;
@@ -200,7 +201,7 @@ class CoarsePhase {
   static double doubled_area(Point a, Point b, Point c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
   }
-  // Triangles are no smaller than the floor on their edges allows.
+  // The least area of a triangle, by the floor on its edges.
   double least_area() const { return kEquilateral * quality_.min_length2; }
 
   static Box box_of(const std::array<Point, 3>& triangle) {
@@ -209,7 +210,7 @@ class CoarsePhase {
     return box;
   }
 
-  // In two, at the middle of the longest edge.
+  // Cuts a piece in two at the middle of its longest edge.
   static void cut(const Piece& piece, std::vector<Piece>& pieces) {
     const auto& t = piece.corners;
     std::size_t longest = 0;
@@ -225,7 +226,7 @@ class CoarsePhase {
     pieces.push_back({{middle, b, apex}, 0.5 * piece.most});
   }
 
-  // And empties the block.
+  // Adds the samples of a block, and empties the block.
   void add_samples(Block& all, AreaBound& area, std::vector<Quadtree::Sample>& result) const {
     TriangleBlock& block = all.triangles;
     block.find_centroids();
@@ -244,7 +245,7 @@ class CoarsePhase {
     block.size = 0;
   }
 
-  // Judges all triangles by the bounds of the mesh that is asked for.
+  // Judges all triangles by the bounds of the final mesh.
   std::optional<Error> judge(const Quadtree& tree, const Box& box) {
     const std::vector<Run> all = runs();
     std::vector<Found> found(all.size());

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which leaves' tasks are in conflict because their grown boxes overlap, and which of two in
-// conflict comes first. The order depends on the tree alone. It is another one in each phase:
+// conflict comes first. The order depends only on the tree. It differs by phase:
 //
-//   - The first round has nearly all the work. The larger leaf comes first, and of equal ones the
-//     one of the lower colour, of the four of a chess board of two by two. So chains of leaves that
-//     wait for one another are short, and many threads find work.
+//   - The first round has nearly all the work. The larger leaf comes first; of equal leaves, the
+//   one
+//     of the lower colour, of four colours in blocks of two by two. So chains of leaves that wait
+//     for one another are short, and many threads find work.
 //   - Later rounds take little time. Equal leaves are ordered by the parity of their row, and then
-//     along the sweep (quadtree.h): nobody waits for what lies far ahead of the sweep.
-//   - Smoothing goes along the sweep: by where a leaf begins, and of equal ones by the parity of
-//     their row. So nobody waits for what lies ahead at all.
+//     along the sweep (quadtree.h), so no leaf waits for others far ahead of the sweep.
+//   - Smoothing goes along the sweep: by where a leaf begins, and equal leaves by the parity of
+//     their row. So no leaf waits for others ahead.
 //
-// What a leaf waits for, ahead of the sweep, has to be in memory before the leaf can be sent
-// (leaf_graph.h). Recorded tasks of 10 M triangles on the cylinder with two sizes, with a constant
-// size, and on the pipe, in leaves of at most 4,000; in the schedule of two threads, the most that
-// has begun and is not sent, in percent of the mesh (weft-bench scaling predicts such schedules):
+// The leaves ahead of the sweep that a leaf waits for must be in memory before it can be sent
+// (leaf_graph.h). The largest share of the mesh that has begun and is not sent, in percent, in the
+// schedule of two threads (weft-bench scaling predicts such schedules); from recorded tasks of 10 M
+// triangles on the cylinder with two sizes, with a constant size, and on the pipe, in leaves of at
+// most 4,000:
 //
 //   first round   later rounds   smoothing   numbered by     cylinder   constant   pipe
 //   2 x 2         rows           rows        beginning       16.2       22.7       26.4
@@ -45,16 +47,16 @@ class LeafOrder {
 
   LeafOrder() = default;
   explicit LeafOrder(const Quadtree& tree);
-  // Another one: along the sweep in all phases.
+  // A different order: along the sweep in all phases.
   static LeafOrder along_sweep(const Quadtree& tree);
 
-  // Of a round, from 0 on.
+  // The phase of a round, counted from 0.
   static constexpr Phase phase_of(std::uint32_t round) {
     return round == 0 ? kFirstRound : kLaterRounds;
   }
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(conflicts_.size()); }
-  // Those in conflict with `leaf`, in order.
+  // The leaves in conflict with `leaf`, in order.
   const std::vector<std::uint32_t>& conflicts(std::uint32_t leaf) const { return conflicts_[leaf]; }
   bool in_conflict(std::uint32_t leaf, std::uint32_t other) const;
   // Whether `leaf` comes before `other` in a phase. REQUIRES: they are in conflict.

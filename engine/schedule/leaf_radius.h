@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The coarse phase's criterion, after the paper's eq. 5: refine until every circumradius is below a
 // quarter of the side of the leaf where the triangle's centroid lies. Vertices are never removed,
-// so once it holds, circumdisks stay small, and a leaf's task rarely meets what it does not own.
+// so once it holds, circumdisks stay small, and a leaf's task rarely meets vertices that it does
+// not own.
 //
-// That makes some 25 triangles in a leaf, and so it is asked for in busy leaves alone, for which
-// many more are expected. About a busy leaf the limit grows by half of the distance from it; away
-// from all of them it is twice the leaf's side. (Asked for everywhere, it made 15 % more triangles
-// than the size on a square with one fine spot, 166 leaves of which 4 are busy; now 0.6 to 1 %.)
+// That makes some 25 triangles in a leaf, so it is applied only to busy leaves, for which
+// many more are expected. Around a busy leaf the limit grows by half of the distance from it; away
+// from all of them it is twice the leaf's side. (Applied everywhere, it made 15 % more triangles
+// than the size on a square with one fine spot, with 166 leaves of which 4 are busy; now 0.6 to
+// 1 %.)
 #pragma once
 
 #include <algorithm>
@@ -23,11 +25,11 @@
 
 namespace weft {
 
-// The weight from which on a leaf counts as busy: `busy`, or 0 if what all leaves together need
-// then is little of the mesh. So a mesh that fills most of its leaves has the criterion in all of
-// them, and may be streamed (CoarsePhase::fits). us-east-coast with a size of 1e-4, where 67 of 736
-// leaves are light, takes 40.5 bytes a triangle so, and 43.3 if these are left out, because then
-// nothing leaves before all is refined.
+// The weight from which on a leaf counts as busy: `busy`, or 0 if applying the criterion to all
+// leaves adds little to the mesh. So a mesh that fills most of its leaves has the criterion in all
+// of them, and may be streamed (CoarsePhase::fits). us-east-coast with a size of 1e-4, where 67 of
+// 736 leaves are light, takes 40.5 bytes per triangle, and 43.3 if these are left out, because then
+// nothing is sent before all is refined.
 inline double busy_weight(const Quadtree& tree, double busy) {
   constexpr double kInLeaf = 25;  // triangles
   constexpr double kFew = 0.002;  // of all
@@ -40,8 +42,8 @@ inline double busy_weight(const Quadtree& tree, double busy) {
   return light <= kFew * all ? 0 : busy;
 }
 
-// Stands in for the grading function (refine/area_bound.h), but for its lattice: what is inserted
-// here is of the final mesh, too.
+// Replaces the grading function (refine/area_bound.h), except for its lattice, because points that
+// are inserted here stay in the final mesh.
 template <class AreaBound>
 class LeafRadius {
  public:
@@ -56,7 +58,7 @@ class LeafRadius {
     const auto is_busy = [&](std::uint32_t l) { return leaves[l].weight >= busy; };
     std::vector<Near> near(leaves.size());
     context.for_each((leaves.size() + kAtOnce - 1) / kAtOnce, [&](std::size_t batch) {
-      if (context.poll()) return;  // whoever asked for this looks, too
+      if (context.poll()) return;  // the caller polls, too
       const std::size_t end = std::min((batch + 1) * kAtOnce, leaves.size());
       for (auto l = static_cast<std::uint32_t>(batch * kAtOnce); l < end; ++l) {
         if (is_busy(l)) near[l].push_back(l);
@@ -69,10 +71,10 @@ class LeafRadius {
     busy_near_ = std::make_shared<const std::vector<Near>>(std::move(near));
   }
 
-  // The same, for another thread.
+  // A copy for another thread.
   LeafRadius again() const { return *this; }
 
-  // Of the circumradius of a triangle with this centroid.
+  // The limit on the circumradius of a triangle with this centroid.
   double limit_at(Point centroid) const {
     const auto& leaves = tree_->leaves();
     const std::uint32_t leaf = tree_->leaf_at(centroid);
@@ -122,8 +124,8 @@ class LeafRadius {
   static constexpr double kElsewhere = 2;
   static constexpr double kGrowth = 0.5;  // 1 doubles what is deferred and saves 0.1 %
 
-  // Of a leaf, the busy ones among itself and those that it touches. In a busy one, only smaller
-  // ones set a lower limit than its own.
+  // The busy leaves among a leaf and those that it touches. In a busy leaf, only smaller ones set a
+  // lower limit than its own.
   using Near = std::vector<std::uint32_t>;
 
   const Quadtree* tree_;

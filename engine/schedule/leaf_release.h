@@ -12,12 +12,12 @@
 //      of a leaf in conflict with a. Refinement and smoothing keep to this alike: smoothing reads
 //      the triangles at a star, two of whose vertices are on its link or in its middle, and of
 //      those across the link the ends of the edge between.
-//   4. What builds the part of a reads the triangles in the slots of a, and the copies that leaves
+//   4. Building the part of a reads the triangles in the slots of a, and the copies that leaves
 //      in conflict with a have handed on.
 //
-// The TRIANGLES of a, and all that its rounds left behind, are read by a and by leaves in conflict
-// with it alone (3, 4). The part of a waits until these are done, so that they may go once it is
-// built. (What a handed on is copied before.)
+// Only a and the leaves in conflict with it read the TRIANGLES of a, and all that its rounds left
+// behind (3, 4). The part of a waits until these leaves are done, so a's triangles may be freed
+// once it is built. (Triangles that a hands on are copied before.)
 //
 // The COPIES that a handed on are read when parts of a and of leaves in conflict with it are built.
 //
@@ -26,16 +26,16 @@
 // away from b at most. Before the part of a leaf, the rounds of all that are at most two conflicts
 // away are done, and smoothing of all in conflict with it. So once all parts at most two conflicts
 // away from b are built, nothing at most two conflicts away from b is left to be refined, smoothed
-// or built, and the vertices, their numbers and subsegments may go. Smoothing needs no further
-// ring: it looks no further than refinement does.
+// or built, and the vertices, their numbers and subsegments may be freed. Smoothing needs no
+// further ring, because it reads no further than refinement does.
 //
 // The clean-up comes after all parts of the frozen leaves, and touches triangles with two vertices
 // outside the grown boxes of these. They are in slots of leaves that are not frozen (2) and whose
-// parts are not built, so that their vertices are all there. What it makes may be sent after
+// parts are not built, so all their vertices still exist. Its own triangles may be sent after
 // everything else: the leaves whose vertices it uses keep these (`keep_vertices`).
 //
-// Thread-safety: `part_built` may be called by several threads at the same time, once for each
-// leaf; the rest only while nobody else calls anything.
+// Thread-safety: several threads may call `part_built` at the same time, once for each leaf; the
+// rest may be called only while no other call runs.
 #pragma once
 
 #include <atomic>
@@ -55,8 +55,8 @@ class LeafRelease {
       unbuilt_[l] = unsettled_[l] = static_cast<std::uint32_t>(order.conflicts(l).size() + 1);
   }
 
-  // A part is built. Calls drop_copies(a) for each leaf a whose copies, and drop_vertices(b) for
-  // each leaf b whose vertices nobody reads from now on.
+  // Call when a part is built. Calls drop_copies(a) for each leaf a whose copies are no longer
+  // read, and drop_vertices(b) for each leaf b whose vertices are no longer read.
   template <class DropCopies, class DropVertices>
   void part_built(std::uint32_t leaf, DropCopies&& drop_copies, DropVertices&& drop_vertices) {
     for_around(leaf, [&](std::uint32_t a) {
@@ -69,7 +69,7 @@ class LeafRelease {
     });
   }
 
-  // The vertices of this leaf are read until the end.
+  // Keeps the vertices of this leaf until the end.
   void keep_vertices(std::uint32_t leaf) { kept_[leaf] = 1; }
 
   std::uint64_t bytes() const {
@@ -77,7 +77,7 @@ class LeafRelease {
   }
 
  private:
-  // A leaf, and those in conflict with it.
+  // Calls f for a leaf and those in conflict with it.
   template <class F>
   void for_around(std::uint32_t leaf, F&& f) const {
     f(leaf);
@@ -85,8 +85,8 @@ class LeafRelease {
   }
 
   const LeafOrder* order_ = nullptr;
-  // Per leaf, of itself and those in conflict: whose parts are not built, and around whom not all
-  // parts are built.
+  // Per leaf, the number of leaves among itself and those in conflict whose parts are not built,
+  // and of those around which not all parts are built.
   std::vector<std::atomic<std::uint32_t>> unbuilt_;
   std::vector<std::atomic<std::uint32_t>> unsettled_;
   std::vector<char> kept_;

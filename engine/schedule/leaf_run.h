@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Refines the leaves and sends them. While a mesh streams, leaves are sent up to the first one that
-// is near something left over; then that is cleaned up, and the rest is sent. If nothing is left
-// over, that is all.
+// Refines the leaves and sends them. While a mesh streams, leaves are sent up to the first one near
+// triangles that the rounds left bad. Then these are cleaned up, and the remaining leaves are sent.
 //
 //   LeafRun<ConstantArea> run(plan, refinement, stage, root, parts);
 //   if (auto error = run.run()) return error;
@@ -37,7 +36,7 @@ namespace weft {
 template <class AreaBound>
 class LeafRun {
  public:
-  // Of the work, refinement's share; the rest is building parts.
+  // Refinement's share of the work; the rest is building parts.
   static constexpr double kRefining = 0.65;
 
   // `root` is owner 0's. REQUIRES: the stage exists.
@@ -61,7 +60,7 @@ class LeafRun {
   std::optional<Error> run() {
     const HeldBytes::Part held(context_.held_bytes(), stage_.lasting_bytes());
     const std::uint32_t n = leaves_.size();
-    if (stage_.streams()) parts_.send_vertices(root_);  // which any leaf may refer to
+    if (stage_.streams()) parts_.send_vertices(root_);  // any leaf may refer to these
     context_.end_stage("opening part");
     if (auto error = refine_all()) return error;
     if (!stopped() && final_leaves_ < n) {
@@ -74,11 +73,11 @@ class LeafRun {
     return parts_.run().error();
   }
 
-  // Some leaves could not be sent before all were refined.
+  // Whether some leaves could not be sent before all were refined.
   bool cleaned_up() const { return cleaned_up_; }
-  // Of all tasks, added up.
+  // The sum over all tasks.
   double refine_seconds() const { return time_.seconds(); }
-  // Of the parts' tables, at the peak.
+  // Bytes of the parts' tables, at the peak.
   std::uint64_t bytes() const { return leaf_parts_.bytes(); }
 
  private:
@@ -106,7 +105,7 @@ class LeafRun {
     return std::nullopt;
   }
 
-  // The leaves that were not sent before the clean-up.
+  // Sends the leaves that were not sent before the clean-up.
   void send_from(std::uint32_t first) {
     TaskGraph graph(leaves_.size() * LeafGraph::kTasks);
     LeafGraph::add_parts(order_, graph, plan_.sweeps > 0);
@@ -143,7 +142,7 @@ class LeafRun {
       skip_rounds(leaf, LeafGraph::kHandOverRounds, LeafGraph::look(leaf));
   }
 
-  // `by` found that there is nothing to do in the rounds from `first` on.
+  // Skips the rounds from `first` on; task `by` found that they have nothing to do.
   void skip_rounds(std::uint32_t leaf, std::uint32_t first, std::uint32_t by) {
     for (std::uint32_t round = LeafGraph::kRounds; round-- > first;) {
       if (Trace* const trace = context_.trace()) trace->skip(LeafGraph::round(leaf, round), by);
@@ -158,7 +157,7 @@ class LeafRun {
       parts_.run().stop(*error);
   }
 
-  // The leaf is not final, so that it and those after it wait for the clean-up.
+  // The leaf is not final, so it and those after it wait for the clean-up.
   void end_sending_at(std::uint32_t leaf) {
     if (leaf >= final_leaves_) return;
     final_leaves_ = leaf;
@@ -198,8 +197,8 @@ class LeafRun {
     context_.end_stage("clean-up");
   }
 
-  // What the clean-up has made, and those of owner 0's and the blocks' triangles that no leaf has
-  // touched.
+  // Sends the triangles that the clean-up has made, and those of owner 0 and of the blocks that no
+  // leaf has touched.
   void send_closing() {
     const Slots& cleaned_up = leaves_.clean_up_slots();
     cleaned_up.number_vertices(mesh_, leaf_parts_.numbers());

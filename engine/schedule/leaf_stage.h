@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The leaves of a mesh, ready to be refined: the coarse phase, and the quadtree, the order, the
-// blocks and the leaves' tasks that come of it.
+// The leaves of a mesh, ready to be refined: runs the coarse phase, and holds its results: the
+// quadtree, the order, the blocks and the leaves' tasks.
 //
 //   LeafStage<ConstantArea> stage(plan, area, refinement, root);
 //   if (auto error = stage.prepare(true)) return error;
 //   if (stage.exists()) LeafRun<ConstantArea>(stage, ...).run();
 //
-// Thread-safety: none; `blocks` and `leaves` say what of them tasks may call.
+// Not thread-safe; the headers of `blocks` and `leaves` say what tasks may call.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,8 @@ namespace weft {
 template <class AreaBound>
 class LeafStage {
  public:
-  // From so many leaves on, parts leave while others are refined. A smaller mesh is done at once,
-  // and keeps the right to a clean-up.
+  // From so many leaves on, parts are sent while others are refined. A smaller mesh takes little
+  // time, and may be cleaned up anywhere.
   static constexpr std::uint32_t kStreamingLeaves = 64;
 
   // `root` has all triangles of the mesh. All outlive this.
@@ -53,22 +53,22 @@ class LeafStage {
     return error;
   }
 
-  // Whether there are leaves; if not, the mesh is best refined as one.
+  // Whether there are leaves; if not, the mesh should be refined by one task.
   bool exists() const { return leaves_.has_value(); }
-  // Whether parts may leave while others are refined.
+  // Whether parts may be sent while others are refined.
   bool streams() const { return streams_; }
 
   const Quadtree& tree() const { return tree_; }
   const LeafOrder& order() const { return order_; }
   // REQUIRES: exists().
   LeafTasks<AreaBound>& leaves() { return *leaves_; }
-  // Null if the coarse mesh was refined as one.
+  // Null if the coarse mesh was refined as a whole.
   CoarseBlocks<AreaBound>* blocks() { return blocks_ ? &*blocks_ : nullptr; }
 
-  // What a leaf is of the work.
+  // A leaf's share of the work.
   double share_of(std::uint32_t leaf) const { return tree_.leaves()[leaf].weight / total_weight_; }
 
-  // Of the blocks, each with the leaf before whose vertices its own are sent.
+  // The owners of the blocks, each with the leaf before whose vertices its own are sent.
   std::vector<EarlierOwner> earlier_owners() const {
     std::vector<EarlierOwner> result;
     if (!blocks_) return result;
@@ -81,7 +81,7 @@ class LeafStage {
     return result;
   }
 
-  // Of all refiners so far.
+  // The figures of all refiners so far.
   RefinerFigures figures() const {
     RefinerFigures all = before_;
     if (leaves_) all += leaves_->figures();
@@ -91,12 +91,12 @@ class LeafStage {
   std::uint64_t deferred() const {
     return (leaves_ ? leaves_->deferred() : 0) + (blocks_ ? blocks_->deferred() : 0);
   }
-  // Of tables and tasks.
+  // Bytes of tables and tasks.
   std::uint64_t bytes() const {
     return (leaves_ ? leaves_->bytes() + order_.bytes() + tree_.bytes() : 0) +
            (blocks_ ? blocks_->bytes() : 0);
   }
-  // Of those that there are from the beginning to the end.
+  // Bytes of those that exist from the beginning to the end.
   std::uint64_t lasting_bytes() const {
     constexpr std::uint64_t kPerLeaf = 320;  // leaf_tasks.h, leaf_parts.h
     return order_.bytes() + tree_.bytes() + leaves_->size() * kPerLeaf +
@@ -120,7 +120,7 @@ class LeafStage {
     return std::nullopt;
   }
 
-  // If the coarse mesh can be refined so.
+  // Makes blocks, if the coarse mesh can be refined in blocks.
   std::optional<Error> make_blocks(double leaves_per_block) {
     ExecutionContext& context = refinement_.context;
     std::optional<Error> error;

@@ -6,16 +6,16 @@
 // other, all others at the same time. The ORDER between two in conflict is fixed beforehand: by
 // round, then by leaf_order.h. So the mesh depends on the request alone, whatever the threads do.
 //
-// Rounds. In the first two a task hands what it makes bad outside its leaf to the leaf there, and
-// each leaf pulls what its neighbours have left for it: from those before it in the same round,
-// from those after it in the next. In the last two a task refines all that it owns. What no task
-// could refine, because it reaches beyond the grown box, is handed to the leaf of its Steiner
-// point, or waits for the next round. About 11 % of the insertions are handed over; 0.02 to 0.3 %
-// wait, where a size makes the mesh and where two parallel segments do. A leaf that has nothing
-// left and is handed nothing skips the later rounds.
+// Rounds. In the first two a task hands bad triangles that it makes outside its leaf to the leaf
+// there, and each leaf takes those that its neighbours have left for it: from neighbours before it
+// in the same round, from those after it in the next. In the last two a task refines all that it
+// owns. A triangle that no task could refine, because its cavity reaches beyond the grown box, is
+// handed to the leaf of its Steiner point, or waits for the next round. About 11 % of the
+// insertions are handed over; 0.02 to 0.3 % wait, if a size makes the mesh or if two parallel
+// segments do. A leaf that has nothing left and is handed nothing skips the later rounds.
 //
-// What is left after the rounds is cleaned up by one task that owns all but what has been sent: the
-// leaves before `frozen`, and what lies in their grown boxes.
+// One task cleans up what is left after the rounds. It owns everything that has not been sent: all
+// but the leaves before `frozen` and their grown boxes.
 //
 // Thread-safety: `refine` may run at the same time for leaves that are not in conflict.
 #pragma once
@@ -47,7 +47,7 @@ namespace weft {
 struct OwnsUnfrozen {
   static constexpr bool kRestricted = true;
   const Quadtree* tree = nullptr;
-  // Per leaf, those that are frozen and in conflict with it, or itself.
+  // Per leaf, the frozen ones among itself and those in conflict with it.
   const std::vector<std::vector<std::uint32_t>>* frozen = nullptr;
   bool owns(Point p) const {
     const auto& near = (*frozen)[tree->leaf_at(p)];
@@ -59,11 +59,11 @@ struct OwnsUnfrozen {
   constexpr bool core_holds(Point, double) const { return true; }
 };
 
-// A leaf's ownership while it is smoothed: its grown box but for those of frozen leaves.
+// A leaf's ownership while it is smoothed: its grown box without those of frozen leaves.
 struct OwnsBoxUnfrozen {
   static constexpr bool kRestricted = true;
   Box box;
-  // Grown boxes that overlap `box`. Those of frozen leaves come first, so many.
+  // Grown boxes that overlap `box`. The first ones are those of frozen leaves.
   const std::vector<Box>* others = nullptr;
   std::size_t frozen = 0;
   bool owns(Point p) const {
@@ -71,8 +71,9 @@ struct OwnsBoxUnfrozen {
            std::none_of(others->begin(), others->begin() + static_cast<std::ptrdiff_t>(frozen),
                         [&](const Box& b) { return OwnsBox::contains(b, p.x, p.y); });
   }
-  // Whether a vertex that is owned may move so: not out of any grown box. What a leaf has made lies
-  // in its grown box, and for that the clean-up keeps off those of the frozen leaves.
+  // Whether an owned vertex may move from one point to another: not out of any grown box. The
+  // vertices that a leaf has made must lie in its grown box, because the clean-up relies on that to
+  // avoid those of frozen leaves.
   bool may_move(Point from, Point to) const {
     return owns(to) && std::none_of(others->begin(), others->end(), [&](const Box& b) {
              return OwnsBox::contains(b, from.x, from.y) && !OwnsBox::contains(b, to.x, to.y);
@@ -98,8 +99,8 @@ class LeafTasks {
     clean_up_slots_ = Slots(first_owner_ + size());
   }
 
-  // Bad triangles to begin with: whose centroids lie in a leaf, in their order. Before its first
-  // round.
+  // Gives a leaf, before its first round, the bad triangles to begin with: those whose centroids
+  // lie in the leaf, in their order.
   void seed(std::uint32_t leaf, const std::vector<BadTriangle>& seeds) {
     gave(leaves_[leaf].bytes());
     leaves_[leaf].left.insert(leaves_[leaf].left.end(), seeds.begin(), seeds.end());
@@ -119,7 +120,8 @@ class LeafTasks {
   std::uint32_t size() const { return static_cast<std::uint32_t>(leaves_.size()); }
   std::uint32_t first_owner() const { return first_owner_; }
   const Slots& slots(std::uint32_t leaf) const { return leaves_[leaf].slots; }
-  // All but the vertices; and these. REQUIRES: nobody reads them any more (leaf_release.h).
+  // These give back a leaf's memory: all but the vertices, and the vertices. REQUIRES: it is no
+  // longer read (leaf_release.h).
   void give_back_triangles(std::uint32_t leaf) {
     gave(leaves_[leaf].bytes());
     Slots slots = std::move(leaves_[leaf].slots);
@@ -167,9 +169,9 @@ class LeafTasks {
     return error;
   }
 
-  // Smooths a leaf, in so many sweeps. REQUIRES: no other task refines in its grown box, and the
-  // conflicts before it are smoothed or not to be smoothed. What the leaves before `frozen` have
-  // made stays as it is.
+  // Smooths a leaf in `sweeps` sweeps. REQUIRES: no other task refines in its grown box, and the
+  // conflicts before it are smoothed or will not be. Does not change what the leaves before
+  // `frozen` have made.
   std::optional<Error> smooth(std::uint32_t leaf, std::uint32_t sweeps, std::uint32_t frozen) {
     std::vector<Box> others;
     std::size_t frozen_others = 0;
@@ -184,8 +186,8 @@ class LeafTasks {
     return smoother.run(leaves_[leaf].slots, sweeps);
   }
 
-  // Refines what is left after the last round, without touching what the leaves before `frozen`
-  // have made. What lies too near to these stays as it is.
+  // Refines triangles that are left after the last round, without touching what the leaves before
+  // `frozen` have made. Triangles too near to these stay as they are.
   std::optional<Error> clean_up(std::uint32_t frozen) {
     std::vector<std::vector<std::uint32_t>> frozen_near(leaves_.size());
     for (std::uint32_t l = 0; l < leaves_.size(); ++l) {
@@ -209,7 +211,8 @@ class LeafTasks {
   bool has_left(std::uint32_t leaf) const {
     return !leaves_[leaf].left.empty() || !leaves_[leaf].segments_left.empty();
   }
-  // Whether there is anything to do for it in a round. REQUIRES: what that waits for is done.
+  // Whether the leaf has anything to do in a round. REQUIRES: the tasks that the round waits for
+  // are done.
   bool has_work(std::uint32_t leaf, std::uint32_t round) const {
     bool any = has_left(leaf);
     for_handed_to(leaf, round, [&](const auto&) {
@@ -226,7 +229,7 @@ class LeafTasks {
     return count;
   }
 
-  // Figures, once nothing runs.
+  // Figures. REQUIRES: no task runs.
   std::uint64_t deferred() const { return deferred_.load(); }
   std::uint32_t rounds() const {
     return static_cast<std::uint32_t>(std::count(rounds_.begin(), rounds_.end(), true));
@@ -236,7 +239,7 @@ class LeafTasks {
     for (const auto& w : workers_) sum += w->refiner.figures();
     return sum;
   }
-  // At the peak.
+  // Bytes at the peak.
   std::uint64_t bytes() const {
     std::uint64_t bytes = leaves_.capacity() * sizeof(Leaf) + held_.peak();
     for (const auto& w : workers_) bytes += w->refiner.bytes() + w->smoother.bytes();
@@ -276,15 +279,15 @@ class LeafTasks {
     }
   };
 
-  // The buffers of a thread at work, in cache lines that no other thread writes.
+  // The buffers of a running task, in cache lines that no other thread writes.
   struct alignas(128) Worker {
     LeafRefiner refiner;
     Smoother<OwnsBoxUnfrozen, AreaBound> smoother;
     std::thread::id last_user{};
   };
 
-  // Lends a worker for the time of a task: to each thread the one that it had last, whose buffers
-  // are in its cache. One whose task threw is lent no more: its buffers may be half grown.
+  // Lends a worker for the time of a task: each thread gets the one that it had last, whose buffers
+  // are in its cache. A worker whose task threw is not lent again: its buffers may be incomplete.
   class Lease {
    public:
     explicit Lease(LeafTasks& tasks) : tasks_(tasks) {
@@ -320,12 +323,12 @@ class LeafTasks {
     Worker* worker_;
   };
 
-  // Calls f for what neighbours have left for this leaf, as long as it returns true.
+  // Calls f for the triangles that neighbours have left for this leaf, as long as f returns true.
   template <class F>
   void for_handed_to(std::uint32_t leaf, std::uint32_t round, F&& f) const {
     if (round > LeafGraph::kHandOverRounds) return;
     for (const std::uint32_t other : order_.conflicts(leaf)) {
-      // In the first task of this leaf that comes after the one that handed over.
+      // A triangle is due in the first task of this leaf after the task that handed it over.
       const auto is_due = [&](const auto& h) {
         if (h.leaf != leaf) return false;
         return round ==
@@ -340,7 +343,8 @@ class LeafTasks {
     }
   }
 
-  // To the leaf where the next vertex goes, whose task owns what is around it.
+  // Hands a triangle on to the leaf that contains its next vertex, whose task owns the
+  // surroundings.
   void hand_on(std::uint32_t from, std::uint32_t round, const BadTriangle& bad, Point next) {
     Leaf& l = leaves_[from];
     const std::uint32_t to = tree_.leaf_at(next);
@@ -365,8 +369,8 @@ class LeafTasks {
     return LeafGraph::hands_over(round) && order_.in_conflict(from, to);
   }
 
-  // Whether a leaf's task may read the vertices in a slot at any time: nobody writes those of
-  // earlier owners, and those of a leaf only its task.
+  // Whether a leaf's task may read the vertices in a slot at any time: those of earlier owners are
+  // never written, and those of a leaf only by its task.
   bool may_look_at(std::uint32_t leaf, std::uint32_t slot) const {
     const std::uint32_t owner = refinement_.mesh.owner_of_triangle(slot);
     return owner < first_owner_ || owner == first_owner_ + leaf ||
@@ -396,7 +400,7 @@ class LeafTasks {
   HeldBytes held_;  // by the vectors of the leaves
   std::atomic<std::uint64_t> deferred_{0};
   RefinerFigures clean_up_figures_;
-  std::array<std::atomic<bool>, LeafGraph::kRounds> rounds_{};  // those that found work
+  std::array<std::atomic<bool>, LeafGraph::kRounds> rounds_{};  // whether each found work
 
   std::mutex mutex_;  // guards the two below while tasks run
   std::vector<std::unique_ptr<Worker>> workers_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // From the domain to the chunks: coarse phase, quadtree, the leaves' tasks, and the parts of
-// finished leaves that leave while others are refined.
+// finished leaves, which are sent while others are refined.
 #pragma once
 
 #include <algorithm>
@@ -18,18 +18,19 @@
 
 namespace weft {
 
-// Up to this minimum angle, in degrees, the parts of a large mesh leave while others are refined.
-// Above, what the clean-up inserts breeds skinny triangles far around, and with small leaves one
-// domain in 270 would keep some, near what has been sent (of 8,000 up to 30 degrees, none): there
-// all is cleaned up before anything leaves, and a stream begins when the work is nearly done.
+// Up to this minimum angle, in degrees, the parts of a large mesh are sent while others are
+// refined. Above it, the clean-up's points make skinny triangles far around, and with small leaves
+// one domain in 270 would keep some near leaves that were sent (of 8,000 up to 30 degrees, none).
+// So above it all is cleaned up before anything is sent, and a stream begins when the work is
+// nearly done.
 inline constexpr double kMaxStreamingAngleDeg = 30;
 
-// How many triangles a leaf is to hold at most, for a mesh of about so many. 16,000 are fastest if
+// The maximum number of triangles in a leaf, for a mesh of about `triangles`. 16,000 are fastest if
 // there are only a few leaves. A mesh that streams takes the memory of a strip a few leaves wide,
-// which is the smaller the smaller its leaves, and about 3 kB for each leaf, for its tasks and for
+// which is smaller if its leaves are, and about 3 kB per leaf, for its tasks and for
 // the triangles of the coarse mesh. The sum is least if leaves grow as the cube root of the mesh.
 // Processor seconds of 10 M triangles on the cylinder, the least of three runs on a busy machine,
-// and bytes a triangle at the peak:
+// and bytes per triangle at the peak:
 //
 //   4,000: 4.48, 8.2    6,000: 4.31, 8.6    8,000: 4.20, 11.5    16,000: 3.97, 13.7
 inline double leaf_triangles_for(double triangles) {
@@ -45,18 +46,18 @@ struct MeshPlan {
   double expected_triangles;
   double expected_by_size;   // of these, what the size alone makes
   bool may_stream;           // the minimum angle is at most kMaxStreamingAngleDeg
-  double leaf_triangles;     // of the final mesh, in a leaf of the quadtree at most
-  double least_triangles;    // for certain
+  double leaf_triangles;     // maximum triangles of the final mesh in a leaf of the quadtree
+  double least_triangles;    // the mesh has at least so many
   std::uint32_t sweeps = 0;  // of smoothing
-  // Stop with what there is at so many: one task refines in order, then. Where fewer are enough,
-  // the mesh is the same as without; nothing is sent before that is known.
+  // Stops at so many triangles: then one task refines in order. If fewer are enough, the mesh is
+  // the same as without this bound; nothing is sent before that is known.
   std::optional<std::uint64_t> max_triangles = std::nullopt;
-  std::uint64_t other_bytes = 0;  // that the job holds besides
+  std::uint64_t other_bytes = 0;  // held by the job besides
 
-  // How many full leaves share a block of the coarse mesh at most (coarse_blocks.h); 1 for no
-  // blocks. Before the first leaf come a coarse mesh for all blocks and then some hundred blocks
-  // near the first one, which together are least if a block grows as the root of the mesh. Smaller
-  // blocks than these leave too many slots unused.
+  // The maximum number of full leaves in a block of the coarse mesh (coarse_blocks.h); 1 for no
+  // blocks. Before the first leaf, a coarse mesh for all blocks is made, and then some hundred
+  // blocks near the first one. Together these are least if a block grows as the root of the mesh.
+  // Smaller blocks leave too many slots unused.
   double leaves_per_block() const {
     constexpr double kFewest = 256;  // leaves
     constexpr double kLeast = 16;
@@ -64,16 +65,16 @@ struct MeshPlan {
     return leaves < kFewest ? 1 : std::max(kLeast, std::sqrt(0.025 * leaves));
   }
 
-  // Whether leaves pay. What the bound on angles makes, one task makes faster up to some 60,000
-  // triangles: the coarse phase costs more there than two threads save.
+  // Whether leaves pay. Up to some 60,000 triangles that the bound on angles makes, one task is
+  // faster, because the coarse phase costs more than two threads save.
   bool wants_leaves() const {
     constexpr double kByAngles = 4;  // leaves full
     return expected_by_size > leaf_triangles || expected_triangles > kByAngles * leaf_triangles;
   }
 };
 
-// Refines and sends the mesh; fills the summary but for the stages before. The bytes sent depend on
-// the plan and the area bound alone. Computes in the context's arena, calls the sink on the
+// Refines and sends the mesh; fills the summary except for earlier stages. The bytes sent depend
+// only on the plan and the area bound. Computes in the context's arena, calls the sink on the
 // caller's thread. Errors: those of refinement (refine/refiner.h).
 template <class AreaBound>
 std::optional<Error> run_mesh(const MeshPlan& plan, const AreaBound& area, ChunkSink& sink,

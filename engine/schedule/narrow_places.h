@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the bound on angles costs where the domain is narrow: how many triangles, and where.
+// Estimates the triangles that the bound on angles makes where the domain is narrow.
 //
 //   auto places = NarrowPlaces::find(domain, quality, likely_area, context);
 //   places->likely();                              // triangles beyond those that the size makes
@@ -8,15 +8,15 @@
 // A triangle between two segments that run side by side is as short as the gap is wide, whatever
 // the size allows, and the triangles around grow only slowly (Ruppert's local feature size). So a
 // segment at a distance w from what it sees on either side costs a number of triangles in
-// proportion to its length over w. Of the segments that stand at the base of a thin triangle of the
-// domain, and only these can be near to anything for long, pieces are measured: halved until the
-// nearest vertex or segment, seen through the triangles of the domain, is about as far along all of
-// the piece. Vertices near a segment cost a logarithm, and so few pieces.
+// proportion to its length over w. Only segments at the base of a thin triangle of the domain can
+// be near to others over a long way. These are measured in pieces, which are halved until the
+// nearest vertex or segment, seen through the triangles of the domain, is about equally far along
+// the whole piece. Vertices near a segment cost a logarithm, and so few pieces.
 //
-// How many triangles a unit of length / w stands for depends on the angle alone, to a factor of
+// The number of triangles per unit of length / w depends only on the angle, to a factor of
 // 1.5: measured on strips at 5 to 33 degrees (narrow_places.cpp).
 //
-// Arithmetic without functions of the C library but the root: the same bits on every machine.
+// The square root is the only C library function: the same bits on every machine.
 // Thread-safety: immutable once made.
 #pragma once
 
@@ -36,7 +36,7 @@ namespace weft {
 
 class NarrowPlaces {
  public:
-  // The two segments between which the most triangles go.
+  // The two segments with the most triangles between them.
   struct Costliest {
     std::uint32_t segment;  // indices into Pslg::segments
     std::uint32_t other;
@@ -47,31 +47,32 @@ class NarrowPlaces {
 
   NarrowPlaces() = default;
 
-  // `likely_area` is the size about a point: the area that its triangles have at most; infinity
-  // for none. It is called from several threads. Errors: kCancelled, kDeadlineExceeded.
+  // `likely_area` returns the size near a point, the bound on the area of its triangles; infinity
+  // for none. Several threads call it. Errors: kCancelled, kDeadlineExceeded.
   static Result<NarrowPlaces> find(const Domain& domain, const QualityBounds& quality,
                                    const std::function<double(Point)>& likely_area,
                                    const ExecutionContext& context);
 
   // Triangles that the bound on angles makes beyond those that the size does.
   double likely() const { return likely_; }
-  // Triangles that a mesh within the bound on angles has at least, whatever the size: of clean
-  // strips alone, each 0.4 of what is likely there. Our meshes had 1.6 times as many and more.
+  // The least number of triangles of a mesh within the bound on angles, whatever the size: counts
+  // only clean strips, each as 0.4 of its likely triangles. weft's meshes had at least 1.6 times as
+  // many.
   double least() const { return least_; }
   const std::optional<Costliest>& costliest() const { return costliest_; }
 
-  // What the bound on angles makes of a triangle of the domain elsewhere, on average: measured on
-  // coasts at 20 to 33 degrees, 1.7 to 3.1.
+  // How many triangles the bound on angles makes of a triangle of the domain elsewhere, on average:
+  // 1.7 to 3.1, measured on coasts at 20 to 33 degrees.
   static double elsewhere(const QualityBounds& quality);
 
-  // Adds the triangles where they are expected, at most `grain` a sample, or in more than 2^17
-  // samples.
+  // Adds samples where the triangles are expected, of at most `grain` triangles each, or more if
+  // there would be more than 2^17 samples.
   void add_samples(double grain, std::vector<Quadtree::Sample>& samples) const;
 
   std::size_t bytes() const { return pieces_.capacity() * sizeof(Piece); }
 
  private:
-  // Of a segment, with about the same width all along.
+  // A piece of a segment, with about the same width all along.
   struct Piece {
     Point from;
     Point to;

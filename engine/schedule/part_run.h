@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs graphs of tasks that make parts of the mesh, and sends the parts in their order while the
-// tasks go on; no further ahead of what is sent than parts_ahead and parts_begun (trace.h) allow.
-// The first error ends it: tasks that have not begun are passed over.
+// tasks go on. Tasks run no further ahead of the next part than parts_ahead and parts_begun
+// (trace.h) allow. The first error ends the run: tasks that have not begun are skipped.
 //
 //   PartRun parts(delivery, context);
 //   parts.run(name, std::move(graph), 0, n, part_task, [&](std::uint32_t task) {
@@ -35,26 +35,26 @@ class PartRun {
  public:
   PartRun(Delivery& delivery, ExecutionContext& context) : delivery_(delivery), context_(context) {}
 
-  // Runs all tasks, and sends parts `first` to `last` - 1. `task_of_part` tells which task makes a
-  // part: those far ahead of what is sent are held back.
+  // Runs all tasks, and sends parts `first` to `last` - 1. `task_of_part` returns the task that
+  // makes a part: tasks far ahead of the next part are held back.
   void run(const Trace::GraphName& name, TaskGraph graph, std::uint32_t first, std::uint32_t last,
            std::uint32_t (*task_of_part)(std::uint32_t),
            const std::function<void(std::uint32_t)>& task);
 
-  // A part to be sent; nothing, if the context said stop.
+  // Gives a part to be sent; nullopt if the context stopped the run.
   void finish(std::uint32_t index, std::optional<Part>&& part);
-  // As GraphRun::skip, of the graph at work.
+  // As GraphRun::skip, for the running graph.
   void skip(std::uint32_t task) { run_->skip(task); }
-  // No part is to be sent for now beyond those that tasks have begun for: so the tasks may begin
-  // however far ahead of it they are.
+  // Lets tasks begin however far ahead they are: for now, no part is sent beyond those whose tasks
+  // have begun.
   void end_hold();
   void stop(const Error& error);
 
   bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
   const std::optional<Error>& error() const { return error_; }
-  // In the sink, while there was nothing else to do.
+  // Time in the sink while there was nothing else to do.
   double blocked_seconds() const { return blocked_seconds_; }
-  // Of parts that waited to be sent, and of the graph at work.
+  // Of parts that waited to be sent, and of the running graph.
   std::uint64_t peak_bytes() const { return waiting_.peak() + graph_bytes_; }
 
  private:

@@ -2,13 +2,13 @@
 // The quadtree that guides refinement (the paper's Section 2.4): each leaf holds about the same
 // number of triangles of the final mesh, so the tree follows the grading.
 //
-// It is built from samples of the mesh, never from the grading function where there is no domain.
+// It is built from samples of the mesh, so the grading function outside the domain has no effect.
 // A node is split while its samples weigh more than the target; then nodes are split until sides
-// of leaves that touch differ by a factor of two at most.
+// of leaves that touch differ by at most a factor of two.
 //
 // Leaves are numbered as a sweep over the domain meets their middles, because the mesh is sent in
-// this order (leaf_order.h). The sweep goes in the direction in which the leaves that a line across
-// it cuts weigh less, at the most: what lies there has to be in memory at the same time.
+// this order (leaf_order.h). A line across the sweep cuts leaves that must be in memory at the same
+// time, so the sweep goes in the direction in which the largest weight of these is smaller.
 //
 // Borders between boxes are computed from integers, so boxes that touch share the same doubles.
 #pragma once
@@ -23,37 +23,37 @@ namespace weft {
 
 class Quadtree {
  public:
-  // A place of the domain and how many triangles of the final mesh it stands for.
+  // A point of the domain, and the number of triangles of the final mesh that it represents.
   struct Sample {
     Point at;
     double weight;
   };
 
-  static constexpr unsigned kMaxDepth = 31;  // what Morton codes of 64 bits have room for
+  static constexpr unsigned kMaxDepth = 31;  // limit of Morton codes of 64 bits
 
   struct Leaf {
     Box box;         // half-open
     Box grown;       // by half of its side in each direction
     double weight;   // of the samples in it
     unsigned depth;  // its side is that of the square over 2^depth
-    // Its place among the squares of its depth, in the direction of the sweep and across it.
+    // Its position among the squares of its depth, in the direction of the sweep and across it.
     std::uint32_t along, across;
     double side() const { return box.max_x - box.min_x; }
   };
 
-  // Over a square that holds `domain`. A leaf weighs at most `target`, unless it has one sample
-  // alone or is 2^31 times smaller than the square.
+  // Builds the tree over a square that contains `domain`. A leaf weighs at most `target`, unless it
+  // has only one sample or is 2^31 times smaller than the square.
   static Quadtree build(const Box& domain, std::vector<Sample> samples, double target);
 
   // In the order of the sweep.
   const std::vector<Leaf>& leaves() const { return leaves_; }
   // The square. REQUIRES: built.
   Box box() const { return box_; }
-  // Index of the leaf at a point; of one near by where the point lies outside the square.
+  // Index of the leaf at a point; of a leaf near by if the point lies outside the square.
   std::uint32_t leaf_at(Point p) const;
   // The other leaves whose boxes touch that of a leaf, in order.
   std::vector<std::uint32_t> touching(std::uint32_t leaf) const;
-  // Calls f(leaf) for the leaves whose grown boxes overlap `box`, which is open, in any order.
+  // Calls f(leaf) in any order for the leaves whose grown boxes overlap the open `box`.
   template <class F>
   void for_overlapping(const Box& box, F&& f) const {
     const auto visit = [&](auto& self, const Node& node) -> void {
@@ -77,7 +77,7 @@ class Quadtree {
  private:
   struct Node {
     Point middle;
-    Box grown;                  // holds the grown boxes of all leaves below
+    Box grown;                  // contains the grown boxes of all leaves below
     std::uint32_t first_child;  // of four, in Morton order; 0 for a leaf
     std::uint32_t leaf;         // its index, for a leaf
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of the mesh made from slots, and sent: how a run of refinement becomes what the sink takes.
+// Makes parts of the mesh from slots, and sends them to the sink.
 //
 //   SlotParts<ConstantArea> parts(plan, area, refinement, cut_off, sink, summary);
 //   parts.send_vertices(root);
@@ -11,8 +11,8 @@
 //   parts.send(sections);
 //   parts.close();
 //
-// Thread-safety: `build` may be called from tasks, and what of `run()` says so; the rest only
-// between runs.
+// Thread-safety: tasks may call `build`, and the functions of `run()` that say so; the rest may be
+// called only between runs.
 #pragma once
 
 #include <algorithm>
@@ -64,7 +64,7 @@ class SlotParts {
     std::vector<Section> all_;
   };
 
-  // `cut_off`: refinement ended before all was good.
+  // `cut_off`: whether refinement ended before all triangles were good.
   SlotParts(const MeshPlan& plan, const AreaBound& area, const RefinementContext& refinement,
             bool cut_off, ChunkSink& sink, Summary& summary)
       : plan_(plan),
@@ -77,10 +77,10 @@ class SlotParts {
   PartRun& run() { return run_; }
   const PartRun& run() const { return run_; }
 
-  // Of all tasks, added up.
+  // The sum over all tasks.
   double build_seconds() const { return time_.seconds(); }
 
-  // What `fill` puts into a PartBuilder; nothing, if the context says stop.
+  // Builds a part of what `fill` puts into a PartBuilder; nullopt if the context stops the run.
   template <class F>
   std::optional<Part> build(F&& fill) {
     return time_.measure([&] {
@@ -92,7 +92,7 @@ class SlotParts {
     });
   }
 
-  // At once, before any part of a run.
+  // Sends an owner's vertices at once, before any part of a run.
   void send_vertices(const Slots& slots) {
     auto part = refinement_.context.compute([&] {
       return build([&](PartBuilder<AreaBound>& builder) {
@@ -104,7 +104,7 @@ class SlotParts {
     if (error) run_.stop(*error);
   }
 
-  // Builds the parts of what is final, in parallel, and sends them.
+  // Builds the parts of the given sections in parallel, and sends them. REQUIRES: these are final.
   void send(const Sections& sections) {
     constexpr std::size_t kPerPart = 48;  // about 10,000 vertices or triangles
     const auto& all = sections.all_;
@@ -130,7 +130,7 @@ class SlotParts {
         });
   }
 
-  // After the last part.
+  // Call after the last part.
   void close() { delivery_.finish(); }
 
  private:

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// One task at work: the engine makes the mesh, its chunks go to the store one by one, and the store
-// settles what became of it. Whatever happens, the claim ends in one of three ways: settled
-// (finished or failed), released for another try, or lost to whoever has it now.
+// One worker's try at a job: the engine makes the mesh, its chunks go to the store one by one, and
+// the store settles the outcome. Whatever happens, the claim ends in one of three ways: settled
+// (finished or failed), released for another try, or lost to the worker that has it now.
 //
-// Thread-safety: `run` is for one thread; all the others may be called from any thread meanwhile.
+// Thread-safety: one thread calls `run`; meanwhile any thread may call the other functions.
 #pragma once
 
 #include <atomic>
@@ -30,7 +30,7 @@
 
 namespace weft::server {
 
-// What all runs of a server share; outlives them.
+// Shared by all runs of a server; must outlive them.
 struct RunEnvironment {
   EngineFn engine;
   Arena& arena;  // where they compute
@@ -43,11 +43,10 @@ struct RunEnvironment {
 
 class Attempt final : private ChunkSink {
  public:
-  // A claim whose request no server has stored fails with kStoreBroken.
-  // `share` is what the claim was admitted with; it goes back when the run ends.
-  // A light run computes on its own thread, not in the arena, where it would wait for the turns of
-  // heavy ones. Once it turns out heavy it calls `leave_light_lane`, which may wait. Null: it is
-  // heavy.
+  // A claim whose request was not stored by a server fails with kStoreBroken. `share` is the memory
+  // with which the claim was admitted; it is given back when the run ends. A light run computes on
+  // its own thread, not in the arena, where it would have to wait for heavy runs. If it turns out
+  // to be heavy, it calls `leave_light_lane`, which may wait. Null: the run is heavy.
   using LeaveLightLane = std::function<void(MemoryGate::Share&, const ExecutionContext&)>;
   Attempt(const RunEnvironment& environment, Claim claim, MemoryGate::Share share,
           LeaveLightLane leave_light_lane);
@@ -58,11 +57,11 @@ class Attempt final : private ChunkSink {
   // Bytes that the run may take now.
   std::uint64_t share_bytes() const { return share_.bytes(); }
 
-  // The server stops: the task goes back into the queue, as if it had not been begun.
+  // Stops because the server stops: the task goes back into the queue, as if it had not begun.
   void stop();
 
-  // Renews the lease, with the progress. For a run that has not moved for as long as a lease it
-  // does nothing: what hangs is left to another worker. Of one thread at a time.
+  // Renews the lease, with the progress. Does nothing if the run has made no progress for as long
+  // as a lease: another worker then takes it. One thread at a time may call it.
   void renew(std::chrono::milliseconds lease);
 
  private:
@@ -72,7 +71,8 @@ class Attempt final : private ChunkSink {
   bool accept(Chunk&& chunk) override;
   void settle(const Failure& failure);
   void lose();
-  // Calls the store again while it is unavailable, until the run is to end or patience does.
+  // Repeats a call of the store while this is unavailable, until the run must end or a time limit
+  // is reached.
   template <class F>
   std::invoke_result_t<F> insist(F&& call);
   bool pause(std::chrono::milliseconds at_most);
@@ -90,13 +90,13 @@ class Attempt final : private ChunkSink {
   ExecutionContext context_;
   std::atomic<std::uint64_t> chunks_stored_{0};
 
-  // The running thread's own.
+  // Used only by the running thread.
   v1::GenerateMeshResponse chunk_message_;  // kept for the memory of its arrays
   StoredMesh mesh_;
   std::uint64_t bytes_ = 0;
   std::optional<StoreError> store_error_;  // that stopped the engine
 
-  // The renewing thread's own.
+  // Used only by the renewing thread.
   std::uint64_t last_pulse_ = 0;
   Clock::time_point last_moved_ = began_;
   v1::Progress told_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The worker half of a server: takes tasks from the store while there is room for them, runs them,
-// renews their leases, and keeps the store in order: tasks whose workers were lost are queued
-// again, and what is kept too long is collected. Every server of a store does all of it.
+// and renews their leases. It also maintains the store: it queues tasks again whose workers were
+// lost, and collects expired jobs and meshes. Every server of a store does all of this.
 //
 //   JobRunner runner(environment, gate, {.worker = "weftd-1", .slots = 4});
 //   store.on_change([&] { runner.wake(); });
@@ -26,15 +26,15 @@
 namespace weft::server {
 
 struct RunnerOptions {
-  std::string worker{};     // of its tasks' records; tells the servers of a store apart
+  std::string worker{};     // its name in its tasks' records; unique among the servers of a store
   std::uint32_t slots = 1;  // tasks at once. REQUIRES: >= 1
-  // Tasks on top of these that are light (memory_estimate.h). One that turns out heavy leaves its
-  // slot to another, and goes on when one of the others is free.
+  // Additional tasks at once that are light (memory_estimate.h). A task that turns out to be heavy
+  // leaves its light slot, and goes on when one of `slots` is free.
   std::uint32_t light_slots = 0;
   std::chrono::milliseconds lease{30'000};
-  // Between two renewals, which carry the progress.
+  // The time between two renewals, which carry the progress.
   std::chrono::milliseconds renewal{1'000};
-  // Between two looks for a task where nothing says that there is one.
+  // The time between two polls for a task if there is no notification.
   std::chrono::milliseconds poll{1'000};
   KeepPolicy keep{};
   std::chrono::milliseconds between_collections{60'000};
@@ -48,13 +48,13 @@ class JobRunner {
   JobRunner(const JobRunner&) = delete;
   JobRunner& operator=(const JobRunner&) = delete;
 
-  // There may be a task.
+  // Call when there may be a task.
   void wake();
 
-  // Takes no more, puts back what runs, and waits for that.
+  // Takes no more tasks, puts the running ones back into the queue, and waits until that is done.
   void stop();
 
-  // What runs here, and the memory that it was admitted with.
+  // The number of tasks that run here, and the memory with which they were admitted.
   QueueFigures figures() const;
 
  private:
@@ -66,7 +66,7 @@ class JobRunner {
     std::size_t running = 0;
   };
 
-  // What the threads do again and again; false if there was nothing to do, or it failed.
+  // The threads' loops; each step returns false if there was nothing to do, or if it failed.
   void work(Lane lane);
   bool work_once(Lane lane);
   void renew_and_reap();
@@ -74,17 +74,17 @@ class JobRunner {
   bool reap();
   void collect();
   bool collect_once();
-  // The step's answer; false where it throws.
+  // Returns the step's result; false if it throws.
   template <class F>
   bool guarded(F&& step);
   void add_worker(Lane lane);
   void add_light_worker_if_short();
   // Ends a claim whose run has thrown.
   void give_up(const Claim& claim, const Failure& failure);
-  // Returns at the next `wake`; `seen` counts those that the caller knows of. False once the runner
-  // stops.
+  // Waits for a `wake` that the caller has not seen; `seen` is the number of those seen. Returns
+  // false once the runner stops.
   bool wait_for_wake(std::uint64_t& seen);
-  // False once the runner stops.
+  // Returns false once the runner stops.
   bool wait(std::chrono::milliseconds span);
 
   const RunEnvironment environment_;
@@ -102,7 +102,7 @@ class JobRunner {
   std::size_t light_threads_ = 0;
   std::vector<std::thread> threads_;
   std::condition_variable changed_;
-  std::mutex claiming_;  // from asking how much room there is to taking it
+  std::mutex claiming_;  // held from asking for room until it is taken
 };
 
 }  // namespace weft::server

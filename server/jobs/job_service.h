@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// weft.v1.JobService on gRPC's callback API. gRPC's threads only hand over: all that asks the store
-// runs on threads of the service's own, and what is streamed is pulled by those who read it.
+// weft.v1.JobService on gRPC's callback API. gRPC's threads only hand calls over: all calls of the
+// store run on the service's own threads, and streams read from it as fast as their clients read.
 //
-// All methods come in through the Admission: what they carry is checked before it is parsed, and
-// stored chunks go out as they were stored.
+// All methods pass the Admission: their messages are checked before they are parsed. Stored chunks
+// are sent as they were stored.
 //
-// Outlives the gRPC server that it is registered with; the store outlives it.
+// Must outlive the gRPC server that it is registered with; the store must outlive it.
 #pragma once
 
 #include <chrono>
@@ -33,24 +33,24 @@ struct JobServiceOptions {
   Limits limits{};
   // Whether a client's job may share work or a mesh with another client's.
   bool share_across_clients = true;
-  // Tasks that wait, of all clients and of one.
+  // Maximum waiting tasks, of all clients and of one.
   std::uint64_t max_queued = 10'000;
   std::uint64_t max_queued_of_owner = 1'000;
-  // A client that reads more slowly is cut off.
+  // Clients that read more slowly are cut off.
   ReaderPatience patience{};
-  // Between two looks at jobs that are watched, if nothing says that they changed.
+  // The time between two polls of watched jobs if there is no notification.
   std::chrono::steady_clock::duration tick = std::chrono::milliseconds(250);
 };
 
 class JobService final : public RawService {
  public:
-  // The admission and the metrics outlive the service, too.
+  // The admission and the metrics must outlive the service, too.
   JobService(JobServiceOptions options, Admission& admission, Metrics& metrics, JobStore& store,
              Logger log);
   // REQUIRES: no call is open.
   ~JobService() override;
 
-  // Jobs may have changed: those who watch are told soon.
+  // Call when jobs may have changed: watching clients are notified soon.
   void wake();
 
   // Refuses new calls from now on, and ends the watches.
@@ -63,7 +63,7 @@ class JobService final : public RawService {
   template <class Response>
   using Answer = tl::expected<Response, Failure>;
 
-  // Adds a method with one answer: its message is read, and answered on a thread of the service.
+  // Adds a method with one reply, which a thread of the service computes.
   template <class Request, class Response>
   void add_unary(const char* method,
                  Answer<Response> (JobService::*handler)(const Caller&, const Request&));
@@ -79,7 +79,7 @@ class JobService final : public RawService {
   Answer<v1::DeleteJobResponse> remove(const Caller& caller, const v1::DeleteJobRequest& request);
   Answer<v1::ListJobsResponse> list(const Caller& caller, const v1::ListJobsRequest& request);
 
-  // Runs the handler on a thread of the service, and ends the call with what it answers.
+  // Runs the handler on a thread of the service, and ends the call with its result.
   template <class Response>
   void answer_soon(std::shared_ptr<AdmittedCall> call, std::function<Answer<Response>()> handler);
 
@@ -90,7 +90,7 @@ class JobService final : public RawService {
   JobStore& store_;
   const Logger log_;
   const StreamEnvironment environment_;
-  WorkQueue threads_;  // destroyed early: it waits for handlers, who use all of the above
+  WorkQueue threads_;  // destroyed early: it waits for handlers, which use all of the above
 
   OpenStreams<JobStream> streams_;
   std::mutex mutex_;  // guards the two below

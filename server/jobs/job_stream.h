@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the two streams of JobService have in common: a job that its owner may see, a store that is
-// asked on the service's own threads, an end for clients that read nothing.
+// The two streams of JobService, and their common base: it checks that the caller owns the job,
+// calls the store on the service's own threads, and ends calls of clients that read nothing.
 //
-// WatchStream tells what a job has become until that is final. FetchStream sends the mesh: as much
-// of it as the client takes is read from the store, no more, and no thread waits for a client.
+// WatchStream sends the job whenever it changes, until its state is final. FetchStream sends the
+// mesh: it reads from the store only as much as the client takes, and no thread waits for a client.
 #pragma once
 
 #include <atomic>
@@ -25,10 +25,10 @@
 
 namespace weft::server {
 
-// What all streams share; outlives them.
+// Shared by all streams; must outlive them.
 struct StreamEnvironment {
   JobStore& store;
-  WorkQueue& threads;  // that may wait for the store
+  WorkQueue& threads;  // may wait for the store
   ReaderPatience patience;
   Metrics& metrics;
   Logger log;
@@ -48,10 +48,10 @@ class JobStream : public MessageStream, public std::enable_shared_from_this<JobS
   // Called a few times a second, on one thread: ends the call of a client that reads nothing.
   virtual void tick(Clock::time_point now);
 
-  // The server stops. A watch ends at once, a mesh is sent to its end.
+  // Called when the server drains. A watch ends at once, a mesh is sent to its end.
   virtual void drain() {}
 
-  // The server stops now.
+  // Ends the call because the server stops now.
   void stop() { fail({Reason::kStopping, "", "the server is stopping"}); }
 
  protected:
@@ -60,11 +60,11 @@ class JobStream : public MessageStream, public std::enable_shared_from_this<JobS
   virtual void begin() = 0;
   void fail(const Failure& failure);
   void log_end(grpc::StatusCode status, std::string_view reason) const;
-  // The job, or what is to be told instead of it.
+  // Returns the job, or the failure to reply with.
   tl::expected<JobRecord, Failure> look_up();
-  // Runs on one of the service's threads, and keeps the stream alive meanwhile.
+  // Runs the function on one of the service's threads, and keeps the stream alive meanwhile.
   void soon(std::function<void()> function);
-  // Ends the call with what is thrown.
+  // Calls the function; ends the call with what it throws.
   template <class F>
   void guarded(F&& function);
 
@@ -83,7 +83,7 @@ class JobStream : public MessageStream, public std::enable_shared_from_this<JobS
 
 class WatchStream final : public JobStream {
  public:
-  // Each takes the parts of the call but its bytes.
+  // Takes all parts of the call except its bytes.
   WatchStream(const StreamEnvironment& environment, AdmittedCall& call, std::string id)
       : JobStream(environment, call, std::move(id)) {}
 
@@ -95,7 +95,7 @@ class WatchStream final : public JobStream {
   void look();
 
   std::atomic<bool> begun_{false};
-  std::string told_;  // bytes of the message that was sent last
+  std::string told_;  // bytes of the last message sent
 };
 
 class FetchStream final : public JobStream {
@@ -108,10 +108,10 @@ class FetchStream final : public JobStream {
   void begin() override;
   void wrote() override;
   void send_what_fits();
-  // False if the call has ended by that.
+  // Returns false if that has ended the call.
   bool send_chunk(const std::string& sha256);
 
-  // Of whoever has set busy_.
+  // Used only by the thread that has set busy_.
   StoredMesh mesh_;
   std::size_t next_;
   std::atomic<bool> busy_{true};  // `begin` is the first

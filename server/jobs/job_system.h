@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// All of a server that has to do with jobs that outlive it: the store, the service that takes and
-// shows jobs, and the workers that do them. A server may have the service, the workers, or both;
-// any number of servers share a PostgreSQL store.
+// The part of a server that handles stored jobs: the store, the service that accepts and shows
+// jobs, and the workers that run them. A server may have the service, the workers, or both; any
+// number of servers may share a PostgreSQL store.
 //
-// The gRPC server that `service()` is registered with is shut down before this is destroyed.
+// The gRPC server that `service()` is registered with must be shut down before this is destroyed.
 #pragma once
 
 #include <memory>
@@ -38,10 +38,10 @@ class JobSystem {
   // Null if this server does not serve.
   JobService* service() { return service_ ? &*service_ : nullptr; }
 
-  // Asks the store.
+  // Calls the store.
   QueueFigures figures();
 
-  // Refuses new calls and puts back what is at work. Calls go on.
+  // Refuses new calls and puts running tasks back into the queue. Open calls go on.
   void close();
 
  private:
@@ -51,7 +51,7 @@ class JobSystem {
   std::optional<JobService> service_;
   std::optional<JobRunner> runner_;
   std::mutex mutex_;        // guards the one below
-  bool listening_ = false;  // the two above are there
+  bool listening_ = false;  // whether the two above exist
 };
 
 }  // namespace weft::server

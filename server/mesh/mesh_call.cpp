@@ -67,8 +67,8 @@ MeshCall::MeshCall(const CallEnvironment& environment, AdmittedCall& call, std::
 void MeshCall::start() noexcept try {
   const v1::Domain& domain = request_->domain();
   environment_.log->info(
-      "event=call_queued call={} {} method=GenerateMesh points={} segments={} seeds={}", id_, caller_,
-      domain.points_size() / 2, domain.segments_size() / 2,
+      "event=call_queued call={} {} method=GenerateMesh points={} segments={} seeds={}", id_,
+      caller_, domain.points_size() / 2, domain.segments_size() / 2,
       domain.holes_size() / 2 + domain.regions_size());
   if (origin_.at_hand) {
     send_what_is_at_hand();
@@ -168,7 +168,8 @@ tl::expected<Summary, Failure> MeshCall::work(WorkQueue::Place& place) {
   }
   const double waited = Seconds(Clock::now() - admitted_).count();
   environment_.metrics.waited(waited);
-  environment_.log->info("event=call_started call={} {} waited_seconds={:.3f}", id_, caller_, waited);
+  environment_.log->info("event=call_started call={} {} waited_seconds={:.3f}", id_, caller_,
+                         waited);
   if (!origin_.key.empty() && first_chunk_ == 0) recording_.emplace(environment_.cache.largest());
   auto summary = call_engine(environment_.engine, std::move(request_), *this, context_);
   request_share_ = {};

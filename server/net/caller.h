@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who calls. The Admission (net/admission.h) asks first, before a byte of the message is read:
+// Identifies the caller. The Admission does so first, before a byte of the message is read:
 //
 //   const auto caller = authenticator.identify(*context);
 //   if (!caller) return refuse(caller.error());      // UNAUTHENTICATED, reason UNAUTHENTICATED
 //   ... caller->name ...                             // the owner of jobs
 //
-// The check stands there because nowhere else in gRPC 1.51 it holds for every call: an
-// AuthMetadataProcessor is not asked on unencrypted connections and cannot send an ErrorInfo, an
+// The Admission is the only place in gRPC 1.51 where the check applies to every call: an
+// AuthMetadataProcessor is not called on unencrypted connections and cannot send an ErrorInfo, an
 // interceptor cannot end a call with a status. A test calls every method of every service without a
-// token. grpc.health.v1 needs none.
+// token. grpc.health.v1 needs no token.
 //
-// What a stranger has sent by then is at most HTTP/2's first window, 64 KiB for each stream: gRPC
-// takes no more until the message is wanted. If that is too much, ask for client certificates,
-// too: without one no stream is opened.
+// Before that an unidentified caller can send at most HTTP/2's first window, 64 KiB per stream:
+// gRPC receives no more until the message is read. If that is too much, require client
+// certificates, too: without one no stream can be opened.
 #pragma once
 
 #include <grpcpp/server_context.h>
@@ -28,8 +28,8 @@
 namespace weft::server {
 
 struct Caller {
-  // The token's; else the subject's common name, or first alternative name, of the client's
-  // certificate; else empty: callers are not told apart.
+  // The name of the token; without a token, the subject's common name, or first alternative name,
+  // of the client's certificate; otherwise empty: callers are not told apart.
   std::string name{};
   std::string peer{};   // the address, as gRPC writes it
   std::string trace{};  // W3C trace id, 32 hexadecimal digits; empty if the caller sent none
@@ -50,12 +50,12 @@ std::string trace_id(std::string_view traceparent);
 // Thread-safe.
 class Authenticator {
  public:
-  // `tokens` outlives the authenticator; null: whoever can connect may call.
+  // `tokens` must outlive the authenticator; null: anyone who can connect may call.
   explicit Authenticator(const TokenFile* tokens) : tokens_(tokens) {}
 
   tl::expected<Caller, Failure> identify(const grpc::ServerContextBase& context) const;
 
-  // Who calls, whether or not he may.
+  // Returns the caller, without checking the token.
   static Caller unverified(const grpc::ServerContextBase& context);
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The hand-over between an engine that makes messages and a stream that sends them: first in,
-// first out, bounded by bytes and by count. The engine's thread waits if the queue is full, the
-// stream's never does.
+// The queue between an engine that makes messages and a stream that sends them: first in,
+// first out, bounded by bytes and by count. The engine's thread waits if the queue is full; the
+// stream's thread never waits.
 //
 // Thread-safety: every function may be called from any thread.
 // Law: one message is always admitted to an empty queue, however large.
@@ -33,20 +33,20 @@ class ChunkQueue {
 
   explicit ChunkQueue(Bounds bounds) : bounds_(bounds) {}
 
-  // Waits while the queue is full. False where it is closed, or closes while waiting: the message
-  // is dropped.
+  // Waits while the queue is full. Returns false, and drops the message, if the queue is closed or
+  // closes while waiting.
   bool push(grpc::ByteBuffer message);
 
   // Whether a message of so many bytes would not wait.
   bool has_room(std::size_t bytes);
 
-  // The same; waits for room, if there is none, at most so long.
+  // The same, but waits for room for at most `patience`.
   bool has_room_within(std::chrono::steady_clock::duration patience, std::size_t bytes);
 
-  // Nothing if the queue is empty.
+  // Returns nullopt if the queue is empty.
   std::optional<grpc::ByteBuffer> try_pop();
 
-  // Drops what is queued, wakes whoever waits and refuses what comes.
+  // Drops queued messages, wakes waiting threads and refuses new messages.
   void close();
 
  private:

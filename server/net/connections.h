@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds for connections before anyone knows who is at the other end: where they must be
-// encrypted, how long they may idle, how often they may ping.
+// The rules for connections before the caller is identified: where they must be encrypted, how long
+// they may idle, how often they may ping.
 #pragma once
 
 #include <grpcpp/security/server_credentials.h>
@@ -15,16 +15,16 @@
 
 namespace weft::server {
 
-// One for each address: TLS for TCP where a certificate is named; a unix socket is guarded by its
-// folder. Without a certificate, an address that other machines can reach is refused unless
-// `insecure`. The error names the address or the file.
+// Returns credentials per address: TLS for TCP if a certificate is named; the folder of a unix
+// socket protects it. Without a certificate, an address that other machines can reach is refused
+// unless `insecure`. The error names the address or the file.
 tl::expected<std::vector<std::shared_ptr<grpc::ServerCredentials>>, std::string> credentials_for(
     const std::vector<std::string>& addresses, const TlsOptions& tls, bool insecure);
 
-// What these credentials ask for, as the log tells it: none, tls or mtls.
+// The security of these credentials, as written to the log: none, tls or mtls.
 const char* security_of(const std::string& address, const TlsOptions& tls);
 
-// That one connection may have open at a time; calls beyond these wait at the client.
+// Maximum streams that one connection may have open; further calls wait at the client.
 inline constexpr int kMostStreams = 256;
 
 void limit_connections(grpc::ServerBuilder& builder);

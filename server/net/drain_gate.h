@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The gate that every call passes: it counts those inside, can be closed to new ones, and tells
+// The gate that every call passes: it counts calls inside, can be closed to new ones, and reports
 // when the last one has left.
 //
 //   auto pass = gate.enter();
@@ -33,12 +33,12 @@ class DrainGate {
     DrainGate* gate_;
   };
 
-  // Nothing once the gate is closed.
+  // Returns nullopt once the gate is closed.
   std::optional<Pass> enter();
 
   void close();
 
-  // True once nobody is inside, false if that takes longer.
+  // Returns true once no call is inside, false if that takes longer than `at_most`.
   bool wait_empty(std::chrono::steady_clock::duration at_most);
 
  private:

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells ThreadSanitizer what gRPC guarantees of a reactor: what was done before it was given to
-// gRPC, by returning it from a handler or by starting an operation, is seen by the callbacks of
-// that; what callbacks have done is seen by OnDone; and what OnDone has done is seen by whoever has
-// waited for the server to shut down. Debian builds gRPC without ThreadSanitizer, which therefore
-// does not see it. In other builds nothing is left of this.
+// Tells ThreadSanitizer what gRPC guarantees of a reactor. Callbacks see what was written before
+// the reactor was given to gRPC, by returning it from a handler or by starting an operation; OnDone
+// sees what callbacks have written; and a thread that has waited for the server to shut down sees
+// what OnDone has written. ThreadSanitizer cannot see that itself, because Debian builds gRPC
+// without it. In other builds these functions do nothing.
 //
 //   give_to_grpc(this);
 //   StartWrite(&message);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// grpc.health.v1.Health, for whoever asks: whether this server, or one of its services, takes
+// grpc.health.v1.Health for anyone: says whether this server, or one of its services, accepts
 // calls.
 //
-// gRPC brings such a service, but takes messages of any size from strangers for it, without a
-// limit on time: eight calls that never end their message held 2 GiB. This one comes in through the
-// Admission as the others do. Of a stranger, on a server that wants tokens, no message is taken in:
-// he is told of the whole server, whatever service he names. All services go together here.
+// gRPC has such a service, but it receives messages of any size from unidentified callers, without
+// a time limit: eight calls that never end their message held 2 GiB. This one uses the Admission
+// like the other services. On a server with tokens, it does not read an unidentified caller's
+// message: it replies for the whole server, whatever service the message names. All services share
+// one state.
 //
 // Source: https://github.com/grpc/grpc/blob/master/doc/health-checking.md
 // Thread-safety: every function may be called from any thread.
@@ -23,15 +24,15 @@ namespace weft::server {
 
 class HealthService final : public RawService {
  public:
-  // The admission outlives the service.
+  // The admission must outlive the service.
   explicit HealthService(Admission& admission);
   // REQUIRES: no call is open.
   ~HealthService() override;
 
-  // Those who watch are told. "" is the whole server; a service of which nothing was said is
-  // unknown.
+  // Sets a state and notifies watching clients. "" is the whole server; a service that was never
+  // set is unknown.
   void set(const std::string& service, bool serving);
-  // Of every service that is known.
+  // Sets the state of all known services.
   void set_all(bool serving);
 
  private:

@@ -2,7 +2,7 @@
 // Addresses to listen on: HOST:PORT (an IPv6 host in brackets, port 0 for any free one) or
 // unix:PATH.
 //
-// gRPC only says that it could not bind. `claim` finds out beforehand, and says why.
+// gRPC does not say why it could not bind. `claim` checks beforehand, and says why.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace weft::server {
 
-// Nothing if a server may bind the address now, otherwise the reason why it may not. A socket
-// file that no server listens on is removed; any other file is left alone.
+// Succeeds if a server may bind the address now; the error says why it may not. Removes a socket
+// file on which no server listens; any other file is left alone.
 tl::expected<void, std::string> claim(const std::string& address);
 
 bool is_unix(std::string_view address);
@@ -25,8 +25,8 @@ struct HostPort {
 };
 std::optional<HostPort> split_host_port(const std::string& address);
 
-// Whether what travels there stays on this machine: a unix: address, or a host all of whose
-// addresses are loopback's. False if the host is not to be found.
+// Whether traffic to the address stays on this machine: a unix: address, or a host that has only
+// loopback addresses. False if the host is not found.
 bool is_local(const std::string& address);
 
 // The address with its port filled in.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sending half of a server-streaming call: serialized messages go in from any thread, and go
-// out one write at a time, in order. No gRPC thread ever waits here.
+// The sending half of a server-streaming call: any thread may queue serialized messages, which are
+// sent in order, one write at a time. No gRPC thread ever waits here.
 //
-// Ownership: the call holds a plain pointer to the stream until `done`, so whoever creates one
-// keeps it alive until then; other threads keep it alive by their own shared pointers, and whatever
-// they call after the end has no effect. Law: the call is finished exactly once, when no write is
-// outstanding, with the status that the first `finish` or `abort` settled.
+// Ownership: the call holds a plain pointer to the stream until `done`, so the creator must keep it
+// alive until then. Other threads keep it alive by shared pointers; their calls after the end have
+// no effect. Law: the call is finished exactly once, when no write is outstanding, with the status
+// that the first `finish` or `abort` settled.
 #pragma once
 
 #include <grpcpp/support/byte_buffer.h>
@@ -25,9 +25,9 @@ namespace weft::server {
 
 // How slowly a client may read while a message waits for it.
 struct ReaderPatience {
-  // It may take nothing for so long.
+  // How long it may read nothing.
   std::chrono::steady_clock::duration stall_timeout = std::chrono::seconds(60);
-  // Bytes a second, on average over stall_timeout. 0: any.
+  // Least bytes per second, on average over stall_timeout. 0: any rate.
   std::uint64_t least_rate = 4096;
 };
 
@@ -40,39 +40,39 @@ class MessageStream : private RawCall::Writer {
   MessageStream(const MessageStream&) = delete;
   MessageStream& operator=(const MessageStream&) = delete;
 
-  // Puts a message in the queue and waits if that is full. False once the stream has ended.
+  // Queues a message; waits while the queue is full. Returns false once the stream has ended.
   bool send(grpc::ByteBuffer message);
 
-  // Sends a message before all that is queued. Of several offered while a write is outstanding the
-  // latest is sent; none is before the first message or after the last one.
+  // Sends a message before all queued ones. If several are offered while a write is outstanding,
+  // only the latest is sent; none is sent before the first message or after the last one.
   void offer(grpc::ByteBuffer message);
 
-  // Sends `last` after all that is queued, then finishes the call with OK. Waits where the queue is
-  // full. False if an `abort` came first.
+  // Sends `last` after all queued messages, then finishes the call with OK. Waits while the queue
+  // is full. Returns false if an `abort` came first.
   bool finish(grpc::ByteBuffer last);
 
-  // Drops what is queued and finishes the call as soon as no write is outstanding. False if the
-  // status was settled before.
+  // Drops queued messages and finishes the call as soon as no write is outstanding. Returns false
+  // if the status was settled before.
   bool abort(grpc::Status status);
 
   // Ends the call even if a write is outstanding that the client will never read.
   void kill();
 
-  // Takes the call over; call once, before anything is sent. A call that is cancelled already says
-  // so at once.
+  // Takes the call over; call once, before anything is sent. If the call is cancelled already,
+  // client_gone() is called at once.
   void take_call() { call_->attach(*this); }
 
-  // The status is settled: whatever else is sent is lost.
+  // Whether the status is settled: then further messages are dropped.
   bool ended() const;
 
-  // What is wrong with a client that takes nothing, or too little of what there is to take; nothing
-  // if there is nothing wrong. Call a few times a second, on one thread.
+  // If the client reads nothing, or too slowly while messages wait, returns a sentence that says
+  // so; nullopt otherwise. Call it a few times per second, on one thread.
   std::optional<std::string> too_slow(Clock::time_point now, const ReaderPatience& patience);
 
  protected:
-  // At most so much is queued. Nothing is sent before `pump` or `send`.
+  // `bounds` limit the queue. Nothing is sent before `pump` or `send`.
   MessageStream(std::shared_ptr<RawCall> call, grpc::ByteBuffer first, ChunkQueue::Bounds bounds);
-  // The first message comes by `send`.
+  // The first message is the first one given to `send`.
   MessageStream(std::shared_ptr<RawCall> call, ChunkQueue::Bounds bounds);
 
   // Starts the next write, or finishes the call, if either is due.
@@ -80,25 +80,26 @@ class MessageStream : private RawCall::Writer {
 
   // Whether `send` or `finish` of so many bytes would not wait.
   bool has_room(std::size_t bytes) { return queue_.has_room(bytes); }
-  // The same; waits for room, if there is none, at most so long.
+  // The same, but waits for room for at most `patience`.
   bool has_room_within(Clock::duration patience, std::size_t bytes) {
     return queue_.has_room_within(patience, bytes);
   }
 
-  // A write has ended, so there may be room. On a thread of gRPC: must not wait.
+  // Called when a write has ended, so there may be room. On a thread of gRPC: must not wait.
   virtual void wrote() {}
 
-  // The client cancelled, went away, or its deadline passed. May be called more than once.
+  // Called when the client cancels, disconnects, or passes its deadline. May be called more than
+  // once.
   virtual void client_gone() = 0;
 
-  // The call will not touch the stream again: it may be destroyed from here.
+  // Called last: the call will not use the stream again, so this may destroy it.
   virtual void ended_for_good() = 0;
 
  private:
   void written(bool ok) final;
   void cancelled() final { client_gone(); }
   void done() final;
-  bool settle(grpc::Status status);  // false where it was settled before
+  bool settle(grpc::Status status);  // false if it was settled before
 
   const std::shared_ptr<RawCall> call_;
   ChunkQueue queue_;
@@ -111,8 +112,8 @@ class MessageStream : private RawCall::Writer {
   bool last_queued_ = false;
   Clock::time_point write_started_;
   std::uint64_t writing_bytes_ = 0;  // of the outstanding write
-  // Since when something has waited for the client without a break, or since it was last judged;
-  // and how much it has taken since then.
+  // The time since which messages have always waited for the client, or of its last check; and how
+  // much it has read since then.
   std::optional<Clock::time_point> measured_since_;
   std::uint64_t taken_bytes_ = 0;
   std::optional<grpc::Status> status_;  // to finish with, once the queue is empty

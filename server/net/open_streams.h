@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The streams of a service whose calls are open: gRPC holds them by plain pointers, so somebody has
-// to keep them alive until the calls have ended.
+// Keeps the streams of a service alive until their calls have ended, because gRPC holds them by
+// plain pointers.
 //
 //   OpenStreams<MeshCall> open;
 //   open.add(call);
@@ -30,7 +30,7 @@ class OpenStreams {
     streams_.emplace(key, std::move(stream));
   }
 
-  // The stream may be destroyed by this, but not under the lock.
+  // This may destroy the stream, but not under the lock.
   void forget(MessageStream& stream) {
     std::shared_ptr<Stream> last;
     std::lock_guard lock(mutex_);

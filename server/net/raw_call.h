@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// One call of any method, as bytes: messages come in when they are asked for, any number go out. It
-// is there once the headers of the call are, before any byte of a message is taken; so whoever made
-// it knows who calls, and may refuse him, while all that he has sent lies within HTTP/2's window of
-// 64 KiB.
+// One call of any method, as bytes: it receives messages on request, and sends any number. It
+// exists once the call's headers have arrived, before any byte of a message is read. So a caller
+// can be identified and refused while all that it has sent fits in HTTP/2's window of 64 KiB.
 //
 //   const auto call = RawCall::make(context, observer);
 //   call->read([](RawCall& call, std::optional<grpc::ByteBuffer> request) { ... });
 //   return call->given_to_grpc();
 //
-// A call is finished once: by `answer`, by `finish`, or by whoever took it over with `attach`.
-// Ownership: a call keeps itself alive until gRPC lets go of it; others hold it by shared pointers,
-// and what they call after the end has no effect.
+// A call is finished once: by `answer`, by `finish`, or by the writer that took it over with
+// `attach`. Ownership: a call keeps itself alive until gRPC releases it; others hold it by shared
+// pointers, and their calls after the end have no effect.
 // Thread-safety: every function may be called from any thread; `read`, `attach`, `answer` and
 // `write` by one thread at a time.
 #pragma once
@@ -31,51 +30,51 @@ namespace weft::server {
 class RawCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
                       public std::enable_shared_from_this<RawCall> {
  public:
-  // Whoever writes to a call that he took over. All are called on threads of gRPC, and must not
+  // Writes to a call that it took over. Its functions are called on threads of gRPC, and must not
   // wait.
   class Writer {
    public:
-    // The message of `write` is gone, or, if not `ok`, the client is.
+    // The message of `write` was sent; if not `ok`, the client is gone.
     virtual void written(bool ok) = 0;
     // The client cancelled, went away, or its deadline passed.
     virtual void cancelled() = 0;
-    // Nothing more is called, and the call is over.
+    // The call is over, and no function is called after this one.
     virtual void done() = 0;
 
    protected:
     ~Writer() = default;
   };
-  // Is told of every call that it is given to, whoever answers it; outlives them all.
+  // Is notified of the end of every call that it is given to; must outlive them all.
   class Observer {
    public:
     // The client cancelled, went away, or its deadline passed.
     virtual void cancelled(RawCall& call) = 0;
-    // gRPC lets go of the call.
+    // gRPC releases the call.
     virtual void ended(RawCall& call) = 0;
 
    protected:
     ~Observer() = default;
   };
-  // Nothing if the client sends no further message, or is gone.
+  // The argument is nullopt if the client sends no further message, or is gone.
   using OnRequest = std::function<void(RawCall&, std::optional<grpc::ByteBuffer>)>;
 
   static std::shared_ptr<RawCall> make(grpc::CallbackServerContext* context, Observer& observer);
 
-  // What a handler returns: gRPC's from there on.
+  // For a handler to return: from there on, gRPC owns the call.
   RawCall* given_to_grpc();
 
-  // Takes a message in; the handler may ask for another. What it throws ends the call with
-  // RESOURCE_EXHAUSTED: a handler throws if there is no memory even for saying so.
+  // Receives a message; the handler may request another. If the handler throws, the call ends with
+  // RESOURCE_EXHAUSTED: handlers throw if there is not even memory for a reply.
   void read(OnRequest on_request);
 
-  // Ends a call whose message has not come. False if it came, or the call is over.
+  // Ends a call whose message has not arrived. Returns false if it has, or if the call is over.
   bool give_up_reading(grpc::Status status);
 
-  // One message, and OK.
+  // Sends one message, and finishes with OK.
   void answer(grpc::ByteBuffer message);
   void finish(grpc::Status status);
 
-  // From here on the writer is told; it outlives the call's end.
+  // From here on the writer is notified; it must outlive the call's end.
   void attach(Writer& writer);
   // REQUIRES: attached, and no write is outstanding.
   void write(grpc::ByteBuffer message);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Server reflection, by which grpcurl and its like learn of services and messages. It comes in
-// through the Admission, so whoever has a token may ask, and a stranger may not; gRPC's own plugin
-// knows no callers.
+// Server reflection, by which grpcurl and similar tools learn of services and messages. It uses the
+// Admission, so only identified callers may use it; gRPC's own plugin does not identify callers.
 //
-// Both versions of the protocol, v1 and v1alpha, which differ in their names alone.
+// Serves both versions of the protocol, v1 and v1alpha, which differ only in their names.
 //
 // Source: https://github.com/grpc/grpc/blob/master/doc/server-reflection.md
 // Thread-safety: every function may be called from any thread.
@@ -23,8 +22,8 @@ class ReflectionService final : public RawService {
  public:
   enum class Version { kV1, kV1Alpha };
 
-  // `services` are listed; what is asked of their types is looked up among those that the program
-  // has. The admission outlives the service.
+  // Lists `services`; types are looked up among all that the program has. The admission must
+  // outlive the service.
   ReflectionService(Version version, Admission& admission, std::vector<std::string> services);
   // REQUIRES: no call is open.
   ~ReflectionService() override;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Encryption of TCP addresses: TLS 1.2 and 1.3, and client certificates where a CA for them is
-// named.
+// Encryption of TCP addresses: TLS 1.2 and 1.3, and client certificates if a CA for them is named.
 //
 // The files are read again when they change, within two seconds: a renewed certificate needs no
-// restart, and connections that are open stay open. Rename new files into place, the key first or
-// both at once by a link to their folder. Files that are missing or unreadable change nothing;
+// restart, and open connections stay open. Rename new files into place, the key first or
+// both at once by a link to their folder. Missing or unreadable files change nothing;
 // while certificate and key do not match, new connections are refused.
 //
 //   auto credentials = tls_credentials({.certificate = "server.pem", .key = "server.key"});
@@ -20,10 +19,10 @@
 
 namespace weft::server {
 
-// All are names of PEM files.
+// Names of PEM files.
 struct TlsOptions {
-  std::string certificate{};  // ours, then those between it and its CA; empty: no encryption
-  std::string key{};          // of the first
+  std::string certificate{};  // the server's, then intermediate ones; empty: no encryption
+  std::string key{};          // of the server's certificate
   std::string client_ca{};    // clients need a certificate of one of these; empty: they need none
 };
 

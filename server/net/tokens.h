@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bearer tokens and whose they are, from a file of lines `NAME TOKEN`. Empty lines and lines that
-// begin with # say nothing; a name may have several tokens, so that one can replace another.
+// Bearer tokens and their names, from a file of lines `NAME TOKEN`. Empty lines and lines that
+// begin with # are ignored; a name may have several tokens, so that one can replace another.
 //
 //   # /etc/weft/tokens
 //   ann 3f9c0e...
 //   ci  b81d77...
 //
-// Only digests of tokens are kept, and all of them are compared in constant time: how long an
-// answer takes tells nothing about how much of a token was right.
+// Only digests of tokens are kept, and all of them are compared in constant time, so the time of a
+// reply does not reveal how much of a token was right.
 //
 //   auto file = TokenFile::open("/etc/weft/tokens", log);
 //   if (!file) return complain(file.error());
@@ -47,8 +47,8 @@ class TokenTable {
   std::vector<Entry> entries_;
 };
 
-// The table in a file, read again once a second. While the file is missing or wrong, an empty one
-// included, the table stays as it was, and the log says so once. Thread-safe.
+// The table in a file, read again once per second. While the file is missing, empty or wrong, the
+// table stays as it was, and the log says so once. Thread-safe.
 class TokenFile {
  public:
   static tl::expected<std::unique_ptr<TokenFile>, std::string> open(
@@ -62,14 +62,14 @@ class TokenFile {
 
  private:
   TokenFile(std::filesystem::path path, Logger log, std::chrono::milliseconds between_looks);
-  // Nothing if the file says what it said the last time.
+  // Returns nullopt if the file has not changed.
   tl::expected<std::optional<TokenTable>, std::string> read();
   void look_until_stopped();
 
   const std::filesystem::path path_;
   const Logger log_;
   const std::chrono::milliseconds between_looks_;
-  std::string last_seen_;  // the watching thread's own: a digest of what the file said
+  std::string last_seen_;  // digest of the file's contents; used only by the watching thread
 
   mutable std::mutex mutex_;  // guards the two below
   std::shared_ptr<const TokenTable> table_;

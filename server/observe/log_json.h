@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A line of key=value, as log_value makes them, as one JSON object.
+// Converts a line of key=value, as log_value makes them, to a JSON object.
 #pragma once
 
 #include <string>
@@ -7,12 +7,12 @@
 
 namespace weft::server {
 
-// Keys in the order of the line. A value is a number where it is written as JSON writes numbers,
-// text otherwise; bytes that are no UTF-8 are replaced. A line of any other form becomes
+// Keys are in the order of the line. A value is a number if it has the form of a JSON number,
+// otherwise a string; bytes that are not UTF-8 are replaced. A line of any other form becomes
 // {"message": LINE}.
 std::string json_of_fields(std::string_view line);
 
-// Whether the text is a number of JSON.
+// Whether the text is a JSON number.
 bool is_number(std::string_view text);
 
 }  // namespace weft::server

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small web server for those who watch: GET /metrics for Prometheus, GET /healthz for whoever
-// sends calls here (200 while the server takes them, 503 while it drains).
+// A small web server for monitoring: GET /metrics for Prometheus, GET /healthz for load balancers
+// (200 while the server accepts calls, 503 while it drains).
 //
-// One thread, one request to a connection. A request that is not there when patience ends, or has
-// more than 8 KiB, ends its connection, and so does an answer that is not read by then. A
-// connection beyond the limit, which is at least 1, closes the one that has been open longest.
+// It has one thread, and serves one request per connection. A connection is closed if its request
+// is not complete within the time limit or has more than 8 KiB, or if its reply is not read in
+// time. A connection beyond the limit, which is at least 1, closes the one that has been open
+// longest.
 //
 //   auto endpoint = MetricsEndpoint::start("127.0.0.1:0", {.metrics = ..., .healthy = ...});
 //   if (!endpoint) return complain(endpoint.error());
@@ -31,13 +32,13 @@ struct EndpointLimits {
 
 class MetricsEndpoint {
  public:
-  // `address` is HOST:PORT, port 0 for any that is free. Both pages are called on a thread of the
-  // endpoint's until it is destroyed. The error names the address.
+  // `address` is HOST:PORT, with port 0 for any free port. Both pages are made by callbacks on a
+  // thread of the endpoint until it is destroyed. The error names the address.
   static tl::expected<std::unique_ptr<MetricsEndpoint>, std::string> start(
       const std::string& address, MetricsPages pages, EndpointLimits limits = {});
   ~MetricsEndpoint();
 
-  // As bound.
+  // The bound address.
   const std::string& address() const { return address_; }
 
  private:

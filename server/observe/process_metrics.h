@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every program tells Prometheus of itself, under the usual names: process_cpu_seconds_total,
-// process_resident_memory_bytes, process_open_fds and so on. What /proc does not tell is left out.
+// The metrics that every process exports to Prometheus, under the usual names:
+// process_cpu_seconds_total, process_resident_memory_bytes, process_open_fds and so on. Values that
+// /proc does not have are left out.
 #pragma once
 
 #include <prometheus/metric_family.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the house-keeping of every store has in common: what may be much is done in steps, each a
-// transaction of its own, so that others write between.
+// Common to the house-keeping of every store: work that may be large is done in steps, each in its
+// own transaction, so that others can write in between.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace weft::server {
 
-// At most, in a step.
+// Maximum jobs per step.
 inline constexpr int kJobsAtOnce = 500;
 inline constexpr int kMeshesAtOnce = 20;
 inline constexpr int kChunksAtOnce = 50;
 
-// A task whose lease ran out, or that has no attempt left.
+// A task whose lease ran out, or that has no attempts left.
 struct LostTask {
   std::int64_t task = 0;
   std::int64_t tries = 0;
 };
 
-// Repeats a step, which tells what it collected, until that is nothing; adds all to `all`.
+// Repeats a step, which returns what it collected, until that is nothing; adds it up in `all`.
 template <class Step>
 StoreResult<void> collect_in_steps(Collected& all, Step&& step) {
   while (true) {

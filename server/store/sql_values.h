@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the stores write in SQL what the rest of the server has in types of its own. Both give a job
-// as the same fifteen columns, in the order in which `read_job` reads them.
+// Converts the server's types to SQL and back. Both stores return a job as the same fifteen
+// columns, in the order in which `read_job` reads them.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace weft::server {
 
-// The nearest time that the clock knows: those of a damaged row may be any number.
+// The nearest time in the clock's range, because a damaged row may have any number.
 inline WallTime from_micros(std::int64_t micros) {
   constexpr auto kFirst = std::chrono::ceil<std::chrono::microseconds>(WallTime::duration::min());
   constexpr auto kLast = std::chrono::floor<std::chrono::microseconds>(WallTime::duration::max());
@@ -29,7 +29,7 @@ inline std::int64_t to_micros(std::chrono::microseconds duration) {
   return duration.count();
 }
 
-// What SQL can hold of a number that may be larger.
+// The number, limited to SQL's largest integer.
 inline std::int64_t to_sql(std::uint64_t number) {
   constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   return static_cast<std::int64_t>(std::min(number, kMost));
@@ -38,7 +38,7 @@ inline std::uint64_t to_unsigned(std::int64_t number) {
   return static_cast<std::uint64_t>(number);
 }
 
-// A bit for each; all, where there are none.
+// One bit per state; all bits if there are none.
 inline std::int64_t bits_of(const std::vector<JobState>& states) {
   std::int64_t bits = states.empty() ? ~std::int64_t{0} : 0;
   for (const JobState state : states) bits |= std::int64_t{1} << static_cast<int>(state);

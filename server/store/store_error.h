@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can go wrong with a store, whatever is in it.
+// The errors of a store.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace weft::server {
 enum class StoreErrorKind {
   kUnavailable,  // no connection, a time-out, a restart: the same call may succeed later
   kFull,         // the disk is full
-  kBroken,       // what is stored is not what was stored, or of a version that is not ours
+  kBroken,       // the data is damaged, or of another version
 };
 
 struct StoreError {

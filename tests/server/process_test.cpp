@@ -155,8 +155,8 @@ TEST(Process, LogsLinesOfJsonWhereAsked) {
       EXPECT_GT(json.at("triangles"), 0) << line;
     }
   }
-  for (const char* event :
-       {"starting", "listening", "call_queued", "call_started", "call_ended", "draining", "stopped"})
+  for (const char* event : {"starting", "listening", "call_queued", "call_started", "call_ended",
+                            "draining", "stopped"})
     EXPECT_TRUE(events.contains(event)) << event;
 }
 

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads a domain from a table of the corners of rings, one to a line:
 //
-//   x,y,marker        optional: the names of the columns, in any order and case; x and y (or lon
-//   and 0,0,1             lat, or longitude and latitude) must be there, ring and marker may be.
-//   Without 4,0,2             this line the columns are x and y. 4,4,2 0,4,2             the ring
-//   closes by itself; its first corner may be repeated
-//                     a line without a corner ends the ring
+//   x,y,marker
+//   0,0,1
+//   4,0,2
+//   4,4,2
+//   0,4,2
+//
 //   1,1,5
 //
-// Columns are separated by commas, semicolons, tabs or blanks; '#' starts a comment. Where there is
-// a column `ring`, an integer, a ring ends where it changes. `marker`, an integer, is that of the
-// segment from this corner to the next. The points inside an odd number of rings are meshed, so a
-// ring in a ring is a hole.
+// The first line may name the columns, in any order and case: x and y (or lon and lat, or longitude
+// and latitude), and optionally ring and marker. Without it, the columns are x and y. Columns are
+// separated by commas, semicolons, tabs or blanks; '#' starts a comment.
+//
+// A line without a corner ends a ring. If there is a column `ring`, an integer, a ring also ends
+// where it changes. A ring is closed automatically; its first corner may be repeated. `marker`, an
+// integer, is that of the segment from this corner to the next. The points inside an odd number of
+// rings are meshed, so a ring in a ring is a hole.
 //
 // Errors (kUnreadableInput) carry file:line:column, or name the ring by the line where it starts.
 #pragma once

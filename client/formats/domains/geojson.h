@@ -4,12 +4,12 @@
 //
 // What is meshed: see geometry_builder.h.
 //
-// Members of a Feature's `properties` that are numbers and mean something here:
+// Members of a Feature's `properties` that are used if they are numbers:
 //   marker    integer: marks the segments of the feature
 //   region    integer: id of the triangles inside the feature's polygons
 //   max_area  positive: bound on the area of these triangles
 //
-// Errors (kUnreadableInput) name the line and column where the text is not JSON, otherwise the path
+// Errors (kUnreadableInput) name the line and column if the text is not JSON, otherwise the path
 // of the offender ("features[3].geometry.coordinates[0]"): wrong types, a ring that is not closed,
 // has fewer than 3 distinct points or crosses itself, nesting deeper than 64 levels.
 #pragma once

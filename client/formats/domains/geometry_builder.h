@@ -4,8 +4,8 @@
 // What is meshed:
 //   - With polygons: the points inside an odd number of rings (Fill::kEvenOdd), so rings of holes
 //     are holes, and polygons that share an edge are both filled.
-//   - Lines beside polygons become edges inside the domain. Each is sent twice, for two coincident
-//     segments leave the parity of even-odd filling alone.
+//   - Lines beside polygons become edges inside the domain. Each is sent twice, because two
+//     coincident segments do not change the parity of even-odd filling.
 //   - Lines only: every bounded face (Fill::kSeeds).
 //   - Points become vertices.
 // Positions that repeat their predecessor are dropped. A region floods from a point inside its
@@ -35,7 +35,7 @@
 
 namespace weft::client {
 
-// What a file says of a geometry.
+// The properties of a geometry in a file.
 struct GeometryProperties {
   std::int32_t marker = 0;             // of its segments
   std::optional<std::int32_t> region;  // of the triangles inside its polygons
@@ -55,13 +55,13 @@ class GeometryBuilder {
 
   // A polygon is the rings between these two calls.
   void begin_polygon() { polygon_start_ = domain_.segments.size(); }
-  // The last position repeats the first; where `must_close` is false it may be left out.
+  // The last position repeats the first; if `must_close` is false it may be left out.
   Result<void> ring(std::span<const Point> positions, const std::string& path,
                     const GeometryProperties& properties,
                     std::span<const std::int32_t> markers = {}, bool must_close = true);
   void end_polygon(const std::string& path, const GeometryProperties& properties);
 
-  // An error when nothing was added. Ends the use of the builder.
+  // Returns an error if nothing was added. The builder must not be used afterwards.
   Result<Domain> finish();
 
   // "coast.wkt: polygon 1 is ...".

@@ -22,14 +22,14 @@ struct PolygonRange {
   std::size_t end_segment = 0;
 };
 
-// One point per polygon; none for a polygon without area. Its inside is where rays cross its own
-// segments an odd number of times. Fails (kUnreadableInput) when the polygons and segments are so
+// One point per polygon; nullopt for a polygon without area. Its inside is where rays cross its own
+// segments an odd number of times. Fails (kUnreadableInput) if the polygons and segments are so
 // many and so tall that the sweep would not end in reasonable time.
 Result<std::vector<std::optional<Point>>> interior_points(const Domain& domain,
                                                           std::span<const PolygonRange> polygons);
 
 // One point per ring of an even-odd domain, in the face that touches the ring from its inside: a
-// seed for a hole where an even number of rings is around that face, none where it is filled.
+// seed for a hole if an even number of rings is around that face, nullopt if it is filled.
 // Segments inside the domain must be in it twice. Fails as above.
 Result<std::vector<std::optional<Point>>> hole_points(const Domain& domain,
                                                       std::span<const PolygonRange> rings);

@@ -24,7 +24,7 @@ class RegionIds {
   // REQUIRES: the values are finite.
   explicit RegionIds(std::span<const double> values);
 
-  // REQUIRES: the value is one of those.
+  // REQUIRES: the value is one of these.
   std::int32_t of(double value) const;
   // Those whose id is not the value itself, by id.
   const std::vector<RegionValue>& assigned() const { return assigned_; }

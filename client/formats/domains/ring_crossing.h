@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds where a ring crosses itself: M. I. Shamos and D. Hoey, "Geometric intersection problems",
 // 1976, O(n log n), with exact predicates. Only edges whose interiors cross count; a ring that
-// touches itself, at a vertex or along an edge, is let through (even-odd filling knows what to do).
+// touches itself, at a vertex or along an edge, is accepted, because even-odd filling handles it.
 #pragma once
 
 #include <cstdint>

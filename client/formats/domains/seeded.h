@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same domain by Triangle's rule (Fill::kSeeds), for formats that know no other: points that
+// Converts a domain to Triangle's rule (Fill::kSeeds), for formats that have no other: points that
 // coincide become one, segments that repeat become one, and every hole gets a seed.
 //
 // Errors (kUnreadableInput): a domain of so many tall rings that the search for seeds would not end
-// in reasonable time. Where rings cross each other between their points, the faces between them may
-// miss their seed; GeoJSON that is valid has no such rings.
+// in reasonable time. If rings cross each other between their points, the faces between them may
+// lack a seed; valid GeoJSON has no such rings.
 #pragma once
 
 #include "client/base/error.h"

@@ -2,12 +2,12 @@
 // ADCIRC's grid file, fort.14 (https://adcirc.org/home/documentation, "ADCIRC Grid and Boundary
 // Information File"): nodes with depths, triangles, open boundaries, land boundaries.
 //
-// The boundary is cut into rings and each ring where its marker changes. A piece is open when its
+// The boundary is cut into rings, and each ring where its marker changes. A piece is open if its
 // marker is one of `open_boundaries`, otherwise it is mainland (IBTYPE 0); a ring around a hole
 // without an open piece is an island (IBTYPE 1), in one piece. The domain lies to the left of the
-// nodes of a boundary, so the land is on the right. A ring of one piece repeats its first node at
-// the end if it is mainland, and not if it is open or an island, as ADCIRC wants it. What an edge
-// inside the domain is marked with is lost, and so are regions. Depths are 0: weft knows of none.
+// nodes of a boundary, so the land is on the right. As ADCIRC requires, a ring of one piece repeats
+// its first node at the end if it is mainland, and not if it is open or an island. Markers of edges
+// inside the domain are lost, and so are regions. Depths are 0, because weft knows no depths.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,9 @@ namespace weft::client {
 void write_adcirc(const MeshView& mesh, std::span<const std::int32_t> open_boundaries,
                   OutputFile& file);
 
-// Boundaries become edges: with the marker that the line of their count tells, as write_adcirc's
-// does ("= Number of nodes for open boundary 1, marker 3"), otherwise 1 for open ones, 2 for
-// mainland and all the other kinds, 3 for islands. Depths are dropped.
+// Boundaries become edges, with the marker in the line of their count, as write_adcirc writes it
+// ("= Number of nodes for open boundary 1, marker 3"); without it, 1 for open ones, 2 for
+// mainland and all other kinds, 3 for islands. Depths are dropped.
 Result<Mesh> read_adcirc(const std::filesystem::path& path);
 
 }  // namespace weft::client

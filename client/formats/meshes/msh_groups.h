@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gmsh's physical groups: each region is one of dimension 2 named "region <id>", each marker one of
-// dimension 1 named "marker <value>". A group's tag is the id or value itself where that is
+// dimension 1 named "marker <value>". A group's tag is the id or value itself if that is
 // positive, otherwise the lowest free number.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace weft::client {
 
 struct PhysicalGroups {
   PhysicalGroups(PagedMemory* pages, std::span<const std::int32_t> values);
-  // The place of a value in `ids`. REQUIRES: it is one of them.
+  // The index of a value in `ids`. REQUIRES: it is one of them.
   std::size_t find(std::int32_t value) const;
 
   std::vector<std::int32_t> ids;   // region ids or markers, ascending

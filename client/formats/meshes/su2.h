@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SU2's native mesh (https://su2code.github.io/docs_v7/Mesh-File/), two-dimensional: triangles,
-// points, and the boundary by marker, the tag being the number. Every edge of the boundary is in
-// one; those without a marker are in 0. Edges inside the domain are left out, SU2 knows none;
+// points, and the boundary by marker, whose tag is the number. Every edge of the boundary is in
+// one; those without a marker are in 0. Edges inside the domain are left out, because SU2 has none;
 // regions are lost.
 #pragma once
 

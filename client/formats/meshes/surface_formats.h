@@ -2,9 +2,8 @@
 // Formats of surfaces in space, for viewers and printers; z is 0.
 //   .obj  Wavefront: triangles in groups "region_<id>", edges as lines in groups "marker_<value>"
 //   .off  Object file format: vertices and triangles; no regions, no edges
-//   .ply  Stanford polygons, binary: vertices in double precision, faces with `region`; no edges,
-//   for
-//         some readers refuse them
+//   .ply  Stanford polygons, binary: vertices in double precision, faces with `region`; no edges
+//         (some readers refuse them)
 //   .stl  binary: triangles in single precision, each on its own; no regions, no edges
 #pragma once
 

@@ -15,8 +15,8 @@ namespace weft::client {
 
 void write_vtu(const MeshView& mesh, OutputFile& file);
 
-// Reads what write_vtu writes, and grids of triangles, lines and vertices by others as long as they
-// are little-endian, uncompressed, and raw appended or ASCII.
+// Reads files of write_vtu, and other programs' grids of triangles, lines and vertices if they are
+// little-endian, uncompressed, and raw appended or ASCII.
 Result<Mesh> read_vtu(const std::filesystem::path& path);
 
 }  // namespace weft::client

@@ -2,7 +2,7 @@
 // The point section that Triangle's .node and .poly files share:
 //   <points> <dimension, 2> <attributes> <markers, 0 or 1>
 //   <number> <x> <y> [attributes] [marker]        numbers from 0 or 1, without gaps
-// Attributes are read over.
+// Attributes are ignored.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ inline constexpr std::uint64_t kMaxTextBytes = std::uint64_t{16} << 30;
 
 struct TrianglePoints {
   std::vector<Point> points;
-  std::vector<std::int32_t> markers;  // one per point; empty when the file has none
+  std::vector<std::int32_t> markers;  // one per point; empty if the file has none
   std::int64_t base = 1;              // number of the first point
   Provenance places;
 };
@@ -31,12 +31,12 @@ Result<TrianglePoints> read_triangle_points(LineScanner& scanner);
 // Reads a .node file.
 Result<TrianglePoints> read_node_file(const std::filesystem::path& path);
 
-// A number of a list whose first is `base`, as an index from 0; an error when it is not below
-// base + count.
+// Reads a number of a list whose first is `base`, as an index from 0; returns an error if it is not
+// below base + count.
 Result<std::uint32_t> read_index(LineScanner& scanner, std::string_view what, std::int64_t base,
                                  std::size_t count);
 
-// The number that opens line i of a list whose first is `base`; an error when it is another.
+// Reads the number that begins a line of a list; returns an error if it is not the expected one.
 Result<void> expect_number(LineScanner& scanner, std::string_view what, std::int64_t number);
 
 }  // namespace weft::client

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Domains in Triangle's .poly file (https://www.cs.cmu.edu/~quake/triangle.poly.html):
-// points (in the .node file beside it when the file has 0), segments with markers, holes, and
+// points (in the .node file beside it if the file has 0), segments with markers, holes, and
 // regions (x, y, attribute, maximum area). A region's attribute is its id if it is an integer, or
 // gets one (region_values.h). As Triangle documents it, a lone value is both the attribute and the
 // maximum area, and a maximum area that is 0 or negative means no bound. The faces are meshed by
 // Triangle's rule, Fill::kSeeds; seeded.h turns other domains into such.
 //
-// Errors (kUnreadableInput) carry file:line:column. What only geometry can tell (crossings,
-// zero-length segments, seeds outside the domain) is left to the server.
+// Errors (kUnreadableInput) carry file:line:column. Geometric faults (crossings,
+// zero-length segments, seeds outside the domain) are left to the server.
 #pragma once
 
 #include <filesystem>

@@ -6,19 +6,19 @@
 // How segments meet. All predicates are exact on doubles. With T = merge_tolerance (tolerance.h):
 //   - Points nearer to each other than T become one, before anything else (merging.h).
 //   - A piece of a segment is led through every vertex nearer than T to it and to its input
-//     segment, and through every vertex nearer than T / 2 to it: while it is inserted, those that
-//     it passes; at the end, those beside the edge (strip_search.h), until there is none.
-//   - Where two pieces cross, the crossing of the two INPUT segments is computed exactly and
-//     rounded once; if merging has bent the pieces away from it, that of the pieces. The crossing
-//     is the vertex nearest to it, if that is nearer than T, and else a new one; both are led
-//     through it.
+//     segment, and through every vertex nearer than T / 2 to it: during its insertion, those that
+//     it passes; at the end, those beside the edge (strip_search.h), until none is left.
+//   - If two pieces cross, the crossing of the two INPUT segments is computed exactly and
+//     rounded once; if merging has bent the pieces away from it, that of the pieces. The vertex
+//     nearest to the crossing is used if it is nearer than T, otherwise a new vertex is made; both
+//     pieces are led through it.
 // Afterwards all vertices are T apart, and no constrained edge passes a vertex nearer than T / 2.
 // So a T-junction whose end was rounded is a junction, double walls whose ends are rounded apart
-// are one, and nearly concurrent segments meet in one vertex. Segments that become one edge count
-// in `odd` each.
+// are one, and nearly concurrent segments meet in one vertex. If segments become one edge, each
+// counts in `odd`.
 //
-// Why that ends. New vertices are T from all others, so only so many fit. As long as there is no
-// new one, each step replaces pieces by strictly shorter ones between the vertices that there are:
+// Why that ends. New vertices are T from all others, so only finitely many fit. Between two new
+// vertices, each step replaces pieces by strictly shorter ones between existing vertices:
 // there are finitely many lengths, so no sequence of such steps is endless. They are shorter
 // because a piece uv is led through w only if |uw| and |wv| are below |uv| (`shortens`). For w
 // between the ends, T from both, and d < T / 2 off the piece, that is no restriction: with a and b
@@ -41,7 +41,7 @@
 
 namespace weft {
 
-// Splits of segments, by crossings and by vertices on them, that one PSLG may ask for.
+// Maximum splits of segments in one PSLG, by crossings and by vertices on them.
 inline constexpr std::uint64_t kMaxSplits = std::uint64_t{1} << 25;
 
 struct Arrangement {
@@ -66,13 +66,13 @@ struct Arrangement {
   Merging merging;
 };
 
-// kEmptyDomain: nothing is left since features have merged.
+// The error kEmptyDomain of a PSLG of which nothing is left after merging.
 Error closed_by_merging(const Merging& merging);
 
 // Bytes that an arrangement of so many vertices and constrained edges takes at the peak: the
-// triangulation and the plain copy of it side by side. Measured at a million vertices: 220 a vertex
-// where there are no segments, 224 on a ring, 249 and 293 where 1.5 and 2 edges a vertex are
-// constrained and crossings made the vertices.
+// triangulation and the plain copy of it side by side. Measured at a million vertices: 220 per
+// vertex without segments, 224 on a ring, 249 and 293 if crossings made the vertices and 1.5 and 2
+// edges per vertex are constrained.
 std::uint64_t estimated_bytes(std::uint64_t vertices, std::uint64_t edges);
 
 // REQUIRES: a PSLG that `validate` accepts. Throws Stopped: kLimitExceeded over `max_splits`,

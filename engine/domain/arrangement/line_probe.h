@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Looks around a vertex of the triangulation for what lies towards another one.
+// Finds what the line from a vertex of the triangulation to another one meets first.
 #pragma once
 
 #include "engine/domain/triangulation/triangulation.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distances that decide what meets what, never on which side something lies: rounded arithmetic,
+// Distances that decide what is merged, never on which side something lies: rounded arithmetic,
 // the same on every machine.
 #pragma once
 

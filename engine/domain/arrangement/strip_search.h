@@ -16,40 +16,40 @@ class StripSearch {
   using Vertex = Triangulation::Vertex;
   using Edge = Triangulation::Edge;
 
-  // The vertices are at least 2 * height apart.
+  // REQUIRES: the vertices are at least 2 * height apart.
   StripSearch(const Triangulation& triangulation, double height, StopPoller& poller)
       : t_(triangulation), height_(height), poller_(poller) {}
 
-  // From now on they are so far apart. REQUIRES: 2 * height at least.
+  // The vertices are so far apart from now on. REQUIRES: spacing >= 2 * height.
   void set_spacing(double spacing) {
     constexpr double kWide = 40;  // heights
     clear_part_ = spacing >= kWide * height_ ? kAlmostFlat : kAt120;
   }
 
-  // Of the vertices on the side of edge.face, the one nearest to the edge: nearer than the height,
-  // between the edge's ends, and not hidden by another constrained edge. kInfinite if there is
-  // none. So the triangle that it makes with the edge has no vertex inside.
+  // Returns the vertex nearest to the edge among those on the side of edge.face that are nearer
+  // than the height, between the edge's ends, and not hidden by another constrained edge; kInfinite
+  // if there is none. So the triangle that it makes with the edge has no vertex inside.
   //
   // It searches the faces that the strip of this height passes through; around the edge's ends,
-  // those within 30 degrees of it. Throws Stopped.
+  // those within 30 degrees of the edge. Throws Stopped.
   Vertex nearest(Edge edge);
 
-  // Whether the face tells that there is none, as most do: it is seen from its apex at 120 degrees
-  // at most, so every visible vertex sees the edge so, since it lies outside of the face's
-  // circumcircle. Then one of the angles at the edge is 30 degrees at least, at an end that is
-  // twice the height away.
+  // Whether the face proves that there is no such vertex, as most faces do. If the face's apex sees
+  // the edge at an angle of at most 120 degrees, so does every visible vertex, because it lies
+  // outside the face's circumcircle. Then one of the angles at the edge is at least 30 degrees, at
+  // an end that is at least twice the height away.
   //
-  // Vertices that are farther apart need less: if they are 40 heights apart, 171 degrees at the
-  // apex leave 4.5 at the edge, whose sine is above 3 in 40. So the apex is at least 3 heights off,
-  // too.
+  // A larger angle suffices if vertices are farther apart: if they are 40 heights apart, 171
+  // degrees at the apex leave 4.5 at the edge, whose sine is above 3 in 40. So the apex is at least
+  // 3 heights off, too.
   bool is_clear(Edge edge) const {
     const Vertex apex = t_.apex(edge);
     if (apex == Triangulation::kInfinite) return true;
     const Point u = t_.at(t_.right(edge)), v = t_.at(t_.left(edge)), at = t_.at(apex);
     return is_clear({u.x - at.x, u.y - at.y}, {v.x - at.x, v.y - at.y});
   }
-  // Whether that holds for all edges of the face that carry a constraint. Which do is hard to
-  // foresee: so there is no branch on it.
+  // Whether that holds for all edges of the face that carry a constraint. There is no branch on
+  // which edges do, because it would be mispredicted.
   bool is_clear(std::uint32_t face) const {
     if (t_.is_infinite(face)) return true;
     const Point a = t_.at(t_.vertex(face, 0)), b = t_.at(t_.vertex(face, 1)),
@@ -89,7 +89,7 @@ class StripSearch {
   Vertex u_ = 0, v_ = 0;  // the ends, and what is known of the edge
   Point from_, along_;
   double length_ = 0, length2_ = 0;
-  std::vector<Edge> stack_;  // to look across, from the face that it names
+  std::vector<Edge> stack_;  // edges to look across, each from its face
   std::unordered_set<std::uint32_t> seen_;
 };
 

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// The predicates inline: a floating-point filter, and the exact predicate (predicates.h) where the
-// filter cannot tell. Their signs are those of the exact predicates, for coordinates of at most
-// 1e50 in magnitude, which `validate` ensures, and however small.
+// The predicates inline: a floating-point filter, and the exact predicate (predicates.h) if the
+// filter cannot decide. Their signs are those of the exact predicates for coordinates of at most
+// 1e50 in magnitude, however small; `validate` ensures that.
 //
 // Source: the first of the error bounds in J. R. Shewchuk, "Adaptive precision floating-point
 // arithmetic and fast robust geometric predicates", 1997: with e = 2^-53, the rounded determinant
 // is off by at most (3 + 16 e) e times the sum of its products' magnitudes in `orientation`, by
 // (10 + 96 e) e times the permanent in `in_circle`.
 //
-// He assumes that nothing overflows or underflows. The largest term here is below 1e204, so nothing
-// overflows. Differences and sums do not underflow harmfully: a result below 2^-1022 is exact. A
-// product that underflows is off by at most u = 2^-1074 more. In `orientation` two products may, so
-// the determinant is off by 2 u more. In `in_circle` u is multiplied by the other factor, a sum of
-// squares or of products of differences, of at most 2e101: the three terms are off by less than
-// 1e-221 more. The bounds below add more than that, 1e-300 and 1e-200. So a domain around
-// 1e-50 wide is triangulated by exact arithmetic alone: slower by far, but right.
+// Shewchuk assumes that nothing overflows or underflows. The largest term here is below 1e204, so
+// nothing overflows. Underflow of differences and sums is harmless: a result below 2^-1022 is
+// exact. A product that underflows is off by at most u = 2^-1074 more. In `orientation` two
+// products may underflow, so the determinant is off by 2 u more. In `in_circle` u is multiplied by
+// the other factor, a sum of squares or of products of differences, of at most 2e101: the three
+// terms are off by less than 1e-221 more. The bounds below add more than that, 1e-300 and 1e-200.
+// So a domain around 1e-50 wide is triangulated by exact arithmetic alone: much slower, but
+// correct.
 #pragma once
 
 #include <cmath>

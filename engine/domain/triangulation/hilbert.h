@@ -11,11 +11,11 @@
 namespace weft {
 
 // A permutation of 0 .. points.size() - 1. The grid has 2^24 x 2^24 cells over the points' bounding
-// box; where more than 64 points share a cell, they are ordered by a grid over their own box in
-// turn, so that one point far away does not undo the order of all others. Points that share a cell
+// box; if more than 64 points share a cell, they are ordered by a grid over their own box in
+// turn, so that one point far away does not spoil the order of all others. Points that share a cell
 // otherwise keep their order.
 //
-// REQUIRES: finite coordinates. Throws Stopped. 40 ns a point, about; 48 bytes a point at the peak.
+// REQUIRES: finite coordinates. Throws Stopped. About 40 ns and at most 48 bytes per point.
 std::vector<std::uint32_t> hilbert_order(const std::vector<Point>& points, StopPoller& poller);
 
 }  // namespace weft

@@ -11,7 +11,7 @@
 namespace weft {
 
 struct Location {
-  std::uint32_t triangle = kNone;  // that contains the point, kNone outside the convex hull
+  std::uint32_t triangle = kNone;  // it contains the point; kNone outside the convex hull
   bool on_segment = false;         // on a constrained edge, decided exactly
   bool on_vertex = false;
 };

@@ -20,16 +20,16 @@ namespace weft {
 
 class SegmentInserter {
  public:
-  // `points` are those of the PSLG, after merging (merge_points in merging.h), `triangulation` is
-  // theirs. No two vertices are nearer to each other than `spacing`, the tolerance at least. Adds
-  // to `merging`. All references must outlive the inserter.
+  // `points` are those of the PSLG after merging (merge_points in merging.h), `triangulation` is
+  // their triangulation. No two vertices are nearer to each other than `spacing`, which is at least
+  // the tolerance. Adds to `merging`. All references must outlive the inserter.
   SegmentInserter(const Pslg& pslg, const std::vector<Point>& points, Triangulation& triangulation,
                   double spacing, std::uint64_t max_splits, Merging& merging, StopPoller& poller);
 
   // Afterwards no vertex is nearer to a constrained edge than half the tolerance. Throws Stopped.
   void insert_all();
 
-  // By the numbers that the triangulation has; some are no longer in use.
+  // The constraints, indexed as in the triangulation; some are no longer in use.
   std::vector<Arrangement::Constraint> take_constraints() { return std::move(constraints_); }
   std::uint32_t crossings() const { return crossings_; }  // vertices made where segments cross
 
@@ -38,7 +38,7 @@ class SegmentInserter {
   using Vertex = Triangulation::Vertex;
   using Edge = Triangulation::Edge;
 
-  // A part of one or more input segments that is to become an edge, or several.
+  // A part of one or more input segments that is to become one or several edges.
   struct Piece {
     Vertex u, v;
     Constraint constraint;
@@ -66,20 +66,20 @@ class SegmentInserter {
   Point at(Vertex v) const { return t_.at(v); }
   void count_split();
 
-  // Whether w is so near the piece that this is to be led through it.
+  // Whether w is so near that the piece must be led through it.
   bool touches(Vertex w, const Piece& piece) const;
 
   // Whether the parts from u to p and from p to v are both shorter than the straight line from u to
-  // v: what makes the insertion end.
+  // v. Insertion ends because of this condition.
   bool shortens(Vertex u, Point p, Vertex v) const;
   bool shortens_or_is_end(Vertex u, Vertex w, Vertex v) const {
     return w == u || w == v || shortens(u, at(w), v);
   }
 
-  // The vertex that p is to become, Triangulation::kInfinite if none is near.
+  // The vertex to use for p; Triangulation::kInfinite if none is near.
   Vertex near(Point p);
 
-  // The ends of the lowest input segment, after merging; and as they were.
+  // The ends of the lowest input segment, after merging; then the original ones.
   std::pair<Point, Point> segment(const Constraint& constraint) const;
   std::pair<Point, Point> input_segment(const Constraint& constraint) const;
 

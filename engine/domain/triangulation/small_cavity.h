@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cavity of a point p that becomes a vertex of a Delaunay triangulation, if it is small and off
-// the hull, as nearly all are: the faces in conflict with p (face.h), and the edges around them.
+// The cavity of a point p that becomes a vertex of a Delaunay triangulation: the faces in conflict
+// with p (face.h), and the edges around them. Only for cavities that are small and off the hull, as
+// nearly all are.
 //
 //   SmallCavity cavity;
 //   if (cavity.find(faces, points, p, first)) ... cavity.faces(), cavity.border()
@@ -8,13 +9,13 @@
 // The faces come in the order of a depth-first walk, the edges counter-clockwise: as in
 // Triangulation::find_cavity, which is the general way, so both number new faces alike.
 //
-// Shared arithmetic: everything is relative to p. Of a face that is in conflict, the faces across
-// its other two edges are tested at once, each in its own lane of SSE registers, and what their
-// tests have in common with the tests to come is kept (refine/cavity.h does the same, and derives
-// the filter's error bound). Where the filter cannot tell, `conflicts` decides, so all decisions
+// Shared arithmetic: everything is relative to p. For a face in conflict, the faces across
+// its other two edges are tested at once, each in its own lane of SSE registers, and terms that
+// later tests share are kept (refine/cavity.h does the same, and derives
+// the filter's error bound). If the filter cannot decide, `conflicts` does, so all decisions
 // are exact. The bound assumes that nothing underflows; what underflow adds is below 1e-200, as in
-// filtered.h. A coast of 9,370 points is triangulated in 3.0 ms so, and in 3.8 by one test after
-// the other.
+// filtered.h. This triangulates a coast of 9,370 points in 3.0 ms; one test after the other takes
+// 3.8 ms.
 #pragma once
 
 #include <smmintrin.h>
@@ -31,7 +32,8 @@ class SmallCavity {
  public:
   static constexpr std::uint32_t kMostFaces = 60;
 
-  // False if the cavity has more than kMostFaces faces or an infinite one: then nothing is known.
+  // Returns false if the cavity has more than kMostFaces faces or an infinite one: then its faces
+  // and border are not valid.
   // REQUIRES: face `first` is in conflict with p, and p is not at a vertex.
   bool find(const Face* faces, const Point* points, Point p, std::uint32_t first) {
     faces_ = faces;
@@ -46,7 +48,7 @@ class SmallCavity {
     const End b = end_at(face.vertex[1]);
     const End c = end_at(face.vertex[2]);
     const double cross_bc = cross(b, c);
-    // The edges in the order in which the walk takes them: b-c, c-a, a-b.
+    // The edges in the order of the walk: b-c, c-a, a-b.
     test_corner(first, 1, a, b, c, _mm_set_pd(cross_bc, cross(a, b)), frames_[0], frames_[1]);
     store_end(a, frames_[1]);
     test_corner(first, 2, b, c, a, _mm_set_pd(cross(c, a), cross_bc), frames_[2], frames_[1]);
@@ -54,7 +56,7 @@ class SmallCavity {
     return walk(b);
   }
 
-  // The faces in conflict, `first` in front; there is room for three more.
+  // The faces in conflict, `first` first; there is room for three more.
   std::uint32_t* faces() { return cavity_; }
   std::uint32_t size() const { return size_; }
   // size() + 2 edges, then the first once more.
@@ -114,14 +116,14 @@ class SmallCavity {
     std::uint32_t second_vertex = faces_[second.outside >> 2].vertex[second.outside & 3];
     const bool is_infinite = (first_vertex == kNone) | (second_vertex == kNone);
     if (is_infinite) [[unlikely]] {
-      // No face in conflict has one: so the point that stands in is not looked at again.
+      // No face in conflict has an infinite vertex, so the substitute is not looked at again.
       if (first_vertex == kNone) first_vertex = at.vertex;
       if (second_vertex == kNone) second_vertex = at.vertex;
     }
     const __m128d first_apex = _mm_sub_pd(_mm_loadu_pd(&points_[first_vertex].x), origin_);
     const __m128d second_apex = _mm_sub_pd(_mm_loadu_pd(&points_[second_vertex].x), origin_);
 
-    // One lane an edge: a is its start, b its end, d the apex across.
+    // One lane per edge: a is its start, b its end, d the apex across.
     const __m128d ax = _mm_unpacklo_pd(start.at, at.at);
     const __m128d ay = _mm_unpackhi_pd(start.at, at.at);
     const __m128d bx = _mm_unpacklo_pd(at.at, end.at);

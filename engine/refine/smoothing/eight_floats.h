@@ -21,7 +21,7 @@ struct EightFloats {
     _mm_store_ps(lanes + 4, high);
     return lanes[k];
   }
-  // The largest, and the first lane that holds it; some lane if it is no number.
+  // Returns the largest, and sets `lane` to the first lane that holds it; to any lane if it is NaN.
   float largest(int& lane) const {
     __m128 most = _mm_max_ps(low, high);
     most = _mm_max_ps(most, _mm_shuffle_ps(most, most, _MM_SHUFFLE(1, 0, 3, 2)));

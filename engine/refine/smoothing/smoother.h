@@ -10,19 +10,18 @@
 // a segment or another lattice. Nearly all angles below 45 degrees are in these rows, so that only
 // a few vertices in a hundred have to move.
 //
-// A vertex of a triangle that is worth less than an angle of 48 degrees moves to where
-// star_search.h finds that its star is worth most. It stays where it is if that gains less than 1
-// %.
+// A vertex of a triangle that is worth less than an angle of 48 degrees moves to the place that
+// star_search.h finds best for its star. It stays where it is if that gains less than 1 %.
 //
 // What is kept:
 //   - All bounds: a move is made only if every triangle of the star is good after it.
 //   - The constrained Delaunay property: only if every edge of the star and of its link is still
 //     locally Delaunay. So no edge is flipped, and no triangle is written.
-//   - Input points and vertices on segments do not move. If there are leaves, nor do the vertices
-//     of the owners before them, because these are sent before the leaves around.
-//   - Ownership (ownership.h): the whole link must be owned. Then no other task at work may touch a
+//   - Input points and vertices on segments do not move. If there are leaves, the vertices of the
+//     owners before the leaves do not move either, because they are sent before the leaves around.
+//   - Ownership (ownership.h): the whole link must be owned. Then no other running task may touch a
 //     triangle of the star, and none reads the vertex while it moves.
-// A sweep looks at the stars in the order of the slots, so the mesh depends on the request alone.
+// A sweep visits the stars in the order of the slots, so the mesh depends only on the request.
 //
 // At 20 degrees: 1st percentile of the triangles' smallest angles and the largest angle, in
 // degrees, and the engine's instructions with two sweeps over those without:
@@ -33,9 +32,9 @@
 //   coast, 330 k       26.4  144.2    27.9  144.2    28.2  144.2    28.2  144.2    1.13
 //   key, 5,645         30.5  129.1    32.4  122.3    34.6  118.3    34.9  118.3
 //
-// With an earlier search, which found much the same, two sweeps gave 44.4, 44.0, 29.2 and 38.1 if
-// moves that break the Delaunay property were mended by flips, and 44.7, 44.0, 28.5 and 37.5 if
-// vertices slid along segments. Neither is worth its rules so far.
+// With an earlier search of similar results, two sweeps gave 44.4, 44.0, 29.2 and 38.1 if flips
+// restored the Delaunay property after a move, and 44.7, 44.0, 28.5 and 37.5 if vertices slid along
+// segments. Neither gains enough for its complexity.
 #pragma once
 
 #include <emmintrin.h>
@@ -87,7 +86,7 @@ class Smoother {
     first_owner_ = first_owner;
   }
 
-  // Looks for stars at the triangles in `slots`. Errors: kBadSizeValue at a centroid that a move
+  // Smooths the stars of the triangles in `slots`. Errors: kBadSizeValue at a centroid that a move
   // would make, kCancelled, kDeadlineExceeded.
   std::optional<Error> run(const Slots& slots, std::uint32_t sweeps) {
     next_.clear();
@@ -140,7 +139,7 @@ class Smoother {
     return vertex >= first_free_ && !block.on_segment && block.owner >= first_owner_;
   }
 
-  // Whether a triangle is worth less than kPoor. One with an obtuse angle always is.
+  // Whether a triangle is worth less than kPoor; true if it has an obtuse angle.
   bool poor(const Triangle& t) const {
     const Point a = mesh_.vertices[t.vertex[0]];
     const Point b = mesh_.vertices[t.vertex[1]];
@@ -158,7 +157,8 @@ class Smoother {
     }
   }
 
-  // Moves a vertex if that gains anything. `again`: what stays poor is for the next sweep.
+  // Moves a vertex if that gains anything. `again`: keep triangles that stay poor for the next
+  // sweep.
   void smooth(Corner corner, bool again) {
     if (!find_star(corner)) return;
     const StarSearch::Place best = star_.search();
@@ -168,8 +168,8 @@ class Smoother {
     }
   }
 
-  // The star of a vertex, relative to it. False if the task does not own all of it, or a triangle
-  // of it is excused.
+  // Finds the star of a vertex, relative to it. Returns false if the task does not own all of it,
+  // or one of its triangles is excused.
   bool find_star(Corner corner) {
     vertex_ = corner.vertex;
     centre_ = mesh_.vertices[vertex_];
@@ -214,7 +214,7 @@ class Smoother {
     return t.vertex[0] == vertex_ ? 0 : t.vertex[1] == vertex_ ? 1 : 2;
   }
 
-  // Begins the search, with the bounds on the areas where the centroids are now.
+  // Begins the search, with the bounds on the areas at the current centroids.
   void begin_search() {
     double area = 0;  // doubled
     for (std::uint32_t i = 0; i < size_; ++i) {
@@ -235,7 +235,7 @@ class Smoother {
     _mm_storeu_pd(&mesh_.vertices[vertex_].x, _mm_set_pd(p.y, p.x));  // as in slots.h
   }
 
-  // Whether all triangles of the star are within all bounds with the vertex at p. Leaves the ring
+  // Whether all triangles of the star meet all bounds if the vertex is at p. Leaves the ring
   // relative to p.
   bool is_good(Point p) {
     for (std::uint32_t i = 0; i <= size_; ++i) {
@@ -276,7 +276,7 @@ class Smoother {
       }
     }
     if (!star_is_delaunay(mesh_, ring_, 0, size_, p)) return false;
-    // The edge at which the ring is closed.
+    // Rotates the ring, to test the edge at which it is closed.
     std::rotate(ring_.points.begin() + 1, ring_.points.begin() + 2,
                 ring_.points.begin() + size_ + 1);
     ring_.points[0] = ring_.points[size_];
@@ -296,7 +296,7 @@ class Smoother {
   std::vector<Corner> next_;  // and of the next, whose vertices are in `seen_`
   VertexSet seen_;
 
-  // The star at hand: its triangles i have the edges of the link from point i to i + 1.
+  // The current star: triangle i has the edge of the link from point i to i + 1.
   std::uint32_t vertex_ = 0;
   Point centre_;
   std::uint32_t size_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where in its star a vertex makes the smallest angle around it largest.
+// Finds where in its star a vertex makes the smallest angle around it largest.
 //
 //   StarSearch star;
 //   star.begin(6, edge);
@@ -8,13 +8,13 @@
 //   const StarSearch::Place place = star.search();  // relative to where the vertex is
 //
 // A star's worth is that of its worst triangle: the squared sine of the smallest angle, a quarter
-// of it if the largest is over 122.7 degrees. The search looks at eight places at a time: first
+// of it if the largest is over 122.7 degrees. The search tries eight places at a time: first
 // toward the mean of the equilateral apexes over the link's edges, weighted by how bad each
 // triangle is, then around the best place so far. It works in floats, in units of the triangles'
-// edge: what is found is a proposal, and the caller judges it in full precision.
+// edge, so its result is a proposal, which the caller judges in full precision.
 //
-// It makes 32 trials, without a branch within one. A search that gave a trial up at its first
-// triangle that was worse than the best star so far made 26 trials and took longer, because the
+// It makes 32 trials, without a branch within one. A search that ended a trial at the first
+// triangle worse than the best star so far made 26 trials and took longer, because the
 // processor cannot predict where a trial ends. Two sweeps add 12 % (pipe) and 13 % (coast) to the
 // engine's instructions.
 #pragma once
@@ -30,7 +30,7 @@ namespace weft {
 class StarSearch {
  public:
   static constexpr std::uint32_t kMostEdges = 16;  // of a link
-  // The squared sine of 48 degrees: a star that is worth as much is good enough.
+  // The squared sine of 48 degrees: the worth at which a star is good enough.
   static constexpr float kGoodEnough = 0.5523F;
 
   // The number of edges in the link, and a length near theirs.
@@ -39,12 +39,12 @@ class StarSearch {
     edge_ = edge;
     per_edge_ = 1 / edge;
   }
-  // Point i of the link, relative to the vertex. Point 0 comes again as the last.
+  // Sets point i of the link, relative to the vertex. Point 0 must be repeated as the last.
   void set_point(std::uint32_t i, double x, double y) {
     x_[i] = static_cast<float>(x * per_edge_);
     y_[i] = static_cast<float>(y * per_edge_);
   }
-  // The largest area of the triangle at the points i and i + 1, which are set.
+  // Sets the bound on the area of the triangle at the points i and i + 1. REQUIRES: both are set.
   void set_bound(std::uint32_t i, double area) {
     const float x = x_[i + 1] - x_[i];
     const float y = y_[i + 1] - y_[i];
@@ -55,7 +55,7 @@ class StarSearch {
   struct Place {
     double x;
     double y;
-    float gain;  // what the star is worth there over what it is worth now; 0 for nothing to gain
+    float gain;  // the star's worth there over its worth now; 0 if there is nothing to gain
   };
 
   Place search() const {
@@ -95,8 +95,8 @@ class StarSearch {
   static constexpr float kAroundY[8] = {0, 0.7071F, 1, 0.7071F, 0, -0.7071F, -1, -0.7071F};
   static constexpr float kObtuse = 4 * 0.2919F;  // 4 times the squared cosine of 122.7 degrees
 
-  // What the star is worth with its vertex at each of the places; 0 if a triangle would be flat or
-  // too large.
+  // The star's worth with its vertex at each of the places; 0 if a triangle would be flat or too
+  // large.
   EightFloats worth_at(EightFloats x, EightFloats y) const {
     using E = EightFloats;
     const E zero = E::all(0);
@@ -125,8 +125,8 @@ class StarSearch {
     return select(too_large > zero, zero, worst);
   }
 
-  // Of the equilateral triangles on the link's edges; the worse a triangle is, the more its apex
-  // weighs.
+  // The mean apex of the equilateral triangles on the link's edges; the apex of a worse triangle
+  // has a larger weight.
   std::pair<float, float> mean_of_apexes() const {
     constexpr float kHeight = 0.8660254F;
     constexpr float kEvenly = 0.05F;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mesh that refinement works on: 32 bytes a triangle, 16 bytes a vertex, so 40 bytes a
-// triangle.
+// The mesh that refinement works on: 32 bytes per triangle and 16 per vertex, so 40 bytes per
+// triangle in all.
 //
 // Triangles are counter-clockwise; edge i is opposite vertex[i], from vertex[i+1] to vertex[i+2].
 // A half-edge names a triangle and one of its edges in one word.
 //
 // Slots come in blocks, and a block has one owner: the task that took it (slots.h). Only the owner
-// writes triangles into its slots. It takes the slots of a cavity again for the triangles that
+// writes triangles into its slots. It reuses the slots of a cavity for the triangles that
 // replace it; another owner's slot in the cavity is only marked dead. So the slots of a task are
-// final once nobody can reach into its region, and a slot's first vertex tells whether the
-// triangle in it is still the same. 3 to 5 % of the slots end dead. Blocks that nobody reads any
-// more are given back and taken again (schedule/leaf_release.h), so that a mesh that leaves while
+// final once no task can reach into its region, and a slot's first vertex shows whether the
+// triangle in it is still the same. 3 to 5 % of the slots end dead. Blocks that are no longer
+// read are given back and taken again (schedule/leaf_release.h), so that a mesh that is sent while
 // it is refined takes the memory of a strip of it.
 #pragma once
 
@@ -43,8 +43,8 @@ inline constexpr std::uint32_t edge_of(HalfEdge h) {
 inline constexpr std::uint8_t kNext[4] = {1, 2, 0, 0};
 inline constexpr std::uint8_t kPrevious[4] = {2, 0, 1, 0};
 
-// What a triangle misses, and how urgently: kGood, kSkinny, or from kLarge on too large, the more
-// the larger. A triangle that is not good has an entry in a queue.
+// Which bound a triangle misses, and by how much: kGood, kSkinny, or too large from kLarge on, the
+// larger the worse. A triangle that is not good has an entry in a queue.
 using Badness = std::uint32_t;
 inline constexpr Badness kGood = 0;
 inline constexpr Badness kSkinny = 1;
@@ -56,7 +56,7 @@ enum class Excuse : std::uint32_t {
   kNone = 0,
   kSmallInputAngle = 1,  // two segments of the input force it
   kEdgeFloor = 2,        // the caller's own floor on edges
-  kPrecision = 3,        // double precision ends: nobody asked for that
+  kPrecision = 3,        // the limit of double precision, which the caller did not ask for
 };
 
 struct alignas(32) Triangle {
@@ -74,14 +74,14 @@ struct alignas(32) Triangle {
   Excuse excuse() const { return static_cast<Excuse>(flags >> 4 & 3); }
   // Whether a triangle that is bad or excused is larger than its bound.
   bool too_large() const { return badness() >= kLarge || (flags >> 6 & 1); }
-  // Each forgets what the other said, but for too_large: an excused triangle is no longer to be
-  // refined.
+  // Each of these two clears what the other set, except too_large: an excused triangle is no longer
+  // to be refined.
   void set_badness(Badness b) { flags = (flags & 7) | b << 8; }
   void set_excuse(Excuse e) {
     const std::uint32_t large = too_large() ? 1u << 6 : 0;
     flags = (flags & 7) | static_cast<std::uint32_t>(e) << 4 | large;
   }
-  // Whether the task at work has put it off: the queue may have further entries of it.
+  // Whether the running task has deferred it: the queue may have further entries of it.
   bool deferred() const { return flags >> 7 & 1; }
   void set_deferred(bool on) { flags = (flags & ~(1u << 7)) | static_cast<std::uint32_t>(on) << 7; }
   void die() { flags = 1u << 3; }
@@ -90,14 +90,14 @@ static_assert(sizeof(Triangle) == 32);
 
 struct Mesh {
   static constexpr std::uint32_t kMaxTriangles = (1u << 30) - 1;  // half-edges have 32 bits
-  static constexpr std::uint32_t kTriangleShift = 8;              // 256 triangles a block
-  static constexpr std::uint32_t kVertexShift = 7;                // 128 vertices a block
+  static constexpr std::uint32_t kTriangleShift = 8;              // 256 triangles per block
+  static constexpr std::uint32_t kVertexShift = 7;                // 128 vertices per block
   static constexpr std::uint32_t kTriangleBlock = 1u << kTriangleShift;
   static constexpr std::uint32_t kVertexBlock = 1u << kVertexShift;
 
   struct VertexBlock {
     std::uint32_t owner;
-    std::uint32_t number;      // of its first vertex in the mesh that is sent
+    std::uint32_t number;      // of its first vertex in the sent mesh
     std::uint32_t on_segment;  // whether `subsegments` has its vertices
   };
 
@@ -109,9 +109,9 @@ struct Mesh {
   std::unique_ptr<BlockPool> triangle_pool;
   std::unique_ptr<BlockPool> vertex_pool;
 
-  // The domain's triangulation, in blocks of owner 0, with room for at least `max_triangles` in
-  // all, and for the slots that tasks leave dead or unused. `expected_triangles` decides whether
-  // huge pages are worth it. Errors: kOutOfMemory, kLimitExceeded, kCancelled,
+  // Makes a mesh of the domain's triangulation, in blocks of owner 0, with room for at least
+  // `max_triangles` in all, and for the slots that tasks leave dead or unused. `expected_triangles`
+  // decides whether huge pages are worth it. Errors: kOutOfMemory, kLimitExceeded, kCancelled,
   // kDeadlineExceeded.
   static Result<Mesh> from(const Domain& domain, std::uint64_t max_triangles,
                            double expected_triangles, const ExecutionContext& context);
@@ -126,20 +126,20 @@ struct Mesh {
   std::uint32_t subsegment_of(std::uint32_t v) const {
     return block_of_vertex(v).on_segment ? subsegments[v] : kNone;
   }
-  // The number of a vertex in the mesh that is sent, once its block has one.
+  // The number of a vertex in the sent mesh, once its block has a number.
   std::uint32_t number_of(std::uint32_t v) const {
     return block_of_vertex(v).number + (v & (kVertexBlock - 1));
   }
 
-  // The first slot of a block. Thread-safe. Throws a Failure of kLimitExceeded if all are taken, of
-  // which there are far more than `from` was asked for, or as many as have numbers.
+  // Takes a block, and returns its first slot. Thread-safe. Throws a Failure of kLimitExceeded if
+  // all are taken: there are far more than `from` was asked for, or as many as can be numbered.
   std::uint32_t take_triangle_block(std::uint32_t owner);
   std::uint32_t take_vertex_block(std::uint32_t owner, bool on_segment);
-  // Blocks by their first slots, which nobody reads any more. Thread-safe.
+  // Gives back blocks, by their first slots. REQUIRES: nothing reads them any more. Thread-safe.
   void give_back_triangles(const std::vector<std::uint32_t>& first_slots);
   void give_back_vertices(const std::vector<std::uint32_t>& first_slots);
 
-  // At the peak.
+  // Bytes at the peak.
   std::uint64_t bytes() const;
 };
 

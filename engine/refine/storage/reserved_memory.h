@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Address space for the most that a job may need: the system commits a page when it is first
-// touched, so what lies in it grows without moving.
+// touched, so arrays in it grow without moving.
 //
-// Large ranges ask for huge pages: 18 % of the refinement time at 1 M triangles. Small ones do
-// not, for clearing 2 MiB costs more than a small mesh.
+// Large ranges use huge pages, which saves 18 % of the refinement time at 1 M triangles. Small ones
+// do not, because clearing 2 MiB costs more than a small mesh.
 //
-// What a job leaves is kept for those that come after it, for clearing pages anew took 6 % of the
-// time of one thread at 1 M triangles, and 8 % of two; of a mesh of 18,000, a third of all page
-// faults: up to kKeptBytes of up to kKeptRanges ranges with huge pages, and of as many without, or
-// less if `keep_at_most` says so. The system may take those pages while nobody uses them
-// (MADV_FREE), so they are in nobody's way if memory is short, but they count as the process's.
+// The ranges of a job are kept for later jobs, because clearing new pages took 6 % of the time of
+// one thread at 1 M triangles and 8 % of two, and a third of all page faults at 18,000 triangles.
+// Up to kKeptBytes are kept, of up to kKeptRanges ranges with huge pages and as many without, or
+// less if `keep_at_most` says so. The system may take these pages if memory is short while they are
+// not in use (MADV_FREE), but they count as the process's memory.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@
 
 namespace weft {
 
-// kAny: huge ones where another job has left some, otherwise small ones.
+// kAny: huge pages if another job has left some, otherwise small ones.
 enum class Pages { kSmall, kAny, kHuge };
 
 class ReservedMemory {
@@ -28,11 +28,12 @@ class ReservedMemory {
   static constexpr std::size_t kKeptRanges = 8;
   static constexpr std::size_t kKeptBytes = std::size_t{64} << 20;
 
-  // At least `bytes` from a multiple of kHugePage on. They hold anything, unless `pages` is
-  // kSmall: then zero. Thread-safe. Errors: kOutOfMemory.
+  // Reserves at least `bytes`, aligned to kHugePage. Their contents are undefined, but zero if
+  // `pages` is kSmall. Thread-safe. Errors: kOutOfMemory.
   static Result<ReservedMemory> reserve(std::size_t bytes, Pages pages);
 
-  // Bounds what is kept of all ranges together, from the next one that is left on. Thread-safe.
+  // Bounds the bytes kept of all ranges together, from the next range that a job leaves.
+  // Thread-safe.
   static void keep_at_most(std::size_t bytes);
 
   ReservedMemory() = default;

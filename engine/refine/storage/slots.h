@@ -2,8 +2,8 @@
 // The slots of one owner: the vertices and triangles that a refinement task makes. Vertices on
 // segments have blocks of their own, for these remember their subsegment.
 //
-// An owner's slots in the order in which it took them are the same on every run, though the blocks
-// lie elsewhere: what is numbered or sent by that order is deterministic.
+// An owner's slots, in the order in which it took them, are the same on every run, though the
+// blocks may lie elsewhere: numbers and chunks in that order are deterministic.
 #pragma once
 
 #include <emmintrin.h>
@@ -33,7 +33,7 @@ class Slots {
     }
     return triangles_.next++;
   }
-  // Slots for `count` triangles.
+  // Takes slots for `count` triangles.
   void add_triangles(Mesh& mesh, std::uint32_t count, std::uint32_t* slots) {
     if (count == 2 && triangles_.end - triangles_.next >= 2) [[likely]] {
       slots[0] = triangles_.next++;
@@ -70,19 +70,21 @@ class Slots {
   }
 
   std::uint32_t vertex_count() const;
-  // Slots in use, of which some are dead.
+  // The number of slots in use; some are dead.
   std::uint32_t triangle_slots() const;
   // Numbers the vertices in their order, from `first` on; returns the number after the last.
   std::uint32_t number_vertices(Mesh& mesh, std::uint32_t first) const;
 
-  // The triangles have been sent, and nobody reads them any more.
+  // Gives back the triangles' blocks. REQUIRES: they have been sent, and nothing reads them any
+  // more.
   void give_back_triangles(Mesh& mesh) {
     mesh.give_back_triangles(triangle_blocks_);
     triangle_blocks_ = std::vector<std::uint32_t>();  // `= {}` would keep the memory
     triangles_ = {};
   }
 
-  // The vertices have been sent, and nobody reads them or their numbers any more.
+  // Gives back the vertices' blocks. REQUIRES: they have been sent, and nothing reads them or their
+  // numbers any more.
   void give_back_vertices(Mesh& mesh) {
     mesh.give_back_vertices(vertex_blocks_);
     vertex_blocks_ = std::vector<std::uint32_t>();
@@ -104,7 +106,7 @@ class Slots {
   static std::uint32_t used(std::uint32_t first, std::uint32_t block, const Free& free) {
     return first + block == free.end ? free.next : first + block;
   }
-  // In one piece, as the cavity reads it back.
+  // Stores both coordinates at once, because the cavity reads them back at once.
   static void store(Mesh& mesh, std::uint32_t vertex, Point p) {
     _mm_storeu_pd(&mesh.vertices[vertex].x, _mm_set_pd(p.y, p.x));
   }

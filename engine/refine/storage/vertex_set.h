@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A set of vertices that is filled and cleared many times: a table with open addressing, which no
-// result depends on the order of.
+// A set of vertices that is filled and cleared many times: a table with open addressing. No result
+// depends on its order.
 #pragma once
 
 #include <algorithm>

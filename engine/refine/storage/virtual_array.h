@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // An array that never moves. So a mesh grows without copying, and other threads may read it while
-// it does.
+// it grows.
 //
-// Threads that touch a huge page for the first time at the same moment all clear one, and all but
-// one throw theirs away: 5 % of the time of two threads at 1 M triangles. So the one that is half
-// through a page commits the next.
+// If several threads touch a huge page for the first time at the same moment, each clears one, and
+// all but one discard theirs: 5 % of the time of two threads at 1 M triangles. So the thread that
+// is half through a page commits the next.
 #pragma once
 
 #include <sys/mman.h>
@@ -23,7 +23,8 @@ class VirtualArray {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
-  // Room for `capacity` elements, which hold anything, unless `pages` is kSmall: then zero.
+  // Reserves room for `capacity` elements. Their values are undefined, but zero if `pages` is
+  // kSmall.
   static Result<VirtualArray> reserve(std::size_t capacity, Pages pages) {
     auto memory = ReservedMemory::reserve(capacity * sizeof(T), pages);
     if (!memory) return tl::unexpected(memory.error());
@@ -32,8 +33,8 @@ class VirtualArray {
     return array;
   }
 
-  // To be called with the first of some elements that are used from now on: where it is the one in
-  // the middle of a huge page, the page after it is committed. Thread-safe.
+  // Call it with the first of some elements that are used from now on: if it is in the middle of a
+  // huge page, the next page is committed. Thread-safe.
   void commit_ahead(std::size_t i) const noexcept {
     constexpr std::size_t kHugePage = ReservedMemory::kHugePage;
     const std::size_t offset = i * sizeof(T);

@@ -13,16 +13,18 @@
 //   pow atan2 hypot (2), min max (2 or more), clamp(v, lo, hi) = min(max(v, lo), hi)
 // Spaces, tabs and newlines are free.
 //
-// Truths: comparisons, &&, || and ! give 1 or 0; as a condition 0 is false and all else true, NaN
-// included. Both sides of every operator are computed; the side of ?: not taken has no effect.
+// Truth values: comparisons, &&, || and ! give 1 or 0; as a condition 0 is false and all else is
+// true, NaN included. Both sides of every operator are computed; the side of ?: that is not taken
+// has no effect.
 //
-// NaN and infinities are IEEE's: 1/0 is infinite, sqrt(-1) is NaN, comparisons with NaN are false
-// (!= is true). min, max and clamp of a NaN are NaN, so that an undefined size is found.
+// NaN and infinities follow IEEE 754: 1/0 is infinite, sqrt(-1) is NaN, comparisons with NaN are
+// false (!= is true). min, max and clamp of a NaN are NaN, so that an undefined size is detected.
 //
-// Determinism: a value depends on x and y alone, never on the batch, the machine or the compiler:
-// arithmetic is IEEE without contraction, transcendental functions are SLEEF's width-independent
-// (cinz) ones, within 3.5 units in the last place (1 for exp and pow). Powers with a whole constant
-// exponent from -16 to 16 are products, a^0.5 is sqrt(a), e^a is exp(a); pow is the same as ^.
+// Determinism: a value depends only on x and y, never on the batch, the machine or the compiler:
+// arithmetic is IEEE 754 without contraction, transcendental functions are SLEEF's
+// width-independent (cinz) ones, within 3.5 units in the last place (1 for exp and pow). Powers
+// with an integer constant exponent from -16 to 16 are products, a^0.5 is sqrt(a), e^a is exp(a);
+// pow is the same as ^.
 //
 //   Result<Expression> size = Expression::parse("x^2 + y^2 < 25 ? 1e-3 : 1e-2");
 //   double bound = (*size)({3, 4});                      // 1e-2
@@ -44,7 +46,7 @@ namespace weft {
 class Expression final : public SizeFunction {
  public:
   static constexpr std::size_t kMaxLength = 65536;  // bytes of source
-  // Nesting of parentheses, arguments, unary operators, exponents, and what is between ? and :.
+  // Nesting of parentheses, arguments, unary operators, exponents, and the operand between ? and :.
   // Sums, products and chains a ? b : c ? d : ... do not nest.
   static constexpr std::size_t kMaxDepth = 256;
   static constexpr std::size_t kMaxOperations = 4096;  // after folding; equal ones count once
@@ -58,13 +60,13 @@ class Expression final : public SizeFunction {
   Expression& operator=(Expression&&) noexcept;
   ~Expression() override;
 
-  // Cost of 8 lanes: about 1 ns an operation, 3 a division or sqrt, 14 to 60 a transcendental
-  // function, 220 a pow (lanes.h, threaded_code.h).
+  // Cost of 8 lanes: about 1 ns per operation, 3 per division or sqrt, 14 to 60 per transcendental
+  // function, 220 per pow (lanes.h, threaded_code.h).
   void evaluate(std::size_t n, const double* x, const double* y,
                 double* out) const noexcept override;
 
-  // Without transcendental functions nothing is widened, so where the expression is piecewise
-  // constant and the box lies in one piece, lo == hi.
+  // Without transcendental functions nothing is widened, so lo == hi if the expression is piecewise
+  // constant and the box lies in one piece.
   Interval bounds(const Box& box) const noexcept override;
 
   // The value if no x and y are left after folding.

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A size expression as a directed acyclic graph: equal subexpressions are one node, and what does
-// not depend on x and y is folded while the graph is built.
+// A size expression as a directed acyclic graph: equal subexpressions are one node, and those that
+// do not depend on x and y are folded while the graph is built.
 //
 // Folding and rewriting keep every bit of the value: constants are computed by the operations of
-// lanes.h, and the only algebra is that of truths. An argument is converted between number and
-// truth where the operation wants the other (a number is true unless it is 0; a truth is 1 or 0).
+// lanes.h, and only truth values are simplified algebraically. An argument is converted between
+// number and truth value if the operation needs the other kind (a number is true unless it is 0; a
+// truth value is 1 or 0).
 //
 //   Graph graph;
 //   NodeId r2 = graph.binary(Op::kAdd, graph.power(graph.x(), graph.constant(2)), ...);
@@ -38,7 +39,7 @@ class Graph {
   NodeId unary(Op op, NodeId a);
   NodeId binary(Op op, NodeId a, NodeId b);
   NodeId select(NodeId condition, NodeId a, NodeId b);
-  // a^b. A product for a whole constant b from -16 to 16, sqrt for 0.5, exp for the base e.
+  // a^b. A product if b is a constant integer from -16 to 16, sqrt if it is 0.5, exp if a is e.
   NodeId power(NodeId a, NodeId b);
   // `a` as a number.
   NodeId number(NodeId a);

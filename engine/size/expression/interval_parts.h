@@ -15,7 +15,7 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kLargest = std::numeric_limits<double>::max();
 inline constexpr Interval kAnything{-kInfinity, kInfinity, true};
 
-// The lesser and the greater where -0 < +0. REQUIRES: no NaN.
+// The lesser and the greater, with -0 < +0. REQUIRES: no NaN.
 inline double lesser(double a, double b) {
   return a < b || (a == b && std::signbit(a)) ? a : b;
 }
@@ -33,7 +33,7 @@ inline bool either_nan(const Interval& a, const Interval& b) {
   return a.may_be_nan || b.may_be_nan;
 }
 
-// The least interval with all corners; anything if one is NaN.
+// The least interval that contains all corners; the widest one if a corner is NaN.
 inline Interval hull(std::initializer_list<double> corners, bool may_be_nan) {
   Interval result{kInfinity, -kInfinity, may_be_nan};
   for (double corner : corners) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each operation computes, on two lanes at once: the single definition that the batch
-// evaluator, constant folding and the end points of intervals share.
+// Defines what each operation computes, on two lanes at once. The batch evaluator, constant folding
+// and the end points of intervals share this definition.
 //
 // Every function here gives a lane the same bits whatever the other lane holds, and on every
 // x86-64-v2 machine. Arithmetic is IEEE. The transcendental functions are SLEEF's `cinz` ones
 // (deterministic across widths, no fused multiply-add) in their sse4 form, named in full because
-// the names without the suffix choose an implementation by processor. Of SLEEF's two accuracies
-// the faster is taken where there is one: a size needs no last digit. For 8 lanes, in ns:
+// the names without the suffix choose an implementation by processor. If SLEEF has two accuracies,
+// the faster one is used, because a size needs no last digit. For 8 lanes, in ns:
 //
 //            sin   cos   tan   log   hypot  atan2   exp   pow
 //   3.5 ulp   25    28    36    30      14     57     -     -
@@ -94,8 +94,8 @@ struct Multiply {
 struct Divide {
   static Lanes of(Lanes a, Lanes b) { return _mm_div_pd(a, b); }
 };
-// NaN when either is NaN (minpd alone would lose the first), so that an undefined size is found.
-// Of two zeros the second.
+// NaN if either is NaN (minpd alone would lose the first), so that an undefined size is detected.
+// Of two zeros, the second.
 struct Min {
   static Lanes of(Lanes a, Lanes b) { return _mm_or_pd(_mm_min_pd(a, b), _mm_cmpunord_pd(a, a)); }
 };
@@ -132,7 +132,7 @@ struct Or {
   static Lanes of(Lanes a, Lanes b) { return _mm_or_pd(a, b); }
 };
 
-// Bits are chosen, not computed with: what the side not taken holds, NaN included, has no effect.
+// Selects bits without arithmetic, so the side that is not taken has no effect, even if it is NaN.
 struct Select {
   static Lanes of(Lanes mask, Lanes a, Lanes b) {
     return _mm_or_pd(_mm_and_pd(mask, a), _mm_andnot_pd(mask, b));
@@ -148,7 +148,7 @@ auto visit_power(int exponent, Visitor&& visit) {
   return visit(PowN<N>{});
 }
 
-// Calls visit(Operation{}) for the operation that `op`, of one operand, names.
+// Calls visit(Operation{}) for the operation of one operand that `op` names.
 template <class Visitor>
 auto visit_unary(Op op, int exponent, Visitor&& visit) {
   switch (op) {
@@ -222,7 +222,7 @@ auto visit_binary(Op op, Visitor&& visit) {
   }
 }
 
-// One value at a time, for folding and for the end points of intervals. A truth is 1 or 0.
+// One value at a time, for folding and for the end points of intervals. A truth value is 1 or 0.
 inline double apply(Op op, int exponent, double a) {
   return visit_unary(op, exponent, [&](auto f) { return _mm_cvtsd_f64(f.of(_mm_set1_pd(a))); });
 }

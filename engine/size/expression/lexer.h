@@ -21,7 +21,7 @@ class Lexer {
  public:
   explicit Lexer(std::string_view source) : source_(source) {}
 
-  // kEnd for ever after the last.
+  // Returns the next token; kEnd after the last, however often it is called.
   Token next();
 
  private:

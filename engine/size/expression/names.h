@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions an expression may call, and help with names that do not exist.
+// The functions that an expression may call, and help with unknown names.
 #pragma once
 
 #include <cstddef>
@@ -14,13 +14,13 @@ namespace weft::expr {
 struct Function {
   std::string_view name;
   std::size_t min_arguments = 1;
-  std::optional<std::size_t> max_arguments;  // none: any number
-  std::optional<Op> op;                      // none for clamp and pow, which the parser spells out
+  std::optional<std::size_t> max_arguments;  // nullopt: any number
+  std::optional<Op> op;                      // nullopt: clamp and pow, which the parser expands
 };
 
 const Function* find_function(std::string_view name);
 
-// A sentence on why `name` means nothing here and what may have been meant.
+// Returns a sentence that says that `name` is unknown, and suggests a name.
 std::string explain_unknown(std::string_view name);
 
 }  // namespace weft::expr

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The operations that a size expression is made of, after parsing.
 //
-// A value is a number or a truth. Inside a program a truth is a mask: all bits set or none.
+// A value is a number or a truth value. Inside a program a truth value is a mask: all bits set or
+// none.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@ enum class Op : std::uint8_t {
   kFalse,  // kFalse and kTrue are folded away: no program contains them
   kTrue,
   // number -> number
-  kCopy,  // only to bring a bare x, y or constant into the result
+  kCopy,  // only to copy a bare x, y or constant into the result
   kNegate,
   kAbs,
   kSqrt,

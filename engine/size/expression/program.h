@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A size expression as straight-line code for a machine with one accumulator and a register file.
 //
-// Every instruction leaves its result in the accumulator; `store` says where it is kept too, for
-// those uses that are not the very next instruction. An operand is the accumulator, a register or
+// Every instruction leaves its result in the accumulator; `store` says where else it is kept, if a
+// later instruction than the next one uses it. An operand is the accumulator, a register or
 // a constant. Registers 0 and 1 hold x and y. The order of evaluation is that of R. Sethi and
 // J. D. Ullman, "The Generation of Optimal Code for Arithmetic Expressions" (1970): the subtree
 // that needs more registers first, so that a long chain needs few.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Says where in an expression something is wrong.
+// Describes where an expression has an error.
 #pragma once
 
 #include <cstddef>
@@ -12,11 +12,11 @@ namespace weft::expr {
 std::string position(std::string_view source, std::size_t offset);
 
 // "line 1, column 7: WHAT", then the source's line and a caret under the offset. Only
-// the surroundings of a long line are shown; what is not printable ASCII shows as '?', so the text
-// is valid UTF-8 whatever the source holds.
+// the surroundings in a long line are shown; bytes that are not printable ASCII become '?', so the
+// text is valid UTF-8 for any source.
 std::string describe(std::string_view source, std::size_t offset, std::string_view what);
 
-// A name from the source, made fit to be quoted: printable, and no longer than a line can bear.
+// A name from the source, made printable and shortened to fit on a line, to be quoted.
 std::string quoted(std::string_view text);
 
 }  // namespace weft::expr

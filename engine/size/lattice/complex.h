@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Complex numbers for conformal maps. std::complex asks every product whether it is not a number;
-// these are two to four operations each, in a fixed order: the same bits on every machine.
+// Complex numbers for conformal maps. std::complex tests every product for NaN; these operations
+// are two to four instructions each, in a fixed order: the same bits on every machine.
 #pragma once
 
 #include <cmath>

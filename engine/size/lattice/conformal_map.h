@@ -5,9 +5,9 @@
 // similar ones, |F'| times as large. So the points that F maps to the hexagonal lattice of unit
 // spacing make nearly equilateral triangles of edge 1 / |F'|. For the edge h(z) to come out,
 //     |F'(z)| = 1 / h(z),    so    log h = -Re log F' = Re U,    F = integral of exp(-U),
-// with U analytic, and so log h harmonic: that is all that a lattice without faults can follow.
-// (P. Henrici, "Applied and Computational Complex Analysis" I, 1974, sections 2.1 and 5.6.) Where
-// log h is not harmonic, it is fitted by such a function (harmonic_fit.h), square by square.
+// with U analytic, and so log h harmonic: a lattice without faults can follow no other size.
+// (P. Henrici, "Applied and Computational Complex Analysis" I, 1974, sections 2.1 and 5.6.) If
+// log h is not harmonic, such a function is fitted to it (harmonic_fit.h), square by square.
 //
 // Here U is a polynomial of degree kHarmonics in
 //     zeta = (z - centre) / radius,    |zeta| <= 1 in the square,
@@ -18,8 +18,8 @@
 // Back from the lattice's plane: let p be the point of the lattice nearest to w = F(zeta), at most
 // 0.58 away. With s = (p - w) / F'(zeta), the step to first order, and F'' = -U' F',
 //     zeta + s + (U'(zeta) / 2) s^2
-// is its preimage to second order. What is left, of the third, is about (h / radius)^2 of a
-// spacing: 0.4 % in a square of 16 rows.
+// is its preimage to second order. The remaining error, of third order, is about (h / radius)^2 of
+// a spacing: 0.4 % in a square of 16 rows.
 //
 // Deterministic: sums and products in a fixed order, and SLEEF's exp. Thread-safety: a value.
 #pragma once
@@ -43,13 +43,14 @@ class ConformalMap {
 
   ConformalMap() = default;
 
-  // For edges of exp(Re U), times `scale`, in the disk around a point. REQUIRES: the moduli of u[1]
-  // and up sum to at most kMostBend, Re u[0] is finite.
+  // The map for edges of length `scale` * exp(Re U) in the disk around a point. REQUIRES: the
+  // moduli of u[1] and up sum to at most kMostBend; Re u[0] is finite.
   ConformalMap(Point centre, double radius, const Exponent& u, double scale);
 
-  // Up to this sum of the coefficients the series may end where it does: what is left out of F' is
-  // of the third order in u[5] and u[4], of the fifth in u[3], less in the others, and these fall
-  // with k. It changes the spacing alone; the triangles are equilateral for any polynomial F.
+  // Up to this sum of the coefficients the series is long enough: the terms of F' that are left out
+  // are of third order in u[5] and u[4], of fifth order in u[3], of higher order in the others, and
+  // these fall with k. They change only the spacing; triangles are equilateral for any polynomial
+  // F.
   static constexpr double kMostBend = 1.5;
 
   // F at a point, and its derivative in units of the plane.
@@ -63,13 +64,13 @@ class ConformalMap {
     return value;
   }
 
-  // The lattice is turned by a complex number of modulus 1 and shifted.
+  // Turns the lattice by a complex number of modulus 1 and shifts it.
   void move(Complex turn, Complex shift) {
     for (Complex& c : f_) c = turn * c;
     f_[0] = f_[0] + shift;
   }
 
-  // The point of the lattice nearest to p; none outside the disk.
+  // Returns the lattice point nearest to p; its spacing is 0 if p is outside the disk.
   LatticePoint nearest(Point p, double jitter) const {
     const Complex zeta = zeta_of(p);
     if (!(norm2(zeta) < kEnd2)) [[unlikely]]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where which lattice holds: a quadtree of squares, the grains, over the domain.
+// Says which lattice holds where: a quadtree of squares, the grains, over the domain.
 //
 // A grain is
 //   kConstant  where the size is one value, by the size map's bounds: the hexagonal lattice of this
@@ -8,18 +8,18 @@
 //              (conformal_map.h);
 //   kStepped   where most neighbouring samples are equal bit for bit, but not all: at the borders
 //   of
-//              constant pieces. Whoever places a point asks for the size there (mapped_area.h);
+//              constant pieces. The size is evaluated for each point placed there (mapped_area.h);
 //   kMixed     where nothing fits: circumcentres;
 //   kOutside   of the domain.
 //
 // A square is split until it is constant, or its fit is good. A fit is good if
 //   - its deviation from log h is at most kGoodFit, or kGoodFitRows over the number of rows. The
-//     lattice is laid out for the samples' finest deviation, so that no bound is exceeded: 2 %
-//     costs 2 % of the triangles at most, and a fault at every second grain's border would cost
+//     lattice is laid out for the finest deviation at the samples, so that no bound is exceeded: 2
+//     % costs at most 2 % of the triangles, and a fault at every second grain's border would cost
 //     more;
 //   - its coefficients sum to at most kFewBends, so that the lattice turns little within a grain;
-//   - the size function's bounds in the square are within kMissed of the samples: nothing was
-//     missed between them.
+//   - the size function's bounds in the square are within kMissed of the samples, so these missed
+//     nothing.
 // In a square of fewer than kSmallRows rows of the lattice, a deviation of kAnyFit is good, because
 // smaller squares have more faults. A square without a fit is split down to kFewRows rows. Values
 // that are not positive and finite have no fit; no lattice point depends on a square that has them.
@@ -27,16 +27,16 @@
 //   triangles over the least number, kFewRows     16     12     8      6      4     no lattice
 //   10 min(r1, r2) + 1, about two points          1.087  1.076  1.072  1.068  1.067  1.528
 //   2 + 10 |r - 30|, a fine ring                  1.351  1.304  1.261  1.242  1.214  1.529
-//   1.2 + sin(3x) sin(3y), 20 rows a period       1.539  1.539  1.539  1.423  1.373  1.539
+//   1.2 + sin(3x) sin(3y), 20 rows per period     1.539  1.539  1.539  1.423  1.373  1.539
 // The last takes 1.5 times as long with 6 as without a lattice, and 1.13 times with 8.
 //
-// Where log h is harmonic (a constant, a power of the distance from a point, an exponential of x)
+// If log h is harmonic (a constant, a power of the distance from a point, an exponential of x),
 // one lattice goes through many grains without a fault, because the grains are aligned: each is
-// turned and shifted so that in the middle of the side that it shares with a neighbour both
-// lattices agree. Neighbours follow breadth first from the constant grains, and then from the first
-// of each part that none has reached.
+// turned and shifted so that both lattices agree in the middle of the side that it shares with a
+// neighbour. Neighbours follow breadth first from the constant grains, and then from the first
+// grain of each part that was not reached.
 //
-// Looks at squares, and at their neighbours, run on all threads of the job; the order of the grains
+// All threads of the job examine squares and their neighbours; the order of the grains
 // does not depend on them. A square that is split holds at least 140 triangles, so their number is
 // in proportion to the mesh: 48 on the pipe model, in 0.2 ms. Thread-safety: immutable once built.
 #pragma once
@@ -108,15 +108,15 @@ class GrainMap {
   };
 
   std::uint32_t index_at(Point p) const;
-  // Four squares without a lattice are one again: they are found sooner. Some grains stay unused.
+  // Joins four squares without a lattice into one, which is found sooner. Some grains stay unused.
   void join_mixed();
   std::vector<Contact> contacts_of(std::uint32_t grain) const;
   std::optional<Error> align(const LatticeShape& shape, const ExecutionContext& context);
-  // Turns and shifts the lattice of `to`, so that at a point it is that of `from`.
+  // Turns and shifts the lattice of `to` so that it agrees with that of `from` at a point.
   static void continue_lattice(const Grain& from, Grain& to, Point at, double fill);
 
   Point centre_{};
-  double half_ = 0;  // of the side of the whole
+  double half_ = 0;  // half the side of the whole square
   std::vector<Node> nodes_;
   std::vector<Grain> grains_;
 };

@@ -4,12 +4,12 @@
 // by least squares over 8 x 8 samples at Chebyshev's extreme points, which are denser at the sides
 // (L. N. Trefethen, "Approximation Theory and Approximation Practice", 2013, chapter 2). The real
 // parts of 1, zeta, i zeta, ..., i zeta^5 are 11 functions; samples and functions are the same for
-// every square but for its place, so the matrix that solves the normal equations is made once. A
-// fit is 704 products then, and 64 logarithms.
+// every square except for its place, so the matrix that solves the normal equations is made once. A
+// fit is then 704 products and 64 logarithms.
 //
 //   const HarmonicFitter fitter;
 //   const HarmonicFitter::Samples edges = ...;    // wanted, at fitter.sample(s, centre, half)
-//   const HarmonicFit fit = fitter.fit(edges);    // fit.deviation() tells how good it is
+//   const HarmonicFit fit = fitter.fit(edges);    // fit.deviation() says how good it is
 //
 // Deterministic: sums in a fixed order, and SLEEF's log and cos. Thread-safety: immutable.
 #pragma once
@@ -24,7 +24,8 @@ namespace weft {
 
 struct HarmonicFit {
   ConformalMap::Exponent u{};
-  // The fit less the wanted, in logarithms: the most above and the most below, over the samples.
+  // The largest and the smallest difference of the fit from the wanted logarithms, over the
+  // samples.
   double above = 0;  // >= 0
   double below = 0;  // <= 0
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The hexagonal lattice that the Steiner points of too large triangles are taken from
-// (refine/steiner_point.h): most triangles then come out equilateral, and nearly as large as their
+// The hexagonal lattice from which the Steiner points of too large triangles are taken
+// (refine/steiner_point.h): most triangles are then equilateral, and nearly as large as their
 // bound allows. Circumcentres make 1.53 times the least number of triangles, the lattice 1.02 times
 // (docs/how-it-works.md).
 //
@@ -8,13 +8,13 @@
 // lattice is laid out with triangles of `fill` D, so that rounding, jitter and the curvature of a
 // graded lattice (conformal_map.h) make none too large.
 //
-// Jitter. Each point is moved by up to `jitter` spacings each way, by a hash of its indices: the
-// same wherever it is asked for. A perfect lattice is all ties, for every in-circle test; 1e-4 of a
-// spacing lets the filter decide nearly all of them. For bounds of 30 degrees on there is a second
-// reason: a vertex that is too much amid a perfect lattice makes triangles of 30, 30 and 120
-// degrees, whose circumcentres are the centroids of the next triangles, and so on through all of
-// the lattice (2.2 times the least number of triangles, seen). With 1 % of jitter that dies out,
-// from 30 degrees on with 5 % more for each degree; each takes its part of the fill:
+// Jitter. Each point is moved by up to `jitter` spacings each way, by a hash of its indices, so the
+// same point always moves alike. In a perfect lattice every in-circle test is a tie; 1e-4 of a
+// spacing lets the filter decide nearly all of them. For bounds from 30 degrees on there is a
+// second reason: an extra vertex in a perfect lattice makes triangles of 30, 30 and 120 degrees,
+// whose circumcentres are the centroids of the next triangles, and so on through the whole lattice
+// (up to 2.2 times the least number of triangles were seen). With 1 % of jitter that dies out, from
+// 30 degrees on with 5 % more per degree; jitter reduces the fill:
 //
 //     triangles over the least number, bound on angles    20     29.5    30     31     31.5 degrees
 //     cylinder model, stepped                              1.018  1.026   1.057  1.212  1.297
@@ -42,7 +42,7 @@ struct LatticeShape {
 
   bool exists() const { return fill > 0; }
 
-  // That for a bound on the angles, in degrees.
+  // The shape for a bound on angles, in degrees.
   static LatticeShape for_angle(double min_angle_deg) {
     constexpr double kPerfect = 29.5;
     constexpr double kMost = 31.5;
@@ -62,7 +62,7 @@ struct LatticePoint {
 // Beyond this the lattice's indices, and a tenth of a spacing, are no longer exact in a double.
 inline constexpr double kFarthestInLattice2 = 1e28;
 
-// The point nearest to w of the hexagonal lattice of unit spacing, with its jitter. REQUIRES:
+// The point of the hexagonal lattice of unit spacing nearest to w, with its jitter. REQUIRES:
 // norm2(w) < kFarthestInLattice2.
 inline Complex nearest_of_lattice(Complex w, double jitter) {
   constexpr double kRise = 0.86602540378443865;  // from row to row
@@ -93,11 +93,12 @@ inline Complex nearest_of_lattice(Complex w, double jitter) {
           j * kRise + shake(hash >> 16 & 0xffff)};
 }
 
-// The lattice for one bound, the same everywhere: through the origin. It remembers the last bound.
-// Thread-safety: one a thread.
+// The lattice for one bound everywhere, through the origin. It remembers the last bound.
+// Not thread-safe: one per thread.
 class UniformLattice {
  public:
-  // The point nearest to c; none if the bound is no size, or far from the origin in spacings.
+  // Returns the point nearest to c; its spacing is 0 if the bound is not a size, or if c is too
+  // many spacings from the origin.
   LatticePoint nearest(Point c, double bound, const LatticeShape& shape) {
     if (bound != bound_) [[unlikely]] {
       if (!(bound > 0 && bound < kMostBound)) return {};

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A thin layer over libpq: connections, transactions and rows that end by themselves. It knows
-// nothing of what is stored. Parameters and results travel as binary.
+// A thin layer over libpq: connections, transactions and rows that clean up after themselves. It
+// knows nothing of jobs. Parameters and results are sent as binary.
 //
-// Errors stick to a transaction: once a statement has failed, those after it do nothing and give no
-// rows, and `commit` answers with the first error. So the code between reads straight down; what it
-// concludes from rows that are missing is worth nothing until `commit` has succeeded.
+// A transaction keeps its first error: once a statement has failed, those after it do nothing and
+// return no rows, and `commit` returns that error. So code need not check every statement, but
+// must not rely on missing rows until `commit` has succeeded.
 //
-// No call waits for ever: the server gives a statement up after `statement_timeout`, and a server
-// that does not even do that is given up after twice as long, with the connection.
+// No call waits for ever: the database cancels a statement after `statement_timeout`; if it does
+// not, the connection is closed after twice as long.
 //
-// Thread-safety: a connection and all that comes of it belong to one thread at a time.
+// Thread-safety: a connection and all that it returns belong to one thread at a time.
 //
 //   Transaction transaction(connection, Begin::kDurable);
 //   Rows rows = transaction.run("SELECT name FROM pet WHERE id = $1", 7);
@@ -57,7 +57,7 @@ class Value {
   Oid type_;
   bool null_ = false;
   std::string_view bytes_;  // of texts and blobs, which are not copied
-  char number_[8] = {};     // of all others, the highest byte first
+  char number_[8] = {};     // other values, the highest byte first
   int size_ = 0;
 };
 
@@ -80,12 +80,12 @@ class Connection {
 
   // One or more statements without parameters.
   StoreResult<void> execute(const char* sql);
-  // Without the limit on time, for what is done once.
+  // The same without a time limit, for statements that run once.
   StoreResult<void> execute_patiently(const char* sql);
 
   bool broken() const { return broken_ || PQstatus(connection_.get()) != CONNECTION_OK; }
 
-  // For notifications: the descriptor to wait for, and the next one that has arrived (its payload).
+  // For notifications: the descriptor to wait for, and the payload of the next one that arrived.
   int socket() const { return PQsocket(connection_.get()); }
   std::optional<std::string> next_notification();
 
@@ -101,16 +101,16 @@ class Connection {
   std::unique_ptr<PGconn, FinishConnection> connection_;
   const std::chrono::milliseconds patience_;
   bool broken_ = false;  // given up, whatever libpq says
-  std::string state_;    // of the last error that the server told, an SQLSTATE
+  std::string state_;    // SQLSTATE of the last error from the server
 };
 
-// What a statement gave, row by row.
+// The result of a statement, row by row.
 class Rows {
  public:
-  // False behind the last row, and where the transaction has failed.
+  // Returns false after the last row, and if the transaction has failed.
   bool next();
 
-  // Of the row that `next` has reached, columns from 0.
+  // Values of the current row; columns count from 0.
   bool null(int column) const;
   std::int64_t integer(int column) const;  // of bigint and boolean; 0 if null
   std::string bytes(int column) const;     // of text and bytea; empty if null
@@ -125,15 +125,15 @@ class Rows {
 
 // How a transaction begins.
 enum class Begin {
-  kOneStatement,  // it is that one statement, and commits with it
+  kOneStatement,  // the transaction is one statement, which commits it
   kDurable,       // the commit waits for the disk
-  kLater,         // it does not; one that does takes along all that came before it
+  kLater,         // the commit does not wait; a later durable one writes it, too
 };
 
 class Transaction {
  public:
   Transaction(Connection& connection, Begin begin);
-  // Undoes everything unless it was committed.
+  // Rolls back unless committed.
   ~Transaction();
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;
@@ -143,13 +143,13 @@ class Transaction {
   Rows run(const char* sql, const Arguments&... arguments) {
     return Rows(take(sql, {Value(arguments)...}));
   }
-  // For its effect: the number of rows that were changed.
+  // Runs a statement for its effect; returns the number of changed rows.
   template <class... Arguments>
   std::int64_t change(const char* sql, const Arguments&... arguments) {
     return count(take(sql, {Value(arguments)...}));
   }
 
-  // Sends a notification with the commit. Once, or not at all.
+  // Sends a notification with the commit. Call at most once.
   void notify(std::string_view channel, std::string_view payload);
 
   bool notifies() const { return !notification_.empty(); }
@@ -158,10 +158,10 @@ class Transaction {
   bool failed() const { return error_.has_value(); }
   StoreResult<void> commit();
 
-  // Of one that has failed: whether the same may succeed at once, in another transaction. So it is
-  // where the connection broke, and where two transactions stood in each other's way.
+  // Whether a failed transaction may succeed if it is repeated at once: true if the connection
+  // broke or if two transactions collided.
   bool may_succeed_again() const { return collided_ || connection_.broken(); }
-  // Whether nobody knows if it was committed: the connection broke when it was about to be.
+  // Whether it is unknown if it was committed: the connection broke during the commit.
   bool ambiguous() const { return ambiguous_; }
 
  private:

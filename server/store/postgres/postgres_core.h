@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every function of the PostgreSQL store stands on: the connections, what is done when one
-// breaks, and who is told of a change.
+// The base of every function of the PostgreSQL store: the connections, retries when one breaks, and
+// notifications of changes.
 //
 // Thread-safety: every function may be called from any thread.
 #pragma once
@@ -19,16 +19,16 @@
 
 namespace weft::server {
 
-// Whether a call may be made once more when nobody knows what became of it.
+// Whether a call may be repeated if its outcome is unknown.
 enum class Repeat { kNever, kWhenUnclear };
 
 class PostgresCore {
  public:
   static StoreResult<std::unique_ptr<PostgresCore>> open(PostgresStore::Options options);
 
-  // Runs `body(transaction)` and commits; its result counts only then. It may run twice: again
-  // when the first time came to nothing, and with Repeat::kWhenUnclear also when it may have come
-  // to something. Where `body` has called `announce(transaction)`, listeners everywhere are told.
+  // Runs `body(transaction)` and commits; its result is valid only then. It may run twice: again if
+  // the first run had no effect, and with Repeat::kWhenUnclear also if it may have had one. If
+  // `body` has called `announce(transaction)`, the listeners of all servers are notified.
   template <class Body>
   auto run(postgres::Begin begin, Repeat repeat, const Body& body) {
     using Value = decltype(body(std::declval<postgres::Transaction&>()));
@@ -57,7 +57,7 @@ class PostgresCore {
   void on_change(std::function<void()> listener) { listener_.set(std::move(listener)); }
 
  private:
-  // A connection, for as long as it lives.
+  // Lends a connection while it lives.
   struct Lease {
     explicit Lease(PostgresCore& from);
     ~Lease();
@@ -65,7 +65,7 @@ class PostgresCore {
     Lease& operator=(const Lease&) = delete;
 
     PostgresCore& core;
-    std::unique_ptr<postgres::Connection> connection;  // null if there is none to be had
+    std::unique_ptr<postgres::Connection> connection;  // null if none is available
     StoreError error;
   };
 

@@ -2,9 +2,9 @@
 // The functions of the PostgreSQL store: for clients in postgres_clients.cpp, for workers in
 // postgres_workers.cpp, for the house-keeping in postgres_garbage_collection.cpp.
 //
-// Who locks what, in this order, so that nobody waits for somebody who waits for him: a request_id
+// Locks are taken in this order, so that no deadlock can arise: a request_id
 // (advisory), the queue (advisory), a task, its jobs, a mesh, chunks. A job joins a task under
-// FOR KEY SHARE, and a task ends under FOR UPDATE: so no job joins one that has ended.
+// FOR KEY SHARE, and a task ends under FOR UPDATE, so no job joins one that has ended.
 #pragma once
 
 #include <memory>
@@ -60,8 +60,8 @@ class PostgresJobs final : public JobStore {
   JobIds ids_;
 };
 
-// Ends the jobs of a task, or one of them where `job` is not empty; the task itself, which must be
-// locked, stays.
+// Ends the jobs of a task, or only `job` if it is not empty; the task itself, which must be locked,
+// stays.
 void settle_jobs(postgres::Transaction& transaction, std::int64_t task, const std::string& job,
                  JobState state, const std::string& error);
 

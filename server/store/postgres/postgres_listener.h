@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hears of the changes that other servers make to a database, and tells of them, on a thread and a
-// connection of its own. When the connection breaks it comes back by itself, and then tells of a
-// change, for there may have been some.
+// Listens for changes that other servers make to a database, and calls a listener, on a thread and
+// a connection of its own. If the connection breaks, it connects again, and then calls the
+// listener, because it may have missed changes.
 //
 // Thread-safety: every function may be called from any thread.
 #pragma once
@@ -22,29 +22,30 @@ class PostgresListener {
  public:
   static constexpr const char* kChannel = "weft_change";
 
-  // A connection that listens.
+  // Opens a connection that listens.
   static StoreResult<std::unique_ptr<postgres::Connection>> connect(
       const postgres::Connection::Options& connecting);
 
-  // `first` is such a connection; `connecting` makes those that follow it.
+  // `first` is such a connection; `connecting` has the options of later ones.
   PostgresListener(postgres::Connection::Options connecting,
                    std::unique_ptr<postgres::Connection> first);
   ~PostgresListener();
   PostgresListener(const PostgresListener&) = delete;
   PostgresListener& operator=(const PostgresListener&) = delete;
 
-  // Whom to tell.
+  // Sets the listener.
   void set(std::function<void()> told);
-  // Tells of a change.
+  // Calls the listener.
   void call();
-  // What this server's notifications carry: those that carry it are its own, and nothing new.
+  // The payload of this server's own notifications, which are ignored.
   const std::string& name() const { return name_; }
 
  private:
   void listen(std::unique_ptr<postgres::Connection> connection);
-  // Until the connection breaks or the listener stops.
+  // Listens until the connection breaks or the listener stops.
   void hear(postgres::Connection& connection);
-  // Until `descriptor` can be read, where it is one, or the listener stops; at most so long.
+  // Waits until `descriptor`, if it is valid, can be read, or the listener stops; at most for
+  // `time`.
   void wait(int descriptor, std::chrono::milliseconds time) const;
 
   const postgres::Connection::Options connecting_;
@@ -53,7 +54,7 @@ class PostgresListener {
   std::atomic<bool> stopping_ = false;
   std::mutex mutex_;  // guards the one below
   std::function<void()> told_;
-  std::thread thread_;  // goes first
+  std::thread thread_;  // destroyed first
 };
 
 }  // namespace weft::server

@@ -6,8 +6,8 @@
 
 namespace weft::server {
 
-// Brings a database, new or old, to the version of this program; several servers may begin at once.
-// kBroken where it is of a newer one.
+// Brings a database, new or old, to the version of this program; several servers may do so at once.
+// kBroken if the database has a newer version.
 StoreResult<void> migrate(postgres::Connection& connection);
 
 }  // namespace weft::server

@@ -4,17 +4,17 @@
 //
 // Clocks: all times are the database's.
 //
-// Fairness: among claims that come one after another the turns are kept exactly; claims of the same
-// moment do not wait for each other, and may each see an owner as the one with the fewest.
+// Fairness: claims one after another take exact turns; simultaneous claims do not wait for each
+// other, and may each choose the same owner as the one with the fewest.
 //
-// Durability: commits wait for the disk, but for those of `put_chunk`, `renew`, `release` and what
-// is collected. A crash of the database may forget the last of these; `finish` waits for all that
-// came before it, and says so where a chunk was forgotten: the mesh is then made again.
+// Durability: commits wait for the disk, except those of `put_chunk`, `renew`, `release` and
+// collection. A crash of the database may lose the last of these; `finish` waits for all that
+// came before it, and fails if a chunk was lost: the mesh is then made again.
 //
-// A connection that breaks: a call is tried once more where that cannot do anything twice, which
-// holds for all calls but `claim`, `release` and `remove`. Those, and what fails again, answer
-// kUnavailable. Of a submission without a request_id whose answer is kUnavailable nobody knows
-// whether it was accepted: whoever submits again may have two jobs.
+// If a connection breaks, a call is repeated once if that cannot have an effect twice, which
+// holds for all calls except `claim`, `release` and `remove`. Those, and calls that fail again,
+// return kUnavailable. If a submission without a request_id returns kUnavailable, it is unknown
+// whether it was accepted: submitting again may give two jobs.
 //
 // No call waits for ever: see Options.
 #pragma once
@@ -34,12 +34,12 @@ class PostgresStore {
     std::string uri;              // postgres://user@host/database, or a connection string of libpq
     std::size_t connections = 8;  // at once, and one more that listens
     std::chrono::seconds connect_timeout{5};
-    // For a statement, for one that waits for its turn at the connections, and for a transaction
-    // in which a server was stopped.
+    // The time limit of a statement, of waiting for a connection, and of a transaction whose server
+    // was stopped.
     std::chrono::milliseconds statement_timeout{30'000};
   };
 
-  // kUnavailable if the database does not answer, kBroken if it is of a newer version.
+  // kUnavailable if the database does not respond, kBroken if it has a newer version.
   static StoreResult<std::unique_ptr<JobStore>> open(Options options);
 };
 

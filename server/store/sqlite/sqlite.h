@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A thin layer over SQLite: connections, transactions and rows that end by themselves. It knows
-// nothing of what is stored.
+// A thin layer over SQLite: connections, transactions and rows that clean up after themselves. It
+// knows nothing of jobs.
 //
-// Errors stick to a transaction: once a statement has failed, those after it do nothing and give no
-// rows, and `commit` answers with the first error. So the code between reads straight down; what it
-// concludes from rows that are missing is worth nothing until `commit` has succeeded.
+// A transaction keeps its first error: once a statement has failed, those after it do nothing and
+// return no rows, and `commit` returns that error. So code need not check every statement, but
+// must not rely on missing rows until `commit` has succeeded.
 //
-// Thread-safety: a connection and all that comes of it belong to one thread at a time.
+// Thread-safety: a connection and all that it returns belong to one thread at a time.
 //
 //   Transaction transaction(connection, Access::kWrite);
 //   Rows rows = transaction.run("SELECT name FROM pet WHERE id = ?1", 7);
@@ -30,7 +30,7 @@ namespace weft::server::sqlite {
 
 enum class Access { kRead, kWrite };
 
-// Bound as a blob, which a text of the same bytes does not equal.
+// A parameter that is bound as a blob, which never equals a text of the same bytes.
 struct Blob {
   std::string_view bytes;
 };
@@ -44,12 +44,12 @@ struct FinalizeStatement {
 
 class Connection {
  public:
-  // Makes the file where it is missing and `access` is kWrite.
+  // Makes the file if it is missing and `access` is kWrite.
   static StoreResult<std::unique_ptr<Connection>> open(const std::string& path, Access access);
 
   // One or more statements without parameters, outside of a transaction.
   StoreResult<void> execute(const char* sql);
-  // The number that a PRAGMA answers with.
+  // The number that a PRAGMA returns.
   StoreResult<std::int64_t> pragma(const char* sql);
 
  private:
@@ -58,29 +58,29 @@ class Connection {
 
   explicit Connection(sqlite3* database) : database_(database) {}
   StoreError error(int code) const;
-  // Compiled once per connection and text. Null where it does not compile.
+  // Compiled once per connection and text. Null if it does not compile.
   sqlite3_stmt* statement(std::string_view sql);
 
   std::unique_ptr<sqlite3, CloseDatabase> database_;
-  // By their own texts. Goes before the database.
+  // By their own texts. Destroyed before the database.
   std::unordered_map<std::string_view, std::unique_ptr<sqlite3_stmt, FinalizeStatement>>
       statements_;
 };
 
 class Transaction;
 
-// What a statement gives, row by row; nothing is done before the first `next`. Only one at a time
-// of the same statement.
+// The result of a statement, row by row; it does not run before the first `next`. Only one at a
+// time per statement.
 class Rows {
  public:
   ~Rows();
   Rows(const Rows&) = delete;
   Rows& operator=(const Rows&) = delete;
 
-  // False behind the last row, and where the transaction has failed.
+  // Returns false after the last row, and if the transaction has failed.
   bool next();
 
-  // Of the row that `next` has reached, columns from 0.
+  // Values of the current row; columns count from 0.
   bool null(int column) const;
   std::int64_t integer(int column) const;  // 0 if null
   std::string bytes(int column) const;     // of texts and blobs; empty if null
@@ -97,7 +97,7 @@ class Rows {
 class Transaction {
  public:
   Transaction(Connection& connection, Access access);
-  // Undoes everything unless it was committed.
+  // Rolls back unless committed.
   ~Transaction();
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;
@@ -110,7 +110,7 @@ class Transaction {
     if (statement != nullptr) (check(bind(statement, ++parameter, arguments)), ...);
     return {*this, error_ ? nullptr : statement};
   }
-  // For its effect: the number of rows that were changed.
+  // Runs a statement for its effect; returns the number of changed rows.
   template <class... Arguments>
   std::int64_t change(std::string_view sql, const Arguments&... arguments) {
     const std::int64_t before = changes();
@@ -118,10 +118,10 @@ class Transaction {
     return changes() - before;
   }
 
-  // All of a blob, read straight into the string. Fails if there is no such row.
+  // Reads a whole blob straight into the string. Fails if there is no such row.
   std::string blob(const char* table, const char* column, std::int64_t row);
 
-  // Rows that were changed since the beginning.
+  // Rows changed since the beginning.
   std::int64_t changes() const;
   void fail(StoreError error);
   bool failed() const { return error_.has_value(); }
@@ -140,7 +140,7 @@ class Transaction {
   }
 
   sqlite3_stmt* prepare(std::string_view sql);
-  bool check(int code);  // false, and the error kept, where it is one
+  bool check(int code);  // if the code is an error, keeps it and returns false
 
   Connection& connection_;
   const std::int64_t changes_before_;

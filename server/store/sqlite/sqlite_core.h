@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every function of the SQLite store stands on: the folder, the connections, who may use
-// which when, the clock, and whom to tell of a change.
+// The base of every function of the SQLite store: the folder, the connections and their locks, the
+// clock, and notifications of changes.
 //
 // Thread-safety: every function may be called from any thread.
 #pragma once
@@ -19,7 +19,7 @@
 
 namespace weft::server {
 
-// Whether a commit waits for the disk. One that does takes along all that came before it.
+// Whether a commit waits for the disk. One that does also writes all earlier commits.
 enum class Durability { kWait, kLater };
 
 // Closes a descriptor.
@@ -41,8 +41,8 @@ class SqliteCore {
 
   WallTime now() const { return clock_(); }
 
-  // Runs `body(transaction)` and commits; its result counts only then. `write` tells the listener
-  // where anything has changed, `write_quietly` does not.
+  // Runs `body(transaction)` and commits; its result is valid only then. `write` calls the listener
+  // if anything has changed, `write_quietly` does not.
   template <class Body>
   auto write(Durability durability, const Body& body) {
     bool changed = false;
@@ -61,13 +61,13 @@ class SqliteCore {
     return in_transaction(*reader.connection, sqlite::Access::kRead, body);
   }
 
-  // Gives the pages that are free back to the file system, in steps that let others write between.
+  // Gives free pages back to the file system, in steps between which others may write.
   StoreResult<void> give_space_back();
 
   void on_change(std::function<void()> listener) { listener_ = std::move(listener); }
 
  private:
-  // A connection to read with, for as long as it lives.
+  // Lends a connection to read with while it lives.
   struct Reader {
     explicit Reader(SqliteCore& from);
     ~Reader();
@@ -111,7 +111,7 @@ class SqliteCore {
 
   StoreResult<void> wait_for_disk(bool wait);
 
-  const FileHandle lock_;  // that no other server has; goes last
+  const FileHandle lock_;  // keeps other servers out; destroyed last
   const std::function<WallTime()> clock_;
   std::function<void()> listener_;
 

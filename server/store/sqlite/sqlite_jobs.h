@@ -54,13 +54,13 @@ class SqliteJobs final : public JobStore {
   JobIds ids_;
 };
 
-// --- what they share ---
+// --- shared ---
 
-// The job `id` as it is, nothing if the owner has none.
+// Returns the job `id`; nullopt if the owner has no such job.
 std::optional<JobRecord> find_job(sqlite::Transaction& transaction, const std::string& owner,
                                   const std::string& id);
 
-// Ends the jobs of a task, or one of them where `job` is not empty; the task itself stays.
+// Ends the jobs of a task, or only `job` if it is not empty; the task itself stays.
 void settle_jobs(sqlite::Transaction& transaction, std::int64_t task, const std::string& job,
                  JobState state, const std::string& error, WallTime now);
 

@@ -8,8 +8,8 @@
 
 namespace weft::server {
 
-// Brings a database, new or old, to the version of this program. kBroken where it is of a newer
-// one. `path` is for messages.
+// Brings a database, new or old, to the version of this program. kBroken if the database has a
+// newer version. `path` is for messages.
 StoreResult<void> migrate(sqlite::Connection& connection, const std::string& path);
 
 }  // namespace weft::server
