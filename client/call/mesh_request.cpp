@@ -49,23 +49,23 @@ void fill(const Domain& domain, v1::Domain& out) {
   out.set_fill(domain.fill == Domain::Fill::kEvenOdd ? v1::FILL_EVEN_ODD : v1::FILL_SEEDS);
 }
 
-void fill(const SizeGrid& grid, v1::Raster& out) {
-  out.set_x(grid.x);
-  out.set_y(grid.y);
-  out.set_dx(grid.dx);
-  out.set_dy(grid.dy);
-  out.set_columns(grid.columns);
-  out.set_rows(grid.rows);
-  out.mutable_values()->Add(grid.values.begin(), grid.values.end());
+void fill(const Raster& raster, v1::Raster& out) {
+  out.set_x(raster.x);
+  out.set_y(raster.y);
+  out.set_dx(raster.dx);
+  out.set_dy(raster.dy);
+  out.set_columns(raster.columns);
+  out.set_rows(raster.rows);
+  out.mutable_values()->Add(raster.values.begin(), raster.values.end());
 }
 
 }  // namespace
 
-Result<RequestOptions> with_size_grid(RequestOptions request_options) {
-  if (!is_size_grid_path(request_options.size)) return request_options;
-  auto grid = read_size_grid(request_options.size);
-  if (!grid) return tl::unexpected(grid.error());
-  request_options.size_grid = std::make_shared<const SizeGrid>(std::move(*grid));
+Result<RequestOptions> with_raster(RequestOptions request_options) {
+  if (!is_raster_path(request_options.size)) return request_options;
+  auto raster = read_raster(request_options.size);
+  if (!raster) return tl::unexpected(raster.error());
+  request_options.raster = std::make_shared<const Raster>(std::move(*raster));
   return request_options;
 }
 
@@ -82,8 +82,8 @@ Result<void> check_sendable(const Domain& domain) {
 v1::GenerateMeshRequest make_request(const Domain& domain, const RequestOptions& request_options) {
   v1::GenerateMeshRequest request;
   fill(domain, *request.mutable_domain());
-  if (request_options.size_grid) {
-    fill(*request_options.size_grid, *request.mutable_size()->mutable_raster());
+  if (request_options.raster) {
+    fill(*request_options.raster, *request.mutable_size()->mutable_raster());
   } else if (const auto constant = as_number(request_options.size)) {
     request.mutable_size()->set_constant(*constant);
   } else if (!request_options.size.empty()) {

@@ -12,18 +12,18 @@
 
 #include "client/base/error.h"
 #include "client/formats/domain.h"
-#include "client/formats/size_grid.h"
+#include "client/formats/raster.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {
 
 // What the mesh must satisfy. DEFAULT of all optionals: the server's.
 struct RequestOptions {
-  // A number, an expression in x and y, or the path of a grid (formats/size_grid.h); empty: no
+  // A number, an expression in x and y, or the path of a grid (formats/raster.h); empty: no
   // bound.
   std::string size{};
-  // The contents of that grid: see with_size_grid.
-  std::shared_ptr<const SizeGrid> size_grid{};
+  // The values of that grid: see with_raster.
+  std::shared_ptr<const Raster> raster{};
   std::optional<double> min_angle_deg{};
   std::optional<double> min_edge{};
   std::optional<v1::Placement> placement{};
@@ -38,7 +38,7 @@ struct RequestOptions {
 };
 
 // Reads the grid if the size is the path of one.
-Result<RequestOptions> with_size_grid(RequestOptions request_options);
+Result<RequestOptions> with_raster(RequestOptions request_options);
 
 // Returns an error (kUnreadableInput) if the domain is too large for any message.
 Result<void> check_sendable(const Domain& domain);

@@ -10,8 +10,8 @@ using Request = RequestOptions;
 OptionValue<Request> size() {
   return {"EXPR|FILE", "", Arity::kOne,
           [](const auto& texts, const auto& folder, Request& options) -> std::string {
-            options.size = is_size_grid_path(texts.front()) ? (folder / texts.front()).string()
-                                                            : texts.front();
+            options.size =
+                is_raster_path(texts.front()) ? (folder / texts.front()).string() : texts.front();
             return "";
           }};
 }

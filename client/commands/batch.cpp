@@ -46,7 +46,7 @@ Result<v1::Summary> make_mesh(const BatchMesh& mesh, const Connection& connectio
                               const BatchOptions& options, const std::stop_token& stop) {
   const auto domain = read_domain(mesh.input);
   if (!domain) return tl::unexpected(domain.error());
-  auto request_options = with_size_grid(mesh.request_options);
+  auto request_options = with_raster(mesh.request_options);
   if (!request_options) return tl::unexpected(request_options.error());
   request_options->quadtree = mesh.output.draw_quadtree;
   std::optional<MeshOutput> output;

@@ -11,7 +11,7 @@
 #include "client/commands/commands.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
-#include "client/formats/size_grid.h"
+#include "client/formats/raster.h"
 
 namespace weft::client {
 namespace {
@@ -45,8 +45,9 @@ check::Mesh to_checker(const Mesh& mesh) {
   return out;
 }
 
-check::Raster to_checker(SizeGrid&& grid) {
-  return {{grid.x, grid.y}, grid.dx, grid.dy, grid.columns, grid.rows, std::move(grid.values)};
+check::Raster to_checker(Raster&& raster) {
+  return {{raster.x, raster.y}, raster.dx,   raster.dy,
+          raster.columns,       raster.rows, std::move(raster.values)};
 }
 
 }  // namespace
@@ -62,10 +63,10 @@ Result<ExitCode> run_check(const CheckOptions& options) {
   check::Requirements requirements;
   requirements.min_angle_deg = options.min_angle_deg;
   requirements.allowed_unrefined = options.max_unrefined;
-  if (is_size_grid_path(options.size)) {
-    auto grid = read_size_grid(options.size);
-    if (!grid) return tl::unexpected(grid.error());
-    requirements.size = to_checker(std::move(*grid));
+  if (is_raster_path(options.size)) {
+    auto raster = read_raster(options.size);
+    if (!raster) return tl::unexpected(raster.error());
+    requirements.size = to_checker(std::move(*raster));
   } else if (!options.size.empty()) {
     double constant = 0;
     const char* end = options.size.data() + options.size.size();

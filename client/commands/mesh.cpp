@@ -32,7 +32,7 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   if (!output) return tl::unexpected(output.error());
   const auto domain = read_domain(options.input);
   if (!domain) return tl::unexpected(domain.error());
-  auto request_options = with_size_grid(options.request_options);
+  auto request_options = with_raster(options.request_options);
   if (!request_options) return tl::unexpected(request_options.error());
   times.read = MeshTimes::Clock::now();
 

@@ -39,7 +39,7 @@ Result<std::optional<MeshOutput>> open_output(const SubmitOptions& options,
 
 Result<v1::Job> submit(JobServer& server, const Domain& domain, const SubmitOptions& options) {
   if (auto ok = check_sendable(domain); !ok) return tl::unexpected(ok.error());
-  auto request_options = with_size_grid(options.request_options);
+  auto request_options = with_raster(options.request_options);
   if (!request_options) return tl::unexpected(request_options.error());
   request_options->quadtree = options.output.draw_quadtree;
   request_options->no_cache = false;  // a job has a field of its own for it

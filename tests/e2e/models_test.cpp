@@ -48,7 +48,7 @@ TEST(Models, ThroughTheServerHoldTheirBoundsAndCounts) {
   EXPECT_LE(triangles("us-east-coast.poly", "coast.vtu", {"--size", "1e-3"}), 333'000);
 }
 
-TEST(Models, HoldTheBoundsOfASizeGrid) {
+TEST(Models, HoldTheBoundsOfARaster) {
   const Server server;
   Folder folder;
   // From 0.02 in the west to 0.5 in the east of the cylinder's channel.

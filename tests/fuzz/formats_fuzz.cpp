@@ -18,7 +18,7 @@
 #include "client/formats/domain_formats.h"
 #include "client/formats/domains/seeded.h"
 #include "client/formats/mesh_formats.h"
-#include "client/formats/size_grid.h"
+#include "client/formats/raster.h"
 #include "tests/client/support/temp_folder.h"
 #include "tests/fuzz/byte_source.h"
 #include "tests/fuzz/law.h"
@@ -132,7 +132,7 @@ void judge(const std::uint8_t* data, std::size_t size) {
   };
 
   if (format.kind == Kind::kGrid) {
-    const auto grid = read_size_grid(paths[0]);
+    const auto grid = read_raster(paths[0]);
     if (!grid) return must(!grid.error().message.empty(), "error", "no sentence");
     must(grid->values.size() == std::size_t{grid->columns} * grid->rows, "grid", "values");
     for (const double v : grid->values) must(std::isfinite(v) && v > 0, "grid", "a value");

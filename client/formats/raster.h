@@ -15,7 +15,7 @@
 // squared units of the coordinates. Every one must be positive; a cell without a value is refused,
 // because the bound there would be a guess.
 //
-//   Result<SizeGrid> grid = read_size_grid("coast.asc");
+//   Result<Raster> grid = read_raster("coast.asc");
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@
 
 namespace weft::client {
 
-struct SizeGrid {
+struct Raster {
   double x = 0;  // of the first value: the south-west one
   double y = 0;
   double dx = 1;
@@ -37,9 +37,9 @@ struct SizeGrid {
 };
 
 // Whether the path has the extension, in upper or lower case. No expression ends with it.
-bool is_size_grid_path(const std::filesystem::path& path);
+bool is_raster_path(const std::filesystem::path& path);
 
 // Errors (kUnreadableInput) name file, line and column.
-Result<SizeGrid> read_size_grid(const std::filesystem::path& path);
+Result<Raster> read_raster(const std::filesystem::path& path);
 
 }  // namespace weft::client

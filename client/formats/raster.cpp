@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client/formats/size_grid.h"
+#include "client/formats/raster.h"
 
 #include <algorithm>
 #include <optional>
@@ -35,7 +35,7 @@ class Reader {
   Reader(const std::string& name, std::string_view text)
       : most_values_((text.size() + 1) / 2), scanner_(name, text) {}
 
-  Result<SizeGrid> read() {
+  Result<Raster> read() {
     if (auto header = read_header(); !header) return tl::unexpected(header.error());
     if (auto placed = place(); !placed) return tl::unexpected(placed.error());
     if (auto values = read_values(); !values) return tl::unexpected(values.error());
@@ -144,16 +144,16 @@ class Reader {
   const std::size_t most_values_;  // that the file has room for
   LineScanner scanner_;
   Header header_;
-  SizeGrid grid_;
+  Raster grid_;
 };
 
 }  // namespace
 
-bool is_size_grid_path(const std::filesystem::path& path) {
+bool is_raster_path(const std::filesystem::path& path) {
   return lower_extension(path) == ".asc";
 }
 
-Result<SizeGrid> read_size_grid(const std::filesystem::path& path) {
+Result<Raster> read_raster(const std::filesystem::path& path) {
   const auto file = read_file(path, kMaxFileBytes);
   if (!file) return tl::unexpected(file.error());
   return Reader(path.string(), file->text()).read();

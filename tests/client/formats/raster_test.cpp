@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client/formats/size_grid.h"
+#include "client/formats/raster.h"
 
 #include <gtest/gtest.h>
 
@@ -16,11 +16,9 @@ constexpr char kGrid[] =
     "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 2\nNODATA_value -9999\n"
     "4 5 6\n1 2 3\n";
 
-class SizeGridFile : public testing::Test {
+class RasterFile : public testing::Test {
  protected:
-  Result<SizeGrid> read(std::string_view text) {
-    return read_size_grid(folder_.write("g.asc", text));
-  }
+  Result<Raster> read(std::string_view text) { return read_raster(folder_.write("g.asc", text)); }
   // What is said of a text that must be refused, less the folder.
   std::string refusal(std::string_view text) {
     const auto grid = read(text);
@@ -31,7 +29,7 @@ class SizeGridFile : public testing::Test {
   TempFolder folder_;
 };
 
-TEST_F(SizeGridFile, HasItsValuesAtTheCentresOfCellsFromTheSouth) {
+TEST_F(RasterFile, HasItsValuesAtTheCentresOfCellsFromTheSouth) {
   const auto grid = read(kGrid);
   ASSERT_TRUE(grid) << grid.error().message;
   EXPECT_EQ(grid->x, 11);
@@ -43,7 +41,7 @@ TEST_F(SizeGridFile, HasItsValuesAtTheCentresOfCellsFromTheSouth) {
   EXPECT_EQ(grid->values, (std::vector<double>{1, 2, 3, 4, 5, 6}));
 }
 
-TEST_F(SizeGridFile, MayNameTheCentreAndBothSizesInCapitals) {
+TEST_F(RasterFile, MayNameTheCentreAndBothSizesInCapitals) {
   const auto grid =
       read("NCOLS 2\r\nNROWS 1\r\nXLLCENTER -1.5\r\nYLLCENTER 4\r\nDX 0.5\r\nDY 3\r\n7\r\n8\r\n");
   ASSERT_TRUE(grid) << grid.error().message;
@@ -54,7 +52,7 @@ TEST_F(SizeGridFile, MayNameTheCentreAndBothSizesInCapitals) {
   EXPECT_EQ(grid->values, (std::vector<double>{7, 8}));
 }
 
-TEST_F(SizeGridFile, IsRefusedWhereACellHasNoPositiveValue) {
+TEST_F(RasterFile, IsRefusedWhereACellHasNoPositiveValue) {
   const std::string header =
       "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n";
   EXPECT_EQ(refusal(header + "1 -9999\n"),
@@ -63,7 +61,7 @@ TEST_F(SizeGridFile, IsRefusedWhereACellHasNoPositiveValue) {
   EXPECT_EQ(refusal(header + "nan 1\n").substr(0, 8), "g.asc:7:");
 }
 
-TEST_F(SizeGridFile, IsRefusedWhereItsHeaderOrItsLengthIsWrong) {
+TEST_F(RasterFile, IsRefusedWhereItsHeaderOrItsLengthIsWrong) {
   EXPECT_NE(refusal("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\n1 2\n").find("no cellsize"),
             std::string::npos);
   EXPECT_NE(refusal("ncols 0\n").find("ncols is 0"), std::string::npos);
@@ -80,8 +78,8 @@ TEST_F(SizeGridFile, IsRefusedWhereItsHeaderOrItsLengthIsWrong) {
             std::string::npos);
 }
 
-TEST_F(SizeGridFile, BecomesTheRasterOfARequest) {
-  const auto request_options = with_size_grid({.size = folder_.write("G.ASC", kGrid).string()});
+TEST_F(RasterFile, BecomesTheRasterOfARequest) {
+  const auto request_options = with_raster({.size = folder_.write("G.ASC", kGrid).string()});
   ASSERT_TRUE(request_options) << request_options.error().message;
   const auto request = make_request(square_domain(4), *request_options);
   const v1::Raster& raster = request.size().raster();
