@@ -36,6 +36,7 @@ test=(
   python3-protobuf         # docs/generate.py
   buildah debootstrap      # the container, without a daemon
   docker-compose           # its compose.yaml
+  python3-seccomp          # the profile of weftd
   python3-grpcio python3-matplotlib python3-scipy                         # weft for Python
   python3-pytest python3-pip python3-setuptools python3-wheel mypy openssl # its tests
   python3-venv python3-pil curl                                           # the documents

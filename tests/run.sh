@@ -84,14 +84,15 @@ check_protocol() {
   deploy/node_modules/.bin/buf lint proto
 }
 
-# By the schemas of what reads them. Debian 12 has no kustomize that knows resources in other
+# By the schemas of what reads them. Debian 12's docker-compose looks for the seccomp profile beside
+# whoever calls it, today's beside the file. Debian 12 has no kustomize that knows resources in other
 # folders; what kubectl has since 1.21 does.
 check_deployment() {
   local overlay
-  docker-compose -f deploy/compose.yaml config --quiet || return
-  POSTGRES_PASSWORD=x GRAFANA_PASSWORD=y \
-    docker-compose -f deploy/compose.cluster.yaml config --quiet || return
-  if docker-compose -f deploy/compose.cluster.yaml config --quiet 2>/dev/null; then
+  (cd deploy && docker-compose -f compose.yaml config --quiet) || return
+  (cd deploy && POSTGRES_PASSWORD=x GRAFANA_PASSWORD=y \
+    docker-compose -f compose.cluster.yaml config --quiet) || return
+  if (cd deploy && docker-compose -f compose.cluster.yaml config --quiet) 2>/dev/null; then
     echo "deploy/compose.cluster.yaml: starts without passwords"
     return 1
   fi
