@@ -7,7 +7,6 @@
 BUILD is the folder of weftd and weft, such as build/release. With --check nothing is written: the
 exit code is 1 if a page is not what it would be.
 """
-import os
 import pathlib
 import re
 import subprocess
@@ -17,6 +16,9 @@ import tempfile
 from google.protobuf import descriptor_pb2
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "deploy/package"))
+import program_help
+
 FILES = ["mesh_service.proto", "job_service.proto"]
 Field = descriptor_pb2.FieldDescriptorProto
 
@@ -109,28 +111,17 @@ def api():
     return "\n".join(lines).rstrip() + "\n"
 
 
-def help_of(program, *words):
-    """The help, as it is where no variable of weft is set."""
-    environment = {k: v for k, v in os.environ.items() if not k.startswith("WEFT_")}
-    text = subprocess.run([program, *words, "--help"], check=True, capture_output=True, text=True,
-                          env=environment).stdout
-    # Programs name themselves as they were called; defaults that the machine decides are left out.
-    text = text.replace(str(program), pathlib.Path(program).name)
-    text = re.sub(r"^(  --threads .*)=\d+ \(", r"\1 (", text, flags=re.M)
-    return "\n".join(line.rstrip() for line in text.strip().splitlines())
-
-
 def variables(text):
     return set(re.findall(r"\(Env:(\w+)\)", text))
 
 
 def flags(build):
     weft, weftd = build / "weft", build / "weftd"
-    commands = re.findall(r"^  ([a-z-]+)  ", help_of(weft).split("Subcommands:")[1], re.M)
+    commands = [row.names[0] for row in program_help.commands_of(weft)]
     lines = ["# Flags", "", "As the programs tell them; made by `docs/generate.py`.", ""]
-    of_server = help_of(weftd)
+    of_server = program_help.help_of(weftd)
     for title, text in [("weftd", of_server)] + [
-            (f"weft {command}", help_of(weft, command)) for command in commands]:
+            (f"weft {command}", program_help.help_of(weft, command)) for command in commands]:
         lines += [f"## {title}", "", "```", text, "```", ""]
         if text is not of_server and (shared := variables(of_server) & variables(text)):
             sys.exit(f"weftd and {title} both read {', '.join(sorted(shared))}")

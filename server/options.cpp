@@ -16,6 +16,17 @@
 namespace weft::server {
 namespace {
 
+constexpr char kFooter[] = R"(SIZE is a number of bytes, or one with a unit: 256MiB, 2GiB.
+Every flag is also read from the environment: --max-points is WEFT_MAX_POINTS.
+
+Exit codes:
+  0        drained after SIGTERM or SIGINT
+  1        failed
+  2        the command line is wrong
+  3        cannot listen
+  4        cannot open the store
+  128 + n  a second signal n cut the draining short)";
+
 // Flags that have no effect if no jobs are kept.
 constexpr const char* kOfTheStore[] = {"--role",      "--max-queued",   "--max-queued-per-client",
                                        "--lease",     "--max-attempts", "--keep",
@@ -359,9 +370,7 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
   add_limits(flags, options, given);
   add_readers(flags, options, given);
   add_process(flags, options, given);
-  app.footer(
-      "SIZE is a number of bytes, or one with a unit: 256MiB, 2GiB.\n"
-      "Every flag is also read from the environment: --max-points is WEFT_MAX_POINTS.");
+  app.footer(kFooter);
   try {
     app.parse(argc, argv);
     if (options.data.empty() && options.store.empty())
