@@ -10,7 +10,7 @@
 set -euo pipefail
 
 build=(
-  ca-certificates git clang cmake ninja-build ccache pkg-config
+  ca-certificates git clang cmake ninja-build ccache pkg-config python3
   libgrpc++-dev libprotobuf-dev protobuf-compiler protobuf-compiler-grpc # the wire
   libcgal-dev libgmp-dev libmpfr-dev libboost-dev                        # exact geometry
   libtbb-dev libsleef-dev libexpected-dev                                # the engine
@@ -30,7 +30,7 @@ runtime=(
 test=(
   g++ libclang-rt-dev llvm # sanitizers, and the names in their reports
   postgresql-15            # the real database
-  clang-format clang-tidy shellcheck python3
+  clang-format clang-tidy shellcheck
   # what reads the files that weft writes, and writes those that it reads
   gmsh python3-gmsh python3-meshio python3-numpy python3-pyshp python3-shapely python3-vtk9
   python3-protobuf         # docs/generate.py
@@ -40,6 +40,7 @@ test=(
   python3-grpcio python3-matplotlib python3-scipy                         # weft for Python
   python3-pytest python3-pip python3-setuptools python3-wheel mypy openssl # its tests
   python3-venv python3-pil curl                                           # the documents
+  man-db mandoc zsh fish systemd dpkg-dev file # what is installed, and its packages
 )
 # Some machines bring a newer node; Debian's npm would be in its way.
 command -v npm >/dev/null || test+=(nodejs npm)
