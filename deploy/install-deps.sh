@@ -40,7 +40,7 @@ test=(
   python3-grpcio python3-matplotlib python3-scipy                         # weft for Python
   python3-pytest python3-pip python3-setuptools python3-wheel mypy openssl # its tests
   python3-venv python3-pil curl                                           # the documents
-  man-db mandoc zsh fish systemd dpkg-dev file # what is installed, and its packages
+  man-db mandoc zsh fish systemd dpkg-dev file iproute2 procps # what is installed, its packages
 )
 # Some machines bring a newer node; Debian's npm would be in its way.
 command -v npm >/dev/null || test+=(nodejs npm)

@@ -3,10 +3,10 @@
 # From a fresh Debian 12 machine to all tests run: installs what is missing, builds with warnings as
 # errors, runs every test, then those labelled `sanitize` again under AddressSanitizer and
 # UndefinedBehaviorSanitizer and those labelled `threads` under ThreadSanitizer, fuzzes, builds and
-# runs the container, and checks formatting, includes, licences, protocol and scripts. Prints each
+# runs the container and the packages, and checks formatting, includes, licences, protocol and scripts. Prints each
 # step with its seconds, and the closing lines of ctest last. Fails when any step failed.
 #
-#   tests/run.sh [--quick]     --quick leaves sanitizers, fuzzers and the container out
+#   tests/run.sh [--quick]     --quick leaves sanitizers, fuzzers, container and packages out
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
 
@@ -113,6 +113,14 @@ check_container() {
   tests/container.sh build/release/weft
 }
 
+check_packages() {
+  if ((EUID != 0)) || ! unshare --mount mount -t cgroup2 none /mnt 2>/dev/null; then
+    echo "the packages: not installed, for want of root, or of the right to mount"
+    return
+  fi
+  tests/package.sh build/release
+}
+
 export UBSAN_OPTIONS=print_stacktrace=1
 export TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp
 
@@ -130,6 +138,7 @@ step "documents" docs/generate.py build/release --check
 step "tests" run_ctest release --timeout 300
 if [[ $all ]]; then
   step "container" check_container
+  step "packages" check_packages
   needed "configure, sanitizers" cmake --preset asan -DWEFT_WERROR=ON
   needed "build, sanitizers" cmake --build --preset asan --target sanitize-tests
   step "tests, sanitizers" run_ctest asan -L sanitize --timeout 600

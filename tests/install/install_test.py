@@ -84,8 +84,8 @@ def test_licences_are_beside_each_component(prefix):
         folder = prefix / "share/doc" / name
         for licence in ROOT.glob("LICENSES/*.txt"):
             assert (folder / "LICENSES" / licence.name).read_bytes() == licence.read_bytes()
-        for name in ("LICENSE", "NOTICE"):
-            assert (folder / name).read_bytes() == (ROOT / name).read_bytes()
+        for text in ("LICENSE", "NOTICE"):
+            assert (folder / text).read_bytes() == (ROOT / text).read_bytes()
 
 
 def test_the_protocol_is_found_by_pkg_config_and_compiles(prefix, tmp_path):
@@ -111,6 +111,8 @@ def test_the_manual_has_every_command_and_flag(prefix, pages):
     commands = [row.names[0] for row in program_help.commands_of(weft)]
     assert {page.name for page in pages} == {"weft.1.gz", "weftd.8.gz",
                                             *(f"weft-{name}.1.gz" for name in commands)}
+    for page in pages:
+        assert page.parent.name == f"man{page.name.split('.')[1]}"
     helps = {"weftd.8.gz": program_help.help_of(prefix / "bin/weftd")}
     helps |= {f"weft-{name}.1.gz": program_help.help_of(weft, name) for name in commands}
     by_name = {page.name: page for page in pages}

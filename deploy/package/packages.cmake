@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+# Packages for Debian: `cpack` in the build folder makes weft, weftd and python3-weft.
+set(CPACK_GENERATOR DEB)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL weft weftd python3-weft)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+# Absolute folders, such as /etc, need DESTDIR.
+set(CPACK_SET_DESTDIR ON)
+set(CPACK_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
+set(CPACK_PACKAGE_VENDOR weft)
+set(CPACK_PACKAGE_CONTACT "The authors of weft <weft@example.org>")
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+
+set(CPACK_DEBIAN_WEFT_PACKAGE_NAME weft)
+set(CPACK_DEBIAN_WEFT_DESCRIPTION "Meshes of planar domains, with guaranteed angles: command line
+Makes triangle meshes for simulation, by a server, or one that it starts itself if
+weftd is installed. Reads and writes the usual formats of domains and meshes.")
+set(CPACK_DEBIAN_WEFT_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_WEFT_PACKAGE_DEPENDS fonts-dejavu-core) # of drawings
+set(CPACK_DEBIAN_WEFT_PACKAGE_RECOMMENDS weftd)
+
+set(CPACK_DEBIAN_WEFTD_PACKAGE_NAME weftd)
+set(CPACK_DEBIAN_WEFTD_DESCRIPTION "Meshes of planar domains, with guaranteed angles: server
+Refines on all cores, streams meshes over gRPC while it does, and keeps jobs. Comes
+with a service for systemd, which listens on 127.0.0.1:7421.")
+set(CPACK_DEBIAN_WEFTD_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_WEFTD_PACKAGE_DEPENDS "systemd | systemd-standalone-sysusers | systemd-sysusers")
+set(CPACK_DEBIAN_WEFTD_PACKAGE_SUGGESTS weft)
+set(scripts ${CMAKE_CURRENT_SOURCE_DIR}/debian)
+set(CPACK_DEBIAN_WEFTD_PACKAGE_CONTROL_EXTRA
+  ${scripts}/weftd/conffiles ${scripts}/weftd/postinst ${scripts}/weftd/prerm ${scripts}/weftd/postrm)
+
+set(CPACK_DEBIAN_PYTHON3-WEFT_PACKAGE_NAME python3-weft)
+set(CPACK_DEBIAN_PYTHON3-WEFT_DESCRIPTION "Meshes of planar domains, with guaranteed angles: Python
+Meshes as numpy arrays, from a server, or from one that it starts itself if weftd is
+installed.")
+set(CPACK_DEBIAN_PYTHON3-WEFT_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON3-WEFT_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON3-WEFT_PACKAGE_DEPENDS
+  "python3 (>= 3.11), python3-grpcio, python3-numpy, python3-protobuf")
+set(CPACK_DEBIAN_PYTHON3-WEFT_PACKAGE_RECOMMENDS weftd)
+set(CPACK_DEBIAN_PYTHON3-WEFT_PACKAGE_CONTROL_EXTRA
+  ${scripts}/python3-weft/postinst ${scripts}/python3-weft/prerm)
+
+include(CPack)

@@ -1,0 +1,171 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Packages the build for Debian and lives with the packages: installs them with apt on a bare
+# Debian 12 that debootstrap makes, boots it with its own systemd in namespaces of its own, meshes
+# through the service, by the command line and from Python, reads the manual, upgrades, and removes
+# and purges them. Needs root, for all of that.
+#
+#   tests/package.sh BUILD      BUILD is a folder that was built, such as build/release
+#
+# Fails where a package does not install, the service does not run confined as its user, a mesh is
+# wrong, a job is lost, or anything of weft is left after purging.
+set -euo pipefail
+build=$(realpath "${1:?usage: tests/package.sh BUILD}")
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+((EUID == 0)) || {
+  echo "package.sh: needs root, for debootstrap and systemd" >&2
+  exit 1
+}
+
+scratch=$(mktemp -d)
+root=$scratch/root
+# systemd makes groups of its own below that in which it starts; they go with it.
+group=$(findmnt -nt cgroup2 -o TARGET | head -n 1)/weft-package.$$
+machine=
+tidy_up() {
+  [[ -z $machine ]] || kill -KILL "$machine" 2>/dev/null || true
+  wait
+  [[ ! -d $group ]] || find "$group" -depth -type d -exec rmdir {} + || true
+  rm -rf --one-file-system "$scratch"
+}
+trap tidy_up EXIT
+
+say() { printf '==> %s (at %d s)\n' "$*" $SECONDS; }
+fail() {
+  printf 'package.sh: %s\n' "$*" >&2
+  exit 1
+}
+# Waits half a minute for a command to succeed.
+until_true() {
+  local tries
+  for ((tries = 0; tries < 600; ++tries)); do
+    "$@" && return
+    sleep 0.05
+  done
+  return 1
+}
+
+# Becomes the systemd of $1, as the first process of namespaces of its own.
+boot() {
+  set -e
+  mount --make-rprivate /
+  mount --bind "$1" "$1"
+  cd "$1"
+  mount -t proc proc proc
+  mount -t sysfs sysfs sys
+  mount -t cgroup2 cgroup2 sys/fs/cgroup
+  mount -t tmpfs tmpfs run
+  mount -t tmpfs tmpfs dev
+  local device
+  for device in null zero full random urandom tty; do
+    touch "dev/$device"
+    mount --bind "/dev/$device" "dev/$device"
+  done
+  ln -s /proc/self/fd dev/fd
+  ln -s pts/ptmx dev/ptmx
+  mkdir dev/pts dev/shm
+  mount -t devpts -o newinstance,ptmxmode=0666 devpts dev/pts
+  mount -t tmpfs tmpfs dev/shm
+  ip link set lo up
+  mkdir host
+  pivot_root . host
+  # shellcheck disable=SC2093
+  exec env -i container=weft PATH=/usr/sbin:/usr/bin:/sbin:/bin sh -c \
+    'umount -l /host && rmdir /host && exec /lib/systemd/systemd --unit=multi-user.target'
+}
+start_machine() {
+  mkdir "$group"
+  bash -c 'echo $$ >"$1/cgroup.procs"; shift; exec "$@"' bash "$group" \
+    unshare --mount --pid --fork --kill-child --net --uts --ipc --cgroup \
+    bash -c "$(declare -f boot); boot $root" >"$scratch/boot.log" 2>&1 &
+  local outside=$!
+  until_true pgrep -P "$outside" >/dev/null || fail "nothing boots: $(<"$scratch/boot.log")"
+  machine=$(pgrep -P "$outside")
+}
+inside() {
+  nsenter --target "$machine" --all -- env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root \
+    LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"
+}
+runs() { inside systemctl is-active --quiet weftd 2>/dev/null; }
+serves() { [[ $(inside weft health --server 127.0.0.1:7421 2>/dev/null) == serving ]]; }
+shows_the_journal() { inside journalctl --no-pager --unit weftd --lines 20; }
+before_boot() {
+  chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 \
+    DEBIAN_FRONTEND=noninteractive "$@"
+}
+
+say "packages, by cpack"
+(cd "$scratch" && cpack --config "$build/CPackConfig.cmake" -B "$scratch/packages") \
+  >"$scratch/cpack.log" 2>&1 || fail "cpack failed: $(tail "$scratch/cpack.log")"
+(cd "$scratch/packages" && du --apparent-size --block-size=1000 ./*.deb)
+
+say "a bare Debian 12, by debootstrap"
+debootstrap --variant=minbase bookworm "$root" >"$scratch/debootstrap.log" 2>&1 ||
+  fail "debootstrap failed: $(tail -n 3 "$scratch/debootstrap.log")"
+cp /etc/resolv.conf "$root/etc/"
+echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/test"
+mkdir "$root/srv/packages"
+mv "$scratch"/packages/*.deb "$root/srv/packages"
+cp tests/models/pipe.poly "$root/srv"
+
+say "apt-get install"
+{
+  before_boot apt-get update -qq &&
+    before_boot sh -c 'apt-get install -y -qq --no-install-recommends man-db /srv/packages/*.deb'
+} >"$scratch/apt.log" 2>&1 || fail "the packages do not install: $(tail "$scratch/apt.log")"
+
+say "boot"
+start_machine
+until_true runs || fail "weftd does not run: $(cat "$scratch/boot.log"; shows_the_journal)"
+until_true serves || fail "weftd does not serve: $(shows_the_journal)"
+pid=$(inside systemctl show --property MainPID --value weftd)
+user=$(inside id -u weftd)
+confined=$(inside cat "/proc/$pid/status" | tr -s '\t' ' ')
+for line in "Uid: $user $user $user $user" "NoNewPrivs: 1" "Seccomp: 2" "CapBnd: 0000000000000000"; do
+  grep -qxF "$line" <<<"$confined" || fail "the service is not confined: no '$line'"
+done
+
+say "meshes through the service, of its own server, and from Python"
+mesh=(/srv/pipe.poly --size '0.4*hypot(x-200, y-200) + 1')
+inside weft mesh "${mesh[@]}" -o /srv/pipe.vtu --draw /srv/pipe.png --server 127.0.0.1:7421 --quiet
+inside weft check /srv/pipe.vtu --domain "${mesh[@]}"
+inside weft mesh "${mesh[@]}" -o /srv/own.vtu --quiet
+inside cmp /srv/pipe.vtu /srv/own.vtu
+inside python3 -c "import weft
+with weft.Client('127.0.0.1:7421') as client:
+    print(client.mesh('/srv/pipe.poly', size='0.4*hypot(x-200, y-200) + 1').quality())"
+job=$(inside weft submit "${mesh[@]}" --wait --server 127.0.0.1:7421 --quiet)
+for page in weft weft-mesh weftd; do
+  # Of pages at an unusual width man keeps no copy of its own.
+  inside sh -c "MANWIDTH=90 man $page | grep -qw SYNOPSIS" || fail "there is no manual of $page"
+done
+
+say "an upgrade, over changed variables"
+inside sed -i 's/^#WEFT_DRAIN=.*/WEFT_DRAIN=29/' /etc/default/weftd
+inside sh -c 'dpkg --install /srv/packages/weftd_*.deb' >"$scratch/upgrade.log" 2>&1 ||
+  fail "the upgrade fails: $(<"$scratch/upgrade.log")"
+until_true serves || fail "weftd does not serve after an upgrade: $(shows_the_journal)"
+[[ $(inside systemctl show --property MainPID --value weftd) != "$pid" ]] ||
+  fail "the upgrade did not restart the service"
+inside grep -q 'event=draining.*seconds=30' <(shows_the_journal) ||
+  fail "the service was not drained: $(shows_the_journal)"
+inside weft fetch "$job" -o /srv/fetched.vtu --server 127.0.0.1:7421 --quiet
+inside cmp /srv/pipe.vtu /srv/fetched.vtu || fail "the fetched mesh is another one"
+inside systemctl stop weftd
+[[ $(inside systemctl show --property Result --value weftd) == success ]] ||
+  fail "the service did not stop by itself: $(shows_the_journal)"
+shows_the_journal | grep -q 'event=draining.*seconds=29' || fail "WEFT_DRAIN was not read"
+inside systemctl start weftd
+
+say "remove, and purge"
+inside apt-get remove -y -qq weft weftd python3-weft >"$scratch/remove.log" 2>&1 ||
+  fail "removing fails: $(<"$scratch/remove.log")"
+! runs || fail "the service of a removed package runs"
+inside test -d /var/lib/weftd -a -f /etc/default/weftd || fail "removing deletes what is kept"
+inside apt-get purge -y -qq weftd >"$scratch/purge.log" 2>&1 ||
+  fail "purging fails: $(<"$scratch/purge.log")"
+left=$(inside find / -xdev -path /srv -prune -o -iname '*weft*' -print)
+[[ -z $left ]] || fail "left after purging: $left"
+! inside grep weft /etc/passwd /etc/group /etc/shadow || fail "the user is left after purging"
+left=$(inside find / -xdev '(' -nouser -o -nogroup ')')
+[[ -z $left ]] || fail "left after purging, of no user: $left"
