@@ -38,7 +38,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/geometry.h"
-#include "engine/size/expression/interval.h"
+#include "engine/size/interval.h"
 #include "engine/size/size_function.h"
 
 namespace weft {

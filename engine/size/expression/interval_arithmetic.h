@@ -14,8 +14,8 @@
 // W. Kahan, "How Futile are Mindless Assessments of Roundoff"; IEEE 1788-2015 for the terms.
 #pragma once
 
-#include "engine/size/expression/interval.h"
 #include "engine/size/expression/operation.h"
+#include "engine/size/interval.h"
 
 namespace weft::expr {
 

@@ -6,8 +6,8 @@
 #include <initializer_list>
 #include <limits>
 
-#include "engine/size/expression/interval.h"
 #include "engine/size/expression/operation.h"
+#include "engine/size/interval.h"
 
 namespace weft::expr {
 

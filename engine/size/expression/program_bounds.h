@@ -3,8 +3,8 @@
 #pragma once
 
 #include "engine/base/geometry.h"
-#include "engine/size/expression/interval.h"
 #include "engine/size/expression/program.h"
+#include "engine/size/interval.h"
 
 namespace weft::expr {
 

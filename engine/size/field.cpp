@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/size/size_function.h"
+#include "engine/size/field.h"
 
 #include <algorithm>
 
 namespace weft {
 
-double SizeFunction::operator()(Point p) const noexcept {
+double Field::operator()(Point p) const noexcept {
   alignas(64) double x[kLanes];
   alignas(64) double y[kLanes];
   alignas(64) double out[kLanes];
