@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grading function as users write it: an expression in x and y, parsed once, compiled to a
-// batch program.
+// The grading function as users write it: an expression in x, y and named fields, parsed once,
+// compiled to a batch program.
 //
 // Grammar, loosest first; binary operators associate to the left, but ^ and ?: to the right:
 //   condition ? a : b
@@ -8,9 +8,11 @@
 //   < <= > >= == !=     (do not chain: 0 < x < 5 is refused)
 //   + -                 * /
 //   unary - + !         ^        -x^2 is -(x^2), 2^-1 is 0.5
-//   numbers (1, .5, 1e-3), x, y, pi, e, ( )
+//   numbers (1, .5, 1e-3), x, y, pi, e, names of fields, ( )
 //   sqrt abs exp log sin cos tan floor ceil (1 argument; log is natural, angles are in radians),
-//   pow atan2 hypot (2), min max (2 or more), clamp(v, lo, hi) = min(max(v, lo), hi)
+//   pow atan2 hypot (2), min max (2 or more), clamp(v, lo, hi) = min(max(v, lo), hi),
+//   slope(f), the length of the gradient of the field f, defined(v), which is false if v is NaN,
+//   coalesce(v, w, ...), the first that is not NaN
 // Spaces, tabs and newlines are free.
 //
 // Truth values: comparisons, &&, || and ! give 1 or 0; as a condition 0 is false and all else is
@@ -20,8 +22,8 @@
 // NaN and infinities follow IEEE 754: 1/0 is infinite, sqrt(-1) is NaN, comparisons with NaN are
 // false (!= is true). min, max and clamp of a NaN are NaN, so that an undefined size is detected.
 //
-// Determinism: a value depends only on x and y, never on the batch, the machine or the compiler:
-// arithmetic is IEEE 754 without contraction, transcendental functions are SLEEF's
+// Determinism: a value depends only on x, y and the fields, never on the batch, the machine or the
+// compiler: arithmetic is IEEE 754 without contraction, transcendental functions are SLEEF's
 // width-independent (cinz) ones, within 3.5 units in the last place (1 for exp and pow). Powers
 // with an integer constant exponent from -16 to 16 are products, a^0.5 is sqrt(a), e^a is exp(a);
 // pow is the same as ^.
@@ -34,7 +36,10 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/base/error.h"
 #include "engine/base/geometry.h"
@@ -43,18 +48,37 @@
 
 namespace weft {
 
+// A field that an expression may name.
+struct NamedField {
+  std::string name;
+  const Field* field = nullptr;
+};
+
 class Expression final : public SizeFunction {
  public:
   static constexpr std::size_t kMaxLength = 65536;  // bytes of source
   // Nesting of parentheses, arguments, unary operators, exponents, and the operand between ? and :.
   // Sums, products and chains a ? b : c ? d : ... do not nest.
   static constexpr std::size_t kMaxDepth = 256;
+  static constexpr std::size_t kMaxNameLength = 64;
+  static constexpr std::size_t kMaxFields = 32;
   static constexpr std::size_t kMaxOperations = 4096;  // after folding; equal ones count once
-  static constexpr std::size_t kMaxRegisters = 256;    // values alive at once, x and y included
+  static constexpr std::size_t kMaxRegisters =
+      256;  // values alive at once, x, y and fields included
 
   // Errors: kExpressionSyntax with "line, column" and a caret under the offender in the message,
-  // kExpressionTooComplex with the limit; the field is "size.expression". Any bytes are safe.
-  static Result<Expression> parse(std::string_view source);
+  // kExpressionTooComplex with the limit, kBadOption for the slope of a field that has none; the
+  // field is "size.expression". Any bytes are safe. REQUIRES: the fields outlive the expression.
+  static Result<Expression> parse(std::string_view source, std::span<const NamedField> fields = {});
+
+  // What parse would say, without the fields themselves. Returns which of the names are used.
+  static Result<std::vector<bool>> check(std::string_view source,
+                                         std::span<const std::string> names);
+
+  // Judges the names of fields: letters, digits and _, a letter or _ first, at most kMaxNameLength
+  // bytes, none twice, none that means something else already. The error (kBadOption) names
+  // "size.fields[i].name".
+  static std::optional<Error> check_names(std::span<const std::string> names);
 
   Expression(Expression&&) noexcept;
   Expression& operator=(Expression&&) noexcept;
@@ -69,10 +93,10 @@ class Expression final : public SizeFunction {
   // constant and the box lies in one piece.
   Interval bounds(const Box& box) const noexcept override;
 
-  // The value if no x and y are left after folding.
+  // The value if neither x, y nor a field is left after folding.
   std::optional<double> constant() const noexcept override;
 
-  // At most kMaxOperations.
+  // At most kMaxOperations, and those of the fields.
   std::size_t operations() const noexcept override;
 
  private:

@@ -24,11 +24,8 @@ bool commutes(Op op) {
 NodeId Graph::constant(double value) {
   return intern({.op = Op::kConstant, .value = value});
 }
-NodeId Graph::x() {
-  return intern({.op = Op::kX});
-}
-NodeId Graph::y() {
-  return intern({.op = Op::kY});
+NodeId Graph::input(std::uint16_t number) {
+  return intern({.op = Op::kInput, .input = number});
 }
 
 NodeId Graph::truth_constant(bool value) {
@@ -57,7 +54,10 @@ NodeId Graph::unary(Op op, NodeId a) {
     return intern({.op = op, .args = {a}});
   }
   a = number(a);
-  if (is_constant(a)) return constant(apply(op, 0, nodes_[a].value));
+  if (is_constant(a)) {
+    const double value = apply(op, 0, nodes_[a].value);
+    return is_truth(op) ? truth_constant(value != 0) : constant(value);
+  }
   return intern({.op = op, .args = {a}});
 }
 
@@ -120,8 +120,13 @@ NodeId Graph::power(NodeId a, NodeId b) {
 }
 
 NodeId Graph::intern(const Node& node) {
-  const Key key{node.op,      node.exponent, node.args[0],
-                node.args[1], node.args[2],  std::bit_cast<std::uint64_t>(node.value)};
+  const Key key{node.op,
+                node.exponent,
+                node.input,
+                node.args[0],
+                node.args[1],
+                node.args[2],
+                std::bit_cast<std::uint64_t>(node.value)};
   const auto [entry, is_new] = ids_.try_emplace(key, static_cast<NodeId>(nodes_.size()));
   if (is_new) nodes_.push_back(node);
   return entry->second;

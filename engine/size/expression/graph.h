@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A size expression as a directed acyclic graph: equal subexpressions are one node, and those that
-// do not depend on x and y are folded while the graph is built.
+// depend on no input are folded while the graph is built.
 //
 // Folding and rewriting keep every bit of the value: constants are computed by the operations of
 // lanes.h, and only truth values are simplified algebraically. An argument is converted between
@@ -8,7 +8,7 @@
 // truth value is 1 or 0).
 //
 //   Graph graph;
-//   NodeId r2 = graph.binary(Op::kAdd, graph.power(graph.x(), graph.constant(2)), ...);
+//   NodeId r2 = graph.binary(Op::kAdd, graph.power(graph.input(0), graph.constant(2)), ...);
 #pragma once
 
 #include <array>
@@ -27,6 +27,7 @@ using NodeId = std::uint32_t;
 struct Node {
   Op op = Op::kConstant;
   int exponent = 0;              // of kPowN
+  std::uint16_t input = 0;       // of kInput: its number
   std::array<NodeId, 3> args{};  // the first arity(op) count; each is less than the node's own id
   double value = 0;              // of kConstant
 };
@@ -34,8 +35,7 @@ struct Node {
 class Graph {
  public:
   NodeId constant(double value);
-  NodeId x();
-  NodeId y();
+  NodeId input(std::uint16_t number);
   NodeId unary(Op op, NodeId a);
   NodeId binary(Op op, NodeId a, NodeId b);
   NodeId select(NodeId condition, NodeId a, NodeId b);
@@ -48,7 +48,7 @@ class Graph {
   std::size_t size() const { return nodes_.size(); }
 
  private:
-  using Key = std::tuple<Op, int, NodeId, NodeId, NodeId, std::uint64_t>;
+  using Key = std::tuple<Op, int, std::uint16_t, NodeId, NodeId, NodeId, std::uint64_t>;
 
   NodeId truth(NodeId a);
   NodeId truth_constant(bool value);

@@ -16,6 +16,11 @@ Interval truth(bool always, bool never) {
   return always ? kTrue : never ? kFalse : kEitherTruth;
 }
 
+// NaN in all of the box, as the bounds of a field may tell.
+bool never_defined(const Interval& a) {
+  return a.lo > a.hi;
+}
+
 // Non-decreasing as computed, NaN nowhere.
 Interval increasing(Op op, const Interval& a) {
   return {apply(op, 0, a.lo), apply(op, 0, a.hi), a.may_be_nan};
@@ -69,6 +74,16 @@ Interval extremum_bounds(Op op, const Interval& a, const Interval& b) {
           either_nan(a, b)};
 }
 
+Interval coalesce_bounds(const Interval& a, const Interval& b) {
+  if (!a.may_be_nan) return a;
+  if (never_defined(a) || never_defined(b)) {
+    Interval defined = never_defined(a) ? b : a;
+    defined.may_be_nan = b.may_be_nan;
+    return defined;
+  }
+  return hull({a.lo, a.hi, b.lo, b.hi}, b.may_be_nan);
+}
+
 }  // namespace
 
 Interval coordinate_bounds(double lo, double hi) {
@@ -81,6 +96,8 @@ Interval constant_bounds(double value) {
 }
 
 Interval unary_bounds(Op op, int exponent, const Interval& a) {
+  if (op == Op::kDefined) return truth(!a.may_be_nan, never_defined(a));
+  if (never_defined(a)) return kAnything;
   switch (op) {
     case Op::kCopy:
     case Op::kToNumber:
@@ -104,6 +121,8 @@ Interval unary_bounds(Op op, int exponent, const Interval& a) {
 }
 
 Interval binary_bounds(Op op, const Interval& a, const Interval& b) {
+  if (op == Op::kCoalesce) return coalesce_bounds(a, b);
+  if (never_defined(a) || never_defined(b)) return is_truth(op) ? kEitherTruth : kAnything;
   const bool nan = either_nan(a, b);
   switch (op) {
     case Op::kAdd:
@@ -137,6 +156,11 @@ Interval binary_bounds(Op op, const Interval& a, const Interval& b) {
 Interval select_bounds(const Interval& condition, const Interval& a, const Interval& b) {
   if (condition.lo == 1) return a;
   if (condition.hi == 0) return b;
+  if (never_defined(a) || never_defined(b)) {
+    Interval defined = never_defined(a) ? b : a;
+    defined.may_be_nan = true;
+    return defined;
+  }
   return hull({a.lo, a.hi, b.lo, b.hi}, either_nan(a, b));
 }
 

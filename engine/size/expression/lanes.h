@@ -82,6 +82,10 @@ struct Not {
   static Lanes of(Lanes mask) { return _mm_xor_pd(mask, _mm_castsi128_pd(_mm_set1_epi64x(-1))); }
 };
 
+struct Defined {
+  static Lanes of(Lanes a) { return _mm_cmpord_pd(a, a); }
+};
+
 struct Add {
   static Lanes of(Lanes a, Lanes b) { return _mm_add_pd(a, b); }
 };
@@ -110,6 +114,13 @@ struct Atan2 {
 };
 struct Hypot {
   static Lanes of(Lanes a, Lanes b) { return Sleef_cinz_hypotd2_u35sse4(a, b); }
+};
+
+struct Coalesce {
+  static Lanes of(Lanes a, Lanes b) {
+    const Lanes defined = Defined::of(a);
+    return _mm_or_pd(_mm_and_pd(defined, a), _mm_andnot_pd(defined, b));
+  }
 };
 
 // With NaN only NotEqual holds.
@@ -178,6 +189,8 @@ auto visit_unary(Op op, int exponent, Visitor&& visit) {
       return visit(ToNumber{});
     case Op::kNot:
       return visit(Not{});
+    case Op::kDefined:
+      return visit(Defined{});
     default:
       assert(op == Op::kCopy);
       return visit(Copy{});
@@ -206,6 +219,8 @@ auto visit_binary(Op op, Visitor&& visit) {
       return visit(Atan2{});
     case Op::kHypot:
       return visit(Hypot{});
+    case Op::kCoalesce:
+      return visit(Coalesce{});
     case Op::kLess:
       return visit(Less{});
     case Op::kLessEqual:
@@ -224,7 +239,10 @@ auto visit_binary(Op op, Visitor&& visit) {
 
 // One value at a time, for folding and for the end points of intervals. A truth value is 1 or 0.
 inline double apply(Op op, int exponent, double a) {
-  return visit_unary(op, exponent, [&](auto f) { return _mm_cvtsd_f64(f.of(_mm_set1_pd(a))); });
+  return visit_unary(op, exponent, [&](auto f) {
+    const Lanes value = f.of(_mm_set1_pd(a));
+    return _mm_cvtsd_f64(is_truth(op) ? ToNumber::of(value) : value);
+  });
 }
 inline double apply(Op op, double a, double b) {
   return visit_binary(op, [&](auto f) {

@@ -11,7 +11,7 @@ namespace weft::expr {
 
 namespace {
 
-constexpr std::array<Function, 15> kFunctions = {{
+constexpr std::array<Function, 18> kFunctions = {{
     {"sqrt", 1, 1, Op::kSqrt},
     {"abs", 1, 1, Op::kAbs},
     {"exp", 1, 1, Op::kExp},
@@ -27,6 +27,9 @@ constexpr std::array<Function, 15> kFunctions = {{
     {"min", 2, std::nullopt, Op::kMin},
     {"max", 2, std::nullopt, Op::kMax},
     {"clamp", 3, 3, std::nullopt},
+    {"slope", 1, 1, std::nullopt},
+    {"defined", 1, 1, Op::kDefined},
+    {"coalesce", 2, std::nullopt, Op::kCoalesce},
 }};
 
 constexpr std::array<std::string_view, 4> kValues = {"x", "y", "pi", "e"};
@@ -51,8 +54,9 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-std::optional<std::string_view> nearest(std::string_view name) {
-  constexpr std::size_t kLongest = 8;  // nothing that long is near a name of ours
+std::optional<std::string_view> nearest(std::string_view name,
+                                        std::span<const std::string> fields) {
+  constexpr std::size_t kLongest = 64;  // a field's name is no longer
   if (name.size() > kLongest) return std::nullopt;
   std::optional<std::string_view> best;
   std::size_t best_distance = (name.size() + 2) / 3;  // one slip in three letters
@@ -67,6 +71,7 @@ std::optional<std::string_view> nearest(std::string_view name) {
   };
   for (const Function& function : kFunctions) consider(function.name);
   for (std::string_view value : kValues) consider(value);
+  for (const std::string& field : fields) consider(field);
   return best;
 }
 
@@ -78,13 +83,23 @@ const Function* find_function(std::string_view name) {
   return found == kFunctions.end() ? nullptr : found;
 }
 
-std::string explain_unknown(std::string_view name) {
+bool is_taken(std::string_view name) {
+  return find_function(name) != nullptr ||
+         std::find(kValues.begin(), kValues.end(), name) != kValues.end();
+}
+
+std::string explain_unknown(std::string_view name, std::span<const std::string> fields) {
   if (name == "and") return "unexpected 'and'; logical and is written &&";
   if (name == "or") return "unexpected 'or'; logical or is written ||";
   if (name == "not") return "unexpected 'not'; logical not is written !";
   std::string text = "unknown name " + quoted(name);
-  if (const auto near = nearest(name)) return text + "; did you mean " + quoted(*near) + "?";
-  return text + "; the variables are x and y";
+  if (const auto near = nearest(name, fields))
+    return text + "; did you mean " + quoted(*near) + "?";
+  if (fields.empty()) return text + "; the variables are x and y";
+  text += "; the variables are x, y";
+  for (const std::string& field : fields)
+    text += &field == &fields.back() ? " and " + field : ", " + field;
+  return text;
 }
 
 }  // namespace weft::expr

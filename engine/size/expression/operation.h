@@ -12,12 +12,11 @@ namespace weft::expr {
 enum class Op : std::uint8_t {
   // Leaves.
   kConstant,
-  kX,
-  kY,
+  kInput,  // a number that each point brings: its x, its y, or the value of a field there
   kFalse,  // kFalse and kTrue are folded away: no program contains them
   kTrue,
   // number -> number
-  kCopy,  // only to copy a bare x, y or constant into the result
+  kCopy,  // only to copy a bare input or constant into the result
   kNegate,
   kAbs,
   kSqrt,
@@ -32,6 +31,8 @@ enum class Op : std::uint8_t {
   // truth -> number, truth -> truth
   kToNumber,
   kNot,
+  // number -> truth
+  kDefined,  // whether it is not NaN
   // number, number -> number
   kAdd,
   kSubtract,
@@ -42,6 +43,7 @@ enum class Op : std::uint8_t {
   kPow,
   kAtan2,
   kHypot,
+  kCoalesce,  // the first, or the second where the first is NaN
   // number, number -> truth
   kLess,
   kLessEqual,
@@ -59,13 +61,13 @@ inline constexpr int kMaxPowN = 16;
 
 constexpr int arity(Op op) {
   if (op <= Op::kTrue) return 0;
-  if (op <= Op::kNot) return 1;
+  if (op <= Op::kDefined) return 1;
   if (op <= Op::kOr) return 2;
   return 3;
 }
 
 constexpr bool is_truth(Op op) {
-  return op == Op::kFalse || op == Op::kTrue || op == Op::kNot ||
+  return op == Op::kFalse || op == Op::kTrue || op == Op::kNot || op == Op::kDefined ||
          (op >= Op::kLess && op <= Op::kOr);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/size/expression/parser.h"
 
+#include <algorithm>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -47,8 +48,8 @@ std::optional<BinaryOperator> binary_operator(const Token& token) {
 // rule below leaves at once. So no rule needs to pass errors on.
 class Parser {
  public:
-  Parser(std::string_view source, std::size_t max_depth)
-      : source_(source), max_depth_(max_depth), lexer_(source) {}
+  Parser(std::string_view source, std::span<const std::string> names, std::size_t max_depth)
+      : source_(source), names_(names), max_depth_(max_depth), lexer_(source) {}
 
   Result<Parsed> run() {
     advance();
@@ -56,7 +57,7 @@ class Parser {
     const NodeId root = graph_.number(conditional());
     if (token_.kind != Kind::kEnd) fail("expected an operator, found " + found());
     if (error_) return tl::unexpected(*std::move(error_));
-    return Parsed{std::move(graph_), root};
+    return Parsed{std::move(graph_), root, std::move(fields_)};
   }
 
  private:
@@ -125,16 +126,49 @@ class Parser {
 
   NodeId named(const Token& name) {
     if (const Function* function = find_function(name.text)) return call(name, *function);
-    const NodeId value = name.text == "x"    ? graph_.x()
-                         : name.text == "y"  ? graph_.y()
-                         : name.text == "pi" ? graph_.constant(std::numbers::pi)
-                                             : graph_.constant(std::numbers::e);
-    if (name.text != "x" && name.text != "y" && name.text != "pi" && name.text != "e") {
-      fail(explain_unknown(name.text), name);
-    } else if (is("(")) {
-      fail(quoted(name.text) + " is not a function; a product is written *");
+    const std::optional<NodeId> value = this->value(name.text);
+    if (!value) {
+      fail(explain_unknown(name.text, names_), name);
+      return graph_.constant(0);
     }
-    return value;
+    if (is("(")) fail(quoted(name.text) + " is not a function; a product is written *");
+    return *value;
+  }
+
+  std::optional<NodeId> value(std::string_view name) {
+    if (name == "x") return graph_.input(kInputX);
+    if (name == "y") return graph_.input(kInputY);
+    if (name == "pi") return graph_.constant(std::numbers::pi);
+    if (name == "e") return graph_.constant(std::numbers::e);
+    if (const auto field = field_named(name)) return field_input({*field, false});
+    return std::nullopt;
+  }
+
+  std::optional<std::size_t> field_named(std::string_view name) const {
+    const auto found = std::find(names_.begin(), names_.end(), name);
+    if (found == names_.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - names_.begin());
+  }
+
+  NodeId field_input(const FieldInput& input) {
+    const auto found = std::find(fields_.begin(), fields_.end(), input);
+    const auto number = static_cast<std::uint16_t>(found - fields_.begin());
+    if (found == fields_.end()) fields_.push_back(input);
+    return graph_.input(static_cast<std::uint16_t>(kFirstFieldInput + number));
+  }
+
+  // The one function that takes a field, not its value.
+  NodeId slope(const Token& open) {
+    const Token argument = token_;
+    const auto field =
+        argument.kind == Kind::kName ? field_named(argument.text) : std::optional<std::size_t>{};
+    if (!field) {
+      fail("slope takes the name of a field");
+      return graph_.constant(0);
+    }
+    advance();
+    close(open);
+    return field_input({*field, true});
   }
 
   NodeId call(const Token& name, const Function& function) {
@@ -143,6 +177,7 @@ class Parser {
       fail("the function " + quoted(name.text) + " needs arguments in parentheses", name);
       return graph_.constant(0);
     }
+    if (function.name == "slope") return slope(open);
     std::vector<NodeId> arguments;
     if (!is(")")) {
       do {
@@ -229,18 +264,21 @@ class Parser {
   }
 
   std::string_view source_;
+  std::span<const std::string> names_;
   std::size_t max_depth_;
   Lexer lexer_;
   Token token_;
   std::size_t depth_ = 0;
   Graph graph_;
+  std::vector<FieldInput> fields_;
   std::optional<Error> error_;
 };
 
 }  // namespace
 
-Result<Parsed> parse(std::string_view source, std::size_t max_depth) {
-  return Parser(source, max_depth).run();
+Result<Parsed> parse(std::string_view source, std::span<const std::string> names,
+                     std::size_t max_depth) {
+  return Parser(source, names, max_depth).run();
 }
 
 }  // namespace weft::expr

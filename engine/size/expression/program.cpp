@@ -78,8 +78,8 @@ struct Lifetime {
 
 class Allocator {
  public:
-  Allocator(const Graph& graph, const std::vector<NodeId>& order)
-      : graph_(graph), order_(order), lives_(graph.size()) {
+  Allocator(const Graph& graph, const std::vector<NodeId>& order, std::size_t inputs)
+      : graph_(graph), order_(order), lives_(graph.size()), registers_(inputs) {
     for (std::uint32_t at = 0; at < order_.size(); ++at) {
       lives_[order_[at]].computed = at;
       for (NodeId arg : args_of(graph_[order_[at]])) {
@@ -119,8 +119,7 @@ class Allocator {
     using From = Operand::From;
     const Node& node = graph_[id];
     if (node.op == Op::kConstant) return {.from = From::kConstant, .value = node.value};
-    if (node.op == Op::kX) return {.from = From::kRegister, .reg = kRegisterX};
-    if (node.op == Op::kY) return {.from = From::kRegister, .reg = kRegisterY};
+    if (node.op == Op::kInput) return {.from = From::kRegister, .reg = node.input};
     if (lives_[id].computed + 1 == at) return {.from = From::kAccumulator};
     return {.from = From::kRegister, .reg = lives_[id].reg};
   }
@@ -145,26 +144,26 @@ class Allocator {
   const std::vector<NodeId>& order_;
   std::vector<Lifetime> lives_;
   std::vector<std::uint16_t> free_;
-  std::size_t registers_ = 2;  // x and y
+  std::size_t registers_;
 };
 
 }  // namespace
 
-Result<Program> compile(const Graph& graph, NodeId root, std::size_t max_operations,
-                        std::size_t max_registers) {
+Result<Program> compile(const Graph& graph, NodeId root, std::size_t inputs,
+                        std::size_t max_operations, std::size_t max_registers) {
   const std::vector<NodeId> order = schedule(graph, root);
   if (order.size() > max_operations) {
     return fail(ErrorCode::kExpressionTooComplex, kField,
                 "the size expression has " + std::to_string(order.size()) +
                     " operations; the limit is " + std::to_string(max_operations));
   }
-  if (!order.empty()) return Allocator(graph, order).run(max_registers);
-  // A bare x, y or constant.
+  if (!order.empty()) return Allocator(graph, order, inputs).run(max_registers);
+  // A bare input or constant.
   const Node& leaf = graph[root];
   Instruction copy{.op = Op::kCopy};
   copy.operands[0] = {
       .from = leaf.op == Op::kConstant ? Operand::From::kConstant : Operand::From::kRegister,
-      .reg = leaf.op == Op::kY ? kRegisterY : kRegisterX,
+      .reg = leaf.input,
       .value = leaf.value};
   return Program{copy};
 }

@@ -3,7 +3,7 @@
 //
 // Every instruction leaves its result in the accumulator; `store` says where else it is kept, if a
 // later instruction than the next one uses it. An operand is the accumulator, a register or
-// a constant. Registers 0 and 1 hold x and y. The order of evaluation is that of R. Sethi and
+// a constant. The first registers hold the inputs. The order of evaluation is that of R. Sethi and
 // J. D. Ullman, "The Generation of Optimal Code for Arithmetic Expressions" (1970): the subtree
 // that needs more registers first, so that a long chain needs few.
 #pragma once
@@ -34,15 +34,12 @@ struct Instruction {
   std::optional<std::uint16_t> store = std::nullopt;
 };
 
-inline constexpr std::uint16_t kRegisterX = 0;
-inline constexpr std::uint16_t kRegisterY = 1;
-
 // The last instruction's result is the value.
 using Program = std::vector<Instruction>;
 
 // Errors: kExpressionTooComplex for more operations than max_operations or more values alive at
-// once than max_registers (x and y included).
-Result<Program> compile(const Graph& graph, NodeId root, std::size_t max_operations,
-                        std::size_t max_registers);
+// once than max_registers, the inputs included: these are numbered from 0 to inputs - 1.
+Result<Program> compile(const Graph& graph, NodeId root, std::size_t inputs,
+                        std::size_t max_operations, std::size_t max_registers);
 
 }  // namespace weft::expr

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "engine/size/expression/interval_arithmetic.h"
+#include "engine/size/expression/parser.h"
 #include "engine/size/expression/threaded_code.h"
 
 namespace weft::expr {
@@ -18,10 +19,13 @@ union Register {
 
 }  // namespace
 
-Interval bounds(const Program& program, const Box& box) noexcept {
+Interval bounds(const Program& program, const Box& box,
+                std::span<const Field* const> fields) noexcept {
   std::array<Register, kMaxRegisters> registers;
-  registers[kRegisterX].value = coordinate_bounds(box.min_x, box.max_x);
-  registers[kRegisterY].value = coordinate_bounds(box.min_y, box.max_y);
+  registers[kInputX].value = coordinate_bounds(box.min_x, box.max_x);
+  registers[kInputY].value = coordinate_bounds(box.min_y, box.max_y);
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    registers[kFirstFieldInput + i].value = fields[i]->bounds(box);
   Interval accumulator;
   const auto read = [&](const Operand& operand) -> Interval {
     switch (operand.from) {

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "engine/size/expression/lanes.h"
+#include "engine/size/expression/parser.h"
 
 // Both compilers turn the jump to the next handler into a jump when they optimise; clang can be
 // made to promise it. Without it the stack grows by one small frame an operation, which
@@ -170,12 +171,15 @@ ThreadedCode::ThreadedCode(const Program& program) {
   steps_.push_back(Step{.run = &finish});
 }
 
-void ThreadedCode::run(const double* x, const double* y, double* out) const noexcept {
+void ThreadedCode::run(const double* x, const double* y, std::span<const Field* const> fields,
+                       double* out) const noexcept {
   alignas(64) double frame[kMaxRegisters * kBlock];
   for (std::size_t i = 0; i < kBlock; i += 2) {
-    _mm_store_pd(frame + kRegisterX * kBlock + i, _mm_load_pd(x + i));
-    _mm_store_pd(frame + kRegisterY * kBlock + i, _mm_load_pd(y + i));
+    _mm_store_pd(frame + kInputX * kBlock + i, _mm_load_pd(x + i));
+    _mm_store_pd(frame + kInputY * kBlock + i, _mm_load_pd(y + i));
   }
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    fields[i]->evaluate(kBlock, x, y, frame + (kFirstFieldInput + i) * kBlock);
   const Lanes none = _mm_setzero_pd();
   steps_[0].run(steps_.data(), frame, out, none, none, none, none);
 }

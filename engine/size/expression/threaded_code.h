@@ -24,6 +24,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/size/expression/expression.h"
@@ -53,8 +54,10 @@ class ThreadedCode {
   // REQUIRES: at most Expression::kMaxOperations instructions and kMaxRegisters registers.
   explicit ThreadedCode(const Program& program);
 
-  // out[i] = value at (x[i], y[i]) for i < kBlock. REQUIRES: alignment to 16 bytes.
-  void run(const double* x, const double* y, double* out) const noexcept;
+  // out[i] = value at (x[i], y[i]) for i < kBlock. `fields` are the inputs from kFirstFieldInput
+  // on. REQUIRES: alignment to 16 bytes, to 64 if there are fields.
+  void run(const double* x, const double* y, std::span<const Field* const> fields,
+           double* out) const noexcept;
 
   std::size_t operations() const { return steps_.size() - 1; }
 
