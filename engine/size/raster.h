@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grading function as a raster: values at the nodes of a grid, bilinear between them, and
-// outside the grid those of its nearest point.
-//
-// Node (i, j) is at (origin.x + i * dx, origin.y + j * dy). In the cell that holds a point, with t
-// and s from 0 to 1 its place along x and y,
-//   low = a + t (b - a), high = c + t (d - c), value = low + s (high - low),
-// a, b the lower nodes and c, d the upper ones; never beyond the least and the largest of the four.
+// The grading function as a raster: values at the nodes of a grid, bilinear between them
+// (fields/bilinear_grid.h), and outside the grid those of its nearest point.
 //
 //   const Raster raster{{0, 0}, 1, 1, 2, 2, {1, 2, 3, 4}};
 //   Result<RasterSize> size = RasterSize::make(raster);
@@ -20,6 +15,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/size/fields/bilinear_grid.h"
 #include "engine/size/size_function.h"
 
 namespace weft {
@@ -44,46 +40,24 @@ class RasterSize final : public SizeFunction {
   static Result<RasterSize> make(const Raster& raster);
 
   void evaluate(std::size_t n, const double* x, const double* y,
-                double* out) const noexcept override;
-
-  // From at most kAtATime cells each way as tight as rounding allows, beyond that from the least
-  // and largest values of blocks of nodes.
-  Interval bounds(const Box& box) const noexcept override;
-
+                double* out) const noexcept override {
+    grid_.evaluate(n, x, y, out);
+  }
+  Interval bounds(const Box& box) const noexcept override { return grid_.bounds(box); }
   std::size_t operations() const noexcept override { return 64; }
 
   // Of the raster, too.
   std::size_t bytes() const noexcept override;
 
-  // What `make` takes at most for each value, the raster itself not counted.
-  static constexpr std::uint64_t kBytesPerValue = 16;
+  // What `make` takes at most for each value, the raster itself not counted: reached by a raster of
+  // one row or one column. A square one takes half a byte.
+  static constexpr std::uint64_t kBytesPerValue = 8;
 
  private:
-  static constexpr std::uint32_t kAtATime = 4;
-
-  // Nodes in blocks of 2^level each way, with their least and largest values.
-  struct Level {
-    std::uint32_t columns;
-    std::vector<Interval> blocks;
-  };
-  // Where a coordinate lies among the nodes: between `node` and `next`, at `t`.
-  struct Place {
-    std::uint32_t node;
-    std::uint32_t next;
-    double t;
-  };
-
-  explicit RasterSize(const Raster& raster) : raster_(&raster) {}
-  void add_levels();
-  static Place place(double coordinate, double origin, double step, std::uint32_t count) noexcept;
-  double node(std::uint32_t i, std::uint32_t j) const noexcept;
-  double value(const Place& x, const Place& y) const noexcept;
-  // Of nodes, first and last included.
-  Interval extremes(std::uint32_t i0, std::uint32_t i1, std::uint32_t j0,
-                    std::uint32_t j1) const noexcept;
+  explicit RasterSize(const Raster& raster);
 
   const Raster* raster_;
-  std::vector<Level> levels_;  // from blocks of two nodes each way up
+  BilinearGrid<double, Outside::kNearest> grid_;
 };
 
 }  // namespace weft
