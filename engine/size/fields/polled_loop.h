@@ -7,30 +7,36 @@
 #include <cstddef>
 #include <mutex>
 #include <optional>
+#include <type_traits>
+#include <utility>
 
 #include "engine/base/context.h"
 #include "engine/base/error.h"
 
 namespace weft {
 
-// Returns the error to stop with; some calls of f are left out then. REQUIRES: f takes a few
-// milliseconds at most and does not throw.
+// f returns nothing, or the error to stop with. Returns the first error; some calls of f are left
+// out then. REQUIRES: f takes a few milliseconds at most, or polls, and does not throw.
 template <class F>
 std::optional<Error> polled_loop(const ExecutionContext& context, std::size_t n, F&& f) {
-  std::mutex mutex;  // guards `error`
-  std::optional<Error> error;
+  std::mutex mutex;
+  std::optional<Error> first;  // guarded by the mutex
   std::atomic<bool> stopped{false};
   context.for_each(n, [&](std::size_t i) {
     if (stopped.load(std::memory_order_relaxed)) return;
-    if (auto stop = context.poll()) {
-      const std::lock_guard lock(mutex);
-      error = std::move(stop);
-      stopped.store(true, std::memory_order_relaxed);
-      return;
+    std::optional<Error> error = context.poll();
+    if (!error) {
+      if constexpr (std::is_void_v<decltype(f(i))>)
+        f(i);
+      else
+        error = f(i);
     }
-    f(i);
+    if (!error) return;
+    const std::lock_guard lock(mutex);
+    if (!first) first = std::move(error);
+    stopped.store(true, std::memory_order_relaxed);
   });
-  return error;
+  return first;
 }
 
 }  // namespace weft

@@ -1,0 +1,484 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/size/fields/distance_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "engine/size/constant_size.h"
+#include "engine/size/fields/polled_loop.h"
+
+namespace weft {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kFarthest = 0x1p500;  // of a coordinate whose square is finite
+constexpr double kRounding = 0x1p-46;  // of the lengths at work: more than all roundings together
+
+// Entries of the lists, and of nodes as kNodeCost, that a subtree may have for each of its lines.
+constexpr std::uint64_t kListedPerLine = 24;
+constexpr std::uint64_t kListedBesides = std::uint64_t{1} << 16;
+constexpr std::uint64_t kNodeCost = 2;
+// A leaf lists so many lines, or, because a straight line of n pieces has n parallel cells, so many
+// for each side of it that they are away; but no more than kMostInLeaf if they can be parted.
+constexpr double kInLeaf = 8;
+constexpr double kInLeafPerSide = 2;
+constexpr double kMostInLeaf = 64;
+constexpr std::uint32_t kShort = 16;  // a list that is hardly slower than the tree
+constexpr int kSubtreeLevel = 4;      // whose subtrees are built on many threads
+
+double largest(const Box& box) {
+  return std::max(std::max(std::fabs(box.min_x), std::fabs(box.max_x)),
+                  std::max(std::fabs(box.min_y), std::fabs(box.max_y)));
+}
+
+__m128d select(__m128d mask, __m128d a, __m128d b) {
+  return _mm_or_pd(_mm_and_pd(mask, a), _mm_andnot_pd(mask, b));
+}
+
+}  // namespace
+
+// Builds a part of the quadtree: nodes, the part's root first, and lists.
+class ListBuilder {
+ public:
+  using Node = DistanceField::Node;
+  // A node whose fate is open: its box, and the lines that may be nearest in it.
+  struct Pending {
+    std::uint32_t node = 0;
+    int depth = 0;
+    std::uint32_t ix = 0;
+    std::uint32_t iy = 0;
+    double distance = 0;        // at the middle
+    std::uint64_t allowed = 0;  // cost of its subtree
+    std::vector<std::uint32_t> lines;
+  };
+
+  // Nodes at `last_level` that are to be split are left in `later`.
+  ListBuilder(const DistanceField& field, const Box& wanted, int last_level,
+              const ExecutionContext& context)
+      : field_(field), wanted_(wanted), last_level_(last_level), context_(context) {}
+
+  std::optional<Error> build(Pending&& root) {
+    nodes.assign(1, {});
+    root.node = 0;
+    return split(std::move(root));
+  }
+
+  // Leaves in `pending.lines` those of `from` that may be nearest in the box.
+  std::optional<Error> filter(const std::vector<std::uint32_t>& from, Pending& pending);
+
+  std::vector<Node> nodes;
+  std::vector<std::uint32_t> lists;
+  std::vector<Pending> later;
+  double looks = 0;  // of all leaves together, boxes of the tree and lines
+  std::size_t leaves = 0;
+
+ private:
+  struct Corners {
+    double square[4];
+  };
+
+  std::optional<Error> split(Pending&& pending);
+  void add_leaf(const Pending& pending);
+  Box box_of(const Pending& pending) const;
+
+  const DistanceField& field_;
+  const Box& wanted_;
+  const int last_level_;
+  const ExecutionContext& context_;
+  std::vector<Corners> corners_;  // for filter
+};
+
+Box ListBuilder::box_of(const Pending& pending) const {
+  const double side = std::ldexp(2 * field_.root_, -pending.depth);
+  const double grown = 0x1p-40;  // rounding may put a point into the box beside its own
+  const double x = pending.ix * side - field_.root_;
+  const double y = pending.iy * side - field_.root_;
+  return {x - grown, y - grown, x + side + grown, y + side + grown};
+}
+
+std::optional<Error> ListBuilder::filter(const std::vector<std::uint32_t>& from, Pending& pending) {
+  constexpr std::size_t kAtATime = 1 << 14;  // lines, for 200 us or so
+  constexpr int kSamples = 5;                // the corners and the middle
+  const std::vector<StraightLine>& lines = field_.tree_.lines();
+  const Box box = box_of(pending);
+  const double mx = 0.5 * (box.min_x + box.max_x);
+  const double my = 0.5 * (box.min_y + box.max_y);
+  alignas(16) const double px[6] = {box.min_x, box.max_x, box.min_x, box.max_x, mx, mx};
+  alignas(16) const double py[6] = {box.min_y, box.min_y, box.max_y, box.max_y, my, my};
+  __m128d x[3];
+  __m128d y[3];
+  for (int i = 0; i < 3; ++i) {
+    x[i] = _mm_load_pd(px + 2 * i);
+    y[i] = _mm_load_pd(py + 2 * i);
+  }
+  corners_.resize(from.size());
+  double least[kSamples];
+  std::uint32_t nearest[kSamples] = {};
+  std::fill_n(least, kSamples, kInfinity);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (i % kAtATime == kAtATime - 1) {
+      if (auto error = context_.poll()) return error;
+    }
+    __m128d square[3];
+    std::fill_n(square, 3, _mm_set1_pd(kInfinity));
+    take_nearer<3>(lines[from[i]], x, y, square);
+    alignas(16) double of[6];
+    for (int k = 0; k < 3; ++k) _mm_store_pd(of + 2 * k, square[k]);
+    std::copy_n(of, 4, corners_[i].square);
+    for (int k = 0; k < kSamples; ++k) {
+      if (of[k] < least[k]) {
+        least[k] = of[k];
+        nearest[k] = from[i];
+      }
+    }
+  }
+  double limit[kSamples][4];
+  for (int k = 0; k < kSamples; ++k) {
+    const Point q = lines[nearest[k]].nearest({px[k], py[k]});
+    for (int c = 0; c < 4; ++c) {
+      const double d = std::sqrt((px[c] - q.x) * (px[c] - q.x) + (py[c] - q.y) * (py[c] - q.y));
+      const double safe = d + kRounding * (d + field_.longest_ + 4);
+      limit[k][c] = safe * safe;
+    }
+  }
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (i % kAtATime == kAtATime - 1) {
+      if (auto error = context_.poll()) return error;
+    }
+    const double* const of = corners_[i].square;
+    bool dropped = false;
+    for (int k = 0; k < kSamples && !dropped; ++k)
+      dropped =
+          of[0] > limit[k][0] && of[1] > limit[k][1] && of[2] > limit[k][2] && of[3] > limit[k][3];
+    if (!dropped) pending.lines.push_back(from[i]);
+  }
+  pending.distance = std::sqrt(least[4]);
+  return std::nullopt;
+}
+
+void ListBuilder::add_leaf(const Pending& pending) {
+  const auto count = static_cast<std::uint32_t>(pending.lines.size());
+  std::size_t cost = count;
+  Node& node = nodes[pending.node];
+  node = {static_cast<std::uint32_t>(lists.size()), count};
+  if (count > kShort) {
+    const Box box = box_of(pending);
+    const Point middle{0.5 * (box.min_x + box.max_x), 0.5 * (box.min_y + box.max_y)};
+    const LineTree::Nearest found = field_.tree_.nearest(middle, pending.lines[0]);
+    if (found.looks < count) {
+      node = {found.line, DistanceField::kByTree};
+      cost = found.looks;
+    }
+  }
+  if (node.count == count) lists.insert(lists.end(), pending.lines.begin(), pending.lines.end());
+  looks += static_cast<double>(cost);
+  ++leaves;
+}
+
+std::optional<Error> ListBuilder::split(Pending&& pending) {
+  const double side = std::ldexp(2 * field_.root_, -pending.depth);
+  const double in_leaf = std::clamp(kInLeafPerSide * pending.distance / side, kInLeaf, kMostInLeaf);
+  if (static_cast<double>(pending.lines.size()) <= in_leaf ||
+      pending.depth == DistanceField::kMaxDepth) {
+    add_leaf(pending);
+    return std::nullopt;
+  }
+  if (pending.depth == last_level_) {
+    later.push_back(std::move(pending));
+    return std::nullopt;
+  }
+  if (auto error = context_.poll()) return error;
+  Pending children[4];
+  std::uint64_t cost = 0;
+  for (std::uint32_t c = 0; c < 4; ++c) {
+    Pending& child = children[c];
+    child.depth = pending.depth + 1;
+    child.ix = 2 * pending.ix + (c & 1);
+    child.iy = 2 * pending.iy + (c >> 1);
+    const Box box = box_of(child);
+    if (box.min_x <= wanted_.max_x && box.max_x >= wanted_.min_x && box.min_y <= wanted_.max_y &&
+        box.max_y >= wanted_.min_y) {
+      if (auto error = filter(pending.lines, child)) return error;
+    }
+    cost += child.lines.size() + kNodeCost;
+  }
+  if (cost > pending.allowed) {
+    add_leaf(pending);
+    return std::nullopt;
+  }
+  const auto first = static_cast<std::uint32_t>(nodes.size());
+  nodes.resize(first + 4, {0, DistanceField::kByTree});
+  nodes[pending.node] = {first, DistanceField::kInner};
+  pending.lines = {};
+  for (std::uint32_t c = 0; c < 4; ++c) {
+    Pending& child = children[c];
+    if (child.lines.empty()) continue;  // outside
+    child.node = first + c;
+    child.allowed = pending.allowed * (child.lines.size() + kNodeCost) / cost;
+    if (auto error = split(std::move(child))) return error;
+    child.lines = {};
+  }
+  return std::nullopt;
+}
+
+DistanceField::DistanceField(const Box& box)
+    : centre_{0.5 * box.min_x + 0.5 * box.max_x, 0.5 * box.min_y + 0.5 * box.max_y} {
+  // A box without a side gets one that is small beside its coordinates.
+  const double side = std::max({box.width(), box.height(), 0x1p-40 * largest(box), 0x1p-170});
+  const int exponent = std::ilogb(side);
+  scale_ = std::ldexp(1.0, -exponent);
+  unit_ = std::ldexp(1.0, exponent);
+  root_ = 0.5 * (side * scale_) * (1 + 0x1p-10);  // the box's sides lie inside
+  cells_ = std::ldexp(1.0, kMaxDepth - 1) / root_;
+}
+
+Result<DistanceField> DistanceField::make(std::vector<Line> lines, const Box& box,
+                                          const ExecutionContext& context) {
+  if (lines.size() > kMostLines) {
+    return fail(ErrorCode::kLimitExceeded, "",
+                "a distance to " + std::to_string(lines.size()) + " lines; the limit is " +
+                    std::to_string(kMostLines));
+  }
+  const std::uint64_t bytes = kBytesPerLine * lines.size() + kBytesBesides;
+  if (bytes > context.budget().max_bytes) {
+    return fail(ErrorCode::kBudgetExceeded, "budget.max_bytes",
+                "a distance to " + std::to_string(lines.size()) +
+                    " lines needs more than the budget of " +
+                    std::to_string(context.budget().max_bytes) + " bytes");
+  }
+  if (auto error = context.need_bytes(bytes)) return tl::unexpected(*error);
+
+  DistanceField field(box);
+  std::vector<StraightLine> straight;
+  straight.reserve(lines.size());
+  for (const Line& line : lines) {
+    constexpr std::size_t kAtATime = 1 << 16;
+    if (straight.size() % kAtATime == 0) {
+      if (auto error = context.poll()) return tl::unexpected(*error);
+    }
+    straight.push_back(StraightLine::between(field.inside(line.a), field.inside(line.b)));
+    field.longest_ = std::max(field.longest_, straight.back().length());
+  }
+  lines = {};
+  auto tree = LineTree::make(std::move(straight), context);
+  if (!tree) return tl::unexpected(tree.error());
+  field.tree_ = std::move(*tree);
+  if (auto error = field.add_quadtree(box, context)) return tl::unexpected(*error);
+  return field;
+}
+
+std::optional<Error> DistanceField::add_quadtree(const Box& box, const ExecutionContext& context) {
+  const Point low = inside({box.min_x, box.min_y});
+  const Point high = inside({box.max_x, box.max_y});
+  const Box wanted{low.x, low.y, high.x, high.y};
+  const std::size_t n = tree_.lines().size();
+
+  // The first levels, then each subtree below them on one thread.
+  ListBuilder top(*this, wanted, kSubtreeLevel, context);
+  ListBuilder::Pending root;
+  root.allowed = kListedPerLine * n + kListedBesides;
+  {
+    std::vector<std::uint32_t> all(n);
+    for (std::uint32_t i = 0; i < n; ++i) all[i] = i;
+    if (auto error = top.filter(all, root)) return error;
+  }
+  if (auto error = top.build(std::move(root))) return error;
+  std::vector<ListBuilder> parts;
+  parts.reserve(top.later.size());
+  for (std::size_t i = 0; i < top.later.size(); ++i)
+    parts.emplace_back(*this, wanted, kMaxDepth, context);
+  std::vector<std::uint32_t> places;
+  for (const auto& pending : top.later) places.push_back(pending.node);
+  if (auto error = polled_loop(context, parts.size(), [&](std::size_t i) {
+        return parts[i].build(std::move(top.later[i]));
+      }))
+    return error;
+
+  // One behind the other.
+  std::size_t nodes = top.nodes.size();
+  std::size_t listed = top.lists.size();
+  for (const ListBuilder& part : parts) {
+    nodes += part.nodes.size() - 1;
+    listed += part.lists.size();
+  }
+  top.nodes.reserve(nodes);
+  top.lists.reserve(listed);
+  nodes_ = std::move(top.nodes);
+  lists_ = std::move(top.lists);
+  double looks = top.looks;
+  std::size_t leaves = top.leaves;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    ListBuilder& part = parts[i];
+    const auto node_offset = static_cast<std::uint32_t>(nodes_.size() - 1);
+    const auto list_offset = static_cast<std::uint32_t>(lists_.size());
+    for (Node& node : part.nodes) {
+      if (node.count != kByTree) node.first += node.count == kInner ? node_offset : list_offset;
+    }
+    nodes_[places[i]] = part.nodes[0];
+    nodes_.insert(nodes_.end(), part.nodes.begin() + 1, part.nodes.end());
+    lists_.insert(lists_.end(), part.lists.begin(), part.lists.end());
+    looks += part.looks;
+    leaves += part.leaves;
+    part.nodes = {};
+    part.lists = {};
+  }
+  while (top_levels_ < kMaxTopLevels && std::size_t{1} << (2 * top_levels_) < nodes_.size())
+    ++top_levels_;
+  table_.resize(std::size_t{1} << (2 * top_levels_));
+  fill_table(0, 0, 0, 0);
+  constexpr double kBesides = 80;
+  constexpr double kPerLook = 20;
+  operations_ = static_cast<std::size_t>(kBesides + kPerLook * looks / static_cast<double>(leaves));
+  return std::nullopt;
+}
+
+void DistanceField::fill_table(std::uint32_t node, int depth, std::uint32_t ix, std::uint32_t iy) {
+  if (nodes_[node].count == kInner && depth < top_levels_) {
+    for (std::uint32_t c = 0; c < 4; ++c)
+      fill_table(nodes_[node].first + c, depth + 1, 2 * ix + (c & 1), 2 * iy + (c >> 1));
+    return;
+  }
+  const std::uint32_t side = 1u << (top_levels_ - depth);
+  for (std::uint32_t j = iy * side; j < (iy + 1) * side; ++j)
+    std::fill_n(table_.begin() + (j << top_levels_ | ix * side), side, node);
+}
+
+std::size_t DistanceField::bytes() const noexcept {
+  return tree_.bytes() + nodes_.capacity() * sizeof(Node) +
+         (lists_.capacity() + table_.capacity()) * sizeof(std::uint32_t);
+}
+
+// The leaf of a cell of the last level. What lies outside the root is kNone.
+inline std::uint32_t DistanceField::leaf(int ix, int iy) const noexcept {
+  const auto x = static_cast<std::uint32_t>(ix);
+  const auto y = static_cast<std::uint32_t>(iy);
+  if (((x | y) >> kMaxDepth) != 0) return kNone;
+  const int below = kMaxDepth - top_levels_;
+  std::uint32_t node = table_[(y >> below) << top_levels_ | x >> below];
+  for (int bit = below - 1; nodes_[node].count == kInner; --bit)
+    node = nodes_[node].first + ((x >> bit & 1) | (y >> bit & 1) << 1);
+  return node;
+}
+
+void DistanceField::eight(const Lanes& at, __m128d* out) const noexcept {
+  const __m128d infinity = _mm_set1_pd(kInfinity);
+  const __m128d sign = _mm_set1_pd(-0.0);
+  const __m128d largest = _mm_set1_pd(kFarthest);
+  const __m128d root = _mm_set1_pd(root_);
+  const __m128d cells = _mm_set1_pd(cells_);
+  alignas(16) int ix[8];
+  alignas(16) int iy[8];
+  __m128d near[4];  // whose square is finite
+  __m128d best[4];
+  for (int i = 0; i < 4; ++i) {
+    const auto cell = [&](__m128d v) {
+      return _mm_cvttpd_epi32(_mm_floor_pd(_mm_mul_pd(_mm_add_pd(v, root), cells)));
+    };
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(ix + 2 * i), cell(at.x[i]));
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(iy + 2 * i), cell(at.y[i]));
+    near[i] = _mm_and_pd(_mm_cmple_pd(_mm_andnot_pd(sign, at.x[i]), largest),
+                         _mm_cmple_pd(_mm_andnot_pd(sign, at.y[i]), largest));
+    best[i] = infinity;
+  }
+  std::uint32_t leaves[kLanes];
+  unsigned lists = 0;  // lanes
+  for (unsigned i = 0; i < kLanes; ++i) {
+    leaves[i] = leaf(ix[i], iy[i]);
+    lists |= static_cast<unsigned>(leaves[i] != kNone && nodes_[leaves[i]].count != kByTree) << i;
+  }
+  constexpr unsigned kAll = (1u << kLanes) - 1;
+  for (unsigned left = lists; left != 0;) {
+    const auto lane = static_cast<unsigned>(__builtin_ctz(left));
+    unsigned same = 0;
+    for (unsigned i = 0; i < kLanes; ++i)
+      same |= static_cast<unsigned>(leaves[i] == leaves[lane]) << i;
+    left &= ~same;
+    const Node node = nodes_[leaves[lane]];
+    const std::uint32_t* const list = lists_.data() + node.first;
+    // What another lane's leaf lists is a line, too, so it lowers nothing below the least of all.
+    if (__builtin_popcount(same) > 2) {
+      for (std::uint32_t i = 0; i < node.count; ++i)
+        take_nearer<4>(tree_.lines()[list[i]], at.x, at.y, best);
+      continue;
+    }
+    for (unsigned lanes = same; lanes != 0; lanes &= lanes - 1) {
+      const int pair = __builtin_ctz(lanes) / 2;
+      for (std::uint32_t i = 0; i < node.count; ++i)
+        take_nearer<1>(tree_.lines()[list[i]], at.x + pair, at.y + pair, best + pair);
+    }
+  }
+  if (lists != kAll) {
+    alignas(16) double x[kLanes];
+    alignas(16) double y[kLanes];
+    alignas(16) double square[kLanes];
+    unsigned asked = 0;
+    for (int i = 0; i < 4; ++i) {
+      _mm_store_pd(x + 2 * i, at.x[i]);
+      _mm_store_pd(y + 2 * i, at.y[i]);
+      _mm_store_pd(square + 2 * i, best[i]);
+      asked |= static_cast<unsigned>(_mm_movemask_pd(near[i])) << (2 * i);
+    }
+    std::uint32_t guess = 0;
+    for (unsigned lanes = asked & ~lists; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<unsigned>(__builtin_ctz(lanes));
+      if (leaves[lane] != kNone) guess = nodes_[leaves[lane]].first;
+      const LineTree::Nearest found = tree_.nearest({x[lane], y[lane]}, guess);
+      square[lane] = found.square;
+      guess = found.line;
+    }
+    for (int i = 0; i < 4; ++i) best[i] = _mm_load_pd(square + 2 * i);
+  }
+  for (int i = 0; i < 4; ++i) {
+    const __m128d distance = select(near[i], _mm_sqrt_pd(best[i]), infinity);
+    out[i] = _mm_or_pd(distance, _mm_cmpunord_pd(at.x[i], at.y[i]));
+  }
+}
+
+void DistanceField::evaluate(std::size_t n, const double* x, const double* y,
+                             double* out) const noexcept {
+  const __m128d cx = _mm_set1_pd(centre_.x);
+  const __m128d cy = _mm_set1_pd(centre_.y);
+  const __m128d scale = _mm_set1_pd(scale_);
+  const __m128d unit = _mm_set1_pd(unit_);
+  for (std::size_t k = 0; k < n; k += kLanes) {
+    Lanes at;
+    for (std::size_t i = 0; i < 4; ++i) {
+      at.x[i] = _mm_mul_pd(_mm_sub_pd(_mm_load_pd(x + k + 2 * i), cx), scale);
+      at.y[i] = _mm_mul_pd(_mm_sub_pd(_mm_load_pd(y + k + 2 * i), cy), scale);
+    }
+    __m128d distance[4];
+    eight(at, distance);
+    for (std::size_t i = 0; i < 4; ++i)
+      _mm_store_pd(out + k + 2 * i, _mm_mul_pd(distance[i], unit));
+  }
+}
+
+Interval DistanceField::bounds(const Box& box) const noexcept {
+  // Every point of the box lies, rounded, in the box of the rounded corners.
+  const Point low = inside({box.min_x, box.min_y});
+  const Point high = inside({box.max_x, box.max_y});
+  const Point middle{0.5 * low.x + 0.5 * high.x, 0.5 * low.y + 0.5 * high.y};
+  Lanes at;
+  __m128d value[4];
+  std::fill_n(at.x, 4, _mm_set1_pd(middle.x));
+  std::fill_n(at.y, 4, _mm_set1_pd(middle.y));
+  eight(at, value);
+  const double distance = _mm_cvtsd_f64(value[0]);
+  const double width = high.x - low.x;
+  const double height = high.y - low.y;
+  const double radius = 0.5 * std::sqrt(width * width + height * height);
+  const double rounding =
+      kRounding * (distance + radius + longest_ + std::fabs(middle.x) + std::fabs(middle.y));
+  const double hi = distance + radius + rounding;
+  if (!(largest({low.x, low.y, high.x, high.y}) <= kFarthest)) return {0, kInfinity, false};
+  return {std::max(0.0, (distance - radius - rounding) * unit_), hi * unit_, false};
+}
+
+std::unique_ptr<const Field> DistanceField::slope() const {
+  return std::make_unique<const ConstantSize>(1.0);
+}
+
+}  // namespace weft
