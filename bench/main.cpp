@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bench/engine_bench.h"
+#include "bench/fields_bench.h"
 #include "bench/load_bench.h"
 #include "bench/placement_bench.h"
 #include "bench/scaling_bench.h"
@@ -60,6 +61,19 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1024))
       ->default_str("1");
   placement_command->callback([&] { exit_code = weft::bench::run_placement_bench(placement); });
+
+  weft::bench::FieldsBenchOptions fields;
+  CLI::App* const fields_command =
+      app.add_subcommand("fields", "Time and memory of the fields that a size may name");
+  add_models(fields_command, fields.models);
+  fields_command->add_option("--only", fields.only, "Only rows with this in their name");
+  fields_command->add_option("--runs", fields.runs, "Runs of each; the fastest counts")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  fields_command->add_option("--threads", fields.threads, "Threads that build")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  fields_command->callback([&] { exit_code = weft::bench::run_fields_bench(fields); });
 
   weft::bench::ScalingBenchOptions scaling;
   CLI::App* const scaling_command = app.add_subcommand(
