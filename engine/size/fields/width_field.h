@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// The local width of a domain: at a point of the meshed area, the diameter of the largest disk in
+// it that holds the point, in the unit of the coordinates.
+//
+//   Result<WidthField> width = WidthField::make(domain, context);
+//   (*width)({0.5, 0.2});     // 1 in a channel that is 1 wide
+//
+// Walls are the border of the meshed area alone: coasts, islands, the outside, carved faces.
+// Segments that have the meshed area on both sides are no walls, whatever their markers and
+// regions, because water flows through them; nor are points inside.
+//
+// The value is 2 (distance to the walls + distance to the medial axis, medial_axis.h), but at most
+// the shorter side of the meshed area's box, which no disk in it exceeds. For a point on the radius
+// from a centre of the axis to the wall that is the diameter; elsewhere it differs little, and
+// unevenness of the walls does little to it:
+//
+//   | shape | value / width |
+//   |---|---|
+//   | strip, passages of 1e-7 of their length | 1.000 |
+//   | wedge of 0.2 rad, on its axis | median 1.000, at most 1.054 |
+//   | regular polygon of 8, 16, 64, 1024 corners | 0.924, 0.981, 0.999, 1.000 at least |
+//   | banks moved by 1 % and 5 % of the width | 0.99 to 1.01, 0.95 to 1.05 |
+//   | ring around a hole | 0.999 to 1.001 |
+//   | triangle, at the centre of its inscribed disk | 1.00 to 1.37 |
+//
+// Spikes of the wall sharper than 65 degrees are features, however small: the axis enters them, so
+// that the value grows from nothing at the tip by up to 4 per unit of length around it. The US
+// east coast of 9,370 walls takes 0.11 s, a coast of 131,072 walls 0.65 s (one core of 2023). The
+// gradient's length reaches 4, so that a size made of it wants a bound on its growth.
+//
+// In a corner no disk holds the points near the tip; the value there is that of the nearest disk,
+// and more. Outside of the meshed area it is the same formula and means nothing.
+#pragma once
+
+#include <cstddef>
+#include <utility>
+
+#include "engine/base/context.h"
+#include "engine/base/error.h"
+#include "engine/base/geometry.h"
+#include "engine/domain/domain.h"
+#include "engine/size/field.h"
+#include "engine/size/fields/distance_field.h"
+
+namespace weft {
+
+class WidthField final : public Field {
+ public:
+  // REQUIRES: a domain that `triangulate` made. Errors: those of medial_axis and of
+  // DistanceField::make. The domain is not referred to afterwards.
+  static Result<WidthField> make(const Domain& domain, const ExecutionContext& context);
+
+  void evaluate(std::size_t n, const double* x, const double* y,
+                double* out) const noexcept override;
+  Interval bounds(const Box& box) const noexcept override;
+  double steepness(const Box& box) const noexcept override {
+    return 2 * (to_walls_.steepness(box) + to_axis_.steepness(box));
+  }
+  std::size_t bytes() const noexcept override { return to_walls_.bytes() + to_axis_.bytes(); }
+  std::size_t operations() const noexcept override {
+    return to_walls_.operations() + to_axis_.operations();
+  }
+
+ private:
+  WidthField(DistanceField to_walls, DistanceField to_axis, double most)
+      : to_walls_(std::move(to_walls)), to_axis_(std::move(to_axis)), most_(most) {}
+
+  // Increases with both, rounded as well: so bounds of the two give bounds of the value.
+  double width(double to_walls, double to_axis) const {
+    const double value = 2 * (to_walls + to_axis);
+    return most_ < value ? most_ : value;
+  }
+
+  DistanceField to_walls_;
+  DistanceField to_axis_;
+  double most_;
+};
+
+}  // namespace weft
