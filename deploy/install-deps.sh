@@ -5,6 +5,7 @@
 #   deploy/install-deps.sh [GROUP...]
 #     build    compiles everything
 #     runtime  runs weftd and weft
+#     rasters  lets weft read rasters but .asc
 #     test     what tests/run.sh needs beyond build
 #     all      build and test, the default
 set -euo pipefail
@@ -18,7 +19,7 @@ build=(
   libsqlite3-dev libpq-dev prometheus-cpp-dev                            # its jobs and its metrics
   libcli11-dev nlohmann-json3-dev libcairo2-dev fonts-dejavu-core        # the command line
   libyaml-cpp-dev libpugixml-dev                                         # its batches
-  zlib1g-dev libshp-dev                                                  # .npz, shapefiles
+  zlib1g-dev libshp-dev libgdal-dev                                      # .npz, shapefiles, rasters
   libmuparser-dev                                                        # the checker
   libgtest-dev libgmock-dev librapidcheck-dev                            # tests
 )
@@ -27,6 +28,7 @@ runtime=(
   libfmt9 libatomic1 libssl3 libsqlite3-0 libpq5 libprometheus-cpp-core1.0
   libcairo2 zlib1g libshp2 libmuparser2v5 libyaml-cpp0.7 libpugixml1v5 fonts-dejavu-core
 )
+rasters=(libgdal32)
 test=(
   g++ libclang-rt-dev llvm # sanitizers, and the names in their reports
   postgresql-15            # the real database
@@ -50,10 +52,11 @@ for group in "${@:-all}"; do
   case $group in
     build) wanted+=("${build[@]}") ;;
     runtime) wanted+=("${runtime[@]}") ;;
+    rasters) wanted+=("${rasters[@]}") ;;
     test) wanted+=("${test[@]}") ;;
     all) wanted+=("${build[@]}" "${test[@]}") ;;
     *)
-      echo "install-deps.sh: unknown group '$group'; there are build, runtime, test, all" >&2
+      echo "install-deps.sh: unknown group '$group'; there are build, runtime, rasters, test, all" >&2
       exit 2
       ;;
   esac

@@ -2,6 +2,7 @@
 #include "client/formats/raster.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,8 +33,8 @@ std::string lower(std::string_view word) {
 
 class Reader {
  public:
-  Reader(const std::string& name, std::string_view text)
-      : most_values_((text.size() + 1) / 2), scanner_(name, text) {}
+  Reader(const std::string& name, std::string_view text, RasterValues wanted)
+      : most_values_((text.size() + 1) / 2), wanted_(wanted), scanner_(name, text) {}
 
   Result<Raster> read() {
     if (auto header = read_header(); !header) return tl::unexpected(header.error());
@@ -130,10 +131,13 @@ class Reader {
           if (auto line = scanner_.next_line("a value"); !line) return line;
         const auto value = scanner_.real("a value");
         if (!value) return tl::unexpected(value.error());
-        if (header_.no_data && *value == *header_.no_data)
-          return scanner_.error("a cell without a value: the bound there is for you to say");
-        if (!(*value > 0)) return scanner_.error("the bound on the area is not positive");
-        values[row * columns + column] = *value;
+        const bool absent = header_.no_data && *value == *header_.no_data;
+        if (wanted_ == RasterValues::kPositive) {
+          if (absent)
+            return scanner_.error("a cell without a value: the bound there is for you to say");
+          if (!(*value > 0)) return scanner_.error("the bound on the area is not positive");
+        }
+        values[row * columns + column] = absent ? std::numeric_limits<double>::quiet_NaN() : *value;
       }
     }
     if (!scanner_.at_line_end() || scanner_.try_next_line())
@@ -142,6 +146,7 @@ class Reader {
   }
 
   const std::size_t most_values_;  // that the file has room for
+  const RasterValues wanted_;
   LineScanner scanner_;
   Header header_;
   Raster grid_;
@@ -153,10 +158,10 @@ bool is_raster_path(const std::filesystem::path& path) {
   return lower_extension(path) == ".asc";
 }
 
-Result<Raster> read_raster(const std::filesystem::path& path) {
+Result<Raster> read_raster(const std::filesystem::path& path, RasterValues wanted) {
   const auto file = read_file(path, kMaxFileBytes);
   if (!file) return tl::unexpected(file.error());
-  return Reader(path.string(), file->text()).read();
+  return Reader(path.string(), file->text(), wanted).read();
 }
 
 }  // namespace weft::client

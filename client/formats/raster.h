@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A size field on a grid, and the file that holds one: an ESRI ASCII grid (.asc), as GIS programs
-// write rasters of one band.
+// Values on a grid, and the file that holds them: an ESRI ASCII grid (.asc), as GIS programs write
+// rasters of one band.
 //
 //   ncols 3
 //   nrows 2
@@ -11,9 +11,10 @@
 //   1 2 3               (the northmost row first)
 //   4 5 6
 //
-// A value is that of the centre of its cell: the upper bound on the area of a triangle there, in
-// squared units of the coordinates. Every one must be positive; a cell without a value is refused,
-// because the bound there would be a guess.
+// A value is that of the centre of its cell. Of a size it is the upper bound on the area of a
+// triangle there, in squared units of the coordinates: every one must be positive, and a cell
+// without a value is refused, because the bound there would be a guess. Of a field (field_raster.h)
+// it is any number, and NaN if the cell has none.
 //
 //   Result<Raster> grid = read_raster("coast.asc");
 #pragma once
@@ -39,7 +40,10 @@ struct Raster {
 // Whether the path has the extension, in upper or lower case. No expression ends with it.
 bool is_raster_path(const std::filesystem::path& path);
 
+enum class RasterValues { kPositive, kAny };
+
 // Errors (kUnreadableInput) name file, line and column.
-Result<Raster> read_raster(const std::filesystem::path& path);
+Result<Raster> read_raster(const std::filesystem::path& path,
+                           RasterValues wanted = RasterValues::kPositive);
 
 }  // namespace weft::client

@@ -22,6 +22,7 @@ weftd is installed. Reads and writes the usual formats of domains and meshes.")
 set(CPACK_DEBIAN_WEFT_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_WEFT_PACKAGE_DEPENDS fonts-dejavu-core) # of drawings
 set(CPACK_DEBIAN_WEFT_PACKAGE_RECOMMENDS weftd)
+set(CPACK_DEBIAN_WEFT_PACKAGE_SUGGESTS libgdal32) # of rasters; 160 MB with what it needs
 
 set(CPACK_DEBIAN_WEFTD_PACKAGE_NAME weftd)
 set(CPACK_DEBIAN_WEFTD_DESCRIPTION "Meshes of planar domains, with guaranteed angles: server

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/formats/field_raster.h"
+
+#include <algorithm>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include "client/formats/raster.h"
+#include "client/formats/rasters/projected_window.h"
+#include "client/formats/rasters/raster_source.h"
+#include "client/formats/rasters/raster_window.h"
+
+namespace weft::client {
+namespace {
+
+// An ESRI ASCII grid, as raster.h reads it.
+class AsciiSource final : public RasterSource {
+ public:
+  AsciiSource(const std::filesystem::path& path, Raster raster) : raster_(std::move(raster)) {
+    shape_.name = path.string();
+    shape_.grids.push_back(
+        {raster_.x, raster_.y, raster_.dx, raster_.dy, raster_.columns, raster_.rows});
+  }
+
+  Result<void> read(std::size_t, const RasterPart& part, float* out, std::size_t stride) override {
+    for (std::size_t j = 0; j < part.rows; ++j) {
+      const auto row = raster_.values.begin() +
+                       static_cast<std::ptrdiff_t>((part.row + j) * raster_.columns + part.column);
+      std::transform(row, row + part.columns, out + j * stride, field_value);
+    }
+    return {};
+  }
+
+  Result<std::unique_ptr<PlaneToRaster>> from_plane(const std::string&) override {
+    return fail(ExitCode::kInternal, shape_.name + ": was not opened with GDAL");
+  }
+
+ private:
+  Raster raster_;
+};
+
+// GDAL takes words that are no file for the addresses of servers and data bases.
+Result<void> must_be_a_file(const std::filesystem::path& path) {
+  std::error_code problem;
+  if (path.string().starts_with("/vsi") || std::filesystem::exists(path, problem)) return {};
+  return fail(ExitCode::kUnreadableInput,
+              path.string() + ": " + (problem ? problem.message() : "no such file"));
+}
+
+Result<std::unique_ptr<RasterSource>> open_ascii(const std::filesystem::path& path,
+                                                 const std::string& band) {
+  if (!band.empty() && band != "1")
+    return fail(ExitCode::kUnreadableInput, path.string() + ": has one band, not a band " + band);
+  auto raster = read_raster(path, RasterValues::kAny);
+  if (!raster) return tl::unexpected(raster.error());
+  return std::make_unique<AsciiSource>(path, std::move(*raster));
+}
+
+}  // namespace
+
+Result<FieldRaster> read_field_raster(const std::filesystem::path& path, const std::string& band,
+                                      const RasterBox& box, std::uint64_t max_values) {
+  if (auto found = must_be_a_file(path); !found) return tl::unexpected(found.error());
+  const auto source = is_raster_path(path) ? open_ascii(path, band) : open_with_gdal(path, band);
+  if (!source) return tl::unexpected(source.error());
+  return read_window(**source, box, max_values);
+}
+
+Result<FieldRaster> read_field_raster_projected(const std::filesystem::path& path,
+                                                const std::string& band, const RasterBox& box,
+                                                const std::string& crs, std::uint64_t max_values) {
+  if (auto found = must_be_a_file(path); !found) return tl::unexpected(found.error());
+  const auto source = open_with_gdal(path, band);
+  if (!source) return tl::unexpected(source.error());
+  return read_projected_window(**source, box, crs, max_values);
+}
+
+RasterPath split_raster_path(std::string_view text) {
+  std::error_code ignored;
+  for (std::size_t colon = text.find(':'); colon != std::string_view::npos;
+       colon = text.find(':', colon + 1))
+    if (const std::filesystem::path file = text.substr(0, colon);
+        std::filesystem::is_regular_file(file, ignored))
+      return {file, std::string(text.substr(colon + 1))};
+  return {text, ""};
+}
+
+}  // namespace weft::client
