@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "client/base/text.h"
-#include "client/formats/mesh_formats.h"
 #include "client/formats/rasters/gdal_library.h"
 #include "client/formats/rasters/raster_source.h"
 
@@ -91,12 +90,9 @@ class BandChoice {
 
   Result<Dataset> open(const std::string& address) {
     const GdalErrors errors(gdal_);
-    // That driver looks at the first of many numbers only to see whether they are integers.
-    const char* const real[] = {"DATATYPE=Float64", nullptr};
-    Dataset dataset(
-        gdal_.GDALOpenEx(address.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, nullptr,
-                         lower_extension(address) == ".asc" ? real : nullptr, nullptr),
-        gdal_.GDALClose);
+    Dataset dataset(gdal_.GDALOpenEx(address.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR,
+                                     nullptr, nullptr, nullptr),
+                    gdal_.GDALClose);
     if (!dataset) return unreadable(name_, errors.first());
     return dataset;
   }
