@@ -134,7 +134,7 @@ Report check(const Domain& domain, const Mesh& mesh, const Requirements& require
             Rule::kAngle});
     }
     half_edges.reset();
-    judge_quality(mesh, requirements, context, report.facts, findings);
+    judge_quality(domain, mesh, requirements, context, report.facts, findings);
   } else {
     if (near) arrange(unbent(domain), findings);  // for what may be wrong with the domain itself
     if (findings.total(Rule::kStructure) > 0) skip({Rule::kOrientation});

@@ -17,11 +17,25 @@ Box box_of(Vec2 p, Vec2 q) {
   return {std::min(p.x, q.x), std::min(p.y, q.y), std::max(p.x, q.x), std::max(p.y, q.y)};
 }
 
-BoxTree::BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
+BoxTree::BoxTree(std::vector<Box> boxes, std::vector<double> floors)
+    : boxes_(std::move(boxes)), order_(boxes_.size()), floors_(std::move(floors)) {
   std::iota(order_.begin(), order_.end(), 0u);
   if (order_.empty()) return;
   nodes_.reserve(order_.size());
   build(0, static_cast<std::uint32_t>(order_.size()));
+  if (floors_.empty()) return;
+  node_floors_.resize(nodes_.size());
+  for (auto at = static_cast<std::uint32_t>(nodes_.size()); at-- > 0;) {  // children come later
+    const Node& node = nodes_[at];
+    double& least = node_floors_[at];
+    if (node.right != 0) {
+      least = std::min(node_floors_[at + 1], node_floors_[node.right]);
+    } else {
+      least = floors_[order_[node.begin]];
+      for (std::uint32_t k = node.begin; k < node.end; ++k)
+        least = std::min(least, floors_[order_[k]]);
+    }
+  }
 }
 
 std::uint32_t BoxTree::build(std::uint32_t begin, std::uint32_t end) {

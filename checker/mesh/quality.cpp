@@ -7,9 +7,11 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "checker/geometry/sum.h"
+#include "checker/size/gradation.h"
 #include "checker/text.h"
 
 namespace weft::check {
@@ -36,6 +38,10 @@ struct Shape {
   Vec2 centroid;
 };
 
+Vec2 centroid_of(const std::array<Vec2, 3>& p) {
+  return {(p[0].x + p[1].x + p[2].x) / 3, (p[0].y + p[1].y + p[2].y) / 3};
+}
+
 Shape shape_of(const std::array<Vec2, 3>& p) {
   const double cross =
       (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
@@ -54,13 +60,13 @@ Shape shape_of(const std::array<Vec2, 3>& p) {
           *least / positive,
           2 * std::numbers::sqrt3 * positive / squares,
           static_cast<std::uint32_t>(most - dot.begin()),
-          {(p[0].x + p[1].x + p[2].x) / 3, (p[0].y + p[1].y + p[2].y) / 3}};
+          centroid_of(p)};
 }
 
 class QualityJudge {
  public:
-  QualityJudge(const Mesh& mesh, const Requirements& requirements, const QualityContext& context,
-               Facts& facts, Findings& findings)
+  QualityJudge(const Domain& domain, const Mesh& mesh, const Requirements& requirements,
+               const QualityContext& context, Facts& facts, Findings& findings)
       : mesh_(mesh),
         requirements_(requirements),
         context_(context),
@@ -70,11 +76,12 @@ class QualityJudge {
         cotangent_limit_(requirements.min_angle_deg.value_or(0) > kAngleTolerance
                              ? cotangent(*requirements.min_angle_deg - kAngleTolerance)
                              : std::numeric_limits<double>::infinity()) {
-    auto size = size_function(requirements.size);
+    auto size = size_function(requirements.size, domain);
     if (size)
       size_ = std::move(*size);
     else
       findings_.add(Rule::kSize, [&] { return size.error(); });
+    if (size_ && requirements.size.gradation > 0) limit_gradation();
   }
 
   void judge() {
@@ -85,8 +92,7 @@ class QualityJudge {
     double largest_cotangent = -std::numeric_limits<double>::infinity();
     double smallest_cotangent = std::numeric_limits<double>::infinity();
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-      std::array<Vec2, 3> corners;
-      for (std::size_t i = 0; i < 3; ++i) corners[i] = mesh_.vertices[mesh_.triangles[t][i]];
+      const std::array<Vec2, 3> corners = corners_of(t);
       const Shape shape = shape_of(corners);
       area.add(shape.area);
       quality.add(shape.quality);
@@ -114,6 +120,29 @@ class QualityJudge {
   }
 
  private:
+  std::array<Vec2, 3> corners_of(std::uint32_t t) const {
+    const auto [a, b, c] = mesh_.triangles[t];
+    return {mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]};
+  }
+
+  void limit_gradation() {
+    std::vector<Vec2> points = mesh_.vertices;
+    points.reserve(points.size() + mesh_.triangles.size());
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t)
+      points.push_back(centroid_of(corners_of(t)));
+    std::vector<double> areas(points.size());
+    std::transform(points.begin(), points.end(), areas.begin(), size_);
+    limit_.emplace(points, areas, requirements_.size.gradation);
+  }
+
+  // The size at p, its gradation limited if it is a size at all.
+  double size_at(Vec2 p) const {
+    const double size = size_(p);
+    return limit_ && is_size(size) ? (*limit_)(p, size) : size;
+  }
+
+  static bool is_size(double size) { return size > 0 && !std::isinf(size); }
+
   void note_unrefined(std::uint32_t t, Vec2 at) {
     if (facts_.unrefined++ > 0) return;
     facts_.first_unrefined = t;
@@ -149,17 +178,17 @@ class QualityJudge {
       fixed = std::min(fixed, context_.roles[context_.faces[t]].max_area);
     double bound = fixed;
     if (size_) {
-      const double size = size_(shape.centroid);
-      if (!(size > 0) || std::isinf(size)) {
+      double size = size_at(shape.centroid);
+      if (!is_size(size) || shape.area > std::min(fixed, size) * (1 + kAreaTolerance))
+        size = largest_size_nearby(shape.centroid, corners);
+      if (!is_size(size)) {
         findings_.add(Rule::kSize, [&] {
-          return say("the size is ", size, " at ", shape.centroid, ", the centroid of triangle ",
-                     t);
+          return say("the size is ", size_(shape.centroid), " at ", shape.centroid,
+                     ", the centroid of triangle ", t);
         });
         return true;
       }
       bound = std::min(fixed, size);
-      if (shape.area > bound * (1 + kAreaTolerance))
-        bound = std::min(fixed, largest_size_nearby(shape.centroid, corners));
     }
     if (std::isinf(bound)) return true;
     ++bounded_;
@@ -168,19 +197,26 @@ class QualityJudge {
     if (shape.area <= bound * (1 + kAreaTolerance)) return true;
     misses_.add(Rule::kArea, [&] {
       return say(name(t), " has the area ", shape.area, ", the bound at its centroid ",
-                 shape.centroid, " is ", bound);
+                 shape.centroid, " is ", bound,
+                 limit_ && bound < std::min(fixed, size_(shape.centroid))
+                     ? say(", because sizes grow by at most ", requirements_.size.gradation)
+                     : "");
     });
     return false;
   }
 
+  // Of the nine values around the centroid; 0 if none is a size.
   double largest_size_nearby(Vec2 centroid, const std::array<Vec2, 3>& corners) const {
     double magnitude = 0;
     for (const Vec2 p : corners) magnitude = std::max({magnitude, std::fabs(p.x), std::fabs(p.y)});
-    const double step = 4 * 0x1p-53 * magnitude;
+    const double step = 16 * 0x1p-53 * magnitude;
     double largest = 0;
-    for (const double dx : {-step, 0.0, step})
-      for (const double dy : {-step, 0.0, step})
-        largest = std::max(largest, size_({centroid.x + dx, centroid.y + dy}));
+    for (const double dx : {-step, 0.0, step}) {
+      for (const double dy : {-step, 0.0, step}) {
+        const double size = size_at({centroid.x + dx, centroid.y + dy});
+        if (is_size(size)) largest = std::max(largest, size);
+      }
+    }
     return largest;
   }
 
@@ -197,16 +233,17 @@ class QualityJudge {
   Findings& findings_;
   Findings misses_;  // violations, once there are more than allowed
   double cotangent_limit_;
-  std::function<double(Vec2)> size_;  // empty if there is none
-  std::uint64_t bounded_ = 0;         // triangles
-  Sum shares_;                        // of their bounds
+  std::function<double(Vec2)> size_;     // empty if there is none
+  std::optional<GradationLimit> limit_;  // of the size
+  std::uint64_t bounded_ = 0;            // triangles
+  Sum shares_;                           // of their bounds
 };
 
 }  // namespace
 
-void judge_quality(const Mesh& mesh, const Requirements& requirements,
+void judge_quality(const Domain& domain, const Mesh& mesh, const Requirements& requirements,
                    const QualityContext& context, Facts& facts, Findings& findings) {
-  QualityJudge(mesh, requirements, context, facts, findings).judge();
+  QualityJudge(domain, mesh, requirements, context, facts, findings).judge();
 }
 
 }  // namespace weft::check

@@ -19,6 +19,8 @@ struct Requirements {
   // Upper bound on every triangle's area, squared units. Default: none.
   std::optional<double> max_area;
   // Upper bound on a triangle's area at its centroid; with `max_area`, both hold. Default: none.
+  // With a gradation, the bound is the least of this and of what the samples give (gradation.h):
+  // the sizes at all centroids and vertices of the mesh.
   SizeSpec size;
   // Lower bound on every angle, degrees. Default: none.
   std::optional<double> min_angle_deg;
@@ -42,10 +44,11 @@ struct QualityContext {
 // Adds violations of kSize, kAngle and kArea, and fills in the measures of `facts`.
 //   - An angle may be below the bound by 1e-7 degrees.
 //   - An area may exceed its bound by 1e-9 of it. The bound at the centroid is the largest of the
-//     nine values at distances 0 and 4 * 2^-53 * (largest coordinate of the triangle) along x and
-//     y, because centroids are rounded, and the size may be discontinuous there.
+//     nine values at distances 0 and 16 * 2^-53 * (largest coordinate of the triangle) along x and
+//     y, because centroids and distances are rounded, and the size may be discontinuous, or end,
+//     there.
 // REQUIRES: structure and orientation hold.
-void judge_quality(const Mesh& mesh, const Requirements& requirements,
+void judge_quality(const Domain& domain, const Mesh& mesh, const Requirements& requirements,
                    const QualityContext& context, Facts& facts, Findings& findings);
 
 }  // namespace weft::check

@@ -7,8 +7,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <deque>
+#include <functional>
 #include <limits>
 #include <numbers>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "checker/text.h"
@@ -54,9 +58,32 @@ int read_number(const char* text, int* position, double* value) {
   return 1;
 }
 
-constexpr std::array<std::string_view, 19> kNames = {
-    "x",   "y",   "pi",  "e",     "sqrt", "abs",   "exp",   "log", "sin",  "cos",
-    "tan", "min", "max", "floor", "ceil", "atan2", "hypot", "pow", "clamp"};
+constexpr std::size_t kMaxNameLength = 64;
+constexpr std::array<std::string_view, 22> kNames = {
+    "x",     "y",   "pi",    "e",     "sqrt",    "abs",     "exp",  "log",
+    "sin",   "cos", "tan",   "min",   "max",     "floor",   "ceil", "atan2",
+    "hypot", "pow", "clamp", "slope", "defined", "coalesce"};
+
+bool is_known(std::string_view name) {
+  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+}
+
+// Bytes of the name that `text` starts with; 0 if there is none.
+std::size_t name_length(std::string_view text) {
+  if (text.empty() || !is_letter(text[0])) return 0;
+  std::size_t length = 1;
+  while (length < text.size() && (is_letter(text[length]) || is_digit(text[length]))) ++length;
+  return length;
+}
+
+std::size_t blank_length(std::string_view text) {
+  return std::min(text.find_first_not_of(" \t\n\r"), text.size());
+}
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// The slope of a field is a variable of muParser's, with a name that no field can have.
+constexpr char kSlope = '$';
 constexpr std::array<std::string_view, 19> kSymbols = {"<=", ">=", "==", "!=", "&&", "||", "+",
                                                        "-",  "*",  "/",  "^",  "<",  ">",  "!",
                                                        "?",  ":",  "(",  ")",  ","};
@@ -92,7 +119,13 @@ class UnaryRun {
 // other tokens keep their columns.
 class Translator {
  public:
-  explicit Translator(std::string_view source) : source_(source), text_(source.size(), ' ') {}
+  Translator(std::string_view source, std::span<const Field> fields)
+      : source_(source), text_(source.size(), ' ') {
+    for (const Field& field : fields) fields_.insert(field.name);
+  }
+
+  // The variables besides x and y that the last translation names, sorted.
+  const std::set<std::string>& used() const { return used_; }
 
   tl::expected<std::string, std::string> translate() {
     UnaryRun run;
@@ -100,13 +133,24 @@ class Translator {
     std::string_view name;     // the last token, if it is one
     std::size_t i = 0;
     while (i < source_.size()) {
-      if (std::string_view(" \t\n\r").find(source_[i]) != std::string_view::npos) {
-        ++i;
+      if (const std::size_t blanks = blank_length(source_.substr(i)); blanks > 0) {
+        i += blanks;
+        continue;
+      }
+      if (const auto slope = slope_at(i)) {
+        if (slope->name.empty())
+          return tl::unexpected(say("slope takes the name of a field, at column ", i + 1));
+        operand(i, kSlope + slope->name, run);
+        used_.insert(kSlope + slope->name);
+        operand_next = false;
+        name = {};
+        i += slope->length;
         continue;
       }
       const auto length = token_length(i);
       if (!length) return tl::unexpected(length.error());
       const std::string_view token = source_.substr(i, *length);
+      if (fields_.contains(token)) used_.emplace(token);
       if (chains(token)) return tl::unexpected(say("comparisons do not chain, at column ", i + 1));
       if (token == "(" && !name.empty()) {
         text_.replace(static_cast<std::size_t>(name.data() - source_.data()), name.size(),
@@ -117,10 +161,7 @@ class Translator {
       if (operand_next && (token == "+" || token == "-" || token == "!")) {
         run.add(token[0]);
       } else {
-        const std::string unary = run.folded();
-        text_.replace(i - unary.size(), unary.size(), unary);
-        text_.replace(i, *length, token);
-        run.clear();
+        operand(i, token, run);
         const char last = token.back();
         operand_next = !is_digit(last) && !is_letter(last) && last != '.' && last != ')';
       }
@@ -131,6 +172,36 @@ class Translator {
   }
 
  private:
+  struct Slope {
+    std::string name;  // of the field; empty if it is none
+    std::size_t length;
+  };
+
+  // Whether the slope of something begins at i.
+  std::optional<Slope> slope_at(std::size_t i) const {
+    std::string_view rest = source_.substr(i);
+    if (rest.substr(0, name_length(rest)) != "slope") return std::nullopt;
+    const auto skip = [&](std::size_t bytes) {
+      rest.remove_prefix(bytes);
+      rest.remove_prefix(blank_length(rest));
+    };
+    skip(name_length(rest));
+    if (!rest.starts_with('(')) return Slope{"", 0};
+    skip(1);
+    const std::string_view name = rest.substr(0, name_length(rest));
+    skip(name.size());
+    if (!fields_.contains(name) || !rest.starts_with(')')) return Slope{"", 0};
+    return Slope{std::string(name), source_.size() - i - rest.size() + 1};
+  }
+
+  // Writes what a run of unary operators, then a token at i, comes down to.
+  void operand(std::size_t i, std::string_view token, UnaryRun& run) {
+    const std::string unary = run.folded();
+    text_.replace(i - unary.size(), unary.size(), unary);
+    text_.replace(i, token.size(), token);
+    run.clear();
+  }
+
   // Whether the token is a comparison of what a comparison gives, without parentheses between.
   bool chains(std::string_view token) {
     if (token == "(") compared_.push_back(false);
@@ -158,12 +229,9 @@ class Translator {
         return refuse("a number that does not end");
       return length;
     }
-    if (is_letter(rest[0])) {
-      std::size_t length = 1;
-      while (length < rest.size() && (is_letter(rest[length]) || is_digit(rest[length]))) ++length;
+    if (const std::size_t length = name_length(rest); length > 0) {
       const std::string_view name = rest.substr(0, length);
-      if (std::find(kNames.begin(), kNames.end(), name) == kNames.end())
-        return refuse("unknown name '", name, "'");
+      if (!is_known(name) && !fields_.contains(name)) return refuse("unknown name '", name, "'");
       return length;
     }
     const auto symbol =
@@ -175,6 +243,8 @@ class Translator {
 
   std::string_view source_;
   std::string text_;
+  std::set<std::string_view> fields_;  // names
+  std::set<std::string> used_;
   std::vector<bool> compared_{false};  // per open parenthesis: whether its operand is a comparison
 };
 
@@ -193,7 +263,7 @@ class GrammarParser : public mu::ParserBase {
 
  protected:
   void InitCharSets() override {
-    DefineNameChars("0123456789_abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
+    DefineNameChars("$0123456789_abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
     DefineOprtChars("+-*^/?<>=!&|");
     DefineInfixOprtChars("-!");
   }
@@ -215,6 +285,8 @@ class GrammarParser : public mu::ParserBase {
     DefineFun("hypot", static_cast<Binary>(std::hypot));
     DefineFun("min", static_cast<Variadic>(minimum));
     DefineFun("max", static_cast<Variadic>(maximum));
+    DefineFun("defined", static_cast<Unary>([](double v) { return std::isnan(v) ? 0.0 : 1.0; }));
+    DefineFun("coalesce", static_cast<Variadic>(coalesce));
     DefineFun("clamp", static_cast<double (*)(double, double, double)>(clamp));
   }
   void InitConst() override {
@@ -232,27 +304,76 @@ class GrammarParser : public mu::ParserBase {
  private:
   // One argument is refused: the grammar wants two or more.
   static void require_two(int count) {
-    if (count < 2) throw mu::ParserError("min and max take two arguments or more");
+    if (count < 2) throw mu::ParserError("min, max and coalesce take two arguments or more");
+  }
+  static bool any_nan(const double* values, int count) {
+    return std::any_of(values, values + count, [](double v) { return std::isnan(v); });
   }
   static double minimum(const double* values, int count) {
     require_two(count);
-    return *std::min_element(values, values + count);
+    return any_nan(values, count) ? kNan : *std::min_element(values, values + count);
   }
   static double maximum(const double* values, int count) {
     require_two(count);
-    return *std::max_element(values, values + count);
+    return any_nan(values, count) ? kNan : *std::max_element(values, values + count);
+  }
+  static double coalesce(const double* values, int count) {
+    require_two(count);
+    const double* const end = values + count;
+    const double* const found = std::find_if(values, end, [](double v) { return !std::isnan(v); });
+    return found == end ? kNan : *found;
   }
   static double clamp(double value, double low, double high) {
+    if (std::isnan(value) || std::isnan(low) || std::isnan(high)) return kNan;
     return std::min(std::max(value, low), high);
   }
 };
 
 }  // namespace
 
+std::optional<std::string> fault_of_names(std::span<const Field> fields) {
+  std::set<std::string_view> seen;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const std::string_view name = fields[i].name;
+    if (name.size() > kMaxNameLength)
+      return say("the name of field ", i, " has ", name.size(), " bytes, the limit is ",
+                 kMaxNameLength);
+    if (name.empty() || name_length(name) != name.size())
+      return say("the name of field ", i, " is '", name, "', which is no name");
+    if (is_known(name))
+      return say("the name of field ", i, " is '", name, "', which means something else");
+    if (!seen.insert(name).second) return say("two fields have the name '", name, "'");
+  }
+  return std::nullopt;
+}
+
 struct SizeExpression::Evaluator {
+  struct Input {
+    std::function<double(Vec2)> field;
+    double value = 0;
+  };
+
   GrammarParser parser;
   double x = 0;
   double y = 0;
+  std::deque<Input> inputs;  // stay where they are
+
+  // Returns the name of a field that has no value.
+  std::optional<std::string> define(const std::set<std::string>& used,
+                                    std::span<const Field> fields) {
+    parser.DefineVar("x", &x);
+    parser.DefineVar("y", &y);
+    for (const Field& field : fields) {
+      for (const bool slope : {false, true}) {
+        const std::string name = slope ? kSlope + field.name : field.name;
+        if (!used.contains(name)) continue;
+        inputs.push_back({slope ? field.slope : field.value});
+        if (!inputs.back().field) return field.name;
+        parser.DefineVar(name, &inputs.back().value);
+      }
+    }
+    return std::nullopt;
+  }
 };
 
 SizeExpression::SizeExpression(std::unique_ptr<Evaluator> evaluator)
@@ -261,16 +382,18 @@ SizeExpression::SizeExpression(SizeExpression&&) noexcept = default;
 SizeExpression& SizeExpression::operator=(SizeExpression&&) noexcept = default;
 SizeExpression::~SizeExpression() = default;
 
-tl::expected<SizeExpression, std::string> SizeExpression::parse(std::string_view source) {
+tl::expected<SizeExpression, std::string> SizeExpression::parse(std::string_view source,
+                                                                std::span<const Field> fields) {
   if (source.size() > kMaxLength)
     return tl::unexpected(say("the size expression has ", source.size(),
                               " bytes, the checker reads at most ", kMaxLength));
-  const auto text = Translator(source).translate();
+  Translator translator(source, fields);
+  const auto text = translator.translate();
   if (!text) return tl::unexpected(say("the size expression does not parse: ", text.error()));
   try {
     auto evaluator = std::make_unique<Evaluator>();
-    evaluator->parser.DefineVar("x", &evaluator->x);
-    evaluator->parser.DefineVar("y", &evaluator->y);
+    if (const auto name = evaluator->define(translator.used(), fields))
+      return tl::unexpected(say("the checker cannot judge sizes that use the field ", *name));
     evaluator->parser.SetExpr(*text);
     int results = 0;
     evaluator->parser.Eval(results);
@@ -284,10 +407,11 @@ tl::expected<SizeExpression, std::string> SizeExpression::parse(std::string_view
 double SizeExpression::operator()(Vec2 p) const noexcept {
   evaluator_->x = p.x;
   evaluator_->y = p.y;
+  for (Evaluator::Input& input : evaluator_->inputs) input.value = input.field(p);
   try {
     return evaluator_->parser.Eval();
   } catch (const mu::ParserError&) {
-    return std::numeric_limits<double>::quiet_NaN();
+    return kNan;
   }
 }
 

@@ -29,6 +29,57 @@ TEST(BoxTree, FindsTheBoxesThatMeetAQueryAndNoOthers) {
   }
 }
 
+TEST(BoxTree, FindsTheBoxOfTheLeastCost) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> place(0, 1), extent(0, 0.1);
+  std::vector<Box> boxes;
+  std::vector<double> floors;
+  for (int i = 0; i < 500; ++i) {
+    const double x = place(random), y = place(random);
+    boxes.push_back({x, y, x + extent(random), y + extent(random)});
+    floors.push_back(place(random));
+  }
+  const BoxTree plain(boxes);
+  const BoxTree raised(boxes, floors);
+  for (int q = 0; q < 200; ++q) {
+    const Vec2 p{place(random), place(random)};
+    double expected_plain = 2, expected_raised = 2;
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+      expected_plain = std::min(expected_plain, boxes[i].distance(p));
+      expected_raised = std::min(expected_raised, floors[i] + 3 * boxes[i].distance(p));
+    }
+    double least = 2;
+    const auto distance = [&](std::uint32_t i) { return boxes[i].distance(p); };
+    ASSERT_TRUE(plain.least(p, 1, least, distance));
+    EXPECT_EQ(least, expected_plain);
+    EXPECT_FALSE(plain.least(p, 1, least, distance));
+    least = 2;
+    const auto found =
+        raised.least(p, 3, least, [&](std::uint32_t i) { return floors[i] + 3 * distance(i); });
+    ASSERT_TRUE(found);
+    EXPECT_EQ(least, expected_raised);
+    EXPECT_EQ(floors[*found] + 3 * boxes[*found].distance(p), expected_raised);
+  }
+}
+
+TEST(BoxTree, LooksAtFewForTheLeast) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> place(0, 1);
+  std::vector<Box> boxes;
+  for (int i = 0; i < 100000; ++i) {
+    const Vec2 p{place(random), place(random)};
+    boxes.push_back(box_of(p, p));
+  }
+  const BoxTree tree(boxes);
+  std::uint64_t looks = 0;
+  for (int q = 0; q < 1000; ++q) {
+    const Vec2 p{place(random), place(random)};
+    double least = 2;
+    tree.least(p, 1, least, [&](std::uint32_t i) { return ++looks, boxes[i].distance(p); });
+  }
+  EXPECT_LT(looks, 20u * 1000);
+}
+
 TEST(BoxTree, OfNothingFindsNothing) {
   BoxTree({}).visit({0, 0, 1, 1}, [](std::uint32_t) { FAIL(); });
 }
