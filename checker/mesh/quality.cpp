@@ -135,10 +135,14 @@ class QualityJudge {
     limit_.emplace(points, areas, requirements_.size.gradation);
   }
 
-  // The size at p, its gradation limited if it is a size at all.
-  double size_at(Vec2 p) const {
+  // The size at p; if a sample of the gradation limits it to less than `area`, what they limit it
+  // to.
+  double size_at(Vec2 p, double area) const {
     const double size = size_(p);
-    return limit_ && is_size(size) ? (*limit_)(p, size) : size;
+    if (!limit_ || !is_size(size)) return size;
+    const double enough = std::min(size, area);
+    const double limited = (*limit_)(p, enough);
+    return limited < enough ? limited : size;
   }
 
   static bool is_size(double size) { return size > 0 && !std::isinf(size); }
@@ -178,9 +182,9 @@ class QualityJudge {
       fixed = std::min(fixed, context_.roles[context_.faces[t]].max_area);
     double bound = fixed;
     if (size_) {
-      double size = size_at(shape.centroid);
+      double size = size_at(shape.centroid, shape.area);
       if (!is_size(size) || shape.area > std::min(fixed, size) * (1 + kAreaTolerance))
-        size = largest_size_nearby(shape.centroid, corners);
+        size = largest_size_nearby(shape, corners);
       if (!is_size(size)) {
         findings_.add(Rule::kSize, [&] {
           return say("the size is ", size_(shape.centroid), " at ", shape.centroid,
@@ -206,14 +210,14 @@ class QualityJudge {
   }
 
   // Of the nine values around the centroid; 0 if none is a size.
-  double largest_size_nearby(Vec2 centroid, const std::array<Vec2, 3>& corners) const {
+  double largest_size_nearby(const Shape& shape, const std::array<Vec2, 3>& corners) const {
     double magnitude = 0;
     for (const Vec2 p : corners) magnitude = std::max({magnitude, std::fabs(p.x), std::fabs(p.y)});
     const double step = 16 * 0x1p-53 * magnitude;
     double largest = 0;
     for (const double dx : {-step, 0.0, step}) {
       for (const double dy : {-step, 0.0, step}) {
-        const double size = size_at({centroid.x + dx, centroid.y + dy});
+        const double size = size_at({shape.centroid.x + dx, shape.centroid.y + dy}, shape.area);
         if (is_size(size)) largest = std::max(largest, size);
       }
     }

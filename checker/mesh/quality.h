@@ -19,8 +19,9 @@ struct Requirements {
   // Upper bound on every triangle's area, squared units. Default: none.
   std::optional<double> max_area;
   // Upper bound on a triangle's area at its centroid; with `max_area`, both hold. Default: none.
-  // With a gradation, the bound is the least of this and of what the samples give (gradation.h):
-  // the sizes at all centroids and vertices of the mesh.
+  // With a gradation, no triangle may be larger than any sample allows (gradation.h): the sizes at
+  // all centroids and vertices of the mesh. The facts take a size that a triangle keeps to as it is
+  // without the limit, because to know that one is enough, and the least of all is slow to find.
   SizeSpec size;
   // Lower bound on every angle, degrees. Default: none.
   std::optional<double> min_angle_deg;
