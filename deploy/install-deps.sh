@@ -4,10 +4,11 @@
 #
 #   deploy/install-deps.sh [GROUP...]
 #     build    compiles everything
+#     geo      compiles a weft that reads rasters, and projects longitude and latitude
 #     runtime  runs weftd and weft
 #     rasters  lets weft read rasters but .asc
-#     test     what tests/run.sh needs beyond build
-#     all      build and test, the default
+#     test     what tests/run.sh needs beyond build and geo
+#     all      build, geo and test, the default
 set -euo pipefail
 
 build=(
@@ -19,10 +20,11 @@ build=(
   libsqlite3-dev libpq-dev prometheus-cpp-dev                            # its jobs and its metrics
   libcli11-dev nlohmann-json3-dev libcairo2-dev fonts-dejavu-core        # the command line
   libyaml-cpp-dev libpugixml-dev                                         # its batches
-  zlib1g-dev libshp-dev libgdal-dev                                      # .npz, shapefiles, rasters
+  zlib1g-dev libshp-dev                                                  # .npz, shapefiles
   libmuparser-dev                                                        # the checker
   libgtest-dev libgmock-dev librapidcheck-dev                            # tests
 )
+geo=(libgdal-dev libproj-dev)
 runtime=(
   libprotobuf32 libgmp10 libgmpxx4ldbl libmpfr6 libtbb12 libsleef3 libspdlog1.10
   libfmt9 libatomic1 libssl3 libsqlite3-0 libpq5 libprometheus-cpp-core1.0
@@ -36,6 +38,7 @@ test=(
   # what reads the files that weft writes, and writes those that it reads
   gmsh python3-gmsh python3-meshio python3-numpy python3-pyshp python3-shapely python3-vtk9
   python3-protobuf         # docs/generate.py
+  python3-pyproj           # lengths and angles on the ellipsoid
   buildah debootstrap      # the container, without a daemon
   docker-compose           # its compose.yaml
   python3-seccomp          # the profile of weftd
@@ -51,12 +54,13 @@ wanted=()
 for group in "${@:-all}"; do
   case $group in
     build) wanted+=("${build[@]}") ;;
+    geo) wanted+=("${geo[@]}") ;;
     runtime) wanted+=("${runtime[@]}") ;;
     rasters) wanted+=("${rasters[@]}") ;;
     test) wanted+=("${test[@]}") ;;
-    all) wanted+=("${build[@]}" "${test[@]}") ;;
+    all) wanted+=("${build[@]}" "${geo[@]}" "${test[@]}") ;;
     *)
-      echo "install-deps.sh: unknown group '$group'; there are build, runtime, rasters, test, all" >&2
+      echo "install-deps.sh: unknown group '$group'; there are build, geo, runtime, rasters, test, all" >&2
       exit 2
       ;;
   esac

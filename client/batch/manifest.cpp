@@ -13,6 +13,7 @@
 #include "client/drawing/draw.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
+#include "client/geo/projection_rows.h"
 #include "client/report/output_rows.h"
 
 namespace weft::client {
@@ -78,6 +79,7 @@ const std::map<std::string, Setter>& common_keys() {
     add_rows(all, request_rows(), [](BatchMesh& m) { return &m.request_options; });
     add_rows(all, writing_rows(), [](BatchMesh& m) { return &m.output.writing; });
     add_rows(all, drawing_rows(), [](BatchMesh& m) { return &m.output; });
+    add_rows(all, projection_rows(), [](BatchMesh& m) { return &m.output.projection; });
     all["require"] = [](const auto& n, auto& m, const auto&) { require(n, m.gates); };
     return all;
   }();

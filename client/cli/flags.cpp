@@ -7,6 +7,7 @@
 #include "client/call/request_rows.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
+#include "client/geo/projection_rows.h"
 #include "client/report/output_rows.h"
 
 namespace weft::client {
@@ -69,6 +70,10 @@ void add_writing(CLI::App& command, MeshWriteOptions& writing) {
   add_rows(command, writing_rows(), writing);
 }
 
+void add_projection_flags(CLI::App& command, ProjectionOptions& projection) {
+  add_rows(command, projection_rows(), projection);
+}
+
 void add_output(CLI::App& command, MeshOutputOptions& output) {
   command
       .add_option("-o,--output", output.files,
@@ -81,6 +86,7 @@ void add_output(CLI::App& command, MeshOutputOptions& output) {
       ->allow_extra_args(false)
       ->type_name("FILE");
   add_rows(command, drawing_rows(), output);
+  add_projection_flags(command, output.projection);
 }
 
 void refuse_idle_flags(const CLI::App& command, std::span<char* const> words) {

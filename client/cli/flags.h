@@ -8,6 +8,7 @@
 #include <string>
 
 #include "client/call/mesh_request.h"
+#include "client/geo/projection_options.h"
 #include "client/report/mesh_output.h"
 
 namespace weft::client {
@@ -26,7 +27,10 @@ void add_domain_and_request_options(CLI::App& command, std::filesystem::path& in
 // How meshes are written, if their format leaves a choice.
 void add_writing(CLI::App& command, MeshWriteOptions& writing);
 
-// Files to write, and drawings.
+// Whether the domain is in longitude and latitude.
+void add_projection_flags(CLI::App& command, ProjectionOptions& projection);
+
+// Files to write, and drawings; and the flags of the projection.
 void add_output(CLI::App& command, MeshOutputOptions& output);
 
 // Throws CLI::ParseError where a flag among the words of the command line would do nothing, for

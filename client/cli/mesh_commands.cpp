@@ -20,16 +20,20 @@ Examples:
   weft mesh coast.geojson -o coast.vtu --size 0.001
   weft mesh pipe.poly -o pipe.msh --size '0.4*hypot(x-200, y-200) + 1' --min-angle 30
   weft mesh coast.geojson -o coast.vtu --size sizes.asc
+  weft mesh coast.geojson -o coast.vtu --lonlat --size 1e8
   weft mesh key.poly -o key.vtu -o key.node --draw key.png --color angle
   weft mesh coast.geojson -o fort.14 --open-boundary 1
   weft mesh cylinder.poly --size 1e-2 --draw cylinder.png --draw-quadtree
   weft mesh key.poly -o key.vtu --server mesh.example.org:7421 --json
   weft mesh coast.geojson --size 1e-6 --server mesh.example.org:7421 --detach)";
 
-constexpr char kCheckExamples[] = R"(Give the bounds that the mesh was made with.
+constexpr char kCheckExamples[] =
+    R"(Give the bounds that the mesh was made with. A mesh of a domain in longitude and latitude
+is checked in metres: write it with --to-metres, too.
 
-Example:
-  weft check pipe.msh --domain pipe.poly --size '0.4*hypot(x-200, y-200) + 1' --min-angle 30)";
+Examples:
+  weft check pipe.msh --domain pipe.poly --size '0.4*hypot(x-200, y-200) + 1' --min-angle 30
+  weft check coast.msh --domain coast.geojson --to-metres --size 1e8)";
 
 constexpr char kConvertExamples[] =
     R"(A mesh is written as it is, vertex by vertex; what the new format does not carry is lost.
@@ -50,6 +54,7 @@ Result<ExitCode> detach(const MeshOptions& options, std::stop_token stop) {
   SubmitOptions submit;
   submit.input = options.input;
   submit.request_options = options.request_options;
+  submit.output.projection = options.output.projection;
   submit.calls.server = options.server;
   submit.calls.timeout_seconds = options.timeout_seconds;
   submit.calls.retries = options.retries;
@@ -111,6 +116,7 @@ void add_check(CLI::App& app, Chosen& chosen) {
                   "input angles, which are excused anyway)")
       ->capture_default_str()
       ->type_name("N");
+  add_projection_flags(check, options.projection);
   check.callback(
       [kept, &chosen] { chosen.run = [kept](std::stop_token) { return run_check(*kept); }; });
 }

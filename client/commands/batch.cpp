@@ -11,8 +11,8 @@
 #include "client/batch/lock_file.h"
 #include "client/batch/manifest.h"
 #include "client/commands/commands.h"
+#include "client/commands/input_domain.h"
 #include "client/commands/mesh_into.h"
-#include "client/formats/domain_formats.h"
 
 namespace weft::client {
 namespace {
@@ -44,8 +44,9 @@ std::filesystem::path picture_of(const MeshOutputOptions& output) {
 
 Result<v1::Summary> make_mesh(const BatchMesh& mesh, const Connection& connection,
                               const BatchOptions& options, const std::stop_token& stop) {
-  const auto domain = read_domain(mesh.input);
-  if (!domain) return tl::unexpected(domain.error());
+  const auto input =
+      read_input_domain(mesh.input, mesh.request_options.size, mesh.output.projection);
+  if (!input) return tl::unexpected(input.error());
   auto request_options = with_raster(mesh.request_options);
   if (!request_options) return tl::unexpected(request_options.error());
   request_options->quadtree = mesh.output.draw_quadtree;
@@ -57,7 +58,7 @@ Result<v1::Summary> make_mesh(const BatchMesh& mesh, const Connection& connectio
     output.emplace(std::move(*opened));
   }
   const auto report = mesh_into(
-      connection, *domain, *request_options,
+      connection, *input, *request_options,
       {.timeout_seconds = options.timeout_seconds, .retries = options.retries},
       output ? &*output : nullptr, [] {}, stop);
   if (!report) return tl::unexpected(report.error());

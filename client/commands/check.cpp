@@ -9,7 +9,7 @@
 
 #include "client/base/text.h"
 #include "client/commands/commands.h"
-#include "client/formats/domain_formats.h"
+#include "client/commands/input_domain.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/raster.h"
 
@@ -56,8 +56,12 @@ Result<ExitCode> run_check(const CheckOptions& options) {
   if (options.snap && !(std::isfinite(*options.snap) && *options.snap >= 0))
     return fail(ExitCode::kUsage,
                 "--snap is " + shortest(*options.snap) + "; it must be finite and 0 or more");
-  const auto domain = read_domain(options.domain);
-  if (!domain) return tl::unexpected(domain.error());
+  if (options.projection.wanted() && !options.projection.to_metres)
+    return fail(ExitCode::kUsage,
+                "a mesh is checked in the plane that it was made in: write it with --to-metres, "
+                "and say --to-metres here, too");
+  const auto input = read_input_domain(options.domain, options.size, options.projection);
+  if (!input) return tl::unexpected(input.error());
   const auto mesh = read_mesh(options.mesh);
   if (!mesh) return tl::unexpected(mesh.error());
   check::Requirements requirements;
@@ -81,8 +85,8 @@ Result<ExitCode> run_check(const CheckOptions& options) {
       requirements.size = options.size;
     }
   }
-  const check::Report report =
-      check::check(to_checker(*domain, options.snap.value_or(0)), to_checker(*mesh), requirements);
+  const check::Report report = check::check(to_checker(input->domain, options.snap.value_or(0)),
+                                            to_checker(*mesh), requirements);
   const auto printed =
       print(check::to_text(report) + (report.ok() ? "the mesh holds\n" : "the mesh fails\n"));
   if (!printed) return printed;

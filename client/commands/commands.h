@@ -14,6 +14,7 @@
 #include "client/batch/quality_gate.h"
 #include "client/call/connect_options.h"
 #include "client/call/mesh_call.h"
+#include "client/geo/projection_options.h"
 #include "client/report/mesh_output.h"
 
 namespace weft::client {
@@ -53,6 +54,7 @@ struct CheckOptions {
   double min_angle_deg = 20;
   std::optional<double> snap;
   std::uint64_t max_unrefined = 0;
+  ProjectionOptions projection;  // of the domain; the mesh is in metres
 };
 Result<ExitCode> run_check(const CheckOptions& options);
 

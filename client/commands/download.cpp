@@ -15,13 +15,13 @@ Result<v1::Job> wait_for_job(JobServer& server, const std::string& id, ProgressB
   });
 }
 
-Result<MeshReport> download(JobServer& server, const v1::Job& job, const Domain* domain,
+Result<MeshReport> download(JobServer& server, const v1::Job& job, const InputDomain* input,
                             MeshOutput& output, ProgressBar& progress, MeshTimes& times) {
   const auto spool = output.make_spool();
   if (!spool) return tl::unexpected(spool.error());
   FetchMeshOptions options;
-  if (domain != nullptr)
-    options.domain = DomainCounts{domain->points.size(), domain->segments.size()};
+  if (input != nullptr)
+    options.domain = DomainCounts{input->domain.points.size(), input->domain.segments.size()};
   options.on_triangles = [&](std::uint64_t triangles) {
     v1::Progress arrived;
     arrived.set_stage(v1::STAGE_EMIT);
@@ -38,7 +38,11 @@ Result<MeshReport> download(JobServer& server, const v1::Job& job, const Domain*
 
   auto mesh = (*spool)->view();
   if (!mesh) return tl::unexpected(mesh.error());
-  if (domain != nullptr) mesh->input_point_markers = domain->point_markers;
+  if (input != nullptr) {
+    add_projection(*input, *report);
+    output.bring_back_by(input->projection);
+    mesh->input_point_markers = input->domain.point_markers;
+  }
   if (output.draws()) progress.say("drawing");
   if (auto written = output.write(*mesh, report->summary); !written)
     return tl::unexpected(written.error());

@@ -7,7 +7,7 @@
 
 #include "client/base/error.h"
 #include "client/call/job_server.h"
-#include "client/formats/domain.h"
+#include "client/commands/input_domain.h"
 #include "client/report/mesh_output.h"
 #include "client/report/mesh_report.h"
 #include "client/report/progress_bar.h"
@@ -17,8 +17,8 @@ namespace weft::client {
 // Waits for a job to end, and returns it.
 Result<v1::Job> wait_for_job(JobServer& server, const std::string& id, ProgressBar& progress);
 
-// `domain` may be null. Sets `times.received` and `times.written`. REQUIRES: the job succeeded.
-Result<MeshReport> download(JobServer& server, const v1::Job& job, const Domain* domain,
+// `input` may be null. Sets `times.received` and `times.written`. REQUIRES: the job succeeded.
+Result<MeshReport> download(JobServer& server, const v1::Job& job, const InputDomain* input,
                             MeshOutput& output, ProgressBar& progress, MeshTimes& times);
 
 // mesh_json, after the job's id.

@@ -4,6 +4,7 @@
 
 #include "client/commands/commands.h"
 #include "client/commands/download.h"
+#include "client/commands/input_domain.h"
 #include "client/commands/job_commands.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
@@ -12,10 +13,15 @@
 namespace weft::client {
 namespace {
 
-Result<std::optional<Domain>> read_submitted(const FetchOptions& options) {
+Result<std::optional<InputDomain>> read_submitted(const FetchOptions& options) {
+  const ProjectionOptions& projected = options.output.projection;
+  if (!options.domain && projected.wanted())
+    return fail(ExitCode::kUsage,
+                "the job has its mesh in metres; to write it in longitude and latitude, give the "
+                "domain that was submitted, too: --domain INPUT");
   if (!options.domain) return std::nullopt;
   if (!is_domain_path(*options.domain)) return unknown_domain_format(*options.domain);
-  auto domain = read_domain(*options.domain);
+  auto domain = read_input_domain(*options.domain, "", projected);
   if (!domain) return tl::unexpected(domain.error());
   return std::move(*domain);
 }
@@ -30,7 +36,7 @@ Result<ExitCode> run_fetch(const FetchOptions& options, std::stop_token stop) {
   if (!server) return tl::unexpected(server.error());
   const auto submitted = read_submitted(options);
   if (!submitted) return tl::unexpected(submitted.error());
-  const Domain* domain = *submitted ? &**submitted : nullptr;
+  const InputDomain* input = *submitted ? &**submitted : nullptr;
   times.read = times.connected = MeshTimes::Clock::now();
 
   ProgressBar progress(stderr, options.quiet ? ProgressStyle::kNone : progress_style_of(stderr));
@@ -38,11 +44,11 @@ Result<ExitCode> run_fetch(const FetchOptions& options, std::stop_token stop) {
   const auto job =
       options.wait ? wait_for_job(*server, options.id, progress) : server->get(options.id);
   if (!job) return tl::unexpected(job.error());
-  if (auto error = job_error(*job, domain)) {
+  if (auto error = job_error(*job, input != nullptr ? &input->domain : nullptr)) {
     if (!is_final(job->state())) error->message += ". --wait waits for it";
     return tl::unexpected(*error);
   }
-  const auto report = download(*server, *job, domain, *output, progress, times);
+  const auto report = download(*server, *job, input, *output, progress, times);
   if (!report) return tl::unexpected(report.error());
   if (options.json) return print(json_line(download_json(*job, *report, times)));
   return options.quiet ? ExitCode::kOk

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "client/commands/commands.h"
+#include "client/commands/input_domain.h"
 #include "client/commands/mesh_into.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
@@ -30,8 +31,10 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   if (!is_domain_path(options.input)) return unknown_domain_format(options.input);
   auto output = MeshOutput::open(options.output, options.input, stop);
   if (!output) return tl::unexpected(output.error());
-  const auto domain = read_domain(options.input);
-  if (!domain) return tl::unexpected(domain.error());
+  const auto input =
+      read_input_domain(options.input, options.request_options.size, options.output.projection);
+  if (!input) return tl::unexpected(input.error());
+  const Domain& domain = input->domain;
   auto request_options = with_raster(options.request_options);
   if (!request_options) return tl::unexpected(request_options.error());
   times.read = MeshTimes::Clock::now();
@@ -57,20 +60,20 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
     times.received = MeshTimes::Clock::now();
     if (output->draws()) progress.say("drawing");
   };
-  auto report = mesh_into(*connection, *domain, *request_options, call, &*output, received, stop);
+  auto report = mesh_into(*connection, *input, *request_options, call, &*output, received, stop);
   if (!report) return tl::unexpected(report.error());
   times.written = MeshTimes::Clock::now();
   progress.clear();
-  add_warnings(options, *domain, *report);
+  add_warnings(options, domain, *report);
 
   if (options.json) {
     Json json = mesh_json(*report, times);
-    if (!domain->region_values.empty())
-      json["region_values"] = region_values_json(domain->region_values);
+    if (!domain.region_values.empty())
+      json["region_values"] = region_values_json(domain.region_values);
     return print(json_line(json));
   }
   if (options.quiet) return ExitCode::kOk;
-  return print(mesh_text(*report, times) + region_values_text(domain->region_values) +
+  return print(mesh_text(*report, times) + region_values_text(domain.region_values) +
                output->text(report->summary));
 }
 

@@ -9,7 +9,7 @@
 
 namespace weft::client {
 
-Result<MeshReport> mesh_into(const Connection& connection, const Domain& domain,
+Result<MeshReport> mesh_into(const Connection& connection, const InputDomain& input,
                              const RequestOptions& request_options, const MeshCallOptions& call,
                              MeshOutput* output, const std::function<void()>& received,
                              std::stop_token stop) {
@@ -19,19 +19,21 @@ Result<MeshReport> mesh_into(const Connection& connection, const Domain& domain,
                          : MeshSpool::create(std::filesystem::temp_directory_path(ignored));
   if (!spool) return tl::unexpected(spool.error());
   auto report =
-      call_generate_mesh(connection, domain, request_options, call, **spool, std::move(stop));
+      call_generate_mesh(connection, input.domain, request_options, call, **spool, std::move(stop));
   if (!report) {
     Error error = report.error();
     constexpr int kUnavailable = 14;
     if (connection.server && error.exit == exit_code_of_status(kUnavailable))
       error.message += "\n  its last lines:\n" + connection.server->last_log_lines();
-    return tl::unexpected(error);
+    return tl::unexpected(in_plane(std::move(error), input));
   }
   received();
+  add_projection(input, *report);
   if (output == nullptr) return report;
+  output->bring_back_by(input.projection);
   auto mesh = (*spool)->view();
   if (!mesh) return tl::unexpected(mesh.error());
-  mesh->input_point_markers = domain.point_markers;
+  mesh->input_point_markers = input.domain.point_markers;
   report->markers = markers_of(*mesh);
   if (auto written = output->write(*mesh, report->summary); !written)
     return tl::unexpected(written.error());

@@ -8,16 +8,16 @@
 #include "client/base/error.h"
 #include "client/call/connection.h"
 #include "client/call/mesh_call.h"
-#include "client/formats/domain.h"
+#include "client/commands/input_domain.h"
 #include "client/report/mesh_output.h"
 #include "client/report/mesh_report.h"
 
 namespace weft::client {
 
-// Requests a mesh of `domain` and writes `output`; null: nothing is written. `received` is called
+// Requests a mesh of the domain and writes `output`; null: nothing is written. `received` is called
 // before anything is written. Errors: those of call_generate_mesh and of MeshOutput; if a private
 // server went away, with the last lines of its log.
-Result<MeshReport> mesh_into(const Connection& connection, const Domain& domain,
+Result<MeshReport> mesh_into(const Connection& connection, const InputDomain& input,
                              const RequestOptions& request_options, const MeshCallOptions& call,
                              MeshOutput* output, const std::function<void()>& received,
                              std::stop_token stop);

@@ -8,6 +8,7 @@
 #include "client/base/text.h"
 #include "client/commands/commands.h"
 #include "client/commands/download.h"
+#include "client/commands/input_domain.h"
 #include "client/commands/job_commands.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
@@ -66,11 +67,13 @@ Result<ExitCode> run_submit(const SubmitOptions& options, std::stop_token stop) 
   if (!output) return tl::unexpected(output.error());
   auto server = JobServer::connect(options.calls, stop);
   if (!server) return tl::unexpected(server.error());
-  const auto domain = read_domain(options.input);
-  if (!domain) return tl::unexpected(domain.error());
+  const auto input =
+      read_input_domain(options.input, options.request_options.size, options.output.projection);
+  if (!input) return tl::unexpected(input.error());
+  const Domain& domain = input->domain;
   times.read = times.connected = MeshTimes::Clock::now();
 
-  auto job = submit(*server, *domain, options);
+  auto job = submit(*server, domain, options);
   if (!job) return tl::unexpected(job.error());
   const auto print_id = [&] { return print(harmless(job->id()) + "\n"); };
   if (!options.wait) return options.json ? print(json_line(job_json(*job))) : print_id();
@@ -83,16 +86,18 @@ Result<ExitCode> run_submit(const SubmitOptions& options, std::stop_token stop) 
     job = wait_for_job(*server, job->id(), progress);
     if (!job) return tl::unexpected(job.error());
   }
-  const auto failed = job_error(*job, &*domain);
+  const auto failed = job_error(*job, &domain);
   if (failed || !*output) {
     progress.clear();
     if (options.json)
       if (auto printed = print(json_line(job_json(*job))); !printed) return printed;
-    if (failed) return tl::unexpected(*failed);
-    if (!options.quiet) std::fputs(summary_text(job->summary()).c_str(), stderr);
+    if (failed) return tl::unexpected(in_plane(*failed, *input));
+    MeshReport report{.accepted = {}, .summary = job->summary()};
+    add_projection(*input, report);
+    if (!options.quiet) std::fputs(summary_text(report.summary).c_str(), stderr);
     return ExitCode::kOk;
   }
-  const auto report = download(*server, *job, &*domain, **output, progress, times);
+  const auto report = download(*server, *job, &*input, **output, progress, times);
   if (!report) return tl::unexpected(report.error());
   if (options.json) return print(json_line(download_json(*job, *report, times)));
   if (!options.quiet)

@@ -19,12 +19,26 @@ void Provenance::extend(std::size_t first, const std::string& prefix, std::uint6
   add(first, prefix, number, "");
 }
 
-std::string Provenance::locate(std::size_t i) const {
+void Provenance::add_same(std::size_t first, const Provenance& other, std::size_t i) {
+  const Run* const found = other.run_of(i);
+  if (found == nullptr) return;
+  Run run = *found;
+  run.number += i - run.first;
+  run.first = first;
+  runs_.push_back(std::move(run));
+}
+
+const Provenance::Run* Provenance::run_of(std::size_t i) const {
   const auto after = std::upper_bound(
       runs_.begin(), runs_.end(), i, [](std::size_t at, const Run& run) { return at < run.first; });
-  if (after == runs_.begin()) return "";
-  const Run& run = *std::prev(after);
-  return run.prefix + std::to_string(run.number + (i - run.first)) + run.suffix;
+  return after == runs_.begin() ? nullptr : &*std::prev(after);
+}
+
+std::string Provenance::locate(std::size_t i) const {
+  const Run* const run = run_of(i);
+  return run == nullptr
+             ? ""
+             : run->prefix + std::to_string(run->number + (i - run->first)) + run->suffix;
 }
 
 }  // namespace weft::client

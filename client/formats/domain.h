@@ -28,6 +28,9 @@ class Provenance {
   void add(std::size_t first, std::string prefix, std::uint64_t number, std::string suffix);
   // As `add`, unless the last run already continues through (first, number).
   void extend(std::size_t first, const std::string& prefix, std::uint64_t number);
+  // The element `first` has the place of element i of `other`, which may be this list. REQUIRES: as
+  // for `add`, and the next element is added, too.
+  void add_same(std::size_t first, const Provenance& other, std::size_t i);
   // Empty if the element's place is not known.
   std::string locate(std::size_t i) const;
 
@@ -38,6 +41,9 @@ class Provenance {
     std::uint64_t number = 0;
     std::string suffix;
   };
+  // The run that holds element i; null if there is none.
+  const Run* run_of(std::size_t i) const;
+
   std::vector<Run> runs_;
 };
 

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <new>
 #include <set>
 #include <span>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "client/base/text.h"
@@ -78,6 +80,18 @@ std::string quadtree_text(const v1::Summary& summary) {
   return leaves + (summary.leaf_boxes().empty() ? ", too many to be drawn\n" : "\n");
 }
 
+// Longitude and latitude of the vertices; kUnwritableOutput if there is no room for them.
+Result<ScratchArray<double>> bring_back(const DomainProjection& projection, const MeshView& mesh) {
+  try {
+    return projection.to_lonlat(mesh);
+  } catch (const std::system_error& failure) {
+    return fail(ExitCode::kUnwritableOutput,
+                std::string("the mesh cannot be projected: ") + failure.code().message());
+  } catch (const std::bad_alloc&) {
+    return fail(ExitCode::kUnwritableOutput, "the mesh cannot be projected: not enough memory");
+  }
+}
+
 }  // namespace
 
 Result<MeshOutput> MeshOutput::open(const MeshOutputOptions& options,
@@ -103,7 +117,15 @@ Result<std::unique_ptr<MeshSpool>> MeshOutput::make_spool() {
   return MeshSpool::create(folder.empty() ? "." : folder, std::move(options));
 }
 
-Result<void> MeshOutput::write(const MeshView& mesh, const v1::Summary& summary) {
+Result<void> MeshOutput::write(const MeshView& arrived, const v1::Summary& summary) {
+  MeshView mesh = arrived;
+  ScratchArray<double> lonlat;
+  if (projection_ && !projection_->to_metres() && !options_.files.empty()) {
+    auto brought = bring_back(*projection_, mesh);
+    if (!brought) return tl::unexpected(brought.error());
+    lonlat = std::move(*brought);
+    mesh.coordinates = lonlat.values();
+  }
   std::span<OutputFile> rest = files_;
   for (const auto& name : options_.files) {
     const std::size_t count = mesh_files(name).size();

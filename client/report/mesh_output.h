@@ -17,6 +17,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "client/base/atomic_file.h"
@@ -25,6 +26,7 @@
 #include "client/drawing/draw.h"
 #include "client/formats/mesh.h"
 #include "client/formats/mesh_formats.h"
+#include "client/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {
@@ -34,7 +36,8 @@ struct MeshOutputOptions {
   MeshWriteOptions writing{};  // of the files
   std::vector<std::filesystem::path> drawings{};
   DrawColor color = DrawColor::kNone;
-  bool draw_quadtree = false;  // over the drawings
+  bool draw_quadtree = false;      // over the drawings
+  ProjectionOptions projection{};  // of the domain; the caller projects it
 
   bool empty() const { return files.empty() && drawings.empty(); }
 };
@@ -50,6 +53,11 @@ class MeshOutput {
   // that is only drawn is not held. This must outlive the spool.
   Result<std::unique_ptr<MeshSpool>> make_spool();
   bool draws() const { return drawing_ != nullptr; }
+  // The mesh that arrives is in metres of this projection, and is written in longitude and latitude
+  // unless the projection says metres; drawings show the plane. Null: it is written as it arrives.
+  void bring_back_by(std::shared_ptr<const DomainProjection> projection) {
+    projection_ = std::move(projection);
+  }
   // `mesh` is the spool's view; any view if nothing is drawn.
   Result<void> write(const MeshView& mesh, const v1::Summary& summary);
   // "wrote key.vtu, 1.2 MB\n" for each file, after a line on the quadtree if it was drawn.
@@ -62,6 +70,7 @@ class MeshOutput {
   MeshOutputOptions options_;
   std::vector<OutputFile> files_;  // those of options_.files, then the drawings
   std::stop_token stop_;
+  std::shared_ptr<const DomainProjection> projection_;
   std::unique_ptr<Drawing> drawing_;  // source of all drawings; null if there are none
 };
 

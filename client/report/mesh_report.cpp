@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "client/base/text.h"
+#include "client/report/projection_report.h"
 
 namespace weft::client {
 namespace {
@@ -115,6 +116,7 @@ Json mesh_json(const MeshReport& report, const MeshTimes& times) {
                      {"connect_seconds", seconds_between(times.read, times.connected)},
                      {"stream_seconds", report.stream_seconds},
                      {"write_seconds", seconds_between(times.received, times.written)}};
+  if (report.projection) json["projection"] = projection_json(*report.projection);
   if (!report.warnings.empty()) json["warnings"] = report.warnings;
   return json;
 }
@@ -193,7 +195,8 @@ std::string mesh_text(const MeshReport& report, const MeshTimes& times) {
          seconds_text(summary.timings().engine_seconds()) + " on " +
          std::to_string(summary.threads()) + (summary.threads() == 1 ? " thread" : " threads") +
          ", total " + seconds_text(seconds_between(times.start, times.written)) + ", received " +
-         bytes_text(report.bytes_received) + "\n" + warnings;
+         bytes_text(report.bytes_received) + "\n" +
+         (report.projection ? projection_text(*report.projection) : "") + warnings;
 }
 
 }  // namespace weft::client

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "client/formats/domains/region_values.h"
+#include "client/geo/domain_projection.h"
 #include "client/report/json_line.h"
 #include "weft/v1/mesh_service.pb.h"
 
@@ -24,7 +26,8 @@ struct MeshReport {
   double stream_seconds = 0;       // from sending the request to the end of the stream
   std::uint64_t bytes_received = 0;
   std::set<std::int32_t> markers{};  // of the mesh's edges on input segments; empty without output
-  std::vector<std::string> warnings{};  // for people; each is one line
+  std::vector<std::string> warnings{};                   // for people; each is one line
+  std::shared_ptr<const DomainProjection> projection{};  // null: the domain was not projected
 };
 
 // When each step of a command was done.
@@ -66,7 +69,8 @@ Json region_values_json(std::span<const RegionValue> values);
 std::optional<std::string> budget_warning(const v1::Summary& summary,
                                           std::optional<std::uint64_t> max_triangles);
 
-// summary_text, a line on where the time went, and one line per warning.
+// summary_text, a line on where the time went, one on the projection if there is one, and one line
+// per warning.
 std::string mesh_text(const MeshReport& report, const MeshTimes& times);
 
 }  // namespace weft::client

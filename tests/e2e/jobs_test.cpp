@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "client/call/fetch_mesh.h"
+#include "client/geo/projection.h"
 #include "tests/client/support/torn_relay.h"
 #include "tests/e2e/programs.h"
 
@@ -67,6 +68,21 @@ TEST_F(Jobs, MadeWhileNobodyWaitsAreTheFilesThatMeshWrites) {
     EXPECT_FALSE(made.empty());
     EXPECT_EQ(client::contents_of(folder_ / (std::string("f") + extension)), made) << extension;
   }
+}
+
+TEST_F(Jobs, InLongitudeAndLatitudeAreBroughtBackByTheDomain) {
+  if (!client::Projection::available()) GTEST_SKIP() << "built without PROJ";
+  const std::string coast = model("us-east-coast.geojson");
+  const std::string id = submit({coast, "--lonlat", "--size", "1e9"});
+  ASSERT_EQ(weft({"mesh", coast, "--lonlat", "--size", "1e9", "-o", folder_ / "m.vtu"}).exit_code,
+            0);
+  const Outcome unnamed = weft({"fetch", id, "--wait", "--lonlat", "-o", folder_ / "f.vtu"});
+  EXPECT_EQ(unnamed.exit_code, 2);
+  EXPECT_NE(unnamed.err.find("--domain INPUT"), std::string::npos) << unnamed.err;
+  const Outcome fetched =
+      weft({"fetch", id, "--wait", "--lonlat", "--domain", coast, "-o", folder_ / "f.vtu"});
+  ASSERT_EQ(fetched.exit_code, 0) << fetched.err;
+  EXPECT_EQ(client::contents_of(folder_ / "f.vtu"), client::contents_of(folder_ / "m.vtu"));
 }
 
 TEST_F(Jobs, AskedForTwiceAreMadeOnce) {

@@ -8,6 +8,8 @@
 #include <map>
 
 #include "client/batch/manifest.h"
+#include "client/geo/projection.h"
+#include "client/geo/projection_rows.h"
 #include "client/report/output_rows.h"
 #include "tests/client/support/fake_service.h"
 #include "tests/client/support/job_commands.h"
@@ -35,6 +37,7 @@ std::vector<Row> all_rows() {
   add(request_rows(), true);
   add(writing_rows(), false);
   add(drawing_rows(), false);
+  if (Projection::available()) add(projection_rows(), false);
   return all;
 }
 
@@ -61,7 +64,10 @@ const std::map<std::string, Sample>& samples() {
                                                     {"msh-version", {"2.2", "m.msh"}},
                                                     {"open-boundary", {"1", "m.14"}},
                                                     {"color", {"angle", "m.svg"}},
-                                                    {"draw-quadtree", {"true", "m.svg"}}};
+                                                    {"draw-quadtree", {"true", "m.svg"}},
+                                                    {"lonlat", {"true"}},
+                                                    {"crs", {"EPSG:32631"}},
+                                                    {"to-metres", {"true"}}};
   return all;
 }
 

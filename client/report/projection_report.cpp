@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/report/projection_report.h"
+
+#include <cstdio>
+
+#include "client/base/text.h"
+
+namespace weft::client {
+
+std::string projection_text(const DomainProjection& projection) {
+  char scales[96];
+  std::snprintf(scales, sizeof scales,
+                ", lengths in the plane are %.4g to %.4g of those on the ground\n",
+                projection.distortion().least_scale, projection.distortion().greatest_scale);
+  return "projected by " + harmless(projection.name()) + scales;
+}
+
+Json projection_json(const DomainProjection& projection) {
+  return {{"name", projection.name()},
+          {"least_scale", projection.distortion().least_scale},
+          {"greatest_scale", projection.distortion().greatest_scale},
+          {"angle_deg", projection.distortion().angle_deg}};
+}
+
+void bring_places_back(const DomainProjection& projection, v1::Summary& summary) {
+  if (v1::Unrefined& unrefined = *summary.mutable_unrefined();
+      unrefined.precision() + unrefined.streaming() > 0) {
+    const Point at = projection.to_lonlat({unrefined.x(), unrefined.y()});
+    unrefined.set_x(at.x);
+    unrefined.set_y(at.y);
+  }
+  v1::Merging& merging = *summary.mutable_merging();
+  if (merging.farthest() > 0) {
+    const Point at = projection.to_lonlat({merging.farthest_x(), merging.farthest_y()});
+    merging.set_farthest_x(at.x);
+    merging.set_farthest_y(at.y);
+  }
+  if (merging.vanished_faces() > 0) {
+    const Point at = projection.to_lonlat({merging.vanished_x(), merging.vanished_y()});
+    merging.set_vanished_x(at.x);
+    merging.set_vanished_y(at.y);
+  }
+}
+
+}  // namespace weft::client

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Meshes of domains in longitude and latitude, measured on the WGS84 ellipsoid by pyproj: angles,
+edges and areas hold on the ground, at all latitudes, over the date line and around a pole."""
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import subprocess
+
+import numpy as np
+import pyproj
+import pytest
+
+MODELS = pathlib.Path(__file__).parents[1] / "models"
+COAST = MODELS / "us-east-coast.geojson"
+WEFT = os.environ["WEFT_BINARY"]
+GROUND = pyproj.Geod(ellps="WGS84")
+
+
+class Mesh:
+    """A mesh that weft made, on the ground."""
+
+    def __init__(self, folder: pathlib.Path, domain: pathlib.Path, *flags: object):
+        file = folder / "mesh.npz"
+        done = subprocess.run([WEFT, "mesh", domain, "-o", file, "--json", "--quiet", *map(str, flags)],
+                              capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        self.report = json.loads(done.stdout)
+        with np.load(file) as arrays:
+            self.points = arrays["points"][:, :2]
+            self.triangles = arrays["triangles"]
+
+    def edges(self) -> np.ndarray:
+        """Metres: of each triangle, the edge from corner k to the next."""
+        a, b = self._ends()
+        return GROUND.inv(a[..., 0], a[..., 1], b[..., 0], b[..., 1])[2]
+
+    def areas(self) -> np.ndarray:
+        """Square metres, by Heron's formula."""
+        edge = self.edges()
+        s = edge.sum(axis=1) / 2
+        return np.sqrt(s * (s - edge[:, 0]) * (s - edge[:, 1]) * (s - edge[:, 2]))
+
+    def angles(self) -> np.ndarray:
+        """Degrees: of each triangle, at each corner, between the geodesics to the other two."""
+        a, b = self._ends()
+        there, back, _ = GROUND.inv(a[..., 0], a[..., 1], b[..., 0], b[..., 1])
+        return np.abs((there - np.roll(back, 1, axis=1) + 180) % 360 - 180)
+
+    def _ends(self) -> tuple[np.ndarray, np.ndarray]:
+        a = self.points[self.triangles]
+        return a, np.roll(a, -1, axis=1)
+
+
+def flat_angles(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Degrees, in the plane."""
+    a = points[triangles]
+    out, back = np.roll(a, -1, axis=1) - a, np.roll(a, 1, axis=1) - a
+    cross = out[..., 0] * back[..., 1] - out[..., 1] * back[..., 0]
+    return np.degrees(np.arctan2(cross, (out * back).sum(axis=2)))
+
+
+def ring_file(folder: pathlib.Path, ring: list[tuple[float, float]]) -> pathlib.Path:
+    file = folder / "ring.geojson"
+    file.write_text(json.dumps({"type": "Polygon", "coordinates": [[*ring, ring[0]]]}))
+    return file
+
+
+def area_between(ring: list[tuple[float, float]]) -> float:
+    """Square metres within a ring whose sides are straight in longitude and latitude."""
+    lon, lat = [], []
+    for (x0, y0), (x1, y1) in zip(ring, [*ring[1:], ring[0]]):
+        step = (x1 - x0 + 180) % 360 - 180
+        at = np.arange(2000) / 2000
+        lon.extend(x0 + step * at)
+        lat.extend(y0 + (y1 - y0) * at)
+    return abs(GROUND.polygon_area_perimeter(lon, lat)[0])
+
+
+def has_all(mesh: Mesh, points: np.ndarray) -> bool:
+    """Whether each point is a vertex, bit for bit."""
+    vertices = {tuple(point) for point in mesh.points}
+    return all(tuple(point) in vertices for point in points)
+
+
+@pytest.fixture(scope="module")
+def coast(tmp_path_factory: pytest.TempPathFactory) -> Mesh:
+    return Mesh(tmp_path_factory.mktemp("coast"), COAST, "--lonlat", "--size", 1e8)
+
+
+def test_the_coast_has_the_angles_of_the_plane_on_the_ground(coast: Mesh, tmp_path: pathlib.Path):
+    metres = Mesh(tmp_path, COAST, "--to-metres", "--size", 1e8)
+    assert metres.report["digest"] == coast.report["digest"]
+    flat = flat_angles(metres.points, metres.triangles)
+    ground = coast.angles()
+    assert np.abs(ground - flat).max() < 0.05
+    least = flat.min(axis=1)
+    assert coast.report["unrefined"]["small_input_angle"] == (least < 20).sum()
+    assert ground.min(axis=1)[least >= 20].min() >= 19.95
+
+
+def test_the_coast_has_the_sizes_that_were_asked_for_at_all_latitudes(coast: Mesh):
+    # The scale of the projection is at most 1.3 % off.
+    scale = coast.report["projection"]
+    assert 0.987 < scale["least_scale"] < 1 < scale["greatest_scale"] < 1.013
+    areas, edges = coast.areas(), coast.edges()
+    assert areas.max() <= 1e8 / scale["least_scale"] ** 2 * 1.001
+    wanted = np.sqrt(1e8 / 0.433)  # what docs/size.md says of edges
+    latitudes = coast.points[coast.triangles][..., 1].mean(axis=1)
+    for south in range(24, 46, 2):
+        here = (latitudes >= south) & (latitudes < south + 2) & (areas > 0.9e8)
+        assert here.sum() > 50
+        assert abs(np.median(edges[here]) / wanted - 1) < 0.03, south
+
+
+def test_the_coast_has_its_vertices_bit_for_bit(coast: Mesh):
+    ring = np.array(json.loads(COAST.read_text())["geometry"]["coordinates"][0])
+    assert has_all(coast, ring)
+
+
+@pytest.mark.parametrize("east", [-177.0, 183.0])
+def test_a_ring_over_the_date_line_is_whole(tmp_path: pathlib.Path, east: float):
+    ring = [(177.0, -20.0), (east, -20.0), (east, -14.0), (177.0, -14.0)]
+    mesh = Mesh(tmp_path, ring_file(tmp_path, ring), "--lonlat", "--size", 1e8)
+    # A meridian is a curve in the plane, and may be cut short by a thousandth.
+    assert mesh.areas().sum() == pytest.approx(area_between(ring), rel=2e-3)
+    assert mesh.angles().min() >= 19.95
+    assert has_all(mesh, np.array(ring))
+    longitudes = mesh.points[:, 0]
+    assert longitudes.max() <= max(180.0, east) + 1e-9
+    if east > 180:
+        assert longitudes.min() >= 177 - 1e-9
+    else:
+        assert np.abs(longitudes).min() >= 177 - 1e-9
+        assert any("--to-metres" in warning for warning in mesh.report["warnings"])
+
+
+@pytest.mark.parametrize("latitude", [80.0, -75.0])
+def test_a_ring_around_a_pole_holds_the_pole(tmp_path: pathlib.Path, latitude: float):
+    ring = [(lon, latitude) for lon in (0.0, 90.0, 180.0, -90.0)]
+    mesh = Mesh(tmp_path, ring_file(tmp_path, ring), "--lonlat", "--size", 1e9)
+    assert mesh.areas().sum() == pytest.approx(area_between(ring), rel=2e-3)
+    assert mesh.angles().min() >= 19.9
+    assert has_all(mesh, np.array(ring))
+    # No latitude between the ring and the pole is left out.
+    assert np.diff(np.sort(np.abs(mesh.points[:, 1]))).max() < 0.5
+
+
+def test_a_named_projection_is_used_and_its_metres_are_written(tmp_path: pathlib.Path):
+    ring = [(-74.0, 40.0), (-73.0, 40.0), (-73.0, 41.0)]
+    mesh = Mesh(tmp_path, ring_file(tmp_path, ring), "--crs", "EPSG:32618", "--to-metres")
+    assert mesh.report["projection"]["name"] == "EPSG:32618"
+    utm = pyproj.Transformer.from_crs("EPSG:4326", "EPSG:32618", always_xy=True)
+    expected = np.array(utm.transform(*zip(*ring))).T
+    for point in expected:
+        assert np.hypot(*(mesh.points - point).T).min() < 1e-6
+
+
+def test_the_mesh_in_metres_is_checked(tmp_path: pathlib.Path):
+    file = tmp_path / "coast.vtu"
+    for command in (["mesh", COAST, "-o", file, "--quiet"], ["check", file, "--domain", COAST]):
+        done = subprocess.run([WEFT, *command, "--to-metres", "--size", "1e9"], capture_output=True,
+                              text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+    done = subprocess.run([WEFT, "check", file, "--domain", COAST, "--lonlat"], capture_output=True,
+                          text=True)
+    assert done.returncode == 2
+    assert "--to-metres" in done.stderr
