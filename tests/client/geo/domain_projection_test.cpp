@@ -102,7 +102,7 @@ TEST_F(DomainProjections, DivideLongSegmentsOnTheirStraightLineInDegrees) {
 }
 
 TEST_F(DomainProjections, DivideASegmentAlikeInBothDirections) {
-  Domain domain = ring({{-80, 30}, {-60, 33}, {-70, 40}});
+  Domain domain = ring({{-3.1234567, 30.3}, {17.7654321, 37.1}, {7, 42}});
   domain.segments.push_back({1, 0, 9});
   project(domain);
   std::vector<std::pair<double, double>> there;
@@ -153,10 +153,10 @@ TEST_F(DomainProjections, WarnOfAnglesAndLengthsThatDoNotHold) {
 }
 
 TEST_F(DomainProjections, RefuseAPointThatTheProjectionDoesNotTake) {
-  Domain domain = ring({{0, 10}, {10, 10}, {10, 90}});
+  Domain domain = ring({{-70, 10}, {-60, 10}, {15, 0}});
   domain.point_places.add(0, "d.poly:", 2, "");
-  EXPECT_EQ(refusal(domain, {.crs = "EPSG:3395"}),
-            "d.poly:4: (10, 90) is outside of what 'EPSG:3395' projects");
+  EXPECT_EQ(refusal(domain, {.crs = "EPSG:32618"}),
+            "d.poly:4: (15, 0) is outside of what 'EPSG:32618' projects");
 }
 
 TEST_F(DomainProjections, RefuseMorePointsOnLongSegmentsThanAMillion) {
