@@ -13,7 +13,7 @@ RUN deploy/install-deps.sh build
 COPY . .
 ARG WERROR=OFF
 RUN export CCACHE_DIR=/var/cache/ccache \
- && cmake --preset release -DBUILD_TESTING=OFF -DWEFT_GDAL=OFF -DWEFT_WERROR=${WERROR} \
+ && cmake --preset release -DBUILD_TESTING=OFF -DWEFT_GDAL=OFF -DWEFT_PROJ=OFF -DWEFT_WERROR=${WERROR} \
  && cmake --build --preset release --target weftd weft \
  && strip build/release/weftd build/release/weft
 

@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-deploy/install-deps.sh build
+deploy/install-deps.sh build geo
 cmake --preset release
 cmake --build --preset release --target weftd weft
 

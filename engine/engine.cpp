@@ -74,12 +74,10 @@ class Job {
     if (auto error = check_options(request_)) return tl::unexpected(*error);
     if (auto error = context_.need_bytes(bytes_to_make(request_.size)))
       return tl::unexpected(*error);
-    auto size = make_size(request_.size);
-    if (!size) return tl::unexpected(size.error());
-    size_ = std::move(*size);
+    if (auto error = check_size(request_.size)) return tl::unexpected(*error);
     if (Trace* const trace = context_.trace()) trace->start();
     if (auto error = context_.compute([this] { return prepare(); })) return tl::unexpected(*error);
-    const double bound = size_->constant().value_or(std::numeric_limits<double>::infinity());
+    const double bound = size().constant().value_or(std::numeric_limits<double>::infinity());
     quality_ =
         QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(summary_.box));
     if (request_.placement == Placement::kLattice)
@@ -89,13 +87,13 @@ class Job {
     GrainMap grains;
     if (quality_.lattice.exists()) {
       auto laid_out = context_.compute(
-          [&] { return GrainMap::build(*size_, *map_, summary_.box, quality_.lattice, context_); });
+          [&] { return GrainMap::build(size(), *map_, summary_.box, quality_.lattice, context_); });
       if (!laid_out) return tl::unexpected(laid_out.error());
       grains = std::move(*laid_out);
       lattices_ = grains.lattices_that_vary();
     }
     context_.end_stage("grains");
-    return mesh(MappedArea(*size_, *map_, grains), map_->bytes() + grains.bytes() + size_->bytes());
+    return mesh(MappedArea(size(), *map_, grains), map_->bytes() + grains.bytes() + size_->bytes());
   }
 
  private:
@@ -114,8 +112,11 @@ class Job {
     context_.end_stage("triangulation");
 
     context_.enter(Stage::kSize);
-    if (size_->constant()) return std::nullopt;
-    auto map = SizeMap::build(*size_, domain_, context_);
+    auto made = make_size(request_.size, request_.pslg, domain_, context_);
+    if (!made) return made.error();
+    size_.emplace(std::move(*made));
+    if (size().constant()) return std::nullopt;
+    auto map = SizeMap::build(size(), domain_, context_);
     if (!map) return map.error();
     map_.emplace(std::move(*map));
     return std::nullopt;
@@ -237,11 +238,13 @@ class Job {
     return wish <= context_.budget().triangle_limit && wish != Budget{}.max_triangles;
   }
 
+  const SizeFunction& size() const { return size_->function(); }
+
   const MeshRequest& request_;
   ChunkSink& sink_;
   ExecutionContext& context_;
   StageClock clock_;
-  std::unique_ptr<const SizeFunction> size_;
+  std::optional<Size> size_;
   Domain domain_;
   std::optional<SizeMap> map_;
   QualityBounds quality_;

@@ -11,7 +11,7 @@ namespace weft::check {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kBeside = 1e-6;  // in cells
+constexpr double kBeside = 0.5 + 1e-6;  // in cells
 
 struct Place {
   std::size_t node;  // the lower of the two

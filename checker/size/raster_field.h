@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A field of values on a grid, bilinear between its nodes. Undefined (NaN) in a cell with a node
-// that is NaN, and outside the grid, but for a millionth of a cell beside it, because a client that
-// computes the corner of a grid rounds. Independent of the engine's.
+// A field of values on a grid, bilinear between its nodes; for half a cell beside the grid, that of
+// its nearest point. Undefined (NaN) in a cell with a node that is NaN, and farther outside.
+// Independent of the engine's.
 #pragma once
 
 #include <cstddef>

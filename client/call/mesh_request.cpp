@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "client/formats/raster.h"
+
 namespace weft::client {
 namespace {
 
@@ -49,23 +51,50 @@ void fill(const Domain& domain, v1::Domain& out) {
   out.set_fill(domain.fill == Domain::Fill::kEvenOdd ? v1::FILL_EVEN_ODD : v1::FILL_SEEDS);
 }
 
-void fill(const Raster& raster, v1::Raster& out) {
-  out.set_x(raster.x);
-  out.set_y(raster.y);
-  out.set_dx(raster.dx);
-  out.set_dy(raster.dy);
-  out.set_columns(raster.columns);
-  out.set_rows(raster.rows);
-  out.mutable_values()->Add(raster.values.begin(), raster.values.end());
+v1::SizeField to_size(const std::string& text) {
+  v1::SizeField size;
+  if (const auto constant = as_number(text))
+    size.set_constant(*constant);
+  else if (!text.empty())
+    size.set_expression(text);
+  return size;
+}
+
+Result<v1::SizeField> read_size(const std::string& text) {
+  if (!is_raster_path(text)) return to_size(text);
+  const auto raster = read_raster(text);
+  if (!raster) return tl::unexpected(raster.error());
+  v1::SizeField size;
+  v1::Raster& out = *size.mutable_raster();
+  out.set_x(raster->x);
+  out.set_y(raster->y);
+  out.set_dx(raster->dx);
+  out.set_dy(raster->dy);
+  out.set_columns(raster->columns);
+  out.set_rows(raster->rows);
+  out.mutable_values()->Add(raster->values.begin(), raster->values.end());
+  return size;
 }
 
 }  // namespace
 
-Result<RequestOptions> with_raster(RequestOptions request_options) {
-  if (!is_raster_path(request_options.size)) return request_options;
-  auto raster = read_raster(request_options.size);
-  if (!raster) return tl::unexpected(raster.error());
-  request_options.raster = std::make_shared<const Raster>(std::move(*raster));
+Result<RequestOptions> with_size(RequestOptions request_options, const Domain& domain,
+                                 const DomainProjection* projection) {
+  const bool by_edge = !request_options.edge.empty();
+  if (by_edge && !request_options.size.empty())
+    return fail(ExitCode::kUsage,
+                "--size and --edge exclude each other: give the area of triangles or the length of "
+                "edges");
+  auto size = read_size(by_edge ? request_options.edge : request_options.size);
+  if (!size) return tl::unexpected(size.error());
+  if (by_edge) size->set_measure(v1::MEASURE_EDGE);
+  if (request_options.cells_across) size->set_cells_across(*request_options.cells_across);
+  for (const FieldOption& field : request_options.fields) {
+    auto warnings = fill(field, domain, projection, *size->add_fields());
+    if (!warnings) return tl::unexpected(warnings.error());
+    for (std::string& warning : *warnings) request_options.warnings.push_back(std::move(warning));
+  }
+  request_options.size_read = std::make_shared<const v1::SizeField>(std::move(*size));
   return request_options;
 }
 
@@ -82,13 +111,9 @@ Result<void> check_sendable(const Domain& domain) {
 v1::GenerateMeshRequest make_request(const Domain& domain, const RequestOptions& request_options) {
   v1::GenerateMeshRequest request;
   fill(domain, *request.mutable_domain());
-  if (request_options.raster) {
-    fill(*request_options.raster, *request.mutable_size()->mutable_raster());
-  } else if (const auto constant = as_number(request_options.size)) {
-    request.mutable_size()->set_constant(*constant);
-  } else if (!request_options.size.empty()) {
-    request.mutable_size()->set_expression(request_options.size);
-  }
+  v1::SizeField size =
+      request_options.size_read ? *request_options.size_read : to_size(request_options.size);
+  if (size.ByteSizeLong() != 0) *request.mutable_size() = std::move(size);
   if (request_options.min_angle_deg)
     request.mutable_quality()->set_min_angle_deg(*request_options.min_angle_deg);
   if (request_options.min_edge) request.mutable_quality()->set_min_edge(*request_options.min_edge);

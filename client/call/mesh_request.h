@@ -9,21 +9,27 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "client/base/error.h"
+#include "client/call/field_option.h"
 #include "client/formats/domain.h"
-#include "client/formats/raster.h"
+#include "client/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {
 
 // What the mesh must satisfy. DEFAULT of all optionals: the server's.
 struct RequestOptions {
-  // A number, an expression in x and y, or the path of a grid (formats/raster.h); empty: no
-  // bound.
+  // The area of triangles or the length of edges: a number, an expression in x, y and the names of
+  // fields, or the path of a grid (formats/raster.h); both empty: no bound.
   std::string size{};
-  // The values of that grid: see with_raster.
-  std::shared_ptr<const Raster> raster{};
+  std::string edge{};
+  std::vector<FieldOption> fields{};
+  std::optional<double> cells_across{};  // edges across the domain, at least about
+  // All of these, with what their files hold: see with_size.
+  std::shared_ptr<const v1::SizeField> size_read{};
+  std::vector<std::string> warnings{};  // about these files
   std::optional<double> min_angle_deg{};
   std::optional<double> min_edge{};
   std::optional<v1::Placement> placement{};
@@ -37,13 +43,16 @@ struct RequestOptions {
   bool no_cache = false;         // make it anew, even if the server has it in memory
 };
 
-// Reads the grid if the size is the path of one.
-Result<RequestOptions> with_raster(RequestOptions request_options);
+// Reads the files that the size and its fields name. With a projection, the domain is in its
+// metres, and the files of fields are projected, too. Errors: kUsage for a size and an edge at the
+// same time, and those of the files.
+Result<RequestOptions> with_size(RequestOptions request_options, const Domain& domain,
+                                 const DomainProjection* projection = nullptr);
 
 // Returns an error (kUnreadableInput) if the domain is too large for any message.
 Result<void> check_sendable(const Domain& domain);
 
-// REQUIRES: the size is not a path, or its grid was read.
+// REQUIRES: the options come from with_size, or have a size alone that is no path.
 v1::GenerateMeshRequest make_request(const Domain& domain, const RequestOptions& request_options);
 
 }  // namespace weft::client

@@ -1,30 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/call/request_rows.h"
 
+#include <utility>
+
+#include "client/formats/raster.h"
+
 namespace weft::client {
 namespace {
 
 using Request = RequestOptions;
 
 // A text that the server reads, or the path of a grid.
-OptionValue<Request> size() {
+OptionValue<Request> size(std::string Request::*field) {
   return {"EXPR|FILE", "", Arity::kOne,
-          [](const auto& texts, const auto& folder, Request& options) -> std::string {
-            options.size =
+          [field](const auto& texts, const auto& folder, Request& options) -> std::string {
+            options.*field =
                 is_raster_path(texts.front()) ? (folder / texts.front()).string() : texts.front();
             return "";
           }};
 }
 
-}  // namespace
+OptionValue<Request> fields() {
+  return {"NAME=KIND", "", Arity::kList,
+          [](const auto& texts, const auto& folder, Request& options) -> std::string {
+            std::vector<FieldOption> fields;
+            for (const std::string& text : texts) {
+              auto field = FieldOption::parse(text, folder);
+              if (!field) return field.error();
+              fields.push_back(std::move(*field));
+            }
+            options.fields = std::move(fields);
+            return "";
+          }};
+}
 
-const OptionRows<Request>& request_rows() {
+const OptionRows<Request>& other_rows() {
   static const OptionRows<Request> rows = {
-      {"size", "",
-       "Maximum area of a triangle, taken at its centroid: a number, an expression in x and y, or "
-       "a "
-       "grid of areas in an .asc file (ESRI ASCII)",
-       "no bound", size()},
       {"min-angle", "WEFT_MIN_ANGLE", "Minimum angle of every triangle, in degrees, 0 to 36", "20",
        number("DEG", &Request::min_angle_deg)},
       {"min-edge", "WEFT_MIN_EDGE",
@@ -59,6 +70,43 @@ const OptionRows<Request>& request_rows() {
       {"no-cache", "WEFT_NO_CACHE", "Make the mesh again, even if the server has it", "",
        on_or_off(&Request::no_cache)},
   };
+  return rows;
+}
+
+}  // namespace
+
+const OptionRows<Request>& size_rows() {
+  static const OptionRows<Request> rows = {
+      {"size", "",
+       "Maximum area of a triangle, taken at its centroid: a number, an expression in x, y and "
+       "the names of fields, or a grid of areas in an .asc file (ESRI ASCII)",
+       "no bound", size(&Request::size)},
+      {"edge", "",
+       "Length of edges, instead of --size: triangles are at most as large as the equilateral one "
+       "with this edge at their centroid. A number, an expression or a grid of lengths, as --size",
+       "no bound", size(&Request::edge)},
+      {"field", "",
+       "A field that --edge or --size may name. KIND is distance, to all segments; "
+       "distance:marker=2,3, to those with a marker; distance:FILE, to the points and lines of a "
+       "domain file; width, the domain's local width; or FILE[:BAND], the values of a raster. May "
+       "be repeated",
+       "", fields()},
+      {"cells-across", "WEFT_CELLS_ACROSS",
+       "How many edges fit across the domain at least, about, where it is narrow: no edge is "
+       "wanted "
+       "longer than the local width divided by N",
+       "any number", number("N", &Request::cells_across, 0.01, 1e6)},
+  };
+  return rows;
+}
+
+const OptionRows<Request>& request_rows() {
+  static const OptionRows<Request> rows = [] {
+    OptionRows<Request> all = size_rows();
+    const OptionRows<Request>& others = other_rows();
+    all.insert(all.end(), others.begin(), others.end());
+    return all;
+  }();
   return rows;
 }
 

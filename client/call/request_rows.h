@@ -9,6 +9,10 @@
 
 namespace weft::client {
 
+// How large triangles may be.
+const OptionRows<RequestOptions>& size_rows();
+
+// All, those of size_rows first.
 const OptionRows<RequestOptions>& request_rows();
 
 }  // namespace weft::client

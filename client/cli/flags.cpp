@@ -66,6 +66,10 @@ void add_domain_and_request_options(CLI::App& command, std::filesystem::path& in
   add_rows(command, request_rows(), request_options);
 }
 
+void add_size(CLI::App& command, RequestOptions& request_options) {
+  add_rows(command, size_rows(), request_options);
+}
+
 void add_writing(CLI::App& command, MeshWriteOptions& writing) {
   add_rows(command, writing_rows(), writing);
 }

@@ -24,6 +24,9 @@ void add_retries(CLI::App& command, std::uint32_t& retries);
 void add_domain_and_request_options(CLI::App& command, std::filesystem::path& input,
                                     RequestOptions& request_options);
 
+// How large triangles may be.
+void add_size(CLI::App& command, RequestOptions& request_options);
+
 // How meshes are written, if their format leaves a choice.
 void add_writing(CLI::App& command, MeshWriteOptions& writing);
 

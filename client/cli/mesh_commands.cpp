@@ -20,6 +20,7 @@ Examples:
   weft mesh coast.geojson -o coast.vtu --size 0.001
   weft mesh pipe.poly -o pipe.msh --size '0.4*hypot(x-200, y-200) + 1' --min-angle 30
   weft mesh coast.geojson -o coast.vtu --size sizes.asc
+  weft mesh coast.geojson -o coast.vtu --edge 'min(0.02 + 0.15*shore, 1)' --field shore=distance
   weft mesh coast.geojson -o coast.vtu --lonlat --size 1e8
   weft mesh key.poly -o key.vtu -o key.node --draw key.png --color angle
   weft mesh coast.geojson -o fort.14 --open-boundary 1
@@ -98,8 +99,7 @@ void add_check(CLI::App& app, Chosen& chosen) {
   check.add_option("--domain", options.domain, "Domain that was meshed: " + domain_extensions())
       ->required()
       ->type_name("INPUT");
-  check.add_option("--size", options.size, "Bound on the area, as given to `weft mesh`")
-      ->type_name("EXPR|FILE");
+  add_size(check, options.size);
   check.add_option("--min-angle", options.min_angle_deg, "Bound on the angles, in degrees")
       ->envname("WEFT_MIN_ANGLE")
       ->check(CLI::Range(0.0, 60.0))

@@ -44,10 +44,9 @@ std::filesystem::path picture_of(const MeshOutputOptions& output) {
 
 Result<v1::Summary> make_mesh(const BatchMesh& mesh, const Connection& connection,
                               const BatchOptions& options, const std::stop_token& stop) {
-  const auto input =
-      read_input_domain(mesh.input, mesh.request_options.size, mesh.output.projection);
+  const auto input = read_input_domain(mesh.input, mesh.request_options, mesh.output.projection);
   if (!input) return tl::unexpected(input.error());
-  auto request_options = with_raster(mesh.request_options);
+  auto request_options = with_size(mesh.request_options, input->domain, input->projection.get());
   if (!request_options) return tl::unexpected(request_options.error());
   request_options->quadtree = mesh.output.draw_quadtree;
   std::optional<MeshOutput> output;

@@ -50,7 +50,7 @@ Result<ExitCode> run_batch(const BatchOptions& options, std::stop_token stop);
 struct CheckOptions {
   std::filesystem::path mesh;
   std::filesystem::path domain;
-  std::string size;
+  RequestOptions size;  // how large triangles may be; the rest is not looked at
   double min_angle_deg = 20;
   std::optional<double> snap;
   std::uint64_t max_unrefined = 0;

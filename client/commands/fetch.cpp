@@ -21,7 +21,7 @@ Result<std::optional<InputDomain>> read_submitted(const FetchOptions& options) {
                 "domain that was submitted, too: --domain INPUT");
   if (!options.domain) return std::nullopt;
   if (!is_domain_path(*options.domain)) return unknown_domain_format(*options.domain);
-  auto domain = read_input_domain(*options.domain, "", projected);
+  auto domain = read_input_domain(*options.domain, {}, projected);
   if (!domain) return tl::unexpected(domain.error());
   return std::move(*domain);
 }

@@ -9,11 +9,12 @@
 
 namespace weft::client {
 
-Result<InputDomain> read_input_domain(const std::filesystem::path& path, const std::string& size,
+Result<InputDomain> read_input_domain(const std::filesystem::path& path, const RequestOptions& size,
                                       const ProjectionOptions& options) {
-  if (options.wanted() && options.crs.empty() && is_raster_path(size))
+  const std::string& grid = size.edge.empty() ? size.size : size.edge;
+  if (options.wanted() && options.crs.empty() && is_raster_path(grid))
     return fail(ExitCode::kUsage,
-                size +
+                grid +
                     ": a grid of sizes lies in the plane of the projection, so the projection "
                     "needs a name: give --crs CODE, and a grid in its metres");
   auto domain = read_domain(path);

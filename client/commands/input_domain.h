@@ -8,6 +8,7 @@
 #include <string>
 
 #include "client/base/error.h"
+#include "client/call/mesh_request.h"
 #include "client/formats/domain.h"
 #include "client/geo/domain_projection.h"
 #include "client/report/mesh_report.h"
@@ -20,10 +21,10 @@ struct InputDomain {
   std::shared_ptr<const DomainProjection> projection;
 };
 
-// `size` is that of RequestOptions. Errors: those of read_domain and of DomainProjection::project;
-// kUsage if the size is the path of a grid, but the projection has no name that the grid could have
-// been made for.
-Result<InputDomain> read_input_domain(const std::filesystem::path& path, const std::string& size,
+// `size` says how large triangles may be. Errors: those of read_domain and of
+// DomainProjection::project; kUsage if the size is the path of a grid, but the projection has no
+// name that the grid could have been made for.
+Result<InputDomain> read_input_domain(const std::filesystem::path& path, const RequestOptions& size,
                                       const ProjectionOptions& options);
 
 // The error of a server, which speaks of places in the plane, with the name of the projection.

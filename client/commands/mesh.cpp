@@ -11,15 +11,18 @@
 #include "client/formats/mesh_formats.h"
 #include "client/report/marker_warnings.h"
 #include "client/report/progress_bar.h"
+#include "client/report/size_warnings.h"
 
 namespace weft::client {
 namespace {
 
-void add_warnings(const MeshOptions& options, const Domain& domain, MeshReport& report) {
+void add_warnings(const MeshOptions& options, const RequestOptions& asked, const Domain& domain,
+                  MeshReport& report) {
   if (auto warning = budget_warning(report.summary, options.request_options.max_triangles))
     report.warnings.push_back(std::move(*warning));
-  for (auto& warnings :
-       {open_boundary_warnings(report.markers, options.output.writing.open_boundaries),
+  for (const auto& warnings :
+       {asked.warnings, size_warnings(*asked.size_read, domain),
+        open_boundary_warnings(report.markers, options.output.writing.open_boundaries),
         hidden_marker_warnings(report.markers, domain)})
     report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
 }
@@ -32,10 +35,10 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   auto output = MeshOutput::open(options.output, options.input, stop);
   if (!output) return tl::unexpected(output.error());
   const auto input =
-      read_input_domain(options.input, options.request_options.size, options.output.projection);
+      read_input_domain(options.input, options.request_options, options.output.projection);
   if (!input) return tl::unexpected(input.error());
   const Domain& domain = input->domain;
-  auto request_options = with_raster(options.request_options);
+  auto request_options = with_size(options.request_options, domain, input->projection.get());
   if (!request_options) return tl::unexpected(request_options.error());
   times.read = MeshTimes::Clock::now();
 
@@ -64,7 +67,7 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   if (!report) return tl::unexpected(report.error());
   times.written = MeshTimes::Clock::now();
   progress.clear();
-  add_warnings(options, domain, *report);
+  add_warnings(options, *request_options, domain, *report);
 
   if (options.json) {
     Json json = mesh_json(*report, times);

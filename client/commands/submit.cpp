@@ -38,9 +38,10 @@ Result<std::optional<MeshOutput>> open_output(const SubmitOptions& options,
   return std::move(*opened);
 }
 
-Result<v1::Job> submit(JobServer& server, const Domain& domain, const SubmitOptions& options) {
+Result<v1::Job> submit(JobServer& server, const InputDomain& input, const SubmitOptions& options) {
+  const Domain& domain = input.domain;
   if (auto ok = check_sendable(domain); !ok) return tl::unexpected(ok.error());
-  auto request_options = with_raster(options.request_options);
+  auto request_options = with_size(options.request_options, domain, input.projection.get());
   if (!request_options) return tl::unexpected(request_options.error());
   request_options->quadtree = options.output.draw_quadtree;
   request_options->no_cache = false;  // a job has a field of its own for it
@@ -68,12 +69,12 @@ Result<ExitCode> run_submit(const SubmitOptions& options, std::stop_token stop) 
   auto server = JobServer::connect(options.calls, stop);
   if (!server) return tl::unexpected(server.error());
   const auto input =
-      read_input_domain(options.input, options.request_options.size, options.output.projection);
+      read_input_domain(options.input, options.request_options, options.output.projection);
   if (!input) return tl::unexpected(input.error());
   const Domain& domain = input->domain;
   times.read = times.connected = MeshTimes::Clock::now();
 
-  auto job = submit(*server, domain, options);
+  auto job = submit(*server, *input, options);
   if (!job) return tl::unexpected(job.error());
   const auto print_id = [&] { return print(harmless(job->id()) + "\n"); };
   if (!options.wait) return options.json ? print(json_line(job_json(*job))) : print_id();

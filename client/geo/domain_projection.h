@@ -49,6 +49,8 @@ class DomainProjection {
 
   bool to_metres() const { return to_metres_; }
   Point to_lonlat(Point metres) const;
+  // Not finite if PROJ cannot project the point.
+  Point to_plane(Point lonlat) const { return projection_.forward(lonlat); }
   // The coordinates of all vertices, in memory of the mesh's pages. Errors (kInternal): PROJ cannot
   // bring a vertex back.
   Result<ScratchArray<double>> to_lonlat(const MeshView& mesh) const;

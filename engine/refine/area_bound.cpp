@@ -6,9 +6,11 @@
 namespace weft {
 
 Error bad_size_error(const BadSize& bad) {
-  return {ErrorCode::kBadSizeValue, "size",
-          "the size at (" + text(bad.at.x) + ", " + text(bad.at.y) + ") is " + text(bad.value) +
-              ", but must be positive and finite"};
+  std::string message = "the size at (" + text(bad.at.x) + ", " + text(bad.at.y) + ") is " +
+                        text(bad.value) + ", but must be positive and finite";
+  for (const std::string& name : bad.size->undefined_at(bad.at))
+    message += "; the field " + name + " is undefined there, see coalesce and defined";
+  return {ErrorCode::kBadSizeValue, "size", std::move(message)};
 }
 
 }  // namespace weft

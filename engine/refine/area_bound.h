@@ -15,6 +15,7 @@
 #include "engine/refine/cavity.h"
 #include "engine/refine/quality_bounds.h"
 #include "engine/size/lattice/lattice.h"
+#include "engine/size/size_function.h"
 
 namespace weft {
 
@@ -22,9 +23,11 @@ namespace weft {
 struct BadSize {
   Point at;
   double value;
+  const SizeFunction* size;
 };
 
-// The error kBadSizeValue, with a message that names the point.
+// The error kBadSizeValue, with a message that names the point, and the fields that are undefined
+// there.
 Error bad_size_error(const BadSize& bad);
 
 // The same bound everywhere; infinity is no bound.

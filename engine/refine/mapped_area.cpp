@@ -82,7 +82,7 @@ RingVerdict MappedArea::judge_evaluated(const SizeMap::Place& place, const Ring&
   if (node.may_be_nan || !(node.lo > 0) || !(node.hi < std::numeric_limits<double>::infinity())) {
     for (std::uint32_t i = 0; i < n; ++i) {
       if (!(bound[i] > 0 && bound[i] < std::numeric_limits<double>::infinity()) && !bad_size_) {
-        bad_size_ = BadSize{{x[i], y[i]}, bound[i]};
+        bad_size_ = BadSize{{x[i], y[i]}, bound[i], &function_};
       }
     }
   }

@@ -10,7 +10,7 @@
 
 namespace weft {
 
-class ConstantSize final : public SizeFunction {
+class ConstantSize : public SizeFunction {
  public:
   explicit ConstantSize(double value) : value_(value) {}
 

@@ -6,8 +6,8 @@
 
 namespace weft {
 
-// Every value lies in [lo, hi], or is NaN if `may_be_nan`. If lo == hi and there is no NaN, the
-// value is the same everywhere.
+// Every value lies in [lo, hi], or is NaN if `may_be_nan`; lo > hi if all are NaN for certain. If
+// lo == hi and there is no NaN, the value is the same everywhere.
 struct Interval {
   double lo = -std::numeric_limits<double>::infinity();
   double hi = std::numeric_limits<double>::infinity();

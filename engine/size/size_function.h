@@ -4,6 +4,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "engine/size/field.h"
 
@@ -13,6 +15,12 @@ class SizeFunction : public Field {
  public:
   // The value, if it is known to be the same everywhere; infinity for no bound.
   virtual std::optional<double> constant() const noexcept { return std::nullopt; }
+
+  // The fields that it names and that are undefined at p, such as "depth": for errors.
+  virtual std::vector<std::string> undefined_at(Point p) const {
+    static_cast<void>(p);
+    return {};
+  }
 };
 
 }  // namespace weft

@@ -1,18 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/size/size_spec.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "engine/base/text.h"
+#include "engine/domain/validate.h"
 #include "engine/size/constant_size.h"
+#include "engine/size/edge_size.h"
+#include "engine/size/fields/distance_field.h"
+#include "engine/size/fields/width_field.h"
+#include "engine/size/width_size.h"
 
 namespace weft {
 namespace {
 
-using Made = Result<std::unique_ptr<const SizeFunction>>;
+using Function = Result<std::unique_ptr<const SizeFunction>>;
+using AnyField = Result<std::unique_ptr<const Field>>;
+
+template <class T>
+AnyField on_heap(Result<T> made) {
+  if (!made) return tl::unexpected(std::move(made).error());
+  return std::make_unique<const T>(std::move(*made));
+}
 
 // A value that is the same everywhere.
 std::optional<Error> check_constant(double value, const char* field) {
@@ -21,39 +34,193 @@ std::optional<Error> check_constant(double value, const char* field) {
                "the size is " + text(value) + "; it must be positive and finite"};
 }
 
+std::vector<std::string> names_of(const std::vector<FieldSpec>& fields) {
+  std::vector<std::string> names;
+  for (const FieldSpec& field : fields) names.push_back(field.name);
+  return names;
+}
+
+// What a distance is to.
+class Lines {
+ public:
+  Lines(const Pslg& pslg, const std::string& path) : pslg_(pslg), path_(path) {}
+
+  Result<std::vector<Line>> of(const DistanceSpec& spec) const {
+    if (!spec.points.empty()) return of_points(spec);
+    if (!spec.segments.empty())
+      return fail(ErrorCode::kIndexOutOfRange, path_ + ".segments[0].a",
+                  path_ + ".segments[0].a is " + std::to_string(spec.segments[0][0]) +
+                      ", but there are no points");
+    for (const std::int32_t marker : spec.markers)
+      if (!has(marker))
+        return fail(ErrorCode::kBadOption, path_ + ".markers",
+                    path_ + ".markers holds " + std::to_string(marker) +
+                        ", which is the marker of no segment of the domain");
+    std::vector<Line> lines;
+    for (const Segment& segment : pslg_.segments) {
+      const bool wanted =
+          spec.markers.empty() ||
+          std::find(spec.markers.begin(), spec.markers.end(), segment.marker) != spec.markers.end();
+      if (wanted) lines.push_back({pslg_.points[segment.a], pslg_.points[segment.b]});
+    }
+    if (lines.empty())
+      return fail(ErrorCode::kBadOption, path_,
+                  path_ + " is the distance to the segments of the domain, which has none");
+    return lines;
+  }
+
+ private:
+  Result<std::vector<Line>> of_points(const DistanceSpec& spec) const {
+    if (!spec.markers.empty())
+      return fail(ErrorCode::kBadOption, path_ + ".markers",
+                  path_ + ".markers and " + path_ + ".points exclude each other");
+    for (std::size_t i = 0; i < spec.points.size(); ++i)
+      for (const auto& [name, value] :
+           {std::pair{".x", spec.points[i].x}, std::pair{".y", spec.points[i].y}})
+        if (!(std::fabs(value) <= kMaxMagnitude)) {
+          const std::string field = path_ + ".points[" + std::to_string(i) + "]" + name;
+          return fail(ErrorCode::kBadCoordinate, field,
+                      field + " is " + text(value) + "; a magnitude must be at most " +
+                          text(kMaxMagnitude));
+        }
+    std::vector<Line> lines;
+    for (std::size_t i = 0; i < spec.segments.size(); ++i) {
+      for (const int end : {0, 1})
+        if (spec.segments[i][end] >= spec.points.size()) {
+          const std::string field =
+              path_ + ".segments[" + std::to_string(i) + (end == 0 ? "].a" : "].b");
+          return fail(ErrorCode::kIndexOutOfRange, field,
+                      field + " is " + std::to_string(spec.segments[i][end]) + ", but there are " +
+                          std::to_string(spec.points.size()) + " points");
+        }
+      lines.push_back({spec.points[spec.segments[i][0]], spec.points[spec.segments[i][1]]});
+    }
+    if (lines.empty())
+      for (const Point point : spec.points) lines.push_back({point, point});
+    return lines;
+  }
+
+  bool has(std::int32_t marker) const {
+    return std::any_of(pslg_.segments.begin(), pslg_.segments.end(),
+                       [&](const Segment& segment) { return segment.marker == marker; });
+  }
+
+  const Pslg& pslg_;
+  const std::string& path_;
+};
+
+// Makes a field, which errors call `path`.
+struct FieldMaker {
+  const Pslg& pslg;
+  const Domain& domain;
+  const ExecutionContext& context;
+  std::string path;
+
+  AnyField operator()(const DistanceSpec& spec) const {
+    const std::string field = path + ".distance";
+    auto lines = Lines(pslg, field).of(spec);
+    if (!lines) return tl::unexpected(std::move(lines).error());
+    Box box;
+    for (const Point vertex : domain.vertices) box.add(vertex);
+    return on_heap(DistanceField::make(std::move(*lines), box, context));
+  }
+  AnyField operator()(const FieldRaster& raster) const {
+    return on_heap(RasterField::make(raster, path + ".raster", context));
+  }
+  AnyField operator()(const FieldMesh& mesh) const {
+    return on_heap(MeshField::make(mesh, path + ".mesh", context));
+  }
+  AnyField operator()(const WidthSpec&) const { return on_heap(WidthField::make(domain, context)); }
+};
+
+// Makes the function of the value that a request gives.
 struct Maker {
-  Made operator()(std::monostate) const {
+  const std::vector<NamedField>& fields;
+
+  Function operator()(std::monostate) const {
     return std::make_unique<ConstantSize>(std::numeric_limits<double>::infinity());
   }
-
-  Made operator()(double value) const {
-    if (auto error = check_constant(value, "size.constant")) return tl::unexpected(*error);
-    return std::make_unique<ConstantSize>(value);
-  }
-
-  Made operator()(const std::string& source) const {
-    auto expression = Expression::parse(source);
+  Function operator()(double value) const { return std::make_unique<ConstantSize>(value); }
+  Function operator()(const std::string& source) const {
+    auto expression = Expression::parse(source, fields);
     if (!expression) return tl::unexpected(expression.error());
-    if (const auto value = expression->constant())
-      if (auto error = check_constant(*value, "size.expression")) return tl::unexpected(*error);
     return std::make_unique<Expression>(std::move(*expression));
   }
-
-  Made operator()(const Raster& raster) const {
+  Function operator()(const Raster& raster) const {
     auto size = RasterSize::make(raster);
     if (!size) return tl::unexpected(size.error());
     return std::make_unique<RasterSize>(std::move(*size));
   }
 };
 
+Result<Size> with_measure(const SizeSpec::Value& value, Measure measure,
+                          const std::vector<NamedField>& fields) {
+  auto function = std::visit(Maker{fields}, value);
+  if (!function) return tl::unexpected(std::move(function).error());
+  Size size(std::move(*function));
+  if (measure == Measure::kEdge) size.add(std::make_unique<EdgeSize>(size.function()));
+  return size;
+}
+
 }  // namespace
 
-Result<std::unique_ptr<const SizeFunction>> make_size(const SizeSpec& spec) {
-  return std::visit(Maker{}, spec);
+std::size_t Size::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& field : fields_) sum += field->bytes();
+  for (const auto& layer : layers_) sum += layer->bytes();
+  return sum;
+}
+
+std::optional<Error> check_size(const SizeSpec& spec) {
+  if (!(spec.cells_across >= 0 && std::isfinite(spec.cells_across)))
+    return Error{
+        ErrorCode::kBadOption, "size.cells_across",
+        "size.cells_across is " + text(spec.cells_across) + "; it must be finite and 0 or more"};
+  if (spec.fields.size() > Expression::kMaxFields)
+    return Error{ErrorCode::kLimitExceeded, "size.fields",
+                 "size.fields: " + std::to_string(spec.fields.size()) + " fields; the limit is " +
+                     std::to_string(Expression::kMaxFields)};
+  const std::vector<std::string> names = names_of(spec.fields);
+  if (auto error = Expression::check_names(names)) return error;
+  if (const auto* const value = std::get_if<double>(&spec.value))
+    return check_constant(*value, "size.constant");
+  const auto* const source = std::get_if<std::string>(&spec.value);
+  if (source == nullptr) return std::nullopt;
+  const auto judged = Expression::check(*source, names);
+  if (!judged) return judged.error();
+  if (const auto& value = judged->constant) return check_constant(*value, "size.expression");
+  return std::nullopt;
+}
+
+Result<Size> make_size(const SizeSpec& spec, const Pslg& pslg, const Domain& domain,
+                       const ExecutionContext& context) {
+  if (auto error = check_size(spec)) return tl::unexpected(*error);
+  std::vector<std::unique_ptr<const Field>> fields;
+  std::vector<NamedField> named;
+  for (std::size_t i = 0; i < spec.fields.size(); ++i) {
+    const std::string path = "size.fields[" + std::to_string(i) + "]";
+    auto field = std::visit(FieldMaker{pslg, domain, context, path}, spec.fields[i].kind);
+    if (!field) return tl::unexpected(std::move(field).error());
+    fields.push_back(std::move(*field));
+    named.push_back({spec.fields[i].name, fields.back().get()});
+  }
+  auto size = with_measure(spec.value, spec.measure, named);
+  if (!size) return size;
+  size->keep(std::move(fields));
+  if (spec.cells_across > 0) {
+    auto width = WidthField::make(domain, context);
+    if (!width) return tl::unexpected(std::move(width).error());
+    size->add(std::make_unique<WidthSize>(size->function(), std::move(*width), spec.cells_across));
+  }
+  return size;
+}
+
+Result<Size> make_size(const SizeSpec::Value& value, Measure measure) {
+  return with_measure(value, measure, {});
 }
 
 std::uint64_t bytes_to_make(const SizeSpec& spec) {
-  const auto* const raster = std::get_if<Raster>(&spec);
+  const auto* const raster = std::get_if<Raster>(&spec.value);
   return raster != nullptr ? RasterSize::kBytesPerValue * raster->values.size() : 0;
 }
 

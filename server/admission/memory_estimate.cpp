@@ -80,7 +80,7 @@ double integral(const DomainPicture& picture, const SizeFunction& size) {
 // What the size and the regions ask for.
 double triangles_by_size(const v1::GenerateMeshRequest& request) {
   const DomainPicture picture = DomainPicture::of(request.domain());
-  const double over_bound = integral(picture, *size_to_estimate_by(request.size()));
+  const double over_bound = integral(picture, size_to_estimate_by(request.size()).function());
   const double fill = fill_of_lattice(request);
   return over_bound * (fill > 0 ? kOnLattice / fill : kTrianglesPerArea);
 }

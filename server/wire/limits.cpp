@@ -24,6 +24,13 @@ struct Amounts {
   std::uint64_t seeds = 0;
   std::uint64_t expression_bytes = 0;
   std::uint64_t raster_values = 0;
+  // Of all fields that the size may name.
+  std::uint64_t fields = 0;
+  std::uint64_t field_points = 0;
+  std::uint64_t field_segments = 0;
+  std::uint64_t field_markers = 0;
+  std::uint64_t field_triangles = 0;
+  std::uint64_t field_values = 0;
 };
 
 std::optional<Failure> check(const Amounts& amounts, const Limits& limits) {
@@ -38,7 +45,19 @@ std::optional<Failure> check(const Amounts& amounts, const Limits& limits) {
   if (auto f =
           over("size.expression", "bytes", amounts.expression_bytes, limits.max_expression_bytes))
     return f;
-  return over("size.raster.values", "values", amounts.raster_values, limits.max_raster_values);
+  if (auto f =
+          over("size.raster.values", "values", amounts.raster_values, limits.max_raster_values))
+    return f;
+  const auto of_fields = [](std::string_view unit, std::uint64_t value, std::uint64_t limit) {
+    return over("size.fields", unit, value, limit);
+  };
+  if (auto f = of_fields("fields", amounts.fields, Expression::kMaxFields)) return f;
+  if (auto f = of_fields("points", amounts.field_points, limits.max_points)) return f;
+  if (auto f = of_fields("segments", amounts.field_segments, limits.max_segments)) return f;
+  if (auto f = of_fields("markers", amounts.field_markers, limits.max_segments)) return f;
+  // A triangulation has at most twice as many triangles as points.
+  if (auto f = of_fields("triangles", amounts.field_triangles, 2 * limits.max_points)) return f;
+  return of_fields("raster values", amounts.field_values, limits.max_raster_values);
 }
 
 }  // namespace
@@ -53,7 +72,18 @@ std::optional<Failure> check_limits(const WireScan& scan, const Limits& limits) 
           of_domain(v1::Domain::kHolesFieldNumber) / 2 + of_domain(v1::Domain::kRegionsFieldNumber),
       .expression_bytes =
           scan.count(*v1::SizeField::descriptor(), v1::SizeField::kExpressionFieldNumber),
-      .raster_values = scan.count(*v1::Raster::descriptor(), v1::Raster::kValuesFieldNumber)};
+      .raster_values = scan.count(*v1::Raster::descriptor(), v1::Raster::kValuesFieldNumber),
+      .fields = scan.count(*v1::SizeField::descriptor(), v1::SizeField::kFieldsFieldNumber),
+      .field_points =
+          scan.count(*v1::Distance::descriptor(), v1::Distance::kPointsFieldNumber) / 2 +
+          scan.count(*v1::FieldMesh::descriptor(), v1::FieldMesh::kVerticesFieldNumber) / 2,
+      .field_segments =
+          scan.count(*v1::Distance::descriptor(), v1::Distance::kSegmentsFieldNumber) / 2,
+      .field_markers = scan.count(*v1::Distance::descriptor(), v1::Distance::kMarkersFieldNumber),
+      .field_triangles =
+          scan.count(*v1::FieldMesh::descriptor(), v1::FieldMesh::kTrianglesFieldNumber) / 3,
+      .field_values =
+          scan.count(*v1::FieldRaster::descriptor(), v1::FieldRaster::kValuesFieldNumber)};
   return check(amounts, limits);
 }
 
@@ -61,12 +91,21 @@ std::optional<Failure> check_limits(const v1::GenerateMeshRequest& request, cons
   const v1::Domain& domain = request.domain();
   const v1::Budget& budget = request.budget();
   const auto count = [](int size, int width) { return static_cast<std::uint64_t>(size / width); };
-  const Amounts amounts{.points = count(domain.points_size(), 2),
-                        .segments = count(domain.segments_size(), 2),
-                        .markers = count(domain.segment_markers_size(), 1),
-                        .seeds = count(domain.holes_size(), 2) + count(domain.regions_size(), 1),
-                        .expression_bytes = request.size().expression().size(),
-                        .raster_values = count(request.size().raster().values_size(), 1)};
+  Amounts amounts{.points = count(domain.points_size(), 2),
+                  .segments = count(domain.segments_size(), 2),
+                  .markers = count(domain.segment_markers_size(), 1),
+                  .seeds = count(domain.holes_size(), 2) + count(domain.regions_size(), 1),
+                  .expression_bytes = request.size().expression().size(),
+                  .raster_values = count(request.size().raster().values_size(), 1)};
+  for (const v1::NamedField& field : request.size().fields()) {
+    amounts.fields += 1;
+    amounts.field_points += count(field.distance().points_size(), 2);
+    amounts.field_points += count(field.mesh().vertices_size(), 2);
+    amounts.field_segments += count(field.distance().segments_size(), 2);
+    amounts.field_markers += count(field.distance().markers_size(), 1);
+    amounts.field_triangles += count(field.mesh().triangles_size(), 3);
+    amounts.field_values += count(field.raster().values_size(), 1);
+  }
   if (auto f = check(amounts, limits)) return f;
   if (auto f = over("budget.max_triangles", "triangles", std::uint64_t{budget.max_triangles()},
                     limits.max_triangles))

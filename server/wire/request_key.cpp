@@ -33,7 +33,13 @@ void make_canonical(v1::GenerateMeshRequest& request) {
   if (!quality.has_min_angle_deg()) quality.set_min_angle_deg(MeshRequest{}.min_angle_deg);
   if (quality.placement() == v1::PLACEMENT_UNSPECIFIED)
     quality.set_placement(v1::PLACEMENT_LATTICE);
-  if (request.size().field_case() == v1::SizeField::FIELD_NOT_SET) request.clear_size();
+  v1::SizeField& size = *request.mutable_size();
+  if (size.cells_across() == 0) size.clear_cells_across();  // -0 is 0
+  if (size.field_case() == v1::SizeField::FIELD_NOT_SET && size.cells_across() == 0) {
+    request.clear_size();
+  } else {
+    if (size.measure() == v1::MEASURE_UNSPECIFIED) size.set_measure(v1::MEASURE_AREA);
+  }
   v1::Domain& domain = *request.mutable_domain();
   if (domain.fill() == v1::FILL_UNSPECIFIED) domain.set_fill(v1::FILL_SEEDS);
   if (domain.snap() == 0) domain.clear_snap();  // -0 is 0

@@ -3,7 +3,6 @@
 // its kinds, but for their limits.
 #pragma once
 
-#include <memory>
 #include <optional>
 
 #include "engine/engine.h"
@@ -12,19 +11,21 @@
 
 namespace weft::server {
 
-// Refuses what only the wire has: the grid of a raster. Constant time.
+// Refuses what only the wire has: grids and the lengths of arrays. Constant time for each field.
 std::optional<Failure> check_shape(const v1::SizeField& size);
 
-// Refuses what the engine would refuse: an expression with a fault, values that are no sizes.
-// Copies no array. REQUIRES: check_shape(size) found nothing.
+// Refuses what the engine would refuse without the domain: an expression with a fault, names,
+// values that are no sizes. The values of fields it does not look at. Copies no array. REQUIRES:
+// check_shape(size) found nothing.
 std::optional<Failure> check_values(const v1::SizeField& size);
 
 // REQUIRES: check_shape(size) found nothing.
 SizeSpec to_engine(const v1::SizeField& size);
 
 // A size that asks for about as many triangles, without a copy of an array; no bound if `size` is
-// none. REQUIRES: check_shape(size) found nothing.
-std::unique_ptr<const SizeFunction> size_to_estimate_by(const v1::SizeField& size);
+// none, or names fields: what these ask for is known once they are made. REQUIRES:
+// check_shape(size) found nothing.
+Size size_to_estimate_by(const v1::SizeField& size);
 
 // Bytes of memory that the engine takes for arrays of `size`.
 double bytes_to_expect(const v1::SizeField& size);

@@ -93,13 +93,17 @@ TEST(Options, AreJudgedAsTheRunJudgesThem) {
 }
 
 TEST(Size, IsJudgedAsTheRunJudgesIt) {
-  for (const SizeSpec& size : {SizeSpec{-1.0}, SizeSpec{"1-2"}, SizeSpec{"1+"},
-                               SizeSpec{Raster{{0, 0}, 1, 1, 2, 1, {1, 0}}}}) {
-    const auto judged = make_size(size);
-    ASSERT_FALSE(judged);
-    expect_same(judged.error(), {.pslg = square(), .size = size});
+  SizeSpec steep = "1+x";
+  steep.cells_across = -1;
+  SizeSpec nameless = "1+x";
+  nameless.fields.push_back({"x", WidthSpec{}});
+  for (const SizeSpec& size :
+       {SizeSpec{-1.0}, SizeSpec{"1-2"}, SizeSpec{"1+"}, SizeSpec{"1+z"}, steep, nameless}) {
+    const auto judged = check_size(size);
+    ASSERT_TRUE(judged);
+    expect_same(*judged, {.pslg = square(), .size = size});
   }
-  EXPECT_TRUE(make_size("1+x"));
+  EXPECT_FALSE(check_size("1+x"));
 }
 
 TEST(Domain, IsJudgedAsTheRunJudgesIt) {
@@ -198,7 +202,7 @@ TEST(Size, OfARasterThatEndsInsideTheDomainGoesOnAsItEnds) {
 TEST(Size, OfARasterWithAValueThatIsNoneNamesIt) {
   MeshRequest request{.pslg = square()};
   request.size = raster_with_a_spot();
-  std::get<Raster>(request.size).values[17] = 0;
+  std::get<Raster>(request.size.value).values[17] = 0;
   const Error error = error_of(request);
   EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
   EXPECT_EQ(error.field, "size.raster.values[17]");

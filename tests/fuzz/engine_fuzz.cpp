@@ -92,7 +92,7 @@ void judge(const std::uint8_t* data, std::size_t size) {
     const Error& error = one.summary.error();
     must(error.code != ErrorCode::kInternal, "internal", error.message);
     const bool endless = error.code == ErrorCode::kLimitExceeded && made.plain &&
-                         std::holds_alternative<std::monostate>(made.request.size) &&
+                         std::holds_alternative<std::monostate>(made.request.size.value) &&
                          made.request.min_angle_deg <= 25;
     must(!endless, "explosion", error.message);
   }

@@ -249,9 +249,9 @@ std::string to_text(const MeshCase& mesh_case) {
   const MeshRequest& request = mesh_case.request;
   const Pslg& pslg = request.pslg;
   std::string text = print("# --min-angle %.17g", request.min_angle_deg);
-  if (const auto* const constant = std::get_if<double>(&request.size))
+  if (const auto* const constant = std::get_if<double>(&request.size.value))
     text += print(" --size %.17g", *constant);
-  if (const auto* const expression = std::get_if<std::string>(&request.size))
+  if (const auto* const expression = std::get_if<std::string>(&request.size.value))
     text += " --size '" + *expression + "'";
   if (request.min_edge > 0) text += print(" --min-edge %.17g", request.min_edge);
   if (request.placement == Placement::kCircumcentre) text += " --placement circumcentre";
@@ -264,7 +264,7 @@ std::string to_text(const MeshCase& mesh_case) {
       print("   (leaf_triangles %g, fill %s, triangle_limit %llu)\n",
             request.leaf_triangles.value_or(0), pslg.fill == Fill::kSeeds ? "seeds" : "even-odd",
             static_cast<unsigned long long>(mesh_case.budget.triangle_limit));
-  if (const auto* const raster = std::get_if<Raster>(&request.size)) {
+  if (const auto* const raster = std::get_if<Raster>(&request.size.value)) {
     text += print("# raster: origin %.17g %.17g, step %.17g %.17g, %u x %u:", raster->origin.x,
                   raster->origin.y, raster->dx, raster->dy, raster->columns, raster->rows);
     for (const double value : raster->values) text += print(" %.17g", value);

@@ -47,7 +47,8 @@ std::string miscounted(const MeshRequest& request, const check::Mesh& mesh,
   const bool bounded_by_regions =
       std::any_of(request.pslg.regions.begin(), request.pslg.regions.end(),
                   [](const RegionSeed& r) { return r.max_area.has_value(); });
-  const auto* const constant = std::get_if<double>(&request.size);
+  const auto* const constant =
+      request.size.measure == Measure::kArea ? std::get_if<double>(&request.size.value) : nullptr;
   constexpr double kStep = 0.1;  // degrees: what the percentile is rounded by
   double below_percentile = 0;
   double up_to_percentile = 0;
@@ -170,21 +171,64 @@ check::Domain domain_of(const Pslg& pslg) {
   return domain;
 }
 
+namespace {
+
+std::vector<check::Vec2> to_checker(const std::vector<Point>& points) {
+  std::vector<check::Vec2> out;
+  for (const Point p : points) out.push_back({p.x, p.y});
+  return out;
+}
+
+struct FieldToChecker {
+  using Kind = decltype(check::NamedField::kind);
+  Kind operator()(const DistanceSpec& distance) const {
+    return check::DistanceField{distance.markers, to_checker(distance.points), distance.segments};
+  }
+  Kind operator()(const FieldRaster& raster) const {
+    return check::RasterField{{raster.origin.x, raster.origin.y},
+                              raster.dx,
+                              raster.dy,
+                              raster.columns,
+                              raster.rows,
+                              raster.values};
+  }
+  Kind operator()(const FieldMesh& mesh) const {
+    return check::MeshField{to_checker(mesh.vertices), mesh.triangles, mesh.values};
+  }
+  Kind operator()(const WidthSpec&) const { return check::WidthField{}; }
+};
+
+struct ValueToChecker {
+  using Value = check::SizeSpec::Value;
+  Value operator()(std::monostate) const { return {}; }
+  Value operator()(double constant) const { return constant; }
+  Value operator()(const std::string& expression) const { return expression; }
+  Value operator()(const Raster& raster) const {
+    return check::Raster{{raster.origin.x, raster.origin.y},
+                         raster.dx,
+                         raster.dy,
+                         raster.columns,
+                         raster.rows,
+                         raster.values};
+  }
+};
+
+check::SizeSpec to_checker(const SizeSpec& size) {
+  check::SizeSpec out;
+  out.value = std::visit(ValueToChecker{}, size.value);
+  if (size.measure == Measure::kEdge) out.measure = check::Measure::kEdge;
+  for (const FieldSpec& field : size.fields)
+    out.fields.push_back({field.name, std::visit(FieldToChecker{}, field.kind)});
+  return out;
+}
+
+}  // namespace
+
 std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
                     const Summary& summary) {
   if (!collected.broken_law.empty()) return "broken law: " + collected.broken_law;
   check::Requirements requirements;
-  if (const auto* const constant = std::get_if<double>(&request.size))
-    requirements.max_area = *constant;
-  if (const auto* const expression = std::get_if<std::string>(&request.size))
-    requirements.size = *expression;
-  if (const auto* const raster = std::get_if<Raster>(&request.size))
-    requirements.size = check::Raster{{raster->origin.x, raster->origin.y},
-                                      raster->dx,
-                                      raster->dy,
-                                      raster->columns,
-                                      raster->rows,
-                                      raster->values};
+  requirements.size = to_checker(request.size);
   requirements.min_angle_deg = request.min_angle_deg;
   // What the engine declares it could not refine may miss its bounds, no more.
   requirements.allowed_unrefined =

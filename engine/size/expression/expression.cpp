@@ -2,6 +2,7 @@
 #include "engine/size/expression/expression.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -20,7 +21,7 @@ constexpr const char* kField = "size.expression";
 struct Compiled {
   expr::Program code;
   std::vector<expr::FieldInput> fields;
-  bool is_constant = false;
+  std::optional<double> constant;
 };
 
 Result<Compiled> compiled(std::string_view source, std::span<const std::string> names) {
@@ -35,8 +36,10 @@ Result<Compiled> compiled(std::string_view source, std::span<const std::string> 
       expr::compile(parsed->graph, parsed->root, expr::kFirstFieldInput + parsed->fields.size(),
                     Expression::kMaxOperations, Expression::kMaxRegisters);
   if (!code) return tl::unexpected(std::move(code).error());
-  const bool is_constant = parsed->graph[parsed->root].op == expr::Op::kConstant;
-  return Compiled{*std::move(code), std::move(parsed->fields), is_constant};
+  const expr::Node& root = parsed->graph[parsed->root];
+  std::optional<double> constant;
+  if (root.op == expr::Op::kConstant) constant = root.value;
+  return Compiled{*std::move(code), std::move(parsed->fields), constant};
 }
 
 bool is_name(std::string_view text) {
@@ -54,8 +57,9 @@ struct Expression::Program {
   expr::Program code;
   expr::ThreadedCode threaded;
   std::vector<const Field*> fields;                  // the inputs from kFirstFieldInput on
+  std::vector<std::string> names;                    // of these
   std::vector<std::unique_ptr<const Field>> slopes;  // those of them that belong to no one else
-  bool is_constant = false;
+  std::optional<double> constant;
 };
 
 Result<Expression> Expression::parse(std::string_view source, std::span<const NamedField> fields) {
@@ -65,9 +69,10 @@ Result<Expression> Expression::parse(std::string_view source, std::span<const Na
   if (!made) return tl::unexpected(std::move(made).error());
   expr::ThreadedCode threaded(made->code);
   std::unique_ptr<Program> program(
-      new Program{std::move(made->code), std::move(threaded), {}, {}, made->is_constant});
+      new Program{std::move(made->code), std::move(threaded), {}, {}, {}, made->constant});
   for (const expr::FieldInput& input : made->fields) {
     const NamedField& named = fields[input.field];
+    program->names.push_back(input.slope ? "slope(" + named.name + ")" : named.name);
     if (!input.slope) {
       program->fields.push_back(named.field);
       continue;
@@ -80,13 +85,13 @@ Result<Expression> Expression::parse(std::string_view source, std::span<const Na
   return Expression(std::move(program));
 }
 
-Result<std::vector<bool>> Expression::check(std::string_view source,
-                                            std::span<const std::string> names) {
+Result<Expression::Judged> Expression::check(std::string_view source,
+                                             std::span<const std::string> names) {
   const Result<Compiled> made = compiled(source, names);
   if (!made) return tl::unexpected(made.error());
-  std::vector<bool> used(names.size());
-  for (const expr::FieldInput& input : made->fields) used[input.field] = true;
-  return used;
+  Judged judged{std::vector<bool>(names.size()), made->constant};
+  for (const expr::FieldInput& input : made->fields) judged.used[input.field] = true;
+  return judged;
 }
 
 std::optional<Error> Expression::check_names(std::span<const std::string> names) {
@@ -126,8 +131,14 @@ Interval Expression::bounds(const Box& box) const noexcept {
 }
 
 std::optional<double> Expression::constant() const noexcept {
-  if (!program_->is_constant) return std::nullopt;
-  return (*this)(Point{0, 0});
+  return program_->constant;
+}
+
+std::vector<std::string> Expression::undefined_at(Point p) const {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < program_->fields.size(); ++i)
+    if (std::isnan((*program_->fields[i])(p))) names.push_back(program_->names[i]);
+  return names;
 }
 
 std::size_t Expression::operations() const noexcept {

@@ -71,9 +71,14 @@ class Expression final : public SizeFunction {
   // field is "size.expression". Any bytes are safe. REQUIRES: the fields outlive the expression.
   static Result<Expression> parse(std::string_view source, std::span<const NamedField> fields = {});
 
-  // What parse would say, without the fields themselves. Returns which of the names are used.
-  static Result<std::vector<bool>> check(std::string_view source,
-                                         std::span<const std::string> names);
+  // What is known of an expression without its fields.
+  struct Judged {
+    std::vector<bool> used;          // for each name, whether it is
+    std::optional<double> constant;  // the value, if it is the same everywhere
+  };
+
+  // What parse would say of an expression that names these fields.
+  static Result<Judged> check(std::string_view source, std::span<const std::string> names);
 
   // Judges the names of fields: letters, digits and _, a letter or _ first, at most kMaxNameLength
   // bytes, none twice, none that means something else already. The error (kBadOption) names
@@ -95,6 +100,8 @@ class Expression final : public SizeFunction {
 
   // The value if neither x, y nor a field is left after folding.
   std::optional<double> constant() const noexcept override;
+
+  std::vector<std::string> undefined_at(Point p) const override;
 
   // At most kMaxOperations, and those of the fields.
   std::size_t operations() const noexcept override;

@@ -69,9 +69,9 @@ std::optional<std::string_view> nearest(std::string_view name,
       best_distance = d;
     }
   };
+  for (const std::string& field : fields) consider(field);
   for (const Function& function : kFunctions) consider(function.name);
   for (std::string_view value : kValues) consider(value);
-  for (const std::string& field : fields) consider(field);
   return best;
 }
 

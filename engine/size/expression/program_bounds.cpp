@@ -51,7 +51,7 @@ Interval bounds(const Program& program, const Box& box,
     }
     if (instruction.store) registers[*instruction.store].value = accumulator;
   }
-  return accumulator;
+  return accumulator.lo > accumulator.hi ? Interval{} : accumulator;
 }
 
 }  // namespace weft::expr

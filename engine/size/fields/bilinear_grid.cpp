@@ -10,8 +10,9 @@ namespace weft {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-// Beside a grid that is undefined outside, in cells.
-constexpr double kSlack = 0x1p-20;
+// Beside a grid that is undefined outside, in cells: half a pixel, and what a client that computes
+// its corner may round.
+constexpr double kSlack = 0.5 + 0x1p-20;
 // For at most ten roundings of values up to the largest in absolute value, here and where a point
 // is evaluated.
 constexpr double kRounding = 0x1p-48;
@@ -39,7 +40,8 @@ Interval lengths_between(double p, double q, Interval t) {
 
 // Of what may have no value at all.
 Interval known(const Interval& found) {
-  return found.lo <= found.hi ? found : Interval{0, 0, true};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return found.lo <= found.hi ? found : Interval{kInfinity, -kInfinity, true};
 }
 
 }  // namespace

@@ -9,8 +9,9 @@
 // A cell owns its left and its lower side. The gradient is that of this formula in the same cell.
 //
 // Outside::kNearest: outside the grid the value is that of its nearest point.
-// Outside::kUndefined: it is NaN there, but for 2^-20 of a cell beside the grid, because a client
-// that computes the corner of a grid rounds; and it is NaN in each cell with a node that is NaN.
+// Outside::kUndefined: it is NaN there, but for half a cell beside the grid, where it is that of
+// the nearest point: the nodes of a picture are the middles of its pixels, and its pixels are all
+// of it. It is NaN in each cell with a node that is NaN, too.
 //
 // Thread-safety: immutable once built. The values stay with the caller, where they are.
 #pragma once

@@ -43,7 +43,8 @@ Box widened(const Box& box, double by) {
 }
 
 Interval known(const Interval& found) {
-  return found.lo <= found.hi ? found : Interval{0, 0, true};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return found.lo <= found.hi ? found : Interval{kInfinity, -kInfinity, true};
 }
 
 class MeshSlope final : public Field {
@@ -408,7 +409,7 @@ Interval MeshField::slope_bounds(const Box& box) const noexcept {
 double MeshField::steepness(const Box& box) const noexcept {
   const Look seen = look(box);
   if (!seen.one_layer || seen.hull.at_border) return kInfinity;
-  return known(seen.hull.slope).hi;
+  return std::max(0.0, seen.hull.slope.hi);
 }
 
 std::unique_ptr<const Field> MeshField::slope() const {

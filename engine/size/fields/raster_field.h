@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A field of values on a grid, bilinear between its nodes (bilinear_grid.h). Values may be
 // negative, zero, or NaN for no data. The field is undefined (NaN) in every cell with a node that
-// is NaN, and outside the grid; a grid of one row or one column is defined on that line only.
+// is NaN, and more than half a cell outside the grid; within that, its value is that of the nearest
+// point.
 //
 //   FieldRaster raster{{0, 0}, 1, 1, 2, 2, {-1, 2, 3, 4}};
 //   auto depth = RasterField::make(std::move(raster), "size.fields[0].raster", context);
@@ -9,6 +10,7 @@
 //   Interval range = depth->bounds({0, 0, 1, 0.5});  // from -1 to 3, or a little more
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -47,7 +49,9 @@ class RasterField final : public Field {
     grid_.evaluate(n, x, y, out);
   }
   Interval bounds(const Box& box) const noexcept override { return grid_.bounds(box); }
-  double steepness(const Box& box) const noexcept override { return grid_.slope_bounds(box).hi; }
+  double steepness(const Box& box) const noexcept override {
+    return std::max(0.0, grid_.slope_bounds(box).hi);
+  }
   // Jumps from cell to cell.
   std::unique_ptr<const Field> slope() const override;
   std::size_t bytes() const noexcept override;

@@ -79,7 +79,8 @@ TEST_F(RasterFile, IsRefusedWhereItsHeaderOrItsLengthIsWrong) {
 }
 
 TEST_F(RasterFile, BecomesTheRasterOfARequest) {
-  const auto request_options = with_raster({.size = folder_.write("G.ASC", kGrid).string()});
+  const auto request_options =
+      with_size({.size = folder_.write("G.ASC", kGrid).string()}, square_domain(4));
   ASSERT_TRUE(request_options) << request_options.error().message;
   const auto request = make_request(square_domain(4), *request_options);
   const v1::Raster& raster = request.size().raster();

@@ -301,7 +301,7 @@ TEST_P(ParallelSegments, HaveLeavesThatHardlyWaitForEachOther) {
 
 INSTANTIATE_TEST_SUITE_P(Of, ParallelSegments, testing::Values(SizeSpec{}, SizeSpec{8.0}),
                          [](const auto& info) {
-                           return info.param.index() != 0 ? "ASize" : "NoSize";
+                           return info.param.value.index() != 0 ? "ASize" : "NoSize";
                          });
 
 // What leaves add to the triangles of one leaf: 1.02 is 2 %.

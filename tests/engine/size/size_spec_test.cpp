@@ -10,8 +10,28 @@ namespace {
 
 const Raster kRaster{{0, 0}, 1, 1, 2, 1, {1, 3}};
 
+// A square of side 4 around a segment with the marker 7 from (1, 2) to (3, 2).
+Pslg square() {
+  Pslg pslg;
+  pslg.points = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {1, 2}, {3, 2}};
+  pslg.segments = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5, 7}};
+  return pslg;
+}
+
+Result<Size> made(const SizeSpec& spec) {
+  const ExecutionContext context;
+  const Pslg pslg = square();
+  return make_size(spec, pslg, *triangulate(pslg, context), context);
+}
+
+SizeSpec with_field(std::string expression, decltype(FieldSpec::kind) kind) {
+  SizeSpec spec = std::move(expression);
+  spec.fields.push_back({"f", std::move(kind)});
+  return spec;
+}
+
 TEST(SizeSpec, OfEachKindIsMadeIntoAFunction) {
-  const auto at = [](const SizeSpec& spec) { return (**make_size(spec))({0.5, 0}); };
+  const auto at = [](const SizeSpec& spec) { return made(spec)->function()({0.5, 0}); };
   EXPECT_TRUE(std::isinf(at({})));
   EXPECT_EQ(at(0.25), 0.25);
   EXPECT_EQ(at("x + 1"), 1.5);
@@ -19,7 +39,7 @@ TEST(SizeSpec, OfEachKindIsMadeIntoAFunction) {
 }
 
 TEST(SizeSpec, TellsWhetherItIsTheSameEverywhere) {
-  const auto constant = [](const SizeSpec& spec) { return (*make_size(spec))->constant(); };
+  const auto constant = [](const SizeSpec& spec) { return made(spec)->function().constant(); };
   EXPECT_TRUE(std::isinf(constant({}).value()));
   EXPECT_EQ(constant(0.25), 0.25);
   EXPECT_EQ(constant("2^3"), 8);
@@ -28,38 +48,100 @@ TEST(SizeSpec, TellsWhetherItIsTheSameEverywhere) {
 }
 
 TEST(SizeSpec, OfAConstantHasItsValueInEveryLaneAndBox) {
-  const SizeSpec spec = 0.25;
-  const auto size = *make_size(spec);
+  const auto size = made(0.25);
   alignas(64) const double x[8] = {};
   alignas(64) double out[8] = {};
-  size->evaluate(8, x, x, out);
+  size->function().evaluate(8, x, x, out);
   for (const double value : out) EXPECT_EQ(value, 0.25);
-  const Interval bounds = size->bounds({0, 0, 1, 1});
+  const Interval bounds = size->function().bounds({0, 0, 1, 1});
   EXPECT_EQ(bounds.lo, 0.25);
   EXPECT_EQ(bounds.hi, 0.25);
   EXPECT_FALSE(bounds.may_be_nan);
 }
 
+TEST(SizeSpec, OfEdgesBoundsTheAreaByAnEquilateralTriangle) {
+  const auto area = [](SizeSpec spec) {
+    spec.measure = Measure::kEdge;
+    return made(spec)->function()({0.5, 0});
+  };
+  EXPECT_DOUBLE_EQ(area(2.0), std::sqrt(3));
+  EXPECT_DOUBLE_EQ(area("x + 1.5"), std::sqrt(3));
+  EXPECT_DOUBLE_EQ(area(kRaster), std::sqrt(3));
+  EXPECT_TRUE(std::isinf(area({})));
+  EXPECT_LT(area("x - 2.5"), 0) << "so that it is found to be no size";
+}
+
+TEST(SizeSpec, MayNameTheDistanceToSegments) {
+  const auto at = [](const DistanceSpec& distance, Point p) {
+    return made(with_field("1 + f", distance))->function()(p);
+  };
+  EXPECT_EQ(at({}, {2, 1}), 2);
+  EXPECT_EQ(at({.markers = {7}}, {2, 0.5}), 2.5);
+  EXPECT_EQ(at({.markers = {7, 0}}, {2, 0.5}), 1.5);
+  EXPECT_EQ(at({.points = {{0, 0}, {4, 0}}}, {2, 0}), 3);
+  EXPECT_EQ(at({.points = {{0, 0}, {4, 0}}, .segments = {{0, 1}}}, {2, 0}), 1);
+}
+
+TEST(SizeSpec, MayNameARasterAndAMesh) {
+  const FieldRaster raster{{0, 0}, 4, 4, 2, 2, {1, 5, 1, 5}};
+  EXPECT_EQ(made(with_field("f", raster))->function()({3, 3}), 4);
+  const FieldMesh mesh{{{0, 0}, {4, 0}, {0, 4}}, {{0, 1, 2}}, {0, 4, 8}};
+  EXPECT_EQ(made(with_field("f + 1", mesh))->function()({1, 1}), 4);
+}
+
+TEST(SizeSpec, MayNameTheWidth) {
+  EXPECT_NEAR(made(with_field("f", WidthSpec{}))->function()({2, 2}), 4, 0.2);
+}
+
+TEST(SizeSpec, LeavesRoomForCellsAcross) {
+  SizeSpec spec;
+  spec.cells_across = 8;
+  const auto size = made(spec);
+  EXPECT_NEAR(size->function()({2, 2}), std::sqrt(3) / 4 * 0.25, 0.03);
+  EXPECT_FALSE(size->function().constant());
+  spec.cells_across = -1;
+  EXPECT_EQ(check_size(spec)->field, "size.cells_across");
+}
+
 TEST(SizeSpec, ThatIsNoSizeNamesItsField) {
   for (const double value : {0.0, -1.0, std::nan(""), 1 / 0.0}) {
-    const auto size = make_size(value);
-    ASSERT_FALSE(size) << value;
-    EXPECT_EQ(size.error().code, ErrorCode::kBadSizeValue);
-    EXPECT_EQ(size.error().field, "size.constant");
+    const auto error = check_size(value);
+    ASSERT_TRUE(error) << value;
+    EXPECT_EQ(error->code, ErrorCode::kBadSizeValue);
+    EXPECT_EQ(error->field, "size.constant");
   }
-  EXPECT_EQ(make_size("0").error().field, "size.expression");
-  EXPECT_EQ(make_size("x +").error().code, ErrorCode::kExpressionSyntax);
+  EXPECT_EQ(check_size("0")->field, "size.expression");
+  EXPECT_EQ(check_size("x +")->code, ErrorCode::kExpressionSyntax);
   Raster bad = kRaster;
   bad.values[1] = 0;
   const SizeSpec spec = bad;
-  EXPECT_EQ(make_size(spec).error().field, "size.raster.values[1]");
+  EXPECT_EQ(made(spec).error().field, "size.raster.values[1]");
+}
+
+TEST(SizeSpec, NamesTheFieldThatIsWrong) {
+  const auto error = [](const DistanceSpec& distance) {
+    return made(with_field("f", distance)).error();
+  };
+  EXPECT_EQ(error({.markers = {8}}).field, "size.fields[0].distance.markers");
+  EXPECT_EQ(error({.markers = {7}, .points = {{0, 0}}}).field, "size.fields[0].distance.markers");
+  EXPECT_EQ(error({.points = {{0, 0}, {0, std::nan("")}}}).field,
+            "size.fields[0].distance.points[1].y");
+  EXPECT_EQ(error({.points = {{1e51, 0}}}).field, "size.fields[0].distance.points[0].x");
+  EXPECT_EQ(error({.points = {{0, 0}}, .segments = {{0, 1}}}).field,
+            "size.fields[0].distance.segments[0].b");
+  EXPECT_EQ(error({.segments = {{3, 1}}}).field, "size.fields[0].distance.segments[0].a");
+  SizeSpec many = "x + 1";
+  for (std::size_t i = 0; i <= Expression::kMaxFields; ++i)
+    many.fields.push_back({"f" + std::to_string(i), WidthSpec{}});
+  EXPECT_EQ(check_size(many)->field, "size.fields");
+  EXPECT_EQ(check_size(with_field("g", WidthSpec{}))->field, "size.expression");
 }
 
 // Memory is asked for before it is taken, so the promise must cover it.
 TEST(SizeSpec, TakesNoMoreMemoryThanItSays) {
   for (const std::uint32_t side : {1u, 4u, 5u, 33u, 1000u}) {
     const SizeSpec spec = Raster{{0, 0}, 1, 1, side, side, std::vector<double>(side * side, 1)};
-    const auto size = *make_size(spec);
+    const auto size = made(spec);
     const std::uint64_t held = sizeof(double) * side * side;
     EXPECT_LE(size->bytes() - held, bytes_to_make(spec)) << side;
   }

@@ -45,6 +45,12 @@ void set_raster(v1::GenerateMeshRequest& request, std::uint32_t columns, std::ui
   raster.mutable_values()->Resize(static_cast<int>(columns * rows), 1);
 }
 
+v1::NamedField& add_field(v1::GenerateMeshRequest& request) {
+  v1::NamedField& field = *request.mutable_size()->add_fields();
+  field.set_name("f" + std::to_string(request.size().fields_size()));
+  return field;
+}
+
 EngineFn must_not_run() {
   return [](const auto&, ChunkSink& sink, auto&) {
     ADD_FAILURE() << "the engine ran";
@@ -121,6 +127,36 @@ INSTANTIATE_TEST_SUITE_P(
              "size.expression", "71 bytes; this server's limit is 70"},
         Case{"Raster", [](Request& r) { set_raster(r, 11, 6); }, "size.raster.values",
              "66 values; this server's limit is 65"},
+        Case{"Fields",
+             [](Request& r) {
+               for (int i = 0; i < 33; ++i) add_field(r).mutable_width();
+             },
+             "size.fields", "33 fields; this server's limit is 32"},
+        Case{"FieldPoints",
+             [](Request& r) {
+               add_field(r).mutable_distance()->mutable_points()->Resize(102, 0);
+               v1::FieldMesh& mesh = *add_field(r).mutable_mesh();
+               mesh.mutable_vertices()->Resize(100, 0);
+               mesh.mutable_values()->Resize(50, 0);
+               mesh.mutable_triangles()->Resize(3, 0);
+             },
+             "size.fields", "101 points; this server's limit is 100"},
+        Case{
+            "FieldSegments",
+            [](Request& r) { add_field(r).mutable_distance()->mutable_segments()->Resize(182, 0); },
+            "size.fields", "91 segments; this server's limit is 90"},
+        Case{"FieldMarkers",
+             [](Request& r) { add_field(r).mutable_distance()->mutable_markers()->Resize(91, 0); },
+             "size.fields", "91 markers; this server's limit is 90"},
+        Case{"FieldTriangles",
+             [](Request& r) { add_field(r).mutable_mesh()->mutable_triangles()->Resize(603, 0); },
+             "size.fields", "201 triangles; this server's limit is 200"},
+        Case{"FieldValues",
+             [](Request& r) {
+               for (int i = 0; i < 2; ++i)
+                 add_field(r).mutable_raster()->mutable_values()->Resize(33, 0);
+             },
+             "size.fields", "66 raster values; this server's limit is 65"},
         Case{"Triangles", [](Request& r) { r.mutable_budget()->set_max_triangles(61); },
              "budget.max_triangles", "61 triangles; this server's limit is 60"},
         Case{"Bytes", [](Request& r) { r.mutable_budget()->set_max_bytes(51); }, "budget.max_bytes",
@@ -131,31 +167,56 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Refusal, IllShaped,
-    ::testing::Values(Case{"OddPoints", [](Request& r) { r.mutable_domain()->add_points(1); },
-                           "domain.points", "9 numbers"},
-                      Case{"OddSegments", [](Request& r) { r.mutable_domain()->add_segments(1); },
-                           "domain.segments", "9 numbers"},
-                      Case{"OddHoles", [](Request& r) { r.mutable_domain()->add_holes(1); },
-                           "domain.holes", "1 numbers"},
-                      Case{"Markers",
-                           [](Request& r) { r.mutable_domain()->add_segment_markers(1); },
-                           "domain.segment_markers", "5 markers for 4 segments"},
-                      Case{"Raster",
-                           [](Request& r) {
-                             set_raster(r, 3, 2);
-                             r.mutable_size()->mutable_raster()->add_values(1);
-                           },
-                           "size.raster.values", "7 values for 3 columns and 2 rows"},
-                      Case{"EmptyRaster", [](Request& r) { set_raster(r, 0, 0); },
-                           "size.raster.values", "0 values for 0 columns and 0 rows"},
-                      // 2^32 nodes.
-                      Case{"HugeRaster",
-                           [](Request& r) {
-                             set_raster(r, 0, 0);
-                             r.mutable_size()->mutable_raster()->set_columns(1u << 16);
-                             r.mutable_size()->mutable_raster()->set_rows(1u << 16);
-                           },
-                           "size.raster.values", "0 values for 65536 columns"}),
+    ::testing::Values(
+        Case{"OddPoints", [](Request& r) { r.mutable_domain()->add_points(1); }, "domain.points",
+             "9 numbers"},
+        Case{"OddSegments", [](Request& r) { r.mutable_domain()->add_segments(1); },
+             "domain.segments", "9 numbers"},
+        Case{"OddHoles", [](Request& r) { r.mutable_domain()->add_holes(1); }, "domain.holes",
+             "1 numbers"},
+        Case{"Markers", [](Request& r) { r.mutable_domain()->add_segment_markers(1); },
+             "domain.segment_markers", "5 markers for 4 segments"},
+        Case{"Raster",
+             [](Request& r) {
+               set_raster(r, 3, 2);
+               r.mutable_size()->mutable_raster()->add_values(1);
+             },
+             "size.raster.values", "7 values for 3 columns and 2 rows"},
+        Case{"FieldRaster",
+             [](Request& r) {
+               v1::FieldRaster& raster = *add_field(r).mutable_raster();
+               raster.set_dx(1);
+               raster.set_dy(1);
+               raster.set_columns(3);
+               raster.set_rows(2);
+             },
+             "size.fields[0].raster.values", "0 values for 3 columns and 2 rows"},
+        Case{"DistancePoints", [](Request& r) { add_field(r).mutable_distance()->add_points(1); },
+             "size.fields[0].distance.points", "1 numbers; coordinates come in pairs"},
+        Case{"DistanceSegments",
+             [](Request& r) { add_field(r).mutable_distance()->add_segments(1); },
+             "size.fields[0].distance.segments", "point indices come in pairs"},
+        Case{"FieldTriangles", [](Request& r) { add_field(r).mutable_mesh()->add_triangles(1); },
+             "size.fields[0].mesh.triangles", "vertex indices come in threes"},
+        Case{"EmptyFieldMesh", [](Request& r) { add_field(r).mutable_mesh(); },
+             "size.fields[0].mesh.triangles", "is empty"},
+        Case{"FieldMeshValues",
+             [](Request& r) {
+               v1::FieldMesh& mesh = *add_field(r).mutable_mesh();
+               mesh.mutable_vertices()->Resize(6, 0);
+               mesh.mutable_triangles()->Resize(3, 0);
+             },
+             "size.fields[0].mesh.values", "0 values for 3 vertices"},
+        Case{"EmptyRaster", [](Request& r) { set_raster(r, 0, 0); }, "size.raster.values",
+             "0 values for 0 columns and 0 rows"},
+        // 2^32 nodes.
+        Case{"HugeRaster",
+             [](Request& r) {
+               set_raster(r, 0, 0);
+               r.mutable_size()->mutable_raster()->set_columns(1u << 16);
+               r.mutable_size()->mutable_raster()->set_rows(1u << 16);
+             },
+             "size.raster.values", "0 values for 65536 columns"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -170,6 +231,21 @@ INSTANTIATE_TEST_SUITE_P(
                r.mutable_domain()->add_regions()->set_max_area(0);
              },
              "domain.regions[1].max_area", "is 0"},
+        Case{"Measure",
+             [](Request& r) { r.mutable_size()->set_measure(static_cast<v1::Measure>(9)); },
+             "size.measure", "9"},
+        Case{"CellsAcross", [](Request& r) { r.mutable_size()->set_cells_across(-1); },
+             "size.cells_across", "is -1"},
+        Case{"FieldOfNoKind", [](Request& r) { add_field(r); }, "size.fields[0]", "of no kind"},
+        Case{"FieldName",
+             [](Request& r) {
+               add_field(r).mutable_width();
+               add_field(r).mutable_width();
+               r.mutable_size()->mutable_fields(1)->set_name("pi");
+             },
+             "size.fields[1].name", "means something else"},
+        Case{"FieldRasterStep", [](Request& r) { add_field(r).mutable_raster()->set_dx(-1); },
+             "size.fields[0].raster.dx", "is -1"},
         Case{"RasterOrigin",
              [](Request& r) {
                set_raster(r, 2, 2);

@@ -288,7 +288,7 @@ TEST(JobService, ListsJobsYoungestFirstInPages) {
 
 TEST(JobService, ListsJobsOfAState) {
   JobServer server([](const MeshRequest& request, ChunkSink& sink, auto&) -> Result<Summary> {
-    if (std::get<double>(request.size) == 1)
+    if (std::get<double>(request.size.value) == 1)
       return weft::fail(ErrorCode::kEmptyDomain, "domain", "empty");
     return send_chunks(sink, 1);
   });

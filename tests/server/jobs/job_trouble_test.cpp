@@ -166,7 +166,7 @@ TEST(JobTrouble, JobsThatEndOrAreCancelledLoseNoLease) {
   Event begun;
   JobServer server(
       [&](const MeshRequest& request, ChunkSink& sink, ExecutionContext& context) {
-        if (std::get<double>(request.size) != 1) return send_chunks(sink, 1);
+        if (std::get<double>(request.size.value) != 1) return send_chunks(sink, 1);
         context.enter(Stage::kRefine);
         begun.set();
         return work_until_stopped(context);
@@ -201,7 +201,7 @@ TEST(JobTrouble, AServerThatStopsPutsItsJobsBack) {
 TEST(JobTrouble, AServerThatStopsEndsWatchesAndSendsMeshesToTheirEnd) {
   Event begun;
   JobServer server([&](const MeshRequest& request, ChunkSink& sink, ExecutionContext& context) {
-    if (std::get<double>(request.size) == 1) return send_chunks(sink, 16, kMaxChunkBytes);
+    if (std::get<double>(request.size.value) == 1) return send_chunks(sink, 16, kMaxChunkBytes);
     begun.set();
     return work_until_stopped(context);
   });

@@ -32,7 +32,7 @@ TEST(LightSlot, IsLeftByAJobThatTurnsOutHeavy) {
   JobServer server(
       [&](const MeshRequest& request, ChunkSink& sink,
           ExecutionContext& context) -> Result<Summary> {
-        if (std::get<double>(request.size) == kHeavySize) {
+        if (std::get<double>(request.size.value) == kHeavySize) {
           heavy_runs.set();
           EXPECT_TRUE(heavy_may_end.wait());
           return send_chunks(sink, 1);

@@ -25,7 +25,7 @@ struct Scripted {
 
   Result<Summary> operator()(const MeshRequest& request, ChunkSink& sink,
                              ExecutionContext& context) {
-    if (std::get<double>(request.size) == kHeavySize) {
+    if (std::get<double>(request.size.value) == kHeavySize) {
       heavy_runs.set();
       EXPECT_TRUE(heavy_may_end.wait());
     }

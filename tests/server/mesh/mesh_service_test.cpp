@@ -291,7 +291,7 @@ TEST(GenerateMesh, HandsTheWholeRequestToTheEngine) {
     EXPECT_EQ(got.pslg.regions.at(0).id, -7);
     EXPECT_EQ(got.pslg.regions.at(0).max_area, 0.25);
     EXPECT_EQ(got.pslg.fill, Fill::kEvenOdd);
-    EXPECT_EQ(std::get<std::string>(got.size), "1 + x");
+    EXPECT_EQ(std::get<std::string>(got.size.value), "1 + x");
     EXPECT_EQ(got.min_angle_deg, 0);
     EXPECT_EQ(got.min_edge, 1e-3);
     EXPECT_EQ(got.placement, Placement::kCircumcentre);

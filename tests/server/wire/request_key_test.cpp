@@ -33,6 +33,8 @@ void change(Message& message, const FieldDescriptor& field) {
     case FieldDescriptor::CPPTYPE_DOUBLE:
       return many ? reflection.AddDouble(&message, &field, 7)
                   : reflection.SetDouble(&message, &field, 7);
+    case FieldDescriptor::CPPTYPE_FLOAT:
+      return reflection.AddFloat(&message, &field, 7);
     case FieldDescriptor::CPPTYPE_BOOL:
       return reflection.SetBool(&message, &field, true);
     case FieldDescriptor::CPPTYPE_ENUM:
@@ -121,6 +123,8 @@ TEST(MeshKey, IsTheSameForADefaultThatIsWrittenOut) {
   request.mutable_quality()->set_placement(v1::PLACEMENT_LATTICE);
   request.mutable_domain()->set_fill(v1::FILL_SEEDS);
   request.mutable_domain()->set_snap(-0.0);
+  request.mutable_size()->set_measure(v1::MEASURE_AREA);
+  request.mutable_size()->set_cells_across(-0.0);
   for (int i = 0; i < 4; ++i) request.mutable_domain()->add_segment_markers(0);
   EXPECT_EQ(mesh_key(request), key);
 }
@@ -151,6 +155,9 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"Size", [](auto& r) { r.mutable_size()->set_constant(0.2); }},
         Change{"Expression", [](auto& r) { r.mutable_size()->set_expression("0.1"); }},
         Change{"Raster", [](auto& r) { r.mutable_size()->mutable_raster()->add_values(1); }},
+        Change{"Measure", [](auto& r) { r.mutable_size()->set_measure(v1::MEASURE_EDGE); }},
+        Change{"CellsAcross", [](auto& r) { r.mutable_size()->set_cells_across(3); }},
+        Change{"Field", [](auto& r) { r.mutable_size()->add_fields()->mutable_width(); }},
         Change{"Angle", [](auto& r) { r.mutable_quality()->set_min_angle_deg(21); }},
         Change{"Snap", [](auto& r) { r.mutable_domain()->set_snap(1e-3); }},
         Change{"AllowUnrefined", [](auto& r) { r.set_allow_unrefined(true); }},

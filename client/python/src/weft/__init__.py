@@ -21,6 +21,7 @@ from .errors import (AlreadyExists, BoundsNotMet, Cancelled, DamagedStream, Dead
                      DomainError, FailedPrecondition, FieldViolation, InvalidRequest, LimitExceeded,
                      LocalServerError, MeshFileError, MissingPackage, NotFound, ServerError,
                      Unauthenticated, Unavailable, WeftError)
+from .fields import Field, distance, on_mesh, raster, width
 from .local import LocalServer, local
 from .mesh import Mesh
 from .quality import Quality
@@ -30,10 +31,10 @@ from .size import Raster, Size
 
 __all__ = [
     "Accepted", "AlreadyExists", "BoundsNotMet", "Cancelled", "Chunk", "Client", "DamagedStream",
-    "DeadlineExceeded", "Domain", "DomainError", "DomainLike", "FailedPrecondition",
+    "DeadlineExceeded", "Domain", "DomainError", "DomainLike", "FailedPrecondition", "Field",
     "FieldViolation", "InvalidRequest", "Job", "JobState", "LimitExceeded", "LocalServer",
     "LocalServerError", "Merging", "Mesh", "MeshFileError", "MeshOptions", "MeshStream",
     "MissingPackage", "NotFound", "Progress", "Quality", "Raster", "Region", "ServerError",
     "ServerInfo", "ServerLimits", "Size", "Summary", "TLS", "Timings", "Unauthenticated",
-    "Unavailable", "Unrefined", "WeftError", "aio", "local",
+    "Unavailable", "Unrefined", "WeftError", "aio", "distance", "local", "on_mesh", "raster", "width",
 ]

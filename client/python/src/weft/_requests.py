@@ -4,17 +4,28 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any, Literal, TypedDict
 
 from . import _protocol
 from .domain import Domain
 from .errors import DomainError
+from .fields import Field
 from .size import Raster, Size
 
 
 class MeshOptions(TypedDict, total=False):
     """What else a mesh may be asked for; the defaults are the server's."""
 
+    edge: Size
+    """The length of edges, instead of `size`: triangles are at most as large as the equilateral one
+    with this edge at their centroid. A number, an expression in x, y and names of `fields`, a
+    Raster or a function of lengths."""
+    fields: Mapping[str, Field]
+    """What `edge` or `size` may name besides x and y: see distance, raster, on_mesh and width."""
+    cells_across: float
+    """How many edges fit across the domain at least, about, where it is narrow: no edge is wanted
+    longer than the local width divided by it. Default: any number."""
     min_edge: float
     """No edge shorter than this is made, in the unit of the points."""
     placement: Literal["lattice", "circumcentre"]
@@ -45,6 +56,7 @@ class MeshOptions(TypedDict, total=False):
 
 _Request = _protocol.message("weft.v1.GenerateMeshRequest")
 _PLACEMENTS = {"lattice": 1, "circumcentre": 2}
+_EDGE = 2
 _FILLS = {"seeds": 1, "even-odd": 2}
 
 
@@ -56,7 +68,16 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
                         f"{', '.join(MeshOptions.__annotations__)}")
     request = _Request()
     _fill_domain(domain, request.domain)
+    if size is not None and options.get("edge") is not None:
+        raise ValueError("size and edge exclude each other")
     _fill_size(size, domain, request.size)
+    if options.get("edge") is not None:
+        _fill_size(options["edge"], domain, request.size)
+        request.size.measure = _EDGE
+    if "cells_across" in options:
+        request.size.cells_across = options["cells_across"]
+    for name, field in options.get("fields", {}).items():
+        field._fill(request.size.fields.add(name=name))
     request.quality.min_angle_deg = min_angle
     if "min_edge" in options:
         request.quality.min_edge = options["min_edge"]

@@ -15,7 +15,7 @@ from .errors import DomainError
 Floats = npt.NDArray[np.float64]
 Size = Union[float, str, "Raster", Callable[[Floats, Floats], npt.ArrayLike], None]
 """Upper bound on the area of a triangle at its centroid, in squared units of the domain: a number;
-an expression in x and y; a Raster; a function, which `Raster.sample` samples over the domain; or
+an expression in x, y and names of fields; a Raster; a function, which `Raster.sample` samples over the domain; or
 None for no bound."""
 
 

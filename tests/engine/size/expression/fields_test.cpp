@@ -161,7 +161,9 @@ TEST(FieldsOfExpressions, WithoutASlopeSaySo) {
 
 TEST(FieldsOfExpressions, AreJudgedByNameAlone) {
   const std::vector<std::string> names = {"coast", "depth"};
-  EXPECT_THAT(*Expression::check("3 + slope(depth)", names), ElementsAre(false, true));
+  EXPECT_THAT(Expression::check("3 + slope(depth)", names)->used, ElementsAre(false, true));
+  EXPECT_EQ(Expression::check("3 + 4", names)->constant, 7);
+  EXPECT_FALSE(Expression::check("depth", names)->constant);
   EXPECT_FALSE(Expression::check("3 + width", names));
 }
 

@@ -87,22 +87,29 @@ TEST(RasterField, IsUndefinedOutside) {
   const RasterField field = made(kSmall);
   const auto slope = field.slope();
   for (const Point p :
-       {Point{9.99, 22}, Point{12.01, 22}, Point{11, 19.9}, Point{11, 24.1}, Point{1e300, 22},
+       {Point{8.99, 22}, Point{13.01, 22}, Point{11, 17.9}, Point{11, 26.1}, Point{1e300, 22},
         Point{-HUGE_VAL, 22}, Point{std::nan(""), 22}, Point{11, std::nan("")}}) {
     EXPECT_TRUE(std::isnan(field(p))) << p.x << " " << p.y;
     EXPECT_TRUE(std::isnan((*slope)(p))) << p.x << " " << p.y;
   }
-  EXPECT_FALSE(field.bounds({10, 20, 12, 24}).may_be_nan);
-  EXPECT_TRUE(field.bounds({10, 20, 12.1, 24}).may_be_nan);
-  EXPECT_TRUE(field.bounds({9.9, 20, 12, 24}).may_be_nan);
-  EXPECT_TRUE(field.bounds({10, 19.9, 12, 24}).may_be_nan);
-  EXPECT_TRUE(field.bounds({10, 20, 12, 24.1}).may_be_nan);
+  EXPECT_FALSE(field.bounds({9, 18, 13, 26}).may_be_nan);
+  EXPECT_TRUE(field.bounds({9, 18, 13.1, 26}).may_be_nan);
+  EXPECT_TRUE(field.bounds({8.9, 18, 13, 26}).may_be_nan);
+  EXPECT_TRUE(field.bounds({9, 17.9, 13, 26}).may_be_nan);
+  EXPECT_TRUE(field.bounds({9, 18, 13, 26.1}).may_be_nan);
+}
+
+TEST(RasterField, HasHalfACellBesideTheGridTheValueOfTheNearestPoint) {
+  const RasterField field = made(kSmall);
+  EXPECT_EQ(field({9, 18}), field({10, 20}));
+  EXPECT_EQ(field({12.9, 22}), field({12, 22}));
+  EXPECT_EQ(field({11, 26}), field({11, 24}));
 }
 
 TEST(RasterField, EndsWhereARoundedCornerOfItsDomainMayBe) {
-  const RasterField field = made({{-1.1, 0}, 0.1, 1, 3, 2, std::vector<float>(6, 7)});
-  EXPECT_GT((-0.9 - -1.1) / 0.1, 2);  // by rounding
-  EXPECT_EQ(field({-0.9, 0.5}), 7);
+  const RasterField field = made({{-1.05, 0}, 0.1, 1, 3, 2, std::vector<float>(6, 7)});
+  EXPECT_EQ(field({-0.8, 0.5}), 7);
+  EXPECT_EQ(field({std::nextafter(-0.8, 0), 0.5}), 7);
 }
 
 TEST(RasterField, IsUndefinedInEveryCellWithANodeWithoutData) {
@@ -129,7 +136,7 @@ TEST(RasterField, WithoutAnyDataIsUndefinedEverywhere) {
   EXPECT_TRUE(std::isnan(field({3, 3})));
   for (const Box& box : {Box{1, 1, 2, 2}, Box{0, 0, 49, 49}, Box{90, 90, 99, 99}}) {
     EXPECT_TRUE(field.bounds(box).may_be_nan);
-    EXPECT_LE(field.bounds(box).lo, field.bounds(box).hi);
+    EXPECT_GT(field.bounds(box).lo, field.bounds(box).hi) << "no value at all";
     EXPECT_TRUE(field.slope()->bounds(box).may_be_nan);
   }
 }
@@ -138,11 +145,11 @@ TEST(RasterField, OfOneRowOrColumnOrNodeIsDefinedOnIt) {
   const RasterField row = made({{0, 5}, 1, 1, 3, 1, {1, 2, 4}});
   EXPECT_EQ(row({1.5, 5}), 3);
   EXPECT_EQ((*row.slope())({1.5, 5}), 2);
-  EXPECT_TRUE(std::isnan(row({1.5, 5.1})));
+  EXPECT_TRUE(std::isnan(row({1.5, 5.6})));
   const RasterField column = made({{0, 5}, 1, 1, 1, 3, {1, 2, 4}});
   EXPECT_EQ(column({0, 6.5}), 3);
   EXPECT_EQ((*column.slope())({0, 6.5}), 2);
-  EXPECT_TRUE(std::isnan(column({0.1, 6.5})));
+  EXPECT_TRUE(std::isnan(column({0.6, 6.5})));
   const RasterField node = made({{0, 5}, 1, 1, 1, 1, {-3}});
   EXPECT_EQ(node({0, 5}), -3);
   EXPECT_EQ((*node.slope())({0, 5}), 0);

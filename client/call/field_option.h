@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// A field that a size expression may name, as a caller says it: NAME=KIND.
+//
+//   auto field = FieldOption::parse("coast=distance:marker=2", "");
+//   if (auto ok = fill(*field, domain, *size.add_fields()); !ok) return tl::unexpected(ok.error());
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <tl/expected.hpp>
+#include <variant>
+#include <vector>
+
+#include "client/base/error.h"
+#include "client/formats/domain.h"
+#include "client/geo/domain_projection.h"
+#include "weft/v1/mesh_service.pb.h"
+
+namespace weft::client {
+
+struct FieldOption {
+  // The distance to segments of the domain: to all, or to those with one of the markers.
+  struct Distance {
+    std::vector<std::int32_t> markers;
+  };
+  // The distance to the points, lines and borders of polygons of a file.
+  struct DistanceToFile {
+    std::filesystem::path file;
+  };
+  // The values of a raster's band; if it is empty, of the only one.
+  struct Raster {
+    std::filesystem::path file;
+    std::string band;
+  };
+  // The local width of the domain.
+  struct Width {};
+
+  // `text` is NAME=distance, NAME=distance:marker=1,2, NAME=distance:FILE, NAME=width or
+  // NAME=FILE[:BAND]; a relative path is below `folder`. The error is a text that says what is
+  // wrong.
+  static tl::expected<FieldOption, std::string> parse(const std::string& text,
+                                                      const std::filesystem::path& folder);
+
+  std::string name;
+  std::variant<Distance, DistanceToFile, Raster, Width> kind;
+};
+
+// Reads the field's file, if it has one; of a raster what covers the domain. With a projection, the
+// domain is in its metres, and the file is projected: as what it is, for a raster that says so,
+// else from longitude and latitude. Returns sentences for the user. Errors: those of the file.
+Result<std::vector<std::string>> fill(const FieldOption& field, const Domain& domain,
+                                      const DomainProjection* projection, v1::NamedField& out);
+
+}  // namespace weft::client

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// A size that is given as the length of edges h: it bounds areas by that of an equilateral triangle
+// of side h.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/size/size_function.h"
+
+namespace weft {
+
+class EdgeSize final : public SizeFunction {
+ public:
+  // The area for an edge; negative for a negative one, so that it is found to be no size. Never
+  // falls as the edge grows, because products of numbers that are not negative do not.
+  static double area(double edge) { return 0.4330127018922193 * edge * std::fabs(edge); }
+  static double edge(double area) { return std::sqrt(area / 0.4330127018922193); }
+
+  // REQUIRES: `edge` outlives this.
+  explicit EdgeSize(const SizeFunction& edge) : edge_(&edge) {}
+
+  void evaluate(std::size_t n, const double* x, const double* y,
+                double* out) const noexcept override {
+    edge_->evaluate(n, x, y, out);
+    const std::size_t lanes = (n + kLanes - 1) / kLanes * kLanes;
+    for (std::size_t i = 0; i < lanes; ++i) out[i] = area(out[i]);
+  }
+  Interval bounds(const Box& box) const noexcept override {
+    const Interval edge = edge_->bounds(box);
+    return {area(edge.lo), area(edge.hi), edge.may_be_nan};
+  }
+  double steepness(const Box& box) const noexcept override {
+    const Interval edge = edge_->bounds(box);
+    const double longest = std::max(std::fabs(edge.lo), std::fabs(edge.hi));
+    const double steepness = edge_->steepness(box);
+    return steepness == 0 ? 0 : 2 * area(1) * longest * steepness * (1 + 0x1p-50);
+  }
+  std::optional<double> constant() const noexcept override {
+    const auto edge = edge_->constant();
+    return edge ? std::optional(area(*edge)) : std::nullopt;
+  }
+  std::vector<std::string> undefined_at(Point p) const override { return edge_->undefined_at(p); }
+  std::size_t operations() const noexcept override { return edge_->operations() + 3; }
+
+ private:
+  const SizeFunction* edge_;
+};
+
+}  // namespace weft
