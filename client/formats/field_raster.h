@@ -65,9 +65,10 @@ Result<FieldRaster> read_field_raster(const std::filesystem::path& path, const s
 
 // The same for a box in the plane of the coordinate system `crs`, as WKT, a PROJ string or a code
 // such as "EPSG:32618": square cells of about the raster's own resolution, and the bilinear value
-// of the raster at each node, of the pixels with data; NaN if the nearest has none. Poles and the
-// date line may lie in the box. A raster without a coordinate system is taken for EPSG:4326, with a
-// warning, if its coordinates look like degrees; else it is an error. Needs GDAL for every format.
+// of the raster at each node, of the pixels with data; NaN if the nearest has none, or is two
+// pixels away. Poles and the date line may lie in the box. A raster without a coordinate system is
+// taken for EPSG:4326, with a warning, if its coordinates look like degrees; else it is an error.
+// Needs GDAL for every format.
 Result<FieldRaster> read_field_raster_projected(const std::filesystem::path& path,
                                                 const std::string& band, const RasterBox& box,
                                                 const std::string& crs,

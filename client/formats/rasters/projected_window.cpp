@@ -100,7 +100,9 @@ std::optional<double> cell_size(const PlaneToRaster& from_plane, const RasterBox
   return *middle;
 }
 
-// Of the nodes with data, if the nearest has any; half a cell around the nodes is as the border.
+// Of the nodes with data, if the nearest has any. Around the nodes it is as at the border, so far
+// that the corners of the plane's cells in which the raster ends are defined: a field is undefined
+// in a cell with a corner that is, and a raster that just covers the domain must do.
 class Bilinear {
  public:
   Bilinear(const FieldRaster& raster, double turn)
@@ -110,7 +112,9 @@ class Bilinear {
     double u = (x - raster_.x) / raster_.dx;
     double v = (y - raster_.y) / raster_.dy;
     if (period_ > 0) u -= period_ * std::floor((u + 0.5) / period_);
-    if (!(u >= -0.5 && u <= raster_.columns - 0.5 && v >= -0.5 && v <= raster_.rows - 0.5))
+    constexpr double kBeside = 2;  // cells
+    if (!(u >= -kBeside && u <= raster_.columns - 1 + kBeside && v >= -kBeside &&
+          v <= raster_.rows - 1 + kBeside))
       return kNoData;
     u = std::clamp(u, 0.0, raster_.columns - 1.0);
     v = std::clamp(v, 0.0, raster_.rows - 1.0);
