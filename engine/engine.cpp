@@ -72,7 +72,7 @@ class Job {
 
   Result<Summary> run() {
     if (auto error = check_options(request_)) return tl::unexpected(*error);
-    if (auto error = context_.need_bytes(bytes_to_make(request_.size)))
+    if (auto error = context_.need_bytes(bytes_to_make(request_.size, request_.pslg)))
       return tl::unexpected(*error);
     if (auto error = check_size(request_.size)) return tl::unexpected(*error);
     if (Trace* const trace = context_.trace()) trace->start();

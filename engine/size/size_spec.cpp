@@ -40,6 +40,20 @@ std::vector<std::string> names_of(const std::vector<FieldSpec>& fields) {
   return names;
 }
 
+// The width takes long to make, and a second one would be the same.
+std::optional<Error> check_widths(const std::vector<FieldSpec>& fields) {
+  std::optional<std::size_t> first;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (!std::holds_alternative<WidthSpec>(fields[i].kind)) continue;
+    const std::string field = "size.fields[" + std::to_string(i) + "]";
+    if (first)
+      return Error{ErrorCode::kBadOption, field,
+                   field + " is the width, as size.fields[" + std::to_string(*first) + "] is"};
+    first = i;
+  }
+  return std::nullopt;
+}
+
 // What a distance is to.
 class Lines {
  public:
@@ -133,6 +147,28 @@ struct FieldMaker {
   AnyField operator()(const WidthSpec&) const { return on_heap(WidthField::make(domain, context)); }
 };
 
+// Bytes of memory that a field takes at most while it is made, copies of arrays included.
+struct BytesOfField {
+  const Pslg& pslg;
+
+  std::uint64_t operator()(const DistanceSpec& spec) const {
+    const std::size_t lines = spec.points.empty()     ? pslg.segments.size()
+                              : spec.segments.empty() ? spec.points.size()
+                                                      : spec.segments.size();
+    return DistanceField::kBytesPerLine * lines + DistanceField::kBytesBesides;
+  }
+  std::uint64_t operator()(const FieldRaster& raster) const {
+    return sizeof(float) * raster.values.size() +
+           RasterField::bytes_to_make(raster.columns, raster.rows);
+  }
+  std::uint64_t operator()(const FieldMesh& mesh) const {
+    return sizeof(Point) * mesh.vertices.size() + sizeof(double) * mesh.values.size() +
+           sizeof(mesh.triangles[0]) * mesh.triangles.size() +
+           MeshField::bytes_to_make(mesh.triangles.size());
+  }
+  std::uint64_t operator()(const WidthSpec&) const { return 0; }
+};
+
 // Makes the function of the value that a request gives.
 struct Maker {
   const std::vector<NamedField>& fields;
@@ -152,6 +188,16 @@ struct Maker {
     return std::make_unique<RasterSize>(std::move(*size));
   }
 };
+
+// What a job holds, its fields included, must be within its budget, and granted.
+std::optional<Error> check_held(std::uint64_t bytes, const ExecutionContext& context) {
+  const std::uint64_t limit = context.budget().max_bytes;
+  if (bytes > limit)
+    return Error{ErrorCode::kBudgetExceeded, "budget.max_bytes",
+                 "the fields of the size take " + std::to_string(bytes) +
+                     " bytes with the domain, the limit is " + std::to_string(limit)};
+  return context.need_bytes(bytes);
+}
 
 Result<Size> with_measure(const SizeSpec::Value& value, Measure measure,
                           const std::vector<NamedField>& fields) {
@@ -182,6 +228,7 @@ std::optional<Error> check_size(const SizeSpec& spec) {
                      std::to_string(Expression::kMaxFields)};
   const std::vector<std::string> names = names_of(spec.fields);
   if (auto error = Expression::check_names(names)) return error;
+  if (auto error = check_widths(spec.fields)) return error;
   if (const auto* const value = std::get_if<double>(&spec.value))
     return check_constant(*value, "size.constant");
   const auto* const source = std::get_if<std::string>(&spec.value);
@@ -197,12 +244,15 @@ Result<Size> make_size(const SizeSpec& spec, const Pslg& pslg, const Domain& dom
   if (auto error = check_size(spec)) return tl::unexpected(*error);
   std::vector<std::unique_ptr<const Field>> fields;
   std::vector<NamedField> named;
+  std::uint64_t held = domain.bytes();
   for (std::size_t i = 0; i < spec.fields.size(); ++i) {
     const std::string path = "size.fields[" + std::to_string(i) + "]";
     auto field = std::visit(FieldMaker{pslg, domain, context, path}, spec.fields[i].kind);
     if (!field) return tl::unexpected(std::move(field).error());
     fields.push_back(std::move(*field));
     named.push_back({spec.fields[i].name, fields.back().get()});
+    held += fields.back()->bytes();
+    if (auto error = check_held(held, context)) return tl::unexpected(*error);
   }
   auto size = with_measure(spec.value, spec.measure, named);
   if (!size) return size;
@@ -219,9 +269,11 @@ Result<Size> make_size(const SizeSpec::Value& value, Measure measure) {
   return with_measure(value, measure, {});
 }
 
-std::uint64_t bytes_to_make(const SizeSpec& spec) {
+std::uint64_t bytes_to_make(const SizeSpec& spec, const Pslg& pslg) {
   const auto* const raster = std::get_if<Raster>(&spec.value);
-  return raster != nullptr ? RasterSize::kBytesPerValue * raster->values.size() : 0;
+  std::uint64_t bytes = raster != nullptr ? RasterSize::kBytesPerValue * raster->values.size() : 0;
+  for (const FieldSpec& field : spec.fields) bytes += std::visit(BytesOfField{pslg}, field.kind);
+  return bytes;
 }
 
 }  // namespace weft

@@ -85,23 +85,23 @@ class Size {
 };
 
 // Judges what needs neither the domain nor the values of arrays: kBadSizeValue for a constant that
-// is not positive and finite, kBadOption for names of fields and cells_across, and the errors of
-// Expression::check. The field is "size.constant", "size.expression",
+// is not positive and finite, kBadOption for names of fields, a second width and cells_across, and
+// the errors of Expression::check. The field is "size.constant", "size.expression",
 // "size.cells_across" or "size.fields[i].name".
 std::optional<Error> check_size(const SizeSpec& spec);
 
 // Computes in the context's arena. REQUIRES: a raster satisfies its own requirements (raster.h),
 // and `spec` outlives the result. Errors: those of check_size, those of the kinds for what is wrong
 // in their arrays ("size.raster.values[i]", "size.fields[i].mesh.values[j]"), kBadOption for a
-// marker that no segment has, and those of the context.
+// marker that no segment has, kBudgetExceeded, and those of the context.
 Result<Size> make_size(const SizeSpec& spec, const Pslg& pslg, const Domain& domain,
                        const ExecutionContext& context);
 
 // The same for a size that names no field: without the domain.
 Result<Size> make_size(const SizeSpec::Value& value, Measure measure);
 
-// Bytes of memory that make_size takes for `spec`, which itself is held already, before it asks the
-// context for more.
-std::uint64_t bytes_to_make(const SizeSpec& spec);
+// Bytes of memory that make_size takes at most for `spec`, which itself is held already: for all
+// but the width, which asks the context itself.
+std::uint64_t bytes_to_make(const SizeSpec& spec, const Pslg& pslg);
 
 }  // namespace weft

@@ -164,7 +164,10 @@ SizeSpec without_arrays(const v1::SizeField& size) {
   if (!size.has_raster()) spec.value = value_of(size);
   if (size.measure() == v1::MEASURE_EDGE) spec.measure = Measure::kEdge;
   spec.cells_across = size.cells_across();
-  for (const v1::NamedField& field : size.fields()) spec.fields.push_back({field.name(), {}});
+  for (const v1::NamedField& field : size.fields()) {
+    spec.fields.push_back({field.name(), {}});
+    if (field.has_width()) spec.fields.back().kind = WidthSpec{};
+  }
   return spec;
 }
 

@@ -132,9 +132,38 @@ TEST(SizeSpec, NamesTheFieldThatIsWrong) {
   EXPECT_EQ(error({.segments = {{3, 1}}}).field, "size.fields[0].distance.segments[0].a");
   SizeSpec many = "x + 1";
   for (std::size_t i = 0; i <= Expression::kMaxFields; ++i)
-    many.fields.push_back({"f" + std::to_string(i), WidthSpec{}});
+    many.fields.push_back({"f" + std::to_string(i), DistanceSpec{}});
   EXPECT_EQ(check_size(many)->field, "size.fields");
   EXPECT_EQ(check_size(with_field("g", WidthSpec{}))->field, "size.expression");
+  SizeSpec widths = with_field("f + g", WidthSpec{});
+  widths.fields.push_back({"g", WidthSpec{}});
+  EXPECT_EQ(check_size(widths)->field, "size.fields[1]");
+}
+
+TEST(SizeSpec, OfManyFieldsAsksForTheMemoryOfAll) {
+  struct Source final : MemorySource {
+    Result<std::uint64_t> grant(std::uint64_t needed, const ExecutionContext&) override {
+      most = std::max(most, needed);
+      return needed;
+    }
+    std::uint64_t most = 0;
+  } source;
+  SizeSpec spec = "x + 1";
+  const FieldRaster raster{{0, 0}, 0.01, 0.01, 500, 500, std::vector<float>(250'000, 1)};
+  for (int i = 0; i < 4; ++i) spec.fields.push_back({"r" + std::to_string(i), raster});
+  spec.fields.push_back({"d", DistanceSpec{.points = std::vector<Point>(20'000, {1, 1})}});
+  spec.fields.push_back({"w", WidthSpec{}});
+  const Pslg pslg = square();
+  ExecutionContext context;
+  const Domain domain = *triangulate(pslg, context);
+  context.set_memory(source, 0);
+  const auto size = make_size(spec, pslg, domain, context);
+  ASSERT_TRUE(size);
+  EXPECT_GE(source.most, size->bytes());
+  EXPECT_GE(bytes_to_make(spec, pslg) + (1u << 20), size->bytes());
+
+  const ExecutionContext poor(Budget{.max_bytes = 3'000'000});
+  EXPECT_EQ(make_size(spec, pslg, domain, poor).error().code, ErrorCode::kBudgetExceeded);
 }
 
 // Memory is asked for before it is taken, so the promise must cover it.
@@ -143,9 +172,9 @@ TEST(SizeSpec, TakesNoMoreMemoryThanItSays) {
     const SizeSpec spec = Raster{{0, 0}, 1, 1, side, side, std::vector<double>(side * side, 1)};
     const auto size = made(spec);
     const std::uint64_t held = sizeof(double) * side * side;
-    EXPECT_LE(size->bytes() - held, bytes_to_make(spec)) << side;
+    EXPECT_LE(size->bytes() - held, bytes_to_make(spec, {})) << side;
   }
-  EXPECT_EQ(bytes_to_make("x"), 0u);
+  EXPECT_EQ(bytes_to_make("x", {}), 0u);
 }
 
 }  // namespace
