@@ -29,9 +29,9 @@ namespace weft {
 // The distance to the nearest of: the points, or the segments between them; if there are none, the
 // segments of the PSLG that have one of the markers; without markers, all of its segments.
 struct DistanceSpec {
-  std::vector<std::int32_t> markers;
-  std::vector<Point> points;
-  std::vector<std::array<std::uint32_t, 2>> segments;  // indices of `points`
+  std::vector<std::int32_t> markers{};
+  std::vector<Point> points{};
+  std::vector<std::array<std::uint32_t, 2>> segments{};  // indices of `points`
 };
 
 // The local width of the domain.
