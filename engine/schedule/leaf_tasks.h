@@ -293,9 +293,9 @@ class LeafTasks {
     explicit Lease(LeafTasks& tasks) : tasks_(tasks) {
       const std::lock_guard lock(tasks_.mutex_);
       if (tasks_.idle_.empty()) {
-        tasks_.workers_.emplace_back(
+        tasks_.workers_.push_back(std::unique_ptr<Worker>(
             new Worker{{tasks_.refinement_, tasks_.quality_, tasks_.area_.again()},
-                       {tasks_.refinement_, tasks_.quality_, tasks_.area_.again()}});
+                       {tasks_.refinement_, tasks_.quality_, tasks_.area_.again()}}));
         tasks_.idle_.reserve(tasks_.workers_.size());  // so that giving back cannot fail
         tasks_.idle_.push_back(tasks_.workers_.back().get());
       }
