@@ -18,6 +18,7 @@ class ConstantSize : public SizeFunction {
     std::fill_n(out, n, value_);
   }
   Interval bounds(const Box&) const noexcept override { return {value_, value_, false}; }
+  double steepness(const Box&) const noexcept override { return 0; }
   std::optional<double> constant() const noexcept override { return value_; }
   std::size_t operations() const noexcept override { return 1; }
 

@@ -16,11 +16,6 @@ namespace weft {
 
 class EdgeSize final : public SizeFunction {
  public:
-  // The area for an edge; negative for a negative one, so that it is found to be no size. Never
-  // falls as the edge grows, because products of numbers that are not negative do not.
-  static double area(double edge) { return 0.4330127018922193 * edge * std::fabs(edge); }
-  static double edge(double area) { return std::sqrt(area / 0.4330127018922193); }
-
   // REQUIRES: `edge` outlives this.
   explicit EdgeSize(const SizeFunction& edge) : edge_(&edge) {}
 
@@ -28,21 +23,22 @@ class EdgeSize final : public SizeFunction {
                 double* out) const noexcept override {
     edge_->evaluate(n, x, y, out);
     const std::size_t lanes = (n + kLanes - 1) / kLanes * kLanes;
-    for (std::size_t i = 0; i < lanes; ++i) out[i] = area(out[i]);
+    for (std::size_t i = 0; i < lanes; ++i) out[i] = area_of_edge(out[i]);
   }
   Interval bounds(const Box& box) const noexcept override {
     const Interval edge = edge_->bounds(box);
-    return {area(edge.lo), area(edge.hi), edge.may_be_nan};
+    return {area_of_edge(edge.lo), area_of_edge(edge.hi), edge.may_be_nan};
   }
+  double edge_steepness(const Box& box) const noexcept override { return edge_->steepness(box); }
   double steepness(const Box& box) const noexcept override {
     const Interval edge = edge_->bounds(box);
     const double longest = std::max(std::fabs(edge.lo), std::fabs(edge.hi));
     const double steepness = edge_->steepness(box);
-    return steepness == 0 ? 0 : 2 * area(1) * longest * steepness * (1 + 0x1p-50);
+    return steepness == 0 ? 0 : 2 * area_of_edge(1) * longest * steepness * (1 + 0x1p-50);
   }
   std::optional<double> constant() const noexcept override {
     const auto edge = edge_->constant();
-    return edge ? std::optional(area(*edge)) : std::nullopt;
+    return edge ? std::optional(area_of_edge(*edge)) : std::nullopt;
   }
   std::vector<std::string> undefined_at(Point p) const override { return edge_->undefined_at(p); }
   std::size_t operations() const noexcept override { return edge_->operations() + 3; }

@@ -30,7 +30,9 @@ Result<RasterSize> RasterSize::make(const Raster& raster) {
   if (auto error = check_raster_values(raster.values, raster.columns))
     return tl::unexpected(*error);
   RasterSize size(raster);
-  if (auto error = size.grid_.build_bounds(ExecutionContext())) return tl::unexpected(*error);
+  const ExecutionContext unbounded;
+  if (auto error = size.grid_.build_bounds(unbounded)) return tl::unexpected(*error);
+  if (auto error = size.grid_.build_slope_bounds(unbounded)) return tl::unexpected(*error);
   return size;
 }
 

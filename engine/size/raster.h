@@ -44,14 +44,15 @@ class RasterSize final : public SizeFunction {
     grid_.evaluate(n, x, y, out);
   }
   Interval bounds(const Box& box) const noexcept override { return grid_.bounds(box); }
+  double steepness(const Box& box) const noexcept override { return grid_.slope_bounds(box).hi; }
   std::size_t operations() const noexcept override { return 64; }
 
   // Of the raster, too.
   std::size_t bytes() const noexcept override;
 
   // What `make` takes at most for each value, the raster itself not counted: reached by a raster of
-  // one row or one column. A square one takes half a byte.
-  static constexpr std::uint64_t kBytesPerValue = 8;
+  // one row or one column. A square one takes one byte.
+  static constexpr std::uint64_t kBytesPerValue = 16;
 
  private:
   explicit RasterSize(const Raster& raster);

@@ -3,6 +3,8 @@
 // centroid. Its bounds over boxes guide the refinement (size_map.h).
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +15,21 @@ namespace weft {
 
 class SizeFunction : public Field {
  public:
+  // The area of an equilateral triangle with an edge of this length; negative for a negative one,
+  // so that it is found to be no size. Never falls as the edge grows, because products of numbers
+  // that are not negative do not.
+  static double area_of_edge(double edge) { return 0.4330127018922193 * edge * std::fabs(edge); }
+  static double edge_of_area(double area) { return std::sqrt(area / 0.4330127018922193); }
+
+  // Field::steepness of the length of edges, edge_of_area of the value: by the chain rule.
+  virtual double edge_steepness(const Box& box) const noexcept {
+    const double steep = steepness(box);
+    if (steep == 0) return 0;
+    const double least = bounds(box).lo;
+    if (!(least > 0)) return std::numeric_limits<double>::infinity();
+    return steep / (2 * area_of_edge(1) * edge_of_area(least));
+  }
+
   // The value, if it is known to be the same everywhere; infinity for no bound.
   virtual std::optional<double> constant() const noexcept { return std::nullopt; }
 

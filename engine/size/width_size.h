@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "engine/size/edge_size.h"
 #include "engine/size/fields/width_field.h"
 #include "engine/size/size_function.h"
 
@@ -38,10 +37,13 @@ class WidthSize final : public SizeFunction {
     const Interval width = width_.bounds(box);
     return {least(size.lo, width.lo), least(size.hi, width.hi), size.may_be_nan};
   }
+  double edge_steepness(const Box& box) const noexcept override {
+    return std::max(size_->edge_steepness(box), width_.steepness(box) / cells_);
+  }
   double steepness(const Box& box) const noexcept override {
     const double widest = width_.bounds(box).hi / cells_;
     return std::max(size_->steepness(box),
-                    2 * EdgeSize::area(1) * widest * width_.steepness(box) / cells_);
+                    2 * area_of_edge(1) * widest * width_.steepness(box) / cells_);
   }
   std::vector<std::string> undefined_at(Point p) const override { return size_->undefined_at(p); }
   std::size_t bytes() const noexcept override { return width_.bytes(); }
@@ -52,7 +54,7 @@ class WidthSize final : public SizeFunction {
  private:
   // NaN if the size is.
   double least(double size, double width) const {
-    const double across = EdgeSize::area(width / cells_);
+    const double across = area_of_edge(width / cells_);
     return across < size ? across : size;
   }
 

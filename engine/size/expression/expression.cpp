@@ -10,6 +10,7 @@
 #include "engine/size/expression/parser.h"
 #include "engine/size/expression/program.h"
 #include "engine/size/expression/program_bounds.h"
+#include "engine/size/expression/program_steepness.h"
 #include "engine/size/expression/source_position.h"
 #include "engine/size/expression/threaded_code.h"
 
@@ -128,6 +129,10 @@ void Expression::evaluate(std::size_t n, const double* x, const double* y,
 
 Interval Expression::bounds(const Box& box) const noexcept {
   return expr::bounds(program_->code, box, program_->fields);
+}
+
+double Expression::steepness(const Box& box) const noexcept {
+  return expr::steepness(program_->code, box, program_->fields);
 }
 
 std::optional<double> Expression::constant() const noexcept {

@@ -98,6 +98,9 @@ class Expression final : public SizeFunction {
   // constant and the box lies in one piece.
   Interval bounds(const Box& box) const noexcept override;
 
+  // Infinite where a condition or a step is undecided, and at poles (program_steepness.h).
+  double steepness(const Box& box) const noexcept override;
+
   // The value if neither x, y nor a field is left after folding.
   std::optional<double> constant() const noexcept override;
 

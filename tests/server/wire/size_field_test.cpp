@@ -145,7 +145,7 @@ TEST(SizeField, IsEstimatedByASizeThatMakesAsManyTriangles) {
   edges.set_measure(v1::MEASURE_EDGE);
   EXPECT_DOUBLE_EQ(at(edges), std::sqrt(3) / 4 * 0.1);  // of 1/4 and 1/16, by 1 / area
   EXPECT_TRUE(std::isinf(at(expression("1 +")))) << "what is refused later asks for nothing";
-  EXPECT_EQ(bytes_to_expect(raster()), 4 * 8);
+  EXPECT_EQ(bytes_to_expect(raster()), 4 * 16);
   EXPECT_EQ(bytes_to_expect(expression("x")), 0);
 }
 
