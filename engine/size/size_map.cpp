@@ -6,90 +6,10 @@
 #include <numeric>
 #include <utility>
 
+#include "engine/size/box_overlap.h"
+
 namespace weft {
 namespace {
-
-using Corners = std::array<Point, 3>;
-
-Corners corners_of(const Domain& domain, std::uint32_t t) {
-  const auto& v = domain.triangles[t].vertex;
-  return {domain.vertices[v[0]], domain.vertices[v[1]], domain.vertices[v[2]]};
-}
-
-Point middle(const Box& box) {
-  return {box.min_x + 0.5 * (box.max_x - box.min_x), box.min_y + 0.5 * (box.max_y - box.min_y)};
-}
-
-Box child_box(const Box& box, unsigned child) {
-  const Point m = middle(box);
-  return {child & 1 ? m.x : box.min_x, child & 2 ? m.y : box.min_y, child & 1 ? box.max_x : m.x,
-          child & 2 ? box.max_y : m.y};
-}
-
-// Twice the area that the edge from a to b spans with the box's corner farthest to its left, or,
-// `nearest`, to its right.
-double reach(const Box& box, Point a, Point b, bool nearest) {
-  const double dx = b.x - a.x;
-  const double dy = b.y - a.y;
-  const double x = (dy > 0) != nearest ? box.min_x : box.max_x;
-  const double y = (dx > 0) != nearest ? box.max_y : box.min_y;
-  return dx * (y - a.y) - dy * (x - a.x);
-}
-
-// Whether the open box and the counter-clockwise triangle have a point in common, by separating
-// axes.
-bool overlap(const Box& box, const Corners& c) {
-  Box around;
-  for (Point p : c) around.add(p);
-  if (around.min_x >= box.max_x || around.max_x <= box.min_x || around.min_y >= box.max_y ||
-      around.max_y <= box.min_y) {
-    return false;
-  }
-  for (unsigned i = 0; i < 3; ++i) {
-    if (reach(box, c[i], c[(i + 1) % 3], false) <= 0) return false;
-  }
-  return true;
-}
-
-bool inside(const Box& box, const Corners& c) {
-  for (unsigned i = 0; i < 3; ++i) {
-    if (reach(box, c[i], c[(i + 1) % 3], true) <= 0) return false;
-  }
-  return true;
-}
-
-// Area of the part of a triangle that lies in a box: Sutherland-Hodgman clipping.
-double common_area(const Box& box, const Corners& c) {
-  std::array<Point, 8> polygon{c[0], c[1], c[2]};
-  std::size_t n = 3;
-  const auto clip = [&](auto inside) {
-    std::array<Point, 8> result;
-    std::size_t m = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const Point a = polygon[i];
-      const Point b = polygon[(i + 1) % n];
-      const double da = inside(a);
-      const double db = inside(b);
-      if (da >= 0) result[m++] = a;
-      if ((da >= 0) != (db >= 0)) {
-        const double t = da / (da - db);
-        result[m++] = {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
-      }
-    }
-    polygon = result;
-    n = m;
-  };
-  clip([&](Point p) { return p.x - box.min_x; });
-  clip([&](Point p) { return box.max_x - p.x; });
-  clip([&](Point p) { return p.y - box.min_y; });
-  clip([&](Point p) { return box.max_y - p.y; });
-  double doubled = 0;
-  for (std::size_t i = 2; i < n; ++i) {
-    doubled += (polygon[i - 1].x - polygon[0].x) * (polygon[i].y - polygon[0].y) -
-               (polygon[i - 1].y - polygon[0].y) * (polygon[i].x - polygon[0].x);
-  }
-  return 0.5 * doubled;
-}
 
 double likely(double lo, double hi) {
   return lo > 0 ? std::sqrt(lo) * std::sqrt(hi) : hi;
@@ -148,7 +68,7 @@ class Poll {
 double common_area(const Level& level, const Pending& pending, const Domain& domain) {
   double area = 0;
   for (std::uint32_t i = 0; i < pending.count; ++i)
-    area += common_area(pending.box, corners_of(domain, level.triangles[pending.first + i]));
+    area += common_part(pending.box, corners_of(domain, level.triangles[pending.first + i])).area();
   return area;
 }
 
@@ -165,7 +85,7 @@ Look look_at(const Level& level, const Pending& pending, const SizeFunction& siz
   if (!look.split) {
     for (std::uint32_t i = 0; i < pending.count; ++i) {
       if ((group.stopped = poll())) return look;
-      look.area += common_area(pending.box, corners_of(domain, triangles[i]));
+      look.area += common_part(pending.box, corners_of(domain, triangles[i])).area();
     }
     return look;
   }
