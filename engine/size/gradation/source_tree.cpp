@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/size/box_overlap.h"
+#include "engine/size/fields/distance_field.h"
 #include "engine/size/fields/polled_loop.h"
 #include "engine/size/gradation/domain_boxes.h"
 
@@ -82,6 +83,63 @@ class LowestAt {
   std::array<double, Candidates::kMost> heights_{};
 };
 
+// Half-planes that hold all points: those of the longest sides of their convex hull, which is
+// found by A. M. Andrew's "Another efficient algorithm for convex hulls in two dimensions" (1979).
+class Hull {
+ public:
+  explicit Hull(std::vector<Point> points);
+  // Whether the box lies beyond one of the sides.
+  bool misses(const Box& box) const;
+
+ private:
+  static constexpr std::size_t kMostSides = 64;
+
+  struct Side {
+    Point normal;  // of length 1, outwards
+    double reach;  // of the points along it
+  };
+  std::vector<Side> sides_;
+};
+
+Hull::Hull(std::vector<Point> points) {
+  std::sort(points.begin(), points.end(),
+            [](Point a, Point b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+  const auto turns_left = [](Point a, Point b, Point c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0;
+  };
+  std::vector<Point> ring;  // counter-clockwise, the first point again at the end
+  const auto add = [&](Point p, std::size_t least) {
+    while (ring.size() > least && !turns_left(ring[ring.size() - 2], ring.back(), p))
+      ring.pop_back();
+    ring.push_back(p);
+  };
+  for (const Point p : points) add(p, 1);
+  const std::size_t lower = ring.size();
+  for (std::size_t i = points.size() - 1; i-- > 0;) add(points[i], lower);
+  std::vector<std::pair<double, std::size_t>> lengths;
+  for (std::size_t i = 0; i + 1 < ring.size(); ++i)
+    lengths.emplace_back(-std::sqrt(distance2(ring[i], ring[i + 1])), i);
+  std::sort(lengths.begin(), lengths.end());
+  lengths.resize(std::min(lengths.size(), kMostSides));
+  for (const auto& [length, i] : lengths) {
+    const Point normal{(ring[i + 1].y - ring[i].y) / -length, (ring[i + 1].x - ring[i].x) / length};
+    // Of all corners of the hull: what the tests above round is made good.
+    double reach = -kInfinity;
+    for (const Point p : ring) reach = std::max(reach, normal.x * p.x + normal.y * p.y);
+    sides_.push_back({normal, reach});
+  }
+}
+
+bool Hull::misses(const Box& box) const {
+  const double slack = kSlack * (std::fabs(box.min_x) + std::fabs(box.max_x) +
+                                 std::fabs(box.min_y) + std::fabs(box.max_y));
+  return std::any_of(sides_.begin(), sides_.end(), [&](const Side& side) {
+    const double x = side.normal.x > 0 ? box.min_x : box.max_x;
+    const double y = side.normal.y > 0 ? box.min_y : box.max_y;
+    return side.normal.x * x + side.normal.y * y > side.reach + slack;
+  });
+}
+
 // A box whose fate is to be decided.
 struct Pending {
   DomainBox at;
@@ -115,8 +173,14 @@ struct Verdict {
 struct Group {
   std::vector<Verdict> verdicts;
   std::vector<std::uint32_t> triangles;  // of the children, one after the other
+  bool asked_how_far = false;            // a box outside the domain is from it
   bool blocked = false;                  // a walk cannot cross a box outside the domain
 };
+
+void reach(const Interval& edge, Interval& all) {
+  all.lo = std::min(all.lo, edge.lo);
+  all.hi = std::max(all.hi, edge.hi);
+}
 
 // Boxes divided in four without end, until a node says otherwise.
 struct Draft {
@@ -133,7 +197,8 @@ class Builder {
         gradation_(gradation),
         domain_(domain),
         context_(context),
-        borders_count_(borders_count) {
+        borders_count_(borders_count),
+        hull_(domain.vertices) {
     for (const Point p : domain.vertices) around_.add(p);
   }
 
@@ -152,10 +217,12 @@ class Builder {
   bool above(const Candidates& candidates, const Box& box, double edge) const;
   bool gentle(const Box& box, const Interval& edge) const;
   bool on_border(const DomainBox& at, const std::uint32_t* triangles) const;
-  bool passable(const Box& box, const Candidates& candidates) const;
+  bool irrelevant(const Box& box, Group& group) const;
+  std::optional<Error> measure_distance();
   Interval edges(const Box& box) const;
   Box shrunk(const DomainBox& at, const std::uint32_t* triangles) const;
-  std::size_t take(const Level& level, std::size_t slot, const Group& group, Level& next);
+  std::size_t take(const Level& level, const std::vector<Seen>& seen, std::size_t slot,
+                   const Group& group, Level& next);
   std::optional<Error> hold(const Level& level, const Level& next);
 
   const SizeFunction& size_;
@@ -163,7 +230,11 @@ class Builder {
   const Domain& domain_;
   const ExecutionContext& context_;
   const bool borders_count_;
+  const Hull hull_;
   Box around_;
+  Interval met_{kInfinity, 0};        // of edges in the domain, where no box is left
+  Interval all_{kInfinity, 0};        // of edges in the domain
+  std::optional<DistanceField> far_;  // to the border of the domain; made when it is asked for
   std::vector<Draft> drafts_;
   std::uint64_t held_ = 0;
 };
@@ -223,7 +294,7 @@ Sample Builder::sample(const DomainBox& at, const std::uint32_t* triangles) cons
 
 void Builder::see(const DomainBox& at, const std::uint32_t* triangles, Seen& seen) const {
   seen.edge = edges(at.box);
-  seen.sample = seen.edge.lo <= seen.edge.hi ? sample(at, triangles) : Sample{};
+  seen.sample = seen.edge.lo <= seen.edge.hi && at.count > 0 ? sample(at, triangles) : Sample{};
 }
 
 bool Builder::above(const Candidates& candidates, const Box& box, double edge) const {
@@ -254,21 +325,32 @@ bool Builder::on_border(const DomainBox& at, const std::uint32_t* triangles) con
   return false;
 }
 
-// Whether a walk may cross the box, which lies outside the domain.
-bool Builder::passable(const Box& box, const Candidates& candidates) const {
-  constexpr int kMostBoxes = 256;
-  std::vector<Box> left{box};
-  for (int looked = 0; !left.empty(); ++looked) {
-    if (looked == kMostBoxes) return false;
-    const Box at = left.back();
-    left.pop_back();
-    if (at.min_x >= around_.max_x || at.min_y >= around_.max_y) continue;
-    const Interval edge = edges(at);
-    if (above(candidates, at, edge.lo) || gentle(at, edge)) continue;
-    if (edge.may_be_nan) return false;
-    for (unsigned c = 0; c < 4; ++c) left.push_back(child_box(at, c));
+// Whether no walk that counts crosses the box, which lies outside the domain: any is so long that
+// a cone is above all sizes at its end.
+bool Builder::irrelevant(const Box& box, Group& group) const {
+  if (!far_) {
+    group.asked_how_far = true;
+    return false;
   }
-  return true;
+  return all_.lo + 2 * gradation_ * far_->bounds(box).lo >= all_.hi * (1 + kSlack);
+}
+
+std::optional<Error> Builder::measure_distance() {
+  std::vector<Line> borders;
+  for (std::uint32_t t = 0; t < domain_.triangles.size(); ++t) {
+    const Corners c = corners_of(domain_, t);
+    for (unsigned k = 0; k < 3; ++k)
+      if (domain_.triangles[t].neighbor[k] == kNone)
+        borders.push_back({c[(k + 1) % 3], c[(k + 2) % 3]});
+  }
+  if (auto error = context_.need_bytes(domain_.bytes() + size_.bytes() + held_ +
+                                       borders.size() * DistanceField::kBytesPerLine +
+                                       DistanceField::kBytesBesides))
+    return error;
+  auto made = DistanceField::make(std::move(borders), around_, context_);
+  if (!made) return std::move(made).error();
+  far_.emplace(std::move(*made));
+  return std::nullopt;
 }
 
 // What the domain holds of a box. If a walk crosses no box outside the domain, it need not meet
@@ -287,13 +369,17 @@ Box Builder::shrunk(const DomainBox& at, const std::uint32_t* triangles) const {
 std::optional<Error> Builder::judge(const Level& level, const std::vector<Seen>& seen,
                                     std::size_t slot, int depth, bool may_divide,
                                     TrianglePoll& poll, Group& group) const {
-  constexpr int kBadDepth = 6;  // so fine it is looked where no mesh will be made
+  constexpr int kBadDepth = 6;      // so fine it is looked where no mesh will be made
+  constexpr int kNoSizeDepth = 10;  // and where a size has no value outside the domain
   const Pending& pending = level.boxes[slot];
   const DomainBox& at = pending.at;
   const std::uint32_t* const triangles = level.triangles.data() + at.first;
   const Interval& edge = seen[slot].edge;
   Verdict& verdict = group.verdicts.emplace_back();
-  if (edge.lo > edge.hi || (seen[slot].sample.bad && depth >= kBadDepth)) return std::nullopt;
+  const bool outside = at.count == 0;
+  if (outside && hull_.misses(at.box)) return std::nullopt;
+  if (!outside && (edge.lo > edge.hi || (seen[slot].sample.bad && depth >= kBadDepth)))
+    return std::nullopt;
 
   LowestAt lowest(middle(at.box), gradation_);
   const Candidates& family = level.families[pending.family];
@@ -316,7 +402,15 @@ std::optional<Error> Builder::judge(const Level& level, const std::vector<Seen>&
   if (!border && gentle(at.box, edge)) return std::nullopt;
   const double finest = std::max(SourceTree::kTolerance, SourceTree::kSmallest * gradation_);
   const bool resolved = gradation_ * diagonal(at.box) <= finest * edge.lo;
-  if (resolved || !may_divide) {
+  if (outside) {
+    if (irrelevant(at.box, group)) return std::nullopt;
+    const bool no_size = !(edge.lo <= edge.hi) || (edge.may_be_nan && depth >= kNoSizeDepth);
+    if (resolved || !may_divide || (no_size && far_)) {
+      group.blocked = true;
+      return std::nullopt;
+    }
+  }
+  if (!outside && (resolved || !may_divide)) {
     verdict.fate = Fate::kSource;
     verdict.box = shrunk(at, triangles);
     verdict.edge = edge.lo;
@@ -332,11 +426,7 @@ std::optional<Error> Builder::judge(const Level& level, const std::vector<Seen>&
   if (auto error =
           split(at, level.triangles.data(), domain_, poll, verdict.children, group.triangles))
     return error;
-  for (DomainBox& child : verdict.children) {
-    child.first += before;
-    if (borders_count_ || child.count > 0 || group.blocked) continue;
-    group.blocked = !passable(child.box, verdict.candidates);
-  }
+  for (DomainBox& child : verdict.children) child.first += before;
   return std::nullopt;
 }
 
@@ -346,7 +436,7 @@ std::optional<Error> Builder::hold(const Level& level, const Level& next) {
            l.triangles.capacity() * sizeof(std::uint32_t) +
            l.families.capacity() * sizeof(Candidates);
   };
-  const std::uint64_t bytes = domain_.bytes() + size_.bytes() +
+  const std::uint64_t bytes = domain_.bytes() + size_.bytes() + (far_ ? far_->bytes() : 0) +
                               drafts_.capacity() * (sizeof(Draft) + sizeof(SourceTree::Node)) +
                               of(level) + of(next);
   if (bytes <= held_) return std::nullopt;
@@ -355,12 +445,15 @@ std::optional<Error> Builder::hold(const Level& level, const Level& next) {
 }
 
 // Returns the sources among them.
-std::size_t Builder::take(const Level& level, std::size_t slot, const Group& group, Level& next) {
+std::size_t Builder::take(const Level& level, const std::vector<Seen>& seen, std::size_t slot,
+                          const Group& group, Level& next) {
   std::size_t sources = 0;
   auto first = static_cast<std::uint32_t>(next.triangles.size());
   next.triangles.insert(next.triangles.end(), group.triangles.begin(), group.triangles.end());
   for (const Verdict& verdict : group.verdicts) {
     Draft& draft = drafts_[level.boxes[slot].node];
+    if (verdict.fate != Fate::kDivided && level.boxes[slot].at.count > 0)
+      reach(seen[slot].edge, met_);
     if (verdict.fate == Fate::kSource) {
       draft.box = verdict.box;
       draft.edge = verdict.edge;
@@ -376,7 +469,7 @@ std::size_t Builder::take(const Level& level, std::size_t slot, const Group& gro
         DomainBox at = verdict.children[c];
         drafts_.push_back({at.box, kInfinity, 0});
         at.first += first;
-        if (at.count > 0) next.boxes.push_back({at, node + c, family});
+        if (at.count > 0 || !borders_count_) next.boxes.push_back({at, node + c, family});
       }
     }
     ++slot;
@@ -396,6 +489,7 @@ Result<bool> Builder::run() {
   std::vector<Group> groups;
   std::size_t sources = 0;
   for (int depth = 0; !level.boxes.empty(); ++depth) {
+    all_ = met_;
     seen.resize(level.boxes.size());
     const std::size_t count = (level.boxes.size() + kAtATime - 1) / kAtATime;
     const auto each = [&](std::size_t g, auto&& f) -> std::optional<Error> {
@@ -412,10 +506,13 @@ Result<bool> Builder::run() {
           });
         }))
       return tl::unexpected(*error);
+    for (std::size_t i = 0; i < level.boxes.size(); ++i)
+      if (level.boxes[i].at.count > 0) reach(seen[i].edge, all_);
     const bool room = sources + 4 * level.boxes.size() <= SourceTree::kMaxSources;
     const bool may_divide = depth < SourceTree::kMaxDepth && room;
     Level next;
     next.children_of.assign(level.boxes.size(), kNone);
+    bool asked_how_far = false;
     for (std::size_t from = 0; from < count; from += kGroupsAtATime) {
       groups.assign(std::min(kGroupsAtATime, count - from), {});
       if (auto error = polled_loop(context_, groups.size(), [&](std::size_t g) {
@@ -427,9 +524,13 @@ Result<bool> Builder::run() {
         return tl::unexpected(*error);
       for (std::size_t g = 0; g < groups.size(); ++g) {
         if (groups[g].blocked) return false;
-        sources += take(level, (from + g) * kAtATime, groups[g], next);
+        asked_how_far = asked_how_far || groups[g].asked_how_far;
+        sources += take(level, seen, (from + g) * kAtATime, groups[g], next);
       }
       if (auto error = hold(level, next)) return tl::unexpected(*error);
+    }
+    if (asked_how_far && !far_) {
+      if (auto error = measure_distance()) return tl::unexpected(*error);
     }
     level = std::move(next);
   }

@@ -12,9 +12,12 @@
 //   known;
 //   - a source, if G times its diagonal is at most kTolerance times `edge`;
 //   - else divided in four.
-// A walk may lead across boxes outside the domain, which can be no sources. If h grows by more than
-// G in one of them, or has no value there, boxes on the border of the domain are not dropped for
-// the first reason.
+// A walk may lead across boxes outside the domain, which can be no sources. One of them is dropped
+// for these reasons, too, or if no walk that counts crosses it: because it lies outside the convex
+// hull, or so far from the domain that a cone which has come back is above all sizes. If one is
+// left where h grows by more than G, or has no value, boxes on the border of the domain are not
+// dropped for the first reason. A storm surge's grid of 600,000 triangles, whose size is steep far
+// inland, takes 0.05 s then; with its border as sources, it took 4.6 s.
 //
 // So at each point of the domain the least of the sources' cones and of h itself is never above
 // the exact limit, but for rounding, and at most kTolerance below it. Two exceptions, both for

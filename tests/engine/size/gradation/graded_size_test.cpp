@@ -253,6 +253,33 @@ TEST(GradedSize, NeedsNoSourceIfTheSizeIsLimitedAlready) {
   }
 }
 
+// It jumps in the gap, away from both walls.
+TEST(GradedSize, StartsAtWallsIfTheSizeJumpsBetweenThem) {
+  expect_limit("x < 4.1 ? 0.1 + 0.1*max(0, 3-x) : 5", 0.2, u_shape(), nullptr);
+}
+
+// What happens where no walk from the domain and back comes by is no reason for sources.
+TEST(GradedSize, NeedsNoSourceForWhatIsFarFromTheDomain) {
+  Pslg ring = square(80);  // around a hole of 60, x and y from 10
+  add_box(ring, {10, 10}, {70, 70});
+  ring.holes.push_back({40, 40});
+  const std::string rise = "1 + 0.1*abs(x-40) + 9*max(0, 10-hypot(x-40, y-40))";
+  EXPECT_TRUE(Graded(rise, 0.15, ring).size->is_limited_already());
+  EXPECT_FALSE(Graded(rise, 0.15, square(80)).size->is_limited_already());
+  const std::string deep = "hypot(x-40, y-40) < 8 ? sqrt(-1) : 1 + 0.1*abs(x-40)";
+  EXPECT_TRUE(Graded(deep, 0.15, ring).size->is_limited_already());
+  // As far inland, but a cone comes back below the largest size.
+  const std::string wide = "1 + 0.1*abs(x-40) + 9*max(0, 20-hypot(x-40, y-40))";
+  EXPECT_FALSE(Graded(wide, 0.15, ring).size->is_limited_already());
+}
+
+TEST(GradedSize, NeedsNoSourceForWhatIsOutsideTheConvexHull) {
+  Pslg slanted;
+  add_ring(slanted, {{0, 0}, {8, 4}, {8, 8}, {0, 4}});
+  const std::string corners = "y < 0.5*x-0.5 || y > 0.5*x+4.5 ? sqrt(-1) : 0.2 + 0.14*x";
+  EXPECT_TRUE(Graded(corners, 0.15, slanted).size->is_limited_already());
+}
+
 TEST(GradedSize, StaysTheSizeWhereThatIsBelowTheLimit) {
   const Graded graded("x < 3 ? 0.1 : 0.1 + 0.05*y", 0.15, square(8));
   std::mt19937_64 random(1);
