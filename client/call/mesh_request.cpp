@@ -88,6 +88,7 @@ Result<RequestOptions> with_size(RequestOptions request_options, const Domain& d
   auto size = read_size(by_edge ? request_options.edge : request_options.size);
   if (!size) return tl::unexpected(size.error());
   if (by_edge) size->set_measure(v1::MEASURE_EDGE);
+  if (request_options.gradation) size->set_gradation(*request_options.gradation);
   if (request_options.cells_across) size->set_cells_across(*request_options.cells_across);
   for (const FieldOption& field : request_options.fields) {
     auto warnings = fill(field, domain, projection, *size->add_fields());

@@ -26,6 +26,7 @@ struct RequestOptions {
   std::string size{};
   std::string edge{};
   std::vector<FieldOption> fields{};
+  std::optional<double> gradation{};     // that the length of edges has at most
   std::optional<double> cells_across{};  // edges across the domain, at least about
   // All of these, with what their files hold: see with_size.
   std::shared_ptr<const v1::SizeField> size_read{};

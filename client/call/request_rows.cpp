@@ -91,10 +91,14 @@ const OptionRows<Request>& size_rows() {
        "domain file; width, the domain's local width; or FILE[:BAND], the values of a raster. May "
        "be repeated",
        "", fields()},
+      {"gradation", "WEFT_GRADATION",
+       "How much the length of edges may grow per unit of length; a size that grows faster is "
+       "lowered. 0.15 is common",
+       "no limit", number("G", &Request::gradation, 0.001, 1000)},
       {"cells-across", "WEFT_CELLS_ACROSS",
        "How many edges fit across the domain at least, about, where it is narrow: no edge is "
        "wanted "
-       "longer than the local width divided by N",
+       "longer than the local width divided by N. Best with --gradation",
        "any number", number("N", &Request::cells_across, 0.01, 1e6)},
   };
   return rows;

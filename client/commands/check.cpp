@@ -90,6 +90,7 @@ check::SizeSpec to_checker(const v1::SizeField& size) {
   if (size.has_raster()) spec.value = to_grid<check::Raster>(size.raster());
   if (size.measure() == v1::MEASURE_EDGE) spec.measure = check::Measure::kEdge;
   for (const v1::NamedField& field : size.fields()) spec.fields.push_back(to_checker(field));
+  spec.gradation = size.gradation();
   return spec;
 }
 

@@ -13,6 +13,7 @@
 #include "engine/size/edge_size.h"
 #include "engine/size/fields/distance_field.h"
 #include "engine/size/fields/width_field.h"
+#include "engine/size/gradation/graded_size.h"
 #include "engine/size/width_size.h"
 
 namespace weft {
@@ -218,10 +219,11 @@ std::size_t Size::bytes() const {
 }
 
 std::optional<Error> check_size(const SizeSpec& spec) {
-  if (!(spec.cells_across >= 0 && std::isfinite(spec.cells_across)))
-    return Error{
-        ErrorCode::kBadOption, "size.cells_across",
-        "size.cells_across is " + text(spec.cells_across) + "; it must be finite and 0 or more"};
+  for (const auto& [field, value] : {std::pair{"size.gradation", spec.gradation},
+                                     std::pair{"size.cells_across", spec.cells_across}})
+    if (!(value >= 0 && std::isfinite(value)))
+      return Error{ErrorCode::kBadOption, field,
+                   std::string(field) + " is " + text(value) + "; it must be finite and 0 or more"};
   if (spec.fields.size() > Expression::kMaxFields)
     return Error{ErrorCode::kLimitExceeded, "size.fields",
                  "size.fields: " + std::to_string(spec.fields.size()) + " fields; the limit is " +
@@ -261,6 +263,11 @@ Result<Size> make_size(const SizeSpec& spec, const Pslg& pslg, const Domain& dom
     auto width = WidthField::make(domain, context);
     if (!width) return tl::unexpected(std::move(width).error());
     size->add(std::make_unique<WidthSize>(size->function(), std::move(*width), spec.cells_across));
+  }
+  if (spec.gradation > 0 && !size->function().constant()) {
+    auto graded = GradedSize::make(size->function(), spec.gradation, domain, context);
+    if (!graded) return tl::unexpected(std::move(graded).error());
+    size->add(std::make_unique<GradedSize>(std::move(*graded)));
   }
   return size;
 }

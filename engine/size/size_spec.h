@@ -62,6 +62,9 @@ struct SizeSpec {
   Value value;
   Measure measure = Measure::kArea;
   std::vector<FieldSpec> fields;  // at most Expression::kMaxFields
+  // How much the wanted length of edges grows at most per unit of length (gradation/); finite. 0:
+  // no limit.
+  double gradation = 0;
   // How many edges fit across the domain at least (width_size.h); finite. 0: any number.
   double cells_across = 0;
 };
@@ -85,8 +88,10 @@ class Size {
 };
 
 // Judges what needs neither the domain nor the values of arrays: kBadSizeValue for a constant that
-// is not positive and finite, kBadOption for names of fields, a second width and cells_across, and
-// the errors of Expression::check. The field is "size.constant", "size.expression",
+// Judges what needs neither the domain nor the values of arrays: kBadSizeValue for a constant that
+// is not positive and finite, kBadOption for names of fields, a second width, the gradation and
+// cells_across, and the errors of Expression::check. The field is "size.constant",
+// "size.expression", "size.gradation", "size.cells_across" or "size.fields[i].name".
 // "size.cells_across" or "size.fields[i].name".
 std::optional<Error> check_size(const SizeSpec& spec);
 
@@ -97,11 +102,11 @@ std::optional<Error> check_size(const SizeSpec& spec);
 Result<Size> make_size(const SizeSpec& spec, const Pslg& pslg, const Domain& domain,
                        const ExecutionContext& context);
 
-// The same for a size that names no field: without the domain.
+// The same for a size that names no field and has no limit to its gradation: without the domain.
 Result<Size> make_size(const SizeSpec::Value& value, Measure measure);
 
 // Bytes of memory that make_size takes at most for `spec`, which itself is held already: for all
-// but the width, which asks the context itself.
+// but the width and the gradation, which ask the context themselves.
 std::uint64_t bytes_to_make(const SizeSpec& spec, const Pslg& pslg);
 
 }  // namespace weft

@@ -39,6 +39,7 @@ void make_canonical(v1::GenerateMeshRequest& request) {
     request.clear_size();
   } else {
     if (size.measure() == v1::MEASURE_UNSPECIFIED) size.set_measure(v1::MEASURE_AREA);
+    if (size.gradation() == 0) size.clear_gradation();  // -0 is 0
   }
   v1::Domain& domain = *request.mutable_domain();
   if (domain.fill() == v1::FILL_UNSPECIFIED) domain.set_fill(v1::FILL_SEEDS);

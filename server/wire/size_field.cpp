@@ -163,6 +163,7 @@ SizeSpec without_arrays(const v1::SizeField& size) {
   SizeSpec spec;
   if (!size.has_raster()) spec.value = value_of(size);
   if (size.measure() == v1::MEASURE_EDGE) spec.measure = Measure::kEdge;
+  spec.gradation = size.gradation();
   spec.cells_across = size.cells_across();
   for (const v1::NamedField& field : size.fields()) {
     spec.fields.push_back({field.name(), {}});

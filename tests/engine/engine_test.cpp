@@ -94,7 +94,7 @@ TEST(Options, AreJudgedAsTheRunJudgesThem) {
 
 TEST(Size, IsJudgedAsTheRunJudgesIt) {
   SizeSpec steep = "1+x";
-  steep.cells_across = -1;
+  steep.gradation = -1;
   SizeSpec nameless = "1+x";
   nameless.fields.push_back({"x", WidthSpec{}});
   for (const SizeSpec& size :

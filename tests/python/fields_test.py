@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sizes by edge lengths and named fields."""
+"""Sizes by edge lengths, named fields and gradation."""
 
 import numpy as np
 import pytest
@@ -84,6 +84,15 @@ def test_a_mesh_may_be_refined_by_what_was_found_on_an_earlier_one(client):
     ratio = edges_allowed(mesh) / bound
     assert np.percentile(ratio, 99) < 1.05
     assert mesh.summary.triangles > 500
+
+
+def test_a_gradation_limits_how_edges_grow(client):
+    jump = "hypot(x-4, y-1) < 0.5 ? 0.02 : 2"
+    steep = client.mesh(SQUARE, edge=jump)
+    graded = client.mesh(SQUARE, edge=jump, gradation=0.15)
+    assert graded.summary.triangles > 1.5 * steep.summary.triangles
+    away = np.maximum(np.hypot(*(centroids(graded) - (4, 1)).T) - 0.5, 0)
+    assert (edges_allowed(graded) <= 0.02 + 0.15 * away + 1e-9).all()
 
 
 def test_the_width_of_a_channel(client):

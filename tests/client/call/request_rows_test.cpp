@@ -52,6 +52,7 @@ const std::map<std::string, Sample>& samples() {
   static const std::map<std::string, Sample> all = {{"size", {"x + 1"}},
                                                     {"edge", {"x + 2"}},
                                                     {"field", {"d=distance"}},
+                                                    {"gradation", {"0.25"}},
                                                     {"cells-across", {"3"}},
                                                     {"min-angle", {"25"}},
                                                     {"min-edge", {"0.0010549"}},

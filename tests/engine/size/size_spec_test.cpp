@@ -103,6 +103,19 @@ TEST(SizeSpec, LeavesRoomForCellsAcross) {
   EXPECT_EQ(check_size(spec)->field, "size.cells_across");
 }
 
+TEST(SizeSpec, WithALimitToItsGradationGrowsByNoMore) {
+  SizeSpec spec = "x < 1 ? 0.1 : 10";
+  spec.measure = Measure::kEdge;
+  spec.gradation = 0.5;
+  const auto size = made(spec);
+  const auto edge = [&](double x) {
+    return std::sqrt(size->function()({x, 2}) * 4 / std::sqrt(3));
+  };
+  EXPECT_NEAR(edge(0.5), 0.1, 1e-12);
+  EXPECT_LE(edge(3), 1.1 + 1e-12);
+  EXPECT_GE(edge(3), 1.1 * 0.95);
+}
+
 TEST(SizeSpec, ThatIsNoSizeNamesItsField) {
   for (const double value : {0.0, -1.0, std::nan(""), 1 / 0.0}) {
     const auto error = check_size(value);
@@ -116,6 +129,11 @@ TEST(SizeSpec, ThatIsNoSizeNamesItsField) {
   bad.values[1] = 0;
   const SizeSpec spec = bad;
   EXPECT_EQ(made(spec).error().field, "size.raster.values[1]");
+  SizeSpec steep = 1.0;
+  for (const double gradation : {-1.0, std::nan(""), 1 / 0.0}) {
+    steep.gradation = gradation;
+    EXPECT_EQ(check_size(steep)->field, "size.gradation");
+  }
 }
 
 TEST(SizeSpec, NamesTheFieldThatIsWrong) {

@@ -234,8 +234,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"Measure",
              [](Request& r) { r.mutable_size()->set_measure(static_cast<v1::Measure>(9)); },
              "size.measure", "9"},
-        Case{"CellsAcross", [](Request& r) { r.mutable_size()->set_cells_across(-1); },
-             "size.cells_across", "is -1"},
+        Case{"Gradation", [](Request& r) { r.mutable_size()->set_gradation(-1); }, "size.gradation",
+             "is -1"},
         Case{"FieldOfNoKind", [](Request& r) { add_field(r); }, "size.fields[0]", "of no kind"},
         Case{"FieldName",
              [](Request& r) {

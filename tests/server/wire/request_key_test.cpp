@@ -124,6 +124,7 @@ TEST(MeshKey, IsTheSameForADefaultThatIsWrittenOut) {
   request.mutable_domain()->set_fill(v1::FILL_SEEDS);
   request.mutable_domain()->set_snap(-0.0);
   request.mutable_size()->set_measure(v1::MEASURE_AREA);
+  request.mutable_size()->set_gradation(-0.0);
   request.mutable_size()->set_cells_across(-0.0);
   for (int i = 0; i < 4; ++i) request.mutable_domain()->add_segment_markers(0);
   EXPECT_EQ(mesh_key(request), key);
@@ -156,6 +157,7 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"Expression", [](auto& r) { r.mutable_size()->set_expression("0.1"); }},
         Change{"Raster", [](auto& r) { r.mutable_size()->mutable_raster()->add_values(1); }},
         Change{"Measure", [](auto& r) { r.mutable_size()->set_measure(v1::MEASURE_EDGE); }},
+        Change{"Gradation", [](auto& r) { r.mutable_size()->set_gradation(0.2); }},
         Change{"CellsAcross", [](auto& r) { r.mutable_size()->set_cells_across(3); }},
         Change{"Field", [](auto& r) { r.mutable_size()->add_fields()->mutable_width(); }},
         Change{"Angle", [](auto& r) { r.mutable_quality()->set_min_angle_deg(21); }},

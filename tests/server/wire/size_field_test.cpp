@@ -55,9 +55,10 @@ TEST(SizeField, OfEachKindReachesTheEngine) {
   EXPECT_EQ(values.values, (std::vector<double>{0.5, 0.25, 0.5, 0.25}));
 }
 
-TEST(SizeField, BringsItsFieldsItsMeasureAndItsCellsAcross) {
+TEST(SizeField, BringsItsFieldsItsMeasureAndItsGradation) {
   v1::SizeField size = expression("a + b + c + d");
   size.set_measure(v1::MEASURE_EDGE);
+  size.set_gradation(0.25);
   size.set_cells_across(3);
   for (const char* const name : {"a", "b", "c", "d"}) size.add_fields()->set_name(name);
   v1::Distance& distance = *size.mutable_fields(0)->mutable_distance();
@@ -79,6 +80,7 @@ TEST(SizeField, BringsItsFieldsItsMeasureAndItsCellsAcross) {
 
   const SizeSpec spec = to_engine(size);
   EXPECT_EQ(spec.measure, Measure::kEdge);
+  EXPECT_EQ(spec.gradation, 0.25);
   EXPECT_EQ(spec.cells_across, 3);
   ASSERT_EQ(spec.fields.size(), 4u);
   EXPECT_EQ(spec.fields[3].name, "d");

@@ -23,9 +23,12 @@ class MeshOptions(TypedDict, total=False):
     Raster or a function of lengths."""
     fields: Mapping[str, Field]
     """What `edge` or `size` may name besides x and y: see distance, raster, on_mesh and width."""
+    gradation: float
+    """How much the length of edges may grow per unit of length; a size that grows faster is lowered.
+    Default: no limit."""
     cells_across: float
     """How many edges fit across the domain at least, about, where it is narrow: no edge is wanted
-    longer than the local width divided by it. Default: any number."""
+    longer than the local width divided by it. Best with `gradation`. Default: any number."""
     min_edge: float
     """No edge shorter than this is made, in the unit of the points."""
     placement: Literal["lattice", "circumcentre"]
@@ -76,6 +79,8 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
         request.size.measure = _EDGE
     if "cells_across" in options:
         request.size.cells_across = options["cells_across"]
+    if "gradation" in options:
+        request.size.gradation = options["gradation"]
     for name, field in options.get("fields", {}).items():
         field._fill(request.size.fields.add(name=name))
     request.quality.min_angle_deg = min_angle

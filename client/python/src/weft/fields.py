@@ -2,7 +2,7 @@
 """What a size expression may name besides x and y.
 
     mesh = client.mesh("coast.geojson", edge="min(500 + 0.15*coast, 20000)",
-                       fields={"coast": weft.distance(marker=2)})
+                       fields={"coast": weft.distance(marker=2)}, gradation=0.15)
 
 The server computes them, so that an expression of fields is as exact and as fast as one of x and y.
 """
