@@ -2,29 +2,36 @@
 #include "client/call/field_option.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "client/base/option_row.h"
 #include "client/base/text.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/field_raster.h"
+#include "client/formats/vertex_values.h"
 
 namespace weft::client {
 namespace {
 
 using Warnings = std::vector<std::string>;
 
+void extend(RasterBox& box, Point point, bool is_first) {
+  if (is_first) box = {point.x, point.y, point.x, point.y};
+  box.min_x = std::min(box.min_x, point.x);
+  box.min_y = std::min(box.min_y, point.y);
+  box.max_x = std::max(box.max_x, point.x);
+  box.max_y = std::max(box.max_y, point.y);
+}
+
 RasterBox box_of(const Domain& domain) {
-  if (domain.points.empty()) return {};
-  const Point first = domain.points.front();
-  RasterBox box{first.x, first.y, first.x, first.y};
-  for (const Point& point : domain.points) {
-    box.min_x = std::min(box.min_x, point.x);
-    box.min_y = std::min(box.min_y, point.y);
-    box.max_x = std::max(box.max_x, point.x);
-    box.max_y = std::max(box.max_y, point.y);
-  }
+  RasterBox box;
+  for (const Point& point : domain.points) extend(box, point, &point == domain.points.data());
   return box;
+}
+
+bool meet(const RasterBox& a, const RasterBox& b) {
+  return a.min_x <= b.max_x && b.min_x <= a.max_x && a.min_y <= b.max_y && b.min_y <= a.max_y;
 }
 
 // Fills in the field of a kind.
@@ -69,6 +76,32 @@ struct Filler {
     to.mutable_values()->Add(read->values.begin(), read->values.end());
     return std::move(read->warnings);
   }
+  Result<Warnings> operator()(const FieldOption::OnMesh& on_mesh) const {
+    const auto read = read_vertex_values(on_mesh.file, on_mesh.array);
+    if (!read) return tl::unexpected(read.error());
+    const std::vector<double>& from = read->mesh.coordinates;
+    v1::FieldMesh& to = *out.mutable_mesh();
+    RasterBox box;
+    to.mutable_vertices()->Reserve(static_cast<int>(from.size()));
+    for (std::size_t i = 0; i < from.size(); i += 2) {
+      Point at{from[i], from[i + 1]};
+      if (projection != nullptr && !projection->to_metres()) at = projection->to_plane(at);
+      if (!std::isfinite(at.x) || !std::isfinite(at.y))
+        return fail(ExitCode::kUnreadableInput,
+                    on_mesh.file.string() + ": vertex " + std::to_string(i / 2) +
+                        " cannot be projected from longitude and latitude " +
+                        coordinates(from[i], from[i + 1]));
+      to.add_vertices(at.x);
+      to.add_vertices(at.y);
+      extend(box, at, i == 0);
+    }
+    to.mutable_triangles()->Add(read->mesh.triangles.begin(), read->mesh.triangles.end());
+    to.mutable_values()->Add(read->values.begin(), read->values.end());
+    if (meet(box, box_of(domain))) return Warnings();
+    return Warnings{on_mesh.file.string() + ": this mesh lies apart from the domain, from " +
+                    coordinates(box.min_x, box.min_y) + " to " + coordinates(box.max_x, box.max_y) +
+                    "; the field " + out.name() + " has the values of its boundary"};
+  }
   Result<Warnings> operator()(const FieldOption::Width&) const {
     out.mutable_width();
     return Warnings();
@@ -89,6 +122,15 @@ std::optional<std::vector<std::int32_t>> markers_of(const std::string& text) {
   }
 }
 
+// FILE:ARRAY, as a raster's file and band; if there is no such file, as its last colon divides it.
+FieldOption::OnMesh mesh_and_array(const std::string& text) {
+  auto [file, array] = split_raster_path(text);
+  const std::size_t colon = text.rfind(':');
+  if (array.empty() && colon != std::string::npos && !std::filesystem::exists(file))
+    return {text.substr(0, colon), text.substr(colon + 1)};
+  return {std::move(file), std::move(array)};
+}
+
 }  // namespace
 
 tl::expected<FieldOption, std::string> FieldOption::parse(const std::string& text,
@@ -101,6 +143,7 @@ tl::expected<FieldOption, std::string> FieldOption::parse(const std::string& tex
   const std::string kind = text.substr(equals + 1);
   const std::string distance = "distance:";
   const std::string marker = "distance:marker=";
+  const std::string mesh = "mesh:";
   if (kind == "width") return field;
   if (kind == "distance") {
     field.kind = Distance{};
@@ -113,6 +156,11 @@ tl::expected<FieldOption, std::string> FieldOption::parse(const std::string& tex
     const std::filesystem::path file = folder / kind.substr(distance.size());
     if (!is_domain_path(file)) return tl::unexpected(unknown_domain_format(file).value().message);
     field.kind = DistanceToFile{file};
+  } else if (kind.starts_with(mesh)) {
+    OnMesh on_mesh = mesh_and_array((folder / kind.substr(mesh.size())).string());
+    if (auto ok = check_has_vertex_values(on_mesh.file); !ok)
+      return tl::unexpected(ok.error().message);
+    field.kind = std::move(on_mesh);
   } else {
     auto [file, band] = split_raster_path((folder / kind).string());
     field.kind = Raster{std::move(file), std::move(band)};

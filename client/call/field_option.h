@@ -33,22 +33,28 @@ struct FieldOption {
     std::filesystem::path file;
     std::string band;
   };
+  // Values at the vertices of an earlier mesh; if the array's name is empty, of the only one.
+  struct OnMesh {
+    std::filesystem::path file;
+    std::string array;
+  };
   // The local width of the domain.
   struct Width {};
 
-  // `text` is NAME=distance, NAME=distance:marker=1,2, NAME=distance:FILE, NAME=width or
-  // NAME=FILE[:BAND]; a relative path is below `folder`. The error is a text that says what is
-  // wrong.
+  // `text` is NAME=distance, NAME=distance:marker=1,2, NAME=distance:FILE, NAME=width,
+  // NAME=mesh:FILE[:ARRAY] or NAME=FILE[:BAND]; a relative path is below `folder`. The error is a
+  // text that says what is wrong.
   static tl::expected<FieldOption, std::string> parse(const std::string& text,
                                                       const std::filesystem::path& folder);
 
   std::string name;
-  std::variant<Distance, DistanceToFile, Raster, Width> kind;
+  std::variant<Distance, DistanceToFile, Raster, OnMesh, Width> kind;
 };
 
 // Reads the field's file, if it has one; of a raster what covers the domain. With a projection, the
 // domain is in its metres, and the file is projected: as what it is, for a raster that says so,
-// else from longitude and latitude. Returns sentences for the user. Errors: those of the file.
+// else from longitude and latitude; but a mesh is in metres if the projection's result is to be.
+// Returns sentences for the user. Errors: those of the file.
 Result<std::vector<std::string>> fill(const FieldOption& field, const Domain& domain,
                                       const DomainProjection* projection, v1::NamedField& out);
 

@@ -88,8 +88,8 @@ const OptionRows<Request>& size_rows() {
       {"field", "",
        "A field that --edge or --size may name. KIND is distance, to all segments; "
        "distance:marker=2,3, to those with a marker; distance:FILE, to the points and lines of a "
-       "domain file; width, the domain's local width; or FILE[:BAND], the values of a raster. May "
-       "be repeated",
+       "domain file; width, the domain's local width; mesh:FILE[:ARRAY], values at the vertices of "
+       "an earlier mesh; or FILE[:BAND], the values of a raster. May be repeated",
        "", fields()},
       {"gradation", "WEFT_GRADATION",
        "How much the length of edges may grow per unit of length; a size that grows faster is "

@@ -48,16 +48,16 @@ constexpr bool kSecondOrder = true;
 constexpr bool kFirstOrder = false;
 
 constexpr MeshFormat kFormats[] = {
-    {".vtu", kSecondOrder, one_file<write_vtu>, read_vtu},
-    {".msh", kSecondOrder, write_gmsh, read_msh},
+    {".vtu", kSecondOrder, one_file<write_vtu>, read_vtu, read_vtu_values},
+    {".msh", kSecondOrder, write_gmsh, read_msh, read_msh_values},
     {".node", kSecondOrder, write_triangle, read_triangle_mesh},
     {".ele", kFirstOrder, nullptr, read_triangle_mesh},
     {".edge", kFirstOrder, one_file<write_triangle_edges>, nullptr},
     {".neigh", kFirstOrder, one_file<write_triangle_neighbours>, nullptr},
-    {".14", kFirstOrder, write_adcirc_mesh, read_adcirc},
-    {".grd", kFirstOrder, write_adcirc_mesh, read_adcirc},
+    {".14", kFirstOrder, write_adcirc_mesh, read_adcirc, read_adcirc_values},
+    {".grd", kFirstOrder, write_adcirc_mesh, read_adcirc, read_adcirc_values},
     {".su2", kFirstOrder, one_file<write_su2>, read_su2},
-    {".npz", kFirstOrder, one_file<write_npz>, read_npz},
+    {".npz", kFirstOrder, one_file<write_npz>, read_npz, read_npz_values},
     {".geojson", kFirstOrder, one_file<write_geojson_mesh>, nullptr},
     {".obj", kFirstOrder, one_file<write_obj>, read_obj},
     {".off", kFirstOrder, one_file<write_off>, read_off},
@@ -76,6 +76,17 @@ std::string extensions(const Takes& takes) {
 tl::unexpected<Error> usage(const std::filesystem::path& path, const std::string& why) {
   return fail(ExitCode::kUsage,
               path.string() + ": the extension " + in_quotes(path.extension().string()) + why);
+}
+
+// What `read` returns, or an error if it runs out of memory.
+template <class T, class Read>
+Result<T> with_memory(const std::filesystem::path& path, const Read& read) {
+  try {
+    return read();
+  } catch (const std::bad_alloc&) {
+  } catch (const std::length_error&) {
+  }
+  return fail(ExitCode::kUnreadableInput, path.string() + ": not enough memory to read it");
 }
 
 }  // namespace
@@ -146,12 +157,21 @@ Result<Mesh> read_mesh(const std::filesystem::path& path) {
   const MeshFormat* format = mesh_format(path);
   if (format == nullptr || format->read == nullptr)
     return usage(path, " is not that of a mesh that is read: " + read_mesh_extensions());
-  try {
-    return format->read(path);
-  } catch (const std::bad_alloc&) {
-  } catch (const std::length_error&) {
-  }
-  return fail(ExitCode::kUnreadableInput, path.string() + ": not enough memory to read it");
+  return with_memory<Mesh>(path, [&] { return format->read(path); });
+}
+
+Result<void> check_has_vertex_values(const std::filesystem::path& path) {
+  const MeshFormat* format = mesh_format(path);
+  if (format != nullptr && format->read_values != nullptr) return {};
+  return usage(path, " is not that of a mesh with values at its vertices: " +
+                         extensions([](const MeshFormat& f) { return f.read_values != nullptr; }));
+}
+
+Result<VertexValues> read_vertex_values(const std::filesystem::path& path,
+                                        const std::string& array) {
+  if (auto ok = check_has_vertex_values(path); !ok) return tl::unexpected(ok.error());
+  return with_memory<VertexValues>(path,
+                                   [&] { return mesh_format(path)->read_values(path, array); });
 }
 
 Result<Mesh> validated(const std::filesystem::path& path, Mesh mesh) {

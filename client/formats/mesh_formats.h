@@ -17,6 +17,7 @@
 #include "client/base/error.h"
 #include "client/formats/domain.h"
 #include "client/formats/mesh.h"
+#include "client/formats/vertex_values.h"
 
 namespace weft::client {
 
@@ -37,6 +38,9 @@ struct MeshFormat {
   // Null if the format is only read, or only written.
   void (*write)(const MeshView&, std::span<OutputFile>, const MeshWriteOptions&) = nullptr;
   Result<Mesh> (*read)(const std::filesystem::path&) = nullptr;
+  // Null if the format carries no values at vertices.
+  Result<VertexValues> (*read_values)(const std::filesystem::path&,
+                                      const std::string& array) = nullptr;
 };
 
 // The format of an extension, in upper or lower case; null if there is none.

@@ -3,6 +3,7 @@
 // that are read together. Asserts, beyond that a reader neither crashes nor takes memory out of
 // proportion:
 //   mesh     numbers of vertices are in range, coordinates finite, regions and markers complete
+//   values   those at the vertices are as many, and none is infinite
 //   domain   segments and seeds are what the server can take: indices in range, numbers finite
 //   error    an error has a sentence
 //   rewrite  what was read as a mesh is written as .npz, and read from there is the same
@@ -144,6 +145,17 @@ void judge(const std::uint8_t* data, std::size_t size) {
     if (mesh) {
       const std::string wrong = rewritten(*mesh);
       must(wrong.empty(), "rewrite", wrong);
+    }
+    for (const char* const array : {"", "h"}) {
+      const auto values = read_vertex_values(paths[0], array);
+      if (!values) {
+        must(!values.error().message.empty(), "error", "no sentence");
+        continue;
+      }
+      const std::string wrong = wrong_with(values->mesh);
+      must(wrong.empty(), "mesh", wrong);
+      must(values->values.size() == values->mesh.coordinates.size() / 2, "values", "their count");
+      for (const double v : values->values) must(!std::isinf(v), "values", "an infinite one");
     }
   }
   const auto domain = read_domain(paths[0]);

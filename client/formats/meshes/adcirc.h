@@ -13,10 +13,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 
 #include "client/base/atomic_file.h"
 #include "client/base/error.h"
 #include "client/formats/mesh.h"
+#include "client/formats/vertex_values.h"
 
 namespace weft::client {
 
@@ -27,5 +29,9 @@ void write_adcirc(const MeshView& mesh, std::span<const std::int32_t> open_bound
 // ("= Number of nodes for open boundary 1, marker 3"); without it, 1 for open ones, 2 for
 // mainland and all other kinds, 3 for islands. Depths are dropped.
 Result<Mesh> read_adcirc(const std::filesystem::path& path);
+
+// The same with the depths, as the array "depth".
+Result<VertexValues> read_adcirc_values(const std::filesystem::path& path,
+                                        const std::string& array);
 
 }  // namespace weft::client

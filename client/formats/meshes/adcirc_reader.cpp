@@ -2,6 +2,7 @@
 #include <charconv>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "client/formats/file_contents.h"
 #include "client/formats/line_scanner.h"
@@ -27,7 +28,9 @@ std::int32_t marker_of(std::string_view comment, std::int32_t otherwise) {
   return marker;
 }
 
-Result<void> read_nodes(LineScanner& scanner, std::uint64_t count, Mesh& mesh) {
+// The depths are read if there is a place for them.
+Result<void> read_nodes(LineScanner& scanner, std::uint64_t count, Mesh& mesh,
+                        std::vector<double>* depths) {
   mesh.coordinates.reserve(2 * count);
   for (std::uint64_t i = 0; i < count; ++i) {
     if (auto line = scanner.next_line("a node"); !line) return line;
@@ -39,6 +42,10 @@ Result<void> read_nodes(LineScanner& scanner, std::uint64_t count, Mesh& mesh) {
       if (!value) return tl::unexpected(value.error());
       mesh.coordinates.push_back(*value);
     }
+    if (depths == nullptr) continue;
+    const auto depth = scanner.real("the depth");
+    if (!depth) return tl::unexpected(depth.error());
+    depths->push_back(*depth);
   }
   return {};
 }
@@ -103,9 +110,7 @@ Result<void> read_boundaries(LineScanner& scanner, bool open, Mesh& mesh) {
   return {};
 }
 
-}  // namespace
-
-Result<Mesh> read_adcirc(const std::filesystem::path& path) {
+Result<Mesh> read_grid(const std::filesystem::path& path, std::vector<double>* depths) {
   const auto contents = read_file(path, kMaxTextBytes);
   if (!contents) return tl::unexpected(contents.error());
   LineScanner scanner(path.string(), contents->text(), {.comment = '!'});
@@ -117,13 +122,30 @@ Result<Mesh> read_adcirc(const std::filesystem::path& path) {
   const auto nodes = scanner.count("the node count");
   if (!nodes) return tl::unexpected(nodes.error());
   Mesh mesh;
-  if (auto read = read_nodes(scanner, *nodes, mesh); !read) return tl::unexpected(read.error());
+  if (auto read = read_nodes(scanner, *nodes, mesh, depths); !read)
+    return tl::unexpected(read.error());
   if (auto read = read_elements(scanner, *elements, mesh); !read)
     return tl::unexpected(read.error());
   for (const bool open : {true, false})
     if (auto read = read_boundaries(scanner, open, mesh); !read)
       return tl::unexpected(read.error());
   return validated(path, std::move(mesh));
+}
+
+}  // namespace
+
+Result<Mesh> read_adcirc(const std::filesystem::path& path) {
+  return read_grid(path, nullptr);
+}
+
+Result<VertexValues> read_adcirc_values(const std::filesystem::path& path,
+                                        const std::string& array) {
+  const auto name = chosen_array(path, {"depth"}, array);
+  if (!name) return tl::unexpected(name.error());
+  std::vector<double> depths;
+  auto mesh = read_grid(path, &depths);
+  if (!mesh) return tl::unexpected(mesh.error());
+  return validated(path, *name, std::move(*mesh), std::move(depths));
 }
 
 }  // namespace weft::client

@@ -8,10 +8,12 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "client/base/atomic_file.h"
 #include "client/base/error.h"
 #include "client/formats/mesh.h"
+#include "client/formats/vertex_values.h"
 
 namespace weft::client {
 
@@ -21,5 +23,9 @@ void write_msh22(const MeshView& mesh, OutputFile& file);
 // Reads triangles, lines (and points, which are dropped) of a 4.1 or 2.2 file, binary or ASCII. The
 // name or else the tag of an element's first physical group is its region or marker.
 Result<Mesh> read_msh(const std::filesystem::path& path);
+
+// The same with the $NodeData of that name, of one component; if it has several, as of several
+// steps of time, the last. A vertex that it does not list has the value NaN.
+Result<VertexValues> read_msh_values(const std::filesystem::path& path, const std::string& array);
 
 }  // namespace weft::client

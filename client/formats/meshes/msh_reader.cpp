@@ -40,18 +40,40 @@ class Reader {
       : path_(std::move(path)), whole_(text), rest_(text) {}
 
   Result<Mesh> read() {
-    try {
+    return read_or_refuse<Mesh>([this] {
       read_sections();
+      return validated(path_, std::move(mesh_));
+    });
+  }
+
+  Result<VertexValues> read_values(const std::string& wanted) {
+    return read_or_refuse<VertexValues>([&]() -> Result<VertexValues> {
+      read_sections();
+      std::vector<std::string> names;
+      for (const auto& [name, data] : node_data_) names.push_back(name);
+      const auto name = chosen_array(path_, names, wanted);
+      if (!name) return tl::unexpected(name.error());
+      rest_ = node_data_.at(*name);
+      std::vector<double> values = read_node_data();
+      auto mesh = validated(path_, std::move(mesh_));
+      if (!mesh) return tl::unexpected(mesh.error());
+      return validated(path_, *name, std::move(*mesh), std::move(values));
+    });
+  }
+
+ private:
+  using Tag = std::pair<std::int32_t, std::int32_t>;  // dimension, number
+
+  template <class T, class Read>
+  Result<T> read_or_refuse(const Read& read) {
+    try {
+      return read();
     } catch (const Malformed& malformed) {
       return fail(ExitCode::kUnreadableInput, path_.string() + ": byte " +
                                                   std::to_string(whole_.size() - rest_.size()) +
                                                   ": " + malformed.why);
     }
-    return validated(path_, std::move(mesh_));
   }
-
- private:
-  using Tag = std::pair<std::int32_t, std::int32_t>;  // dimension, number
 
   void read_sections() {
     bool has_format = false;
@@ -70,6 +92,7 @@ class Reader {
       } else if (line == "$Elements") {
         is_22_ ? read_elements_22() : read_elements();
       } else if (line.starts_with("$")) {
+        if (line == "$NodeData") keep_node_data();
         skip_to("$End" + std::string(line.substr(1)));
         continue;
       } else {
@@ -274,7 +297,7 @@ class Reader {
     }
   }
 
-  std::uint32_t vertex(std::uint64_t tag) const {
+  std::uint32_t vertex(std::uint64_t tag, std::string_view who) const {
     if (tags_.empty()) throw Malformed{"has elements before nodes"};
     // Where tags have no gaps, the number follows from the tag.
     if (tag >= tags_.front() && tag - tags_.front() < tags_.size() &&
@@ -282,8 +305,43 @@ class Reader {
       return static_cast<std::uint32_t>(tag - tags_.front());
     const auto found = std::lower_bound(tags_.begin(), tags_.end(), tag);
     if (found == tags_.end() || *found != tag)
-      throw Malformed{"an element names the node " + std::to_string(tag) + ", which is missing"};
+      throw Malformed{std::string(who) + " names the node " + std::to_string(tag) +
+                      ", which is missing"};
     return static_cast<std::uint32_t>(found - tags_.begin());
+  }
+
+  // Of $NodeData the name, and where the rest begins.
+  void keep_node_data() {
+    const auto texts = text_number<std::uint64_t>();
+    std::string_view name = next_line();
+    if (texts == 0 || name.size() < 2 || !name.starts_with('"') || !name.ends_with('"'))
+      throw Malformed{"the name of node data is not in quotes"};
+    for (std::uint64_t i = 1; i < texts; ++i)
+      if (next_line().empty()) throw Malformed{"the file ends inside a section"};
+    node_data_.insert_or_assign(std::string(name.substr(1, name.size() - 2)), rest_);
+  }
+
+  // For each vertex the value of the node data whose name was read.
+  std::vector<double> read_node_data() {
+    const auto reals = text_number<std::uint64_t>();
+    for (std::uint64_t i = 0; i < reals; ++i) text_number<double>();
+    const auto integers = text_number<std::uint64_t>();
+    if (integers < 3) throw Malformed{"node data has fewer than 3 integers"};
+    text_number<std::int64_t>();  // the step of time
+    const auto components = text_number<std::int64_t>();
+    if (components != 1)
+      throw Malformed{"the node data has " + std::to_string(components) +
+                      " components, only one is read"};
+    const auto nodes = text_number<std::uint64_t>();
+    for (std::uint64_t i = 3; i < integers; ++i) text_number<std::int64_t>();
+    start_data();
+    std::vector<double> values(tags_.size(), std::numeric_limits<double>::quiet_NaN());
+    for (std::uint64_t i = 0; i < nodes; ++i) {
+      const auto tag = next<std::int32_t>();
+      const auto value = next<double>();
+      values[vertex(static_cast<std::uint32_t>(tag), "node data")] = value;
+    }
+    return values;
   }
 
   void read_elements() {
@@ -345,7 +403,7 @@ class Reader {
   void read_element(std::int32_t type, std::int32_t id) {
     for (int corner = 0; corner < (type == kPoint ? 1 : type + 1); ++corner) {
       const auto tag = next<NodeTag>();
-      const std::uint32_t v = vertex(static_cast<std::make_unsigned_t<NodeTag>>(tag));
+      const std::uint32_t v = vertex(static_cast<std::make_unsigned_t<NodeTag>>(tag), "an element");
       if (type == kTriangle) mesh_.triangles.push_back(v);
       if (type == kLine) mesh_.edges.push_back(v);
     }
@@ -363,6 +421,8 @@ class Reader {
   std::map<Tag, std::int32_t> id_of_group_;
   std::map<Tag, std::int32_t> group_of_entity_;
   std::vector<std::uint64_t> tags_;  // of the vertices, ascending
+  // What follows the names of $NodeData.
+  std::map<std::string, std::string_view> node_data_;
   Mesh mesh_;
 };
 
@@ -372,6 +432,12 @@ Result<Mesh> read_msh(const std::filesystem::path& path) {
   const auto contents = read_file(path, kMaxFileBytes);
   if (!contents) return tl::unexpected(contents.error());
   return Reader(path, contents->text()).read();
+}
+
+Result<VertexValues> read_msh_values(const std::filesystem::path& path, const std::string& array) {
+  const auto contents = read_file(path, kMaxFileBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  return Reader(path, contents->text()).read_values(array);
 }
 
 }  // namespace weft::client

@@ -10,10 +10,12 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "client/base/atomic_file.h"
 #include "client/base/error.h"
 #include "client/formats/mesh.h"
+#include "client/formats/vertex_values.h"
 
 namespace weft::client {
 
@@ -23,5 +25,8 @@ void write_npz(const MeshView& mesh, OutputFile& file);
 // the third is dropped) and `triangles`, and perhaps the others; little-endian, in C order, floats
 // of 4 or 8 bytes, integers of 4 or 8 bytes.
 Result<Mesh> read_npz(const std::filesystem::path& path);
+
+// The same with an array (vertices,) of floats under any other name.
+Result<VertexValues> read_npz_values(const std::filesystem::path& path, const std::string& array);
 
 }  // namespace weft::client

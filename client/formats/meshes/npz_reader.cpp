@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <string>
@@ -93,6 +94,11 @@ class Archive {
   }
 
   bool has(const std::string& name) const { return entries_.contains(name); }
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const auto& [name, entry] : entries_) names.push_back(name);
+    return names;
+  }
   std::string_view array(const std::string& name) {
     const auto found = entries_.find(name);
     if (found == entries_.end()) throw Malformed{"holds no array " + in_quotes(name)};
@@ -252,27 +258,53 @@ std::vector<Out> column_values(Archive& archive, const std::string& name, std::s
                   ", which does not fit"};
 }
 
+constexpr std::string_view kMeshArrays[] = {"points", "triangles", "regions", "edges",
+                                            "edge_markers"};
+
+Mesh mesh_of(Archive& archive) {
+  Mesh mesh;
+  mesh.coordinates = column_values<double>(archive, "points", 2);
+  mesh.triangles = column_values<std::uint32_t>(archive, "triangles", 3);
+  if (archive.has("regions")) mesh.regions = column_values<std::int32_t>(archive, "regions", 1);
+  if (archive.has("edges")) mesh.edges = column_values<std::uint32_t>(archive, "edges", 2);
+  if (archive.has("edge_markers"))
+    mesh.edge_markers = column_values<std::int32_t>(archive, "edge_markers", 1);
+  return mesh;
+}
+
+// What `read` makes of the archive of that file.
+template <class Read>
+auto read_archive(const std::filesystem::path& path, const Read& read)
+    -> decltype(read(std::declval<Archive&>())) {
+  const auto contents = read_file(path, kMaxFileBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  try {
+    Archive archive(contents->text());
+    return read(archive);
+  } catch (const Malformed& malformed) {
+    return fail(ExitCode::kUnreadableInput, path.string() + ": " + malformed.why);
+  }
+}
+
 }  // namespace
 
 Result<Mesh> read_npz(const std::filesystem::path& path) {
-  const auto contents = read_file(path, kMaxFileBytes);
-  if (!contents) return tl::unexpected(contents.error());
-  const auto refuse = [&path](const std::string& why) {
-    return fail(ExitCode::kUnreadableInput, path.string() + ": " + why);
-  };
-  try {
-    Archive archive(contents->text());
-    Mesh mesh;
-    mesh.coordinates = column_values<double>(archive, "points", 2);
-    mesh.triangles = column_values<std::uint32_t>(archive, "triangles", 3);
-    if (archive.has("regions")) mesh.regions = column_values<std::int32_t>(archive, "regions", 1);
-    if (archive.has("edges")) mesh.edges = column_values<std::uint32_t>(archive, "edges", 2);
-    if (archive.has("edge_markers"))
-      mesh.edge_markers = column_values<std::int32_t>(archive, "edge_markers", 1);
-    return validated(path, std::move(mesh));
-  } catch (const Malformed& malformed) {
-    return refuse(malformed.why);
-  }
+  return read_archive(path, [&](Archive& archive) { return validated(path, mesh_of(archive)); });
+}
+
+Result<VertexValues> read_npz_values(const std::filesystem::path& path, const std::string& array) {
+  return read_archive(path, [&](Archive& archive) -> Result<VertexValues> {
+    std::vector<std::string> names = archive.names();
+    std::erase_if(names, [](const std::string& name) {
+      return std::find(std::begin(kMeshArrays), std::end(kMeshArrays), name) !=
+             std::end(kMeshArrays);
+    });
+    const auto name = chosen_array(path, names, array);
+    if (!name) return tl::unexpected(name.error());
+    auto mesh = validated(path, mesh_of(archive));
+    if (!mesh) return tl::unexpected(mesh.error());
+    return validated(path, *name, std::move(*mesh), column_values<double>(archive, *name, 1));
+  });
 }
 
 }  // namespace weft::client

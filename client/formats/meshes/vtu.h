@@ -6,10 +6,12 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "client/base/atomic_file.h"
 #include "client/base/error.h"
 #include "client/formats/mesh.h"
+#include "client/formats/vertex_values.h"
 
 namespace weft::client {
 
@@ -18,5 +20,8 @@ void write_vtu(const MeshView& mesh, OutputFile& file);
 // Reads files of write_vtu, and other programs' grids of triangles, lines and vertices if they are
 // little-endian, uncompressed, and raw appended or ASCII.
 Result<Mesh> read_vtu(const std::filesystem::path& path);
+
+// The same with an array of its point data, of one component.
+Result<VertexValues> read_vtu_values(const std::filesystem::path& path, const std::string& array);
 
 }  // namespace weft::client

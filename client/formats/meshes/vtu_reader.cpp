@@ -37,6 +37,7 @@ struct Array {
   std::string_view text;     // of an ASCII array
   std::uint64_t offset = 0;  // of an appended one
 };
+using Arrays = std::map<std::string_view, Array>;
 
 class Reader {
  public:
@@ -44,14 +45,32 @@ class Reader {
 
   Result<Mesh> read() {
     if (auto scanned = scan(); !scanned) return tl::unexpected(scanned.error());
-    const auto points = values<double>("Points", 3 * points_);
+    return mesh();
+  }
+
+  Result<VertexValues> read_values(const std::string& wanted) {
+    if (auto scanned = scan(); !scanned) return tl::unexpected(scanned.error());
+    std::vector<std::string> names;
+    for (const auto& [name, array] : point_arrays_) names.emplace_back(name);
+    const auto name = chosen_array(path_, names, wanted);
+    if (!name) return tl::unexpected(name.error());
+    auto at_points = values<double>(point_arrays_, *name, points_);
+    if (!at_points) return tl::unexpected(at_points.error());
+    auto read = mesh();
+    if (!read) return tl::unexpected(read.error());
+    return validated(path_, *name, std::move(*read), std::move(*at_points));
+  }
+
+ private:
+  Result<Mesh> mesh() const {
+    const auto points = values<double>(arrays_, "Points", 3 * points_);
     if (!points) return tl::unexpected(points.error());
-    const auto types = values<std::uint64_t>("types", cells_);
+    const auto types = values<std::uint64_t>(arrays_, "types", cells_);
     if (!types) return tl::unexpected(types.error());
-    const auto offsets = values<std::uint64_t>("offsets", cells_);
+    const auto offsets = values<std::uint64_t>(arrays_, "offsets", cells_);
     if (!offsets) return tl::unexpected(offsets.error());
     const auto corners =
-        values<std::uint64_t>("connectivity", offsets->empty() ? 0 : offsets->back());
+        values<std::uint64_t>(arrays_, "connectivity", offsets->empty() ? 0 : offsets->back());
     if (!corners) return tl::unexpected(corners.error());
     const auto regions = optional_values("region");
     if (!regions) return tl::unexpected(regions.error());
@@ -86,7 +105,6 @@ class Reader {
     return validated(path_, std::move(mesh));
   }
 
- private:
   tl::unexpected<Error> refuse(const std::string& why) const {
     return fail(ExitCode::kUnreadableInput, path_.string() + ": " + why);
   }
@@ -134,6 +152,7 @@ class Reader {
   Result<void> scan() {
     bool is_grid = false;
     bool in_points = false;
+    bool in_point_data = false;
     for (;;) {
       const auto next = next_tag();
       if (!next) return tl::unexpected(next.error());
@@ -157,8 +176,14 @@ class Reader {
         cells_ = *cells;
       } else if (tag.name == "Points") {
         in_points = true;
+        in_point_data = false;
+      } else if (tag.name == "PointData") {
+        in_point_data = true;
+      } else if (tag.name == "Cells" || tag.name == "CellData") {
+        in_point_data = false;
       } else if (tag.name == "DataArray") {
-        if (auto kept = keep(tag, in_points); !kept) return kept;
+        if (auto kept = keep(tag, in_points, in_point_data ? point_arrays_ : arrays_); !kept)
+          return kept;
         in_points = false;
       } else if (tag.name == "AppendedData") {
         if (tag.attributes["encoding"] != "raw") return refuse("its appended data is not raw");
@@ -170,7 +195,7 @@ class Reader {
     }
   }
 
-  Result<void> keep(Tag& tag, bool is_points) {
+  Result<void> keep(Tag& tag, bool is_points, Arrays& arrays) {
     Array array;
     array.type = tag.attributes["type"];
     const std::string_view format = tag.attributes["format"];
@@ -184,7 +209,7 @@ class Reader {
     } else {
       return refuse("the array " + in_quotes(name) + " is neither ASCII nor appended");
     }
-    arrays_[name] = array;
+    arrays[name] = array;
     return {};
   }
 
@@ -229,9 +254,10 @@ class Reader {
   }
 
   template <class T>
-  Result<std::vector<T>> values(std::string_view name, std::uint64_t count) const {
-    const auto found = arrays_.find(name);
-    if (found == arrays_.end()) return refuse("has no array " + in_quotes(name));
+  Result<std::vector<T>> values(const Arrays& arrays, std::string_view name,
+                                std::uint64_t count) const {
+    const auto found = arrays.find(name);
+    if (found == arrays.end()) return refuse("has no array " + in_quotes(name));
     const Array& array = found->second;
     std::vector<T> out;
     bool read = false;
@@ -268,12 +294,13 @@ class Reader {
 
   Result<std::vector<std::int32_t>> optional_values(std::string_view name) const {
     if (!arrays_.contains(name)) return std::vector<std::int32_t>{};
-    return values<std::int32_t>(name, cells_);
+    return values<std::int32_t>(arrays_, name, cells_);
   }
 
   std::filesystem::path path_;
   std::string_view rest_;
-  std::map<std::string_view, Array> arrays_;
+  Arrays point_arrays_;
+  Arrays arrays_;  // all others
   std::string_view appended_;
   bool has_piece_ = false;
   bool wide_headers_ = false;
@@ -287,6 +314,12 @@ Result<Mesh> read_vtu(const std::filesystem::path& path) {
   const auto contents = read_file(path, kMaxFileBytes);
   if (!contents) return tl::unexpected(contents.error());
   return Reader(path, contents->text()).read();
+}
+
+Result<VertexValues> read_vtu_values(const std::filesystem::path& path, const std::string& array) {
+  const auto contents = read_file(path, kMaxFileBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  return Reader(path, contents->text()).read_values(array);
 }
 
 }  // namespace weft::client

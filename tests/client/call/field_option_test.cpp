@@ -13,6 +13,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 FieldOption parsed(const std::string& text) {
   return FieldOption::parse(text, "folder").value();
@@ -47,6 +48,20 @@ TEST(FieldOption, IsARasterWithOrWithoutABand) {
   EXPECT_EQ(raster("d=none.tif").file, folder / "none.tif");
 }
 
+TEST(FieldOption, IsOnAnEarlierMesh) {
+  const TempFolder folder;
+  const auto on_mesh = [&](const std::string& text) {
+    return std::get<FieldOption::OnMesh>(FieldOption::parse(text, folder.path())->kind);
+  };
+  const std::filesystem::path old = folder.write("a:b.vtu", "");
+  EXPECT_EQ(on_mesh("h=mesh:a:b.vtu").file, old);
+  EXPECT_EQ(on_mesh("h=mesh:a:b.vtu").array, "");
+  EXPECT_EQ(on_mesh("h=mesh:a:b.vtu:u:v").file, old);
+  EXPECT_EQ(on_mesh("h=mesh:a:b.vtu:u:v").array, "u:v");
+  EXPECT_EQ(on_mesh("h=mesh:none.npz:h").file, folder / "none.npz");
+  EXPECT_EQ(on_mesh("h=mesh:none.npz:h").array, "h");
+}
+
 TEST(FieldOption, WithAFaultSaysWhatIsWrong) {
   for (const char* const text : {"coast", "=distance", "coast=", ""})
     EXPECT_THAT(fault(text), HasSubstr("is not NAME=KIND, such as coast=distance")) << text;
@@ -54,6 +69,7 @@ TEST(FieldOption, WithAFaultSaysWhatIsWrong) {
        {"c=distance:marker=", "c=distance:marker=1,", "c=distance:marker=a"})
     EXPECT_THAT(fault(text), HasSubstr("does not list markers, such as marker=2,3")) << text;
   EXPECT_THAT(fault("c=distance:coast.tif"), HasSubstr("'.tif' is not that of a domain"));
+  EXPECT_THAT(fault("h=mesh:m.stl:h"), HasSubstr("'.stl' is not that of a mesh with values"));
 }
 
 class Sizes : public testing::Test {
@@ -89,6 +105,50 @@ TEST_F(Sizes, BringTheirFields) {
   EXPECT_TRUE(asked.fields(1).has_width());
   EXPECT_THAT(asked.fields(2).distance().points(), ElementsAre(0, 0, 1, 0, 1, 2));
   EXPECT_THAT(asked.fields(2).distance().segments(), ElementsAre(0, 1, 1, 2));
+}
+
+constexpr char kGrid[] = "title\n1 3\n1 1 1 5\n2 3 1 -2\n3 1 3 40\n1 3 1 2 3\n0\n0\n0\n0\n";
+
+TEST_F(Sizes, BringTheValuesOfAnEarlierMesh) {
+  const std::filesystem::path grid = folder_.write("fort.14", kGrid);
+  const RequestOptions options{.edge = "d", .fields = {parsed("d=mesh:" + grid.string())}};
+  const v1::SizeField asked = size(options);
+  ASSERT_EQ(asked.fields_size(), 1);
+  EXPECT_EQ(asked.fields(0).name(), "d");
+  EXPECT_THAT(asked.fields(0).mesh().vertices(), ElementsAre(1, 1, 3, 1, 1, 3));
+  EXPECT_THAT(asked.fields(0).mesh().triangles(), ElementsAre(0, 1, 2));
+  EXPECT_THAT(asked.fields(0).mesh().values(), ElementsAre(5, -2, 40));
+  EXPECT_THAT(with_size(options, square_domain(4))->warnings, IsEmpty());
+}
+
+TEST_F(Sizes, OnAMeshApartFromTheDomainAreWarnedOf) {
+  const std::filesystem::path grid = folder_.write("fort.14", kGrid);
+  Domain domain = square_domain(4);
+  for (Point& point : domain.points) point.x += 10;
+  const auto read = with_size({.edge = "d", .fields = {parsed("d=mesh:" + grid.string())}}, domain);
+  ASSERT_TRUE(read);
+  EXPECT_THAT(read->warnings,
+              ElementsAre(grid.string() +
+                          ": this mesh lies apart from the domain, from (1, 1) to (3, 3); the "
+                          "field d has the values of its boundary"));
+}
+
+// A mesh is in what this mesh will be in: degrees, or metres with to_metres.
+TEST_F(Sizes, OnAnEarlierMeshAreProjectedAsTheDomainIs) {
+  const std::filesystem::path grid = folder_.write("fort.14", kGrid);
+  const RequestOptions options{.edge = "d", .fields = {parsed("d=mesh:" + grid.string())}};
+  for (const bool to_metres : {false, true}) {
+    Domain domain = square_domain(4);
+    const auto projection =
+        DomainProjection::project(domain, {.lonlat = true, .to_metres = to_metres});
+    ASSERT_TRUE(projection) << projection.error().message;
+    const auto read = with_size(options, domain, &*projection);
+    ASSERT_TRUE(read) << read.error().message;
+    const Point first = to_metres ? Point{1, 1} : projection->to_plane({1, 1});
+    const auto& vertices = read->size_read->fields(0).mesh().vertices();
+    EXPECT_EQ(vertices[0], first.x);
+    EXPECT_EQ(vertices[1], first.y);
+  }
 }
 
 TEST_F(Sizes, WithoutTheirFilesAreErrors) {
