@@ -17,6 +17,7 @@ struct BatchOutcome {
   std::optional<v1::Summary> summary{};  // nothing if there is no mesh
   std::optional<Error> error{};          // why there is none
   std::vector<std::string> failures{};   // gates and the lock
+  std::vector<std::string> warnings{};   // for people; each is one line
   std::filesystem::path drawing{};       // empty: none
   double seconds = 0;
 

@@ -42,8 +42,8 @@ std::filesystem::path picture_of(const MeshOutputOptions& output) {
   return found == output.drawings.end() ? std::filesystem::path() : *found;
 }
 
-Result<v1::Summary> make_mesh(const BatchMesh& mesh, const Connection& connection,
-                              const BatchOptions& options, const std::stop_token& stop) {
+Result<MeshReport> make_mesh(const BatchMesh& mesh, const Connection& connection,
+                             const BatchOptions& options, const std::stop_token& stop) {
   const auto input = read_input_domain(mesh.input, mesh.request_options, mesh.output.projection);
   if (!input) return tl::unexpected(input.error());
   auto request_options = with_size(mesh.request_options, input->domain, input->projection.get());
@@ -56,12 +56,10 @@ Result<v1::Summary> make_mesh(const BatchMesh& mesh, const Connection& connectio
     if (!opened) return tl::unexpected(opened.error());
     output.emplace(std::move(*opened));
   }
-  const auto report = mesh_into(
+  return mesh_into(
       connection, *input, *request_options,
       {.timeout_seconds = options.timeout_seconds, .retries = options.retries},
       output ? &*output : nullptr, [] {}, stop);
-  if (!report) return tl::unexpected(report.error());
-  return report->summary;
 }
 
 std::string line_of(const BatchOutcome& outcome) {
@@ -77,6 +75,8 @@ std::string line_of(const BatchOutcome& outcome) {
     if (!warning.empty()) warning.pop_back();
     if (!warning.empty()) line += "\n        " + warning;
   }
+  for (const std::string& warning : outcome.warnings)
+    line += "\n        WARNING: " + harmless(warning);
   if (outcome.error) line += "\n        " + outcome.error->message;
   for (const std::string& failure : outcome.failures) line += "\n        " + failure;
   return line + "\n";
@@ -97,19 +97,21 @@ std::vector<BatchOutcome> make_all(const std::vector<BatchMesh>& meshes,
       outcome.name = mesh.name;
       outcome.drawing = picture_of(mesh.output);
       const auto start = MeshTimes::Clock::now();
-      auto summary = make_mesh(mesh, connection, options, stop);
+      auto report = make_mesh(mesh, connection, options, stop);
       outcome.seconds = std::chrono::duration<double>(MeshTimes::Clock::now() - start).count();
       const std::lock_guard lock(mutex);
-      if (summary) {
-        made.add(mesh.name, *summary);
+      if (report) {
+        const v1::Summary& summary = report->summary;
+        made.add(mesh.name, summary);
         for (const auto* gates : {&mesh.gates, &options.gates})
           for (const QualityGate& gate : *gates)
-            if (auto why = gate.violation(*summary)) outcome.failures.push_back(*why);
+            if (auto why = gate.violation(summary)) outcome.failures.push_back(*why);
         if (locked)
           if (auto why = locked->change(mesh.name, made)) outcome.failures.push_back(*why);
-        outcome.summary = std::move(*summary);
+        outcome.warnings = std::move(report->warnings);
+        outcome.summary = std::move(report->summary);
       } else {
-        outcome.error = summary.error();
+        outcome.error = report.error();
       }
       if (!options.quiet || !outcome.passed()) std::fputs(line_of(outcome).c_str(), stdout);
       std::fflush(stdout);

@@ -9,26 +9,9 @@
 #include "client/commands/mesh_into.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
-#include "client/report/marker_warnings.h"
 #include "client/report/progress_bar.h"
-#include "client/report/size_warnings.h"
 
 namespace weft::client {
-namespace {
-
-void add_warnings(const MeshOptions& options, const RequestOptions& asked, const Domain& domain,
-                  MeshReport& report) {
-  if (auto warning = budget_warning(report.summary, options.request_options.max_triangles))
-    report.warnings.push_back(std::move(*warning));
-  for (const auto& warnings :
-       {asked.warnings, size_warnings(*asked.size_read, domain),
-        open_boundary_warnings(report.markers, options.output.writing.open_boundaries),
-        hidden_marker_warnings(report.markers, domain)})
-    report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
-}
-
-}  // namespace
-
 Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   MeshTimes times;
   if (!is_domain_path(options.input)) return unknown_domain_format(options.input);
@@ -67,7 +50,6 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   if (!report) return tl::unexpected(report.error());
   times.written = MeshTimes::Clock::now();
   progress.clear();
-  add_warnings(options, *request_options, domain, *report);
 
   if (options.json) {
     Json json = mesh_json(*report, times);

@@ -3,11 +3,20 @@
 
 #include <filesystem>
 #include <utility>
+#include <vector>
 
 #include "client/call/mesh_spool.h"
 #include "client/report/marker_warnings.h"
+#include "client/report/size_warnings.h"
 
 namespace weft::client {
+namespace {
+
+void add(std::vector<std::string> warnings, MeshReport& report) {
+  for (std::string& warning : warnings) report.warnings.push_back(std::move(warning));
+}
+
+}  // namespace
 
 Result<MeshReport> mesh_into(const Connection& connection, const InputDomain& input,
                              const RequestOptions& request_options, const MeshCallOptions& call,
@@ -29,12 +38,18 @@ Result<MeshReport> mesh_into(const Connection& connection, const InputDomain& in
   }
   received();
   add_projection(input, *report);
+  if (auto warning = budget_warning(report->summary, request_options.max_triangles))
+    add({std::move(*warning)}, *report);
+  add(request_options.warnings, *report);
+  add(size_warnings(*request_options.size_read, input.domain), *report);
   if (output == nullptr) return report;
   output->bring_back_by(input.projection);
   auto mesh = (*spool)->view();
   if (!mesh) return tl::unexpected(mesh.error());
   mesh->input_point_markers = input.domain.point_markers;
   report->markers = markers_of(*mesh);
+  add(open_boundary_warnings(report->markers, output->options().writing.open_boundaries), *report);
+  add(hidden_marker_warnings(report->markers, input.domain), *report);
   if (auto written = output->write(*mesh, report->summary); !written)
     return tl::unexpected(written.error());
   return report;

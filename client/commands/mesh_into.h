@@ -15,8 +15,10 @@
 namespace weft::client {
 
 // Requests a mesh of the domain and writes `output`; null: nothing is written. `received` is called
-// before anything is written. Errors: those of call_generate_mesh and of MeshOutput; if a private
-// server went away, with the last lines of its log.
+// before anything is written. The report has all warnings: about the files of the request, its
+// sizes and its budget, the projection, and the markers of what was written.
+// REQUIRES: the options come from with_size. Errors: those of call_generate_mesh and of MeshOutput;
+// if a private server went away, with the last lines of its log.
 Result<MeshReport> mesh_into(const Connection& connection, const InputDomain& input,
                              const RequestOptions& request_options, const MeshCallOptions& call,
                              MeshOutput* output, const std::function<void()>& received,

@@ -52,6 +52,7 @@ class MeshOutput {
   // Makes a spool that holds the mesh while it arrives, beside the first file, and draws it; a mesh
   // that is only drawn is not held. This must outlive the spool.
   Result<std::unique_ptr<MeshSpool>> make_spool();
+  const MeshOutputOptions& options() const { return options_; }
   bool draws() const { return drawing_ != nullptr; }
   // The mesh that arrives is in metres of this projection, and is written in longitude and latitude
   // unless the projection says metres; drawings show the plane. Null: it is written as it arrives.

@@ -96,6 +96,18 @@ TEST_F(Pipeline, EndsAsTheCallThatFailedAndReportsTheRest) {
   EXPECT_NE(report("weft-junit.xml").find("errors=\"1\""), std::string::npos);
 }
 
+TEST_F(Pipeline, WarnsOfSizesAsMeshDoes) {
+  std::ofstream(folder_ / "meshes.yaml")
+      << "meshes: [{name: key, input: " << model("key.poly") << ", edge: 2, field: [d=width]}]\n";
+  const std::string warning = "WARNING: the size does not name the field 'd'\n";
+  const Outcome outcome = mesh();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("\n        " + warning), std::string::npos) << outcome.out;
+  const Outcome one = run_weft(
+      {"mesh", model("key.poly"), "--edge", "2", "--field", "d=width", "-o", folder_ / "key.vtu"});
+  EXPECT_NE(one.out.find("\n" + warning), std::string::npos) << one.out;
+}
+
 TEST_F(Pipeline, FailsUnderLockedWhereAMeshIsGoneFromTheManifest) {
   ASSERT_EQ(mesh().exit_code, 0);
   std::ofstream(folder_ / "meshes.yaml")
