@@ -9,6 +9,7 @@ import sys
 
 import matplotlib.image
 import numpy as np
+import pytest
 
 EXAMPLES = pathlib.Path(os.environ["WEFT_SOURCE"]) / "client/python/examples"
 
@@ -33,6 +34,12 @@ def test_the_coast_is_meshed_and_drawn(tmp_path):
 def test_poisson_converges_with_order_two():
     said = run("poisson.py")
     assert said.count("triangles") == 4, said
+
+
+def test_meshes_that_follow_their_error_reach_the_optimal_order_at_a_singular_corner():
+    said = run("adaptive.py", "20000")
+    orders = [float(order) for order in re.findall(r"order +([\d.]+)", said)]
+    assert len(orders) == 5 and orders[-1] == pytest.approx(0.5, abs=0.05), said
 
 
 def test_a_lattice_lowers_the_errors_of_poisson_and_of_advection():
