@@ -40,7 +40,7 @@ class Session:
             (folder / ".postgres").mkdir()
             self.database = Postgres(folder / ".postgres")
             self.names[DATABASE] = self.database.uri
-        for name in ("tests", "deploy", "proto"):
+        for name in ("CMakeLists.txt", "LICENSE", "NOTICE", "tests", "deploy", "proto"):
             (folder / name).symlink_to(ROOT / name)
         shutil.copytree(ROOT / "client/python", folder / "client/python",
                         ignore=shutil.ignore_patterns("__pycache__", "build", "*.egg-info"))

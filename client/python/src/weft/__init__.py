@@ -14,6 +14,7 @@ Lengths are in the unit of the domain, areas in its square, angles in degrees, t
 from . import aio
 from ._requests import MeshOptions
 from ._target import TLS
+from ._version import __version__
 from ._wire import Chunk
 from .client import Client, MeshStream
 from .domain import Domain, DomainLike, Region
@@ -36,5 +37,6 @@ __all__ = [
     "LocalServerError", "Merging", "Mesh", "MeshFileError", "MeshOptions", "MeshStream",
     "MissingPackage", "NotFound", "Progress", "Quality", "Raster", "Region", "ServerError",
     "ServerInfo", "ServerLimits", "Size", "Summary", "TLS", "Timings", "Unauthenticated",
-    "Unavailable", "Unrefined", "WeftError", "aio", "distance", "local", "on_mesh", "raster", "width",
+    "Unavailable", "Unrefined", "WeftError", "__version__", "aio", "distance", "local", "on_mesh",
+    "raster", "width",
 ]
