@@ -46,6 +46,10 @@ test=(
   python3-pytest python3-pip python3-setuptools python3-wheel mypy openssl # its tests
   python3-venv python3-pil curl                                           # the documents
   man-db mandoc zsh fish systemd dpkg-dev file iproute2 procps # what is installed, its packages
+  patchelf                 # the wheel
+  # client/examples/go
+  golang-go golang-google-grpc-dev golang-google-protobuf-dev golang-github-golang-protobuf-1-5-dev
+  protoc-gen-go-1-5 protoc-gen-go-grpc
 )
 # Some machines bring a newer node; Debian's npm would be in its way.
 command -v npm >/dev/null || test+=(nodejs npm)

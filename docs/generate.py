@@ -102,10 +102,29 @@ class Page:
         return name.lstrip(".")
 
 
+API = """# The protocol, `weft.v1`
+
+Made from the comments of [`proto/weft/v1`](../proto/weft/v1) by `docs/generate.py`.
+
+[Clients in Node and Go](../client/examples/README.md) are worked out. From a shell, by reflection, which
+servers answer to callers that they let in:
+
+```sh
+grpcurl -plaintext 127.0.0.1:7421 list
+grpcurl -plaintext 127.0.0.1:7421 weft.v1.MeshService/GetServerInfo
+grpcurl -plaintext -d '{"domain": {"points": [0,0, 1,0, 1,1, 0,1], "segments": [0,1, 1,2, 2,3, 3,0]},
+  "size": {"constant": 0.01}}' 127.0.0.1:7421 weft.v1.MeshService/GenerateMesh
+grpcurl -cacert ca.pem -H "authorization: Bearer $(cat token)" mesh.example.org:7421 \\
+  weft.v1.MeshService/GetServerInfo
+```
+
+Debian 12 has no grpcurl, so no test runs these lines; [the same with `buf
+curl`](../client/examples/README.md#from-a-shell) is run by one.
+"""
+
+
 def api():
-    lines = ["# The protocol, `weft.v1`", "",
-             "Made from the comments of [`proto/weft/v1`](../proto/weft/v1) by `docs/generate.py`.",
-             ""]
+    lines = API.splitlines() + [""]
     for file in descriptors().file:
         lines += Page(file).lines
     return "\n".join(lines).rstrip() + "\n"

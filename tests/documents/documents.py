@@ -94,6 +94,7 @@ def main() -> None:
     arguments = parser.parse_intermixed_args()
     paths = [p.resolve() for p in arguments.pages] or [
         ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "client/python/README.md",
+        ROOT / "client/examples/README.md",
         *sorted(p for p in (ROOT / "docs").rglob("*.md") if p.name not in GENERATED)]
     start = time.monotonic()
     failed = 0
