@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <utility>
 
 namespace weft::fuzz {
 namespace {
@@ -166,12 +168,150 @@ class PslgMaker {
   std::vector<Point> points_;  // in grid coordinates
 };
 
+Point some_point(ByteSource& bytes, const Pslg& pslg) {
+  return pslg.points.empty() ? Point{} : pslg.points[bytes.below(pslg.points.size())];
+}
+
+// A raster of lengths; some nodes may have no value.
+FieldRaster read_field_raster(ByteSource& bytes, double extent, Point at) {
+  FieldRaster raster{.origin = at,
+                     .dx = extent / static_cast<double>(1 + bytes.below(8)),
+                     .dy = extent / static_cast<double>(1 + bytes.below(8)),
+                     .columns = static_cast<std::uint32_t>(1 + bytes.below(4)),
+                     .rows = static_cast<std::uint32_t>(1 + bytes.below(4)),
+                     .values = {}};
+  for (std::size_t i = 0; i < std::size_t{raster.columns} * raster.rows; ++i) {
+    const std::size_t step = bytes.byte();
+    raster.values.push_back(step == 255 ? std::numeric_limits<float>::quiet_NaN()
+                                        : static_cast<float>(extent * (1.0 + step) / 256));
+  }
+  return raster;
+}
+
+// Triangles between points of the domain, however they lie, flat ones among them.
+FieldMesh read_field_mesh(ByteSource& bytes, double extent, const Pslg& pslg) {
+  FieldMesh mesh;
+  const std::size_t vertices = 3 + bytes.below(4);
+  for (std::size_t i = 0; i < vertices; ++i) {
+    mesh.vertices.push_back(some_point(bytes, pslg));
+    const std::size_t step = bytes.byte();
+    mesh.values.push_back(step == 255 ? std::numeric_limits<double>::quiet_NaN()
+                                      : extent * static_cast<double>(1 + step) / 256);
+  }
+  for (std::size_t t = 0; t <= bytes.below(4); ++t) {
+    std::array<std::uint32_t, 3> triangle{};
+    for (std::uint32_t& v : triangle) v = static_cast<std::uint32_t>(bytes.below(vertices));
+    mesh.triangles.push_back(triangle);
+  }
+  return mesh;
+}
+
+DistanceSpec read_distance(ByteSource& bytes, const Pslg& pslg) {
+  DistanceSpec distance;
+  switch (bytes.below(4)) {
+    case 1:
+      distance.markers = {static_cast<std::int32_t>(bytes.below(5))};
+      break;
+    case 2:
+    case 3:
+      for (std::size_t i = 0; i <= bytes.below(6); ++i)
+        distance.points.push_back(some_point(bytes, pslg));
+      if (bytes.flag())
+        for (std::uint32_t i = 0; i + 1 < distance.points.size(); i += 1 + bytes.below(2))
+          distance.segments.push_back({i, i + 1});
+      break;
+    default:
+      break;
+  }
+  return distance;
+}
+
+// An expression of the field f, and g if there is one.
+std::string read_expression(ByteSource& bytes, double length, bool two) {
+  const std::string g = two ? "g" : "f";
+  switch (bytes.below(8)) {
+    case 0:
+      return "f";
+    case 1:
+      return print("coalesce(f, %.17g)", length);
+    case 2:
+      return print("defined(f) ? f + %.17g : %.17g", length, length / 2);
+    case 3:
+      return print("%.17g + %.17g*coalesce(slope(f), 1)", length, length);
+    case 4:
+      return print("coalesce(min(f, 2*%s), %.17g) + %.17g", g.c_str(), length, length / 4);
+    case 5:
+      return print("clamp(%.17g*coalesce(f, x), %.17g, %.17g)", 0.5, length / 3, 2 * length);
+    case 6:
+      return print("coalesce(f < %.17g ? %.17g : 2*%s, 1e30)", length, length / 2, g.c_str());
+    default:
+      return print("%.17g + 0.25*coalesce(f, 0)", length / 4);
+  }
+}
+
+SizeSpec read_fields(ByteSource& bytes, double extent, const Pslg& pslg) {
+  SizeSpec size;
+  const std::size_t kinds = bytes.byte();
+  const double length = extent / static_cast<double>(1 + bytes.below(32));
+  if (kinds % 2 == 1) size.measure = Measure::kEdge;
+  const std::size_t count = 1 + kinds / 2 % 2;
+  for (std::size_t i = 0; i < count; ++i) {
+    FieldSpec field{.name = i == 0 ? "f" : "g", .kind = {}};
+    switch (bytes.below(4)) {
+      case 0:
+        field.kind = read_distance(bytes, pslg);
+        break;
+      case 1:
+        field.kind = read_field_raster(bytes, extent, some_point(bytes, pslg));
+        break;
+      case 2:
+        field.kind = read_field_mesh(bytes, extent, pslg);
+        break;
+      default:
+        field.kind = WidthSpec{};
+    }
+    size.fields.push_back(std::move(field));
+  }
+  size.value = read_expression(bytes, length, count == 2);
+  if (kinds / 4 % 8 == 0) size.cells_across = static_cast<double>(1 + kinds / 32);
+  return size;
+}
+
+std::string to_text(const FieldSpec& field) {
+  const auto points = [](const std::vector<Point>& all) {
+    std::string text;
+    for (const Point p : all) text += print(" (%.17g, %.17g)", p.x, p.y);
+    return text;
+  };
+  std::string text = "# field " + field.name + ":";
+  if (const auto* const distance = std::get_if<DistanceSpec>(&field.kind)) {
+    text += " distance, markers";
+    for (const std::int32_t marker : distance->markers) text += print(" %d", marker);
+    text += ", points" + points(distance->points) + ", segments";
+    for (const auto& [a, b] : distance->segments) text += print(" %u-%u", a, b);
+  } else if (const auto* const raster = std::get_if<FieldRaster>(&field.kind)) {
+    text += print(" raster: origin %.17g %.17g, step %.17g %.17g, %u x %u:", raster->origin.x,
+                  raster->origin.y, raster->dx, raster->dy, raster->columns, raster->rows);
+    for (const float value : raster->values) text += print(" %.9g", static_cast<double>(value));
+  } else if (const auto* const mesh = std::get_if<FieldMesh>(&field.kind)) {
+    text += " mesh:" + points(mesh->vertices) + ", triangles";
+    for (const auto& [a, b, c] : mesh->triangles) text += print(" %u-%u-%u", a, b, c);
+    text += ", values";
+    for (const double value : mesh->values) text += print(" %.17g", value);
+  } else {
+    text += " width";
+  }
+  return text + "\n";
+}
+
 SizeSpec read_size(ByteSource& bytes, double extent, const Pslg& pslg) {
   SizeSpec size;
   const std::size_t kind = bytes.below(8);
   const double area = extent * extent / static_cast<double>(1 + bytes.byte());
-  const Point at = pslg.points.empty() ? Point{} : pslg.points[bytes.below(pslg.points.size())];
+  const Point at = some_point(bytes, pslg);
   switch (kind) {
+    case 7:
+      return read_fields(bytes, extent, pslg);
     case 4:
       size = area;
       break;
@@ -252,7 +392,10 @@ std::string to_text(const MeshCase& mesh_case) {
   if (const auto* const constant = std::get_if<double>(&request.size.value))
     text += print(" --size %.17g", *constant);
   if (const auto* const expression = std::get_if<std::string>(&request.size.value))
-    text += " --size '" + *expression + "'";
+    text +=
+        (request.size.measure == Measure::kEdge ? " --edge '" : " --size '") + *expression + "'";
+  if (request.size.cells_across > 0)
+    text += print(" --cells-across %.17g", request.size.cells_across);
   if (request.min_edge > 0) text += print(" --min-edge %.17g", request.min_edge);
   if (request.placement == Placement::kCircumcentre) text += " --placement circumcentre";
   if (request.sweeps) text += print(" --optimise %u", *request.sweeps);
@@ -270,6 +413,7 @@ std::string to_text(const MeshCase& mesh_case) {
     for (const double value : raster->values) text += print(" %.17g", value);
     text += "\n";
   }
+  for (const FieldSpec& field : request.size.fields) text += to_text(field);
   text += print("%zu 2 0 0\n", pslg.points.size());
   for (std::size_t i = 0; i < pslg.points.size(); ++i)
     text += print("%zu %.17g %.17g\n", i, pslg.points[i].x, pslg.points[i].y);
