@@ -88,11 +88,9 @@ class Size {
 };
 
 // Judges what needs neither the domain nor the values of arrays: kBadSizeValue for a constant that
-// Judges what needs neither the domain nor the values of arrays: kBadSizeValue for a constant that
 // is not positive and finite, kBadOption for names of fields, a second width, the gradation and
 // cells_across, and the errors of Expression::check. The field is "size.constant",
 // "size.expression", "size.gradation", "size.cells_across" or "size.fields[i].name".
-// "size.cells_across" or "size.fields[i].name".
 std::optional<Error> check_size(const SizeSpec& spec);
 
 // Computes in the context's arena. REQUIRES: a raster satisfies its own requirements (raster.h),

@@ -77,7 +77,8 @@ bool is_of_the_domain(const std::string& verdict) {
   return true;
 }
 
-// The checker's verdict, but for sizes by the local width.
+// The checker's verdict, but for sizes by the local width: then no bound on areas is judged, because
+// the least number of triangles is that of all of them.
 std::string verdict_on(const MeshRequest& request, const CollectedMesh& mesh,
                        const Summary& summary) {
   const auto is_width = [](const FieldSpec& field) {
@@ -88,6 +89,7 @@ std::string verdict_on(const MeshRequest& request, const CollectedMesh& mesh,
     return verdict(request, mesh, summary);
   MeshRequest without_size = request;
   without_size.size = {};
+  for (RegionSeed& region : without_size.pslg.regions) region.max_area.reset();
   Summary of_it = summary;
   of_it.ideal_ratio = 0;
   return verdict(without_size, mesh, of_it);

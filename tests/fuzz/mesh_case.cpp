@@ -380,6 +380,10 @@ MeshCase decode_mesh_case(ByteSource bytes) {
   }
   if (rarely % 8 == 4) request.placement = Placement::kCircumcentre;
   if (rarely % 8 == 5) request.sweeps = rarely / 8 % 4;
+  if (rarely % 8 == 6) {
+    constexpr std::array<double, 4> kGradations{0.15, 0.02, 0.5, 3};
+    request.size.gradation = kGradations[rarely / 8 % kGradations.size()];
+  }
   made.plain = made.plain && request.pslg.snap == 0;
   made.budget.triangle_limit = kTriangleLimit;
   return made;
@@ -396,6 +400,7 @@ std::string to_text(const MeshCase& mesh_case) {
         (request.size.measure == Measure::kEdge ? " --edge '" : " --size '") + *expression + "'";
   if (request.size.cells_across > 0)
     text += print(" --cells-across %.17g", request.size.cells_across);
+  if (request.size.gradation > 0) text += print(" --gradation %.17g", request.size.gradation);
   if (request.min_edge > 0) text += print(" --min-edge %.17g", request.min_edge);
   if (request.placement == Placement::kCircumcentre) text += " --placement circumcentre";
   if (request.sweeps) text += print(" --optimise %u", *request.sweeps);
