@@ -456,11 +456,13 @@ void DistanceField::evaluate(std::size_t n, const double* x, const double* y,
   }
 }
 
-Interval DistanceField::bounds(const Box& box) const noexcept {
+DistanceField::Around DistanceField::around(const Box& box) const noexcept {
   // Every point of the box lies, rounded, in the box of the rounded corners.
   const Point low = inside({box.min_x, box.min_y});
   const Point high = inside({box.max_x, box.max_y});
   const Point middle{0.5 * low.x + 0.5 * high.x, 0.5 * low.y + 0.5 * high.y};
+  if (!(largest({low.x, low.y, high.x, high.y}) <= kFarthest))
+    return {middle, kInfinity, 0, kInfinity};
   Lanes at;
   __m128d value[4];
   std::fill_n(at.x, 4, _mm_set1_pd(middle.x));
@@ -472,9 +474,31 @@ Interval DistanceField::bounds(const Box& box) const noexcept {
   const double radius = 0.5 * std::sqrt(width * width + height * height);
   const double rounding =
       kRounding * (distance + radius + longest_ + std::fabs(middle.x) + std::fabs(middle.y));
-  const double hi = distance + radius + rounding;
-  if (!(largest({low.x, low.y, high.x, high.y}) <= kFarthest)) return {0, kInfinity, false};
-  return {std::max(0.0, (distance - radius - rounding) * unit_), hi * unit_, false};
+  return {middle, radius, std::max(0.0, distance - radius - rounding),
+          distance + radius + rounding};
+}
+
+Interval DistanceField::bounds(const Box& box) const noexcept {
+  const Around at = around(box);
+  return {at.least * unit_, at.most * unit_, false};
+}
+
+// The line that is nearest to a point of the box is no farther from its middle than that one's
+// distance and the way there.
+double DistanceField::least_near(const LineTree::Numbers& numbers, const Box& box) const noexcept {
+  const Around at = around(box);
+  return tree_.least_near(numbers, at.middle, at.most + at.radius);
+}
+
+std::vector<Line> DistanceField::lines() const {
+  const auto outside = [&](Point p) {
+    return Point{p.x * unit_ + centre_.x, p.y * unit_ + centre_.y};
+  };
+  std::vector<Line> lines;
+  lines.reserve(tree_.lines().size());
+  for (const StraightLine& line : tree_.lines())
+    lines.push_back({outside({line.ax, line.ay}), outside(line.end())});
+  return lines;
 }
 
 std::unique_ptr<const Field> DistanceField::slope() const {

@@ -27,6 +27,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/base/context.h"
@@ -64,6 +65,14 @@ class DistanceField final : public Field {
 
   double steepness(const Box&) const noexcept override { return 1; }
 
+  // The lines as they are held, with the rounding of the class, and numbers of theirs.
+  std::vector<Line> lines() const;
+  LineTree::Numbers with_leasts(std::vector<double> of_line) const {
+    return tree_.with_leasts(std::move(of_line));
+  }
+  // The least number of the lines that are nearest to some point of the box, and of some others.
+  double least_near(const LineTree::Numbers& numbers, const Box& box) const noexcept;
+
   // 1 everywhere, because it is but for a set without area.
   std::unique_ptr<const Field> slope() const override;
 
@@ -94,6 +103,15 @@ class DistanceField final : public Field {
   void fill_table(std::uint32_t node, int depth, std::uint32_t ix, std::uint32_t iy);
   std::uint32_t leaf(int ix, int iy) const noexcept;
   void eight(const Lanes& at, __m128d* out) const noexcept;
+  // Around the middle of a box, in the coordinates inside: `least` and `most` of the distance, with
+  // its rounding.
+  struct Around {
+    Point middle;
+    double radius;
+    double least;
+    double most;
+  };
+  Around around(const Box& box) const noexcept;
 
   Point centre_;
   double scale_ = 1;  // a power of two

@@ -235,4 +235,39 @@ LineTree::Nearest LineTree::nearest(Point p, std::uint32_t guess) const noexcept
   return found;
 }
 
+LineTree::Numbers LineTree::with_leasts(std::vector<double> of_line) const {
+  const std::size_t leaves = first_.size() - 1;
+  Numbers numbers{std::move(of_line),
+                  std::vector<double>(2 * leaves, std::numeric_limits<double>::infinity())};
+  for (std::size_t leaf = 0; leaf < leaves; ++leaf)
+    for (std::uint32_t i = first_[leaf]; i < first_[leaf + 1]; ++i)
+      numbers.of_node[leaves + leaf] = std::min(numbers.of_node[leaves + leaf], numbers.of_line[i]);
+  for (std::size_t node = leaves; node-- > 1;)
+    numbers.of_node[node] = std::min(numbers.of_node[2 * node], numbers.of_node[2 * node + 1]);
+  return numbers;
+}
+
+double LineTree::least_near(const Numbers& numbers, Point p, double distance) const noexcept {
+  const std::size_t leaves = first_.size() - 1;
+  const double square = distance * distance;
+  double found = std::numeric_limits<double>::infinity();
+  std::array<std::size_t, kMaxLevels + 2> stack;  // one node of each level, two of the last
+  stack[0] = 1;
+  std::size_t size = 1;
+  while (size > 0) {
+    const std::size_t node = stack[--size];
+    if (numbers.of_node[node] >= found || least(boxes_[node], p) > square) continue;
+    if (node < leaves) {
+      const bool second = numbers.of_node[2 * node + 1] < numbers.of_node[2 * node];
+      stack[size++] = 2 * node + !second;
+      stack[size++] = 2 * node + second;
+      continue;
+    }
+    for (std::uint32_t i = first_[node - leaves]; i < first_[node - leaves + 1]; ++i)
+      if (numbers.of_line[i] < found && lines_[i].square(p) * (1 - 0x1p-46) <= square)
+        found = numbers.of_line[i];
+  }
+  return found;
+}
+
 }  // namespace weft

@@ -42,6 +42,19 @@ class LineTree {
   // `guess` is any line; the nearer, the faster. REQUIRES: a point whose square is finite.
   Nearest nearest(Point p, std::uint32_t guess) const noexcept;
 
+  // A number for each of lines(), and the least of those below each node.
+  struct Numbers {
+    std::vector<double> of_line;
+    std::vector<double> of_node;
+    std::size_t bytes() const noexcept {
+      return (of_line.capacity() + of_node.capacity()) * sizeof(double);
+    }
+  };
+  Numbers with_leasts(std::vector<double> of_line) const;
+  // The least number of the lines within `distance` of p, perhaps of some that are farther;
+  // infinity if there is none.
+  double least_near(const Numbers& numbers, Point p, double distance) const noexcept;
+
   std::size_t bytes() const noexcept;
 
  private:

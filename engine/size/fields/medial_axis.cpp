@@ -23,6 +23,8 @@ constexpr double kCosHalfAngle = 0.5403023058681398;  // cos(kObjectAngle / 2)
 constexpr double kCosAngle = -0.4161468365471424;     // cos(kObjectAngle)
 // Longest piece of a wall, in heights of a triangle of the axis on it.
 constexpr double kLongestPiece = 0.5;
+// How near to a corner the axis comes, along the shorter of its two walls.
+constexpr double kOfTip = 0.5;
 // The walls of every ear are halved in so many rounds, because a domain may be all ears.
 constexpr int kRoundsOfEars = 2;
 
@@ -103,6 +105,7 @@ class Axis {
     double radius;
     bool is_ear;
     bool is_sharp;    // an ear whose corner the axis enters
+    bool is_at_tip;   // no ear, in a corner of walls that the axis does not enter so far
     bool is_on_axis;  // its circle is a disk of the axis
   };
 
@@ -116,6 +119,7 @@ class Axis {
     return {std::clamp(p.x, box_.min_x, box_.max_x), std::clamp(p.y, box_.min_y, box_.max_y)};
   }
   bool is_wall(Edge e) const { return t_.constraint(e) != kNone; }
+  bool are_at_tip(Vertex u, Vertex v) const;
   Shape shape(std::uint32_t face) const;
   bool wants_halving(const Shape& s, int i, int round) const;
   bool is_too_narrow(const Shape& s) const;
@@ -127,6 +131,7 @@ class Axis {
   Triangulation t_;
   std::vector<Arrangement::Constraint> constraints_;
   std::vector<std::uint8_t> inside_;  // per face of the triangulation
+  std::vector<std::uint32_t> wall_;   // per vertex: the wall that it halves, or kNone
   Box box_;                           // of the walls
   double shortest_ = 0;               // no wall shorter than that is halved
 };
@@ -140,6 +145,7 @@ void Axis::triangulate_walls() {
                            merging, poller_);
   inserter.insert_all();
   constraints_ = inserter.take_constraints();
+  wall_.assign(t_.vertices(), kNone);
 
   double perimeter = 0;
   for (const Segment& s : walls_.segments) {
@@ -174,6 +180,19 @@ void Axis::find_inside() {
   }
 }
 
+// Whether the two are on walls that meet at a corner, and within kOfTip of the shorter one from it.
+bool Axis::are_at_tip(Vertex u, Vertex v) const {
+  if (wall_[u] == kNone || wall_[v] == kNone || wall_[u] == wall_[v]) return false;
+  const Segment a = walls_.segments[wall_[u]], b = walls_.segments[wall_[v]];
+  const bool at_a = a.a == b.a || a.a == b.b;
+  if (!at_a && a.b != b.a && a.b != b.b) return false;
+  const Point tip = walls_.points[at_a ? a.a : a.b];
+  const double shorter = std::min(distance2(walls_.points[a.a], walls_.points[a.b]),
+                                  distance2(walls_.points[b.a], walls_.points[b.b]));
+  return std::max(distance2(tip, t_.at(u)), distance2(tip, t_.at(v))) <=
+         kOfTip * kOfTip * shorter * (1 + 1e-9);  // for the rounding of halves
+}
+
 Axis::Shape Axis::shape(std::uint32_t face) const {
   Shape s;
   for (int i = 0; i < 3; ++i) s.corner[i] = t_.at(t_.vertex(face, i));
@@ -187,14 +206,18 @@ Axis::Shape Axis::shape(std::uint32_t face) const {
   s.radius = s.side[0] * s.side[1] / s.area2 * (0.5 * s.side[2]);  // no product underflows
   s.is_ear = s.walls >= 2;
   double widest = 0;
-  for (int i = 0; i < 3; ++i)
-    if (!s.is_wall[i]) widest = std::max(widest, s.side[i]);
-  s.is_on_axis = s.area2 > 0 && !s.is_ear && widest >= 2 * kSinHalfAngle * s.radius;
+  s.is_at_tip = false;
+  for (int i = 0; i < 3; ++i) {
+    if (s.is_wall[i] || s.side[i] <= widest) continue;
+    widest = s.side[i];
+    s.is_at_tip = are_at_tip(t_.vertex(face, ccw(i)), t_.vertex(face, cw(i)));
+  }
+  s.is_on_axis = s.area2 > 0 && !s.is_ear && !s.is_at_tip && widest >= 2 * kSinHalfAngle * s.radius;
   s.is_sharp = false;
   if (s.walls == 2) {
     const int i = !s.is_wall[0] ? 0 : !s.is_wall[1] ? 1 : 2;
     const double p = s.side[ccw(i)], q = s.side[cw(i)];
-    s.is_sharp = p * p + q * q - s.side[i] * s.side[i] > -2 * p * q * kCosAngle;
+    s.is_sharp = !s.is_at_tip && p * p + q * q - s.side[i] * s.side[i] > -2 * p * q * kCosAngle;
   }
   return s;
 }
@@ -208,6 +231,7 @@ bool Axis::wants_halving(const Shape& s, int i, int round) const {
       if (s.is_wall[k]) shortest = std::min(shortest, s.side[k]);
     return s.is_sharp || round < kRoundsOfEars || s.side[i] > 2 * shortest;
   }
+  if (s.is_at_tip) return false;
   const double square = s.side[i] * s.side[i];
   if (s.is_on_axis) return square > kLongestPiece * s.area2;
   const double p = s.side[ccw(i)], q = s.side[cw(i)];
@@ -269,9 +293,12 @@ void Axis::halve(Vertex u, Vertex v, std::vector<std::uint32_t>& changed) {
       orientation(far, l, p) <= 0)
     return;
   const std::uint8_t sides[2] = {inside_[edge.face], inside_[behind.face]};
+  const std::uint32_t wall = constraints_[t_.constraint(edge)].segment;
   const auto id = static_cast<std::uint32_t>(t_.vertices());
   const Vertex w = t_.insert(p, id, {Triangulation::At::kEdge, edge});
   inside_.resize(t_.faces());
+  wall_.resize(t_.vertices(), kNone);
+  wall_[w] = wall;
   // All triangles that are new are around w: from the wall's left half over the near side to its
   // right half, then over the far side.
   edge = t_.find_edge(w, to);

@@ -15,10 +15,11 @@
 // How. The centres are approximated by those of the circles of a constrained Delaunay triangulation
 // of the walls alone. A wall is halved if its square is more than the area of a triangle of the
 // axis that stands on it, or if it is seen under more than kObjectAngle / 2 from the tip of
-// another one. A corner is cut by an ear, a triangle with two walls, which makes no centre; if the
-// corner is sharper than pi - kObjectAngle, the axis enters it, so that its walls are halved on
-// and on. None shorter than the perimeter / (2 walls + 2^17) is: so the number of pieces is
-// bounded, whatever the shape. If a passage is too narrow for that, its axis is the line through
+// another one. A corner is cut by an ear, a triangle with two walls, which makes no centre. If the
+// corner is sharper than pi - kObjectAngle, the axis enters it, but no nearer to the tip than half
+// the shorter of its two walls: a corner is no passage, and a size by the width would have no end
+// there. No wall shorter than the perimeter / (2 walls + 2^17) is halved: so the number of pieces
+// is bounded, whatever the shape. If a passage is too narrow for that, its axis is the line through
 // the middles of the edges that cross it; if a whole component is, the centre of the largest disk
 // in one of its triangles.
 //

@@ -2,11 +2,35 @@
 #include "engine/size/fields/width_field.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "engine/size/fields/medial_axis.h"
 
 namespace weft {
+namespace {
+
+double length(Point a, Point b) {
+  return std::sqrt(distance2(a, b));
+}
+
+// No point of the line from a to b is nearer, because nobody comes nearer than by the way: the line
+// is halved until that tells the distance to kTight, or kDepth times. At the ends it is known.
+double least_distance(const DistanceField& field, const Line& line, double at_a, double at_b,
+                      int depth = 0) {
+  constexpr double kTight = 0.98;
+  constexpr int kDepth = 5;
+  const double least = 0.5 * (at_a + at_b - length(line.a, line.b));
+  if (depth == kDepth || least >= kTight * std::min(at_a, at_b)) return least;
+  const Point middle{0.5 * (line.a.x + line.b.x), 0.5 * (line.a.y + line.b.y)};
+  const double at_middle = field(middle);
+  return std::min(least_distance(field, {line.a, middle}, at_a, at_middle, depth + 1),
+                  least_distance(field, {middle, line.b}, at_middle, at_b, depth + 1));
+}
+
+}  // namespace
 
 Result<WidthField> WidthField::make(const Domain& domain, const ExecutionContext& context) {
   Result<MedialAxis> axis = medial_axis(domain, context);
@@ -22,7 +46,22 @@ Result<WidthField> WidthField::make(const Domain& domain, const ExecutionContext
   if (!to_walls) return tl::unexpected(std::move(to_walls).error());
   Result<DistanceField> to_axis = DistanceField::make(std::move(axis->axis), box, context);
   if (!to_axis) return tl::unexpected(std::move(to_axis).error());
-  return WidthField(*std::move(to_walls), *std::move(to_axis), std::min(box.width(), box.height()));
+  return WidthField(*std::move(to_walls), *std::move(to_axis), box);
+}
+
+WidthField::WidthField(DistanceField to_walls, DistanceField to_axis, const Box& box)
+    : to_walls_(std::move(to_walls)),
+      to_axis_(std::move(to_axis)),
+      most_(std::min(box.width(), box.height())) {
+  // More than all coordinates round.
+  const double rounding =
+      1e-13 * std::max({std::fabs(box.min_x), std::fabs(box.max_x), std::fabs(box.min_y),
+                        std::fabs(box.max_y), box.width(), box.height()});
+  std::vector<double> radii;
+  for (const Line& line : to_axis_.lines())
+    radii.push_back(least_distance(to_walls_, line, to_walls_(line.a), to_walls_(line.b)) -
+                    rounding);
+  radii_ = to_axis_.with_leasts(std::move(radii));
 }
 
 void WidthField::evaluate(std::size_t n, const double* x, const double* y,
@@ -40,7 +79,9 @@ void WidthField::evaluate(std::size_t n, const double* x, const double* y,
 Interval WidthField::bounds(const Box& box) const noexcept {
   const Interval walls = to_walls_.bounds(box);
   const Interval axis = to_axis_.bounds(box);
-  return {width(walls.lo, axis.lo), width(walls.hi, axis.hi), walls.may_be_nan || axis.may_be_nan};
+  const double about_axis = std::min(2 * to_axis_.least_near(radii_, box), most_);
+  return {std::max(width(walls.lo, axis.lo), about_axis), width(walls.hi, axis.hi),
+          walls.may_be_nan || axis.may_be_nan};
 }
 
 }  // namespace weft

@@ -38,6 +38,9 @@ double farthest(Point p, const Box& box) {
 struct Sample {
   Point p;
   double edge = kInfinity;
+  // The longest at the corners of a box and in the middles of its sides; infinity if the domain
+  // does not hold all of the box.
+  double highest = kInfinity;
   bool bad = false;  // no size may be like this: negative or NaN
 };
 
@@ -253,7 +256,9 @@ Sample Builder::sample(const DomainBox& at, const std::uint32_t* triangles) cons
   alignas(64) std::array<double, Field::kLanes> area;
   const Box& b = at.box;
   const Point m = middle(b);
-  if (at.inside) {
+  constexpr std::uint32_t kFew = 16;
+  const bool within = at.inside || (at.count <= kFew && !on_border(at, triangles));
+  if (within) {
     x = {b.min_x, b.max_x, b.min_x, b.max_x, m.x, m.x, b.min_x, b.max_x};
     y = {b.min_y, b.min_y, b.max_y, b.max_y, b.min_y, b.max_y, m.y, m.y};
   } else {
@@ -283,12 +288,17 @@ Sample Builder::sample(const DomainBox& at, const std::uint32_t* triangles) cons
   }
   size_.evaluate(Field::kLanes, x.data(), y.data(), area.data());
   Sample best;
+  double highest = 0;
   for (std::size_t i = 0; i < Field::kLanes; ++i) {
     best.bad = best.bad || !(area[i] >= 0);
     if (!(area[i] > 0)) continue;
     const double edge = SizeFunction::edge_of_area(area[i]);
-    if (edge >= kLeastEdge && edge < best.edge) best = {{x[i], y[i]}, edge, best.bad};
+    highest = std::max(highest, edge);
+    if (edge < kLeastEdge || edge >= best.edge) continue;
+    best.p = {x[i], y[i]};
+    best.edge = edge;
   }
+  if (within && !best.bad) best.highest = highest;
   return best;
 }
 
@@ -401,7 +411,11 @@ std::optional<Error> Builder::judge(const Level& level, const std::vector<Seen>&
   const bool border = borders_count_ && on_border(at, triangles);
   if (!border && gentle(at.box, edge)) return std::nullopt;
   const double finest = std::max(SourceTree::kTolerance, SourceTree::kSmallest * gradation_);
-  const bool resolved = gradation_ * diagonal(at.box) <= finest * edge.lo;
+  // From any point, the box is no nearer than one of its samples by more than half a side.
+  const double off = std::min(gradation_ * diagonal(at.box),
+                              seen[slot].sample.highest - edge.lo +
+                                  0.5 * gradation_ * std::max(at.box.width(), at.box.height()));
+  const bool resolved = off <= finest * edge.lo;
   if (outside) {
     if (irrelevant(at.box, group)) return std::nullopt;
     const bool no_size = !(edge.lo <= edge.hi) || (edge.may_be_nan && depth >= kNoSizeDepth);

@@ -10,7 +10,9 @@
 //     above q's cone, until it comes to p or to another box;
 //   - dropped, if all of it lies above the cone of a sample: a point of the domain whose h is
 //   known;
-//   - a source, if G times its diagonal is at most kTolerance times `edge`;
+//   - a source, if G times its diagonal is at most kTolerance times `edge`, or what `edge` is below
+//     the longest of its samples and G times half a side together: where the size changes little,
+//     that leaves an eighth of the boxes;
 //   - else divided in four.
 // A walk may lead across boxes outside the domain, which can be no sources. One of them is dropped
 // for these reasons, too, or if no walk that counts crosses it: because it lies outside the convex

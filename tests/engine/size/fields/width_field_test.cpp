@@ -157,13 +157,33 @@ TEST(WidthField, OfAWedgeGrowsWithTheDistanceFromItsTip) {
     const Ratios r = ratios(
         width_of(polygon({{0, 0}, {10, -rise}, {10, rise}})),
         [](double s, double) {
-          return Point{0.5 + 4 * s, 0};
+          return Point{6 + 3 * s, 0};
         },
         [&](Point p) { return 2 * std::sin(half) * p.x; });
     EXPECT_GT(r.least, 0.999) << half;
     EXPECT_NEAR(r.median, 1, 0.01) << half;
     EXPECT_LT(r.most, 1.06) << half;
   }
+}
+
+// A size by the width would have no end at the tip.
+TEST(WidthField, OfACornerIsNotBelowThatOfTheMiddleOfItsWalls) {
+  for (const double half : {0.3, 0.05}) {
+    const double rise = 10 * std::tan(half);
+    const WidthField width = width_of(polygon({{0, 0}, {10, -rise}, {10, rise}}));
+    const double middle = 2 * std::sin(half) * 5;
+    for (const double x : {1e-9, 1e-3, 0.1, 1.0, 3.0, 4.5, 6.0})
+      EXPECT_GT(width({x, 0}), 0.9 * middle) << half << " " << x;
+    EXPECT_GT(width.bounds({0, -rise, 10, rise}).lo, 0.9 * middle) << half;
+  }
+}
+
+TEST(WidthField, BoundsOfABoxAcrossAStripAreTight) {
+  const WidthField width = width_of(strip());
+  const Interval all = width.bounds({0, 0, 10, 1});
+  EXPECT_GT(all.lo, 0.97);
+  EXPECT_LE(all.lo, 1);
+  EXPECT_GT(width.bounds({3, 0, 5, 1}).lo, 0.97);
 }
 
 TEST(WidthField, OfADiskIsItsDiameterHoweverManyItsCorners) {
