@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "checker/check.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -84,9 +86,31 @@ bool try_without_jumps(const BentDomain& bent, const FilledDomain& filled,
   return any;
 }
 
+bool is_a_point(const Domain& domain, const SegmentEnds& ends) {
+  const std::size_t n = domain.points.size();
+  return ends[0] < n && ends[1] < n && domain.points[ends[0]] == domain.points[ends[1]];
+}
+
+Domain without_segments_that_are_points(Domain domain) {
+  const bool have_markers = domain.markers.size() == domain.segments.size();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < domain.segments.size(); ++i) {
+    if (is_a_point(domain, domain.segments[i])) continue;
+    domain.segments[kept] = domain.segments[i];
+    if (have_markers) domain.markers[kept] = domain.markers[i];
+    ++kept;
+  }
+  domain.segments.resize(kept);
+  if (have_markers) domain.markers.resize(kept);
+  return domain;
+}
+
 }  // namespace
 
 Report check(const Domain& domain, const Mesh& mesh, const Requirements& requirements) {
+  if (std::any_of(domain.segments.begin(), domain.segments.end(),
+                  [&](const SegmentEnds& ends) { return is_a_point(domain, ends); }))
+    return check(without_segments_that_are_points(domain), mesh, requirements);
   Report report;
   Findings findings(requirements.listed_violations);
   const auto skip = [&](std::initializer_list<Rule> rules) {

@@ -33,8 +33,6 @@ bool judge_domain(const Domain& domain, Findings& findings) {
     const auto [a, b] = domain.segments[i];
     if (a >= domain.points.size() || b >= domain.points.size())
       bad("segment ", i, " joins points ", a, " and ", b, ", but there are ", domain.points.size());
-    else if (domain.points[a] == domain.points[b])
-      bad("segment ", i, " joins points ", a, " and ", b, ", both at ", domain.points[a]);
   }
   if (!(domain.snap >= 0 && domain.snap <= kMaxMagnitude))
     bad("the merging distance ", domain.snap, " is not finite or below 0");

@@ -22,7 +22,6 @@ enum class ErrorCode {
   kIndexOutOfRange,       // a segment names a point that does not exist
   kTooFewPoints,          // fewer than 3 distinct points
   kCollinearPoints,       // every point lies on one line
-  kZeroLengthSegment,     // a segment whose ends are the same point
   kSeedOutsideDomain,     // a hole or region seed that lies in no bounded face
   kSeedOnSegment,         // a hole or region seed on a segment or point: its face is ambiguous
   kEmptyDomain,           // nothing is left after carving

@@ -71,13 +71,13 @@ struct Domain {
   }
 };
 
-// Validates the PSLG and triangulates it. If several seeds flood a face, the last one wins.
+// Validates the PSLG and triangulates it. A segment whose ends are the same point is that point, as
+// rounding leaves many. If several seeds flood a face, the last one wins.
 // regions[i + 1] is the face of pslg.regions[i].
 //
 // Errors, each naming the first offender:
 //   kBadCoordinate      domain.points[i].x or .y, the same of domain.holes[i], domain.regions[i]
 //   kIndexOutOfRange    domain.segments[i].a or .b
-//   kZeroLengthSegment  domain.segments[i]
 //   kBadOption          domain.regions[i].max_area: not finite or not above 0; domain.snap: not
 //                       finite or below 0
 //   kTooFewPoints, kCollinearPoints                domain.points

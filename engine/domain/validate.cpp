@@ -54,11 +54,6 @@ std::optional<Error> check_segment(const Pslg& pslg, std::size_t i) {
   };
   if (s.a >= n) return out_of_range("a", s.a);
   if (s.b >= n) return out_of_range("b", s.b);
-  const Point p = pslg.points[s.a];
-  if (p == pslg.points[s.b])
-    return Error{ErrorCode::kZeroLengthSegment, element("segments", i),
-                 text("segment ", i, " joins points ", s.a, " and ", s.b, ", both at (", p.x, ", ",
-                      p.y, ")")};
   return {};
 }
 

@@ -22,7 +22,6 @@ constexpr std::array kTable = {
     ErrorRow{kIndexOutOfRange, "INDEX_OUT_OF_RANGE", INVALID_ARGUMENT, kFinal},
     ErrorRow{kTooFewPoints, "TOO_FEW_POINTS", INVALID_ARGUMENT, kFinal},
     ErrorRow{kCollinearPoints, "COLLINEAR_POINTS", INVALID_ARGUMENT, kFinal},
-    ErrorRow{kZeroLengthSegment, "ZERO_LENGTH_SEGMENT", INVALID_ARGUMENT, kFinal},
     ErrorRow{kSeedOutsideDomain, "SEED_OUTSIDE_DOMAIN", INVALID_ARGUMENT, kFinal},
     ErrorRow{kSeedOnSegment, "SEED_ON_SEGMENT", INVALID_ARGUMENT, kFinal},
     ErrorRow{kEmptyDomain, "EMPTY_DOMAIN", INVALID_ARGUMENT, kFinal},

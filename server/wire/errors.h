@@ -24,7 +24,6 @@ enum class Reason {
   kIndexOutOfRange,
   kTooFewPoints,
   kCollinearPoints,
-  kZeroLengthSegment,
   kSeedOutsideDomain,
   kSeedOnSegment,
   kEmptyDomain,

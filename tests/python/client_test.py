@@ -160,11 +160,11 @@ def test_an_error_carries_reason_and_field(client):
 
 
 def test_an_error_of_the_engine_names_the_offender(client):
-    domain = weft.Domain([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 1)])
+    domain = weft.Domain([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)], holes=[(5, 5)])
     with pytest.raises(weft.InvalidRequest) as caught:
         client.mesh(domain)
-    assert caught.value.reason == "ZERO_LENGTH_SEGMENT"
-    assert caught.value.violations[0].field.startswith("domain.segments[1]")
+    assert caught.value.reason == "SEED_OUTSIDE_DOMAIN"
+    assert caught.value.violations[0].field.startswith("domain.holes[0]")
 
 
 def test_a_limit_is_an_error_of_its_own():

@@ -7,7 +7,7 @@
 // Triangle's rule, Fill::kSeeds; seeded.h turns other domains into such.
 //
 // Errors (kUnreadableInput) carry file:line:column. Geometric faults (crossings,
-// zero-length segments, seeds outside the domain) are left to the server.
+// seeds outside the domain) are left to the server.
 #pragma once
 
 #include <filesystem>

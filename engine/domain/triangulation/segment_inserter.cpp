@@ -52,7 +52,7 @@ void SegmentInserter::insert_all() {
     const Piece whole{
         t_.vertex_of(s.a), t_.vertex_of(s.b), {i, s.marker, s.marker != 0 ? i : kNone, true}};
     if (whole.u == whole.v) {
-      shrunk_.emplace_back(s.a, s.b);
+      if (pslg_.points[s.a] != pslg_.points[s.b]) shrunk_.emplace_back(s.a, s.b);
       continue;
     }
     insert(whole);

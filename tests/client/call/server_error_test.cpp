@@ -12,7 +12,7 @@ namespace {
 grpc::Status refusal(const std::string& field, const std::string& message) {
   google::rpc::Status details;
   google::rpc::ErrorInfo info;
-  info.set_reason("ZERO_LENGTH_SEGMENT");
+  info.set_reason("INDEX_OUT_OF_RANGE");
   details.add_details()->PackFrom(info);
   google::rpc::BadRequest bad;
   bad.add_field_violations()->set_field(field);
@@ -32,13 +32,14 @@ Domain domain_with_places() {
 
 TEST(ServerError, NamesReasonFieldAndPlaceInTheFile) {
   const Domain domain = domain_with_places();
-  const Error error = error_of(refusal("domain.segments[2].b", "segment 2 joins point 1 to itself"),
-                               "unix:/s", &domain);
+  const Error error =
+      error_of(refusal("domain.segments[2].b", "segment 2 ends at point 7, but there are 3 points"),
+               "unix:/s", &domain);
   EXPECT_EQ(static_cast<int>(error.exit), 67);
   EXPECT_EQ(error.message,
-            "the server unix:/s answers INVALID_ARGUMENT (ZERO_LENGTH_SEGMENT)\n"
+            "the server unix:/s answers INVALID_ARGUMENT (INDEX_OUT_OF_RANGE)\n"
             "  field domain.segments[2].b, at coast.poly:10\n"
-            "  segment 2 joins point 1 to itself");
+            "  segment 2 ends at point 7, but there are 3 points");
 }
 
 TEST(ServerError, KeepsACaretUnderItsColumn) {

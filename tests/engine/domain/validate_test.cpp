@@ -119,19 +119,16 @@ TEST(Validate, NamesTheSegmentEndThatIsOutOfRange) {
                "segment 3 ends at point 4294967295, but there are 4 points");
 }
 
-TEST(Validate, RefusesASegmentFromAPointToItself) {
-  Pslg pslg = square();
-  pslg.segments.push_back({2, 2});
-  expect_error(pslg, ErrorCode::kZeroLengthSegment, "domain.segments[4]",
-               "segment 4 joins points 2 and 2, both at (1, 1)");
-}
-
-TEST(Validate, RefusesASegmentBetweenCoincidentPoints) {
+TEST(Validate, TakesSegmentsWhoseEndsAreTheSamePoint) {
   Pslg pslg = square();
   pslg.points.push_back({1, -0.0});
+  pslg.segments.push_back({2, 2});
   pslg.segments.push_back({1, 4});
-  expect_error(pslg, ErrorCode::kZeroLengthSegment, "domain.segments[4]",
-               "segment 4 joins points 1 and 4, both at (1, 0)");
+  const Result<Domain> domain = triangulate(pslg, ExecutionContext());
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->triangles.size(), 2u);
+  EXPECT_EQ(domain->subsegments.size(), 4u);
+  EXPECT_EQ(domain->merging.vanished_faces, 0u);
 }
 
 TEST(Validate, RefusesAnEmptyPslg) {
