@@ -80,6 +80,13 @@ install_linters() (
     npm ci --ignore-scripts --no-audit --no-fund
 )
 
+check_console() (
+  cd console || exit
+  [[ node_modules/.package-lock.json -nt package-lock.json ]] ||
+    npm ci --ignore-scripts --no-audit --no-fund || exit
+  npm run check
+)
+
 check_protocol() {
   deploy/node_modules/.bin/buf lint proto
 }
@@ -130,6 +137,7 @@ step "shell scripts" check_shell
 step "includes" tests/includes.py
 needed "install linters" install_linters
 step "protocol" check_protocol
+step "console" check_console
 step "deployment" check_deployment
 needed "configure" cmake --preset release -DWEFT_WERROR=ON
 needed "build" cmake --build --preset release
