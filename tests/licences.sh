@@ -24,12 +24,8 @@ while read -r file; do
   head -n 3 "$file" | grep -qE "SPDX-License-Identifier: $licence\$" ||
     complain "$file: its first lines do not say SPDX-License-Identifier: $licence"
 done < <(git ls-files --cached --others --exclude-standard -- \
-<<<<<<< HEAD
-  '*.h' '*.cpp' '*.proto' '*.sh' '*.py' '*.mjs' '*.go' '*CMakeLists.txt' .ci/run)
-=======
-  '*.h' '*.cpp' '*.proto' '*.sh' '*.py' '*CMakeLists.txt' .ci/run \
+  '*.h' '*.cpp' '*.proto' '*.sh' '*.py' '*.mjs' '*.go' '*CMakeLists.txt' .ci/run \
   'console/*.ts' 'console/*.tsx' 'console/*.js' 'console/*.css' 'console/*.html')
->>>>>>> cb99c87 (Add the console's skeleton)
 
 # Everything that a program is linked from, then every header that its objects were compiled with.
 parts_of() {
