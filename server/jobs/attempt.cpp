@@ -10,6 +10,7 @@
 #include "server/net/caller.h"
 #include "server/wire/job_wire.h"
 #include "server/wire/request_key.h"
+#include "server/wire/request_options.h"
 #include "server/wire/translate.h"
 
 namespace weft::server {
@@ -82,6 +83,7 @@ void Attempt::run() {
 
 tl::expected<void, Failure> Attempt::make_mesh() {
   if (!request_) return tl::unexpected(request_.error());
+  v1::GenerateMeshRequest options = options_of(**request_);
   auto summary = call_engine(environment_.engine, std::move(*request_), *this, context_);
   if (store_error_) return tl::unexpected(failure_of(*store_error_));
   if (!summary && summary.error().reason == Reason::kDeadlineExceeded)
@@ -92,6 +94,7 @@ tl::expected<void, Failure> Attempt::make_mesh() {
   v1::Summary message = to_wire(*summary, threads_);
   mesh_.brief = message.SerializeAsString();
   add_quadtree(*summary, message);
+  *message.mutable_request() = std::move(options);
   mesh_.summary = message.SerializeAsString();
   return {};
 }

@@ -62,6 +62,33 @@ TEST(JobLists, LeaveOutTheQuadtree) {
   EXPECT_EQ(client.fetch(id).messages.back().summary().leaf_boxes_size(), 8);
 }
 
+TEST(Jobs, KeepTheOptionsOfTheirRequestWithTheMesh) {
+  JobServer server(engine_of_triangles(1));
+  JobClient client = server.client();
+  v1::GenerateMeshRequest request = valid_request();
+  request.mutable_domain()->set_snap(0.25);
+  request.mutable_size()->set_expression("0.1 + depth");
+  request.mutable_quality()->set_min_angle_deg(0);
+  request.mutable_budget()->set_max_triangles(77);
+  v1::NamedField& depth = *request.mutable_size()->add_fields();
+  depth.set_name("depth");
+  depth.mutable_distance()->mutable_points()->Add(1);
+  depth.mutable_distance()->mutable_points()->Add(2);
+  v1::GenerateMeshRequest options = request;
+  options.mutable_domain()->clear_points();
+  options.mutable_domain()->clear_segments();
+  options.mutable_domain()->clear_segment_markers();
+  options.mutable_domain()->clear_holes();
+  options.mutable_domain()->clear_regions();
+  options.mutable_size()->mutable_fields(0)->mutable_distance()->clear_points();
+
+  const std::string id = client.submit(request);
+  client.wait(id);
+  const v1::Summary fetched = client.fetch(id).messages.back().summary();
+  EXPECT_EQ(fetched.request().DebugString(), options.DebugString());
+  EXPECT_FALSE(client.list({}).message.jobs(0).summary().has_request());
+}
+
 TEST(JobLogs, CarryTheTraceOfTheCallThroughTheWork) {
   JobServer server(engine_of_triangles(1));
   JobClient client = server.client();
