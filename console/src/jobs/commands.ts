@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// A request as what a person would type to ask for it again. The server keeps no arrays of a request,
+// so the domain's file, and those of rasters and fields, are names in capitals to be filled in.
+import { Measure, Placement, type GenerateMeshRequest, type NamedField } from "../gen/weft/v1/mesh_service_pb";
+
+type Value = string | number | boolean;
+
+// In the order of the flags of `weft mesh`; the names are those of Python's options.
+function optionsOf({ domain, quality, size, budget, allowUnrefined }: GenerateMeshRequest): [string, Value][] {
+  const options: [string, Value | undefined][] = [
+    ["min_angle", quality?.minAngleDeg],
+    ["min_edge", quality?.minEdge || undefined],
+    ["placement", quality?.placement === Placement.CIRCUMCENTRE ? "circumcentre" : undefined],
+    ["optimise", quality?.optimise],
+    ["snap", domain?.snap || undefined],
+    ["gradation", size?.gradation || undefined],
+    ["cells_across", size?.cellsAcross || undefined],
+    ["max_triangles", budget?.maxTriangles ? Number(budget.maxTriangles) : undefined],
+    ["max_seconds", budget?.maxSeconds || undefined],
+    ["allow_unrefined", allowUnrefined || undefined],
+  ];
+  return options.filter((option): option is [string, Value] => option[1] !== undefined);
+}
+
+// Name and value of the size, or undefined if there is no bound. `raster` stands for a grid.
+function sizeOf<Raster>({ size }: GenerateMeshRequest, raster: Raster): [string, Value | Raster] | undefined {
+  if (!size?.field.case) return undefined;
+  const name = size.measure === Measure.EDGE ? "edge" : "size";
+  return [name, size.field.case === "raster" ? raster : size.field.value];
+}
+
+const inShell = (text: string) => (/^[\w./:=+-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
+const inPython = (value: Value) =>
+  typeof value === "boolean" ? "True" : typeof value === "number" ? String(value) : JSON.stringify(value);
+
+const kinds = {
+  distance: ["distance:MARKERS", "weft.distance(marker=MARKERS)"],
+  raster: ["RASTER.asc", 'weft.raster("RASTER.asc")'],
+  mesh: ["mesh:MESH.vtu:ARRAY", 'weft.on_mesh(MESH, VALUES)'],
+  width: ["width", "weft.width()"],
+} satisfies Record<NonNullable<NamedField["kind"]["case"]>, [shell: string, python: string]>;
+
+export function shellCommand(request: GenerateMeshRequest): string {
+  const words = ["weft mesh DOMAIN.poly -o mesh.vtu"];
+  const size = sizeOf(request, "SIZES.asc");
+  if (size) words.push(`--${size[0]} ${inShell(String(size[1]))}`);
+  for (const { name, kind } of request.size?.fields ?? [])
+    if (kind.case) words.push(`--field ${inShell(`${name}=${kinds[kind.case][0]}`)}`);
+  for (const [name, value] of optionsOf(request)) {
+    const flag = `--${name.replaceAll("_", "-")}`;
+    words.push(value === true ? flag : `${flag} ${value}`);
+  }
+  return words.join(" \\\n  ");
+}
+
+export function pythonProgram(request: GenerateMeshRequest): string {
+  const given = ['"DOMAIN.poly"'];
+  const size = sizeOf(request, { program: "weft.Raster(VALUES, ORIGIN, SPACING)" });
+  if (size) given.push(`${size[0]}=${typeof size[1] === "object" ? size[1].program : inPython(size[1])}`);
+  const fields = request.size?.fields ?? [];
+  if (fields.length > 0) {
+    const items = fields.map(({ name, kind }) => `${inPython(name)}: ${kind.case ? kinds[kind.case][1] : "FIELD"}`);
+    given.push(`fields={${items.join(", ")}}`);
+  }
+  for (const [name, value] of optionsOf(request)) given.push(`${name}=${inPython(value)}`);
+  return `import weft
+
+with weft.Client() as client:
+    mesh = client.mesh(
+        ${given.join(",\n        ")},
+    )
+mesh.write("mesh.vtu")
+`;
+}

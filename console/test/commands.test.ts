@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+import { create, type MessageInitShape } from "@bufbuild/protobuf";
+import { expect, test } from "vitest";
+import { GenerateMeshRequestSchema, Measure, Placement } from "../src/gen/weft/v1/mesh_service_pb";
+import { pythonProgram, shellCommand } from "../src/jobs/commands";
+
+const make = (init: MessageInitShape<typeof GenerateMeshRequestSchema>) => create(GenerateMeshRequestSchema, init);
+
+const coast = make({
+  size: {
+    field: { case: "expression", value: "min(500 + 0.15*coast, 'x')" },
+    measure: Measure.EDGE,
+    gradation: 0.15,
+    fields: [{ name: "coast", kind: { case: "distance", value: {} } }],
+  },
+  quality: { minAngleDeg: 0, placement: Placement.CIRCUMCENTRE, optimise: 0 },
+  budget: { maxTriangles: 5000n },
+  allowUnrefined: true,
+});
+
+test("a request is a command with what was set, zero included, and nothing else", () => {
+  expect(shellCommand(make({ size: { field: { case: "constant", value: 0.5 } } }))).toBe(
+    "weft mesh DOMAIN.poly -o mesh.vtu \\\n  --size 0.5",
+  );
+  expect(shellCommand(coast).split(" \\\n  ")).toEqual([
+    "weft mesh DOMAIN.poly -o mesh.vtu",
+    "--edge 'min(500 + 0.15*coast, '\\''x'\\'')'",
+    "--field coast=distance:MARKERS",
+    "--min-angle 0",
+    "--placement circumcentre",
+    "--optimise 0",
+    "--gradation 0.15",
+    "--max-triangles 5000",
+    "--allow-unrefined",
+  ]);
+});
+
+test("a request is a program in Python", () => {
+  expect(pythonProgram(make({}))).toBe(
+    'import weft\n\nwith weft.Client() as client:\n    mesh = client.mesh(\n        "DOMAIN.poly",\n    )\nmesh.write("mesh.vtu")\n',
+  );
+  for (const line of [
+    'edge="min(500 + 0.15*coast, \'x\')",',
+    'fields={"coast": weft.distance(marker=MARKERS)},',
+    "min_angle=0,",
+    "allow_unrefined=True,",
+  ])
+    expect(pythonProgram(coast)).toContain(`\n        ${line}\n`);
+});
