@@ -47,6 +47,7 @@ test=(
   python3-venv python3-pil curl                                           # the documents
   man-db mandoc zsh fish systemd dpkg-dev file iproute2 procps # what is installed, its packages
   patchelf                 # the wheel
+  chromium                 # the console
   # client/examples/go
   golang-go golang-google-grpc-dev golang-google-protobuf-dev golang-github-golang-protobuf-1-5-dev
   protoc-gen-go-1-5 protoc-gen-go-grpc

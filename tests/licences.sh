@@ -25,7 +25,7 @@ while read -r file; do
     complain "$file: its first lines do not say SPDX-License-Identifier: $licence"
 done < <(git ls-files --cached --others --exclude-standard -- \
   '*.h' '*.cpp' '*.proto' '*.sh' '*.py' '*.mjs' '*.go' '*CMakeLists.txt' .ci/run \
-  'console/*.ts' 'console/*.tsx' 'console/*.js' 'console/*.css' 'console/*.html')
+  'console/*.ts' 'console/*.tsx' 'console/*.js' 'console/*.css' 'console/*.html' 'tests/console/*.js')
 
 # Everything that a program is linked from, then every header that its objects were compiled with.
 parts_of() {

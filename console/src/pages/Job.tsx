@@ -122,7 +122,7 @@ export function JobPage({ id }: { id: string }) {
     <section aria-labelledby="title" class="page">
       <header class="page-head">
         <h1 id="title">
-          Job <span class="mono">{id}</span>
+          Job <span class="mono" data-varies>{id}</span>
         </h1>
         {job && <StateBadge state={job.state} />}
         <span class="gap" />
@@ -137,7 +137,7 @@ export function JobPage({ id }: { id: string }) {
       {job && isOpen(job) && <Working job={job} />}
       {job?.error && <ErrorText error={job.error} />}
       {job && (
-        <div class="columns">
+        <div class="columns columns-job">
           <Times job={job} />
           {job.state === JobState.SUCCEEDED && <Made job={job} />}
         </div>

@@ -43,7 +43,7 @@ function Row({ job, changed, picked, pick }: RowProps) {
         <StateBadge state={job.state} />
       </td>
       <td>
-        <a class="mono" href={`/job/${job.id}`}>{job.id}</a>
+        <a class="mono" href={`/job/${job.id}`} data-varies>{job.id}</a>
         {job.requestId && <div class="faint cut" title={job.requestId}>{job.requestId}</div>}
       </td>
       <td class="wide">

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// A real Chromium, and pages of the console in it. A page that logs an error or a warning, throws,
+// or violates its Content-Security-Policy fails its test.
+//
+//   const browser = await openBrowser();
+//   const page = await openPage(test, browser, server.url + "/jobs");
+import { existsSync } from "node:fs";
+import puppeteer from "puppeteer-core";
+import { atEnd } from "./weftd.js";
+
+const patience = 60_000; // ms, on a loaded machine
+const size = { width: 1280, height: 720, deviceScaleFactor: 1 };
+
+const chromium = [process.env.CHROMIUM, "/usr/bin/chromium"].find((path) => path && existsSync(path));
+
+// WebGL2 is drawn by software, text without the machine's own settings: the same pixels anywhere.
+export function openBrowser() {
+  if (!chromium) throw new Error("there is no Chromium; deploy/install-deps.sh test installs it");
+  const sandbox = process.getuid() === 0 ? ["--no-sandbox"] : [];
+  return puppeteer.launch({
+    executablePath: chromium,
+    defaultViewport: size,
+    protocolTimeout: 300_000,
+    args: [
+      ...sandbox,
+      "--use-angle=swiftshader",
+      "--enable-unsafe-swiftshader",
+      "--disable-dev-shm-usage",
+      "--font-render-hinting=none",
+      "--disable-lcd-text",
+      "--force-color-profile=srgb",
+      "--hide-scrollbars",
+    ],
+  });
+}
+
+// Opens a page, which is closed after the test. `expected` are regular expressions of messages that
+// this test brings about: the browser itself logs every answer with an error's status.
+export async function openPage(test, browser, url, { dark = false, expected = [], token } = {}) {
+  const context = await browser.createBrowserContext();
+  const page = await context.newPage();
+  const faults = [];
+  page.on("console", (message) => {
+    if (["error", "warn"].includes(message.type())) faults.push(`${message.type()}: ${message.text()}`);
+  });
+  page.on("pageerror", (error) => faults.push(`uncaught: ${error.stack ?? error}`));
+  await page.exposeFunction("weftViolation", (text) => faults.push(`CSP: ${text}`));
+  await page.evaluateOnNewDocument(() =>
+    addEventListener("securitypolicyviolation", (event) =>
+      window.weftViolation(`${event.violatedDirective} ${event.blockedURI} ${event.sourceFile}`),
+    ),
+  );
+  if (token)
+    await page.evaluateOnNewDocument((value) => sessionStorage.setItem("weft-token", value), token);
+  await page.emulateMediaFeatures([
+    { name: "prefers-reduced-motion", value: "reduce" },
+    { name: "prefers-color-scheme", value: dark ? "dark" : "light" },
+  ]);
+  page.setDefaultTimeout(patience);
+  atEnd(test, async () => {
+    await context.close();
+    const unexpected = faults.filter((fault) => !expected.some((pattern) => pattern.test(fault)));
+    if (unexpected.length > 0) throw new Error(`the page complained:\n${unexpected.join("\n")}`);
+  });
+  await page.goto(url, { waitUntil: "load" });
+  return page;
+}
+
+// Waits until the text of what `selector` finds matches, and returns the match.
+export async function textMatches(page, selector, pattern, { timeout = patience } = {}) {
+  try {
+    await page.waitForFunction(
+      (css, source, flags) =>
+        [...document.querySelectorAll(css)].some((node) =>
+          new RegExp(source, flags).test(node.innerText)),
+      { timeout, polling: 50 },
+      selector, pattern.source, pattern.flags,
+    );
+  } catch {
+    const seen = await page.$$eval(selector, (nodes) => nodes.map((node) => node.innerText).join(" | "));
+    throw new Error(`${selector} never matched ${pattern}: ${seen || "there is none"}`);
+  }
+  const texts = await page.$$eval(selector, (nodes) => nodes.map((node) => node.innerText));
+  return texts.map((text) => pattern.exec(text)).find(Boolean);
+}
+
+// Presses the button, link or box of this name, as the accessibility tree has it.
+export async function press(page, name) {
+  const node = await page.waitForSelector(`aria/${name}[role="button"]`);
+  await node.click();
+}

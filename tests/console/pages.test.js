@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pages of jobs, meshes and the server, in a real browser against a real weftd.
+import assert from "node:assert/strict";
+import { readdir, writeFile } from "node:fs/promises";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { openBrowser, openPage, press, textMatches } from "./browser.js";
+import { looksLike } from "./pictures.js";
+import { atEnd, folderFor, models, until, weft, Weftd } from "./weftd.js";
+
+const key = join(models, "key.poly");
+const cylinder = join(models, "cylinder.poly");
+const keySize = ["--size", "0.02*abs(y-46)+0.1"]; // 5,645 triangles
+const longSize = ["--size", "1e-5"]; // minutes
+
+let browser;
+before(async () => (browser = await openBrowser()));
+after(() => browser.close());
+
+// What a browser logs of a server that is away.
+const away = [/Failed to load resource: net::/];
+
+async function serverWithJobs(t, args = []) {
+  const server = await Weftd.start({ args: ["--data", await folderFor(t), ...args] });
+  atEnd(t, () => server.stop());
+  return server;
+}
+
+// A job that has ended, as `weft get --json` shows it.
+async function ended(server, ...args) {
+  const id = await server.weft("submit", ...args);
+  await server.weft("watch", id).catch(() => {}); // it fails if the job does
+  return JSON.parse(await server.weft("get", id, "--json"));
+}
+
+test("jobs are listed with what became of them, and filtered by it", async (t) => {
+  const server = await serverWithJobs(t);
+  const made = await ended(server, key, ...keySize, "--request-id", "key, fine");
+  await ended(server, key, "--size", "1", "--request-id", "key, coarse");
+  const failed = await ended(server, key, "--size", "x-1000", "--request-id", "key, wrong");
+  assert.equal(failed.state, "failed");
+  const page = await openPage(t, browser, `${server.url}/jobs`);
+  await textMatches(page, "tbody tr", new RegExp(`succeeded\\s+${made.id}[^]*5,645`));
+  await textMatches(page, "tbody tr", new RegExp(`failed\\s+${failed.id}[^]*${failed.error.reason}`));
+  await looksLike(page, "jobs");
+
+  await press(page, "Failed");
+  await page.waitForFunction(() => document.querySelectorAll("tbody tr").length === 1);
+  await textMatches(page, "tbody tr", new RegExp(failed.id));
+});
+
+test("a job at work shows its progress, and is cancelled and deleted by keyboard alone", async (t) => {
+  const server = await serverWithJobs(t);
+  const id = await server.weft("submit", cylinder, ...longSize);
+  const page = await openPage(t, browser, `${server.url}/jobs`);
+  await textMatches(page, "tbody tr", /running[^]*\d %/, { timeout: 60_000 });
+  const values = new Set();
+  await until("the bar moves", async () => {
+    values.add(await page.$eval("progress", (bar) => bar.value).catch(() => 0));
+    return values.size > 2;
+  });
+
+  // From the top of the page to the button, by Tab alone.
+  const focused = () => page.evaluate(() => document.activeElement.innerText ?? "");
+  for (let i = 0; (await focused()) !== "Cancel"; ++i) {
+    assert.ok(i < 40, "Tab never reached Cancel");
+    await page.keyboard.press("Tab");
+  }
+  await page.keyboard.press("Enter");
+  assert.equal(await focused(), "Cancel?");
+  await page.keyboard.press("Enter");
+  await textMatches(page, "tbody tr", new RegExp(`cancelled\\s+${id}`));
+
+  for (let i = 0; (await focused()) !== "Delete"; ++i) {
+    assert.ok(i < 40, "Tab never reached Delete");
+    await page.keyboard.press("Tab");
+  }
+  await page.keyboard.press("Enter");
+  await page.keyboard.press("Enter");
+  await textMatches(page, "main", /No jobs yet/);
+});
+
+test("many jobs have pages", async (t) => {
+  const server = await serverWithJobs(t);
+  const ids = [];
+  for (let i = 0; i < 27; ++i) ids.push(await server.weft("submit", key, "--size", "1"));
+  const page = await openPage(t, browser, `${server.url}/jobs`);
+  await textMatches(page, "tbody", new RegExp(ids.at(-1)));
+  assert.equal((await page.$$("tbody tr")).length, 25);
+  await press(page, "Older");
+  await textMatches(page, "tbody", new RegExp(ids[0]));
+  assert.equal((await page.$$("tbody tr")).length, 2);
+  await press(page, "Younger");
+  await textMatches(page, "tbody", new RegExp(ids.at(-1)));
+});
+
+test("a job's page outlives a killed server, and is the same after a reload", async (t) => {
+  const folder = await folderFor(t);
+  const first = await Weftd.start({ args: ["--data", folder] });
+  const { id, summary } = await ended(first, key, ...keySize);
+  const page = await openPage(t, browser, `${first.url}/job/${id}`, { expected: away });
+  await textMatches(page, "main", /succeeded/);
+  await page.goto(`${first.url}/jobs`);
+  await textMatches(page, "tbody", new RegExp(id));
+
+  await first.kill();
+  await textMatches(page, ".banner", /does not answer/);
+  await textMatches(page, "tbody", new RegExp(id)); // what it said last is still there
+  const second = await Weftd.start({ args: ["--data", folder], console: first.console });
+  atEnd(t, () => second.stop());
+  await page.waitForFunction(() => document.querySelector(".banner") === null);
+  await second.weft("submit", key, "--size", "1", "--request-id", "after the restart");
+  await textMatches(page, "tbody", /after the restart/);
+
+  await page.goto(`${second.url}/job/${id}`);
+  await page.reload();
+  await textMatches(page, "main", /succeeded[^]*5,645/);
+  await textMatches(page, "main", /0\.02\*abs\(y-46\)\+0\.1/); // the request is kept, too
+  const link = await page.$eval('main a[href^="/mesh/"]', (a) => a.getAttribute("href"));
+  assert.equal(link, `/mesh/${summary.digest}`);
+  await looksLike(page, "job");
+});
+
+test("a job that failed says why, and which field is at fault", async (t) => {
+  const server = await serverWithJobs(t);
+  const { id, error } = await ended(server, key, "--size", "x-1000");
+  const page = await openPage(t, browser, `${server.url}/job/${id}`);
+  await textMatches(page, "main [role=alert]", new RegExp(error.reason));
+  await textMatches(page, "main [role=alert]", /size/);
+});
+
+test("a job that never was is not found", async (t) => {
+  const server = await serverWithJobs(t);
+  const page = await openPage(t, browser, `${server.url}/job/01ARZ3NDEKTSV4RRFFQ69G5FAV`);
+  await textMatches(page, "main", /no job/i);
+});
+
+test("a mesh's page draws it, tells its figures and its request", async (t) => {
+  const server = await serverWithJobs(t);
+  const { summary } = await ended(server, key, ...keySize, "--min-angle", "25");
+  const page = await openPage(t, browser, `${server.url}/mesh/${summary.digest}`);
+  await textMatches(page, "aside", new RegExp(summary.triangles.toLocaleString("en-US")));
+  await textMatches(page, "aside", /0\.02\*abs\(y-46\)\+0\.1[^]*min_angle_deg\s+25/);
+  await until("the mesh is drawn", () => isDrawn(page));
+  await looksLike(page, "mesh");
+});
+
+test("a digest that nobody keeps is said to be so", async (t) => {
+  const server = await serverWithJobs(t);
+  const page = await openPage(t, browser, `${server.url}/mesh/${"0".repeat(64)}`);
+  await textMatches(page, "main", /No job of yours keeps this mesh/);
+});
+
+// Whether the page's canvas has more than one colour.
+async function isDrawn(page) {
+  const canvas = await page.$("main canvas");
+  if (!canvas) return false;
+  const { PNG } = await import("pngjs");
+  const { data } = PNG.sync.read(Buffer.from(await canvas.screenshot()));
+  const colours = new Set();
+  for (let i = 0; i < data.length && colours.size < 16; i += 4) colours.add(data.readUInt32LE(i));
+  return colours.size >= 16;
+}
+
+for (const format of ["vtu", "msh", "npz", "obj", "off"])
+  test(`a mesh is downloaded as .${format}, which weft reads`, async (t) => {
+    const server = await serverWithJobs(t);
+    const { id, summary } = await ended(server, key, ...keySize);
+    const page = await openPage(t, browser, `${server.url}/mesh/${summary.digest}`);
+    const folder = await folderFor(t);
+    const session = await page.createCDPSession();
+    await session.send("Browser.setDownloadBehavior", {
+      behavior: "allow",
+      downloadPath: folder,
+      browserContextId: page.browserContext().id,
+    });
+    await press(page, `.${format}`);
+    const name = `${summary.digest.slice(0, 12)}.${format}`;
+    await until(`${name} is there`, async () => (await readdir(folder)).includes(name));
+    // As `weft fetch` writes it: what weft reads there, of its own reader for each format.
+    const fetched = join(folder, `fetched.${format}`);
+    await server.weft("fetch", id, "-o", fetched);
+    const figures = async (file) => (await weft(["info", file])).replaceAll(file, "FILE");
+    assert.equal(await figures(join(folder, name)), await figures(fetched));
+  });
+
+test("two meshes stand side by side with what differs", async (t) => {
+  const server = await serverWithJobs(t);
+  const a = await ended(server, key, ...keySize);
+  const b = await ended(server, key, ...keySize, "--min-angle", "30");
+  const page = await openPage(t, browser, `${server.url}/jobs`);
+  await textMatches(page, "tbody", new RegExp(a.id));
+  for (const { id } of [a, b]) await page.click(`aria/Compare the mesh of ${id}`);
+  await page.locator("a ::-p-text(Compare two meshes)").click();
+  await textMatches(page, "main table", /min_angle_deg\s+default\s+30/);
+  await textMatches(
+    page,
+    "main table",
+    new RegExp(`Triangles\\s+5,645\\s+${b.summary.triangles.toLocaleString("en-US")}`),
+  );
+  await until("both are drawn", async () => (await page.$$("main canvas")).length === 2 && isDrawn(page));
+  await looksLike(page, "compare");
+});
+
+test("the server's page shows what it works on", async (t) => {
+  const server = await serverWithJobs(t);
+  const id = await server.weft("submit", cylinder, ...longSize);
+  const page = await openPage(t, browser, `${server.url}/server`, { dark: true });
+  await textMatches(page, "main dl", /Meshes at work\s+1 of/);
+  await page.waitForSelector("main svg polyline");
+  await textMatches(page, "main figure", /Triangles a second\s+now [\d,]+/);
+  await server.weft("cancel", id);
+  await textMatches(page, "main dl", /Meshes at work\s+0 of/);
+  await looksLike(page, "server", { varies: [".facts dd", ".page-head .quiet"] });
+});
+
+test("a token is asked for, refused if it is wrong, and kept over a reload", async (t) => {
+  const folder = await folderFor(t);
+  const tokens = join(folder, "tokens");
+  await writeFile(tokens, "ada 4f8a1c9d2b7e6f30\n", { mode: 0o600 });
+  const server = await serverWithJobs(t, ["--tokens", tokens]);
+  const page = await openPage(t, browser, `${server.url}/jobs`, { expected: [/status of 401/] });
+  const enter = async (token) => {
+    await page.waitForSelector("#token");
+    await page.type("#token", token);
+    await page.keyboard.press("Enter");
+  };
+  await textMatches(page, ".token", /The server wants a token/);
+  await enter("wrong");
+  await textMatches(page, ".token", /Token refused/);
+  await enter("4f8a1c9d2b7e6f30");
+  await textMatches(page, "main", /No jobs yet/);
+  await page.waitForSelector("#token", { hidden: true });
+  await page.goto(`${server.url}/server`);
+  await page.waitForSelector(".tiles");
+  assert.equal(await page.$("#token"), null);
+});
+
+test("without --data the pages of jobs say so", async (t) => {
+  const server = await Weftd.start();
+  atEnd(t, () => server.stop());
+  const page = await openPage(t, browser, `${server.url}/jobs`);
+  await textMatches(page, "main", /keeps no jobs/);
+});
