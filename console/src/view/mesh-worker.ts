@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads one mesh from the server, turns its chunks into pictures, and answers questions about it. It
+// reads ahead of the page by a few chunks at most: if the page is slow, so is the stream, and then
+// the engine.
+import { fromBinary, toBinary, type DescMessage, type DescMethodServerStreaming } from "@bufbuild/protobuf";
+import { Code, ConnectError, createClient } from "@connectrpc/connect";
+import { createGrpcWebTransport } from "@connectrpc/connect-web";
+import { PackedResponseSchema, type PackedChunk } from "../gen/console/packed_pb";
+import { JobService } from "../gen/weft/v1/job_service_pb";
+import { GenerateMeshRequestSchema, MeshService, SummarySchema } from "../gen/weft/v1/mesh_service_pb";
+import { Counter } from "./census";
+import type { FromWorker, ToWorker } from "./messages";
+import { unpackChunk } from "./packed";
+import { linesOf, pictureOf, RegionSlots } from "./picture";
+import { MeshStore } from "./store";
+
+const mostUndrawn = 8;
+const censusEvery = 300; // milliseconds
+
+const store = new MeshStore();
+const slots = new RegionSlots();
+const counter = new Counter();
+const stop = new AbortController();
+let undrawn = 0;
+let mayRead: (() => void) | undefined;
+let chunks = 0;
+let lastCensus = 0;
+
+const say = (message: FromWorker, transfer: Transferable[] = []) => postMessage(message, { transfer });
+
+function sayCensus(): void {
+  lastCensus = performance.now();
+  say({ type: "census", census: counter.census(), chunks, vertices: store.vertices, triangles: store.triangles });
+}
+
+function take(packed: PackedChunk): void {
+  const chunk = unpackChunk(packed, store.vertices);
+  store.add(chunk);
+  ++chunks;
+  const picture = pictureOf(chunk, store.coordinates, slots, (triangle, area, minAngle) =>
+    counter.add(area, minAngle, () => {
+      let x = 0, y = 0;
+      for (let i = 0; i < 3; ++i) {
+        x += store.coordinates[2 * chunk.triangles[3 * triangle + i]] / 3;
+        y += store.coordinates[2 * chunk.triangles[3 * triangle + i] + 1] / 3;
+      }
+      return { triangle: chunk.firstTriangle + triangle, chunk: chunk.index, x, y };
+    }),
+  );
+  if (picture) {
+    store.keep(chunk, picture.box);
+    ++undrawn;
+    const { vertices, triangles } = store;
+    say({ type: "chunk", picture, vertices, triangles, regions: [...slots.ids] }, [
+      picture.positions.buffer,
+      picture.values.buffer,
+      picture.indices.buffer,
+      picture.grid.buffer,
+    ]);
+  }
+  if (performance.now() - lastCensus > censusEvery) sayCensus();
+}
+
+// The method of a service, with its answers read as PackedResponse.
+function packed<I extends DescMessage, O extends DescMessage>(method: DescMethodServerStreaming<I, O>) {
+  return { ...method, output: PackedResponseSchema };
+}
+
+async function read(request: Uint8Array | string, token: string): Promise<void> {
+  const transport = createGrpcWebTransport({ baseUrl: self.location.origin });
+  const service = {
+    ...MeshService,
+    method: {
+      generate: packed(MeshService.method.generateMesh),
+      fetch: packed(JobService.method.fetchMesh),
+    },
+  };
+  const client = createClient(service, transport);
+  const options = {
+    signal: stop.signal,
+    headers: token ? { authorization: `Bearer ${token}` } : undefined,
+  };
+  const stream =
+    typeof request === "string"
+      ? client.fetch({ id: request }, options)
+      : client.generate(fromBinary(GenerateMeshRequestSchema, request), options);
+  let summary: Uint8Array | undefined;
+  for await (const { message } of stream) {
+    switch (message.case) {
+      case "accepted": {
+        const { jobId, engineVersion, threads } = message.value;
+        say({ type: "accepted", jobId, engineVersion, threads });
+        break;
+      }
+      case "progress": {
+        const { stage, triangles, expectedTriangles, elapsedSeconds, fraction } = message.value;
+        say({
+          type: "progress",
+          stage,
+          triangles: Number(triangles),
+          expected: Number(expectedTriangles),
+          seconds: elapsedSeconds,
+          fraction,
+        });
+        break;
+      }
+      case "chunk":
+        take(message.value);
+        if (undrawn >= mostUndrawn) await new Promise<void>((resolve) => (mayRead = resolve));
+        break;
+      case "summary":
+        summary = toBinary(SummarySchema, message.value);
+    }
+  }
+  if (!summary) throw new ConnectError("The stream ended before its summary: this is not a mesh.", Code.DataLoss);
+  sayCensus();
+  say({ type: "summary", summary });
+}
+
+onmessage = ({ data }: MessageEvent<ToWorker>) => {
+  switch (data.type) {
+    case "start":
+      read(data.request, data.token).catch((error: unknown) => {
+        sayCensus();
+        const { code, rawMessage, details } = ConnectError.from(error);
+        const typed = details.flatMap((detail) => ("value" in detail && "type" in detail ? [detail] : []));
+        say({
+          type: "failed",
+          code,
+          message: rawMessage,
+          details: typed.map(({ type, value }) => ({ type: String(type), value: value as Uint8Array })),
+        });
+      });
+      break;
+    case "cancel":
+      stop.abort();
+      mayRead?.();
+      break;
+    case "drawn":
+      --undrawn;
+      mayRead?.();
+      mayRead = undefined;
+      break;
+    case "lines": {
+      const chunk = store.chunk(data.chunk);
+      if (!chunk) break;
+      const { lines, inside } = linesOf(chunk);
+      say({ type: "lines", chunk: data.chunk, lines, inside }, [lines.buffer]);
+      break;
+    }
+    case "pick":
+      say({ type: "picked", picked: store.pick(data.x, data.y) });
+      break;
+    case "find":
+      say({ type: "picked", picked: store.find(data.triangle) });
+  }
+};
