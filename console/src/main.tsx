@@ -10,6 +10,7 @@ import { MeshOfPage } from "./pages/MeshOf";
 import { ServerPage } from "./pages/Server";
 import { match, useLinks, usePath } from "./router";
 import { setToken, useSession } from "./session";
+import { setTheme, useTheme } from "./theme";
 
 function Page({ path }: { path: string }) {
   let found;
@@ -48,8 +49,19 @@ function Bar({ path }: { path: string }) {
           </a>
         ))}
       </nav>
+      <ThemeSwitch />
       <Token />
     </header>
+  );
+}
+
+function ThemeSwitch() {
+  const theme = useTheme();
+  const other = theme === "dark" ? "light" : "dark";
+  return (
+    <button class="quiet" type="button" onClick={() => setTheme(other)} title={`Use ${other} colours`}>
+      {theme === "dark" ? "☾ Dark" : "☼ Light"}
+    </button>
   );
 }
 

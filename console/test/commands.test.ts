@@ -25,7 +25,7 @@ test("a request is a command with what was set, zero included, and nothing else"
   expect(shellCommand(coast).split(" \\\n  ")).toEqual([
     "weft mesh DOMAIN.poly -o mesh.vtu",
     "--edge 'min(500 + 0.15*coast, '\\''x'\\'')'",
-    "--field coast=distance:MARKERS",
+    "--field coast=distance:marker=MARKERS",
     "--min-angle 0",
     "--placement circumcentre",
     "--optimise 0",

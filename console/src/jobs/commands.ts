@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A request as what a person would type to ask for it again. The server keeps no arrays of a request,
-// so the domain's file, and those of rasters and fields, are names in capitals to be filled in.
+// so the domain's file, and those of rasters and fields, are names in capitals to be filled in; if
+// `domain`, the name of the domain's file, is given, the request is whole.
 import { Measure, Placement, type GenerateMeshRequest, type NamedField } from "../gen/weft/v1/mesh_service_pb";
 
 type Value = string | number | boolean;
@@ -34,18 +35,26 @@ const inPython = (value: Value) =>
   typeof value === "boolean" ? "True" : typeof value === "number" ? String(value) : JSON.stringify(value);
 
 const kinds = {
-  distance: ["distance:MARKERS", "weft.distance(marker=MARKERS)"],
+  distance: ["distance:marker=MARKERS", "weft.distance(marker=MARKERS)"],
   raster: ["RASTER.asc", 'weft.raster("RASTER.asc")'],
   mesh: ["mesh:MESH.vtu:ARRAY", 'weft.on_mesh(MESH, VALUES)'],
   width: ["width", "weft.width()"],
 } satisfies Record<NonNullable<NamedField["kind"]["case"]>, [shell: string, python: string]>;
 
-export function shellCommand(request: GenerateMeshRequest): string {
-  const words = ["weft mesh DOMAIN.poly -o mesh.vtu"];
+// Index 0 is for the shell, 1 for Python.
+function kindOf({ kind }: NamedField, whole: boolean, language: 0 | 1): string {
+  if (!kind.case) return "FIELD";
+  if (kind.case === "distance" && whole && kind.value.markers.length === 0)
+    return ["distance", "weft.distance()"][language];
+  return kinds[kind.case][language];
+}
+
+export function shellCommand(request: GenerateMeshRequest, domain?: string): string {
+  const words = [`weft mesh ${inShell(domain ?? "DOMAIN.poly")} -o mesh.vtu`];
   const size = sizeOf(request, "SIZES.asc");
   if (size) words.push(`--${size[0]} ${inShell(String(size[1]))}`);
-  for (const { name, kind } of request.size?.fields ?? [])
-    if (kind.case) words.push(`--field ${inShell(`${name}=${kinds[kind.case][0]}`)}`);
+  for (const field of request.size?.fields ?? [])
+    words.push(`--field ${inShell(`${field.name}=${kindOf(field, domain !== undefined, 0)}`)}`);
   for (const [name, value] of optionsOf(request)) {
     const flag = `--${name.replaceAll("_", "-")}`;
     words.push(value === true ? flag : `${flag} ${value}`);
@@ -53,13 +62,13 @@ export function shellCommand(request: GenerateMeshRequest): string {
   return words.join(" \\\n  ");
 }
 
-export function pythonProgram(request: GenerateMeshRequest): string {
-  const given = ['"DOMAIN.poly"'];
+export function pythonProgram(request: GenerateMeshRequest, domain?: string): string {
+  const given = [inPython(domain ?? "DOMAIN.poly")];
   const size = sizeOf(request, { program: "weft.Raster(VALUES, ORIGIN, SPACING)" });
   if (size) given.push(`${size[0]}=${typeof size[1] === "object" ? size[1].program : inPython(size[1])}`);
   const fields = request.size?.fields ?? [];
   if (fields.length > 0) {
-    const items = fields.map(({ name, kind }) => `${inPython(name)}: ${kind.case ? kinds[kind.case][1] : "FIELD"}`);
+    const items = fields.map((field) => `${inPython(field.name)}: ${kindOf(field, domain !== undefined, 1)}`);
     given.push(`fields={${items.join(", ")}}`);
   }
   for (const [name, value] of optionsOf(request)) given.push(`${name}=${inPython(value)}`);

@@ -35,6 +35,7 @@ export interface RunState {
   summary: Summary | undefined;
   error: ConnectError | undefined;
   picked: PickedTriangle | undefined;
+  found: number; // times that find() had an answer: the view moves to it
   firstTriangles: number | undefined; // milliseconds from the start until some were drawn
 }
 
@@ -49,7 +50,7 @@ export interface RunPainter {
 const idle: RunState = {
   phase: "idle", started: 0, ended: undefined, jobId: "", chunks: 0, vertices: 0, triangles: 0,
   progress: undefined, regions: [0], box: undefined, census: undefined, summary: undefined,
-  error: undefined, picked: undefined, firstTriangles: undefined,
+  error: undefined, picked: undefined, found: 0, firstTriangles: undefined,
 };
 
 export class MeshRun {
@@ -92,11 +93,16 @@ export class MeshRun {
     this.tell();
   }
 
-  // Of the triangle at a point, or by its number, state.picked tells; it is undefined if there is none.
+  // Makes the triangle at a point state.picked; undefined if there is none.
   pick(x: number, y: number): void {
     this.say({ type: "pick", x, y });
   }
 
+  unpick(): void {
+    this.change({ picked: undefined });
+  }
+
+  // Makes the triangle of a number state.picked; the view moves to it.
   find(triangle: number): void {
     this.say({ type: "find", triangle });
   }
@@ -181,6 +187,9 @@ export class MeshRun {
         break;
       case "picked":
         this.change({ picked: message.picked });
+        break;
+      case "found":
+        this.change({ picked: message.picked, found: this.state.found + 1 });
     }
   }
 

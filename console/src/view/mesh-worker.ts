@@ -68,13 +68,11 @@ function packed<I extends DescMessage, O extends DescMessage>(method: DescMethod
 
 async function read(request: Uint8Array | string, token: string): Promise<void> {
   const transport = createGrpcWebTransport({ baseUrl: self.location.origin });
-  const service = {
-    ...MeshService,
-    method: {
-      generate: packed(MeshService.method.generateMesh),
-      fetch: packed(JobService.method.fetchMesh),
-    },
+  const method = {
+    generateMesh: packed(MeshService.method.generateMesh),
+    fetchMesh: packed(JobService.method.fetchMesh),
   };
+  const service = { ...MeshService, method, methods: Object.values(method) };
   const client = createClient(service, transport);
   const options = {
     signal: stop.signal,
@@ -82,8 +80,8 @@ async function read(request: Uint8Array | string, token: string): Promise<void> 
   };
   const stream =
     typeof request === "string"
-      ? client.fetch({ id: request }, options)
-      : client.generate(fromBinary(GenerateMeshRequestSchema, request), options);
+      ? client.fetchMesh({ id: request }, options)
+      : client.generateMesh(fromBinary(GenerateMeshRequestSchema, request), options);
   let summary: Uint8Array | undefined;
   for await (const { message } of stream) {
     switch (message.case) {
@@ -152,6 +150,6 @@ onmessage = ({ data }: MessageEvent<ToWorker>) => {
       say({ type: "picked", picked: store.pick(data.x, data.y) });
       break;
     case "find":
-      say({ type: "picked", picked: store.find(data.triangle) });
+      say({ type: "found", picked: store.find(data.triangle) });
   }
 };

@@ -22,4 +22,5 @@ export type FromWorker =
   | { type: "summary"; summary: Uint8Array } // a weft.v1.Summary
   | { type: "failed"; code: number; message: string; details: { type: string; value: Uint8Array }[] }
   | { type: "lines"; chunk: number; lines: Uint32Array; inside: number }
-  | { type: "picked"; picked: PickedTriangle | undefined };
+  | { type: "picked"; picked: PickedTriangle | undefined }
+  | { type: "found"; picked: PickedTriangle | undefined };

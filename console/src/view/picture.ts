@@ -69,6 +69,8 @@ export class LocalVertices {
 }
 
 const gridCells = 256; // at most, along the longer side of the box
+// Coverage from which a cell counts as full: neighbouring chunks then leave no seam between them.
+const fullFrom = 0.35;
 
 // Undefined if the chunk has no triangles. `coordinates` are those of the whole mesh so far;
 // `visit` is told of each triangle.
@@ -139,7 +141,7 @@ export function pictureOf(
 
   const width = box[2] - box[0];
   const height = box[3] - box[1];
-  const most = Math.min(gridCells, Math.max(8, Math.ceil(1.5 * Math.sqrt(count))));
+  const most = Math.min(gridCells, Math.max(8, Math.ceil(1.2 * Math.sqrt(count))));
   const cell = Math.max(width, height) / most || 1;
   const grid = new Grid(Math.max(1, Math.ceil(width / cell)), Math.max(1, Math.ceil(height / cell)));
   const fx = grid.width / (width || 1);
@@ -199,7 +201,7 @@ function boxOf(vertices: number[], coordinates: Float64Array): Box {
   return box;
 }
 
-// Sums over cells of 1 x 1, weighted by area. A triangle that is small counts where its centroid
+// Sums over cells of 1 x 1, weighted by area. A triangle smaller than a cell counts where its centroid
 // lies, a larger one in each cell whose middle it covers.
 export class Grid {
   private readonly sums: Float32Array; // angle, area, weight of each cell
@@ -220,7 +222,7 @@ export class Grid {
     const weight = Math.abs((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)) / 2;
     const left = Math.min(ax, bx, cx), right = Math.max(ax, bx, cx);
     const low = Math.min(ay, by, cy), high = Math.max(ay, by, cy);
-    if (right - left < 1.5 && high - low < 1.5) {
+    if (right - left < 0.75 && high - low < 0.75) {
       this.put((ax + bx + cx) / 3, (ay + by + cy) / 3, weight, angle, area, slot);
       return;
     }
@@ -255,7 +257,7 @@ export class Grid {
     for (let at = 0; at < this.slots.length; ++at) {
       const weight = this.sums[3 * at + 2];
       if (weight === 0) continue;
-      const covered = Math.min(1, weight);
+      const covered = Math.min(1, weight / fullFrom);
       pixels[4 * at] = Math.round((this.sums[3 * at] / weight) * covered);
       pixels[4 * at + 1] = Math.round((this.sums[3 * at + 1] / weight) * covered);
       pixels[4 * at + 2] = this.slots[at];

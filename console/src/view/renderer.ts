@@ -12,6 +12,7 @@ export interface Style {
   bounds: Float32Array; // logarithm of the bound on the area for each of 256 slots, for "ratio"
   plain: [number, number, number]; // 0 to 1
   ink: [number, number, number]; // of edges
+  outline: [number, number, number]; // of the domain's segments
 }
 
 interface Chunk {
@@ -32,8 +33,8 @@ interface Chunk {
 // Pixels that a mean triangle covers: below the first an image is as good, from the second on its
 // edges are drawn, faintly, from the third on fully.
 const smallest = 5;
-const edgesFrom = 30;
-const edgesFull = 220;
+const edgesFrom = 12;
+const edgesFull = 110;
 
 const colour = `
 precision highp float;
@@ -233,7 +234,6 @@ export class Renderer {
 
   clear(): void {
     const { gl } = this;
-    // Buffers go with the vertex arrays and textures that alone hold them.
     for (const chunk of this.chunks.values()) this.free(chunk);
     this.chunks.clear();
     gl.clear(gl.COLOR_BUFFER_BIT);
@@ -271,8 +271,8 @@ export class Renderer {
   private drawImages(chunks: Chunk[], camera: Camera, style: Style): void {
     const { gl } = this;
     const at = this.use("image", style);
-    // Chunks share cells along their borders; what they cover there adds up.
-    gl.blendFunc(gl.ONE, gl.ONE);
+    // Chunks share cells along their borders: each fills what the others have left.
+    gl.blendFunc(gl.ONE_MINUS_DST_ALPHA, gl.ONE);
     gl.uniform1i(at("image"), 2);
     gl.uniform1i(at("slots"), 3);
     gl.bindSampler(3, this.nearest);
@@ -316,9 +316,9 @@ export class Renderer {
       const { vertices, inside, count } = chunk.lines;
       gl.bindVertexArray(vertices);
       const strength = Math.min(1, (pixels(chunk) - edgesFrom) / (edgesFull - edgesFrom));
-      this.inkOf(at, style, 0.55 * strength);
+      this.inkOf(at, style.ink, 0.55 * strength);
       gl.drawElements(gl.LINES, inside, gl.UNSIGNED_INT, 0);
-      this.inkOf(at, style, 0.4 + 0.6 * strength);
+      this.inkOf(at, style.ink, 0.4 + 0.6 * strength);
       gl.drawElements(gl.LINES, count - inside, gl.UNSIGNED_INT, 4 * inside);
     }
   }
@@ -328,13 +328,13 @@ export class Renderer {
     const { vertices, count, middle } = this.outline!;
     const at = this.use("lines");
     this.place(at, camera, ...middle);
-    this.inkOf(at, style, this.chunks.size > 0 ? 0.45 : 0.9);
+    this.inkOf(at, style.outline, this.chunks.size > 0 ? 0.45 : 0.9);
     gl.bindVertexArray(vertices);
     gl.drawArrays(gl.LINES, 0, count);
   }
 
-  private inkOf(at: Uniforms, style: Style, alpha: number): void {
-    this.gl.uniform4f(at("ink"), style.ink[0] * alpha, style.ink[1] * alpha, style.ink[2] * alpha, alpha);
+  private inkOf(at: Uniforms, [red, green, blue]: [number, number, number], alpha: number): void {
+    this.gl.uniform4f(at("ink"), red * alpha, green * alpha, blue * alpha, alpha);
   }
 
   private use(name: keyof typeof shaders, style?: Style): Uniforms {

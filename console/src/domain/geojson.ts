@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// A domain from GeoJSON (RFC 7946), with the properties marker, region and max_area of features.
+// Errors (FileError) name the path of the offender, such as features[3].geometry.coordinates[0].
+import { FileError } from "./file-error";
+import { GeometryBuilder, noProperties, type Properties } from "./geometry-builder";
+import type { PlanarDomain, Point } from "./planar-domain";
+
+type Json = { [name: string]: unknown };
+
+const deepest = 64;
+
+export function readGeoJson(name: string, text: string): PlanarDomain {
+  let root: unknown;
+  try {
+    root = JSON.parse(text);
+  } catch (error) {
+    throw new FileError("", `this is not JSON: ${(error as Error).message}`);
+  }
+  const builder = new GeometryBuilder();
+  read(root, "", noProperties, builder, 0);
+  return builder.finish(name);
+}
+
+const member = (path: string, name: string) => (path ? `${path}.${name}` : name);
+
+function read(json: unknown, path: string, properties: Properties, builder: GeometryBuilder, depth: number): void {
+  if (depth > deepest) throw new FileError(path, `is nested deeper than ${deepest} levels`);
+  if (!isObject(json)) throw new FileError(path, "is not a GeoJSON object");
+  const each = (list: string) => {
+    const items = json[list];
+    if (!Array.isArray(items)) throw new FileError(path, `has no array "${list}"`);
+    items.forEach((item, i) => read(item, `${member(path, list)}[${i}]`, properties, builder, depth + 1));
+  };
+  switch (json.type) {
+    case "FeatureCollection":
+      return each("features");
+    case "GeometryCollection":
+      return each("geometries");
+    case "Feature":
+      if (json.geometry === undefined) throw new FileError(path, 'has no "geometry"');
+      if (json.geometry === null) return;
+      return read(json.geometry, member(path, "geometry"), propertiesOf(json, path), builder, depth + 1);
+    default:
+      return geometry(json, path, properties, builder);
+  }
+}
+
+function isObject(json: unknown): json is Json {
+  return typeof json === "object" && json !== null && !Array.isArray(json);
+}
+
+function propertiesOf(feature: Json, path: string): Properties {
+  const given = feature.properties;
+  if (!isObject(given)) return noProperties;
+  const number = (name: string, what: string, holds: (value: number) => boolean) => {
+    const value = given[name];
+    if (typeof value !== "number") return undefined;
+    if (!holds(value)) throw new FileError(`${member(path, "properties")}.${name}`, `is ${value}, not ${what}`);
+    return value;
+  };
+  const isId = (value: number) => value === (value | 0);
+  return {
+    marker: number("marker", "an integer of 32 bits", isId) ?? 0,
+    region: number("region", "an integer of 32 bits", isId),
+    maxArea: number("max_area", "positive", (value) => value > 0),
+  };
+}
+
+function geometry(json: Json, path: string, properties: Properties, builder: GeometryBuilder): void {
+  const type = String(json.type);
+  const many = type.startsWith("Multi");
+  const kind = many ? type.slice(5) : type;
+  const take = {
+    Point: (value: unknown, place: string) => builder.point(position(value, place)),
+    LineString: (value: unknown, place: string) => builder.line(positions(value, place), properties),
+    Polygon: (value: unknown, place: string) =>
+      builder.polygon(
+        list(value, place, "an array of rings").map((ring, i) => positions(ring, `${place}[${i}]`)),
+        place,
+        properties,
+      ),
+  }[kind];
+  if (!take) throw new FileError(path, `has the type “${type}”, which is not GeoJSON's`);
+  const place = member(path, "coordinates");
+  const coordinates = list(json.coordinates, place, "an array");
+  if (!many && coordinates.length > 0) take(coordinates, place);
+  if (many) coordinates.forEach((part, i) => take(part, `${place}[${i}]`));
+}
+
+function list(json: unknown, path: string, what: string): unknown[] {
+  if (!Array.isArray(json)) throw new FileError(path, `is not ${what}`);
+  return json;
+}
+
+function position(json: unknown, path: string): Point {
+  const [x, y]: unknown[] = Array.isArray(json) ? json : [];
+  if (typeof x !== "number" || typeof y !== "number") throw new FileError(path, "is not a position [x, y]");
+  return [x, y];
+}
+
+function positions(json: unknown, path: string): Point[] {
+  return list(json, path, "an array of positions").map((each, i) => position(each, `${path}[${i}]`));
+}

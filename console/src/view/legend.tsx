@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the colours mean.
+import { css, regionColour, scaleColour, type ColourBy } from "./colours";
+import { figure } from "../text";
+
+const steps = 16;
+const mostRegions = 12;
+
+const titles = { angle: "Smallest angle", area: "Area", ratio: "Area over its bound" };
+
+export function Legend({ by, range, regions }: { by: ColourBy; range: [number, number]; regions: number[] }) {
+  if (by === "none") return null;
+  if (by === "chunk") return <p class="legend">A colour for each chunk, and so for each leaf of the quadtree</p>;
+  if (by === "region")
+    return (
+      <div class="legend">
+        <span>Region</span>
+        <ul>
+          {regions.slice(0, mostRegions).map((id, slot) => (
+            <li key={id}>
+              <svg width="12" height="12" aria-hidden="true">
+                <rect width="12" height="12" rx="2" fill={css(regionColour(slot))} />
+              </svg>
+              {id === 0 ? "none" : id}
+            </li>
+          ))}
+          {regions.length > mostRegions && <li>and {regions.length - mostRegions} more</li>}
+        </ul>
+      </div>
+    );
+  const text = {
+    angle: (t: number) => `${Math.round(range[0] + t * (range[1] - range[0]))}°`,
+    area: (t: number) => figure(2 ** (range[0] + t * (range[1] - range[0]))),
+    ratio: (t: number) => (range[0] + t * (range[1] - range[0])).toFixed(2),
+  }[by];
+  return (
+    <div class="legend">
+      <span>{titles[by]}</span>
+      <svg width="190" height="12" viewBox={`0 0 ${steps * 4} 4`} preserveAspectRatio="none" shape-rendering="crispEdges" aria-hidden="true">
+        {Array.from({ length: steps * 4 }, (_, i) => (
+          <rect x={i} width="1" height="4" fill={css(scaleColour(by, i / (steps * 4 - 1)))} />
+        ))}
+      </svg>
+      <div class="legend-ends">
+        {[0, 0.5, 1].map((t) => (
+          <span>{text(t)}</span>
+        ))}
+      </div>
+    </div>
+  );
+}

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the page counts of a run while it comes: histograms, the worst triangles, the picked one.
+import { count, figure } from "../text";
+import { boundOf, type Bounds } from "./bounds";
+import { css, scaleColour } from "./colours";
+import { useRunState, type MeshRun } from "./mesh-run";
+import type { PickedTriangle } from "./store";
+
+interface Bin {
+  count: number;
+  label: string;
+  fill: string;
+}
+
+function Histogram({ title, bins, ends }: { title: string; bins: Bin[]; ends: string[] }) {
+  const most = Math.max(...bins.map((bin) => bin.count), 1);
+  const all = bins.reduce((sum, bin) => sum + bin.count, 0) || 1;
+  const width = 240 / bins.length;
+  return (
+    <figure class="bars">
+      <figcaption>{title}</figcaption>
+      <svg viewBox="0 0 240 46" preserveAspectRatio="none" role="img" aria-label={`${title}: most often ${bins.find((bin) => bin.count === most)?.label ?? "none"}`}>
+        {bins.map((bin, i) => {
+          // A bin that is not empty is seen.
+          const height = bin.count > 0 ? Math.max(1.5, (45 * bin.count) / most) : 0;
+          return (
+            <>
+              <rect x={i * width + 0.5} width={Math.max(0.5, width - 1)} y={46 - height} height={height} fill={bin.fill} />
+              <rect x={i * width} width={width} height="46" fill="transparent">
+                <title>{`${bin.label}: ${count(bin.count)}, ${((100 * bin.count) / all).toFixed(2)} %`}</title>
+              </rect>
+            </>
+          );
+        })}
+      </svg>
+      <div class="bar-ends">
+        {ends.map((end) => (
+          <span>{end}</span>
+        ))}
+      </div>
+    </figure>
+  );
+}
+
+function Picked({ picked, bounds, run }: { picked: PickedTriangle; bounds: Bounds | undefined; run: MeshRun }) {
+  const bound = bounds && boundOf(bounds, picked.region);
+  return (
+    <section class="picked" aria-live="polite" aria-label="Picked triangle">
+      <header>
+        <h2>Triangle {count(picked.triangle)}</h2>
+        <button type="button" class="quiet" aria-label="Close" onClick={() => run.unpick()}>
+          ✕
+        </button>
+      </header>
+      <dl class="figures">
+        <dt>Angles</dt>
+        <dd>{picked.angles.map((angle) => `${angle.toFixed(1)}°`).join("  ")}</dd>
+        <dt>Area</dt>
+        <dd>{figure(picked.area)}</dd>
+        {bound !== undefined && (
+          <>
+            <dt>Bound</dt>
+            <dd>
+              {figure(bound)}, {((100 * picked.area) / bound).toFixed(1)} % used
+            </dd>
+          </>
+        )}
+        <dt>Region</dt>
+        <dd>{picked.region === 0 ? "none" : picked.region}</dd>
+        <dt>Chunk</dt>
+        <dd>{picked.chunk}</dd>
+        <dt>Neighbours</dt>
+        <dd>
+          {picked.neighbours.map((neighbour) =>
+            neighbour === undefined ? (
+              <span class="faint">border </span>
+            ) : (
+              <button type="button" class="link" onClick={() => run.find(neighbour)}>
+                {neighbour}
+              </button>
+            ),
+          )}
+        </dd>
+      </dl>
+    </section>
+  );
+}
+
+export function MeshFigures({ run, bounds }: { run: MeshRun; bounds?: Bounds | undefined }) {
+  const { census, picked, triangles } = useRunState(run);
+  if (!census || triangles === 0) return null;
+  const { angles, areas, firstArea, worst } = census;
+  return (
+    <div class="mesh-figures">
+      {picked && <Picked picked={picked} bounds={bounds} run={run} />}
+      <Histogram
+        title="Smallest angles"
+        bins={angles.map((n, i) => ({
+          count: n,
+          label: `${2 * i}° to ${2 * i + 2}°`,
+          fill: css(scaleColour("angle", (i + 0.5) / angles.length)),
+        }))}
+        ends={["0°", "20°", "40°", "60°"]}
+      />
+      <Histogram
+        title="Areas"
+        bins={areas.map((n, i) => ({
+          count: n,
+          label: `${figure(2 ** (firstArea + i / 2))} to ${figure(2 ** (firstArea + (i + 1) / 2))}`,
+          fill: css(scaleColour("area", (i + 0.5) / areas.length)),
+        }))}
+        ends={[figure(2 ** firstArea), figure(2 ** (firstArea + areas.length / 2))]}
+      />
+      <section>
+        <h2>Worst triangles</h2>
+        <ol class="worst">
+          {worst.map(({ triangle, minAngle, area }) => (
+            <li key={triangle}>
+              <button
+                type="button"
+                aria-pressed={picked?.triangle === triangle}
+                title={`Go to triangle ${count(triangle)}, of area ${figure(area)}`}
+                onClick={() => run.find(triangle)}
+              >
+                {minAngle.toFixed(2)}°
+              </button>
+            </li>
+          ))}
+        </ol>
+      </section>
+    </div>
+  );
+}

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// A mesh to look at, with its tools and its legend.
+//
+//   <MeshView run={run} bounds={boundsOf(summary.request)} />
+import type { ComponentChildren } from "preact";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useTheme } from "../theme";
+import type { Bounds } from "./bounds";
+import type { Census } from "./census";
+import type { ColourBy } from "./colours";
+import { Legend } from "./legend";
+import { useRunState, type MeshRun } from "./mesh-run";
+import type { Box } from "./picture";
+import type { Sketch } from "./sketch";
+import { Viewport } from "./viewport";
+import "./view.css";
+
+export interface MeshViewProps {
+  run: MeshRun;
+  outline?: { ends: Float64Array; box: Box | undefined } | undefined; // x, y of both ends of each segment
+  bounds?: Bounds | undefined; // of areas, for their colour
+  sketch?: Sketch | undefined; // takes clicks and keys while there is one
+  children?: ComponentChildren; // above the canvas
+}
+
+const colourings: [ColourBy, string][] = [
+  ["angle", "smallest angle"],
+  ["area", "area"],
+  ["ratio", "area over bound"],
+  ["region", "region"],
+  ["chunk", "chunk"],
+  ["none", "nothing"],
+];
+
+const none = new Float64Array();
+
+// Without the hundredth at either end, so that a few triangles do not take the scale.
+function areaRange({ areas, firstArea }: Census): [number, number] {
+  const all = areas.reduce((sum, count) => sum + count, 0);
+  const at = (share: number) => {
+    let sum = 0;
+    return areas.findIndex((count) => (sum += count) > share * all);
+  };
+  return [firstArea + at(0.01) / 2, firstArea + (at(0.99) + 1) / 2];
+}
+
+export function MeshView({ run, outline, bounds, sketch, children }: MeshViewProps) {
+  const state = useRunState(run);
+  const theme = useTheme();
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const marks = useRef<HTMLCanvasElement>(null);
+  const [viewport, setViewport] = useState<Viewport | null>();
+  const [wanted, setBy] = useState<ColourBy>("angle");
+  const [edges, setEdges] = useState(true);
+  const [quadtree, setQuadtree] = useState(false);
+  const [worst, setWorst] = useState(false);
+  const by = wanted === "ratio" && !bounds ? "angle" : wanted;
+  const range = useMemo<[number, number]>(
+    () => (by === "angle" ? [0, 60] : by === "area" && state.census?.areas.length ? areaRange(state.census) : [0, 1]),
+    [by, state.census],
+  );
+
+  useEffect(() => {
+    const made = Viewport.on(canvas.current!, marks.current!, run) ?? null;
+    setViewport(made);
+    return () => made?.close();
+  }, [run]);
+  useEffect(() => viewport?.outline(outline?.ends ?? none, outline?.box), [viewport, outline]);
+  useEffect(
+    () => viewport?.set({ by, range, edges, quadtree, worst, dark: theme === "dark", bounds, sketch }),
+    [viewport, by, range, edges, quadtree, worst, theme, bounds, sketch],
+  );
+  useEffect(() => {
+    if (state.found > 0) viewport?.showPicked();
+  }, [viewport, state.found]);
+
+  const keys = (event: KeyboardEvent) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || sketch) return;
+    const toggles: Record<string, () => void> = {
+      e: () => setEdges(!edges),
+      q: () => setQuadtree(!quadtree),
+      w: () => setWorst(!worst),
+      c: () => {
+        const usable = colourings.map(([name]) => name).filter((name) => name !== "ratio" || bounds);
+        setBy(usable[(usable.indexOf(by) + 1) % usable.length]);
+      },
+    };
+    toggles[event.key]?.();
+  };
+  const toggle = (name: string, key: string, on: boolean, set: (on: boolean) => void, ready = true) => (
+    <button type="button" aria-pressed={on} disabled={!ready} title={`${name} (${key})`} onClick={() => set(!on)}>
+      {name}
+    </button>
+  );
+  return (
+    <div class="mesh-view" data-phase={state.phase} data-chunks={state.chunks} data-triangles={state.triangles}>
+      <canvas
+        ref={canvas}
+        tabIndex={0}
+        role="application"
+        aria-label={
+          sketch
+            ? "Drawing: arrows move, Enter sets a corner, C closes the ring, Backspace takes a corner back"
+            : "Picture of the mesh: arrows move, plus and minus zoom, 0 shows all, Enter picks the triangle in the middle"
+        }
+        class={sketch ? "sketching" : undefined}
+        onKeyDown={keys}
+      />
+      <canvas ref={marks} class="marks" aria-hidden="true" />
+      {viewport === null && (
+        <p class="problem view-problem">This browser has no WebGL2, which the picture needs. Figures and downloads work without.</p>
+      )}
+      <div class="view-tools" role="toolbar" aria-label="Picture">
+        <label>
+          Colour by{" "}
+          <select value={by} onChange={(event) => setBy(event.currentTarget.value as ColourBy)}>
+            {colourings.map(([name, text]) => (
+              <option value={name} disabled={name === "ratio" && !bounds}>
+                {text}
+              </option>
+            ))}
+          </select>
+        </label>
+        {toggle("Edges", "e", edges, setEdges)}
+        {toggle("Quadtree", "q", quadtree, setQuadtree, (state.summary?.leafBoxes.length ?? 0) > 0)}
+        {toggle("Worst", "w", worst, setWorst, (state.census?.worst.length ?? 0) > 0)}
+        <span class="view-zoom">
+          <button type="button" aria-label="Zoom out" title="Zoom out (-)" onClick={() => viewport?.zoom(1 / 1.5)}>
+            −
+          </button>
+          <button type="button" title="Show all (0)" onClick={() => viewport?.fit()}>
+            Fit
+          </button>
+          <button type="button" aria-label="Zoom in" title="Zoom in (+)" onClick={() => viewport?.zoom(1.5)}>
+            +
+          </button>
+        </span>
+      </div>
+      {state.triangles > 0 && <Legend by={by} range={range} regions={state.regions} />}
+      {children}
+    </div>
+  );
+}
