@@ -338,12 +338,39 @@ class Off implements MeshWriter {
   }
 }
 
+// Stanford's, binary.
+class Ply implements MeshWriter {
+  private readonly points = new Section();
+  private readonly faces = new Section();
+
+  add({ coordinates, triangles }: MeshPiece): void {
+    this.points.put(inSpace(coordinates));
+    const faceBytes = 13;
+    const faces = new DataView(new ArrayBuffer((faceBytes * triangles.length) / 3));
+    for (let i = 0; i < triangles.length; ++i) {
+      const at = faceBytes * Math.floor(i / 3);
+      if (i % 3 === 0) faces.setUint8(at, 3);
+      faces.setUint32(at + 1 + 4 * (i % 3), triangles[i]!, true);
+    }
+    this.faces.put(faces);
+  }
+
+  finish(): Blob {
+    const head =
+      `ply\nformat binary_little_endian 1.0\ncomment weft\nelement vertex ${this.points.size / 24}\n` +
+      `property double x\nproperty double y\nproperty double z\nelement face ${this.faces.size / 13}\n` +
+      "property list uchar int vertex_indices\nend_header\n";
+    return new Blob([head, ...this.points.blobs(), ...this.faces.blobs()]);
+  }
+}
+
 export const formats = {
   vtu: { for: "ParaView", begin: () => new Vtu() },
   msh: { for: "Gmsh 4.1", begin: () => new Msh() },
   npz: { for: "NumPy", begin: () => new Npz() },
   obj: { for: "Wavefront", begin: () => new Obj() },
-  off: { for: "triangles alone", begin: () => new Off() },
+  ply: { for: "Stanford, triangles alone", begin: () => new Ply() },
+  off: { for: "Geomview, triangles alone", begin: () => new Off() },
 } satisfies Record<string, { for: string; begin: () => MeshWriter }>;
 
 // The extension of a file.
