@@ -5,6 +5,7 @@
 //   const browser = await openBrowser();
 //   const page = await openPage(test, browser, server.url + "/jobs");
 import { existsSync } from "node:fs";
+import { PNG } from "pngjs";
 import puppeteer from "puppeteer-core";
 import { atEnd } from "./weftd.js";
 
@@ -88,4 +89,22 @@ export async function textMatches(page, selector, pattern, { timeout = patience 
 export async function press(page, name) {
   const node = await page.waitForSelector(`aria/${name}[role="button"]`);
   await node.click();
+}
+
+// How many colours the middle of an element shows, 64 at most; its edges may have buttons and legends.
+export async function coloursOf(element) {
+  const { width, height } = await element.boundingBox();
+  const clip = { x: width / 4, y: height / 4, width: width / 2, height: height / 2 };
+  const { data } = PNG.sync.read(Buffer.from(await element.screenshot({ clip })));
+  const colours = new Set();
+  for (let i = 0; i < data.length && colours.size < 64; i += 4) colours.add(data.readUInt32LE(i));
+  return colours.size;
+}
+
+// Whether the page shows `count` whole meshes, coloured.
+export async function areDrawn(page, count) {
+  const views = await page.$$('main .mesh-view[data-phase="done"]');
+  if (views.length !== count) return false;
+  for (const view of views) if ((await coloursOf(view)) < 16) return false;
+  return true;
 }

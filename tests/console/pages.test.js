@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pages of jobs, meshes and the server, in a real browser against a real weftd.
 import assert from "node:assert/strict";
-import { readdir, writeFile } from "node:fs/promises";
+import { readdir, readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { openBrowser, openPage, press, textMatches } from "./browser.js";
+import { areDrawn, openBrowser, openPage, press, textMatches } from "./browser.js";
 import { looksLike } from "./pictures.js";
 import { atEnd, folderFor, models, until, weft, Weftd } from "./weftd.js";
 
@@ -141,7 +141,7 @@ test("a mesh's page draws it, tells its figures and its request", async (t) => {
   const page = await openPage(t, browser, `${server.url}/mesh/${summary.digest}`);
   await textMatches(page, "aside", new RegExp(summary.triangles.toLocaleString("en-US")));
   await textMatches(page, "aside", /0\.02\*abs\(y-46\)\+0\.1[^]*min_angle_deg\s+25/);
-  await until("the mesh is drawn", () => isDrawn(page));
+  await until("the mesh is drawn", () => areDrawn(page, 1));
   await looksLike(page, "mesh");
 });
 
@@ -151,37 +151,31 @@ test("a digest that nobody keeps is said to be so", async (t) => {
   await textMatches(page, "main", /No job of yours keeps this mesh/);
 });
 
-// Whether the page's canvas has more than one colour.
-async function isDrawn(page) {
-  const canvas = await page.$("main canvas");
-  if (!canvas) return false;
-  const { PNG } = await import("pngjs");
-  const { data } = PNG.sync.read(Buffer.from(await canvas.screenshot()));
-  const colours = new Set();
-  for (let i = 0; i < data.length && colours.size < 16; i += 4) colours.add(data.readUInt32LE(i));
-  return colours.size >= 16;
+async function downloaded(t, page, digest, format) {
+  const folder = await folderFor(t);
+  const session = await page.createCDPSession();
+  await session.send("Browser.setDownloadBehavior", {
+    behavior: "allow",
+    downloadPath: folder,
+    browserContextId: page.browserContext().id,
+  });
+  await press(page, `.${format}`);
+  const name = `${digest.slice(0, 12)}.${format}`;
+  await until(`${name} is there`, async () => (await readdir(folder)).includes(name));
+  return join(folder, name);
 }
 
-for (const format of ["vtu", "msh", "npz", "obj", "off"])
-  test(`a mesh is downloaded as .${format}, which weft reads`, async (t) => {
+for (const format of ["vtu", "msh", "npz", "obj", "off", "ply"])
+  test(`a mesh is downloaded as .${format}, as weft fetch writes it`, async (t) => {
     const server = await serverWithJobs(t);
     const { id, summary } = await ended(server, key, ...keySize);
     const page = await openPage(t, browser, `${server.url}/mesh/${summary.digest}`);
-    const folder = await folderFor(t);
-    const session = await page.createCDPSession();
-    await session.send("Browser.setDownloadBehavior", {
-      behavior: "allow",
-      downloadPath: folder,
-      browserContextId: page.browserContext().id,
-    });
-    await press(page, `.${format}`);
-    const name = `${summary.digest.slice(0, 12)}.${format}`;
-    await until(`${name} is there`, async () => (await readdir(folder)).includes(name));
-    // As `weft fetch` writes it: what weft reads there, of its own reader for each format.
-    const fetched = join(folder, `fetched.${format}`);
+    const file = await downloaded(t, page, summary.digest, format);
+    const fetched = join(await folderFor(t), `fetched.${format}`);
     await server.weft("fetch", id, "-o", fetched);
-    const figures = async (file) => (await weft(["info", file])).replaceAll(file, "FILE");
-    assert.equal(await figures(join(folder, name)), await figures(fetched));
+    if (format === "ply") return assert.deepEqual(await readFile(file), await readFile(fetched)); // weft reads none
+    const figures = async (path) => (await weft(["info", path])).replaceAll(path, "FILE");
+    assert.equal(await figures(file), await figures(fetched));
   });
 
 test("two meshes stand side by side with what differs", async (t) => {
@@ -198,7 +192,7 @@ test("two meshes stand side by side with what differs", async (t) => {
     "main table",
     new RegExp(`Triangles\\s+5,645\\s+${b.summary.triangles.toLocaleString("en-US")}`),
   );
-  await until("both are drawn", async () => (await page.$$("main canvas")).length === 2 && isDrawn(page));
+  await until("both are drawn", () => areDrawn(page, 2));
   await looksLike(page, "compare");
 });
 

@@ -5,6 +5,7 @@ import type { Summary } from "../gen/weft/v1/mesh_service_pb";
 import { differences } from "../compare/differences";
 import { requestJson } from "../jobs/request-facts";
 import { fetchSummary, findJob } from "../jobs/stored-mesh";
+import { StoredMeshView } from "../jobs/stored-mesh-view";
 import { factsOf, hex } from "../jobs/summary-facts";
 import "./pages.css";
 import { Problem } from "../live/problem";
@@ -87,6 +88,7 @@ function Picture({ name, side }: { name: string; side: Side }) {
   return (
     <div class="compare-picture">
       <a class="mono" href={`/mesh/${digest}`} title={digest}>{digest.slice(0, 12)}</a>
+      <StoredMeshView job={side.job} label={`Mesh ${digest.slice(0, 12)}`} />
     </div>
   );
 }

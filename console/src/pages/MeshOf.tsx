@@ -7,6 +7,7 @@ import { Downloads } from "../download/downloads";
 import type { Summary } from "../gen/weft/v1/mesh_service_pb";
 import { RequestFacts } from "../jobs/request-facts";
 import { fetchSummary, findJob, isDigest } from "../jobs/stored-mesh";
+import { StoredMeshView } from "../jobs/stored-mesh-view";
 import { Histograms, SummaryFacts } from "../jobs/summary-facts";
 import "./pages.css";
 import { Problem } from "../live/problem";
@@ -62,12 +63,13 @@ export function MeshOfPage({ digest }: { digest: string }) {
       {found.value && !job && <Missing digest={digest} />}
       {job?.summary && (
         <div class="mesh-page">
-          <aside aria-label="Figures" tabIndex={0}>
+          <StoredMeshView job={job} label={`Mesh ${digest.slice(0, 12)}`} />
+          <aside aria-label="Figures and request" tabIndex={0} class="card">
             <SummaryFacts summary={job.summary} />
-            <Histograms summary={job.summary} />
             <h2>Request</h2>
             <RequestFacts summary={summary} />
             {summary && <Again id={job.id} summary={summary} />}
+            <Histograms summary={job.summary} />
             <p>
               <a href={`/job/${job.id}`}>Its job</a>
             </p>
