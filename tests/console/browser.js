@@ -91,20 +91,40 @@ export async function press(page, name) {
   await node.click();
 }
 
-// How many colours the middle of an element shows, 64 at most; its edges may have buttons and legends.
-export async function coloursOf(element) {
-  const { width, height } = await element.boundingBox();
-  const clip = { x: width / 4, y: height / 4, width: width / 2, height: height / 2 };
-  const { data } = PNG.sync.read(Buffer.from(await element.screenshot({ clip })));
-  const colours = new Set();
-  for (let i = 0; i < data.length && colours.size < 64; i += 4) colours.add(data.readUInt32LE(i));
-  return colours.size;
+async function pixelsOf(page, clip) {
+  return PNG.sync.read(Buffer.from(await page.screenshot({ clip }))).data;
 }
 
-// Whether the page shows `count` whole meshes, coloured.
-export async function areDrawn(page, count) {
+// The colour around a point of the page, as a number: the mean of a square of `side` pixels.
+export async function colourAt(page, x, y, side = 1) {
+  const data = await pixelsOf(page, {
+    x: Math.round(x - (side - 1) / 2),
+    y: Math.round(y - (side - 1) / 2),
+    width: side,
+    height: side,
+  });
+  let colour = 0;
+  for (let channel = 0; channel < 3; ++channel) {
+    let sum = 0;
+    for (let i = channel; i < data.length; i += 4) sum += data[i];
+    colour = 256 * colour + Math.round(sum / side ** 2);
+  }
+  return colour;
+}
+
+// Whether the page shows `count` whole meshes, each in `least` colours or more in its middle; around
+// that there may be buttons and a legend.
+export async function areDrawn(page, count, least = 16) {
   const views = await page.$$('main .mesh-view[data-phase="done"]');
   if (views.length !== count) return false;
-  for (const view of views) if ((await coloursOf(view)) < 16) return false;
+  for (const view of views) {
+    const { x, y, width, height } = await view.boundingBox();
+    const data = await pixelsOf(page, {
+      x: x + width / 4, y: y + height / 4, width: width / 2, height: height / 2,
+    });
+    const colours = new Set();
+    for (let i = 0; i < data.length && colours.size < least; i += 4) colours.add(data.readUInt32LE(i));
+    if (colours.size < least) return false;
+  }
   return true;
 }

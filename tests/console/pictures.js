@@ -5,7 +5,8 @@
 // Compared are the means of squares of 16 x 16 pixels: what is missing, or has another place, size or
 // colour, changes them, another font does not. What varies from run to run, such as ages, is left
 // out: every element with data-varies, and what a test names.
-import { mkdir, readFile, writeFile } from "node:fs/promises";
+import { execFileSync } from "node:child_process";
+import { mkdir, readFile, stat, writeFile } from "node:fs/promises";
 import { PNG } from "pngjs";
 
 const folder = new URL("../../docs/pictures/", import.meta.url).pathname;
@@ -60,18 +61,26 @@ function marked(image, squares) {
   return PNG.sync.write(image);
 }
 
+// 256 colours are enough for a document, and halve the file.
+async function shrink(file) {
+  const program = "import sys; from PIL import Image; f = sys.argv[1]; " +
+    "Image.open(f).convert('RGB').quantize(256).save(f, optimize=True)";
+  execFileSync("/usr/bin/python3", ["-c", program, file]);
+  const { size } = await stat(file);
+  if (size > mostBytes) throw new Error(`${file} has ${size} bytes, more than ${mostBytes}`);
+}
+
 // Fails if the page does not look like the picture of this name. On a failure out/console has what
 // was seen, with what differs in red.
 export async function looksLike(page, name, { varies = [] } = {}) {
   await page.mouse.move(0, 0);
   await page.evaluate(() => document.fonts.ready);
   const places = await placesOf(page, ["[data-varies]", ...varies]);
-  const bytes = Buffer.from(await page.screenshot({ optimizeForSpeed: false }));
+  const bytes = Buffer.from(await page.screenshot());
   const file = `${folder}console-${name}.png`;
   if (anew) {
-    if (bytes.length > mostBytes) throw new Error(`${file} would have ${bytes.length} bytes, more than ${mostBytes}`);
     await writeFile(file, bytes);
-    return;
+    return shrink(file);
   }
   const stored = PNG.sync.read(await readFile(file).catch(() => {
     throw new Error(`there is no ${file}; WEFT_ANEW=1 makes it`);

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page that makes meshes, in a real browser against a real weftd.
+import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { areDrawn, colourAt, openBrowser, openPage, press, textMatches } from "./browser.js";
+import { looksLike } from "./pictures.js";
+import { atEnd, folderFor, models, until, Weftd } from "./weftd.js";
+
+let browser;
+before(async () => (browser = await openBrowser()));
+after(() => browser.close());
+
+async function meshPage(t, { args = [], ...options } = {}) {
+  const server = await Weftd.start({ args });
+  atEnd(t, () => server.stop());
+  const page = await openPage(t, browser, server.url, options);
+  await page.waitForSelector(".mesh-view canvas");
+  return { server, page };
+}
+
+// Drops a file onto the page, as a file manager does.
+const drop = (page, name, text) =>
+  page.evaluate(
+    (name, text) => {
+      const dataTransfer = new DataTransfer();
+      dataTransfer.items.add(new File([text], name));
+      const onto = document.querySelector(".mesh-view");
+      for (const type of ["dragenter", "dragover", "drop"])
+        onto.dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
+    },
+    name, text,
+  );
+
+// Replaces what a field says.
+async function fill(page, selector, text) {
+  await page.focus(selector);
+  await page.$eval(selector, (field) => field.select());
+  if (text === "") await page.keyboard.press("Backspace");
+  else await page.keyboard.type(text);
+}
+
+const phase = (page, wanted) =>
+  page.waitForSelector(`.mesh-view[data-phase="${wanted}"]`, { timeout: 120_000 });
+
+// What the page's view says of the run from now on: phase, chunks and triangles, at every change.
+const recordRun = (page) =>
+  page.$eval(".mesh-view", (view) => {
+    window.seen = [];
+    const look = () =>
+      window.seen.push({ phase: view.dataset.phase, chunks: +view.dataset.chunks, triangles: +view.dataset.triangles });
+    new MutationObserver(look).observe(view, { attributes: true });
+  });
+
+const byArea = async (page, area) => {
+  await page.evaluate(() =>
+    [...document.querySelectorAll(".segmented label")].find((label) => label.innerText === "Area").click());
+  await fill(page, "#size", area);
+};
+
+test("a dropped file is meshed, and its chunks come before its summary", async (t) => {
+  const { page } = await meshPage(t);
+  await drop(page, "key.poly", await readFile(join(models, "key.poly"), "utf8"));
+  await textMatches(page, ".domain-facts", /key\.poly[^]*122 points, 122 segments/);
+  await byArea(page, "0.001");
+  await recordRun(page);
+  await press(page, "Mesh");
+  await phase(page, "done");
+  const seen = await page.evaluate(() => window.seen);
+  const running = seen.filter(({ phase }) => phase === "running");
+  const counts = new Set(running.map(({ chunks }) => chunks));
+  assert.ok(counts.size > 3, `chunks seen before the summary: ${[...counts]}`);
+  for (let i = 1; i < running.length; ++i) assert.ok(running[i].chunks >= running[i - 1].chunks);
+  const [, triangles] = await textMatches(page, ".run-status", /([\d,]+) triangles\s+Done/);
+  assert.equal(Number(triangles.replaceAll(",", "")), seen.at(-1).triangles);
+  assert.ok(seen.at(-1).triangles > 806_000); // the key's area, in triangles of at most 0.001
+  await until("the mesh is drawn", () => areDrawn(page, 1, 2));
+});
+
+for (const [name, text, complaint] of [
+  ["broken.poly", "3 2 0 0\n1 0 0\n2 1 zero\n3 0 1\n", /broken\.poly[^]*line 3/],
+  ["picture.png", "\x89PNG", /picture\.png/],
+])
+  test(`a file that is no domain is refused with its fault: ${name}`, async (t) => {
+    const { page } = await meshPage(t);
+    await drop(page, name, text);
+    await textMatches(page, "section [role=alert]", complaint);
+    await textMatches(page, ".domain-facts", /plate\.geojson/); // what was there stays
+  });
+
+test("a polygon with a hole is drawn by hand and meshed", async (t) => {
+  const { page } = await meshPage(t);
+  await press(page, "Draw");
+  await page.waitForSelector("canvas.sketching");
+  const { x, y, width, height } = await (await page.$(".mesh-view canvas")).boundingBox();
+  const middle = [x + width / 2, y + height / 2];
+  const click = ([dx, dy]) => page.mouse.click(middle[0] + dx, middle[1] + dy);
+  for (const corner of [[-200, -120], [200, -120], [200, 120], [-200, 120]]) await click(corner);
+  await textMatches(page, ".sketch-bar", /4 corners/);
+  await click([-200, -120]); // the first one closes the ring
+  for (const corner of [[-60, -50], [60, -50], [0, 60]]) await click(corner);
+  await textMatches(page, ".sketch-bar", /3 corners/);
+  await press(page, "Close ring");
+  await press(page, "Use");
+  await textMatches(page, ".domain-facts", /drawing\.geojson[^]*7 points, 7 segments/);
+  await press(page, "Mesh");
+  await phase(page, "done");
+  await until("the mesh is drawn", () => areDrawn(page, 1));
+  // The drawing fills the picture now: its hole is in the middle, triangles are beside it.
+  await until("the hole is empty", async () => {
+    const [hole, beside, outside] = await Promise.all([
+      colourAt(page, ...middle),
+      colourAt(page, middle[0] - width / 4, middle[1]),
+      colourAt(page, middle[0], y + height - 4),
+    ]);
+    return hole === outside && beside !== outside;
+  });
+});
+
+test("a fault in an expression is shown with its caret under it, and goes with it", async (t) => {
+  const { page } = await meshPage(t);
+  await fill(page, "#size", "0.1 + 2*(x +* y)");
+  await press(page, "Mesh");
+  const [pre] = await textMatches(page, "#size-problem", /[^]*\^/);
+  const lines = pre.split("\n");
+  const column = lines.at(-1).indexOf("^");
+  const expression = lines.findLast((line) => line.includes("2*(x +* y)"));
+  assert.equal(expression.slice(column, column + 1), "*");
+  assert.equal(expression[column - 1], "+");
+  assert.equal(await page.$eval("#size", (field) => field.getAttribute("aria-invalid")), "true");
+
+  await fill(page, "#size", "0.2");
+  await page.waitForSelector("#size-problem", { hidden: true });
+  await page.keyboard.press("Enter");
+  await phase(page, "done");
+});
+
+test("a run is cancelled, and with it the server's work; what has come stays", async (t) => {
+  const { server, page } = await meshPage(t);
+  const running = async () =>
+    /^weft_running_jobs(?:\{[^}]*\})? (\d+)/m.exec(await (await fetch(`${server.url}/metrics`)).text())?.[1];
+  await press(page, "A million");
+  await fill(page, "#size", "0.0001"); // minutes
+  await press(page, "Mesh");
+  await page.waitForFunction(() => Number(document.querySelector(".mesh-view").dataset.chunks) > 3);
+  assert.equal(await running(), "1");
+  await press(page, "Cancel");
+  await textMatches(page, ".run-status", /Cancelled/);
+  await until("the server rests", async () => (await running()) === "0");
+  assert.ok(await page.$eval(".mesh-view", (view) => Number(view.dataset.triangles) > 0));
+  await press(page, "Mesh"); // the page goes on
+  await phase(page, "running");
+  await page.keyboard.press("Escape");
+  await phase(page, "cancelled");
+});
+
+test("a million triangles are drawn, and panned by the mouse", async (t) => {
+  const { page } = await meshPage(t);
+  await press(page, "A million");
+  await press(page, "Mesh");
+  await phase(page, "done");
+  await textMatches(page, ".run-status", /9\d\d,\d{3} triangles/);
+  await page.select(".view-tools select", "chunk"); // many colours
+  await until("the mesh is drawn", () => areDrawn(page, 1));
+  const canvas = await (await page.$(".mesh-view canvas")).boundingBox();
+  const middle = [canvas.x + canvas.width / 2, canvas.y + canvas.height / 2];
+  const corner = [canvas.x + canvas.width / 2 - 120, canvas.y + canvas.height / 2 - 80];
+  const step = [120, 80];
+  const beforeMove = await colourAt(page, ...corner, 9);
+  await page.mouse.move(...middle);
+  await page.mouse.down();
+  await page.mouse.move(middle[0] + step[0], middle[1] + step[1], { steps: 8 });
+  await page.mouse.up();
+  // What was there has moved with the mouse.
+  await until("the picture has moved", async () => (await colourAt(page, corner[0] + step[0], corner[1] + step[1], 9)) === beforeMove);
+  await press(page, "Fit");
+  await until("the picture is back", async () => (await colourAt(page, ...corner, 9)) === beforeMove);
+});
+
+test("by the keyboard alone a mesh is asked for, drawn, zoomed and coloured", async (t) => {
+  const { page } = await meshPage(t);
+  const focused = () => page.evaluate(() => document.activeElement.id || document.activeElement.ariaLabel ||
+    document.activeElement.innerText || document.activeElement.tagName);
+  const tabTo = async (pattern) => {
+    const passed = [];
+    for (let i = 0; i < 60; ++i) {
+      await page.keyboard.press("Tab");
+      passed.push(await focused());
+      if (pattern.test(passed.at(-1))) return;
+    }
+    assert.fail(`Tab never reached ${pattern}, but ${passed.join(", ")}`);
+  };
+  await tabTo(/^Gear$/);
+  await page.keyboard.press("Space");
+  await textMatches(page, ".domain-facts", /gear\.geojson/);
+  await tabTo(/^size$/);
+  await page.keyboard.down("Control");
+  await page.keyboard.press("a");
+  await page.keyboard.up("Control");
+  await page.keyboard.type("0.2");
+  await page.keyboard.press("Enter");
+  await phase(page, "done");
+  await tabTo(/^Picture of the mesh/);
+  await page.keyboard.press("Enter"); // the triangle in the middle: there is a hole
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("Enter");
+  await textMatches(page, "aside", /neighbours/i);
+  await page.keyboard.press("c");
+  await textMatches(page, ".legend", /^(?!Smallest angle)/);
+  await page.keyboard.press("+");
+
+  // A triangle, drawn.
+  await page.keyboard.down("Shift");
+  for (let i = 0; i < 60 && (await focused()) !== "Draw"; ++i) await page.keyboard.press("Tab");
+  await page.keyboard.up("Shift");
+  await page.keyboard.press("Space");
+  await tabTo(/^Drawing/);
+  await page.keyboard.press("Enter");
+  for (const [way, times] of [["ArrowRight", 20], ["ArrowUp", 12]]) {
+    for (let i = 0; i < times; ++i) await page.keyboard.press(way);
+    await page.keyboard.press("Enter");
+  }
+  await textMatches(page, ".sketch-bar", /3 corners/);
+  await page.keyboard.press("c");
+  await tabTo(/^Use$/);
+  await page.keyboard.press("Enter");
+  await textMatches(page, ".domain-facts", /3 points, 3 segments/);
+  await page.keyboard.down("Control");
+  await page.keyboard.press("Enter");
+  await page.keyboard.up("Control");
+  await phase(page, "done");
+});
+
+test("a request becomes a job, whose page shows its mesh", async (t) => {
+  const { page } = await meshPage(t, { args: ["--data", await folderFor(t)] });
+  await press(page, "As a job");
+  await textMatches(page, "main", /Job [0-9A-Z]{26}[^]*succeeded/);
+  await page.click("a.button");
+  await until("the mesh is drawn", () => areDrawn(page, 1));
+  assert.match(new URL(page.url()).pathname, /^\/mesh\/[0-9a-f]{64}$/);
+});
+
+test("a server that goes away while it makes a mesh is said to be away", async (t) => {
+  const server = await Weftd.start();
+  const page = await openPage(t, browser, server.url, { expected: [/net::/] });
+  await press(page, "A million");
+  await fill(page, "#size", "0.0001");
+  await press(page, "Mesh");
+  await page.waitForFunction(() => Number(document.querySelector(".mesh-view").dataset.chunks) > 0);
+  await server.kill();
+  await phase(page, "failed");
+  await textMatches(page, ".banner", /does not answer/);
+});
+
+test("what the documents show of the page is what it looks like", async (t) => {
+  const { page } = await meshPage(t, { dark: true });
+  await press(page, "Lake");
+  await fill(page, "#size", "0.12 + 0.25*distance");
+  await press(page, "Mesh");
+  await phase(page, "done");
+  await until("the mesh is drawn", () => areDrawn(page, 1));
+  await looksLike(page, "new-mesh", { varies: [".figures dd:last-child"] });
+
+  await press(page, "Airfoil");
+  await press(page, "Mesh");
+  await phase(page, "done");
+  await press(page, "Worst");
+  await page.click(".worst button, .mesh-figures button");
+  await textMatches(page, "aside", /neighbours/i);
+  await until("the mesh is drawn", () => areDrawn(page, 1, 2));
+  await looksLike(page, "worst", { varies: [".figures dd:last-child"] });
+});
