@@ -42,7 +42,10 @@ test("jobs are listed with what became of them, and filtered by it", async (t) =
   const page = await openPage(t, browser, `${server.url}/jobs`);
   await textMatches(page, "tbody tr", new RegExp(`succeeded\\s+${made.id}[^]*5,645`));
   await textMatches(page, "tbody tr", new RegExp(`failed\\s+${failed.id}[^]*${failed.error.reason}`));
-  await looksLike(page, "jobs");
+  const long = await server.weft("submit", cylinder, ...longSize, "--request-id", "flow around a cylinder");
+  await textMatches(page, "tbody tr", new RegExp(`running\\s+${long}[^]*refining, .* left`));
+  await looksLike(page, "jobs", { varies: ["progress"] });
+  await server.weft("cancel", long);
 
   await press(page, "Failed");
   await page.waitForFunction(() => document.querySelectorAll("tbody tr").length === 1);

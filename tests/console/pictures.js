@@ -64,7 +64,7 @@ function marked(image, squares) {
 // 256 colours are enough for a document, and halve the file.
 async function shrink(file) {
   const program = "import sys; from PIL import Image; f = sys.argv[1]; " +
-    "Image.open(f).convert('RGB').quantize(256).save(f, optimize=True)";
+    "Image.open(f).convert('RGB').quantize(256, Image.Quantize.MAXCOVERAGE).save(f, optimize=True)";
   execFileSync("/usr/bin/python3", ["-c", program, file]);
   const { size } = await stat(file);
   if (size > mostBytes) throw new Error(`${file} has ${size} bytes, more than ${mostBytes}`);
