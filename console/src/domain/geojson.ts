@@ -70,16 +70,17 @@ function geometry(json: Json, path: string, properties: Properties, builder: Geo
   const type = String(json.type);
   const many = type.startsWith("Multi");
   const kind = many ? type.slice(5) : type;
-  const take = {
-    Point: (value: unknown, place: string) => builder.point(position(value, place)),
-    LineString: (value: unknown, place: string) => builder.line(positions(value, place), properties),
-    Polygon: (value: unknown, place: string) =>
+  const takers: Record<string, (value: unknown, place: string) => void> = {
+    Point: (value, place) => builder.point(position(value, place)),
+    LineString: (value, place) => builder.line(positions(value, place), properties),
+    Polygon: (value, place) =>
       builder.polygon(
         list(value, place, "an array of rings").map((ring, i) => positions(ring, `${place}[${i}]`)),
         place,
         properties,
       ),
-  }[kind];
+  };
+  const take = Object.hasOwn(takers, kind) ? takers[kind] : undefined;
   if (!take) throw new FileError(path, `has the type “${type}”, which is not GeoJSON's`);
   const place = member(path, "coordinates");
   const coordinates = list(json.coordinates, place, "an array");

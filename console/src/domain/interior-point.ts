@@ -6,15 +6,16 @@ import type { Point } from "./planar-domain";
 const heights = [0.5, 0.37, 0.63, 0.23, 0.77, 0.11, 0.89, 0.03, 0.97];
 
 export function interiorPoint(rings: readonly (readonly Point[])[]): Point | undefined {
-  let low = Infinity;
-  let high = -Infinity;
+  let low = Infinity, high = -Infinity, left = Infinity, right = -Infinity;
   for (const ring of rings)
-    for (const [, y] of ring) {
+    for (const [x, y] of ring) {
+      left = Math.min(left, x);
+      right = Math.max(right, x);
       low = Math.min(low, y);
       high = Math.max(high, y);
     }
   let best: Point | undefined;
-  let longest = 0;
+  let longest = 1e-12 * (right - left); // below that it is rounding
   for (const share of heights) {
     const y = low + share * (high - low);
     const crossings = crossingsAt(y, rings);

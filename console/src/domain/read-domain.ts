@@ -6,17 +6,17 @@ import type { PlanarDomain } from "./planar-domain";
 import { readPoly } from "./poly";
 import { readWkt } from "./wkt";
 
-const readers: Record<string, (name: string, text: string) => PlanarDomain> = {
-  poly: readPoly,
-  geojson: readGeoJson,
-  json: readGeoJson,
-  wkt: readWkt,
-};
+const readers = new Map([
+  [".poly", readPoly],
+  [".geojson", readGeoJson],
+  [".json", readGeoJson],
+  [".wkt", readWkt],
+]);
 
-export const extensions = Object.keys(readers).map((extension) => `.${extension}`);
+export const extensions = [...readers.keys()];
 
 export function readDomain(name: string, text: string): PlanarDomain {
-  const reader = readers[/\.(\w+)$/.exec(name)?.[1].toLowerCase() ?? ""];
+  const reader = readers.get(/\.\w+$/.exec(name)?.[0].toLowerCase() ?? "");
   if (!reader)
     throw new FileError("", `the console reads ${extensions.join(", ")}; \`weft convert\` makes a .poly of the others`);
   return reader(name, text);

@@ -45,7 +45,7 @@ function Figures({ state }: { state: RunState }) {
           <dd>{count(misses)}</dd>
         </>
       )}
-      <dt>Engine{summary.cached ? ", from memory" : ""}</dt>
+      <dt>Engine</dt>
       <dd>
         {seconds(summary.timings?.engineSeconds ?? 0)}, {summary.threads} {summary.threads === 1 ? "thread" : "threads"}
       </dd>
@@ -62,7 +62,7 @@ export function RunStatus({ run, told }: { run: MeshRun; told: boolean }) {
   const perSecond = rate(state);
   const stage = {
     running: (progress && stages[progress.stage as Stage]) ?? "Asking the server",
-    done: "Done",
+    done: summary?.cached ? "Done, from the server's memory" : "Done",
     failed: "Failed",
     cancelled: "Cancelled; this is not a whole mesh",
   }[phase];

@@ -198,7 +198,7 @@ export function MeshPage() {
           {asked && state.phase === "done" && (
             <div class="row copies" role="group" aria-label="Copy the request">
               <span class="faint">Copy as</span>
-              <Copy label="weft command" text={shellCommand(asked.request, asked.file)} />
+              <Copy label="weft mesh" text={shellCommand(asked.request, asked.file)} />
               <Copy label="Python" text={pythonProgram(asked.request, asked.file)} />
             </div>
           )}

@@ -2,6 +2,8 @@
 // Which part of the plane is on the screen. y goes up in the plane, down on the screen.
 import type { Box } from "./picture";
 
+const room = 0.9; // of the screen, for what is to be seen
+
 export class Camera {
   x = 0; // of the middle of the screen
   y = 0;
@@ -9,13 +11,13 @@ export class Camera {
   width = 1; // of the screen, in pixels
   height = 1;
 
-  fit(box: Box, margin = 0.06): void {
+  // Shows all of a box.
+  fit(box: Box): void {
     const width = box[2] - box[0];
     const height = box[3] - box[1];
+    this.scale = Math.min((room * this.width) / (width || height || 1), (room * this.height) / (height || width || 1));
     this.x = box[0] + width / 2;
     this.y = box[1] + height / 2;
-    const room = 1 - 2 * margin;
-    this.scale = Math.min((room * this.width) / (width || height || 1), (room * this.height) / (height || width || 1));
   }
 
   // By pixels; what was at (0, 0) is then at (dx, dy).

@@ -54,7 +54,7 @@ function Picked({ picked, bounds, run }: { picked: PickedTriangle; bounds: Bound
       </header>
       <dl class="figures">
         <dt>Angles</dt>
-        <dd>{picked.angles.map((angle) => `${angle.toFixed(1)}°`).join("  ")}</dd>
+        <dd>{picked.angles.map((angle) => `${angle.toFixed(1)}°`).join(" ")}</dd>
         <dt>Area</dt>
         <dd>{figure(picked.area)}</dd>
         {bound !== undefined && (
@@ -73,7 +73,7 @@ function Picked({ picked, bounds, run }: { picked: PickedTriangle; bounds: Bound
         <dd>
           {picked.neighbours.map((neighbour) =>
             neighbour === undefined ? (
-              <span class="faint">border </span>
+              <span class="faint">border</span>
             ) : (
               <button type="button" class="link" onClick={() => run.find(neighbour)}>
                 {neighbour}
@@ -87,7 +87,7 @@ function Picked({ picked, bounds, run }: { picked: PickedTriangle; bounds: Bound
 }
 
 export function MeshFigures({ run, bounds }: { run: MeshRun; bounds?: Bounds | undefined }) {
-  const { census, picked, triangles } = useRunState(run);
+  const { census, picked, triangles, summary } = useRunState(run);
   if (!census || triangles === 0) return null;
   const { angles, areas, firstArea, worst } = census;
   return (
@@ -111,6 +111,17 @@ export function MeshFigures({ run, bounds }: { run: MeshRun; bounds?: Bounds | u
         }))}
         ends={[figure(2 ** firstArea), figure(2 ** (firstArea + areas.length / 2))]}
       />
+      {summary && summary.sizeHistogram.some((n) => n > 0n) && (
+        <Histogram
+          title="Area over its bound"
+          bins={summary.sizeHistogram.map((n, i, all) => ({
+            count: Number(n),
+            label: i + 1 < all.length ? `${i / 10} to ${(i + 1) / 10}` : `${i / 10} and more`,
+            fill: css(scaleColour("ratio", (i + 0.5) / all.length)),
+          }))}
+          ends={["0", "0.5", "1"]}
+        />
+      )}
       <section>
         <h2>Worst triangles</h2>
         <ol class="worst">

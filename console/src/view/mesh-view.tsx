@@ -94,22 +94,6 @@ export function MeshView({ run, outline, bounds, sketch, children }: MeshViewPro
   );
   return (
     <div class="mesh-view" data-phase={state.phase} data-chunks={state.chunks} data-triangles={state.triangles}>
-      <canvas
-        ref={canvas}
-        tabIndex={0}
-        role="application"
-        aria-label={
-          sketch
-            ? "Drawing: arrows move, Enter sets a corner, C closes the ring, Backspace takes a corner back"
-            : "Picture of the mesh: arrows move, plus and minus zoom, 0 shows all, Enter picks the triangle in the middle"
-        }
-        class={sketch ? "sketching" : undefined}
-        onKeyDown={keys}
-      />
-      <canvas ref={marks} class="marks" aria-hidden="true" />
-      {viewport === null && (
-        <p class="problem view-problem">This browser has no WebGL2, which the picture needs. Figures and downloads work without.</p>
-      )}
       <div class="view-tools" role="toolbar" aria-label="Picture">
         <label>
           Colour by{" "}
@@ -136,8 +120,26 @@ export function MeshView({ run, outline, bounds, sketch, children }: MeshViewPro
           </button>
         </span>
       </div>
-      {state.triangles > 0 && <Legend by={by} range={range} regions={state.regions} />}
-      {children}
+      <div class="stage">
+        <canvas
+          ref={canvas}
+          tabIndex={0}
+          role="application"
+          aria-label={
+            sketch
+              ? "Drawing: arrows move, Enter sets a corner, C closes the ring, Backspace takes a corner back"
+              : "Picture of the mesh: arrows move, plus and minus zoom, 0 shows all, Enter picks the triangle in the middle"
+          }
+          class={sketch ? "sketching" : undefined}
+          onKeyDown={keys}
+        />
+        <canvas ref={marks} class="marks" aria-hidden="true" />
+        {viewport === null && (
+          <p class="problem view-problem">This browser has no WebGL2, which the picture needs. Figures and downloads work without.</p>
+        )}
+        {state.triangles > 0 && <Legend by={by} range={range} regions={state.regions} />}
+        {children}
+      </div>
     </div>
   );
 }

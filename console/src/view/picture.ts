@@ -9,12 +9,13 @@ export type Box = [minX: number, minY: number, maxX: number, maxY: number];
 export interface ChunkPicture {
   index: number;
   triangles: number;
-  area: number; // of its triangles, in squared units
+  typicalArea: number; // of the triangle at a random point of the chunk, in squared units
   box: Box;
   // Relative to the middle of the box, so that 32 bits are enough at any zoom.
   positions: Float32Array;
   // Four for each vertex: of the triangle whose third vertex it is, the smallest angle over 60
-  // degrees, the logarithm of the area from logAreaLow to logAreaHigh, the region's slot, 0.
+  // degrees, the logarithm of the area from logAreaLow to logAreaHigh, the region's slot, 0. If it is
+  // the third vertex of none, of one of its triangles.
   values: Uint8Array;
   indices: Uint16Array | Uint32Array;
   logAreaLow: number; // to base 2
@@ -69,8 +70,9 @@ export class LocalVertices {
 }
 
 const gridCells = 256; // at most, along the longer side of the box
-// Coverage from which a cell counts as full: neighbouring chunks then leave no seam between them.
+// Coverage from which a cell counts as full.
 const fullFrom = 0.35;
+const beside = [[-1, 0], [1, 0], [0, -1], [0, 1], [-1, -1], [1, -1], [-1, 1], [1, 1]];
 
 // Undefined if the chunk has no triangles. `coordinates` are those of the whole mesh so far;
 // `visit` is told of each triangle.
@@ -90,6 +92,7 @@ export function pictureOf(
   const angle = new Float32Array(count);
   const logArea = new Float32Array(count);
   let area = 0;
+  let squares = 0;
   let low = Infinity;
   let high = -Infinity;
   for (let t = 0; t < count; ++t) {
@@ -99,6 +102,7 @@ export function pictureOf(
     );
     visit(t, f.area, f.minAngle);
     area += f.area;
+    squares += f.area * f.area;
     angle[t] = f.minAngle;
     logArea[t] = Math.log2(Math.max(f.area, 1e-300));
     if (logArea[t] < low) low = logArea[t];
@@ -111,9 +115,11 @@ export function pictureOf(
   const indices = new Uint32Array(3 * count);
   const claimed = new Uint8Array(local.globals.length);
   const copies: number[] = [];
-  const owner = new Int32Array(local.globals.length + count); // the triangle of a claimed vertex
+  const owner = new Int32Array(local.globals.length + count); // the triangle of a claimed vertex, plus 1
+  const touching = new Int32Array(local.globals.length); // any triangle of a vertex
   for (let t = 0; t < count; ++t) {
     const corners = [0, 1, 2].map((i) => local.of(chunk.triangles[3 * t + i]));
+    for (const corner of corners) touching[corner] = t;
     const free = corners.findIndex((corner) => !claimed[corner]);
     const turn = free < 0 ? 0 : (free + 1) % 3;
     let last = corners[(turn + 2) % 3];
@@ -132,8 +138,7 @@ export function pictureOf(
     const global = local.globals[v < local.globals.length ? v : copies[v - local.globals.length]];
     positions[2 * v] = coordinates[2 * global] - middleX;
     positions[2 * v + 1] = coordinates[2 * global + 1] - middleY;
-    const t = owner[v] - 1;
-    if (t < 0) continue;
+    const t = owner[v] > 0 ? owner[v] - 1 : touching[v];
     values[4 * v] = anglePart(angle[t]);
     values[4 * v + 1] = Math.round((logArea[t] - low) * spread);
     values[4 * v + 2] = slotOf(t);
@@ -156,7 +161,7 @@ export function pictureOf(
   return {
     index: chunk.index,
     triangles: count,
-    area,
+    typicalArea: area > 0 ? squares / area : 0,
     box,
     positions,
     values,
@@ -263,6 +268,24 @@ export class Grid {
       pixels[4 * at + 2] = this.slots[at];
       pixels[4 * at + 3] = Math.max(1, Math.round(255 * covered));
     }
-    return pixels;
+    return this.widened(pixels);
+  }
+
+  // Cells beside covered ones take their values, so that neighbouring chunks leave no seam.
+  private widened(pixels: Uint8Array): Uint8Array {
+    const wide = pixels.slice();
+    for (let y = 0; y < this.height; ++y)
+      for (let x = 0; x < this.width; ++x) {
+        const at = y * this.width + x;
+        if (pixels[4 * at + 3] === 255) continue;
+        for (const [dx, dy] of beside) {
+          const from = at + dy * this.width + dx;
+          const inside = x + dx >= 0 && x + dx < this.width && y + dy >= 0 && y + dy < this.height;
+          if (!inside || pixels[4 * from + 3] !== 255) continue;
+          wide.set(pixels.subarray(4 * from, 4 * from + 4), 4 * at);
+          break;
+        }
+      }
+    return wide;
   }
 }

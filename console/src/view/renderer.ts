@@ -19,20 +19,21 @@ interface Chunk {
   index: number;
   triangles: number;
   box: Box;
-  meanArea: number;
+  typicalArea: number;
   low: number;
   high: number;
   vertices: WebGLVertexArrayObject;
   positions: WebGLBuffer;
+  values: WebGLBuffer;
   count: number;
   type: number;
   texture: WebGLTexture;
   lines?: { vertices: WebGLVertexArrayObject; inside: number; count: number } | "wanted";
 }
 
-// Pixels that a mean triangle covers: below the first an image is as good, from the second on its
-// edges are drawn, faintly, from the third on fully.
-const smallest = 5;
+// Pixels that a triangle covers: below the first an image of the chunk is as good, from the second on
+// its edges are drawn, faintly, from the third on fully.
+const smallest = 2;
 const edgesFrom = 12;
 const edgesFull = 110;
 
@@ -102,14 +103,25 @@ void main() {
   lines: [
     `#version 300 es
 layout(location = 0) in vec2 position;
+layout(location = 1) in vec4 value;
 uniform vec2 scale;
 uniform vec2 offset;
-void main() { gl_Position = vec4(position * scale + offset, 0.0, 1.0); }`,
+uniform vec2 logArea;
+uniform float logPixels; // per unit of area
+uniform vec2 fade; // pixels from and to which a line becomes visible
+uniform float least; // of its strength
+out float strength;
+void main() {
+  gl_Position = vec4(position * scale + offset, 0.0, 1.0);
+  float pixels = exp2(mix(logArea.x, logArea.y, value.g) + logPixels);
+  strength = mix(least, 1.0, clamp((pixels - fade.x) / (fade.y - fade.x), 0.0, 1.0));
+}`,
     `#version 300 es
 precision mediump float;
 uniform vec4 ink;
+in float strength;
 out vec4 pixel;
-void main() { pixel = ink; }`,
+void main() { pixel = ink * strength; }`,
   ],
 } as const;
 
@@ -170,7 +182,7 @@ export class Renderer {
     const positions = this.buffer(gl.ARRAY_BUFFER, picture.positions);
     gl.enableVertexAttribArray(0);
     gl.vertexAttribPointer(0, 2, gl.FLOAT, false, 0, 0);
-    this.buffer(gl.ARRAY_BUFFER, picture.values);
+    const values = this.buffer(gl.ARRAY_BUFFER, picture.values);
     gl.enableVertexAttribArray(1);
     gl.vertexAttribPointer(1, 4, gl.UNSIGNED_BYTE, true, 0, 0);
     this.buffer(gl.ELEMENT_ARRAY_BUFFER, picture.indices);
@@ -191,11 +203,12 @@ export class Renderer {
       index: picture.index,
       triangles: picture.triangles,
       box: picture.box,
-      meanArea: picture.area / picture.triangles,
+      typicalArea: picture.typicalArea,
       low: picture.logAreaLow,
       high: picture.logAreaHigh,
       vertices,
       positions,
+      values,
       count: picture.indices.length,
       type: picture.indices instanceof Uint16Array ? gl.UNSIGNED_SHORT : gl.UNSIGNED_INT,
       texture,
@@ -211,6 +224,9 @@ export class Renderer {
     gl.bindBuffer(gl.ARRAY_BUFFER, chunk.positions);
     gl.enableVertexAttribArray(0);
     gl.vertexAttribPointer(0, 2, gl.FLOAT, false, 0, 0);
+    gl.bindBuffer(gl.ARRAY_BUFFER, chunk.values);
+    gl.enableVertexAttribArray(1);
+    gl.vertexAttribPointer(1, 4, gl.UNSIGNED_BYTE, true, 0, 0);
     this.buffer(gl.ELEMENT_ARRAY_BUFFER, lines);
     gl.bindVertexArray(null);
     chunk.lines = { vertices, inside, count: lines.length };
@@ -251,7 +267,8 @@ export class Renderer {
     this.drawn = { triangles: 0, chunks: 0, images: 0 };
 
     const seen = [...this.chunks.values()].filter((chunk) => camera.sees(chunk.box));
-    const pixels = (chunk: Chunk) => chunk.meanArea * camera.scale * camera.scale * ratio * ratio;
+    const logPixels = 2 * Math.log2(camera.scale * ratio);
+    const pixels = (chunk: Chunk) => chunk.typicalArea * 2 ** logPixels;
     const small = seen.filter((chunk) => pixels(chunk) < smallest);
     const large = seen.filter((chunk) => pixels(chunk) >= smallest);
     gl.enable(gl.BLEND);
@@ -261,7 +278,7 @@ export class Renderer {
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     if (style.edges)
-      this.drawLines(large.filter((chunk) => pixels(chunk) > edgesFrom), camera, style, pixels);
+      this.drawLines(large.filter((chunk) => 2 ** (chunk.high + logPixels) > edgesFrom), camera, style, logPixels);
     if (this.outline) this.drawOutline(camera, style);
     gl.bindVertexArray(null);
     this.drawn.chunks = seen.length;
@@ -303,9 +320,11 @@ export class Renderer {
     }
   }
 
-  private drawLines(chunks: Chunk[], camera: Camera, style: Style, pixels: (chunk: Chunk) => number): void {
+  private drawLines(chunks: Chunk[], camera: Camera, style: Style, logPixels: number): void {
     const { gl } = this;
     const at = this.use("lines");
+    gl.uniform2f(at("fade"), edgesFrom, edgesFull);
+    gl.uniform1f(at("logPixels"), logPixels);
     for (const chunk of chunks) {
       if (chunk.lines === undefined) {
         chunk.lines = "wanted";
@@ -315,10 +334,12 @@ export class Renderer {
       this.place(at, camera, (chunk.box[0] + chunk.box[2]) / 2, (chunk.box[1] + chunk.box[3]) / 2);
       const { vertices, inside, count } = chunk.lines;
       gl.bindVertexArray(vertices);
-      const strength = Math.min(1, (pixels(chunk) - edgesFrom) / (edgesFull - edgesFrom));
-      this.inkOf(at, style.ink, 0.55 * strength);
+      gl.uniform2f(at("logArea"), chunk.low, chunk.high);
+      this.inkOf(at, style.ink, 0.55);
+      gl.uniform1f(at("least"), 0);
       gl.drawElements(gl.LINES, inside, gl.UNSIGNED_INT, 0);
-      this.inkOf(at, style.ink, 0.4 + 0.6 * strength);
+      this.inkOf(at, style.ink, 1);
+      gl.uniform1f(at("least"), 0.4);
       gl.drawElements(gl.LINES, count - inside, gl.UNSIGNED_INT, 4 * inside);
     }
   }
@@ -328,6 +349,7 @@ export class Renderer {
     const { vertices, count, middle } = this.outline!;
     const at = this.use("lines");
     this.place(at, camera, ...middle);
+    gl.uniform1f(at("least"), 1);
     this.inkOf(at, style.outline, this.chunks.size > 0 ? 0.45 : 0.9);
     gl.bindVertexArray(vertices);
     gl.drawArrays(gl.LINES, 0, count);

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+import { readFileSync } from "node:fs";
+import { expect, test } from "vitest";
+import { examples } from "../src/domain/examples";
+import { interiorPoint } from "../src/domain/interior-point";
+import { boxOf, segmentEnds } from "../src/domain/planar-domain";
+import { readDomain } from "../src/domain/read-domain";
+
+const model = (name: string) => readDomain(name, readFileSync(`../tests/models/${name}`, "utf8"));
+
+test("Triangle's .poly: points, segments with markers, holes, comments", () => {
+  const domain = readDomain(
+    "a.POLY",
+    `# a square
+4 2 0 0
+1 0 0   # the first
+2 1 0
+3 1 1
+4 0 1
+
+4 1
+1 1 2 7
+2 2 3 -1
+3 3 4 0
+4 4 1 0
+1
+1 0.5 0.25
+`,
+  );
+  expect([...domain.points]).toEqual([0, 0, 1, 0, 1, 1, 0, 1]);
+  expect([...domain.segments]).toEqual([0, 1, 1, 2, 2, 3, 3, 0]);
+  expect([...domain.markers]).toEqual([7, -1, 0, 0]);
+  expect([...domain.holes]).toEqual([0.5, 0.25]);
+  expect(domain.evenOdd).toBe(false);
+});
+
+test("regions of a .poly: a lone value is id and area, others than integers get free ids", () => {
+  const regions = ["1 0 0 2", "2 1 1 0.35 -1", "3 2 2 0.1 0.5", "4 3 3 1 -1"];
+  const text = `1 2 0 0\n0 0 0\n0 1\n0\n4\n${regions.join("\n")}\n`;
+  expect(readDomain("r.poly", text).regions).toEqual([
+    { x: 0, y: 0, id: 2, maxArea: 2 },
+    { x: 1, y: 1, id: 4, maxArea: undefined },
+    { x: 2, y: 2, id: 3, maxArea: 0.5 },
+    { x: 3, y: 3, id: 1, maxArea: undefined },
+  ]);
+});
+
+test("a fault in a .poly is named by its line", () => {
+  const faults: [string, string][] = [
+    ["3 2 0 0\n1 0 0\n2 x 0\n", "line 3: the x coordinate is “x”, not a number"],
+    ["1 2 0 0\n1 0 0\n1 0\n1 1 9\n0\n", "line 4: there is no point 9"],
+    ["1 3 0 0\n", "line 1: the dimension is 3"],
+    ["9999999999 2 0 0\n", "line 1: the point count is 9999999999"],
+    ["2 2 0 0\n1 0 0\n3 0 0\n", "line 3: the point number is 3, expected 2"],
+    ["1 2 0 0\n1 0 0\n", "the file ends before the segment count"],
+    ["0 2 0 0\n", "put them into the .poly file"],
+    ["1 2 0 0\n1 0 0\n0 0\n0\n0\n5\n", "line 6: the file goes on"],
+  ];
+  for (const [text, message] of faults) expect(() => readDomain("f.poly", text)).toThrow(message);
+});
+
+const ring = [[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]];
+const inner = [[1, 1], [2, 1], [2, 2], [1, 1]];
+
+test("GeoJSON: rings are closed chains, properties reach segments and regions", () => {
+  const domain = readDomain(
+    "a.geojson",
+    JSON.stringify({
+      type: "FeatureCollection",
+      features: [
+        {
+          type: "Feature",
+          properties: { marker: 3, region: 8, max_area: 0.5 },
+          geometry: { type: "Polygon", coordinates: [ring, inner] },
+        },
+        { type: "Feature", geometry: null },
+      ],
+    }),
+  );
+  expect(domain.points.length).toBe(2 * 7);
+  expect([...domain.segments]).toEqual([0, 1, 1, 2, 2, 3, 3, 0, 4, 5, 5, 6, 6, 4]);
+  expect(new Set(domain.markers)).toEqual(new Set([3]));
+  expect(domain).toMatchObject({ evenOdd: true, regions: [{ id: 8, maxArea: 0.5 }] });
+});
+
+test("lines beside a polygon come twice, so that they do not change what is filled", () => {
+  const line = { type: "LineString", coordinates: [[1, 3], [3, 3], [3, 3], [3, 3.5]] };
+  const both = { type: "GeometryCollection", geometries: [line, { type: "Polygon", coordinates: [ring] }] };
+  const domain = readDomain("a.json", JSON.stringify(both));
+  expect([...domain.segments].slice(-4)).toEqual([0, 1, 1, 2]);
+  expect(domain.segments.length).toBe(2 * (2 + 4 + 2));
+  expect(readDomain("b.json", JSON.stringify(line))).toMatchObject({ evenOdd: false });
+});
+
+test("a fault in GeoJSON is named by its path", () => {
+  const at = (geometry: unknown) => () => readDomain("f.json", JSON.stringify({ type: "Feature", geometry }));
+  expect(at({ type: "Polygon", coordinates: [ring, ring.slice(0, 4)] })).toThrow("geometry.coordinates[1]: is a ring that is not closed");
+  expect(at({ type: "Polygon", coordinates: [[[0, 0], [1, 1], [0, 0]]] })).toThrow("fewer than 3 points");
+  expect(at({ type: "LineString", coordinates: [[0, 0], [1, "a"]] })).toThrow("geometry.coordinates[1]: is not a position");
+  expect(at({ type: "Curve", coordinates: [] })).toThrow("“Curve”");
+  expect(at({ type: "toString", coordinates: [] })).toThrow("“toString”");
+  expect(at({ type: "GeometryCollection" })).toThrow('geometry: has no array "geometries"');
+  expect(() => readDomain("f.json", "{")).toThrow("this is not JSON");
+  expect(() => readDomain("f.json", "[]")).toThrow("is not a GeoJSON object");
+  expect(() => readDomain("f.json", '{"type":"MultiPoint","coordinates":[]}')).toThrow("holds no geometry");
+  let deep: unknown = { type: "Point", coordinates: [0, 0] };
+  for (let i = 0; i < 100; ++i) deep = { type: "GeometryCollection", geometries: [deep] };
+  expect(at(deep)).toThrow("nested deeper than 64 levels");
+});
+
+test("well-known text: several geometries, heights, SRID, EMPTY", () => {
+  const domain = readDomain(
+    "a.wkt",
+    `SRID=4326;POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0), (1 1, 2 1, 2 2, 1 1));
+     MultiPoint Z ((9 9 1), (8 8 1)) POINT EMPTY
+     GEOMETRYCOLLECTION(LINESTRING(1 3, 3 3), MULTILINESTRING((5 5,6 6)))`,
+  );
+  expect(domain.evenOdd).toBe(true);
+  expect(domain.points.length).toBe(2 * (7 + 2 + 4));
+  expect(domain.markers.length).toBe(7 + 2 * 2);
+});
+
+test("a fault in well-known text is named by line and column", () => {
+  const faults: [string, string][] = [
+    ["POLYGON ((0 0, 1 0,\n 1))", "line 2, column 3: a position is expected"],
+    ["CIRCLE (0 0)", "“CIRCLE” is not a geometry"],
+    ["POINT 1 2", "line 1, column 7: “(” is expected"],
+    ["LINESTRING (0 0, 1 1", "“)” is expected"],
+    ["", "holds no geometry"],
+    ["7", "line 1, column 1: a geometry is expected"],
+    ["GEOMETRYCOLLECTION(".repeat(100), "nested deeper than 64 levels"],
+  ];
+  for (const [text, message] of faults) expect(() => readDomain("f.wkt", text)).toThrow(message);
+});
+
+test("other files are refused with what is read", () => {
+  expect(() => readDomain("a.dxf", "")).toThrow(".poly, .geojson, .json, .wkt");
+  expect(() => readDomain("constructor", "")).toThrow(".poly");
+  expect(() => readDomain("a.constructor", "")).toThrow(".poly");
+});
+
+test("the models of the tests are read, the same from both formats", () => {
+  for (const name of ["key.poly", "pipe.poly", "cylinder.poly"]) expect(model(name).points.length).toBeGreaterThan(100);
+  const [a, b] = [model("us-east-coast.geojson"), model("us-east-coast.poly")];
+  expect(boxOf(a)).toEqual(boxOf(b));
+  expect(a.markers.length).toBe(b.markers.length);
+});
+
+test("each example is a domain with a size", () => {
+  for (const { file, text, form } of examples) {
+    const domain = readDomain(file, text);
+    expect(segmentEnds(domain).every(Number.isFinite)).toBe(true);
+    expect(form.size).toBeTruthy();
+  }
+});
+
+test("a point inside a polygon is not in its hole", () => {
+  const outer: [number, number][] = [[0, 0], [10, 0], [10, 10], [0, 10], [0, 0]];
+  const hole: [number, number][] = [[1, 1], [9.5, 1], [9.5, 9], [1, 9], [1, 1]];
+  const [x, y] = interiorPoint([outer, hole])!;
+  expect(x > 1 && x < 9.5 && y > 1 && y < 9).toBe(false);
+  expect(interiorPoint([[[0, 0], [1, 1], [2, 2]]])).toBeUndefined();
+});
