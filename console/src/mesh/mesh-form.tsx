@@ -2,6 +2,7 @@
 // What the mesh must satisfy.
 import type { ComponentChildren } from "preact";
 import type { FormText, Problems } from "../request/form";
+import { ProblemText } from "./problem-text";
 
 interface Props {
   form: FormText;
@@ -13,7 +14,7 @@ function Problem({ id, text }: { id: string; text: string | undefined }) {
   if (!text) return null;
   return (
     <div class="problem" role="alert" id={id}>
-      {text.includes("\n") ? <pre>{text}</pre> : text}
+      <ProblemText text={text} />
     </div>
   );
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far a run is, and what it made.
+import type { ConnectError } from "@connectrpc/connect";
 import { explain } from "../client";
 import { Stage } from "../gen/weft/v1/mesh_service_pb";
 import { count, figure, seconds, short } from "../text";
+import { ProblemText } from "./problem-text";
 import { useRunState, type MeshRun, type RunState } from "../view/mesh-run";
 
 const stages: Partial<Record<Stage, string>> = {
@@ -53,6 +55,11 @@ function Figures({ state }: { state: RunState }) {
   );
 }
 
+function explained(error: ConnectError): string {
+  const { sentence, message } = explain(error);
+  return message.includes("\n") ? message : sentence;
+}
+
 // `told`: whether the failure is shown beside a field of the form.
 export function RunStatus({ run, told }: { run: MeshRun; told: boolean }) {
   const state = useRunState(run);
@@ -63,14 +70,16 @@ export function RunStatus({ run, told }: { run: MeshRun; told: boolean }) {
   const stage = {
     running: (progress && stages[progress.stage as Stage]) ?? "Asking the server",
     done: summary?.cached ? "Done, from the server's memory" : "Done",
-    failed: "Failed",
+    failed: told ? "The server refuses the request: see the field in red" : "Failed",
     cancelled: "Cancelled; this is not a whole mesh",
   }[phase];
   return (
     <section class="run-status" aria-label="Mesh" data-phase={phase}>
-      <p class="big">
-        <strong data-varies>{count(summary?.triangles ?? Math.max(triangles, progress?.triangles ?? 0))}</strong> triangles
-      </p>
+      {(phase !== "failed" || triangles > 0) && (
+        <p class="big">
+          <strong data-varies>{count(summary?.triangles ?? Math.max(triangles, progress?.triangles ?? 0))}</strong> triangles
+        </p>
+      )}
       {phase === "running" && (
         <>
           <progress max="1" value={fraction} aria-label="Finished work" />
@@ -87,13 +96,15 @@ export function RunStatus({ run, told }: { run: MeshRun; told: boolean }) {
       <p class="faint" role="status">
         {stage}
       </p>
-      <p class="faint number" data-varies>
-        {count(chunks)} {chunks === 1 ? "chunk" : "chunks"}
-        {perSecond > 0 && `, ${short(perSecond)} triangles/s`}
-      </p>
+      {chunks > 0 && (
+        <p class="faint number" data-varies>
+          {count(chunks)} {chunks === 1 ? "chunk" : "chunks"}
+          {perSecond > 0 && `, ${short(perSecond)} triangles/s`}
+        </p>
+      )}
       {error && !told && (
         <div class="problem" role="alert">
-          {error.rawMessage.includes("\n") ? <pre>{explain(error).message}</pre> : explain(error).sentence}
+          <ProblemText text={explained(error)} />
         </div>
       )}
       <Figures state={state} />

@@ -61,7 +61,7 @@ function Picked({ picked, bounds, run }: { picked: PickedTriangle; bounds: Bound
           <>
             <dt>Bound</dt>
             <dd>
-              {figure(bound)}, {((100 * picked.area) / bound).toFixed(1)} % used
+              {figure(bound)} ({((100 * picked.area) / bound).toFixed(1)} %)
             </dd>
           </>
         )}
