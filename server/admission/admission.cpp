@@ -60,7 +60,7 @@ RawCall* Admission::open(grpc::CallbackServerContext* context, const Method& met
   if (resets_.began(raw->peer()))
     close_connections(raw->peer(), "calls_without_end", ResetGuard::kMostOpen);
   const auto call = std::make_shared<AdmittedCall>(
-      AdmittedCall{raw, method.name, Authenticator::unverified(*context), std::nullopt});
+      AdmittedCall{raw, method.name, authenticator_.unverified(*context), std::nullopt});
   const auto refused = [&](const Failure& failure) {
     refuse(*call, failure);
     return raw->given_to_grpc();

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <grpc/grpc_security_constants.h>
+#include <openssl/crypto.h>
 #include <strings.h>
 
 #include <algorithm>
@@ -18,15 +19,16 @@ std::string_view view(const grpc::string_ref& text) {
 }
 
 // Nothing if the caller sent none, or more than one.
-std::optional<std::string_view> header(const grpc::ServerContextBase& context, const char* name) {
-  const auto [first, end] = context.client_metadata().equal_range(name);
+std::optional<std::string_view> header(const grpc::ServerContextBase& context,
+                                       std::string_view name) {
+  const auto [first, end] =
+      context.client_metadata().equal_range(grpc::string_ref(name.data(), name.size()));
   if (first == end || std::next(first) != end) return std::nullopt;
   return view(first->second);
 }
 
-std::optional<std::string_view> bearer_token(const grpc::ServerContextBase& context) {
+std::optional<std::string_view> bearer_token(std::optional<std::string_view> value) {
   constexpr std::string_view kScheme = "Bearer ";
-  auto value = header(context, "authorization");
   if (!value || value->size() <= kScheme.size() ||
       ::strncasecmp(value->data(), kScheme.data(), kScheme.size()) != 0)
     return std::nullopt;
@@ -83,9 +85,16 @@ std::string trace_id(std::string_view traceparent) {
   return std::string(trace);
 }
 
-Caller Authenticator::unverified(const grpc::ServerContextBase& context) {
+bool Authenticator::is_console(const grpc::ServerContextBase& context) const {
+  const auto secret = header(context, kConsoleSecret);
+  return !console_secret_.empty() && secret && secret->size() == console_secret_.size() &&
+         CRYPTO_memcmp(secret->data(), console_secret_.data(), secret->size()) == 0;
+}
+
+Caller Authenticator::unverified(const grpc::ServerContextBase& context) const {
+  const auto peer = is_console(context) ? header(context, kConsolePeer) : std::nullopt;
   return {.name = {},
-          .peer = context.peer(),
+          .peer = peer ? std::string(*peer) : context.peer(),
           .trace = trace_id(header(context, "traceparent").value_or(""))};
 }
 
@@ -93,10 +102,20 @@ tl::expected<Caller, Failure> Authenticator::identify(
     const grpc::ServerContextBase& context) const {
   Caller caller = unverified(context);
   if (tokens_ == nullptr) {
-    caller.name = name_in_certificate(context);
+    caller.name = is_console(context) ? header(context, kConsoleName).value_or("")
+                                      : name_in_certificate(context);
     return caller;
   }
-  const auto token = bearer_token(context);
+  auto name = token_name(header(context, "authorization"));
+  if (!name) return tl::unexpected(name.error());
+  caller.name = std::move(*name);
+  return caller;
+}
+
+tl::expected<std::string, Failure> Authenticator::token_name(
+    std::optional<std::string_view> header) const {
+  if (tokens_ == nullptr) return "";
+  const auto token = bearer_token(header);
   if (!token)
     return tl::unexpected(Failure{Reason::kUnauthenticated, "",
                                   "this server wants a token: `authorization: Bearer TOKEN`"});
@@ -104,8 +123,7 @@ tl::expected<Caller, Failure> Authenticator::identify(
   if (!name)
     return tl::unexpected(
         Failure{Reason::kUnauthenticated, "", "this server does not know the token"});
-  caller.name = std::move(*name);
-  return caller;
+  return std::move(*name);
 }
 
 }  // namespace weft::server

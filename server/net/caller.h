@@ -18,9 +18,11 @@
 #include <grpcpp/server_context.h>
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <utility>
 
 #include "server/net/tokens.h"
 #include "server/wire/errors.h"
@@ -47,19 +49,33 @@ std::string log_fields(const Caller& caller);
 // Source: https://www.w3.org/TR/trace-context/
 std::string trace_id(std::string_view traceparent);
 
+// Metadata by which the console says for which browser it makes a call within the process. It is
+// believed only beside the secret, which nobody else has; the console passes none of these on.
+inline constexpr std::string_view kConsoleSecret = "weft-console-secret";
+inline constexpr std::string_view kConsolePeer = "weft-console-peer";  // the browser's address
+inline constexpr std::string_view kConsoleName = "weft-console-name";  // in its certificate
+
 // Thread-safe.
 class Authenticator {
  public:
-  // `tokens` must outlive the authenticator; null: anyone who can connect may call.
-  explicit Authenticator(const TokenFile* tokens) : tokens_(tokens) {}
+  // `tokens` must outlive the authenticator; null: anyone who can connect may call. Nobody is
+  // believed to be the console if `console_secret` is empty.
+  explicit Authenticator(const TokenFile* tokens, std::string console_secret = "")
+      : tokens_(tokens), console_secret_(std::move(console_secret)) {}
 
   tl::expected<Caller, Failure> identify(const grpc::ServerContextBase& context) const;
 
   // Returns the caller, without checking the token.
-  static Caller unverified(const grpc::ServerContextBase& context);
+  Caller unverified(const grpc::ServerContextBase& context) const;
+
+  // Returns the name of the token in an `authorization` header; without tokens, an empty one.
+  tl::expected<std::string, Failure> token_name(std::optional<std::string_view> header) const;
 
  private:
+  bool is_console(const grpc::ServerContextBase& context) const;
+
   const TokenFile* const tokens_;
+  const std::string console_secret_;
 };
 
 }  // namespace weft::server

@@ -47,7 +47,7 @@ bool shut_down(int socket) {
 }  // namespace
 
 bool ResetGuard::counts(const std::string& peer) const {
-  return most_ != 0 && !peer.starts_with("unix:");
+  return most_ != 0 && (peer.starts_with("ipv4:") || peer.starts_with("ipv6:"));
 }
 
 bool ResetGuard::was_reset(const std::string& peer, Clock::time_point now) {

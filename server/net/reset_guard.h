@@ -9,7 +9,9 @@
 // reset.
 //
 // A connection is identified by its peer's address. Those of unix sockets cannot be told apart, so
-// their calls are not counted: the folder of the socket protects them.
+// their calls are not counted: the folder of the socket protects them. Nor are those of the
+// console, which come from within the process: over HTTP/1.1 a reset costs the browser its
+// connection.
 //
 // Law: honest clients reset calls only when their users cancel; a client that stops all its
 // calls at once resets as many as GRPC_ARG_MAX_CONCURRENT_STREAMS. The bound is well above that.
