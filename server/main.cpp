@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "engine/engine.h"
+#include "server/console/assets.h"
 #include "server/machine.h"
 #include "server/observe/log.h"
 #include "server/options.h"
@@ -38,6 +39,7 @@ bool write_port_file(const std::filesystem::path& path, const Server& server) {
     std::ofstream out(draft);
     for (const std::string& address : server.addresses()) out << address << '\n';
     if (!server.metrics_address().empty()) out << "metrics=" << server.metrics_address() << '\n';
+    if (!server.console_address().empty()) out << "console=" << server.console_address() << '\n';
     if (!out.flush()) return false;
   }
   std::error_code error;
@@ -87,6 +89,7 @@ int serve(Options options) {
   adopt_grpc_logs(options.log_format);
   const Logger log = make_logger(options.log_level, options.log_format);
   ServiceOptions& service = options.server.service;
+  options.server.console.assets = console_assets();
   service.instance = fmt::format("{:08x}", std::random_device{}());
   log->info("event=starting version={} engine={} threads={} jobs={} queue={} instance={}",
             log_value(kVersion), log_value(kEngineVersion), service.threads, service.jobs,

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <limits>
 
+#include "server/console/request_rules.h"
 #include "server/net/listen.h"
 #include "server/version.h"
 
@@ -71,6 +72,15 @@ CLI::Validator is_postgres_uri() {
       [](const std::string& text) {
         const bool good = text.starts_with("postgres://") || text.starts_with("postgresql://");
         return good ? std::string() : text + " does not begin with postgres://";
+      },
+      "");
+}
+
+CLI::Validator is_an_origin() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        return is_origin(text) ? std::string()
+                               : text + " is not an origin, such as https://example.org";
       },
       "");
 }
@@ -180,9 +190,19 @@ void add_listening(Flags& flags, Options& options) {
   flags.value("--metrics", server.metrics, "HOST:PORT",
               "Serve /metrics for Prometheus and /healthz at this address, over HTTP, without "
               "identification. Requires --insecure if other machines can reach it");
+  flags.value("--console", server.console.address, "HOST:PORT",
+              "Serve the console for browsers at this address, over HTTP, and gRPC-Web. Encrypted "
+              "with --tls-cert; otherwise requires --insecure if other machines can reach it");
+  flags
+      .value("--console-origin", server.console.origins, "ORIGIN",
+             "Let pages of this origin call by gRPC-Web, such as https://example.org, and browsers "
+             "know the console by its name. May be repeated, or separated by commas")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(is_an_origin());
   flags.value("--port-file", options.port_file, "FILE",
-              "Write the bound addresses to this file, one per line, and that of --metrics as "
-              "metrics=HOST:PORT");
+              "Write the bound addresses to this file, one per line, that of --metrics as "
+              "metrics=HOST:PORT, and that of --console as console=HOST:PORT");
 }
 
 void add_work(Flags& flags, Options& options, Given& given) {
@@ -340,8 +360,10 @@ void settle(const Given& given, Options& options) {
   service.patience.stall_timeout = to_duration(given.stall_timeout);
   options.server.admission.request_timeout = to_duration(given.request_timeout);
   const bool identified = !options.server.tokens.empty() || !options.server.tls.client_ca.empty();
+  const std::string& console = options.server.console.address;
   const bool local =
-      std::all_of(options.server.listen.begin(), options.server.listen.end(), is_local);
+      std::all_of(options.server.listen.begin(), options.server.listen.end(), is_local) &&
+      (console.empty() || is_local(console));
   if (given.share_across_clients->count() == 0) service.share_across_clients = !identified;
   if (given.client_share->count() == 0)
     service.client_share = identified || !local ? kDefaultClientShare : 1;

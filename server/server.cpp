@@ -5,8 +5,11 @@
 #include <grpcpp/resource_quota.h>
 #include <grpcpp/security/server_credentials.h>
 #include <grpcpp/server_builder.h>
+#include <openssl/rand.h>
 
 #include <algorithm>
+#include <array>
+#include <stdexcept>
 #include <utility>
 
 #include "server/admission/memory_estimate.h"
@@ -77,6 +80,14 @@ void configure(grpc::ServerBuilder& builder, const ServerOptions& options) {
   builder.SetResourceQuota(quota);
 }
 
+// Nobody guesses it, and it ends with the process.
+std::string random_secret() {
+  std::array<unsigned char, 16> bytes;
+  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1)
+    throw std::runtime_error("OpenSSL has no random bytes");
+  return fmt::format("{:02x}", fmt::join(bytes, ""));
+}
+
 ServiceOptions with_info(const ServerOptions& options, bool has_store) {
   ServiceOptions service = options.service;
   service.info = server_info(options, has_store);
@@ -89,7 +100,8 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
                Logger log, std::unique_ptr<JobStore> store)
     : log_(std::move(log)),
       tokens_(std::move(tokens)),
-      authenticator_(tokens_.get()),
+      console_secret_(random_secret()),
+      authenticator_(tokens_.get(), console_secret_),
       metrics_(kVersion, kEngineVersion),
       gate_(gate_options(options), [this] { service_.notify(); }),
       admission_(admission_options(options, gate_), authenticator_, metrics_, log_),
@@ -171,11 +183,36 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
     server->endpoint_ = std::move(*endpoint);
     server->log_->info("event=showing_metrics address={}", log_value(server->metrics_address()));
   }
+  if (auto failed = server->start_console(options)) return tl::unexpected(std::move(*failed));
   for (const std::string& address : server->addresses_)
     server->log_->info("event=listening security={} tokens={} address={}",
                        security_of(address, options.tls), server->tokens_ ? "yes" : "no",
                        log_value(address));
   return server;
+}
+
+std::optional<std::string> Server::start_console(const ServerOptions& options) {
+  if (options.console.address.empty()) return std::nullopt;
+  grpc::ChannelArguments arguments;
+  arguments.SetMaxReceiveMessageSize(-1);  // it comes from this server
+  auto console = Console::start(options.console,
+                                {.channel = server_->InProcessChannel(arguments),
+                                 .authenticator = authenticator_,
+                                 .secret = console_secret_,
+                                 .metrics = [this] { return metrics_.text(); },
+                                 .tls = options.tls,
+                                 .insecure = options.insecure,
+                                 .most_request_bytes = options.service.limits.max_request_bytes,
+                                 .request_bytes = request_bytes(options),
+                                 .stall_timeout = std::chrono::duration_cast<milliseconds>(
+                                     options.service.patience.stall_timeout),
+                                 .log = log_});
+  if (!console) return console.error();
+  console_ = std::move(*console);
+  log_->info("event=serving_console security={} tokens={} application={} address={}",
+             security_of(console_->address(), options.tls), tokens_ ? "yes" : "no",
+             options.console.assets.empty() ? "no" : "yes", log_value(console_->address()));
+  return std::nullopt;
 }
 
 void Server::drain(std::chrono::steady_clock::duration at_most) {
@@ -194,8 +231,10 @@ void Server::drain(std::chrono::steady_clock::duration at_most) {
     if (job_service() != nullptr) job_service()->stop_all();
     empty_by(std::chrono::steady_clock::now() + kLastWords);
   }
+  if (console_ != nullptr) console_->stop(std::chrono::steady_clock::now() + kOthersGrace);
   server_->Shutdown(std::chrono::system_clock::now() + kOthersGrace);
   server_->Wait();
+  console_.reset();
   server_.reset();
   remove_socket_files();
 }

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "server/admission/admission.h"
+#include "server/console/console.h"
 #include "server/jobs/job_system.h"
 #include "server/mesh/mesh_service.h"
 #include "server/net/caller.h"
@@ -44,6 +45,7 @@ struct ServerOptions {
   // Listen unencrypted even if other machines can connect, and show the metrics to them.
   bool insecure = false;
   std::string metrics{};  // HOST:PORT to show them on, see metrics_endpoint.h; empty: nowhere
+  ConsoleOptions console{};
 };
 
 class Server {
@@ -63,6 +65,9 @@ class Server {
   // Where metrics are shown, as bound; empty: nowhere.
   std::string metrics_address() const { return endpoint_ ? endpoint_->address() : ""; }
 
+  // Where the console is served, as bound; empty: nowhere.
+  std::string console_address() const { return console_ ? console_->address() : ""; }
+
   // Health says NOT_SERVING, new calls get UNAVAILABLE, open ones may finish; those that do not
   // within `at_most` are ended with UNAVAILABLE. Then closes all connections and removes the socket
   // files. Call at most once.
@@ -75,9 +80,12 @@ class Server {
   Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, EngineFn engine,
          Logger log, std::unique_ptr<JobStore> store);
   JobService* job_service();  // null if there is none
+  // Returns what is wrong.
+  std::optional<std::string> start_console(const ServerOptions& options);
 
   const Logger log_;
   const std::unique_ptr<TokenFile> tokens_;  // may be null
+  const std::string console_secret_;         // see caller.h
   const Authenticator authenticator_;
   Metrics metrics_;
   MemoryGate gate_;
@@ -89,6 +97,7 @@ class Server {
   MeshService service_;
   std::optional<JobSystem> jobs_;
   std::unique_ptr<grpc::Server> server_;
+  std::unique_ptr<Console> console_;  // may be null
   std::vector<std::string> addresses_;
   std::atomic<bool> serving_{false};
   std::unique_ptr<MetricsEndpoint> endpoint_;  // destroyed first: it asks all of the above

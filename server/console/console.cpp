@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/console/console.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <exception>
+#include <future>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "server/console/session.h"
+#include "server/console/tls_context.h"
+#include "server/net/drain_gate.h"
+#include "server/net/listen.h"
+
+namespace weft::server {
+namespace {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+using tcp = boost::asio::ip::tcp;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kBreather{100};
+constexpr std::chrono::milliseconds kBetweenLooks{10};
+
+}  // namespace
+
+class Console::Listener {
+ public:
+  Listener(const ConsoleOptions& options, ConsoleParts parts, OriginRules rules,
+           std::optional<TlsContext> tls)
+      : most_connections_(options.connections),
+        log_(parts.log),
+        channel_(std::move(parts.channel)),
+        stub_(channel_),
+        tls_(std::move(tls)),
+        context_{.io = io_,
+                 .stub = stub_,
+                 .calls = calls_,
+                 .authenticator = parts.authenticator,
+                 .secret = std::move(parts.secret),
+                 .assets = options.assets,
+                 .metrics = std::move(parts.metrics),
+                 .rules = std::move(rules),
+                 .times = {options.header_timeout, options.idle_timeout, parts.stall_timeout},
+                 .most_request_bytes = parts.most_request_bytes,
+                 .budget = ByteBudget(parts.request_bytes)} {}
+  ~Listener() {
+    stop(Clock::now());
+    io_.stop();
+    if (thread_.joinable()) thread_.join();
+  }
+
+  error_code listen(const tcp::endpoint& where) {
+    error_code error;
+    acceptor_.open(where.protocol(), error);
+    if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
+    if (!error) acceptor_.bind(where, error);
+    if (!error) acceptor_.listen(tcp::acceptor::max_listen_connections, error);
+    if (error) return error;
+    port_ = acceptor_.local_endpoint(error).port();
+    accept();
+    thread_ = std::thread([this] { io_.run(); });
+    return error;
+  }
+  int port() const { return port_; }
+  void set_address(std::string address) { address_ = std::move(address); }
+  const std::string& address() const { return address_; }
+
+  void stop(Clock::time_point end) {
+    if (!thread_.joinable() || std::exchange(stopped_, true)) return;
+    asio::post(io_, [this, end] {
+      error_code ignored;
+      acceptor_.close(ignored);
+      context_.stopping = true;
+      for (Session* const session : std::vector(context_.open.begin(), context_.open.end()))
+        session->finish();
+      stop_end_ = end;
+      wait_for_sessions();
+    });
+    all_closed_.get_future().wait();
+    calls_.wait_empty(std::chrono::hours(1));  // they are cancelled
+  }
+
+ private:
+  void accept() {
+    acceptor_.async_accept([this](error_code error, tcp::socket socket) {
+      if (error == asio::error::operation_aborted) return;
+      if (error) return rest();
+      try {
+        open(std::move(socket));
+      } catch (const std::exception&) {
+        // Out of memory: the connection is closed.
+      }
+      accept();
+    });
+  }
+  void open(tcp::socket socket) {
+    if (context_.open.size() >= most_connections_) {
+      const auto longest = std::find_if(context_.open.begin(), context_.open.end(),
+                                        [](const Session* session) { return session->idle(); });
+      if (longest == context_.open.end()) return;
+      (*longest)->close();
+    }
+    make_session(std::move(socket), tls_ ? tls_->current() : nullptr, context_)->start();
+  }
+  // If descriptors have run out, trying again at once would keep a processor busy.
+  void rest() {
+    timer_.expires_after(kBreather);
+    timer_.async_wait([this](error_code) { accept(); });
+  }
+  void wait_for_sessions() {
+    if (Clock::now() >= stop_end_)
+      for (Session* const session : std::vector(context_.open.begin(), context_.open.end()))
+        session->close();
+    if (context_.open.empty()) return all_closed_.set_value();
+    timer_.expires_after(kBetweenLooks);
+    timer_.async_wait([this](error_code) { wait_for_sessions(); });
+  }
+
+  const std::size_t most_connections_;
+  const Logger log_;
+  const std::shared_ptr<grpc::Channel> channel_;
+  BridgeStub stub_;
+  std::optional<TlsContext> tls_;
+  DrainGate calls_;  // that gRPC still has
+  bool stopped_ = false;
+  Clock::time_point stop_end_;
+  std::promise<void> all_closed_;  // after `stop`
+  int port_ = 0;
+  std::string address_;
+  SessionContext context_;  // sessions touch it, and end with the io_context at the latest
+  asio::io_context io_{1};
+  tcp::acceptor acceptor_{io_};
+  asio::steady_timer timer_{io_};
+  std::thread thread_;
+};
+
+tl::expected<std::unique_ptr<Console>, std::string> Console::start(const ConsoleOptions& options,
+                                                                   ConsoleParts parts) {
+  const auto refuse = [&options](const std::string& reason) {
+    return tl::unexpected(
+        fmt::format("cannot serve the console on {}: {}", options.address, reason));
+  };
+  const auto where = split_host_port(options.address);
+  if (!where) return refuse("not of the form HOST:PORT");
+  const bool encrypts = !parts.tls.certificate.empty();
+  if (!encrypts && !parts.insecure && !is_local(options.address))
+    return refuse(
+        "other machines can connect there, and it would be unencrypted: give --tls-cert and "
+        "--tls-key, or --insecure to do it anyway");
+  std::optional<TlsContext> tls;
+  if (encrypts) {
+    auto opened = TlsContext::open(parts.tls, parts.log);
+    if (!opened) return tl::unexpected(opened.error());
+    tls = std::move(*opened);
+  }
+  asio::io_context lookup;
+  error_code error;
+  const auto found = tcp::resolver(lookup).resolve(
+      where->host, where->port, tcp::resolver::passive | tcp::resolver::numeric_service, error);
+  if (error || found.empty()) return refuse(error.message());
+  OriginRules rules{.tls = encrypts, .host = where->host, .origins = options.origins};
+  auto listener =
+      std::make_unique<Listener>(options, std::move(parts), std::move(rules), std::move(tls));
+  if (error = listener->listen(found.begin()->endpoint()); error) return refuse(error.message());
+  listener->set_address(bound_address(options.address, listener->port()));
+  return std::unique_ptr<Console>(new Console(std::move(listener)));
+}
+
+Console::Console(std::unique_ptr<Listener> listener) noexcept : listener_(std::move(listener)) {}
+
+Console::~Console() = default;
+
+const std::string& Console::address() const {
+  return listener_->address();
+}
+
+void Console::stop(Clock::time_point end) {
+  listener_->stop(end);
+}
+
+}  // namespace weft::server
