@@ -112,19 +112,20 @@ export async function colourAt(page, x, y, side = 1) {
   return colour;
 }
 
-// Whether the page shows `count` whole meshes, each in `least` colours or more in its middle; around
-// that there may be buttons and a legend.
+// How many colours the middle of a view shows, `most` at most; around that there may be buttons and a
+// legend.
+export async function coloursIn(page, view, most) {
+  const { x, y, width, height } = await view.boundingBox();
+  const data = await pixelsOf(page, { x: x + width / 4, y: y + height / 4, width: width / 2, height: height / 2 });
+  const colours = new Set();
+  for (let i = 0; i < data.length && colours.size < most; i += 4) colours.add(data.readUInt32LE(i));
+  return colours.size;
+}
+
+// Whether the page shows `count` whole meshes, each in `least` colours or more.
 export async function areDrawn(page, count, least = 16) {
   const views = await page.$$('main .mesh-view[data-phase="done"]');
   if (views.length !== count) return false;
-  for (const view of views) {
-    const { x, y, width, height } = await view.boundingBox();
-    const data = await pixelsOf(page, {
-      x: x + width / 4, y: y + height / 4, width: width / 2, height: height / 2,
-    });
-    const colours = new Set();
-    for (let i = 0; i < data.length && colours.size < least; i += 4) colours.add(data.readUInt32LE(i));
-    if (colours.size < least) return false;
-  }
+  for (const view of views) if ((await coloursIn(page, view, least)) < least) return false;
   return true;
 }

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { areDrawn, colourAt, openBrowser, openPage, press, textMatches } from "./browser.js";
+import { areDrawn, colourAt, coloursIn, openBrowser, openPage, press, textMatches } from "./browser.js";
 import { looksLike } from "./pictures.js";
 import { atEnd, folderFor, models, until, Weftd } from "./weftd.js";
 
@@ -93,6 +93,8 @@ test("a polygon with a hole is drawn by hand and meshed", async (t) => {
   const { page } = await meshPage(t);
   await press(page, "Draw");
   await page.waitForSelector("canvas.sketching");
+  const view = await page.$(".mesh-view");
+  await until("the sheet is empty", async () => (await coloursIn(page, view, 2)) === 1);
   const { x, y, width, height } = await (await page.$(".mesh-view canvas")).boundingBox();
   const middle = [x + width / 2, y + height / 2];
   const click = ([dx, dy]) => page.mouse.click(middle[0] + dx, middle[1] + dy);
