@@ -16,10 +16,14 @@ import { RunStatus } from "../mesh/run-status";
 import { SketchBar } from "../mesh/sketch-bar";
 import { emptyForm, fieldOf, isRequest, requestOf, type FormText, type Problems } from "../request/form";
 import { navigate } from "../router";
+import { heatMapOf } from "../size/heat-map";
+import { figure } from "../text";
 import { boundsOf } from "../view/bounds";
+import { Scale } from "../view/legend";
 import { MeshFigures } from "../view/mesh-figures";
 import { useMeshRun, useRunState } from "../view/mesh-run";
 import { MeshView } from "../view/mesh-view";
+import type { Backdrop } from "../view/marks";
 import { Sketch } from "../view/sketch";
 import "../mesh/mesh.css";
 
@@ -33,6 +37,24 @@ const sourceOf = ({ name, file, text }: Example): Source => ({ domain: readGeoJs
 
 // Where a first drawing goes.
 const sheet = { ends: new Float64Array(), box: [0, 0, 10, 7] as [number, number, number, number] };
+
+// Follows the form after a pause, so that typing stays smooth.
+function useHeatMap(form: FormText, domain: PlanarDomain | undefined) {
+  const [heat, setHeat] = useState<Backdrop & { low: number; high: number }>();
+  useEffect(() => {
+    const timer = setTimeout(() => {
+      const made = domain && heatMapOf(form, domain, boxOf(domain));
+      if (!made) return setHeat(undefined);
+      const image = document.createElement("canvas");
+      image.width = made.pixels.width;
+      image.height = made.pixels.height;
+      image.getContext("2d")!.putImageData(made.pixels, 0, 0);
+      setHeat({ ...made, image, ends: segmentEnds(domain) });
+    }, 150);
+    return () => clearTimeout(timer);
+  }, [form.size, form.sizeKind, domain]);
+  return heat;
+}
 
 export function MeshPage() {
   const run = useMeshRun();
@@ -52,6 +74,7 @@ export function MeshPage() {
     () => (sketch ? sheet : { ends: segmentEnds(domain), box: boxOf(domain) }),
     [domain, sketch],
   );
+  const heat = useHeatMap(form, sketch ? undefined : domain);
   const bounds = useMemo(() => boundsOf(asked?.request), [asked]);
 
   const use = (next: Source, change: Partial<FormText>) => {
@@ -186,7 +209,14 @@ export function MeshPage() {
           )}
         </div>
       </form>
-      <MeshView run={run} outline={outline} bounds={bounds} sketch={sketch}>
+      <MeshView run={run} outline={outline} bounds={bounds} sketch={sketch} backdrop={heat}>
+        {heat && state.chunks === 0 && (
+          <Scale
+            title={form.sizeKind === "edge" ? "Length of edges, as asked for" : "Area, as asked for"}
+            by="area"
+            ends={[heat.low, Math.sqrt(heat.low * heat.high), heat.high].map(figure)}
+          />
+        )}
         {sketch && <SketchBar sketch={sketch} onDone={finish} onCancel={() => setSketch(undefined)} />}
         {dropping && <p class="drop-here">Drop a .poly, GeoJSON or WKT file</p>}
       </MeshView>

@@ -3,10 +3,28 @@
 import { css, regionColour, scaleColour, type ColourBy } from "./colours";
 import { figure } from "../text";
 
-const steps = 16;
+const steps = 64;
 const mostRegions = 12;
 
 const titles = { angle: "Smallest angle", area: "Area", ratio: "Area over its bound" };
+
+export function Scale({ title, by, ends }: { title: string; by: "angle" | "area" | "ratio"; ends: string[] }) {
+  return (
+    <div class="legend">
+      <span>{title}</span>
+      <svg width="190" height="12" viewBox={`0 0 ${steps} 4`} preserveAspectRatio="none" shape-rendering="crispEdges" aria-hidden="true">
+        {Array.from({ length: steps }, (_, i) => (
+          <rect x={i} width="1" height="4" fill={css(scaleColour(by, i / (steps - 1)))} />
+        ))}
+      </svg>
+      <div class="legend-ends">
+        {ends.map((end) => (
+          <span>{end}</span>
+        ))}
+      </div>
+    </div>
+  );
+}
 
 export function Legend({ by, range, regions }: { by: ColourBy; range: [number, number]; regions: number[] }) {
   if (by === "none") return null;
@@ -33,19 +51,5 @@ export function Legend({ by, range, regions }: { by: ColourBy; range: [number, n
     area: (t: number) => figure(2 ** (range[0] + t * (range[1] - range[0]))),
     ratio: (t: number) => (range[0] + t * (range[1] - range[0])).toFixed(2),
   }[by];
-  return (
-    <div class="legend">
-      <span>{titles[by]}</span>
-      <svg width="190" height="12" viewBox={`0 0 ${steps * 4} 4`} preserveAspectRatio="none" shape-rendering="crispEdges" aria-hidden="true">
-        {Array.from({ length: steps * 4 }, (_, i) => (
-          <rect x={i} width="1" height="4" fill={css(scaleColour(by, i / (steps * 4 - 1)))} />
-        ))}
-      </svg>
-      <div class="legend-ends">
-        {[0, 0.5, 1].map((t) => (
-          <span>{text(t)}</span>
-        ))}
-      </div>
-    </div>
-  );
+  return <Scale title={titles[by]} by={by} ends={[0, 0.5, 1].map(text)} />;
 }

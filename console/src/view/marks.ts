@@ -11,6 +11,14 @@ interface Shown {
   worst: boolean;
   dark: boolean;
   sketch: Sketch | undefined;
+  backdrop: Backdrop | undefined;
+}
+
+// Drawn below all until the first chunks come.
+export interface Backdrop {
+  box: Box;
+  image: CanvasImageSource;
+  ends: Float64Array; // of the segments that it lies within, by parity
 }
 
 export function paintMarks(
@@ -31,6 +39,14 @@ export function paintMarks(
   const paper = shown.dark ? "#0b0f13" : "#ffffff";
   const ink = shown.dark ? "#e4eaef" : "#17212b";
 
+  if (shown.backdrop && state.chunks === 0) {
+    const { box, image, ends } = shown.backdrop;
+    on.save();
+    on.clip(pathOf(camera, ends), "evenodd");
+    on.globalAlpha = 0.85;
+    on.drawImage(image, ...onScreen(camera, box));
+    on.restore();
+  }
   if (shown.sketch) paintGrid(on, camera, ink);
   for (const { box, strength } of flashes) {
     const [x, y, w, h] = onScreen(camera, box);
@@ -55,6 +71,15 @@ export function paintMarks(
 function onScreen(camera: Camera, box: Box): [x: number, y: number, w: number, h: number] {
   const [left, top] = camera.toScreen(box[0], box[3]);
   return [left, top, (box[2] - box[0]) * camera.scale, (box[3] - box[1]) * camera.scale];
+}
+
+function pathOf(camera: Camera, ends: Float64Array): Path2D {
+  const path = new Path2D();
+  for (let i = 0; i < ends.length; i += 4) {
+    if (i === 0 || ends[i] !== ends[i - 2] || ends[i + 1] !== ends[i - 1]) path.moveTo(...camera.toScreen(ends[i], ends[i + 1]));
+    path.lineTo(...camera.toScreen(ends[i + 2], ends[i + 3]));
+  }
+  return path;
 }
 
 function paintQuadtree(on: CanvasRenderingContext2D, camera: Camera, boxes: number[], ink: string): void {

@@ -7,7 +7,7 @@
 //   <MeshView run={run} /> <MeshFigures run={run} />
 //   run.cancel();
 import { create, fromBinary, toBinary, type MessageInitShape } from "@bufbuild/protobuf";
-import { ConnectError } from "@connectrpc/connect";
+import { Code, ConnectError } from "@connectrpc/connect";
 import { useEffect, useState } from "preact/hooks";
 import { noteFailure } from "../client";
 import { GenerateMeshRequestSchema, SummarySchema, type Summary } from "../gen/weft/v1/mesh_service_pb";
@@ -67,7 +67,9 @@ export class MeshRun {
     const worker = new Worker(new URL("./mesh-worker.ts", import.meta.url), { type: "module" });
     this.worker = worker;
     worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.hear(data);
-    worker.onerror = (event) => this.fail(new ConnectError(event.message || "The worker did not start."));
+    // Without a message the worker's file did not come.
+    worker.onerror = ({ message }) =>
+      this.fail(message ? new ConnectError(message, Code.Internal) : new ConnectError("failed to fetch", Code.Unavailable));
     const request =
       source.kind === "job"
         ? source.id

@@ -9,6 +9,7 @@ import type { Bounds } from "./bounds";
 import type { Census } from "./census";
 import type { ColourBy } from "./colours";
 import { Legend } from "./legend";
+import type { Backdrop } from "./marks";
 import { useRunState, type MeshRun } from "./mesh-run";
 import type { Box } from "./picture";
 import type { Sketch } from "./sketch";
@@ -20,6 +21,7 @@ export interface MeshViewProps {
   outline?: { ends: Float64Array; box: Box | undefined } | undefined; // x, y of both ends of each segment
   bounds?: Bounds | undefined; // of areas, for their colour
   sketch?: Sketch | undefined; // takes clicks and keys while there is one
+  backdrop?: Backdrop | undefined; // until the first chunks come
   children?: ComponentChildren; // above the canvas
 }
 
@@ -34,17 +36,16 @@ const colourings: [ColourBy, string][] = [
 
 const none = new Float64Array();
 
-// Without the hundredth at either end, so that a few triangles do not take the scale.
+// Without the smallest hundredth of the triangles, so that a few do not take the scale; the largest
+// are few, too, but they are what is seen.
 function areaRange({ areas, firstArea }: Census): [number, number] {
   const all = areas.reduce((sum, count) => sum + count, 0);
-  const at = (share: number) => {
-    let sum = 0;
-    return areas.findIndex((count) => (sum += count) > share * all);
-  };
-  return [firstArea + at(0.01) / 2, firstArea + (at(0.99) + 1) / 2];
+  let sum = 0;
+  const first = areas.findIndex((count) => (sum += count) > 0.01 * all);
+  return [firstArea + first / 2, firstArea + areas.length / 2];
 }
 
-export function MeshView({ run, outline, bounds, sketch, children }: MeshViewProps) {
+export function MeshView({ run, outline, bounds, sketch, backdrop, children }: MeshViewProps) {
   const state = useRunState(run);
   const theme = useTheme();
   const canvas = useRef<HTMLCanvasElement>(null);
@@ -67,8 +68,8 @@ export function MeshView({ run, outline, bounds, sketch, children }: MeshViewPro
   }, [run]);
   useEffect(() => viewport?.outline(outline?.ends ?? none, outline?.box), [viewport, outline]);
   useEffect(
-    () => viewport?.set({ by, range, edges, quadtree, worst, dark: theme === "dark", bounds, sketch }),
-    [viewport, by, range, edges, quadtree, worst, theme, bounds, sketch],
+    () => viewport?.set({ by, range, edges, quadtree, worst, dark: theme === "dark", bounds, sketch, backdrop }),
+    [viewport, by, range, edges, quadtree, worst, theme, bounds, sketch, backdrop],
   );
   useEffect(() => {
     if (state.found > 0) viewport?.showPicked();

@@ -5,7 +5,7 @@ import { boundLogarithms, type Bounds } from "./bounds";
 import { Camera } from "./camera";
 import type { ColourBy } from "./colours";
 import type { MeshRun, RunPainter } from "./mesh-run";
-import { paintMarks } from "./marks";
+import { paintMarks, type Backdrop } from "./marks";
 import type { Box, ChunkPicture } from "./picture";
 import { Renderer } from "./renderer";
 import type { Sketch } from "./sketch";
@@ -19,6 +19,7 @@ export interface ViewSettings {
   dark: boolean;
   bounds: Bounds | undefined;
   sketch: Sketch | undefined;
+  backdrop: Backdrop | undefined;
 }
 
 const flightTime = 420; // milliseconds

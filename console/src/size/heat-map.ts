@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// The size that the form asks for, on a grid over the domain, before there is a mesh: without
+// gradation and edges across, which only lower it, and without the bounds of regions.
+import type { PlanarDomain } from "../domain/planar-domain";
+import type { FormText } from "../request/form";
+import { scaleColour } from "../view/colours";
+import type { Box } from "../view/picture";
+import { compile } from "./expression";
+
+export interface HeatMap {
+  box: Box;
+  pixels: ImageData; // the top row first
+  low: number; // what the ends of the scale mean, logarithmically between them
+  high: number;
+}
+
+const longest = 160; // cells along the longer side, at most
+const mostWork = 3e7; // distances from a cell to a segment
+
+// Undefined if the size is a number or none, or if the page cannot compute it.
+export function heatMapOf(form: FormText, domain: PlanarDomain, box: Box | undefined): HeatMap | undefined {
+  if (form.sizeKind === "none" || !box || Number.isFinite(Number(form.size))) return undefined;
+  const value = compile(form.size, ["distance"]);
+  if (!value) return undefined;
+  const [width, height] = [box[2] - box[0], box[3] - box[1]];
+  const away = /\bdistance\b/.test(form.size);
+  const room = away ? Math.floor(Math.sqrt(mostWork / domain.markers.length)) : longest;
+  const cell = Math.max(width, height) / Math.min(longest, Math.max(room, 1));
+  if (!(cell > 0) || !(width > 0) || !(height > 0)) return undefined;
+  const columns = Math.max(1, Math.ceil(width / cell));
+  const rows = Math.max(1, Math.ceil(height / cell));
+
+  const values = new Float64Array(columns * rows);
+  const field = [0];
+  let low = Infinity; // in the domain
+  let high = 0;
+  for (let row = 0; row < rows; ++row) {
+    const y = box[3] - ((row + 0.5) * height) / rows;
+    const inside = stretches(domain, y);
+    for (let column = 0; column < columns; ++column) {
+      const x = box[0] + ((column + 0.5) * width) / columns;
+      if (away) field[0] = distanceTo(domain, x, y);
+      const size = value(x, y, field);
+      values[row * columns + column] = size;
+      if (!(size > 0 && size < Infinity) || !inside.some(([from, to]) => x >= from && x <= to)) continue;
+      low = Math.min(low, size);
+      high = Math.max(high, size);
+    }
+  }
+  if (high === 0) return undefined;
+  const pixels = new ImageData(columns, rows);
+  values.forEach((size, i) => {
+    if (!(size > 0) || size === Infinity) return;
+    const t = high > low ? Math.log(size / low) / Math.log(high / low) : 0.5;
+    pixels.data.set([...scaleColour("area", t), 255], 4 * i);
+  });
+  return { box, pixels, low, high };
+}
+
+// Of a horizontal line, what is in the domain, as far as parity tells; all between the first and the
+// last crossing if holes are seeds.
+function stretches({ points, segments, evenOdd }: PlanarDomain, y: number): [number, number][] {
+  const found: number[] = [];
+  for (let i = 0; i < segments.length; i += 2) {
+    const [a, b] = [2 * segments[i], 2 * segments[i + 1]];
+    if (points[a + 1] <= y === points[b + 1] <= y) continue;
+    found.push(points[a] + ((y - points[a + 1]) / (points[b + 1] - points[a + 1])) * (points[b] - points[a]));
+  }
+  found.sort((a, b) => a - b);
+  if (found.length < 2) return [];
+  if (!evenOdd) return [[found[0], found[found.length - 1]]];
+  return Array.from({ length: found.length >> 1 }, (_, i) => [found[2 * i], found[2 * i + 1]]);
+}
+
+// To the nearest segment.
+export function distanceTo({ points, segments }: PlanarDomain, x: number, y: number): number {
+  let least = Infinity;
+  for (let i = 0; i < segments.length; i += 2) {
+    const [a, b] = [2 * segments[i], 2 * segments[i + 1]];
+    const [dx, dy] = [points[b] - points[a], points[b + 1] - points[a + 1]];
+    const length = dx * dx + dy * dy;
+    const along = length > 0 ? ((x - points[a]) * dx + (y - points[a + 1]) * dy) / length : 0;
+    const t = Math.min(1, Math.max(0, along));
+    const [ex, ey] = [points[a] + t * dx - x, points[a + 1] + t * dy - y];
+    least = Math.min(least, ex * ex + ey * ey);
+  }
+  return Math.sqrt(least);
+}
