@@ -87,6 +87,13 @@ check_console() (
   npm run check
 )
 
+check_console_in_browser() (
+  cd tests/console || exit
+  [[ node_modules/.package-lock.json -nt package-lock.json ]] ||
+    npm ci --ignore-scripts --no-audit --no-fund || exit
+  timeout 1800 npm test
+)
+
 check_protocol() {
   deploy/node_modules/.bin/buf lint proto
 }
@@ -144,6 +151,7 @@ needed "build" cmake --build --preset release
 step "licences" tests/licences.sh
 step "documents" docs/generate.py build/release --check
 step "tests" run_ctest release --timeout 300
+step "console in a browser" check_console_in_browser
 if [[ $all ]]; then
   step "container" check_container
   step "packages" check_packages

@@ -7,7 +7,7 @@
 import { existsSync } from "node:fs";
 import { PNG } from "pngjs";
 import puppeteer from "puppeteer-core";
-import { atEnd } from "./weftd.js";
+import { atEnd, until } from "./weftd.js";
 
 const patience = 60_000; // ms, on a loaded machine
 const size = { width: 1280, height: 720, deviceScaleFactor: 1 };
@@ -112,20 +112,33 @@ export async function colourAt(page, x, y, side = 1) {
   return colour;
 }
 
-// How many colours the middle of a view shows, `most` at most; around that there may be buttons and a
-// legend.
-export async function coloursIn(page, view, most) {
+// The middle of a view, as bytes; around that there may be buttons and a legend.
+export async function middleOf(page, view) {
   const { x, y, width, height } = await view.boundingBox();
-  const data = await pixelsOf(page, { x: x + width / 4, y: y + height / 4, width: width / 2, height: height / 2 });
-  const colours = new Set();
-  for (let i = 0; i < data.length && colours.size < most; i += 4) colours.add(data.readUInt32LE(i));
-  return colours.size;
+  return pixelsOf(page, { x: x + width / 4, y: y + height / 4, width: width / 2, height: height / 2 });
+}
+
+// Waits until the views show the same three times in a row, and something else than `before`.
+export async function settled(page, before = Buffer.alloc(0)) {
+  for (const view of await page.$$("main .mesh-view")) {
+    const seen = [];
+    await until("the picture rests", async () => {
+      seen.push(await middleOf(page, view));
+      const [a, b, c] = seen.slice(-3);
+      return c && a.equals(b) && b.equals(c) && !c.equals(before);
+    });
+  }
 }
 
 // Whether the page shows `count` whole meshes, each in `least` colours or more.
 export async function areDrawn(page, count, least = 16) {
   const views = await page.$$('main .mesh-view[data-phase="done"]');
   if (views.length !== count) return false;
-  for (const view of views) if ((await coloursIn(page, view, least)) < least) return false;
+  for (const view of views) {
+    const data = await middleOf(page, view);
+    const colours = new Set();
+    for (let i = 0; i < data.length && colours.size < least; i += 4) colours.add(data.readUInt32LE(i));
+    if (colours.size < least) return false;
+  }
   return true;
 }

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { areDrawn, colourAt, coloursIn, openBrowser, openPage, press, textMatches } from "./browser.js";
+import { areDrawn, colourAt, middleOf, openBrowser, openPage, press, settled, textMatches } from "./browser.js";
 import { looksLike } from "./pictures.js";
 import { atEnd, folderFor, models, until, Weftd } from "./weftd.js";
 
@@ -89,12 +89,17 @@ for (const [name, text, complaint] of [
     await textMatches(page, ".domain-facts", /plate\.geojson/); // what was there stays
   });
 
+// Has an empty sheet for a drawing come, by `act`.
+async function emptySheet(page, act) {
+  const before = await middleOf(page, await page.$(".mesh-view"));
+  await act();
+  await page.waitForSelector("canvas.sketching");
+  await settled(page, before);
+}
+
 test("a polygon with a hole is drawn by hand and meshed", async (t) => {
   const { page } = await meshPage(t);
-  await press(page, "Draw");
-  await page.waitForSelector("canvas.sketching");
-  const view = await page.$(".mesh-view");
-  await until("the sheet is empty", async () => (await coloursIn(page, view, 2)) === 1);
+  await emptySheet(page, () => press(page, "Draw"));
   const { x, y, width, height } = await (await page.$(".mesh-view canvas")).boundingBox();
   const middle = [x + width / 2, y + height / 2];
   const click = ([dx, dy]) => page.mouse.click(middle[0] + dx, middle[1] + dy);
@@ -217,7 +222,7 @@ test("by the keyboard alone a mesh is asked for, drawn, zoomed and coloured", as
   await page.keyboard.down("Shift");
   for (let i = 0; i < 60 && (await focused()) !== "Draw"; ++i) await page.keyboard.press("Tab");
   await page.keyboard.up("Shift");
-  await page.keyboard.press("Space");
+  await emptySheet(page, () => page.keyboard.press("Space"));
   await tabTo(/^Drawing/);
   await page.keyboard.press("Enter");
   for (const [way, times] of [["ArrowRight", 20], ["ArrowUp", 12]]) {
@@ -229,9 +234,12 @@ test("by the keyboard alone a mesh is asked for, drawn, zoomed and coloured", as
   await tabTo(/^Use$/);
   await page.keyboard.press("Enter");
   await textMatches(page, ".domain-facts", /3 points, 3 segments/);
-  await page.keyboard.down("Control");
-  await page.keyboard.press("Enter");
-  await page.keyboard.up("Control");
+  await until("Ctrl+Enter meshes", async () => {
+    await page.keyboard.down("Control");
+    await page.keyboard.press("Enter");
+    await page.keyboard.up("Control");
+    return !(await page.$('.mesh-view[data-phase="idle"]'));
+  });
   await phase(page, "done");
 });
 

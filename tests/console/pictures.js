@@ -8,6 +8,7 @@
 import { execFileSync } from "node:child_process";
 import { mkdir, readFile, stat, writeFile } from "node:fs/promises";
 import { PNG } from "pngjs";
+import { settled } from "./browser.js";
 
 const folder = new URL("../../docs/pictures/", import.meta.url).pathname;
 const out = new URL("../../out/console/", import.meta.url).pathname;
@@ -75,6 +76,7 @@ async function shrink(file) {
 export async function looksLike(page, name, { varies = [] } = {}) {
   await page.mouse.move(0, 0);
   await page.evaluate(() => document.fonts.ready);
+  await settled(page);
   const places = await placesOf(page, ["[data-varies]", ...varies]);
   const bytes = Buffer.from(await page.screenshot());
   const file = `${folder}console-${name}.png`;
