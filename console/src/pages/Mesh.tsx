@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The first page: a domain, what its mesh must satisfy, and the mesh as it comes.
-import { useEffect, useMemo, useState } from "preact/hooks";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { explain, jobs } from "../client";
 import { readFile } from "../domain/domain-file";
 import { examples, geoJsonOf, type Example } from "../domain/examples";
@@ -68,6 +68,7 @@ export function MeshPage() {
   const [sketch, setSketch] = useState<Sketch>();
   const [, setCorners] = useState(0);
   const [dropping, setDropping] = useState(false);
+  const desk = useRef<HTMLElement>(null);
 
   const { domain } = source;
   const outline = useMemo(
@@ -100,12 +101,14 @@ export function MeshPage() {
     run.close();
     setAsked(undefined);
     setSketch(new Sketch(() => setCorners((n) => n + 1)));
+    desk.current!.querySelector<HTMLElement>(".stage canvas")!.focus();
   };
   const finish = () => {
     if (!sketch) return;
     sketch.close();
     if (sketch.rings.length === 0) return;
     const text = geoJsonOf([{ rings: sketch.rings }]);
+    desk.current!.querySelector<HTMLElement>("#size")?.focus();
     use({ domain: readGeoJson("drawing.geojson", text), text, example: undefined }, {
       sizeKind: "edge", size: "0.2", gradation: "", cellsAcross: "", maxTriangles: "", snap: "",
     });
@@ -159,6 +162,7 @@ export function MeshPage() {
 
   return (
     <section
+      ref={desk}
       class="mesh-desk"
       aria-label="Mesh"
       data-dropping={dropping || undefined}

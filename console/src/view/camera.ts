@@ -2,7 +2,8 @@
 // Which part of the plane is on the screen. y goes up in the plane, down on the screen.
 import type { Box } from "./picture";
 
-const room = 0.9; // of the screen, for what is to be seen
+const room = 0.94; // of the screen, for what is to be seen
+const legend = 64; // pixels at the bottom of the screen
 
 export class Camera {
   x = 0; // of the middle of the screen
@@ -11,13 +12,14 @@ export class Camera {
   width = 1; // of the screen, in pixels
   height = 1;
 
-  // Shows all of a box.
+  // Shows all of a box, above the legend.
   fit(box: Box): void {
     const width = box[2] - box[0];
     const height = box[3] - box[1];
-    this.scale = Math.min((room * this.width) / (width || height || 1), (room * this.height) / (height || width || 1));
+    const high = Math.max(this.height - legend, this.height / 2);
+    this.scale = Math.min((room * this.width) / (width || height || 1), (room * high) / (height || width || 1));
     this.x = box[0] + width / 2;
-    this.y = box[1] + height / 2;
+    this.y = box[1] + height / 2 - (this.height - high) / 2 / this.scale;
   }
 
   // By pixels; what was at (0, 0) is then at (dx, dy).

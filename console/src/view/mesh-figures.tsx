@@ -70,7 +70,7 @@ function Picked({ picked, bounds, run }: { picked: PickedTriangle; bounds: Bound
         <dt>Chunk</dt>
         <dd>{picked.chunk}</dd>
         <dt>Neighbours</dt>
-        <dd>
+        <dd class="neighbours">
           {picked.neighbours.map((neighbour) =>
             neighbour === undefined ? (
               <span class="faint">border</span>
