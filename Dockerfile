@@ -9,11 +9,14 @@ ARG BASE=debian:bookworm-slim
 FROM ${BASE} AS build
 WORKDIR /src
 COPY deploy/install-deps.sh deploy/
-RUN deploy/install-deps.sh build
+RUN deploy/install-deps.sh build console
 COPY . .
 ARG WERROR=OFF
+# AUTO: without the console's pages if npm can get no packages; ON: fail; OFF: always without them.
+ARG CONSOLE=AUTO
 RUN export CCACHE_DIR=/var/cache/ccache \
  && cmake --preset release -DBUILD_TESTING=OFF -DWEFT_GDAL=OFF -DWEFT_PROJ=OFF -DWEFT_WERROR=${WERROR} \
+      -DWEFT_CONSOLE=${CONSOLE} \
  && cmake --build --preset release --target weftd weft \
  && strip build/release/weftd build/release/weft
 

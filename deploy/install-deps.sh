@@ -4,11 +4,12 @@
 #
 #   deploy/install-deps.sh [GROUP...]
 #     build    compiles everything
+#     console  builds the console's pages into weftd: npm, unless there is one
 #     geo      compiles a weft that reads rasters, and projects longitude and latitude
 #     runtime  runs weftd and weft
 #     rasters  lets weft read rasters but .asc
 #     test     what tests/run.sh needs beyond build and geo
-#     all      build, geo and test, the default
+#     all      build, console, geo and test, the default
 set -euo pipefail
 
 build=(
@@ -53,19 +54,22 @@ test=(
   protoc-gen-go-1-5 protoc-gen-go-grpc
 )
 # Some machines bring a newer node; Debian's npm would be in its way.
-command -v npm >/dev/null || test+=(nodejs npm)
+console=()
+command -v npm >/dev/null || console=(nodejs npm)
+test+=("${console[@]}") # the linters
 
 wanted=()
 for group in "${@:-all}"; do
   case $group in
     build) wanted+=("${build[@]}") ;;
+    console) wanted+=("${console[@]}") ;;
     geo) wanted+=("${geo[@]}") ;;
     runtime) wanted+=("${runtime[@]}") ;;
     rasters) wanted+=("${rasters[@]}") ;;
     test) wanted+=("${test[@]}") ;;
-    all) wanted+=("${build[@]}" "${geo[@]}" "${test[@]}") ;;
+    all) wanted+=("${build[@]}" "${console[@]}" "${geo[@]}" "${test[@]}") ;;
     *)
-      echo "install-deps.sh: unknown group '$group'; there are build, geo, runtime, rasters, test, all" >&2
+      echo "install-deps.sh: unknown group '$group'; there are build, console, geo, runtime, rasters, test, all" >&2
       exit 2
       ;;
   esac

@@ -197,6 +197,7 @@ void add_listening(Flags& flags, Options& options) {
       .value("--console-origin", server.console.origins, "ORIGIN",
              "Let pages of this origin call by gRPC-Web, such as https://example.org, and browsers "
              "know the console by its name. May be repeated, or separated by commas")
+      ->default_str("")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(is_an_origin());

@@ -421,8 +421,10 @@ void HttpSession::answer_page() {
   const std::string_view target = view(parser_->get().target());
   const std::string_view path = target.substr(0, target.find_first_of("?#"));
   if (context_.assets.empty() && path == "/")
-    return respond(page(http::status::ok, "text/plain; charset=utf-8",
-                        "This weftd was built without the console: it serves gRPC-Web only.\n"));
+    return respond(
+        page(http::status::ok, "text/plain; charset=utf-8",
+             "This weftd was built without the console's pages, and serves gRPC-Web only. "
+             "A build with npm has them: see WEFT_CONSOLE of its CMake.\n"));
   const Asset* const asset = find_asset(context_.assets, path);
   if (asset == nullptr) return refuse(http::status::not_found, "there is no such page");
   const bool current = header("If-None-Match") == asset->etag;

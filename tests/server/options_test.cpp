@@ -70,5 +70,21 @@ TEST(ReaderOptions, HaveALeastRate) {
   EXPECT_EQ(service_of({"--min-rate", "0"}).patience.least_rate, 0u);
 }
 
+TEST(ConsoleOptions, NameOriginsAsBrowsersSpellThem) {
+  const auto parsed = parse({"--console-origin", "https://a.example.org,http://localhost:5173"});
+  ASSERT_TRUE(std::holds_alternative<Options>(parsed));
+  EXPECT_EQ(std::get<Options>(parsed).server.console.origins,
+            (std::vector<std::string>{"https://a.example.org", "http://localhost:5173"}));
+  for (const char* wrong : {"*", "example.org", "https://example.org/"})
+    EXPECT_NE(complaint_about({"--console-origin", wrong}).find("is not an origin"),
+              std::string::npos)
+        << wrong;
+}
+
+TEST(ConsoleOptions, LeaveSomethingToOthersIfOtherMachinesCanConnect) {
+  EXPECT_EQ(service_of({"--console", "127.0.0.1:8080"}).client_share, 1);
+  EXPECT_LT(service_of({"--console", "0.0.0.0:8080"}).client_share, 1);
+}
+
 }  // namespace
 }  // namespace weft::server

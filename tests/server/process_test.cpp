@@ -218,6 +218,20 @@ TEST_F(TemporaryFolder, WritesTheBoundAddressesToThePortFile) {
   EXPECT_EQ(second, socket);
 }
 
+TEST_F(TemporaryFolder, WritesTheConsolesAddressToThePortFile) {
+  const fs::path file = folder_ / "ports";
+  Weftd weftd({"--listen", "127.0.0.1:0", "--port-file", file.string()},
+              {{"WEFT_CONSOLE", "127.0.0.1:0"}});
+  weftd.address();
+  weftd.signal(SIGTERM);
+  EXPECT_EQ(weftd.wait(), 0);
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  std::getline(in, line);
+  EXPECT_EQ(line.rfind("console=127.0.0.1:", 0), 0u) << line;
+}
+
 TEST(Process, ReadsFlagsFromTheEnvironmentAndFlagsWin) {
   Weftd weftd({"--max-segments", "11"}, {{"WEFT_LISTEN", "127.0.0.1:0"},
                                          {"WEFT_MAX_POINTS", "10"},

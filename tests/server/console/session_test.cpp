@@ -113,7 +113,7 @@ TEST_F(Pages, AndAllElseRunNothingButTheirOwnFiles) {
 TEST(PagesOfAServerWithoutTheApplication, SaySo) {
   ConsoleServer server;
   const WebResponse response = get(server.address(), "/");
-  EXPECT_TRUE(has(response.body, "built without the console")) << response.body;
+  EXPECT_TRUE(has(response.body, "built without the console's pages")) << response.body;
   EXPECT_TRUE(has(server.log().text(), "event=serving_console")) << server.log().text();
   EXPECT_TRUE(has(server.log().text(), "application=no")) << server.log().text();
 }
