@@ -10,10 +10,10 @@ set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit
 seconds=${1:-20}
 targets=("${@:2}")
-((${#targets[@]})) || targets=(engine expression formats manifest store wire)
+((${#targets[@]})) || targets=(console engine expression formats manifest store wire)
 
 # The longest inputs that make sense, in bytes.
-declare -A longest=([engine]=160 [expression]=120 [formats]=2500 [manifest]=600 [store]=400 [wire]=400)
+declare -A longest=([console]=200 [engine]=160 [expression]=120 [formats]=2500 [manifest]=600 [store]=400 [wire]=400)
 
 fuzz() {
   local target=$1 corpus=build/fuzz/corpus/$1 found=build/fuzz/found log=build/fuzz/$1.log
