@@ -201,14 +201,16 @@ test("two meshes stand side by side with what differs", async (t) => {
 
 test("the server's page shows what it works on", async (t) => {
   const server = await serverWithJobs(t);
-  const id = await server.weft("submit", cylinder, ...longSize);
   const page = await openPage(t, browser, `${server.url}/server`, { dark: true });
+  for (const size of ["3e-3", "1e-3", "6e-4", "2e-3", "8e-4"]) await ended(server, cylinder, "--size", size);
+  const id = await server.weft("submit", cylinder, ...longSize);
   await textMatches(page, "main dl", /Meshes at work\s+1 of/);
-  await page.waitForSelector("main svg polyline");
-  await textMatches(page, "main figure", /Triangles a second\s+now [\d,]+/);
+  await textMatches(page, "main dl", /Triangles made\s+[1-9][\d,]+/);
+  await textMatches(page, "main figure", /Triangles a second\s+now [1-9][\d,]+/);
+  await page.waitForFunction(() => document.querySelector("main svg polyline")?.points.numberOfItems >= 5);
+  await looksLike(page, "server", { varies: [".facts dd", ".page-head"] });
   await server.weft("cancel", id);
   await textMatches(page, "main dl", /Meshes at work\s+0 of/);
-  await looksLike(page, "server", { varies: [".facts dd", ".page-head .quiet"] });
 });
 
 test("a token is asked for, refused if it is wrong, and kept over a reload", async (t) => {
