@@ -56,6 +56,7 @@ function take(packed: PackedChunk): void {
       picture.values.buffer,
       picture.indices.buffer,
       picture.grid.buffer,
+      picture.thumbnail.buffer,
     ]);
   }
   if (performance.now() - lastCensus > censusEvery) sayCensus();

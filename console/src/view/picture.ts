@@ -2,6 +2,7 @@
 // What the graphics card needs of a chunk: its triangles as they are, and an image of it for when
 // they are smaller than pixels.
 import type { MeshChunk } from "./packed";
+import { thumbnailOf } from "./thumbnail";
 import { figures } from "./triangle";
 
 export type Box = [minX: number, minY: number, maxX: number, maxY: number];
@@ -25,6 +26,7 @@ export interface ChunkPicture {
   grid: Uint8Array;
   gridWidth: number;
   gridHeight: number;
+  thumbnail: Uint8Array; // of the grid, see thumbnailOf
 }
 
 export const anglePart = (degrees: number) => Math.round((255 * Math.min(degrees, 60)) / 60);
@@ -158,6 +160,7 @@ export function pictureOf(
       anglePart(angle[t]), (logArea[t] - low) * spread, slotOf(t),
     );
   }
+  const pixels = grid.pixels();
   return {
     index: chunk.index,
     triangles: count,
@@ -168,9 +171,10 @@ export function pictureOf(
     indices: vertices <= 65536 ? Uint16Array.from(indices) : indices,
     logAreaLow: low,
     logAreaHigh: high,
-    grid: grid.pixels(),
+    grid: pixels,
     gridWidth: grid.width,
     gridHeight: grid.height,
+    thumbnail: thumbnailOf(pixels, grid.width, grid.height),
   };
 }
 

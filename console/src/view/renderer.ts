@@ -2,8 +2,9 @@
 // Draws the chunks of a mesh with WebGL2, each with buffers of its own, and those alone that are on
 // the screen. A chunk whose triangles are too small to be seen is drawn as its image.
 import type { Camera } from "./camera";
-import { chunkColour, lookUpTable, type ColourBy } from "./colours";
+import { chunkColour, lookUpTable, type ColourBy, type Rgb } from "./colours";
 import type { Box, ChunkPicture } from "./picture";
+import { thumbnailLevels, thumbnailSide } from "./thumbnail";
 
 export interface Style {
   by: ColourBy;
@@ -28,6 +29,8 @@ interface Chunk {
   count: number;
   type: number;
   texture: WebGLTexture;
+  page: number; // of thumbnails
+  layer: number; // in its page
   lines?: { vertices: WebGLVertexArrayObject; inside: number; count: number } | "wanted";
 }
 
@@ -37,17 +40,23 @@ const smallest = 2;
 const edgesFrom = 12;
 const edgesFull = 110;
 
-const colour = `
+// Pixels that a chunk's longer side takes: below, its thumbnail is as good as its image.
+const thumbnailTo = 1.5 * thumbnailSide;
+const pageLayers = 256; // which every WebGL 2 has
+const quadFloats = 10; // of each corner: position, place in the page, logArea, plain
+
+// `own` declares logArea and plain, which are a chunk's.
+const colour = (own: string) => `
 precision highp float;
 uniform int by;
 uniform vec2 range;
-uniform vec2 logArea;
-uniform vec3 plain;
+${own}
 uniform sampler2D table;
 uniform sampler2D bounds;
 vec3 look(float row, float t) {
   return texture(table, vec2((clamp(t, 0.0, 1.0) * 255.0 + 0.5) / 256.0, (row + 0.5) / 4.0)).rgb;
 }
+
 vec3 colourOf(float angle, float area, float slot) {
   float logarithm = mix(logArea.x, logArea.y, area);
   if (by == 0) return look(0.0, (angle * 60.0 - range.x) / (range.y - range.x));
@@ -60,10 +69,12 @@ vec3 colourOf(float angle, float area, float slot) {
   return plain;
 }`;
 
+const ofChunk = "uniform vec2 logArea;\nuniform vec3 plain;";
+
 const shaders = {
   triangles: [
     `#version 300 es
-${colour}
+${colour(ofChunk)}
 layout(location = 0) in vec2 position;
 layout(location = 1) in vec4 value;
 uniform vec2 scale;
@@ -88,10 +99,39 @@ void main() {
   gl_Position = vec4(mix(corners.xy, corners.zw, at), 0.0, 1.0);
 }`,
     `#version 300 es
-${colour}
+${colour(ofChunk)}
 uniform sampler2D image;
 uniform sampler2D slots;
 in vec2 at;
+out vec4 pixel;
+void main() {
+  vec4 cell = texture(image, at);
+  if (cell.a < 0.004) discard;
+  float slot = by == 2 || by == 3 ? texture(slots, at).b : 0.0;
+  pixel = vec4(colourOf(cell.r / cell.a, cell.g / cell.a, slot) * cell.a, cell.a);
+}`,
+  ],
+  thumbnails: [
+    `#version 300 es
+layout(location = 0) in vec2 position;
+layout(location = 1) in vec3 image;
+layout(location = 2) in vec2 chunkLogArea;
+layout(location = 3) in vec3 chunkPlain;
+out vec3 at;
+flat out vec2 logArea;
+flat out vec3 plain;
+void main() {
+  at = image;
+  logArea = chunkLogArea;
+  plain = chunkPlain;
+  gl_Position = vec4(position, 0.0, 1.0);
+}`,
+    `#version 300 es
+${colour("flat in vec2 logArea;\nflat in vec3 plain;")}
+precision highp sampler2DArray;
+uniform sampler2DArray image;
+uniform sampler2DArray slots;
+in vec3 at;
 out vec4 pixel;
 void main() {
   vec4 cell = texture(image, at);
@@ -127,6 +167,10 @@ void main() { pixel = ink * strength; }`,
 
 type Uniforms = (name: string) => WebGLUniformLocation | null;
 
+function plainOf({ index }: Chunk, style: Style): Rgb {
+  return style.by === "chunk" ? (chunkColour(index).map((value) => value / 255) as Rgb) : style.plain;
+}
+
 export class Renderer {
   private readonly gl: WebGL2RenderingContext;
   private readonly chunks = new Map<number, Chunk>();
@@ -134,6 +178,8 @@ export class Renderer {
   private readonly table: WebGLTexture;
   private readonly bounds: WebGLTexture;
   private readonly nearest: WebGLSampler;
+  private readonly pages: WebGLTexture[] = [];
+  private readonly quads: { vertices: WebGLVertexArrayObject; buffer: WebGLBuffer };
   private outline: { vertices: WebGLVertexArrayObject; buffer: WebGLBuffer; count: number; middle: [number, number] } | undefined;
   // Of the last frame.
   drawn = { triangles: 0, chunks: 0, images: 0 };
@@ -165,6 +211,7 @@ export class Renderer {
     this.nearest = gl.createSampler()!;
     gl.samplerParameteri(this.nearest, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
     gl.samplerParameteri(this.nearest, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+    this.quads = this.makeQuads();
   }
 
   get size(): number {
@@ -199,6 +246,9 @@ export class Renderer {
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
 
+    const number = this.chunks.size;
+    const [page, layer] = [Math.floor(number / pageLayers), number % pageLayers];
+    this.setThumbnail(page, layer, picture.thumbnail);
     this.chunks.set(picture.index, {
       index: picture.index,
       triangles: picture.triangles,
@@ -212,6 +262,8 @@ export class Renderer {
       count: picture.indices.length,
       type: picture.indices instanceof Uint16Array ? gl.UNSIGNED_SHORT : gl.UNSIGNED_INT,
       texture,
+      page,
+      layer,
     });
   }
 
@@ -252,6 +304,7 @@ export class Renderer {
     const { gl } = this;
     for (const chunk of this.chunks.values()) this.free(chunk);
     this.chunks.clear();
+    for (const page of this.pages.splice(0)) gl.deleteTexture(page);
     gl.clear(gl.COLOR_BUFFER_BIT);
   }
 
@@ -271,8 +324,13 @@ export class Renderer {
     const pixels = (chunk: Chunk) => chunk.typicalArea * 2 ** logPixels;
     const small = seen.filter((chunk) => pixels(chunk) < smallest);
     const large = seen.filter((chunk) => pixels(chunk) >= smallest);
+    const tiny = (chunk: Chunk) =>
+      Math.max(chunk.box[2] - chunk.box[0], chunk.box[3] - chunk.box[1]) * camera.scale * ratio < thumbnailTo;
     gl.enable(gl.BLEND);
-    this.drawImages(small, camera, style);
+    // Chunks share cells along their borders: each fills what the others have left.
+    gl.blendFunc(gl.ONE_MINUS_DST_ALPHA, gl.ONE);
+    this.drawThumbnails(small.filter(tiny), camera, style);
+    this.drawImages(small.filter((chunk) => !tiny(chunk)), camera, style);
     gl.disable(gl.BLEND);
     this.drawTriangles(large, camera, style);
     gl.enable(gl.BLEND);
@@ -288,12 +346,9 @@ export class Renderer {
   private drawImages(chunks: Chunk[], camera: Camera, style: Style): void {
     const { gl } = this;
     const at = this.use("image", style);
-    // Chunks share cells along their borders: each fills what the others have left.
-    gl.blendFunc(gl.ONE_MINUS_DST_ALPHA, gl.ONE);
     gl.uniform1i(at("image"), 2);
     gl.uniform1i(at("slots"), 3);
     gl.bindSampler(3, this.nearest);
-    if (style.by === "region") gl.bindSampler(2, this.nearest);
     for (const chunk of chunks) {
       this.chunkUniforms(at, chunk, style);
       gl.activeTexture(gl.TEXTURE2);
@@ -305,7 +360,75 @@ export class Renderer {
       gl.uniform4f(at("corners"), left, low, right, high);
       gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
     }
-    gl.bindSampler(2, null);
+  }
+
+  // A page at once, because there may be thousands. They are not instances: software renderers draw
+  // each of those by itself.
+  private drawThumbnails(chunks: Chunk[], camera: Camera, style: Style): void {
+    if (chunks.length === 0) return;
+    const { gl } = this;
+    const at = this.use("thumbnails", style);
+    gl.uniform1i(at("image"), 4);
+    gl.uniform1i(at("slots"), 5);
+    gl.bindSampler(5, this.nearest);
+    gl.bindVertexArray(this.quads.vertices);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.quads.buffer);
+    for (const [page, texture] of this.pages.entries()) {
+      const here = chunks.filter((chunk) => chunk.page === page);
+      if (here.length === 0) continue;
+      const values = new Float32Array(4 * quadFloats * here.length);
+      here.forEach((chunk, i) => {
+        const plain = plainOf(chunk, style);
+        for (let corner = 0; corner < 4; ++corner) {
+          const [right, up] = [corner & 1, corner >> 1];
+          const position = this.toClip(camera, chunk.box[2 * right], chunk.box[2 * up + 1]);
+          const own = [...position, right, up, chunk.layer, chunk.low, chunk.high, ...plain];
+          values.set(own, quadFloats * (4 * i + corner));
+        }
+      });
+      gl.bufferData(gl.ARRAY_BUFFER, values, gl.STREAM_DRAW);
+      for (const unit of [gl.TEXTURE4, gl.TEXTURE5]) {
+        gl.activeTexture(unit);
+        gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture);
+      }
+      gl.drawElements(gl.TRIANGLES, 6 * here.length, gl.UNSIGNED_SHORT, 0);
+    }
+  }
+
+  private makeQuads(): { vertices: WebGLVertexArrayObject; buffer: WebGLBuffer } {
+    const { gl } = this;
+    const vertices = gl.createVertexArray()!;
+    const buffer = gl.createBuffer()!;
+    gl.bindVertexArray(vertices);
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    for (const [attribute, size, offset] of [[0, 2, 0], [1, 3, 2], [2, 2, 5], [3, 3, 7]]) {
+      gl.enableVertexAttribArray(attribute);
+      gl.vertexAttribPointer(attribute, size, gl.FLOAT, false, 4 * quadFloats, 4 * offset);
+    }
+    const corners = Array.from({ length: pageLayers }, (_, i) => [0, 1, 2, 2, 1, 3].map((corner) => 4 * i + corner));
+    this.buffer(gl.ELEMENT_ARRAY_BUFFER, Uint16Array.from(corners.flat()));
+    gl.bindVertexArray(null);
+    return { vertices, buffer };
+  }
+
+  private setThumbnail(page: number, layer: number, levels: Uint8Array): void {
+    const { gl } = this;
+    if (page === this.pages.length) {
+      const texture = gl.createTexture()!;
+      gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture);
+      gl.texStorage3D(gl.TEXTURE_2D_ARRAY, thumbnailLevels, gl.RGBA8, thumbnailSide, thumbnailSide, pageLayers);
+      gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_NEAREST);
+      gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+      gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+      this.pages.push(texture);
+    }
+    gl.bindTexture(gl.TEXTURE_2D_ARRAY, this.pages[page]);
+    let at = 0;
+    for (let level = 0; level < thumbnailLevels; ++level) {
+      const side = thumbnailSide >> level;
+      const pixels = levels.subarray(at, (at += 4 * side * side));
+      gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, level, 0, 0, layer, side, side, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    }
   }
 
   private drawTriangles(chunks: Chunk[], camera: Camera, style: Style): void {
@@ -379,8 +502,7 @@ export class Renderer {
   private chunkUniforms(at: Uniforms, chunk: Chunk, style: Style): void {
     const { gl } = this;
     gl.uniform2f(at("logArea"), chunk.low, chunk.high);
-    const plain = style.by === "chunk" ? chunkColour(chunk.index).map((value) => value / 255) : style.plain;
-    gl.uniform3f(at("plain"), plain[0], plain[1], plain[2]);
+    gl.uniform3f(at("plain"), ...plainOf(chunk, style));
   }
 
   private place(at: Uniforms, camera: Camera, x: number, y: number): void {
