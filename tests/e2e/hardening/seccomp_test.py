@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import signal
+import ssl
 import subprocess
 import sys
 import tempfile
@@ -77,7 +78,7 @@ def certificate(tmp_path: pathlib.Path) -> pathlib.Path:
 def server(tmp_path: pathlib.Path, certificate: pathlib.Path) -> Iterator[Server]:
     server = Server(tmp_path, "--data", tmp_path / "data", "--listen", "localhost:0",
                     "--tls-cert", certificate, "--tls-key", tmp_path / "key.pem",
-                    "--metrics", "127.0.0.1:0")
+                    "--metrics", "127.0.0.1:0", "--console", "127.0.0.1:0")
     yield server
     server.process.kill()
     server.process.wait()
@@ -127,6 +128,15 @@ def test_metrics_are_shown(server: Server) -> None:
     address = next(line for line in server.addresses if "=" in line).split("=")[1]
     with urllib.request.urlopen(f"http://{address}/metrics") as answer:
         assert b"\nweft_build_info{" in answer.read()
+
+
+def test_the_console_is_served(server: Server, certificate: pathlib.Path) -> None:
+    port = next(line for line in server.addresses if line.startswith("console=")).rsplit(":", 1)[1]
+    trusting = ssl.create_default_context(cafile=str(certificate))
+    call = urllib.request.Request(f"https://localhost:{port}/grpc.health.v1.Health/Check", bytes(5),
+                                  {"Content-Type": "application/grpc-web+proto"})
+    with urllib.request.urlopen(call, context=trusting) as answer:
+        assert b"grpc-status: 0\r\n" in answer.read()
 
 
 def test_the_health_check_of_the_image_works_under_the_profile(server: Server) -> None:
