@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pages of jobs, meshes and the server, in a real browser against a real weftd.
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
 import { readdir, readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -177,6 +178,8 @@ for (const format of ["vtu", "msh", "npz", "obj", "off", "ply"])
     const fetched = join(await folderFor(t), `fetched.${format}`);
     await server.weft("fetch", id, "-o", fetched);
     if (format === "ply") return assert.deepEqual(await readFile(file), await readFile(fetched)); // weft reads none
+    if (format === "npz") // weft reads past the checksums
+      execFileSync("/usr/bin/python3", ["-c", "import sys, zipfile; sys.exit(zipfile.ZipFile(sys.argv[1]).testzip())", file]);
     const figures = async (path) => (await weft(["info", path])).replaceAll(path, "FILE");
     assert.equal(await figures(file), await figures(fetched));
   });
