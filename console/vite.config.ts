@@ -12,5 +12,5 @@ export default defineConfig({
   build: { target: "es2022", assetsInlineLimit: 0, emptyOutDir: true, modulePreload: { polyfill: false } },
   worker: { format: "es" },
   server: { proxy: proxied },
-  test: { include: ["test/**/*.test.ts"] },
+  test: { include: ["test/**/*.test.ts"], testTimeout: 60_000 }, // for machines under load
 });

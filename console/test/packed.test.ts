@@ -34,6 +34,7 @@ test("the arrays of a chunk are those that were sent, bit by bit", () => {
 
 test("a chunk that is out of turn, or refers to vertices that have not come, is refused", () => {
   expect(() => unpackChunk(packed(square), 5)).toThrow("begins at vertex 2 instead of 5");
+  expect(() => unpackChunk(packed(square), 1)).toThrow("begins at vertex 2 instead of 1");
   expect(() => unpackChunk(packed({ ...square, triangles: [0, 1, 4] }), 2)).toThrow("refers to vertex 4 of 4");
   expect(() => unpackChunk(packed({ ...square, edges: [9, 0] }), 2)).toThrow("refers to vertex 9 of 4");
 });

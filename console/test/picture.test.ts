@@ -5,13 +5,13 @@ import { Grid, linesOf, pictureOf, RegionSlots } from "../src/view/picture";
 import { MeshStore } from "../src/view/store";
 import { thumbnailOf } from "../src/view/thumbnail";
 
-// A unit square of two triangles, of which the second has region 9.
+// A unit square of two triangles with the same third vertex, of which the second has region 9.
 const square: MeshChunk = {
   index: 0,
   firstVertex: 0,
   firstTriangle: 0,
   coordinates: Float64Array.from([0, 0, 1, 0, 1, 1, 0, 1]),
-  triangles: Uint32Array.from([0, 1, 2, 0, 2, 3]),
+  triangles: Uint32Array.from([0, 1, 2, 3, 0, 2]),
   regions: Int32Array.from([0, 9]),
   edges: Uint32Array.from([0, 1, 1, 2, 2, 3, 3, 0]),
 };
@@ -56,6 +56,12 @@ test("a thumbnail keeps the values of an image that is the same everywhere, on a
   for (let i = 0; i < levels.length; i += 4) expect([...levels.slice(i, i + 4)]).toEqual([80, 40, 3, 255]);
 });
 
+test("a pixel of a thumbnail that is covered by a quarter is full, with the values of that quarter", () => {
+  const pixels = new Uint8Array(4 * 64 * 64);
+  pixels.set([80, 40, 3, 255]);
+  expect([...thumbnailOf(pixels, 64, 64).slice(0, 8)]).toEqual([80, 40, 3, 255, 0, 0, 0, 0]);
+});
+
 test("a triangle is found by a point and by its number, with its neighbours across chunks", () => {
   const store = new MeshStore();
   store.add(square);
@@ -74,7 +80,7 @@ test("a triangle is found by a point and by its number, with its neighbours acro
   expect(store.pick(0.9, 0.5)).toMatchObject({ triangle: 0, region: 0, area: 0.5, neighbours: [undefined, 2, 1] });
   expect(store.find(2)).toMatchObject({ triangle: 2, chunk: 1, vertices: [1, 4, 2], neighbours: [undefined, undefined, 0] });
   expect(store.find(1)).toMatchObject({ region: 9 });
-  expect(store.find(1)!.angles.map(Math.round)).toEqual([45, 45, 90]);
+  expect(store.find(1)!.angles.map(Math.round)).toEqual([90, 45, 45]);
   expect(store.pick(5, 5)).toBeUndefined();
   expect(store.find(3)).toBeUndefined();
 });
