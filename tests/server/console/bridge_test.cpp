@@ -213,12 +213,16 @@ TEST(Bridge, KeepsTheDeadlineOfACall) {
 TEST(Bridge, CancelsTheCallOfABrowserThatGoesAway) {
   Event started;
   Event stopped;
-  ConsoleServer server([&](const auto&, auto&, const ExecutionContext& context) {
-    started.set();
-    auto result = work_until_stopped(context);
-    stopped.set();
-    return result;
-  });
+  ServerOptions options = with_console();
+  options.service.tick = std::chrono::hours(1);  // no progress, whose writing would fail
+  ConsoleServer server(
+      [&](const auto&, auto&, const ExecutionContext& context) {
+        started.set();
+        auto result = work_until_stopped(context);
+        stopped.set();
+        return result;
+      },
+      options);
   {
     WebConnection browser(server.address());
     browser.send(call_request(kGenerateMesh, framed(mesh_request())));
