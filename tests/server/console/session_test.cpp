@@ -191,6 +191,7 @@ TEST(ConnectionsOfTheConsole, EndIfAMessageNeverEnds) {
 TEST(ConnectionsOfTheConsole, ThatAreTooManyCloseTheOneThatHasBeenIdleLongest) {
   ServerOptions options = with_console();
   options.console.connections = 3;
+  options.console.header_timeout = std::chrono::minutes(10);
   Event release;
   ConsoleServer server(
       [&](const auto&, ChunkSink& sink, auto&) {
