@@ -78,7 +78,8 @@ const std::map<std::string, Setter>& common_keys() {
     std::map<std::string, Setter> all;
     add_rows(all, request_rows(), [](BatchMesh& m) { return &m.request_options; });
     add_rows(all, writing_rows(), [](BatchMesh& m) { return &m.output.writing; });
-    add_rows(all, drawing_rows(), [](BatchMesh& m) { return &m.output; });
+    add_rows(all, drawing_rows(), [](BatchMesh& m) { return &m.output.drawing; });
+    add_rows(all, quadtree_rows(), [](BatchMesh& m) { return &m.output; });
     add_rows(all, projection_rows(), [](BatchMesh& m) { return &m.output.projection; });
     all["require"] = [](const auto& n, auto& m, const auto&) { require(n, m.gates); };
     return all;

@@ -18,7 +18,7 @@ struct Chosen {
   std::string when_interrupted = "interrupted, nothing was written";
 };
 
-void add_mesh_commands(CLI::App& app, Chosen& chosen);  // mesh, check, convert, info
+void add_mesh_commands(CLI::App& app, Chosen& chosen);  // mesh, draw, check, convert, info
 void add_batch_command(CLI::App& app, Chosen& chosen);
 void add_server_commands(CLI::App& app, Chosen& chosen);  // health, server-info
 void add_job_commands(CLI::App& app, Chosen& chosen);     // submit, get, list, watch, cancel, ...

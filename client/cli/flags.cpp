@@ -78,6 +78,10 @@ void add_projection_flags(CLI::App& command, ProjectionOptions& projection) {
   add_rows(command, projection_rows(), projection);
 }
 
+void add_drawing(CLI::App& command, DrawOptions& drawing) {
+  add_rows(command, drawing_rows(), drawing);
+}
+
 void add_output(CLI::App& command, MeshOutputOptions& output) {
   command
       .add_option("-o,--output", output.files,
@@ -89,38 +93,34 @@ void add_output(CLI::App& command, MeshOutputOptions& output) {
       .add_option("--draw", output.drawings, "Drawing to write, may be repeated: .png, .svg, .pdf")
       ->allow_extra_args(false)
       ->type_name("FILE");
-  add_rows(command, drawing_rows(), output);
+  add_drawing(command, output.drawing);
+  add_rows(command, quadtree_rows(), output);
   add_projection_flags(command, output.projection);
 }
 
 void refuse_idle_flags(const CLI::App& command, std::span<char* const> words) {
   struct Pair {
-    const char* flag;
-    const char* other;
+    std::string flag;
+    std::string other;
   };
-  static constexpr Pair kNeeds[] = {{"--order", "--output"},
-                                    {"--msh-version", "--output"},
-                                    {"--open-boundary", "--output"},
-                                    {"--color", "--draw"},
-                                    {"--tls", "--server"},
-                                    {"--tls-ca", "--server"},
-                                    {"--tls-cert", "--server"},
-                                    {"--tls-key", "--server"},
-                                    {"--tls-server-name", "--server"},
-                                    {"--token-file", "--server"},
-                                    {"--insecure", "--server"}};
-  static constexpr Pair kExcludes[] = {{"--interval", "--once"}};
+  std::vector<Pair> needs = {
+      {"--tls", "--server"},     {"--tls-ca", "--server"},          {"--tls-cert", "--server"},
+      {"--tls-key", "--server"}, {"--tls-server-name", "--server"}, {"--token-file", "--server"},
+      {"--insecure", "--server"}};
+  for (const auto& row : writing_rows()) needs.push_back({"--" + row.name, "--output"});
+  for (const auto& row : drawing_rows()) needs.push_back({"--" + row.name, "--draw"});
+  const Pair excludes[] = {{"--interval", "--once"}};
   const auto is_given = [words](const std::string& flag) {
     return std::any_of(words.begin(), words.end(), [&flag](std::string_view word) {
       return word == flag || word.starts_with(flag + "=");
     });
   };
-  for (const auto& [flag, other] : kNeeds) {
+  for (const auto& [flag, other] : needs) {
     const CLI::Option* const needed = command.get_option_no_throw(other);
     if (needed != nullptr && needed->count() == 0 && is_given(flag))
       throw CLI::RequiresError(flag, other);
   }
-  for (const auto& [flag, other] : kExcludes)
+  for (const auto& [flag, other] : excludes)
     if (is_given(flag) && is_given(other)) throw CLI::ExcludesError(flag, other);
 }
 

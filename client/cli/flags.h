@@ -33,6 +33,9 @@ void add_writing(CLI::App& command, MeshWriteOptions& writing);
 // Whether the domain is in longitude and latitude.
 void add_projection_flags(CLI::App& command, ProjectionOptions& projection);
 
+// What drawings show.
+void add_drawing(CLI::App& command, DrawOptions& drawing);
+
 // Files to write, and drawings; and the flags of the projection.
 void add_output(CLI::App& command, MeshOutputOptions& output);
 

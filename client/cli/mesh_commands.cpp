@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The flags of `weft mesh`, `weft check`, `weft convert` and `weft info`.
+// The flags of `weft mesh`, `weft draw`, `weft check`, `weft convert` and `weft info`.
 #include <memory>
 
 #include "client/cli/command_groups.h"
@@ -27,6 +27,16 @@ Examples:
   weft mesh cylinder.poly --size 1e-2 --draw cylinder.png --draw-quadtree
   weft mesh key.poly -o key.vtu --server mesh.example.org:7421 --json
   weft mesh coast.geojson --size 1e-6 --server mesh.example.org:7421 --detach)";
+
+constexpr char kDrawExamples[] =
+    R"(Triangles that are too small to be seen are drawn as pixels, in the colour of their mean
+area.
+
+Examples:
+  weft draw key.vtu -o key.png
+  weft draw key.vtu -o key.pdf --color angle --worst 10
+  weft draw coast.14 -o coast.png --lonlat --color size
+  weft draw coast.14 -o harbour.svg --lonlat --zoom=-74.3,40.4,0.5,0.4 --labels)";
 
 constexpr char kCheckExamples[] =
     R"(Give the bounds that the mesh was made with. A mesh of a domain in longitude and latitude
@@ -87,6 +97,27 @@ void add_mesh(CLI::App& app, Chosen& chosen) {
       return kept->detach ? detach(kept->options, std::move(stop))
                           : run_mesh(kept->options, std::move(stop));
     };
+  });
+}
+
+void add_draw(CLI::App& app, Chosen& chosen) {
+  const auto kept = std::make_shared<DrawMeshOptions>();
+  CLI::App& draw = *app.add_subcommand("draw", "Draw a mesh");
+  draw.footer(kDrawExamples);
+  draw.add_option("MESH", kept->mesh, "Mesh: " + read_mesh_extensions())->required();
+  draw.add_option("-o,--output", kept->drawings,
+                  "Drawing to write, may be repeated: .png, .svg, .pdf")
+      ->required()
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  add_drawing(draw, kept->drawing);
+  draw.add_flag("--lonlat", kept->lonlat,
+                "The mesh is in longitude and latitude, in degrees: it is drawn as long as it is "
+                "on the ground at its middle latitude, and areas and angles are those on the "
+                "ground");
+  add_quiet(draw, kept->quiet);
+  draw.callback([kept, &chosen] {
+    chosen.run = [kept](std::stop_token stop) { return run_draw(*kept, std::move(stop)); };
   });
 }
 
@@ -151,6 +182,7 @@ void add_info(CLI::App& app, Chosen& chosen) {
 
 void add_mesh_commands(CLI::App& app, Chosen& chosen) {
   add_mesh(app, chosen);
+  add_draw(app, chosen);
   add_check(app, chosen);
   add_convert(app, chosen);
   add_info(app, chosen);

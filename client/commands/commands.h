@@ -47,6 +47,15 @@ struct BatchOptions {
 // kCheckFailed if a mesh fails a gate or is not the locked one.
 Result<ExitCode> run_batch(const BatchOptions& options, std::stop_token stop);
 
+struct DrawMeshOptions {
+  std::filesystem::path mesh;
+  std::vector<std::filesystem::path> drawings;
+  DrawOptions drawing;
+  bool lonlat = false;  // the mesh is in longitude and latitude
+  bool quiet = false;
+};
+Result<ExitCode> run_draw(const DrawMeshOptions& options, std::stop_token stop);
+
 struct CheckOptions {
   std::filesystem::path mesh;
   std::filesystem::path domain;

@@ -43,7 +43,7 @@ Result<MeshReport> download(JobServer& server, const v1::Job& job, const InputDo
     output.bring_back_by(input->projection);
     mesh->input_point_markers = input->domain.point_markers;
   }
-  if (output.draws()) progress.say("drawing");
+  if (output.drawing() != nullptr) progress.say("drawing");
   if (auto written = output.write(*mesh, report->summary); !written)
     return tl::unexpected(written.error());
   times.written = MeshTimes::Clock::now();

@@ -44,7 +44,7 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   request_options->quadtree = options.output.draw_quadtree;
   const auto received = [&] {
     times.received = MeshTimes::Clock::now();
-    if (output->draws()) progress.say("drawing");
+    if (output->drawing() != nullptr) progress.say("drawing");
   };
   auto report = mesh_into(*connection, *input, *request_options, call, &*output, received, stop);
   if (!report) return tl::unexpected(report.error());

@@ -15,12 +15,12 @@ void Extent::add(std::span<const double> coordinates) {
   }
 }
 
-Canvas::Canvas(const Extent& extent, double long_side, double margin) {
-  const bool empty = extent.max_x < extent.min_x;
-  min_x_ = empty ? 0 : extent.min_x;
-  max_y_ = empty ? 0 : extent.max_y;
-  const double across = empty ? 0 : extent.max_x - extent.min_x;
-  const double up = empty ? 0 : extent.max_y - extent.min_y;
+Canvas::Canvas(const Extent& extent, double long_side, double margin, double x_scale)
+    : x_scale_(x_scale) {
+  min_x_ = extent.empty() ? 0 : extent.min_x;
+  max_y_ = extent.empty() ? 0 : extent.max_y;
+  const double across = extent.width() * x_scale;
+  const double up = extent.height();
   const double room = long_side - 2 * margin;
   const double longest = std::max(across, up);
   scale_ = longest > 0 ? room / longest : 1;

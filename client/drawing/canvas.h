@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a mesh lies on a page: uniformly scaled, y upwards, with a margin.
+// How a mesh lies on a page: scaled, y upwards, with a margin.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 
-#include "client/formats/mesh.h"
+#include "client/formats/domain.h"
 
 namespace weft::client {
 
@@ -19,6 +17,9 @@ struct PagePoint {
 // The box of points; empty until one is added.
 struct Extent {
   void add(std::span<const double> coordinates);
+  bool empty() const { return max_x < min_x; }
+  double width() const { return empty() ? 0 : max_x - min_x; }
+  double height() const { return empty() ? 0 : max_y - min_y; }
 
   double min_x = std::numeric_limits<double>::infinity();
   double min_y = std::numeric_limits<double>::infinity();
@@ -28,18 +29,20 @@ struct Extent {
 
 class Canvas {
  public:
-  Canvas(const Extent& extent, double long_side, double margin);
+  // x is drawn `x_scale` times as long as y.
+  Canvas(const Extent& extent, double long_side, double margin, double x_scale = 1);
 
   double width() const { return width_; }
   double height() const { return height_; }
+  // Units of the page for one of y.
+  double scale() const { return scale_; }
   PagePoint at(double x, double y) const {
-    return {left_ + (x - min_x_) * scale_, top_ + (max_y_ - y) * scale_};
+    return {left_ + (x - min_x_) * scale_ * x_scale_, top_ + (max_y_ - y) * scale_};
   }
-  PagePoint vertex(const MeshView& mesh, std::uint32_t v) const {
-    return at(mesh.coordinates[2 * std::size_t{v}], mesh.coordinates[2 * std::size_t{v} + 1]);
-  }
+  PagePoint at(Point p) const { return at(p.x, p.y); }
 
  private:
+  double x_scale_;
   double min_x_ = 0;
   double max_y_ = 0;
   double scale_ = 1;
@@ -48,16 +51,5 @@ class Canvas {
   double width_ = 0;
   double height_ = 0;
 };
-
-// Calls edge(a, b) once for each edge between two triangles. (Counter-clockwise triangles name such
-// an edge once in each direction; edges of only one triangle may be left out.)
-template <class Edge>
-void for_each_inner_edge(const MeshView& mesh, Edge&& edge) {
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const std::uint32_t a = mesh.triangles[i];
-    const std::uint32_t b = mesh.triangles[i % 3 == 2 ? i - 2 : i + 1];
-    if (a < b) edge(a, b);
-  }
-}
 
 }  // namespace weft::client

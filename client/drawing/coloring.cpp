@@ -1,34 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/drawing/coloring.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdint>
-
-#include "client/report/mesh_angles.h"
+#include <limits>
 
 namespace weft::client {
 namespace {
 
-constexpr int kAngleSteps = 120;         // half a degree each
-constexpr std::int32_t kRegionHues = 8;  // region 0, then the ids modulo the number of colours
+constexpr double kLeastLog = -1080;  // of doubles
+constexpr double kMostLog = 1024;
+constexpr double kStepsPerOctave = 16;
 
 }  // namespace
 
-Coloring::Coloring(DrawColor by) : by_(by) {
-  if (by_ == DrawColor::kAngle)
-    for (int i = 0; i <= kAngleSteps; ++i)
-      palette_.push_back(viridis(static_cast<double>(i) / kAngleSteps));
-  if (by_ == DrawColor::kRegion)
-    for (std::int32_t id = 0; id <= kRegionHues; ++id) palette_.push_back(region_color(id));
+Coloring::Coloring(DrawColor by, DrawnUnit unit) : by_(by), unit_(unit) {
+  if (by_ == DrawColor::kSize)
+    area_at_.resize(static_cast<std::size_t>((kMostLog - kLeastLog) * kStepsPerOctave) + 1);
 }
 
-std::size_t Coloring::of(const MeshView& mesh, std::size_t t) const {
-  if (by_ == DrawColor::kAngle)
-    return static_cast<std::size_t>(
-        std::lround(triangle_angles(mesh, t).min_deg / 60 * kAngleSteps));
-  const std::int64_t id = mesh.regions.empty() ? 0 : mesh.regions[t];
-  if (id == 0) return 0;
-  return static_cast<std::size_t>(((id - 1) % kRegionHues + kRegionHues) % kRegionHues + 1);
+float Coloring::value(const DrawnTriangle& triangle) const {
+  if (by_ == DrawColor::kAngle) return static_cast<float>(smallest_angle_deg(triangle, unit_));
+  const double size = std::max(area(triangle, unit_), std::numeric_limits<double>::denorm_min());
+  return static_cast<float>(std::clamp(std::log2(size), kLeastLog, kMostLog));
+}
+
+void Coloring::note(float value, double weight) {
+  if (area_at_.empty()) return;
+  area_at_[static_cast<std::size_t>((double{value} - kLeastLog) * kStepsPerOctave)] += weight;
+}
+
+void Coloring::note_region(std::int32_t region) {
+  if (regions_.size() < kMostRegions) regions_.insert(region);
+}
+
+ValueRange Coloring::range() const {
+  if (by_ != DrawColor::kSize) return {0, 60};
+  constexpr double kLeftOut = 1e-3;
+  double all = 0;
+  for (const double area : area_at_) all += area;
+  if (!(all > 0)) return {0, 1};
+  const auto log_at = [](std::size_t step) {
+    return kLeastLog + static_cast<double>(step) / kStepsPerOctave;
+  };
+  std::size_t low = 0;
+  for (double below = 0; (below += area_at_[low]) <= kLeftOut * all;) ++low;
+  std::size_t high = area_at_.size() - 1;
+  for (double above = 0; (above += area_at_[high]) <= kLeftOut * all;) --high;
+  ValueRange range{log_at(low), log_at(high + 1)};
+  if (const double missing = 1 - (range.high - range.low); missing > 0) {
+    range.low -= missing / 2;
+    range.high += missing / 2;
+  }
+  return range;
+}
+
+Color Coloring::color(float value, const ValueRange& range) {
+  return viridis((double{value} - range.low) / (range.high - range.low));
 }
 
 }  // namespace weft::client

@@ -1,28 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which colour each triangle of a drawing has.
+//
+// A triangle has a value: its smallest angle in degrees, or the binary logarithm of its area. The
+// range of colours follows the values that were noted, so values are noted first, and kept until
+// the colours are asked for. Regions have their colours by themselves.
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
+#include <set>
 #include <vector>
 
 #include "client/drawing/colors.h"
-#include "client/drawing/draw.h"
-#include "client/formats/mesh.h"
+#include "client/drawing/drawn_triangle.h"
 
 namespace weft::client {
 
+struct ValueRange {
+  double low = 0;
+  double high = 1;
+};
+
 class Coloring {
  public:
-  explicit Coloring(DrawColor by);
+  // REQUIRES: not kAuto.
+  Coloring(DrawColor by, DrawnUnit unit);
 
-  // Empty: triangles are not coloured.
-  const std::vector<Color>& palette() const { return palette_; }
-  // The index of triangle t's colour in the palette. REQUIRES: the palette is not empty.
-  std::size_t of(const MeshView& mesh, std::size_t t) const;
+  DrawColor by() const { return by_; }
+  bool by_value() const { return by_ == DrawColor::kAngle || by_ == DrawColor::kSize; }
+
+  // REQUIRES: by_value.
+  float value(const DrawnTriangle& triangle) const;
+  // A triangle that is seen: its value and its area on the page.
+  void note(float value, double weight);
+  void note_region(std::int32_t region);
+
+  // The values at both ends of the colours: of angles 0 and 60; of sizes those that all but a
+  // thousandth of the area lies between, at each end, and at least a factor of 2 apart.
+  ValueRange range() const;
+  // REQUIRES: `range` is range().
+  static Color color(float value, const ValueRange& range);
+
+  // Those that were noted first.
+  const std::set<std::int32_t>& regions() const { return regions_; }
+  static constexpr std::size_t kMostRegions = 64;
 
  private:
   DrawColor by_;
-  std::vector<Color> palette_;
+  DrawnUnit unit_;
+  std::vector<double> area_at_;  // on the page, by steps of the logarithm; empty: not by size
+  std::set<std::int32_t> regions_;
 };
 
 }  // namespace weft::client

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace weft::client {
 namespace {
@@ -15,55 +16,65 @@ std::uint32_t channel(double value) {
   return static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255));
 }
 
+// The pixels whose centres lie between two places: first and one past the last, of `size`.
+std::pair<std::size_t, std::size_t> centres_between(double low, double high, std::size_t size) {
+  const auto last = static_cast<double>(size);
+  const auto first = std::ceil(std::clamp(low - 0.5, 0.0, last));
+  const auto end = std::floor(std::clamp(high + 0.5, 0.0, last));
+  return {static_cast<std::size_t>(first), static_cast<std::size_t>(std::max(first, end))};
+}
+
 }  // namespace
 
-void DenseImage::Paint::add(const Color& color, float amount) {
+void DenseImage::ColorPaint::add(const Color& color, float amount) {
   red += static_cast<float>(color.red) * amount;
   green += static_cast<float>(color.green) * amount;
   blue += static_cast<float>(color.blue) * amount;
   weight += amount;
 }
 
-DenseImage::DenseImage(const Canvas& canvas, const Coloring& coloring)
+DenseImage::DenseImage(const Canvas& canvas, Coloring& coloring)
     : canvas_(canvas),
       coloring_(coloring),
       width_(pixels_of(canvas.width())),
       height_(pixels_of(canvas.height())),
+      box_{0, 0, static_cast<double>(width_), static_cast<double>(height_)},
       ink_(width_ * height_, 0),
-      paint_(coloring.palette().empty() ? 0 : width_ * height_) {}
+      values_(coloring.by_value() ? width_ * height_ : 0),
+      colors_(coloring.by() == DrawColor::kRegion ? width_ * height_ : 0) {}
 
-// Adds the colour to the pixels whose centres lie in the triangle, or, where there are none, a
-// little of it to the pixel of the centroid.
-void DenseImage::fill(const PagePoint (&p)[3], const Color& color) {
-  const auto [left, right] = std::minmax({p[0].x, p[1].x, p[2].x});
+// Adds the value to the pixels whose centres lie in the triangle, or, if there are none, a little
+// of it to the pixel of the centroid.
+template <class Paint, class Value>
+void DenseImage::fill(const Corners& p, double area, std::vector<Paint>& paint,
+                      const Value& value) {
   const auto [top, bottom] = std::minmax({p[0].y, p[1].y, p[2].y});
-  const auto first = [](double low) { return static_cast<long>(std::ceil(low - 0.5)); };
-  const auto last = [](double high, std::size_t size) {
-    return std::min(static_cast<long>(std::floor(high - 0.5)), static_cast<long>(size) - 1);
-  };
-  const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
-  const double turn = area < 0 ? -1 : 1;
+  const auto [first_row, end_row] = centres_between(top, bottom, height_);
   bool any = false;
-  for (long y = std::max(0L, first(top)); y <= last(bottom, height_); ++y) {
-    for (long x = std::max(0L, first(left)); x <= last(right, width_); ++x) {
-      bool inside = true;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const PagePoint& a = p[i];
-        const PagePoint& b = p[i == 2 ? 0 : i + 1];
-        const double side = (b.x - a.x) * (static_cast<double>(y) + 0.5 - a.y) -
-                            (b.y - a.y) * (static_cast<double>(x) + 0.5 - a.x);
-        inside &= side * turn >= 0;
-      }
-      if (!inside) continue;
-      paint_[static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(x)].add(color, 1);
-      any = true;
+  for (std::size_t row = first_row; row < end_row; ++row) {
+    const double y = static_cast<double>(row) + 0.5;
+    double left = box_.right;
+    double right = box_.left;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const PagePoint& a = p[i];
+      const PagePoint& b = p[i == 2 ? 0 : i + 1];
+      if ((a.y > y) == (b.y > y) && a.y != y) continue;
+      const double x = a.y == y ? a.x : a.x + (y - a.y) * (b.x - a.x) / (b.y - a.y);
+      left = std::min(left, x);
+      right = std::max(right, x);
     }
+    if (left > right) continue;
+    const auto [first, end] = centres_between(left, right, width_);
+    for (std::size_t column = first; column < end; ++column)
+      paint[row * width_ + column].add(value, 1);
+    any |= first < end;
   }
   if (any) return;
-  const double x = std::clamp((p[0].x + p[1].x + p[2].x) / 3, 0.0, double(width_ - 1));
-  const double y = std::clamp((p[0].y + p[1].y + p[2].y) / 3, 0.0, double(height_ - 1));
-  paint_[static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(x)].add(
-      color, static_cast<float>(std::max(std::abs(area) / 2, 1e-6)));
+  const PagePoint middle{(p[0].x + p[1].x + p[2].x) / 3, (p[0].y + p[1].y + p[2].y) / 3};
+  if (!box_.contains(middle)) return;
+  const auto column = std::min(static_cast<std::size_t>(middle.x), width_ - 1);
+  const auto row = std::min(static_cast<std::size_t>(middle.y), height_ - 1);
+  paint[row * width_ + column].add(value, static_cast<float>(std::max(area, 1e-6)));
 }
 
 // Leaves `amount` of ink at a point, shared by the four pixels around it.
@@ -82,8 +93,13 @@ void DenseImage::drop(double x, double y, float amount) {
 }
 
 void DenseImage::stroke(PagePoint a, PagePoint b) {
+  if (!box_.contains(a) || !box_.contains(b)) {
+    const auto seen = clipped(box_, a, b);
+    if (!seen) return;
+    std::tie(a, b) = *seen;
+  }
   constexpr double kDropsPerPixel = 1.5;
-  const double length = std::hypot(b.x - a.x, b.y - a.y);
+  const double length = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
   const auto drops = static_cast<int>(length * kDropsPerPixel) + 1;
   const auto amount = static_cast<float>(length / drops);
   for (int i = 0; i < drops; ++i) {
@@ -94,15 +110,24 @@ void DenseImage::stroke(PagePoint a, PagePoint b) {
   ++edges_;
 }
 
-void DenseImage::add(const MeshView& piece) {
-  for (std::size_t t = 0; t < piece.triangle_count(); ++t) {
-    const std::uint32_t* corner = &piece.triangles[3 * t];
-    const PagePoint p[3] = {canvas_.vertex(piece, corner[0]), canvas_.vertex(piece, corner[1]),
-                            canvas_.vertex(piece, corner[2])};
-    for (std::size_t k = 0; k < 3; ++k)
-      if (const std::size_t next = k == 2 ? 0 : k + 1; corner[k] < corner[next])
-        stroke(p[k], p[next]);
-    if (!paint_.empty()) fill(p, coloring_.palette()[coloring_.of(piece, t)]);
+void DenseImage::add(const DrawnTriangle& triangle) {
+  const Corners p = {canvas_.at(triangle.corners[0]), canvas_.at(triangle.corners[1]),
+                     canvas_.at(triangle.corners[2])};
+  const auto [left, right] = std::minmax({p[0].x, p[1].x, p[2].x});
+  const auto [top, bottom] = std::minmax({p[0].y, p[1].y, p[2].y});
+  if (right < box_.left || left > box_.right || bottom < box_.top || top > box_.bottom) return;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (const std::size_t next = k == 2 ? 0 : k + 1; triangle.vertices[k] < triangle.vertices[next])
+      stroke(p[k], p[next]);
+  const double area =
+      std::abs((p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x)) / 2;
+  if (!values_.empty()) {
+    const float value = coloring_.value(triangle);
+    coloring_.note(value, std::min(area, box_.right * box_.bottom));
+    fill(p, area, values_, value);
+  } else if (!colors_.empty()) {
+    coloring_.note_region(triangle.region);
+    fill(p, area, colors_, region_color(triangle.region));
   }
 }
 
@@ -114,16 +139,24 @@ Image DenseImage::image() const {
   // Lines as wide as leaves the page grey on average.
   constexpr double kMeanInk = 0.45;
   constexpr double kWidest = 0.7;
-  const double area = static_cast<double>(width_) * static_cast<double>(height_);
-  const double line_width = std::min(kWidest, kMeanInk * area / std::max(length_, 1.0));
-  // Over colours, edges are only hinted at.
-  const double strength = paint_.empty() ? 1 : 0.45;
+  const double pixels = static_cast<double>(width_) * static_cast<double>(height_);
+  const double line_width = std::min(kWidest, kMeanInk * pixels / std::max(length_, 1.0));
+  // Over colours, edges are only hinted at, and not at all if they are as short as pixels.
+  constexpr double kHint = 0.45;
+  constexpr double kNoHint = 1.5;
+  constexpr double kFullHint = 5;
+  const bool colored = !values_.empty() || !colors_.empty();
+  const double strength =
+      colored ? kHint * std::clamp((mean_edge() - kNoHint) / (kFullHint - kNoHint), 0.0, 1.0) : 1;
+  const ValueRange range = coloring_.range();
   Image image{width_, height_, std::vector<std::uint32_t>(width_ * height_)};
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     Color color = kPaper;
-    if (!paint_.empty() && paint_[i].weight > 0)
-      color = {paint_[i].red / paint_[i].weight, paint_[i].green / paint_[i].weight,
-               paint_[i].blue / paint_[i].weight};
+    if (!values_.empty() && values_[i].weight > 0)
+      color = Coloring::color(values_[i].sum / values_[i].weight, range);
+    if (!colors_.empty() && colors_[i].weight > 0)
+      color = {colors_[i].red / colors_[i].weight, colors_[i].green / colors_[i].weight,
+               colors_[i].blue / colors_[i].weight};
     const double cover = strength * (1 - std::exp(-line_width * double{ink_[i]}));
     image.pixels[i] = channel(color.red + cover * (kEdgeInk.red - color.red)) << 16 |
                       channel(color.green + cover * (kEdgeInk.green - color.green)) << 8 |

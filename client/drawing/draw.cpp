@@ -6,14 +6,19 @@
 #include <cairo.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <memory>
-#include <vector>
+#include <string>
+#include <utility>
 
-#include "client/drawing/canvas.h"
+#include "client/base/text.h"
+#include "client/drawing/clip.h"
 #include "client/drawing/coloring.h"
 #include "client/drawing/colors.h"
 #include "client/drawing/dense.h"
+#include "client/drawing/legend.h"
+#include "client/drawing/page_text.h"
+#include "client/drawing/vectors.h"
 
 namespace weft::client {
 namespace {
@@ -28,190 +33,260 @@ using Surface = std::unique_ptr<cairo_surface_t, DestroySurface>;
 using Context = std::unique_ptr<cairo_t, DestroyContext>;
 
 constexpr double kMarginsPerSide = 60;
-constexpr double kBoxLine = 1.5;  // pixels
-// Long paths slow cairo down.
-constexpr std::size_t kEdgesPerPath = 1000;
+constexpr double kEmsPerSide = 66;
+constexpr double kDenseEdge = 5;  // pixels
+constexpr double kBoxLine = 1.5;
 
 cairo_status_t write_to_file(void* file, const unsigned char* bytes, unsigned size) {
   static_cast<OutputFile*>(file)->write(bytes, size);
   return CAIRO_STATUS_SUCCESS;  // the file keeps its failure
 }
 
-Surface make_surface(DrawFormat format, const Canvas& canvas, OutputFile& file) {
+Surface make_surface(DrawFormat format, double width, double height, OutputFile& file) {
   switch (format) {
     case DrawFormat::kPng:
-      return Surface(cairo_image_surface_create(
-          CAIRO_FORMAT_RGB24, static_cast<int>(canvas.width()), static_cast<int>(canvas.height())));
+      return Surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width),
+                                                static_cast<int>(height)));
     case DrawFormat::kSvg:
-      return Surface(cairo_svg_surface_create_for_stream(write_to_file, &file, canvas.width(),
-                                                         canvas.height()));
+      return Surface(cairo_svg_surface_create_for_stream(write_to_file, &file, width, height));
     case DrawFormat::kPdf:
       break;
   }
-  return Surface(
-      cairo_pdf_surface_create_for_stream(write_to_file, &file, canvas.width(), canvas.height()));
+  return Surface(cairo_pdf_surface_create_for_stream(write_to_file, &file, width, height));
 }
 
-void set_color(cairo_t* cairo, const Color& color, double alpha = 1) {
-  cairo_set_source_rgba(cairo, color.red, color.green, color.blue, alpha);
-}
-
-// Mean length of the inner edges, on the page.
-double mean_edge(const MeshView& mesh, const Canvas& canvas) {
-  double sum = 0;
-  std::size_t count = 0;
-  for_each_inner_edge(mesh, [&](std::uint32_t a, std::uint32_t b) {
-    const PagePoint p = canvas.vertex(mesh, a);
-    const PagePoint q = canvas.vertex(mesh, b);
-    sum += std::hypot(q.x - p.x, q.y - p.y);
-    ++count;
-  });
-  return count > 0 ? sum / static_cast<double>(count) : 0;
-}
-
-void line(cairo_t* cairo, PagePoint a, PagePoint b) {
-  cairo_move_to(cairo, a.x, a.y);
-  cairo_line_to(cairo, b.x, b.y);
-}
-
-void draw_image(cairo_t* cairo, Image image, const Canvas& page) {
+void draw_image(cairo_t* cairo, Image image, const Canvas& canvas) {
   const Surface surface(cairo_image_surface_create_for_data(
       reinterpret_cast<unsigned char*>(image.pixels.data()), CAIRO_FORMAT_RGB24,
       static_cast<int>(image.width), static_cast<int>(image.height),
       static_cast<int>(image.width * sizeof(std::uint32_t))));
   cairo_save(cairo);
-  cairo_scale(cairo, page.width() / static_cast<double>(image.width),
-              page.height() / static_cast<double>(image.height));
+  cairo_scale(cairo, canvas.width() / static_cast<double>(image.width),
+              canvas.height() / static_cast<double>(image.height));
   cairo_set_source_surface(cairo, surface.get(), 0, 0);
   cairo_paint(cairo);
   cairo_restore(cairo);
   cairo_surface_flush(cairo_get_target(cairo));
 }
 
-void stroke_boxes(cairo_t* cairo, std::span<const double> boxes, const Canvas& canvas) {
-  for (std::size_t i = 0; i + 3 < boxes.size(); i += 4) {
-    const PagePoint low = canvas.at(boxes[i], boxes[i + 1]);
-    const PagePoint high = canvas.at(boxes[i + 2], boxes[i + 3]);
-    cairo_rectangle(cairo, low.x, high.y, high.x - low.x, low.y - high.y);
-    cairo_stroke(cairo);
+// Counter-clockwise, whatever it is in the piece.
+DrawnTriangle triangle_of(const MeshView& piece, std::size_t t) {
+  DrawnTriangle triangle;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t v = piece.triangles[3 * t + k];
+    triangle.vertices[k] = static_cast<std::uint32_t>(v);
+    triangle.corners[k] = {piece.coordinates[2 * v], piece.coordinates[2 * v + 1]};
   }
+  auto& p = triangle.corners;
+  if ((p[1].x - p[0].x) * (p[2].y - p[0].y) < (p[1].y - p[0].y) * (p[2].x - p[0].x)) {
+    std::swap(p[1], p[2]);
+    std::swap(triangle.vertices[1], triangle.vertices[2]);
+  }
+  if (!piece.regions.empty()) triangle.region = piece.regions[t];
+  return triangle;
+}
+
+Extent extent_of(const DrawnBox& box) {
+  Extent extent;
+  extent.add(std::array{box.x, box.y, box.x + box.width, box.y + box.height});
+  return extent;
 }
 
 }  // namespace
 
-Drawing::Drawing(DrawColor color, double long_side)
-    : coloring_(std::make_unique<Coloring>(color)), long_side_(long_side) {}
+// A page at work: lengths of cairo are its units, of which `pixel` are a pixel of a PNG.
+struct Drawing::Page {
+  cairo_t* cairo = nullptr;
+  Canvas canvas;
+  double pixel = 1;
+  double em = 0;
+  double mean_edge = 0;                // pixels
+  bool dense = false;                  // drawn as an image
+  const DenseImage* image = nullptr;   // if dense
+  const Coloring* coloring = nullptr;  // null: none
+};
+
+Drawing::Drawing(const DrawOptions& options)
+    : options_(options), worst_(options.worst.value_or(0), options.unit) {}
 
 Drawing::~Drawing() = default;
 
 Canvas Drawing::canvas(double long_side) const {
-  return {extent_, long_side, long_side / kMarginsPerSide};
+  const Extent shown = options_.zoom ? extent_of(*options_.zoom) : extent_;
+  const double x_scale = options_.unit == DrawnUnit::kDegrees && !shown.empty()
+                             ? longitude_scale((shown.min_y + shown.max_y) / 2)
+                             : 1;
+  return {shown, long_side, long_side / kMarginsPerSide, x_scale};
 }
 
-void Drawing::keep(const MeshView& piece) {
-  const auto append = [](auto& to, auto values) {
-    to.insert(to.end(), values.begin(), values.end());
+void Drawing::see_vertices(std::span<const double> all) {
+  extent_.add(all.subspan(2 * vertices_));
+  vertices_ = all.size() / 2;
+}
+
+bool Drawing::shows(std::span<const Point> points) const {
+  if (!options_.zoom) return true;
+  const DrawnBox& box = *options_.zoom;
+  // With the margin of the page, whose sides may differ.
+  const double margin = std::max(box.width, box.height) / kMarginsPerSide * 2;
+  const auto [left, right] = std::minmax_element(
+      points.begin(), points.end(), [](const Point& a, const Point& b) { return a.x < b.x; });
+  const auto [low, high] = std::minmax_element(
+      points.begin(), points.end(), [](const Point& a, const Point& b) { return a.y < b.y; });
+  return right->x >= box.x - margin && left->x <= box.x + box.width + margin &&
+         high->y >= box.y - margin && low->y <= box.y + box.height + margin;
+}
+
+bool Drawing::is_in_view(const Point& p) const {
+  if (!options_.zoom) return true;
+  const DrawnBox& box = *options_.zoom;
+  return p.x >= box.x && p.x <= box.x + box.width && p.y >= box.y && p.y <= box.y + box.height;
+}
+
+void Drawing::add_edges(const MeshView& piece) {
+  const auto at = [&](std::size_t v) {
+    return Point{piece.coordinates[2 * v], piece.coordinates[2 * v + 1]};
   };
-  const auto vertices = piece.coordinates.subspan(mesh_.coordinates.size());
-  extent_.add(vertices);
-  append(mesh_.coordinates, vertices);
-  append(mesh_.triangles, piece.triangles);
-  append(mesh_.regions, piece.regions);
-  mesh_.regions.resize(mesh_.triangles.size() / 3);
+  for (std::size_t e = 0; e < piece.edge_count(); ++e) {
+    const std::array<Point, 2> ends = {at(piece.edges[2 * e]), at(piece.edges[2 * e + 1])};
+    if (shows(ends))
+      edges_.push_back({ends[0], ends[1], piece.edge_markers.empty() ? 0 : piece.edge_markers[e]});
+  }
 }
 
 void Drawing::draw_as_image() {
-  image_ = std::make_unique<DenseImage>(canvas(long_side_), *coloring_);
-  image_->add(mesh_.view());
-  mesh_ = {};
+  image_coloring_ = std::make_unique<Coloring>(
+      options_.color == DrawColor::kAuto ? DrawColor::kSize : options_.color, options_.unit);
+  image_ = std::make_unique<DenseImage>(canvas(pixels()), *image_coloring_);
+  for (const DrawnTriangle& triangle : kept_) image_->add(triangle);
+  kept_ = {};
+}
+
+void Drawing::keep(const DrawnTriangle& triangle) {
+  kept_.push_back(triangle);
+  if (kept_.size() > kMostVectors) draw_as_image();
 }
 
 void Drawing::add(const MeshView& piece) {
-  triangles_ += piece.triangle_count();
-  for (const std::uint32_t v : piece.edges) {
-    boundary_.push_back(piece.coordinates[2 * std::size_t{v}]);
-    boundary_.push_back(piece.coordinates[2 * std::size_t{v} + 1]);
+  see_vertices(piece.coordinates);
+  add_edges(piece);
+  for (std::size_t t = 0; t < piece.triangle_count(); ++t) {
+    DrawnTriangle triangle = triangle_of(piece, t);
+    triangle.id = added_++;
+    if (!shows(triangle.corners)) continue;
+    ++shown_;
+    if (is_in_view(centroid(triangle))) worst_.add(triangle);
+    image_ ? image_->add(triangle) : keep(triangle);
   }
-  if (image_) return image_->add(piece);
-  keep(piece);
-  if (triangles_ > kMostVectors) draw_as_image();
 }
 
-void Drawing::fill_triangles(cairo_t* cairo, const Canvas& canvas) const {
-  const MeshView mesh = mesh_.view();
-  const std::vector<Color>& palette = coloring_->palette();
-  // By colour: one path for many triangles.
-  std::vector<std::vector<std::uint32_t>> of_color(palette.size());
-  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t)
-    of_color[coloring_->of(mesh, t)].push_back(t);
-  cairo_set_antialias(cairo, CAIRO_ANTIALIAS_NONE);  // no seams between neighbours
-  for (std::size_t c = 0; c < of_color.size(); ++c) {
-    set_color(cairo, palette[c]);
-    for (std::size_t i = 0; i < of_color[c].size(); ++i) {
-      const std::uint32_t* corner = &mesh.triangles[3 * std::size_t{of_color[c][i]}];
-      for (int k = 0; k < 3; ++k) {
-        const PagePoint p = canvas.vertex(mesh, corner[k]);
-        k == 0 ? cairo_move_to(cairo, p.x, p.y) : cairo_line_to(cairo, p.x, p.y);
-      }
-      cairo_close_path(cairo);
-      if ((i + 1) % kEdgesPerPath == 0) cairo_fill(cairo);
+void Drawing::draw_mesh(const Page& page) const {
+  cairo_t* const cairo = page.cairo;
+  Vectors vectors(cairo, page.canvas, page.pixel);
+  if (page.dense) {
+    draw_image(cairo, page.image->image(), page.canvas);
+  } else {
+    if (page.coloring != nullptr) vectors.fill(kept_, *page.coloring);
+    vectors.stroke_inner_edges(kept_, page.coloring != nullptr);
+  }
+  const double width = std::clamp(0.15 * page.mean_edge, 1.3, 2.6);
+  edges_.empty() && !page.dense ? vectors.stroke_outline(kept_, width)
+                                : vectors.stroke_edges(edges_, width);
+}
+
+void Drawing::draw_marks(const Page& page) const {
+  const double height = 0.7 * page.em;
+  if (options_.labels && !page.dense) put_labels(page.cairo, page.canvas, kept_, edges_, height);
+  const std::vector<WorstTriangle> worst = worst_.sorted();
+  constexpr std::size_t kMostNumbered = 30;
+  for (std::size_t i = worst.size(); i-- > 0;) {  // the worst on top
+    const PagePoint at = page.canvas.at(centroid(worst[i].triangle));
+    double radius = 0.5 * page.em;
+    for (const Point& corner : worst[i].triangle.corners) {
+      const PagePoint p = page.canvas.at(corner);
+      radius = std::max(radius, 1.1 * std::hypot(p.x - at.x, p.y - at.y));
     }
-    cairo_fill(cairo);
+    radius = std::min(radius, 4 * page.em);
+    put_mark(page.cairo, at, radius, 0.1 * page.em);
+    if (worst.size() <= kMostNumbered)
+      put_text(page.cairo, {at.x + 0.75 * radius + 0.1 * page.em, at.y - 0.75 * radius},
+               std::to_string(i + 1), {.height = 0.8 * page.em, .halo = true, .color = kMarkInk});
   }
-  cairo_set_antialias(cairo, CAIRO_ANTIALIAS_DEFAULT);
 }
 
-void Drawing::stroke_inner_edges(cairo_t* cairo, const Canvas& canvas) const {
-  const MeshView mesh = mesh_.view();
-  std::size_t count = 0;
-  for_each_inner_edge(mesh, [&](std::uint32_t a, std::uint32_t b) {
-    line(cairo, canvas.vertex(mesh, a), canvas.vertex(mesh, b));
-    if (++count % kEdgesPerPath == 0) cairo_stroke(cairo);
-  });
-  cairo_stroke(cairo);
-}
-
-void Drawing::stroke_boundary(cairo_t* cairo, const Canvas& canvas) const {
-  for (std::size_t e = 0; e < boundary_.size() / 4; ++e) {
-    const double* ends = &boundary_[4 * e];
-    line(cairo, canvas.at(ends[0], ends[1]), canvas.at(ends[2], ends[3]));
-    if ((e + 1) % kEdgesPerPath == 0) cairo_stroke(cairo);
+Legend Drawing::legend(const Page& page) const {
+  Legend legend(page.em);
+  if (options_.no_legend) return legend;
+  if (!extent_.empty()) {
+    const double metres = options_.unit == DrawnUnit::kDegrees ? kMetresPerDegree : 1;
+    constexpr double kOfTheWidth = 0.2;
+    legend.add_scale_bar(page.canvas.scale() / metres,
+                         std::clamp(kOfTheWidth * page.canvas.width(), 5 * page.em, 14 * page.em),
+                         options_.unit);
   }
-  cairo_stroke(cairo);
+  legend.add_text(with_separators(shown_) + (shown_ == 1 ? " triangle" : " triangles"));
+  if (page.coloring != nullptr) legend.add_colors(*page.coloring, options_.unit, page.dense);
+  if (const auto worst = worst_.sorted(); !worst.empty()) {
+    const auto angle = [](const WorstTriangle& one) {
+      return number_text(one.angle_deg) + "\u00b0";
+    };
+    legend.add_mark(worst.size() == 1 ? "smallest angle, " + angle(worst.front())
+                                      : std::to_string(worst.size()) + " smallest angles, " +
+                                            angle(worst.front()) + " to " + angle(worst.back()));
+  }
+  if (options_.labels && !page.dense)
+    legend.add_text("numbers of vertices black, of triangles blue, markers red");
+  return legend;
 }
 
 Result<void> Drawing::draw(DrawFormat format, std::span<const double> boxes,
                            OutputFile& file) const {
-  const double pixel = format == DrawFormat::kPng ? 1 : 0.5;  // in units of the page
-  const Canvas page = canvas(long_side_ * pixel);
-  const Surface surface = make_surface(format, page, file);
+  for (const double bound : {extent_.min_x, extent_.min_y, extent_.max_x, extent_.max_y})
+    if (!extent_.empty() && !(std::abs(bound) <= kMostCoordinate))
+      return fail(ExitCode::kUnreadableInput, "the mesh has a coordinate of " + shortest(bound) +
+                                                  ", drawings go to " + shortest(kMostCoordinate));
+  const double pixel = format == DrawFormat::kPng ? 1 : 0.5;
+  Page page{.canvas = canvas(pixels() * pixel), .pixel = pixel};
+  page.em = pixels() * pixel / kEmsPerSide;
+
+  // Of what is drawn as an image after all, and of colours.
+  Coloring coloring(options_.color == DrawColor::kAuto ? DrawColor::kSize : options_.color,
+                    options_.unit);
+  std::unique_ptr<DenseImage> image;
+  page.mean_edge = image_ ? image_->mean_edge() : mean_inner_edge(kept_, page.canvas) / pixel;
+  page.dense = image_ != nullptr || (page.mean_edge < kDenseEdge && !kept_.empty());
+  page.coloring = image_ ? image_coloring_.get() : &coloring;
+  if (page.dense && !image_) {
+    image = std::make_unique<DenseImage>(canvas(pixels()), coloring);
+    for (const DrawnTriangle& triangle : kept_) image->add(triangle);
+  } else if (!page.dense) {
+    note_all(kept_, page.canvas, coloring);
+  }
+  page.image = image_ ? image_.get() : image.get();
+  if (page.coloring->by() == DrawColor::kNone ||
+      (options_.color == DrawColor::kAuto && !page.dense))
+    page.coloring = nullptr;
+
+  const Legend below = legend(page);
+  const double side = pixels() * pixel / kMarginsPerSide;
+  const double width = std::max(page.canvas.width(), std::ceil(below.least_width() + 2 * side));
+  const double height = page.canvas.height() + std::ceil(below.height(width - 2 * side));
+  const Surface surface = make_surface(format, width, height, file);
   const Context context(cairo_create(surface.get()));
-  cairo_t* cairo = context.get();
+  cairo_t* const cairo = page.cairo = context.get();
   set_color(cairo, kPaper);
   cairo_paint(cairo);
   cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
 
-  const double edge = image_ ? image_->mean_edge() : mean_edge(mesh_.view(), page) / pixel;
-  constexpr double kDenseEdge = 5;  // pixels
-  if (image_) {
-    draw_image(cairo, image_->image(), page);
-  } else if (edge < kDenseEdge) {
-    DenseImage image(canvas(long_side_), *coloring_);
-    image.add(mesh_.view());
-    draw_image(cairo, image.image(), page);
-  } else {
-    const bool colored = !coloring_->palette().empty();
-    if (colored) fill_triangles(cairo, page);
-    set_color(cairo, kEdgeInk, colored ? 0.6 : 1);
-    cairo_set_line_width(cairo, pixel * std::clamp(0.07 * edge, 0.3, 1.2));
-    stroke_inner_edges(cairo, page);
-  }
-  set_color(cairo, kBoundaryInk);
-  cairo_set_line_width(cairo, pixel * std::clamp(0.15 * edge, 1.3, 2.6));
-  stroke_boundary(cairo, page);
-  set_color(cairo, kBoxInk);
-  cairo_set_line_width(cairo, pixel * kBoxLine);
-  stroke_boxes(cairo, boxes, page);
+  cairo_save(cairo);
+  cairo_translate(cairo, std::floor((width - page.canvas.width()) / 2), 0);
+  cairo_rectangle(cairo, 0, 0, page.canvas.width(), page.canvas.height());
+  cairo_clip(cairo);
+  draw_mesh(page);
+  Vectors(cairo, page.canvas, pixel).stroke_boxes(boxes, kBoxLine);
+  draw_marks(page);
+  cairo_restore(cairo);
+  below.draw(cairo, {side, page.canvas.height()}, width - 2 * side);
 
   cairo_status_t status = cairo_status(cairo);
   if (status == CAIRO_STATUS_SUCCESS && format == DrawFormat::kPng)

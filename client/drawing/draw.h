@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws a mesh into PNG, SVG and PDF files: its edges, the edges on input segments thicker, and, if
-// asked for, the triangles coloured by their smallest angle (0 dark to 60 degrees bright) or by
-// region, and boxes over all. The page takes the aspect ratio of the mesh.
+// Draws a mesh into PNG, SVG and PDF files: its edges, the edges on input segments thicker; if
+// asked for, its triangles in colours, the worst of them marked, numbers, and boxes over all; below
+// it a legend with a scale bar. The page takes the aspect ratio of what is shown.
 //
-// Meshes whose triangles are a few pixels small are drawn into an image (dense.h), so that edges
-// blend to grey by their density; in SVG and PDF the image is embedded under a boundary of vectors.
-// A mesh of more than kMostVectors triangles always is, piece by piece while it arrives: only the
-// image and the boundary are kept of it. So memory does not grow with the mesh.
+// If the triangles are a few pixels small they are drawn into an image (dense.h), whose pixels show
+// the mean size, unless other colours are asked for; in SVG and PDF the image is embedded under a
+// boundary of vectors. If more than kMostVectors triangles are seen, they always are, piece by
+// piece while they arrive: only the image and the boundary are kept of them. So memory does not
+// grow with the mesh.
 //
-//   Drawing drawing(DrawColor::kAngle);
+//   Drawing drawing({.color = DrawColor::kAngle});
 //   ... drawing.add(piece) ...
 //   if (auto drawn = drawing.draw(DrawFormat::kPng, {}, file); !drawn) return drawn;
 #pragma once
@@ -23,59 +24,75 @@
 #include "client/base/atomic_file.h"
 #include "client/base/error.h"
 #include "client/drawing/canvas.h"
+#include "client/drawing/draw_options.h"
+#include "client/drawing/labels.h"
+#include "client/drawing/worst_triangles.h"
 #include "client/formats/mesh.h"
-
-// Of cairo.
-typedef struct _cairo cairo_t;
 
 namespace weft::client {
 
 enum class DrawFormat { kPng, kSvg, kPdf };
-enum class DrawColor { kNone, kAngle, kRegion };
 
 // The format of an extension, in upper or lower case.
 std::optional<DrawFormat> draw_format(const std::filesystem::path& path);
 
 class DenseImage;
 class Coloring;
+class Legend;
 
 class Drawing {
  public:
   static constexpr std::size_t kMostVectors = std::size_t{1} << 19;
+  // Coordinates beyond it are not drawn.
+  static constexpr double kMostCoordinate = 1e100;
 
-  // `long_side` is in pixels of a PNG, or of the image of a dense mesh; pages of SVG and PDF have
-  // half as many points.
-  explicit Drawing(DrawColor color, double long_side = 1800);
+  explicit Drawing(const DrawOptions& options);
   Drawing(const Drawing&) = delete;
   Drawing& operator=(const Drawing&) = delete;
   ~Drawing();
 
   // Adds the next piece of the mesh: its triangles, their regions (none: all are 0) and its edges,
-  // with the coordinates of all vertices so far. All corners of the mesh should be among the
-  // vertices before triangle kMostVectors; points outside their box are put on the margin.
+  // with the coordinates of all vertices so far. Triangles may have either orientation. Without a
+  // zoom, all corners of the mesh should be among the vertices before triangle kMostVectors; what
+  // lies outside their box is cut off.
   void add(const MeshView& piece);
-  std::size_t triangles() const { return triangles_; }
+  // Those of which something is shown.
+  std::size_t triangles() const { return shown_; }
+  // The marked ones, the worst first. Their centroids are in view.
+  std::vector<WorstTriangle> worst() const { return worst_.sorted(); }
 
   // Draws what was added. `boxes` are min x, min y, max x, max y of each, in the unit of the mesh;
-  // parts outside the page are cut off. Failures to write stay in the file; an error (kInternal) is
-  // cairo's.
+  // parts outside the page are cut off. Failures to write stay in the file; other errors:
+  // kUnreadableInput for a coordinate beyond kMostCoordinate, kInternal is cairo's.
   Result<void> draw(DrawFormat format, std::span<const double> boxes, OutputFile& file) const;
 
  private:
-  void keep(const MeshView& piece);
-  void draw_as_image();
-  Canvas canvas(double long_side) const;
-  void fill_triangles(cairo_t* cairo, const Canvas& canvas) const;
-  void stroke_inner_edges(cairo_t* cairo, const Canvas& canvas) const;
-  void stroke_boundary(cairo_t* cairo, const Canvas& canvas) const;
+  struct Page;
 
-  const std::unique_ptr<const Coloring> coloring_;
-  const double long_side_;
-  std::size_t triangles_ = 0;
-  Extent extent_;
-  Mesh mesh_;                          // while it is small; without edges
-  std::unique_ptr<DenseImage> image_;  // from then on
-  std::vector<double> boundary_;       // x, y of both ends of each edge on an input segment
+  void see_vertices(std::span<const double> all);
+  void add_edges(const MeshView& piece);
+  void keep(const DrawnTriangle& triangle);
+  void draw_as_image();
+  // Whether the box of the points meets the page.
+  bool shows(std::span<const Point> points) const;
+  bool is_in_view(const Point& p) const;
+  Canvas canvas(double long_side) const;
+  double pixels() const { return options_.pixels.value_or(DrawOptions::kDefaultPixels); }
+  // The image if there are too many triangles for vectors, or they are too small.
+  void draw_mesh(const Page& page) const;
+  void draw_marks(const Page& page) const;
+  Legend legend(const Page& page) const;
+
+  const DrawOptions options_;
+  Extent extent_;  // of the vertices so far
+  std::size_t vertices_ = 0;
+  std::size_t added_ = 0;
+  std::size_t shown_ = 0;
+  std::vector<DrawnTriangle> kept_;           // of those shown, while they are few
+  std::unique_ptr<Coloring> image_coloring_;  // from then on
+  std::unique_ptr<DenseImage> image_;
+  std::vector<DrawnEdge> edges_;  // on input segments
+  WorstTriangles worst_;
 };
 
 }  // namespace weft::client

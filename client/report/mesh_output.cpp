@@ -2,6 +2,7 @@
 #include "client/report/mesh_output.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <initializer_list>
 #include <new>
 #include <set>
@@ -106,7 +107,9 @@ Result<MeshOutput> MeshOutput::open(const MeshOutputOptions& options,
 MeshOutput::MeshOutput(MeshOutputOptions options, std::vector<OutputFile> files,
                        std::stop_token stop)
     : options_(std::move(options)), files_(std::move(files)), stop_(std::move(stop)) {
-  if (!options_.drawings.empty()) drawing_ = std::make_unique<Drawing>(options_.color);
+  if (options_.drawings.empty()) return;
+  if (options_.projection.wanted()) options_.drawing.unit = DrawnUnit::kMetres;
+  drawing_ = std::make_unique<Drawing>(options_.drawing);
 }
 
 Result<std::unique_ptr<MeshSpool>> MeshOutput::make_spool() {
@@ -144,6 +147,14 @@ Result<void> MeshOutput::write(const MeshView& arrived, const v1::Summary& summa
 
 std::string MeshOutput::text(const v1::Summary& summary) const {
   std::string text = options_.draw_quadtree ? quadtree_text(summary) : "";
+  std::size_t rank = 0;
+  for (const WorstTriangle& worst : drawing_ ? drawing_->worst() : std::vector<WorstTriangle>()) {
+    const Point at = centroid(worst.triangle);
+    char angle[32];
+    std::snprintf(angle, sizeof angle, "%.2f", worst.angle_deg);
+    text += "worst " + std::to_string(++rank) + ": " + angle + " degrees, triangle " +
+            std::to_string(worst.triangle.id) + " at " + coordinates(at.x, at.y) + "\n";
+  }
   for (const OutputFile& file : files_) {
     std::error_code ignored;
     text += "wrote " + file.target().string() + ", " +

@@ -35,7 +35,7 @@ struct MeshOutputOptions {
   std::vector<std::filesystem::path> files{};
   MeshWriteOptions writing{};  // of the files
   std::vector<std::filesystem::path> drawings{};
-  DrawColor color = DrawColor::kNone;
+  DrawOptions drawing{};           // of the drawings
   bool draw_quadtree = false;      // over the drawings
   ProjectionOptions projection{};  // of the domain; the caller projects it
 
@@ -53,7 +53,8 @@ class MeshOutput {
   // that is only drawn is not held. This must outlive the spool.
   Result<std::unique_ptr<MeshSpool>> make_spool();
   const MeshOutputOptions& options() const { return options_; }
-  bool draws() const { return drawing_ != nullptr; }
+  // Null if nothing is drawn. It gets the mesh from the spool, or from whoever has no spool.
+  Drawing* drawing() const { return drawing_.get(); }
   // The mesh that arrives is in metres of this projection, and is written in longitude and latitude
   // unless the projection says metres; drawings show the plane. Null: it is written as it arrives.
   void bring_back_by(std::shared_ptr<const DomainProjection> projection) {
@@ -61,8 +62,8 @@ class MeshOutput {
   }
   // `mesh` is the spool's view; any view if nothing is drawn.
   Result<void> write(const MeshView& mesh, const v1::Summary& summary);
-  // "wrote key.vtu, 1.2 MB\n" for each file, after a line on the quadtree if it was drawn.
-  // REQUIRES: written.
+  // "wrote key.vtu, 1.2 MB\n" for each file, after lines on the quadtree if it was drawn and on
+  // each triangle that was marked as one of the worst. REQUIRES: written.
   std::string text(const v1::Summary& summary) const;
 
  private:

@@ -1,7 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/report/output_rows.h"
 
+#include <array>
+#include <cmath>
+#include <sstream>
+
 namespace weft::client {
+namespace {
+
+std::string not_a_box(const std::string& text) {
+  return in_quotes(text) + " is not a box x,y,width,height with positive sides, up to 1e100";
+}
+
+// Four finite numbers, of which the sides are positive, none beyond what can be drawn.
+OptionValue<DrawOptions> zoom() {
+  return {"X,Y,W,H", "", Arity::kOne,
+          [](const auto& texts, const auto&, DrawOptions& options) -> std::string {
+            std::istringstream text(texts.front());
+            std::array<double, 4> numbers{};
+            std::size_t count = 0;
+            for (std::string part; std::getline(text, part, ','); ++count) {
+              const auto number = value_of<double>(part);
+              if (count == numbers.size() || !number) return not_a_box(texts.front());
+              numbers[count] = *number;
+            }
+            constexpr double kMost = 1e100;
+            const auto [x, y, width, height] = numbers;
+            if (count != numbers.size() || !(std::abs(x) <= kMost && std::abs(y) <= kMost) ||
+                !(width >= 1 / kMost && width <= kMost && height >= 1 / kMost && height <= kMost))
+              return not_a_box(texts.front());
+            options.zoom = DrawnBox{x, y, width, height};
+            return "";
+          }};
+}
+
+}  // namespace
 
 const OptionRows<MeshWriteOptions>& writing_rows() {
   using Writing = MeshWriteOptions;
@@ -21,14 +54,40 @@ const OptionRows<MeshWriteOptions>& writing_rows() {
   return rows;
 }
 
-const OptionRows<MeshOutputOptions>& drawing_rows() {
+const OptionRows<DrawOptions>& drawing_rows() {
+  using Draw = DrawOptions;
+  static const OptionRows<Draw> rows = {
+      {"color", "WEFT_COLOR",
+       "Colour of the triangles in drawings: by their smallest angle, by their area, by region or "
+       "none; auto is size if they are too small to be seen one by one, otherwise none",
+       "auto",
+       one_of(&Draw::color, {{"angle", DrawColor::kAngle},
+                             {"size", DrawColor::kSize},
+                             {"region", DrawColor::kRegion},
+                             {"none", DrawColor::kNone},
+                             {"auto", DrawColor::kAuto}})},
+      {"zoom", "",
+       "Draw only what is in this box: its lower left corner, width and height, in the unit of the "
+       "drawing",
+       "", zoom()},
+      {"worst", "", "Mark so many triangles of the smallest angles in drawings", "",
+       number("N", &Draw::worst, 1, Draw::kMostWorst)},
+      {"labels", "",
+       "Write the numbers of vertices and triangles and the markers into drawings, where they fit",
+       "", on_or_off(&Draw::labels)},
+      {"no-legend", "", "Draw the mesh alone, without scale and legend", "",
+       on_or_off(&Draw::no_legend)},
+      {"draw-size", "WEFT_DRAW_SIZE",
+       "Longer side of the mesh in drawings, in pixels; .svg and .pdf have half as many points",
+       std::to_string(Draw::kDefaultPixels),
+       number("PX", &Draw::pixels, Draw::kLeastPixels, Draw::kMostPixels)},
+  };
+  return rows;
+}
+
+const OptionRows<MeshOutputOptions>& quadtree_rows() {
   using Output = MeshOutputOptions;
   static const OptionRows<Output> rows = {
-      {"color", "WEFT_COLOR", "Colour of the triangles in drawings: by angle, by region or none",
-       "none",
-       one_of(&Output::color, {{"angle", DrawColor::kAngle},
-                               {"region", DrawColor::kRegion},
-                               {"none", DrawColor::kNone}})},
       {"draw-quadtree", "WEFT_DRAW_QUADTREE",
        "Draw the leaves of the quadtree that guided refinement over the mesh", "",
        on_or_off(&Output::draw_quadtree)},

@@ -9,6 +9,9 @@
 namespace weft::client {
 
 const OptionRows<MeshWriteOptions>& writing_rows();
-const OptionRows<MeshOutputOptions>& drawing_rows();
+// What drawings show, of any mesh.
+const OptionRows<DrawOptions>& drawing_rows();
+// What they show of a mesh that was just made.
+const OptionRows<MeshOutputOptions>& quadtree_rows();
 
 }  // namespace weft::client

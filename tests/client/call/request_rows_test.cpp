@@ -37,6 +37,7 @@ std::vector<Row> all_rows() {
   add(request_rows(), true);
   add(writing_rows(), false);
   add(drawing_rows(), false);
+  add(quadtree_rows(), false);
   if (Projection::available()) add(projection_rows(), false);
   return all;
 }
@@ -68,6 +69,11 @@ const std::map<std::string, Sample>& samples() {
                                                     {"msh-version", {"2.2", "m.msh"}},
                                                     {"open-boundary", {"1", "m.14"}},
                                                     {"color", {"angle", "m.svg"}},
+                                                    {"zoom", {"1,1,2,2", "m.svg"}},
+                                                    {"worst", {"2", "m.svg"}},
+                                                    {"labels", {"true", "m.svg"}},
+                                                    {"no-legend", {"true", "m.svg"}},
+                                                    {"draw-size", {"900", "m.svg"}},
                                                     {"draw-quadtree", {"true", "m.svg"}},
                                                     {"lonlat", {"true"}},
                                                     {"crs", {"EPSG:32631"}},

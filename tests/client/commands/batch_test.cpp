@@ -110,7 +110,7 @@ meshes:
   EXPECT_EQ(a.request_options.max_seconds, 4);
   EXPECT_EQ(a.output.files.back(), folder_ / "o/a.msh");
   EXPECT_EQ(a.output.drawings.front(), folder_ / "a.png");
-  EXPECT_EQ(a.output.color, DrawColor::kAngle);
+  EXPECT_EQ(a.output.drawing.color, DrawColor::kAngle);
   EXPECT_EQ(a.output.writing.order, 2);
   ASSERT_EQ(a.gates.size(), 1u);
   EXPECT_EQ(meshes->back().input, "/b.geojson");

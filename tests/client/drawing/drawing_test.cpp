@@ -18,14 +18,14 @@ class DrawingTest : public testing::Test {
  protected:
   struct Options {
     DrawColor color = DrawColor::kNone;
-    double long_side = 1800;
+    std::uint32_t long_side = 1800;
     std::vector<double> boxes = {};
     std::size_t pieces = 1;
   };
   std::filesystem::path draw_to(const std::string& name, const Mesh& mesh, const Options& options) {
     std::vector<OutputFile> files;
     files.push_back(std::move(OutputFile::create(folder_ / name, {}).value()));
-    Drawing drawing(options.color, options.long_side);
+    Drawing drawing({.color = options.color, .pixels = options.long_side, .no_legend = true});
     const std::size_t triangles = mesh.triangles.size() / 3;
     for (std::size_t p = 0; p < options.pieces; ++p) {
       const std::size_t first = triangles * p / options.pieces;

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/drawing/legend.h"
+
+#include <cairo.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "client/drawing/page_text.h"
+
+namespace weft::client {
+namespace {
+
+// In ems.
+constexpr double kRow = 3;
+constexpr double kGap = 2.5;
+constexpr double kBarTop = 0.3;
+constexpr double kBarHeight = 0.9;
+constexpr double kBaseline = 1.1;  // of text beside a bar
+constexpr double kBelow = 2.25;    // baseline of text below a bar
+constexpr double kSmall = 0.82;    // height of that text
+constexpr double kValueBarWidth = 18;
+constexpr std::size_t kMostSwatches = 10;
+
+struct Tick {
+  double value = 0;  // as Coloring has it
+  std::string text;
+};
+
+// The largest of 1, 2, 5, 10, ... that is not above `most`.
+double round_below(double most) {
+  const double power = std::pow(10, std::floor(std::log10(most)));
+  for (const double digit : {5.0, 2.0})
+    if (digit * power <= most) return digit * power;
+  return power;
+}
+
+std::vector<Tick> angle_ticks() {
+  std::vector<Tick> ticks;
+  for (int angle = 0; angle <= 60; angle += 10)
+    ticks.push_back({static_cast<double>(angle), std::to_string(angle) + "\u00b0"});
+  return ticks;
+}
+
+// 1, 10, ... or, if there are few of them, 1, 2, 5, 10, ...; of a range of binary logarithms.
+std::vector<Tick> size_ticks(const ValueRange& range, double unit) {
+  const auto in_range = [&](const std::vector<double>& digits) {
+    std::vector<Tick> ticks;
+    const double to_decimal = std::log10(2.0);
+    const auto first = static_cast<int>(std::floor(range.low * to_decimal - std::log10(unit))) - 1;
+    const auto last = static_cast<int>(std::ceil(range.high * to_decimal - std::log10(unit)));
+    for (int power = first; power <= last; ++power)
+      for (const double digit : digits) {
+        const double size = digit * std::pow(10, power);
+        const double value = std::log2(size) + std::log2(unit);
+        if (value >= range.low && value <= range.high) ticks.push_back({value, number_text(size)});
+      }
+    return ticks;
+  };
+  constexpr std::size_t kFew = 3;
+  constexpr std::size_t kMany = 7;
+  std::vector<Tick> ticks = in_range({1});
+  if (ticks.size() < kFew) ticks = in_range({1, 2, 5});
+  if (ticks.size() < 2)
+    ticks = {{range.low, number_text(std::exp2(range.low) / unit)},
+             {range.high, number_text(std::exp2(range.high) / unit)}};
+  if (const std::size_t step = ticks.size() / kMany + 1; step > 1) {
+    std::vector<Tick> some;
+    for (std::size_t i = 0; i < ticks.size(); i += step) some.push_back(ticks[i]);
+    return some;
+  }
+  return ticks;
+}
+
+}  // namespace
+
+void put_mark(cairo_t* cairo, PagePoint at, double radius, double line_width) {
+  cairo_new_sub_path(cairo);
+  cairo_arc(cairo, at.x, at.y, radius, 0, 2 * std::numbers::pi);
+  set_color(cairo, kPaper, 0.8);
+  cairo_set_line_width(cairo, 2.4 * line_width);
+  cairo_stroke_preserve(cairo);
+  set_color(cairo, kMarkInk);
+  cairo_set_line_width(cairo, line_width);
+  cairo_stroke(cairo);
+}
+
+void Legend::add_scale_bar(double scale, double most, DrawnUnit unit) {
+  if (!(std::isfinite(scale) && scale > 0 && std::isfinite(most / scale))) return;
+  const double length = round_below(most / scale);
+  if (!(length > 0)) return;
+  const double bar = length * scale;
+  std::string text = number_text(length);
+  if (unit != DrawnUnit::kNone)
+    text = length >= 1000 ? number_text(length / 1000) + " km" : number_text(length) + " m";
+  const double width = std::max(bar, text_width(text, em_ * kSmall));
+  parts_.push_back({width, [=, em = em_](cairo_t* cairo, PagePoint at) {
+                      const double left = at.x + (width - bar) / 2;
+                      const double bottom = at.y + em * (kBarTop + kBarHeight);
+                      const double tooth = em * 0.35;
+                      cairo_move_to(cairo, left, bottom - tooth);
+                      cairo_line_to(cairo, left, bottom);
+                      cairo_line_to(cairo, left + bar, bottom);
+                      cairo_line_to(cairo, left + bar, bottom - tooth);
+                      set_color(cairo, kBoundaryInk);
+                      cairo_set_line_width(cairo, em * 0.1);
+                      cairo_stroke(cairo);
+                      put_text(cairo, {left + bar / 2, at.y + em * kBelow}, text,
+                               {.height = em * kSmall, .align = Align::kCentre});
+                    }});
+}
+
+void Legend::add_text(const std::string& text) {
+  parts_.push_back({text_width(text, em_), [text, em = em_](cairo_t* cairo, PagePoint at) {
+                      put_text(cairo, {at.x, at.y + em * kBaseline}, text, {.height = em});
+                    }});
+}
+
+void Legend::add_mark(const std::string& text) {
+  const double indent = 1.6 * em_;
+  parts_.push_back(
+      {indent + text_width(text, em_), [text, indent, em = em_](cairo_t* cairo, PagePoint at) {
+         put_mark(cairo, {at.x + 0.6 * em, at.y + em * 0.75}, 0.5 * em, em * 0.1);
+         put_text(cairo, {at.x + indent, at.y + em * kBaseline}, text, {.height = em});
+       }});
+}
+
+void Legend::add_value_bar(const Coloring& coloring, DrawnUnit unit, bool mean) {
+  const ValueRange range = coloring.range();
+  std::string title = "smallest angle";
+  std::vector<Tick> ticks;
+  if (coloring.by() == DrawColor::kAngle) {
+    ticks = angle_ticks();
+  } else {
+    constexpr double kSquareKilometre = 1e6;
+    const bool kilometres = unit != DrawnUnit::kNone && std::exp2(range.high) >= kSquareKilometre;
+    title = "area";
+    if (unit != DrawnUnit::kNone) title += kilometres ? " in km\u00b2" : " in m\u00b2";
+    ticks = size_ticks(range, kilometres ? kSquareKilometre : 1);
+  }
+  if (mean) title += ", mean";
+  const double indent = text_width(title, em_) + em_;
+  const double width = kValueBarWidth * em_;
+  const double overhang = 2 * em_;  // of the last number
+  parts_.push_back({indent + width + overhang, [=, em = em_](cairo_t* cairo, PagePoint at) {
+                      const double left = at.x + indent;
+                      const double top = at.y + em * kBarTop;
+                      put_text(cairo, {at.x, at.y + em * kBaseline}, title, {.height = em});
+                      cairo_pattern_t* const colors =
+                          cairo_pattern_create_linear(left, 0, left + width, 0);
+                      constexpr int kStops = 32;
+                      for (int i = 0; i <= kStops; ++i) {
+                        const double t = static_cast<double>(i) / kStops;
+                        const Color c = viridis(t);
+                        cairo_pattern_add_color_stop_rgb(colors, t, c.red, c.green, c.blue);
+                      }
+                      cairo_rectangle(cairo, left, top, width, em * kBarHeight);
+                      cairo_set_source(cairo, colors);
+                      cairo_fill(cairo);
+                      cairo_pattern_destroy(colors);
+                      const double bottom = top + em * kBarHeight;
+                      for (const Tick& tick : ticks) {
+                        const double x =
+                            left + (tick.value - range.low) / (range.high - range.low) * width;
+                        cairo_move_to(cairo, x, bottom);
+                        cairo_line_to(cairo, x, bottom + em * 0.25);
+                        set_color(cairo, kBoundaryInk);
+                        cairo_set_line_width(cairo, em * 0.08);
+                        cairo_stroke(cairo);
+                        put_text(cairo, {x, at.y + em * kBelow}, tick.text,
+                                 {.height = em * kSmall, .align = Align::kCentre});
+                      }
+                    }});
+}
+
+void Legend::add_regions(const Coloring& coloring) {
+  std::vector<std::pair<std::string, Color>> swatches;
+  for (const std::int32_t region : coloring.regions()) {
+    if (swatches.size() == kMostSwatches) break;
+    swatches.push_back({std::to_string(region), region_color(region)});
+  }
+  const bool more = coloring.regions().size() > swatches.size();
+  const std::string title = "region";
+  const auto swatch_width = [em = em_](const std::string& text) {
+    return 1.3 * em + text_width(text, em) + 0.8 * em;
+  };
+  double width = text_width(title, em_) + em_ + (more ? em_ : 0);
+  for (const auto& [text, color] : swatches) width += swatch_width(text);
+  parts_.push_back({width, [=, em = em_](cairo_t* cairo, PagePoint at) {
+                      const double baseline = at.y + em * kBaseline;
+                      put_text(cairo, {at.x, baseline}, title, {.height = em});
+                      double x = at.x + text_width(title, em) + em;
+                      for (const auto& [text, color] : swatches) {
+                        cairo_rectangle(cairo, x, at.y + em * kBarTop, em * kBarHeight,
+                                        em * kBarHeight);
+                        set_color(cairo, color);
+                        cairo_fill(cairo);
+                        put_text(cairo, {x + 1.3 * em, baseline}, text, {.height = em});
+                        x += swatch_width(text);
+                      }
+                      if (more) put_text(cairo, {x, baseline}, "...", {.height = em});
+                    }});
+}
+
+void Legend::add_colors(const Coloring& coloring, DrawnUnit unit, bool mean) {
+  if (coloring.by_value()) return add_value_bar(coloring, unit, mean);
+  if (coloring.by() == DrawColor::kRegion) add_regions(coloring);
+}
+
+double Legend::least_width() const {
+  double least = 0;
+  for (const Part& part : parts_) least = std::max(least, part.width);
+  return least;
+}
+
+template <class At>
+double Legend::lay_out(double width, const At& at) const {
+  double x = 0;
+  double y = 0;
+  for (const Part& part : parts_) {
+    if (x > 0 && x + part.width > width) {
+      x = 0;
+      y += kRow * em_;
+    }
+    at(part, x, y);
+    x += part.width + kGap * em_;
+  }
+  return parts_.empty() ? 0 : y + kRow * em_;
+}
+
+double Legend::height(double width) const {
+  return lay_out(width, [](const Part&, double, double) {});
+}
+
+void Legend::draw(cairo_t* cairo, PagePoint top_left, double width) const {
+  lay_out(width, [&](const Part& part, double x, double y) {
+    part.draw(cairo, {top_left.x + x, top_left.y + y});
+  });
+}
+
+}  // namespace weft::client
