@@ -39,6 +39,7 @@ test=(
   # what reads the files that weft writes, and writes those that it reads
   gmsh python3-gmsh python3-meshio python3-numpy python3-pyshp python3-shapely python3-vtk9
   python3-protobuf         # docs/generate.py
+  poppler-utils            # drawings
   python3-pyproj           # lengths and angles on the ellipsoid
   buildah debootstrap      # the container, without a daemon
   docker-compose           # its compose.yaml

@@ -224,18 +224,18 @@ Legend Drawing::legend(const Page& page) const {
                          std::clamp(kOfTheWidth * page.canvas.width(), 5 * page.em, 14 * page.em),
                          options_.unit);
   }
-  legend.add_text(with_separators(shown_) + (shown_ == 1 ? " triangle" : " triangles"));
+  legend.add_text((shown_ < added_ ? with_separators(shown_) + " of " : "") +
+                  with_separators(added_) + (added_ == 1 ? " triangle" : " triangles"));
   if (page.coloring != nullptr) legend.add_colors(*page.coloring, options_.unit, page.dense);
   if (const auto worst = worst_.sorted(); !worst.empty()) {
-    const auto angle = [](const WorstTriangle& one) {
-      return number_text(one.angle_deg) + "\u00b0";
-    };
-    legend.add_mark(worst.size() == 1 ? "smallest angle, " + angle(worst.front())
-                                      : std::to_string(worst.size()) + " smallest angles, " +
-                                            angle(worst.front()) + " to " + angle(worst.back()));
+    const std::string least = number_text(worst.front().angle_deg) + "\u00b0";
+    const std::string most = number_text(worst.back().angle_deg) + "\u00b0";
+    legend.add_mark((worst.size() == 1 ? "smallest angle, "
+                                       : with_separators(worst.size()) + " smallest angles, ") +
+                    (least == most ? least : least + " to " + most));
   }
   if (options_.labels && !page.dense)
-    legend.add_text("numbers of vertices black, of triangles blue, markers red");
+    legend.add_text("numbers of vertices black, of triangles blue, markers other than 0 red");
   return legend;
 }
 

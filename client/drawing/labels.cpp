@@ -79,7 +79,7 @@ void label_markers(Labels& labels, const Canvas& canvas, std::span<const DrawnEd
     const PagePoint a = canvas.at(edge.a);
     const PagePoint b = canvas.at(edge.b);
     const std::string text = std::to_string(edge.marker);
-    if (distance(a, b) >= 2.5 * labels.diagonal(text))
+    if (edge.marker != 0 && distance(a, b) >= 2.5 * labels.diagonal(text))
       labels.put({(a.x + b.x) / 2, (a.y + b.y) / 2}, text, kBoxInk);
   }
 }

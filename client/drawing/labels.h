@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers on a drawing: markers on edges, numbers of vertices and triangles, each where it fits
-// without touching another. All count from 0.
+// Numbers on a drawing: markers other than 0 on edges, numbers of vertices and triangles, each
+// where it fits without touching another. All count from 0.
 #pragma once
 
 #include <cstdint>

@@ -14,6 +14,7 @@ namespace weft::client {
 namespace {
 
 // In ems.
+constexpr double kAbove = 0.5;  // the first row
 constexpr double kRow = 3;
 constexpr double kGap = 2.5;
 constexpr double kBarTop = 0.3;
@@ -140,7 +141,7 @@ void Legend::add_value_bar(const Coloring& coloring, DrawnUnit unit, bool mean) 
     if (unit != DrawnUnit::kNone) title += kilometres ? " in km\u00b2" : " in m\u00b2";
     ticks = size_ticks(range, kilometres ? kSquareKilometre : 1);
   }
-  if (mean) title += ", mean";
+  if (mean) title = "mean " + title;
   const double indent = text_width(title, em_) + em_;
   const double width = kValueBarWidth * em_;
   const double overhang = 2 * em_;  // of the last number
@@ -218,7 +219,7 @@ double Legend::least_width() const {
 template <class At>
 double Legend::lay_out(double width, const At& at) const {
   double x = 0;
-  double y = 0;
+  double y = kAbove * em_;
   for (const Part& part : parts_) {
     if (x > 0 && x + part.width > width) {
       x = 0;

@@ -39,7 +39,7 @@ void put_text(cairo_t* cairo, PagePoint at, const std::string& text, const TextS
 }
 
 double text_width(const std::string& text, double height) {
-  constexpr double kWidthOfALetter = 0.64;
+  constexpr double kWidthOfALetter = 0.6;
   const auto letters =
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; });
   return static_cast<double>(letters) * kWidthOfALetter * height;

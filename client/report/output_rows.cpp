@@ -9,7 +9,9 @@ namespace weft::client {
 namespace {
 
 std::string not_a_box(const std::string& text) {
-  return in_quotes(text) + " is not a box x,y,width,height with positive sides, up to 1e100";
+  return in_quotes(text) +
+         " is not a box x,y,width,height with positive sides, up to 1e100, and at least 1e-12 of "
+         "its place";
 }
 
 // Four finite numbers, of which the sides are positive, none beyond what can be drawn.
@@ -25,9 +27,13 @@ OptionValue<DrawOptions> zoom() {
               numbers[count] = *number;
             }
             constexpr double kMost = 1e100;
+            constexpr double kLeastOfThePlace = 1e-12;
             const auto [x, y, width, height] = numbers;
-            if (count != numbers.size() || !(std::abs(x) <= kMost && std::abs(y) <= kMost) ||
-                !(width >= 1 / kMost && width <= kMost && height >= 1 / kMost && height <= kMost))
+            const auto is_side = [](double side, double place) {
+              return std::abs(place) <= kMost && side >= 1 / kMost && side <= kMost &&
+                     side >= kLeastOfThePlace * std::abs(place);
+            };
+            if (count != numbers.size() || !is_side(width, x) || !is_side(height, y))
               return not_a_box(texts.front());
             options.zoom = DrawnBox{x, y, width, height};
             return "";

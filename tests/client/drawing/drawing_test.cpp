@@ -4,10 +4,12 @@
 #include <cairo.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "client/drawing/colors.h"
+#include "client/drawing/drawn_triangle.h"
 #include "tests/client/support/sample_mesh.h"
 #include "tests/client/support/temp_folder.h"
 
@@ -19,13 +21,17 @@ class DrawingTest : public testing::Test {
   struct Options {
     DrawColor color = DrawColor::kNone;
     std::uint32_t long_side = 1800;
+    DrawOptions more = {.no_legend = true};
     std::vector<double> boxes = {};
     std::size_t pieces = 1;
   };
   std::filesystem::path draw_to(const std::string& name, const Mesh& mesh, const Options& options) {
     std::vector<OutputFile> files;
     files.push_back(std::move(OutputFile::create(folder_ / name, {}).value()));
-    Drawing drawing({.color = options.color, .pixels = options.long_side, .no_legend = true});
+    DrawOptions wanted = options.more;
+    wanted.color = options.color;
+    wanted.pixels = options.long_side;
+    Drawing drawing(wanted);
     const std::size_t triangles = mesh.triangles.size() / 3;
     for (std::size_t p = 0; p < options.pieces; ++p) {
       const std::size_t first = triangles * p / options.pieces;
@@ -181,6 +187,212 @@ TEST_F(DrawingTest, OfMoreTrianglesThanAreKeptLooksLikeOneOfFewer) {
   };
   static_assert(2 * 500 * 500 < Drawing::kMostVectors && Drawing::kMostVectors < 2 * 530 * 530);
   EXPECT_NEAR(drawn(530), drawn(500), 2);
+}
+
+// Pixels of 600 for 2 units and a margin of 10: 290 per unit.
+TEST_F(DrawingTest, ShowsWhatIsInTheZoomAndCutsTheRestOff) {
+  const Options options{.color = DrawColor::kRegion,
+                        .long_side = 600,
+                        .more = {.zoom = DrawnBox{1, 2, 2, 1}, .no_legend = true}};
+  const Image image(draw_to("m.png", square_mesh(4), options));
+  EXPECT_EQ(image.width(), 600);
+  EXPECT_EQ(image.height(), 310);
+  EXPECT_TRUE(alike(image.color(200, 100), region_color(0)));              // x = 1.66
+  EXPECT_TRUE(alike(image.color(400, 100), region_color(7)));              // x = 2.34
+  EXPECT_LT(image.brightness(300, 100), image.brightness(200, 100) - 30);  // the edge at x = 2
+  EXPECT_TRUE(alike(image.color(200, 3), region_color(0)));  // what is beside it fills the margin
+}
+
+TEST_F(DrawingTest, CountsTheTrianglesInTheZoom) {
+  Drawing drawing({.zoom = DrawnBox{1.4, 1.4, 0.2, 0.2}});
+  drawing.add(square_mesh(4).view());
+  EXPECT_EQ(drawing.triangles(), 2u);
+}
+
+TEST_F(DrawingTest, ZoomsIntoADenseMeshUntilItsTrianglesAreSeen) {
+  const Options options{.color = DrawColor::kAuto,
+                        .long_side = 600,
+                        .more = {.zoom = DrawnBox{301, 302, 4, 4}, .no_legend = true}};
+  const Image image(draw_to("m.png", square_mesh(600), options));
+  EXPECT_LT(image.brightness(155, 230), 160);  // an edge, as of square_mesh(4)
+  EXPECT_EQ(image.brightness(110, 110), 255);
+}
+
+// Beyond 8 million pixels coordinates of cairo overflow.
+TEST_F(DrawingTest, ZoomsIntoOneTriangleAsFarAsItGoes) {
+  for (const DrawColor color : {DrawColor::kNone, DrawColor::kRegion}) {
+    for (const double side : {1e-9, 1e-12}) {
+      const Options options{.color = color,
+                            .long_side = 300,
+                            .more = {.zoom = DrawnBox{0.25, 0.5, side, side}, .no_legend = true}};
+      const Image image(draw_to("m.png", square_mesh(1), options));
+      const Color inside = color == DrawColor::kNone ? kPaper : region_color(0);
+      EXPECT_TRUE(alike(image.color(150, 150), inside)) << side;
+      EXPECT_TRUE(alike(image.color(2, 290), inside)) << side;
+    }
+  }
+}
+
+// A strip of unit squares beside one of squares a tenth as wide.
+Mesh two_sizes() {
+  Mesh mesh = square_mesh(20);
+  for (std::size_t i = 0; i < mesh.coordinates.size(); i += 2)
+    if (double& x = mesh.coordinates[i]; x > 10) x = 10 + (x - 10) / 10;
+  return mesh;
+}
+
+TEST_F(DrawingTest, ColorsBySizeFromTheSmallestToTheLargest) {
+  const Image image(draw_to("m.png", two_sizes(), {.color = DrawColor::kSize, .long_side = 1220}));
+  // 60 pixels a unit: the middle of a triangle of each.
+  EXPECT_GT(image.color(100, 50).red, 0.85);
+  EXPECT_GT(image.color(100, 50).green, 0.85);
+  EXPECT_LT(image.color(640, 50).red, 0.3);
+  EXPECT_LT(image.color(640, 50).green, 0.2);
+}
+
+TEST_F(DrawingTest, ShowsTheMeanSizeInAnEvenToneIfTrianglesAreSmallerThanPixels) {
+  Mesh mesh = square_mesh(800);
+  for (std::size_t i = 0; i < mesh.coordinates.size(); i += 2)
+    if (double& x = mesh.coordinates[i]; x > 400) x = 400 + (x - 400) / 4;
+  const Image image(draw_to("m.png", mesh, {.color = DrawColor::kAuto, .long_side = 520}));
+  int low = 255;
+  int high = 0;
+  for (int y = 100; y < 400; ++y)
+    for (int x = 30; x < 150; ++x) {
+      low = std::min(low, image.brightness(x, y));
+      high = std::max(high, image.brightness(x, y));
+    }
+  EXPECT_LE(high - low, 12);
+  EXPECT_GT(low, 130);                         // large: bright
+  EXPECT_LT(image.brightness(290, 250), 90);   // small: dark
+  EXPECT_GT(image.color(290, 250).blue, 0.2);  // and no grey
+}
+
+TEST_F(DrawingTest, HasNoColorsByItselfIfTrianglesAreSeen) {
+  const Image image(
+      draw_to("m.png", square_mesh(4), {.color = DrawColor::kAuto, .long_side = 600}));
+  EXPECT_EQ(image.brightness(110, 110), 255);
+}
+
+TEST_F(DrawingTest, MarksTheWorstTriangles) {
+  Mesh mesh = square_mesh(10);
+  mesh.coordinates[2 * (3 * 11 + 7)] += 0.6;  // vertex (7, 3)
+  const Options options{.long_side = 620, .more = {.worst = 1, .no_legend = true}};
+  const Image image(draw_to("m.png", mesh, options));
+  std::size_t marked = 0;
+  for (int y = 0; y < 620; ++y)
+    for (int x = 0; x < 620; ++x) {
+      const Color c = image.color(x, y);
+      if (!(c.red > 0.8 && c.green < 0.25)) continue;
+      ++marked;
+      EXPECT_NEAR(x, 10 + 60 * 7.5, 90);
+      EXPECT_NEAR(y, 10 + 60 * 7, 90);
+    }
+  EXPECT_GT(marked, 20u);
+}
+
+TEST_F(DrawingTest, ListsTheWorstTrianglesInTheirOrder) {
+  Mesh mesh = square_mesh(10);
+  mesh.coordinates[2 * (3 * 11 + 7)] += 0.6;
+  Drawing drawing({.worst = 3});
+  drawing.add(mesh.view());
+  const auto worst = drawing.worst();
+  ASSERT_EQ(worst.size(), 3u);
+  EXPECT_LT(worst[0].angle_deg, 30);
+  EXPECT_LE(worst[0].angle_deg, worst[1].angle_deg);
+  EXPECT_LE(worst[1].angle_deg, worst[2].angle_deg);
+  for (const WorstTriangle& one : worst)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t v = one.triangle.vertices[k];
+      EXPECT_EQ(one.triangle.corners[k].x, mesh.coordinates[2 * v]);
+      const std::uint32_t* corners = &mesh.triangles[3 * one.triangle.id];
+      EXPECT_NE(std::find(corners, corners + 3, v), corners + 3);
+    }
+}
+
+TEST_F(DrawingTest, NumbersVerticesAndTrianglesWhereTheyFit) {
+  const auto drawn = [&](std::uint32_t n, bool labels) {
+    return contents_of(draw_to("m.png", square_mesh(n),
+                               {.long_side = 600, .more = {.labels = labels, .no_legend = true}}));
+  };
+  EXPECT_TRUE(drawn(4, true) != drawn(4, false));
+  EXPECT_TRUE(drawn(110, true) == drawn(110, false));  // five pixels a side: no room
+}
+
+TEST_F(DrawingTest, PutsScaleAndLegendBelowTheMesh) {
+  const auto drawn = [&](DrawColor color, bool no_legend) {
+    return draw_to("m.png", square_mesh(4),
+                   {.color = color, .long_side = 600, .more = {.no_legend = no_legend}});
+  };
+  const Image image(drawn(DrawColor::kAngle, false));
+  EXPECT_GE(image.width(), 600);
+  EXPECT_GT(image.height(), 615);
+  EXPECT_LT(image.height(), 720);
+  // The bar has the colours from the first to the last.
+  bool first = false;
+  bool last = false;
+  bool scale = false;
+  for (int y = 601; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) {
+      first |= alike(image.color(x, y), viridis(0));
+      last |= alike(image.color(x, y), viridis(1));
+      scale |= x < 60 && image.brightness(x, y) < 80;
+    }
+  EXPECT_TRUE(first && last && scale);
+  EXPECT_EQ(Image(drawn(DrawColor::kAngle, true)).height(), 600);
+}
+
+TEST_F(DrawingTest, DrawsDegreesAsLongAsTheyAreOnTheGround) {
+  Mesh mesh = square_mesh(4);  // to 61 to 59 degrees north: half as wide as high
+  for (std::size_t i = 0; i < mesh.coordinates.size(); ++i)
+    mesh.coordinates[i] = i % 2 == 0 ? mesh.coordinates[i] / 2 : 59 + mesh.coordinates[i] / 2;
+  const DrawOptions degrees{.no_legend = true, .unit = DrawnUnit::kDegrees};
+  const Image image(draw_to("m.png", mesh, {.long_side = 620, .more = degrees}));
+  EXPECT_EQ(image.height(), 620);
+  EXPECT_NEAR(image.width(), 320, 2);
+}
+
+TEST(DrawnTriangle, HasItsAreaAndAngleOnTheGround) {
+  const DrawnTriangle half{.corners = {Point{10, 60}, {10.002, 60}, {10, 60.001}}};
+  EXPECT_NEAR(smallest_angle_deg(half, DrawnUnit::kDegrees), 45, 0.01);
+  EXPECT_NEAR(area(half, DrawnUnit::kDegrees), 111.195 * 111.195 / 2, 1);
+  EXPECT_NEAR(smallest_angle_deg(half, DrawnUnit::kNone), 26.565, 0.001);
+  EXPECT_NEAR(area(half, DrawnUnit::kNone), 1e-6, 1e-9);
+  const DrawnTriangle flat{.corners = {Point{0, 0}, {1, 0}, {2, 0}}};
+  EXPECT_EQ(smallest_angle_deg(flat, DrawnUnit::kNone), 0);
+}
+
+TEST_F(DrawingTest, OutlinesAMeshWithoutEdges) {
+  Mesh mesh = square_mesh(4);
+  mesh.edges.clear();
+  mesh.edge_markers.clear();
+  const Image image(draw_to("m.png", mesh, {.long_side = 600}));
+  EXPECT_LT(image.brightness(10, 200), 60);
+  EXPECT_LT(image.brightness(589, 200), 60);
+  EXPECT_LT(image.brightness(200, 10), 60);
+  EXPECT_LT(image.brightness(200, 589), 60);
+}
+
+TEST_F(DrawingTest, TakesTrianglesOfEitherOrientation) {
+  const std::string turned = contents_of(draw_to("m.png", square_mesh(4), {}));
+  Mesh mesh = square_mesh(4);
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 6)
+    std::swap(mesh.triangles[t + 1], mesh.triangles[t + 2]);
+  EXPECT_TRUE(contents_of(draw_to("m.png", mesh, {})) == turned);
+}
+
+TEST_F(DrawingTest, RefusesCoordinatesThatCannotBeDrawn) {
+  std::vector<OutputFile> files;
+  files.push_back(std::move(OutputFile::create(folder_ / "m.png", {}).value()));
+  Mesh mesh = square_mesh(1);
+  mesh.coordinates[0] = -1e308;
+  mesh.coordinates[2] = 1e308;
+  Drawing drawing({});
+  drawing.add(mesh.view());
+  const auto drawn = drawing.draw(DrawFormat::kPng, {}, files[0]);
+  ASSERT_FALSE(drawn);
+  EXPECT_EQ(drawn.error().exit, ExitCode::kUnreadableInput);
+  EXPECT_EQ(drawn.error().message, "the mesh has a coordinate of -1e+308, drawings go to 1e+100");
 }
 
 TEST_F(DrawingTest, DrawsAnEmptyMeshAsBlankPaper) {
