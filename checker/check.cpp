@@ -159,12 +159,14 @@ Report check(const Domain& domain, const Mesh& mesh, const Requirements& require
     }
     half_edges.reset();
     judge_quality(domain, mesh, requirements, context, report.facts, findings);
+    judge_lengths(mesh, requirements, findings);
   } else {
     if (near) arrange(unbent(domain), findings);  // for what may be wrong with the domain itself
     if (findings.total(Rule::kStructure) > 0) skip({Rule::kOrientation});
     if (!sound) skip({Rule::kConformity});
     skip({Rule::kOverlap, Rule::kEdges, Rule::kChains, Rule::kPoints, Rule::kMarkers,
-          Rule::kCoverage, Rule::kRegions, Rule::kDelaunay, Rule::kAngle, Rule::kArea});
+          Rule::kCoverage, Rule::kRegions, Rule::kDelaunay, Rule::kAngle, Rule::kArea,
+          Rule::kLengths});
   }
   findings.write_to(report);
   return report;

@@ -30,8 +30,9 @@ enum class Rule : std::uint8_t {
   kDelaunay,  // across every unlisted edge, no corner lies inside the other circumcircle
   kAngle,     // no angle is below the bound, except those that small input angles excuse
   kArea,      // no triangle is larger than the size field, or its region, allows
+  kLengths,   // no listed edge is longer than the size at its marker
 };
-inline constexpr std::size_t kRules = 15;
+inline constexpr std::size_t kRules = 16;
 
 std::string_view rule_name(Rule rule);  // "coverage"
 

@@ -12,6 +12,7 @@
 #include "engine/domain/tolerance.h"
 #include "engine/output/bounds_error.h"
 #include "engine/refine/area_bound.h"
+#include "engine/refine/edge_limits.h"
 #include "engine/refine/mapped_area.h"
 #include "engine/refine/storage/mesh.h"
 #include "engine/refine/storage/reserved_memory.h"
@@ -82,6 +83,8 @@ class Job {
         QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(summary_.box));
     if (request_.placement == Placement::kLattice)
       quality_.lattice = LatticeShape::for_angle(request_.min_angle_deg);
+    edge_limits_ = EdgeLimits(request_.size.at);
+    if (auto error = check_edge_limits()) return tl::unexpected(*error);
     if (auto error = admit(bound)) return tl::unexpected(*error);
     if (!map_) return mesh(ConstantArea(bound), 0);
     GrainMap grains;
@@ -122,6 +125,20 @@ class Job {
     return std::nullopt;
   }
 
+  // Edges on segments end up between half their limit and all of it.
+  std::optional<Error> check_edge_limits() const {
+    const double least = 2 * std::sqrt(quality_.min_length2);
+    for (std::size_t i = 0; i < request_.size.at.size(); ++i) {
+      const double limit = request_.size.at[i].max_edge;
+      const std::string field = "size.at[" + std::to_string(i) + "].max_edge";
+      if (limit < least)
+        return Error{ErrorCode::kBadOption, field,
+                     field + " is " + text(limit) + "; it must be at least " + text(least) +
+                         ", twice the shortest edge that refinement makes"};
+    }
+    return std::nullopt;
+  }
+
   // Estimates the mesh, for a size of `bound` everywhere or that of the map, and refuses what is
   // over the limit.
   std::optional<Error> admit(double bound) {
@@ -130,7 +147,10 @@ class Job {
       return Error{ErrorCode::kLimitExceeded, field, std::move(message)};
     };
     const double by_bounds = triangles_asked(domain_, bound);
-    const double least = std::max(map_ ? map_->least_triangles() : 0, by_bounds);
+    constexpr double kSides = 3;
+    constexpr double kPerPiece = 4;  // triangles around an edge on a segment, roughly
+    const double pieces = edge_limits_.pieces(domain_);
+    const double least = std::max({map_ ? map_->least_triangles() : 0, by_bounds, pieces / kSides});
     const double likely = std::max(map_ ? map_->likely_triangles() : 0, by_bounds);
     if (domain_.triangles.size() > budget.triangle_limit) {
       return over_limit("domain", "the domain itself has " +
@@ -164,7 +184,7 @@ class Job {
     least_ = std::max(least, narrow_.least());
     const double elsewhere =
         NarrowPlaces::elsewhere(quality_) * static_cast<double>(domain_.triangles.size());
-    expected_ = std::max(by_size_, elsewhere) + narrow_.likely();
+    expected_ = std::max({by_size_, elsewhere, kPerPiece * pieces}) + narrow_.likely();
     const double most = static_cast<double>(wants_cap() ? budget.max_triangles : kUncountable);
     context_.report_expected(static_cast<std::uint64_t>(std::min(expected_, most)));
     context_.end_stage("size map");
@@ -185,7 +205,8 @@ class Job {
                   .leaf_triangles = request_.leaf_triangles.value_or(leaf_triangles_for(by_size_)),
                   .least_triangles = least_,
                   .sweeps = sweeps(),
-                  .other_bytes = size_bytes + narrow_.bytes()};
+                  .other_bytes = size_bytes + narrow_.bytes(),
+                  .edge_limits = edge_limits_};
     if (wants_cap()) plan.max_triangles = context_.budget().max_triangles;
     if (auto error = run_mesh(plan, area, sink_, context_, summary_)) return tl::unexpected(*error);
     summary_.engine_seconds += summary_.triangulate_seconds + summary_.size_seconds;
@@ -248,6 +269,7 @@ class Job {
   Domain domain_;
   std::optional<SizeMap> map_;
   QualityBounds quality_;
+  EdgeLimits edge_limits_;
   NarrowPlaces narrow_;
   double least_ = 0;          // triangles, for certain
   double expected_ = 0;       // triangles

@@ -250,4 +250,21 @@ void judge_quality(const Domain& domain, const Mesh& mesh, const Requirements& r
   QualityJudge(domain, mesh, requirements, context, facts, findings).judge();
 }
 
+void judge_lengths(const Mesh& mesh, const Requirements& requirements, Findings& findings) {
+  if (requirements.allowed_unrefined > 0) return;
+  for (const Mesh::Edge& edge : mesh.edges) {
+    const Vec2 a = mesh.vertices[edge.a];
+    const Vec2 b = mesh.vertices[edge.b];
+    const double magnitude =
+        std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(b.x), std::fabs(b.y)});
+    const double length = std::hypot(b.x - a.x, b.y - a.y);
+    for (const SizeAt& at : requirements.size.at)
+      if (at.marker == edge.marker && length > at.max_edge * (1 + 2e-9) + 0x1p-49 * magnitude)
+        findings.add(Rule::kLengths, [&] {
+          return say("the edge from ", a, " to ", b, " is ", length, " long, the size at marker ",
+                     at.marker, " is ", at.max_edge);
+        });
+  }
+}
+
 }  // namespace weft::check

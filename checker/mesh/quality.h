@@ -52,4 +52,9 @@ struct QualityContext {
 void judge_quality(const Domain& domain, const Mesh& mesh, const Requirements& requirements,
                    const QualityContext& context, Facts& facts, Findings& findings);
 
+// Adds violations of kLengths: of listed edges whose marker has a size of its own. A length may
+// exceed it by 2e-9 of it and 2^-49 of the largest coordinate of the edge. Nothing is judged if
+// triangles may miss their bounds. REQUIRES: structure holds.
+void judge_lengths(const Mesh& mesh, const Requirements& requirements, Findings& findings);
+
 }  // namespace weft::check

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "checker/size/size.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "checker/size/field.h"
@@ -63,6 +65,25 @@ struct Maker {
   }
 };
 
+// The size with what the gradation makes of the sizes at markers.
+Function with_sizes_at(std::function<double(Vec2)> size, const SizeSpec& spec,
+                       const Domain& domain) {
+  for (const SizeAt& at : spec.at) {
+    if (!(at.max_edge > 0) || std::isinf(at.max_edge))
+      return tl::unexpected(say("the size at marker ", at.marker, " is ", at.max_edge));
+    auto distance = Distance::make({{at.marker}, {}, {}}, domain);
+    if (!distance) return tl::unexpected(say("sizes at markers: ", distance.error()));
+    if (spec.gradation == 0) continue;
+    const auto lines = std::make_shared<const Distance>(std::move(*distance));
+    size = [size = std::move(size), lines, at, growth = spec.gradation](Vec2 p) {
+      const double near = area_of_edge(at.max_edge + growth * (*lines)(p));
+      const double area = size ? size(p) : std::numeric_limits<double>::infinity();
+      return near < area ? near : area;
+    };
+  }
+  return size;
+}
+
 }  // namespace
 
 tl::expected<std::function<double(Vec2)>, std::string> size_function(const SizeSpec& spec,
@@ -78,11 +99,13 @@ tl::expected<std::function<double(Vec2)>, std::string> size_function(const SizeS
   }
   if (auto fault = fault_of_names(fields)) return tl::unexpected(std::move(*fault));
   auto size = std::visit(Maker{std::move(fields)}, spec.value);
-  if (!size || !*size || spec.measure == Measure::kArea) return size;
-  return [edge = std::move(*size)](Vec2 p) {
-    const double h = edge(p);
-    return h > 0 ? area_of_edge(h) : h;
-  };
+  if (!size) return size;
+  if (*size && spec.measure == Measure::kEdge)
+    size = [edge = std::move(*size)](Vec2 p) {
+      const double h = edge(p);
+      return h > 0 ? area_of_edge(h) : h;
+    };
+  return with_sizes_at(std::move(*size), spec, domain);
 }
 
 }  // namespace weft::check

@@ -37,6 +37,13 @@ struct NamedField {
 // area by that of an equilateral triangle, sqrt(3)/4 h^2.
 enum class Measure : std::uint8_t { kArea, kEdge };
 
+// Edges that carry the marker are at most so long. With a gradation, the length of edges is at most
+// `max_edge` + gradation * (distance to the segments with the marker).
+struct SizeAt {
+  std::int32_t marker = 0;
+  double max_edge = 0;
+};
+
 struct SizeSpec {
   using Value = std::variant<std::monostate,  // no bound
                              double,          // the same everywhere
@@ -52,8 +59,9 @@ struct SizeSpec {
   Measure measure = Measure::kArea;
   std::vector<NamedField> fields;
   // How much the wanted length of edges grows at most per unit of length (gradation.h): positive
-  // and finite, or 0: no limit. The function of `size_function` is without it.
+  // and finite, or 0: no limit. The function of `size_function` is without it, but for `at`.
   double gradation = 0;
+  std::vector<SizeAt> at;
 };
 
 // The upper bound on a triangle's area at its centroid, squared units; empty if there is none. If

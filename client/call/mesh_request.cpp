@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "client/base/option_row.h"
+#include "client/base/text.h"
 #include "client/formats/raster.h"
 
 namespace weft::client {
@@ -78,6 +80,18 @@ Result<v1::SizeField> read_size(const std::string& text) {
 
 }  // namespace
 
+tl::expected<EdgeAt, std::string> EdgeAt::parse(const std::string& text) {
+  const std::string start = "marker=";
+  const std::size_t colon = text.find(':');
+  if (text.starts_with(start) && colon != std::string::npos) {
+    const auto marker = value_of<std::int32_t>(text.substr(start.size(), colon - start.size()));
+    const auto max_edge = as_number(text.substr(colon + 1));
+    if (marker && max_edge && *max_edge > 0) return EdgeAt{*marker, *max_edge};
+  }
+  return tl::unexpected(in_quotes(text) +
+                        " is not a marker and a positive length, such as marker=2:500");
+}
+
 Result<RequestOptions> with_size(RequestOptions request_options, const Domain& domain,
                                  const DomainProjection* projection) {
   const bool by_edge = !request_options.edge.empty();
@@ -90,6 +104,11 @@ Result<RequestOptions> with_size(RequestOptions request_options, const Domain& d
   if (by_edge) size->set_measure(v1::MEASURE_EDGE);
   if (request_options.gradation) size->set_gradation(*request_options.gradation);
   if (request_options.cells_across) size->set_cells_across(*request_options.cells_across);
+  for (const EdgeAt& edge_at : request_options.edge_at) {
+    v1::SizeAt& at = *size->add_at();
+    at.set_marker(edge_at.marker);
+    at.set_max_edge(edge_at.max_edge);
+  }
   for (const FieldOption& field : request_options.fields) {
     auto warnings = fill(field, domain, projection, *size->add_fields());
     if (!warnings) return tl::unexpected(warnings.error());

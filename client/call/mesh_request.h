@@ -19,6 +19,15 @@
 
 namespace weft::client {
 
+// How long edges may be on segments with a marker.
+struct EdgeAt {
+  std::int32_t marker = 0;
+  double max_edge = 0;
+
+  // `text` is marker=2:500. The error is a text that says what is wrong.
+  static tl::expected<EdgeAt, std::string> parse(const std::string& text);
+};
+
 // What the mesh must satisfy. DEFAULT of all optionals: the server's.
 struct RequestOptions {
   // The area of triangles or the length of edges: a number, an expression in x, y and the names of
@@ -28,6 +37,7 @@ struct RequestOptions {
   std::vector<FieldOption> fields{};
   std::optional<double> gradation{};     // that the length of edges has at most
   std::optional<double> cells_across{};  // edges across the domain, at least about
+  std::vector<EdgeAt> edge_at{};         // lengths of edges on segments, by marker
   // All of these, with what their files hold: see with_size.
   std::shared_ptr<const v1::SizeField> size_read{};
   std::vector<std::string> warnings{};  // about these files

@@ -34,6 +34,20 @@ OptionValue<Request> fields() {
           }};
 }
 
+OptionValue<Request> edge_at() {
+  return {"marker=M:LEN", "", Arity::kList,
+          [](const auto& texts, const auto&, Request& options) -> std::string {
+            std::vector<EdgeAt> all;
+            for (const std::string& text : texts) {
+              const auto one = EdgeAt::parse(text);
+              if (!one) return one.error();
+              all.push_back(*one);
+            }
+            options.edge_at = std::move(all);
+            return "";
+          }};
+}
+
 const OptionRows<Request>& other_rows() {
   static const OptionRows<Request> rows = {
       {"min-angle", "WEFT_MIN_ANGLE", "Minimum angle of every triangle, in degrees, 0 to 36", "20",
@@ -91,6 +105,10 @@ const OptionRows<Request>& size_rows() {
        "domain file; width, the domain's local width; mesh:FILE[:ARRAY], values at the vertices of "
        "an earlier mesh; or FILE[:BAND], the values of a raster. May be repeated",
        "", fields()},
+      {"edge-at", "",
+       "Maximum length LEN of edges on segments with the marker M. With --gradation, edges grow "
+       "from there by it at most. May be repeated, once for each marker",
+       "", edge_at()},
       {"gradation", "WEFT_GRADATION",
        "How much the length of edges may grow per unit of length; a size that grows faster is "
        "lowered. 0.15 is common",

@@ -91,6 +91,7 @@ check::SizeSpec to_checker(const v1::SizeField& size) {
   if (size.measure() == v1::MEASURE_EDGE) spec.measure = check::Measure::kEdge;
   for (const v1::NamedField& field : size.fields()) spec.fields.push_back(to_checker(field));
   spec.gradation = size.gradation();
+  for (const v1::SizeAt& at : size.at()) spec.at.push_back({at.marker(), at.max_edge()});
   return spec;
 }
 

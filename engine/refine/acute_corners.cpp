@@ -170,11 +170,10 @@ std::optional<Error> AcuteCorners::sort_by_ends(const Domain& domain,
   return std::nullopt;
 }
 
-Point AcuteCorners::split_point(const Mesh& mesh, Pair ends, Pair apexes) const {
+Point AcuteCorners::split_point(const Mesh& mesh, Pair ends, Pair apexes, double part) const {
   const Point from = mesh.vertices[ends[0]];
   const Point to = mesh.vertices[ends[1]];
   const std::uint32_t s = subsegment(mesh, ends[0], ends[1]);
-  double part = 0.5;
   if (has_shells((*subsegments_)[s].a) || has_shells((*subsegments_)[s].b)) {
     const auto matching = matching_part(mesh, s, from, to, apexes);
     part = matching ? *matching : dyadic_part(mesh, s, from, to);

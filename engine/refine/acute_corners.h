@@ -63,9 +63,10 @@ class AcuteCorners {
   // Two vertices of the mesh.
   using Pair = std::array<std::uint32_t, 2>;
 
-  // Where to split the piece of a segment between two vertices: as above on an arm, otherwise in
-  // the middle. `apexes` face the piece from its two sides; kNone if a side has no triangle.
-  Point split_point(const Mesh& mesh, Pair ends, Pair apexes) const;
+  // Where to split the piece of a segment between two vertices: as above on an arm, otherwise
+  // after `part` of the way. `apexes` face the piece from its two sides; kNone if a side has no
+  // triangle.
+  Point split_point(const Mesh& mesh, Pair ends, Pair apexes, double part) const;
 
   // The places where two of the domain's segments meet at a small angle outside of it.
   const Needles& needles() const { return needles_; }
@@ -75,6 +76,10 @@ class AcuteCorners {
 
   // Index into Domain::subsegments of the edge a-b, which must lie on a segment.
   std::uint32_t subsegment(const Mesh& mesh, std::uint32_t a, std::uint32_t b) const;
+  // Of the segment that the edge a-b lies on.
+  std::int32_t marker(const Mesh& mesh, std::uint32_t a, std::uint32_t b) const {
+    return (*subsegments_)[subsegment(mesh, a, b)].marker;
+  }
 
   std::uint64_t bytes() const {
     return corners_.size() + by_ends_.size() * sizeof(Ends) +

@@ -11,6 +11,7 @@
 #include "engine/base/context.h"
 #include "engine/domain/domain.h"
 #include "engine/refine/acute_corners.h"
+#include "engine/refine/edge_limits.h"
 #include "engine/refine/quality_bounds.h"
 #include "engine/refine/storage/mesh.h"
 
@@ -21,6 +22,7 @@ struct RefinementContext {
   Mesh& mesh;
   const AcuteCorners& corners;
   const std::vector<Region>& regions;
+  const EdgeLimits& edge_limits;
   ExecutionContext& context;
   std::uint64_t other_bytes;     // that the job holds all the time, besides the mesh
   std::uint64_t triangle_limit;  // an error beyond

@@ -63,6 +63,7 @@ class Refiner {
       : mesh_(refinement.mesh),
         corners_(refinement.corners),
         regions_(refinement.regions),
+        edge_limits_(refinement.edge_limits),
         quality_(quality),
         area_(std::move(area)),
         context_(refinement.context),
@@ -102,10 +103,11 @@ class Refiner {
   }
   void queue(const SegmentEdge& left) { segments_.push_back(left); }
 
-  // Judges every triangle and queues the bad ones. REQUIRES: all triangles lie in the slots of this
-  // task.
+  // Judges every triangle and queues the bad ones; splits segments down to the limits of their
+  // markers. REQUIRES: all triangles lie in the slots of this task.
   std::optional<Error> queue_all() {
     for_all_triangles([&](std::uint32_t t) { judge(t); });
+    split_long_segments();
     return stopped_;
   }
 
@@ -286,8 +288,10 @@ class Refiner {
     const std::uint32_t a = triangle.vertex[kNext[edge]];
     const std::uint32_t b = triangle.vertex[kPrevious[edge]];
     const HalfEdge across = triangle.neighbor[edge];
+    const double pieces = pieces_of(a, b);
     const Point p = corners_.split_point(
-        mesh_, {a, b}, {triangle.vertex[edge], across != kNone ? apex_of(across) : kNone});
+        mesh_, {a, b}, {triangle.vertex[edge], across != kNone ? apex_of(across) : kNone},
+        pieces > 1 ? std::ceil(pieces / 2) / pieces : 0.5);
     Outcome outcome = split_segment_at(t, edge, p);
     if (outcome != Outcome::kFlat) [[likely]]
       return outcome;
@@ -399,6 +403,33 @@ class Refiner {
     return any;
   }
 
+  // The parts that the limit of its marker asks of the edge a-b, which lies on a segment.
+  double pieces_of(std::uint32_t a, std::uint32_t b) const {
+    if (edge_limits_.empty()) [[likely]]
+      return 1;
+    return edge_limits_.pieces(corners_.marker(mesh_, a, b), mesh_.vertices[a], mesh_.vertices[b]);
+  }
+
+  // Splits segments that are longer than the limit of their marker, as often as is needed; those
+  // that cannot be split stay.
+  void split_long_segments() {
+    if (edge_limits_.empty()) return;
+    bool split = true;
+    while (split && !stopped_) {
+      for_all_triangles([&](std::uint32_t t) {
+        const Triangle& triangle = mesh_.triangles[t];
+        if (triangle.dead()) return;
+        for (std::uint32_t edge = 0; edge < 3; ++edge) {
+          const std::uint32_t a = triangle.vertex[kNext[edge]];
+          const std::uint32_t b = triangle.vertex[kPrevious[edge]];
+          if (triangle.on_segment(edge) && pieces_of(a, b) > 1)
+            segments_.push_back({t, edge, a, b});
+        }
+      });
+      split = split_queued_segments();
+    }
+  }
+
   // Whether the star of p may be made. Flat triangles arise only at the limit of double precision.
   bool acceptable(const RingVerdict& verdict, Point p) {
     if (verdict.too_close) [[unlikely]]
@@ -464,6 +495,7 @@ class Refiner {
   Mesh& mesh_;
   const AcuteCorners& corners_;
   const std::vector<Region>& regions_;
+  const EdgeLimits& edge_limits_;
   const QualityBounds quality_;
   AreaBound area_;
   ExecutionContext& context_;

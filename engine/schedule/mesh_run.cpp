@@ -42,6 +42,7 @@ class MeshRun {
         refinement_{mesh,
                     corners,
                     plan.domain.regions,
+                    plan.edge_limits,
                     context,
                     plan.domain.bytes() + plan.other_bytes + corners.bytes(),
                     cut_off ? context.budget().triangle_limit : limit(plan, context)},

@@ -13,6 +13,7 @@
 #include "engine/domain/domain.h"
 #include "engine/output/chunk.h"
 #include "engine/output/summary.h"
+#include "engine/refine/edge_limits.h"
 #include "engine/refine/quality_bounds.h"
 #include "engine/schedule/narrow_places.h"
 
@@ -53,6 +54,7 @@ struct MeshPlan {
   // the same as without this bound; nothing is sent before that is known.
   std::optional<std::uint64_t> max_triangles = std::nullopt;
   std::uint64_t other_bytes = 0;  // held by the job besides
+  EdgeLimits edge_limits{};       // on segments
 
   // The maximum number of full leaves in a block of the coarse mesh (coarse_blocks.h); 1 for no
   // blocks. Before the first leaf, a coarse mesh for all blocks is made, and then some hundred

@@ -14,6 +14,7 @@
 #include "engine/size/fields/distance_field.h"
 #include "engine/size/fields/width_field.h"
 #include "engine/size/gradation/graded_size.h"
+#include "engine/size/marker_size.h"
 #include "engine/size/width_size.h"
 
 namespace weft {
@@ -51,6 +52,26 @@ std::optional<Error> check_widths(const std::vector<FieldSpec>& fields) {
       return Error{ErrorCode::kBadOption, field,
                    field + " is the width, as size.fields[" + std::to_string(*first) + "] is"};
     first = i;
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> check_sizes_at(const std::vector<SizeAt>& at) {
+  if (at.size() > kMaxSizesAt)
+    return Error{ErrorCode::kLimitExceeded, "size.at",
+                 "size.at: " + std::to_string(at.size()) + " markers; the limit is " +
+                     std::to_string(kMaxSizesAt)};
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const std::string path = "size.at[" + std::to_string(i) + "]";
+    if (!(at[i].max_edge > 0 && std::isfinite(at[i].max_edge)))
+      return Error{
+          ErrorCode::kBadOption, path + ".max_edge",
+          path + ".max_edge is " + text(at[i].max_edge) + "; it must be positive and finite"};
+    for (std::size_t j = 0; j < i; ++j)
+      if (at[j].marker == at[i].marker)
+        return Error{ErrorCode::kBadOption, path + ".marker",
+                     path + ".marker is " + std::to_string(at[i].marker) + ", as that of size.at[" +
+                         std::to_string(j) + "]"};
   }
   return std::nullopt;
 }
@@ -124,6 +145,25 @@ class Lines {
   const std::string& path_;
 };
 
+Box box_of(const Domain& domain) {
+  Box box;
+  for (const Point vertex : domain.vertices) box.add(vertex);
+  return box;
+}
+
+// The segments with the marker of size.at[i].
+Result<std::vector<Line>> lines_at(const SizeAt& at, std::size_t i, const Pslg& pslg) {
+  std::vector<Line> lines;
+  for (const Segment& segment : pslg.segments)
+    if (segment.marker == at.marker)
+      lines.push_back({pslg.points[segment.a], pslg.points[segment.b]});
+  if (!lines.empty()) return lines;
+  const std::string field = "size.at[" + std::to_string(i) + "].marker";
+  return fail(ErrorCode::kBadOption, field,
+              field + " is " + std::to_string(at.marker) +
+                  ", which is the marker of no segment of the domain");
+}
+
 // Makes a field, which errors call `path`.
 struct FieldMaker {
   const Pslg& pslg;
@@ -135,9 +175,7 @@ struct FieldMaker {
     const std::string field = path + ".distance";
     auto lines = Lines(pslg, field).of(spec);
     if (!lines) return tl::unexpected(std::move(lines).error());
-    Box box;
-    for (const Point vertex : domain.vertices) box.add(vertex);
-    return on_heap(DistanceField::make(std::move(*lines), box, context));
+    return on_heap(DistanceField::make(std::move(*lines), box_of(domain), context));
   }
   AnyField operator()(const FieldRaster& raster) const {
     return on_heap(RasterField::make(raster, path + ".raster", context));
@@ -231,6 +269,7 @@ std::optional<Error> check_size(const SizeSpec& spec) {
   const std::vector<std::string> names = names_of(spec.fields);
   if (auto error = Expression::check_names(names)) return error;
   if (auto error = check_widths(spec.fields)) return error;
+  if (auto error = check_sizes_at(spec.at)) return error;
   if (const auto* const value = std::get_if<double>(&spec.value))
     return check_constant(*value, "size.constant");
   const auto* const source = std::get_if<std::string>(&spec.value);
@@ -269,6 +308,18 @@ Result<Size> make_size(const SizeSpec& spec, const Pslg& pslg, const Domain& dom
     if (!graded) return tl::unexpected(std::move(graded).error());
     size->add(std::make_unique<GradedSize>(std::move(*graded)));
   }
+  // After the gradation, which these keep to by themselves.
+  for (std::size_t i = 0; i < spec.at.size(); ++i) {
+    auto lines = lines_at(spec.at[i], i, pslg);
+    if (!lines) return tl::unexpected(std::move(lines).error());
+    if (spec.gradation == 0) continue;
+    auto distance = DistanceField::make(std::move(*lines), box_of(domain), context);
+    if (!distance) return tl::unexpected(std::move(distance).error());
+    held += distance->bytes();
+    if (auto error = check_held(held, context)) return tl::unexpected(*error);
+    size->add(std::make_unique<MarkerSize>(size->function(), std::move(*distance),
+                                           spec.at[i].max_edge, spec.gradation));
+  }
   return size;
 }
 
@@ -280,6 +331,9 @@ std::uint64_t bytes_to_make(const SizeSpec& spec, const Pslg& pslg) {
   const auto* const raster = std::get_if<Raster>(&spec.value);
   std::uint64_t bytes = raster != nullptr ? RasterSize::kBytesPerValue * raster->values.size() : 0;
   for (const FieldSpec& field : spec.fields) bytes += std::visit(BytesOfField{pslg}, field.kind);
+  if (!spec.at.empty() && spec.gradation > 0)
+    bytes += DistanceField::kBytesPerLine * pslg.segments.size() +
+             DistanceField::kBytesBesides * spec.at.size();
   return bytes;
 }
 

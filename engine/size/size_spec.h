@@ -43,6 +43,12 @@ struct FieldSpec {
   std::variant<DistanceSpec, FieldRaster, FieldMesh, WidthSpec> kind;
 };
 
+// How long edges may be on segments with a marker.
+struct SizeAt {
+  std::int32_t marker = 0;
+  double max_edge = 0;  // > 0, in the unit of the points
+};
+
 // What the value of a size bounds: a triangle's area, or the length of edges h, which bounds the
 // area by that of an equilateral triangle, sqrt(3)/4 h^2.
 enum class Measure : std::uint8_t { kArea, kEdge };
@@ -67,7 +73,11 @@ struct SizeSpec {
   double gradation = 0;
   // How many edges fit across the domain at least (width_size.h); finite. 0: any number.
   double cells_across = 0;
+  // On segments with these markers, edges are at most so long (refine/edge_limits.h). With a
+  // gradation the wanted length grows from there by it, at most (marker_size.h).
+  std::vector<SizeAt> at;  // one per marker, at most kMaxSizesAt
 };
+inline constexpr std::size_t kMaxSizesAt = 32;
 
 // A size that can be evaluated, with all that it is made of.
 class Size {
@@ -88,15 +98,17 @@ class Size {
 };
 
 // Judges what needs neither the domain nor the values of arrays: kBadSizeValue for a constant that
-// is not positive and finite, kBadOption for names of fields, a second width, the gradation and
-// cells_across, and the errors of Expression::check. The field is "size.constant",
-// "size.expression", "size.gradation", "size.cells_across" or "size.fields[i].name".
+// is not positive and finite, kBadOption for names of fields, a second width, the gradation,
+// cells_across and the sizes at markers, and the errors of Expression::check. The field is
+// "size.constant", "size.expression", "size.gradation", "size.cells_across", "size.fields[i].name",
+// "size.at[i].marker" or "size.at[i].max_edge".
 std::optional<Error> check_size(const SizeSpec& spec);
 
 // Computes in the context's arena. REQUIRES: a raster satisfies its own requirements (raster.h),
 // and `spec` outlives the result. Errors: those of check_size, those of the kinds for what is wrong
 // in their arrays ("size.raster.values[i]", "size.fields[i].mesh.values[j]"), kBadOption for a
-// marker that no segment has, kBudgetExceeded, and those of the context.
+// marker that no segment has ("size.at[i].marker", "size.fields[i].distance.markers"),
+// kBudgetExceeded, and those of the context.
 Result<Size> make_size(const SizeSpec& spec, const Pslg& pslg, const Domain& domain,
                        const ExecutionContext& context);
 

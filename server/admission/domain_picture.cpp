@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "server/wire/translate.h"
+
 namespace weft::server {
 namespace {
 
@@ -81,7 +83,7 @@ DomainPicture DomainPicture::of(const v1::Domain& domain) {
 
   std::vector<double> bounds(last + 1, kInfinity);
   for (const v1::Region& region : domain.regions())
-    if (region.has_max_area()) bounds[face_at(region.x(), region.y())] = region.max_area();
+    if (const auto area = max_area_of(region)) bounds[face_at(region.x(), region.y())] = *area;
 
   for (std::size_t cell = 0; cell < kAll; ++cell) {
     const Face face = faces[cell];

@@ -24,6 +24,7 @@ struct Amounts {
   std::uint64_t seeds = 0;
   std::uint64_t expression_bytes = 0;
   std::uint64_t raster_values = 0;
+  std::uint64_t sizes_at = 0;
   // Of all fields that the size may name.
   std::uint64_t fields = 0;
   std::uint64_t field_points = 0;
@@ -48,6 +49,7 @@ std::optional<Failure> check(const Amounts& amounts, const Limits& limits) {
   if (auto f =
           over("size.raster.values", "values", amounts.raster_values, limits.max_raster_values))
     return f;
+  if (auto f = over("size.at", "markers", amounts.sizes_at, std::uint64_t{kMaxSizesAt})) return f;
   const auto of_fields = [](std::string_view unit, std::uint64_t value, std::uint64_t limit) {
     return over("size.fields", unit, value, limit);
   };
@@ -73,6 +75,7 @@ std::optional<Failure> check_limits(const WireScan& scan, const Limits& limits) 
       .expression_bytes =
           scan.count(*v1::SizeField::descriptor(), v1::SizeField::kExpressionFieldNumber),
       .raster_values = scan.count(*v1::Raster::descriptor(), v1::Raster::kValuesFieldNumber),
+      .sizes_at = scan.count(*v1::SizeField::descriptor(), v1::SizeField::kAtFieldNumber),
       .fields = scan.count(*v1::SizeField::descriptor(), v1::SizeField::kFieldsFieldNumber),
       .field_points =
           scan.count(*v1::Distance::descriptor(), v1::Distance::kPointsFieldNumber) / 2 +
@@ -96,7 +99,8 @@ std::optional<Failure> check_limits(const v1::GenerateMeshRequest& request, cons
                   .markers = count(domain.segment_markers_size(), 1),
                   .seeds = count(domain.holes_size(), 2) + count(domain.regions_size(), 1),
                   .expression_bytes = request.size().expression().size(),
-                  .raster_values = count(request.size().raster().values_size(), 1)};
+                  .raster_values = count(request.size().raster().values_size(), 1),
+                  .sizes_at = count(request.size().at_size(), 1)};
   for (const v1::NamedField& field : request.size().fields()) {
     amounts.fields += 1;
     amounts.field_points += count(field.distance().points_size(), 2);

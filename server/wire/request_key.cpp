@@ -35,7 +35,8 @@ void make_canonical(v1::GenerateMeshRequest& request) {
     quality.set_placement(v1::PLACEMENT_LATTICE);
   v1::SizeField& size = *request.mutable_size();
   if (size.cells_across() == 0) size.clear_cells_across();  // -0 is 0
-  if (size.field_case() == v1::SizeField::FIELD_NOT_SET && size.cells_across() == 0) {
+  if (size.field_case() == v1::SizeField::FIELD_NOT_SET && size.cells_across() == 0 &&
+      size.at().empty()) {
     request.clear_size();
   } else {
     if (size.measure() == v1::MEASURE_UNSPECIFIED) size.set_measure(v1::MEASURE_AREA);

@@ -165,6 +165,7 @@ SizeSpec without_arrays(const v1::SizeField& size) {
   if (size.measure() == v1::MEASURE_EDGE) spec.measure = Measure::kEdge;
   spec.gradation = size.gradation();
   spec.cells_across = size.cells_across();
+  for (const v1::SizeAt& at : size.at()) spec.at.push_back({at.marker(), at.max_edge()});
   for (const v1::NamedField& field : size.fields()) {
     spec.fields.push_back({field.name(), {}});
     if (field.has_width()) spec.fields.back().kind = WidthSpec{};

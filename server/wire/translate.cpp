@@ -47,6 +47,12 @@ std::optional<Failure> check_domain(const v1::Domain& domain) {
                         fmt::format("domain.regions[{}].max_area is {}; it must be positive and "
                                     "finite",
                                     i, region.max_area()));
+    const double area = SizeFunction::area_of_edge(region.max_edge());
+    if (region.has_max_edge() && !(std::isfinite(area) && area > 0))
+      return bad_option(fmt::format("domain.regions[{}].max_edge", i),
+                        fmt::format("domain.regions[{}].max_edge is {}; it must be positive and "
+                                    "finite, and so must its square",
+                                    i, region.max_edge()));
   }
   if (!v1::Fill_IsValid(domain.fill()))
     return bad_option("domain.fill", fmt::format("domain.fill is {}, which is no Fill",
@@ -144,6 +150,14 @@ std::optional<Failure> check_coordinates(const v1::Domain& domain) {
   return error ? std::optional(failure_of(*error)) : std::nullopt;
 }
 
+std::optional<double> max_area_of(const v1::Region& region) {
+  std::optional<double> area;
+  if (region.has_max_area()) area = region.max_area();
+  if (!region.has_max_edge()) return area;
+  const double by_edge = SizeFunction::area_of_edge(region.max_edge());
+  return area ? std::min(*area, by_edge) : by_edge;
+}
+
 Pslg to_engine(const v1::Domain& domain) {
   Pslg out;
   out.points = to_points(domain.points());
@@ -156,10 +170,7 @@ Pslg to_engine(const v1::Domain& domain) {
   }
   out.regions.reserve(static_cast<std::size_t>(domain.regions_size()));
   for (const v1::Region& region : domain.regions())
-    out.regions.push_back(
-        {{region.x(), region.y()},
-         region.id(),
-         region.has_max_area() ? std::optional(region.max_area()) : std::nullopt});
+    out.regions.push_back({{region.x(), region.y()}, region.id(), max_area_of(region)});
   out.fill = domain.fill() == v1::FILL_EVEN_ODD ? Fill::kEvenOdd : Fill::kSeeds;
   out.snap = domain.snap();
   return out;

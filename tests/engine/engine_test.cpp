@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <thread>
 
@@ -118,6 +120,85 @@ TEST(Domain, IsJudgedAsTheRunJudgesIt) {
   for (const Pslg& pslg : {not_a_number, no_point, no_length, line})
     expect_same(check_pslg(pslg), {.pslg = pslg});
   EXPECT_FALSE(check_pslg(square()));
+}
+
+// A square of side 10 around a triangle whose sides have the markers 1, 2, 3; two of them meet at
+// 18 degrees. That with the marker 2 is a slope of length 2 sqrt(10).
+MeshRequest with_sizes_at(std::vector<SizeAt> at) {
+  MeshRequest request{.pslg = square(10)};
+  const auto first = static_cast<std::uint32_t>(request.pslg.points.size());
+  for (const Point p : {Point{2, 2}, Point{8, 2}, Point{2, 4}}) request.pslg.points.push_back(p);
+  request.pslg.segments.push_back({first, first + 1, 1});
+  request.pslg.segments.push_back({first + 1, first + 2, 2});
+  request.pslg.segments.push_back({first + 2, first, 3});
+  request.size.at = std::move(at);
+  return request;
+}
+
+TEST(SizeAt, LimitsEdgesOnSegmentsWithItsMarkerAlone) {
+  const MeshRequest request = with_sizes_at({{2, 0.1}});
+  CollectedMesh mesh;
+  ExecutionContext context;
+  const auto summary = generate_mesh(request, mesh, context);
+  ASSERT_TRUE(summary) << summary.error().message;
+  EXPECT_EQ(verdict(request, mesh, *summary), "");
+  double sum = 0;
+  std::size_t edges = 0;
+  for (const check::Mesh::Edge& edge : mesh.mesh.edges) {
+    if (edge.marker != 2) continue;
+    const auto a = mesh.mesh.vertices[edge.a], b = mesh.mesh.vertices[edge.b];
+    const double length = std::hypot(b.x - a.x, b.y - a.y);
+    EXPECT_LE(length, 0.1 * (1 + 1e-9));
+    sum += length;
+    ++edges;
+  }
+  EXPECT_NEAR(sum, std::sqrt(40), 1e-9);
+  EXPECT_LT(edges, 128u);  // 64 would do
+  EXPECT_LT(summary->triangles, 1500u);
+}
+
+TEST(SizeAt, WithAGradationHoldsForTrianglesAround) {
+  MeshRequest request = with_sizes_at({{2, 0.1}, {-4, 1}, {3, 0.02}});
+  request.pslg.segments[0].marker = -4;
+  request.size.gradation = 0.2;
+  EXPECT_TRUE(mesh_of(request));
+  request.size.value = "0.5 + 0.05*x";
+  request.size.measure = Measure::kEdge;
+  EXPECT_TRUE(mesh_of(request));
+  request.placement = Placement::kCircumcentre;
+  EXPECT_TRUE(mesh_of(request));
+}
+
+TEST(SizeAt, DividesASegmentIntoEqualParts) {
+  MeshRequest request{.pslg = square(10), .min_angle_deg = 0};
+  request.pslg.segments[0].marker = 1;
+  for (const auto& [max_edge, count] : {std::pair{0.7, 15}, {0.5, 20}, {10.0 / 3, 3}, {10.0, 1}}) {
+    request.size.at = {{1, max_edge}};
+    CollectedMesh mesh;
+    ExecutionContext context;
+    ASSERT_TRUE(generate_mesh(request, mesh, context));
+    EXPECT_EQ(std::count_if(mesh.mesh.edges.begin(), mesh.mesh.edges.end(),
+                            [](const check::Mesh::Edge& edge) { return edge.marker == 1; }),
+              count);
+  }
+}
+
+TEST(SizeAt, BelowTwiceTheShortestEdgeIsRefused) {
+  MeshRequest request = with_sizes_at({{1, 1}, {2, 0.1}});
+  request.min_edge = 0.06;
+  const Error error = error_of(request);
+  EXPECT_EQ(error.code, ErrorCode::kBadOption);
+  EXPECT_EQ(error.field, "size.at[1].max_edge");
+  EXPECT_NE(error.message.find("0.1; it must be at least 0.12"), std::string::npos)
+      << error.message;
+  EXPECT_EQ(error_of(with_sizes_at({{1, 1e-15}})).field, "size.at[0].max_edge");
+}
+
+TEST(SizeAt, ThatAsksForTooManyEdgesIsRefusedBeforeTheWork) {
+  const Error error = error_of(with_sizes_at({{2, 1e-6}}), {.triangle_limit = 1'000'000});
+  EXPECT_EQ(error.code, ErrorCode::kLimitExceeded);
+  EXPECT_EQ(error.field, "size");
+  EXPECT_NE(error.message.find("at least"), std::string::npos) << error.message;
 }
 
 TEST(Size, ThatDividesByZeroNamesThePoint) {

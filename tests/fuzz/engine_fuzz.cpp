@@ -113,7 +113,8 @@ void judge(const std::uint8_t* data, std::size_t size) {
     must(error.code != ErrorCode::kInternal, "internal", error.message);
     const bool endless = error.code == ErrorCode::kLimitExceeded && made.plain &&
                          std::holds_alternative<std::monostate>(made.request.size.value) &&
-                         made.request.size.cells_across == 0 && made.request.min_angle_deg <= 25;
+                         made.request.size.cells_across == 0 && made.request.size.at.empty() &&
+                         made.request.min_angle_deg <= 25;
     must(!endless, "explosion", error.message);
   }
   // The arena is never freed: its threads would have to be waited for as the process ends.

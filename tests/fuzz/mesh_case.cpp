@@ -384,6 +384,12 @@ MeshCase decode_mesh_case(ByteSource bytes) {
     constexpr std::array<double, 4> kGradations{0.15, 0.02, 0.5, 3};
     request.size.gradation = kGradations[rarely / 8 % kGradations.size()];
   }
+  if (rarely % 8 == 7 && !request.pslg.segments.empty()) {
+    const std::size_t which = rarely / 8 % request.pslg.segments.size();
+    const double max_edge = maker.extent() / static_cast<double>(1 + rarely / 4);
+    request.size.at.push_back({request.pslg.segments[which].marker, max_edge});
+    if (rarely / 128 == 1) request.size.gradation = 0.25;
+  }
   made.plain = made.plain && request.pslg.snap == 0;
   made.budget.triangle_limit = kTriangleLimit;
   return made;
@@ -400,6 +406,8 @@ std::string to_text(const MeshCase& mesh_case) {
         (request.size.measure == Measure::kEdge ? " --edge '" : " --size '") + *expression + "'";
   if (request.size.cells_across > 0)
     text += print(" --cells-across %.17g", request.size.cells_across);
+  for (const SizeAt& at : request.size.at)
+    text += print(" --edge-at marker=%d:%.17g", at.marker, at.max_edge);
   if (request.size.gradation > 0) text += print(" --gradation %.17g", request.size.gradation);
   if (request.min_edge > 0) text += print(" --min-edge %.17g", request.min_edge);
   if (request.placement == Placement::kCircumcentre) text += " --placement circumcentre";

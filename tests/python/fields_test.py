@@ -120,3 +120,48 @@ def test_fields_with_a_fault_say_what_is_wrong(make, words):
 def test_an_unknown_name_is_refused_with_a_suggestion(client):
     with pytest.raises(weft.InvalidRequest, match="did you mean 'coast'"):
         client.mesh(SQUARE, edge="1 + cost", fields={"coast": weft.distance()})
+
+
+def edge_lengths(mesh):
+    return np.hypot(*(mesh.points[mesh.edges[:, 0]] - mesh.points[mesh.edges[:, 1]]).T)
+
+
+def test_a_size_at_a_marker_bounds_the_edges_that_carry_it(client):
+    mesh = client.mesh(SQUARE, edge_at={7: 0.1})
+    marked = mesh.edge_markers == 7
+    assert edge_lengths(mesh)[marked].max() <= 0.1 * (1 + 1e-9)
+    assert edge_lengths(mesh)[~marked].max() > 1
+
+
+def test_a_size_at_a_marker_grows_by_the_gradation(client):
+    mesh = client.mesh(SQUARE, edge=2, edge_at={7: 0.1}, gradation=0.2)
+    bound = np.minimum(2, 0.1 + 0.2 * distance(centroids(mesh), (2, 4), (6, 4)))
+    assert (edges_allowed(mesh) <= bound * (1 + 1e-9)).all()
+    assert edge_lengths(mesh)[mesh.edge_markers == 7].max() <= 0.1 * (1 + 1e-9)
+    assert mesh.summary.triangles > 1.5 * client.mesh(SQUARE, edge=2, edge_at={7: 0.1}).summary.triangles
+
+
+def test_a_size_at_a_marker_is_that_of_the_command_line(client, digest_of, tmp_path):
+    domain = tmp_path / "box.geojson"
+    domain.write_text('{"type": "Feature", "properties": {"marker": 3, "max_edge": 0.5}, "geometry":'
+                      '{"type": "Polygon", "coordinates": [[[0, 0], [4, 0], [4, 3], [0, 0]]]}}')
+    mesh = client.mesh(domain, edge_at={3: 0.1}, gradation=0.3)
+    assert mesh.digest == digest_of(domain, "--edge-at", "marker=3:0.1", "--gradation", 0.3)
+    assert mesh.digest != client.mesh(domain, edge_at={3: 0.2}, gradation=0.3).digest
+    assert edges_allowed(mesh).max() <= 0.5 * (1 + 1e-12)
+
+
+def test_a_size_at_a_marker_that_no_segment_has_is_refused_by_name(client):
+    with pytest.raises(weft.InvalidRequest, match="marker of no segment") as caught:
+        client.mesh(SQUARE, edge_at={7: 1, 8: 1})
+    assert caught.value.violations[0].field == "size.at[1].marker"
+
+
+def test_a_region_may_have_a_length_of_edges(client):
+    seed = {"x": 1, "y": 1, "id": 4}
+    ring = dict(points=SQUARE.points[:4], segments=SQUARE.segments[:4])
+    by_edge = client.mesh(weft.Domain(**ring, regions=[weft.Region(**seed, max_edge=0.5)]))
+    area = np.sqrt(3) / 4 * 0.25
+    by_area = client.mesh(weft.Domain(**ring, regions=[weft.Region(**seed, max_area=area)]))
+    assert edges_allowed(by_edge).max() <= 0.5 * (1 + 1e-12)
+    assert by_edge.digest == by_area.digest

@@ -220,6 +220,7 @@ check::SizeSpec to_checker(const SizeSpec& size) {
   for (const FieldSpec& field : size.fields)
     out.fields.push_back({field.name, std::visit(FieldToChecker{}, field.kind)});
   out.gradation = size.gradation;
+  for (const SizeAt& at : size.at) out.at.push_back({at.marker, at.max_edge});
   return out;
 }
 

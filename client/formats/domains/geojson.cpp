@@ -98,11 +98,13 @@ class Reader {
     const auto region = integer("region");
     if (!region) return tl::unexpected(region.error());
     out.region = *region;
-    const auto area = found->find("max_area");
-    if (area != found->end() && area->is_number()) {
-      out.max_area = area->get<double>();
-      if (!(*out.max_area > 0))
-        return bad(member(where, "max_area"), "is " + shortest(*out.max_area) + ", not positive");
+    for (const auto& [name, bound] :
+         {std::pair{"max_area", &out.max_area}, {"max_edge", &out.max_edge}}) {
+      const auto value = found->find(name);
+      if (value == found->end() || !value->is_number()) continue;
+      *bound = value->get<double>();
+      if (!(**bound > 0))
+        return bad(member(where, name), "is " + shortest(**bound) + ", not positive");
     }
     return out;
   }

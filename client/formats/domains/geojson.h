@@ -8,6 +8,7 @@
 //   marker    integer: marks the segments of the feature
 //   region    integer: id of the triangles inside the feature's polygons
 //   max_area  positive: bound on the area of these triangles
+//   max_edge  positive: bound on the length of their edges, as --edge
 //
 // Errors (kUnreadableInput) name the line and column if the text is not JSON, otherwise the path
 // of the offender ("features[3].geometry.coordinates[0]"): wrong types, a ring that is not closed,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/formats/domains/geometry_builder.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -9,6 +10,16 @@
 #include "client/formats/domains/ring_crossing.h"
 
 namespace weft::client {
+namespace {
+
+// The bound on areas that both properties make together.
+std::optional<double> area_bound(const GeometryProperties& properties) {
+  if (!properties.max_edge) return properties.max_area;
+  const double of_edge = 0.4330127018922193 * *properties.max_edge * *properties.max_edge;
+  return std::min(of_edge, properties.max_area.value_or(of_edge));
+}
+
+}  // namespace
 
 tl::unexpected<Error> GeometryBuilder::bad(const std::string& path, const std::string& what) const {
   return fail(ExitCode::kUnreadableInput, file_ + ": " + (path.empty() ? "" : path + " ") + what);
@@ -123,7 +134,7 @@ Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::
 
 void GeometryBuilder::end_polygon(const std::string& path, const GeometryProperties& properties) {
   domain_.fill = Domain::Fill::kEvenOdd;
-  if (properties.region || properties.max_area)
+  if (properties.region || properties.max_area || properties.max_edge)
     region_polygons_.push_back({{polygon_start_, domain_.segments.size()}, properties, path});
 }
 
@@ -138,7 +149,7 @@ Result<Domain> GeometryBuilder::finish() {
     if (!(*seeds)[i]) return bad(polygon.path, "is a polygon with a region but without area");
     domain_.region_places.add(i, file_ + ": the region of " + polygon.path + ", seed ", 0, "");
     domain_.regions.push_back(
-        {*(*seeds)[i], polygon.properties.region.value_or(0), polygon.properties.max_area});
+        {*(*seeds)[i], polygon.properties.region.value_or(0), area_bound(polygon.properties)});
   }
   if (domain_.fill == Domain::Fill::kEvenOdd) {
     for (const Line& line : lines_) {

@@ -40,6 +40,7 @@ struct GeometryProperties {
   std::int32_t marker = 0;             // of its segments
   std::optional<std::int32_t> region;  // of the triangles inside its polygons
   std::optional<double> max_area;      // of these triangles, positive
+  std::optional<double> max_edge;      // of these triangles' edges, positive
 };
 
 class GeometryBuilder {

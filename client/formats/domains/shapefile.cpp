@@ -111,10 +111,12 @@ class Reader {
     const auto region = integer(record, path, "region");
     if (!region) return tl::unexpected(region.error());
     out.region = *region;
-    out.max_area = table_.number(record, "max_area");
-    if (out.max_area && !(*out.max_area > 0))
-      return builder_.bad(path + ", field max_area",
-                          "is " + shortest(*out.max_area) + ", not positive");
+    for (const auto& [name, bound] :
+         {std::pair{"max_area", &out.max_area}, {"max_edge", &out.max_edge}}) {
+      *bound = table_.number(record, name);
+      if (*bound && !(**bound > 0))
+        return builder_.bad(path + ", field " + name, "is " + shortest(**bound) + ", not positive");
+    }
     return out;
   }
 

@@ -118,6 +118,30 @@ TEST(Size, AValueThatIsNotPositiveAndFiniteIsAViolation) {
   }
 }
 
+TEST(Lengths, OfEdgesWithAMarkerAreBoundByTheSizeAtIt) {
+  Problem problem = block(4);  // edges of 1 and sqrt(5/4)
+  SizeAt at{problem.mesh.edges[0].marker, std::sqrt(1.25)};
+  problem.requirements.size.at = {at};
+  EXPECT_TRUE(problem.check().ok()) << to_text(problem.check());
+  problem.requirements.size.at[0].max_edge *= 1 - 1e-8;
+  const Report report = problem.check();
+  EXPECT_EQ(violated(report), Rules{Rule::kLengths});
+  EXPECT_NE(to_text(report).find("1.118033988749895 long, the size at marker"), std::string::npos)
+      << to_text(report);
+  problem.requirements.size.at[0].marker += 100;
+  EXPECT_EQ(violated(problem.check()), Rules{Rule::kSize});
+}
+
+TEST(Lengths, GrowByTheGradationFromSegmentsWithASizeAtTheirMarker) {
+  Problem problem = block(4);  // triangles of area 0.5
+  problem.requirements = {};
+  problem.requirements.size.at = {{problem.mesh.edges[0].marker, 1}};
+  problem.requirements.size.gradation = 1;  // 0.43 on the segments, 0.77 at the distance 1/3
+  EXPECT_EQ(violated(problem.check()), Rules{Rule::kLengths});
+  problem.requirements.size.gradation = 0.2;  // 0.49
+  EXPECT_EQ(violated(problem.check()), (Rules{Rule::kArea, Rule::kLengths}));
+}
+
 TEST(Unrefined, AsManyAsAreAllowedAreNoViolation) {
   Problem problem = block(2);
   problem.requirements.max_area = 0.4;

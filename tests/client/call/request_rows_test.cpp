@@ -53,6 +53,7 @@ const std::map<std::string, Sample>& samples() {
   static const std::map<std::string, Sample> all = {{"size", {"x + 1"}},
                                                     {"edge", {"x + 2"}},
                                                     {"field", {"d=distance"}},
+                                                    {"edge-at", {"marker=3:0.5"}},
                                                     {"gradation", {"0.25"}},
                                                     {"cells-across", {"3"}},
                                                     {"min-angle", {"25"}},

@@ -33,7 +33,9 @@ struct RefinedSquare {
     EXPECT_TRUE(refiner.deferred().empty());
   }
 
-  RefinementContext refinement() { return {mesh, corners, domain.regions, context, 0, 10'000'000}; }
+  RefinementContext refinement() {
+    return {mesh, corners, domain.regions, limits, context, 0, 10'000'000};
+  }
 
   // Refines what the box owns, as the next owner; returns what was deferred.
   std::vector<BadTriangle> refine(const Box& box, double area) {
@@ -86,6 +88,7 @@ struct RefinedSquare {
 
   inline static const QualityBounds kQuality = QualityBounds::from(20, 0, 1e-9);
   ExecutionContext context;
+  EdgeLimits limits;
   Domain domain;
   AcuteCorners corners;
   Mesh mesh;

@@ -116,6 +116,50 @@ TEST(SizeSpec, WithALimitToItsGradationGrowsByNoMore) {
   EXPECT_GE(edge(3), 1.1 * 0.95);
 }
 
+TEST(SizeSpec, AtAMarkerGrowsFromItsSegmentsByTheGradation) {
+  SizeSpec spec = 1.0;
+  spec.measure = Measure::kEdge;
+  spec.at = {{7, 0.25}};
+  EXPECT_EQ(made(spec)->function().constant(), std::sqrt(3) / 4);  // edges on segments alone
+  spec.gradation = 0.5;
+  for (const std::string expression : {"1", "1 + 0*x", "y > 9"}) {  // the last is no size
+    spec.value = expression;
+    const auto size = made(spec);
+    ASSERT_TRUE(size);
+    EXPECT_FALSE(size->function().constant());
+    for (const double y : {2.0, 2.5, 3.0, 4.0}) {
+      const double edge = std::min(1.0, 0.25 + 0.5 * (y - 2));
+      const double area = std::sqrt(3) / 4 * edge * edge;
+      const double got = size->function()({2, y});
+      EXPECT_NEAR(got, expression == "y > 9" ? 0 : area, 1e-12) << y;
+      const Interval bounds = size->function().bounds({1.5, y - 0.25, 2.5, y + 0.25});
+      EXPECT_LE(bounds.lo, got);
+      EXPECT_GE(bounds.hi, got);
+    }
+  }
+  spec.value = std::monostate();
+  EXPECT_NEAR(made(spec)->function()({2, 4}), std::sqrt(3) / 4 * 1.25 * 1.25, 1e-12);
+}
+
+TEST(SizeSpec, AtAMarkerNamesWhatIsWrong) {
+  const auto fault = [](std::vector<SizeAt> at) {
+    SizeSpec spec = 1.0;
+    spec.at = std::move(at);
+    return made(spec).error();
+  };
+  for (const double value : {0.0, -1.0, std::nan(""), 1 / 0.0}) {
+    const Error error = fault({{7, 1}, {0, value}});
+    EXPECT_EQ(error.code, ErrorCode::kBadOption);
+    EXPECT_EQ(error.field, "size.at[1].max_edge");
+  }
+  EXPECT_EQ(fault({{7, 1}, {7, 2}}).field, "size.at[1].marker");
+  const Error unknown = fault({{7, 1}, {8, 2}});
+  EXPECT_EQ(unknown.code, ErrorCode::kBadOption);
+  EXPECT_EQ(unknown.field, "size.at[1].marker");
+  EXPECT_NE(unknown.message.find("is 8, which is the marker of no segment"), std::string::npos);
+  EXPECT_EQ(fault(std::vector<SizeAt>(33, {7, 1})).field, "size.at");
+}
+
 TEST(SizeSpec, ThatIsNoSizeNamesItsField) {
   for (const double value : {0.0, -1.0, std::nan(""), 1 / 0.0}) {
     const auto error = check_size(value);

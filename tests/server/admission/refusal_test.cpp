@@ -127,6 +127,11 @@ INSTANTIATE_TEST_SUITE_P(
              "size.expression", "71 bytes; this server's limit is 70"},
         Case{"Raster", [](Request& r) { set_raster(r, 11, 6); }, "size.raster.values",
              "66 values; this server's limit is 65"},
+        Case{"SizesAt",
+             [](Request& r) {
+               for (int i = 0; i < 33; ++i) r.mutable_size()->add_at();
+             },
+             "size.at", "33 markers; this server's limit is 32"},
         Case{"Fields",
              [](Request& r) {
                for (int i = 0; i < 33; ++i) add_field(r).mutable_width();
@@ -234,6 +239,17 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"Measure",
              [](Request& r) { r.mutable_size()->set_measure(static_cast<v1::Measure>(9)); },
              "size.measure", "9"},
+        Case{"RegionEdge",
+             [](Request& r) { r.mutable_domain()->add_regions()->set_max_edge(1e-200); },
+             "domain.regions[0].max_edge", "so must its square"},
+        Case{"SizeAt", [](Request& r) { r.mutable_size()->add_at()->set_marker(3); },
+             "size.at[0].max_edge", "is 0"},
+        Case{"SizeAtTwice",
+             [](Request& r) {
+               r.mutable_size()->add_at()->set_max_edge(1);
+               r.mutable_size()->add_at()->set_max_edge(2);
+             },
+             "size.at[1].marker", "as that of size.at[0]"},
         Case{"Gradation", [](Request& r) { r.mutable_size()->set_gradation(-1); }, "size.gradation",
              "is -1"},
         Case{"FieldOfNoKind", [](Request& r) { add_field(r); }, "size.fields[0]", "of no kind"},

@@ -158,6 +158,8 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"Raster", [](auto& r) { r.mutable_size()->mutable_raster()->add_values(1); }},
         Change{"Measure", [](auto& r) { r.mutable_size()->set_measure(v1::MEASURE_EDGE); }},
         Change{"Gradation", [](auto& r) { r.mutable_size()->set_gradation(0.2); }},
+        Change{"SizeAt", [](auto& r) { r.mutable_size()->add_at(); }},
+        Change{"RegionEdge", [](auto& r) { r.mutable_domain()->add_regions()->set_max_edge(1); }},
         Change{"CellsAcross", [](auto& r) { r.mutable_size()->set_cells_across(3); }},
         Change{"Field", [](auto& r) { r.mutable_size()->add_fields()->mutable_width(); }},
         Change{"Angle", [](auto& r) { r.mutable_quality()->set_min_angle_deg(21); }},

@@ -60,6 +60,8 @@ TEST(SizeField, BringsItsFieldsItsMeasureAndItsGradation) {
   size.set_measure(v1::MEASURE_EDGE);
   size.set_gradation(0.25);
   size.set_cells_across(3);
+  size.add_at()->set_marker(-2);
+  size.mutable_at(0)->set_max_edge(0.5);
   for (const char* const name : {"a", "b", "c", "d"}) size.add_fields()->set_name(name);
   v1::Distance& distance = *size.mutable_fields(0)->mutable_distance();
   for (const double x : {1, 2, 3, 4}) distance.add_points(x);
@@ -82,6 +84,9 @@ TEST(SizeField, BringsItsFieldsItsMeasureAndItsGradation) {
   EXPECT_EQ(spec.measure, Measure::kEdge);
   EXPECT_EQ(spec.gradation, 0.25);
   EXPECT_EQ(spec.cells_across, 3);
+  ASSERT_EQ(spec.at.size(), 1u);
+  EXPECT_EQ(spec.at[0].marker, -2);
+  EXPECT_EQ(spec.at[0].max_edge, 0.5);
   ASSERT_EQ(spec.fields.size(), 4u);
   EXPECT_EQ(spec.fields[3].name, "d");
   const auto& to = std::get<DistanceSpec>(spec.fields[0].kind);

@@ -84,7 +84,7 @@ class _Reader:
                 raise DomainError(f"{path}[{i}] is a ring with fewer than 3 distinct points")
             self.chain(points[:-1], True, properties)
         self.even_odd = True
-        if "region" in properties or "max_area" in properties:
+        if {"region", "max_area", "max_edge"} & properties.keys():
             self.polygons.append((slice(first, len(self.segments)), properties, path))
 
     def chain(self, points: Points, closed: bool, properties: dict[str, Any]) -> None:
@@ -106,7 +106,8 @@ class _Reader:
             seed = _interior_point(points, np.concatenate(self.segments[polygon]), every)
             if seed is None:
                 raise DomainError(f"{path} is a polygon with a region but without area")
-            regions.append(region(*seed, properties.get("region", 0), properties.get("max_area")))
+            regions.append(region(*seed, properties.get("region", 0), properties.get("max_area"),
+                                  properties.get("max_edge")))
         # Two coincident segments leave the parity of even-odd filling alone.
         twice = self.lines if self.even_odd else []
         return {
@@ -120,7 +121,8 @@ class _Reader:
 
 
 def read(json: Any, region: Callable[..., Any]) -> dict[str, Any]:
-    """The arguments of Domain; `region` makes a Region of x, y, id and max_area."""
+    """The arguments of Domain; `region` makes a Region of x, y, id, max_area and
+    max_edge."""
     reader = _Reader()
     reader.read(json, "", {})
     return reader.domain(region)
@@ -134,11 +136,12 @@ def _properties(properties: Any, path: str) -> dict[str, Any]:
             if value != int(value) or not -2**31 <= value < 2**31:
                 raise DomainError(f"{path}.{name} is {value}, not an integer of 32 bits")
             found[name] = int(value)
-    area = properties.get("max_area")
-    if isinstance(area, (int, float)) and not isinstance(area, bool):
-        if not area > 0:
-            raise DomainError(f"{path}.max_area is {area}, not positive")
-        found["max_area"] = float(area)
+    for name in ("max_area", "max_edge"):
+        bound = properties.get(name)
+        if isinstance(bound, (int, float)) and not isinstance(bound, bool):
+            if not bound > 0:
+                raise DomainError(f"{path}.{name} is {bound}, not positive")
+            found[name] = float(bound)
     return found
 
 

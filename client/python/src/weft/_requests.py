@@ -26,6 +26,9 @@ class MeshOptions(TypedDict, total=False):
     gradation: float
     """How much the length of edges may grow per unit of length; a size that grows faster is lowered.
     Default: no limit."""
+    edge_at: Mapping[int, float]
+    """How long edges may be on segments, by their marker: `{2: 500}`. With `gradation`, edges grow
+    from there by it at most."""
     cells_across: float
     """How many edges fit across the domain at least, about, where it is narrow: no edge is wanted
     longer than the local width divided by it. Best with `gradation`. Default: any number."""
@@ -81,6 +84,8 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
         request.size.cells_across = options["cells_across"]
     if "gradation" in options:
         request.size.gradation = options["gradation"]
+    for marker, max_edge in options.get("edge_at", {}).items():
+        request.size.at.add(marker=marker, max_edge=max_edge)
     for name, field in options.get("fields", {}).items():
         field._fill(request.size.fields.add(name=name))
     request.quality.min_angle_deg = min_angle
@@ -112,7 +117,8 @@ def _fill_domain(domain: Domain, message: Any) -> None:
         message.segment_markers.extend(domain.markers.tolist())
     message.holes.extend(domain.holes.ravel().tolist())
     for region in domain.regions:
-        message.regions.add(x=region.x, y=region.y, id=region.id, max_area=region.max_area)
+        message.regions.add(x=region.x, y=region.y, id=region.id, max_area=region.max_area,
+                            max_edge=region.max_edge)
     message.fill = _FILLS[domain.fill]
 
 

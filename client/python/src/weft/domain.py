@@ -29,13 +29,15 @@ class Region:
 
     `x`, `y`: inside the face, in the unit of the points. `id`: carried by every triangle of the
     face, 32 bits. `max_area`: bound on the area of its triangles, in squared units, on top of the
-    size; None: no bound.
+    size; `max_edge`: the same by the length of their edges, as an area of sqrt(3)/4 max_edge**2;
+    None: no bound.
     """
 
     x: float
     y: float
     id: int = 0
     max_area: float | None = None
+    max_edge: float | None = None
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -99,7 +101,7 @@ class Domain:
 
         With polygons, the points inside an odd number of rings are meshed, and lines become edges;
         of lines alone, every bounded face. Points become vertices. The members `marker`, `region`
-        (integers) and `max_area` of a feature's properties are read.
+        (integers), `max_area` and `max_edge` of a feature's properties are read.
         """
         return Domain(**_geojson.read(json, Region))
 

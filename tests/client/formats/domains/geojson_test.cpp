@@ -84,6 +84,19 @@ TEST_F(GeoJson, SeedsTheRegionOfEachPolygonInsideOfIt) {
   EXPECT_EQ(domain->regions[1].max_area, 0.5);
 }
 
+TEST_F(GeoJson, BoundsTheAreasOfARegionByALengthOfEdgesToo) {
+  const auto bound = [&](const std::string& properties) {
+    const auto domain = read(R"({"type": "Feature", "properties": )" + properties +
+                             R"(, "geometry": {"type": "Polygon",
+                             "coordinates": [[[0, 0], [9, 0], [9, 9], [0, 0]]]}})");
+    return domain && !domain->regions.empty() ? domain->regions[0].max_area : std::nullopt;
+  };
+  EXPECT_NEAR(bound(R"({"max_edge": 2})").value(), std::sqrt(3), 1e-12);
+  EXPECT_NEAR(bound(R"({"max_edge": 2, "max_area": 9})").value(), std::sqrt(3), 1e-12);
+  EXPECT_EQ(bound(R"({"max_edge": 2, "max_area": 1})"), 1);
+  EXPECT_EQ(bound("{}"), std::nullopt);
+}
+
 TEST_F(GeoJson, DropsPositionsThatRepeatAndKeepsTheirNumbers) {
   const auto domain = read(R"({"type": "Polygon", "coordinates":
       [[[0, 0], [4, 0], [4, 0], [4, 4], [0, 0], [0, 0]]]})");
@@ -147,6 +160,7 @@ TEST_F(GeoJson, RefusesPropertiesThatCannotBeMeant) {
   EXPECT_EQ(with(R"({"region": 1e10})"),
             "map.geojson: properties.region is 1e+10, not an integer of 32 bits");
   EXPECT_EQ(with(R"({"max_area": 0})"), "map.geojson: properties.max_area is 0, not positive");
+  EXPECT_EQ(with(R"({"max_edge": -1})"), "map.geojson: properties.max_edge is -1, not positive");
 }
 
 TEST_F(GeoJson, SaysWhereTheTextIsNotJson) {

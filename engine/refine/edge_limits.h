@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// How long edges on segments may be, by the marker of the segment.
+//
+// Long pieces of segments are split before triangles are refined, into equal parts but at small
+// angles (acute_corners.h). Refinement only makes them shorter. Rounding may leave an edge longer
+// by 1e-9 of its limit and 2^-50 of its coordinates.
+//
+//   EdgeLimits limits(size.at);
+//   if (limits.pieces(marker, a, b) > 1) ... the edge from a to b is too long
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "engine/base/geometry.h"
+#include "engine/domain/domain.h"
+#include "engine/refine/storage/vector.h"
+#include "engine/size/size_spec.h"
+
+namespace weft {
+
+class EdgeLimits {
+ public:
+  EdgeLimits() = default;
+  // REQUIRES: lengths that are positive and finite, each for a marker of its own.
+  explicit EdgeLimits(std::vector<SizeAt> at) : at_(std::move(at)) {
+    std::sort(at_.begin(), at_.end(),
+              [](const SizeAt& a, const SizeAt& b) { return a.marker < b.marker; });
+  }
+
+  bool empty() const { return at_.empty(); }
+
+  // The least number of equal parts of the edge from a to b that keep to the limit of its marker.
+  double pieces(std::int32_t marker, Point a, Point b) const {
+    const auto found =
+        std::lower_bound(at_.begin(), at_.end(), marker,
+                         [](const SizeAt& at, std::int32_t m) { return at.marker < m; });
+    if (found == at_.end() || found->marker != marker) return 1;
+    const double magnitude =
+        std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(b.x), std::fabs(b.y)});
+    const double slack = 1e-9 * found->max_edge + 0x1p-50 * magnitude;
+    return std::max(1.0, std::ceil((length(b - a) - slack) / found->max_edge));
+  }
+
+  // How many edges the limits ask for, on all segments that have one.
+  double pieces(const Domain& domain) const {
+    double sum = 0;
+    if (empty()) return sum;
+    for (const Subsegment& s : domain.subsegments) {
+      const double pieces = this->pieces(s.marker, domain.vertices[s.a], domain.vertices[s.b]);
+      if (pieces > 1) sum += pieces;
+    }
+    return sum;
+  }
+
+ private:
+  std::vector<SizeAt> at_;  // by marker
+};
+
+}  // namespace weft
