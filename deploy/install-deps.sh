@@ -40,7 +40,7 @@ test=(
   gmsh python3-gmsh python3-meshio python3-numpy python3-pyshp python3-shapely python3-vtk9
   python3-protobuf         # docs/generate.py
   poppler-utils            # drawings
-  python3-pyproj           # lengths and angles on the ellipsoid
+  python3-pyproj           # lengths and angles on the ellipsoid; weft for Python, lonlat=
   buildah debootstrap      # the container, without a daemon
   docker-compose           # its compose.yaml
   python3-seccomp          # the profile of weftd

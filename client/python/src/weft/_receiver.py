@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from . import _protocol, _wire, results
+from ._projection import Projection
 from ._wire import Chunk
 from .errors import DamagedStream
 from .mesh import Mesh
@@ -36,11 +37,14 @@ def _digest(chunk: Chunk) -> bytes:
 class MeshReceiver:
     """Receives one mesh, in one stream or in several that go on with each other.
 
-    `points` and `segments` count those of the domain, where it is known.
+    `points` and `segments` count those of the domain, where it is known. `projected`: of a domain
+    in longitude and latitude, back to which it leads.
     """
 
-    def __init__(self, points: int | None = None, segments: int | None = None) -> None:
+    def __init__(self, points: int | None = None, segments: int | None = None,
+                 projected: Projection | None = None) -> None:
         self._limits = (points, segments)
+        self._projected = projected
         self._awaits_accepted = True
         self._sha256 = hashlib.sha256()
         self._parts: list[Chunk] = []
@@ -137,12 +141,16 @@ class MeshReceiver:
         def joined(name: str, shape: tuple[int, ...], dtype: type) -> Any:
             return np.concatenate([np.empty(shape, dtype), *(getattr(p, name) for p in parts)])
 
+        points = joined("points", (0, 2), np.float64)
+        input_points = joined("input_points", (0, 2), np.int32)
+        if self._projected is not None:
+            points = self._projected.to_lonlat(points, input_points)
         return Mesh(
-            points=joined("points", (0, 2), np.float64),
+            points=points,
             triangles=joined("triangles", (0, 3), np.int32),
             regions=joined("regions", (0,), np.int32),
             edges=joined("edges", (0, 2), np.int32),
             edge_markers=joined("edge_markers", (0,), np.int32),
             edge_segments=joined("edge_segments", (0,), np.int32),
-            input_points=joined("input_points", (0, 2), np.int32),
+            input_points=input_points,
             summary=self.summary)

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any, Literal, TypedDict
 
 from . import _protocol
+from ._projection import Projection
 from .domain import Domain
 from .errors import DomainError
 from .fields import Field
@@ -32,6 +33,16 @@ class MeshOptions(TypedDict, total=False):
     cells_across: float
     """How many edges fit across the domain at least, about, where it is narrow: no edge is wanted
     longer than the local width divided by it. Best with `gradation`. Default: any number."""
+    lonlat: bool
+    """The domain is in longitude and latitude, in degrees: it is meshed in a plane in metres, so that
+    angles hold on the ground, and the points of the mesh are in longitude and latitude. Sizes are
+    square metres, lengths metres, x and y metres of the plane; `fields` are projected, too, those
+    in points from longitude and latitude. Needs pyproj."""
+    crs: str
+    """The projection, as PROJ names it, such as "EPSG:32618"; implies `lonlat`. Default: the
+    conformal one whose scale varies least over the domain."""
+    to_metres: bool
+    """Leave the points of the mesh in metres of the projection; implies `lonlat`."""
     min_edge: float
     """No edge shorter than this is made, in the unit of the points."""
     placement: Literal["lattice", "circumcentre"]
@@ -66,13 +77,23 @@ _EDGE = 2
 _FILLS = {"seeds": 1, "even-odd": 2}
 
 
-def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOptions) -> Any:
-    """A GenerateMeshRequest."""
+def projection(domain: Domain, options: MeshOptions) -> Projection | None:
+    """Of a domain that the options say is in longitude and latitude."""
+    if not (options.get("lonlat") or options.get("crs") or options.get("to_metres")):
+        return None
+    return Projection(domain, options.get("crs"), options.get("to_metres", False))
+
+
+def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOptions,
+                 projected: Projection | None = None) -> Any:
+    """A GenerateMeshRequest. `projected`: of the domain, if it is in longitude and latitude."""
     unknown = set(options) - set(MeshOptions.__annotations__)
     if unknown:
         raise TypeError(f"unknown option {sorted(unknown)[0]!r}; there are "
                         f"{', '.join(MeshOptions.__annotations__)}")
     request = _Request()
+    if projected is not None:
+        domain = projected.domain
     _fill_domain(domain, request.domain)
     if size is not None and options.get("edge") is not None:
         raise ValueError("size and edge exclude each other")
@@ -87,7 +108,8 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
     for marker, max_edge in options.get("edge_at", {}).items():
         request.size.at.add(marker=marker, max_edge=max_edge)
     for name, field in options.get("fields", {}).items():
-        field._fill(request.size.fields.add(name=name))
+        in_plane = field if projected is None else projected.field(field)
+        in_plane._fill(request.size.fields.add(name=name))
     request.quality.min_angle_deg = min_angle
     if "min_edge" in options:
         request.quality.min_edge = options["min_edge"]
@@ -108,6 +130,15 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
     request.want_quadtree = options.get("quadtree", False)
     request.no_cache = options.get("no_cache", False)
     return request
+
+
+def job_request(domain: Domain, size: Size, min_angle: float, options: MeshOptions) -> Any:
+    """A GenerateMeshRequest of which nobody keeps the projection until the mesh is fetched."""
+    projected = projection(domain, options)
+    if projected is not None and not projected.to_metres:
+        raise ValueError("the mesh of a job is fetched in metres of the projection: say so with "
+                         "to_metres=True")
+    return mesh_request(domain, size, min_angle, options, projected)
 
 
 def _fill_domain(domain: Domain, message: Any) -> None:

@@ -20,7 +20,7 @@ import grpc
 
 from . import _jobs, _protocol, _target, errors, results
 from ._receiver import MeshReceiver
-from ._requests import MeshOptions, mesh_request
+from ._requests import MeshOptions, job_request, mesh_request, projection
 from ._retry import Retry
 from ._wire import Chunk
 from .domain import DomainLike, as_domain
@@ -69,9 +69,11 @@ class Client:
                timeout: float | None = None, **options: Unpack[MeshOptions]) -> MeshStream:
         """See weft.Client.stream."""
         domain = as_domain(domain)
-        request = mesh_request(domain, size, min_angle, options)
+        projected = projection(domain, options)
+        request = mesh_request(domain, size, min_angle, options, projected)
+        sent = domain if projected is None else projected.domain
         return MeshStream(self, _protocol.GENERATE_MESH, request, timeout, on_progress,
-                          MeshReceiver(len(domain.points), len(domain.segments)))
+                          MeshReceiver(len(sent.points), len(sent.segments), projected))
 
     async def server_info(self) -> ServerInfo:
         """See weft.Client.server_info."""
@@ -81,7 +83,7 @@ class Client:
                      request_id: str | None = None, timeout: float | None = None,
                      **options: Unpack[MeshOptions]) -> Job:
         """See weft.Client.submit."""
-        mesh = mesh_request(as_domain(domain), size, min_angle, options)
+        mesh = job_request(as_domain(domain), size, min_angle, options)
         answer = await self._call(_protocol.SUBMIT_JOB, timeout, mesh=mesh, no_cache=mesh.no_cache,
                                   request_id=_jobs.request_id(request_id))
         return results.job(answer.job)

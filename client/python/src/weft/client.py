@@ -12,7 +12,7 @@ import grpc
 
 from . import _jobs, _protocol, _target, errors, results
 from ._receiver import MeshReceiver
-from ._requests import MeshOptions, mesh_request
+from ._requests import MeshOptions, job_request, mesh_request, projection
 from ._retry import Retry
 from ._wire import Chunk
 from .domain import DomainLike, as_domain
@@ -80,11 +80,16 @@ class Client:
                 for chunk in stream:
                     total += len(chunk.triangles)
             print(stream.summary.digest)
+
+        Of a domain in longitude and latitude, the chunks are in metres, and the mesh at the end in
+        degrees.
         """
         domain = as_domain(domain)
-        request = mesh_request(domain, size, min_angle, options)
+        projected = projection(domain, options)
+        request = mesh_request(domain, size, min_angle, options, projected)
+        sent = domain if projected is None else projected.domain
         return MeshStream(self, _protocol.GENERATE_MESH, request, timeout, on_progress,
-                          MeshReceiver(len(domain.points), len(domain.segments)))
+                          MeshReceiver(len(sent.points), len(sent.segments), projected))
 
     def server_info(self) -> ServerInfo:
         """What the server is and what it admits."""
@@ -96,9 +101,10 @@ class Client:
         """Has the mesh made while nobody waits; the server must keep jobs.
 
         `request_id`: a submission that is repeated with the same one finds the same job; default:
-        one by chance. The rest is as in `mesh`.
+        one by chance. The rest is as in `mesh`; of a domain in longitude and latitude the mesh is
+        fetched in metres, so `to_metres` must be set.
         """
-        mesh = mesh_request(as_domain(domain), size, min_angle, options)
+        mesh = job_request(as_domain(domain), size, min_angle, options)
         answer = self._call(_protocol.SUBMIT_JOB, timeout, mesh=mesh, no_cache=mesh.no_cache,
                             request_id=_jobs.request_id(request_id))
         return results.job(answer.job)

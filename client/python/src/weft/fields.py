@@ -52,6 +52,7 @@ class RasterField:
     values: npt.NDArray[np.float32]
     origin: tuple[float, float]
     spacing: tuple[float, float]
+    crs: str | None = None
 
     def _fill(self, message: Any) -> None:
         to = message.raster
@@ -110,7 +111,9 @@ def raster(source: npt.ArrayLike | str | os.PathLike[str], *,
 
     `source`: an array (rows, columns), `source[j, i]` at `(origin[0] + i * spacing[0], origin[1] +
     j * spacing[1])`; or the path of a raster that GDAL reads (needs the package gdal), whose
-    `band` it is, and whose nodes are the centres of its cells. Raises DomainError, MissingPackage.
+    `band` it is, and whose nodes are the centres of its cells. On a domain in longitude and latitude
+    it is projected: a file by its own coordinate system, an array from longitude and latitude.
+    Raises DomainError, MissingPackage.
     """
     if isinstance(source, (str, os.PathLike)):
         return _read_raster(os.fspath(source), band)
@@ -179,6 +182,7 @@ def _read_raster(path: str, band: int) -> RasterField:
         layer = data.GetRasterBand(band)
         values = layer.ReadAsArray().astype(np.float32)
         mask = layer.GetMaskBand().ReadAsArray() == 0
+        crs = data.GetProjection() or None
         scale, offset = layer.GetScale(), layer.GetOffset()
     except RuntimeError as error:
         raise DomainError(f"raster: {error}") from error
@@ -191,4 +195,5 @@ def _read_raster(path: str, band: int) -> RasterField:
         values, left, dx = values[:, ::-1], left + dx * values.shape[1], -dx
     if dy < 0:
         values, top, dy = values[::-1], top + dy * values.shape[0], -dy
-    return raster(values, origin=(left + dx / 2, top + dy / 2), spacing=(dx, dy))
+    made = raster(values, origin=(left + dx / 2, top + dy / 2), spacing=(dx, dy))
+    return dataclasses.replace(made, crs=crs)

@@ -1,0 +1,395 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Domains in longitude and latitude: into a plane in metres, and their meshes back.
+
+By the rules of client/geo/, with the same choice of a projection, so that the same file gives the
+same mesh as `weft mesh --lonlat` does, bit for bit if pyproj has the same version of PROJ. PROJ is
+called through pyproj.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._optional import need
+from .domain import Domain
+from .errors import DomainError
+from .fields import Distance, Field, MeshField, RasterField
+
+Floats = npt.NDArray[np.float64]
+
+_DEGREE = math.pi / 180
+_STRAIGHT = 1e-3  # of the length of a piece
+_MOST_PIECES = 4096
+_MOST_ADDED = 1_000_000
+
+
+class Projection:
+    """Of one domain, which becomes `domain`, in metres. Raises DomainError, MissingPackage."""
+
+    def __init__(self, domain: Domain, crs: str | None, to_metres: bool) -> None:
+        extent = _Extent(domain)
+        self.to_metres = to_metres
+        self.name = crs if crs else _suitable(domain.points, extent)
+        self._plane, self._transformer = _transformer(self.name)
+        self._extent = extent
+        self._middle = (domain.points[:, 0].min() + domain.points[:, 0].max()) / 2
+        points, segments, markers = self._divide(domain)
+        points[len(domain.points):] = self._as_in_file(points[len(domain.points):])
+        self._lonlat = points
+        self._metres = self._checked("points", points)
+        self.domain = dataclasses.replace(
+            domain, points=self._metres, segments=segments, markers=markers,
+            holes=self._checked("holes", domain.holes),
+            regions=[dataclasses.replace(region, x=x, y=y) for region, (x, y) in zip(
+                domain.regions, self._checked("regions", np.array(
+                    [(region.x, region.y) for region in domain.regions]).reshape(-1, 2)).tolist())])
+
+    def to_lonlat(self, points: Floats, input_points: npt.NDArray[np.int32]) -> Floats:
+        """Of a mesh: vertices that are points of the domain get their own degrees back."""
+        if self.to_metres:
+            return points
+        lonlat = self._as_in_file(self._inverse(points))
+        vertices, inputs = input_points.T
+        same = inputs < len(self._metres)
+        same[same] = (self._metres[inputs[same]] == points[vertices[same]]).all(axis=1)
+        lonlat[vertices[same]] = self._lonlat[inputs[same]]
+        return lonlat
+
+    def field(self, field: Field) -> Field:
+        """The field in the plane: its points are in longitude and latitude, those of an earlier
+        mesh in what this one will be; a raster without a system of its own, too."""
+        if isinstance(field, Distance):
+            return dataclasses.replace(field, points=self._finite("distance", field.points))
+        if isinstance(field, MeshField) and not self.to_metres:
+            return dataclasses.replace(field, points=self._finite("on_mesh", field.points))
+        if isinstance(field, RasterField):
+            return self._raster(field)
+        return field
+
+    def _forward(self, lonlat: Floats) -> Floats:
+        if not len(lonlat):
+            return lonlat.reshape(0, 2)
+        return np.column_stack(self._transformer.transform(*lonlat.T))
+
+    def _inverse(self, metres: Floats) -> Floats:
+        return np.column_stack(self._transformer.transform(*metres.T, direction="INVERSE"))
+
+    def _finite(self, what: str, lonlat: Floats) -> Floats:
+        at = self._forward(lonlat)
+        bad = np.flatnonzero(~np.isfinite(at).all(axis=1))
+        if len(bad):
+            raise DomainError(f"{what}: point {bad[0]} cannot be projected from longitude and "
+                              f"latitude {tuple(lonlat[bad[0]].tolist())}")
+        return at
+
+    def _checked(self, what: str, lonlat: Floats) -> Floats:
+        """Points that the projection takes there and back."""
+        if not len(lonlat):
+            return lonlat
+        at = self._forward(self._extent.unwrapped(lonlat))
+        there = np.isfinite(at).all(axis=1)
+        back = self._inverse(np.where(there[:, None], at, 0))
+        away = np.hypot(_step(lonlat[:, 0], back[:, 0]) * np.cos(lonlat[:, 1] * _DEGREE),
+                        back[:, 1] - lonlat[:, 1])
+        bad = np.flatnonzero(~(there & (away <= 1e-7)))  # degrees: a centimetre
+        if len(bad):
+            raise DomainError(f"domain.{what}[{bad[0]}], {tuple(lonlat[bad[0]].tolist())}, is outside "
+                              f"of what {self.name!r} projects")
+        return at
+
+    def _as_in_file(self, lonlat: Floats) -> Floats:
+        lonlat = lonlat.copy()
+        lonlat[lonlat[:, 0] <= self._middle - 180, 0] += 360
+        lonlat[lonlat[:, 0] > self._middle + 180, 0] -= 360
+        return lonlat
+
+    def _divide(self, domain: Domain) -> tuple[Floats, npt.NDArray[Any], npt.NDArray[Any]]:
+        """Adds points on segments that are not straight in the plane."""
+        a, b = domain.points[domain.segments[:, 0]], domain.points[domain.segments[:, 1]]
+        steep = np.tan(np.maximum(np.abs(a[:, 1]), np.abs(b[:, 1])) * _DEGREE)
+        # Turning by this many degrees bends a segment by less than _STRAIGHT of its length.
+        long = (np.abs(_step(a[:, 0], b[:, 0])) + np.abs(b[:, 1] - a[:, 1]) * np.maximum(1, steep)
+                >= 0.3)
+        points, count, added = [domain.points], len(domain.points), 0
+        segments, parts, markers = domain.segments.copy(), [], []
+        for i in np.flatnonzero(long).tolist():
+            pieces = self._pieces(a[i], b[i])
+            if pieces == 1:
+                continue
+            added += pieces - 1
+            if added > _MOST_ADDED:
+                raise DomainError("the domain has so many long segments that more than "
+                                  f"{_MOST_ADDED:,} points would have to be added on them")
+            # Two segments between the same points get the same points, whatever their direction.
+            turned = tuple(b[i]) < tuple(a[i])
+            ends = (b[i], a[i]) if turned else (a[i], b[i])
+            steps = np.arange(1, pieces)
+            points.append(_on_segment(*ends, (pieces - steps if turned else steps) / pieces))
+            chain = [segments[i, 0], *range(count, count + pieces - 1), segments[i, 1]]
+            count += pieces - 1
+            segments[i] = chain[:2]
+            parts.append(np.column_stack([chain[1:-1], chain[2:]]))
+            markers.append(np.full(pieces - 1, domain.markers[i], np.int32))
+        return (np.concatenate(points), np.concatenate([segments, *parts]),
+                np.concatenate([domain.markers, *markers]))
+
+    def _pieces(self, a: Floats, b: Floats) -> int:
+        pieces = 1
+        while pieces < _MOST_PIECES and not self._are_straight(a, b, pieces):
+            pieces *= 2
+        return pieces
+
+    def _are_straight(self, a: Floats, b: Floats, pieces: int) -> bool:
+        within = (np.arange(pieces)[:, None] + [0.25, 0.5, 0.75, 1]) / pieces
+        at = self._forward(self._extent.unwrapped(_on_segment(a, b, within.ravel())))
+        start = self._forward(self._extent.unwrapped(a[None]))
+        at = at.reshape(pieces, 4, 2)
+        origin = np.concatenate([start, at[:-1, 3]])
+        d, away = at[:, 3] - origin, at[:, :3] - origin[:, None]
+        off = np.abs(away[..., 0] * d[:, None, 1] - away[..., 1] * d[:, None, 0])
+        return bool((off <= _STRAIGHT * (d**2).sum(axis=1)[:, None]).all())
+
+    def _raster(self, raster: RasterField) -> RasterField:
+        """Square cells of the raster's resolution over the domain, each with the bilinear value."""
+        pyproj = need("pyproj", "a raster on a domain in longitude and latitude")
+        crs = pyproj.CRS.from_user_input(raster.crs or "EPSG:4326")
+        turn = 360.0 if crs.is_geographic else 0.0
+        back = pyproj.Transformer.from_crs(self._plane, crs, always_xy=True)
+        lower, upper = self._metres.min(axis=0), self._metres.max(axis=0)
+        size = _cell_size(back, lower, upper, raster.spacing[0] * raster.spacing[1], turn)
+        counts = np.ceil((upper - lower) / size) + 5
+        while counts.prod() > _MOST_VALUES:
+            size *= 1.01
+            counts = np.ceil((upper - lower) / size) + 5
+        columns, rows = counts.astype(int).tolist()
+        first = lower - 2 * size
+        x = first[0] + size * np.arange(columns)
+        values = np.empty((rows, columns), np.float32)
+        for j in range(rows):
+            at = back.transform(x, np.full(columns, first[1] + size * j))
+            values[j] = _bilinear(raster, at[0], at[1], turn)
+        return dataclasses.replace(raster, values=values, origin=(float(first[0]), float(first[1])),
+                                   spacing=(float(size), float(size)), crs=None)
+
+
+_MOST_VALUES = 16 << 20
+
+
+class _Extent:
+    """Where on the Earth the points lie: client/geo/lonlat_extent.h."""
+
+    def __init__(self, domain: Domain) -> None:
+        if not len(domain.points):
+            raise DomainError("the domain has no points")
+        for name, points in (("points", domain.points), ("holes", domain.holes),
+                             ("regions", [(region.x, region.y) for region in domain.regions])):
+            for i, (lon, lat) in enumerate(np.asarray(points).reshape(-1, 2)):
+                if not abs(lat) <= 90:
+                    raise DomainError(f"domain.{name}[{i}]: the latitude {lat} is not between -90 "
+                                      "and 90 degrees")
+                if not abs(lon) <= 360:
+                    raise DomainError(f"domain.{name}[{i}]: the longitude {lon} is not between -360 "
+                                      "and 360 degrees")
+        lon, lat = domain.points.T
+        if len(domain.segments) and (domain.segments.min() < 0
+                                     or domain.segments.max() >= len(domain.points)):
+            raise DomainError("a segment names a point that does not exist")
+        start, end = lon[domain.segments[:, 0]], lon[domain.segments[:, 1]]
+        around = np.flatnonzero(np.abs(end - start) >= 360)
+        if len(around):
+            raise DomainError(f"domain.segments[{around[0]}] goes all around the Earth: divide it, or "
+                              "cut the domain")
+        step = _step(start, end)
+        west = np.concatenate([_wrapped(lon), _wrapped(np.where(step < 0, end, start))])
+        width = np.concatenate([np.zeros(len(lon)), np.abs(step)])
+        self.south, self.north = float(lat.min()), float(lat.max())
+        self._find_range(west, west + width)
+        self.centre = _centre(domain.points)
+
+    def _find_range(self, west: Floats, east: Floats) -> None:
+        """Cuts the longitudes in the widest gap between the arcs."""
+        order = np.argsort(west, kind="stable")
+        west, east = west[order], east[order]
+        # How far the arcs before each reach; those that go on beyond 180, from -180 on.
+        before = np.concatenate([[west[0]], east]).max() - 360
+        reached = np.maximum.accumulate(np.concatenate([[before], east]))[:-1]
+        gaps = west - reached
+        widest = max(0.0, float(gaps.max()))
+        self.west = float(west[np.argmax(gaps)]) if widest > 0 else -180.0
+        self.around = widest <= 0
+        self.width = 360 - widest
+
+    def unwrapped(self, lonlat: Floats) -> Floats:
+        """With longitudes from `west` on, in less than a turn."""
+        out = lonlat.copy()
+        for _ in range(4):
+            out[out[:, 0] < self.west, 0] += 360
+            out[out[:, 0] >= self.west + 360, 0] -= 360
+        return out
+
+
+def _suitable(points: Floats, extent: _Extent) -> str:
+    """The conformal projection whose scale varies least over the points."""
+    best, parameters = math.inf, ""
+    shown = np.vstack([points[::1 + (len(points) - 1) // 10_000], [extent.centre]])
+    phi = shown[:, 1] * _DEGREE
+    for text, log_scale, central in _candidates(extent):
+        with np.errstate(all="ignore"):
+            scale = log_scale(_wrapped(shown[:, 0] - central) * _DEGREE, phi)
+        least, most = float(scale.min()), float(scale.max())
+        if most - least < best:
+            best = most - least
+            parameters = f"{text} +k_0={math.exp(-(least + most) / 2):.6g} +datum=WGS84"
+    if not best <= math.log(10):
+        raise DomainError("the domain covers so much of the Earth that the scale of every conformal "
+                          "projection varies more than tenfold over it: cut the domain")
+    return parameters
+
+
+def _candidates(extent: _Extent) -> list[tuple[str, Any, float]]:
+    """Parameters of PROJ, the logarithm of the scale on the sphere, the central longitude."""
+    lon = _rounded(float(_wrapped(np.array(extent.west + extent.width / 2))))
+    lat = _rounded((extent.south + extent.north) / 2)
+    middle = _rounded(extent.centre[0]) if extent.around else lon
+
+    def transverse(dl: Floats, phi: Floats) -> Floats:
+        b = np.cos(phi) * np.sin(dl)
+        beyond = (np.cos(dl) < 0) & (np.cos(phi) > 0.5)
+        return np.where(beyond, np.inf, -np.log1p(-b * b) / 2)
+
+    every: list[tuple[str, Any, float]] = [
+        (f"+proj=tmerc +lat_0={_degrees(lat)} +lon_0={_degrees(middle)}", transverse, middle)]
+    if not extent.around:
+        if 1 <= abs(lat) <= 85:
+            sine = math.sin(lat * _DEGREE)
+
+            def unit(phi: Any) -> Any:
+                return -sine * np.arcsinh(np.tan(phi)) - np.log(np.cos(phi))
+
+            at0 = unit(lat * _DEGREE)
+            every.append((f"+proj=lcc +lat_1={_degrees(lat)} +lat_0={_degrees(lat)} "
+                          f"+lon_0={_degrees(lon)}", lambda dl, phi: unit(phi) - at0, lon))
+        every.append((f"+proj=merc +lon_0={_degrees(lon)}",
+                      lambda dl, phi: -np.log(np.cos(phi)), lon))
+    clat = _rounded(extent.centre[1])
+    clon = 0.0 if abs(clat) == 90 else _rounded(extent.centre[0])
+    sin0, cos0 = math.sin(clat * _DEGREE), math.cos(clat * _DEGREE)
+
+    def stereographic(dl: Floats, phi: Floats) -> Floats:
+        c = sin0 * np.sin(phi) + cos0 * np.cos(phi) * np.cos(dl)
+        return np.asarray(-np.log((1 + c) / 2))
+
+    every.append((f"+proj=stere +lat_0={_degrees(clat)} +lon_0={_degrees(clon)}", stereographic,
+                  clon))
+    return every
+
+
+def _transformer(name: str) -> tuple[Any, Any]:
+    """The projected system of this name, and what leads there from its own degrees."""
+    pyproj = need("pyproj", "a domain in longitude and latitude")
+    try:
+        typed = "+proj" in name and "+type=crs" not in name
+        plane = pyproj.CRS.from_user_input(name + " +type=crs" if typed else name)
+        if not plane.is_projected:
+            raise DomainError(f"{name!r} is not a projected coordinate reference system, such as "
+                              "EPSG:32618")
+        for axis in plane.axis_info[:2]:
+            if axis.unit_conversion_factor != 1:
+                raise DomainError(f"{name!r} is in units of the {axis.unit_name}, but sizes and lengths "
+                                  "are in metres: name a projection in metres")
+        return plane, pyproj.Transformer.from_crs(plane.geodetic_crs, plane, always_xy=True)
+    except pyproj.exceptions.ProjError as error:
+        raise DomainError(f"{name!r} is not a projection that PROJ knows: {error}") from None
+
+
+def _wrapped(longitude: Floats) -> Floats:
+    """To [-180, 180); what lies there stays as it is, bit for bit."""
+    out = np.array(longitude, np.float64)
+    for _ in range(2):
+        out = np.where(out < -180, out + 360, out)
+        out = np.where(out >= 180, out - 360, out)
+    return out
+
+
+def _step(start: Any, end: Any) -> Any:
+    """By the short way round, -180 to 180."""
+    step = np.asarray(end - start)
+    for _ in range(3):
+        step = np.where(step > 180, step - 360, step)
+        step = np.where(step < -180, step + 360, step)
+    return step
+
+
+def _on_segment(a: Floats, b: Floats, at: Floats) -> Floats:
+    return np.column_stack([a[0] + _step(a[0], b[0]) * at, a[1] + (b[1] - a[1]) * at])
+
+
+def _centre(points: Floats) -> tuple[float, float]:
+    """The middle of the box around the points on the unit sphere, seen from its middle."""
+    lon, lat = points.T * _DEGREE
+    box = np.array([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)])
+    x, y, z = (box.min(axis=1) + box.max(axis=1)) / 2
+    middle = math.atan2(z, math.sqrt(x * x + y * y)) / _DEGREE
+    if abs(middle) > 89.99:
+        return 0.0, -90.0 if middle < 0 else 90.0
+    return math.atan2(y, x) / _DEGREE, middle
+
+
+def _rounded(value: float) -> float:
+    """The value that its text says."""
+    return math.copysign(math.floor(abs(value) * 1e5 + 0.5), value) / 1e5
+
+
+def _degrees(value: float) -> str:
+    digits = f"{value:.5f}".rstrip("0").removesuffix(".")
+    return "0" if digits == "-0" else digits
+
+
+def _short_way(difference: Any, turn: float) -> Any:
+    return difference - turn * np.round(difference / turn) if turn else difference
+
+
+def _cell_size(back: Any, lower: Floats, upper: Floats, cell: float, turn: float) -> float:
+    """The edge of a square of the plane that is as large as a cell of the raster."""
+    step = (upper - lower).max() / 1024
+    i, j = np.meshgrid((np.arange(7) + 0.5) / 7, (np.arange(7) + 0.5) / 7, indexing="ij")
+    x, y = lower[0] + (upper[0] - lower[0]) * i.ravel(), lower[1] + (upper[1] - lower[1]) * j.ravel()
+    (x0, y0), (x1, y1), (x2, y2) = (back.transform(x + dx, y + dy)
+                                    for dx, dy in ((0, 0), (step, 0), (0, step)))
+    with np.errstate(all="ignore"):
+        cells = np.abs(_short_way(x1 - x0, turn) * (y2 - y0)
+                       - _short_way(x2 - x0, turn) * (y1 - y0)) / cell
+        sizes = step / np.sqrt(cells)
+    sizes = np.sort(sizes[np.isfinite(sizes) & (sizes > 0)])
+    if not len(sizes):
+        raise DomainError("raster: the domain has no counterpart in its coordinate system")
+    return float(sizes[len(sizes) // 2])
+
+
+def _bilinear(raster: RasterField, x: Floats, y: Floats, turn: float) -> Floats:
+    """Of the nodes with data, if the nearest has any; up to two cells beside the raster."""
+    values, (dx, dy) = raster.values, raster.spacing
+    rows, columns = values.shape
+    u, v = (x - raster.origin[0]) / dx, (y - raster.origin[1]) / dy
+    if turn:
+        u = u - turn / dx * np.floor((u + 0.5) * dx / turn)
+    with np.errstate(invalid="ignore"):
+        inside = (u >= -2) & (u <= columns + 1) & (v >= -2) & (v <= rows + 1)
+    u = np.clip(np.where(inside, u, 0), 0, columns - 1)
+    v = np.clip(np.where(inside, v, 0), 0, rows - 1)
+    nearest = values[np.floor(v + 0.5).astype(int), np.floor(u + 0.5).astype(int)]
+    i, j = np.floor(u).astype(int), np.floor(v).astype(int)
+    total, weights = np.zeros(len(u)), np.zeros(len(u))
+    for di, wu in ((0, 1 - (u - i)), (1, u - i)):
+        for dj, wv in ((0, 1 - (v - j)), (1, v - j)):
+            value = values[np.minimum(j + dj, rows - 1), np.minimum(i + di, columns - 1)]
+            weight = np.where(np.isnan(value), 0, wu * wv)
+            total += weight * np.where(weight > 0, value, 0)
+            weights += weight
+    with np.errstate(invalid="ignore"):
+        return np.where(inside & ~np.isnan(nearest), total / weights, np.nan)
