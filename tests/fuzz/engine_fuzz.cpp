@@ -77,8 +77,8 @@ bool is_of_the_domain(const std::string& verdict) {
   return true;
 }
 
-// The checker's verdict, but for sizes by the local width: then no bound on areas is judged, because
-// the least number of triangles is that of all of them.
+// The checker's verdict, but for sizes by the local width: then no bound on areas is judged,
+// because the least number of triangles is that of all of them.
 std::string verdict_on(const MeshRequest& request, const CollectedMesh& mesh,
                        const Summary& summary) {
   const auto is_width = [](const FieldSpec& field) {

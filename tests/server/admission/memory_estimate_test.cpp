@@ -78,7 +78,8 @@ TEST(Estimate, OfARasterIsThatOfTheMeanOfItsValuesAndTheirOwn) {
   v1::Raster& raster = *request.mutable_size()->mutable_raster();
   for (int i = 0; i < 1'000'000; ++i) raster.add_values(i < 500'000 ? 1e-5 : 1e-3);
   const std::uint64_t half = expected_bytes(request, {}) - estimate_of("1");
-  EXPECT_NEAR(static_cast<double>(half), 0.505 * 16 * kOnLattice * 1e5 * 48 + 16e6, 1.0 * kMegabyte);
+  EXPECT_NEAR(static_cast<double>(half), 0.505 * 16 * kOnLattice * 1e5 * 48 + 16e6,
+              1.0 * kMegabyte);
 }
 
 TEST(Estimate, IsAtMostWhatTheJobMayTake) {
