@@ -21,7 +21,7 @@ while read -r file; do
     bench/* | tests/bench/*) licence=GPL-3.0-or-later ;;
     *) licence=Apache-2.0 ;;
   esac
-  head -n 3 "$file" | grep -qE "SPDX-License-Identifier: $licence\$" ||
+  head -n 3 "$file" | grep -qE "SPDX-License-Identifier: $licence( \*/| -->)?\$" ||
     complain "$file: its first lines do not say SPDX-License-Identifier: $licence"
 done < <(git ls-files --cached --others --exclude-standard -- \
   '*.h' '*.cpp' '*.proto' '*.sh' '*.py' '*.mjs' '*.go' '*CMakeLists.txt' .ci/run \

@@ -6,8 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "client/base/option_row.h"
-#include "client/base/text.h"
 #include "client/formats/raster.h"
 
 namespace weft::client {
@@ -79,18 +77,6 @@ Result<v1::SizeField> read_size(const std::string& text) {
 }
 
 }  // namespace
-
-tl::expected<EdgeAt, std::string> EdgeAt::parse(const std::string& text) {
-  const std::string start = "marker=";
-  const std::size_t colon = text.find(':');
-  if (text.starts_with(start) && colon != std::string::npos) {
-    const auto marker = value_of<std::int32_t>(text.substr(start.size(), colon - start.size()));
-    const auto max_edge = as_number(text.substr(colon + 1));
-    if (marker && max_edge && *max_edge > 0) return EdgeAt{*marker, *max_edge};
-  }
-  return tl::unexpected(in_quotes(text) +
-                        " is not a marker and a positive length, such as marker=2:500");
-}
 
 Result<RequestOptions> with_size(RequestOptions request_options, const Domain& domain,
                                  const DomainProjection* projection) {

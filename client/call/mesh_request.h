@@ -12,21 +12,13 @@
 #include <vector>
 
 #include "client/base/error.h"
+#include "client/call/edge_at.h"
 #include "client/call/field_option.h"
 #include "client/formats/domain.h"
 #include "client/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {
-
-// How long edges may be on segments with a marker.
-struct EdgeAt {
-  std::int32_t marker = 0;
-  double max_edge = 0;
-
-  // `text` is marker=2:500. The error is a text that says what is wrong.
-  static tl::expected<EdgeAt, std::string> parse(const std::string& text);
-};
 
 // What the mesh must satisfy. DEFAULT of all optionals: the server's.
 struct RequestOptions {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/client/support/temp_folder.h"
 
 namespace weft::client {

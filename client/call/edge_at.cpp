@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/call/edge_at.h"
+
+#include <cmath>
+
+#include "client/base/option_row.h"
+#include "client/base/text.h"
+
+namespace weft::client {
+
+tl::expected<EdgeAt, std::string> EdgeAt::parse(const std::string& text) {
+  const std::string start = "marker=";
+  const std::size_t colon = text.find(':');
+  if (text.starts_with(start) && colon != std::string::npos) {
+    const auto marker = value_of<std::int32_t>(text.substr(start.size(), colon - start.size()));
+    const auto max_edge = value_of<double>(text.substr(colon + 1));
+    if (marker && max_edge && std::isfinite(*max_edge) && *max_edge > 0)
+      return EdgeAt{*marker, *max_edge};
+  }
+  return tl::unexpected(in_quotes(text) +
+                        " is not a marker and a positive length, such as marker=2:500");
+}
+
+}  // namespace weft::client

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// How long edges may be on segments with a marker: one --edge-at.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tl/expected.hpp>
+
+namespace weft::client {
+
+struct EdgeAt {
+  std::int32_t marker = 0;
+  double max_edge = 0;
+
+  // `text` is marker=2:500. The error is a text that says what is wrong.
+  static tl::expected<EdgeAt, std::string> parse(const std::string& text);
+};
+
+}  // namespace weft::client
