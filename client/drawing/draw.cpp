@@ -163,8 +163,9 @@ void Drawing::draw_as_image() {
 }
 
 void Drawing::keep(const DrawnTriangle& triangle) {
-  kept_.push_back(triangle);
-  if (kept_.size() > kMostVectors) draw_as_image();
+  if (kept_.size() < kMostVectors) return kept_.push_back(triangle);
+  draw_as_image();
+  image_->add(triangle);
 }
 
 void Drawing::add(const MeshView& piece) {

@@ -42,7 +42,7 @@ class Legend;
 
 class Drawing {
  public:
-  static constexpr std::size_t kMostVectors = std::size_t{1} << 19;
+  static constexpr std::size_t kMostVectors = std::size_t{1} << 18;
   // Coordinates beyond it are not drawn.
   static constexpr double kMostCoordinate = 1e100;
 

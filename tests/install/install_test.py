@@ -162,7 +162,7 @@ def test_bash_completes_values_after_an_equals_sign(prefix, models):
     file = prefix / "share/bash-completion/completions/weft"
     for words in (["weft", "mesh", "--color", "="], ["weft", "mesh", "--color", "=", ""]):
         printed = run("bash", "--norc", "-c", BASH, "bash", file, *words, cwd=models)
-        assert set(printed.split()) == {"angle", "region", "none"}
+        assert set(printed.split()) == {"angle", "auto", "none", "region", "size"}
 
 
 @pytest.mark.parametrize("words, offered", WORDS)

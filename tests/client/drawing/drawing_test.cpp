@@ -185,8 +185,8 @@ TEST_F(DrawingTest, OfMoreTrianglesThanAreKeptLooksLikeOneOfFewer) {
     return Image(draw_to("m.png", square_mesh(n), {.color = DrawColor::kRegion, .long_side = 600}))
         .mean_brightness(100, 100, 500, 500);
   };
-  static_assert(2 * 500 * 500 < Drawing::kMostVectors && Drawing::kMostVectors < 2 * 530 * 530);
-  EXPECT_NEAR(drawn(530), drawn(500), 2);
+  static_assert(2 * 350 * 350 < Drawing::kMostVectors && Drawing::kMostVectors < 2 * 370 * 370);
+  EXPECT_NEAR(drawn(370), drawn(350), 2);
 }
 
 // Pixels of 600 for 2 units and a margin of 10: 290 per unit.
