@@ -137,6 +137,7 @@ check_packages() {
 
 export UBSAN_OPTIONS=print_stacktrace=1
 export TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp
+export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
 
 needed "install packages" deploy/install-deps.sh
 step "formatting" check_format

@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -35,6 +36,8 @@ class WeftProcess : public testing::Test {
     arguments.insert(arguments.end(), words.begin(), words.end());
     Words environment = {"WEFT_WEFTD=" WEFT_FAKE_WEFTD, "TMPDIR=" + (folder_ / "tmp").string(),
                          "FAKE_WEFTD_PID=" + (folder_ / "pid").string()};
+    if (const char* const leaks = std::getenv("LSAN_OPTIONS"))
+      environment.push_back(std::string("LSAN_OPTIONS=") + leaks);
     environment.insert(environment.end(), variables.begin(), variables.end());
     const auto pointers = [](Words& list) {
       std::vector<char*> out;
