@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // CGAL's mesher (Mesh_2) under the same bounds as ours, for comparison.
+//
+// This folder has more than 25 files because it is one program, with a file pair for each
+// measurement, beside the scripts that measure other meshers and clients.
 #pragma once
 
 #include <cstdint>

@@ -113,7 +113,7 @@ std::optional<Figures> measure(const Row& row, const Pslg& pslg, int threads, in
     if (run == 0) continue;
     // The coarse phase of a mesh of one leaf is its refinement.
     const double rounds = result->leaves.empty() ? 0 : result->refine_seconds;
-    refine.push_back(result->size_seconds + result->prelude_seconds + rounds);
+    refine.push_back(result->size_seconds + result->coarse_seconds + rounds);
     engine.push_back(result->engine_seconds);
   }
   figures.refine_work = median(refine);
@@ -147,7 +147,8 @@ int run_engine_bench(const EngineBenchOptions& options) {
     if (std::string(row.name).find(options.only) == std::string::npos) continue;
     const Pslg pslg = read_poly(options.models + "/" + row.model);
     std::optional<double> one_thread;
-    // One contender after the other: memory that the other has just given back is slow to touch.
+    // The contenders run one after the other: memory that another one has just given back is slow
+    // to touch.
     std::optional<CgalResult> theirs;
     if (options.with_cgal) theirs = measure_cgal(row, pslg, options.runs);
     for (const int count : threads) {

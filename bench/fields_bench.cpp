@@ -93,8 +93,8 @@ struct Points {
   std::vector<Eight> eights;
 };
 
-// As a mesh asks: leaves of 16,000 triangles whose edges are 0.15 of the distance, half of them at
-// a line; or all over the box.
+// Asks as a mesh does, for leaves of 16,000 triangles whose edges are 0.15 of the distance, half of
+// them at a line; or all over the box.
 Points points_of(const Row& row, const Field& field, Order order) {
   std::mt19937_64 random(2);
   Points points(kPoints * kLeaves);

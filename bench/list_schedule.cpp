@@ -31,7 +31,7 @@ class ListScheduling {
     for (std::uint32_t t = 0; t < size(); ++t) {
       if (graph.skipped_by[t] != kNone) skips_[graph.skipped_by[t]].push_back(t);
     }
-    // Beyond this many threads the window no longer binds.
+    // With more threads than this, the window limits nothing.
     const auto parts = static_cast<std::uint32_t>(graph.part_tasks.size());
     const int most_threads = std::min(threads, 1 << 20);
     ahead_ = parts_ahead(most_threads);
@@ -74,7 +74,7 @@ class ListScheduling {
   struct Event {
     double time;
     std::uint32_t task;
-    bool is_sent;  // the next part was, instead of a task's end
+    bool is_sent;  // the next part was sent, instead of the end of a task
     bool operator>(const Event& other) const {
       return std::pair(time, task) > std::pair(other.time, other.task);
     }

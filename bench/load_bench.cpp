@@ -26,10 +26,10 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// The grading of the paper's pipe.
+// The grading of the pipe in the paper.
 constexpr const char* kPipeSize = "0.4*hypot(x-200, y-200) + 1";
 
-// False if the call failed.
+// Returns false if the call failed.
 bool mesh_once(v1::MeshService::Stub& stub, const v1::GenerateMeshRequest& request) {
   grpc::ClientContext context;
   const auto stream = stub.GenerateMesh(&context, request);
@@ -40,7 +40,7 @@ bool mesh_once(v1::MeshService::Stub& stub, const v1::GenerateMeshRequest& reque
   return status.ok();
 }
 
-// Calls one after the other, on a connection of its own, until told to stop.
+// Makes calls one after the other, on a connection of its own, until it is told to stop.
 class Caller {
  public:
   Caller(const std::string& address, const v1::GenerateMeshRequest& request,
@@ -53,7 +53,7 @@ class Caller {
             latencies_.push_back(seconds_since(start));
           }
         }) {}
-  // The seconds of each call; nothing if one failed.
+  // The seconds of each call; empty if one failed.
   std::optional<std::vector<double>> join() {
     thread_.join();
     if (!ok_) return std::nullopt;
@@ -63,10 +63,10 @@ class Caller {
  private:
   std::vector<double> latencies_;
   bool ok_ = true;
-  std::thread thread_;  // last: it uses the above
+  std::thread thread_;  // last, because it uses the members above
 };
 
-// `small` requests on so many connections while `large` ones come on as many others.
+// Makes `small` requests on so many connections while as many others make `large` ones.
 bool print_row(const char* name, const std::string& address, const v1::GenerateMeshRequest& small,
                int connections, const v1::GenerateMeshRequest& large, int large_connections,
                double seconds) {
@@ -117,7 +117,7 @@ bool wait_until_done(v1::JobService::Stub& stub, const std::string& id) {
   return stream->Finish().ok() && message.job().state() == v1::JOB_STATE_SUCCEEDED;
 }
 
-// A mesh of the store, asked for again; bytes as they are, not parsed.
+// Asks for a mesh in the store again; its bytes are not parsed.
 bool print_fetches(const char* transport, const std::string& address,
                    const v1::GenerateMeshRequest& mesh) {
   const auto channel = connect(address);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // weft-bench: figures, not tests. Their tables are in bench/README.md.
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "bench/placement_bench.h"
 #include "bench/scaling_bench.h"
 #include "bench/stream_bench.h"
+#include "engine/engine.h"
 
 namespace {
 
@@ -22,6 +24,7 @@ void add_models(CLI::App* command, std::string& models) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  weft::keep_memory_at_most(std::uint64_t{1} << 30);  // as a weftd that may take 16 GiB
   CLI::App app{"Benchmarks of weft; the tables are in bench/README.md."};
   app.require_subcommand(1);
   app.footer(

@@ -35,14 +35,14 @@ struct Recorded {
   }
 };
 
-// What a graph's stage takes beside its tasks: sending, and the scheduler. Taken as serial.
+// The time of a graph's stage beside its tasks: sending, and the scheduler. It counts as serial.
 double send_seconds(const Trace::Stage& stage) {
   const std::size_t parts = stage.graph->part_tasks.size();
   const double beside = std::max(0.0, stage.seconds - work_of(*stage.graph));
   return parts == 0 ? 0 : beside / static_cast<double>(parts);
 }
 
-// What the loops of a stage take, one after the other.
+// The time of the loops of a stage, added up.
 double loop_seconds(const Trace::Stage& stage, int threads) {
   return std::accumulate(
       stage.loops.begin(), stage.loops.end(), 0.0,
@@ -63,7 +63,7 @@ std::optional<Recorded> record(const MeshRequest& request) {
   return result;
 }
 
-// Seconds of the whole run, the median, per number of threads up to what this machine has.
+// Seconds of the whole run, the median for each number of threads up to that of this machine.
 std::optional<std::map<int, double>> measure(const MeshRequest& request, int runs) {
   std::map<int, double> result;
   const auto processors = static_cast<int>(std::thread::hardware_concurrency());
@@ -83,8 +83,8 @@ std::optional<std::map<int, double>> measure(const MeshRequest& request, int run
   return result;
 }
 
-// The same job takes the same stages and tasks each time: of each the fastest is kept, so that a
-// task during which something else had the processor does not count.
+// The same run has the same stages and tasks each time. The fastest time of each is kept, so that a
+// task does not count as slow because something else had the processor.
 void keep_fastest(Trace& best, const Trace& other) {
   for (std::size_t s = 0; s < best.stages.size(); ++s) {
     Trace::Stage& stage = best.stages[s];
@@ -102,7 +102,7 @@ void keep_fastest(Trace& best, const Trace& other) {
   }
 }
 
-// The stages of a run, those with the same name added up.
+// The stages of a run; those with the same name are added up.
 struct Stages {
   std::map<std::string, double> serial;
   double work = 0;                          // of the tasks
@@ -217,7 +217,7 @@ void print_speed_up(const Stages& stages, const std::map<int, double>& measured)
   }
 }
 
-// A quantity of a larger mesh, from those of two smaller ones: t goes as a power of n.
+// Extrapolates a quantity from two smaller meshes to a larger one, as a power of n.
 double extrapolate(double t0, double t1, double n0, double n1, double n) {
   if (t0 <= 0 || t1 <= 0) return t1;
   const double power = std::max(0.0, std::log(t1 / t0) / std::log(n1 / n0));

@@ -28,13 +28,13 @@ struct Received {
   double first_triangles_seconds = 0;  // from sending the request
   double longest_gap_seconds = 0;      // between two messages with triangles
   double seconds = 0;                  // until the last byte
-  double slept_seconds = 0;            // of those
+  double slept_seconds = 0;            // of `seconds`
   std::uint64_t bytes = 0;
   v1::Summary summary;
 };
 
-// One that sleeps does so for 2 s when a twentieth, a half and nine tenths of the expected
-// triangles have come.
+// A reader that sleeps does so for 2 s at a twentieth, a half and nine tenths of the expected
+// triangles.
 constexpr double kSleepsAt[] = {0.05, 0.5, 0.9};
 constexpr std::chrono::seconds kSleep{2};
 
@@ -77,7 +77,7 @@ std::optional<Received> receive(const std::string& address, const v1::GenerateMe
   return std::nullopt;
 }
 
-// The same job in this process, with nobody to send it to.
+// The same request in this process, without a reader.
 double engine_seconds_alone(const Pslg& pslg, const std::string& size, int threads, int runs) {
   Arena arena(threads);
   std::vector<double> seconds;
@@ -121,7 +121,8 @@ bool print_transport(const StreamBenchOptions& options, const v1::GenerateMeshRe
   return true;
 }
 
-// A row of the table of memory: one run in a server of its own. The triangles that came, or 0.
+// A row of the table of memory: one run in a server of its own. Returns the number of triangles
+// that came, or 0.
 double print_memory(const StreamBenchOptions& options, const v1::GenerateMeshRequest& request,
                     double sleeper_expects) {
   const auto server = WeftdProcess::start(options.weftd, options.threads);

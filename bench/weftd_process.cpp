@@ -61,7 +61,7 @@ bool WeftdProcess::spawn(const std::string& weftd, int threads) {
   return false;
 }
 
-// It renames the file into place when it listens.
+// The server renames the port file into place when it listens.
 bool WeftdProcess::wait_until_ready() {
   while (!std::filesystem::exists(folder_ / "ready")) {
     if (::waitpid(pid_, nullptr, WNOHANG) == pid_) {

@@ -14,12 +14,14 @@
 #include "checker/geometry/arrangement.h"
 #include "checker/geometry/contacts.h"
 #include "checker/geometry/fill.h"
+#include "checker/mesh/chain_ends.h"
 #include "checker/mesh/chains.h"
 #include "checker/mesh/coverage.h"
 #include "checker/mesh/delaunay.h"
 #include "checker/mesh/half_edges.h"
 #include "checker/mesh/listed_edges.h"
 #include "checker/mesh/overlap.h"
+#include "checker/mesh/skipped_edges.h"
 #include "checker/mesh/structure.h"
 #include "checker/text.h"
 
@@ -71,19 +73,75 @@ std::optional<FilledDomain> arrange(const BentDomain& bent, Findings& findings) 
                       std::move(needs)};
 }
 
-// What seems not to be in the mesh, but has to be, may be beside its segment after all. Notes those
-// segments; false if there are no new ones.
-bool try_without_jumps(const BentDomain& bent, const FilledDomain& filled,
-                       std::vector<char>& jumps_last) {
-  bool any = false;
+// What a mesh is compared with a domain by.
+struct Compared {
+  const Domain& domain;
+  const NearFeatures& near;
+  const Mesh& mesh;
+  const HalfEdges& half_edges;
+  const ListedEdges& listed;
+};
+
+// The domain as the mesh may have bent it, and how the mesh matches that.
+struct Match {
+  BentDomain bent{};
+  std::optional<FilledDomain> filled{};
+  std::vector<SkippedEdge> skipped{};
+  Findings findings;
+  std::optional<SmallInputAngles> small_input_angles{};  // nullopt if nothing was compared
+  std::vector<std::uint32_t> faces{};                    // per triangle
+};
+
+Match match_with(const Compared& compared, bool no_overlap, const std::vector<Jumps>& jumps,
+                 std::uint64_t listed_violations) {
+  const auto& [domain, near, mesh, half_edges, listed] = compared;
+  Match match{.findings = Findings(listed_violations)};
+  match.bent = bend(domain, near, mesh, listed, jumps);
+  match.filled = arrange(match.bent, match.findings);
+  if (!no_overlap || !match.filled) return match;
+  const auto& [arrangement, roles, joined, needs] = *match.filled;
+  match.skipped = find_skipped_edges(domain, match.bent, mesh, half_edges, listed);
+  judge_skipped_edges(match.skipped, match.bent, mesh, match.findings);
+  const InputPoints input_points(match.bent.domain, mesh);
+  judge_points(match.bent, domain.points.size(), arrangement, needs, input_points, match.findings);
+  match.small_input_angles.emplace(
+      mesh, listed,
+      judge_chains(match.bent, arrangement, needs, mesh, listed, input_points, match.findings));
+  match.faces = judge_coverage(match.bent, arrangement, roles, joined, mesh, half_edges, listed,
+                               match.findings);
+  return match;
+}
+
+// What seems to be missing from the mesh may lie beside its segment after all. Lets those segments
+// jump less; returns false if there are none that may.
+bool try_fewer_jumps(const Match& match, std::vector<Jumps>& jumps) {
+  if (!match.filled) return false;
+  const BentDomain& bent = match.bent;
+  std::vector<char> tries(jumps.size(), 0);
+  for (const SkippedEdge& edge : match.skipped) tries[bent.origin[edge.piece]] = 1;
   for (std::uint32_t piece = 0; piece < bent.domain.segments.size(); ++piece) {
-    char& last = jumps_last[bent.origin[piece]];
-    if (!bent.is_gap[piece] || last) continue;
-    for (const std::uint32_t e : filled.arrangement.edges_of(piece))
+    if (!bent.is_gap[piece]) continue;
+    for (const std::uint32_t e : match.filled->arrangement.edges_of(piece))
       for (const std::uint32_t h : {2 * e, 2 * e + 1})
-        if (filled.needs[filled.arrangement.face(h)] == Need::kAll) last = any = true;
+        if (match.filled->needs[match.filled->arrangement.face(h)] == Need::kAll)
+          tries[bent.origin[piece]] = 1;
+  }
+  bool any = false;
+  for (std::size_t s = 0; s < jumps.size(); ++s) {
+    if (!tries[s] || jumps[s] == Jumps::kShortest) continue;
+    jumps[s] = jumps[s] == Jumps::kFree ? Jumps::kLast : Jumps::kShortest;
+    any = true;
   }
   return any;
+}
+
+// A mesh is right if it matches the domain bent in one of the ways that merging may have bent it.
+Match best_match(const Compared& compared, bool no_overlap, std::uint64_t listed_violations) {
+  std::vector<Jumps> jumps(compared.domain.segments.size(), Jumps::kFree);
+  std::optional<Match> match;
+  do match.emplace(match_with(compared, no_overlap, jumps, listed_violations));
+  while (match->findings.any() && try_fewer_jumps(*match, jumps));
+  return std::move(*match);
 }
 
 bool is_a_point(const Domain& domain, const SegmentEnds& ends) {
@@ -105,12 +163,9 @@ Domain without_segments_that_are_points(Domain domain) {
   return domain;
 }
 
-}  // namespace
-
-Report check(const Domain& domain, const Mesh& mesh, const Requirements& requirements) {
-  if (std::any_of(domain.segments.begin(), domain.segments.end(),
-                  [&](const SegmentEnds& ends) { return is_a_point(domain, ends); }))
-    return check(without_segments_that_are_points(domain), mesh, requirements);
+// The sizes are those of the domain as it was given: they may refer to segments that are points.
+Report judge(const Domain& domain, const Domain& given, const Mesh& mesh,
+             const Requirements& requirements) {
   Report report;
   Findings findings(requirements.listed_violations);
   const auto skip = [&](std::initializer_list<Rule> rules) {
@@ -121,12 +176,10 @@ Report check(const Domain& domain, const Mesh& mesh, const Requirements& require
   report.facts.edges = mesh.edges.size();
 
   const std::optional<NearFeatures> near = near_features(domain, findings);
-  std::optional<FilledDomain> filled;
+  std::optional<Match> match;
   QualityContext context;
-  std::optional<SmallInputAngles> small_input_angles;
-  std::vector<std::uint32_t> faces;
 
-  // What the mesh is by itself, then what it is of the domain.
+  // First what the mesh is by itself, then how it matches the domain.
   const bool sound = judge_structure(mesh, findings) && judge_orientation(mesh, findings);
   std::optional<HalfEdges> half_edges;
   if (sound) half_edges.emplace(mesh);
@@ -134,31 +187,20 @@ Report check(const Domain& domain, const Mesh& mesh, const Requirements& require
     const ListedEdges listed = find_listed_edges(mesh, *half_edges, findings);
     judge_delaunay(mesh, *half_edges, listed, findings);
     const bool no_overlap = judge_overlap(mesh, *half_edges, listed, findings);
-    BentDomain bent;
     if (near) {
       judge_named_points(domain, *near, mesh, findings);
-      std::vector<char> jumps_last(domain.segments.size(), 0);
-      for (bool again = true; again;) {
-        bent = bend(domain, *near, mesh, listed, jumps_last);
-        filled = arrange(bent, findings);
-        again = filled && try_without_jumps(bent, *filled, jumps_last);
-      }
+      if (near->any) judge_chain_ends(domain, *near, mesh, listed, findings);
+      match.emplace(best_match({domain, *near, mesh, *half_edges, listed}, no_overlap,
+                               requirements.listed_violations));
+      findings.merge(match->findings);
     }
-    if (no_overlap && filled) {
-      const auto& [arrangement, roles, joined, needs] = *filled;
-      const InputPoints input_points(bent.domain, mesh);
-      judge_points(bent, domain.points.size(), arrangement, needs, input_points, findings);
-      small_input_angles.emplace(
-          mesh, listed,
-          judge_chains(bent, arrangement, needs, mesh, listed, input_points, findings));
-      faces = judge_coverage(bent, arrangement, roles, joined, mesh, *half_edges, listed, findings);
-      context = {&*small_input_angles, faces, roles};
-    } else {
+    if (match && match->small_input_angles)
+      context = {&*match->small_input_angles, match->faces, match->filled->roles};
+    else
       skip({Rule::kChains, Rule::kPoints, Rule::kMarkers, Rule::kCoverage, Rule::kRegions,
             Rule::kAngle});
-    }
     half_edges.reset();
-    judge_quality(domain, mesh, requirements, context, report.facts, findings);
+    judge_quality(given, mesh, requirements, context, report.facts, findings);
     judge_lengths(mesh, requirements, findings);
   } else {
     if (near) arrange(unbent(domain), findings);  // for what may be wrong with the domain itself
@@ -166,10 +208,20 @@ Report check(const Domain& domain, const Mesh& mesh, const Requirements& require
     if (!sound) skip({Rule::kConformity});
     skip({Rule::kOverlap, Rule::kEdges, Rule::kChains, Rule::kPoints, Rule::kMarkers,
           Rule::kCoverage, Rule::kRegions, Rule::kDelaunay, Rule::kAngle, Rule::kArea,
-          Rule::kLengths});
+          Rule::kLengths, Rule::kSize});
   }
   findings.write_to(report);
   return report;
+}
+
+}  // namespace
+
+Report check(const Domain& domain, const Mesh& mesh, const Requirements& requirements) {
+  const bool has_points =
+      std::any_of(domain.segments.begin(), domain.segments.end(),
+                  [&](const SegmentEnds& ends) { return is_a_point(domain, ends); });
+  return has_points ? judge(without_segments_that_are_points(domain), domain, mesh, requirements)
+                    : judge(domain, domain, mesh, requirements);
 }
 
 }  // namespace weft::check

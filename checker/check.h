@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The independent judge of meshes: does this mesh cover this domain, and does it satisfy its
 // bounds? It shares no code with the engine. Topology, orientation, coverage without overlap and
-// the Delaunay property are decided exactly; where vertices are rounded, a stated tolerance of a
+// the Delaunay property are decided exactly; if vertices are rounded, a stated tolerance of a
 // few units in the last place applies (tolerance.h, coverage.h, quality.h).
 //
 //   const Report report = check(domain, mesh, {.size = "0.01 + x^2", .min_angle_deg = 20});

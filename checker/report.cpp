@@ -47,8 +47,8 @@ std::string to_text(const Report& report) {
                         " to ", facts.max_angle_deg, " degrees, area ", facts.area, "\n");
   if (facts.worst_area_ratio)
     out += say("largest area over its bound ", *facts.worst_area_ratio, "\n");
-  out += say("excused by small input angles ", facts.excused_corner + facts.excused_shell, " (",
-             facts.excused_corner, " with the corner, ", facts.excused_shell,
+  out += say("exempt because of small input angles ", facts.exempt_corner + facts.exempt_shell,
+             " (", facts.exempt_corner, " with the corner, ", facts.exempt_shell,
              " on its shells), unrefined ", facts.unrefined);
   if (facts.first_unrefined)
     out += say(", the first at ", facts.first_unrefined_at, ": triangle ", *facts.first_unrefined);

@@ -2,6 +2,7 @@
 // The checker's findings: violations, each a sentence that names its offender, and measured facts.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -28,7 +29,7 @@ enum class Rule : std::uint8_t {
   kCoverage,  // the triangles cover the domain, all of it and nothing else
   kRegions,   // a triangle carries the id of the region that it lies in
   kDelaunay,  // across every unlisted edge, no corner lies inside the other circumcircle
-  kAngle,     // no angle is below the bound, except those that small input angles excuse
+  kAngle,     // no angle is below the bound, except those that small input angles exempt
   kArea,      // no triangle is larger than the size field, or its region, allows
   kLengths,   // no listed edge is longer than the size at its marker
 };
@@ -39,6 +40,12 @@ std::string_view rule_name(Rule rule);  // "coverage"
 struct Violation {
   Rule rule = Rule::kDomain;
   std::string sentence;
+};
+
+// A triangle, and the middle of its corners.
+struct Place {
+  std::uint32_t triangle = 0;
+  Vec2 at;
 };
 
 // The measures of a mesh. Angles and area are valid if no triangle is degenerate.
@@ -55,11 +62,16 @@ struct Facts {
   // bounds: how many times the least number there are. nullopt if no triangle has a bound.
   std::optional<double> ideal_ratio;
   std::optional<double> worst_area_ratio;  // of area to its bound; nullopt if there is no bound
-  // Triangles below the angle bound that a small input angle excuses: those with the corner
+  std::optional<Place> worst_area_at;      // the first triangle with this ratio
+  // The smallest angle that no small input angle exempts, and the first triangle with it; nullopt
+  // if no angle was judged.
+  std::optional<double> judged_angle_deg;
+  std::optional<Place> judged_angle_at;
+  // Triangles below the angle bound that a small input angle exempts: those with the corner
   // itself, and those whose shortest edge joins its two segments at equal distance from it.
-  std::uint64_t excused_corner = 0;
-  std::uint64_t excused_shell = 0;
-  // Triangles that miss the angle or area bound without excuse, whether or not that is allowed; the
+  std::uint64_t exempt_corner = 0;
+  std::uint64_t exempt_shell = 0;
+  // Triangles that miss the angle or area bound without exemption, allowed or not; the
   // first of them, and the middle of its corners.
   std::uint64_t unrefined = 0;
   std::optional<std::uint32_t> first_unrefined;
@@ -92,6 +104,9 @@ class Findings {
       violations_.push_back({rule, sentence()});
   }
   std::uint64_t total(Rule rule) const { return totals_[static_cast<std::size_t>(rule)]; }
+  bool any() const {
+    return std::any_of(totals_.begin(), totals_.end(), [](std::uint64_t n) { return n > 0; });
+  }
   // Adds what the other found, within the same limits.
   void merge(const Findings& other);
   void write_to(Report& report) const;

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <span>
+#include <string>
 
 #include "client/base/signals.h"
 #include "client/cli/command_groups.h"
@@ -34,9 +36,17 @@ constexpr char kExitCodes[] = R"(Exit codes:
 Flags that name a variable in their help, such as (Env:WEFT_SERVER), are also read
 from it. WEFT_WEFTD is the weftd that is started if no server is named.)";
 
-// gRPC's own log lines: what they tell of a call, its status tells, too.
+// gRPC's own log lines are dropped: the status of a call says what they say.
 void silence_grpc_log() {
   if (std::getenv("GRPC_VERBOSITY") == nullptr) gpr_set_log_function([](gpr_log_func_args*) {});
+}
+
+// CLI11 reads the variables of all commands. A value that one command takes and another refuses,
+// such as a WEFT_MIN_ANGLE for `weft check`, must not end the others.
+void forget_variables_of_others(CLI::App& app, const std::string& called) {
+  for (CLI::App* command : app.get_subcommands({}))
+    for (CLI::Option* option : command->get_options())
+      if (command->get_name() != called) option->envname("");
 }
 
 int run(int argc, char** argv) {
@@ -49,15 +59,20 @@ int run(int argc, char** argv) {
   add_batch_command(app, chosen);
   add_job_commands(app, chosen);
   add_server_commands(app, chosen);
+  forget_variables_of_others(app, argc > 1 ? argv[1] : "");
   try {
     app.parse(argc, argv);
     for (const CLI::App* command : app.get_subcommands())
       refuse_idle_flags(*command, {argv, static_cast<std::size_t>(argc)});
   } catch (const CLI::ParseError& error) {
-    if (app.exit(error) == 0) return 0;
-    const std::string meant = suggestion(app, {argv, static_cast<std::size_t>(argc)});
+    if (error.get_exit_code() == 0) return app.exit(error);
+    const std::span<char* const> words(argv, static_cast<std::size_t>(argc));
+    const std::string unknown = unknown_command(app, words);
+    constexpr int kUsage = static_cast<int>(ExitCode::kUsage);
+    app.exit(unknown.empty() ? error : CLI::ParseError(unknown, kUsage));
+    const std::string meant = suggestion(app, words);
     if (!meant.empty()) std::fprintf(stderr, "weft: %s\n", meant.c_str());
-    return static_cast<int>(ExitCode::kUsage);
+    return kUsage;
   }
 
   Signals signals;

@@ -5,9 +5,9 @@
 #   deploy/install-deps.sh [GROUP...]
 #     build    compiles everything
 #     console  builds the console's pages into weftd: npm, unless there is one
-#     geo      compiles a weft that reads rasters, and projects longitude and latitude
-#     runtime  runs weftd and weft
-#     rasters  lets weft read rasters but .asc
+#     geo      compiles a weft that reads rasters, projects longitude and latitude, divides meshes
+#     weftd    runs weftd
+#     weft     runs a weft that was compiled with geo; its own weftd needs weftd, too
 #     test     what tests/run.sh needs beyond build and geo
 #     all      build, console, geo and test, the default
 set -euo pipefail
@@ -25,19 +25,22 @@ build=(
   libmuparser-dev                                                        # the checker
   libgtest-dev libgmock-dev librapidcheck-dev                            # tests
 )
-geo=(libgdal-dev libproj-dev)
-runtime=(
+geo=(libgdal-dev libproj-dev libmetis-dev)
+weftd=(
   libprotobuf32 libgmp10 libgmpxx4ldbl libmpfr6 libtbb12 libsleef3 libspdlog1.10
-  libfmt9 libatomic1 libssl3 libsqlite3-0 libpq5 libprometheus-cpp-core1.0
-  libcairo2 zlib1g libshp2 libmuparser2v5 libyaml-cpp0.7 libpugixml1v5 fonts-dejavu-core
+  libfmt9 libatomic1 libssl3 libsqlite3-0 libpq5 libprometheus-cpp-core1.0 zlib1g
 )
-rasters=(libgdal32)
+weft=(
+  libprotobuf32 libatomic1 libssl3 libcairo2 fonts-dejavu-core zlib1g libshp2 libmuparser2v5
+  libyaml-cpp0.7 libpugixml1v5 libgdal32 libproj25 libmetis5
+)
 test=(
   g++ libclang-rt-dev llvm # sanitizers, and the names in their reports
   postgresql-15            # the real database
   clang-format clang-tidy shellcheck
   # what reads the files that weft writes, and writes those that it reads
-  gmsh python3-gmsh python3-meshio python3-numpy python3-pyshp python3-shapely python3-vtk9
+  gmsh python3-gmsh python3-meshio python3-numpy python3-pyshp python3-shapely python3-vtk9 libxdmf3 openfoam
+  gdal-bin python3-gdal python3-netcdf4 python3-xarray python3-qgis qgis-providers
   python3-protobuf         # docs/generate.py
   poppler-utils            # drawings
   python3-pyproj           # lengths and angles on the ellipsoid; weft for Python, lonlat=
@@ -65,12 +68,12 @@ for group in "${@:-all}"; do
     build) wanted+=("${build[@]}") ;;
     console) wanted+=("${console[@]}") ;;
     geo) wanted+=("${geo[@]}") ;;
-    runtime) wanted+=("${runtime[@]}") ;;
-    rasters) wanted+=("${rasters[@]}") ;;
+    weftd) wanted+=("${weftd[@]}") ;;
+    weft) wanted+=("${weft[@]}") ;;
     test) wanted+=("${test[@]}") ;;
     all) wanted+=("${build[@]}" "${console[@]}" "${geo[@]}" "${test[@]}") ;;
     *)
-      echo "install-deps.sh: unknown group '$group'; there are build, console, geo, runtime, rasters, test, all" >&2
+      echo "install-deps.sh: unknown group '$group'; there are build, console, geo, weftd, weft, test, all" >&2
       exit 2
       ;;
   esac

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/engine.h"
 
+#include <malloc.h>
+
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <memory>
@@ -10,6 +13,7 @@
 #include "engine/base/text.h"
 #include "engine/domain/domain.h"
 #include "engine/domain/tolerance.h"
+#include "engine/gradation_mesh.h"
 #include "engine/output/bounds_error.h"
 #include "engine/refine/area_bound.h"
 #include "engine/refine/edge_limits.h"
@@ -18,8 +22,11 @@
 #include "engine/refine/storage/reserved_memory.h"
 #include "engine/schedule/mesh_run.h"
 #include "engine/schedule/narrow_places.h"
+#include "engine/size/gradation/scaled_size.h"
+#include "engine/size/gradation/within_size.h"
 #include "engine/size/lattice/grain_map.h"
 #include "engine/size/size_map.h"
+#include "engine/size/vanishing_size.h"
 
 namespace weft {
 namespace {
@@ -53,7 +60,7 @@ double precision_of(const Box& box) {
                                    std::fabs(box.max_y)});
 }
 
-// The least number of triangles for an area of at most `bound`, and of what each region allows.
+// The least number of triangles for areas of at most `bound` and of the bounds of regions.
 double triangles_asked(const Domain& domain, double bound) {
   double sum = 0;
   for (const Domain::Triangle& t : domain.triangles) {
@@ -66,18 +73,34 @@ double triangles_asked(const Domain& domain, double bound) {
   return sum;
 }
 
-class Job {
+// A number of triangles, as an error spells it.
+std::string count_text(double count) {
+  return text(std::min(std::ceil(count), 1e300));  // which need not be counted any more
+}
+
+class Run {
  public:
-  Job(const MeshRequest& request, ChunkSink& sink, ExecutionContext& context)
+  Run(const MeshRequest& request, ChunkSink& sink, ExecutionContext& context)
       : request_(request), sink_(sink), context_(context) {}
 
   Result<Summary> run() {
     if (auto error = check_options(request_)) return tl::unexpected(*error);
-    if (auto error = context_.need_bytes(bytes_to_make(request_.size, request_.pslg)))
+    if (auto error = context_.need_bytes(bytes_to_make(request_.size, request_.pslg), "the size"))
       return tl::unexpected(*error);
     if (auto error = check_size(request_.size)) return tl::unexpected(*error);
     if (Trace* const trace = context_.trace()) trace->start();
     if (auto error = context_.compute([this] { return prepare(); })) return tl::unexpected(*error);
+    if (request_.size.gradation_within && size_->limited_across_land() != nullptr) {
+      if (auto error = limit_within()) return tl::unexpected(*error);
+    }
+    return refine();
+  }
+
+ private:
+  static constexpr std::uint64_t kUncountable = 1'000'000'000'000'000'000;
+
+  // From the domain and its size on. Reads neither `pslg` nor the value of the size.
+  Result<Summary> refine() {
     const double bound = size().constant().value_or(std::numeric_limits<double>::infinity());
     quality_ =
         QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(summary_.box));
@@ -85,6 +108,7 @@ class Job {
       quality_.lattice = LatticeShape::for_angle(request_.min_angle_deg);
     edge_limits_ = EdgeLimits(request_.size.at);
     if (auto error = check_edge_limits()) return tl::unexpected(*error);
+    if (auto error = check_borders()) return tl::unexpected(*error);
     if (auto error = admit(bound)) return tl::unexpected(*error);
     if (!map_) return mesh(ConstantArea(bound), 0);
     GrainMap grains;
@@ -99,8 +123,35 @@ class Job {
     return mesh(MappedArea(size(), *map_, grains), map_->bytes() + grains.bytes() + size_->bytes());
   }
 
- private:
-  static constexpr std::uint64_t kUncountable = 1'000'000'000'000'000'000;
+  // Measures the gradation within the domain on a mesh of its own, with a share of the sizes that
+  // are limited across land.
+  std::optional<Error> limit_within() {
+    const SizeFunction& across = size();
+    const double share = GradationMesh::share_of_edges(request_.size.gradation);
+    MeshRequest request;
+    request.min_edge = share * request_.min_edge;
+    request.leaf_triangles = request_.leaf_triangles;
+    request.sweeps = 0;
+    request.allow_unrefined = true;
+    Budget budget = context_.budget();
+    budget.max_triangles = std::min(budget.max_triangles, budget.triangle_limit);
+    ExecutionContext context(context_, budget);
+    GradationMesh mesh(request_);
+    Run run(request, mesh, context);
+    run.size_.emplace(std::make_unique<ScaledSize>(across, share * share));
+    run.domain_ = std::move(domain_);
+    run.summary_.box = summary_.box;
+    if (auto error = context.compute([&] { return run.map_size(); })) return error;
+    if (auto made = run.refine(); !made) return made.error();
+    domain_ = std::move(run.domain_);
+    return context_.compute([&]() -> std::optional<Error> {
+      const SizeFunction& unlimited = *size_->limited_across_land();
+      auto within = std::move(mesh).limit(unlimited, domain_.bytes() + size_->bytes(), context_);
+      if (!within) return within.error();
+      size_->add(std::make_unique<WithinSize>(across, unlimited, std::move(*within)));
+      return map_size();
+    });
+  }
 
   // The domain's triangulation, and the map of a size that varies.
   std::optional<Error> prepare() {
@@ -118,6 +169,10 @@ class Job {
     auto made = make_size(request_.size, request_.pslg, domain_, context_);
     if (!made) return made.error();
     size_.emplace(std::move(*made));
+    return map_size();
+  }
+
+  std::optional<Error> map_size() {
     if (size().constant()) return std::nullopt;
     auto map = SizeMap::build(size(), domain_, context_);
     if (!map) return map.error();
@@ -125,7 +180,7 @@ class Job {
     return std::nullopt;
   }
 
-  // Edges on segments end up between half their limit and all of it.
+  // Edges on segments come out between half their limit and the whole limit.
   std::optional<Error> check_edge_limits() const {
     const double least = 2 * std::sqrt(quality_.min_length2);
     for (std::size_t i = 0; i < request_.size.at.size(); ++i) {
@@ -139,18 +194,32 @@ class Job {
     return std::nullopt;
   }
 
-  // Estimates the mesh, for a size of `bound` everywhere or that of the map, and refuses what is
-  // over the limit.
+  // Refuses sizes for which refinement would not end, unless the client has said where it may.
+  std::optional<Error> check_borders() {
+    if (!map_ || request_.min_edge > 0 || wants_cap()) return std::nullopt;
+    const auto found = find_vanishing(size(), domain_, quality_.min_length2, context_);
+    if (!found) return found.error();
+    if (!*found) return std::nullopt;
+    const Point at = **found;
+    return Error{ErrorCode::kBadSizeValue, "size",
+                 "the size falls to 0 on the segment through (" + text(at.x) + ", " + text(at.y) +
+                     "), as fast as the square of the distance to it or faster, which would need "
+                     "infinitely many triangles; give it a least value above 0, by max",
+                 at};
+  }
+
+  // Estimates the number of triangles, for the size `bound` everywhere or that of the map, and
+  // refuses a mesh over the limit.
   std::optional<Error> admit(double bound) {
     const Budget& budget = context_.budget();
     const auto over_limit = [](const char* field, std::string message) {
       return Error{ErrorCode::kLimitExceeded, field, std::move(message)};
     };
     const double by_bounds = triangles_asked(domain_, bound);
-    constexpr double kSides = 3;
     constexpr double kPerPiece = 4;  // triangles around an edge on a segment, roughly
     const double pieces = edge_limits_.pieces(domain_);
-    const double least = std::max({map_ ? map_->least_triangles() : 0, by_bounds, pieces / kSides});
+    const double by_pieces = EdgeLimits::least_triangles(pieces, domain_);
+    const double least = std::max({map_ ? map_->least_triangles() : 0, by_bounds, by_pieces});
     const double likely = std::max(map_ ? map_->likely_triangles() : 0, by_bounds);
     if (domain_.triangles.size() > budget.triangle_limit) {
       return over_limit("domain", "the domain itself has " +
@@ -158,18 +227,20 @@ class Job {
                                       " triangles, more than the limit of " +
                                       std::to_string(budget.triangle_limit));
     }
+    const char* const asked_by = least > by_pieces ? "size" : "size.at";
     if (!wants_cap() && least > static_cast<double>(budget.triangle_limit)) {
-      return over_limit("size", "the size asks for at least " + text(std::ceil(least)) +
-                                    " triangles, more than the limit of " +
-                                    std::to_string(budget.triangle_limit));
+      return over_limit(asked_by, "the size asks for at least " + count_text(least) +
+                                      " triangles, more than the limit of " +
+                                      std::to_string(budget.triangle_limit));
     }
     if (!wants_cap() && !may_stream() && least > static_cast<double>(Mesh::kMaxTriangles)) {
-      return over_limit("size", "the size asks for at least " + text(std::ceil(least)) +
-                                    " triangles; a mesh with a minimum angle above " +
-                                    text(kMaxStreamingAngleDeg) + " degrees has at most " +
-                                    std::to_string(Mesh::kMaxTriangles) +
-                                    ", because all of it is in memory at the same time");
+      return over_limit(asked_by, "the size asks for at least " + count_text(least) +
+                                      " triangles; a mesh with a minimum angle above " +
+                                      text(kMaxStreamingAngleDeg) + " degrees has at most " +
+                                      std::to_string(Mesh::kMaxTriangles) +
+                                      ", because all of it is in memory at the same time");
     }
+    if (auto error = check_bytes_of_pieces(pieces)) return error;
     by_size_ = std::max(triangles_per_bound(quality_.lattice) * likely,
                         static_cast<double>(domain_.triangles.size()));
     auto narrow = context_.compute([&] {
@@ -191,6 +262,18 @@ class Job {
     return std::nullopt;
   }
 
+  // Refuses sizes at markers whose edges alone take more than the run may have.
+  std::optional<Error> check_bytes_of_pieces(double pieces) const {
+    if (wants_cap()) return std::nullopt;
+    const double bytes = EdgeLimits::least_bytes(pieces, domain_);
+    const std::uint64_t most = context_.budget().max_bytes;
+    if (bytes <= static_cast<double>(most)) return std::nullopt;
+    return Error{ErrorCode::kBudgetExceeded, "size.at",
+                 "the lengths at markers ask for at least " + count_text(pieces) +
+                     " edges, which take " + count_text(bytes) + " bytes; the limit is " +
+                     std::to_string(most)};
+  }
+
   template <class AreaBound>
   Result<Summary> mesh(const AreaBound& area, std::uint64_t size_bytes) {
     summary_.size_seconds = clock_.lap();
@@ -210,6 +293,7 @@ class Job {
     if (wants_cap()) plan.max_triangles = context_.budget().max_triangles;
     if (auto error = run_mesh(plan, area, sink_, context_, summary_)) return tl::unexpected(*error);
     summary_.engine_seconds += summary_.triangulate_seconds + summary_.size_seconds;
+    summary_.size_warnings = size_warnings(request_.size, summary_.box, summary_.least_bound);
     if (!request_.allow_unrefined) {
       if (auto error = bounds_error(summary_, request_.min_angle_deg))
         return tl::unexpected(*error);
@@ -226,14 +310,14 @@ class Job {
     return request_.sweeps.value_or(worth_it && sweeps_cost_little() ? kDefault : 0);
   }
 
-  // Smoothing takes time for each triangle in the rows where two lattices meet. If there are `n` of
-  // them in a mesh of N triangles, these rows hold about 3 sqrt(n / N) of the triangles:
+  // Smoothing takes time for each triangle in the rows where two lattices meet. If `n` lattices are
+  // in a mesh of N triangles, these rows hold about 3 sqrt(n / N) of the triangles:
   //
   //                   pipe   slope  hollow  long waves  ring    short waves
   //   sqrt(n / N)     0.010  0.009  0.018   0.033       0.057   0.049
   //   time, 2 sweeps  1.1    1.3    1.3     1.5         2.8     4.2   times that without
   //
-  // In a small mesh the time does not matter, and the angles do.
+  // In a small mesh the angles matter more than the time.
   bool sweeps_cost_little() const {
     constexpr double kSmall = 1e5;  // triangles
     constexpr double kFewFaults = 0.012;
@@ -243,17 +327,18 @@ class Job {
   Error too_narrow() const {
     const NarrowPlaces::Costliest& worst = *narrow_.costliest();
     return {ErrorCode::kLimitExceeded, "quality.min_angle_deg",
-            "the minimum angle asks for at least " + text(std::ceil(narrow_.least())) +
+            "the minimum angle asks for at least " + count_text(narrow_.least()) +
                 " triangles where the domain is narrow, more than the limit of " +
                 std::to_string(context_.budget().triangle_limit) +
                 "; most of them between segments " + std::to_string(worst.segment) + " and " +
                 std::to_string(worst.other) + ", " + text(worst.width) + " apart at (" +
-                text(worst.at.x) + ", " + text(worst.at.y) + ")"};
+                text(worst.at.x) + ", " + text(worst.at.y) + ")",
+            worst.at};
   }
 
   bool may_stream() const { return request_.min_angle_deg <= kMaxStreamingAngleDeg; }
 
-  // Whether the client asked for a cap of its own: then reaching it is no error.
+  // Whether the client set a limit of its own: reaching that is no error.
   bool wants_cap() const {
     const std::uint64_t wish = context_.budget().max_triangles;
     return wish <= context_.budget().triangle_limit && wish != Budget{}.max_triangles;
@@ -281,13 +366,18 @@ class Job {
 }  // namespace
 
 void keep_memory_at_most(std::uint64_t bytes) {
+  constexpr std::uint64_t kShare = 128;
+  constexpr std::uint64_t kMostOfHeap = std::uint64_t{16} << 20;
+  constexpr std::uint64_t kMostInHeap = std::uint64_t{4} << 20;  // larger vectors are mapped alone
   ReservedMemory::keep_at_most(bytes);
+  mallopt(M_TRIM_THRESHOLD, static_cast<int>(std::min(bytes / kShare, kMostOfHeap)));
+  mallopt(M_MMAP_THRESHOLD, static_cast<int>(std::min(bytes / kShare, kMostInHeap)));
 }
 
 Result<Summary> generate_mesh(const MeshRequest& request, ChunkSink& sink,
                               ExecutionContext& context) {
   try {
-    return Job(request, sink, context).run();
+    return Run(request, sink, context).run();
   } catch (const Failure& failure) {
     return tl::unexpected(failure.error());
   } catch (const std::bad_alloc&) {

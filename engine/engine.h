@@ -23,7 +23,7 @@
 namespace weft {
 
 // Changes whenever the same request may give other bytes.
-inline constexpr std::string_view kEngineVersion = "5";
+inline constexpr std::string_view kEngineVersion = "6";
 
 inline constexpr double kMaxMinAngleDeg = 36;
 inline constexpr std::uint32_t kMaxSweeps = 16;
@@ -49,8 +49,9 @@ struct MeshRequest {
   // nearly all triangles, on a lattice that has few faults or in a mesh below 100,000 triangles;
   // otherwise none.
   std::optional<std::uint32_t> sweeps = std::nullopt;
-  // Whether a mesh with triangles that miss a bound without excuse (Unrefined::without_excuse) is a
-  // result. If not, it ends with kBoundsNotMet, after its chunks.
+  // Whether a mesh with triangles that miss a bound without exemption
+  // (Unrefined::without_exemption) is a result. If not, it ends with kBoundsNotMet, after its
+  // chunks.
   bool allow_unrefined = false;
   // Triangles of the final mesh that a leaf of the quadtree holds at most. Another number gives
   // another mesh. Not on the wire: for tests and measurements. Unset: see leaf_triangles_for.
@@ -71,8 +72,11 @@ std::optional<Error> check_pslg(const Pslg& pslg);
 Result<Summary> generate_mesh(const MeshRequest& request, ChunkSink& sink,
                               ExecutionContext& context);
 
-// Bounds the memory that ended jobs leave for later ones, in all of the process: 1 GiB unless this
-// sets another bound. Jobs that have ended already keep theirs. Thread-safe.
+// Bounds the memory that ended runs leave for later ones, in all of the process: 1 GiB unless this
+// sets another bound. Runs that have ended already keep theirs. Each heap of malloc keeps at most a
+// 128th of the bound, and at most 16 MiB, at its end; vectors up to that size, and up to 4 MiB,
+// come from it: us-east-coast without a size takes 8 % less time than with malloc's defaults,
+// because the system clears 20 pages for it instead of 320. Thread-safe.
 void keep_memory_at_most(std::uint64_t bytes);
 
 }  // namespace weft

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "server/console/request_rules.h"
+#include "server/memory_plan.h"
 #include "server/net/listen.h"
 #include "server/version.h"
 
@@ -21,22 +22,29 @@ constexpr char kFooter[] = R"(SIZE is a number of bytes, or one with a unit: 256
 Every flag is also read from the environment: --max-points is WEFT_MAX_POINTS.
 
 Exit codes:
-  0        drained after SIGTERM or SIGINT
-  1        failed
+  0        drained after SIGTERM or SIGINT; with --health, the server serves
+  1        failed; with --health, the server does not serve
   2        the command line is wrong
   3        cannot listen
   4        cannot open the store
   128 + n  a second signal n cut the draining short)";
 
 // Flags that have no effect if no jobs are kept.
-constexpr const char* kOfTheStore[] = {"--role",      "--max-queued",   "--max-queued-per-client",
-                                       "--lease",     "--max-attempts", "--keep",
-                                       "--keep-bytes"};
+constexpr const char* kOfTheStore[] = {"--role",       "--max-queued",   "--max-queued-per-client",
+                                       "--lease",      "--max-attempts", "--keep",
+                                       "--keep-bytes", "--keep-jobs"};
 
 std::string environment_name(std::string flag) {
   std::string name = "WEFT_" + flag.substr(2);
   for (char& c : name)
     c = c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return name;
+}
+
+// --max-points of max_points.
+std::string flag_name(std::string_view field) {
+  std::string name = "--" + std::string(field);
+  std::replace(name.begin(), name.end(), '_', '-');
   return name;
 }
 
@@ -51,7 +59,7 @@ std::string size_text(std::uint64_t bytes) {
   return std::to_string(bytes) + (unit == 0 ? "" : kUnits[unit]);
 }
 
-// Checks without a word in the help: the type's name and the text say it there.
+// A check that adds nothing to the help, because the type's name and the text say it there.
 CLI::Validator silent(CLI::Validator validator) {
   return validator.description("");
 }
@@ -109,7 +117,7 @@ class Flags {
   void count(const std::string& flag, std::uint64_t& target, const std::string& help) {
     value(flag, target, "N", help)->check(silent(CLI::PositiveNumber));
   }
-  // `unless` says what holds without the flag if that depends on the machine.
+  // `unless` says what the default is if it depends on the machine.
   CLI::Option* bytes(const std::string& flag, std::uint64_t& target, const std::string& help,
                      const std::string& unless = "") {
     CLI::Option* option =
@@ -119,7 +127,9 @@ class Flags {
         ->check(silent(CLI::PositiveNumber));
   }
   void seconds(const std::string& flag, double& target, const std::string& help) {
-    value(flag, target, "SECONDS", help)->check(silent(CLI::Range(0.0, 1e9)))->check(is_a_number());
+    value(flag, target, "SECONDS", help + ". Range: 0 to 1e9")
+        ->check(silent(CLI::Range(0.0, 1e9)))
+        ->check(is_a_number());
   }
 
  private:
@@ -132,10 +142,10 @@ std::chrono::steady_clock::duration to_duration(double seconds) {
       std::chrono::duration<double>(seconds));
 }
 
-// Leaves one place of four to others.
+// One client may fill three places of four.
 constexpr double kDefaultClientShare = 0.75;
 
-// What Options has in another form than the flags.
+// What the flags have in another form than Options.
 struct Given {
   std::uint32_t jobs = 0;  // 0: chosen from the number of threads
   double stall_timeout = 60;
@@ -148,6 +158,7 @@ struct Given {
   CLI::Option* share_across_clients = nullptr;
   CLI::Option* client_share = nullptr;
   CLI::Option* max_bytes = nullptr;
+  CLI::Option* cache_bytes = nullptr;
 };
 
 // Defaults, some of which depend on the machine.
@@ -155,9 +166,9 @@ Options defaults(const Machine& machine) {
   Options options;
   ServiceOptions& service = options.server.service;
   options.server.listen = {"127.0.0.1:7421"};
-  service.cache_bytes = std::uint64_t{64} << 20;
   service.threads = machine.threads;
   options.server.jobs.runner.keep.bytes = std::uint64_t{16} << 30;
+  options.server.jobs.runner.keep.jobs_of_owner = 10'000;
   if (machine.memory != 0) options.server.memory = machine.memory / 4 * 3;
   return options;
 }
@@ -195,8 +206,9 @@ void add_listening(Flags& flags, Options& options) {
               "with --tls-cert; otherwise requires --insecure if other machines can reach it");
   flags
       .value("--console-origin", server.console.origins, "ORIGIN",
-             "Let pages of this origin call by gRPC-Web, such as https://example.org, and browsers "
-             "know the console by its name. May be repeated, or separated by commas")
+             "Origin of pages that may call by gRPC-Web, such as https://example.org; its host is "
+             "also "
+             "accepted as a name of the console. May be repeated, or separated by commas")
       ->default_str("")
       ->delimiter(',')
       ->allow_extra_args(false)
@@ -211,38 +223,39 @@ void add_work(Flags& flags, Options& options, Given& given) {
   flags.begin_group("Work");
   flags
       .value("--threads", service.threads, "N",
-             "Threads that compute, 1 to 4096. Default: what the machine grants")
+             "Threads that compute. Range: 1 to 4096. Default: what the machine grants")
       ->check(silent(CLI::Range(1u, 4096u)));
   flags
       .value("--jobs", given.jobs, "N",
-             "Runs of the engine at the same time, 1 to 4096, which share the threads. Default: "
-             "the number of threads, at least 4")
+             "Runs of the engine at the same time, which share the threads. Range: 1 to 4096. "
+             "Default: the number of threads, at least 4")
       ->check(silent(CLI::Range(1u, 4096u)))
       ->default_str("");
   flags
       .value("--queue", service.queue, "N",
-             "Calls and jobs that may wait for a run, 0 to 1000000; more are refused")
+             "Calls and jobs that may wait for a run; more are refused. Range: 0 to 1000000")
       ->check(silent(CLI::Range(0u, 1'000'000u)));
   flags.bytes("--memory", options.server.memory,
-              "Memory shared by all runs, and by requests that wait for theirs",
+              "Memory of the whole process: messages, finished meshes, and all runs",
               "three quarters of the machine's");
   given.client_share =
       flags
           .value(
               "--client-share", service.client_share, "PART",
-              "Part of the queue, of the runs at the same time and of the memory that one client "
-              "may have, above 0 to 1. Default: 0.75 if clients are identified, by --tokens or "
+              "Share of the queue, the runs, the memory and --keep-bytes that one client may "
+              "take. Range: above 0 to 1. Default: 0.75 if clients are identified, by --tokens or "
               "--tls-client-ca, or an address can be reached from other machines; otherwise 1")
           ->check(silent(CLI::Range(1e-6, 1.0)))
           ->check(is_a_number())
           ->default_str("");
-  flags
-      .value("--cache-bytes", service.cache_bytes, "SIZE",
-             "Memory for finished meshes, to answer the same request again; 0 "
-             "keeps none")
-      ->default_str(size_text(service.cache_bytes))
-      ->transform(silent(CLI::AsSizeValue(false)))
-      ->check(silent(CLI::NonNegativeNumber));
+  given.cache_bytes =
+      flags
+          .value("--cache-bytes", service.cache_bytes, "SIZE",
+                 "Memory for a cache of finished meshes; 0: no cache. Default: 64MiB, or 1/32 of "
+                 "--memory if that is less")
+          ->default_str("")
+          ->transform(silent(CLI::AsSizeValue(false)))
+          ->check(silent(CLI::NonNegativeNumber));
   given.share_across_clients = flags.flag(
       "--share-across-clients,!--no-share-across-clients", service.share_across_clients,
       "Answer a client with meshes that another client asked for. Default: only if clients are not "
@@ -265,33 +278,34 @@ void add_store(Flags& flags, Options& options, Given& given) {
       ->delimiter(',')
       ->check(silent(CLI::IsMember({"api", "worker"})));
   flags.count("--max-queued", jobs.service.max_queued, "Maximum jobs that wait in the store");
-  flags.count("--max-queued-per-client", jobs.service.max_queued_of_owner,
-              "Maximum jobs of one client that wait in the store");
+  flags.count("--max-queued-per-client", jobs.service.max_open_of_client,
+              "Maximum jobs per client that have not ended");
   flags
       .value("--max-attempts", jobs.retry.max_attempts, "N",
-             "Maximum attempts at a job whose workers are lost, 1 to 100")
+             "Maximum attempts at a job whose workers are lost. Range: 1 to 100")
       ->check(silent(CLI::Range(1u, 100u)));
   flags.seconds("--lease", given.lease, "Silence after which a worker is considered lost");
   flags.seconds("--keep", given.keep,
                 "Time to keep jobs that ended, and meshes that nobody asks for");
-  flags.bytes("--keep-bytes", jobs.runner.keep.bytes,
-              "Maximum size of all meshes that are kept; those asked for longest ago go first");
+  flags.bytes(
+      "--keep-bytes", jobs.runner.keep.bytes,
+      "Maximum size of all meshes that are kept; those asked for longest ago are deleted first");
+  flags.count("--keep-jobs", jobs.runner.keep.jobs_of_owner,
+              "Maximum ended jobs that are kept per client; the oldest are deleted first");
 }
 
 void add_limits(Flags& flags, Options& options, Given& given) {
   Limits& limits = options.server.service.limits;
   flags.begin_group("Limits of a request");
-  flags.count("--max-points", limits.max_points, "Maximum points per request");
-  flags.count("--max-segments", limits.max_segments, "Maximum segments per request");
-  flags.count("--max-seeds", limits.max_seeds, "Maximum seeds of holes and regions per request");
-  flags.count("--max-raster-values", limits.max_raster_values, "Maximum values of a size raster");
+  for (const CountLimit& row : kCountLimits)
+    flags.count(flag_name(row.name), limits.*row.limit, std::string(row.about));
   flags.value("--max-triangles", limits.max_triangles, "N", "Maximum triangles per mesh")
       ->check(CLI::Range(std::uint64_t{1}, kMostTriangles).description(""));
-  given.max_bytes =
-      flags.bytes("--max-bytes", limits.max_bytes,
-                  "Maximum memory of the engine per run; --jobs times that must not be more than "
-                  "--memory",
-                  "--memory divided by --jobs");
+  given.max_bytes = flags.bytes(
+      "--max-bytes", limits.max_bytes,
+      "Maximum memory of the engine per run; --jobs runs of that size must fit into what --memory "
+      "leaves for runs",
+      "what --memory leaves for runs, divided by --jobs");
   flags.seconds("--max-seconds", limits.max_seconds, "Maximum time of work per run");
   flags.bytes("--max-request-bytes", limits.max_request_bytes, "Maximum size of a request message")
       ->check(silent(CLI::Range(1.0, double{std::numeric_limits<int>::max()})));  // gRPC's range
@@ -305,13 +319,13 @@ void add_limits(Flags& flags, Options& options, Given& given) {
 void add_readers(Flags& flags, Options& options, Given& given) {
   flags.begin_group("Readers of meshes");
   flags.bytes("--stream-buffer", options.server.service.limits.stream_buffer,
-              "Maximum bytes of a mesh that wait for its reader. Then refinement pauses, and "
-              "another run takes its place");
+              "Maximum bytes of a mesh that wait for its reader; at this limit refinement pauses, "
+              "and another run takes its place");
   flags.seconds("--stall-timeout", given.stall_timeout,
                 "Time after which a client that reads nothing is cut off");
   flags.value("--min-rate", options.server.service.patience.least_rate, "BYTES",
-              "Bytes per second that a client must read of what waits for it, on average over "
-              "--stall-timeout; 0: any");
+              "Minimum rate in bytes per second at which a client must read what waits for it, on "
+              "average over --stall-timeout; 0: none");
 }
 
 void add_process(Flags& flags, Options& options, Given& given) {
@@ -319,36 +333,54 @@ void add_process(Flags& flags, Options& options, Given& given) {
   flags.seconds("--drain", given.drain, "Time for open calls to finish after SIGTERM");
   flags
       .value("--log-level", options.log_level, "LEVEL",
-             "Least level of messages on standard error: trace, debug, info, warning, error, "
-             "critical or off")
+             "Lowest level of messages that are logged to standard error: trace, debug, info, "
+             "warning, error, critical or off")
       ->check(
           silent(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"})));
   flags.value("--log-format", given.log_format, "text|json", "Format of the log")
       ->check(silent(CLI::IsMember({"text", "json"})));
   flags.flag("--exit-with-stdin", options.exit_with_stdin,
-             "Drain at the end of standard input, as after SIGTERM");
+             "Drain at the end of standard input, as SIGTERM does");
 }
 
-// As many runs as there may be at the same time can all take what one may: defaults give way, what
-// was given does not. Throws CLI::ValidationError.
+// The socket of the server that --health asks. Throws CLI::ValidationError.
+std::string first_socket(const std::vector<std::string>& listen) {
+  const auto socket = std::find_if(listen.begin(), listen.end(), is_unix);
+  if (socket == listen.end())
+    throw CLI::ValidationError("--health", "there is no unix: address in --listen");
+  return *socket;
+}
+
+// All runs that are at work at the same time can take what one may. Defaults are lowered for that;
+// values that were given are not. Throws CLI::ValidationError.
 void settle_memory(const Given& given, Options& options) {
   ServiceOptions& service = options.server.service;
   std::uint64_t& max_bytes = service.limits.max_bytes;
   const std::uint64_t memory = options.server.memory;
-  // A small request must not wait for one huge run to end.
+  if (given.cache_bytes->count() == 0)
+    service.cache_bytes = std::min(std::uint64_t{64} << 20, memory / 32);
+  const MemoryPlan plan = plan_memory(options.server);
+  if (plan.runs < kLeastBytesOfRuns)
+    throw CLI::ValidationError(
+        "--memory", fmt::format("{} bytes leave {} for runs, beside {} for messages, {} for "
+                                "--cache-bytes and {} for the process; runs need at least {}",
+                                memory, plan.runs, plan.received, service.cache_bytes,
+                                kBytesOfProcess + plan.kept, kLeastBytesOfRuns));
+  // At least so many, so that a small request need not wait for the end of one huge run.
   constexpr std::uint32_t kFewestRuns = 4;
   service.jobs = given.jobs != 0 ? given.jobs : std::max(service.threads, kFewestRuns);
   if (given.max_bytes->count() == 0) {
-    max_bytes = std::max<std::uint64_t>(memory / service.jobs, 1);
+    max_bytes = plan.runs / service.jobs;
   } else if (given.jobs == 0) {
-    service.jobs =
-        static_cast<std::uint32_t>(std::clamp<std::uint64_t>(memory / max_bytes, 1, service.jobs));
+    service.jobs = static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>(plan.runs / max_bytes, 1, service.jobs));
   }
-  if (max_bytes <= memory / service.jobs) return;
+  if (max_bytes <= plan.runs / service.jobs) return;
   throw CLI::ValidationError(
-      "--max-bytes", fmt::format("{} bytes for each of {} runs (--jobs) are more than --memory, "
-                                 "which is {} bytes",
-                                 max_bytes, service.jobs, memory));
+      "--max-bytes",
+      fmt::format("{} bytes for each of {} runs (--jobs) are more than the {} that --memory, which "
+                  "is {} bytes, leaves for runs",
+                  max_bytes, service.jobs, plan.runs, memory));
 }
 
 void settle(const Given& given, Options& options) {
@@ -368,6 +400,7 @@ void settle(const Given& given, Options& options) {
   if (given.share_across_clients->count() == 0) service.share_across_clients = !identified;
   if (given.client_share->count() == 0)
     service.client_share = identified || !local ? kDefaultClientShare : 1;
+  jobs.runner.keep.share_of_owner = service.client_share;
   jobs.serves = has_role("api");
   jobs.works = has_role("worker");
   jobs.runner.lease =
@@ -386,6 +419,10 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
   Given given;
   CLI::App app("weftd: graded, guaranteed-quality Delaunay meshes over gRPC", "weftd");
   app.set_version_flag("--version", "weftd " + std::string(kVersion));
+  // No environment variable: with it set, no server would start.
+  bool health = false;
+  app.add_flag("--health", health,
+               "Ask the server at the first unix: address in --listen whether it serves, and exit");
   Flags flags(app);
   add_listening(flags, options);
   add_work(flags, options, given);
@@ -400,6 +437,7 @@ std::variant<Options, Exit> parse_options(int argc, const char* const* argv,
       for (const char* name : kOfTheStore)
         if (app.count(name) != 0) throw CLI::RequiresError(name, "--data or --store");
     settle_memory(given, options);
+    if (health) options.ask_health_at = first_socket(options.server.listen);
   } catch (const CLI::ParseError& error) {
     return Exit{app.exit(error) == 0 ? 0 : kExitUsage};
   }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The flags of weftd. Every flag is also read from the environment, as WEFT_ and its name in
-// capitals: --max-points is WEFT_MAX_POINTS. A flag wins over the environment.
+// capitals: --max-points is WEFT_MAX_POINTS. A flag wins over the environment. --health, --help and
+// --version, which do not serve, are flags alone.
 #pragma once
 
 #include <chrono>
 #include <string>
 #include <variant>
 
-#include "server/machine.h"
+#include "server/observe/machine.h"
 #include "server/server.h"
 
 namespace weft::server {
@@ -22,6 +23,8 @@ struct Options {
   LogFormat log_format = LogFormat::kText;
   std::string port_file;  // empty: none
   bool exit_with_stdin = false;
+  // Ask the server at this unix: address whether it serves, instead of being one; empty: serve.
+  std::string ask_health_at;
 };
 
 // The command line needs no server: it asked for help, or it is wrong.

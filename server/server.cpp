@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "server/admission/memory_estimate.h"
+#include "server/memory_plan.h"
 #include "server/mesh/server_info.h"
 #include "server/net/connections.h"
 #include "server/net/listen.h"
@@ -27,21 +28,14 @@ using std::chrono::seconds;
 constexpr const char* kMeshServiceName = "weft.v1.MeshService";
 constexpr const char* kJobServiceName = "weft.v1.JobService";
 
-// Ended calls still have to tell their clients so.
+// Calls that were ended still have to send their status.
 constexpr seconds kLastWords{1};
 // Streams of other services, such as Health.Watch, do not end by themselves.
 constexpr milliseconds kOthersGrace{100};
 
-// What requests may take of memory on their way in, and again until their runs have ended: an
-// eighth of what there is, and enough for two of the largest, but no more than half.
-std::uint64_t request_bytes(const ServerOptions& options) {
-  const std::uint64_t two = 2 * options.service.limits.max_request_bytes;
-  return std::max(options.memory / 8, std::min(two, options.memory / 2));
-}
-
 AdmissionOptions admission_options(const ServerOptions& options, MemoryGate& gate) {
   AdmissionOptions admission = options.admission;
-  admission.request_bytes = request_bytes(options);
+  admission.request_bytes = plan_memory(options).received;
   admission.memory = &gate;
   return admission;
 }
@@ -54,15 +48,15 @@ std::vector<std::string> services(bool keeps_jobs) {
   return names;
 }
 
-// A sixteenth is kept for light runs, but no more than all of their places take.
+// A sixteenth is kept for light runs, but at most what all of their places take.
 MemoryGate::Options gate_options(const ServerOptions& options) {
   const ServiceOptions& service = options.service;
   const std::uint64_t light = most_light(service.limits);
-  MemoryGate::Options gate{.capacity = options.memory,
-                           .for_light = std::min(options.memory / 16, service.light_jobs * light)};
+  const std::uint64_t runs = plan_memory(options).runs;
+  MemoryGate::Options gate{.capacity = runs,
+                           .for_light = std::min(runs / 16, service.light_jobs * light)};
   if (service.client_share < 1)
-    gate.of_client =
-        static_cast<std::uint64_t>(service.client_share * static_cast<double>(options.memory));
+    gate.of_client = static_cast<std::uint64_t>(service.client_share * static_cast<double>(runs));
   return gate;
 }
 
@@ -76,11 +70,11 @@ void configure(grpc::ServerBuilder& builder, const ServerOptions& options) {
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_DEFLATE, false);
   grpc::ResourceQuota quota("weftd");
   quota.SetMaxThreads(16);
-  quota.Resize(request_bytes(options));
+  quota.Resize(plan_memory(options).received);
   builder.SetResourceQuota(quota);
 }
 
-// Nobody guesses it, and it ends with the process.
+// A secret that ends with the process.
 std::string random_secret() {
   std::array<unsigned char, 16> bytes;
   if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1)
@@ -123,9 +117,11 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
   jobs.service.limits = options.service.limits;
   jobs.service.share_across_clients = options.service.share_across_clients;
   jobs.service.patience = options.service.patience;
+  jobs.service.client_share = options.service.client_share;
   jobs.runner.worker = options.service.instance;
   jobs.runner.slots = options.service.jobs;
   jobs.runner.light_slots = options.service.light_jobs;
+  jobs.runner.client_share = options.service.client_share;
   jobs_.emplace(std::move(store), std::move(jobs), admission_, metrics_, engine, arena_, gate_,
                 log_);
   metrics_.add_queue("jobs", [this] { return jobs_->figures(); });
@@ -194,7 +190,7 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
 std::optional<std::string> Server::start_console(const ServerOptions& options) {
   if (options.console.address.empty()) return std::nullopt;
   grpc::ChannelArguments arguments;
-  arguments.SetMaxReceiveMessageSize(-1);  // it comes from this server
+  arguments.SetMaxReceiveMessageSize(-1);  // messages come from this server itself
   auto console = Console::start(options.console,
                                 {.channel = server_->InProcessChannel(arguments),
                                  .authenticator = authenticator_,
@@ -203,7 +199,7 @@ std::optional<std::string> Server::start_console(const ServerOptions& options) {
                                  .tls = options.tls,
                                  .insecure = options.insecure,
                                  .most_request_bytes = options.service.limits.max_request_bytes,
-                                 .request_bytes = request_bytes(options),
+                                 .request_bytes = plan_memory(options).received,
                                  .stall_timeout = std::chrono::duration_cast<milliseconds>(
                                      options.service.patience.stall_timeout),
                                  .log = log_});

@@ -36,7 +36,7 @@ struct ServerOptions {
   std::vector<std::string> listen;  // see listen.h
   ServiceOptions service{};
   AdmissionOptions admission{};  // its request_bytes are filled in
-  // Bytes that are promised to jobs at the same time.
+  // Bytes of the whole process (memory_plan.h).
   std::uint64_t memory = std::uint64_t{8} << 30;
   // Where there is a store. Their limits are those of `service`.
   JobOptions jobs{};

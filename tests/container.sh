@@ -1,13 +1,19 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds the image of the Dockerfile and runs it, without a Docker daemon and without pulling
-# anything: debootstrap makes the base, buildah builds on it and starts the server, and a client
-# outside meshes through it. Needs root, for both.
+# Builds the images of the Dockerfile by deploy/image.sh and runs them, without a Docker daemon and
+# without pulling anything. Needs root, as image.sh does.
 #
 #   tests/container.sh WEFT     WEFT is the client to mesh with, such as build/release/weft
 #
-# Prints the size of the image; fails where it is over 125 MB, where the server runs as root, where
-# anything but the volume was written to, where the mesh is wrong or the server does not drain.
+# weftd: buildah starts the server, and a client outside meshes through it. Fails if the image is over
+# 120 MB or has the client, if the server runs as root, if anything but the volume was written to, if
+# the mesh is wrong, if the health check succeeds without a server, if the server does not drain, or if it
+# has no console; it only says so if the console has no pages, because npm got no packages. If
+# tests/console has its packages, too, a browser works with the image's console: a mesh, a polygon drawn
+# by hand, a cancelled run, a killed server, a token. WEFT_ALL_PAGES=1 runs every test of the browser.
+#
+# weft: meshes files of the user who runs it, with what GDAL, PROJ and METIS are for, on a server of its
+# own. Prints the sizes of both.
 set -euo pipefail
 weft=$(realpath "${1:?usage: tests/container.sh WEFT}")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -42,31 +48,24 @@ until_true() {
   return 1
 }
 
-say "base: Debian 12, by debootstrap"
-debootstrap --variant=minbase bookworm "$scratch/base" >"$scratch/debootstrap.log" 2>&1 ||
-  fail "debootstrap failed: $(tail -n 3 "$scratch/debootstrap.log")"
-# As Debian's own slim image.
-rm -rf "$scratch"/base/usr/share/{doc,man,info,locale,lintian} \
-  "$scratch"/base/var/{cache/apt/*,lib/apt/lists/*,log/*}
-base=$("${buildah[@]}" from scratch)
-"${buildah[@]}" add -q "$base" "$scratch/base" / >/dev/null
-"${buildah[@]}" commit -q --rm "$base" weft-base >/dev/null
-rm -rf "$scratch/base"
+deploy/image.sh "$scratch" --build-arg WERROR=ON
+# A value of an image's configuration, a list, one item per line: config_of IMAGE KEY...
+config_of() {
+  "${buildah[@]}" inspect --type image "$1" | python3 -c 'import functools, json, sys
+config = json.load(sys.stdin)["Docker"]["config"]
+print(*functools.reduce(dict.__getitem__, sys.argv[1:], config), sep="\n")' "${@:2}"
+}
+size_of() { du -s --apparent-size --block-size=1000000 "$1" | cut -f1; }
 
-say "image, by buildah"
-volumes=()
-cache=$(ccache --get-config cache_dir 2>/dev/null) && mkdir -p "$cache" &&
-  volumes=(--volume "$cache:/var/cache/ccache")
-"${buildah[@]}" build --pull-never --build-arg BASE=localhost/weft-base \
-  --build-arg WERROR=ON "${volumes[@]}" \
-  --format docker --tag weft . >"$scratch/build.log" 2>&1 ||
-  fail "the image does not build: $(tail -n 30 "$scratch/build.log")"
-mapfile -t healthcheck < <("${buildah[@]}" inspect --type image weft |
-  python3 -c 'import json, sys
-print(*json.load(sys.stdin)["Docker"]["config"]["Healthcheck"]["Test"][1:], sep="\n")')
-container=$("${buildah[@]}" from --pull-never weft)
+mapfile -t healthcheck < <(config_of weftd Healthcheck Test)
+unset "healthcheck[0]" # CMD
+container=$("${buildah[@]}" from --pull-never weftd)
 root=$("${buildah[@]}" mount "$container")
-size=$(du -s --apparent-size --block-size=1000000 "$root" | cut -f1)
+size=$(size_of "$root")
+[[ $(config_of weftd Entrypoint) == weftd ]] || fail "weftd does not start weftd"
+client_files=$(find "$root" -xdev \( -path '*/bin/weft' -o -name 'lib*gdal*.so*' -o -name 'libproj.so*' \
+  -o -name 'libmetis.so*' -o -name 'libcairo.so*' -o -name '*.ttf' \))
+[[ -z $client_files ]] || fail "the image weftd has files of the client: $client_files"
 
 # The volume, as a user of the image would find it.
 mkdir "$scratch/data"
@@ -85,7 +84,7 @@ listens() { [[ -s $scratch/data/address ]]; }
 start_server() {
   rm -f "$scratch/data/address"
   in_container weftd --listen 127.0.0.1:0,unix:/var/lib/weft/socket --metrics 127.0.0.1:0 \
-    --port-file /var/lib/weft/address 2>>"$scratch/server.log" &
+    --console 127.0.0.1:0 --port-file /var/lib/weft/address 2>>"$scratch/server.log" &
   server=$!
   until_true listens || fail "the server does not listen: $(tail "$scratch/server.log")"
   address=$(grep -m1 '^127' "$scratch/data/address")
@@ -96,7 +95,8 @@ stop_server() {
   server=
 }
 
-say "a server in it, a client outside"
+say "weftd: a server in it, a client outside"
+in_container "${healthcheck[@]}" >/dev/null 2>&1 && fail "the health check succeeds without a server"
 start_server
 [[ $(stat -c %u "$scratch/data/address") == 990 ]] || fail "the server does not run as user 990"
 in_container "${healthcheck[@]}" >/dev/null || fail "the health check fails: ${healthcheck[*]}"
@@ -104,8 +104,18 @@ pipe=(tests/models/pipe.poly --size '0.4*hypot(x-200, y-200) + 1')
 "$weft" mesh "${pipe[@]}" -o "$scratch/pipe.vtu" --server "$address" --quiet
 "$weft" check "$scratch/pipe.vtu" --domain "${pipe[@]}"
 job=$("$weft" submit "${pipe[@]}" --wait --server "$address" --quiet)
+python3 - "$(sed -n 's/^console=//p' "$scratch/data/address")" "$scratch/no-pages" <<'END' || fail "the console is not served"
+import re, sys, urllib.request
+get = lambda path: urllib.request.urlopen(f"http://{sys.argv[1]}{path}", timeout=30).read().decode()
+page = get("/")
+if "built without the console's pages" in page:
+    open(sys.argv[2], "w").close()
+    sys.exit(print("the image has no pages of the console: npm got no packages"))
+scripts = re.findall(r'src="(/assets/[^"]*)"', page)
+assert scripts and all(get(script) for script in scripts), page
+END
 
-say "another server on the same volume"
+say "weftd: another server on the same volume"
 stop_server
 start_server
 "$weft" fetch "$job" -o "$scratch/fetched.vtu" --server "$address" --quiet
@@ -114,5 +124,46 @@ stop_server
 
 written=$(find "$root" -xdev -user 990 ! -path "$root/var/lib/weft")
 [[ -z $written ]] || fail "written outside of the volume: $written"
-echo "image: $size MB"
-((size <= 125)) || fail "the image has $size MB, more than 125"
+
+# The browser's tests start weftd themselves: by a program that enters the image, with this machine's
+# /tmp, which has the tests' folders.
+if [[ -d tests/console/node_modules && ! -e $scratch/no-pages ]]; then
+  say "weftd: its console in a browser"
+  mkdir "$scratch/programs"
+  ln -s "$weft" "$scratch/programs/weft"
+  cat >"$scratch/programs/weftd" <<END
+#!/bin/sh
+exec unshare --mount sh -c 'for folder in dev proc tmp; do
+  mount --rbind "/\$folder" "\$0/\$folder" || exit
+done
+exec chroot "\$0" weftd "\$@"' "$root" "\$@"
+END
+  chmod +x "$scratch/programs/weftd"
+  some=(--test-name-pattern='dropped file is meshed|drawn by hand|is cancelled|killed server|a token')
+  [[ -z ${WEFT_ALL_PAGES:-} ]] || some=()
+  (cd tests/console && WEFT_PROGRAMS=$scratch/programs timeout 1800 \
+    node --test --test-reporter=spec "${some[@]}" mesh.test.js pages.test.js) ||
+    fail "the console of the image does not work in a browser"
+fi
+
+say "weft: meshes of a GeoPackage in longitude and latitude, in parts, by user 1000"
+mapfile -t entrypoint < <(config_of weft Entrypoint)
+client=$("${buildah[@]}" from --pull-never weft)
+client_size=$(size_of "$("${buildah[@]}" mount "$client")")
+mkdir "$scratch/mounted"
+ogr2ogr "$scratch/mounted/coast.gpkg" tests/models/us-east-coast.geojson
+chown -R 1000:1000 "$scratch/mounted"
+# As where a server is configured for others; the private one must not use it.
+in_client() {
+  "${buildah[@]}" run --user 1000:1000 --env WEFT_DATA=/var/lib/weft --volume "$scratch/mounted:/work" \
+    "$client" -- "${entrypoint[@]}" "$@"
+}
+coast=(--size 1e8 --lonlat --to-metres)
+in_client mesh coast.gpkg "${coast[@]}" -o coast.vtu --draw coast.png --quiet 2>"$scratch/client.log"
+[[ ! -s $scratch/client.log ]] || fail "weft --quiet is not quiet: $(cat "$scratch/client.log")"
+"$weft" check "$scratch/mounted/coast.vtu" --domain tests/models/us-east-coast.geojson "${coast[@]}"
+in_client mesh coast.gpkg "${coast[@]}" -o parts.vtu --parts 2 --quiet
+[[ $(stat -c %u "$scratch/mounted/coast.vtu") == 1000 ]] || fail "the mesh is not user 1000's"
+
+echo "images: weftd $size MB, weft $client_size MB"
+((size <= 120)) || fail "the image weftd has $size MB, more than 120"

@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Packages the build for Debian and lives with the packages: installs them with apt on a bare
-# Debian 12 that debootstrap makes, boots it with its own systemd in namespaces of its own, meshes
-# through the service, by the command line and from Python, reads the manual, upgrades, and removes
-# and purges them. Needs root, for all of that.
+# Packages the build for Debian and for Python, and lives with the packages, each on a bare Debian 12
+# that debootstrap makes. The wheel: installs it with pip, meshes from Python and by the command line,
+# uninstalls it. Debian's: installs them with apt, boots the machine with its own systemd in
+# namespaces of its own, meshes through the service, by the command line and from Python, reads the
+# manual, upgrades, and removes and purges them. Needs root, for all of that.
 #
-#   tests/package.sh BUILD      BUILD is a folder that was built, such as build/release
+#   tests/package.sh BUILD PORTABLE     folders that were built by the presets release and portable
 #
-# Fails where a package does not install, the service does not run confined as its user, a mesh is
-# wrong, a job is lost, or anything of weft is left after purging.
+# Fails if a package does not install, the service does not run confined as its user, a mesh is
+# wrong, a job is lost, or anything of weft is left after uninstalling or purging.
 set -euo pipefail
-build=$(realpath "${1:?usage: tests/package.sh BUILD}")
+build=$(realpath "${1:?usage: tests/package.sh BUILD PORTABLE}")
+portable=$(realpath "${2:?usage: tests/package.sh BUILD PORTABLE}")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 ((EUID == 0)) || {
   echo "package.sh: needs root, for debootstrap and systemd" >&2
@@ -89,24 +91,79 @@ inside() {
 runs() { inside systemctl is-active --quiet weftd 2>/dev/null; }
 serves() { [[ $(inside weft health --server 127.0.0.1:7421 2>/dev/null) == serving ]]; }
 shows_the_journal() { inside journalctl --no-pager --unit weftd --lines 20; }
-before_boot() {
-  chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 \
-    DEBIAN_FRONTEND=noninteractive "$@"
+# Runs a command in the folder $1 as if it were the whole machine.
+inside_folder() {
+  # shellcheck disable=SC2016
+  unshare --mount --pid --fork sh -c 'mount -t proc proc "$0/proc" && exec chroot "$0" "$@"' "$1" \
+    env -i PATH=/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 \
+    DEBIAN_FRONTEND=noninteractive "${@:2}"
 }
+before_boot() { inside_folder "$root" "$@"; }
 
 say "packages, by cpack"
 (cd "$scratch" && cpack --config "$build/CPackConfig.cmake" -B "$scratch/packages") \
   >"$scratch/cpack.log" 2>&1 || fail "cpack failed: $(tail "$scratch/cpack.log")"
 (cd "$scratch/packages" && du --apparent-size --block-size=1000 ./*.deb)
 
+say "packages for Python, twice"
+export SOURCE_DATE_EPOCH=1000000000
+/usr/bin/python3 -B deploy/package/wheels.py "$portable" "$scratch/wheels"
+/usr/bin/python3 -B deploy/package/wheels.py "$portable" "$scratch/again"
+diff -r "$scratch/wheels" "$scratch/again" || fail "the same build gives other packages for Python"
+(cd "$scratch/wheels" && du --apparent-size --block-size=1000 ./*)
+
 say "a bare Debian 12, by debootstrap"
 debootstrap --variant=minbase bookworm "$root" >"$scratch/debootstrap.log" 2>&1 ||
   fail "debootstrap failed: $(tail -n 3 "$scratch/debootstrap.log")"
 cp /etc/resolv.conf "$root/etc/"
 echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/test"
+cp tests/models/pipe.poly "$root/srv"
+mesh=(/srv/pipe.poly --size '0.4*hypot(x-200, y-200) + 1')
+
+say "the wheel's programs, beside nothing but a bare Debian 12"
+other=$scratch/other
+cp -a "$root" "$other"
+in_other() { inside_folder "$other" "$@"; }
+/usr/bin/python3 -m pip install --quiet --root-user-action ignore --no-index --no-deps \
+  --target "$other/opt" "$scratch"/wheels/*manylinux*.whl
+in_other /opt/weft/carried/bin/weft mesh "${mesh[@]}" -o /srv/bare.vtu --draw /srv/bare.png --quiet
+in_other /opt/weft/carried/bin/weft check /srv/bare.vtu --domain "${mesh[@]}" >/dev/null
+rm -rf "$other"/opt/*
+
+say "pip install"
+# The packages of Python that it needs are Debian's: pip needs no index here.
+{
+  in_other apt-get update -qq &&
+    in_other apt-get install -y -qq --no-install-recommends \
+      python3-pip python3-grpcio python3-protobuf python3-numpy
+} >"$scratch/apt.log" 2>&1 || fail "pip does not install: $(tail "$scratch/apt.log")"
+files_but_caches() {
+  (cd "$other" && find . -xdev '(' -path ./srv -o -path ./tmp -o -name __pycache__ ')' -prune -o \
+    -print | LC_ALL=C sort)
+}
+files_but_caches >"$scratch/before"
+cp "$scratch"/wheels/*.whl "$other/srv"
+in_other sh -c 'pip install --quiet --no-index --break-system-packages --root-user-action ignore \
+  /srv/*manylinux*.whl' || fail "the wheel does not install"
+cat >"$other/srv/mesh.py" <<'END'
+import weft
+with weft.local() as client:
+    client.mesh("/srv/pipe.poly", size="0.4*hypot(x-200, y-200) + 1").write("/tmp/python.vtu")
+END
+as_nobody=(setpriv --reuid 65534 --regid 65534 --clear-groups)
+in_other "${as_nobody[@]}" python3 /srv/mesh.py
+in_other weft check /tmp/python.vtu --domain "${mesh[@]}" >/dev/null
+in_other "${as_nobody[@]}" python3 -m weft mesh "${mesh[@]}" -o /tmp/module.vtu --quiet
+in_other cmp /srv/bare.vtu /tmp/module.vtu
+[[ $(in_other weftd --version) == $(in_other weft --version | sed 's/^weft /weftd /') ]] ||
+  fail "the wheel's programs have two versions"
+in_other sh -c 'pip uninstall --quiet --yes --break-system-packages --root-user-action ignore weft'
+left=$(files_but_caches | LC_ALL=C comm -13 "$scratch/before" -)
+[[ -z $left ]] || fail "left after pip uninstall: $left"
+rm -rf --one-file-system "$other"
+
 mkdir "$root/srv/packages"
 mv "$scratch"/packages/*.deb "$root/srv/packages"
-cp tests/models/pipe.poly "$root/srv"
 
 say "apt-get install"
 {
@@ -126,7 +183,6 @@ for line in "Uid: $user $user $user $user" "NoNewPrivs: 1" "Seccomp: 2" "CapBnd:
 done
 
 say "meshes through the service, of its own server, and from Python"
-mesh=(/srv/pipe.poly --size '0.4*hypot(x-200, y-200) + 1')
 inside weft mesh "${mesh[@]}" -o /srv/pipe.vtu --draw /srv/pipe.png --server 127.0.0.1:7421 --quiet
 inside weft check /srv/pipe.vtu --domain "${mesh[@]}"
 inside weft mesh "${mesh[@]}" -o /srv/own.vtu --quiet
@@ -134,6 +190,8 @@ inside cmp /srv/pipe.vtu /srv/own.vtu
 inside python3 -c "import weft
 with weft.Client('127.0.0.1:7421') as client:
     print(client.mesh('/srv/pipe.poly', size='0.4*hypot(x-200, y-200) + 1').quality())"
+protocol=$(PKG_CONFIG_LIBDIR=$root/usr/share/pkgconfig pkg-config --variable=protodir weft-protocol)
+protoc -I "$protocol" -o /dev/null weft/v1/mesh_service.proto weft/v1/job_service.proto
 job=$(inside weft submit "${mesh[@]}" --wait --server 127.0.0.1:7421 --quiet)
 for page in weft weft-mesh weftd; do
   # Of pages at an unusual width man keeps no copy of its own.
@@ -158,7 +216,7 @@ shows_the_journal | grep -q 'event=draining.*seconds=29' || fail "WEFT_DRAIN was
 inside systemctl start weftd
 
 say "remove, and purge"
-inside apt-get remove -y -qq weft weftd python3-weft >"$scratch/remove.log" 2>&1 ||
+inside apt-get remove -y -qq weft weftd python3-weft weft-protocol-dev >"$scratch/remove.log" 2>&1 ||
   fail "removing fails: $(<"$scratch/remove.log")"
 ! runs || fail "the service of a removed package runs"
 inside test -d /var/lib/weftd -a -f /etc/default/weftd || fail "removing deletes what is kept"

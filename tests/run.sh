@@ -3,8 +3,9 @@
 # From a fresh Debian 12 machine to all tests run: installs what is missing, builds with warnings as
 # errors, runs every test, then those labelled `sanitize` again under AddressSanitizer and
 # UndefinedBehaviorSanitizer and those labelled `threads` under ThreadSanitizer, fuzzes, builds and
-# runs the container and the packages, and checks formatting, includes, licences, protocol and scripts. Prints each
-# step with its seconds, and the closing lines of ctest last. Fails when any step failed.
+# runs the container and the packages, and checks formatting, includes, licences, protocol and
+# scripts. Prints each step with its seconds, and last the ends of those that failed, what failed in
+# ctest, and ctest's closing lines. Fails when any step failed.
 #
 #   tests/run.sh [--quick]     --quick leaves sanitizers, fuzzers, container and packages out
 set -uo pipefail
@@ -19,16 +20,18 @@ case "$#:${1-}" in
     ;;
 esac
 
-report=()            # a line for each step
-declare -A tested=() # by preset: ctest ran and left its log
-failed=0
+report=() # a line for each step
+broken=() # the names of those that failed
+logs=build/steps
+rm -rf "$logs"
+mkdir -p "$logs"
 
 # step NAME COMMAND...
 step() {
   local name=$1 start=$EPOCHREALTIME outcome=ok status=0
   shift
   printf '\n==> %s\n' "$name"
-  "$@" </dev/null || { status=$? outcome=FAILED failed=1; }
+  "$@" </dev/null 2>&1 | tee "$logs/$name.log" || { status=$? outcome=FAILED broken+=("$name"); }
   report+=("$(awk -v a="$start" -v b="$EPOCHREALTIME" -v name="$name" -v outcome="$outcome" \
     'BEGIN { printf "%-34s %7.1f s  %s", name, b - a, outcome }')")
   echo "==> ${report[-1]}"
@@ -43,23 +46,28 @@ needed() {
 finish() {
   printf '\n--- steps ---\n'
   printf '%s\n' "${report[@]}"
-  local preset log
-  for preset in tsan asan release; do
-    log=build/$preset/ctest.log
-    [[ ${tested[$preset]-} ]] || continue
-    printf '\n--- ctest, %s ---\n' "$preset"
+  local name log
+  for name in "${broken[@]}"; do
+    printf '\n--- %s, which failed ---\n' "$name"
+    grep -A 8 ': Failure$' "$logs/$name.log" | head -n 60
+    tail -n 60 "$logs/$name.log"
+  done
+  # What failed in the browser once, too.
+  sed -n '/failing tests:$/,/^> test$/p' "$logs/console in a browser.log" 2>/dev/null | head -n 60
+  for log in "$logs"/tests*.log; do
+    [[ -e $log ]] || continue
+    printf '\n--- %s ---\n' "$(basename "$log" .log)"
     sed -n '/% tests passed/,$p' "$log"
   done
-  exit $failed
+  ((${#broken[@]} == 0))
+  exit
 }
 
 # run_ctest PRESET ARGUMENT...
 run_ctest() {
   local preset=$1
   shift
-  tested[$preset]=yes
-  ctest --preset "$preset" -j "$(nproc)" --no-tests=error --no-label-summary "$@" \
-    2>&1 | tee "build/$preset/ctest.log"
+  ctest --preset "$preset" -j "$(nproc)" --no-tests=error --no-label-summary "$@"
 }
 
 ours() {
@@ -91,6 +99,8 @@ check_console_in_browser() (
   cd tests/console || exit
   [[ node_modules/.package-lock.json -nt package-lock.json ]] ||
     npm ci --ignore-scripts --no-audit --no-fund || exit
+  timeout 1800 npm test && exit
+  echo "A browser's test failed. All run once more: what fails again fails this step."
   timeout 1800 npm test
 )
 
@@ -132,7 +142,8 @@ check_packages() {
     echo "the packages: not installed, for want of root, or of the right to mount"
     return
   fi
-  tests/package.sh build/release
+  cmake --preset portable -DWEFT_WERROR=ON && cmake --build --preset portable &&
+    tests/package.sh build/release build/portable
 }
 
 export UBSAN_OPTIONS=print_stacktrace=1
@@ -143,6 +154,7 @@ needed "install packages" deploy/install-deps.sh
 step "formatting" check_format
 step "shell scripts" check_shell
 step "includes" tests/includes.py
+step "places of tests" tests/mirror.py
 needed "install linters" install_linters
 step "protocol" check_protocol
 step "console" check_console

@@ -7,17 +7,19 @@
 #include <numeric>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "checker/domain/bent_chain.h"
 #include "checker/domain/gaps.h"
 #include "checker/domain/tolerance.h"
+#include "checker/geometry/box_tree.h"
 #include "checker/mesh/mesh_points.h"
 #include "checker/mesh/segment_steps.h"
 
 namespace weft::check {
 namespace {
 
-// Those of one segment. REQUIRES: they are sorted by segment.
+// The touches of one segment. REQUIRES: they are sorted by segment.
 template <class T>
 std::span<const T> of_segment(const std::vector<T>& sorted, std::uint32_t segment) {
   const auto begin = std::partition_point(
@@ -30,11 +32,11 @@ std::span<const T> of_segment(const std::vector<T>& sorted, std::uint32_t segmen
 class Bender {
  public:
   Bender(const Domain& domain, const NearFeatures& near, const Mesh& mesh,
-         const ListedEdges& listed, const std::vector<char>& jumps_last)
+         const ListedEdges& listed, const std::vector<Jumps>& jumps)
       : domain_(domain),
         near_(near),
         mesh_(mesh),
-        jumps_last_(jumps_last),
+        jumps_(jumps),
         images_(images_of_points(domain, near, mesh)),
         steps_(steps_along_segments(domain, mesh, listed, near.bend)),
         is_stop_(mesh.vertices.size(), 0),
@@ -52,23 +54,22 @@ class Bender {
     std::stable_sort(touches_.begin(), touches_.end(),
                      [](const auto& t, const auto& u) { return t.segment < u.segment; });
     find_stops(listed);
+    find_steps_of_others();
   }
 
   BentDomain bend() {
     for (std::uint32_t s = 0; s < domain_.segments.size(); ++s)
       bend_segment(s, of_segment(steps_, s));
+    note_beside();
     link_points();
     link_touches();
     for (const std::array<Vec2, 2>& link : links_across_gaps(result_.domain))
       result_.links.push_back(link);
-    std::sort(result_.beside.begin(), result_.beside.end());
-    result_.beside.erase(std::unique(result_.beside.begin(), result_.beside.end()),
-                         result_.beside.end());
     return std::move(result_);
   }
 
  private:
-  // Where a chain may have a corner: at input points, and where listed edges meet or end.
+  // Marks where a chain may have a corner: at input points, and where listed edges meet or end.
   void find_stops(const ListedEdges& listed) {
     std::vector<std::uint32_t> degree(mesh_.vertices.size(), 0);
     for (std::size_t i = 0; i < mesh_.edges.size(); ++i) {
@@ -81,17 +82,28 @@ class Bender {
       if (v) is_stop_[*v] = 1;
   }
 
+  void find_steps_of_others() {
+    const auto distance = [&](const Step& step) {
+      const Track track = track_of(domain_, step.segment);
+      return std::max(track.distance(mesh_.vertices[step.from]),
+                      track.distance(mesh_.vertices[step.to]));
+    };
+    std::vector<double> least(mesh_.edges.size(), std::numeric_limits<double>::infinity());
+    for (const Step& step : steps_) least[step.edge] = std::min(least[step.edge], distance(step));
+    for (Step& step : steps_)
+      step.is_of_another = least[step.edge] <= near_.rounding &&
+                           distance(step) > least[step.edge] + near_.rounding / 8;
+  }
+
   void bend_segment(std::uint32_t s, std::span<const Step> steps) {
     first_piece_[s + 1] = first_piece_[s];
     auto [from, to] = domain_.segments[s];
     if (lexicographically_less(domain_.points[to], domain_.points[from])) std::swap(from, to);
     const bool is_bent = near_.is_bent(s);
-    if (is_bent)
-      for (const Step& step : steps) result_.beside.emplace_back(step.edge, marker(s));
     const Track track = track_of(domain_, s);
     const std::vector<ChainStop> chain =
         bent_chain(mesh_, track, steps, near_.bend[s], {images_[from], result_.domain.points[from]},
-                   {images_[to], result_.domain.points[to]}, jumps_last_[s]);
+                   {images_[to], result_.domain.points[to]}, jumps_[s]);
     std::uint32_t last = from;
     for (std::size_t k = 1; k < chain.size(); ++k) {
       const ChainStop& stop = chain[k];
@@ -107,8 +119,8 @@ class Bender {
     }
   }
 
-  // What the mesh seems not to have is led through the points that it must be merged with: they may
-  // be in the mesh for the sake of other segments.
+  // Input points that seem to be missing from the mesh are replaced by the points that they must be
+  // merged with, which may be in the mesh because of other segments.
   void add_gap(std::uint32_t s, const Track& track, std::uint32_t from, std::uint32_t to) {
     const Vec2 p = result_.domain.points[from], q = result_.domain.points[to];
     std::vector<std::pair<double, std::uint32_t>> between;
@@ -118,7 +130,7 @@ class Bender {
         between.emplace_back(position, touch.point);
     }
     std::sort(between.begin(), between.end());
-    // Two chains that the search could not join are torn by no more than this.
+    // Two chains that the search could not join are apart by no more than this.
     const bool is_tear = std::hypot(q.x - p.x, q.y - p.y) <= 2 * near_.bend[s];
     for (const auto& [position, point] : between) {
       add_piece(s, from, point, true, is_tear);
@@ -127,7 +139,7 @@ class Bender {
     add_piece(s, from, to, true, is_tear);
   }
 
-  // Points of the bent domain.
+  // The points of the bent domain.
   void add_piece(std::uint32_t s, std::uint32_t from, std::uint32_t to, bool is_gap, bool is_tear) {
     if (result_.domain.points[from] == result_.domain.points[to]) return;
     result_.is_gap.push_back(is_gap);
@@ -155,6 +167,17 @@ class Bender {
     return domain_.markers.empty() ? 0 : domain_.markers[s];
   }
 
+  void note_beside() {
+    std::vector<char> is_beside(mesh_.edges.size(), 0);
+    for (const Step& step : steps_)
+      if (near_.is_bent(step.segment)) is_beside[step.edge] = 1;
+    for (const Step& step : steps_)
+      if (is_beside[step.edge]) result_.beside.emplace_back(step.edge, marker(step.segment));
+    std::sort(result_.beside.begin(), result_.beside.end());
+    result_.beside.erase(std::unique(result_.beside.begin(), result_.beside.end()),
+                         result_.beside.end());
+  }
+
   void link_points() {
     for (const auto [i, j] : near_.points) {
       const Vec2 p = result_.domain.points[i], q = result_.domain.points[j];
@@ -163,22 +186,38 @@ class Bender {
   }
 
   void link_touches() {
-    for (const auto [s, i] : near_.touches) {
-      const Vec2 p = result_.domain.points[i];
-      double least = std::numeric_limits<double>::infinity();
-      std::array<Vec2, 2> nearest{};
-      for (std::uint32_t k = first_piece_[s]; k < first_piece_[s + 1] && least > 0; ++k) {
-        const auto [a, b] = result_.domain.segments[k];
-        const std::array<Vec2, 2> piece{result_.domain.points[a], result_.domain.points[b]};
-        const double distance = Track(piece[0], piece[1]).distance(p);
-        if (distance >= least) continue;
-        least = distance;
-        nearest = piece;
+    for (std::size_t first = 0, end = 0; first < touches_.size(); first = end) {
+      const std::uint32_t s = touches_[first].segment;
+      while (end < touches_.size() && touches_[end].segment == s) ++end;
+      const std::uint32_t first_piece = first_piece_[s];
+      std::vector<Box> boxes;
+      for (std::uint32_t k = first_piece; k < first_piece_[s + 1]; ++k) {
+        const auto [p, q] = ends_of_piece(k);
+        boxes.push_back(box_of(p, q));
       }
-      if (least <= 2 * near_.bend[s])
-        if (const auto q = across(p, nearest[0], nearest[1], least))
-          result_.links.push_back({p, *q});
+      const BoxTree tree(std::move(boxes));
+      for (std::size_t t = first; t < end; ++t) link_touch(touches_[t], tree);
     }
+  }
+
+  // `tree`: of the pieces of the segment.
+  void link_touch(const Contacts::Touch& touch, const BoxTree& tree) {
+    const Vec2 p = result_.domain.points[touch.point];
+    const double most = 2 * near_.bend[touch.segment];
+    std::pair<double, std::uint32_t> nearest{most, kNone};
+    tree.visit(box_of(p, p).grown(most), [&](std::uint32_t k) {
+      const std::uint32_t piece = first_piece_[touch.segment] + k;
+      const auto [a, b] = ends_of_piece(piece);
+      nearest = std::min(nearest, {Track(a, b).distance(p), piece});
+    });
+    if (nearest.second == kNone) return;
+    const auto [a, b] = ends_of_piece(nearest.second);
+    if (const auto q = across(p, a, b, nearest.first)) result_.links.push_back({p, *q});
+  }
+
+  std::array<Vec2, 2> ends_of_piece(std::uint32_t piece) const {
+    const auto [a, b] = result_.domain.segments[piece];
+    return {result_.domain.points[a], result_.domain.points[b]};
   }
 
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -186,7 +225,7 @@ class Bender {
   const Domain& domain_;
   const NearFeatures& near_;
   const Mesh& mesh_;
-  const std::vector<char>& jumps_last_;               // per segment
+  const std::vector<Jumps>& jumps_;                   // per segment
   std::vector<std::optional<std::uint32_t>> images_;  // per point: its mesh vertex
   std::vector<Step> steps_;
   std::vector<char> is_stop_;               // per mesh vertex
@@ -218,8 +257,8 @@ BentDomain unbent(const Domain& domain) {
 }
 
 BentDomain bend(const Domain& domain, const NearFeatures& near, const Mesh& mesh,
-                const ListedEdges& listed, const std::vector<char>& jumps_last) {
-  return near.any ? Bender(domain, near, mesh, listed, jumps_last).bend() : unbent(domain);
+                const ListedEdges& listed, const std::vector<Jumps>& jumps) {
+  return near.any ? Bender(domain, near, mesh, listed, jumps).bend() : unbent(domain);
 }
 
 }  // namespace weft::check

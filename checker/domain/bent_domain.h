@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "checker/domain.h"
+#include "checker/domain/bent_chain.h"
 #include "checker/domain/near_features.h"
 #include "checker/mesh.h"
 #include "checker/mesh/listed_edges.h"
@@ -39,8 +40,9 @@ struct BentDomain {
   std::vector<std::array<Vec2, 2>> links;  // bound faces, but are not in the mesh
   double link_slack = 0;                   // the slack of the links
   double rounding = 0;                     // of every place: on_segment_tolerance
-  // Listed edges beside bent segments, each with the marker of such a segment; sorted, distinct.
-  // If several chains are beside each other, it is undefined which edge belongs to which segment.
+  // Listed edges beside bent segments, each with the markers of all segments that it is beside, or
+  // on; sorted, distinct. If several chains are beside each other, it is undefined which edge
+  // belongs to which segment.
   std::vector<std::pair<std::uint32_t, std::int32_t>> beside;
 
   // The uncertainty of the place of an edge of the arrangement. `covers`: the pieces that it is
@@ -51,9 +53,9 @@ struct BentDomain {
 // The domain itself, with links across gaps. REQUIRES: a domain that judge_domain accepts.
 BentDomain unbent(const Domain& domain);
 
-// Segments for which `jumps_last` says so follow edges even if those run beside them by more than T
-// (bent_chain.h). REQUIRES: also that the mesh's structure and conformity hold.
+// `jumps` says per segment when its path may jump (bent_chain.h). REQUIRES: also that the mesh's
+// structure and conformity hold.
 BentDomain bend(const Domain& domain, const NearFeatures& near, const Mesh& mesh,
-                const ListedEdges& listed, const std::vector<char>& jumps_last);
+                const ListedEdges& listed, const std::vector<Jumps>& jumps);
 
 }  // namespace weft::check

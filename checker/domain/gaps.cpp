@@ -28,7 +28,7 @@ double snap_distance(Vec2 a, Vec2 b) {
 std::optional<Vec2> across(Vec2 p, Vec2 a, Vec2 b, double distance) {
   const int side = orientation(a, b, p);
   if (side == 0) return std::nullopt;
-  // A distance is rounded, and may be too short to change p at all.
+  // A distance is rounded, and a step of that length may be too short to change p.
   const double snap = std::max(distance, snap_distance(p, p));
   const double length = std::hypot(b.x - a.x, b.y - a.y);
   // Towards the line: to the right of a-b if p is on its left.
@@ -48,23 +48,17 @@ std::vector<std::array<Vec2, 2>> links_across_gaps(const Domain& domain) {
     boxes.push_back(box_of(p, q).grown(snap_distance(p, q)));
   }
   const BoxTree tree(std::move(boxes));
-  std::vector<char> done(domain.points.size(), 0);
   std::vector<std::array<Vec2, 2>> links;
-  for (const auto& ends : domain.segments) {
-    for (const std::uint32_t end : ends) {
-      if (done[end]) continue;
-      done[end] = 1;
-      const Vec2 p = domain.points[end];
-      tree.visit(box_of(p, p), [&](std::uint32_t s) {
-        const Vec2 a = domain.points[domain.segments[s][0]];
-        const Vec2 b = domain.points[domain.segments[s][1]];
-        if (p == a || p == b || orientation(a, b, p) == 0) return;
-        const Track track(a, b);
-        const double position = track.position(p), snap = snap_distance(a, b);
-        if (position <= 0 || position >= track.length() || !track.carries(p, snap)) return;
-        if (const std::optional<Vec2> q = across(p, a, b, snap)) links.push_back({p, *q});
-      });
-    }
+  for (const Vec2 p : domain.points) {
+    tree.visit(box_of(p, p), [&](std::uint32_t s) {
+      const Vec2 a = domain.points[domain.segments[s][0]];
+      const Vec2 b = domain.points[domain.segments[s][1]];
+      if (p == a || p == b || orientation(a, b, p) == 0) return;
+      const Track track(a, b);
+      const double position = track.position(p), snap = snap_distance(a, b);
+      if (position <= 0 || position >= track.length() || !track.carries(p, snap)) return;
+      if (const std::optional<Vec2> q = across(p, a, b, snap)) links.push_back({p, *q});
+    });
   }
   return links;
 }

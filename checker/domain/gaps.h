@@ -3,7 +3,8 @@
 // parallel to an axis, its end, a pair of doubles, is almost never exactly on it; half of the time
 // it stops short, and the faces on its two sides are one. So an end within kSnapUlps units in the
 // last place of a segment (of that segment's largest coordinate) counts as on it, as it does for
-// the mesher: a link, an equally short segment, is added from the end across the other segment.
+// the mesher: a link, an equally short segment, is added from the end across the other segment. So
+// does any other point: a tip between two segments ends at a point that counts as on both.
 // Links bound faces; they need not be in the mesh. (For junctions that are open by more than
 // rounding, but less than the merging distance, see bent_domain.h.)
 #pragma once

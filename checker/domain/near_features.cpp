@@ -12,7 +12,7 @@
 namespace weft::check {
 namespace {
 
-// Where the lines of two segments that cross meet; in more than double precision.
+// Where the lines of two segments that cross meet, in more than double precision.
 Vec2 crossing_of(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
   const long double ux = static_cast<long double>(b.x) - a.x;
   const long double uy = static_cast<long double>(b.y) - a.y;
@@ -68,7 +68,7 @@ class NearFeatureFinder {
     }
   }
 
-  // First what is nearer than T, then what that may lead farther.
+  // First finds what is nearer than T, then what that may move farther.
   void compare_points_and_segments() {
     std::vector<char> is_active = found.may_move;  // per point: whether something bends to it
     std::vector<Contacts::Touch> reached;
@@ -87,7 +87,7 @@ class NearFeatureFinder {
     }
     for (const auto [segment, point] : reached)
       if (is_active[point]) loosen(segment);
-    // A segment with an end that moves is not where it was.
+    // A segment moves if one of its ends does.
     for (std::uint32_t s = 0; s < domain_.segments.size(); ++s)
       for (const std::uint32_t end : domain_.segments[s])
         if (found.may_move[end]) loosen(s);
@@ -103,10 +103,13 @@ class NearFeatureFinder {
       visit_near(crossing_of(a, b, c, d), [&](std::uint32_t s, double distance) {
         if (s == crossing.first || s == crossing.second) return;
         const auto [e, f] = ends(s);
-        if (distance <= snap_distance(e, f) && !is_sharp) return;
+        const bool is_on_it = distance <= snap_distance(e, f) && !is_sharp;
         const std::array three{crossing.first, crossing.second, s};
         const auto is_bent = [&](std::uint32_t t) { return found.is_bent(t); };
-        if (distance > perhaps_near_ && std::none_of(three.begin(), three.end(), is_bent)) return;
+        // What bends a segment moves its crossings, with what else passes there.
+        if ((is_on_it || distance > perhaps_near_) &&
+            std::none_of(three.begin(), three.end(), is_bent))
+          return;
         for (const std::uint32_t t : three) loosen(t);
       });
     }

@@ -26,7 +26,7 @@ struct NearFeatures {
   std::vector<char> may_move;
   // Per segment: how far its chain may run beside it. More than rounding if a point or a
   // crossing that is not on the segment is within T of it, or within kReach * T if others bend
-  // to that point; or if an end may move.
+  // to that point; if an end may move; or if it passes where a bent segment crosses another one.
   std::vector<double> bend;
   // Features nearer than T, which must be merged: pairs of points, and points beside segments.
   std::vector<std::array<std::uint32_t, 2>> points;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t kUnset = 0xffffffffu;
 
-// Holds the edge even if its ends are crossings, which are rounded by two units at most.
+// Holds the edge even if its ends are crossings, which are rounded by at most two units.
 Box box_around(Vec2 p, Vec2 q) {
   Box box = box_of(p, q);
   const auto margin = [](double value) { return 0x1p-50 * std::fabs(value); };
@@ -139,7 +139,7 @@ void Arrangement::trace_faces() {
   std::vector<std::uint32_t> slot(half_edges);
   for (std::uint32_t k = 0; k < half_edges; ++k) slot[outgoing_[k]] = k;
 
-  // Loops: at the end of a half-edge, the first one clockwise from where it came keeps the same
+  // Loops: at the end of a half-edge, the first one clockwise from the half-edge continues the same
   // face on the left.
   std::vector<std::uint32_t> loop(half_edges, kUnset);
   std::uint32_t loops = 0;
@@ -169,8 +169,9 @@ void Arrangement::trace_faces() {
     smallest[std::max(u, v)] = std::min(u, v);
   }
 
-  // The outer loop of a component has, at its smallest vertex, the direction of -x on its left. All
-  // directions there are in (-90, 90] degrees: it is the last of those that point up, or of all.
+  // At its smallest vertex, the outer loop of a component has the direction -x on its left. All
+  // directions there are in (-90, 90] degrees, so the loop leaves by the last of those that point
+  // up, or by the last of all.
   std::vector<std::uint32_t> outer_loop_of(vertices_.size(), kUnset);
   std::vector<std::uint32_t> face_of_loop(loops, kUnset);
   std::vector<char> is_outer(loops, 0);
@@ -200,8 +201,8 @@ void Arrangement::trace_faces() {
 }
 
 void Arrangement::measure_faces() {
-  // Areas are measured from a vertex of each face: a tiny face must not drown in the rounding of
-  // triangles that reach far away.
+  // Areas are measured from a vertex of each face, so that the area of a tiny face is not lost in
+  // the rounding of triangles that reach far away.
   std::vector<std::uint32_t> origin(faces_.size(), kUnset);
   std::vector<Sum> twice_area(faces_.size());
   for (std::uint32_t h = 0; h < outgoing_.size(); ++h) {

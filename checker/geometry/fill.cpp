@@ -13,7 +13,7 @@
 namespace weft::check {
 namespace {
 
-// How many segments a path from the unbounded face to each other one must cross.
+// The number of segments that a path from the unbounded face to each other face must cross.
 class EvenOdd {
  public:
   EvenOdd(const BentDomain& bent, const Arrangement& arrangement)
@@ -29,8 +29,8 @@ class EvenOdd {
     for (std::uint32_t h = 0; h < half_edges; ++h) around_[next[arrangement.face(h)]++] = h;
   }
 
-  // Whether all paths to a face cross an even number of segments, or all an odd one: an even number
-  // of edges meets at every vertex.
+  // Whether all paths to a face cross an even number of segments, or all an odd number: an even
+  // number of edges meets at every vertex.
   bool is_closed() const {
     for (std::uint32_t v = 0; v < arrangement_.vertices().size(); ++v) {
       std::uint32_t parity = 0;
@@ -40,9 +40,10 @@ class EvenOdd {
     return true;
   }
 
-  // Per face, kUnreached for some slivers. Where merging has closed a sliver, one edge is left; an
-  // even number of segments on it is no obstacle. So parities count within slivers, and the price
-  // is paid on leaving. No path leads across a link: in the mesh there is no gap.
+  // Per face; kUnreached for some slivers. Where merging has closed a sliver, one edge is left, and
+  // an even number of segments on it is no obstacle. So parities count within slivers, and the
+  // price is paid when a path leaves one. No path leads across a link, because the mesh has no gap
+  // there.
   std::vector<std::uint32_t> through_slivers() const {
     std::vector<std::uint32_t> depth(2 * arrangement_.faces().size(), kUnreached);
     search(depth, [&](std::uint32_t place, std::uint32_t h) {
@@ -57,7 +58,7 @@ class EvenOdd {
     return result;
   }
 
-  // Per face, kUnreached where every path crosses a sliver, or a link, or an edge as short as one.
+  // Per face; kUnreached if every path crosses a sliver, or a link, or an edge as short as one.
   std::vector<std::uint32_t> around_slivers() const {
     std::vector<std::uint32_t> depth(2 * arrangement_.faces().size(), kUnreached);
     search(depth, [&](std::uint32_t place, std::uint32_t h) {
@@ -88,7 +89,7 @@ class EvenOdd {
     return covers.empty() || std::hypot(q.x - p.x, q.y - p.y) <= 2 * bent_.slack_of(covers);
   }
 
-  // Least prices of all places. move(place, h): where the half-edge h leads to from there.
+  // The least prices of all places. move(place, h) is the place to which the half-edge h leads.
   template <class F>
   void search(std::vector<std::uint32_t>& least, F&& move) const {
     std::vector<char> done(least.size(), 0);

@@ -20,7 +20,8 @@ Line line_of(const Arrangement::Edge& edge) {
   return edge.from.y < edge.to.y ? Line{edge.from, edge.to} : Line{edge.to, edge.from};
 }
 
-// Where the line passes the height y, between those of its ends, with a bound on the error.
+// The x at which the line has the height y, which lies between those of its ends, with a bound on
+// the error.
 struct Abscissa {
   double x, error;
 };

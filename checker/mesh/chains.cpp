@@ -3,8 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
+#include <iterator>
+#include <limits>
 #include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "checker/domain/tolerance.h"
 #include "checker/mesh/segment_steps.h"
@@ -12,6 +17,9 @@
 
 namespace weft::check {
 namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr std::size_t kMostCandidates = 16;  // each pair of which may be the ends of a chain
 
 class ChainJudge {
  public:
@@ -28,7 +36,15 @@ class ChainJudge {
                                     std::vector<double>(domain_.segments.size(), tolerance_))),
         vertex_at_(vertices_of_arrangement(arrangement, input_points, mesh, listed, tolerance_)),
         expected_marker_(mesh.edges.size()),
-        state_(mesh.edges.size(), State::kOnNoSegment) {}
+        state_(mesh.edges.size(), State::kOnNoSegment) {
+    ends_.reserve(2 * steps_.size());
+    for (const Step& step : steps_) {
+      ends_.push_back({step.segment, step.from_position, step.from});
+      ends_.push_back({step.segment, step.to_position, step.to});
+    }
+    std::sort(ends_.begin(), ends_.end());
+    ends_.erase(std::unique(ends_.begin(), ends_.end()), ends_.end());
+  }
 
   void judge_segment(std::uint32_t segment, const std::vector<Need>& needs) {
     const auto along = arrangement_.edges_of(segment);
@@ -52,7 +68,7 @@ class ChainJudge {
   }
 
   void judge_listed(const ListedEdges& listed) {
-    // Where several segments run within the tolerance of an edge, the marker of any is right.
+    // If several segments run within the tolerance of an edge, the marker of any of them is right.
     for (const Step& step : steps_) {
       const std::int32_t marker = mesh_.edges[step.edge].marker;
       if (state_[step.edge] == State::kOnSegment && marker != expected_marker_[step.edge] &&
@@ -88,11 +104,19 @@ class ChainJudge {
   }
 
  private:
-  // In the order of what is known: near a broken chain, an edge may belong to it.
+  // The states, from the least to the most that is known: near a broken chain, an edge may belong
+  // to it.
   enum class State : std::uint8_t { kOnNoSegment, kUnclear, kOnSegment };
+  // Of a step.
+  struct End {
+    std::uint32_t segment;
+    double position;
+    std::uint32_t vertex;
+    auto operator<=>(const End&) const = default;
+  };
 
-  // Whether merging, or rounding at a small angle, may have made one vertex of the edge's ends:
-  // beside it is a sliver, then.
+  // Whether merging, or rounding at a small angle, may have made one vertex of the ends of the
+  // edge: then there is a sliver beside it.
   bool is_short(std::uint32_t segment, std::uint32_t e, const std::vector<Need>& needs) const {
     if (needs[arrangement_.face(2 * e)] != Need::kEitherWay &&
         needs[arrangement_.face(2 * e + 1)] != Need::kEitherWay)
@@ -103,53 +127,89 @@ class ChainJudge {
            std::max(reach(segment, edge.u), reach(segment, edge.v));
   }
 
-  // How far from w the chain of the segment may meet others that pass there.
+  // How far from w the chain of the segment may meet other chains that pass there.
   double reach(std::uint32_t segment, std::uint32_t w) const {
     return std::max(tolerance_ / std::max(smallest_sine(segment, w), 1e-15), bent_.slack[segment]);
   }
 
   // Edges of the segment, one after the other, that must be in the mesh. The chain passes through
-  // the input points among their ends; its own ends may be crossings. Where it crosses others in
-  // between it has a vertex with them, or the mesh would overlap.
+  // the input points among their ends; its own ends may be crossings. If it crosses other chains in
+  // between, it has a vertex in common with them, or the mesh would overlap.
   void judge_run(std::uint32_t segment, const Track& track, std::span<const std::uint32_t> run) {
-    std::optional<std::uint32_t> previous;
+    std::vector<std::uint32_t> previous;
     for (std::size_t k = 0; k <= run.size(); ++k) {
       const bool is_last = k == run.size();
       const std::uint32_t w =
           is_last ? arrangement_.edges()[run.back()].v : arrangement_.edges()[run[k]].u;
       const bool is_input = input_points_.has(arrangement_.vertices().at(w));
       if (!is_input && k > 0 && !is_last) continue;
-      std::optional<std::uint32_t> stop = vertex_at_[w];
-      if (!stop && is_input) continue;  // for judge_points to miss
-      if (!stop) stop = meeting_near(segment, track, w);
-      if (!stop) {
+      if (!vertex_at_[w] && is_input) continue;  // judge_points reports it
+      std::vector<std::uint32_t> stops =
+          vertex_at_[w] ? std::vector{*vertex_at_[w]} : meetings_near(segment, track, w);
+      if (stops.empty() && !is_optional_) stops = ends_around(segment, track, w);
+      if (stops.empty()) {
         miss(segment, w);
         if (!is_optional_) return;
-        previous.reset();
+        previous.clear();
         continue;
       }
-      if (previous && *previous != *stop) judge_chain(segment, track, *previous, *stop);
-      previous = stop;
+      if (previous.empty())
+        previous = std::move(stops);
+      else
+        previous = {judge_chain(segment, track, previous, stops)};
     }
   }
 
   // Segments that cross at a small angle run within the tolerance of each other around the
-  // crossing, and their chains may meet anywhere there; so may those that merging has moved. The
-  // end of a step of the segment nearest to it.
-  std::optional<std::uint32_t> meeting_near(std::uint32_t segment, const Track& track,
-                                            std::uint32_t w) const {
+  // crossing, so their chains may meet anywhere there; so may those that merging has moved. Returns
+  // the ends of steps of the segment near w, the nearest first. Those of the other segment may be
+  // among them.
+  std::vector<std::uint32_t> meetings_near(std::uint32_t segment, const Track& track,
+                                           std::uint32_t w) const {
     const double at = track.position(arrangement_.vertices().at(w));
-    double least = reach(segment, w);
-    std::optional<std::uint32_t> nearest;
-    for (const Step& step : steps_between(segment, 0, at + least)) {
-      for (const auto& [vertex, position] :
-           {std::pair{step.from, step.from_position}, std::pair{step.to, step.to_position}}) {
-        if (std::fabs(position - at) > least) continue;
-        least = std::fabs(position - at);
-        nearest = vertex;
-      }
+    const double most = reach(segment, w);
+    // At angles of rounding's size the whole segment is near.
+    std::vector<std::pair<double, std::uint32_t>> near;
+    const auto middle = std::lower_bound(ends_.begin(), ends_.end(), End{segment, at, 0});
+    auto before = middle, after = middle;
+    const auto distance_before = [&] {
+      return before != ends_.begin() && std::prev(before)->segment == segment
+                 ? at - std::prev(before)->position
+                 : kInfinite;
+    };
+    const auto distance_after = [&] {
+      return after != ends_.end() && after->segment == segment ? after->position - at : kInfinite;
+    };
+    for (;;) {
+      const double distance = std::min(distance_before(), distance_after());
+      const bool is_enough = near.size() >= kMostCandidates && distance > near.back().first;
+      if (!(distance <= most) || is_enough) break;
+      const End& end = distance_before() == distance ? *--before : *after++;
+      near.emplace_back(distance, end.vertex);
     }
-    return nearest;
+    std::sort(near.begin(), near.end());
+    near.resize(std::min(near.size(), kMostCandidates));
+    std::vector<std::uint32_t> vertices;
+    for (const auto& [distance, vertex] : near) vertices.push_back(vertex);
+    return vertices;
+  }
+
+  // The ends of the steps of the segment that pass w, of which at most a few are found. A run that
+  // begins or ends where a link, or what the mesh need not have, meets the segment has no vertex
+  // there.
+  std::vector<std::uint32_t> ends_around(std::uint32_t segment, const Track& track,
+                                         std::uint32_t w) const {
+    const double at = track.position(arrangement_.vertices().at(w));
+    auto step = std::partition_point(steps_.begin(), steps_.end(), [&](const Step& s) {
+      return s.segment < segment || (s.segment == segment && s.from_position <= at);
+    });
+    std::vector<std::uint32_t> vertices;
+    for (std::size_t k = 0; k < kMostCandidates && step != steps_.begin(); ++k) {
+      --step;
+      if (step->segment != segment) break;
+      if (step->to_position >= at) vertices.insert(vertices.end(), {step->from, step->to});
+    }
+    return vertices;
   }
 
   // Of the angles at which others pass the segment at w.
@@ -169,7 +229,7 @@ class ChainJudge {
     return smallest;
   }
 
-  // Of edges that need not be in the mesh, any may be.
+  // If edges need not be in the mesh, any of them may be.
   void allow(std::uint32_t segment, const Track& track, std::span<const std::uint32_t> run) {
     const auto position = [&](std::uint32_t w) {
       return track.position(arrangement_.vertices().at(w));
@@ -190,21 +250,46 @@ class ChainJudge {
     });
   }
 
-  void judge_chain(std::uint32_t segment, const Track& track, std::uint32_t from,
-                   std::uint32_t to) {
-    const double start = track.position(mesh_.vertices[from]);
-    const double goal = track.position(mesh_.vertices[to]);
-    const std::span<const Step> steps = steps_between(segment, start, goal);
-    const Walk found = walk(steps, from, start, to, tolerance_);
-    for (const std::size_t k : found.path) use(steps[k], track);
-    if (!found.path.empty() || is_optional_) return;
-    for (const Step& step : steps) state_[step.edge] = std::max(state_[step.edge], State::kUnclear);
+  // A chain leads from one of the vertices to one of the others. Returns where it ends.
+  std::uint32_t judge_chain(std::uint32_t segment, const Track& track,
+                            std::span<const std::uint32_t> starts,
+                            std::span<const std::uint32_t> goals) {
+    const std::uint32_t from = starts.front(), to = goals.front();
+    if (from == to) return to;
+    const auto position = [&](std::uint32_t v) { return track.position(mesh_.vertices[v]); };
+    double first = position(from), last = position(to);
+    for (const std::uint32_t start : starts) first = std::min(first, position(start));
+    for (const std::uint32_t goal : goals) last = std::max(last, position(goal));
+    if (const auto joined = first_joined(steps_between(segment, first, last), starts, goals)) {
+      follow(segment, track, (*joined)[0], (*joined)[1]);
+      return (*joined)[1];
+    }
+    if (is_optional_) return to;
+    const Followed broken = follow(segment, track, from, to);
+    for (const Step& step : broken.steps)
+      state_[step.edge] = std::max(state_[step.edge], State::kUnclear);
     findings_.add(Rule::kChains, [&] {
       return say("segment ", bent_.origin[segment], ": between vertices ", from, " at ",
                  mesh_.vertices[from], " and ", to, " at ", mesh_.vertices[to],
-                 ", the chain of listed edges breaks off at vertex ", found.farthest, " at ",
-                 mesh_.vertices[found.farthest]);
+                 ", the chain of listed edges breaks off at vertex ", broken.farthest, " at ",
+                 mesh_.vertices[broken.farthest]);
     });
+    return to;
+  }
+
+  struct Followed {
+    std::uint32_t farthest;       // reached vertex
+    std::span<const Step> steps;  // of the segment, between the vertices
+  };
+
+  // Uses the steps of a chain from one vertex to the other, if there is one.
+  Followed follow(std::uint32_t segment, const Track& track, std::uint32_t from, std::uint32_t to) {
+    const double start = track.position(mesh_.vertices[from]);
+    const double goal = track.position(mesh_.vertices[to]);
+    const std::span<const Step> steps = steps_between(segment, start, goal);
+    const Walk found = walk(steps, from, start, to);
+    for (const std::size_t k : found.path) use(steps[k], track);
+    return {found.farthest, steps};
   }
 
   std::span<const Step> steps_between(std::uint32_t segment, double start, double goal) const {
@@ -260,6 +345,7 @@ class ChainJudge {
   double tolerance_;
   bool is_optional_ = false;  // whether the run at hand may be missing
   std::vector<Step> steps_;
+  std::vector<End> ends_;  // of the steps; sorted, distinct
   std::vector<std::optional<std::uint32_t>> vertex_at_;
   std::vector<std::int32_t> expected_marker_;  // per listed edge on a segment
   std::vector<State> state_;                   // per listed edge

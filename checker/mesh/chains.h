@@ -6,6 +6,12 @@
 // edges, through all input points on it, each edge within the tolerance (tolerance.h) of the
 // segment and each step forward along it. Conversely every listed edge must be part of such a
 // chain. So a listed edge in a hole or outside is a violation, and so is a gap.
+//
+// Between slivers (Need::kEitherWay) a chain may be missing, because merging may have led it
+// another way. It may not be interrupted there, which skipped_edges.h and chain_ends.h judge. They
+// see no interruption between two vertices that other listed edges meet, too, and that the checker
+// can join by other edges within the merging distance: of 1,843 meshes of random domains with one
+// listed edge removed, 12 are accepted, none of the 455 without `snap`.
 #pragma once
 
 #include <cstdint>

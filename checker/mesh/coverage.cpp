@@ -118,9 +118,9 @@ std::vector<std::uint32_t> judge_coverage(const BentDomain& bent, const Arrangem
 
   std::vector<char> judged(roles.size(), 0);
   for (std::uint32_t g = 0; g < 2 * arrangement.edges().size(); ++g) {
-    // Each face is named by the first half-edge that it has.
+    // Each face is named by the first half-edge that belongs to it.
     const std::uint32_t f = joined.of[arrangement.face(g)];
-    // Of an open face, parts that links divide are open one by one.
+    // The parts of an open face that links divide are each open by themselves.
     if (!roles[f].kept || roles[f].open || joined.is_sliver(f) || judged[f]) continue;
     judged[f] = 1;
     const JoinedFaces::Face& face = joined.faces[f];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small angles that the input forces. A triangle below the angle bound is excused only if
+// Small angles that the input forces. A triangle below the angle bound is exempt only if
 //   - corner: its smallest angle is between two of its edges that are listed, and below 60 degrees:
 //     the segments themselves meet at that angle; or
 //   - shell: the two ends of its shortest edge lie on two different segments that meet in a vertex
@@ -9,7 +9,7 @@
 // Both hold to within rounding. The 60 degrees may be exceeded by 1e-9 in the cosine. The distances
 // may differ by 2^-46 of the largest coordinate of the mesh, in absolute value: that is 128 units
 // in the last place, twice what the engine allows itself. A tolerance relative to the distance,
-// such as Triangle's 1e-3, would excuse angles of nearly 180 degrees if the segments are nearer to
+// such as Triangle's 1e-3, would exempt angles of nearly 180 degrees if the segments are nearer to
 // each other than that.
 #pragma once
 

@@ -72,7 +72,7 @@ std::vector<std::optional<std::uint32_t>> images_of_points(const Domain& domain,
   }
   if (moved.empty()) return images;
 
-  // What is said of a vertex by the lowest input point at its place.
+  // What the lowest input point at its place says about a vertex.
   std::vector<std::uint32_t> lowest(mesh.vertices.size(), kNoPoint);
   for (std::uint32_t i = 0; i < images.size(); ++i)
     if (images[i]) lowest[*images[i]] = std::min(lowest[*images[i]], i);

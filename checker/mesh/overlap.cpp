@@ -12,7 +12,7 @@
 namespace weft::check {
 namespace {
 
-// Enough to name offenders; a mesh that crosses itself may do so millions of times.
+// Enough to name the offenders: a mesh that crosses itself may do so millions of times.
 constexpr std::size_t kContactLimit = 1000;
 
 // The edges of L as segments on their own points.
@@ -80,8 +80,8 @@ class OverlapJudge {
       });
   }
 
-  // All edges around a face agree. REQUIRES: no violation so far, so that edge e is segment
-  // covers(e)[0] and nothing else.
+  // Checks that all edges around a face agree. REQUIRES: no violation so far, so that edge e is
+  // segment covers(e)[0] and no other.
   void judge_faces(const Arrangement& arrangement) {
     std::vector<char> known(arrangement.faces().size(), 0);
     std::vector<char> covered(arrangement.faces().size(), 0);

@@ -12,13 +12,12 @@
 
 #include "checker/geometry/sum.h"
 #include "checker/size/gradation.h"
+#include "checker/size/gradation_within.h"
 #include "checker/text.h"
 
 namespace weft::check {
 namespace {
 
-constexpr double kAngleTolerance = 1e-7;  // degrees
-constexpr double kAreaTolerance = 1e-9;   // relative
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 // Angles are compared by their cotangents, which fall as the angle grows.
@@ -81,7 +80,7 @@ class QualityJudge {
       size_ = std::move(*size);
     else
       findings_.add(Rule::kSize, [&] { return size.error(); });
-    if (size_ && requirements.size.gradation > 0) limit_gradation();
+    if (requirements.size.gradation > 0) limit_gradation();
   }
 
   void judge() {
@@ -106,6 +105,7 @@ class QualityJudge {
     facts_.area = static_cast<double>(area.total());
     facts_.min_angle_deg = degrees_of(largest_cotangent);
     facts_.max_angle_deg = degrees_of(smallest_cotangent);
+    if (facts_.judged_angle_at) facts_.judged_angle_deg = degrees_of(judged_cotangent_);
     if (!cotangents.empty()) {
       const auto percentile =
           cotangents.begin() + static_cast<std::ptrdiff_t>(cotangents.size() / 100);
@@ -125,23 +125,44 @@ class QualityJudge {
     return {mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]};
   }
 
+  // Sizes grow from the bounds of regions, too.
   void limit_gradation() {
     std::vector<Vec2> points = mesh_.vertices;
     points.reserve(points.size() + mesh_.triangles.size());
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t)
       points.push_back(centroid_of(corners_of(t)));
-    std::vector<double> areas(points.size());
-    std::transform(points.begin(), points.end(), areas.begin(), size_);
-    limit_.emplace(points, areas, requirements_.size.gradation);
+    std::vector<double> areas(points.size(), std::numeric_limits<double>::infinity());
+    if (size_) std::transform(points.begin(), points.end(), areas.begin(), size_);
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      double& area = areas[mesh_.vertices.size() + t];
+      if (!std::isnan(area)) area = std::min(area, region_bound(t));
+    }
+    const double gradation = requirements_.size.gradation;
+    if (!requirements_.size.gradation_within) {
+      limit_ = GradationLimit(points, areas, gradation);
+      return;
+    }
+    for (const Mesh::Edge& edge : mesh_.edges)
+      for (const SizeAt& at : requirements_.size.at)
+        if (at.marker == edge.marker)
+          for (const std::uint32_t v : {edge.a, edge.b}) {
+            const double area = area_of_edge(at.max_edge);
+            if (!(areas[v] <= area)) areas[v] = area;
+          }
+    limit_ = GradationWithin(mesh_, areas, gradation);
   }
 
-  // The size at p; if a sample of the gradation limits it to less than `area`, what they limit it
-  // to.
+  double region_bound(std::uint32_t t) const {
+    return context_.faces.empty() ? std::numeric_limits<double>::infinity()
+                                  : context_.roles[context_.faces[t]].max_area;
+  }
+
+  // The size at p; if a sample of the gradation limits it to less than `area`, the limit.
   double size_at(Vec2 p, double area) const {
     const double size = size_(p);
     if (!limit_ || !is_size(size)) return size;
     const double enough = std::min(size, area);
-    const double limited = (*limit_)(p, enough);
+    const double limited = limit_(p, enough);
     return limited < enough ? limited : size;
   }
 
@@ -153,21 +174,32 @@ class QualityJudge {
     facts_.first_unrefined_at = at;
   }
 
+  void note_judged_angle(std::uint32_t t, const Shape& shape) {
+    if (facts_.judged_angle_at && shape.largest_cotangent <= judged_cotangent_) return;
+    judged_cotangent_ = shape.largest_cotangent;
+    facts_.judged_angle_at = {t, shape.centroid};
+  }
+
   bool judge_angle(std::uint32_t t, const Shape& shape) {
-    if (shape.largest_cotangent <= cotangent_limit_) return true;
-    if (requirements_.allow_small_input_angles) {
-      if (context_.small_input_angles == nullptr) return true;
+    const bool may_exempt = requirements_.allow_small_input_angles;
+    if (may_exempt && context_.small_input_angles == nullptr) return true;
+    if (shape.largest_cotangent <= cotangent_limit_) {
+      note_judged_angle(t, shape);
+      return true;
+    }
+    if (may_exempt) {
       switch (context_.small_input_angles->exemption(t, shape.smallest_corner)) {
         case Exemption::kCorner:
-          ++facts_.excused_corner;
+          ++facts_.exempt_corner;
           return true;
         case Exemption::kShell:
-          ++facts_.excused_shell;
+          ++facts_.exempt_shell;
           return true;
         case Exemption::kNone:
           break;
       }
     }
+    note_judged_angle(t, shape);
     misses_.add(Rule::kAngle, [&] {
       return say(name(t), " has an angle of ", degrees_of(shape.largest_cotangent),
                  " degrees at vertex ", mesh_.triangles[t][shape.smallest_corner],
@@ -177,9 +209,8 @@ class QualityJudge {
   }
 
   bool judge_area(std::uint32_t t, const Shape& shape, const std::array<Vec2, 3>& corners) {
-    double fixed = requirements_.max_area.value_or(std::numeric_limits<double>::infinity());
-    if (!context_.faces.empty())
-      fixed = std::min(fixed, context_.roles[context_.faces[t]].max_area);
+    const double fixed = std::min(
+        requirements_.max_area.value_or(std::numeric_limits<double>::infinity()), region_bound(t));
     double bound = fixed;
     if (size_) {
       double size = size_at(shape.centroid, shape.area);
@@ -193,23 +224,28 @@ class QualityJudge {
         return true;
       }
       bound = std::min(fixed, size);
+    } else if (limit_) {
+      bound = limit_(shape.centroid, fixed);
     }
     if (std::isinf(bound)) return true;
     ++bounded_;
     shares_.add(shape.area / bound);
-    facts_.worst_area_ratio = std::max(facts_.worst_area_ratio.value_or(0), shape.area / bound);
+    if (const double ratio = shape.area / bound; ratio > facts_.worst_area_ratio.value_or(0)) {
+      facts_.worst_area_ratio = ratio;
+      facts_.worst_area_at = {t, shape.centroid};
+    }
     if (shape.area <= bound * (1 + kAreaTolerance)) return true;
     misses_.add(Rule::kArea, [&] {
       return say(name(t), " has the area ", shape.area, ", the bound at its centroid ",
                  shape.centroid, " is ", bound,
-                 limit_ && bound < std::min(fixed, size_(shape.centroid))
+                 limit_ && bound < fixed && (!size_ || bound < size_(shape.centroid))
                      ? say(", because sizes grow by at most ", requirements_.size.gradation)
                      : "");
     });
     return false;
   }
 
-  // Of the nine values around the centroid; 0 if none is a size.
+  // The largest of the nine values around the centroid; 0 if none of them is a size.
   double largest_size_nearby(const Shape& shape, const std::array<Vec2, 3>& corners) const {
     double magnitude = 0;
     for (const Vec2 p : corners) magnitude = std::max({magnitude, std::fabs(p.x), std::fabs(p.y)});
@@ -237,10 +273,11 @@ class QualityJudge {
   Findings& findings_;
   Findings misses_;  // violations, once there are more than allowed
   double cotangent_limit_;
-  std::function<double(Vec2)> size_;     // empty if there is none
-  std::optional<GradationLimit> limit_;  // of the size
-  std::uint64_t bounded_ = 0;            // triangles
-  Sum shares_;                           // of their bounds
+  double judged_cotangent_ = 0;                // of facts_.judged_angle_at
+  std::function<double(Vec2)> size_;           // empty if there is none
+  std::function<double(Vec2, double)> limit_;  // of the size and the bounds of regions, or empty
+  std::uint64_t bounded_ = 0;                  // triangles
+  Sum shares_;                                 // of their bounds
 };
 
 }  // namespace

@@ -15,6 +15,10 @@
 
 namespace weft::check {
 
+// By how much rounding may miss a bound.
+inline constexpr double kAngleTolerance = 1e-7;  // degrees
+inline constexpr double kAreaTolerance = 1e-9;   // of the bound
+
 struct Requirements {
   // Upper bound on every triangle's area, squared units. Default: none.
   std::optional<double> max_area;
@@ -25,9 +29,9 @@ struct Requirements {
   SizeSpec size;
   // Lower bound on every angle, degrees. Default: none.
   std::optional<double> min_angle_deg;
-  // Whether small input angles excuse (exemption.h).
+  // Whether small input angles exempt (exemption.h).
   bool allow_small_input_angles = true;
-  // Maximum triangles that may miss the angle or the area bound without excuse: those that the
+  // Maximum triangles that may miss the angle or the area bound without exemption: those that the
   // engine declared as unrefined because of a budget or the floor on edge lengths.
   std::uint64_t allowed_unrefined = 0;
   // Violations written out per rule; the rest is counted.
@@ -35,7 +39,7 @@ struct Requirements {
 };
 
 // Data that the bounds need besides the triangles. It is absent if other violations prevent it:
-// then an angle that might be excused is not judged, and no region bounds an area.
+// then an angle that might be exempt is not judged, and no region bounds an area.
 struct QualityContext {
   const SmallInputAngles* small_input_angles = nullptr;
   std::span<const std::uint32_t> faces;  // per triangle
@@ -43,11 +47,11 @@ struct QualityContext {
 };
 
 // Adds violations of kSize, kAngle and kArea, and fills in the measures of `facts`.
-//   - An angle may be below the bound by 1e-7 degrees.
-//   - An area may exceed its bound by 1e-9 of it. The bound at the centroid is the largest of the
-//     nine values at distances 0 and 16 * 2^-53 * (largest coordinate of the triangle) along x and
-//     y, because centroids and distances are rounded, and the size may be discontinuous, or end,
-//     there.
+//   - An angle may be below the bound by kAngleTolerance.
+//   - An area may exceed its bound by kAreaTolerance of it. The bound at the centroid is the
+//     largest of the nine values at distances 0 and 16 * 2^-53 * (largest coordinate of the
+//     triangle) along x and y, because centroids and distances are rounded, and the size may be
+//     discontinuous, or end, there.
 // REQUIRES: structure and orientation hold.
 void judge_quality(const Domain& domain, const Mesh& mesh, const Requirements& requirements,
                    const QualityContext& context, Facts& facts, Findings& findings);

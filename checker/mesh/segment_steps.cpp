@@ -2,12 +2,18 @@
 #include "checker/mesh/segment_steps.h"
 
 #include <algorithm>
-#include <optional>
+#include <limits>
+#include <unordered_map>
 #include <utility>
 
 #include "checker/geometry/box_tree.h"
 
 namespace weft::check {
+namespace {
+
+constexpr std::size_t kNoStep = std::numeric_limits<std::size_t>::max();
+
+}  // namespace
 
 Track track_of(const Domain& domain, std::uint32_t segment) {
   Vec2 from = domain.points[domain.segments[segment][0]];
@@ -47,34 +53,48 @@ std::vector<Step> steps_along_segments(const Domain& domain, const Mesh& mesh,
 }
 
 Walk walk(std::span<const Step> steps, std::uint32_t start, double start_position,
-          std::uint32_t goal, double slack) {
-  struct Reached {
-    std::uint32_t vertex;
-    double position;
-    std::optional<std::size_t> by;  // step
+          std::uint32_t goal) {
+  std::unordered_map<std::uint32_t, std::size_t>
+      reached;  // by vertex: the last step that led there
+  const auto by = [&](std::uint32_t vertex) {
+    const auto found = reached.find(vertex);
+    return found == reached.end() ? kNoStep : found->second;
   };
-  std::vector<Reached> trail = {{start, start_position, std::nullopt}};  // everything reached
-  std::vector<std::size_t> ahead = {0};  // of the trail, what later steps may start from
-  std::vector<std::size_t> predecessor(steps.size(), 0);  // where in the trail a step starts
-  std::size_t farthest = 0;                               // in the trail
+  std::vector<std::size_t> before(steps.size(), kNoStep);  // the step that led to a step's start
   Walk result{{}, start};
-  for (std::size_t k = 0; k < steps.size() && result.path.empty(); ++k) {
+  double farthest = start_position;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
     const Step& step = steps[k];
-    std::erase_if(ahead,
-                  [&](std::size_t r) { return trail[r].position < step.from_position - slack; });
-    const auto found = std::find_if(ahead.rbegin(), ahead.rend(),
-                                    [&](std::size_t r) { return trail[r].vertex == step.from; });
-    if (found == ahead.rend()) continue;
-    predecessor[k] = *found;
-    ahead.push_back(trail.size());
-    if (step.to_position > trail[farthest].position) farthest = trail.size();
-    trail.push_back({step.to, step.to_position, k});
+    before[k] = by(step.from);
+    if (before[k] == kNoStep && step.from != start) continue;
+    reached[step.to] = k;
+    if (step.to_position > farthest) {
+      farthest = step.to_position;
+      result.farthest = step.to;
+    }
     if (step.to != goal) continue;
-    for (Reached at = trail.back(); at.by; at = trail[predecessor[*at.by]])
-      result.path.push_back(*at.by);
+    for (std::size_t at = k; at != kNoStep; at = before[at]) result.path.push_back(at);
+    break;
   }
-  result.farthest = trail[farthest].vertex;
   return result;
+}
+
+std::optional<std::array<std::uint32_t, 2>> first_joined(std::span<const Step> steps,
+                                                         std::span<const std::uint32_t> starts,
+                                                         std::span<const std::uint32_t> goals) {
+  std::unordered_map<std::uint32_t, std::uint64_t> reached;  // by vertex: from which starts
+  for (std::size_t i = 0; i < starts.size(); ++i) reached[starts[i]] |= std::uint64_t{1} << i;
+  for (const Step& step : steps)
+    if (const auto from = reached.find(step.from); from != reached.end()) {
+      const std::uint64_t mask = from->second;  // before `reached` grows
+      reached[step.to] |= mask;
+    }
+  for (std::size_t i = 0; i < starts.size(); ++i)
+    for (const std::uint32_t goal : goals)
+      if (const auto to = reached.find(goal);
+          goal != starts[i] && to != reached.end() && (to->second >> i & 1) != 0)
+        return std::array{starts[i], goal};
+  return std::nullopt;
 }
 
 }  // namespace weft::check

@@ -2,8 +2,10 @@
 // The listed edges of a mesh that lie on segments, and paths of them along one segment.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -20,8 +22,9 @@ namespace weft::check {
 struct Step {
   std::uint32_t segment;
   double from_position, to_position;
-  std::uint32_t from, to;  // mesh vertices
-  std::uint32_t edge;      // listed edge
+  std::uint32_t from, to;      // mesh vertices
+  std::uint32_t edge;          // listed edge
+  bool is_of_another = false;  // whether it lies on another segment, and this one is beside it
   auto key() const { return std::tie(segment, from_position, to_position, edge); }
 };
 
@@ -38,9 +41,15 @@ struct Walk {
   std::uint32_t farthest;         // the reached vertex that is farthest along
 };
 
-// A path of the given steps of one segment, which are sorted, from one mesh vertex to another.
-// `slack` bounds how much positions of one vertex may differ.
+// A path of the given steps of one segment, which are sorted, from one mesh vertex to another. Time
+// and memory are linear in their number.
 Walk walk(std::span<const Step> steps, std::uint32_t start, double start_position,
-          std::uint32_t goal, double slack);
+          std::uint32_t goal);
+
+// The first pair, in the order of the starts, then of the goals, of different vertices that a path
+// of the given steps joins; nullopt if there is none. Linear, too. REQUIRES: at most 64 starts.
+std::optional<std::array<std::uint32_t, 2>> first_joined(std::span<const Step> steps,
+                                                         std::span<const std::uint32_t> starts,
+                                                         std::span<const std::uint32_t> goals);
 
 }  // namespace weft::check

@@ -14,9 +14,9 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kBeside = 0.5 + 1e-6;  // in cells
 
 struct Place {
-  std::size_t node;  // the lower of the two
+  std::size_t node;  // the lower of two nodes
   std::size_t next;
-  double t;  // from 0 at the one to 1 at the other
+  double t;  // from 0 at this node to 1 at the next
 };
 
 std::optional<Place> place(double steps, std::size_t count) {

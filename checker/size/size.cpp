@@ -65,7 +65,7 @@ struct Maker {
   }
 };
 
-// The size with what the gradation makes of the sizes at markers.
+// The size, lowered by what the gradation makes of the sizes at markers.
 Function with_sizes_at(std::function<double(Vec2)> size, const SizeSpec& spec,
                        const Domain& domain) {
   for (const SizeAt& at : spec.at) {
@@ -73,7 +73,7 @@ Function with_sizes_at(std::function<double(Vec2)> size, const SizeSpec& spec,
       return tl::unexpected(say("the size at marker ", at.marker, " is ", at.max_edge));
     auto distance = Distance::make({{at.marker}, {}, {}}, domain);
     if (!distance) return tl::unexpected(say("sizes at markers: ", distance.error()));
-    if (spec.gradation == 0) continue;
+    if (spec.gradation == 0 || spec.gradation_within) continue;
     const auto lines = std::make_shared<const Distance>(std::move(*distance));
     size = [size = std::move(size), lines, at, growth = spec.gradation](Vec2 p) {
       const double near = area_of_edge(at.max_edge + growth * (*lines)(p));

@@ -59,8 +59,10 @@ struct SizeSpec {
   Measure measure = Measure::kArea;
   std::vector<NamedField> fields;
   // How much the wanted length of edges grows at most per unit of length (gradation.h): positive
-  // and finite, or 0: no limit. The function of `size_function` is without it, but for `at`.
+  // and finite, or 0: no limit. The function of `size_function` is without it, but for `at` if
+  // distances are straight.
   double gradation = 0;
+  bool gradation_within = false;  // the domain, along the shortest paths in it
   std::vector<SizeAt> at;
 };
 

@@ -49,7 +49,7 @@ std::size_t number_length(std::string_view text) {
   return i;
 }
 
-// muParser's hook for literals: consumes a number at the start of the text.
+// The hook of muParser that reads a number at the start of the text.
 int read_number(const char* text, int* position, double* value) {
   const std::size_t length = number_length(text);
   if (length == 0) return 0;
@@ -82,13 +82,13 @@ std::size_t blank_length(std::string_view text) {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// The slope of a field is a variable of muParser's, with a name that no field can have.
+// In muParser, the slope of a field is a variable with a name that no field can have.
 constexpr char kSlope = '$';
 constexpr std::array<std::string_view, 19> kSymbols = {"<=", ">=", "==", "!=", "&&", "||", "+",
                                                        "-",  "*",  "/",  "^",  "<",  ">",  "!",
                                                        "?",  ":",  "(",  ")",  ","};
 
-// A run of unary operators comes down to at most one -, over at most two !.
+// A run of unary operators amounts to at most one -, and at most two !.
 class UnaryRun {
  public:
   void add(char operation) { operations_ += operation; }
@@ -100,7 +100,7 @@ class UnaryRun {
     for (auto c = operations_.rbegin(); c != operations_.rend(); ++c) {
       if (*c == '-') minus = !minus;
       if (*c == '!') {
-        minus = false;  // a value is 0 or not, whatever its sign
+        minus = false;  // a number is 0 or not, whatever its sign
         nots = nots == 2 ? 1 : nots + 1;
       }
     }
@@ -113,10 +113,10 @@ class UnaryRun {
   std::string operations_;
 };
 
-// Makes of a source what muParser reads as the grammar means it: what the grammar does not have is
-// refused, as muParser would take more, such as a < b < c; runs of unary operators, which it does
-// not take, are folded; white space is blanks, but a function moves up to its parenthesis. All
-// other tokens keep their columns.
+// Translates a source into what muParser reads as the grammar means it. What the grammar lacks is
+// refused, because muParser would accept more, such as a < b < c. Runs of unary operators, which it
+// does not accept, are folded. White space becomes blanks, but a function moves next to its
+// parenthesis. All other tokens keep their columns.
 class Translator {
  public:
   Translator(std::string_view source, std::span<const Field> fields)
@@ -124,13 +124,13 @@ class Translator {
     for (const Field& field : fields) fields_.insert(field.name);
   }
 
-  // The variables besides x and y that the last translation names, sorted.
+  // The variables other than x and y in the last translation, sorted.
   const std::set<std::string>& used() const { return used_; }
 
   tl::expected<std::string, std::string> translate() {
     UnaryRun run;
     bool operand_next = true;  // so that + - ! are unary
-    std::string_view name;     // the last token, if it is one
+    std::string_view name;     // the last token, if it is a name
     std::size_t i = 0;
     while (i < source_.size()) {
       if (const std::size_t blanks = blank_length(source_.substr(i)); blanks > 0) {
@@ -177,7 +177,7 @@ class Translator {
     std::size_t length;
   };
 
-  // Whether the slope of something begins at i.
+  // Whether the slope of a field begins at i.
   std::optional<Slope> slope_at(std::size_t i) const {
     std::string_view rest = source_.substr(i);
     if (rest.substr(0, name_length(rest)) != "slope") return std::nullopt;
@@ -194,7 +194,7 @@ class Translator {
     return Slope{std::string(name), source_.size() - i - rest.size() + 1};
   }
 
-  // Writes what a run of unary operators, then a token at i, comes down to.
+  // Writes what a run of unary operators, and the token at i after it, amount to.
   void operand(std::size_t i, std::string_view token, UnaryRun& run) {
     const std::string unary = run.folded();
     text_.replace(i - unary.size(), unary.size(), unary);
@@ -202,7 +202,7 @@ class Translator {
     run.clear();
   }
 
-  // Whether the token is a comparison of what a comparison gives, without parentheses between.
+  // Whether the token would compare the result of a comparison without parentheses between.
   bool chains(std::string_view token) {
     if (token == "(") compared_.push_back(false);
     if (token == ")" && compared_.size() > 1) compared_.pop_back();
@@ -258,7 +258,7 @@ class GrammarParser : public mu::ParserBase {
     InitConst();
     InitOprt();
     AddValIdent(read_number);
-    EnableOptimizer(false);  // it reorders arithmetic
+    EnableOptimizer(false);  // because it reorders arithmetic
   }
 
  protected:
@@ -358,7 +358,7 @@ struct SizeExpression::Evaluator {
   double y = 0;
   std::deque<Input> inputs;  // stay where they are
 
-  // Returns the name of a field that has no value.
+  // Returns the name of a field without a value, if there is one.
   std::optional<std::string> define(const std::set<std::string>& used,
                                     std::span<const Field> fields) {
     parser.DefineVar("x", &x);

@@ -92,7 +92,7 @@ Result<void> check_target(const std::filesystem::path& target) {
 }
 
 Result<OutputFile> OutputFile::create(const std::filesystem::path& target, std::stop_token stop) {
-  // Through a link, so that the link stays and its file is replaced.
+  // Writes through a link: the link stays, and its file is replaced.
   std::error_code ignored;
   std::filesystem::path real = std::filesystem::is_symlink(target, ignored)
                                    ? std::filesystem::weakly_canonical(target, ignored)
@@ -144,7 +144,7 @@ void OutputFile::write(const void* bytes, std::size_t size) {
     return;
   }
   flush();
-  // What would fill the buffer goes past it, in pieces, so that a stop is noticed.
+  // A large piece bypasses the buffer, in blocks, so that a request to stop is noticed.
   const char* at = static_cast<const char*>(bytes);
   for (; size >= kBuffer && failure_ == 0; at += kBuffer, size -= kBuffer) {
     if (stop_.stop_requested()) failure_ = ECANCELED;

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <CLI/TypeTools.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -48,6 +49,9 @@ struct OptionRow {
   std::string about;         // what it is or does, without a full stop
   std::string default_text;  // the default, for people; empty: help does not name one
   OptionValue<Options> value;
+  // The field of a request that the option sets, such as "quality.min_edge"; empty if it is none
+  // that an error names.
+  std::string field{};
 
   std::string help() const {
     std::string text = about;
@@ -77,11 +81,21 @@ std::optional<T> value_of(const std::string& text) {
   return value;
 }
 
-// A number if T is double, a count if T is unsigned, an integer otherwise.
-template <class Options, class T>
-OptionValue<Options> number(std::string unit, std::optional<T> Options::*field,
-                            std::type_identity_t<T> least = std::numeric_limits<T>::lowest(),
-                            std::type_identity_t<T> most = std::numeric_limits<T>::max()) {
+template <class Target>
+struct Numeric {
+  using Type = Target;
+};
+template <class T>
+struct Numeric<std::optional<T>> {
+  using Type = T;
+};
+
+// A number into a target that is a T or an std::optional<T>: a number but NaN if T is double, a
+// count if T is unsigned, an integer otherwise.
+template <class Target, class T = typename Numeric<Target>::Type>
+OptionValue<Target> number(std::string unit,
+                           std::type_identity_t<T> least = std::numeric_limits<T>::lowest(),
+                           std::type_identity_t<T> most = std::numeric_limits<T>::max()) {
   const auto as_text = [](T bound) { return shortest(static_cast<double>(bound)); };
   std::string range;
   if (most != std::numeric_limits<T>::max())
@@ -89,31 +103,27 @@ OptionValue<Options> number(std::string unit, std::optional<T> Options::*field,
   else if (least != std::numeric_limits<T>::lowest())
     range = as_text(least) + " or more";
   return {std::move(unit), range, Arity::kOne,
-          [=](const auto& texts, const auto&, Options& options) -> std::string {
+          [=](const auto& texts, const auto&, Target& target) -> std::string {
             const auto value = value_of<T>(texts.front());
-            if (!value)
+            if (!value || std::isnan(static_cast<double>(*value)))
               return in_quotes(texts.front()) + " is not a " +
                      (std::is_unsigned_v<T> ? "count" : "number");
             if (!range.empty() && !(*value >= least && *value <= most))
               return in_quotes(texts.front()) + " is not in the range " + range;
-            options.*field = value;
+            target = *value;
             return "";
           }};
 }
 
-// A list of integers.
-template <class Options, class T>
-OptionValue<Options> integers(std::string unit, std::vector<T> Options::*field) {
-  return {std::move(unit), "", Arity::kList,
-          [=](const auto& texts, const auto&, Options& options) -> std::string {
-            std::vector<T> values;
-            for (const std::string& text : texts) {
-              const auto value = value_of<T>(text);
-              if (!value) return in_quotes(text) + " is not an integer";
-              values.push_back(*value);
-            }
-            options.*field = std::move(values);
-            return "";
+// The same into a member of the options.
+template <class Options, class Target, class T = typename Numeric<Target>::Type>
+OptionValue<Options> number(std::string unit, Target Options::*field,
+                            std::type_identity_t<T> least = std::numeric_limits<T>::lowest(),
+                            std::type_identity_t<T> most = std::numeric_limits<T>::max()) {
+  const OptionValue<Target> alone = number<Target>(std::move(unit), least, most);
+  return {alone.unit, alone.range, alone.arity,
+          [=](const auto& texts, const auto& folder, Options& options) {
+            return alone.read(texts, folder, options.*field);
           }};
 }
 

@@ -37,7 +37,7 @@ void* PagedMemory::allocate(std::size_t bytes) {
   if (in_memory_ + bytes <= small_) return add(bytes, kNoFile, kReadWrite).address;
   auto file = open_unlinked(folder_);
   if (!file) fail_with(errno);
-  // A write to a page that the disk has no room for would be a SIGBUS.
+  // If the disk has no room for a page, writing to it would raise SIGBUS.
   if (const int problem = ::posix_fallocate(file->get(), 0, static_cast<off_t>(bytes)))
     fail_with(problem);
   Mapping& mapping = add(bytes, file->get(), kReadWrite);
@@ -67,8 +67,8 @@ void PagedMemory::release() {
   if (in_files_ <= small_) return;
   for (const Mapping& mapping : mappings_) {
     if (mapping.file == kNoFile) continue;
-    // The same file in the same place again: unlike MADV_DONTNEED, it gives back the page tables,
-    // which it would otherwise search from end to end at every step.
+    // Maps the same file at the same place again. Unlike MADV_DONTNEED, that frees the page tables,
+    // which each later step would otherwise search from end to end.
     const int protection = mapping.own.is_open() ? PROT_READ | PROT_WRITE : PROT_READ;
     if (::mmap(mapping.address, mapping.bytes, protection, MAP_SHARED | MAP_FIXED, mapping.file,
                0) == MAP_FAILED)

@@ -17,7 +17,7 @@ std::string two_digits(double value) {
   return text;
 }
 
-// What would end a cell of a table, or begin a tag.
+// Escapes what would end a cell of a table, or begin a tag.
 std::string in_cell(const std::string& text) {
   std::string safe;
   for (const char c : harmless(text)) {

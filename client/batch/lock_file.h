@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The digests of a batch's meshes, kept in a file under version control: where a mesh changes, the
+// The digests of a batch's meshes, kept in a file under version control: if a mesh changes, the
 // file changes, and a review sees it.
 #pragma once
 
@@ -25,11 +25,11 @@ struct LockFile {
   std::map<std::string, LockedMesh> meshes{};  // by name
 
   void add(const std::string& name, const v1::Summary& summary);
-  // "the mesh has changed: ..." where `now` is not what is locked; nothing where it is.
+  // "the mesh has changed: ..." if `now` is not what is locked; nullopt if it is.
   std::optional<std::string> change(const std::string& name, const LockFile& now) const;
 };
 
-// Errors: kUnreadableInput where the file is missing or malformed, kUnwritableOutput.
+// Errors: kUnreadableInput if the file is missing or malformed, kUnwritableOutput.
 Result<LockFile> read_lock_file(const std::filesystem::path& file);
 Result<void> write_lock_file(const std::filesystem::path& file, const LockFile& lock);
 

@@ -12,6 +12,7 @@
 #include "client/call/request_rows.h"
 #include "client/drawing/draw.h"
 #include "client/formats/domain_formats.h"
+#include "client/formats/files/layer_rows.h"
 #include "client/formats/mesh_formats.h"
 #include "client/geo/projection_rows.h"
 #include "client/report/output_rows.h"
@@ -19,7 +20,7 @@
 namespace weft::client {
 namespace {
 
-// What is wrong, and where; only `read_manifest` sees it.
+// What is wrong, and where; caught in `read_manifest` only.
 struct Wrong {
   YAML::Mark where;
   std::string what;
@@ -51,22 +52,36 @@ void require(const YAML::Node& node, std::vector<QualityGate>& gates) {
     auto gate =
         QualityGate::make(text_of(entry.first, "require"), text_of(entry.second, "require"));
     if (!gate) throw Wrong{entry.first.Mark(), "require: " + gate.error().message};
-    // A mesh's own bound stands in for that of the defaults.
+    // A bound of the mesh replaces that of the defaults.
     std::erase_if(gates, [&](const QualityGate& g) { return g.figure() == gate->figure(); });
     gates.push_back(std::move(*gate));
   }
 }
 
+// Of `names`, as a list of texts, or as tables: {marker: {2: inlet}, region: {1: fluid}}.
+std::vector<std::string> names_in(const YAML::Node& node) {
+  if (!node.IsMap()) return texts_of(node, "names");
+  std::vector<std::string> texts;
+  for (const auto& kind : node) {
+    if (!kind.second.IsMap()) throw Wrong{kind.first.Mark(), "names: not a table of ids to names"};
+    for (const auto& entry : kind.second)
+      texts.push_back(text_of(kind.first, "names") + "=" + text_of(entry.first, "names") + ":" +
+                      text_of(entry.second, "names"));
+  }
+  return texts;
+}
+
 using Setter =
     std::function<void(const YAML::Node&, BatchMesh&, const std::filesystem::path& folder)>;
 
-// A key of each row; `part` points to the options of a mesh that they set.
+// One key for each row; `part` points to those options of a mesh that the rows set.
 template <class Options, class Part>
 void add_rows(std::map<std::string, Setter>& keys, const OptionRows<Options>& rows, Part part) {
   for (const OptionRow<Options>& row : rows)
     keys[row.name] = [&row, part](const auto& node, auto& mesh, const auto& folder) {
-      const auto texts = row.value.arity == Arity::kList ? texts_of(node, row.name)
-                                                         : std::vector{text_of(node, row.name)};
+      const auto texts = row.name == "names"               ? names_in(node)
+                         : row.value.arity == Arity::kList ? texts_of(node, row.name)
+                                                           : std::vector{text_of(node, row.name)};
       const std::string fault = row.value.read(texts, folder, *part(mesh));
       if (!fault.empty()) throw Wrong{node.Mark(), row.name + ": " + fault};
     };
@@ -78,8 +93,9 @@ const std::map<std::string, Setter>& common_keys() {
     std::map<std::string, Setter> all;
     add_rows(all, request_rows(), [](BatchMesh& m) { return &m.request_options; });
     add_rows(all, writing_rows(), [](BatchMesh& m) { return &m.output.writing; });
-    add_rows(all, drawing_rows(), [](BatchMesh& m) { return &m.output.drawing; });
+    add_rows(all, drawing_rows_of_new_mesh(), [](BatchMesh& m) { return &m.output.drawing; });
     add_rows(all, quadtree_rows(), [](BatchMesh& m) { return &m.output; });
+    add_rows(all, layer_rows(), [](BatchMesh& m) { return &m.layers; });
     add_rows(all, projection_rows(), [](BatchMesh& m) { return &m.output.projection; });
     all["require"] = [](const auto& n, auto& m, const auto&) { require(n, m.gates); };
     return all;
@@ -106,7 +122,8 @@ const std::map<std::string, Setter>& mesh_keys() {
       m.output.drawings = paths_of(n, "draw", folder);
       for (const auto& file : m.output.drawings)
         if (!draw_format(file))
-          throw Wrong{n.Mark(), "draw: " + in_quotes(file.string()) + " is no .png, .svg or .pdf"};
+          throw Wrong{n.Mark(),
+                      "draw: " + in_quotes(file.string()) + " is not a .png, .svg or .pdf"};
     };
     return all;
   }();
@@ -128,7 +145,7 @@ void set_all(const YAML::Node& node, const std::map<std::string, Setter>& keys, 
     if (found == keys.end()) {
       const std::string meant = did_you_mean(name, names_of(keys));
       throw Wrong{entry.first.Mark(),
-                  in_quotes(name) + " is no key here" + (meant.empty() ? "" : ": " + meant)};
+                  in_quotes(name) + " is not a key here" + (meant.empty() ? "" : ": " + meant)};
     }
     found->second(entry.second, mesh, folder);
   }
@@ -140,9 +157,10 @@ std::vector<BatchMesh> meshes_of(const YAML::Node& root, const std::filesystem::
     const std::string name = text_of(entry.first, "a key");
     if (name != "defaults" && name != "meshes")
       throw Wrong{entry.first.Mark(),
-                  in_quotes(name) + " is no key here: there are defaults and meshes"};
+                  in_quotes(name) + " is not a key here; the keys are defaults and meshes"};
   }
   BatchMesh defaults;
+  defaults.request_options.from_manifest = true;
   if (root["defaults"]) set_all(root["defaults"], common_keys(), defaults, folder);
   const YAML::Node list = root["meshes"];
   if (!list || !list.IsSequence() || list.size() == 0)
@@ -152,7 +170,7 @@ std::vector<BatchMesh> meshes_of(const YAML::Node& root, const std::filesystem::
   for (const YAML::Node& node : list) {
     BatchMesh mesh = defaults;
     set_all(node, mesh_keys(), mesh, folder);
-    // Like `color`, a default that a mesh without a drawing has no use for.
+    // A default, as `color` is, which a mesh without a drawing does not use.
     if (mesh.output.drawings.empty()) mesh.output.draw_quadtree = false;
     if (mesh.name.empty()) throw Wrong{node.Mark(), "a mesh without a name"};
     if (mesh.input.empty()) throw Wrong{node.Mark(), mesh.name + ": a mesh without an input"};

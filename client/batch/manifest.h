@@ -20,6 +20,7 @@
 #include "client/base/error.h"
 #include "client/batch/quality_gate.h"
 #include "client/call/mesh_request.h"
+#include "client/formats/files/layer_options.h"
 #include "client/report/mesh_output.h"
 
 namespace weft::client {
@@ -27,6 +28,7 @@ namespace weft::client {
 struct BatchMesh {
   std::string name;  // unique
   std::filesystem::path input{};
+  LayerOptions layers{};
   RequestOptions request_options{};
   MeshOutputOptions output{};
   std::vector<QualityGate> gates{};

@@ -58,8 +58,9 @@ Result<QualityGate> QualityGate::parse(std::string_view text) {
 
 Result<QualityGate> QualityGate::make(std::string_view figure, std::string_view bound) {
   if (find_figure(figure) == nullptr)
-    return fail(ExitCode::kUsage,
-                in_quotes(figure) + " is no figure of a mesh: there are " + known_figures());
+    return fail(
+        ExitCode::kUsage,
+        in_quotes(figure) + " is not a figure of a mesh; the figures are " + known_figures());
   double value = 0;
   const auto [end, problem] = std::from_chars(bound.data(), bound.data() + bound.size(), value);
   if (problem != std::errc() || end != bound.data() + bound.size() || !std::isfinite(value))

@@ -25,7 +25,7 @@ class QualityGate {
   static Result<QualityGate> make(std::string_view figure, std::string_view bound);
 
   const std::string& figure() const { return figure_; }
-  // What is wrong with a mesh; nothing where it passes.
+  // What is wrong with a mesh; nullopt if it passes.
   std::optional<std::string> violation(const v1::Summary& summary) const;
 
  private:

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which server to use and how: the options of every command that connects to one.
+//
+// This folder has more than 25 files because a call has many steps: its options, the connection,
+// the request, retries, the stream and where it is kept.
 #pragma once
 
 #include <filesystem>

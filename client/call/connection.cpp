@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "client/formats/file_contents.h"
+#include "client/formats/files/file_contents.h"
 
 namespace weft::client {
 namespace {
@@ -54,7 +54,7 @@ Result<std::string> read_token(const std::filesystem::path& path) {
   return text;
 }
 
-// Whether what is sent there stays on this machine. A name other than localhost is not looked up.
+// Whether what is sent there stays on this machine. Names other than localhost are not looked up.
 bool is_local(const std::string& address) {
   if (address.starts_with("unix:") || address.starts_with("unix-abstract:")) return true;
   std::string host = address.substr(0, address.rfind(':'));
@@ -83,7 +83,7 @@ Result<std::shared_ptr<grpc::ChannelCredentials>> credentials(const ConnectOptio
   return grpc::SslCredentials({*ca, *key, *certificate});
 }
 
-// Adds the token to every call, also where the connection is not encrypted: gRPC's own call
+// Adds the token to every call, even if the connection is not encrypted: gRPC's own call
 // credentials refuse to travel unencrypted even over a unix socket.
 class AddToken final : public grpc::experimental::Interceptor {
  public:
@@ -122,10 +122,10 @@ Result<std::shared_ptr<grpc::Channel>> open_channel(const ConnectOptions& option
   if (!encryption) return tl::unexpected(encryption.error());
 
   grpc::ChannelArguments arguments;
-  // A server that vanished without a word is noticed.
+  // Notices a server that vanished without closing its connection.
   arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, 30'000);
   arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10'000);
-  // One that starts again is found again: calls are repeated for some seconds only (jobs/retry.h).
+  // Finds a server that restarts soon, because calls are repeated for some seconds only (retry.h).
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1'000);
   if (!options.tls_server_name.empty()) arguments.SetSslTargetNameOverride(options.tls_server_name);

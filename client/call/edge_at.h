@@ -11,8 +11,9 @@ namespace weft::client {
 struct EdgeAt {
   std::int32_t marker = 0;
   double max_edge = 0;
+  std::string name{};  // of the marker; empty: it is given by number
 
-  // `text` is marker=2:500. The error is a text that says what is wrong.
+  // `text` is marker=2:500 or marker=inlet:500. The error is a text that says what is wrong.
   static tl::expected<EdgeAt, std::string> parse(const std::string& text);
 };
 

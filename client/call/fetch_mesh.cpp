@@ -22,7 +22,7 @@ Result<MeshReport> fetch_mesh(JobServer& server, const std::string& id, MeshSpoo
         if (message.has_chunk() && options.on_triangles) options.on_triangles(spool.triangles());
       });
   if (!download) return tl::unexpected(download.error());
-  if (!download->status.ok()) return tl::unexpected(server.error_of(download->status, nullptr));
+  if (!download->status.ok()) return tl::unexpected(server.error_of(download->status));
   return std::move(download->report);
 }
 

@@ -13,8 +13,8 @@
 #include "client/base/error.h"
 #include "client/call/job_server.h"
 #include "client/call/mesh_receiver.h"
+#include "client/call/mesh_report.h"
 #include "client/call/mesh_spool.h"
-#include "client/report/mesh_report.h"
 
 namespace weft::client {
 

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <utility>
 
+#include "client/base/did_you_mean.h"
 #include "client/base/option_row.h"
 #include "client/base/text.h"
+#include "client/formats/derived/vertex_values.h"
 #include "client/formats/domain_formats.h"
+#include "client/formats/domains/ogr.h"
 #include "client/formats/field_raster.h"
-#include "client/formats/vertex_values.h"
 
 namespace weft::client {
 namespace {
@@ -38,19 +40,29 @@ bool meet(const RasterBox& a, const RasterBox& b) {
 struct Filler {
   const Domain& domain;
   const DomainProjection* projection;
+  std::uint64_t most_raster_values;
   v1::NamedField& out;
 
   Result<Warnings> operator()(const FieldOption::Distance& distance) const {
     out.mutable_distance()->mutable_markers()->Add(distance.markers.begin(),
                                                    distance.markers.end());
+    for (const std::string& name : distance.names) {
+      const auto marker = find_marker(name, domain.names.markers);
+      if (!marker) return tl::unexpected(marker.error());
+      out.mutable_distance()->add_markers(*marker);
+    }
     return Warnings();
   }
   Result<Warnings> operator()(const FieldOption::DistanceToFile& distance) const {
     const auto read = read_domain(distance.file);
     if (!read) return tl::unexpected(read.error());
+    if (auto same = check_system(distance.file, *read); !same) return tl::unexpected(same.error());
     v1::Distance& to = *out.mutable_distance();
-    for (const Point& point : read->points) {
+    for (std::size_t i = 0; i < read->points.size(); ++i) {
+      const Point point = read->points[i];
       const Point at = projection != nullptr ? projection->to_plane(point) : point;
+      if (!std::isfinite(at.x) || !std::isfinite(at.y))
+        return unprojected(distance.file, read->point_places.locate(i), "point", i, point);
       to.add_points(at.x);
       to.add_points(at.y);
     }
@@ -62,9 +74,12 @@ struct Filler {
   }
   Result<Warnings> operator()(const FieldOption::Raster& raster) const {
     const RasterBox box = box_of(domain);
-    auto read = projection != nullptr
-                    ? read_field_raster_projected(raster.file, raster.band, box, projection->name())
-                    : read_field_raster(raster.file, raster.band, box);
+    const auto& [file, band] = raster;
+    auto read =
+        projection != nullptr
+            ? read_field_raster_projected(file, band, box, projection->name(), most_raster_values)
+        : domain.system ? read_field_raster_in(file, band, box, *domain.system, most_raster_values)
+                        : read_field_raster(file, band, box, most_raster_values);
     if (!read) return tl::unexpected(read.error());
     v1::FieldRaster& to = *out.mutable_raster();
     to.set_x(read->x);
@@ -87,10 +102,7 @@ struct Filler {
       Point at{from[i], from[i + 1]};
       if (projection != nullptr && !projection->to_metres()) at = projection->to_plane(at);
       if (!std::isfinite(at.x) || !std::isfinite(at.y))
-        return fail(ExitCode::kUnreadableInput,
-                    on_mesh.file.string() + ": vertex " + std::to_string(i / 2) +
-                        " cannot be projected from longitude and latitude " +
-                        coordinates(from[i], from[i + 1]));
+        return unprojected(on_mesh.file, "", "vertex", i / 2, {from[i], from[i + 1]});
       to.add_vertices(at.x);
       to.add_vertices(at.y);
       extend(box, at, i == 0);
@@ -102,6 +114,32 @@ struct Filler {
                     coordinates(box.min_x, box.min_y) + " to " + coordinates(box.max_x, box.max_y) +
                     "; the field " + out.name() + " has the values of its boundary"};
   }
+  // `place` is the point's in the file, if it is known.
+  tl::unexpected<Error> unprojected(const std::filesystem::path& file, const std::string& place,
+                                    const std::string& what, std::size_t i, Point at) const {
+    const bool on_globe = std::abs(at.x) <= 360 && std::abs(at.y) <= 90;
+    return fail(
+        ExitCode::kUnreadableInput,
+        (place.empty() ? file.string() : place) + ": " + what + " " + std::to_string(i) + ", " +
+            coordinates(at.x, at.y) + ", " +
+            (on_globe ? "is too far from the domain to be projected by " + projection->name()
+                      : "is not a longitude and a latitude; are its coordinates metres?"));
+  }
+  // With a projection, the file's coordinates are longitudes and latitudes. Otherwise it must be in
+  // the domain's system, if both name one.
+  Result<void> check_system(const std::filesystem::path& file, const Domain& read) const {
+    if (!read.system) return {};
+    const auto refuse = [&](const std::string& wanted) {
+      return fail(ExitCode::kUnreadableInput, file.string() + ": its coordinate system is " +
+                                                  in_quotes(read.system->name) + ", " + wanted +
+                                                  "; ogr2ogr -t_srs brings it there");
+    };
+    if (projection != nullptr && !read.system->geographic)
+      return refuse("with a projection it must be longitude and latitude");
+    if (projection == nullptr && domain.system && !are_same(*read.system, *domain.system))
+      return refuse("that of the domain is " + in_quotes(domain.system->name));
+    return {};
+  }
   Result<Warnings> operator()(const FieldOption::Width&) const {
     out.mutable_width();
     return Warnings();
@@ -109,20 +147,40 @@ struct Filler {
 };
 
 // "2,3" as numbers.
-std::optional<std::vector<std::int32_t>> markers_of(const std::string& text) {
-  std::vector<std::int32_t> markers;
+std::optional<FieldOption::Distance> markers_of(const std::string& text) {
+  FieldOption::Distance distance;
   std::size_t at = 0;
   while (true) {
     const std::size_t comma = std::min(text.find(',', at), text.size());
-    const auto marker = value_of<std::int32_t>(text.substr(at, comma - at));
-    if (!marker) return std::nullopt;
-    markers.push_back(*marker);
-    if (comma == text.size()) return markers;
+    const std::string which = text.substr(at, comma - at);
+    if (which.empty()) return std::nullopt;
+    if (const auto marker = value_of<std::int32_t>(which))
+      distance.markers.push_back(*marker);
+    else
+      distance.names.push_back(which);
+    if (comma == text.size()) return distance;
     at = comma + 1;
   }
 }
 
-// FILE:ARRAY, as a raster's file and band; if there is no such file, as its last colon divides it.
+// Whether the text could be a path only if there were such a file.
+bool is_mere_word(const std::string& text, const std::filesystem::path& folder) {
+  std::error_code ignored;
+  return text.find_first_of("./") == std::string::npos &&
+         !std::filesystem::exists(folder / text, ignored);
+}
+
+// What `kind`, which is none, probably was meant to be.
+std::string kind_hint(const std::string& kind) {
+  const std::string word = kind.substr(0, kind.find(':'));
+  if (word == "width") return "width takes nothing after it";
+  if (word == "mesh") return "mesh takes a file, as in mesh:FILE or mesh:FILE:ARRAY";
+  const std::string meant = did_you_mean(word, {"distance", "width", "mesh"});
+  return meant.empty() ? "the kinds are distance, width and mesh" : meant;
+}
+
+// Splits FILE:ARRAY as a raster's file and band are split; if there is no such file, at its last
+// colon.
 FieldOption::OnMesh mesh_and_array(const std::string& text) {
   auto [file, array] = split_raster_path(text);
   const std::size_t colon = text.rfind(':');
@@ -151,27 +209,38 @@ tl::expected<FieldOption, std::string> FieldOption::parse(const std::string& tex
     auto markers = markers_of(kind.substr(marker.size()));
     if (!markers)
       return tl::unexpected(in_quotes(kind) + " does not list markers, such as marker=2,3");
-    field.kind = Distance{std::move(*markers)};
+    field.kind = std::move(*markers);
   } else if (kind.starts_with(distance)) {
-    const std::filesystem::path file = folder / kind.substr(distance.size());
+    const std::string to = kind.substr(distance.size());
+    if (is_mere_word(to, folder)) {
+      const std::string meant = did_you_mean(to.substr(0, to.find('=')), {"marker"});
+      return tl::unexpected(in_quotes(kind) +
+                            " names neither markers, such as distance:marker=2,3, nor a file" +
+                            (meant.empty() ? "" : "; " + meant));
+    }
+    const std::filesystem::path file = folder / to;
     if (!is_domain_path(file)) return tl::unexpected(unknown_domain_format(file).value().message);
     field.kind = DistanceToFile{file};
-  } else if (kind.starts_with(mesh)) {
+  } else if (kind.starts_with(mesh) && kind.size() > mesh.size()) {
     OnMesh on_mesh = mesh_and_array((folder / kind.substr(mesh.size())).string());
     if (auto ok = check_has_vertex_values(on_mesh.file); !ok)
       return tl::unexpected(ok.error().message);
     field.kind = std::move(on_mesh);
   } else {
     auto [file, band] = split_raster_path((folder / kind).string());
+    if (band.empty() && is_mere_word(kind, folder))
+      return tl::unexpected(in_quotes(kind) + " is neither a kind of field nor a file; " +
+                            kind_hint(kind));
     field.kind = Raster{std::move(file), std::move(band)};
   }
   return field;
 }
 
 Result<std::vector<std::string>> fill(const FieldOption& field, const Domain& domain,
-                                      const DomainProjection* projection, v1::NamedField& out) {
+                                      const DomainProjection* projection,
+                                      std::uint64_t most_raster_values, v1::NamedField& out) {
   out.set_name(field.name);
-  return std::visit(Filler{domain, projection, out}, field.kind);
+  return std::visit(Filler{domain, projection, most_raster_values, out}, field.kind);
 }
 
 }  // namespace weft::client

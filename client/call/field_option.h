@@ -20,9 +20,11 @@
 namespace weft::client {
 
 struct FieldOption {
-  // The distance to segments of the domain: to all, or to those with one of the markers.
+  // The distance to segments of the domain: to all, or to those with one of the markers, some of
+  // which may be given by name.
   struct Distance {
-    std::vector<std::int32_t> markers;
+    std::vector<std::int32_t> markers{};
+    std::vector<std::string> names{};
   };
   // The distance to the points, lines and borders of polygons of a file.
   struct DistanceToFile {
@@ -41,7 +43,7 @@ struct FieldOption {
   // The local width of the domain.
   struct Width {};
 
-  // `text` is NAME=distance, NAME=distance:marker=1,2, NAME=distance:FILE, NAME=width,
+  // `text` is NAME=distance, NAME=distance:marker=1,inlet, NAME=distance:FILE, NAME=width,
   // NAME=mesh:FILE[:ARRAY] or NAME=FILE[:BAND]; a relative path is below `folder`. The error is a
   // text that says what is wrong.
   static tl::expected<FieldOption, std::string> parse(const std::string& text,
@@ -54,8 +56,11 @@ struct FieldOption {
 // Reads the field's file, if it has one; of a raster what covers the domain. With a projection, the
 // domain is in its metres, and the file is projected: as what it is, for a raster that says so,
 // else from longitude and latitude; but a mesh is in metres if the projection's result is to be.
-// Returns sentences for the user. Errors: those of the file.
+// Without one, a raster is brought into the coordinate system of the domain if both name one.
+// Returns sentences for the user. Errors: those of the file; a file of lines in another coordinate
+// system than the domain, or the longitudes and latitudes of a projection.
 Result<std::vector<std::string>> fill(const FieldOption& field, const Domain& domain,
-                                      const DomainProjection* projection, v1::NamedField& out);
+                                      const DomainProjection* projection,
+                                      std::uint64_t most_raster_values, v1::NamedField& out);
 
 }  // namespace weft::client

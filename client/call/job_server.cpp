@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "client/call/server_error.h"
 #include "weft/v1/mesh_service.grpc.pb.h"
 
 namespace weft::client {
@@ -30,8 +29,8 @@ void JobServer::set_limits(std::uint32_t retries, std::optional<double> timeout_
   retry_.deadline = deadline_after(timeout_seconds);
 }
 
-Error JobServer::error_of(const grpc::Status& status, const Domain* domain) const {
-  return weft::client::error_of(status, connection_.address, domain);
+Error JobServer::error_of(const grpc::Status& status, const RequestOrigin& origin) const {
+  return weft::client::error_of(status, connection_.address, origin);
 }
 
 JobServer::Attempt::Attempt(const JobServer& server) : cancel_(server.stop_, Cancel{&context_}) {
@@ -52,11 +51,12 @@ grpc::Status JobServer::call(Stub& stub,
   }
 }
 
-Result<v1::Job> JobServer::submit(const v1::SubmitJobRequest& request, const Domain* domain) {
+Result<v1::Job> JobServer::submit(const v1::SubmitJobRequest& request,
+                                  const RequestOrigin& origin) {
   v1::SubmitJobResponse response;
   if (const auto status = call(*stub_, &v1::JobService::Stub::SubmitJob, request, response);
       !status.ok())
-    return tl::unexpected(error_of(status, domain));
+    return tl::unexpected(error_of(status, origin));
   return std::move(*response.mutable_job());
 }
 
@@ -66,7 +66,7 @@ Result<v1::Job> JobServer::get(const std::string& id) {
   v1::GetJobResponse response;
   if (const auto status = call(*stub_, &v1::JobService::Stub::GetJob, request, response);
       !status.ok())
-    return tl::unexpected(error_of(status, nullptr));
+    return tl::unexpected(error_of(status));
   return std::move(*response.mutable_job());
 }
 
@@ -76,7 +76,7 @@ Result<v1::Job> JobServer::cancel(const std::string& id) {
   v1::CancelJobResponse response;
   if (const auto status = call(*stub_, &v1::JobService::Stub::CancelJob, request, response);
       !status.ok())
-    return tl::unexpected(error_of(status, nullptr));
+    return tl::unexpected(error_of(status));
   return std::move(*response.mutable_job());
 }
 
@@ -86,15 +86,15 @@ Result<void> JobServer::remove(const std::string& id) {
   v1::DeleteJobResponse response;
   bool repeated = false;
   const auto status = call(*stub_, &v1::JobService::Stub::DeleteJob, request, response, &repeated);
-  // Where the answer was lost, the job may be gone already.
+  // If the answer to an earlier try was lost, the job may be gone already.
   const bool gone = repeated && status.error_code() == grpc::StatusCode::NOT_FOUND;
-  if (!status.ok() && !gone) return tl::unexpected(error_of(status, nullptr));
+  if (!status.ok() && !gone) return tl::unexpected(error_of(status));
   return {};
 }
 
 Result<std::vector<v1::Job>> JobServer::list(const std::vector<v1::JobState>& states,
                                              std::optional<std::uint64_t> limit) {
-  // Of jobs whose errors are as long as they get, a page stays below what gRPC takes in a message.
+  // A page of so many jobs, with the longest errors, stays below gRPC's limit for a message.
   constexpr std::uint64_t kLargestPage = 500;
   std::vector<v1::Job> jobs;
   v1::ListJobsRequest request;
@@ -105,7 +105,7 @@ Result<std::vector<v1::Job>> JobServer::list(const std::vector<v1::JobState>& st
     v1::ListJobsResponse page;
     if (const auto status = call(*stub_, &v1::JobService::Stub::ListJobs, request, page);
         !status.ok())
-      return tl::unexpected(error_of(status, nullptr));
+      return tl::unexpected(error_of(status));
     for (v1::Job& job : *page.mutable_jobs())
       if (!limit || jobs.size() < *limit) jobs.push_back(std::move(job));
     if (page.next_page_token().empty()) break;
@@ -123,7 +123,7 @@ Result<v1::GetServerInfoResponse> JobServer::info() {
   if (const auto status =
           call(stub, &v1::MeshService::Stub::GetServerInfo, v1::GetServerInfoRequest(), response);
       !status.ok())
-    return tl::unexpected(error_of(status, nullptr));
+    return tl::unexpected(error_of(status));
   return response;
 }
 

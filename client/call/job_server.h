@@ -24,7 +24,7 @@
 #include "client/call/connect_options.h"
 #include "client/call/connection.h"
 #include "client/call/connection_retry.h"
-#include "client/formats/domain.h"
+#include "client/call/server_error.h"
 #include "weft/v1/job_service.grpc.pb.h"
 
 namespace weft::client {
@@ -41,8 +41,8 @@ class JobServer {
   // The time-out counts from now.
   void set_limits(std::uint32_t retries, std::optional<double> timeout_seconds);
 
-  // `domain`, if there is one, gives the places of fields at fault. REQUIRES: a request_id.
-  Result<v1::Job> submit(const v1::SubmitJobRequest& request, const Domain* domain);
+  // `origin` is for errors. REQUIRES: a request_id.
+  Result<v1::Job> submit(const v1::SubmitJobRequest& request, const RequestOrigin& origin = {});
   Result<v1::Job> get(const std::string& id);
   // Returns the job as it is afterwards.
   Result<v1::Job> cancel(const std::string& id);
@@ -71,7 +71,7 @@ class JobServer {
   Retry retry() const { return retry_on(connection_, retry_, stop_); }
   std::optional<Deadline> deadline() const { return retry_.deadline; }
   const std::stop_token& stop() const { return stop_; }
-  Error error_of(const grpc::Status& status, const Domain* domain) const;
+  Error error_of(const grpc::Status& status, const RequestOrigin& origin = {}) const;
 
   const Connection& connection() const { return connection_; }
   // Sets what is called with the first of several failures in a row. DEFAULT: a line on stderr.

@@ -35,7 +35,8 @@ Result<MeshReport> call_generate_mesh(const Connection& connection, const Domain
       });
   if (!download) return tl::unexpected(download.error());
   if (!download->status.ok())
-    return tl::unexpected(error_of(download->status, connection.address, &domain));
+    return tl::unexpected(error_of(download->status, connection.address,
+                                   {&domain, &request_options, options.projection}));
   return std::move(download->report);
 }
 

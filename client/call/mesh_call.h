@@ -18,11 +18,12 @@
 
 #include "client/base/error.h"
 #include "client/call/connection.h"
+#include "client/call/mesh_report.h"
 #include "client/call/mesh_request.h"
 #include "client/call/mesh_spool.h"
 #include "client/call/retry.h"
 #include "client/formats/domain.h"
-#include "client/report/mesh_report.h"
+#include "client/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {
@@ -33,6 +34,8 @@ struct MeshCallOptions {
   std::function<void(const v1::Progress&)> on_progress{};  // on the calling thread; may be empty
   // Called when the server is away, once for several failures in a row. DEFAULT: a line on stderr.
   std::function<void(const std::string&)> on_away{};
+  // Of the domain, for places in errors; null if the domain is sent as its file has it.
+  const DomainProjection* projection = nullptr;
 };
 
 Result<MeshReport> call_generate_mesh(const Connection& connection, const Domain& domain,

@@ -24,9 +24,10 @@
 #include <utility>
 
 #include "client/base/error.h"
+#include "client/base/text.h"
 #include "client/call/mesh_receiver.h"
+#include "client/call/mesh_report.h"
 #include "client/call/retry.h"
-#include "client/report/mesh_report.h"
 
 namespace weft::client {
 
@@ -82,6 +83,8 @@ Result<Download> download_mesh(MeshReceiver& receiver, Retry retry,
   report.accepted = *receiver.accepted();
   report.summary = *receiver.summary();
   report.bytes_received = receiver.bytes();
+  for (const v1::SizeWarning& warning : report.summary.size_warnings())
+    add_warnings({harmless(warning.message())}, report);
   return download;
 }
 

@@ -62,7 +62,7 @@ Result<void> MeshReceiver::receive(const v1::FetchMeshResponse& message) {
 
 Result<void> MeshReceiver::receive(const v1::Accepted& accepted) {
   if (accepted_ && !resuming_) return damaged("`accepted` came twice");
-  // The mesh at hand is of the engine that began it: another one's may go on differently.
+  // Another engine may go on differently, so a mesh is finished only by the engine that began it.
   if (accepted_ && accepted_->engine_version() != accepted.engine_version())
     return damaged("it was resumed by engine " + accepted.engine_version() + ", engine " +
                    accepted_->engine_version() + " had begun it");
@@ -112,7 +112,7 @@ Result<void> MeshReceiver::check_indices(const v1::Chunk& chunk) const {
     if (domain_ && chunk.input_points(i + 1) >= domain_->points)
       return refuse("input point", chunk.input_points(i + 1), domain_->points);
   }
-  double finite = 0;  // NaN as soon as one is not
+  double finite = 0;  // NaN if any coordinate is not finite
   for (const double c : chunk.coordinates()) finite += c * 0;
   if (finite != 0) return damaged(chunk, "has a coordinate that is not finite");
   return {};

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/call/mesh_request.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
 
+#include "client/call/request_rows.h"
+#include "client/formats/field_raster.h"
 #include "client/formats/raster.h"
 
 namespace weft::client {
@@ -18,6 +22,14 @@ std::optional<double> as_number(const std::string& text) {
   if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
     return std::nullopt;
   return value;
+}
+
+void fill(const NameTable& table, google::protobuf::RepeatedPtrField<v1::Name>& out) {
+  for (const auto& [id, text] : table) {
+    v1::Name& name = *out.Add();
+    name.set_id(id);
+    name.set_name(text);
+  }
 }
 
 void fill(const Domain& domain, v1::Domain& out) {
@@ -48,6 +60,8 @@ void fill(const Domain& domain, v1::Domain& out) {
     seed.set_id(region.id);
     if (region.max_area) seed.set_max_area(*region.max_area);
   }
+  fill(domain.names.markers, *out.mutable_marker_names());
+  fill(domain.names.regions, *out.mutable_region_names());
   out.set_fill(domain.fill == Domain::Fill::kEvenOdd ? v1::FILL_EVEN_ODD : v1::FILL_SEEDS);
 }
 
@@ -76,32 +90,69 @@ Result<v1::SizeField> read_size(const std::string& text) {
   return size;
 }
 
+// The error about what the request has at `field`, with the option that set it.
+tl::unexpected<Error> fault_at(const std::string& field, const RequestOptions& options,
+                               const Error& error) {
+  const std::string option = option_of(field, options);
+  return fail(error.exit, (option.empty() ? "" : option + ": ") + error.message);
+}
+
+// Adds the fields to the size, and what there is to say of them to the warnings. Rasters share the
+// limit of a server: false, and not all are there, if they have more values together; each has
+// `most` at most.
+Result<bool> fill_fields(const Domain& domain, const DomainProjection* projection,
+                         std::uint64_t most, RequestOptions& options, v1::SizeField& size) {
+  std::uint64_t values = 0;
+  for (const FieldOption& field : options.fields) {
+    const std::string path = "size.fields[" + std::to_string(size.fields_size()) + "]";
+    v1::NamedField& filled = *size.add_fields();
+    auto warnings = fill(field, domain, projection, most, filled);
+    if (!warnings) return fault_at(path, options, warnings.error());
+    std::move(warnings->begin(), warnings->end(), std::back_inserter(options.warnings));
+    values += static_cast<std::uint64_t>(filled.raster().values_size());
+    if (values > kMaxFieldValues) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
-Result<RequestOptions> with_size(RequestOptions request_options, const Domain& domain,
+Result<RequestOptions> with_size(const RequestOptions& given, const Domain& domain,
                                  const DomainProjection* projection) {
-  const bool by_edge = !request_options.edge.empty();
-  if (by_edge && !request_options.size.empty())
+  RequestOptions options = given;
+  const bool by_edge = !options.edge.empty();
+  if (by_edge && !options.size.empty())
     return fail(ExitCode::kUsage,
                 "--size and --edge exclude each other: give the area of triangles or the length of "
                 "edges");
-  auto size = read_size(by_edge ? request_options.edge : request_options.size);
-  if (!size) return tl::unexpected(size.error());
+  auto size = read_size(by_edge ? options.edge : options.size);
+  if (!size) return fault_at("size", options, size.error());
   if (by_edge) size->set_measure(v1::MEASURE_EDGE);
-  if (request_options.gradation) size->set_gradation(*request_options.gradation);
-  if (request_options.cells_across) size->set_cells_across(*request_options.cells_across);
-  for (const EdgeAt& edge_at : request_options.edge_at) {
+  if (options.gradation) size->set_gradation(*options.gradation);
+  size->set_gradation_within(options.gradation_within);
+  if (options.cells_across) size->set_cells_across(*options.cells_across);
+  for (const EdgeAt& edge_at : options.edge_at) {
+    const auto marker = edge_at.name.empty() ? Result<std::int32_t>(edge_at.marker)
+                                             : find_marker(edge_at.name, domain.names.markers);
+    if (!marker)
+      return fault_at("size.at[" + std::to_string(size->at_size()) + "]", options, marker.error());
     v1::SizeAt& at = *size->add_at();
-    at.set_marker(edge_at.marker);
+    at.set_marker(*marker);
     at.set_max_edge(edge_at.max_edge);
   }
-  for (const FieldOption& field : request_options.fields) {
-    auto warnings = fill(field, domain, projection, *size->add_fields());
-    if (!warnings) return tl::unexpected(warnings.error());
-    for (std::string& warning : *warnings) request_options.warnings.push_back(std::move(warning));
+  const auto rasters = std::count_if(
+      options.fields.begin(), options.fields.end(),
+      [](const auto& field) { return std::holds_alternative<FieldOption::Raster>(field.kind); });
+  const auto sharers = static_cast<std::uint64_t>(std::max<std::ptrdiff_t>(rasters, 1));
+  for (const std::uint64_t most : {kMaxFieldValues, kMaxFieldValues / sharers}) {
+    size->clear_fields();
+    options.warnings = given.warnings;
+    auto fits = fill_fields(domain, projection, most, options, *size);
+    if (!fits) return tl::unexpected(fits.error());
+    if (*fits) break;
   }
-  request_options.size_read = std::make_shared<const v1::SizeField>(std::move(*size));
-  return request_options;
+  options.size_read = std::make_shared<const v1::SizeField>(std::move(*size));
+  return options;
 }
 
 Result<void> check_sendable(const Domain& domain) {
@@ -112,6 +163,15 @@ Result<void> check_sendable(const Domain& domain) {
               "the domain has " + std::to_string(domain.points.size()) + " points and " +
                   std::to_string(domain.segments.size()) + " segments, a request takes " +
                   std::to_string(kMostPoints) + " of each");
+}
+
+Names names_of(const v1::Domain& domain) {
+  NameReader names("the server");
+  for (const v1::Name& name : domain.marker_names())
+    names.add(NameKind::kMarker, name.id(), name.name());
+  for (const v1::Name& name : domain.region_names())
+    names.add(NameKind::kRegion, name.id(), name.name());
+  return names.take();
 }
 
 v1::GenerateMeshRequest make_request(const Domain& domain, const RequestOptions& request_options) {

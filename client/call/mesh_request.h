@@ -8,12 +8,14 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "client/base/error.h"
 #include "client/call/edge_at.h"
 #include "client/call/field_option.h"
+#include "client/call/name_option.h"
 #include "client/formats/domain.h"
 #include "client/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
@@ -28,9 +30,11 @@ struct RequestOptions {
   std::string edge{};
   std::vector<FieldOption> fields{};
   std::optional<double> gradation{};     // that the length of edges has at most
+  bool gradation_within = false;         // the domain, not across land
   std::optional<double> cells_across{};  // edges across the domain, at least about
   std::vector<EdgeAt> edge_at{};         // lengths of edges on segments, by marker
-  // All of these, with what their files hold: see with_size.
+  std::vector<NameOption> names{};  // of markers and regions, besides those of the domain's file
+  // All of the size, with what its files hold: see with_size.
   std::shared_ptr<const v1::SizeField> size_read{};
   std::vector<std::string> warnings{};  // about these files
   std::optional<double> min_angle_deg{};
@@ -41,19 +45,27 @@ struct RequestOptions {
   std::optional<double> max_seconds{};
   std::optional<std::uint32_t> threads{};
   std::optional<double> snap{};  // features nearer together are merged first
-  bool allow_unrefined = false;  // accept a mesh that misses its bounds without excuse
+  bool allow_unrefined = false;  // accept a mesh that misses its bounds without exemption
   bool quadtree = false;         // ask for the quadtree, to draw it
   bool no_cache = false;         // make it anew, even if the server has it in memory
+  // For errors, which name the option at fault (option_of): the rows that were given, and whether
+  // a manifest gave them.
+  std::set<std::string> given{};
+  bool from_manifest = false;
 };
 
-// Reads the files that the size and its fields name. With a projection, the domain is in its
-// metres, and the files of fields are projected, too. Errors: kUsage for a size and an edge at the
-// same time, and those of the files.
-Result<RequestOptions> with_size(RequestOptions request_options, const Domain& domain,
+// `given`, and what the files hold that the size and its fields name. With a projection, the domain
+// is in its metres, and the files of fields are projected, too. Errors: kUsage for a size and an
+// edge at the same time, and those of the files.
+Result<RequestOptions> with_size(const RequestOptions& given, const Domain& domain,
                                  const DomainProjection* projection = nullptr);
 
 // Returns an error (kUnreadableInput) if the domain is too large for any message.
 Result<void> check_sendable(const Domain& domain);
+
+// The names that a request has, of which a server sends back what it was sent; those that cannot be
+// names are left out.
+Names names_of(const v1::Domain& domain);
 
 // REQUIRES: the options come from with_size, or have a size alone that is no path.
 v1::GenerateMeshRequest make_request(const Domain& domain, const RequestOptions& request_options);

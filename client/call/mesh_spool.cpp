@@ -63,7 +63,7 @@ bool SpooledArray<T>::map(PagedMemory& pages) {
     mapped_ = size_;
   }
   if (size_ == mapped_) return true;
-  // Zeros at the end are not in the file yet.
+  // Zeros at the end may not have been written yet.
   if (::ftruncate(file_.get(), static_cast<off_t>(size_ * sizeof(T))) != 0) return false;
   if (size_ > room_) {
     const std::size_t room = mapped_ == 0 ? size_ : 2 * size_;
@@ -109,13 +109,13 @@ Result<void> MeshSpool::append(const MeshView& piece) {
   const auto append_rest = [&] {
     return triangles_.append(piece.triangles) &&
            append_or_zeros(regions_, piece.regions, piece.triangle_count()) &&
-           edges_.append(piece.edges) &&
-           append_or_zeros(edge_markers_, piece.edge_markers, piece.edge_count()) &&
-           input_points_.append(piece.input_points);
+           edges_.append(piece.edges) && input_points_.append(piece.input_points);
   };
   triangle_count_ += piece.triangle_count();
   edge_count_ += piece.edge_count();
-  if (!coordinates_.append(piece.coordinates) || !(options_.vertices_only || append_rest()))
+  if (!coordinates_.append(piece.coordinates) ||
+      !append_or_zeros(edge_markers_, piece.edge_markers, piece.edge_count()) ||
+      !(options_.vertices_only || append_rest()))
     return failed();
   return options_.on_piece ? show(piece) : Result<void>();
 }

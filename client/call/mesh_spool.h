@@ -61,7 +61,8 @@ extern template class SpooledArray<std::uint32_t>;
 extern template class SpooledArray<std::int32_t>;
 
 struct MeshSpoolOptions {
-  bool vertices_only = false;  // nothing else is held: the view is of no use
+  // Nothing else is held but the markers of edges: of the view, these alone are of use.
+  bool vertices_only = false;
   // Called after every piece, with its triangles, regions and edges and the coordinates of all
   // vertices so far; may be empty. The spans are valid during the call.
   std::function<void(const MeshView&)> on_piece{};

@@ -23,7 +23,7 @@
 #include <utility>
 #include <vector>
 
-#include "client/formats/file_contents.h"
+#include "client/formats/files/file_contents.h"
 
 extern char** environ;
 
@@ -60,8 +60,8 @@ Result<std::filesystem::path> find_weftd(const PrivateServerOptions& options) {
       "weftd is neither beside weft nor in the PATH; give --server ADDR, or WEFT_WEFTD");
 }
 
-// Our environment, less what configures servers that others use, and ourselves: this one keeps no
-// jobs, has no certificate and its own limits, and a token is for a server that is named.
+// Our environment without the variables of weftd and of weft: this server keeps no jobs, has no
+// certificate and its own limits, and a token belongs to a server that is named.
 std::vector<char*> its_environment() {
   std::vector<char*> variables;
   for (char** each = environ; *each != nullptr; ++each)
@@ -92,7 +92,7 @@ Result<std::unique_ptr<PrivateServer>> PrivateServer::start(const PrivateServerO
 Result<void> PrivateServer::make_folder() {
   const char* given = std::getenv("TMPDIR");
   std::string base = given != nullptr && *given == '/' ? given : "/tmp";
-  // A socket's path is short.
+  // The path of a socket must be short.
   constexpr std::size_t kLongest = sizeof(sockaddr_un::sun_path) - sizeof("/weft-XXXXXX/socket");
   if (base.size() > kLongest) base = "/tmp";
   std::string name = base + "/weft-XXXXXX";
@@ -115,7 +115,8 @@ Result<void> PrivateServer::spawn(const std::filesystem::path& weftd) {
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
                                    O_WRONLY | O_CREAT | O_APPEND, 0600);
   posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  // A group of its own, so that Ctrl-C reaches us alone, and no blocked or ignored signals.
+  // A process group of its own, so that Ctrl-C reaches this process alone, and no signals that are
+  // blocked or ignored.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes,
@@ -149,7 +150,7 @@ Result<void> PrivateServer::spawn(const std::filesystem::path& weftd) {
 
 Result<void> PrivateServer::wait_until_ready(const std::filesystem::path& weftd,
                                              std::stop_token stop) {
-  // It renames the file into place when it listens; the watch is there before it starts.
+  // The server renames the port file into place when it listens. The watch exists before it starts.
   FileDescriptor watch(::inotify_init1(IN_CLOEXEC | IN_NONBLOCK));
   if (::inotify_add_watch(watch.get(), folder_.c_str(), IN_MOVED_TO) < 0)
     return not_started(std::string("inotify: ") + std::strerror(errno));

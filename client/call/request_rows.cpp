@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/call/request_rows.h"
 
+#include <cctype>
+#include <system_error>
 #include <utility>
 
+#include "client/base/text.h"
+#include "client/call/field_path.h"
+#include "client/formats/derived/vertex_values.h"
+#include "client/formats/domain_formats.h"
 #include "client/formats/raster.h"
 
 namespace weft::client {
@@ -10,10 +16,45 @@ namespace {
 
 using Request = RequestOptions;
 
+// The rows; what they read is `given` then.
+OptionRows<Request> noted(OptionRows<Request> rows) {
+  for (OptionRow<Request>& row : rows)
+    row.value.read = [read = std::move(row.value.read), name = row.name](
+                         const auto& texts, const auto& folder, Request& options) {
+      std::string fault = read(texts, folder, options);
+      if (fault.empty()) options.given.insert(name);
+      return fault;
+    };
+  return rows;
+}
+
+// Whether the text, which is no grid, is the path of a file rather than an expression. No
+// expression has a letter after a point, but for numbers such as "1.e5".
+bool is_file(const std::string& text, const std::filesystem::path& folder) {
+  const std::string extension = std::filesystem::path(text).extension().string();
+  const bool is_path =
+      extension.size() > 1 && std::isalpha(static_cast<unsigned char>(extension[1])) != 0;
+  std::error_code ignored;
+  return is_path && !value_of<double>(text) &&
+         std::filesystem::is_regular_file(folder / text, ignored);
+}
+
+// The kind of field that the file may be.
+std::string kind_of(const std::string& file) {
+  if (check_has_vertex_values(file)) return "mesh:" + file;
+  return (is_domain_path(file) ? "distance:" : "") + file;
+}
+
 // A text that the server reads, or the path of a grid.
 OptionValue<Request> size(std::string Request::*field) {
   return {"EXPR|FILE", "", Arity::kOne,
           [field](const auto& texts, const auto& folder, Request& options) -> std::string {
+            if (texts.front().empty())
+              return "expects a number, an expression or a grid, not an empty text";
+            if (!is_raster_path(texts.front()) && is_file(texts.front(), folder))
+              return in_quotes(texts.front()) +
+                     " is a file, not an expression: make it a field, d=" + kind_of(texts.front()) +
+                     ", whose name an expression can use";
             options.*field =
                 is_raster_path(texts.front()) ? (folder / texts.front()).string() : texts.front();
             return "";
@@ -48,76 +89,106 @@ OptionValue<Request> edge_at() {
           }};
 }
 
+OptionValue<Request> names() {
+  return {"KIND=ID:NAME", "", Arity::kList,
+          [](const auto& texts, const auto&, Request& options) -> std::string {
+            std::vector<NameOption> all;
+            for (const std::string& text : texts) {
+              auto one = NameOption::parse(text);
+              if (!one) return one.error();
+              all.push_back(std::move(*one));
+            }
+            options.names = std::move(all);
+            return "";
+          }};
+}
+
 const OptionRows<Request>& other_rows() {
-  static const OptionRows<Request> rows = {
-      {"min-angle", "WEFT_MIN_ANGLE", "Minimum angle of every triangle, in degrees, 0 to 36", "20",
-       number("DEG", &Request::min_angle_deg)},
+  static const OptionRows<Request> rows = noted({
+      {"min-angle", "WEFT_MIN_ANGLE", "Minimum angle of every triangle, in degrees. Range: 0 to 36",
+       "20", number("DEG", &Request::min_angle_deg), "quality.min_angle_deg"},
       {"min-edge", "WEFT_MIN_EDGE",
        "Shortest edge that refinement may make; angle and area give way to it", "",
-       number("LEN", &Request::min_edge)},
+       number("LEN", &Request::min_edge), "quality.min_edge"},
       {"placement", "WEFT_PLACEMENT",
        "Where new points go in triangles that are too large: lattice follows the size and makes a "
-       "third fewer triangles, circumcentre makes a mesh without any direction",
+       "third fewer triangles, circumcentre gives the mesh no preferred direction",
        "lattice",
        one_of(&Request::placement,
-              {{"lattice", v1::PLACEMENT_LATTICE}, {"circumcentre", v1::PLACEMENT_CIRCUMCENTRE}})},
+              {{"lattice", v1::PLACEMENT_LATTICE}, {"circumcentre", v1::PLACEMENT_CIRCUMCENTRE}}),
+       "quality.placement"},
       {"optimise", "WEFT_OPTIMISE",
-       "Sweeps of smoothing, 0 to 16: vertices around angles below 48 degrees move to where the "
-       "smallest angle around them is largest",
+       "Sweeps of smoothing: vertices around angles below 48 degrees move to where the smallest "
+       "angle around them is largest. Range: 0 to 16",
        "2 if the size makes nearly all triangles, on a lattice with few faults or in a mesh below "
        "100,000 triangles; otherwise 0",
-       number("N", &Request::optimise)},
+       number("N", &Request::optimise), "quality.optimise"},
       {"snap", "WEFT_SNAP",
        "First merge points and segments of the domain that are nearer together than this",
-       "only what double precision cannot keep apart", number("D", &Request::snap)},
+       "only what double precision cannot keep apart", number("D", &Request::snap), "domain.snap"},
       {"allow-unrefined", "WEFT_ALLOW_UNREFINED",
        "Accept a mesh with triangles that miss a bound although neither the domain nor a flag "
        "forces them to",
-       "such a mesh is an error", on_or_off(&Request::allow_unrefined)},
+       "such a mesh is an error", on_or_off(&Request::allow_unrefined), "allow_unrefined"},
       {"max-triangles", "WEFT_CLIENT_MAX_TRIANGLES", "Stop refining at this number of triangles",
-       "", number("N", &Request::max_triangles, 1)},
-      {"max-seconds", "WEFT_CLIENT_MAX_SECONDS", "Maximum time of work; then the call fails", "",
-       number("S", &Request::max_seconds, 0.001, 1e9)},
+       "", number("N", &Request::max_triangles, 1), "budget.max_triangles"},
+      {"max-seconds", "WEFT_CLIENT_MAX_SECONDS", "Maximum time of work, after which the call fails",
+       "", number("S", &Request::max_seconds, 0.001, 1e9), "budget.max_seconds"},
       {"threads", "WEFT_CLIENT_THREADS",
        "Threads of the server that compute; the mesh does not depend on them", "all",
-       number("N", &Request::threads, 1)},
+       number("N", &Request::threads, 1), "threads"},
       {"no-cache", "WEFT_NO_CACHE", "Make the mesh again, even if the server has it", "",
-       on_or_off(&Request::no_cache)},
-  };
+       on_or_off(&Request::no_cache), "no_cache"},
+  });
   return rows;
 }
 
 }  // namespace
 
 const OptionRows<Request>& size_rows() {
-  static const OptionRows<Request> rows = {
+  static const OptionRows<Request> rows = noted({
       {"size", "",
        "Maximum area of a triangle, taken at its centroid: a number, an expression in x, y and "
        "the names of fields, or a grid of areas in an .asc file (ESRI ASCII)",
-       "no bound", size(&Request::size)},
+       "no bound", size(&Request::size), "size"},
       {"edge", "",
-       "Length of edges, instead of --size: triangles are at most as large as the equilateral one "
-       "with this edge at their centroid. A number, an expression or a grid of lengths, as --size",
-       "no bound", size(&Request::edge)},
+       "Wanted length of edges, instead of --size. A triangle's area is at most that of an "
+       "equilateral triangle with this edge, evaluated at its centroid. A number, an expression or "
+       "a grid of lengths, as for --size",
+       "no bound", size(&Request::edge), "size"},
       {"field", "",
        "A field that --edge or --size may name. KIND is distance, to all segments; "
-       "distance:marker=2,3, to those with a marker; distance:FILE, to the points and lines of a "
+       "distance:marker=2,inlet, to those with a marker, by number or by name; distance:FILE, to "
+       "the points and lines of a "
        "domain file; width, the domain's local width; mesh:FILE[:ARRAY], values at the vertices of "
        "an earlier mesh; or FILE[:BAND], the values of a raster. May be repeated",
-       "", fields()},
+       "", fields(), "size.fields"},
       {"edge-at", "",
-       "Maximum length LEN of edges on segments with the marker M. With --gradation, edges grow "
-       "from there by it at most. May be repeated, once for each marker",
-       "", edge_at()},
+       "Maximum length LEN of edges on segments with the marker M, a number or a name. With "
+       "--gradation G, the length grows from there by at most G per unit of distance. May be "
+       "repeated, once per marker",
+       "", edge_at(), "size.at"},
       {"gradation", "WEFT_GRADATION",
-       "How much the length of edges may grow per unit of length; a size that grows faster is "
+       "Maximum growth of the length of edges per unit of distance; a size that grows faster is "
        "lowered. 0.15 is common",
-       "no limit", number("G", &Request::gradation, 0.001, 1000)},
+       "no limit", number("G", &Request::gradation, 0.001, 1000), "size.gradation"},
+      {"gradation-within", "WEFT_GRADATION_WITHIN",
+       "Measure distances for --gradation within the domain, around land, instead of across it", "",
+       on_or_off(&Request::gradation_within), "size.gradation_within"},
       {"cells-across", "WEFT_CELLS_ACROSS",
-       "How many edges fit across the domain at least, about, where it is narrow: no edge is "
-       "wanted "
-       "longer than the local width divided by N. Best with --gradation",
-       "any number", number("N", &Request::cells_across, 0.01, 1e6)},
+       "Minimum number of edges across the domain, roughly: edges are at most the local width "
+       "divided by N. Best with --gradation",
+       "any number", number("N", &Request::cells_across, 0.01, 1e6), "size.cells_across"},
+  });
+  return rows;
+}
+
+const OptionRows<Request>& name_rows() {
+  static const OptionRows<Request> rows = {
+      {"names", "",
+       "Name a marker or a region: marker=2:inlet, region=1:fluid. Replaces the name in the file, "
+       "if there is one. May be repeated",
+       "", names()},
   };
   return rows;
 }
@@ -125,11 +196,36 @@ const OptionRows<Request>& size_rows() {
 const OptionRows<Request>& request_rows() {
   static const OptionRows<Request> rows = [] {
     OptionRows<Request> all = size_rows();
-    const OptionRows<Request>& others = other_rows();
-    all.insert(all.end(), others.begin(), others.end());
+    for (const auto* more : {&name_rows(), &other_rows()})
+      all.insert(all.end(), more->begin(), more->end());
     return all;
   }();
   return rows;
+}
+
+std::string option_of(std::string_view field, const RequestOptions& options) {
+  const auto name_of = [&options](const OptionRow<Request>& row) {
+    return (options.from_manifest ? "" : "--") + row.name;
+  };
+  const OptionRow<Request>* set_by = nullptr;  // of the innermost field
+  std::string parts;
+  for (const OptionRow<Request>& row : request_rows()) {
+    if (row.field.empty() || !options.given.contains(row.name)) continue;
+    if (is_within(field, row.field)) {
+      if (set_by == nullptr || row.field.size() > set_by->field.size()) set_by = &row;
+    } else if (field == "size" && is_within(row.field, field)) {
+      parts += (parts.empty() ? "" : ", ") + name_of(row);
+    }
+  }
+  if (set_by == nullptr) return parts;
+  const auto entry = index_in(field, set_by->field);
+  if (entry && set_by->field == "size.fields" && *entry < options.fields.size())
+    return name_of(*set_by) + " " + options.fields[*entry].name;
+  if (entry && set_by->field == "size.at" && *entry < options.edge_at.size()) {
+    const EdgeAt& at = options.edge_at[*entry];
+    return name_of(*set_by) + " marker=" + (at.name.empty() ? std::to_string(at.marker) : at.name);
+  }
+  return name_of(*set_by);
 }
 
 }  // namespace weft::client

@@ -4,6 +4,9 @@
 // RequestOptions, which make_request sends, and one row here.
 #pragma once
 
+#include <string>
+#include <string_view>
+
 #include "client/base/option_row.h"
 #include "client/call/mesh_request.h"
 
@@ -12,7 +15,14 @@ namespace weft::client {
 // How large triangles may be.
 const OptionRows<RequestOptions>& size_rows();
 
-// All, those of size_rows first.
+// What markers and regions are called.
+const OptionRows<RequestOptions>& name_rows();
+
+// All, those of size_rows first. What they read is `given` then.
 const OptionRows<RequestOptions>& request_rows();
+
+// What was given for a field of the request, such as "size.fields[0].name", as errors call it:
+// "--field d", or "field d" if a manifest gave it. Empty if no option was.
+std::string option_of(std::string_view field, const RequestOptions& options);
 
 }  // namespace weft::client

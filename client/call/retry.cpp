@@ -12,13 +12,13 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// How long the server asks to wait, where it does.
+// How long the server asks the client to wait; nullopt if it does not ask.
 std::optional<milliseconds> wait_asked(const grpc::Status& status) {
   const google::rpc::Status rich = rich_status(status);
   google::rpc::RetryInfo info;
   for (const auto& detail : rich.details()) {
     if (!detail.Is<google::rpc::RetryInfo>() || !detail.UnpackTo(&info)) continue;
-    constexpr std::int64_t kHour = 3600;  // what makes no sense must not overflow
+    constexpr std::int64_t kHour = 3600;  // a nonsensical value must not overflow
     const auto& delay = info.retry_delay();
     return milliseconds(1000 * std::clamp<std::int64_t>(delay.seconds(), 0, kHour) +
                         std::clamp(delay.nanos(), 0, 999'999'999) / 1'000'000);

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/call/server_error.h"
 
-#include <charconv>
-#include <cstddef>
+#include <cmath>
+#include <cstdio>
+#include <optional>
 #include <string_view>
 
+#include "client/base/option_row.h"
 #include "client/base/text.h"
+#include "client/call/field_path.h"
+#include "client/call/request_rows.h"
 #include "google/rpc/code.pb.h"
 #include "google/rpc/error_details.pb.h"
 
@@ -32,7 +36,7 @@ std::string connection_hint(std::string_view message) {
   };
   constexpr Hint kHints[] = {
       {"certificate verify failed",
-       "nobody whom weft trusts has signed its certificate: --tls-ca FILE names who has"},
+       "its certificate is not signed by a CA that weft trusts: --tls-ca FILE adds the CA"},
       {"is not in peer certificate",
        "its certificate is for another name: --tls-server-name NAME gives that name"},
       {"wrong version number", "it does not encrypt: leave out --tls and --tls-ca"},
@@ -44,24 +48,41 @@ std::string connection_hint(std::string_view message) {
   return "";
 }
 
+// The point of the plane that the message names.
+std::optional<Point> place_of(const google::rpc::ErrorInfo& info) {
+  const auto coordinate = [&info](const char* key) -> std::optional<double> {
+    const auto found = info.metadata().find(key);
+    return found == info.metadata().end() ? std::nullopt : value_of<double>(found->second);
+  };
+  const auto x = coordinate("x");
+  const auto y = coordinate("y");
+  if (!x || !y) return std::nullopt;
+  return Point{*x, *y};
+}
+
+// Where places in the plane are on the globe.
+std::string on_the_globe(const google::rpc::ErrorInfo& info, const DomainProjection& projection) {
+  std::string text = "\n  places are in metres of " + projection.name();
+  const auto place = place_of(info);
+  const Point lonlat = place ? projection.to_lonlat(*place) : Point{};
+  if (!place || !std::isfinite(lonlat.x) || !std::isfinite(lonlat.y)) return text;
+  char degrees[96];  // a millionth of a degree is a decimetre
+  std::snprintf(degrees, sizeof degrees, "; this one is at longitude %.6f, latitude %.6f", lonlat.x,
+                lonlat.y);
+  return text + degrees;
+}
+
 }  // namespace
 
 std::string locate_field(const std::string& field, const Domain& domain) {
   struct List {
-    std::string_view prefix;
+    std::string_view name;
     const Provenance& places;
   };
-  for (const auto& [prefix, places] :
-       {List{"domain.points[", domain.point_places},
-        List{"domain.segments[", domain.segment_places}, List{"domain.holes[", domain.hole_places},
-        List{"domain.regions[", domain.region_places}}) {
-    if (!field.starts_with(prefix)) continue;
-    const char* digits = field.data() + prefix.size();
-    const char* end = field.data() + field.size();
-    std::size_t index = 0;
-    const auto [stop, problem] = std::from_chars(digits, end, index);
-    if (problem == std::errc() && stop != end && *stop == ']') return places.locate(index);
-  }
+  for (const auto& [list, places] :
+       {List{"domain.points", domain.point_places}, List{"domain.segments", domain.segment_places},
+        List{"domain.holes", domain.hole_places}, List{"domain.regions", domain.region_places}})
+    if (const auto index = index_in(field, list)) return places.locate(*index);
   return "";
 }
 
@@ -74,7 +95,7 @@ std::string reason_of(const google::rpc::Status& status) {
 
 google::rpc::Status rich_status(const grpc::Status& status) {
   google::rpc::Status rich;
-  // Details that are garbage say nothing.
+  // Malformed details count as none.
   if (!rich.ParseFromString(status.error_details())) rich.Clear();
   rich.set_code(status.error_code());
   rich.set_message(status.error_message());
@@ -82,34 +103,49 @@ google::rpc::Status rich_status(const grpc::Status& status) {
 }
 
 Error error_of(const google::rpc::Status& status, const std::string& subject,
-               const Domain* domain) {
+               const RequestOrigin& origin) {
   std::string message = subject + " " + reason_of(status);
   google::rpc::BadRequest bad_request;
   for (const auto& detail : status.details())
     if (detail.Is<google::rpc::BadRequest>()) detail.UnpackTo(&bad_request);
+  std::string what;  // the message, after the option that it is about
   for (const auto& violation : bad_request.field_violations()) {
+    const std::string option =
+        origin.options != nullptr ? option_of(violation.field(), *origin.options) : "";
+    if (!option.empty()) {
+      what = option + ": ";
+      continue;
+    }
     message += "\n  field " + harmless(violation.field());
-    if (domain != nullptr)
-      if (const std::string place = locate_field(violation.field(), *domain); !place.empty())
+    if (origin.domain != nullptr)
+      if (const std::string place = locate_field(violation.field(), *origin.domain); !place.empty())
         message += ", at " + place;
   }
-  if (!status.message().empty()) {
-    // On lines of its own, so that a caret under an expression stays where it points.
+  what += status.message();
+  if (!what.empty()) {
+    // On lines of their own, so that a caret under an expression stays in its column.
     message += "\n  ";
-    for (const char c : harmless(status.message())) {
+    for (const char c : harmless(what)) {
       message += c;
       if (c == '\n') message += "  ";
     }
   }
-  if (info_of(status).reason() == "BOUNDS_NOT_MET")
-    message += "\n  --allow-unrefined takes such a mesh all the same";
+  const google::rpc::ErrorInfo info = info_of(status);
+  if (info.reason() == "BOUNDS_NOT_MET")
+    message += std::string("\n  ") +
+               (origin.options != nullptr && origin.options->from_manifest ? "" : "--") +
+               "allow-unrefined takes such a mesh all the same";
+  if (origin.projection != nullptr &&
+      (place_of(info) || status.code() == google::rpc::INVALID_ARGUMENT))
+    message += on_the_globe(info, *origin.projection);
   if (status.code() == google::rpc::UNAVAILABLE) message += connection_hint(status.message());
   const bool valid = status.code() >= 1 && status.code() <= 16;
   return {valid ? exit_code_of_status(status.code()) : ExitCode::kInternal, std::move(message)};
 }
 
-Error error_of(const grpc::Status& status, const std::string& address, const Domain* domain) {
-  return error_of(rich_status(status), "the server " + address + " answers", domain);
+Error error_of(const grpc::Status& status, const std::string& address,
+               const RequestOrigin& origin) {
+  return error_of(rich_status(status), "the server " + address + " answers", origin);
 }
 
 }  // namespace weft::client

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts a server's status to an error for the user: the exit code 64 + gRPC code, and a message
-// with the reason (google.rpc.ErrorInfo), the field at fault (BadRequest) and, if that field came
-// from a file, the place in the file.
+// with the reason (google.rpc.ErrorInfo) and what is at fault: the option that set the field of the
+// BadRequest, or this field and, if it came from a file, the place in the file.
 #pragma once
 
 #include <grpcpp/support/status.h>
@@ -9,17 +9,28 @@
 #include <string>
 
 #include "client/base/error.h"
+#include "client/call/mesh_request.h"
 #include "client/formats/domain.h"
+#include "client/geo/domain_projection.h"
 #include "google/rpc/status.pb.h"
 
 namespace weft::client {
 
-// REQUIRES: the status is not OK. `domain` may be null.
-Error error_of(const grpc::Status& status, const std::string& address, const Domain* domain);
+// What a request was made of, as far as it is known; otherwise null.
+struct RequestOrigin {
+  const Domain* domain = nullptr;
+  const RequestOptions* options = nullptr;
+  const DomainProjection* projection = nullptr;  // of the domain, for places in the plane
+};
+
+// REQUIRES: the status is not OK.
+Error error_of(const grpc::Status& status, const std::string& address,
+               const RequestOrigin& origin = {});
 
 // The same for a status in a message, such as Job.error. `subject` says whose it is:
 // "the job 01J... failed with". A code that is not an error gives kInternal.
-Error error_of(const google::rpc::Status& status, const std::string& subject, const Domain* domain);
+Error error_of(const google::rpc::Status& status, const std::string& subject,
+               const RequestOrigin& origin = {});
 
 // "RESOURCE_EXHAUSTED (QUEUE_FULL)": the code, and the reason if there is one.
 std::string reason_of(const google::rpc::Status& status);

@@ -91,13 +91,12 @@ void add_batch_command(CLI::App& app, Chosen& chosen) {
       .add_option("--summary", options.summary,
                   "Page to write, as Markdown, with the drawings of the meshes")
       ->type_name("FILE");
-  batch.add_option("--jobs", options.jobs, "Meshes made at the same time")
-      ->envname("WEFT_CLIENT_JOBS")
-      ->check(CLI::Range(1u, 256u))
-      ->capture_default_str()
-      ->type_name("N");
+  add_row(batch,
+          {"jobs", "WEFT_CLIENT_JOBS", "Meshes made at the same time", std::to_string(options.jobs),
+           number("N", &BatchOptions::jobs, 1, 256)},
+          options);
   add_server_flags(batch, options.server, WithoutServer::kPrivate);
-  add_timeout(batch, options.timeout_seconds, "Maximum time per mesh. Default: none");
+  add_timeout(batch, options.timeout_seconds, "Maximum time per mesh, in seconds", "none");
   add_retries(batch, options.retries);
   batch.add_flag("--quiet,-q", options.quiet, "Report only meshes that fail")
       ->envname("WEFT_QUIET");

@@ -6,6 +6,7 @@
 
 #include "client/call/request_rows.h"
 #include "client/formats/domain_formats.h"
+#include "client/formats/files/layer_rows.h"
 #include "client/formats/mesh_formats.h"
 #include "client/geo/projection_rows.h"
 #include "client/report/output_rows.h"
@@ -13,56 +14,30 @@
 namespace weft::client {
 namespace {
 
-// A flag of each row. `rows` and `options` outlive the command.
+// A flag of each row. `options` outlive the command.
 template <class Options>
 void add_rows(CLI::App& command, const OptionRows<Options>& rows, Options& options) {
-  for (const OptionRow<Options>& row : rows) {
-    const std::string flag = "--" + row.name;
-    CLI::Option& option = *command.add_option(
-        flag,
-        [&row, &options, flag](const CLI::results_t& texts) {
-          const std::string fault = row.value.read(texts, "", options);
-          if (!fault.empty()) throw CLI::ValidationError(flag, fault);
-          return true;
-        },
-        row.help());
-    option.envname(row.variable)->type_name(row.value.unit);
-    if (row.value.arity == Arity::kSwitch)
-      option.multi_option_policy(CLI::MultiOptionPolicy::TakeLast)->expected(0);
-    if (row.value.arity == Arity::kList)
-      option.expected(CLI::detail::expected_max_vector_size)->allow_extra_args(false);
-  }
+  for (const OptionRow<Options>& row : rows) add_row(command, row, options);
 }
 
 }  // namespace
 
-CLI::Range seconds_range() {
-  return {0.001, 1e9};
-}
-
-void add_timeout(CLI::App& command, std::optional<double>& seconds, const std::string& help) {
-  command.add_option("--timeout", seconds, help)
-      ->envname("WEFT_TIMEOUT")
-      ->check(seconds_range())
-      ->type_name("S");
-}
-
 void add_retries(CLI::App& command, std::uint32_t& retries) {
-  command
-      .add_option("--retries", retries,
-                  "Maximum retries, with growing waits, while the server is unavailable or busy")
-      ->envname("WEFT_RETRIES")
-      ->capture_default_str()
-      ->type_name("N");
+  add_row(command,
+          {"retries", "WEFT_RETRIES",
+           "Maximum retries, with growing waits, while the server is unavailable or busy",
+           std::to_string(retries), number<std::uint32_t>("N")},
+          retries);
 }
 
 void add_domain_and_request_options(CLI::App& command, std::filesystem::path& input,
-                                    RequestOptions& request_options) {
+                                    LayerOptions& layers, RequestOptions& request_options) {
   command
       .add_option("INPUT", input,
                   "Domain: " + domain_extensions() +
                       "; or a mesh, to mesh its domain anew: " + read_mesh_extensions())
       ->required();
+  add_layers(command, layers);
   add_rows(command, request_rows(), request_options);
 }
 
@@ -70,8 +45,16 @@ void add_size(CLI::App& command, RequestOptions& request_options) {
   add_rows(command, size_rows(), request_options);
 }
 
+void add_names(CLI::App& command, RequestOptions& request_options) {
+  add_rows(command, name_rows(), request_options);
+}
+
 void add_writing(CLI::App& command, MeshWriteOptions& writing) {
   add_rows(command, writing_rows(), writing);
+}
+
+void add_layers(CLI::App& command, LayerOptions& layers) {
+  add_rows(command, layer_rows(), layers);
 }
 
 void add_projection_flags(CLI::App& command, ProjectionOptions& projection) {
@@ -93,7 +76,7 @@ void add_output(CLI::App& command, MeshOutputOptions& output) {
       .add_option("--draw", output.drawings, "Drawing to write, may be repeated: .png, .svg, .pdf")
       ->allow_extra_args(false)
       ->type_name("FILE");
-  add_drawing(command, output.drawing);
+  add_rows(command, drawing_rows_of_new_mesh(), output.drawing);
   add_rows(command, quadtree_rows(), output);
   add_projection_flags(command, output.projection);
 }
@@ -103,12 +86,17 @@ void refuse_idle_flags(const CLI::App& command, std::span<char* const> words) {
     std::string flag;
     std::string other;
   };
-  std::vector<Pair> needs = {
-      {"--tls", "--server"},     {"--tls-ca", "--server"},          {"--tls-cert", "--server"},
-      {"--tls-key", "--server"}, {"--tls-server-name", "--server"}, {"--token-file", "--server"},
-      {"--insecure", "--server"}};
+  std::vector<Pair> needs = {{"--tls", "--server"},
+                             {"--tls-ca", "--server"},
+                             {"--tls-cert", "--server"},
+                             {"--tls-key", "--server"},
+                             {"--tls-server-name", "--server"},
+                             {"--token-file", "--server"},
+                             {"--insecure", "--server"},
+                             {"--json", "--quality"}};
   for (const auto& row : writing_rows()) needs.push_back({"--" + row.name, "--output"});
   for (const auto& row : drawing_rows()) needs.push_back({"--" + row.name, "--draw"});
+  for (const auto& row : size_rows()) needs.push_back({"--" + row.name, "--quality"});
   const Pair excludes[] = {{"--interval", "--once"}};
   const auto is_given = [words](const std::string& flag) {
     return std::any_of(words.begin(), words.end(), [&flag](std::string_view word) {

@@ -7,25 +7,59 @@
 #include <span>
 #include <string>
 
+#include "client/base/option_row.h"
 #include "client/call/mesh_request.h"
+#include "client/formats/files/layer_options.h"
 #include "client/geo/projection_options.h"
 #include "client/report/mesh_output.h"
 
 namespace weft::client {
 
-// A number of seconds that makes sense as a time-out.
-CLI::Range seconds_range();
+// A flag that sets `options`, which outlive the command. Numbers have such flags, because CLI11's
+// own readers take NaN for a number in every range and -1 for a large count.
+template <class Options>
+CLI::Option& add_row(CLI::App& command, const std::type_identity_t<OptionRow<Options>>& row,
+                     Options& options) {
+  const std::string flag = "--" + row.name;
+  CLI::Option& option = *command.add_option(
+      flag,
+      [read = row.value.read, &options, flag](const CLI::results_t& texts) {
+        const std::string fault = read(texts, "", options);
+        if (!fault.empty()) throw CLI::ValidationError(flag, fault);
+        return true;
+      },
+      row.help());
+  option.envname(row.variable)->type_name(row.value.unit);
+  if (row.value.arity == Arity::kSwitch)
+    option.multi_option_policy(CLI::MultiOptionPolicy::TakeLast)->expected(0);
+  if (row.value.arity == Arity::kList)
+    option.expected(CLI::detail::expected_max_vector_size)->allow_extra_args(false);
+  return option;
+}
 
-void add_timeout(CLI::App& command, std::optional<double>& seconds, const std::string& help);
+// `seconds` is a double or an std::optional<double>.
+template <class Seconds>
+void add_timeout(CLI::App& command, Seconds& seconds, const std::string& about,
+                 const std::string& default_text) {
+  add_row(command,
+          {"timeout", "WEFT_TIMEOUT", about, default_text, number<Seconds>("S", 0.001, 1e9)},
+          seconds);
+}
 
 void add_retries(CLI::App& command, std::uint32_t& retries);
 
 // INPUT, and what its mesh must satisfy.
 void add_domain_and_request_options(CLI::App& command, std::filesystem::path& input,
-                                    RequestOptions& request_options);
+                                    LayerOptions& layers, RequestOptions& request_options);
+
+// What of the domain's file is read.
+void add_layers(CLI::App& command, LayerOptions& layers);
 
 // How large triangles may be.
 void add_size(CLI::App& command, RequestOptions& request_options);
+
+// What markers and regions are called.
+void add_names(CLI::App& command, RequestOptions& request_options);
 
 // How meshes are written, if their format leaves a choice.
 void add_writing(CLI::App& command, MeshWriteOptions& writing);
@@ -33,13 +67,13 @@ void add_writing(CLI::App& command, MeshWriteOptions& writing);
 // Whether the domain is in longitude and latitude.
 void add_projection_flags(CLI::App& command, ProjectionOptions& projection);
 
-// What drawings show.
+// What drawings of a file show.
 void add_drawing(CLI::App& command, DrawOptions& drawing);
 
 // Files to write, and drawings; and the flags of the projection.
 void add_output(CLI::App& command, MeshOutputOptions& output);
 
-// Throws CLI::ParseError where a flag among the words of the command line would do nothing, for
+// Throws CLI::ParseError if a flag among the words of the command line would do nothing, for
 // want of the one that it is about, or because of another one. Variables of the environment are
 // there for all commands, and may well be of no use to one.
 void refuse_idle_flags(const CLI::App& command, std::span<char* const> words);

@@ -45,7 +45,8 @@ Examples:
   weft fetch 01JCZ3V5K2M7Q8R9S0T1V2W3X4 -o coast.vtu --draw coast.png --color angle
   weft fetch 01JCZ3V5K2M7Q8R9S0T1V2W3X4 -o key.node --domain key.poly --wait)";
 
-constexpr char kTopExamples[] = R"(On a terminal, q ends it. Elsewhere it looks once.
+constexpr char kTopExamples[] =
+    R"(On a terminal, q ends it. If the output is not a terminal, it prints one update.
 
 Examples:
   weft top --server mesh.example.org:7421
@@ -58,17 +59,18 @@ CLI::App& add_command(CLI::App& app, const char* name, const char* help, const c
   return command;
 }
 
-void add_calls(CLI::App& command, JobServerOptions& calls, const std::string& timeout_help) {
+constexpr double kShortTimeout = 30;
+
+// The default of the time-out is what `calls` has.
+void add_calls(CLI::App& command, JobServerOptions& calls,
+               const std::string& timeout_about = "Maximum time of the command, in seconds") {
   add_server_flags(command, calls.server, WithoutServer::kRefused);
-  add_timeout(command, calls.timeout_seconds, timeout_help);
+  add_timeout(command, calls.timeout_seconds, timeout_about,
+              calls.timeout_seconds ? shortest(*calls.timeout_seconds) : "none");
   add_retries(command, calls.retries);
 }
 
-constexpr char kWholeTimeout[] = "Maximum time of the whole command. Default: none";
-constexpr double kShortTimeout = 30;
-constexpr char kCallTimeout[] = "Maximum time of the command. Default: 30";
-
-// Has the command run so with its options.
+// Makes `run` the action of the command, called with its options.
 template <class Options>
 void bind(CLI::App& command, Result<ExitCode> (*run)(const Options&, std::stop_token),
           const std::shared_ptr<Options>& options, const char* when_interrupted, Chosen& chosen) {
@@ -91,8 +93,9 @@ void add_submit(CLI::App& app, Chosen& chosen) {
   CLI::App& command =
       add_command(app, "submit", "Submit a domain to a server as a job, and print the job's id",
                   kSubmitExamples);
-  add_domain_and_request_options(command, options->input, options->request_options);
-  add_calls(command, options->calls, kWholeTimeout);
+  add_domain_and_request_options(command, options->input, options->layers,
+                                 options->request_options);
+  add_calls(command, options->calls);
   command
       .add_option("--request-id", options->request_id,
                   "Name of the submission: the same name finds the same job. Default: a random one")
@@ -105,7 +108,7 @@ void add_submit(CLI::App& app, Chosen& chosen) {
       ->envname("WEFT_WAIT");
   add_output(command, options->output);
   add_json(command, options->json,
-           "Print the job as one JSON object, or the mesh where it is written");
+           "Print the job as one JSON object, or, if the mesh is written, the mesh");
   add_quiet(command, options->quiet);
   bind(command, run_submit, options,
        "interrupted; a job that was accepted goes on, see `weft list`", chosen);
@@ -116,7 +119,7 @@ void add_get(CLI::App& app, Chosen& chosen) {
   options->calls.timeout_seconds = kShortTimeout;
   CLI::App& command = add_command(app, "get", "Show the state of a job", kGetExamples);
   command.add_option("ID", options->id, "Job")->required();
-  add_calls(command, options->calls, kCallTimeout);
+  add_calls(command, options->calls);
   add_json(command, options->json, "Print the job as one JSON object");
   bind(command, run_get, options, "interrupted", chosen);
 }
@@ -139,11 +142,11 @@ void add_list(CLI::App& app, Chosen& chosen) {
       ->allow_extra_args(false)
       ->transform(CLI::CheckedTransformer(kStates).description(""))
       ->type_name("STATE");
-  command.add_option("--limit", options->limit, "Maximum jobs to list. Default: all")
-      ->envname("WEFT_LIMIT")
-      ->check(CLI::PositiveNumber)
-      ->type_name("N");
-  add_calls(command, options->calls, kCallTimeout);
+  add_row(
+      command,
+      {"limit", "WEFT_LIMIT", "Maximum jobs to list", "all", number("N", &ListOptions::limit, 1)},
+      *options);
+  add_calls(command, options->calls);
   add_json(command, options->json, "Print one JSON object, with the jobs in `jobs`");
   bind(command, run_list, options, "interrupted", chosen);
 }
@@ -152,7 +155,7 @@ void add_watch(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<JobOptions>();
   CLI::App& command = add_command(app, "watch", "Follow a job to its end", kWatchExamples);
   command.add_option("ID", options->id, "Job")->required();
-  add_calls(command, options->calls, kWholeTimeout);
+  add_calls(command, options->calls);
   add_json(command, options->json, "Print the job as a JSON object, on a line for every change");
   bind(command, run_watch, options, "interrupted; the job goes on", chosen);
 }
@@ -163,7 +166,7 @@ void add_of_several(CLI::App& app, const char* name, const char* help, const cha
   options->calls.timeout_seconds = kShortTimeout;
   CLI::App& command = add_command(app, name, help, examples);
   command.add_option("ID", options->ids, "Jobs")->required();
-  add_calls(command, options->calls, kCallTimeout);
+  add_calls(command, options->calls);
   add_json(command, options->json, "Print one JSON object");
   bind(command, run, options, "interrupted", chosen);
 }
@@ -178,8 +181,9 @@ void add_fetch(CLI::App& app, Chosen& chosen) {
                   "Domain that was submitted: the markers of its points are written to .node, and "
                   "the mesh is checked against it")
       ->type_name("INPUT");
+  add_layers(command, options->layers);
   command.add_flag("--wait", options->wait, "Wait for the job to end")->envname("WEFT_WAIT");
-  add_calls(command, options->calls, kWholeTimeout);
+  add_calls(command, options->calls);
   add_json(command, options->json, "Print one JSON object on standard output");
   add_quiet(command, options->quiet);
   bind(command, run_fetch, options, "interrupted, nothing was written", chosen);
@@ -190,13 +194,12 @@ void add_top(CLI::App& app, Chosen& chosen) {
   options->calls.timeout_seconds = 10;
   CLI::App& command =
       add_command(app, "top", "Show your jobs and the throughput, live", kTopExamples);
-  add_calls(command, options->calls, "Give up when a look at the server takes longer. Default: 10");
-  command.add_option("--interval", options->interval_seconds, "Seconds between two looks")
-      ->envname("WEFT_INTERVAL")
-      ->check(CLI::Range(0.1, 3600.0))
-      ->capture_default_str()
-      ->type_name("S");
-  command.add_flag("--once", options->once, "Look once, and print it");
+  add_calls(command, options->calls, "Maximum time of an answer of the server, in seconds");
+  add_row(command,
+          {"interval", "WEFT_INTERVAL", "Seconds between two updates", "1",
+           number("S", &TopOptions::interval_seconds, 0.1, 3600)},
+          *options);
+  command.add_flag("--once", options->once, "Print one update, and end");
   bind(command, run_top, options, "", chosen);
 }
 
@@ -210,7 +213,7 @@ void add_job_commands(CLI::App& app, Chosen& chosen) {
   add_fetch(app, chosen);
   add_of_several(app, "cancel", "Cancel jobs that have not ended", kCancelExamples, run_cancel,
                  chosen);
-  add_of_several(app, "delete", "Forget jobs that have ended", kDeleteExamples, run_delete, chosen);
+  add_of_several(app, "delete", "Delete jobs that have ended", kDeleteExamples, run_delete, chosen);
   add_top(app, chosen);
 }
 

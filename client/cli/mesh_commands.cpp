@@ -14,7 +14,9 @@ namespace weft::client {
 namespace {
 
 constexpr char kMeshExamples[] =
-    R"(.node writes Triangle's .node, .ele and .poly, .14 and .grd ADCIRC's grid.
+    R"(.node writes Triangle's .node, .ele and .poly, .14 and .grd ADCIRC's grid,
+.nc UGRID, .slf TELEMAC's SELAFIN, .xdmf its arrays in .xdmf.bin, .foam OpenFOAM's
+constant/polyMesh beside it, .exo Exodus, .disv the grid of MODFLOW 6.
 
 Examples:
   weft mesh coast.geojson -o coast.vtu --size 0.001
@@ -23,7 +25,7 @@ Examples:
   weft mesh coast.geojson -o coast.vtu --edge 'min(0.02 + 0.15*shore, 1)' --field shore=distance
   weft mesh coast.geojson -o coast.vtu --lonlat --size 1e8
   weft mesh key.poly -o key.vtu -o key.node --draw key.png --color angle
-  weft mesh coast.geojson -o fort.14 --open-boundary 1
+  weft mesh coast.geojson -o fort.14 --open-boundary 1 --nodal depth=depth.tif --lonlat
   weft mesh cylinder.poly --size 1e-2 --draw cylinder.png --draw-quadtree
   weft mesh key.poly -o key.vtu --server mesh.example.org:7421 --json
   weft mesh coast.geojson --size 1e-6 --server mesh.example.org:7421 --detach)";
@@ -35,6 +37,7 @@ area.
 Examples:
   weft draw key.vtu -o key.png
   weft draw key.vtu -o key.pdf --color angle --worst 10
+  weft draw key.vtu -o key.png --color bound --size '0.02*abs(y-46)+0.1'
   weft draw coast.14 -o coast.png --lonlat --color size
   weft draw coast.14 -o harbour.svg --lonlat --zoom=-74.3,40.4,0.5,0.4 --labels)";
 
@@ -44,7 +47,8 @@ is checked in metres: write it with --to-metres, too.
 
 Examples:
   weft check pipe.msh --domain pipe.poly --size '0.4*hypot(x-200, y-200) + 1' --min-angle 30
-  weft check coast.msh --domain coast.geojson --to-metres --size 1e8)";
+  weft check coast.msh --domain coast.geojson --to-metres --size 1e8
+  weft check key.vtu --domain key.poly --json)";
 
 constexpr char kConvertExamples[] =
     R"(A mesh is written as it is, vertex by vertex; what the new format does not carry is lost.
@@ -54,16 +58,29 @@ Examples:
   weft convert key.vtu key.msh --msh-version 2.2
   weft convert key.msh key.vtu --order 2
   weft convert coast.msh fort.14 --open-boundary 1 --open-boundary 2
+  weft convert coast.vtu coast.exo --names marker=2:inlet --names region=1:fluid
+  weft convert coast.msh coast.nc --nodal depth=depth.tif --renumber rcm --parts 8
   weft convert coast.geojson coast.poly)";
 
-// As `weft submit` does; what is written later is for `weft fetch` to say.
+constexpr char kInfoExamples[] =
+    R"(The aspect ratio is the circumradius over twice the inradius: 1 if the triangle is equilateral. Bounds
+are those of the size flags, in the unit of the mesh's own coordinates; a field of distance measures
+to the segments of the mesh. Bars are plain ASCII if the locale is not UTF-8.
+
+Examples:
+  weft info coast.geojson
+  weft info key.vtu --quality --size '0.02*abs(y-46)+0.1'
+  weft info key.vtu --quality --json)";
+
+// Submits, as `weft submit` does. Files are written later, by `weft fetch`.
 Result<ExitCode> detach(const MeshOptions& options, std::stop_token stop) {
   if (!options.output.empty() || options.output.draw_quadtree)
     return fail(ExitCode::kUsage,
-                "--detach leaves before there is a mesh to write: leave out -o and --draw, and "
-                "fetch it later with `weft fetch ID -o FILE`");
+                "--detach ends before there is a mesh to write: leave out -o and --draw, and write "
+                "the mesh later with `weft fetch ID -o FILE`");
   SubmitOptions submit;
   submit.input = options.input;
+  submit.layers = options.layers;
   submit.request_options = options.request_options;
   submit.output.projection = options.output.projection;
   submit.calls.server = options.server;
@@ -83,15 +100,19 @@ void add_mesh(CLI::App& app, Chosen& chosen) {
   MeshOptions& options = kept->options;
   CLI::App& mesh = *app.add_subcommand("mesh", "Mesh a domain and write the mesh to files");
   mesh.footer(kMeshExamples);
-  add_domain_and_request_options(mesh, options.input, options.request_options);
+  add_domain_and_request_options(mesh, options.input, options.layers, options.request_options);
   add_server_flags(mesh, options.server, WithoutServer::kPrivate);
-  add_timeout(mesh, options.timeout_seconds, "Maximum time of the whole call. Default: none");
+  add_timeout(mesh, options.timeout_seconds, "Maximum time of the whole call, in seconds", "none");
   add_retries(mesh, options.retries);
   add_output(mesh, options.output);
   mesh.add_flag("--detach", kept->detach,
                 "Submit a job, print its id and end, as `weft submit` does; needs --server");
   add_json(mesh, options.json, "Print one JSON object on standard output");
   add_quiet(mesh, options.quiet);
+  mesh.add_flag("--no-picture", options.no_picture,
+                "Show no picture of the mesh at the end, on a terminal that can show one (kitty's "
+                "protocol or sixel)")
+      ->envname("WEFT_NO_PICTURE");
   mesh.callback([kept, &chosen] {
     chosen.run = [kept](std::stop_token stop) {
       return kept->detach ? detach(kept->options, std::move(stop))
@@ -111,6 +132,7 @@ void add_draw(CLI::App& app, Chosen& chosen) {
       ->allow_extra_args(false)
       ->type_name("FILE");
   add_drawing(draw, kept->drawing);
+  add_size(draw, kept->size);
   draw.add_flag("--lonlat", kept->lonlat,
                 "The mesh is in longitude and latitude, in degrees: it is drawn as long as it is "
                 "on the ground at its middle latitude, and areas and angles are those on the "
@@ -130,24 +152,25 @@ void add_check(CLI::App& app, Chosen& chosen) {
   check.add_option("--domain", options.domain, "Domain that was meshed: " + domain_extensions())
       ->required()
       ->type_name("INPUT");
+  add_layers(check, options.layers);
   add_size(check, options.size);
-  check.add_option("--min-angle", options.min_angle_deg, "Bound on the angles, in degrees")
-      ->envname("WEFT_MIN_ANGLE")
-      ->check(CLI::Range(0.0, 60.0))
-      ->capture_default_str()
-      ->type_name("DEG");
-  check
-      .add_option("--snap", options.snap,
-                  "Distance within which features were merged, as given to `weft mesh`")
-      ->envname("WEFT_SNAP")
-      ->type_name("D");
-  check
-      .add_option("--max-unrefined", options.max_unrefined,
-                  "Triangles that may miss a bound, as `weft mesh` counted them (all but small "
-                  "input angles, which are excused anyway)")
-      ->capture_default_str()
-      ->type_name("N");
+  add_row(check,
+          {"min-angle", "WEFT_MIN_ANGLE", "Minimum angle of every triangle, in degrees", "20",
+           number("DEG", &CheckOptions::min_angle_deg, 0, 60)},
+          options);
+  add_row(
+      check,
+      {"snap", "WEFT_SNAP", "Distance within which features were merged, as given to `weft mesh`",
+       "", number("D", &CheckOptions::snap)},
+      options);
+  add_row(check,
+          {"max-unrefined", "",
+           "Triangles that may miss a bound, as `weft mesh` counted them (all but those with small "
+           "input angles, which are exempt)",
+           "0", number("N", &CheckOptions::max_unrefined)},
+          options);
   add_projection_flags(check, options.projection);
+  add_json(check, options.json, "Print one JSON object, with exact figures, on standard output");
   check.callback(
       [kept, &chosen] { chosen.run = [kept](std::stop_token) { return run_check(*kept); }; });
 }
@@ -163,6 +186,8 @@ void add_convert(CLI::App& app, Chosen& chosen) {
   convert
       .add_option("OUT", kept->output, "Mesh: " + written_mesh_extensions() + "; or domain: .poly")
       ->required();
+  add_layers(convert, kept->layers);
+  add_names(convert, kept->names);
   add_writing(convert, kept->writing);
   add_quiet(convert, kept->quiet);
   convert.callback([kept, &chosen] {
@@ -171,11 +196,19 @@ void add_convert(CLI::App& app, Chosen& chosen) {
 }
 
 void add_info(CLI::App& app, Chosen& chosen) {
-  const auto file = std::make_shared<std::filesystem::path>();
+  const auto kept = std::make_shared<InfoOptions>();
   CLI::App& info = *app.add_subcommand("info", "Describe a mesh or a domain");
-  info.add_option("FILE", *file, "Mesh or domain")->required();
+  info.footer(kInfoExamples);
+  info.add_option("FILE", kept->file, "Mesh or domain")->required();
+  info.add_flag("--quality", kept->quality,
+                "Print histograms of the angles, the aspect ratios and, with a size, the areas "
+                "over their bounds; and the worst triangles. For meshes only");
+  add_size(info, kept->size);
+  add_layers(info, kept->layers);
+  add_json(info, kept->json,
+           "Print the quality as one JSON object, with the figures of `weft mesh --json`");
   info.callback(
-      [file, &chosen] { chosen.run = [file](std::stop_token) { return run_info(*file); }; });
+      [kept, &chosen] { chosen.run = [kept](std::stop_token) { return run_info(*kept); }; });
 }
 
 }  // namespace

@@ -16,11 +16,7 @@ void add(CLI::App& app, const char* name, const char* help, Run run, Chosen& cho
   const auto options = std::make_shared<ServerOptions>();
   CLI::App& command = *app.add_subcommand(name, help);
   add_server_flags(command, options->server, WithoutServer::kPrivate);
-  command.add_option("--timeout", options->timeout_seconds, "Maximum time of the command")
-      ->envname("WEFT_TIMEOUT")
-      ->check(seconds_range())
-      ->capture_default_str()
-      ->type_name("S");
+  add_timeout(command, options->timeout_seconds, "Maximum time of the command, in seconds", "10");
   command.callback([options, run, &chosen] {
     chosen.run = [options, run](std::stop_token stop) { return run(*options, std::move(stop)); };
   });

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "client/base/did_you_mean.h"
+#include "client/base/text.h"
 
 namespace weft::client {
 namespace {
@@ -13,11 +14,23 @@ bool is_known(const std::string& word, const std::vector<std::string>& candidate
   return std::find(candidates.begin(), candidates.end(), word) != candidates.end();
 }
 
-}  // namespace
-
-std::string suggestion(const CLI::App& app, std::span<char* const> words) {
+std::vector<std::string> commands_of(const CLI::App& app) {
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  return commands;
+}
+
+}  // namespace
+
+std::string unknown_command(const CLI::App& app, std::span<char* const> words) {
+  if (words.size() < 2) return "";
+  const std::string first = words[1];
+  if (first.starts_with("-") || is_known(first, commands_of(app))) return "";
+  return "no such command " + in_quotes(first);
+}
+
+std::string suggestion(const CLI::App& app, std::span<char* const> words) {
+  const std::vector<std::string> commands = commands_of(app);
   if (words.size() < 2) return "";
   const std::string first = words[1];
   if (first.starts_with("-")) return "";

@@ -13,6 +13,7 @@
 #include "client/commands/commands.h"
 #include "client/commands/input_domain.h"
 #include "client/commands/mesh_into.h"
+#include "client/report/mesh_text.h"
 
 namespace weft::client {
 namespace {
@@ -26,15 +27,15 @@ Result<void> write_text(const std::filesystem::path& file, const std::string& te
   return commit(files);
 }
 
-// Folders of outputs are made: a fresh checkout has none.
+// Makes the folders of outputs, because a fresh checkout has none.
 void make_folders(const MeshOutputOptions& output) {
-  std::error_code ignored;  // opening the file will tell
+  std::error_code ignored;  // opening the file reports it
   for (const auto* files : {&output.files, &output.drawings})
     for (const auto& file : *files)
       std::filesystem::create_directories(file.parent_path(), ignored);
 }
 
-// Where a page can show it.
+// The first drawing that a page of HTML can show; empty if there is none.
 std::filesystem::path picture_of(const MeshOutputOptions& output) {
   const auto found =
       std::find_if(output.drawings.begin(), output.drawings.end(),
@@ -44,7 +45,8 @@ std::filesystem::path picture_of(const MeshOutputOptions& output) {
 
 Result<MeshReport> make_mesh(const BatchMesh& mesh, const Connection& connection,
                              const BatchOptions& options, const std::stop_token& stop) {
-  const auto input = read_input_domain(mesh.input, mesh.request_options, mesh.output.projection);
+  const auto input =
+      read_input_domain(mesh.input, mesh.request_options, mesh.output.projection, mesh.layers);
   if (!input) return tl::unexpected(input.error());
   auto request_options = with_size(mesh.request_options, input->domain, input->projection.get());
   if (!request_options) return tl::unexpected(request_options.error());
@@ -58,7 +60,9 @@ Result<MeshReport> make_mesh(const BatchMesh& mesh, const Connection& connection
   }
   return mesh_into(
       connection, *input, *request_options,
-      {.timeout_seconds = options.timeout_seconds, .retries = options.retries},
+      {.timeout_seconds = options.timeout_seconds,
+       .retries = options.retries,
+       .projection = input->projection.get()},
       output ? &*output : nullptr, [] {}, stop);
 }
 
@@ -82,7 +86,7 @@ std::string line_of(const BatchOutcome& outcome) {
   return line + "\n";
 }
 
-// Makes all meshes, so many at a time, and tells each as it is done.
+// Makes all meshes, several at a time, and reports each one as it is done.
 std::vector<BatchOutcome> make_all(const std::vector<BatchMesh>& meshes,
                                    const Connection& connection, const BatchOptions& options,
                                    const std::optional<LockFile>& locked, LockFile& made,

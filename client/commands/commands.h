@@ -14,6 +14,7 @@
 #include "client/batch/quality_gate.h"
 #include "client/call/connect_options.h"
 #include "client/call/mesh_call.h"
+#include "client/formats/files/layer_options.h"
 #include "client/geo/projection_options.h"
 #include "client/report/mesh_output.h"
 
@@ -21,6 +22,7 @@ namespace weft::client {
 
 struct MeshOptions {
   std::filesystem::path input;
+  LayerOptions layers;
   MeshOutputOptions output;
   RequestOptions request_options;
   ConnectOptions server;
@@ -28,6 +30,7 @@ struct MeshOptions {
   std::uint32_t retries = RetryOptions{}.attempts;
   bool json = false;
   bool quiet = false;
+  bool no_picture = false;  // at the end, on a terminal that shows pictures
 };
 Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop);
 
@@ -51,31 +54,45 @@ struct DrawMeshOptions {
   std::filesystem::path mesh;
   std::vector<std::filesystem::path> drawings;
   DrawOptions drawing;
+  RequestOptions size;  // the bound on areas; only size_rows are read
   bool lonlat = false;  // the mesh is in longitude and latitude
   bool quiet = false;
 };
+// kUsage for colours by bounds without a size, or a size that nothing is coloured by.
 Result<ExitCode> run_draw(const DrawMeshOptions& options, std::stop_token stop);
 
 struct CheckOptions {
   std::filesystem::path mesh;
   std::filesystem::path domain;
+  LayerOptions layers;
   RequestOptions size;  // how large triangles may be; the rest is not looked at
   double min_angle_deg = 20;
   std::optional<double> snap;
   std::uint64_t max_unrefined = 0;
   ProjectionOptions projection;  // of the domain; the mesh is in metres
+  bool json = false;
 };
 Result<ExitCode> run_check(const CheckOptions& options);
 
 struct ConvertOptions {
   std::filesystem::path input;
   std::filesystem::path output;
+  LayerOptions layers;   // of a domain
+  RequestOptions names;  // of a mesh; only name_rows are read
   MeshWriteOptions writing;
   bool quiet = false;
 };
 Result<ExitCode> run_convert(const ConvertOptions& options, std::stop_token stop);
 
-Result<ExitCode> run_info(const std::filesystem::path& file);
+struct InfoOptions {
+  std::filesystem::path file;
+  LayerOptions layers;   // of a domain
+  bool quality = false;  // of a mesh: histograms and the worst triangles
+  RequestOptions size;   // the bound on areas; only size_rows are read
+  bool json = false;     // of the quality
+};
+// kUsage for the quality of a domain.
+Result<ExitCode> run_info(const InfoOptions& options);
 
 struct ServerOptions {
   ConnectOptions server;

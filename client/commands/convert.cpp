@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // `weft convert`: a mesh into another format, or a domain into a .poly file.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "client/base/text.h"
 #include "client/commands/commands.h"
@@ -37,23 +41,70 @@ void turn_counter_clockwise(Mesh& mesh) {
   }
 }
 
+std::string warnings_text(const std::vector<std::string>& warnings) {
+  std::string text;
+  for (const std::string& warning : warnings) text += "WARNING: " + warning + "\n";
+  return text;
+}
+
+// Why the array is not written; empty if it is. Only one of depth and elevation is written, so the
+// names of `before` and those that --nodal gives count.
+std::string excluded(const NamedArray& array, const std::vector<NodalOption>& before) {
+  if (!array.values) return array.values.error().message;
+  if (auto fault = nodal_name_fault(array.name, before); !fault.empty()) return fault;
+  const auto missing = std::find_if(array.values->begin(), array.values->end(),
+                                    [](double value) { return std::isnan(value); });
+  if (missing == array.values->end()) return "";
+  return in_quotes(array.name) + " has no value at vertex " +
+         std::to_string(missing - array.values->begin());
+}
+
+struct CarriedValues {
+  std::vector<VertexValues> values;  // of the arrays
+  std::string warnings;              // on the arrays that are not among them, a line each
+};
+
+// The values of the file that are written: those that --nodal does not replace, unless they cannot
+// be read.
+CarriedValues carried(const std::vector<NamedArray>& arrays, std::vector<NodalOption> nodal) {
+  CarriedValues carried;
+  for (const NamedArray& array : arrays) {
+    const auto is_same = [&array](const NodalOption& option) { return option.name == array.name; };
+    if (std::any_of(nodal.begin(), nodal.end(), is_same)) continue;
+    if (const std::string why = excluded(array, nodal); !why.empty()) {
+      carried.warnings += "WARNING: values that the file has are not written: " + why + "\n";
+      continue;
+    }
+    carried.values.push_back({array.name, *array.values});
+    nodal.push_back({array.name, {}});
+  }
+  return carried;
+}
+
 Result<ExitCode> convert_mesh(const ConvertOptions& options, const std::stop_token& stop) {
   auto output = MeshOutput::open({.files = {options.output}, .writing = options.writing},
                                  options.input, stop);
   if (!output) return tl::unexpected(output.error());
-  auto mesh = read_mesh(options.input);
-  if (!mesh) return tl::unexpected(mesh.error());
-  turn_counter_clockwise(*mesh);
+  auto read = read_mesh_with_arrays(options.input);
+  if (!read) return tl::unexpected(read.error());
+  Mesh& mesh = read->mesh;
+  turn_counter_clockwise(mesh);
+  if (auto named = set_names(options.names.names, mesh.names); !named)
+    return tl::unexpected(named.error());
+  if (auto found = output->find_markers(mesh.names.markers); !found)
+    return tl::unexpected(found.error());
+  auto [values, warnings] = carried(read->arrays, options.writing.nodal);
+  MeshView view = mesh.view();
+  view.vertex_values = values;
   const v1::Summary none;
-  if (auto written = output->write(mesh->view(), none); !written)
-    return tl::unexpected(written.error());
+  if (auto written = output->write(view, none); !written) return tl::unexpected(written.error());
   if (options.quiet) return ExitCode::kOk;
-  std::string warnings;
-  for (const std::string& warning :
-       open_boundary_warnings(markers_of(mesh->view()), options.writing.open_boundaries))
-    warnings += "WARNING: " + warning + "\n";
-  return print(with_separators(mesh->view().triangle_count()) + " triangles, " +
-               with_separators(mesh->view().vertex_count()) + " vertices\n" + output->text(none) +
+  for (const auto& all :
+       {mesh.warnings, output->warnings(),
+        open_boundary_warnings(markers_of(view), output->options().writing.open_boundaries)})
+    warnings += warnings_text(all);
+  return print(with_separators(view.triangle_count()) + " triangles, " +
+               with_separators(view.vertex_count()) + " vertices\n" + output->text(none) +
                warnings);
 }
 
@@ -61,14 +112,16 @@ Result<ExitCode> convert_domain(const ConvertOptions& options, std::stop_token s
   std::error_code ignored;
   if (std::filesystem::equivalent(options.input, options.output, ignored))
     return fail(ExitCode::kUsage, options.output.string() + ": would replace the input");
-  if (options.writing != MeshWriteOptions{})
-    return fail(ExitCode::kUsage, "--order, --msh-version and --open-boundary are of meshes, " +
-                                      options.output.string() + " is a domain");
+  if (options.writing != MeshWriteOptions{} || !options.names.names.empty())
+    return fail(ExitCode::kUsage,
+                "--names, --order, --msh-version, --open-boundary, --nodal, --renumber and --parts "
+                "are for meshes, " +
+                    options.output.string() + " is a domain");
   std::vector<OutputFile> files;
   auto file = OutputFile::create(options.output, std::move(stop));
   if (!file) return tl::unexpected(file.error());
   files.push_back(std::move(*file));
-  auto read = read_domain(options.input);
+  auto read = read_domain(options.input, options.layers);
   if (!read) return tl::unexpected(read.error());
   const auto domain = seeded(std::move(*read));
   if (!domain)
@@ -80,7 +133,7 @@ Result<ExitCode> convert_domain(const ConvertOptions& options, std::stop_token s
                with_separators(domain->segments.size()) + " segments, " +
                with_separators(domain->holes.size()) + " holes, " +
                with_separators(domain->regions.size()) + " regions\nwrote " +
-               options.output.string() + "\n");
+               options.output.string() + "\n" + warnings_text(domain->warnings));
 }
 
 }  // namespace
@@ -97,9 +150,12 @@ Result<ExitCode> run_convert(const ConvertOptions& options, std::stop_token stop
                                       written_mesh_extensions());
   if (!is_mesh_input(options.input))
     return fail(ExitCode::kUsage, options.input.string() +
-                                      ": is a domain, which becomes a mesh by `weft mesh " +
+                                      ": is a domain; to mesh it: `weft mesh " +
                                       options.input.string() + " -o " + options.output.string() +
-                                      "`; converted, it becomes a .poly file");
+                                      "`; to convert it, write a .poly file");
+  if (options.layers.wanted())
+    return fail(ExitCode::kUsage,
+                "--layer and --where are for domains, " + options.input.string() + " is a mesh");
   return convert_mesh(options, stop);
 }
 

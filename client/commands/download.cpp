@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/commands/download.h"
 
+#include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "client/call/fetch_mesh.h"
+#include "client/call/mesh_request.h"
 #include "client/report/job_text.h"
+#include "client/report/marker_warnings.h"
 #include "client/report/watch_job.h"
 
 namespace weft::client {
@@ -38,14 +42,25 @@ Result<MeshReport> download(JobServer& server, const v1::Job& job, const InputDo
 
   auto mesh = (*spool)->view();
   if (!mesh) return tl::unexpected(mesh.error());
+  const Names names =
+      input != nullptr ? input->domain.names : names_of(report->summary.request().domain());
+  mesh->names = &names;
+  if (auto found = output.find_markers(names.markers); !found) return tl::unexpected(found.error());
   if (input != nullptr) {
     add_projection(*input, *report);
     output.bring_back_by(input->projection);
     mesh->input_point_markers = input->domain.point_markers;
   }
+  // 0 if the job has no such budget, or an earlier version of the server stored its mesh.
+  if (const std::uint64_t budget = report->summary.request().budget().max_triangles(); budget != 0)
+    if (auto warning = budget_warning(report->summary, budget))
+      add_warnings({std::move(*warning)}, *report);
+  add_marker_warnings(*mesh, output.options().writing.open_boundaries,
+                      input != nullptr ? &input->domain : nullptr, *report);
   if (output.drawing() != nullptr) progress.say("drawing");
   if (auto written = output.write(*mesh, report->summary); !written)
     return tl::unexpected(written.error());
+  add_warnings(output.warnings(), *report);
   times.written = MeshTimes::Clock::now();
   progress.clear();
   return report;

@@ -9,6 +9,7 @@
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
 #include "client/report/job_text.h"
+#include "client/report/mesh_text.h"
 
 namespace weft::client {
 namespace {
@@ -19,9 +20,12 @@ Result<std::optional<InputDomain>> read_submitted(const FetchOptions& options) {
     return fail(ExitCode::kUsage,
                 "the job has its mesh in metres; to write it in longitude and latitude, give the "
                 "domain that was submitted, too: --domain INPUT");
+  if (!options.domain && options.layers.wanted())
+    return fail(ExitCode::kUsage,
+                "--layer and --where are for the domain: give --domain INPUT, too");
   if (!options.domain) return std::nullopt;
   if (!is_domain_path(*options.domain)) return unknown_domain_format(*options.domain);
-  auto domain = read_input_domain(*options.domain, {}, projected);
+  auto domain = read_input_domain(*options.domain, {}, projected, options.layers);
   if (!domain) return tl::unexpected(domain.error());
   return std::move(*domain);
 }
@@ -44,7 +48,7 @@ Result<ExitCode> run_fetch(const FetchOptions& options, std::stop_token stop) {
   const auto job =
       options.wait ? wait_for_job(*server, options.id, progress) : server->get(options.id);
   if (!job) return tl::unexpected(job.error());
-  if (auto error = job_error(*job, input != nullptr ? &input->domain : nullptr)) {
+  if (auto error = job_error(*job, input != nullptr ? origin_of(*input) : RequestOrigin())) {
     if (!is_final(job->state())) error->message += ". --wait waits for it";
     return tl::unexpected(*error);
   }

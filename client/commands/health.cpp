@@ -2,7 +2,7 @@
 // `weft health`: asks grpc.health.v1 whether the server takes work.
 //
 // Debian has no generated code for that service. Its request is empty for the server as a whole;
-// its answer has one field, number 1, where the value 1 says SERVING.
+// its answer has one field, number 1, whose value 1 means SERVING.
 #include <google/protobuf/unknown_field_set.h>
 #include <grpcpp/client_context.h>
 #include <grpcpp/completion_queue.h>
@@ -60,7 +60,7 @@ Result<ExitCode> run_health(const ServerOptions& options, std::stop_token stop) 
   void* tag = nullptr;
   bool ok = false;
   queue.Next(&tag, &ok);
-  if (!status.ok()) return tl::unexpected(error_of(status, connection->address, nullptr));
+  if (!status.ok()) return tl::unexpected(error_of(status, connection->address));
   constexpr int kUnavailable = 14;
   if (!says_serving(answer))
     return fail(exit_code_of_status(kUnavailable),

@@ -5,13 +5,17 @@
 #include <cstdio>
 #include <map>
 #include <span>
+#include <vector>
 
 #include "client/base/text.h"
+#include "client/commands/area_bound.h"
 #include "client/commands/commands.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
 #include "client/report/mesh_angles.h"
-#include "client/report/mesh_report.h"
+#include "client/report/mesh_quality.h"
+#include "client/report/mesh_text.h"
+#include "client/report/quality_report.h"
 
 namespace weft::client {
 namespace {
@@ -22,8 +26,16 @@ std::string row(const char* name, const std::string& value) {
   return label + value + "\n";
 }
 
-// "0 (1,200), 3 (17)": each value and how often it occurs.
-std::string tally(const std::map<std::int32_t, std::uint64_t>& counts) {
+std::string warnings(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += "WARNING: " + sentence + "\n";
+  return text;
+}
+
+// "0 (1,200), 3 'inlet' (17)": each value, its name and how often it occurs; then the names of
+// values that do not occur.
+std::string tally(std::map<std::int32_t, std::uint64_t> counts, const NameTable& names) {
+  for (const auto& [id, name] : names) counts.try_emplace(id, 0);
   constexpr std::size_t kMostListed = 20;
   std::string text;
   std::size_t listed = 0;
@@ -31,7 +43,9 @@ std::string tally(const std::map<std::int32_t, std::uint64_t>& counts) {
     if (listed++ == kMostListed)
       return text + " and " + std::to_string(counts.size() - kMostListed) + " more";
     if (!text.empty()) text += ", ";
-    text += std::to_string(value) + " (" + with_separators(count) + ")";
+    const std::string* const name = name_of(names, value);
+    text += std::to_string(value) + (name ? " '" + *name + "'" : "") + " (" +
+            with_separators(count) + ")";
   }
   return text.empty() ? "none" : text;
 }
@@ -82,11 +96,11 @@ std::string describe(const Domain& domain) {
   return row("points", with_separators(domain.points.size())) +
          row("segments", with_separators(domain.segments.size())) +
          row("holes", with_separators(domain.holes.size())) +
-         row("regions", tally(count_values(regions))) +
+         row("regions", tally(count_values(regions), domain.names.regions)) +
          (domain.region_values.empty() ? "" : row("attributes", list(domain.region_values))) +
-         row("markers", tally(count_values(markers))) +
+         row("markers", tally(count_values(markers), domain.names.markers)) +
          row("filling", domain.fill == Domain::Fill::kEvenOdd ? "even-odd" : "seeds") +
-         row("box", box.text());
+         (domain.system ? row("system", domain.system->name) : "") + row("box", box.text());
 }
 
 std::string describe(const Mesh& mesh) {
@@ -108,22 +122,35 @@ std::string describe(const Mesh& mesh) {
          row("triangles", with_separators(view.triangle_count())) +
          row("edges", with_separators(view.edge_count()) + " on input segments") +
          row("angles", view.triangle_count() > 0 ? range : "none") + row("area", shortest(area)) +
-         row("regions", tally(count_values(view.regions))) +
-         row("markers", tally(count_values(view.edge_markers))) + row("box", box.text());
+         row("regions", tally(count_values(view.regions), mesh.names.regions)) +
+         row("markers", tally(count_values(view.edge_markers), mesh.names.markers)) +
+         row("box", box.text());
 }
 
 }  // namespace
 
-Result<ExitCode> run_info(const std::filesystem::path& file) {
+Result<ExitCode> run_info(const InfoOptions& options) {
+  const std::filesystem::path& file = options.file;
   if (is_plain_domain_path(file)) {
-    const auto domain = read_domain(file);
+    if (options.quality)
+      return fail(ExitCode::kUsage, file.string() + ": is a domain; --quality is for meshes");
+    const auto domain = read_domain(file, options.layers);
     if (!domain) return tl::unexpected(domain.error());
-    return print(row("domain", file.string()) + describe(*domain));
+    return print(row("domain", file.string()) + describe(*domain) + warnings(domain->warnings));
   }
   if (!is_domain_path(file)) return unknown_domain_format(file);
+  if (options.layers.wanted())
+    return fail(ExitCode::kUsage,
+                "--layer and --where are for domains, " + file.string() + " is a mesh");
   const auto mesh = read_mesh(file);
   if (!mesh) return tl::unexpected(mesh.error());
-  return print(row("mesh", file.string()) + describe(*mesh));
+  const std::string about = row("mesh", file.string()) + describe(*mesh) + warnings(mesh->warnings);
+  if (!options.quality) return print(about);
+  const auto bound = area_bound(options.size, file.string(), *mesh);
+  if (!bound) return tl::unexpected(bound.error());
+  const MeshQuality quality = measure_quality(mesh->view(), *bound);
+  return print(options.json ? json_line(quality_json(quality))
+                            : about + quality_text(quality, locale_is_utf8()));
 }
 
 }  // namespace weft::client

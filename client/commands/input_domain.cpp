@@ -3,24 +3,34 @@
 
 #include <utility>
 
+#include "client/base/text.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/raster.h"
 #include "client/report/projection_report.h"
 
 namespace weft::client {
 
-Result<InputDomain> read_input_domain(const std::filesystem::path& path, const RequestOptions& size,
-                                      const ProjectionOptions& options) {
-  const std::string& grid = size.edge.empty() ? size.size : size.edge;
+Result<InputDomain> read_input_domain(const std::filesystem::path& path,
+                                      const RequestOptions& wanted,
+                                      const ProjectionOptions& options,
+                                      const LayerOptions& layers) {
+  const std::string& grid = wanted.edge.empty() ? wanted.size : wanted.edge;
   if (options.wanted() && options.crs.empty() && is_raster_path(grid))
     return fail(ExitCode::kUsage,
                 grid +
                     ": a grid of sizes lies in the plane of the projection, so the projection "
                     "needs a name: give --crs CODE, and a grid in its metres");
-  auto domain = read_domain(path);
+  auto domain = read_domain(path, layers);
   if (!domain) return tl::unexpected(domain.error());
+  if (auto named = set_names(wanted.names, domain->names); !named)
+    return tl::unexpected(named.error());
   InputDomain input{std::move(*domain), nullptr};
   if (!options.wanted()) return input;
+  if (const auto& system = input.domain.system; system && !system->geographic)
+    return fail(ExitCode::kUnreadableInput,
+                path.string() + ": its coordinate system, " + in_quotes(system->name) +
+                    ", is a plane: leave out --lonlat, --crs and --to-metres, or bring it into "
+                    "longitude and latitude with ogr2ogr -t_srs EPSG:4326");
   auto projection = DomainProjection::project(input.domain, options);
   if (!projection)
     return fail(projection.error().exit, path.string() + ": " + projection.error().message);
@@ -28,13 +38,8 @@ Result<InputDomain> read_input_domain(const std::filesystem::path& path, const R
   return input;
 }
 
-Error in_plane(Error error, const InputDomain& input) {
-  constexpr int kInvalidArgument = 3;
-  constexpr int kFailedPrecondition = 9;
-  if (input.projection && (error.exit == exit_code_of_status(kInvalidArgument) ||
-                           error.exit == exit_code_of_status(kFailedPrecondition)))
-    error.message += "\n  places are in metres of " + input.projection->name();
-  return error;
+RequestOrigin origin_of(const InputDomain& input, const RequestOptions* options) {
+  return {&input.domain, options, input.projection.get()};
 }
 
 void add_projection(const InputDomain& input, MeshReport& report) {

@@ -8,10 +8,12 @@
 #include <string>
 
 #include "client/base/error.h"
+#include "client/call/mesh_report.h"
 #include "client/call/mesh_request.h"
+#include "client/call/server_error.h"
 #include "client/formats/domain.h"
+#include "client/formats/files/layer_options.h"
 #include "client/geo/domain_projection.h"
-#include "client/report/mesh_report.h"
 
 namespace weft::client {
 
@@ -21,14 +23,16 @@ struct InputDomain {
   std::shared_ptr<const DomainProjection> projection;
 };
 
-// `size` says how large triangles may be. Errors: those of read_domain and of
-// DomainProjection::project; kUsage if the size is the path of a grid, but the projection has no
-// name that the grid could have been made for.
-Result<InputDomain> read_input_domain(const std::filesystem::path& path, const RequestOptions& size,
-                                      const ProjectionOptions& options);
+// `wanted` has the size and the names. Errors: those of read_domain, of DomainProjection::project
+// and of set_names; kUnreadableInput if the domain is to be projected, but its file says that it
+// lies in a plane; kUsage if the size is the path of a grid, but the projection has no name that
+// the grid could have been made for.
+Result<InputDomain> read_input_domain(const std::filesystem::path& path,
+                                      const RequestOptions& wanted,
+                                      const ProjectionOptions& options, const LayerOptions& layers);
 
-// The error of a server, which speaks of places in the plane, with the name of the projection.
-Error in_plane(Error error, const InputDomain& input);
+// `options` may be null. The origin refers to both.
+RequestOrigin origin_of(const InputDomain& input, const RequestOptions* options = nullptr);
 
 // Adds the projection and its warnings to the report; if the mesh is written in longitude and
 // latitude, so are the places that the summary names.

@@ -13,12 +13,14 @@
 #include "client/base/error.h"
 #include "client/call/job_server.h"
 #include "client/call/mesh_request.h"
+#include "client/formats/files/layer_options.h"
 #include "client/report/mesh_output.h"
 
 namespace weft::client {
 
 struct SubmitOptions {
   std::filesystem::path input;
+  LayerOptions layers;
   RequestOptions request_options;
   MeshOutputOptions output;  // needs `wait`
   std::string request_id;    // empty: a random one
@@ -33,6 +35,7 @@ struct FetchOptions {
   std::string id;
   MeshOutputOptions output;
   std::optional<std::filesystem::path> domain;  // that was submitted
+  LayerOptions layers;                          // of the domain
   bool wait = false;
   JobServerOptions calls;
   bool json = false;

@@ -17,7 +17,7 @@ Json jobs_json(const std::vector<v1::Job>& jobs) {
   return {{"jobs", std::move(list)}};
 }
 
-// Calls for every id, whatever becomes of the others.
+// Calls for every id, even if some calls fail.
 Result<void> for_each(const std::vector<std::string>& ids, const std::stop_token& stop,
                       const std::function<Result<void>(const std::string&)>& call) {
   std::optional<Error> failed;

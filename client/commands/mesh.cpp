@@ -1,28 +1,65 @@
 // SPDX-License-Identifier: Apache-2.0
 // `weft mesh`: reads a domain, has it meshed, writes files and drawings.
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "client/commands/commands.h"
 #include "client/commands/input_domain.h"
 #include "client/commands/mesh_into.h"
+#include "client/drawing/draw.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
+#include "client/report/mesh_text.h"
+#include "client/report/picture_terminal.h"
 #include "client/report/progress_bar.h"
+#include "client/report/terminal_picture.h"
 
 namespace weft::client {
+namespace {
+
+// The small picture that ends the command.
+class Picture {
+ public:
+  Picture(const PictureTerminal& terminal, DrawnUnit unit)
+      : protocol_(terminal.protocol),
+        drawing_({.pixels = terminal.long_side, .no_legend = true, .unit = unit}) {}
+
+  Drawing& drawing() { return drawing_; }
+  Result<ExitCode> show() const {
+    const auto image = drawing_.image();
+    if (!image) return tl::unexpected(image.error());
+    const auto text = terminal_picture(*image, protocol_);
+    if (!text) return tl::unexpected(text.error());
+    return print(*text);
+  }
+
+ private:
+  PictureProtocol protocol_;
+  Drawing drawing_;
+};
+
+}  // namespace
+
 Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   MeshTimes times;
   if (!is_domain_path(options.input)) return unknown_domain_format(options.input);
   auto output = MeshOutput::open(options.output, options.input, stop);
   if (!output) return tl::unexpected(output.error());
-  const auto input =
-      read_input_domain(options.input, options.request_options, options.output.projection);
+  const auto input = read_input_domain(options.input, options.request_options,
+                                       options.output.projection, options.layers);
   if (!input) return tl::unexpected(input.error());
   const Domain& domain = input->domain;
   auto request_options = with_size(options.request_options, domain, input->projection.get());
   if (!request_options) return tl::unexpected(request_options.error());
+  std::optional<Picture> picture;
+  if (!options.no_picture && !options.quiet && !options.json)
+    if (const auto terminal = find_picture_terminal()) {
+      picture.emplace(*terminal,
+                      options.output.projection.wanted() ? DrawnUnit::kMetres : DrawnUnit::kNone);
+      output->also_draw(picture->drawing());
+    }
   times.read = MeshTimes::Clock::now();
 
   ConnectOptions one_mesh = options.server;
@@ -40,7 +77,8 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
           [&progress](const std::string& what) {
             progress.clear();
             std::fprintf(stderr, "weft: %s\n", what.c_str());
-          }};
+          },
+      .projection = input->projection.get()};
   request_options->quadtree = options.output.draw_quadtree;
   const auto received = [&] {
     times.received = MeshTimes::Clock::now();
@@ -58,8 +96,9 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
     return print(json_line(json));
   }
   if (options.quiet) return ExitCode::kOk;
-  return print(mesh_text(*report, times) + region_values_text(domain.region_values) +
-               output->text(report->summary));
+  const auto printed = print(mesh_text(*report, times) + region_values_text(domain.region_values) +
+                             output->text(report->summary));
+  return printed && picture ? picture->show() : printed;
 }
 
 }  // namespace weft::client

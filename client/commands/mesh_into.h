@@ -8,9 +8,9 @@
 #include "client/base/error.h"
 #include "client/call/connection.h"
 #include "client/call/mesh_call.h"
+#include "client/call/mesh_report.h"
 #include "client/commands/input_domain.h"
 #include "client/report/mesh_output.h"
-#include "client/report/mesh_report.h"
 
 namespace weft::client {
 

@@ -24,7 +24,7 @@ Result<ExitCode> run_server_info(const ServerOptions& options, std::stop_token s
   const std::stop_callback cancel(stop, [&context] { context.TryCancel(); });
   v1::GetServerInfoResponse info;
   const grpc::Status status = stub->GetServerInfo(&context, {}, &info);
-  if (!status.ok()) return tl::unexpected(error_of(status, connection->address, nullptr));
+  if (!status.ok()) return tl::unexpected(error_of(status, connection->address));
 
   std::string text;
   const auto row = [&text](const char* name, const std::string& value) {
@@ -43,21 +43,23 @@ Result<ExitCode> run_server_info(const ServerOptions& options, std::stop_token s
   row("largest size raster", with_separators(limits.max_raster_values()) + " values");
   row("most triangles", with_separators(limits.max_triangles()));
   row("most engine memory", with_separators(limits.max_bytes()) + " bytes");
-  row("longest job", shortest(limits.max_seconds()) + " s");
+  row("longest run", shortest(limits.max_seconds()) + " s");
   row("largest request", with_separators(limits.max_request_bytes()) + " bytes");
-  row("jobs at a time", std::to_string(limits.max_concurrent_jobs()));
+  row("runs at a time", std::to_string(limits.max_concurrent_jobs()));
   row("waiting calls", with_separators(limits.max_waiting_calls()));
-  row("memory for jobs", with_separators(limits.max_admitted_bytes()) + " bytes");
+  row("memory for runs", with_separators(limits.max_admitted_bytes()) + " bytes");
   row("patience with readers", shortest(limits.stall_seconds()) + " s");
   row("largest minimum angle", shortest(limits.max_min_angle_deg()) + " degrees");
   if (!info.has_jobs()) return print(text);
   const v1::JobLimits& jobs = info.jobs();
   row("queued meshes", with_separators(jobs.max_queued()));
-  row("  of one client", with_separators(jobs.max_queued_per_client()));
+  row("  open, of one client", with_separators(jobs.max_queued_per_client()));
   row("attempts at a mesh", std::to_string(jobs.max_attempts()));
   row("lease of a worker", shortest(jobs.lease_seconds()) + " s");
   row("meshes are kept", shortest(jobs.keep_seconds()) + " s");
   row("most kept", with_separators(jobs.keep_bytes()) + " bytes");
+  if (jobs.keep_jobs_per_client() > 0)
+    row("  ended, of one client", with_separators(jobs.keep_jobs_per_client()));
   return print(text);
 }
 

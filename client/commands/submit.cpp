@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <optional>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "client/base/text.h"
 #include "client/commands/commands.h"
@@ -13,11 +15,12 @@
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
 #include "client/report/job_text.h"
+#include "client/report/mesh_text.h"
 
 namespace weft::client {
 namespace {
 
-// With it a submission whose answer was lost can be sent again.
+// With this id a submission whose answer was lost can be sent again.
 std::string random_request_id() {
   std::random_device random;
   char id[48];
@@ -38,18 +41,25 @@ Result<std::optional<MeshOutput>> open_output(const SubmitOptions& options,
   return std::move(*opened);
 }
 
+void warn(const std::vector<std::string>& warnings, bool quiet) {
+  if (quiet) return;
+  for (const std::string& warning : warnings)
+    std::fprintf(stderr, "weft: WARNING: %s\n", warning.c_str());
+}
+
 Result<v1::Job> submit(JobServer& server, const InputDomain& input, const SubmitOptions& options) {
   const Domain& domain = input.domain;
   if (auto ok = check_sendable(domain); !ok) return tl::unexpected(ok.error());
   auto request_options = with_size(options.request_options, domain, input.projection.get());
   if (!request_options) return tl::unexpected(request_options.error());
+  warn(request_options->warnings, options.quiet);
   request_options->quadtree = options.output.draw_quadtree;
-  request_options->no_cache = false;  // a job has a field of its own for it
+  request_options->no_cache = false;  // a job has its own field for this
   v1::SubmitJobRequest request;
   *request.mutable_mesh() = make_request(domain, *request_options);
   request.set_request_id(options.request_id.empty() ? random_request_id() : options.request_id);
   request.set_no_cache(options.request_options.no_cache);
-  auto job = server.submit(request, &domain);
+  auto job = server.submit(request, origin_of(input, &options.request_options));
   if (job) return job;
   Error error = job.error();
   constexpr int kUnavailable = 14;
@@ -68,10 +78,11 @@ Result<ExitCode> run_submit(const SubmitOptions& options, std::stop_token stop) 
   if (!output) return tl::unexpected(output.error());
   auto server = JobServer::connect(options.calls, stop);
   if (!server) return tl::unexpected(server.error());
-  const auto input =
-      read_input_domain(options.input, options.request_options, options.output.projection);
+  const auto input = read_input_domain(options.input, options.request_options,
+                                       options.output.projection, options.layers);
   if (!input) return tl::unexpected(input.error());
   const Domain& domain = input->domain;
+  warn(domain.warnings, options.quiet);
   times.read = times.connected = MeshTimes::Clock::now();
 
   auto job = submit(*server, *input, options);
@@ -87,15 +98,17 @@ Result<ExitCode> run_submit(const SubmitOptions& options, std::stop_token stop) 
     job = wait_for_job(*server, job->id(), progress);
     if (!job) return tl::unexpected(job.error());
   }
-  const auto failed = job_error(*job, &domain);
+  const auto failed = job_error(*job, origin_of(*input, &options.request_options));
   if (failed || !*output) {
     progress.clear();
     if (options.json)
       if (auto printed = print(json_line(job_json(*job))); !printed) return printed;
-    if (failed) return tl::unexpected(in_plane(*failed, *input));
+    if (failed) return tl::unexpected(*failed);
     MeshReport report{.accepted = {}, .summary = job->summary()};
     add_projection(*input, report);
-    if (!options.quiet) std::fputs(summary_text(report.summary).c_str(), stderr);
+    if (!options.quiet)
+      std::fputs((summary_text(report.summary) + size_warnings_text(report.summary)).c_str(),
+                 stderr);
     return ExitCode::kOk;
   }
   const auto report = download(*server, *job, &*input, **output, progress, times);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `weft top`: the caller's jobs and the server's throughput, live where there is a terminal.
+// `weft top`: the caller's jobs and the server's throughput, live on a terminal.
 #include <unistd.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ Result<TopSample> look(JobServer& server) {
   if (!info) return tl::unexpected(info.error());
   auto open = server.list({v1::JOB_STATE_QUEUED, v1::JOB_STATE_RUNNING}, std::nullopt);
   if (!open) return tl::unexpected(open.error());
-  // Each state by itself: many that succeeded do not hide one that failed.
+  // Asks for each state by itself, so that many jobs that succeeded do not hide one that failed.
   std::vector<v1::Job> ended;
   std::set<v1::JobState> left_out;
   for (const v1::JobState state :
@@ -42,7 +42,7 @@ Result<TopSample> look(JobServer& server) {
   return sample;
 }
 
-// The server is away, or slow: it may be back at the next look.
+// The server is away or slow, and may answer the next time.
 bool may_pass(const Error& error) {
   constexpr int kDeadlineExceeded = 4;
   constexpr int kUnavailable = 14;

@@ -4,13 +4,13 @@
 #include "client/commands/download.h"
 #include "client/commands/job_commands.h"
 #include "client/report/job_text.h"
-#include "client/report/mesh_report.h"
+#include "client/report/mesh_text.h"
 #include "client/report/watch_job.h"
 
 namespace weft::client {
 
 Result<ExitCode> run_watch(const JobOptions& options, std::stop_token stop) {
-  std::stop_source unreadable;  // stdout is gone: there is nobody to watch for
+  std::stop_source unreadable;  // requested if stdout is gone: nobody watches any more
   const std::stop_callback stopped(stop, [&unreadable] { unreadable.request_stop(); });
   auto server = JobServer::connect(options.calls, unreadable.get_token());
   if (!server) return tl::unexpected(server.error());
@@ -29,9 +29,10 @@ Result<ExitCode> run_watch(const JobOptions& options, std::stop_token stop) {
     job = wait_for_job(*server, options.id, progress);
   }
   if (!job) return tl::unexpected(job.error());
-  if (const auto error = job_error(*job, nullptr)) return tl::unexpected(*error);
+  if (const auto error = job_error(*job)) return tl::unexpected(*error);
   if (options.json) return ExitCode::kOk;
-  return print(job->has_summary() ? summary_text(job->summary()) : "succeeded\n");
+  if (!job->has_summary()) return print("succeeded\n");
+  return print(summary_text(job->summary()) + size_warnings_text(job->summary()));
 }
 
 }  // namespace weft::client

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a mesh lies on a page: scaled, y upwards, with a margin.
+//
+// This folder has more than 25 files because each part of a drawing has its own.
 #pragma once
 
 #include <limits>

@@ -30,7 +30,7 @@ template <class Inside>
 void ClippedTriangle::cut(const Inside& inside) {
   const std::array<PagePoint, 7> old = corners_;
   const std::size_t sides = std::exchange(count_, 0);
-  const auto keep = [this](PagePoint p) {  // rounding could make it one corner more
+  const auto keep = [this](PagePoint p) {  // rounding could add a corner
     if (count_ < corners_.size()) corners_[count_++] = p;
   };
   for (std::size_t i = 0; i < sides; ++i) {

@@ -4,28 +4,38 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace weft::client {
 namespace {
 
-constexpr double kLeastLog = -1080;  // of doubles
+constexpr double kLeastLog = -1080;  // the binary logarithm of the smallest double
 constexpr double kMostLog = 1024;
 constexpr double kStepsPerOctave = 16;
 
 }  // namespace
 
-Coloring::Coloring(DrawColor by, DrawnUnit unit) : by_(by), unit_(unit) {
+Coloring::Coloring(DrawColor by, DrawnUnit unit, AreaBound bound)
+    : by_(by), unit_(unit), bound_(std::move(bound)) {
   if (by_ == DrawColor::kSize)
     area_at_.resize(static_cast<std::size_t>((kMostLog - kLeastLog) * kStepsPerOctave) + 1);
 }
 
 float Coloring::value(const DrawnTriangle& triangle) const {
   if (by_ == DrawColor::kAngle) return static_cast<float>(smallest_angle_deg(triangle, unit_));
+  if (by_ == DrawColor::kBound) {
+    constexpr double kMost = 1e6;
+    const double bound = bound_(centroid(triangle));
+    if (!(bound > 0)) return 0;
+    return static_cast<float>(std::min(area(triangle, DrawnUnit::kNone) / bound, kMost));
+  }
   const double size = std::max(area(triangle, unit_), std::numeric_limits<double>::denorm_min());
   return static_cast<float>(std::clamp(std::log2(size), kLeastLog, kMostLog));
 }
 
 void Coloring::note(float value, double weight) {
+  constexpr float kRounding = 1e-6F;
+  if (by_ == DrawColor::kBound) above_bound_ = above_bound_ || value > 1 + kRounding;
   if (area_at_.empty()) return;
   area_at_[static_cast<std::size_t>((double{value} - kLeastLog) * kStepsPerOctave)] += weight;
 }
@@ -35,6 +45,7 @@ void Coloring::note_region(std::int32_t region) {
 }
 
 ValueRange Coloring::range() const {
+  if (by_ == DrawColor::kBound) return {0, above_bound_ ? 2.0 : 1.0};
   if (by_ != DrawColor::kSize) return {0, 60};
   constexpr double kLeftOut = 1e-3;
   double all = 0;

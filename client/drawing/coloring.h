@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which colour each triangle of a drawing has.
 //
-// A triangle has a value: its smallest angle in degrees, or the binary logarithm of its area. The
-// range of colours follows the values that were noted, so values are noted first, and kept until
-// the colours are asked for. Regions have their colours by themselves.
+// A triangle has a value: its smallest angle in degrees, the binary logarithm of its area, or its
+// area over its bound, which is 0 if it has none. The range of colours follows the values that were
+// noted, so values are noted first, and kept until the colours are asked for. Regions have their
+// colours by themselves.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +13,7 @@
 
 #include "client/drawing/colors.h"
 #include "client/drawing/drawn_triangle.h"
+#include "client/formats/area_bound.h"
 
 namespace weft::client {
 
@@ -22,11 +24,13 @@ struct ValueRange {
 
 class Coloring {
  public:
-  // REQUIRES: not kAuto.
-  Coloring(DrawColor by, DrawnUnit unit);
+  // REQUIRES: not kAuto; a bound if it is kBound.
+  Coloring(DrawColor by, DrawnUnit unit, AreaBound bound);
 
   DrawColor by() const { return by_; }
-  bool by_value() const { return by_ == DrawColor::kAngle || by_ == DrawColor::kSize; }
+  bool by_value() const {
+    return by_ == DrawColor::kAngle || by_ == DrawColor::kSize || by_ == DrawColor::kBound;
+  }
 
   // REQUIRES: by_value.
   float value(const DrawnTriangle& triangle) const;
@@ -35,7 +39,8 @@ class Coloring {
   void note_region(std::int32_t region);
 
   // The values at both ends of the colours: of angles 0 and 60; of sizes those that all but a
-  // thousandth of the area lies between, at each end, and at least a factor of 2 apart.
+  // thousandth of the area lies between, at each end, and at least a factor of 2 apart; of areas
+  // over bounds 0 and 1, or 0 and 2 if one is above its bound.
   ValueRange range() const;
   // REQUIRES: `range` is range().
   static Color color(float value, const ValueRange& range);
@@ -47,6 +52,8 @@ class Coloring {
  private:
   DrawColor by_;
   DrawnUnit unit_;
+  AreaBound bound_;
+  bool above_bound_ = false;
   std::vector<double> area_at_;  // on the page, by steps of the logarithm; empty: not by size
   std::set<std::int32_t> regions_;
 };

@@ -16,7 +16,8 @@ std::uint32_t channel(double value) {
   return static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255));
 }
 
-// The pixels whose centres lie between two places: first and one past the last, of `size`.
+// The pixels whose centres lie between two places, of `size` pixels: the first one, and one past
+// the last.
 std::pair<std::size_t, std::size_t> centres_between(double low, double high, std::size_t size) {
   const auto last = static_cast<double>(size);
   const auto first = std::ceil(std::clamp(low - 0.5, 0.0, last));
@@ -43,8 +44,8 @@ DenseImage::DenseImage(const Canvas& canvas, Coloring& coloring)
       values_(coloring.by_value() ? width_ * height_ : 0),
       colors_(coloring.by() == DrawColor::kRegion ? width_ * height_ : 0) {}
 
-// Adds the value to the pixels whose centres lie in the triangle, or, if there are none, a little
-// of it to the pixel of the centroid.
+// Adds the value to the pixels whose centres lie in the triangle. If there are none, adds a part of
+// it to the pixel of the centroid.
 template <class Paint, class Value>
 void DenseImage::fill(const Corners& p, double area, std::vector<Paint>& paint,
                       const Value& value) {
@@ -77,7 +78,7 @@ void DenseImage::fill(const Corners& p, double area, std::vector<Paint>& paint,
   paint[row * width_ + column].add(value, static_cast<float>(std::max(area, 1e-6)));
 }
 
-// Leaves `amount` of ink at a point, shared by the four pixels around it.
+// Adds `amount` of ink at a point, divided among the four pixels around it.
 void DenseImage::drop(double x, double y, float amount) {
   const double column = std::clamp(x - 0.5, 0.0, static_cast<double>(width_) - 1.001);
   const double row = std::clamp(y - 0.5, 0.0, static_cast<double>(height_) - 1.001);
@@ -136,12 +137,12 @@ double DenseImage::mean_edge() const {
 }
 
 Image DenseImage::image() const {
-  // Lines as wide as leaves the page grey on average.
+  // Lines are so wide that the page is grey on average.
   constexpr double kMeanInk = 0.45;
   constexpr double kWidest = 0.7;
   const double pixels = static_cast<double>(width_) * static_cast<double>(height_);
   const double line_width = std::min(kWidest, kMeanInk * pixels / std::max(length_, 1.0));
-  // Over colours, edges are only hinted at, and not at all if they are as short as pixels.
+  // Over colours, edges are drawn faintly, and not at all if they are as short as pixels.
   constexpr double kHint = 0.45;
   constexpr double kNoHint = 1.5;
   constexpr double kFullHint = 5;

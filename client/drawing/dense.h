@@ -16,15 +16,9 @@
 #include "client/drawing/coloring.h"
 #include "client/drawing/colors.h"
 #include "client/drawing/drawn_triangle.h"
+#include "client/drawing/image.h"
 
 namespace weft::client {
-
-// Pixels as cairo's RGB24: 0x00RRGGBB, rows from the top.
-struct Image {
-  std::size_t width = 0;
-  std::size_t height = 0;
-  std::vector<std::uint32_t> pixels;
-};
 
 class DenseImage {
  public:

@@ -32,6 +32,12 @@ struct DestroyContext {
 using Surface = std::unique_ptr<cairo_surface_t, DestroySurface>;
 using Context = std::unique_ptr<cairo_t, DestroyContext>;
 
+// What was drawn on, and whether that failed.
+struct Painted {
+  Surface surface;
+  cairo_status_t status = CAIRO_STATUS_SUCCESS;
+};
+
 constexpr double kMarginsPerSide = 60;
 constexpr double kEmsPerSide = 66;
 constexpr double kDenseEdge = 5;  // pixels
@@ -42,11 +48,15 @@ cairo_status_t write_to_file(void* file, const unsigned char* bytes, unsigned si
   return CAIRO_STATUS_SUCCESS;  // the file keeps its failure
 }
 
+Surface make_image(double width, double height) {
+  return Surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width),
+                                            static_cast<int>(height)));
+}
+
 Surface make_surface(DrawFormat format, double width, double height, OutputFile& file) {
   switch (format) {
     case DrawFormat::kPng:
-      return Surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width),
-                                                static_cast<int>(height)));
+      return make_image(width, height);
     case DrawFormat::kSvg:
       return Surface(cairo_svg_surface_create_for_stream(write_to_file, &file, width, height));
     case DrawFormat::kPdf:
@@ -69,7 +79,7 @@ void draw_image(cairo_t* cairo, Image image, const Canvas& canvas) {
   cairo_surface_flush(cairo_get_target(cairo));
 }
 
-// Counter-clockwise, whatever it is in the piece.
+// Counter-clockwise, whatever the order in the piece.
 DrawnTriangle triangle_of(const MeshView& piece, std::size_t t) {
   DrawnTriangle triangle;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -94,7 +104,8 @@ Extent extent_of(const DrawnBox& box) {
 
 }  // namespace
 
-// A page at work: lengths of cairo are its units, of which `pixel` are a pixel of a PNG.
+// One page while it is drawn. Lengths in cairo are in its units; `pixel` of them are a pixel of a
+// PNG.
 struct Drawing::Page {
   cairo_t* cairo = nullptr;
   Canvas canvas;
@@ -106,8 +117,10 @@ struct Drawing::Page {
   const Coloring* coloring = nullptr;  // null: none
 };
 
-Drawing::Drawing(const DrawOptions& options)
-    : options_(options), worst_(options.worst.value_or(0), options.unit) {}
+Drawing::Drawing(const DrawOptions& options, AreaBound bound)
+    : options_(options),
+      bound_(std::move(bound)),
+      worst_(options.worst.value_or(0), options.unit) {}
 
 Drawing::~Drawing() = default;
 
@@ -154,9 +167,14 @@ void Drawing::add_edges(const MeshView& piece) {
   }
 }
 
+// For kAuto, the colouring of triangles that are too small to be seen.
+Coloring Drawing::coloring() const {
+  return {options_.color == DrawColor::kAuto ? DrawColor::kSize : options_.color, options_.unit,
+          bound_};
+}
+
 void Drawing::draw_as_image() {
-  image_coloring_ = std::make_unique<Coloring>(
-      options_.color == DrawColor::kAuto ? DrawColor::kSize : options_.color, options_.unit);
+  image_coloring_ = std::make_unique<Coloring>(coloring());
   image_ = std::make_unique<DenseImage>(canvas(pixels()), *image_coloring_);
   for (const DrawnTriangle& triangle : kept_) image_->add(triangle);
   kept_ = {};
@@ -200,7 +218,7 @@ void Drawing::draw_marks(const Page& page) const {
   if (options_.labels && !page.dense) put_labels(page.cairo, page.canvas, kept_, edges_, height);
   const std::vector<WorstTriangle> worst = worst_.sorted();
   constexpr std::size_t kMostNumbered = 30;
-  for (std::size_t i = worst.size(); i-- > 0;) {  // the worst on top
+  for (std::size_t i = worst.size(); i-- > 0;) {  // the worst is drawn last, on top
     const PagePoint at = page.canvas.at(centroid(worst[i].triangle));
     double radius = 0.5 * page.em;
     for (const Point& corner : worst[i].triangle.corners) {
@@ -240,28 +258,30 @@ Legend Drawing::legend(const Page& page) const {
   return legend;
 }
 
-Result<void> Drawing::draw(DrawFormat format, std::span<const double> boxes,
-                           OutputFile& file) const {
+Result<void> Drawing::check_coordinates() const {
   for (const double bound : {extent_.min_x, extent_.min_y, extent_.max_x, extent_.max_y})
     if (!extent_.empty() && !(std::abs(bound) <= kMostCoordinate))
       return fail(ExitCode::kUnreadableInput, "the mesh has a coordinate of " + shortest(bound) +
                                                   ", drawings go to " + shortest(kMostCoordinate));
-  const double pixel = format == DrawFormat::kPng ? 1 : 0.5;
+  return {};
+}
+
+template <class MakeSurface>
+auto Drawing::painted(double pixel, std::span<const double> boxes,
+                      const MakeSurface& make_surface) const {
   Page page{.canvas = canvas(pixels() * pixel), .pixel = pixel};
   page.em = pixels() * pixel / kEmsPerSide;
 
-  // Of what is drawn as an image after all, and of colours.
-  Coloring coloring(options_.color == DrawColor::kAuto ? DrawColor::kSize : options_.color,
-                    options_.unit);
+  Coloring colors = coloring();
   std::unique_ptr<DenseImage> image;
   page.mean_edge = image_ ? image_->mean_edge() : mean_inner_edge(kept_, page.canvas) / pixel;
   page.dense = image_ != nullptr || (page.mean_edge < kDenseEdge && !kept_.empty());
-  page.coloring = image_ ? image_coloring_.get() : &coloring;
+  page.coloring = image_ ? image_coloring_.get() : &colors;
   if (page.dense && !image_) {
-    image = std::make_unique<DenseImage>(canvas(pixels()), coloring);
+    image = std::make_unique<DenseImage>(canvas(pixels()), colors);
     for (const DrawnTriangle& triangle : kept_) image->add(triangle);
   } else if (!page.dense) {
-    note_all(kept_, page.canvas, coloring);
+    note_all(kept_, page.canvas, colors);
   }
   page.image = image_ ? image_.get() : image.get();
   if (page.coloring->by() == DrawColor::kNone ||
@@ -272,7 +292,7 @@ Result<void> Drawing::draw(DrawFormat format, std::span<const double> boxes,
   const double side = pixels() * pixel / kMarginsPerSide;
   const double width = std::max(page.canvas.width(), std::ceil(below.least_width() + 2 * side));
   const double height = page.canvas.height() + std::ceil(below.height(width - 2 * side));
-  const Surface surface = make_surface(format, width, height, file);
+  Surface surface = make_surface(width, height);
   const Context context(cairo_create(surface.get()));
   cairo_t* const cairo = page.cairo = context.get();
   set_color(cairo, kPaper);
@@ -288,8 +308,16 @@ Result<void> Drawing::draw(DrawFormat format, std::span<const double> boxes,
   draw_marks(page);
   cairo_restore(cairo);
   below.draw(cairo, {side, page.canvas.height()}, width - 2 * side);
+  return Painted{std::move(surface), cairo_status(cairo)};
+}
 
-  cairo_status_t status = cairo_status(cairo);
+Result<void> Drawing::draw(DrawFormat format, std::span<const double> boxes,
+                           OutputFile& file) const {
+  if (auto drawable = check_coordinates(); !drawable) return drawable;
+  const auto [surface, painting] = painted(
+      format == DrawFormat::kPng ? 1 : 0.5, boxes,
+      [&](double width, double height) { return make_surface(format, width, height, file); });
+  cairo_status_t status = painting;
   if (status == CAIRO_STATUS_SUCCESS && format == DrawFormat::kPng)
     status = cairo_surface_write_to_png_stream(surface.get(), write_to_file, &file);
   cairo_surface_finish(surface.get());
@@ -298,6 +326,25 @@ Result<void> Drawing::draw(DrawFormat format, std::span<const double> boxes,
     return fail(ExitCode::kInternal,
                 file.target().string() + ": cannot be drawn: " + cairo_status_to_string(status));
   return {};
+}
+
+Result<Image> Drawing::image() const {
+  if (auto drawable = check_coordinates(); !drawable) return tl::unexpected(drawable.error());
+  const auto [surface, status] = painted(1, {}, make_image);
+  cairo_surface_flush(surface.get());
+  if (status != CAIRO_STATUS_SUCCESS)
+    return fail(ExitCode::kInternal,
+                std::string("the mesh cannot be drawn: ") + cairo_status_to_string(status));
+  Image image;
+  image.width = static_cast<std::size_t>(cairo_image_surface_get_width(surface.get()));
+  image.height = static_cast<std::size_t>(cairo_image_surface_get_height(surface.get()));
+  const unsigned char* row = cairo_image_surface_get_data(surface.get());
+  for (std::size_t y = 0; y < image.height; ++y) {
+    const auto* const pixels = reinterpret_cast<const std::uint32_t*>(row);
+    image.pixels.insert(image.pixels.end(), pixels, pixels + image.width);
+    row += cairo_image_surface_get_stride(surface.get());
+  }
+  return image;
 }
 
 }  // namespace weft::client

@@ -25,8 +25,10 @@
 #include "client/base/error.h"
 #include "client/drawing/canvas.h"
 #include "client/drawing/draw_options.h"
+#include "client/drawing/image.h"
 #include "client/drawing/labels.h"
 #include "client/drawing/worst_triangles.h"
+#include "client/formats/area_bound.h"
 #include "client/formats/mesh.h"
 
 namespace weft::client {
@@ -46,7 +48,9 @@ class Drawing {
   // Coordinates beyond it are not drawn.
   static constexpr double kMostCoordinate = 1e100;
 
-  explicit Drawing(const DrawOptions& options);
+  // `bound` is of the triangles' areas, in square units of the mesh, and is asked by this thread.
+  // REQUIRES: it is not empty if the colour is kBound.
+  explicit Drawing(const DrawOptions& options, AreaBound bound = {});
   Drawing(const Drawing&) = delete;
   Drawing& operator=(const Drawing&) = delete;
   ~Drawing();
@@ -65,6 +69,8 @@ class Drawing {
   // parts outside the page are cut off. Failures to write stay in the file; other errors:
   // kUnreadableInput for a coordinate beyond kMostCoordinate, kInternal is cairo's.
   Result<void> draw(DrawFormat format, std::span<const double> boxes, OutputFile& file) const;
+  // The pixels of a PNG, without boxes. Errors: those of draw.
+  Result<Image> image() const;
 
  private:
   struct Page;
@@ -73,6 +79,11 @@ class Drawing {
   void add_edges(const MeshView& piece);
   void keep(const DrawnTriangle& triangle);
   void draw_as_image();
+  Coloring coloring() const;
+  Result<void> check_coordinates() const;
+  // What was added, on the surface of cairo that `make_surface` makes of a width and a height.
+  template <class MakeSurface>
+  auto painted(double pixel, std::span<const double> boxes, const MakeSurface& make_surface) const;
   // Whether the box of the points meets the page.
   bool shows(std::span<const Point> points) const;
   bool is_in_view(const Point& p) const;
@@ -84,6 +95,7 @@ class Drawing {
   Legend legend(const Page& page) const;
 
   const DrawOptions options_;
+  const AreaBound bound_;
   Extent extent_;  // of the vertices so far
   std::size_t vertices_ = 0;
   std::size_t added_ = 0;

@@ -13,6 +13,7 @@ enum class DrawColor {
   kAngle,   // the smallest angle of each triangle
   kSize,    // its area, logarithmic
   kRegion,  // its region
+  kBound,   // its area over its bound, which is given to the drawing
 };
 
 // What the coordinates of a mesh are, as far as it is known.

@@ -14,7 +14,7 @@ struct Side {
   double square() const { return x * x + y * y; }
 };
 
-// From corner i to the next one, in the unit of lengths.
+// From each corner i to the next one, in the unit of lengths.
 std::array<Side, 3> sides(const DrawnTriangle& triangle, DrawnUnit unit) {
   const auto& p = triangle.corners;
   double x_unit = 1;
@@ -51,7 +51,7 @@ double area(const DrawnTriangle& triangle, DrawnUnit unit) {
 
 double smallest_angle_deg(const DrawnTriangle& triangle, DrawnUnit unit) {
   const auto side = sides(triangle, unit);
-  // It lies opposite the shortest side, between the other two.
+  // The smallest angle lies opposite the shortest side.
   std::size_t shortest = 0;
   for (std::size_t i = 1; i < 3; ++i)
     if (side[i].square() < side[shortest].square()) shortest = i;

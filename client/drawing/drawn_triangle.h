@@ -28,8 +28,8 @@ double smallest_angle_deg(const DrawnTriangle& triangle, DrawnUnit unit);
 // Of a degree of latitude, on a sphere as large as the Earth.
 inline constexpr double kMetresPerDegree = 111195.08;
 
-// How long a degree of longitude is for one of latitude, at this latitude; at least 0.01, so that
-// something is seen of the poles.
+// The length of a degree of longitude over that of a degree of latitude, at this latitude; at least
+// 0.01, so that the poles are visible.
 double longitude_scale(double latitude_deg);
 
 }  // namespace weft::client

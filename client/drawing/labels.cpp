@@ -51,9 +51,9 @@ class Room {
   std::vector<bool> taken_;
 };
 
-class Labels {
+class LabelPainter {
  public:
-  Labels(cairo_t* cairo, const Canvas& canvas, double height)
+  LabelPainter(cairo_t* cairo, const Canvas& canvas, double height)
       : cairo_(cairo), height_(height), room_(canvas, height / 2) {}
 
   double width(const std::string& text) const { return text_width(text, height_); }
@@ -74,7 +74,7 @@ class Labels {
   Room room_;
 };
 
-void label_markers(Labels& labels, const Canvas& canvas, std::span<const DrawnEdge> edges) {
+void label_markers(LabelPainter& labels, const Canvas& canvas, std::span<const DrawnEdge> edges) {
   for (const DrawnEdge& edge : edges) {
     const PagePoint a = canvas.at(edge.a);
     const PagePoint b = canvas.at(edge.b);
@@ -84,7 +84,7 @@ void label_markers(Labels& labels, const Canvas& canvas, std::span<const DrawnEd
   }
 }
 
-void label_vertices(Labels& labels, const Canvas& canvas,
+void label_vertices(LabelPainter& labels, const Canvas& canvas,
                     std::span<const DrawnTriangle> triangles) {
   struct Vertex {
     PagePoint at;
@@ -99,7 +99,7 @@ void label_vertices(Labels& labels, const Canvas& canvas,
       const auto [found, is_new] = vertices.try_emplace(triangle.vertices[k], Vertex{at, edge});
       if (!is_new) found->second.shortest_edge = std::min(found->second.shortest_edge, edge);
     }
-  // In the order of the triangles: that of the map is not the same everywhere.
+  // In the order of the triangles, because the order of the map differs between machines.
   for (const DrawnTriangle& triangle : triangles)
     for (const std::uint32_t v : triangle.vertices) {
       const auto found = vertices.find(v);
@@ -111,7 +111,7 @@ void label_vertices(Labels& labels, const Canvas& canvas,
     }
 }
 
-void label_triangles(Labels& labels, const Canvas& canvas,
+void label_triangles(LabelPainter& labels, const Canvas& canvas,
                      std::span<const DrawnTriangle> triangles) {
   for (const DrawnTriangle& triangle : triangles) {
     const std::array<PagePoint, 3> p = {canvas.at(triangle.corners[0]),
@@ -124,7 +124,7 @@ void label_triangles(Labels& labels, const Canvas& canvas,
     const double twice_area =
         std::abs((p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x));
     const std::string text = std::to_string(triangle.id);
-    if (!(2 * twice_area / around >= labels.diagonal(text))) continue;  // the inscribed circle
+    if (!(2 * twice_area / around >= labels.diagonal(text))) continue;  // of the inscribed circle
     labels.put({(a * p[0].x + b * p[1].x + c * p[2].x) / around,
                 (a * p[0].y + b * p[1].y + c * p[2].y) / around},
                text, kTriangleLabelInk);
@@ -135,7 +135,7 @@ void label_triangles(Labels& labels, const Canvas& canvas,
 
 void put_labels(cairo_t* cairo, const Canvas& canvas, std::span<const DrawnTriangle> triangles,
                 std::span<const DrawnEdge> edges, double height) {
-  Labels labels(cairo, canvas, height);
+  LabelPainter labels(cairo, canvas, height);
   label_markers(labels, canvas, edges);
   label_vertices(labels, canvas, triangles);
   label_triangles(labels, canvas, triangles);

@@ -26,11 +26,11 @@ constexpr double kValueBarWidth = 18;
 constexpr std::size_t kMostSwatches = 10;
 
 struct Tick {
-  double value = 0;  // as Coloring has it
+  double value = 0;  // in the unit that Coloring uses
   std::string text;
 };
 
-// The largest of 1, 2, 5, 10, ... that is not above `most`.
+// The largest of 1, 2, 5, 10, ... that does not exceed `most`.
 double round_below(double most) {
   const double power = std::pow(10, std::floor(std::log10(most)));
   for (const double digit : {5.0, 2.0})
@@ -45,7 +45,19 @@ std::vector<Tick> angle_ticks() {
   return ticks;
 }
 
-// 1, 10, ... or, if there are few of them, 1, 2, 5, 10, ...; of a range of binary logarithms.
+// From 0 up to 1 or 2, beyond which colours do not change.
+std::vector<Tick> bound_ticks(const ValueRange& range) {
+  constexpr int kSteps = 4;
+  std::vector<Tick> ticks;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double value = range.high * i / kSteps;
+    ticks.push_back({value, number_text(value)});
+  }
+  if (range.high > 1) ticks.back().text += " and up";
+  return ticks;
+}
+
+// 1, 10, ... or, if these are few, 1, 2, 5, 10, ...; the range is of binary logarithms.
 std::vector<Tick> size_ticks(const ValueRange& range, double unit) {
   const auto in_range = [&](const std::vector<double>& digits) {
     std::vector<Tick> ticks;
@@ -134,6 +146,9 @@ void Legend::add_value_bar(const Coloring& coloring, DrawnUnit unit, bool mean) 
   std::vector<Tick> ticks;
   if (coloring.by() == DrawColor::kAngle) {
     ticks = angle_ticks();
+  } else if (coloring.by() == DrawColor::kBound) {
+    title = "area over its bound";
+    ticks = bound_ticks(range);
   } else {
     constexpr double kSquareKilometre = 1e6;
     const bool kilometres = unit != DrawnUnit::kNone && std::exp2(range.high) >= kSquareKilometre;

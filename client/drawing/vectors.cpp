@@ -14,7 +14,7 @@
 namespace weft::client {
 namespace {
 
-// Long paths slow cairo down.
+// cairo becomes slow with long paths.
 constexpr std::size_t kMostOfAPath = 1000;
 
 std::array<PagePoint, 3> on_page(const DrawnTriangle& triangle, const Canvas& canvas) {
@@ -57,7 +57,7 @@ void Vectors::stroke_inner_edges(std::span<const DrawnTriangle> triangles, bool 
   constexpr double kWidthOfALength = 0.07;
   constexpr double kThinnest = 0.1;  // pixels
   constexpr double kThickest = 1.2;
-  constexpr int kClasses = 8;  // of widths, each wider by the same factor
+  constexpr int kClasses = 8;  // classes of widths, each wider by the same factor
   const double step = std::log(kThickest / kThinnest) / (kClasses - 1);
   std::array<std::vector<Line>, kClasses> lines;
   for_each_inner_edge(triangles, [&](const Point& p, const Point& q) {
@@ -121,7 +121,7 @@ void Vectors::fill_one_color(std::span<const DrawnTriangle> triangles,
 }
 
 void Vectors::fill(std::span<const DrawnTriangle> triangles, const Coloring& coloring) {
-  // By colour: one path for many triangles.
+  // Triangles by colour: one path for many of them.
   constexpr double kSteps = 255;
   const ValueRange range = coloring.range();
   struct OneColor {

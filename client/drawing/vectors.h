@@ -21,7 +21,7 @@ namespace weft::client {
 
 class Vectors {
  public:
-  // Lines are as wide as so many `pixel`, in units of the page.
+  // `pixel` is the unit of the widths of lines, in units of the page.
   Vectors(cairo_t* cairo, const Canvas& canvas, double pixel);
 
   // REQUIRES: the triangles were noted.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "client/formats/domains/region_values.h"
+#include "client/formats/names.h"
 
 namespace weft::client {
 
@@ -47,6 +48,14 @@ class Provenance {
   std::vector<Run> runs_;
 };
 
+// Of the coordinates in a file.
+struct CoordinateSystem {
+  std::string name;         // for messages: "WGS 84 / UTM zone 18N"
+  bool geographic = false;  // longitudes and latitudes, not a plane
+  std::string definition;   // as WKT: of OGC or of Esri
+  friend bool operator==(const CoordinateSystem&, const CoordinateSystem&) = default;
+};
+
 struct Domain {
   struct Segment {
     std::uint32_t a = 0;  // index into points
@@ -71,6 +80,9 @@ struct Domain {
   std::vector<Region> regions;
   std::vector<RegionValue> region_values;  // of ids that stand for another number in the file
   Fill fill = Fill::kSeeds;
+  std::optional<CoordinateSystem> system;  // if the file names one
+  Names names;                             // of markers and regions, of the domain's own or not
+  std::vector<std::string> warnings;       // about the file: sentences for the user
 
   Provenance point_places;
   Provenance segment_places;

@@ -6,11 +6,13 @@
 #include <string_view>
 
 #include "client/base/text.h"
+#include "client/formats/derived/mesh_domain.h"
 #include "client/formats/domains/csv_rings.h"
 #include "client/formats/domains/geojson.h"
+#include "client/formats/domains/ogr.h"
+#include "client/formats/domains/ogr_formats.h"
 #include "client/formats/domains/shapefile.h"
 #include "client/formats/domains/wkt.h"
-#include "client/formats/mesh_domain.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/triangle/triangle_poly.h"
 
@@ -35,6 +37,13 @@ const DomainFormat* domain_format(const std::filesystem::path& path) {
   return nullptr;
 }
 
+std::string layered_extensions() {
+  std::string list;
+  for (const OgrFormat& format : ogr_formats())
+    list += (list.empty() ? "" : ", ") + std::string(format.extension);
+  return list;
+}
+
 bool is_read_as_mesh(const std::filesystem::path& path) {
   const MeshFormat* format = mesh_format(path);
   return format != nullptr && format->read != nullptr;
@@ -43,7 +52,7 @@ bool is_read_as_mesh(const std::filesystem::path& path) {
 }  // namespace
 
 bool is_plain_domain_path(const std::filesystem::path& path) {
-  return domain_format(path) != nullptr;
+  return domain_format(path) != nullptr || ogr_format(lower_extension(path)) != nullptr;
 }
 
 bool is_domain_path(const std::filesystem::path& path) {
@@ -54,6 +63,8 @@ std::string domain_extensions() {
   std::string list;
   for (const DomainFormat& format : kFormats)
     list += (list.empty() ? "" : ", ") + std::string(format.extension);
+  for (const OgrFormat& format : ogr_formats())
+    if (!format.own_reader) list += ", " + std::string(format.extension);
   return list;
 }
 
@@ -64,13 +75,22 @@ tl::unexpected<Error> unknown_domain_format(const std::filesystem::path& path) {
                   "; nor of a mesh that is read as one: " + read_mesh_extensions());
 }
 
-Result<Domain> read_domain(const std::filesystem::path& path) {
+Result<Domain> read_domain(const std::filesystem::path& path, const LayerOptions& layers) {
   if (!is_domain_path(path)) return unknown_domain_format(path);
+  const OgrFormat* ogr = ogr_format(lower_extension(path));
+  if (layers.wanted() && ogr == nullptr)
+    return fail(ExitCode::kUsage, path.string() +
+                                      ": --layer and --where are for files with layers "
+                                      "and attributes: " +
+                                      layered_extensions());
   try {
+    if (ogr != nullptr && (layers.wanted() || !ogr->own_reader)) return read_with_ogr(path, layers);
     if (const DomainFormat* format = domain_format(path)) return format->read(path);
     const auto mesh = read_mesh(path);
     if (!mesh) return tl::unexpected(mesh.error());
-    return domain_of_mesh(path.string(), mesh->view());
+    Domain domain = domain_of_mesh(path.string(), mesh->view());
+    domain.warnings = mesh->warnings;
+    return domain;
   } catch (const std::bad_alloc&) {
   } catch (const std::length_error&) {
   }

@@ -8,11 +8,13 @@
 
 #include "client/base/error.h"
 #include "client/formats/domain.h"
+#include "client/formats/files/layer_options.h"
 
 namespace weft::client {
 
-// Reads a domain. Errors: kUsage for an unknown extension, kUnreadableInput for the rest.
-Result<Domain> read_domain(const std::filesystem::path& path);
+// Reads a domain. Errors: kUsage for an unknown extension, and for one of a format without layers
+// and attributes if `layers` wants some; kUnreadableInput for the rest.
+Result<Domain> read_domain(const std::filesystem::path& path, const LayerOptions& layers = {});
 
 // Whether the extension is that of a domain, or of a mesh that can be read as one.
 bool is_domain_path(const std::filesystem::path& path);

@@ -32,6 +32,8 @@ class AsciiSource final : public RasterSource {
     return {};
   }
 
+  bool is_in(const CoordinateSystem&) const override { return true; }
+
   Result<std::unique_ptr<PlaneToRaster>> from_plane(const std::string&) override {
     return fail(ExitCode::kInternal, shape_.name + ": was not opened with GDAL");
   }
@@ -39,14 +41,6 @@ class AsciiSource final : public RasterSource {
  private:
   Raster raster_;
 };
-
-// GDAL takes words that are no file for the addresses of servers and data bases.
-Result<void> must_be_a_file(const std::filesystem::path& path) {
-  std::error_code problem;
-  if (path.string().starts_with("/vsi") || std::filesystem::exists(path, problem)) return {};
-  return fail(ExitCode::kUnreadableInput,
-              path.string() + ": " + (problem ? problem.message() : "no such file"));
-}
 
 Result<std::unique_ptr<RasterSource>> open_ascii(const std::filesystem::path& path,
                                                  const std::string& band) {
@@ -57,20 +51,41 @@ Result<std::unique_ptr<RasterSource>> open_ascii(const std::filesystem::path& pa
   return std::make_unique<AsciiSource>(path, std::move(*raster));
 }
 
+Result<std::unique_ptr<RasterSource>> open(const std::filesystem::path& path,
+                                           const std::string& band) {
+  if (auto found = must_be_raster_file(path); !found) return tl::unexpected(found.error());
+  return is_raster_path(path) ? open_ascii(path, band) : open_with_gdal(path, band);
+}
+
 }  // namespace
+
+Result<void> must_be_raster_file(const std::filesystem::path& path) {
+  std::error_code problem;
+  if (path.string().starts_with("/vsi") || std::filesystem::exists(path, problem)) return {};
+  return fail(ExitCode::kUnreadableInput,
+              path.string() + ": " + (problem ? problem.message() : "no such file"));
+}
 
 Result<FieldRaster> read_field_raster(const std::filesystem::path& path, const std::string& band,
                                       const RasterBox& box, std::uint64_t max_values) {
-  if (auto found = must_be_a_file(path); !found) return tl::unexpected(found.error());
-  const auto source = is_raster_path(path) ? open_ascii(path, band) : open_with_gdal(path, band);
+  const auto source = open(path, band);
   if (!source) return tl::unexpected(source.error());
   return read_window(**source, box, max_values);
+}
+
+Result<FieldRaster> read_field_raster_in(const std::filesystem::path& path, const std::string& band,
+                                         const RasterBox& box, const CoordinateSystem& system,
+                                         std::uint64_t max_values) {
+  const auto source = open(path, band);
+  if (!source) return tl::unexpected(source.error());
+  if ((*source)->is_in(system)) return read_window(**source, box, max_values);
+  return read_projected_window(**source, box, system.definition, max_values);
 }
 
 Result<FieldRaster> read_field_raster_projected(const std::filesystem::path& path,
                                                 const std::string& band, const RasterBox& box,
                                                 const std::string& crs, std::uint64_t max_values) {
-  if (auto found = must_be_a_file(path); !found) return tl::unexpected(found.error());
+  if (auto found = must_be_raster_file(path); !found) return tl::unexpected(found.error());
   const auto source = open_with_gdal(path, band);
   if (!source) return tl::unexpected(source.error());
   return read_projected_window(**source, box, crs, max_values);

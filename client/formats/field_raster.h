@@ -12,8 +12,9 @@
 //   Result<FieldRaster> depth = read_field_raster("gebco.nc", "elevation", {-75, 38, -72, 41});
 //
 // Errors (kUnreadableInput) name the file: missing or damaged; in a format that this weft cannot
-// read; with several bands and none chosen, which lists them; without a place in the plane; rotated
-// or sheared; apart from the box, with both boxes. Thread-safe.
+// read; with several bands and none chosen, which lists them; with a band of complex numbers;
+// without a place in the plane; rotated or sheared; apart from the box, with both boxes.
+// Thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +24,7 @@
 #include <vector>
 
 #include "client/base/error.h"
+#include "client/formats/domain.h"
 
 namespace weft::client {
 
@@ -63,6 +65,12 @@ Result<FieldRaster> read_field_raster(const std::filesystem::path& path, const s
                                       const RasterBox& box,
                                       std::uint64_t max_values = kMaxFieldValues);
 
+// The same for a box in `system`: as it is if the raster is in it (raster_source.h), else as
+// read_field_raster_projected.
+Result<FieldRaster> read_field_raster_in(const std::filesystem::path& path, const std::string& band,
+                                         const RasterBox& box, const CoordinateSystem& system,
+                                         std::uint64_t max_values = kMaxFieldValues);
+
 // The same for a box in the plane of the coordinate system `crs`, as WKT, a PROJ string or a code
 // such as "EPSG:32618": square cells of about the raster's own resolution, and the bilinear value
 // of the raster at each node, of the pixels with data; NaN if the nearest has none, or is two
@@ -74,10 +82,16 @@ Result<FieldRaster> read_field_raster_projected(const std::filesystem::path& pat
                                                 const std::string& crs,
                                                 std::uint64_t max_values = kMaxFieldValues);
 
+// Succeeds if there is such a file, or the path is one inside an archive, "/vsi..."; GDAL takes
+// other words for the addresses of servers and data bases. Errors as above.
+Result<void> must_be_raster_file(const std::filesystem::path& path);
+
 // "FILE:BAND" as a file and a band: the file ends at the first colon before which there is one.
 struct RasterPath {
   std::filesystem::path file;
   std::string band;
+
+  friend bool operator==(const RasterPath&, const RasterPath&) = default;
 };
 RasterPath split_raster_path(std::string_view text);
 

@@ -10,11 +10,23 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "client/base/paged_memory.h"
+#include "client/formats/names.h"
 
 namespace weft::client {
+
+// A number at each vertex, such as the depth of the water, and its name in files.
+struct VertexValues {
+  std::string name;
+  std::span<const double> values;
+};
+
+enum class CoordinateUnit { kUnknown, kMetres, kDegrees };  // degrees: longitude and latitude
+
+inline const Names kNoNames{};
 
 struct MeshView {
   std::span<const double> coordinates;         // x0, y0, x1, y1, ...
@@ -29,6 +41,10 @@ struct MeshView {
   // 2: a node in the middle of every side, after the corners; see second_order.h.
   std::size_t order = 1;
   PagedMemory* pages = nullptr;  // of arrays in mapped files; null: all of it is in memory
+  std::span<const VertexValues> vertex_values{};  // of order 2: one number per node
+  std::span<const std::int32_t> parts{};          // one per triangle, from 0; empty: not divided
+  CoordinateUnit unit = CoordinateUnit::kUnknown;
+  const Names* names = &kNoNames;  // of markers and regions; never null
 
   // 0, 1, ... count - 1, with steps of the pages in between.
   Numbers up_to(std::size_t count) const { return {pages, count}; }
@@ -46,9 +62,16 @@ struct Mesh {
   std::vector<std::int32_t> regions;
   std::vector<std::uint32_t> edges;
   std::vector<std::int32_t> edge_markers;
+  Names names{};                        // of markers and regions
+  std::vector<std::int32_t> parts{};    // one per triangle, from 0; empty: not divided
+  std::vector<std::string> warnings{};  // about the file: sentences for the user
 
+  // REQUIRES: the mesh outlives the view.
   MeshView view() const {
-    return {coordinates, triangles, regions, edges, edge_markers, {}, {}, 1};
+    MeshView view{coordinates, triangles, regions, edges, edge_markers, {}, {}, 1};
+    view.parts = parts;
+    view.names = &names;
+    return view;
   }
   friend bool operator==(const Mesh&, const Mesh&) = default;
 };

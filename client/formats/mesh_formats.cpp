@@ -5,18 +5,29 @@
 #include <cerrno>
 #include <cmath>
 #include <new>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 
 #include "client/base/text.h"
+#include "client/formats/bed.h"
+#include "client/formats/derived/mesh_edges.h"
+#include "client/formats/derived/second_order.h"
+#include "client/formats/format_names.h"
 #include "client/formats/meshes/adcirc.h"
+#include "client/formats/meshes/exodus.h"
 #include "client/formats/meshes/geojson_mesh.h"
+#include "client/formats/meshes/modflow.h"
 #include "client/formats/meshes/msh.h"
 #include "client/formats/meshes/npz.h"
+#include "client/formats/meshes/openfoam.h"
+#include "client/formats/meshes/selafin.h"
+#include "client/formats/meshes/sms.h"
 #include "client/formats/meshes/su2.h"
 #include "client/formats/meshes/surface_formats.h"
+#include "client/formats/meshes/ugrid.h"
 #include "client/formats/meshes/vtu.h"
-#include "client/formats/second_order.h"
+#include "client/formats/meshes/xdmf.h"
 #include "client/formats/triangle/triangle_edges.h"
 #include "client/formats/triangle/triangle_mesh.h"
 
@@ -44,22 +55,54 @@ void write_adcirc_mesh(const MeshView& mesh, Files files, const Options& options
   write_adcirc(mesh, options.open_boundaries, files[0]);
 }
 
+void write_xdmf_mesh(const MeshView& mesh, Files files, const Options&) {
+  write_xdmf(mesh, files[0], files[1]);
+}
+
+void write_openfoam_mesh(const MeshView& mesh, Files files, const Options&) {
+  write_openfoam(mesh, files);
+}
+
 constexpr bool kSecondOrder = true;
 constexpr bool kFirstOrder = false;
+constexpr bool kParts = true;
+constexpr bool kNoParts = false;
+constexpr bool kBoundaryOnly = true;
 
 constexpr MeshFormat kFormats[] = {
-    {".vtu", kSecondOrder, one_file<write_vtu>, read_vtu, read_vtu_values},
-    {".msh", kSecondOrder, write_gmsh, read_msh, read_msh_values},
-    {".node", kSecondOrder, write_triangle, read_triangle_mesh},
+    {".vtu", kSecondOrder, one_file<write_vtu>, read_vtu, read_vtu_values, CarriesValues::kAll,
+     kParts, any_name, any_name},
+    {".msh", kSecondOrder, write_gmsh, read_msh, read_msh_values, CarriesValues::kAll, kNoParts,
+     gmsh_name, gmsh_name},
+    {".node", kSecondOrder, write_triangle, read_triangle_mesh, nullptr, CarriesValues::kNone,
+     kNoParts, any_name, any_name},
     {".ele", kFirstOrder, nullptr, read_triangle_mesh},
     {".edge", kFirstOrder, one_file<write_triangle_edges>, nullptr},
     {".neigh", kFirstOrder, one_file<write_triangle_neighbours>, nullptr},
-    {".14", kFirstOrder, write_adcirc_mesh, read_adcirc, read_adcirc_values},
-    {".grd", kFirstOrder, write_adcirc_mesh, read_adcirc, read_adcirc_values},
-    {".su2", kFirstOrder, one_file<write_su2>, read_su2},
-    {".npz", kFirstOrder, one_file<write_npz>, read_npz, read_npz_values},
-    {".geojson", kFirstOrder, one_file<write_geojson_mesh>, nullptr},
-    {".obj", kFirstOrder, one_file<write_obj>, read_obj},
+    {".14", kFirstOrder, write_adcirc_mesh, read_adcirc, read_adcirc_values, CarriesValues::kBed},
+    {".grd", kFirstOrder, write_adcirc_mesh, read_adcirc, read_adcirc_values, CarriesValues::kBed},
+    {".2dm", kFirstOrder, one_file<write_2dm>, read_2dm, nullptr, CarriesValues::kBed, kNoParts,
+     quotable_name, quotable_name, kBoundaryOnly},
+    {".nc", kFirstOrder, one_file<write_ugrid>, read_ugrid, nullptr, CarriesValues::kAll, kParts,
+     flag_meaning, flag_meaning},
+    {".slf", kFirstOrder, one_file<write_selafin>, nullptr, nullptr, CarriesValues::kAll},
+    {".xdmf", kSecondOrder, write_xdmf_mesh, nullptr, nullptr, CarriesValues::kAll, kParts,
+     any_name, any_name},
+    {".exo", kSecondOrder, one_file<write_exodus>, nullptr, nullptr, CarriesValues::kAll, kParts,
+     exodus_name, exodus_name},
+    {".e", kSecondOrder, one_file<write_exodus>, nullptr, nullptr, CarriesValues::kAll, kParts,
+     exodus_name, exodus_name},
+    {".disv", kFirstOrder, one_file<write_disv>, nullptr, nullptr, CarriesValues::kBed},
+    {".foam", kFirstOrder, write_openfoam_mesh, nullptr, nullptr, CarriesValues::kNone, kNoParts,
+     foam_word, foam_word, kBoundaryOnly},
+    {".su2", kFirstOrder, one_file<write_su2>, read_su2, nullptr, CarriesValues::kNone, kNoParts,
+     su2_tag, nullptr, kBoundaryOnly},
+    {".npz", kFirstOrder, one_file<write_npz>, read_npz, read_npz_values, CarriesValues::kAll,
+     kParts, any_name, any_name},
+    {".geojson", kFirstOrder, one_file<write_geojson_mesh>, nullptr, nullptr, CarriesValues::kNone,
+     kNoParts, any_name, any_name},
+    {".obj", kFirstOrder, one_file<write_obj>, read_obj, nullptr, CarriesValues::kNone, kNoParts,
+     obj_group, obj_group},
     {".off", kFirstOrder, one_file<write_off>, read_off},
     {".ply", kFirstOrder, one_file<write_ply>, nullptr},
     {".stl", kFirstOrder, one_file<write_stl>, nullptr},
@@ -78,7 +121,15 @@ tl::unexpected<Error> usage(const std::filesystem::path& path, const std::string
               path.string() + ": the extension " + in_quotes(path.extension().string()) + why);
 }
 
-// What `read` returns, or an error if it runs out of memory.
+std::set<std::int32_t> boundary_markers(const MeshView& mesh) {
+  const MeshEdges edges(mesh);
+  std::set<std::int32_t> markers;
+  for (const std::size_t i : mesh.up_to(mesh.edge_count()))
+    if (edges.on_boundary(edges.of_input_edge(i))) markers.insert(mesh.edge_markers[i]);
+  return markers;
+}
+
+// Returns what `read` returns, or an error if it runs out of memory.
 template <class T, class Read>
 Result<T> with_memory(const std::filesystem::path& path, const Read& read) {
   try {
@@ -126,8 +177,34 @@ Result<void> check_writable(const std::filesystem::path& path, const MeshWriteOp
   return {};
 }
 
+std::vector<std::string> not_carried(const std::filesystem::path& path, const MeshView& mesh) {
+  const MeshFormat& format = *mesh_format(path);
+  std::vector<std::string> sentences;
+  std::string lost;
+  for (const VertexValues& values : mesh.vertex_values)
+    if (format.values == CarriesValues::kNone ||
+        (format.values == CarriesValues::kBed && !Bed::is_bed(values.name)))
+      lost += (lost.empty() ? "" : ", ") + values.name;
+  if (!lost.empty())
+    sentences.push_back(path.string() +
+                        ": the format does not carry these values at vertices: " + lost);
+  if (!mesh.parts.empty() && !format.parts)
+    sentences.push_back(path.string() + ": the format does not carry the parts of the triangles");
+  Names written = names_in(format, *mesh.names);
+  if (format.boundary_only && !written.markers.empty()) {
+    const std::set<std::int32_t> markers = boundary_markers(mesh);
+    std::erase_if(written.markers,
+                  [&](const auto& entry) { return !markers.contains(entry.first); });
+  }
+  add_name_losses(path.string(), *mesh.names, written, sentences);
+  return sentences;
+}
+
 std::vector<std::filesystem::path> mesh_files(const std::filesystem::path& path) {
-  if (lower_extension(path) != ".node") return {path};
+  const std::string extension = lower_extension(path);
+  if (extension == ".xdmf") return {path, path.string() + ".bin"};
+  if (extension == ".foam") return openfoam_files(path);
+  if (extension != ".node") return {path};
   std::vector<std::filesystem::path> files;
   for (const char* name : {".node", ".ele", ".poly"})
     files.push_back(std::filesystem::path(path).replace_extension(name));
@@ -136,15 +213,18 @@ std::vector<std::filesystem::path> mesh_files(const std::filesystem::path& path)
 
 void write_mesh(const MeshFormat& format, const MeshView& mesh, std::span<OutputFile> files,
                 const MeshWriteOptions& options) {
+  const Names names = names_in(format, *mesh.names);
+  MeshView named = mesh;
+  named.names = &names;
   const auto fail_all = [files](int problem) {
     for (OutputFile& file : files) file.fail(problem);
   };
   try {
     if (options.order == 2) {
-      const SecondOrderMesh second(mesh);
+      const SecondOrderMesh second(named);
       format.write(second.view(), files, options);
     } else {
-      format.write(mesh, files, options);
+      format.write(named, files, options);
     }
   } catch (const std::system_error& failure) {
     fail_all(failure.code().value());
@@ -167,11 +247,37 @@ Result<void> check_has_vertex_values(const std::filesystem::path& path) {
                          extensions([](const MeshFormat& f) { return f.read_values != nullptr; }));
 }
 
-Result<VertexValues> read_vertex_values(const std::filesystem::path& path,
-                                        const std::string& array) {
+Result<MeshWithValues> read_vertex_values(const std::filesystem::path& path,
+                                          const std::string& array) {
   if (auto ok = check_has_vertex_values(path); !ok) return tl::unexpected(ok.error());
-  return with_memory<VertexValues>(path,
-                                   [&] { return mesh_format(path)->read_values(path, array); });
+  return with_memory<MeshWithValues>(path, [&]() -> Result<MeshWithValues> {
+    auto read = mesh_format(path)->read_values(path, array);
+    if (!read) return tl::unexpected(read.error());
+    if (read->mesh.triangles.empty())
+      return fail(ExitCode::kUnreadableInput, path.string() + ": has no triangles");
+    NamedArray& only = read->arrays.front();
+    auto values =
+        checked(path, only.name, std::move(only.values), read->mesh.coordinates.size() / 2);
+    if (!values) return tl::unexpected(values.error());
+    return MeshWithValues{std::move(read->mesh), std::move(*values)};
+  });
+}
+
+Result<MeshWithArrays> read_mesh_with_arrays(const std::filesystem::path& path) {
+  const MeshFormat* format = mesh_format(path);
+  if (format == nullptr || format->read_values == nullptr) {
+    auto mesh = read_mesh(path);
+    if (!mesh) return tl::unexpected(mesh.error());
+    return MeshWithArrays{std::move(*mesh), {}};
+  }
+  return with_memory<MeshWithArrays>(path, [&] {
+    auto read = format->read_values(path, std::nullopt);
+    if (!read) return read;
+    for (NamedArray& array : read->arrays)
+      array.values =
+          checked(path, array.name, std::move(array.values), read->mesh.coordinates.size() / 2);
+    return read;
+  });
 }
 
 Result<Mesh> validated(const std::filesystem::path& path, Mesh mesh) {
@@ -190,6 +296,13 @@ Result<Mesh> validated(const std::filesystem::path& path, Mesh mesh) {
     if (mesh.edges[i] >= vertices)
       return refuse("edge " + std::to_string(i / 2) + " has vertex " +
                     std::to_string(mesh.edges[i]) + " of " + std::to_string(vertices));
+  if (!mesh.parts.empty() && mesh.parts.size() != mesh.triangles.size() / 3)
+    return refuse("has parts of " + std::to_string(mesh.parts.size()) + " triangles, not of " +
+                  std::to_string(mesh.triangles.size() / 3));
+  for (std::size_t i = 0; i < mesh.parts.size(); ++i)
+    if (mesh.parts[i] < 0)
+      return refuse("triangle " + std::to_string(i) + " has the part " +
+                    std::to_string(mesh.parts[i]) + ", they count from 0");
   mesh.regions.resize(mesh.triangles.size() / 3);
   mesh.edge_markers.resize(mesh.edges.size() / 2);
   return mesh;

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,22 +16,32 @@
 
 #include "client/base/atomic_file.h"
 #include "client/base/error.h"
+#include "client/formats/derived/vertex_values.h"
 #include "client/formats/domain.h"
 #include "client/formats/mesh.h"
-#include "client/formats/vertex_values.h"
+#include "client/formats/names.h"
+#include "client/formats/nodal_option.h"
 
 namespace weft::client {
 
 enum class MshVersion { k22, k41 };
+enum class Renumbering { kNone, kReverseCuthillMcKee };
 
-// How to write meshes, if their format has a choice.
+// How meshes are written, if their format has a choice.
 struct MeshWriteOptions {
   int order = 1;  // 2: six-node triangles, for formats of second order
   MshVersion msh_version = MshVersion::k41;
-  std::vector<std::int32_t> open_boundaries{};  // markers, for ADCIRC
+  std::vector<std::int32_t> open_boundaries{};     // markers, for ADCIRC
+  std::vector<std::string> open_boundary_names{};  // more of them, by name; writers ignore these
+  std::vector<NodalOption> nodal{};                // values at the vertices
+  Renumbering renumbering = Renumbering::kNone;    // of the vertices
+  std::optional<std::uint32_t> parts{};            // to divide the triangles into
 
   bool operator==(const MeshWriteOptions&) const = default;
 };
+
+// Which values at vertices a format carries: none, the bed (bed.h), or all.
+enum class CarriesValues { kNone, kBed, kAll };
 
 struct MeshFormat {
   std::string_view extension;  // lower case, ".vtu"
@@ -39,8 +50,14 @@ struct MeshFormat {
   void (*write)(const MeshView&, std::span<OutputFile>, const MeshWriteOptions&) = nullptr;
   Result<Mesh> (*read)(const std::filesystem::path&) = nullptr;
   // Null if the format carries no values at vertices.
-  Result<VertexValues> (*read_values)(const std::filesystem::path&,
-                                      const std::string& array) = nullptr;
+  Result<MeshWithArrays> (*read_values)(const std::filesystem::path&,
+                                        const std::optional<std::string>& wanted) = nullptr;
+  CarriesValues values = CarriesValues::kNone;
+  bool parts = false;  // whether it carries the parts of the triangles
+  // How it writes the names of markers and regions; null if it does not carry them.
+  Spelling marker_names = nullptr;
+  Spelling region_names = nullptr;
+  bool boundary_only = false;  // whether it has the edges of the boundary alone
 };
 
 // The format of an extension, in upper or lower case; null if there is none.
@@ -56,6 +73,11 @@ tl::unexpected<Error> unknown_mesh_format(const std::filesystem::path& path);
 // Succeeds if meshes can be written to `path` in this way; otherwise kUsage.
 Result<void> check_writable(const std::filesystem::path& path, const MeshWriteOptions& options);
 
+// What of a mesh with these values, parts and names is not in a file at `path`, or is spelled in
+// another way, because of its format: sentences for the user, which name the file. REQUIRES: the
+// format is known.
+std::vector<std::string> not_carried(const std::filesystem::path& path, const MeshView& mesh);
+
 // The files that writing to `path` makes. REQUIRES: the format is known.
 std::vector<std::filesystem::path> mesh_files(const std::filesystem::path& path);
 
@@ -65,8 +87,9 @@ void write_mesh(const MeshFormat& format, const MeshView& mesh, std::span<Output
                 const MeshWriteOptions& options = {});
 
 // Reads a mesh. Errors: kUsage for an extension that is unknown or only written, kUnreadableInput
-// for the rest. A mesh that was read has vertex numbers in range, finite coordinates and as many
-// regions and markers as triangles and edges; nothing else is promised.
+// for the rest. A mesh that was read has vertex numbers in range, finite coordinates, as many
+// regions and markers as triangles and edges, and no parts or one from 0 for each triangle; nothing
+// else is promised.
 Result<Mesh> read_mesh(const std::filesystem::path& path);
 
 // The last check of all readers: ensures the promises of read_mesh.

@@ -8,15 +8,15 @@
 #include <string_view>
 
 #include "client/base/text.h"
-#include "client/formats/file_contents.h"
-#include "client/formats/line_scanner.h"
+#include "client/formats/files/file_contents.h"
+#include "client/formats/files/line_scanner.h"
 #include "client/formats/mesh_formats.h"
 
 namespace weft::client {
 namespace {
 
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{4} << 30;
-// More than any server takes.
+// More than any server accepts.
 constexpr std::int64_t kMaxNodes = std::int64_t{1} << 28;
 
 struct Header {
@@ -44,7 +44,7 @@ class Reader {
   }
 
  private:
-  // Lines of a word and a number; ends on the first line of values.
+  // Reads lines of a word and a number, up to the first line of values.
   Result<void> read_header() {
     while (true) {
       if (auto line = scanner_.next_line("the values"); !line) return line;
@@ -118,7 +118,7 @@ class Reader {
     return {};
   }
 
-  // Rows may be broken over lines.
+  // A row may be divided over lines.
   Result<void> read_values() {
     std::vector<double>& values = grid_.values;
     const std::size_t columns = grid_.columns;
@@ -134,7 +134,7 @@ class Reader {
         const bool absent = header_.no_data && *value == *header_.no_data;
         if (wanted_ == RasterValues::kPositive) {
           if (absent)
-            return scanner_.error("a cell without a value: the bound there is for you to say");
+            return scanner_.error("a cell without a value, but a size needs one in every cell");
           if (!(*value > 0)) return scanner_.error("the bound on the area is not positive");
         }
         values[row * columns + column] = absent ? std::numeric_limits<double>::quiet_NaN() : *value;
@@ -145,7 +145,7 @@ class Reader {
     return {};
   }
 
-  const std::size_t most_values_;  // that the file has room for
+  const std::size_t most_values_;  // that the file can hold, by its size
   const RasterValues wanted_;
   LineScanner scanner_;
   Header header_;

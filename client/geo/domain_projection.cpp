@@ -32,11 +32,11 @@ class Projecting {
   Projecting(const Projection& projection, const LonLatExtent& extent)
       : projection_(projection), extent_(extent) {}
 
-  // Without the check of `checked`.
+  // Without what `checked` checks.
   Point forward(Point lonlat) const {
     return projection_.forward({extent_.unwrapped(lonlat.x), lonlat.y});
   }
-  // Errors if the projection does not take the point there and back.
+  // Returns an error if the projection does not map the point there and back.
   Result<Point> checked(Point lonlat, const Provenance& places, std::size_t i) const {
     constexpr double kNear = 1e-7;  // degrees: a centimetre
     const Point at = forward(lonlat);
@@ -60,7 +60,7 @@ Point on_segment(Point a, Point b, double at) {
   return {a.x + longitude_step(a.x, b.x) * at, a.y + (b.y - a.y) * at};
 }
 
-// Whether the segment from a to b, in so many pieces, is straight enough in the plane.
+// Whether the segment from a to b, divided into so many pieces, is straight enough in the plane.
 bool are_straight(const Projecting& projecting, Point a, Point b, std::size_t pieces) {
   Point from = projecting.forward(a);
   for (std::size_t piece = 0; piece < pieces; ++piece) {
@@ -81,9 +81,9 @@ bool are_straight(const Projecting& projecting, Point a, Point b, std::size_t pi
   return true;
 }
 
-// The pieces of a segment; 1 if it is straight enough.
+// The number of pieces of a segment; 1 if it is straight enough.
 std::size_t pieces_of(const Projecting& projecting, Point a, Point b) {
-  // Turning by this many degrees bends a segment by less than kStraight of its length.
+  // A turn by this many degrees bends a segment by less than kStraight of its length.
   constexpr double kShort = 0.3;
   const double steep = std::tan(std::max(std::abs(a.y), std::abs(b.y)) * std::numbers::pi / 180);
   if (std::abs(longitude_step(a.x, b.x)) + std::abs(b.y - a.y) * std::max(1.0, steep) < kShort)
@@ -93,7 +93,7 @@ std::size_t pieces_of(const Projecting& projecting, Point a, Point b) {
   return pieces;
 }
 
-// Divides the segments that are not straight in the plane. `lonlat` are the points of the domain.
+// Divides segments that are not straight in the plane. `lonlat` are the points of the domain.
 Result<void> divide(Domain& domain, std::vector<Point>& lonlat, const Projecting& projecting) {
   const std::size_t segments = domain.segments.size();
   std::size_t added = 0;
@@ -109,7 +109,7 @@ Result<void> divide(Domain& domain, std::vector<Point>& lonlat, const Projecting
                   domain.segment_places.locate(i) +
                       ": the domain has so many long segments that more than " +
                       with_separators(kMostAdded) + " points would have to be added on them");
-    // Two segments between the same points get the same points, in whatever direction they go.
+    // Two segments between the same points get the same points, whatever their directions.
     const bool turned = std::pair(b.x, b.y) < std::pair(a.x, a.y);
     if (turned) std::swap(a, b);
     std::uint32_t from = whole.a;

@@ -53,7 +53,7 @@ Result<void> check_domain(const Domain& domain) {
   return {};
 }
 
-// To [-180, 180); a longitude that lies there stays as it is. REQUIRES: -720 to 720.
+// Brings a longitude to [-180, 180); one that lies there stays as it is. REQUIRES: -720 to 720.
 double wrapped(double longitude) {
   while (longitude < -180) longitude += 360;
   while (longitude >= 180) longitude -= 360;
@@ -65,12 +65,12 @@ struct Arc {
   double width;
 };
 
-// Cuts the longitudes in the widest gap between the arcs.
+// Cuts the circle of longitudes in the widest gap between the arcs.
 void find_range(std::vector<Arc>& arcs, LonLatExtent& extent) {
   std::sort(arcs.begin(), arcs.end(), [](const Arc& a, const Arc& b) { return a.west < b.west; });
-  double reached = arcs.front().west;  // by the arcs so far
+  double reached = arcs.front().west;  // by the arcs up to here
   for (const Arc& arc : arcs) reached = std::max(reached, arc.west + arc.width);
-  reached -= 360;  // by those that go on beyond 180, from -180 on
+  reached -= 360;  // by the arcs that go on beyond 180, from -180 on
   double widest = 0;
   extent.west = -180;
   for (const Arc& arc : arcs) {
@@ -84,13 +84,13 @@ void find_range(std::vector<Arc>& arcs, LonLatExtent& extent) {
   extent.width = 360 - widest;
 }
 
-// At most so many points stand for all; each is read several times.
+// At most so many points stand for all of them, because each is read several times.
 constexpr std::size_t kMostPoints = 10'000;
 
 struct Candidate {
   std::string parameters;
-  // The logarithm of the scale on the sphere, at a longitude from the central one and a latitude,
-  // in radians.
+  // The logarithm of the scale on the sphere, at a longitude relative to the central one, and a
+  // latitude, in radians.
   std::function<double(double, double)> log_scale;
   double central;  // longitude, in degrees
 };
@@ -104,7 +104,7 @@ std::string degrees(double value) {
   return digits == "-0" ? "0" : digits;
 }
 
-// The value that its text says.
+// The value with as many digits as the parameter's text has.
 double rounded(double value) {
   return std::round(value * 1e5) / 1e5;
 }
@@ -117,7 +117,7 @@ std::vector<Candidate> candidates(const LonLatExtent& extent) {
   all.push_back({"+proj=tmerc +lat_0=" + degrees(lat) + " +lon_0=" + degrees(middle),
                  [](double dl, double phi) {
                    const double b = std::cos(phi) * std::sin(dl);
-                   if (std::cos(dl) < 0 && std::cos(phi) > 0.5) return HUGE_VAL;  // beyond
+                   if (std::cos(dl) < 0 && std::cos(phi) > 0.5) return HUGE_VAL;  // outside the map
                    return -std::log1p(-b * b) / 2;
                  },
                  middle});
@@ -147,7 +147,8 @@ std::vector<Candidate> candidates(const LonLatExtent& extent) {
   return all;
 }
 
-// The middle of the box around the points on the unit sphere, seen from its middle.
+// The middle of the box in space around the points on the unit sphere, as seen from the middle of
+// the sphere.
 Point centre_of(const Domain& domain) {
   std::array<double, 3> least{2, 2, 2};
   std::array<double, 3> most{-2, -2, -2};

@@ -22,7 +22,7 @@ using Pj = std::unique_ptr<PJ, Destroy>;
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
-// What is wrong with the unit of the system's axes; empty if both are metres.
+// What is wrong with the units of the system's axes; empty if both are metres.
 std::string fault_of_unit(PJ_CONTEXT* context, const PJ* crs) {
   const Pj system(proj_crs_get_coordinate_system(context, crs));
   if (!system) return "has no axes";
@@ -107,7 +107,7 @@ Point Projection::inverse(Point metres) const {
   return {out.xy.x, out.xy.y};
 }
 
-// By differences over some ten metres: proj_factors takes milliseconds on a system.
+// By differences over about ten metres: proj_factors takes milliseconds for each system.
 Projection::Distortion Projection::distortion_at(Point lonlat) const {
   constexpr double kStep = 1e-4;  // degrees
   constexpr double kNextToPole = 89.99;
@@ -125,7 +125,7 @@ Projection::Distortion Projection::distortion_at(Point lonlat) const {
   const double ye = (east.y - west.y) / (per_lon * radians);
   const double xn = (north.x - south.x) / (per_lat * radians);
   const double yn = (north.y - south.y) / (per_lat * radians);
-  // The sum and the difference of the half axes of Tissot's ellipse.
+  // The sum and the difference of the semi-axes of Tissot's ellipse.
   const double sum = std::hypot(xe + yn, ye - xn);
   const double difference = std::hypot(xe - yn, ye + xn);
   return {std::abs(sum - difference) / 2, (sum + difference) / 2,

@@ -4,13 +4,12 @@
 #include <google/protobuf/util/time_util.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
 #include "client/base/text.h"
 #include "client/call/server_error.h"
-#include "client/report/mesh_report.h"
+#include "client/report/mesh_text.h"
 #include "client/report/progress_bar.h"
 #include "google/rpc/error_details.pb.h"
 
@@ -52,10 +51,11 @@ Json error_json(const google::rpc::Status& error) {
 }
 
 // A line of a table: columns as wide as their longest cell, two blanks between them.
-using Row = std::array<std::string, 6>;
+using Row = std::vector<std::string>;
 
+// Rows of one length.
 std::string aligned(const std::vector<Row>& rows) {
-  std::array<std::size_t, std::tuple_size_v<Row>> widths{};
+  std::vector<std::size_t> widths(rows.front().size());
   for (const Row& row : rows)
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
   std::string text;
@@ -68,14 +68,16 @@ std::string aligned(const std::vector<Row>& rows) {
   return text;
 }
 
-Row row_of(const v1::Job& job) {
-  Row row = {harmless(job.id()), state_name(job.state()), time_text(job.create_time()), "", "", ""};
+// `named`: with its client.
+Row row_of(const v1::Job& job, bool named) {
+  Row row = {harmless(job.id()), state_name(job.state()), time_text(job.create_time()), "", ""};
   if (job.has_progress()) {
     row[3] = std::to_string(std::lround(100 * done_of(job.progress()))) + " %";
     row[4] = with_separators(job.progress().triangles());
   }
   if (job.has_summary()) row[4] = with_separators(job.summary().triangles());
-  if (job.has_error()) row[5] = reason_of(job.error());
+  if (named) row.push_back(harmless(job.client()));
+  row.push_back(job.has_error() ? reason_of(job.error()) : "");
   return row;
 }
 
@@ -113,6 +115,7 @@ Json job_json(const v1::Job& job) {
   if (job.has_end_time()) json["end_time"] = TimeUtil::ToString(job.end_time());
   json["attempts"] = job.attempts();
   if (!job.worker().empty()) json["worker"] = job.worker();
+  if (!job.client().empty()) json["client"] = job.client();
   json["from_store"] = job.from_store();
   if (const v1::Progress& progress = job.progress(); job.has_progress())
     json["progress"] = {{"stage", stage_key(progress.stage())},
@@ -122,6 +125,8 @@ Json job_json(const v1::Job& job) {
                         {"fraction", progress.fraction()}};
   if (job.has_error()) json["error"] = error_json(job.error());
   if (job.has_summary()) json["summary"] = summary_json(job.summary());
+  for (const v1::SizeWarning& warning : job.summary().size_warnings())
+    json["warnings"].push_back(warning.message());
   return json;
 }
 
@@ -146,6 +151,7 @@ std::string job_text(const v1::Job& job) {
   if (job.has_end_time()) row("ended", time_text(job.end_time()));
   if (job.attempts() > 0) row("attempts", std::to_string(job.attempts()));
   if (!job.worker().empty()) row("worker", harmless(job.worker()));
+  if (!job.client().empty()) row("client", harmless(job.client()));
   if (job.from_store()) row("from store", "the mesh was kept already");
   if (job.has_progress()) row("progress", progress_text(job.progress(), false));
   if (job.has_error()) {
@@ -162,8 +168,13 @@ std::string job_text(const v1::Job& job) {
 }
 
 std::string job_table(std::span<const v1::Job> jobs) {
-  std::vector<Row> rows = {{"ID", "STATE", "CREATED", "DONE", "TRIANGLES", "ERROR"}};
-  for (const v1::Job& job : jobs) rows.push_back(row_of(job));
+  const bool named = std::any_of(jobs.begin(), jobs.end(),
+                                 [](const v1::Job& job) { return !job.client().empty(); });
+  Row heading = {"ID", "STATE", "CREATED", "DONE", "TRIANGLES"};
+  if (named) heading.push_back("CLIENT");
+  heading.push_back("ERROR");
+  std::vector<Row> rows = {heading};
+  for (const v1::Job& job : jobs) rows.push_back(row_of(job, named));
   return aligned(rows);
 }
 
@@ -173,7 +184,7 @@ v1::Progress progress_of(const v1::Job& job) {
   return progress;
 }
 
-std::optional<Error> job_error(const v1::Job& job, const Domain* domain) {
+std::optional<Error> job_error(const v1::Job& job, const RequestOrigin& origin) {
   constexpr int kCancelled = 1;
   constexpr int kFailedPrecondition = 9;
   const std::string name = "the job " + harmless(job.id());
@@ -181,7 +192,7 @@ std::optional<Error> job_error(const v1::Job& job, const Domain* domain) {
     case v1::JOB_STATE_SUCCEEDED:
       return std::nullopt;
     case v1::JOB_STATE_FAILED:
-      return error_of(job.error(), name + " failed with", domain);
+      return error_of(job.error(), name + " failed with", origin);
     case v1::JOB_STATE_CANCELLED:
       return Error{exit_code_of_status(kCancelled), name + " was cancelled"};
     default:

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "client/base/error.h"
-#include "client/formats/domain.h"
+#include "client/call/server_error.h"
 #include "client/report/json_line.h"
 #include "weft/v1/job_service.pb.h"
 
@@ -30,7 +30,7 @@ Json job_json(const v1::Job& job);
 // One field per line.
 std::string job_text(const v1::Job& job);
 
-// One job per line, under a heading.
+// One job per line, under a heading; with clients if a job names one.
 std::string job_table(std::span<const v1::Job> jobs);
 
 // The job's progress for a progress bar, also while it waits.
@@ -38,7 +38,6 @@ v1::Progress progress_of(const v1::Job& job);
 
 // Returns nullopt if the job succeeded. If it failed, the exit code is that of its error; if it was
 // cancelled, that of CANCELLED; if it has not ended, that of FAILED_PRECONDITION.
-// `domain`, if it is known, gives the places of fields at fault.
-std::optional<Error> job_error(const v1::Job& job, const Domain* domain);
+std::optional<Error> job_error(const v1::Job& job, const RequestOrigin& origin = {});
 
 }  // namespace weft::client

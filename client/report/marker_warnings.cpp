@@ -53,4 +53,11 @@ std::vector<std::string> hidden_marker_warnings(const std::set<std::int32_t>& in
           " of the input: other segments lie on theirs, or they are not part of what is meshed"};
 }
 
+void add_marker_warnings(const MeshView& mesh, std::span<const std::int32_t> open_boundaries,
+                         const Domain* domain, MeshReport& report) {
+  report.markers = markers_of(mesh);
+  add_warnings(open_boundary_warnings(report.markers, open_boundaries), report);
+  if (domain != nullptr) add_warnings(hidden_marker_warnings(report.markers, *domain), report);
+}
+
 }  // namespace weft::client

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "client/call/mesh_report.h"
 #include "client/formats/domain.h"
 #include "client/formats/mesh.h"
 
@@ -26,5 +27,10 @@ std::vector<std::string> open_boundary_warnings(const std::set<std::int32_t>& in
 // segments overlap, the mesh's edges carry the marker of one of them.
 std::vector<std::string> hidden_marker_warnings(const std::set<std::int32_t>& in_mesh,
                                                 const Domain& domain);
+
+// Sets the markers of the report, and adds both kinds of warning to it; those about the input only
+// if there is a domain. `domain` may be null.
+void add_marker_warnings(const MeshView& mesh, std::span<const std::int32_t> open_boundaries,
+                         const Domain* domain, MeshReport& report);
 
 }  // namespace weft::client

@@ -2,6 +2,7 @@
 #include "client/report/mesh_output.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <initializer_list>
 #include <new>
@@ -12,10 +13,21 @@
 #include <utility>
 
 #include "client/base/text.h"
+#include "client/formats/derived/mesh_parts.h"
+#include "client/formats/derived/renumbered_mesh.h"
 #include "client/formats/mesh_formats.h"
 
 namespace weft::client {
 namespace {
+
+// Checks that the files exist before a mesh is made.
+Result<void> check_nodal(const MeshOutputOptions& options) {
+  for (const NodalOption& option : options.writing.nodal)
+    for (const auto& source : option.sources)
+      if (const auto* raster = std::get_if<RasterPath>(&source))
+        if (auto found = must_be_raster_file(raster->file); !found) return found;
+  return {};
+}
 
 // Refuses unknown extensions, names given twice, and outputs that would replace the input.
 Result<void> check_names(const MeshOutputOptions& options,
@@ -35,10 +47,19 @@ Result<void> check_names(const MeshOutputOptions& options,
              extensions.end();
     });
   };
-  if (!options.writing.open_boundaries.empty() && !writes({".14", ".grd"}))
+  if (!(options.writing.open_boundaries.empty() && options.writing.open_boundary_names.empty()) &&
+      !writes({".14", ".grd"}))
     return fail(ExitCode::kUsage, "--open-boundary is for ADCIRC: give an output .14 or .grd");
   if (options.writing.msh_version != MshVersion::k41 && !writes({".msh"}))
     return fail(ExitCode::kUsage, "--msh-version is for Gmsh: give an output .msh");
+  if (auto ok = check_nodal(options); !ok) return ok;
+  if (options.writing.parts)
+    if (auto ok = check_can_divide(); !ok) return ok;
+  if (!options.drawings.empty() && options.drawing.color == DrawColor::kBound &&
+      !options.area_bound)
+    return fail(ExitCode::kUsage,
+                "--color bound needs the bounds: draw the mesh by `weft draw MESH --color bound "
+                "--size EXPR`");
   for (const auto& drawing : options.drawings) {
     if (!draw_format(drawing))
       return fail(ExitCode::kUsage, drawing.string() + ": the extension " +
@@ -57,12 +78,17 @@ Result<void> check_names(const MeshOutputOptions& options,
   return {};
 }
 
-// All files of the outputs, then the drawings, in the order of the options.
+// Opens all files of the outputs, then the drawings, in the order of the options.
 Result<std::vector<OutputFile>> open_files(const MeshOutputOptions& options,
                                            const std::stop_token& stop) {
   std::vector<std::filesystem::path> names;
   for (const auto& output : options.files)
-    for (auto& file : mesh_files(output)) names.push_back(std::move(file));
+    for (auto& file : mesh_files(output)) {
+      std::error_code ignored;  // opening the file reports it
+      if (file.parent_path() != output.parent_path())
+        std::filesystem::create_directories(file.parent_path(), ignored);
+      names.push_back(std::move(file));
+    }
   names.insert(names.end(), options.drawings.begin(), options.drawings.end());
   std::vector<OutputFile> files;
   for (const auto& name : names) {
@@ -73,24 +99,18 @@ Result<std::vector<OutputFile>> open_files(const MeshOutputOptions& options,
   return files;
 }
 
+std::string parts_text(const MeshParts& parts, std::uint32_t count) {
+  return "parts " + with_separators(count) + ", of " + with_separators(parts.least) + " to " +
+         with_separators(parts.most) + " triangles, " + with_separators(parts.cut) +
+         " edges between them\n";
+}
+
 // What a drawing of the quadtree shows, or why it shows none.
 std::string quadtree_text(const v1::Summary& summary) {
   if (summary.leaves() == 0) return "no quadtree to draw: one task refined the mesh\n";
   const std::string leaves = "quadtree of " + with_separators(summary.leaves()) +
                              (summary.leaves() == 1 ? " leaf" : " leaves");
   return leaves + (summary.leaf_boxes().empty() ? ", too many to be drawn\n" : "\n");
-}
-
-// Longitude and latitude of the vertices; kUnwritableOutput if there is no room for them.
-Result<ScratchArray<double>> bring_back(const DomainProjection& projection, const MeshView& mesh) {
-  try {
-    return projection.to_lonlat(mesh);
-  } catch (const std::system_error& failure) {
-    return fail(ExitCode::kUnwritableOutput,
-                std::string("the mesh cannot be projected: ") + failure.code().message());
-  } catch (const std::bad_alloc&) {
-    return fail(ExitCode::kUnwritableOutput, "the mesh cannot be projected: not enough memory");
-  }
 }
 
 }  // namespace
@@ -109,44 +129,102 @@ MeshOutput::MeshOutput(MeshOutputOptions options, std::vector<OutputFile> files,
     : options_(std::move(options)), files_(std::move(files)), stop_(std::move(stop)) {
   if (options_.drawings.empty()) return;
   if (options_.projection.wanted()) options_.drawing.unit = DrawnUnit::kMetres;
-  drawing_ = std::make_unique<Drawing>(options_.drawing);
+  drawing_ = std::make_unique<Drawing>(options_.drawing, options_.area_bound);
 }
 
 Result<std::unique_ptr<MeshSpool>> MeshOutput::make_spool() {
   const auto folder = files_.front().target().parent_path();
   MeshSpoolOptions options{.vertices_only = options_.files.empty(), .on_piece = {}, .stop = stop_};
-  if (drawing_)
-    options.on_piece = [drawing = drawing_.get()](const MeshView& piece) { drawing->add(piece); };
+  if (drawing_ || other_drawing_ != nullptr)
+    options.on_piece = [drawings =
+                            std::array{drawing_.get(), other_drawing_}](const MeshView& piece) {
+      for (Drawing* const drawing : drawings)
+        if (drawing != nullptr) drawing->add(piece);
+    };
   return MeshSpool::create(folder.empty() ? "." : folder, std::move(options));
 }
 
+Result<void> MeshOutput::find_markers(const NameTable& markers) {
+  for (const std::string& name : std::exchange(options_.writing.open_boundary_names, {})) {
+    const auto marker = find_marker(name, markers);
+    if (!marker) return tl::unexpected(marker.error());
+    options_.writing.open_boundaries.push_back(*marker);
+  }
+  return {};
+}
+
 Result<void> MeshOutput::write(const MeshView& arrived, const v1::Summary& summary) {
-  MeshView mesh = arrived;
-  ScratchArray<double> lonlat;
-  if (projection_ && !projection_->to_metres() && !options_.files.empty()) {
-    auto brought = bring_back(*projection_, mesh);
-    if (!brought) return tl::unexpected(brought.error());
-    lonlat = std::move(*brought);
-    mesh.coordinates = lonlat.values();
-  }
-  std::span<OutputFile> rest = files_;
-  for (const auto& name : options_.files) {
-    const std::size_t count = mesh_files(name).size();
-    write_mesh(*mesh_format(name), mesh, rest.first(count), options_.writing);
-    rest = rest.subspan(count);
-  }
+  if (!options_.files.empty())
+    if (auto written = write_files(arrived); !written) return written;
+  std::span<OutputFile> drawings(files_);
+  drawings = drawings.last(options_.drawings.size());
   std::span<const double> leaves;
   if (options_.draw_quadtree)
     leaves = {summary.leaf_boxes().data(), static_cast<std::size_t>(summary.leaf_boxes_size())};
-  for (std::size_t i = 0; i < options_.drawings.size(); ++i) {
-    if (auto drawn = drawing_->draw(*draw_format(options_.drawings[i]), leaves, rest[i]); !drawn)
+  for (std::size_t i = 0; i < drawings.size(); ++i) {
+    if (auto drawn = drawing_->draw(*draw_format(options_.drawings[i]), leaves, drawings[i]);
+        !drawn)
       return drawn;
   }
   return commit(files_);
 }
 
+Result<void> MeshOutput::write_files(const MeshView& arrived) try {
+  MeshView plane = arrived;  // as the values are sampled
+  std::optional<RenumberedMesh> renumbered;
+  if (options_.writing.renumbering == Renumbering::kReverseCuthillMcKee) {
+    renumbered.emplace(arrived);
+    plane = renumbered->view();
+    text_ += "bandwidth " + with_separators(renumbered->bandwidth_before()) + ", " +
+             with_separators(renumbered->bandwidth()) + " once renumbered\n";
+  }
+  MeshParts parts;
+  if (options_.writing.parts) {
+    auto divided = divide(plane, *options_.writing.parts);
+    if (!divided) return tl::unexpected(divided.error());
+    parts = std::move(*divided);
+    text_ += parts_text(parts, *options_.writing.parts);
+  }
+  MeshView mesh = plane;
+  if (options_.writing.parts) mesh.parts = parts.of;
+  ScratchArray<double> lonlat;
+  if (projection_) mesh.unit = CoordinateUnit::kMetres;
+  if (projection_ && !projection_->to_metres()) {
+    auto brought = projection_->to_lonlat(mesh);
+    if (!brought) return tl::unexpected(brought.error());
+    lonlat = std::move(*brought);
+    mesh.coordinates = lonlat.values();
+    mesh.unit = CoordinateUnit::kDegrees;
+  }
+  std::vector<SampledValues> sampled;
+  std::vector<VertexValues> vertex_values(plane.vertex_values.begin(), plane.vertex_values.end());
+  for (const NodalOption& option : options_.writing.nodal) {
+    auto values =
+        sample_nodal(option, plane, projection_ ? projection_->name() : "", mesh.coordinates);
+    if (!values) return tl::unexpected(values.error());
+    warnings_.insert(warnings_.end(), values->warnings.begin(), values->warnings.end());
+    vertex_values.push_back({option.name, values->values.values()});
+    sampled.push_back(std::move(*values));
+  }
+  mesh.vertex_values = vertex_values;
+  std::span<OutputFile> rest = files_;
+  for (const auto& name : options_.files) {
+    const std::size_t count = mesh_files(name).size();
+    write_mesh(*mesh_format(name), mesh, rest.first(count), options_.writing);
+    rest = rest.subspan(count);
+    const auto lost = not_carried(name, mesh);
+    warnings_.insert(warnings_.end(), lost.begin(), lost.end());
+  }
+  return {};
+} catch (const std::system_error& failure) {
+  return fail(ExitCode::kUnwritableOutput,
+              std::string("the mesh cannot be written: ") + failure.code().message());
+} catch (const std::bad_alloc&) {
+  return fail(ExitCode::kUnwritableOutput, "the mesh cannot be written: not enough memory");
+}
+
 std::string MeshOutput::text(const v1::Summary& summary) const {
-  std::string text = options_.draw_quadtree ? quadtree_text(summary) : "";
+  std::string text = text_ + (options_.draw_quadtree ? quadtree_text(summary) : "");
   std::size_t rank = 0;
   for (const WorstTriangle& worst : drawing_ ? drawing_->worst() : std::vector<WorstTriangle>()) {
     const Point at = centroid(worst.triangle);

@@ -36,6 +36,7 @@ struct MeshOutputOptions {
   MeshWriteOptions writing{};  // of the files
   std::vector<std::filesystem::path> drawings{};
   DrawOptions drawing{};           // of the drawings
+  AreaBound area_bound{};          // that the drawings colour by
   bool draw_quadtree = false;      // over the drawings
   ProjectionOptions projection{};  // of the domain; the caller projects it
 
@@ -55,25 +56,41 @@ class MeshOutput {
   const MeshOutputOptions& options() const { return options_; }
   // Null if nothing is drawn. It gets the mesh from the spool, or from whoever has no spool.
   Drawing* drawing() const { return drawing_.get(); }
+  // The spool adds the mesh to this drawing, too, which must outlive it.
+  void also_draw(Drawing& other) { other_drawing_ = &other; }
   // The mesh that arrives is in metres of this projection, and is written in longitude and latitude
   // unless the projection says metres; drawings show the plane. Null: it is written as it arrives.
   void bring_back_by(std::shared_ptr<const DomainProjection> projection) {
     projection_ = std::move(projection);
   }
-  // `mesh` is the spool's view; any view if nothing is drawn.
+  // Makes markers of those that the options give by name. Error: that of find_marker.
+  Result<void> find_markers(const NameTable& markers);
+  // REQUIRES: find_markers was called if the options give markers by name.
+  // `mesh` is the spool's view; any view if nothing is drawn. Values at the vertices are sampled in
+  // the plane in which it arrives, and written after those that it has, which REQUIRES other names
+  // than theirs. Errors: those of sample_nodal, too.
   Result<void> write(const MeshView& mesh, const v1::Summary& summary);
-  // "wrote key.vtu, 1.2 MB\n" for each file, after lines on the quadtree if it was drawn and on
-  // each triangle that was marked as one of the worst. REQUIRES: written.
+  // "wrote key.vtu, 1.2 MB\n" for each file, after lines on bandwidth and parts, on the quadtree if
+  // it was drawn, and on each triangle that was marked as one of the worst. REQUIRES: written.
   std::string text(const v1::Summary& summary) const;
+  // Sentences for the user, on values at the vertices and on what a file does not carry. REQUIRES:
+  // written.
+  const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
   MeshOutput(MeshOutputOptions options, std::vector<OutputFile> files, std::stop_token stop);
+
+  // All but the drawings, without moving them into place.
+  Result<void> write_files(const MeshView& arrived);
 
   MeshOutputOptions options_;
   std::vector<OutputFile> files_;  // those of options_.files, then the drawings
   std::stop_token stop_;
   std::shared_ptr<const DomainProjection> projection_;
+  std::vector<std::string> warnings_;
+  std::string text_;                  // lines on the order and the parts of what was written
   std::unique_ptr<Drawing> drawing_;  // source of all drawings; null if there are none
+  Drawing* other_drawing_ = nullptr;
 };
 
 }  // namespace weft::client

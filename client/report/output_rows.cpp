@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <sstream>
+#include <utility>
+
+#include "client/formats/derived/mesh_parts.h"
 
 namespace weft::client {
 namespace {
@@ -14,7 +17,7 @@ std::string not_a_box(const std::string& text) {
          "its place";
 }
 
-// Four finite numbers, of which the sides are positive, none beyond what can be drawn.
+// Four finite numbers: the sides are positive, and none is larger than what can be drawn.
 OptionValue<DrawOptions> zoom() {
   return {"X,Y,W,H", "", Arity::kOne,
           [](const auto& texts, const auto&, DrawOptions& options) -> std::string {
@@ -40,6 +43,34 @@ OptionValue<DrawOptions> zoom() {
           }};
 }
 
+OptionValue<MeshWriteOptions> nodal() {
+  return {"NAME=SOURCE", "", Arity::kList,
+          [](const auto& texts, const auto& folder, MeshWriteOptions& options) -> std::string {
+            std::vector<NodalOption> all;
+            for (const std::string& text : texts)
+              if (auto fault = add_nodal(text, folder, all); !fault.empty()) return fault;
+            options.nodal = std::move(all);
+            return "";
+          }};
+}
+
+OptionValue<MeshWriteOptions> open_boundaries() {
+  return {"MARKER", "", Arity::kList,
+          [](const auto& texts, const auto&, MeshWriteOptions& options) -> std::string {
+            options.open_boundaries.clear();
+            options.open_boundary_names.clear();
+            for (const std::string& text : texts) {
+              if (const auto marker = value_of<std::int32_t>(text))
+                options.open_boundaries.push_back(*marker);
+              else if (name_fault(text).empty())
+                options.open_boundary_names.push_back(text);
+              else
+                return in_quotes(text) + " is neither an integer nor a name";
+            }
+            return "";
+          }};
+}
+
 }  // namespace
 
 const OptionRows<MeshWriteOptions>& writing_rows() {
@@ -47,15 +78,31 @@ const OptionRows<MeshWriteOptions>& writing_rows() {
   static const OptionRows<Writing> rows = {
       {"order", "WEFT_ORDER",
        "Order of the triangles written: 2 writes six-node triangles with straight sides, to .vtu, "
-       ".msh and .node",
+       ".msh, .node, .xdmf, .exo and .e",
        "1", one_of(&Writing::order, {{"1", 1}, {"2", 2}})},
       {"msh-version", "WEFT_MSH_VERSION",
        "Version of .msh files: 4.1, binary, or 2.2, text, for older programs", "4.1",
        one_of(&Writing::msh_version, {{"2.2", MshVersion::k22}, {"4.1", MshVersion::k41}})},
       {"open-boundary", "",
-       "Marker of segments that ADCIRC's .14 and .grd files have as open boundary; the others are "
-       "land. May be repeated",
-       "", integers("MARKER", &Writing::open_boundaries)},
+       "Marker of segments that ADCIRC's .14 and .grd files have as open boundary, by number or by "
+       "name; the others are land. May be repeated",
+       "", open_boundaries()},
+      {"nodal", "",
+       "Values at the vertices: NAME=FILE of a raster, NAME=FILE:BAND, or NAME=NUMBER. They are "
+       "written to .vtu, .msh, .npz, .nc, .slf, .xdmf and .exo; the bed, which is depth, positive "
+       "down, or elevation, positive up, to .14, .grd, .2dm and .disv, too. May be repeated: of "
+       "several sources of a name, the first that has a value at a vertex counts there",
+       "", nodal()},
+      {"renumber", "",
+       "Order of the vertices in files: rcm is reverse Cuthill-McKee, which brings the vertices of "
+       "an edge close to each other; none is the order in which they arrive",
+       "none",
+       one_of(&Writing::renumbering,
+              {{"none", Renumbering::kNone}, {"rcm", Renumbering::kReverseCuthillMcKee}})},
+      {"parts", "",
+       "Divide the triangles into N parts of the same size with few edges between them, for N "
+       "processes; .vtu, .nc, .npz, .xdmf and .exo store the part of each triangle. Needs METIS",
+       "", number("N", &Writing::parts, 1, kMostParts)},
   };
   return rows;
 }
@@ -64,22 +111,24 @@ const OptionRows<DrawOptions>& drawing_rows() {
   using Draw = DrawOptions;
   static const OptionRows<Draw> rows = {
       {"color", "WEFT_COLOR",
-       "Colour of the triangles in drawings: by their smallest angle, by their area, by region or "
-       "none; auto is size if they are too small to be seen one by one, otherwise none",
+       "Colour of the triangles in drawings: by their smallest angle, by their area (size), by "
+       "region, by their area over its bound, which --size or --edge gives, or none; auto is bound "
+       "if one is given, size if they are too small to be seen one by one, otherwise none",
        "auto",
        one_of(&Draw::color, {{"angle", DrawColor::kAngle},
                              {"size", DrawColor::kSize},
                              {"region", DrawColor::kRegion},
+                             {"bound", DrawColor::kBound},
                              {"none", DrawColor::kNone},
                              {"auto", DrawColor::kAuto}})},
       {"zoom", "",
        "Draw only what is in this box: its lower left corner, width and height, in the unit of the "
        "drawing",
        "", zoom()},
-      {"worst", "", "Mark so many triangles of the smallest angles in drawings", "",
+      {"worst", "", "Mark the N triangles with the smallest angles in drawings", "",
        number("N", &Draw::worst, 1, Draw::kMostWorst)},
       {"labels", "",
-       "Write the numbers of vertices and triangles and the markers into drawings, where they fit",
+       "Write the numbers of vertices and triangles, and the markers, into drawings if they fit",
        "", on_or_off(&Draw::labels)},
       {"no-legend", "", "Draw the mesh alone, without scale and legend", "",
        on_or_off(&Draw::no_legend)},
@@ -91,11 +140,24 @@ const OptionRows<DrawOptions>& drawing_rows() {
   return rows;
 }
 
+const OptionRows<DrawOptions>& drawing_rows_of_new_mesh() {
+  static const OptionRows<DrawOptions> rows = [] {
+    OptionRows<DrawOptions> all = drawing_rows();
+    OptionRow<DrawOptions>& color = all.front();
+    color.about =
+        "Colour of the triangles in drawings: by their smallest angle, by their area (size), by "
+        "region or none; auto is size if they are too small to be seen one by one, otherwise none";
+    color.value.unit = "angle|size|region|none|auto";
+    return all;
+  }();
+  return rows;
+}
+
 const OptionRows<MeshOutputOptions>& quadtree_rows() {
   using Output = MeshOutputOptions;
   static const OptionRows<Output> rows = {
       {"draw-quadtree", "WEFT_DRAW_QUADTREE",
-       "Draw the leaves of the quadtree that guided refinement over the mesh", "",
+       "Draw over the mesh the leaves of the quadtree that guided refinement", "",
        on_or_off(&Output::draw_quadtree)},
   };
   return rows;

@@ -9,8 +9,11 @@
 namespace weft::client {
 
 const OptionRows<MeshWriteOptions>& writing_rows();
-// What drawings show, of any mesh.
+// What drawings show, of any mesh, by `weft draw`.
 const OptionRows<DrawOptions>& drawing_rows();
+// The same for drawings of a mesh that is being made: they have no bound to colour by, so help does
+// not offer that colour; MeshOutput::open tells a user who asks for it what to do instead.
+const OptionRows<DrawOptions>& drawing_rows_of_new_mesh();
 // What they show of a mesh that was just made.
 const OptionRows<MeshOutputOptions>& quadtree_rows();
 

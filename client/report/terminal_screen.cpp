@@ -69,8 +69,9 @@ bool TerminalScreen::wait(std::chrono::milliseconds time, const std::stop_token&
 }
 
 std::string redraw(const std::string& text) {
-  // Each line is cleared before it is written: after it the cursor may stand on its last character.
-  // The last one clears all below, and is not ended, for that would scroll a full screen.
+  // Each line is cleared before it is written, because afterwards the cursor may stand on its last
+  // character. The last line clears all below it, and has no line feed, because that would scroll a
+  // full screen.
   std::string out = "\033[H";
   for (std::size_t start = 0; start < text.size();) {
     const std::size_t end = std::min(text.find('\n', start), text.size());

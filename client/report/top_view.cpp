@@ -16,12 +16,12 @@ namespace weft::client {
 namespace {
 
 std::string rate_text(double per_second) {
-  constexpr double kMost = 1e15;  // beyond it only what a server made up
+  constexpr double kMost = 1e15;  // more than this only a faulty server reports
   return with_separators(static_cast<std::uint64_t>(std::llround(std::min(per_second, kMost)))) +
          " triangles/s";
 }
 
-// How long the job was at work; empty where it never was.
+// How long the job was at work; empty if it never was.
 std::string time_taken(const v1::Job& job) {
   if (!job.has_start_time() || !job.has_end_time()) return "";
   const auto seconds = [](const google::protobuf::Timestamp& time) {
@@ -39,13 +39,13 @@ std::pair<std::int64_t, std::int32_t> when(const google::protobuf::Timestamp& ti
   return {time.seconds(), time.nanos()};
 }
 
-// Older first.
+// Whether it is older.
 bool ended_before(const v1::Job* a, const v1::Job* b) {
   return when(a->end_time()) < when(b->end_time());
 }
 
-// Half a number, or a number without its unit, misleads: what does not fit is left out from the
-// last comma or gap on, if that keeps half of the line, otherwise from the last space on.
+// Half a number, or a number without its unit, misleads. So the line is cut at the last comma or
+// gap if that keeps half of it, otherwise at the last space.
 void cut(std::string& line, std::size_t columns) {
   if (line.size() <= columns) return;
   std::size_t end = columns;
@@ -71,7 +71,7 @@ TopSample top_sample(double at_seconds, v1::GetServerInfoResponse info, std::vec
                      std::vector<v1::Job> ended) {
   std::set<std::string> ids;
   for (const v1::Job& job : ended) ids.insert(job.id());
-  // A job that ended between the two lists is in both.
+  // A job that ended between the two lists is in both of them.
   std::erase_if(open, [&ids](const v1::Job& job) { return ids.contains(job.id()); });
   std::ranges::move(ended, std::back_inserter(open));
   return {.at_seconds = at_seconds, .jobs = std::move(open), .info = std::move(info)};
@@ -88,8 +88,8 @@ std::uint64_t TopView::ended_growth(const TopSample& sample) const {
   for (const v1::Job& job : sample.jobs) {
     if (job.state() != v1::JOB_STATE_SUCCEEDED || job.from_store()) continue;
     const auto known = growth_.find(job.id());
-    // One that was not at work is new, or was waiting; older ones that come into the list, because
-    // others were deleted, are neither.
+    // A job that was not at work is new, or was waiting. Older ones that enter the list because
+    // others were deleted are neither.
     const bool waited = std::ranges::any_of(sample_.jobs, [&](const v1::Job& before) {
       return before.id() == job.id() && !is_final(before.state());
     });
@@ -109,7 +109,7 @@ void TopView::add(TopSample sample) {
     if (job.state() != v1::JOB_STATE_RUNNING) continue;
     Growth& now = growth[job.id()];
     now.triangles = job.progress().triangles();
-    // A job that was not at work before began with none; an attempt that is begun anew, too.
+    // A job that was not at work before counts from zero; so does a new attempt.
     const auto before = growth_.find(job.id());
     const std::uint64_t had = before == growth_.end() ? 0 : before->second.triangles;
     if (comparable && now.triangles > had)
@@ -156,7 +156,7 @@ std::vector<std::string> TopView::running() const {
       line += ", " + rate_text(growth->second.per_second);
     lines.push_back(std::move(line));
   }
-  // The list has the youngest first; who was first at work is first here.
+  // The list begins with the youngest; here the one that has been at work for longest comes first.
   std::ranges::reverse(lines);
   return lines;
 }

@@ -13,13 +13,13 @@ Result<v1::Job> watch_job(JobServer& server, const std::string& id,
   request.set_id(id);
   Retry retry = server.retry();
   v1::Job job;
-  std::string said;  // the bytes of `job`
+  std::string said;  // the bytes of the last `job`
   for (;;) {
     JobServer::Attempt attempt(server);
     const auto stream = server.stub().WatchJob(&attempt.context(), request);
     v1::WatchJobResponse message;
     while (stream->Read(&message)) {
-      // Another watch begins with what the last one ended with.
+      // A new watch begins with the state that the last one ended with.
       std::string bytes = message.job().SerializeAsString();
       if (bytes == said) continue;
       said = std::move(bytes);
@@ -30,7 +30,7 @@ Result<v1::Job> watch_job(JobServer& server, const std::string& id,
     grpc::Status status = stream->Finish();
     if (is_final(job.state())) return job;
     if (status.ok()) status = {grpc::StatusCode::UNAVAILABLE, "the watch ended before the job"};
-    if (!retry.again(status)) return tl::unexpected(server.error_of(status, nullptr));
+    if (!retry.again(status)) return tl::unexpected(server.error_of(status));
   }
 }
 

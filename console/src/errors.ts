@@ -16,7 +16,7 @@ export interface Explanation {
 const plain: Partial<Record<Code, string>> = {
   [Code.Canceled]: "The call was cancelled.",
   [Code.DeadlineExceeded]: "The time for this call is over.",
-  [Code.Unauthenticated]: "The server wants a token.",
+  [Code.Unauthenticated]: "The server needs a token.",
   [Code.PermissionDenied]: "This token may not do that.",
   [Code.NotFound]: "The server does not have it.",
   [Code.ResourceExhausted]: "That is more than the server allows.",

@@ -84,7 +84,7 @@ function Token() {
   };
   return (
     <form class="token" onSubmit={submit}>
-      <label for="token">{tokenWanted ? (token ? "Token refused. Another:" : "The server wants a token:") : "Token:"}</label>
+      <label for="token">{tokenWanted ? (token ? "Token refused. Another:" : "The server needs a token:") : "Token:"}</label>
       <input
         id="token"
         type="password"

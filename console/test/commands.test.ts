@@ -11,6 +11,7 @@ const coast = make({
     field: { case: "expression", value: "min(500 + 0.15*coast, 'x')" },
     measure: Measure.EDGE,
     gradation: 0.15,
+    gradationWithin: true,
     fields: [{ name: "coast", kind: { case: "distance", value: {} } }],
   },
   quality: { minAngleDeg: 0, placement: Placement.CIRCUMCENTRE, optimise: 0 },
@@ -30,6 +31,7 @@ test("a request is a command with what was set, zero included, and nothing else"
     "--placement circumcentre",
     "--optimise 0",
     "--gradation 0.15",
+    "--gradation-within",
     "--max-triangles 5000",
     "--allow-unrefined",
   ]);

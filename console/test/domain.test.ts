@@ -3,7 +3,7 @@ import { readFileSync } from "node:fs";
 import { expect, test } from "vitest";
 import { examples } from "../src/domain/examples";
 import { interiorPoint } from "../src/domain/interior-point";
-import { boxOf, segmentEnds } from "../src/domain/planar-domain";
+import { boxOf, segmentEnds, toMessage } from "../src/domain/planar-domain";
 import { readDomain } from "../src/domain/read-domain";
 
 const model = (name: string) => readDomain(name, readFileSync(`../tests/models/${name}`, "utf8"));
@@ -131,6 +131,45 @@ test("a fault in well-known text is named by line and column", () => {
     ["GEOMETRYCOLLECTION(".repeat(100), "nested deeper than 64 levels"],
   ];
   for (const [text, message] of faults) expect(() => readDomain("f.wkt", text)).toThrow(message);
+});
+
+const feature = (type: string, coordinates: unknown, properties: object) =>
+  ({ type: "Feature", properties, geometry: { type, coordinates } });
+const square = (x: number) => [[[x, 0], [x + 4, 0], [x + 4, 4], [x, 4], [x, 0]]];
+
+test("names of GeoJSON are texts, or stand beside numbers", () => {
+  const domain = readDomain("a.geojson", JSON.stringify({
+    type: "FeatureCollection",
+    features: [
+      feature("Polygon", square(0), { marker: "wall", region: "fluid", max_area: 1, max_edge: 1 }),
+      feature("LineString", [[1, 1], [2, 2]], { marker: 1, marker_name: "gauge" }),
+      feature("LineString", [[1, 2], [2, 3]], { marker: "wall" }),
+      feature("Polygon", square(5), { region: 4, region_name: "solid", marker: "" }),
+      feature("LineString", [[1, 2], [2, 2]], { marker: 1, marker_name: "other" }),
+    ],
+  }));
+  expect([...domain.markerNames]).toEqual([[1, "gauge"], [2, "wall"]]);
+  expect([...domain.regionNames]).toEqual([[4, "solid"], [1, "fluid"]]);
+  expect([...domain.markers]).toEqual([2, 2, 2, 2, 1, 2, 0, 0, 0, 0, 1, /* once more */ 1, 2, 1]);
+  expect(domain.regions.map(({ id }) => id)).toEqual([1, 4]);
+  expect(domain.regions[0]!.maxArea).toBeCloseTo(0.433);
+  expect(domain.warnings).toEqual(["a name of marker 1 is left out: the first is “gauge”"]);
+  const message = toMessage(domain, 0);
+  expect(message.markerNames.map(({ id, name }) => [id, name])).toEqual([[1, "gauge"], [2, "wall"]]);
+  expect(message.regionNames.length).toBe(2);
+});
+
+test("names of a .poly are comments, and values of regions that are no integers", () => {
+  const domain = readDomain("a.poly",
+    "# marker=2:inlet \n3 2 0 0\n1 0 0\n2 1 0\n3 1 1 # marker=5:no\n3 1\n1 1 2 2\n2 2 3 3\n3 3 1 3\n0\n1\n" +
+    "1 0.7 0.2 0.5 -1\n# marker=3:in # out: all\r\n # marker=7:no\n# marker=x:no\n# region=4:fluid\n" +
+    "# region=99999999999:no\n# marker=9:a\tb\n# marker=8:inlet ");
+  expect([...domain.markerNames]).toEqual([[2, "inlet "], [3, "in # out: all"]]);
+  expect([...domain.regionNames]).toEqual([[1, "0.5"], [4, "fluid"]]);
+  expect(domain.warnings).toEqual([
+    "a name of marker 9 is left out: it has a control character",
+    "a name of marker 8 is left out: “inlet ” is another one's, too",
+  ]);
 });
 
 test("other files are refused with what is read", () => {

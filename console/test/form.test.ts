@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import { expect, test } from "vitest";
 import { readWkt } from "../src/domain/wkt";
-import { Fill, Measure, Placement } from "../src/gen/weft/v1/mesh_service_pb";
+import { Fill, Measure, Placement, type GenerateMeshRequest } from "../src/gen/weft/v1/mesh_service_pb";
 import { pythonProgram, shellCommand } from "../src/jobs/commands";
 import { emptyForm, fieldOf, isRequest, requestOf, type FormText } from "../src/request/form";
-import { boundLogarithms, boundsOf } from "../src/view/bounds";
+import { boundFunction, boundLogarithms, boundsOf } from "../src/view/bounds";
 
 const domain = readWkt("a b.wkt", "POLYGON ((0 0, 1 0, 1 1, 0 0))");
 
@@ -50,6 +50,18 @@ test("the rest of the form reaches the request; what is empty is not set", () =>
   expect(sparse.budget).toBeUndefined();
 });
 
+test("a gradation within the domain is asked for and shown beside a gradation alone", () => {
+  const within = (gradation: string) => request({ size: "1", gradation, gradationWithin: true });
+  expect(within("0.2").size).toMatchObject({ gradation: 0.2, gradationWithin: true });
+  expect(shellCommand(within("0.2"), domain.name)).toContain("--gradation 0.2 \\\n  --gradation-within");
+  expect(pythonProgram(within("0.2"), domain.name)).toContain("gradation_within=True");
+  for (const none of ["", "0"]) {
+    expect(within(none).size?.gradationWithin).toBe(false);
+    expect(shellCommand(within(none), domain.name)).not.toContain("gradation");
+  }
+  expect(request({ size: "1", gradation: "0.2" }).size?.gradationWithin).toBe(false);
+});
+
 test("what is not a number is named by its field, all at once", () => {
   expect(requestOf({ ...emptyForm, size: "", gradation: "much", maxTriangles: "1.5" }, domain)).toEqual({
     size: "a number or an expression is missing",
@@ -73,11 +85,29 @@ test("the command of a whole request names its file and its fields", () => {
   expect(pythonProgram(made, domain.name)).toContain('"a b.wkt",');
 });
 
-test("bounds on areas are known if they are numbers", () => {
-  expect(boundsOf(request({ sizeKind: "edge", size: "2" }))?.everywhere).toBeCloseTo(Math.sqrt(3));
-  expect(boundsOf(request({ size: "x" }))).toBeUndefined();
-  expect(boundsOf(request({ size: "2", gradation: "0.1" }))).toBeUndefined();
-  expect(boundsOf(request({ sizeKind: "none" }))).toBeUndefined();
+test("bounds on areas are known if they are numbers, or expressions that the page can evaluate", () => {
+  const boundsFor = (change: Partial<FormText>) => boundsOf(request(change), domain);
+  expect(boundsFor({ sizeKind: "edge", size: "2" })?.everywhere).toBeCloseTo(Math.sqrt(3));
+  for (const size of ["x", "distance"]) expect(boundsFor({ size }), size).toBeDefined();
+  expect(boundsFor({ size: "width" })).toBeUndefined();
+  for (const size of ["2", "x"]) expect(boundsFor({ size, gradation: "0.1" }), size).toBeUndefined();
+  expect(boundsFor({ sizeKind: "none" })).toBeUndefined();
+});
+
+test("a bound is that of the place and of the region, whichever is lower", () => {
+  const square = readWkt("square.wkt", "POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0))");
+  const bound = (size: Partial<FormText>) => {
+    const { everywhere } = boundsOf(requestOf({ ...emptyForm, sizeKind: "area", ...size }, square) as GenerateMeshRequest, square)!;
+    return boundFunction({ everywhere, regions: new Map([[7, 0.5]]) });
+  };
+  expect(bound({ size: "x + 2*y" })(1, 2, 0)).toBe(5);
+  expect(bound({ size: "x + 2*y" })(1, 2, 7)).toBe(0.5);
+  expect(bound({ size: "3*distance" })(1, 2, 0)).toBe(3);
+  expect(bound({ sizeKind: "edge", size: "2*x" })(1, 2, 0)).toBeCloseTo(Math.sqrt(3), 12);
+  expect(bound({ size: "3" })(1, 2, 0)).toBe(3);
+});
+
+test("the picture is told one bound for each region", () => {
   const bounds = { everywhere: 4, regions: new Map([[7, 1], [8, 16]]) };
   expect([...boundLogarithms(bounds, [0, 7, 8]).slice(0, 4)]).toEqual([2, 0, 2, 100]);
 });

@@ -9,7 +9,7 @@
 #
 # WEFT_REPORTS   folder of weft-junit.xml and weft-summary.md; default: weft-reports
 # WEFT_SERVER    a server to use, with WEFT_TOKEN where it wants one; default: one that is started
-# WEFT_IMAGE     the container where weft is not installed; default: weft
+# WEFT_IMAGE     if weft is not installed, an image of the Dockerfile's target `weft`; default: weft
 set -euo pipefail
 
 if (($# == 0)); then
@@ -25,7 +25,7 @@ if ! command -v weft >/dev/null; then
     echo "mesh.sh: neither weft nor docker nor podman is installed" >&2
     exit 127
   }
-  # As the user who runs the pipeline, on its files. The image has both programs: without
+  # As the user who runs the pipeline, on its files. The image weft has both programs: without
   # WEFT_SERVER, weft starts a server of its own inside.
   weft=("$container" run --rm --user "$(id -u):$(id -g)" --volume "$PWD:$PWD" --workdir "$PWD"
     --env WEFT_SERVER --env WEFT_TOKEN --entrypoint weft "${WEFT_IMAGE:-weft}")

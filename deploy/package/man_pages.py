@@ -114,8 +114,6 @@ def flag_item(row):
     if row.value:
         head += rf" \fI{escaped(row.value)}\fR" + (" ..." if row.repeated else "")
     facts = []
-    if " in " in row.bounds:
-        facts += [f"Range: {row.bounds.partition(' in ')[2].strip('[]').replace(' - ', ' to ')}."]
     facts += [f"Default: {row.default}."] * bool(row.default)
     facts += ["Required."] * row.required
     facts += [f"Needs {row.needs}."] * bool(row.needs)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# Packages for Debian: `cpack` in the build folder makes weft, weftd and python3-weft.
+# Packages for Debian: `cpack` in the build folder makes weft, weftd, python3-weft and
+# weft-protocol-dev.
 set(CPACK_GENERATOR DEB)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_COMPONENTS_ALL weft weftd python3-weft)
+set(CPACK_COMPONENTS_ALL weft weftd python3-weft protocol)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 # Absolute folders, such as /etc, need DESTDIR.
 set(CPACK_SET_DESTDIR ON)
@@ -10,7 +11,11 @@ set(CPACK_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
 set(CPACK_PACKAGE_VENDOR weft)
-set(CPACK_PACKAGE_CONTACT "The authors of weft <weft@example.org>")
+# Whoever publishes packages answers for them: the default, of a name that never resolves (RFC 2606),
+# says that nobody does.
+set(WEFT_MAINTAINER "Unpublished build of weft <nobody@weft.invalid>" CACHE STRING
+  "Maintainer of the packages for Debian, as NAME <ADDRESS>")
+set(CPACK_PACKAGE_CONTACT "${WEFT_MAINTAINER}")
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
@@ -22,7 +27,7 @@ weftd is installed. Reads and writes the usual formats of domains and meshes.")
 set(CPACK_DEBIAN_WEFT_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_WEFT_PACKAGE_DEPENDS fonts-dejavu-core) # of drawings
 set(CPACK_DEBIAN_WEFT_PACKAGE_RECOMMENDS weftd)
-set(CPACK_DEBIAN_WEFT_PACKAGE_SUGGESTS libgdal32) # of rasters; 160 MB with what it needs
+set(CPACK_DEBIAN_WEFT_PACKAGE_SUGGESTS libgdal32) # of rasters and vectors; 160 MB with what it needs
 
 set(CPACK_DEBIAN_WEFTD_PACKAGE_NAME weftd)
 set(CPACK_DEBIAN_WEFTD_DESCRIPTION "Meshes of planar domains, with guaranteed angles: server
@@ -46,5 +51,13 @@ set(CPACK_DEBIAN_PYTHON3-WEFT_PACKAGE_DEPENDS
 set(CPACK_DEBIAN_PYTHON3-WEFT_PACKAGE_RECOMMENDS weftd)
 set(CPACK_DEBIAN_PYTHON3-WEFT_PACKAGE_CONTROL_EXTRA
   ${scripts}/python3-weft/postinst ${scripts}/python3-weft/prerm)
+
+set(CPACK_DEBIAN_PROTOCOL_PACKAGE_NAME weft-protocol-dev)
+set(CPACK_DEBIAN_PROTOCOL_DESCRIPTION "Meshes of planar domains, with guaranteed angles: protocol
+The .proto files of the server's gRPC services, for clients in other languages, and
+where they are, for pkg-config.")
+set(CPACK_DEBIAN_PROTOCOL_PACKAGE_SECTION devel)
+set(CPACK_DEBIAN_PROTOCOL_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PROTOCOL_PACKAGE_RECOMMENDS protobuf-compiler)
 
 include(CPack)

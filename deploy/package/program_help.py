@@ -20,7 +20,6 @@ class Row:
     names: list[str]  # of a flag, as -o, --output; otherwise one
     text: str
     value: str = ""  # what a flag takes, as FILE or lattice|circumcentre; empty: nothing
-    bounds: str = ""  # what its value must be, as in [1 - 2]
     default: str = ""
     variable: str = ""  # of the environment
     needs: str = ""  # the flag without which it is refused
@@ -86,7 +85,6 @@ def commands_of(weft):
 
 _FLAG = re.compile(r"""(?P<names>-[^\s,]+(,-[^\s,]+)*)
                        ([ ](?P<value>[^\s=(]+?))?
-                       (:(?P<bounds>POSITIVE|NONNEGATIVE|(FLOAT|INT|UINT)[ ]in[ ]\[[^]]*\]))?
                        (=(?P<default>\S+))?(?P<repeated>[ ]\.\.\.)?
                        (?P<required>[ ]REQUIRED)?([ ]\(Env:(?P<variable>\w+)\))?
                        ([ ]Needs:[ ](?P<needs>\S+))?([ ]Excludes:[ ](?P<excludes>\S+))?""", re.X)
@@ -99,9 +97,8 @@ def _flag(head, text):
         return None
     part = {k: v or "" for k, v in found.groupdict().items()}
     names = [re.sub(r"\{.*", "", name) for name in part["names"].split(",")]
-    return Row(names, text, part["value"], part["bounds"], part["default"].strip("[]"),
-               part["variable"], part["needs"], part["excludes"], bool(part["repeated"]),
-               bool(part["required"]))
+    return Row(names, text, part["value"], part["default"].strip("[]"), part["variable"],
+               part["needs"], part["excludes"], bool(part["repeated"]), bool(part["required"]))
 
 
 def _positional(head, text):

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The threads that compute. This is the only header that knows TBB; all else speaks of an Arena.
 //
-// One arena serves a process: whatever the number of jobs, at most its threads compute at the same
+// One arena serves a process: whatever the number of runs, at most its threads compute at the same
 // time, so a container's CPU quota is kept. Thread-safe.
 //
 //   Arena arena(4);
@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <cstddef>
 #include <functional>
 #include <future>
@@ -49,10 +50,14 @@ class Arena {
   template <class F>
   auto run(F&& f) {
     if (inside_ == this) return f();
-    const auto task = std::make_shared<std::packaged_task<decltype(f())()>>(std::ref(f));
-    auto result = task->get_future();
-    start([task] { (*task)(); });
-    return result.get();
+    std::packaged_task<decltype(f())()> task(std::ref(f));
+    Signal done;
+    start([&] {
+      task();
+      done.give();
+    });
+    done.wait();
+    return task.get_future().get();
   }
 
   // Calls f(0) to f(n - 1) in any order, at most `threads` at the same time. Throws what f throws.
@@ -100,6 +105,26 @@ class Arena {
     return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                  static_cast<std::size_t>(threads) + 1);
   }
+
+  // May be destroyed as soon as `wait` returns, unlike a future's state, of which the giver may
+  // still hold a part.
+  class Signal {
+   public:
+    void give() {
+      const std::lock_guard lock(mutex_);
+      given_ = true;
+      given_now_.notify_one();  // under the lock: see above
+    }
+    void wait() {
+      std::unique_lock lock(mutex_);
+      given_now_.wait(lock, [this] { return given_; });
+    }
+
+   private:
+    std::mutex mutex_;  // guards the flag
+    bool given_ = false;
+    std::condition_variable given_now_;
+  };
 
   // A thread rests while this lives. TBB applies the lowest of several limits: a new one takes
   // effect once the old one is gone, or at once if it is lower.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one thing that travels with a job: cancellation, deadline, budgets, progress, and where it
+// The one thing that travels with a run: cancellation, deadline, budgets, progress, and where it
 // computes.
 //
 // Thread-safety: `cancel` and `progress` may be called from any thread at any time; the setters
-// only before the job starts. Running code calls `poll` at least every few milliseconds (the
+// only before the run starts. Running code calls `poll` at least every few milliseconds (the
 // kernel: every 512 insertions, about 0.1 ms), so a stop is noticed within 50 ms. If the run is
 // cancelled and past its deadline, the cancellation wins.
 #pragma once
@@ -13,9 +13,10 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "engine/base/arena.h"
@@ -36,15 +37,15 @@ struct Progress {
   double fraction = 0;  // of the work that is done, 0 to 1; never falls
 };
 
-// What a job may use. DEFAULT: unbounded.
+// What a run may use. DEFAULT: unbounded.
 struct Budget {
   // Triangles of the mesh. Refinement stops there and returns the mesh that it has; triangles that
   // still miss a bound are counted as `budget` in the summary.
   std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();
-  // A job whose estimate is over this is refused before refinement, and one that grows past it
+  // A run whose estimate is over this is refused before refinement, and one that grows past it
   // stops with kLimitExceeded. The operator sets this cap, the client sets max_triangles.
   std::uint64_t triangle_limit = std::numeric_limits<std::uint64_t>::max();
-  // Bytes of engine memory. Over it the job stops with kBudgetExceeded.
+  // Bytes of engine memory. Over it the run stops with kBudgetExceeded.
   std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
 };
 
@@ -54,49 +55,66 @@ class ExecutionContext {
 
   ExecutionContext() = default;
   explicit ExecutionContext(const Budget& budget) : budget_(budget) {}
+  // For a run inside another one, which waits for it: it stops when that one has to, computes where
+  // that one does, and gets its memory from there. Its progress is its own. REQUIRES: `outer`
+  // outlives it and holds no memory meanwhile.
+  ExecutionContext(const ExecutionContext& outer, const Budget& budget)
+      : budget_(budget), arena_(outer.arena_), threads_(outer.threads_), outer_(&outer) {}
   ExecutionContext(const ExecutionContext&) = delete;
   ExecutionContext& operator=(const ExecutionContext&) = delete;
 
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
   void set_deadline(Clock::time_point deadline) noexcept { deadline_ = deadline; }
-  // Where the job computes; the caller's own thread without one. The arena outlives the job. The
-  // job takes at most `threads` of it at a time; 0 is all.
+  // Where the run computes; the caller's own thread without one. The arena outlives the run. The
+  // run takes at most `threads` of it at a time; 0 is all.
   void set_arena(Arena& arena, int threads = 0) noexcept {
     arena_ = &arena;
     threads_ = threads > 0 ? std::min(threads, arena.threads()) : arena.threads();
   }
-  // Where the job records what it does and when. The trace must outlive the job.
+  // Where the run records what it does and when. The trace must outlive the run.
   void set_trace(Trace& trace) noexcept { trace_ = &trace; }
-  // Where the job gets its memory from, within its budget. The source must outlive the job, which
+  // Where the run gets its memory from, within its budget. The source must outlive the run, which
   // has `granted` bytes already.
   void set_memory(MemorySource& source, std::uint64_t granted) noexcept {
     memory_ = &source;
     granted_.store(granted, std::memory_order_relaxed);
   }
-  // Calls `f` once, at the first poll after `when`, on the thread that polls; `f` may wait.
-  // REQUIRES: the job computes on one thread.
-  void call_at(Clock::time_point when, std::function<void()> f) {
-    call_at_ = when;
-    call_ = std::move(f);
+  // Forgets what the run did, so that it may begin again, with other settings. A cancellation
+  // stays. REQUIRES: no thread works on the run.
+  void begin_again() noexcept {
+    least_fraction_.store(progress().fraction, std::memory_order_relaxed);
+    granted_.store(0, std::memory_order_relaxed);
+    held_.clear();
+    stage_.store(Stage::kQueued, std::memory_order_relaxed);
+    triangles_.store(0, std::memory_order_relaxed);
+    expected_.store(0, std::memory_order_relaxed);
+    fraction_.store(0, std::memory_order_relaxed);
+    share_of_triangles_.store(0, std::memory_order_relaxed);
   }
   const Budget& budget() const noexcept { return budget_; }
 
-  // Returns nullopt while the job may go on, otherwise the error to stop with.
+  // Returns nullopt while the run may go on, otherwise the error to stop with.
   std::optional<Error> poll() const {
     pulse_.store(pulse_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+    if (outer_ != nullptr) return outer_->poll();
     if (cancelled_.load(std::memory_order_relaxed))
-      return Error{ErrorCode::kCancelled, "", "the job was cancelled"};
-    if (!deadline_ && !call_) return std::nullopt;
-    const Clock::time_point now = Clock::now();
-    if (call_ && now >= call_at_ && !called_.exchange(true, std::memory_order_relaxed)) call_();
-    if (deadline_ && now >= *deadline_)
-      return Error{ErrorCode::kDeadlineExceeded, "", "the job's deadline passed"};
+      return Error{ErrorCode::kCancelled, "", "the run was cancelled"};
+    if (deadline_ && Clock::now() >= *deadline_)
+      return Error{ErrorCode::kDeadlineExceeded, "", "the run's deadline passed"};
     return std::nullopt;
   }
 
-  // Call it with all bytes that the job holds, or is about to hold. Waits until they are granted;
-  // returns the error to stop with if they will not be. Thread-safe.
-  std::optional<Error> need_bytes(std::uint64_t bytes) const {
+  // Call it with all bytes that the run holds, or is about to hold, and what takes them: "the
+  // mesh". Waits until they are granted; returns the error to stop with if they are over the budget
+  // or will not be granted. Thread-safe.
+  std::optional<Error> need_bytes(std::uint64_t bytes, std::string_view what) const {
+    if (bytes > budget_.max_bytes) {
+      return Error{ErrorCode::kBudgetExceeded, "budget.max_bytes",
+                   std::string(what) + " takes about " + std::to_string(bytes) +
+                       " bytes with all that the run holds, the budget is " +
+                       std::to_string(budget_.max_bytes)};
+    }
+    if (outer_ != nullptr) return outer_->need_bytes(bytes, what);
     if (memory_ == nullptr || bytes <= granted_.load(std::memory_order_relaxed))
       return std::nullopt;
     const auto ask = [&] { return memory_->grant(bytes, *this); };
@@ -109,10 +127,10 @@ class ExecutionContext {
     return std::nullopt;
   }
 
-  // What the job holds besides the mesh and what does not change while it is refined. Thread-safe.
+  // What the run holds besides the mesh and what does not change while it is refined. Thread-safe.
   HeldBytes& held_bytes() noexcept { return held_; }
 
-  // Changes while the job makes progress, and stays the same if it is stuck. Thread-safe.
+  // Changes while the run makes progress, and stays the same if it is stuck. Thread-safe.
   std::uint64_t pulse() const noexcept { return pulse_.load(std::memory_order_relaxed); }
 
   Progress progress() const noexcept {
@@ -123,7 +141,7 @@ class ExecutionContext {
         share_of_triangles_.load(std::memory_order_relaxed) *
         std::min(1.0, static_cast<double>(now.triangles) /
                           static_cast<double>(std::max<std::uint64_t>(now.expected_triangles, 1)));
-    now.fraction = std::min(1.0, now.fraction);
+    now.fraction = std::clamp(now.fraction, least_fraction_.load(std::memory_order_relaxed), 1.0);
     return now;
   }
 
@@ -138,7 +156,7 @@ class ExecutionContext {
   auto compute(F&& f) const {
     return arena_ ? arena_->run(std::forward<F>(f)) : f();
   }
-  // Calls f(0) to f(n - 1), on as many threads as the job may take.
+  // Calls f(0) to f(n - 1), on as many threads as the run may take.
   template <class F>
   void for_each(std::size_t n, F&& f) const {
     if (arena_ && threads_ > 1) {
@@ -171,16 +189,15 @@ class ExecutionContext {
   int threads_ = 1;
   Trace* trace_ = nullptr;
   MemorySource* memory_ = nullptr;
+  const ExecutionContext* outer_ = nullptr;
   mutable std::atomic<std::uint64_t> granted_{0};
   HeldBytes held_;
-  Clock::time_point call_at_;
-  std::function<void()> call_;
-  mutable std::atomic<bool> called_{false};
   std::atomic<bool> cancelled_{false};
   mutable std::atomic<std::uint64_t> pulse_{0};  // about one for every poll
   std::atomic<Stage> stage_{Stage::kQueued};
   std::atomic<std::uint64_t> triangles_{0};
   std::atomic<std::uint64_t> expected_{0};
+  std::atomic<double> least_fraction_{0};  // what was reported before the run began again
   std::atomic<double> fraction_{0};
   std::atomic<double> share_of_triangles_{0};
 };

@@ -4,15 +4,19 @@
 // No exception leaves the engine: every public function that can fail returns a Result<T>. An
 // Error names the offender twice: `field` is a path in the request as the wire spells it
 // ("domain.segments[17].b", empty if no field is at fault), `message` is a sentence with the
-// value, the index and the limit.
+// value, the index and the limit. `at` is the point of the plane that the message names, if it is
+// not one of the request's own.
 //
 //   Result<Domain> domain = triangulate(pslg, context);
 //   if (!domain) return tl::unexpected(domain.error());
 #pragma once
 
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <utility>
+
+#include "engine/base/geometry.h"
 
 namespace weft {
 
@@ -38,7 +42,7 @@ enum class ErrorCode {
   kDeadlineExceeded,
   kCancelled,
   // The mesh was made but is not what was asked for: a triangle misses a bound, and neither an
-  // angle of the input nor the caller's own budget or shortest edge excuses it.
+  // angle of the input nor the caller's own budget or shortest edge exempts it.
   kBoundsNotMet,
   // The engine is wrong.
   kInternal,
@@ -48,6 +52,7 @@ struct Error {
   ErrorCode code = ErrorCode::kInternal;
   std::string field;
   std::string message;
+  std::optional<Point> at{};
 };
 
 template <class T>

@@ -34,6 +34,11 @@ class HeldBytes {
       if (peak_.compare_exchange_weak(peak, now, std::memory_order_relaxed)) break;
     }
   }
+  // REQUIRES: nobody holds any.
+  void clear() {
+    now_.store(0, std::memory_order_relaxed);
+    peak_.store(0, std::memory_order_relaxed);
+  }
   void remove(std::uint64_t bytes) { now_.fetch_sub(bytes, std::memory_order_relaxed); }
   std::uint64_t now() const { return now_.load(std::memory_order_relaxed); }
   std::uint64_t peak() const { return peak_.load(std::memory_order_relaxed); }

@@ -86,7 +86,7 @@ bool GraphRun::step() {
   return true;
 }
 
-// Whether the first ready task may, if so many other threads are at work. REQUIRES: the mutex is
+// Whether the first ready task may begin while `others` threads are at work. REQUIRES: the mutex is
 // held.
 bool GraphRun::may_begin(int others) const {
   if (ready_.empty() || stopping_) return false;
@@ -102,7 +102,7 @@ std::uint32_t GraphRun::take_ready() {
   return task;
 }
 
-// Queues for as many slots as there is work for, and for `most` at most.
+// Queues one slice for each task that may begin now, and at most `most`.
 void GraphRun::start_threads(std::unique_lock<std::mutex>& lock, std::size_t most) {
   if (!arena_ || !may_begin(running_)) return;
   most = std::min(most, ready_.size());
@@ -116,7 +116,7 @@ void GraphRun::start_threads(std::unique_lock<std::mutex>& lock, std::size_t mos
   lock.lock();
 }
 
-// The one thing here that may run out of memory.
+// Nothing else here can run out of memory.
 void GraphRun::start_thread() {
   try {
     arena_->start([this] { work(); });
@@ -138,7 +138,7 @@ std::optional<std::chrono::steady_clock::time_point> GraphRun::idle_since() {
   return running_ == 0 ? std::optional(idle_since_) : std::nullopt;
 }
 
-// A thread's slice.
+// The slice of one thread.
 void GraphRun::work() {
   const auto end = std::chrono::steady_clock::now() + kSlice;
   do {

@@ -21,7 +21,7 @@
 // the caller waits in `step`, either a task runs, or none is ready, and then all are done, or held,
 // or wait for one another.
 //
-// Fairness: a thread gives the arena's slot back after kSlice and queues for the next, so the jobs
+// Fairness: a thread gives the arena's slot back after kSlice and queues for the next, so the runs
 // of an arena take turns. Only then does it wake the caller that waits in `step`: waking it for
 // each part of a mesh took two threads 1.5 % of their time at 1 M triangles.
 #pragma once

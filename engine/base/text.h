@@ -16,4 +16,12 @@ inline std::string text(double value) {
   return {buffer, end.ptr};
 }
 
+// The same to four digits: for a reader who compares magnitudes.
+inline std::string rough_text(double value) {
+  char buffer[32];
+  const auto end =
+      std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 4);
+  return {buffer, end.ptr};
+}
+
 }  // namespace weft

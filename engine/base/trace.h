@@ -12,7 +12,7 @@
 //   for (const Trace::Stage& stage : trace.stages) print(stage.name, stage.seconds);
 //
 // Thread-safety: `time` and `skip` may be called at the same time for different tasks; only the
-// thread that runs the job may call the rest.
+// thread of the run may call the rest.
 #pragma once
 
 #include <algorithm>

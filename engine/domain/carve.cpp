@@ -22,9 +22,10 @@ struct Faces {
 };
 
 // Floods from `start` across edges without a constraint. Whether a neighbour is new is hard to
-// foresee, so there is no branch on it (a choice of what to store would be compiled to one); and
-// first come, first served, so that a triangle is known long before its turn. `queue` has room for
-// all triangles and three more, of_triangle for one more, which stands for what is beyond the hull.
+// predict, so each is stored without a branch (the compiler would turn a choice of what to store
+// into one). The queue is first in, first out, so that a triangle is known long before its turn.
+// `queue` has room for all triangles and three more; of_triangle has one more, which stands for
+// what is beyond the hull.
 void flood(const Arrangement& a, std::uint32_t start, std::uint32_t face, Faces& faces,
            std::vector<std::uint32_t>& queue, StopPoller& poller) {
   std::uint32_t* const of = faces.of_triangle.data();
@@ -65,8 +66,8 @@ Faces find_faces(const Arrangement& a, StopPoller& poller) {
   return faces;
 }
 
-// Per face: whether the fewest segments between it and infinity are an odd number. Coincident
-// segments count once each, so an even stack of them may be passed for nothing.
+// Per face: whether the fewest segments between it and infinity are an odd number. A step across
+// coincident segments costs the number of them modulo 2, so an even stack costs nothing.
 std::vector<bool> find_odd_faces(const Arrangement& a, const Faces& faces, StopPoller& poller) {
   struct Step {
     std::uint32_t from, to;
@@ -97,7 +98,7 @@ std::vector<bool> find_odd_faces(const Arrangement& a, const Faces& faces, StopP
   std::vector<std::size_t> next(first.begin(), first.end() - 1);
   for_each_step([&](const Step& s) { steps[next[s.from]++] = s; });
 
-  // Breadth first, where a step of length 0 goes to the front of the queue.
+  // Breadth first; a step of length 0 goes to the front of the queue.
   std::vector<std::uint32_t> depth(faces.count, kNone);
   std::vector<bool> done(faces.count, false);
   std::deque<std::uint32_t> queue{Faces::kUnbounded};
@@ -132,8 +133,8 @@ std::string coordinates(Point p) {
   return "(" + number(p.x) + ", " + number(p.y) + ")";
 }
 
-// The bounded faces that seeds lie in. Looks them up along a Hilbert curve, each from where the one
-// before lies.
+// Finds the bounded faces that hold the seeds. Visits the seeds along a Hilbert curve, and starts
+// each walk at the place of the seed before.
 class SeedLocator {
  public:
   SeedLocator(const Arrangement& arrangement, const Faces& faces, const Pslg& pslg,
@@ -151,7 +152,8 @@ class SeedLocator {
     }
   }
 
-  // Of the seed-th of the holes' and the regions' seeds. `field` makes its name.
+  // The face of a seed; holes are numbered first, then regions. `field` makes the name of its
+  // field.
   template <class Field>
   Result<std::uint32_t> face(std::size_t seed, const Field& field) const {
     const Location& location = locations_[seed];

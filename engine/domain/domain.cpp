@@ -23,8 +23,8 @@ std::vector<std::uint32_t> kept_triangles(const Arrangement& a, const Carving& c
   const auto count = static_cast<std::size_t>(
       a.triangles.size() -
       static_cast<std::size_t>(std::count(carving.region.begin(), carving.region.end(), kNone)));
-  // Whether a triangle stays is hard to foresee: so there is no branch on it, and those that do not
-  // are overwritten.
+  // Whether a triangle stays is hard to predict, so there is no branch on it: triangles that do not
+  // stay are overwritten.
   std::vector<std::uint32_t> kept(count + 1);
   for (std::uint32_t t = 0, next = 0; t < a.triangles.size(); ++t) {
     poller.step();
@@ -68,7 +68,7 @@ Domain extract(const Arrangement& a, Carving&& carving, StopPoller& poller) {
   }
 
   // The last entries of these two stand for no constraint and no neighbour. Which edges carry a
-  // constraint, and which of them come first, is hard to foresee: so there is no branch on it.
+  // constraint, and which of them come first, is hard to predict, so there is no branch on it.
   const auto no_constraint = static_cast<std::uint32_t>(a.constraints.size());
   const auto no_triangle = static_cast<std::uint32_t>(a.triangles.size());
   std::vector<std::uint32_t> subsegment_number(a.constraints.size() + 1, kNone);

@@ -10,7 +10,7 @@ namespace weft {
 
 std::optional<Error> bounds_error(const Summary& summary, double min_angle_deg) {
   const Unrefined& unrefined = summary.unrefined;
-  const std::uint64_t count = unrefined.without_excuse();
+  const std::uint64_t count = unrefined.without_exemption();
   if (count == 0) return std::nullopt;
 
   const std::string angle = "the minimum angle of " + text(min_angle_deg) + " degrees";
@@ -29,7 +29,8 @@ std::optional<Error> bounds_error(const Summary& summary, double min_angle_deg) 
   return Error{ErrorCode::kBoundsNotMet, "",
                std::to_string(count) + (count == 1 ? " triangle misses " : " triangles miss ") +
                    bound + " because " + why + "; the first is at (" +
-                   text(summary.unrefined_at.x) + ", " + text(summary.unrefined_at.y) + ")"};
+                   text(summary.unrefined_at.x) + ", " + text(summary.unrefined_at.y) + ")",
+               summary.unrefined_at};
 }
 
 }  // namespace weft

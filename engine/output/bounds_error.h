@@ -9,7 +9,7 @@
 
 namespace weft {
 
-// kBoundsNotMet if triangles of a finished mesh miss a bound without an excuse; nullopt otherwise.
+// kBoundsNotMet if triangles of a finished mesh miss a bound without exemption; nullopt otherwise.
 // The message says how many, which bound, why, and where the first one is.
 //
 //   12 triangles miss the minimum angle of 20 degrees because double precision ends; the first is

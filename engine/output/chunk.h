@@ -49,7 +49,7 @@ inline constexpr std::size_t kMaxChunkBytes = std::size_t{1} << 20;
 Digest chunk_digest(const Chunk& chunk);
 
 // Receives the chunks in order, on the thread that called `generate_mesh`. `accept` may block: only
-// its own job waits. Returning false stops the job with kCancelled.
+// its own run waits. Returning false stops the run with kCancelled.
 class ChunkSink {
  public:
   virtual ~ChunkSink() = default;

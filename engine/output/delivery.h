@@ -24,7 +24,7 @@ class Delivery {
   // Numbers the chunks of the part and gives them to the sink.
   std::optional<Error> send(Part&& part) {
     statistics_.add(part.statistics);
-    if (summary_.unrefined.without_excuse() == 0) summary_.unrefined_at = part.unrefined_at;
+    if (summary_.unrefined.without_exemption() == 0) summary_.unrefined_at = part.unrefined_at;
     summary_.unrefined += part.unrefined;
     summary_.edges += part.edges;
     for (Chunk& chunk : part.chunks) {

@@ -10,12 +10,12 @@
 namespace weft {
 namespace {
 
-// What a vertex and a triangle add to a chunk at most: the vertex as an input point, the triangle
+// The most that a vertex and a triangle add to a chunk: the vertex as an input point, the triangle
 // with its region and three edges.
 constexpr std::size_t kMaxVertexBytes = 16 + 8;
 constexpr std::size_t kMaxTriangleBytes = 12 + 4 + 3 * sizeof(Chunk::Edge);
 
-// An edge with triangles on both sides goes with the one that it passes from its lesser end.
+// An edge between two triangles is written with the triangle in which it leads from its lesser end.
 bool leads_upward(Point a, Point b) {
   return a.x < b.x || (a.x == b.x && a.y < b.y);
 }
@@ -100,7 +100,7 @@ void PartBuilder<AreaBound>::add_triangle(const Triangle& triangle) {
   region_bound_[block_->size] = region.max_area;
   block_->add(mesh_.vertices[v[0]], mesh_.vertices[v[1]], mesh_.vertices[v[2]]);
   if (has_regions_) chunk_.regions.push_back(region.id);
-  const bool good = triangle.flags <= 7;  // neither bad nor excused
+  const bool good = triangle.flags <= 7;  // neither bad nor refused
   if (!good) [[unlikely]]
     count_unrefined(triangle);
   if (triangle.segment_bits() == 0) [[likely]]
@@ -124,12 +124,12 @@ void PartBuilder<AreaBound>::count_unrefined(const Triangle& triangle) {
   const bool left = triangle.badness() != kGood;
   if (left && cut_off_) {
     ++count.budget;
-  } else if (triangle.excuse() == Excuse::kSmallInputAngle) {
+  } else if (triangle.refusal() == Refusal::kSmallInputAngle) {
     ++count.small_input_angle;
-  } else if (triangle.excuse() == Excuse::kEdgeFloor) {
+  } else if (triangle.refusal() == Refusal::kEdgeFloor) {
     ++count.edge_floor;
   } else {
-    if (count.without_excuse() == 0) {
+    if (count.without_exemption() == 0) {
       part_.unrefined_at =
           centroid(mesh_.vertices[triangle.vertex[0]], mesh_.vertices[triangle.vertex[1]],
                    mesh_.vertices[triangle.vertex[2]]);

@@ -9,19 +9,21 @@
 #include <limits>
 #include <numeric>
 
+#include "engine/size/size_function.h"
+
 namespace weft {
 namespace {
 
 using Lanes = __m128d;
 
-// An angle is kept as t = c / (1 + |c|) of its cotangent c: t falls from 1 at 0 degrees to -1 at
+// An angle with the cotangent c is kept as t = c / (1 + |c|). t falls from 1 at 0 degrees to -1 at
 // 180, and costs one division and no root.
 constexpr double squeeze(double c) {
   return c / (1 + (c < 0 ? -c : c));
 }
 
-// t at 10 k degrees for k = 1 to 17: an angle's bin is the number of these that its t is at most.
-// No t is at most the last one.
+// The t of 10 k degrees for k = 1 to 17. The bin of an angle is the number of borders that its t
+// does not exceed; every t exceeds the last one.
 constexpr std::array<double, 18> kBorders = {
     squeeze(5.671281819617709),    squeeze(2.7474774194546216),   squeeze(1.7320508075688774),
     squeeze(1.19175359259421),     squeeze(0.8390996311772800),   squeeze(0.5773502691896257),
@@ -30,7 +32,7 @@ constexpr std::array<double, 18> kBorders = {
     squeeze(-0.8390996311772800),  squeeze(-1.19175359259421),    squeeze(-1.7320508075688774),
     squeeze(-2.7474774194546216),  squeeze(-5.671281819617709),   -2};
 
-// The borders are at least 0.08 apart: so a cell of a table of 64 holds one at most, and one
+// The borders are at least 0.08 apart, so a cell of a table of 64 holds at most one, and one
 // comparison decides.
 constexpr std::size_t kCells = 64;
 constexpr auto kFirstBinOfCell = [] {
@@ -75,7 +77,7 @@ void TriangleBlock::find_centroids() {
 Box TriangleBlock::box() const {
   Box box;
   const auto extent = [this](const double(&coordinate)[3][kSize], double& least, double& most) {
-    // An odd last one is taken twice.
+    // If the number is odd, the last one is taken twice.
     Lanes low[3];
     Lanes high[3];
     for (std::size_t k = 0; k < 3; ++k) low[k] = high[k] = _mm_set1_pd(coordinate[k][size - 1]);
@@ -139,13 +141,14 @@ void QualityStatistics::add(const TriangleBlock& block) {
     _mm_store_pd(&quality[i], (2 * 1.7320508075688772) * doubled / sum2);
     _mm_store_pd(&ratio[i], half / _mm_load_pd(&block.bound[i]) * 10);
   }
-  // Neighbours fall into the same bins: were they the same counters, each would wait for the last.
+  // Neighbours fall into the same bins. With a counter each, none waits for the one before.
   std::array<std::array<std::uint32_t, 18>, 3> angles{};
   double total = area_;
   double on_lattice = 0;
   double off_lattice = 0;
   double mean = 0;
   double least = 0;
+  double least_bound = least_bound_;
   double smallest = smallest_angle_;
   double largest = largest_angle_;
   for (std::size_t i = 0; i < n; ++i) {
@@ -159,10 +162,11 @@ void QualityStatistics::add(const TriangleBlock& block) {
     ++fine_[2 * static_cast<std::size_t>((1 - least_angle) * kFinePerT) + i % 2];
     largest = std::min(largest, std::min(std::min(angle[0][i], angle[1][i]), angle[2][i]));
     ++aspects_[static_cast<std::size_t>(aspect[i])];
-    if (block.bound[i] < std::numeric_limits<double>::infinity()) {
-      // Not a number, where the size field is bad, counts as exceeding.
+    if (SizeFunction::bounds_area(block.bound[i])) {
+      // NaN, if the size is undefined, counts as exceeding.
       ++sizes_[ratio[i] < 9 ? static_cast<std::size_t>(ratio[i]) : 9];
       least += ratio[i];
+      least_bound = std::min(least_bound, block.bound[i]);
       ++bounded_;
     }
   }
@@ -171,6 +175,7 @@ void QualityStatistics::add(const TriangleBlock& block) {
   off_lattice_ += off_lattice;
   quality_ += mean;
   least_ += least;
+  least_bound_ = least_bound;
   smallest_angle_ = smallest;
   largest_angle_ = largest;
   for (std::size_t bin = 0; bin < angles_.size(); ++bin)
@@ -187,6 +192,7 @@ void QualityStatistics::add(const QualityStatistics& other) {
   quality_ += other.quality_;
   least_ += other.least_;
   bounded_ += other.bounded_;
+  least_bound_ = std::min(least_bound_, other.least_bound_);
   if (!other.fine_.empty()) {
     fine_.resize(2 * kFineBins);
     add_each(fine_, other.fine_);
@@ -198,7 +204,7 @@ void QualityStatistics::add(const QualityStatistics& other) {
   add_each(sizes_, other.sizes_);
 }
 
-// So many triangles have a smaller smallest angle, in degrees; between the bins by their share.
+// The smallest angle, in degrees, that `rank` triangles are below; interpolated within a bin.
 double QualityStatistics::percentile(double rank) const {
   double below = 0;
   for (std::size_t bin = 0; bin < kFineBins; ++bin) {
@@ -217,6 +223,7 @@ void QualityStatistics::write(Summary& summary) const {
   summary.lattice_share = on_lattice_ / (on_lattice_ + off_lattice_);
   summary.mean_quality = quality_ / triangles;
   summary.ideal_ratio = least_ > 0 ? static_cast<double>(bounded_) / (0.1 * least_) : 0;
+  summary.least_bound = bounded_ > 0 ? least_bound_ : 0;
   summary.min_angle_deg = degrees(smallest_angle_);
   summary.min_angle_p1_deg = std::max(summary.min_angle_deg, percentile(0.01 * triangles));
   summary.max_angle_deg = degrees(largest_angle_);

@@ -8,6 +8,7 @@
 
 #include "engine/domain/arrangement/merging.h"
 #include "engine/output/chunk.h"
+#include "engine/output/size_warnings.h"
 
 namespace weft {
 
@@ -34,8 +35,8 @@ struct Unrefined {
   std::uint64_t total() const {
     return small_input_angle + edge_floor + budget + precision + streaming;
   }
-  // Triangles that neither the input nor the request excuses.
-  std::uint64_t without_excuse() const { return precision + streaming; }
+  // Triangles that neither the input nor the request exempts.
+  std::uint64_t without_exemption() const { return precision + streaming; }
 };
 
 struct Summary {
@@ -68,22 +69,24 @@ struct Summary {
   // Area over its bound, ten bins of 0.1; the last also counts triangles above the bound. All 0 if
   // there is no bound.
   std::array<std::uint64_t, 10> size_histogram{};
+  double least_bound = 0;  // on a triangle's area, of those that have one; 0 if none has
+  std::vector<SizeWarning> size_warnings;
   Unrefined unrefined;
   // The centroid of the first triangle, in the order of the chunks, that misses a bound without
-  // excuse; meaningless if there is none.
+  // exemption; meaningless if there is none.
   Point unrefined_at;
   Merging merging;  // of the input, before refinement
 
   // Seconds of wall time, one stage after the other.
   double triangulate_seconds = 0;
-  double size_seconds = 0;     // the boxes of the size field
-  double prelude_seconds = 0;  // the coarse mesh and the quadtree; all of a mesh of one leaf
-  double engine_seconds = 0;   // the whole run, without time blocked in the sink
+  double size_seconds = 0;    // the boxes of the size field
+  double coarse_seconds = 0;  // the coarse mesh and the quadtree; all of a mesh of one leaf
+  double engine_seconds = 0;  // the whole run, without time blocked in the sink
   // Seconds of work, summed over the threads; the two overlap.
   double refine_seconds = 0;
   double emit_seconds = 0;  // numbering, quality, digests
 
-  std::uint64_t peak_bytes = 0;  // engine memory of this job, not counting the request
+  std::uint64_t peak_bytes = 0;  // engine memory of this run, not counting the request
   std::uint64_t insertions = 0;
   std::uint64_t deferred = 0;          // insertions that waited for another round
   std::uint64_t exact_predicates = 0;  // filter failures

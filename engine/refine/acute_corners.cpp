@@ -17,7 +17,7 @@ bool below_60_degrees_apart(Vector u, Vector v) {
   return dot(u, v) > 0.5 * length(u) * length(v);
 }
 
-// Whether that may be so: false for most angles that are not, and never for one that is.
+// Whether they may be: false for most angles that are not below 60 degrees, never for one that is.
 bool maybe_below_60_degrees_apart(Vector u, Vector v) {
   const double cosine = dot(u, v);
   return (cosine > 0) & (cosine * cosine > 0.249 * dot(u, u) * dot(v, v));
@@ -43,7 +43,8 @@ double dyadic_between(double low, double high) {
   return middle;
 }
 
-// Which part of the way between two points on a ray from the corner this distance from it is.
+// The part of the way from `from` to `to`, both on a ray from the corner, at which this distance
+// from the corner lies.
 double part_of(double distance, Point corner, Point from, Point to) {
   const double start = length(from - corner);
   return (distance - start) / (length(to - corner) - start);
@@ -83,12 +84,12 @@ Result<AcuteCorners> AcuteCorners::build(const Domain& domain, const QualityBoun
   return corners;
 }
 
-// A sector between two segments that is below an angle is made of triangles that are: turn from
-// each edge on a segment, through the triangles at its start, to the next such edge.
+// A sector between two segments is below an angle if its triangles are: turn from each edge on a
+// segment, through the triangles at its start, to the next such edge.
 std::optional<Error> AcuteCorners::find_corners(const Domain& domain, bool at_right_angles,
                                                 const ExecutionContext& context) {
-  // The corners where a sector may begin, in rounds. Which do is hard to foresee: so there is no
-  // branch on it.
+  // Collects the corners where a sector may begin, in rounds. Which ones do is hard to predict, so
+  // there is no branch on it.
   constexpr std::uint32_t kRound = 256;
   std::array<HalfEdge, 3 * kRound + 1> begins;
   for (std::uint32_t first = 0; first < domain.triangles.size(); first += kRound) {
@@ -178,7 +179,7 @@ Point AcuteCorners::split_point(const Mesh& mesh, Pair ends, Pair apexes, double
     const auto matching = matching_part(mesh, s, from, to, apexes);
     part = matching ? *matching : dyadic_part(mesh, s, from, to);
   }
-  // Exact where the ends are: no part of a length is rounded.
+  // The half of exact ends is exact: no length is rounded.
   if (part == 0.5) return {0.5 * from.x + 0.5 * to.x, 0.5 * from.y + 0.5 * to.y};
   return {from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)};
 }
@@ -230,7 +231,7 @@ bool AcuteCorners::on_other_arm(const Mesh& mesh, std::uint32_t vertex, std::uin
   return on != kNone && on != subsegment;
 }
 
-bool AcuteCorners::excuses(const Mesh& mesh, const Triangle& triangle) const {
+bool AcuteCorners::exempts(const Mesh& mesh, const Triangle& triangle) const {
   double shortest2 = 0;
   std::uint32_t edge = 0;
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -248,11 +249,11 @@ bool AcuteCorners::excuses(const Mesh& mesh, const Triangle& triangle) const {
   const std::uint32_t of_a = mesh.subsegment_of(a);
   if (of_a == kNone) return false;
   const Subsegment& s = (*subsegments_)[of_a];
-  const auto excused_at = [&](std::uint32_t corner) {
+  const auto exempt_at = [&](std::uint32_t corner) {
     return acute(corner) && on_other_arm(mesh, b, corner, of_a) &&
            on_shell(mesh.vertices[corner], mesh.vertices[a], mesh.vertices[b]);
   };
-  return excused_at(s.a) || excused_at(s.b);
+  return exempt_at(s.a) || exempt_at(s.b);
 }
 
 std::uint32_t AcuteCorners::subsegment(const Mesh& mesh, std::uint32_t a, std::uint32_t b) const {

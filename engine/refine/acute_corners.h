@@ -24,7 +24,7 @@
 // (checker/mesh/exemption.h).
 //
 // Right angles. If the bound on angles is above 30 degrees, arms that meet at less than 93 are
-// split on shells, too, but this excuses no triangle. Four arms meet at right angles where a wall
+// split on shells, too, but this exempts no triangle. Four arms meet at right angles where a wall
 // crosses another by a rounding error, and triangles join pieces at the corner. If pieces are
 // halved, the logarithms of their lengths have fixed fractions: for 0, 1/4, 1/2 and 3/4 the four
 // ratios cannot all be below 2^(3/4), and the triangle with that ratio has an angle of 30.7
@@ -32,7 +32,7 @@
 // precision floor at 33 degrees, 52 at 34; with shells none does. At 20 to 30 degrees none does
 // without shells either, and shells make up to 1 % more triangles.
 //
-// An input vertex that ends an arm counts as on a shell, but two of them do not excuse a triangle:
+// An input vertex that ends an arm counts as on a shell, but two of them do not exempt a triangle:
 // a fan of equal arms is refined toward its corner.
 #pragma once
 
@@ -72,7 +72,7 @@ class AcuteCorners {
   const Needles& needles() const { return needles_; }
 
   // Whether a skinny triangle stays because of a small input angle.
-  bool excuses(const Mesh& mesh, const Triangle& triangle) const;
+  bool exempts(const Mesh& mesh, const Triangle& triangle) const;
 
   // Index into Domain::subsegments of the edge a-b, which must lie on a segment.
   std::uint32_t subsegment(const Mesh& mesh, std::uint32_t a, std::uint32_t b) const;

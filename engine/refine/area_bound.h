@@ -22,12 +22,11 @@ namespace weft {
 // A point where the size field is not finite or not positive.
 struct BadSize {
   Point at;
-  double value;
   const SizeFunction* size;
 };
 
-// The error kBadSizeValue, with a message that names the point, and the fields that are undefined
-// there.
+// The error kBadSizeValue, with a message that names the point, the value that the request asks
+// for, and the fields that are undefined there.
 Error bad_size_error(const BadSize& bad);
 
 // The same bound everywhere; infinity is no bound.

@@ -17,6 +17,7 @@
 
 #include "engine/base/geometry.h"
 #include "engine/domain/domain.h"
+#include "engine/refine/storage/mesh.h"
 #include "engine/refine/storage/vector.h"
 #include "engine/size/size_spec.h"
 
@@ -43,6 +44,22 @@ class EdgeLimits {
         std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(b.x), std::fabs(b.y)});
     const double slack = 1e-9 * found->max_edge + 0x1p-50 * magnitude;
     return std::max(1.0, std::ceil((length(b - a) - slack) / found->max_edge));
+  }
+
+  // Triangles of a mesh with so many edges on segments, at least: each edge belongs to one, and a
+  // triangle has several only at a corner between two subsegments of the domain.
+  static double least_triangles(double pieces, const Domain& domain) {
+    constexpr double kSides = 3;
+    const double corners = 2 * static_cast<double>(domain.subsegments.size());
+    return std::max(pieces / kSides, pieces - corners);
+  }
+
+  // Bytes of the mesh once its segments are split, which is before any part of it can leave: each
+  // piece but the first of a segment is a vertex, and adds a triangle at least.
+  static double least_bytes(double pieces, const Domain& domain) {
+    constexpr double kBytesPerPiece =
+        sizeof(Triangle) + sizeof(Point) + sizeof(std::uint32_t);  // its segment
+    return kBytesPerPiece * std::max(0.0, pieces - static_cast<double>(domain.subsegments.size()));
   }
 
   // How many edges the limits ask for, on all segments that have one.

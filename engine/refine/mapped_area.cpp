@@ -71,10 +71,10 @@ RingVerdict MappedArea::judge_evaluated(const SizeMap::Place& place, const Ring&
     x[i] = p.x + (ring.points[first + i].x + ring.points[first + i + 1].x) * (1.0 / 3);
     y[i] = p.y + (ring.points[first + i].y + ring.points[first + i + 1].y) * (1.0 / 3);
   }
-  // Lanes beyond n are evaluated, too: give them a point of the domain.
+  // Lanes beyond n are evaluated, too, so they get a point of the domain, the last one again.
   for (std::uint32_t i = n; i % SizeFunction::kLanes != 0; ++i) {
-    x[i] = x[0];
-    y[i] = y[0];
+    x[i] = x[n - 1];
+    y[i] = y[n - 1];
   }
   function_.evaluate(n, x, y, bound);
 
@@ -82,7 +82,7 @@ RingVerdict MappedArea::judge_evaluated(const SizeMap::Place& place, const Ring&
   if (node.may_be_nan || !(node.lo > 0) || !(node.hi < std::numeric_limits<double>::infinity())) {
     for (std::uint32_t i = 0; i < n; ++i) {
       if (!(bound[i] > 0 && bound[i] < std::numeric_limits<double>::infinity()) && !bad_size_) {
-        bad_size_ = BadSize{{x[i], y[i]}, bound[i], &function_};
+        bad_size_ = BadSize{{x[i], y[i]}, &function_};
       }
     }
   }

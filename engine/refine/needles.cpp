@@ -13,8 +13,8 @@
 namespace weft {
 namespace {
 
-// A tangent from which on arms are so far apart wherever refinement makes edges (tolerance.h) that
-// nothing can be rounded across.
+// From this tangent on, arms are so far apart at the edges that refinement makes (tolerance.h) that
+// no point can be rounded across one.
 constexpr double kNeedleTangent = 0.125;
 
 // How far apart arms must be, over the largest coordinate: 16 units in the last place.
@@ -62,7 +62,7 @@ Result<Needles> Needles::find(const Domain& domain, const ExecutionContext& cont
   return needles;
 }
 
-// Which edges are is hard to foresee: so there is no branch on it.
+// Which edges are on the boundary is hard to predict, so there is no branch on it.
 Result<Needles::Edges> Needles::boundary(const Domain& domain, const ExecutionContext& context) {
   constexpr std::size_t kRound = 1024;
   std::array<Edge, 3 * kRound + 1> round;
@@ -84,7 +84,7 @@ Result<Needles::Edges> Needles::boundary(const Domain& domain, const ExecutionCo
   return edges;
 }
 
-// Of all arms of a corner: of neighbours, that is.
+// Adds the needles between neighbouring arms of a corner.
 void Needles::add_fan(const Domain& domain, Edges arms) {
   const Point at = domain.vertices[arms.front().from];
   const auto key = [&](const Edge& arm) {
@@ -95,7 +95,7 @@ void Needles::add_fan(const Domain& domain, Edges arms) {
   for (std::size_t i = 0; i < arms.size(); ++i) add(domain, arms[i], arms[(i + 1) % arms.size()]);
 }
 
-// If the arms make a needle. One inside the domain does no harm.
+// Adds the two arms if they make a needle. A needle inside the domain does no harm.
 void Needles::add(const Domain& domain, const Edge& arm, const Edge& other) {
   const Point corner = domain.vertices[arm.from];
   const Vector u = domain.vertices[arm.to] - corner;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tasks of a job share, what they report, and what they hand on.
+// What the tasks of a run share, what they report, and what they hand on.
 #pragma once
 
 #include <algorithm>
@@ -17,33 +17,27 @@
 
 namespace weft {
 
-// Shared by all tasks of a job.
+// Shared by all tasks of a run.
 struct RefinementContext {
   Mesh& mesh;
   const AcuteCorners& corners;
   const std::vector<Region>& regions;
   const EdgeLimits& edge_limits;
   ExecutionContext& context;
-  std::uint64_t other_bytes;     // that the job holds all the time, besides the mesh
+  std::uint64_t other_bytes;     // that the run holds all the time, besides the mesh
   std::uint64_t triangle_limit;  // an error beyond
 };
 
-// Returns nullopt if the job may hold so many bytes and make so many triangles; it may wait for the
+// Returns nullopt if the run may hold so many bytes and make so many triangles; it may wait for the
 // bytes.
 inline std::optional<Error> check_budget(const ExecutionContext& context, std::uint64_t triangles,
                                          std::uint64_t triangle_limit, std::uint64_t bytes) {
-  if (bytes > context.budget().max_bytes) {
-    return Error{ErrorCode::kBudgetExceeded, "budget.max_bytes",
-                 "the mesh needs more than the budget of " +
-                     std::to_string(context.budget().max_bytes) + " bytes, at " +
-                     std::to_string(triangles) + " triangles"};
-  }
   if (triangles > triangle_limit) {
     return Error{
         ErrorCode::kLimitExceeded, "size",
         "the mesh needs more than the limit of " + std::to_string(triangle_limit) + " triangles"};
   }
-  return context.need_bytes(bytes);
+  return context.need_bytes(bytes, "the mesh");
 }
 
 // What refiners have done.

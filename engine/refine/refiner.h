@@ -6,7 +6,7 @@
 //   Refiner<OwnsAll, ConstantArea> refiner(refinement, quality, ConstantArea(1e-3));
 //   refiner.begin(slots, OwnsAll{}, box);
 //   refiner.queue_all();                              // the bad triangles
-//   std::optional<Error> stopped = refiner.run();     // nullopt: all is refined or excused
+//   std::optional<Error> stopped = refiner.run();     // nullopt: all is refined or refused
 //
 // What makes it fast, each with its cost measured at 1 M triangles: no point location (a bad
 // triangle belongs to the cavity of its own Steiner point); the cavity's slots are reused; queue
@@ -163,8 +163,8 @@ class Refiner {
     Triangle& triangle = mesh_.triangles[t];
     if (Ownership::kRestricted && triangle.deferred()) [[unlikely]]
       return;
-    if (triangle.badness() == kSkinny && corners_.excuses(mesh_, triangle)) {
-      triangle.set_excuse(Excuse::kSmallInputAngle);
+    if (triangle.badness() == kSkinny && corners_.exempts(mesh_, triangle)) {
+      triangle.set_refusal(Refusal::kSmallInputAngle);
       return;
     }
     switch (insert_for(t)) {
@@ -177,7 +177,7 @@ class Refiner {
         return;
       case Outcome::kTooClose:
       case Outcome::kFlat:
-        triangle.set_excuse(refusal());
+        triangle.set_refusal(refusal());
         return;
     }
   }
@@ -221,13 +221,13 @@ class Refiner {
   }
 
   // Why the star of a point was refused, by the edges that it would have had.
-  [[gnu::noinline]] Excuse refusal() const {
+  [[gnu::noinline]] Refusal refusal() const {
     const auto& points = star_.ring().points;
     const auto end = points.begin() + star_.ring().size + 1;  // of an open ring, the last end
     const auto nearest = std::min_element(
         points.begin(), end,
         [](const RingPoint& a, const RingPoint& b) { return a.length2 < b.length2; });
-    return nearest->length2 < quality_.min_edge2 ? Excuse::kEdgeFloor : Excuse::kPrecision;
+    return nearest->length2 < quality_.min_edge2 ? Refusal::kEdgeFloor : Refusal::kPrecision;
   }
 
   // Splits the segments that t's Steiner point encroaches upon, and queues t again if it still
@@ -244,7 +244,7 @@ class Refiner {
     } else if (segments_deferred_) {
       defer(t);
     } else {
-      after.set_excuse(segments_refused_);
+      after.set_refusal(segments_refused_);
     }
   }
 
@@ -378,7 +378,7 @@ class Refiner {
   bool split_queued_segments() {
     bool any = false;
     segments_deferred_ = false;
-    segments_refused_ = Excuse::kNone;
+    segments_refused_ = Refusal::kNone;
     while (!segments_.empty() && !full() && !stopped_) {
       tick();
       const SegmentEdge s = segments_.back();
@@ -500,7 +500,7 @@ class Refiner {
   AreaBound area_;
   ExecutionContext& context_;
   HeldBytes::Part held_;
-  const std::uint64_t other_bytes_;  // held by the job all the time
+  const std::uint64_t other_bytes_;  // held by the run all the time
   const std::uint64_t triangle_limit_;
   const std::uint32_t poll_interval_;  // insertions
   const std::uint64_t max_triangles_;
@@ -518,7 +518,7 @@ class Refiner {
   bool segments_deferred_ = false;
   // Why segments of the last call of split_queued_segments were not split; precision takes
   // precedence over the caller's floor.
-  Excuse segments_refused_ = Excuse::kNone;
+  Refusal segments_refused_ = Refusal::kNone;
   std::optional<Error> stopped_;
   std::uint32_t until_poll_ = 1;
   std::int64_t added_ = 0;  // triangles that are not reported to the context yet

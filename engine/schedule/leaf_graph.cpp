@@ -9,7 +9,7 @@ namespace weft {
 
 namespace {
 
-// In a phase the tasks of leaves that come later wait for those of earlier ones.
+// In a phase, the tasks of later leaves wait for those of earlier ones.
 std::vector<std::uint32_t> along_order(const LeafOrder& order, LeafOrder::Phase phase,
                                        std::vector<std::uint32_t> first) {
   const std::vector<std::uint32_t> all = order.all(phase);
@@ -21,7 +21,7 @@ std::vector<std::uint32_t> along_order(const LeafOrder& order, LeafOrder::Phase 
   return first;
 }
 
-// Per leaf, the first of what it and those in conflict are needed for.
+// Per leaf: the first part that it, or a leaf in conflict with it, is needed for.
 std::vector<std::uint32_t> first_around(const LeafOrder& order,
                                         const std::vector<std::uint32_t>& needs) {
   std::vector<std::uint32_t> first = needs;
@@ -78,7 +78,8 @@ LeafGraph::RoundNeeds LeafGraph::needs_of_rounds(const LeafOrder& order,
   static_assert(kHandOverRounds == 2);
   RoundNeeds needs;
   needs.second = along_order(order, LeafOrder::kLaterRounds, first_around(order, next));
-  // The second round waits for the first one of leaves that come later in it.
+  // The second round of a leaf waits for the first round of those in conflict with it that come
+  // later.
   needs.first = needs.second;
   for (std::uint32_t l = 0; l < order.size(); ++l) {
     for (const std::uint32_t other : order.conflicts(l)) {

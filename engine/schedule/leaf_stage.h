@@ -15,12 +15,12 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/output/leaf_parts.h"
 #include "engine/refine/refinement_context.h"
 #include "engine/refine/storage/slots.h"
 #include "engine/schedule/coarse_blocks.h"
 #include "engine/schedule/coarse_phase.h"
 #include "engine/schedule/leaf_order.h"
+#include "engine/schedule/leaf_parts.h"
 #include "engine/schedule/leaf_tasks.h"
 #include "engine/schedule/mesh_run.h"
 #include "engine/schedule/quadtree.h"

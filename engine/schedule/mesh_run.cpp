@@ -30,7 +30,7 @@ double seconds_since(Clock::time_point start) {
 template <class AreaBound>
 class MeshRun {
  public:
-  // `cut_off`: stop refining at the client's number of triangles, with what there is.
+  // `cut_off`: stop at the client's number of triangles, and keep the mesh as it is then.
   MeshRun(const MeshPlan& plan, const AreaBound& area, ChunkSink& sink, ExecutionContext& context,
           Summary& summary, Mesh& mesh, const AcuteCorners& corners, bool cut_off)
       : plan_(plan),
@@ -50,8 +50,8 @@ class MeshRun {
         parts_(plan, area, refinement_, cut_off, sink, summary),
         leaves_(plan, area, refinement_, root_) {}
 
-  // All before the leaves' tasks, or all refinement if there are no leaves. `start` is when the
-  // work on the mesh began.
+  // What comes before the leaves' tasks, or all refinement if there are no leaves. `start` is when
+  // the work on the mesh began.
   std::optional<Error> prepare(Clock::time_point start) {
     context_.add_triangles(static_cast<std::int64_t>(plan_.domain.triangles.size()));
     context_.end_stage("mesh set-up");
@@ -59,11 +59,11 @@ class MeshRun {
     if (!cut_off_ && plan_.wants_leaves())
       error = leaves_.prepare(!plan_.max_triangles && plan_.may_stream);
     if (!error && !leaves_.exists()) error = refine_alone();
-    summary_.prelude_seconds = seconds_since(start);
+    summary_.coarse_seconds = seconds_since(start);
     return error;
   }
 
-  // The rest.
+  // What comes after `prepare`.
   std::optional<Error> run(Clock::time_point start) {
     std::uint64_t run_bytes = 0;
     if (leaves_.exists()) {
@@ -96,7 +96,8 @@ class MeshRun {
  private:
   static constexpr std::uint64_t kNoCap = std::numeric_limits<std::uint64_t>::max();
 
-  // Of triangles, in the first attempt: the client's wish stands in for the server's limit.
+  // The limit on triangles of the first attempt: that of the client, if it has one, instead of the
+  // server's.
   static std::uint64_t limit(const MeshPlan& plan, const ExecutionContext& context) {
     return std::min(plan.max_triangles.value_or(kNoCap), context.budget().triangle_limit);
   }
@@ -160,7 +161,7 @@ std::optional<Error> run_mesh(const MeshPlan& plan, const AreaBound& area, Chunk
       const std::uint64_t at_first = plan.domain.bytes() + plan.other_bytes +
                                      plan.domain.triangles.size() * sizeof(Triangle) +
                                      plan.domain.vertices.size() * sizeof(Point);
-      if (auto error = context.need_bytes(at_first)) return error;
+      if (auto error = context.need_bytes(at_first, "the mesh")) return error;
       auto mesh_made = Mesh::from(plan.domain, context.budget().triangle_limit,
                                   plan.expected_triangles, context);
       if (!mesh_made) return mesh_made.error();

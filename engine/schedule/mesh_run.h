@@ -53,7 +53,7 @@ struct MeshPlan {
   // Stops at so many triangles: then one task refines in order. If fewer are enough, the mesh is
   // the same as without this bound; nothing is sent before that is known.
   std::optional<std::uint64_t> max_triangles = std::nullopt;
-  std::uint64_t other_bytes = 0;  // held by the job besides
+  std::uint64_t other_bytes = 0;  // held by the run besides
   EdgeLimits edge_limits{};       // on segments
 
   // The maximum number of full leaves in a block of the coarse mesh (coarse_blocks.h); 1 for no

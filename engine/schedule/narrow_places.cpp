@@ -31,9 +31,9 @@ double distance_to_segment(Point p, Point a, Point b) {
   return distance(p, between(a, b, std::clamp(along, 0.0, 1.0)));
 }
 
-// How large triangles are beside a narrow place: edges of the gap's width h at the place, h + K y
-// at the distance y from it, and a triangle for each c times an edge's square. With c and K from
-// what was measured, in triangles a square of h x h:
+// How large triangles are beside a narrow place. Edges are as long as the gap's width h at the
+// place, and h + K y at the distance y from it; a triangle has c times the square of an edge. K and
+// c are fitted to measurements, in triangles per square of h x h:
 //
 //   minimum angle                5     10    15    20    25    30    33    36
 //   in the strip, from          0.14  0.29  0.40  0.58  0.77  0.88  1.0   1.0
@@ -61,8 +61,8 @@ struct Grading {
     return grading;
   }
 
-  // Triangles a unit of length on one side of a segment, beyond those of `area` that the size makes
-  // anyway. The next thing on this side is at the distance w.
+  // Triangles per unit of length on one side of a segment, beyond those of `area` that the size
+  // makes anyway. The nearest thing on this side is at the distance w.
   double beside(double h, double w, double area) const {
     const double natural = std::sqrt(area / c);  // edge
     const double far = std::min(0.5 * w, (natural - h) / k);
@@ -85,7 +85,8 @@ class NarrowPlaces::Search {
         grading_(Grading::of(quality.sin2)),
         floor_(std::sqrt(quality.min_length2)) {}
 
-  // Triangles `first` to before `last`. Of most, neither they nor their neighbours may be thin.
+  // Looks at the triangles from `first` to before `last`. Most are not thin, nor are their
+  // neighbours.
   void look_at(std::uint32_t first, std::uint32_t last,
                const std::vector<std::uint8_t>& maybe_thin) {
     const auto nobody = static_cast<std::uint32_t>(domain_.triangles.size());
@@ -105,7 +106,7 @@ class NarrowPlaces::Search {
     const Point a = domain.vertices[triangle.vertex[0]];
     const Point b = domain.vertices[triangle.vertex[1]];
     const Point c = domain.vertices[triangle.vertex[2]];
-    // At each corner, the product of the edges that meet there.
+    // At each corner, the dot product of the two edges that meet there.
     const double at_a = (b.x - a.x) * (c.x - a.x) + (b.y - a.y) * (c.y - a.y);
     const double at_b = (c.x - b.x) * (a.x - b.x) + (c.y - b.y) * (a.y - b.y);
     const double at_c = (a.x - c.x) * (b.x - c.x) + (a.y - c.y) * (b.y - c.y);
@@ -265,7 +266,7 @@ class NarrowPlaces::Search {
       if (piece < *low) continue;
       found.pieces_.push_back({between(a, b, from), between(a, b, to), likely * piece});
       found.likely_ += likely * piece;
-      // A clean strip: segments all along, and nothing that the floor on edges excuses.
+      // A clean strip has segments all along, and no edge that the floor on edges exempts.
       const bool clean = piece > 4 * *high && *low > 4 * floor_ && *high < kInfinity &&
                          std::all_of(sees.begin(), sees.end(),
                                      [](const Nearest& n) { return n.subsegment != kNone; });

@@ -29,7 +29,7 @@ void PartRun::run(const Trace::GraphName& name, TaskGraph graph, std::uint32_t f
     trace->begin_graph(name, graph);
     for (std::uint32_t part = first; part < last; ++part) trace->add_part(task_of_part(part));
   }
-  graph = TaskGraph(0);  // the run has what it needs of it
+  graph = TaskGraph(0);  // the run has read what it needs
   const std::uint64_t graph_bytes = run.bytes() + parts_.capacity() * sizeof(Pending);
   graph_bytes_ = std::max(graph_bytes_, graph_bytes);
   const HeldBytes::Part held(context_.held_bytes(), graph_bytes);
@@ -87,7 +87,7 @@ void PartRun::finish(std::uint32_t index, std::optional<Part>&& part) {
   context_.held_bytes().add(part->bytes());
   parts_[index].part = std::make_unique<Part>(std::move(*part));
   parts_[index].ready = true;
-  if (index == next_) run_->notify();  // later ones are found ready
+  if (index == next_) run_->notify();  // later ones are seen to be ready when their turn comes
 }
 
 void PartRun::end_hold() {

@@ -26,8 +26,8 @@ std::uint64_t morton(std::uint64_t x, std::uint64_t y) {
   return spread(x) | spread(y) << 1;
 }
 
-// Places nodes: node (x, y) of a depth spans 2^(kMaxDepth - depth) cells each way. The doubles of
-// a border come from its cell alone.
+// Places nodes: node (x, y) of a depth spans 2^(kMaxDepth - depth) cells each way. The coordinates
+// of a border follow from its cell alone, so they are the same doubles for all nodes beside it.
 class Grid {
  public:
   explicit Grid(const Box& domain)
@@ -97,7 +97,8 @@ void balance(Splits& splits) {
   }
 }
 
-// The most that the leaves weigh that a line across a direction cuts: `place` is theirs along it.
+// The largest total weight of leaves that one line across a direction cuts. `place` is a leaf's
+// place along that direction.
 double most_cut(const std::vector<Quadtree::Leaf>& leaves, std::uint32_t Quadtree::Leaf::*place) {
   std::vector<std::pair<std::uint32_t, double>> changes;
   changes.reserve(2 * leaves.size());
@@ -106,7 +107,7 @@ double most_cut(const std::vector<Quadtree::Leaf>& leaves, std::uint32_t Quadtre
     changes.push_back({leaf.*place << shift, leaf.weight});
     changes.push_back({(leaf.*place + 1) << shift, -leaf.weight});
   }
-  std::sort(changes.begin(), changes.end());  // at the same place, what ends comes first
+  std::sort(changes.begin(), changes.end());  // at the same place, ends come before starts
   double cut = 0;
   double most = 0;
   for (const auto& [at, change] : changes) {

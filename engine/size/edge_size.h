@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/size/size_function.h"
@@ -18,6 +20,8 @@ class EdgeSize final : public SizeFunction {
  public:
   // REQUIRES: `edge` outlives this.
   explicit EdgeSize(const SizeFunction& edge) : edge_(&edge) {}
+  explicit EdgeSize(std::unique_ptr<const SizeFunction> edge)
+      : owned_(std::move(edge)), edge_(owned_.get()) {}
 
   void evaluate(std::size_t n, const double* x, const double* y,
                 double* out) const noexcept override {
@@ -40,10 +44,19 @@ class EdgeSize final : public SizeFunction {
     const auto edge = edge_->constant();
     return edge ? std::optional(area_of_edge(*edge)) : std::nullopt;
   }
-  std::vector<std::string> undefined_at(Point p) const override { return edge_->undefined_at(p); }
+  std::unique_ptr<const SizeFunction> along(const Field& field) const override {
+    auto edge = edge_->along(field);
+    return edge ? std::make_unique<EdgeSize>(std::move(edge)) : nullptr;
+  }
+  Asked asked_at(Point p) const override {
+    Asked asked = edge_->asked_at(p);
+    asked.is_edge = true;
+    return asked;
+  }
   std::size_t operations() const noexcept override { return edge_->operations() + 3; }
 
  private:
+  std::unique_ptr<const SizeFunction> owned_;  // or null
   const SizeFunction* edge_;
 };
 

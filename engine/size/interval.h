@@ -14,4 +14,8 @@ struct Interval {
   bool may_be_nan = false;
 };
 
+// NaN everywhere, for certain.
+inline constexpr Interval kUndefined{std::numeric_limits<double>::infinity(),
+                                     -std::numeric_limits<double>::infinity(), true};
+
 }  // namespace weft

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,16 @@ class SizeFunction : public Field {
   static double area_of_edge(double edge) { return 0.4330127018922193 * edge * std::fabs(edge); }
   static double edge_of_area(double area) { return std::sqrt(area / 0.4330127018922193); }
 
+  // A size that varies must be finite, also in a part of the domain that no limit reaches: there
+  // edges have this length, and triangles count as unbounded.
+  static constexpr double kUnreachedEdge = 1e50;
+  static bool bounds_area(double area) {
+    constexpr double kUnreached = 0.4330127018922193 * kUnreachedEdge * kUnreachedEdge;
+    constexpr double kRounding = 1e-6;  // of an interpolation
+    return area < (1 - kRounding) * kUnreached ||
+           ((1 + kRounding) * kUnreached < area && area < std::numeric_limits<double>::infinity());
+  }
+
   // Field::steepness of the length of edges, edge_of_area of the value: by the chain rule.
   virtual double edge_steepness(const Box& box) const noexcept {
     const double steep = steepness(box);
@@ -33,11 +44,20 @@ class SizeFunction : public Field {
   // The value, if it is known to be the same everywhere; infinity for no bound.
   virtual std::optional<double> constant() const noexcept { return std::nullopt; }
 
-  // The fields that it names and that are undefined at p, such as "depth": for errors.
-  virtual std::vector<std::string> undefined_at(Point p) const {
-    static_cast<void>(p);
-    return {};
+  // The size as a function of the field's value alone: at (v, 0) what this is where the field is v.
+  // Null if it depends on anything else. Refers to nothing of this.
+  virtual std::unique_ptr<const SizeFunction> along(const Field& field) const {
+    static_cast<void>(field);
+    return nullptr;
   }
+
+  // What a request asks for at p, before limits: for errors.
+  struct Asked {
+    double value;
+    bool is_edge = false;                  // a length, not an area
+    std::vector<std::string> undefined{};  // the fields, such as "depth", that are undefined at p
+  };
+  virtual Asked asked_at(Point p) const { return {(*this)(p)}; }
 };
 
 }  // namespace weft

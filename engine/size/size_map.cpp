@@ -11,6 +11,9 @@
 namespace weft {
 namespace {
 
+constexpr Interval kAnything{-std::numeric_limits<double>::infinity(),
+                             std::numeric_limits<double>::infinity(), true};
+
 double likely(double lo, double hi) {
   return lo > 0 ? std::sqrt(lo) * std::sqrt(hi) : hi;
 }
@@ -20,8 +23,7 @@ bool contains(const Box& outer, const Box& inner) {
          inner.max_y <= outer.max_y;
 }
 
-// A node whose fate is to be decided, with the triangles of the domain that it overlaps: one at
-// least.
+// A node that is to be looked at, with the triangles of the domain that it overlaps, at least one.
 struct Pending {
   std::uint32_t node = 0;
   std::uint32_t first = 0;  // of Level::triangles
@@ -35,13 +37,13 @@ struct Level {
   std::vector<std::uint32_t> triangles;
 };
 
-// What a look at a node tells.
+// The result of looking at a node.
 struct Look {
   Interval bounds{};
-  bool split = false;  // it is to be split
+  bool split = false;
   bool inside = false;
-  std::array<std::uint32_t, 4> overlaps{};  // how many triangles each child does, then
-  double area = 0;                          // common with the domain, otherwise
+  std::array<std::uint32_t, 4> overlaps{};  // of each child, if it is split
+  double area = 0;                          // of what it shares with the domain, if it is not split
 };
 
 // Nodes that one thread looks at.
@@ -51,7 +53,7 @@ struct Group {
   std::optional<Error> stopped;
 };
 
-// Polls now and then: one box may overlap millions of triangles.
+// Polls once in a while: one box may overlap millions of triangles.
 class Poll {
  public:
   explicit Poll(const ExecutionContext& context) : context_(context) {}
@@ -124,7 +126,7 @@ Result<SizeMap> SizeMap::build(const SizeFunction& size, const Domain& domain,
   std::vector<Group> groups;
   for (int depth = 0; !level.nodes.empty(); ++depth) {
     if (auto error = context.poll()) return tl::unexpected(*error);
-    // The looks on many threads; what comes of them in order.
+    // The nodes are looked at on many threads, and the results are used in order.
     groups.resize((level.nodes.size() + kAtATime - 1) / kAtATime);
     context.for_each(groups.size(), [&](std::size_t g) {
       Group& group = groups[g];
@@ -146,7 +148,8 @@ Result<SizeMap> SizeMap::build(const SizeFunction& size, const Domain& domain,
       for (std::size_t i = 0; i < group.looks.size(); ++i) {
         const Pending& pending = level.nodes[g * kAtATime + i];
         const Look& look = group.looks[i];
-        const Interval& bounds = look.bounds;
+        // If no size is defined, any may be meant: the mesh reports where it misses one.
+        const Interval& bounds = look.bounds.lo > look.bounds.hi ? kAnything : look.bounds;
         const bool split = look.split && map.nodes_.size() + 4 <= kMaxNodes;
         Node& node = map.nodes_[pending.node];
         node = {bounds.lo, bounds.hi, bounds.hi, 0, bounds.may_be_nan, true};
@@ -239,7 +242,22 @@ bool SizeMap::uniform_below(const Node& node, const Box& at, const Box& box, dou
 
 bool SizeMap::covers_finer(const Place& place, const std::array<Point, 3>& corners,
                            double area) const {
-  return finer_below(*place.node, inside_root(place.box), corners, area);
+  Box around;
+  for (const Point p : corners) around.add(p);
+  // The smallest node that holds the triangle, unless no node below is finer.
+  const Node* node = place.node;
+  Box at = inside_root(place.box);
+  while (!node->leaf()) {
+    if (!(area > kFeatureFactor * node->lowest_hi)) return false;
+    const Point m = middle(at);
+    const bool right = around.min_x >= m.x;
+    const bool upper = around.min_y >= m.y;
+    if ((!right && around.max_x > m.x) || (!upper && around.max_y > m.y)) break;
+    const unsigned child = (right ? 1u : 0u) | (upper ? 2u : 0u);
+    at = child_box(at, child);
+    node = &nodes_[node->first_child + child];
+  }
+  return finer_below(*node, at, corners, area);
 }
 
 bool SizeMap::finer_below(const Node& node, const Box& at, const std::array<Point, 3>& corners,

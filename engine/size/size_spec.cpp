@@ -2,6 +2,7 @@
 #include "engine/size/size_spec.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -13,8 +14,11 @@
 #include "engine/size/edge_size.h"
 #include "engine/size/fields/distance_field.h"
 #include "engine/size/fields/width_field.h"
+#include "engine/size/gradation/border_graded_size.h"
 #include "engine/size/gradation/graded_size.h"
-#include "engine/size/marker_size.h"
+#include "engine/size/gradation/region_borders.h"
+#include "engine/size/least_size.h"
+#include "engine/size/line_size.h"
 #include "engine/size/width_size.h"
 
 namespace weft {
@@ -76,7 +80,7 @@ std::optional<Error> check_sizes_at(const std::vector<SizeAt>& at) {
   return std::nullopt;
 }
 
-// What a distance is to.
+// The lines that a distance is measured from.
 class Lines {
  public:
   Lines(const Pslg& pslg, const std::string& path) : pslg_(pslg), path_(path) {}
@@ -194,7 +198,7 @@ struct BytesOfField {
     const std::size_t lines = spec.points.empty()     ? pslg.segments.size()
                               : spec.segments.empty() ? spec.points.size()
                                                       : spec.segments.size();
-    return DistanceField::kBytesPerLine * lines + DistanceField::kBytesBesides;
+    return DistanceField::bytes_to_make(lines);
   }
   std::uint64_t operator()(const FieldRaster& raster) const {
     return sizeof(float) * raster.values.size() +
@@ -228,16 +232,6 @@ struct Maker {
   }
 };
 
-// What a job holds, its fields included, must be within its budget, and granted.
-std::optional<Error> check_held(std::uint64_t bytes, const ExecutionContext& context) {
-  const std::uint64_t limit = context.budget().max_bytes;
-  if (bytes > limit)
-    return Error{ErrorCode::kBudgetExceeded, "budget.max_bytes",
-                 "the fields of the size take " + std::to_string(bytes) +
-                     " bytes with the domain, the limit is " + std::to_string(limit)};
-  return context.need_bytes(bytes);
-}
-
 Result<Size> with_measure(const SizeSpec::Value& value, Measure measure,
                           const std::vector<NamedField>& fields) {
   auto function = std::visit(Maker{fields}, value);
@@ -245,6 +239,120 @@ Result<Size> with_measure(const SizeSpec::Value& value, Measure measure,
   Size size(std::move(*function));
   if (measure == Measure::kEdge) size.add(std::make_unique<EdgeSize>(size.function()));
   return size;
+}
+
+// Whether all segments with one of the markers are in the domain, and none in a hole or outside.
+// False, too, if some of them overlap in part, or with others of another marker.
+bool are_in_domain(const std::vector<std::int32_t>& markers, const Pslg& pslg,
+                   const Domain& domain) {
+  const auto wanted = [&](std::int32_t marker) {
+    return std::find(markers.begin(), markers.end(), marker) != markers.end();
+  };
+  std::vector<std::array<double, 4>> ends;  // of each once, though rings that touch have it twice
+  for (const Segment& segment : pslg.segments) {
+    if (!wanted(segment.marker)) continue;
+    const Point a = pslg.points[segment.a];
+    const Point b = pslg.points[segment.b];
+    ends.push_back(std::min(std::array{a.x, a.y, b.x, b.y}, std::array{b.x, b.y, a.x, a.y}));
+  }
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  double whole = 0;
+  for (const auto& [ax, ay, bx, by] : ends)
+    whole += std::sqrt(distance2(Point{ax, ay}, Point{bx, by}));
+  double within = 0;
+  for (const Subsegment& piece : domain.subsegments)
+    if (wanted(piece.marker))
+      within += std::sqrt(distance2(domain.vertices[piece.a], domain.vertices[piece.b]));
+  return within >= whole * (1 - 1e-9);
+}
+
+// What a field is the distance to, if it is one to segments of the domain.
+std::optional<BorderGradedSize::Lines> lines_of(const FieldSpec& field, const Pslg& pslg,
+                                                const Domain& domain) {
+  const auto* const distance = std::get_if<DistanceSpec>(&field.kind);
+  if (distance == nullptr || !distance->points.empty()) return std::nullopt;
+  if (distance->markers.empty()) return BorderGradedSize::Lines::kWholeBorder;
+  if (!are_in_domain(distance->markers, pslg, domain)) return std::nullopt;
+  return BorderGradedSize::Lines::kInDomain;
+}
+
+// A limit to the growth of a size; null: none. And whether distances across land may matter to it:
+// to the nearest point of the whole border, the straight way does not cross any.
+struct Limit {
+  std::unique_ptr<const SizeFunction> function = nullptr;
+  bool across_land = false;
+};
+
+// What limits a size, or a part of one.
+struct Limiter {
+  const SizeSpec& spec;
+  const std::vector<NamedField>& fields;
+  const Pslg& pslg;
+  const Domain& domain;
+  const ExecutionContext& context;
+
+  // Limits what depends on the distance to segments of the domain alone; null for anything else.
+  Result<Limit> by_border(const SizeFunction& size) const {
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      const auto lines = lines_of(spec.fields[i], pslg, domain);
+      if (!lines) continue;
+      auto made = BorderGradedSize::make(size, *fields[i].field, *lines, spec.gradation,
+                                         box_of(domain), context);
+      if (!made) return tl::unexpected(std::move(made).error());
+      if (*made) return Limit{std::move(*made), *lines != BorderGradedSize::Lines::kWholeBorder};
+    }
+    return Limit{};
+  }
+
+  // The limit of a least value is the least of the limits, so of min(a, b) what can be limited by
+  // the border is; otherwise it may have as many sources as the border is long. Null if nothing
+  // can.
+  Result<Limit> by_border_in_parts() const {
+    const auto* const source = std::get_if<std::string>(&spec.value);
+    if (source == nullptr || spec.cells_across > 0) return Limit{};
+    std::vector<Size> parts;
+    bool any = false;
+    bool across_land = false;
+    for (const std::string& argument : Expression::arguments_of_min(*source)) {
+      auto part = with_measure(argument, spec.measure, fields);
+      if (!part) return tl::unexpected(std::move(part).error());
+      auto limited = by_border(part->function());
+      if (!limited) return limited;
+      any = any || limited->function;
+      across_land = across_land || limited->across_land;
+      if (limited->function) part->add(std::move(limited->function));
+      parts.push_back(std::move(*part));
+    }
+    if (!any) return Limit{};
+    return Limit{std::make_unique<LeastSize>(std::move(parts)), across_land};
+  }
+};
+
+// Gives `size` the gradation of the request.
+std::optional<Error> limit(Size& size, const Limiter& limiter) {
+  const SizeFunction& unlimited = size.function();
+  const auto add = [&](Limit made) {
+    if (made.across_land)
+      size.limit(unlimited, std::move(made.function));
+    else
+      size.add(std::move(made.function));
+  };
+  auto by_border = limiter.by_border(unlimited);
+  if (!by_border) return std::move(by_border).error();
+  if (by_border->function) {
+    add(std::move(*by_border));
+    return std::nullopt;
+  }
+  auto in_parts = limiter.by_border_in_parts();
+  if (!in_parts) return std::move(in_parts).error();
+  if (in_parts->function) add(std::move(*in_parts));
+  auto graded =
+      GradedSize::make(size.function(), limiter.spec.gradation, limiter.domain, limiter.context);
+  if (!graded) return std::move(graded).error();
+  const bool limits = !graded->is_limited_already();
+  add({std::make_unique<GradedSize>(std::move(*graded)), limits});
+  return std::nullopt;
 }
 
 }  // namespace
@@ -293,7 +401,8 @@ Result<Size> make_size(const SizeSpec& spec, const Pslg& pslg, const Domain& dom
     fields.push_back(std::move(*field));
     named.push_back({spec.fields[i].name, fields.back().get()});
     held += fields.back()->bytes();
-    if (auto error = check_held(held, context)) return tl::unexpected(*error);
+    if (auto error = context.need_bytes(held, "the fields of the size"))
+      return tl::unexpected(*error);
   }
   auto size = with_measure(spec.value, spec.measure, named);
   if (!size) return size;
@@ -303,22 +412,36 @@ Result<Size> make_size(const SizeSpec& spec, const Pslg& pslg, const Domain& dom
     if (!width) return tl::unexpected(std::move(width).error());
     size->add(std::make_unique<WidthSize>(size->function(), std::move(*width), spec.cells_across));
   }
-  if (spec.gradation > 0 && !size->function().constant()) {
-    auto graded = GradedSize::make(size->function(), spec.gradation, domain, context);
-    if (!graded) return tl::unexpected(std::move(graded).error());
-    size->add(std::make_unique<GradedSize>(std::move(*graded)));
+  const SizeFunction& unlimited = size->function();
+  if (spec.gradation > 0 && !unlimited.constant()) {
+    if (auto error = limit(*size, {spec, named, pslg, domain, context}))
+      return tl::unexpected(*std::move(error));
   }
-  // After the gradation, which these keep to by themselves.
+  // After the gradation, because these sizes respect it by themselves.
+  const auto grow = [&](std::vector<Line> lines, double max_edge,
+                        const char* what) -> std::optional<Error> {
+    if (auto error = context.need_bytes(
+            domain.bytes() + size->bytes() + DistanceField::bytes_to_make(lines.size()), what))
+      return error;
+    auto distance = DistanceField::make(std::move(lines), box_of(domain), context);
+    if (!distance) return std::move(distance).error();
+    size->limit(unlimited, std::make_unique<LineSize>(size->function(), std::move(*distance),
+                                                      max_edge, spec.gradation));
+    return std::nullopt;
+  };
   for (std::size_t i = 0; i < spec.at.size(); ++i) {
     auto lines = lines_at(spec.at[i], i, pslg);
     if (!lines) return tl::unexpected(std::move(lines).error());
     if (spec.gradation == 0) continue;
-    auto distance = DistanceField::make(std::move(*lines), box_of(domain), context);
-    if (!distance) return tl::unexpected(std::move(distance).error());
-    held += distance->bytes();
-    if (auto error = check_held(held, context)) return tl::unexpected(*error);
-    size->add(std::make_unique<MarkerSize>(size->function(), std::move(*distance),
-                                           spec.at[i].max_edge, spec.gradation));
+    if (auto error = grow(std::move(*lines), spec.at[i].max_edge, "the size at markers"))
+      return tl::unexpected(std::move(*error));
+  }
+  if (spec.gradation == 0) return size;
+  for (RegionBorders& borders : region_borders(domain)) {
+    if (size->function().bounds(box_of(domain)).hi <= borders.max_area) continue;
+    if (auto error = grow(std::move(borders.lines), SizeFunction::edge_of_area(borders.max_area),
+                          "the size of regions"))
+      return tl::unexpected(std::move(*error));
   }
   return size;
 }
@@ -332,8 +455,7 @@ std::uint64_t bytes_to_make(const SizeSpec& spec, const Pslg& pslg) {
   std::uint64_t bytes = raster != nullptr ? RasterSize::kBytesPerValue * raster->values.size() : 0;
   for (const FieldSpec& field : spec.fields) bytes += std::visit(BytesOfField{pslg}, field.kind);
   if (!spec.at.empty() && spec.gradation > 0)
-    bytes += DistanceField::kBytesPerLine * pslg.segments.size() +
-             DistanceField::kBytesBesides * spec.at.size();
+    bytes += DistanceField::bytes_to_make(pslg.segments.size(), spec.at.size());
   return bytes;
 }
 

@@ -68,13 +68,16 @@ struct SizeSpec {
   Value value;
   Measure measure = Measure::kArea;
   std::vector<FieldSpec> fields;  // at most Expression::kMaxFields
-  // How much the wanted length of edges grows at most per unit of length (gradation/); finite. 0:
-  // no limit.
+  // How much the wanted length of edges grows at most per unit of length (gradation/), from regions
+  // with a bound of their own, too; finite. 0: no limit.
   double gradation = 0;
+  // Whether distances for the gradation are measured within the domain, along the shortest paths
+  // in it, instead of across land. `make_size` leaves that to engine.cpp, which meshes first.
+  bool gradation_within = false;
   // How many edges fit across the domain at least (width_size.h); finite. 0: any number.
   double cells_across = 0;
   // On segments with these markers, edges are at most so long (refine/edge_limits.h). With a
-  // gradation the wanted length grows from there by it, at most (marker_size.h).
+  // gradation the wanted length grows from there by it, at most (line_size.h).
   std::vector<SizeAt> at;  // one per marker, at most kMaxSizesAt
 };
 inline constexpr std::size_t kMaxSizesAt = 32;
@@ -85,16 +88,25 @@ class Size {
   explicit Size(std::unique_ptr<const SizeFunction> function) { add(std::move(function)); }
 
   const SizeFunction& function() const { return *layers_.back(); }
+  // What the gradation limits, if distances across land may have made the limit lower than those
+  // within the domain would; otherwise null.
+  const SizeFunction* limited_across_land() const { return limited_; }
   std::size_t bytes() const;
 
   // Keeps what the function refers to.
   void keep(std::vector<std::unique_ptr<const Field>> fields) { fields_ = std::move(fields); }
   // `function` refers to what was the function until now.
   void add(std::unique_ptr<const SizeFunction> function) { layers_.push_back(std::move(function)); }
+  // The same, for a limit across land to `size`.
+  void limit(const SizeFunction& size, std::unique_ptr<const SizeFunction> function) {
+    limited_ = &size;
+    add(std::move(function));
+  }
 
  private:
   std::vector<std::unique_ptr<const Field>> fields_;
   std::vector<std::unique_ptr<const SizeFunction>> layers_;
+  const SizeFunction* limited_ = nullptr;
 };
 
 // Judges what needs neither the domain nor the values of arrays: kBadSizeValue for a constant that

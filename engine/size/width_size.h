@@ -45,7 +45,7 @@ class WidthSize final : public SizeFunction {
     return std::max(size_->steepness(box),
                     2 * area_of_edge(1) * widest * width_.steepness(box) / cells_);
   }
-  std::vector<std::string> undefined_at(Point p) const override { return size_->undefined_at(p); }
+  Asked asked_at(Point p) const override { return size_->asked_at(p); }
   std::size_t bytes() const noexcept override { return width_.bytes(); }
   std::size_t operations() const noexcept override {
     return size_->operations() + width_.operations() + 4;

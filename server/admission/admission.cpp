@@ -6,6 +6,8 @@
 #include <grpcpp/impl/rpc_service_method.h>
 #include <grpcpp/support/server_callback.h>
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <exception>
 #include <new>
@@ -19,11 +21,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Of late messages and of lines that were left out.
+// How often late messages are dropped, and lines that were left out are logged.
 constexpr std::chrono::milliseconds kTick{250};
-// Messages up to here are parsed without a share.
+// Messages up to this size are parsed without a share of memory.
 constexpr std::size_t kMostWithoutShare = kSmallRequest;
-// A message and what is parsed of it: numbers of one byte become four.
+// What a message takes with what is parsed from it, in message sizes: numbers of one byte become
+// four.
 constexpr std::uint64_t kTimesTheBytes = 5;
 
 double seconds_of(Clock::duration duration) {
@@ -57,24 +60,26 @@ Admission::~Admission() {
 RawCall* Admission::open(grpc::CallbackServerContext* context, const Method& method,
                          DrainGate* gate) {
   const auto raw = RawCall::make(context, *this);
+  try {
+    admit(raw, method, gate);
+  } catch (const std::bad_alloc&) {
+    raw->finish({grpc::RESOURCE_EXHAUSTED, "out of memory"});
+  }
+  return raw->given_to_grpc();
+}
+
+void Admission::admit(const std::shared_ptr<RawCall>& raw, const Method& method, DrainGate* gate) {
   if (resets_.began(raw->peer()))
     close_connections(raw->peer(), "calls_without_end", ResetGuard::kMostOpen);
   const auto call = std::make_shared<AdmittedCall>(
-      AdmittedCall{raw, method.name, authenticator_.unverified(*context), std::nullopt});
-  const auto refused = [&](const Failure& failure) {
-    refuse(*call, failure);
-    return raw->given_to_grpc();
-  };
-  auto caller = authenticator_.identify(*context);
-  if (!caller && method.for_strangers) {
-    received(call, method, grpc::ByteBuffer());
-    return raw->given_to_grpc();
-  }
-  if (!caller) return refused(caller.error());
+      AdmittedCall{raw, method.name, authenticator_.unverified(*raw->context()), std::nullopt});
+  auto caller = authenticator_.identify(*raw->context());
+  if (!caller && method.for_strangers) return received(call, method, grpc::ByteBuffer());
+  if (!caller) return refuse(*call, caller.error());
   call->caller = std::move(*caller);
   if (gate != nullptr) {
     auto pass = gate->enter();
-    if (!pass) return refused({Reason::kStopping, "", "the server is stopping"});
+    if (!pass) return refuse(*call, {Reason::kStopping, "", "the server is stopping"});
     call->pass.emplace(std::move(*pass));
   }
   Place place;
@@ -82,14 +87,21 @@ RawCall* Admission::open(grpc::CallbackServerContext* context, const Method& met
     std::lock_guard lock(mutex_);
     place = reading_.insert(reading_.end(), {call, Clock::now() + options_.request_timeout});
   }
-  raw->read([this, call, place, &method](RawCall&, std::optional<grpc::ByteBuffer> bytes) {
-    {
-      std::lock_guard lock(mutex_);
-      reading_.erase(place);
-    }
-    received(call, method, std::move(bytes));
-  });
-  return raw->given_to_grpc();
+  const auto leave_reading = [this, place] {
+    std::lock_guard lock(mutex_);
+    reading_.erase(place);
+  };
+  RawCall::OnRequest on_request;
+  try {
+    on_request = [=, this, &method](RawCall&, std::optional<grpc::ByteBuffer> bytes) {
+      leave_reading();
+      received(call, method, std::move(bytes));
+    };
+  } catch (...) {
+    leave_reading();
+    throw;
+  }
+  raw->read(std::move(on_request));
 }
 
 void Admission::received(const std::shared_ptr<AdmittedCall>& call, const Method& method,
@@ -110,23 +122,32 @@ void Admission::received(const std::shared_ptr<AdmittedCall>& call, const Method
 
 void Admission::handle(const std::shared_ptr<AdmittedCall>& call, const Method& method,
                        grpc::ByteBuffer bytes) {
-  if (const std::size_t length = bytes.Length(); length > kMostWithoutShare) {
-    const MemoryGate::Ask ask{.estimate = length * kTimesTheBytes, .request = true};
-    auto of_requests = gate_.take(ask);
-    if (!of_requests)
-      return refuse(*call, {Reason::kOutOfMemory, "",
-                            "other large requests take the memory that there is for them"});
-    call->share.of_requests = std::move(*of_requests);
-    if (options_.memory != nullptr) {
-      auto of_all = options_.memory->take(ask);
-      if (!of_all)
-        return refuse(*call, {Reason::kOutOfMemory, "",
-                              "runs take the memory that there is for them and for requests"});
-      call->share.of_all = std::move(*of_all);
-    }
-  }
+  if (const std::size_t length = bytes.Length(); length > kMostWithoutShare)
+    if (auto failure = hold(*call, length * kTimesTheBytes)) return refuse(*call, *failure);
   call->bytes = std::move(bytes);
   method.handler(call);
+}
+
+std::optional<Failure> Admission::hold(AdmittedCall& call, std::uint64_t bytes) {
+  RequestShare& share = call.share;
+  if (bytes <= kMostWithoutShare || (share.of_requests && share.of_requests.bytes() >= bytes)) {
+    share.shrink_to(bytes);
+    return std::nullopt;
+  }
+  share = {};
+  const MemoryGate::Ask ask{.estimate = bytes, .request = true};
+  auto of_requests = gate_.take(ask);
+  if (!of_requests)
+    return Failure{Reason::kOutOfMemory, "",
+                   "other large requests take the memory that there is for them"};
+  share.of_requests = std::move(*of_requests);
+  if (options_.memory == nullptr) return std::nullopt;
+  auto of_all = options_.memory->take(ask);
+  if (!of_all)
+    return Failure{Reason::kOutOfMemory, "",
+                   "runs take the memory that there is for them and for requests"};
+  share.of_all = std::move(*of_all);
+  return std::nullopt;
 }
 
 void Admission::refuse(const AdmittedCall& call, const Failure& failure) {
@@ -162,7 +183,9 @@ void Admission::ended(RawCall& call) {
 }
 
 void Admission::close_connections(const std::string& peer, const char* cause, std::uint64_t most) {
-  if (close_connections_of(peer) != 0 && closings_.take())
+  if (close_connections_of(peer) == 0) return;
+  closed_some_ = true;
+  if (closings_.take())
     log_->warn("event=connection_closed peer={} cause={} most={}", log_value(peer), cause, most);
 }
 
@@ -177,7 +200,7 @@ void Admission::give_up_late_ones(Clock::time_point now) {
       Reason::kDeadlineExceeded, "",
       fmt::format("the request did not arrive within {} s", seconds_of(options_.request_timeout))};
   for (const auto& [call, place] : late) {
-    if (!call->call->give_up_reading(to_status(failure, ""))) continue;  // it came, and was erased
+    if (!call->call->give_up_reading(to_status(failure, ""))) continue;  // the message came first
     note(*call, failure);
     std::lock_guard lock(mutex_);
     reading_.erase(place);
@@ -194,6 +217,7 @@ void Admission::tick_until_stopped() {
       give_up_late_ones(Clock::now());
       refusals_.tell_of_rest();
       closings_.tell_of_rest();
+      if (closed_some_.exchange(false)) malloc_trim(0);  // thousands of calls lie scattered in it
     } catch (const std::bad_alloc&) {
       // The next tick does it.
     }

@@ -23,6 +23,7 @@
 
 #include <grpcpp/impl/service_type.h>
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -91,7 +92,7 @@ class Admission : private RawCall::Observer {
     const char* name;        // as in the .proto
     std::size_t most_bytes;  // of its message
     std::function<void(std::shared_ptr<AdmittedCall>)> handler;
-    // Whoever is not known is answered, too, as if his message were empty: it is not taken in,
+    // Unidentified callers get an answer, too, as if their message were empty: it is not taken in,
     // because gRPC 1.51 cannot be told to take less of it than of any other.
     bool for_strangers = false;
   };
@@ -107,6 +108,13 @@ class Admission : private RawCall::Observer {
   // What gRPC's handler of the method returns. `gate` may be null; both outlive the call.
   RawCall* open(grpc::CallbackServerContext* context, const Method& method, DrainGate* gate);
 
+  // Has the call hold memory for the request that was parsed of its message, instead of what was
+  // held for the message; few bytes need none. Returns why it is refused if there is none.
+  std::optional<Failure> hold(AdmittedCall& call, std::uint64_t bytes);
+
+  // Whether a line on a call that failed may be logged now; if not, it is counted.
+  bool may_log_failure() { return refusals_.take(); }
+
   // Ends a call that was admitted with what is wrong with it.
   void refuse(const AdmittedCall& call, const Failure& failure);
   // Ends it with one message.
@@ -119,6 +127,7 @@ class Admission : private RawCall::Observer {
   };
   using Place = std::list<Reading>::iterator;
 
+  void admit(const std::shared_ptr<RawCall>& raw, const Method& method, DrainGate* gate);
   void received(const std::shared_ptr<AdmittedCall>& call, const Method& method,
                 std::optional<grpc::ByteBuffer> bytes);
   void handle(const std::shared_ptr<AdmittedCall>& call, const Method& method,
@@ -138,6 +147,7 @@ class Admission : private RawCall::Observer {
   RefusalLog closings_;
   ResetGuard resets_;
   MemoryGate gate_;
+  std::atomic<bool> closed_some_{false};  // connections, since the last tick
 
   std::mutex mutex_;            // guards the two below
   std::list<Reading> reading_;  // the oldest first

@@ -12,7 +12,7 @@ namespace weft::server {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Of a cell where the domain ends: half, and something to be on the safe side.
+// The part of a cell at the border that counts as domain: half of it, and some more to be safe.
 constexpr double kPartOfBorder = 0.6;
 constexpr std::uint16_t kUnknown = std::numeric_limits<std::uint16_t>::max();
 

@@ -3,8 +3,8 @@
 // from a coarse picture of the domain, its regions, and the size in each cell. What a run takes
 // beyond it, it gets from the MemoryGate as it grows, or not.
 //
-// Law: never below what the engine takes for the benchmarks' meshes, and at most twice that and
-// 2 MB (tests/server/admission/estimate_law_test.cpp).
+// Law: never below what the engine takes for the benchmarks' meshes if their reader stalls, and at
+// most twice that and 2 MB (tests/server/admission/estimate_law_test.cpp).
 #pragma once
 
 #include <chrono>
@@ -30,9 +30,9 @@ inline std::uint64_t most_light(const Limits& limits) {
   return kLightBytes + bytes_besides(limits);
 }
 
-// A stored request of so many bytes, parsed, and as the engine has it.
-constexpr std::uint64_t bytes_of_request(std::uint64_t stored) {
-  return 2 * stored;
+// A request, parsed, and as the engine has it.
+inline std::uint64_t bytes_of_request(const v1::GenerateMeshRequest& request) {
+  return 2 * request.SpaceUsedLong();
 }
 
 // Bytes, at most what the request's budget allows. REQUIRES: check_shape and check_limits found

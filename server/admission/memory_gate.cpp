@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kPoll{20};
 
-// How far a run is beyond what was expected of it, once it has what it wants.
+// By how much a run would exceed its estimate if it were granted what it wants.
 std::uint64_t excess(std::uint64_t wanted, std::uint64_t estimate) {
   return wanted - std::min(wanted, estimate);
 }
@@ -27,7 +27,7 @@ std::optional<MemoryGate::Share> MemoryGate::take(const Ask& ask) {
   if (!ask.request && held != of_clients_.end() && held->second >= options_.of_client)
     return std::nullopt;
   const auto entry = entries_.insert(entries_.end(), Entry{.ask = ask, .bytes = 0});
-  if (!ask.request) ++runs_;
+  if (ask.is_run()) ++runs_;
   add(*entry, std::min(ask.estimate, options_.capacity - std::min(taken_, options_.capacity)));
   return Share(*this, entry);
 }
@@ -67,20 +67,20 @@ void MemoryGate::add(Entry& entry, std::uint64_t bytes) {
   entry.bytes += bytes;
   taken_ += bytes;
   if (entry.ask.light) taken_by_light_ += bytes;
-  if (!entry.ask.request) of_clients_[entry.ask.client] += bytes;
+  if (!entry.ask.request && bytes > 0) of_clients_[entry.ask.client] += bytes;
 }
 
 void MemoryGate::remove(Entry& entry, std::uint64_t bytes) {
   entry.bytes -= bytes;
   taken_ -= bytes;
   if (entry.ask.light) taken_by_light_ -= bytes;
-  if (entry.ask.request) return;
+  if (entry.ask.request || bytes == 0) return;
   const auto held = of_clients_.find(entry.ask.client);
   held->second -= bytes;
   if (held->second == 0) of_clients_.erase(held);
 }
 
-// A step at a time, or else what it needs.
+// Grants a step at a time; if a whole step does not fit, what is needed.
 bool MemoryGate::try_grow(Entry& entry, std::uint64_t bytes) {
   if (bytes <= entry.bytes) return true;
   const std::uint64_t needed = bytes - entry.bytes;
@@ -93,7 +93,7 @@ bool MemoryGate::try_grow(Entry& entry, std::uint64_t bytes) {
 void MemoryGate::end_one_if_all_wait() {
   Entry* last = nullptr;
   for (Entry& entry : entries_) {
-    if (entry.ask.request || entry.parked) continue;
+    if (!entry.ask.is_run() || entry.parked) continue;
     if (entry.waiting == 0 || entry.ended) return;
     if (entry.wanted - std::min(entry.wanted, entry.bytes) <= free_for(entry.ask.light))
       return;  // it has not woken yet
@@ -151,7 +151,7 @@ void MemoryGate::give_back(std::list<Entry>::iterator entry) {
   {
     std::lock_guard lock(mutex_);
     remove(*entry, entry->bytes);
-    if (!entry->ask.request) --runs_;
+    if (entry->ask.is_run()) --runs_;
     entries_.erase(entry);
   }
   changed_.notify_all();
@@ -178,6 +178,18 @@ void MemoryGate::Share::turn_heavy() {
   std::lock_guard lock(gate_->mutex_);
   if (!std::exchange(entry_->ask.light, false)) return;
   gate_->taken_by_light_ -= entry_->bytes;
+}
+
+void MemoryGate::Share::turn_reader() {
+  if (gate_ == nullptr) return;
+  turn_heavy();
+  {
+    std::lock_guard lock(gate_->mutex_);
+    if (entry_->ask.is_run()) --gate_->runs_;
+    entry_->ask.reader = true;
+  }
+  gate_->changed_.notify_all();
+  gate_->on_room_();
 }
 
 void MemoryGate::Share::set_parked(bool parked) {

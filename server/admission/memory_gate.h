@@ -6,16 +6,16 @@
 //     share->grow_to(40 << 20, poll);                        // as it turns out to need more; waits
 //   }                                                        // the share goes back with its end
 //
-// A run begins if its estimate is free, and takes what it needs beyond that as it grows. If there
-// is none it waits for others to give some back. If every run waits, nobody would: then the one
-// that is farthest beyond its estimate is told to end, of equal ones the youngest. So a request
-// that was judged light, and is not, ends before those that were judged rightly.
+// A run begins if its estimate is free, and takes what it needs beyond that as it grows. If none
+// is free, it waits until others give some back. If every run waits, none would give any back: then
+// the run that is farthest beyond its estimate is told to end, or the youngest of several such. So
+// a request that was wrongly judged light ends before those that were judged rightly.
 //
 // A part (`for_light`) is kept for runs that begin as light ones: heavy ones can neither begin nor
 // grow in it. A client that holds `of_client` or more cannot begin another run.
 //
-// Law: what all hold together never passes the capacity. Law: a run begins if no other holds
-// anything, however high its estimate: its share is then what there is.
+// Law: what all hold together never passes the capacity. Law: a run begins if there is no other,
+// however high its estimate: its share is then what there is.
 // Thread-safety: every function may be called from any thread; one thread at a time takes, moves or
 // ends a Share, several may grow it. A gate outlives its shares.
 #pragma once
@@ -51,6 +51,10 @@ class MemoryGate {
     bool light = false;
     // A request that waits for its run. It does not grow, and nobody waits for its end.
     bool request = false;
+    // What waits for a reader. It does not grow, either, but is a part of its client's.
+    bool reader = false;
+
+    bool is_run() const { return !request && !reader; }
   };
 
   class Share {
@@ -83,6 +87,8 @@ class MemoryGate {
     // Whether the run waits for something that only the end of other runs gives it, such as a
     // place: it counts as one that waits for memory, and is not the one that is ended.
     void set_parked(bool parked);
+    // The run has ended; what it still has waits for a reader.
+    void turn_reader();
 
    private:
     friend class MemoryGate;

@@ -5,14 +5,12 @@
 //   RunMemory memory(place.memory(), bytes_of_request);
 //   context.set_memory(memory, memory.granted());
 //
-// Thread-safety: `grant` may be called by several threads; `tell_beyond` before all of them.
+// Thread-safety: `grant` may be called by several threads, the rest while the engine does not run.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <limits>
-#include <utility>
 
 #include "engine/base/context.h"
 #include "engine/base/memory_source.h"
@@ -29,23 +27,28 @@ class RunMemory final : public MemorySource {
   // What the engine may take without asking.
   std::uint64_t granted() const {
     const std::uint64_t all = share_ ? share_.bytes() : kAll;
-    const std::uint64_t granted = all - std::min(all, besides_);
-    return std::min(granted, told_beyond_);
+    return std::min(all - std::min(all, besides_), limit_);
   }
 
-  // Calls `f` once the engine needs more than so many bytes, before it has them.
-  void tell_beyond(std::uint64_t bytes, std::function<void()> f) {
-    told_beyond_ = bytes;
-    tell_ = std::move(f);
+  // The engine gets no more than so many bytes: a run that needs more fails.
+  void limit_to(std::uint64_t bytes) { limit_ = bytes; }
+  // Whether a run failed because of that.
+  bool limit_was_reached() const { return limit_was_reached_; }
+  // For a run that begins again, without the limit: gives back what the engine had.
+  void begin_again() {
+    limit_ = kAll;
+    share_.shrink_to(besides_);
   }
 
   Result<std::uint64_t> grant(std::uint64_t needed, const ExecutionContext& run) override {
-    if (tell_ && needed > told_beyond_ && !told_.exchange(true)) tell_();
-    if (!share_) return kAll;
+    if (needed > limit_) {
+      limit_was_reached_ = true;
+      return fail(ErrorCode::kOutOfMemory, "", "the run needs more memory than a light one");
+    }
+    if (!share_) return limit_;
     if (auto error = share_.grow_to(besides_ + needed, [&run] { return run.poll(); }))
       return tl::unexpected(*error);
-    const std::uint64_t granted = share_.bytes() - besides_;
-    return tell_ && !told_ ? std::max(needed, std::min(granted, told_beyond_)) : granted;
+    return granted();
   }
 
  private:
@@ -53,9 +56,8 @@ class RunMemory final : public MemorySource {
 
   MemoryGate::Share& share_;
   const std::uint64_t besides_;
-  std::uint64_t told_beyond_ = kAll;
-  std::function<void()> tell_;
-  std::atomic<bool> told_{false};
+  std::uint64_t limit_ = kAll;
+  std::atomic<bool> limit_was_reached_{false};
 };
 
 }  // namespace weft::server

@@ -6,6 +6,8 @@
 #include <exception>
 #include <utility>
 
+#include "server/admission/client_share.h"
+
 namespace weft::server {
 namespace {
 
@@ -13,16 +15,12 @@ constexpr int kMostPasses = 64;
 // How often an item that waits for another place asks whether it is to end.
 constexpr std::chrono::milliseconds kAsk{50};
 
-std::size_t share_of(std::size_t all, double share) {
-  const auto part = static_cast<std::size_t>(static_cast<double>(all) * std::min(share, 1.0));
-  return std::max<std::size_t>(part, std::min<std::size_t>(all, 1));
-}
-
 }  // namespace
 
 WorkQueue::WorkQueue(const Options& options)
     : options_(options),
       capacity_of_client_(share_of(options.capacity, options.client_share)),
+      distrust_(options.distrust),
       main_{.places = options.workers,
             .of_client = share_of(options.workers, options.client_share)},
       light_{.places = options.workers_for_light,
@@ -57,7 +55,7 @@ void WorkQueue::add_worker_if_short(Lane lane) {
   try {
     if (workers.threads < workers.places + workers.pausing && !stopping_) add_worker(lane);
   } catch (const std::exception&) {
-    // No thread or no memory for one: the place stays empty until this item goes on.
+    // No thread, or no memory for one: the place stays empty until the item that pauses goes on.
   }
 }
 
@@ -74,7 +72,7 @@ void WorkQueue::end(const Place& place) {
   if (--of_client->second == 0) workers.running_of.erase(of_client);
 }
 
-// Those who move come first; wakes one worker, because each would wake for nothing but one.
+// Items that move come first. Wakes one worker only, because the place is enough for one.
 void WorkQueue::place_is_free(Lane lane) {
   if (lane == Lane::kMain && !moving_.empty())
     place_for_moving_.notify_all();
@@ -111,6 +109,7 @@ void WorkQueue::leave_light_lane(Place& place, const std::function<bool()>& stop
   place.share_.turn_heavy();
   std::unique_lock lock(mutex_);
   if (place.lane_ == Lane::kMain) return;
+  if (options_.client_share < 1) distrust_.turned_out_heavy(place.client_, Distrust::Clock::now());
   end(place);
   ++light_.pausing;
   ++lent_;
@@ -129,12 +128,12 @@ void WorkQueue::leave_light_lane(Place& place, const std::function<bool()>& stop
   place.share_.set_parked(false);
   moving_.erase(self);
   begin(place);
-  // There may be another place, which nobody looked at because of this one.
+  // Another place may be free, which nobody looked at because of this one.
   place_for_moving_.notify_all();
   main_.idle.notify_all();
 }
 
-// The first that may have a main place now.
+// The first item that may have a main place now.
 WorkQueue::Place* WorkQueue::next_moving() const {
   for (Place* const place : moving_)
     if (has_place(Lane::kMain, place->client_)) return place;
@@ -151,12 +150,14 @@ WorkQueue::Pushed WorkQueue::push(std::shared_ptr<Item> item, Ticket ticket) {
   {
     std::lock_guard lock(mutex_);
     const std::size_t idle = main_.places - std::min(main_.running, main_.places);
-    if (waiting_ + moving_.size() >= idle + options_.capacity) return Pushed::kQueueFull;
     auto client = std::find_if(turns_.begin(), turns_.end(),
                                [&](const Client& c) { return c.name == ticket.client; });
-    const std::size_t of_client = client != turns_.end() ? client->items.size() : 0;
-    if (of_client + moving_of(ticket.client) >=
-        std::min(idle, main_.of_client) + capacity_of_client_)
+    const std::size_t of_client =
+        (client != turns_.end() ? client->items.size() : 0) + moving_of(ticket.client);
+    const bool has_room_of_its_own = options_.client_share < 1 && of_client == 0;
+    if (waiting_ + moving_.size() >= idle + options_.capacity * (has_room_of_its_own ? 2 : 1))
+      return Pushed::kQueueFull;
+    if (of_client >= std::min(idle, main_.of_client) + capacity_of_client_)
       return Pushed::kClientFull;
     if (client == turns_.end())
       client = turns_.insert(turns_.end(), Client{std::move(ticket.client), {}});
@@ -185,7 +186,7 @@ bool WorkQueue::remove(const Item& item) {
 }
 
 void WorkQueue::notify() {
-  { std::lock_guard lock(mutex_); }  // no worker is between looking and waiting
+  { std::lock_guard lock(mutex_); }  // no worker is between its check and its wait now
   main_.idle.notify_all();
   light_.idle.notify_all();
 }
@@ -212,6 +213,7 @@ bool WorkQueue::next(Place& place) {
     if (!has_place(place.lane_, client->name)) continue;
     std::size_t index = 0;
     if (place.lane_ == Lane::kLight) {
+      if (distrust_.holds_for(client->name, Distrust::Clock::now())) continue;
       const auto light =
           std::find_if(client->items.begin(), client->items.end(),
                        [this](const Waiting& w) { return w.estimate <= options_.light; });
@@ -224,8 +226,8 @@ bool WorkQueue::next(Place& place) {
   return false;
 }
 
-// Gives the place the client's item of this index, if there is memory for it; the client's next
-// turn is the last one then.
+// Gives the place to the client's item of this index if there is memory for it. The client's next
+// turn is then the last one.
 bool WorkQueue::take(Place& place, std::list<Client>::iterator client, std::size_t index) {
   const Waiting& waiting = client->items[index];
   if (options_.gate != nullptr) {

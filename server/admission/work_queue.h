@@ -10,7 +10,9 @@
 // Some places are for light items only, and of those whatever their client sent before: a mesh of a
 // millisecond does not wait for the queue of meshes that take seconds. An item that turns out heavy
 // leaves such a place at once, and goes on when there is one in the main lane
-// (Place::leave_light_lane).
+// (Place::leave_light_lane). Where clients are told apart, its client has none of these places for
+// a while (distrust.h): otherwise two clients whose heavy work looks light would keep both places
+// from all others.
 //
 // An item that waits for whoever reads its mesh leaves its place to another one (Pause). So a
 // client that reads nothing holds memory, but nobody's turn.
@@ -19,6 +21,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -33,6 +36,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/admission/distrust.h"
 #include "server/admission/memory_gate.h"
 
 namespace weft::server {
@@ -58,6 +62,9 @@ class WorkQueue {
     // Of the capacity and of the places in each lane, what one client may have: at least one of
     // each. 1: all; less leaves at least one place, where there are two, to others.
     double client_share = 1;
+    // How long a client whose item turned out heavy has no place for light ones the first time, if
+    // its share is below 1.
+    std::chrono::milliseconds distrust{10'000};
   };
 
   struct Ticket {
@@ -113,6 +120,8 @@ class WorkQueue {
   WorkQueue& operator=(const WorkQueue&) = delete;
 
   // kQueueFull if `capacity` items wait already, kClientFull if the client's share of that do.
+  // Where clients are told apart, one of whom nothing waits is refused only if twice the capacity
+  // waits: so a few clients who fill the queue shut out no other.
   Pushed push(std::shared_ptr<Item> item, Ticket ticket);
   bool push(std::shared_ptr<Item> item) { return push(std::move(item), Ticket()) == Pushed::kYes; }
 
@@ -178,6 +187,7 @@ class WorkQueue {
   mutable std::mutex mutex_;  // guards all below
   std::list<Client> turns_;   // whose turn it is comes first
   std::size_t waiting_ = 0;
+  Distrust distrust_;
   std::list<Place*> moving_;  // from the light lane to the main one, the first first
   std::condition_variable place_for_moving_;
   Workers main_;

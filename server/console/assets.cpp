@@ -30,7 +30,7 @@ std::string inflated(const Asset& asset) {
   z_stream stream{};
   std::string out;
   if (inflateInit2(&stream, kGzip) != Z_OK) return out;
-  // zlib does not write there.
+  // zlib does not write to its input.
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(asset.gzip.data()));
   stream.avail_in = static_cast<uInt>(asset.gzip.size());
   std::array<char, 16384> part;

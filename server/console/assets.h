@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The files of the application, as server/console/embed.py puts them into the binary.
+//
+// This folder has more than 25 files because the console has a web server of its own: each step
+// from the bytes of a browser to a call of gRPC and back has a file pair.
 #pragma once
 
 #include <span>

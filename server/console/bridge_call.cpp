@@ -54,7 +54,7 @@ void BridgeCall::release() {
   if (std::exchange(held_, false)) RemoveHold();
 }
 
-// The callbacks may run on any thread, also within one of the functions above.
+// The callbacks may run on any thread, even within one of the functions above.
 void BridgeCall::OnReadDone(bool ok) {
   take_from_grpc(this);
   boost::asio::post(io_, [self = shared_from_this(), ok] {
@@ -74,7 +74,7 @@ void BridgeCall::OnWriteDone(bool ok) {
 
 void BridgeCall::OnDone(const grpc::Status& status) {
   take_from_grpc(this);
-  const DrainGate::Pass pass = std::move(pass_);  // leaves when all below is done
+  const DrainGate::Pass pass = std::move(pass_);  // leaves the gate when all below is done
   boost::asio::post(io_, [self = std::move(self_), status] {
     const auto listener = std::exchange(self->listener_, nullptr);
     if (listener == nullptr) return;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
@@ -131,14 +132,16 @@ class Console::Listener {
   const std::shared_ptr<grpc::Channel> channel_;
   BridgeStub stub_;
   std::optional<TlsContext> tls_;
-  DrainGate calls_;  // that gRPC still has
+  DrainGate calls_;  // calls that gRPC still has
   bool stopped_ = false;
   Clock::time_point stop_end_;
   std::promise<void> all_closed_;  // after `stop`
   int port_ = 0;
   std::string address_;
-  SessionContext context_;  // sessions touch it, and end with the io_context at the latest
+  SessionContext context_;  // used by sessions, which end with the io_context at the latest
   asio::io_context io_{1};
+  // Keeps the thread running, because calls that were dropped may end there after the last session.
+  const asio::executor_work_guard<asio::io_context::executor_type> work_{io_.get_executor()};
   tcp::acceptor acceptor_{io_};
   asio::steady_timer timer_{io_};
   std::thread thread_;

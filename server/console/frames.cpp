@@ -10,7 +10,8 @@
 namespace weft::server {
 namespace {
 
-// A slice costs some 100 bytes beside its own: small ones would make a message many times as large.
+// A slice costs about 100 bytes beside its contents, so small ones would multiply a message's
+// memory.
 constexpr std::size_t kSlice = std::size_t{64} << 10;
 constexpr std::string_view kAlphabet =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -137,6 +138,21 @@ std::optional<std::string> from_base64(std::string_view text) {
     if (count < 8) continue;
     count -= 8;
     out += static_cast<char>(bits >> count & 0xff);
+  }
+  return out;
+}
+
+std::optional<std::string> Base64Reader::feed(std::string_view text) {
+  constexpr std::size_t kGroup = 4;
+  std::string out;
+  out.reserve((group_.size() + text.size()) / kGroup * 3);
+  for (const char c : text) {
+    group_ += c;
+    if (group_.size() < kGroup) continue;
+    const auto bytes = from_base64(group_);
+    if (!bytes) return std::nullopt;
+    out += *bytes;
+    group_.clear();
   }
   return out;
 }

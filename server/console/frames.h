@@ -105,4 +105,18 @@ std::string to_base64(std::string_view bytes);
 // With or without padding; nullopt if it is not base64.
 std::optional<std::string> from_base64(std::string_view text);
 
+// Reads base64 that comes in pieces, split anywhere. Padding may stand within it, as gRPC-Web's
+// text mode allows: what follows is decoded anew.
+class Base64Reader {
+ public:
+  // Returns the bytes that are complete; nullopt if the text is not base64.
+  std::optional<std::string> feed(std::string_view text);
+
+  // Whether the text may end here.
+  bool at_border() const { return group_.empty(); }
+
+ private:
+  std::string group_;  // less than four characters
+};
+
 }  // namespace weft::server

@@ -116,7 +116,7 @@ std::optional<std::chrono::nanoseconds> parse_timeout(std::string_view text) {
   if (error != std::errc() || stop != unit || count < 0) return std::nullopt;
   switch (*unit) {
     case 'H':
-      // All that a clock can hold, and nobody waits for so long.
+      // The clock cannot hold more, and nobody waits for so long.
       return std::chrono::hours(std::min<std::int64_t>(count, 24 * 365));
     case 'M':
       return std::chrono::minutes(std::min<std::int64_t>(count, 60 * 24 * 365));

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/console/session.h"
 
-#include <fmt/format.h>
-#include <grpc/grpc.h>
 #include <netinet/tcp.h>
-#include <openssl/x509v3.h>
 
-#include <algorithm>
-#include <array>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -16,10 +11,7 @@
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
-#include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
-#include <cctype>
-#include <deque>
 #include <exception>
 #include <limits>
 #include <optional>
@@ -28,6 +20,11 @@
 #include <utility>
 #include <vector>
 
+#include "server/console/call_answer.h"
+#include "server/console/call_body.h"
+#include "server/console/call_headers.h"
+#include "server/console/pages.h"
+#include "server/console/peer.h"
 #include "server/console/transport.h"
 
 namespace weft::server {
@@ -38,91 +35,12 @@ namespace beast = boost::beast;
 namespace http = boost::beast::http;
 using boost::system::error_code;
 using tcp = boost::asio::ip::tcp;
-using Response = http::response<http::string_body>;
 
 constexpr std::uint32_t kMostHeaderBytes = 16 << 10;  // the request line and all headers
 constexpr std::size_t kWindow = std::size_t{64} << 10;
-// A body of messages of the largest size may be a little larger.
-constexpr std::uint64_t kMostFraming = 4096;
 constexpr std::size_t kMostMessagesAhead = 1;
-// How long a browser may take to notice that its request was answered before it was read.
+// How long a browser may take to see the answer to a request that was not read to its end.
 constexpr std::chrono::seconds kLinger{5};
-
-// Nothing but the application's own files runs, is shown or is asked, and no other site shows it in
-// a frame. Pictures to download and to copy are made in the page.
-constexpr std::string_view kContentSecurityPolicy =
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
-    "connect-src 'self'; worker-src 'self'; font-src 'self'; base-uri 'none'; form-action 'none'; "
-    "frame-ancestors 'none'";
-
-template <class Message>
-void secure(Message& message) {
-  message.set("Content-Security-Policy",
-              beast::string_view(kContentSecurityPolicy.data(), kContentSecurityPolicy.size()));
-  message.set("X-Content-Type-Options", "nosniff");
-  message.set("Referrer-Policy", "no-referrer");
-  message.set("X-Frame-Options", "DENY");
-  message.set("Cross-Origin-Opener-Policy", "same-origin");
-  message.set("Cross-Origin-Resource-Policy", "same-origin");
-}
-
-std::string_view view(beast::string_view text) {
-  return {text.data(), text.size()};
-}
-beast::string_view view(std::string_view text) {
-  return {text.data(), text.size()};
-}
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
-}
-
-// As gRPC spells it.
-std::string peer_of(const tcp::socket& socket) {
-  error_code error;
-  const tcp::endpoint end = socket.remote_endpoint(error);
-  if (error) return "unknown";
-  const asio::ip::address& address = end.address();
-  if (address.is_v6() && address.to_v6().is_v4_mapped())
-    return fmt::format("ipv4:{}:{}",
-                       asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).to_string(),
-                       end.port());
-  return address.is_v4() ? fmt::format("ipv4:{}:{}", address.to_string(), end.port())
-                         : fmt::format("ipv6:%5B{}%5D:{}", address.to_string(), end.port());
-}
-
-// The subject's common name, otherwise its first alternative name of a host; as gRPC reads them.
-std::string name_in_certificate(SSL* connection) {
-  const std::unique_ptr<X509, decltype(&X509_free)> certificate(
-      SSL_get1_peer_certificate(connection), &X509_free);
-  if (certificate == nullptr || SSL_get_verify_result(connection) != X509_V_OK) return "";
-  std::array<char, 256> name{};
-  const int size = X509_NAME_get_text_by_NID(X509_get_subject_name(certificate.get()),
-                                             NID_commonName, name.data(), name.size());
-  if (size > 0) return {name.data(), static_cast<std::size_t>(size)};
-  const std::unique_ptr<GENERAL_NAMES, decltype(&GENERAL_NAMES_free)> names(
-      static_cast<GENERAL_NAMES*>(
-          X509_get_ext_d2i(certificate.get(), NID_subject_alt_name, nullptr, nullptr)),
-      &GENERAL_NAMES_free);
-  for (int i = 0; names != nullptr && i < sk_GENERAL_NAME_num(names.get()); ++i) {
-    const GENERAL_NAME* const each = sk_GENERAL_NAME_value(names.get(), i);
-    if (each->type != GEN_DNS && each->type != GEN_EMAIL && each->type != GEN_URI) continue;
-    const ASN1_STRING* const text = each->d.ia5;
-    return {reinterpret_cast<const char*>(ASN1_STRING_get0_data(text)),
-            static_cast<std::size_t>(ASN1_STRING_length(text))};
-  }
-  return "";
-}
-
-bool is_legal_metadata(const std::string& key, const std::string& value) {
-  const auto slice = [](const std::string& text) {
-    return grpc_slice_from_static_buffer(text.data(), text.size());
-  };
-  return grpc_header_key_is_legal(slice(key)) != 0 &&
-         (key.ends_with("-bin") || grpc_header_nonbin_value_is_legal(slice(value)) != 0);
-}
 
 class HttpSession final : public Session,
                           public BridgeCall::Listener,
@@ -158,18 +76,15 @@ class HttpSession final : public Session,
   void dispatch();
   void answer_page();
   void answer_metrics();
-  void answer_preflight();
   void respond(Response response);
-  void refuse(http::status status, std::string why);
-  Response page(http::status status, std::string_view type, std::string body) const;
-  template <class Message>
-  void allow_origin(Message& message) const;
-  std::string_view header(std::string_view name) const { return view(parser_->get()[view(name)]); }
+  void refuse(http::status status, const std::string& why);
+  std::string_view header(http::field name) const { return view(parser_->get()[name]); }
+  // The only one; nullopt if there are none or several.
+  std::optional<std::string_view> authorization() const;
   void response_written();
 
   // One call.
   void begin_call();
-  std::optional<Metadata> call_metadata() const;
   void continue_body();
   void read_body();
   void take_body();
@@ -180,7 +95,7 @@ class HttpSession final : public Session,
   void ended(const grpc::Status& status, const Metadata& trailers) override;
   void end_call(const grpc::Status& status, const Metadata& trailers);
   void write_next();
-  void write_out(std::vector<asio::const_buffer> buffers, bool last);
+  void write_out(std::vector<asio::const_buffer> buffers);
   std::string response_head() const;
 
   SessionContext& context_;
@@ -191,7 +106,7 @@ class HttpSession final : public Session,
   State state_ = State::kIdle;
   std::string certificate_name_;
   beast::flat_buffer buffer_{kMostHeaderBytes + kWindow};
-  bool watching_ = false;  // a read waits for the next request, or for the browser to go
+  bool watching_ = false;  // a read waits for the next request, or for the browser to close
 
   std::optional<Parser> parser_;
   std::optional<Response> response_;
@@ -199,21 +114,12 @@ class HttpSession final : public Session,
   bool keep_ = true;  // the connection, after this response
 
   std::shared_ptr<BridgeCall> call_;
-  std::optional<FrameReader> frames_;
-  std::vector<char> window_;  // of the body
-  std::string_view unread_;   // what is in it
-  std::uint64_t body_bytes_ = 0;
-  std::uint64_t passing_ = 0;  // length of the message that the call is taking
-  bool body_wanted_ = false;   // its rest is still to be read
+  std::optional<CallBody> body_;
+  std::optional<CallAnswer> answer_;
+  std::vector<char> window_;  // for the body
+  bool body_wanted_ = false;  // its rest is still to be read
   bool reading_body_ = false;
-  bool head_sent_ = false;
   bool writing_ = false;
-  bool over_ = false;  // the trailers are queued
-  std::deque<grpc::ByteBuffer> messages_;
-  std::optional<std::string> trailers_;
-  // What is being written.
-  std::string head_;
-  std::vector<grpc::Slice> slices_;
 };
 
 // ---- the connection ----
@@ -239,7 +145,7 @@ void HttpSession::start() {
 
 void HttpSession::close() {
   if (state_ == State::kClosed) return;
-  const auto self = shared_from_this();  // the call may be the last that keeps it
+  const auto self = shared_from_this();  // the call may hold the last reference
   state_ = State::kClosed;
   timer_.cancel();
   error_code ignored;
@@ -285,7 +191,7 @@ void HttpSession::next_request() {
 }
 
 void HttpSession::read_header() {
-  if (watching_) return;  // what it reads comes first
+  if (watching_) return;  // what that read returns comes first
   state_ = State::kHeader;
   keep_ = true;
   origin_ = PageOrigin::kOwn;
@@ -308,7 +214,8 @@ void HttpSession::read_header() {
       });
 }
 
-// Answered before all was read, perhaps: closing at once would take the response from the browser.
+// The answer may have been sent before the request was read to its end: closing at once could make
+// the browser lose the answer.
 void HttpSession::linger() {
   if (state_ == State::kClosed) return;
   state_ = State::kLingering;
@@ -343,114 +250,66 @@ void HttpSession::dispatch() {
   keep_ = request.keep_alive() && !context_.stopping;
   if (request.version() != 11)
     return refuse(http::status::http_version_not_supported, "this server speaks HTTP/1.1");
-  if (request.count(http::field::host) != 1 || !context_.rules.knows_host(header("Host")))
+  if (request.count(http::field::host) != 1 ||
+      !context_.rules.knows_host(header(http::field::host)))
     return refuse(http::status::misdirected_request,
                   "the console is not known by this name: --console-origin can add it");
-  origin_ = context_.rules.judge(header("Origin"), header("Host"));
+  origin_ = context_.rules.judge(header(http::field::origin), header(http::field::host));
   const http::verb method = request.method();
   const std::string_view target = view(request.target());
   if (origin_ == PageOrigin::kForeign)
     return refuse(http::status::forbidden,
                   "pages of other origins may not call: --console-origin can allow it");
-  if (method == http::verb::options) return answer_preflight();
+  if (method == http::verb::options) return respond(preflight_answer(origin_, request));
   if (method == http::verb::post) {
     if (!is_method_path(target)) return refuse(http::status::not_found, "there is no such method");
     return begin_call();
   }
   if (method != http::verb::get && method != http::verb::head)
-    return refuse(http::status::method_not_allowed, "there are GET, HEAD and POST");
+    return refuse(http::status::method_not_allowed, "only GET, HEAD and POST are supported");
   if (target == "/metrics") return answer_metrics();
   answer_page();
 }
 
-Response HttpSession::page(http::status status, std::string_view type, std::string body) const {
-  Response response;
-  response.version(11);
-  response.result(status);
-  response.set(http::field::content_type, view(type));
-  response.body() = std::move(body);
-  return response;
+std::optional<std::string_view> HttpSession::authorization() const {
+  if (parser_->get().count(http::field::authorization) != 1) return std::nullopt;
+  return header(http::field::authorization);
 }
 
-template <class Message>
-void HttpSession::allow_origin(Message& message) const {
-  if (!context_.rules.origins.empty()) message.set(http::field::vary, "Origin, Accept-Encoding");
-  if (origin_ != PageOrigin::kListed) return;
-  message.set(http::field::access_control_allow_origin, view(header("Origin")));
-  message.set(http::field::access_control_expose_headers,
-              "grpc-status, grpc-message, grpc-status-details-bin");
-  message.set("Cross-Origin-Resource-Policy", "cross-origin");
-}
-
-void HttpSession::refuse(http::status status, std::string why) {
+void HttpSession::refuse(http::status status, const std::string& why) {
   if (status == http::status::bad_request ||
       status == http::status::request_header_fields_too_large)
     keep_ = false;
   state_ = State::kAnswering;
-  Response response = page(status, "text/plain; charset=utf-8", std::move(why) + "\n");
-  if (status == http::status::method_not_allowed)
-    response.set(http::field::allow, "GET, HEAD, POST, OPTIONS");
-  respond(std::move(response));
-}
-
-void HttpSession::answer_preflight() {
-  Response response = page(http::status::no_content, "text/plain; charset=utf-8", "");
-  if (origin_ == PageOrigin::kListed) {
-    response.set(http::field::access_control_allow_methods, "GET, HEAD, POST");
-    response.set(http::field::access_control_allow_headers,
-                 view(header("Access-Control-Request-Headers")));
-    response.set(http::field::access_control_max_age, "7200");
-  }
-  respond(std::move(response));
+  respond(refusal(status, why));
 }
 
 void HttpSession::answer_metrics() {
-  if (const auto name =
-          context_.authenticator.token_name(parser_->get().count(http::field::authorization) == 1
-                                                ? std::optional(header("Authorization"))
-                                                : std::nullopt);
-      !name)
+  if (const auto name = context_.authenticator.token_name(authorization()); !name)
     return refuse(http::status::unauthorized, name.error().message);
   Response response =
-      page(http::status::ok, "text/plain; version=0.0.4; charset=utf-8", context_.metrics());
+      make_page(http::status::ok, "text/plain; version=0.0.4; charset=utf-8", context_.metrics());
   response.set(http::field::cache_control, "no-store");
   respond(std::move(response));
 }
 
 void HttpSession::answer_page() {
-  const std::string_view target = view(parser_->get().target());
-  const std::string_view path = target.substr(0, target.find_first_of("?#"));
-  if (context_.assets.empty() && path == "/")
-    return respond(
-        page(http::status::ok, "text/plain; charset=utf-8",
-             "This weftd was built without the console's pages, and serves gRPC-Web only. "
-             "A build with npm has them: see WEFT_CONSOLE of its CMake.\n"));
-  const Asset* const asset = find_asset(context_.assets, path);
-  if (asset == nullptr) return refuse(http::status::not_found, "there is no such page");
-  const bool current = header("If-None-Match") == asset->etag;
-  const bool gzip = accepts_gzip(header("Accept-Encoding"));
-  Response response = page(current ? http::status::not_modified : http::status::ok, asset->type,
-                           current ? std::string()
-                           : gzip  ? std::string(asset->gzip)
-                                   : inflated(*asset));
-  response.set(http::field::etag, view(asset->etag));
-  response.set(http::field::vary, "Accept-Encoding");
-  response.set(http::field::cache_control,
-               asset->immutable ? "public, max-age=31536000, immutable" : "no-cache");
-  if (gzip && !current) response.set(http::field::content_encoding, "gzip");
-  respond(std::move(response));
+  const auto& request = parser_->get();
+  auto response = asset_page(context_.assets, view(request.target()), request);
+  if (!response) return refuse(http::status::not_found, "there is no such page");
+  respond(std::move(*response));
 }
 
 void HttpSession::respond(Response response) {
   secure(response);
   if (parser_ && parser_->is_header_done()) {
-    allow_origin(response);
+    allow_origin(context_.rules, origin_, parser_->get(), response);
     if (!parser_->is_done()) keep_ = false;
   }
   response.keep_alive(keep_);
   response.prepare_payload();
   if (parser_ && parser_->is_header_done() && parser_->get().method() == http::verb::head)
-    response.body().clear();  // what it would be is told nevertheless
+    response.body().clear();  // the headers describe it all the same
   response_ = std::move(response);
   expire_in(context_.times.stall);
   http::async_write(transport_, *response_,
@@ -469,60 +328,28 @@ void HttpSession::response_written() {
 
 // ---- one call ----
 
-std::optional<Metadata> HttpSession::call_metadata() const {
-  Metadata metadata{{std::string(kConsoleSecret), context_.secret},
-                    {std::string(kConsolePeer), peer_}};
-  if (!certificate_name_.empty()) metadata.emplace_back(kConsoleName, certificate_name_);
-  for (const auto& field : parser_->get()) {
-    std::string name = lower(view(field.name_string()));
-    if (!is_metadata(name)) continue;
-    std::string value(view(field.value()));
-    if (name.ends_with("-bin")) {
-      auto bytes = from_base64(value);
-      if (!bytes) return std::nullopt;
-      value = std::move(*bytes);
-    }
-    if (!is_legal_metadata(name, value)) return std::nullopt;
-    metadata.emplace_back(std::move(name), std::move(value));
-  }
-  return metadata;
-}
-
 void HttpSession::begin_call() {
-  const std::string type = lower(header("Content-Type"));
-  if (type != "application/grpc-web" && type != "application/grpc-web+proto")
-    return refuse(http::status::unsupported_media_type,
-                  "calls are of the type application/grpc-web+proto");
-  std::optional<std::chrono::system_clock::time_point> deadline;
-  if (const std::string_view timeout = header("grpc-timeout"); !timeout.empty()) {
-    const auto time = parse_timeout(timeout);
-    if (!time) return refuse(http::status::bad_request, "grpc-timeout is malformed");
-    deadline = std::chrono::system_clock::now() +
-               std::chrono::duration_cast<std::chrono::system_clock::duration>(*time);
-  }
-  const auto metadata = call_metadata();
-  if (!metadata) return refuse(http::status::bad_request, "a header cannot be metadata of a call");
+  const auto& request = parser_->get();
+  auto headers = read_call_headers(request);
+  if (!headers) return refuse(headers.error().status, headers.error().why);
+  Metadata& metadata = headers->metadata;
+  metadata.emplace_back(kConsoleSecret, context_.secret);
+  metadata.emplace_back(kConsolePeer, peer_);
+  if (!certificate_name_.empty()) metadata.emplace_back(kConsoleName, certificate_name_);
   auto pass = context_.calls.enter();
   if (!pass) return close();
   timer_.cancel();  // from here on the call's own limits hold
-  frames_.emplace(context_.most_request_bytes, context_.budget);
-  body_bytes_ = 0;
-  head_sent_ = writing_ = over_ = false;
-  messages_.clear();
-  trailers_.reset();
-  call_ = BridgeCall::start(context_.stub, std::string(view(parser_->get().target())), *metadata,
-                            deadline, context_.io, std::move(*pass), shared_from_this());
+  body_.emplace(headers->is_text, context_.most_request_bytes, context_.budget);
+  answer_.emplace(headers->is_text);
+  writing_ = false;
+  call_ = BridgeCall::start(context_.stub, std::string(view(request.target())), metadata,
+                            headers->deadline, context_.io, std::move(*pass), shared_from_this());
   call_->read();
-  // The message of an unknown caller is not read, as over gRPC: the server refuses the call by its
+  // As over gRPC, the message of an unknown caller is not read: the server refuses the call by its
   // headers.
-  const auto& request = parser_->get();
-  body_wanted_ = context_.authenticator
-                     .token_name(request.count(http::field::authorization) == 1
-                                     ? std::optional(header("Authorization"))
-                                     : std::nullopt)
-                     .has_value();
+  body_wanted_ = context_.authenticator.token_name(authorization()).has_value();
   if (!body_wanted_) return call_->end_writing();
-  if (lower(header("Expect")) == "100-continue") return continue_body();
+  if (lower_case(header(http::field::expect)) == "100-continue") return continue_body();
   read_body();
 }
 
@@ -554,38 +381,27 @@ void HttpSession::read_body() {
         if (!self->body_wanted_ || self->state_ == State::kClosed) return;
         if (error && error != http::error::need_buffer) return self->close();
         const std::size_t size = self->window_.size() - self->parser_->get().body().size;
-        self->unread_ = {self->window_.data(), size};
-        self->body_bytes_ += size;
+        if (const auto failure = self->body_->add({self->window_.data(), size}))
+          return self->body_failed(*failure);
         self->take_body();
       });
 }
 
 void HttpSession::take_body() {
-  if (body_bytes_ > context_.most_request_bytes + kMostFraming)
-    return body_failed(
-        {Reason::kLimitExceeded, "",
-         fmt::format("the request has more than {} bytes", context_.most_request_bytes)});
-  while (!unread_.empty()) {
-    const auto used = frames_->feed(unread_);
-    if (!used) return body_failed(used.error());
-    unread_.remove_prefix(*used);
-    if (auto message = frames_->next()) {
-      passing_ = message->length;
-      return call_->write(std::move(message->bytes));  // goes on when that was taken
-    }
-  }
+  auto message = body_->next();
+  if (!message) return body_failed(message.error());
+  if (*message) return call_->write(std::move(**message));  // goes on when the call has taken it
   read_body();
 }
 
 void HttpSession::wrote(bool) {
-  if (!frames_) return;
-  frames_->give_back(std::exchange(passing_, 0));
+  if (!body_) return;
+  body_->passed_on();
   if (body_wanted_) take_body();
 }
 
 void HttpSession::body_ended() {
-  if (!frames_->at_border())
-    return body_failed({Reason::kMalformedRequest, "", "the request ends within a message"});
+  if (const auto failure = body_->end()) return body_failed(*failure);
   body_wanted_ = false;
   call_->end_writing();
   watch();
@@ -598,7 +414,7 @@ void HttpSession::body_failed(const Failure& failure) {
 }
 
 void HttpSession::received(grpc::ByteBuffer message) {
-  messages_.push_back(std::move(message));
+  answer_->add(std::move(message));
   write_next();
 }
 
@@ -610,8 +426,8 @@ void HttpSession::ended(const grpc::Status& status, const Metadata& trailers) {
 void HttpSession::end_call(const grpc::Status& status, const Metadata& trailers) {
   if (!parser_->is_done()) keep_ = false;
   body_wanted_ = false;
-  frames_.reset();
-  trailers_ = trailer_block(status, trailers);
+  body_.reset();
+  answer_->end(trailer_block(status, trailers));
   write_next();
 }
 
@@ -620,10 +436,11 @@ std::string HttpSession::response_head() const {
   response.version(11);
   response.result(http::status::ok);
   secure(response);
-  response.set(http::field::content_type, "application/grpc-web+proto");
+  response.set(http::field::content_type, answer_->is_text() ? "application/grpc-web-text+proto"
+                                                             : "application/grpc-web+proto");
   response.set(http::field::transfer_encoding, "chunked");
   response.set(http::field::cache_control, "no-store");
-  allow_origin(response);
+  allow_origin(context_.rules, origin_, parser_->get(), response);
   response.keep_alive(keep_);
   std::ostringstream text;
   text << response.base();
@@ -631,36 +448,12 @@ std::string HttpSession::response_head() const {
 }
 
 void HttpSession::write_next() {
-  if (writing_ || over_ || state_ != State::kAnswering) return;
-  if (messages_.empty() && !trailers_) return;
-  head_ = head_sent_ ? std::string() : response_head();
-  head_sent_ = true;
-  slices_.clear();
-  std::uint32_t length = 0;
-  std::uint8_t flags = 0;
-  std::string tail = "\r\n";
-  if (!messages_.empty()) {
-    length = static_cast<std::uint32_t>(messages_.front().Length());
-    messages_.front().Dump(&slices_);
-    messages_.pop_front();
-  } else {
-    over_ = true;
-    flags = kTrailerFlag;
-    length = static_cast<std::uint32_t>(trailers_->size());
-    slices_.emplace_back(*trailers_);
-    tail += "0\r\n\r\n";
-  }
-  head_ += fmt::format("{:x}\r\n", length + kFrameHeader);
-  const auto frame = frame_header(flags, length);
-  head_.append(frame.data(), frame.size());
-  slices_.emplace_back(tail);
-  std::vector<asio::const_buffer> buffers{asio::buffer(head_)};
-  for (const grpc::Slice& slice : slices_) buffers.emplace_back(slice.begin(), slice.size());
-  write_out(std::move(buffers), over_);
-  if (call_ != nullptr && messages_.size() < kMostMessagesAhead) call_->read();
+  if (writing_ || state_ != State::kAnswering || !answer_->has_next()) return;
+  write_out(answer_->next(answer_->begun() ? std::string() : response_head()));
+  if (call_ != nullptr && answer_->waiting() < kMostMessagesAhead) call_->read();
 }
 
-void HttpSession::write_out(std::vector<asio::const_buffer> buffers, bool last) {
+void HttpSession::write_out(std::vector<asio::const_buffer> buffers) {
   writing_ = true;
   expire_in(context_.times.stall);
   asio::async_write(
@@ -671,12 +464,12 @@ void HttpSession::write_out(std::vector<asio::const_buffer> buffers, bool last) 
         self->expire_in(self->context_.times.stall);
         return kAtOnce;
       },
-      [self = shared_from_this(), last](error_code error, std::size_t) {
+      [self = shared_from_this()](error_code error, std::size_t) {
         self->writing_ = false;
         if (self->state_ == State::kClosed) return;
         if (error) return self->close();
         self->timer_.cancel();
-        if (!last) return self->write_next();
+        if (!self->answer_->over()) return self->write_next();
         self->response_written();
       });
 }

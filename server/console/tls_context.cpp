@@ -33,7 +33,7 @@ tl::expected<std::shared_ptr<ssl::context>, std::string> load(const TlsOptions& 
   context->load_verify_file(options.client_ca, error);
   if (error) return bad("CA for clients", options.client_ca, error);
   context->set_verify_mode(ssl::verify_peer | ssl::verify_fail_if_no_peer_cert, error);
-  // Without it OpenSSL resumes no session of a client with a certificate.
+  // Without it OpenSSL does not resume sessions of clients with certificates.
   static constexpr unsigned char kSessions[] = "weft-console";
   SSL_CTX_set_session_id_context(context->native_handle(), kSessions, sizeof kSessions - 1);
   return context;

@@ -19,14 +19,14 @@ namespace {
 using std::chrono::milliseconds;
 using Seconds = std::chrono::duration<double>;
 
-// A store that is away for longer loses the run: its lease has run out meanwhile.
-// The store did not take the task back: it is taken up once the lease has run out.
+// The store did not take the task back: another attempt begins once the lease has run out.
 constexpr std::string_view kStillLeased = "leased";
+// If the store is away for longer, the run is lost, because its lease has run out.
 constexpr std::chrono::seconds kPatience{60};
 constexpr milliseconds kFirstPause{50};
 constexpr milliseconds kLongestPause{2000};
 
-// An empty one if there is none to work on: the run then ends before it has begun.
+// The request, or an empty one if there is none: the run then ends before it begins.
 const v1::GenerateMeshRequest& shown(
     const tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure>& request) {
   return request ? **request : v1::GenerateMeshRequest::default_instance();
@@ -38,8 +38,8 @@ std::string label_of(const Claim& claim) {
                      claim.ref.attempt, who.empty() ? "" : " ", who);
 }
 
-// Of these the same task may be done another time, or elsewhere: they are of the machine, not of
-// the request.
+// Whether another attempt, or another server, may succeed at the same task: the fault lies with the
+// machine, not with the request.
 bool is_of_the_machine(Reason reason) {
   return reason == Reason::kInternal || row_of(reason).retryable;
 }
@@ -53,22 +53,12 @@ Attempt::Attempt(const RunEnvironment& environment, Claim claim, MemoryGate::Sha
       label_(label_of(claim_)),
       request_(read_request(claim_)),
       share_(std::move(share)),
-      memory_(share_, bytes_of_request(claim_.request.size()) + bytes_besides(environment.limits)),
+      memory_(share_, bytes_of_request(shown(request_)) + bytes_besides(environment.limits)),
+      leave_light_lane_(std::move(leave_light_lane)),
       max_seconds_(to_seconds(shown(request_).budget(), environment.limits)),
       threads_(to_threads(shown(request_).threads(), environment.arena.threads())),
       context_(to_budget(shown(request_).budget(), environment.limits)) {
   claim_.request = {};
-  context_.set_deadline(seconds_from_now(max_seconds_));
-  if (leave_light_lane) {
-    const auto leave = [this, leave_light_lane = std::move(leave_light_lane)] {
-      leave_light_lane(share_, context_);
-    };
-    memory_.tell_beyond(kLightBytes, leave);
-    context_.call_at(Clock::now() + kLightTime, leave);
-  } else {
-    context_.set_arena(environment.arena, static_cast<int>(threads_));
-  }
-  context_.set_memory(memory_, memory_.granted());
 }
 
 void Attempt::run() {
@@ -84,7 +74,13 @@ void Attempt::run() {
 tl::expected<void, Failure> Attempt::make_mesh() {
   if (!request_) return tl::unexpected(request_.error());
   v1::GenerateMeshRequest options = options_of(**request_);
-  auto summary = call_engine(environment_.engine, std::move(*request_), *this, context_);
+  EngineRun run{.context = context_,
+                .memory = memory_,
+                .deadline = seconds_from_now(max_seconds_),
+                .arena = environment_.arena,
+                .threads = threads_};
+  if (leave_light_lane_) run.leave_light_lane = [this] { leave_light_lane_(share_, context_); };
+  auto summary = call_engine(environment_.engine, std::move(*request_), *this, run);
   if (store_error_) return tl::unexpected(failure_of(*store_error_));
   if (!summary && summary.error().reason == Reason::kDeadlineExceeded)
     summary.error().message =
@@ -185,7 +181,7 @@ std::invoke_result_t<F> Attempt::insist(F&& call) {
   }
 }
 
-// False if the run is to end.
+// Returns false if the run is to end.
 bool Attempt::pause(milliseconds at_most) {
   std::unique_lock lock(mutex_);
   return !ended_.wait_for(lock, at_most, [this] { return lost_ || stopping_; });

@@ -44,9 +44,8 @@ struct RunEnvironment {
 class Attempt final : private ChunkSink {
  public:
   // A claim whose request was not stored by a server fails with kStoreBroken. `share` is the memory
-  // with which the claim was admitted; it is given back when the run ends. A light run computes on
-  // its own thread, not in the arena, where it would have to wait for heavy runs. If it turns out
-  // to be heavy, it calls `leave_light_lane`, which may wait. Null: the run is heavy.
+  // with which the claim was admitted; it is given back when the run ends. `leave_light_lane` is
+  // called if a run that is judged light is not (engine_call.h). Null: the run is heavy.
   using LeaveLightLane = std::function<void(MemoryGate::Share&, const ExecutionContext&)>;
   Attempt(const RunEnvironment& environment, Claim claim, MemoryGate::Share share,
           LeaveLightLane leave_light_lane);
@@ -84,6 +83,7 @@ class Attempt final : private ChunkSink {
   tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure> request_;
   MemoryGate::Share share_;
   RunMemory memory_;
+  const LeaveLightLane leave_light_lane_;
   const Clock::time_point began_ = Clock::now();
   const double max_seconds_;  // of work
   const std::uint32_t threads_;

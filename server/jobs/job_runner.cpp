@@ -9,6 +9,7 @@
 #include <new>
 #include <utility>
 
+#include "server/admission/client_share.h"
 #include "server/admission/memory_estimate.h"
 
 namespace weft::server {
@@ -19,7 +20,30 @@ constexpr std::chrono::milliseconds kAsk{50};
 
 }  // namespace
 
-// A run is among those at work for as long as this lives.
+void JobRunner::Slots::take(const std::string& owner) {
+  if (!owner.empty()) ++running_of[owner];  // which may find no memory
+  ++running;
+}
+
+void JobRunner::Slots::leave(const std::string& owner) {
+  --running;
+  const auto of_owner = running_of.find(owner);
+  if (of_owner != running_of.end() && --of_owner->second == 0) running_of.erase(of_owner);
+}
+
+bool JobRunner::Slots::has_place(const std::string& owner) const {
+  const auto found = running_of.find(owner);
+  return running < places && (found == running_of.end() || found->second < of_owner);
+}
+
+std::vector<std::string> JobRunner::Slots::full_owners() const {
+  std::vector<std::string> full;
+  for (const auto& [owner, count] : running_of)
+    if (count >= of_owner) full.push_back(owner);
+  return full;
+}
+
+// Lists a run among those at work while this lives.
 class JobRunner::Listed {
  public:
   Listed(JobRunner& runner, std::shared_ptr<Attempt> run) : runner_(runner), run_(std::move(run)) {
@@ -39,53 +63,62 @@ class JobRunner::Listed {
   const std::shared_ptr<Attempt> run_;
 };
 
-// A run has a slot of a lane for as long as this lives.
+// Holds a slot of a lane for a run while this lives.
 class JobRunner::Placed {
  public:
-  Placed(JobRunner& runner, Lane lane) : runner_(runner), light_(lane == Lane::kLight) {
+  Placed(JobRunner& runner, Lane lane, std::string owner)
+      : runner_(runner),
+        owner_(std::move(owner)),
+        slots_(lane == Lane::kLight ? &runner.light_ : &runner.main_) {
     std::lock_guard lock(runner_.mutex_);
-    ++slots().running;
+    slots_->take(owner_);
   }
   ~Placed() {
     {
       std::lock_guard lock(runner_.mutex_);
-      --slots().running;
-      if (lent_) --runner_.lent_;
-      if (runner_.moving_ == 0) return;
+      if (slots_ != nullptr) slots_->leave(owner_);
+      if (lent_) {  // the slot is not this thread's to fill
+        --runner_.lent_;
+        ++runner_.wakes_;
+      }
+      if (!lent_ && runner_.moving_.empty()) return;
     }
     runner_.changed_.notify_all();
   }
   Placed(const Placed&) = delete;
   Placed& operator=(const Placed&) = delete;
 
-  // Waits until there is a slot in the main lane, or the run is to end.
+  // Waits for a slot in the main lane, or until the run is to end.
   void leave_light_lane(const ExecutionContext& run) {
     std::unique_lock lock(runner_.mutex_);
-    if (!light_) return;
-    --runner_.light_.running;
-    ++runner_.moving_;
+    if (slots_ != &runner_.light_) return;
+    const auto self = runner_.moving_.insert(runner_.moving_.end(), this);
+    std::exchange(slots_, nullptr)->leave(owner_);
     ++runner_.lent_;
     ++runner_.wakes_;
     lent_ = true;
     runner_.add_light_worker_if_short();
     runner_.changed_.notify_all();
-    while (runner_.main_.running >= runner_.main_.places && !runner_.stopping_) {
+    while (runner_.next_moving() != this && !runner_.stopping_) {
       runner_.changed_.wait_for(lock, kAsk);
       lock.unlock();
       const bool stopped = run.poll().has_value();
       lock.lock();
       if (stopped) break;
     }
-    --runner_.moving_;
-    light_ = false;
-    ++runner_.main_.running;
+    runner_.moving_.erase(self);
+    runner_.main_.take(owner_);
+    slots_ = &runner_.main_;
+    ++runner_.wakes_;  // another slot may be free, which nobody looked at because of this one
+    runner_.changed_.notify_all();
   }
 
- private:
-  Slots& slots() { return light_ ? runner_.light_ : runner_.main_; }
+  const std::string& owner() const { return owner_; }
 
+ private:
   JobRunner& runner_;
-  bool light_;
+  const std::string owner_;
+  Slots* slots_;  // null: in none yet
   bool lent_ = false;
 };
 
@@ -93,8 +126,9 @@ JobRunner::JobRunner(const RunEnvironment& environment, MemoryGate& gate, Runner
     : environment_(environment),
       gate_(gate),
       options_(std::move(options)),
-      main_{.places = options_.slots},
-      light_{.places = options_.light_slots} {
+      main_{.places = options_.slots, .of_owner = share_of(options_.slots, options_.client_share)},
+      light_{.places = options_.light_slots,
+             .of_owner = share_of(options_.light_slots, options_.client_share)} {
   std::lock_guard lock(mutex_);
   for (std::uint32_t i = 0; i < options_.slots; ++i) add_worker(Lane::kMain);
   for (std::uint32_t i = 0; i < options_.light_slots; ++i) add_worker(Lane::kLight);
@@ -126,6 +160,14 @@ void JobRunner::stop() {
   for (std::thread& thread : threads) thread.join();
 }
 
+const JobRunner::Placed* JobRunner::next_moving() const {
+  if (main_.running >= main_.places) return nullptr;
+  const auto next = std::find_if(moving_.begin(), moving_.end(), [this](const Placed* placed) {
+    return main_.has_place(placed->owner());
+  });
+  return next == moving_.end() ? nullptr : *next;
+}
+
 // REQUIRES: mutex_ is held.
 void JobRunner::add_worker(Lane lane) {
   threads_.emplace_back([this, lane] { work(lane); });
@@ -149,7 +191,7 @@ QueueFigures JobRunner::figures() const {
   return figures;
 }
 
-// What is thrown here, for want of memory, must not end the server: it is tried again.
+// An exception here, such as for lack of memory, must not end the server: the step is tried again.
 template <class F>
 bool JobRunner::guarded(F&& step) {
   try {
@@ -170,16 +212,18 @@ void JobRunner::work(Lane lane) {
 // True if there may be more to do.
 bool JobRunner::work_once(Lane lane) {
   std::unique_lock claiming(claiming_);
+  std::vector<std::string> full;
   {
     std::lock_guard lock(mutex_);
     const Slots& slots = lane == Lane::kLight ? light_ : main_;
-    const std::size_t moving = lane == Lane::kLight ? 0 : moving_;  // these come first
-    if (stopping_ || slots.running + moving >= slots.places) return false;
+    if (stopping_ || slots.running >= slots.places) return false;
+    if (lane == Lane::kMain && next_moving() != nullptr) return false;
+    full = slots.full_owners();
   }
   const std::uint64_t room = lane == Lane::kLight
                                  ? std::min(gate_.room(true), most_light(environment_.limits))
                                  : gate_.room(false);
-  auto claim = environment_.store.claim(options_.worker, options_.lease, room);
+  auto claim = environment_.store.claim(options_.worker, options_.lease, room, full);
   if (!claim) {
     environment_.log->warn("event=claim_failed message={}", log_value(claim.error().message));
     return false;
@@ -189,7 +233,7 @@ bool JobRunner::work_once(Lane lane) {
       options_.light_slots > 0 && (*claim)->estimate <= most_light(environment_.limits);
   auto share =
       gate_.take({.estimate = (*claim)->estimate, .client = (*claim)->owner, .light = light});
-  Placed placed(*this, lane);
+  Placed placed(*this, lane, (*claim)->owner);
   claiming.unlock();
   if (!share) {  // calls took the room meanwhile
     (void)environment_.store.release((*claim)->ref, options_.poll, false);
@@ -201,13 +245,15 @@ bool JobRunner::work_once(Lane lane) {
     if (light)
       leave = [&placed](MemoryGate::Share& share, const ExecutionContext& run) {
         share.turn_heavy();
+        share.set_parked(true);  // those in the slots may wait for the memory of this one
         placed.leave_light_lane(run);
+        share.set_parked(false);
       };
     const auto run = std::make_shared<Attempt>(environment_, std::move(**claim), std::move(*share),
                                                std::move(leave));
     const Listed listed(*this, run);
     run->run();
-  } catch (const std::bad_alloc&) {  // none for the request, or for what came of it
+  } catch (const std::bad_alloc&) {  // no memory for the request, or for its result
     give_up(name, {Reason::kOutOfMemory, "", "the server is out of memory"});
   } catch (const std::exception& error) {
     give_up(name, {Reason::kInternal, "", error.what()});

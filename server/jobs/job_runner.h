@@ -13,6 +13,8 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <list>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -31,6 +33,9 @@ struct RunnerOptions {
   // Additional tasks at once that are light (memory_estimate.h). A task that turns out to be heavy
   // leaves its light slot, and goes on when one of `slots` is free.
   std::uint32_t light_slots = 0;
+  // Of the slots of each kind, what one owner's tasks may take: at least one. Tasks without an
+  // owner are nobody's share, because their clients are not told apart.
+  double client_share = 1;
   std::chrono::milliseconds lease{30'000};
   // The time between two renewals, which carry the progress.
   std::chrono::milliseconds renewal{1'000};
@@ -63,7 +68,14 @@ class JobRunner {
   class Placed;
   struct Slots {
     std::size_t places;
+    std::size_t of_owner;  // places
     std::size_t running = 0;
+    std::map<std::string, std::size_t> running_of{};  // per owner, none is 0
+
+    void take(const std::string& owner);
+    void leave(const std::string& owner);
+    bool has_place(const std::string& owner) const;
+    std::vector<std::string> full_owners() const;
   };
 
   // The threads' loops; each step returns false if there was nothing to do, or if it failed.
@@ -79,6 +91,8 @@ class JobRunner {
   bool guarded(F&& step);
   void add_worker(Lane lane);
   void add_light_worker_if_short();
+  // The first run that may have a main slot now; null: none. REQUIRES: mutex_ is held.
+  const Placed* next_moving() const;
   // Ends a claim whose run has thrown.
   void give_up(const Claim& claim, const Failure& failure);
   // Waits for a `wake` that the caller has not seen; `seen` is the number of those seen. Returns
@@ -94,8 +108,8 @@ class JobRunner {
   mutable std::mutex mutex_;  // guards all below but claiming_
   Slots main_;
   Slots light_;
-  std::size_t moving_ = 0;  // from the light lane to the main one
-  std::size_t lent_ = 0;    // threads of the light lane that run in the main one, or are about to
+  std::list<const Placed*> moving_;  // from the light lane to the main one, the first first
+  std::size_t lent_ = 0;  // threads of the light lane that run in the main one, or are about to
   std::set<std::shared_ptr<Attempt>> runs_;
   std::uint64_t wakes_ = 0;
   bool stopping_ = false;

@@ -20,21 +20,22 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// That ask the store: enough for its latency, few enough for its connections.
+// Threads that use the store: enough to hide its latency, few enough for its connections.
 constexpr std::size_t kThreads = 8;
 constexpr std::size_t kWaitingCalls = 4096;
-// Between two rounds of telling those who watch.
+// How long to wait between two rounds of notifying watchers.
 constexpr milliseconds kBetweenRounds{20};
 constexpr std::uint32_t kDefaultPage = 100;
 constexpr std::uint32_t kLargestPage = 1000;
 
-// Refuses what cannot name a job before it is looked up, logged or sent back.
+// Refuses what cannot be a job's id before it is looked up, logged or sent back.
 std::optional<Failure> check_job_id(const std::string& id, const char* field) {
   if (is_job_id(id)) return std::nullopt;
-  return Failure{Reason::kBadOption, field,
-                 fmt::format("{} is {} bytes that name no job; the server gave every job a name of "
-                             "26 digits and capitals",
-                             field, id.size())};
+  return Failure{
+      Reason::kBadOption, field,
+      fmt::format(
+          "{} has {} bytes and is not the id of a job; ids have 26 digits and capital letters",
+          field, id.size())};
 }
 
 // Of requests that name one.
@@ -64,15 +65,22 @@ tl::expected<Response, Failure> answer_with(const StoreResult<std::optional<JobR
 }  // namespace
 
 JobService::JobService(JobServiceOptions options, Admission& admission, Metrics& metrics,
-                       JobStore& store, Logger log)
+                       MemoryGate& gate, JobStore& store, Logger log)
     : RawService("/weft.v1.JobService/", admission),
       options_(std::move(options)),
       metrics_(metrics),
       store_(store),
       log_(std::move(log)),
-      environment_{store_,   threads_, options_.patience,
-                   metrics_, log_,     [this](MessageStream& stream) { streams_.forget(stream); }},
-      threads_({.workers = kThreads, .capacity = kWaitingCalls}),
+      environment_{store_,
+                   threads_,
+                   gate,
+                   options_.patience,
+                   metrics_,
+                   log_,
+                   [this](MessageStream& stream) { streams_.forget(stream); },
+                   [&admission] { return admission.may_log_failure(); }},
+      threads_(
+          {.workers = kThreads, .capacity = kWaitingCalls, .client_share = options_.client_share}),
       ticker_([this] { tick_until_stopped(); }) {
   add({"SubmitJob", options_.limits.max_request_bytes,
        [this](const auto& call) { submit_job(call); }});
@@ -163,17 +171,18 @@ void JobService::answer_soon(std::shared_ptr<AdmittedCall> call,
       admission().refuse(*call, {Reason::kInternal, "", error.what()});
     }
   };
-  if (!push(threads_, work))
-    admission().refuse(*call, {Reason::kQueueFull, "",
-                               fmt::format("{} calls wait for the store already", kWaitingCalls)});
+  if (auto refusal = push(threads_, call->caller.client(), work))
+    admission().refuse(*call, *refusal);
 }
 
-// Its domain is parsed on a thread of the service, too.
+// A thread of the service parses the domain, too.
 void JobService::submit_job(const std::shared_ptr<AdmittedCall>& call) {
   answer_soon<v1::SubmitJobResponse>(call, [this, call]() -> Answer<v1::SubmitJobResponse> {
     const std::size_t bytes = call->bytes.Length();
     auto request = read_submission(std::exchange(call->bytes, {}), options_.limits);
     if (!request) return tl::unexpected(request.error());
+    if (auto failure = admission().hold(*call, request->SpaceUsedLong()))
+      return tl::unexpected(*failure);
     return submit(call->caller, std::move(*request), bytes);
   });
 }
@@ -187,12 +196,12 @@ JobService::Answer<v1::SubmitJobResponse> JobService::submit(const Caller& calle
                         .request = request.mesh().SerializeAsString(),
                         .estimate = expected_bytes(request.mesh(), options_.limits) +
                                     bytes_besides(options_.limits) +
-                                    bytes_of_request(request.mesh().ByteSizeLong()),
+                                    bytes_of_request(request.mesh()),
                         .budget = budget_of(request.mesh(), options_.limits),
                         .trace = caller.trace,
                         .no_cache = request.no_cache() || request.mesh().no_cache(),
                         .max_queued = options_.max_queued,
-                        .max_queued_of_owner = options_.max_queued_of_owner};
+                        .max_open_of_owner = options_.max_open_of_client};
   submission.key = mesh_key(std::move(*request.mutable_mesh()));  // not a third copy of it
   if (!options_.share_across_clients) submission.key = key_of_client(submission.key, caller.name);
   auto submitted = store_.submit(submission);
@@ -207,11 +216,11 @@ JobService::Answer<v1::SubmitJobResponse> JobService::submit(const Caller& calle
       return tl::unexpected(
           Failure{Reason::kQueueFull, "",
                   fmt::format("{} meshes wait already, which is the limit", options_.max_queued)});
-    case SubmitOutcome::kOwnQueueFull:
+    case SubmitOutcome::kOwnerFull:
       return tl::unexpected(
           Failure{Reason::kQueueFull, "",
-                  fmt::format("{} meshes of yours wait already, which is the limit",
-                              options_.max_queued_of_owner)});
+                  fmt::format("{} jobs of yours have not ended yet, which is the limit",
+                              options_.max_open_of_client)});
     case SubmitOutcome::kAccepted:
       submitted->job.from_store ? metrics_.cache_hit() : metrics_.cache_missed();
       metrics_.job_became(state_name(submitted->job.state));
@@ -299,7 +308,7 @@ void JobService::tick_until_stopped() {
     try {
       for (const auto& stream : streams_.all()) stream->tick(now);
     } catch (const std::bad_alloc&) {
-      // The next tick tells of it.
+      // The next tick does it.
     }
     lock.lock();
     changed_.wait_for(lock, kBetweenRounds, [this] { return stopping_; });

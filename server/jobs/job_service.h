@@ -33,9 +33,11 @@ struct JobServiceOptions {
   Limits limits{};
   // Whether a client's job may share work or a mesh with another client's.
   bool share_across_clients = true;
-  // Maximum waiting tasks, of all clients and of one.
+  // Maximum waiting tasks of all clients, and jobs of one client that have not ended.
   std::uint64_t max_queued = 10'000;
-  std::uint64_t max_queued_of_owner = 1'000;
+  std::uint64_t max_open_of_client = 1'000;
+  // Of the calls that wait for the store, and of the threads that use it, what one client may have.
+  double client_share = 1;
   // Clients that read more slowly are cut off.
   ReaderPatience patience{};
   // The time between two polls of watched jobs if there is no notification.
@@ -44,9 +46,9 @@ struct JobServiceOptions {
 
 class JobService final : public RawService {
  public:
-  // The admission and the metrics must outlive the service, too.
-  JobService(JobServiceOptions options, Admission& admission, Metrics& metrics, JobStore& store,
-             Logger log);
+  // All of these must outlive the service.
+  JobService(JobServiceOptions options, Admission& admission, Metrics& metrics, MemoryGate& gate,
+             JobStore& store, Logger log);
   // REQUIRES: no call is open.
   ~JobService() override;
 

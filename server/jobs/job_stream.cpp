@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "server/admission/queued_function.h"
@@ -14,11 +15,11 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-// Of a mesh that is fetched: two chunks wait while the third is on its way.
+// Of a mesh that is fetched, two chunks wait while the third is being sent.
 constexpr ChunkQueue::Bounds kReadAhead{.bytes = std::size_t{3} << 20, .count = 32};
 constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 
-// The bytes go to gRPC as they are, and are freed by it.
+// gRPC gets the bytes without a copy, and frees them.
 grpc::ByteBuffer to_buffer(std::string bytes) {
   auto* kept = new std::string(std::move(bytes));
   const grpc::Slice slice(
@@ -52,8 +53,7 @@ void JobStream::soon(std::function<void()> function) {
   const auto work = [self = std::move(self), function = std::move(function)] {
     self->guarded(function);
   };
-  if (!push(environment_.threads, work))
-    fail({Reason::kQueueFull, "", "too many calls wait for the store"});
+  if (auto refusal = push(environment_.threads, job_.caller.client(), work)) fail(*refusal);
 }
 
 template <class F>
@@ -73,6 +73,7 @@ void JobStream::fail(const Failure& failure) {
 void JobStream::log_end(grpc::StatusCode status, std::string_view reason) const {
   const double seconds = Seconds(Clock::now() - began_).count();
   environment_.metrics.call_ended(method_, status, seconds);
+  if (status != grpc::OK && !environment_.may_log_failure()) return;
   environment_.log->info(
       "event=call_ended job={} {} method={} status={} reason={} bytes={} "
       "seconds={:.3f}",
@@ -102,7 +103,7 @@ void WatchStream::tick(Clock::time_point now) {
 void WatchStream::look() {
   const auto record = look_up();
   if (!record && record.error().reason == Reason::kStoreUnavailable && !told_.empty())
-    return;  // it comes back, or the client's patience ends
+    return;  // the store comes back, or the client's deadline passes
   if (!record) return fail(record.error());
   v1::WatchJobResponse message;
   *message.mutable_job() = to_wire(*record);
@@ -143,16 +144,48 @@ void FetchStream::begin() {
   accepted.mutable_accepted()->set_engine_version(summary->engine_version());
   accepted.mutable_accepted()->set_threads(summary->threads());
   send(serialize(accepted));
+  hold_memory();
   send_what_fits();
 }
 
-// Whoever finds busy_ unset goes on; so no message is sent twice, and none is left behind.
+// Kept to the end of the call, however slowly the client reads.
+void FetchStream::hold_memory() {
+  std::uint64_t bytes = 0;
+  for (const StoredChunk& chunk : mesh_.chunks) bytes += chunk.bytes;
+  auto share = environment_.gate.take({.estimate = std::min<std::uint64_t>(bytes, kReadAhead.bytes),
+                                       .client = job_.caller.client(),
+                                       .reader = true});
+  if (!share) return;
+  std::lock_guard lock(mutex_);
+  if (!over_) std::swap(read_ahead_, *share);
+}
+
+// The memory goes back first: once the stream is forgotten, the server need not wait for it.
+void FetchStream::ended_for_good() {
+  {
+    MemoryGate::Share share;
+    std::lock_guard lock(mutex_);
+    over_ = true;
+    std::swap(share, read_ahead_);
+  }
+  JobStream::ended_for_good();
+}
+
+// Without memory to read ahead, only if nothing waits.
+bool FetchStream::may_read_ahead() {
+  std::unique_lock lock(mutex_);
+  const bool has_memory = static_cast<bool>(read_ahead_);
+  lock.unlock();
+  return has_room(has_memory ? kChunkBytes : kReadAhead.bytes);
+}
+
+// Whoever finds busy_ unset goes on, so no message is sent twice, and none is forgotten.
 void FetchStream::wrote() {
   if (!busy_.exchange(true)) soon([this] { send_what_fits(); });
 }
 
 void FetchStream::send_what_fits() {
-  while (has_room(kChunkBytes)) {
+  while (may_read_ahead()) {
     if (next_ == mesh_.chunks.size()) {
       v1::FetchMeshResponse last;
       last.mutable_summary()->ParseFromString(mesh_.summary);
@@ -163,7 +196,7 @@ void FetchStream::send_what_fits() {
     ++next_;
   }
   busy_ = false;
-  if (has_room(kChunkBytes)) wrote();  // a write may have ended between the two
+  if (may_read_ahead()) wrote();  // a write may have ended between the two
 }
 
 bool FetchStream::send_chunk(const std::string& sha256) {

@@ -4,6 +4,7 @@
 //
 // WatchStream sends the job whenever it changes, until its state is final. FetchStream sends the
 // mesh: it reads from the store only as much as the client takes, and no thread waits for a client.
+// What it reads ahead is memory of the gate; without any, one chunk waits while another is sent.
 #pragma once
 
 #include <atomic>
@@ -11,10 +12,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
 #include "server/admission/admission.h"
+#include "server/admission/memory_gate.h"
 #include "server/admission/work_queue.h"
 #include "server/net/caller.h"
 #include "server/net/message_stream.h"
@@ -29,10 +32,12 @@ namespace weft::server {
 struct StreamEnvironment {
   JobStore& store;
   WorkQueue& threads;  // may wait for the store
+  MemoryGate& gate;    // has the memory of what is read ahead
   ReaderPatience patience;
   Metrics& metrics;
   Logger log;
   std::function<void(MessageStream&)> forget;  // drops the owner's pointer to the stream
+  std::function<bool()> may_log_failure;       // see Admission
 };
 
 struct StreamedJob {
@@ -57,6 +62,7 @@ class JobStream : public MessageStream, public std::enable_shared_from_this<JobS
  protected:
   JobStream(const StreamEnvironment& environment, AdmittedCall& call, std::string id);
 
+  void ended_for_good() override { environment_.forget(*this); }
   virtual void begin() = 0;
   void fail(const Failure& failure);
   void log_end(grpc::StatusCode status, std::string_view reason) const;
@@ -74,7 +80,6 @@ class JobStream : public MessageStream, public std::enable_shared_from_this<JobS
 
  private:
   void client_gone() override { fail({Reason::kCancelled, "", "the client cancelled the call"}); }
-  void ended_for_good() override { environment_.forget(*this); }
 
   const char* const method_;
   const std::optional<DrainGate::Pass> pass_;
@@ -107,6 +112,9 @@ class FetchStream final : public JobStream {
  private:
   void begin() override;
   void wrote() override;
+  void ended_for_good() override;
+  void hold_memory();
+  bool may_read_ahead();
   void send_what_fits();
   // Returns false if that has ended the call.
   bool send_chunk(const std::string& sha256);
@@ -115,6 +123,10 @@ class FetchStream final : public JobStream {
   StoredMesh mesh_;
   std::size_t next_;
   std::atomic<bool> busy_{true};  // `begin` is the first
+
+  std::mutex mutex_;              // guards the two below
+  MemoryGate::Share read_ahead_;  // of nothing if the gate had none
+  bool over_ = false;             // the call has ended for good
 };
 
 }  // namespace weft::server

@@ -25,7 +25,7 @@ JobSystem::JobSystem(std::unique_ptr<JobStore> store, JobOptions options, Admiss
   const RunEnvironment environment{engine,        arena,   *store_, options.service.limits,
                                    options.retry, metrics, log};
   store_->on_change([this] { tell_of_change(); });
-  if (options.serves) service_.emplace(options.service, admission, metrics, *store_, log);
+  if (options.serves) service_.emplace(options.service, admission, metrics, gate, *store_, log);
   if (options.works) runner_.emplace(environment, gate, options.runner);
   std::lock_guard lock(mutex_);
   listening_ = true;

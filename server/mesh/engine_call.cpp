@@ -7,18 +7,71 @@
 #include <chrono>
 #include <exception>
 #include <new>
+#include <optional>
+#include <utility>
 
+#include "server/admission/memory_estimate.h"
 #include "server/wire/translate.h"
 
 namespace weft::server {
+namespace {
+
+using Clock = ExecutionContext::Clock;
+
+// What a run sends that begins again reaches the sink once.
+class SinkOfBoth final : public ChunkSink {
+ public:
+  explicit SinkOfBoth(ChunkSink& sink) : sink_(sink) {}
+
+  bool accept(Chunk&& chunk) override {
+    if (chunk.index < taken_) return true;
+    ++taken_;
+    return sink_.accept(std::move(chunk));
+  }
+
+ private:
+  ChunkSink& sink_;
+  std::uint32_t taken_ = 0;
+};
+
+// On this thread. Returns nullopt if the run is not light.
+std::optional<Result<Summary>> try_as_light(const EngineFn& engine, const MeshRequest& request,
+                                            ChunkSink& sink, const EngineRun& run) {
+  const Clock::time_point end = std::min(run.deadline, Clock::now() + kLightTime);
+  run.context.set_deadline(end);
+  run.memory.limit_to(kLightBytes);
+  run.context.set_memory(run.memory, run.memory.granted());
+  Result<Summary> summary = engine(request, sink, run.context);
+  const bool took_long =
+      !summary && summary.error().code == ErrorCode::kDeadlineExceeded && end < run.deadline;
+  if (took_long || run.memory.limit_was_reached()) return std::nullopt;
+  return summary;
+}
+
+Result<Summary> run_engine(const EngineFn& engine, const MeshRequest& request, ChunkSink& sink,
+                           const EngineRun& run) {
+  SinkOfBoth sink_of_both(sink);
+  if (run.leave_light_lane) {
+    if (auto summary = try_as_light(engine, request, sink_of_both, run)) return *summary;
+    run.context.begin_again();
+    run.memory.begin_again();
+  }
+  run.context.set_deadline(run.deadline);
+  if (run.leave_light_lane) run.leave_light_lane();
+  run.context.set_arena(run.arena, static_cast<int>(run.threads));
+  run.context.set_memory(run.memory, run.memory.granted());
+  return engine(request, sink_of_both, run.context);
+}
+
+}  // namespace
 
 tl::expected<Summary, Failure> call_engine(const EngineFn& engine,
                                            std::unique_ptr<v1::GenerateMeshRequest> request,
-                                           ChunkSink& sink, ExecutionContext& context) noexcept {
+                                           ChunkSink& sink, const EngineRun& run) noexcept {
   try {
     const MeshRequest converted = to_engine(*request);
     request.reset();
-    const Result<Summary> summary = engine(converted, sink, context);
+    const Result<Summary> summary = run_engine(engine, converted, sink, run);
     if (!summary) return tl::unexpected(failure_of(summary.error()));
     return *summary;
   } catch (const std::bad_alloc&) {
@@ -32,7 +85,6 @@ tl::expected<Summary, Failure> call_engine(const EngineFn& engine,
 }
 
 ExecutionContext::Clock::time_point seconds_from_now(double seconds) {
-  using Clock = ExecutionContext::Clock;
   constexpr double kDecades = 1e9;
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(
                             std::chrono::duration<double>(std::min(seconds, kDecades)));

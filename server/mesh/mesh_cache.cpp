@@ -38,14 +38,20 @@ void MeshCache::keep(const std::string& key, std::shared_ptr<const FinishedMesh>
     entries_.splice(entries_.begin(), entries_, found->second);  // the same mesh
     return;
   }
+  for (auto each = entries_.end(); each != entries_.begin() && bytes_ + mesh->bytes > capacity_;) {
+    const auto entry = std::prev(each);
+    if (entry->second.use_count() > 1) {  // `find` alone gives it to readers, under the lock
+      each = entry;
+      continue;
+    }
+    bytes_ -= entry->second->bytes;
+    by_key_.erase(entry->first);
+    dropped.splice(dropped.begin(), entries_, entry);
+  }
+  if (bytes_ + mesh->bytes > capacity_) return;
   bytes_ += mesh->bytes;
   entries_.emplace_front(key, std::move(mesh));
   by_key_.emplace(key, entries_.begin());
-  while (bytes_ > capacity_) {
-    bytes_ -= entries_.back().second->bytes;
-    by_key_.erase(entries_.back().first);
-    dropped.splice(dropped.begin(), entries_, std::prev(entries_.end()));
-  }
 }
 
 std::uint64_t MeshCache::bytes() const {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Meshes that GenerateMesh calls have finished, in memory: a request with the same mesh_key is
 // answered with the same messages, without the engine. The mesh that was asked for longest ago goes
-// first when there is no more room.
+// first when there is no more room. One that is being read stays: it would take its memory until
+// its last reader is done, whether the cache knows of it or not.
 //
 //   MeshRecording recording(cache.largest());
 //   recording.add(message);                                   // each chunk, as it is sent
@@ -51,14 +52,14 @@ class MeshRecording {
 
 class MeshCache {
  public:
-  // Holds so many bytes; 0: nothing.
+  // Holds so many bytes; 0: no cache.
   explicit MeshCache(std::uint64_t capacity) : capacity_(capacity) {}
 
   // Bytes of a mesh, at most: one mesh must not drive out all others.
   std::uint64_t largest() const { return capacity_ / 4; }
   // Null if there is none.
   std::shared_ptr<const FinishedMesh> find(const std::string& key);
-  // Null is not kept.
+  // Null is not kept, nor a mesh for which there is no room beside those that are being read.
   void keep(const std::string& key, std::shared_ptr<const FinishedMesh> mesh);
   std::uint64_t bytes() const;
 

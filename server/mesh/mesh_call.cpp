@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "server/admission/memory_estimate.h"
+#include "server/admission/queued_function.h"
 #include "server/wire/translate.h"
 
 namespace weft::server {
@@ -25,18 +26,12 @@ grpc::ByteBuffer accepted_message(const std::string& id, std::uint32_t threads) 
   return serialize(message);
 }
 
-// Messages of a mesh at hand share its bytes, and so may all be queued.
+// Messages of a finished mesh share its bytes, so all of them may be queued.
 constexpr ChunkQueue::Bounds kNoBounds{std::numeric_limits<std::size_t>::max(),
                                        std::numeric_limits<std::size_t>::max()};
 
-// Of a job's place with its reader.
+// How long a run waits for its reader before it leaves its place.
 constexpr std::chrono::milliseconds kPatience{5};
-
-// Who is to have turns of his own: a caller with a name, or else a host.
-std::string client_of(const Caller& caller) {
-  if (!caller.name.empty()) return caller.name;
-  return caller.peer.substr(0, caller.peer.rfind(':'));  // of ipv4:HOST:PORT and the like
-}
 
 }  // namespace
 
@@ -50,7 +45,7 @@ MeshCall::MeshCall(const CallEnvironment& environment, AdmittedCall& call, std::
       environment_(environment),
       id_(std::move(id)),
       caller_(log_fields(call.caller)),
-      client_(client_of(call.caller)),
+      client_(call.caller.client()),
       call_deadline_(call.call->context()->deadline()),
       max_seconds_(to_seconds(request->budget(), environment.limits)),
       threads_(to_threads(request->threads(), environment.arena.threads())),
@@ -60,37 +55,31 @@ MeshCall::MeshCall(const CallEnvironment& environment, AdmittedCall& call, std::
       pass_(std::exchange(call.pass, std::nullopt)),
       context_(to_budget(request->budget(), environment.limits)),
       request_share_(std::move(call.share)),
-      request_(std::move(request)) {
-  request_share_.shrink_to(request_->SpaceUsedLong());
-}
+      request_(std::move(request)) {}
 
 void MeshCall::start() noexcept try {
   const v1::Domain& domain = request_->domain();
-  environment_.log->info(
-      "event=call_queued call={} {} method=GenerateMesh points={} segments={} seeds={}", id_,
-      caller_, domain.points_size() / 2, domain.segments_size() / 2,
-      domain.holes_size() / 2 + domain.regions_size());
+  queued_line_ =
+      fmt::format("event=call_queued call={} {} method=GenerateMesh points={} segments={} seeds={}",
+                  id_, caller_, domain.points_size() / 2, domain.segments_size() / 2,
+                  domain.holes_size() / 2 + domain.regions_size());
   if (origin_.at_hand) {
+    log_queued();
     send_what_is_at_hand();
     return;
   }
   WorkQueue& queue = environment_.queue;
   estimate_ = expected_bytes(*request_, environment_.limits) + bytes_besides(environment_.limits);
-  switch (queue.push(shared_from_this(), {.client = client_, .estimate = estimate_})) {
-    case WorkQueue::Pushed::kYes:
-      return pump();
-    case WorkQueue::Pushed::kQueueFull:
-      return fail({Reason::kQueueFull, "",
-                   fmt::format("{} jobs wait already; this server's limit is {}", queue.capacity(),
-                               queue.capacity())});
-    case WorkQueue::Pushed::kClientFull:
-      return fail({Reason::kQueueFull, "",
-                   fmt::format("{} jobs of yours wait already; this server's limit for one client "
-                               "is {}",
-                               queue.capacity_of_client(), queue.capacity_of_client())});
-  }
+  const auto pushed = queue.push(shared_from_this(), {.client = client_, .estimate = estimate_});
+  if (auto refusal = refusal_of(pushed, queue)) return fail(*refusal);
+  log_queued();
+  pump();
 } catch (const std::bad_alloc&) {
   kill();
+}
+
+void MeshCall::log_queued() {
+  std::call_once(queued_, [this] { environment_.log->info("{}", queued_line_); });
 }
 
 void MeshCall::send_what_is_at_hand() {
@@ -106,7 +95,7 @@ void MeshCall::send_what_is_at_hand() {
 }
 
 void MeshCall::stop(StopCause cause) {
-  fail(failure_of_cause(cause));  // before the engine learns of it, and calls itself cancelled
+  fail(failure_of_cause(cause));  // before the engine notices it and reports a cancellation
   context_.cancel();
   environment_.queue.remove(*this);
   if (cause == StopCause::kReaderStalled) kill();
@@ -128,9 +117,10 @@ void MeshCall::tick(Clock::time_point now) {
   }
 }
 
-// There is no memory even for saying so: the client sees the call cancelled.
+// Without memory for an error, the client sees that the call was cancelled.
 void MeshCall::run(WorkQueue::Place& place) noexcept try {
-  if (context_.poll()) return;  // stopped meanwhile, and the call ended by that
+  log_queued();
+  if (context_.poll()) return;  // stopped in the meantime, which ended the call
   const tl::expected<Summary, Failure> outcome = work(place);
   if (outcome) {
     succeed(*outcome);
@@ -139,8 +129,30 @@ void MeshCall::run(WorkQueue::Place& place) noexcept try {
   } else {
     fail(outcome.error());
   }
+  keep_what_waits(place);
 } catch (const std::bad_alloc&) {
   kill();
+}
+
+// A mesh that is made may wait for its reader for as long as that reads at all.
+void MeshCall::keep_what_waits(WorkQueue::Place& place) {
+  MemoryGate::Share& share = place.memory();
+  share.shrink_to(std::min<std::uint64_t>(bytes_, bytes_besides(environment_.limits)));
+  share.turn_reader();
+  std::lock_guard lock(mutex_);
+  if (!over_) std::swap(kept_, share);
+}
+
+// The memory goes back first: once the call is forgotten, the server need not wait for it, and what
+// the gate notifies may be gone.
+void MeshCall::ended_for_good() {
+  {
+    MemoryGate::Share kept;
+    std::lock_guard lock(mutex_);
+    over_ = true;
+    std::swap(kept, kept_);
+  }
+  environment_.forget(*this);  // which may destroy this
 }
 
 tl::expected<Summary, Failure> MeshCall::work(WorkQueue::Place& place) {
@@ -148,20 +160,16 @@ tl::expected<Summary, Failure> MeshCall::work(WorkQueue::Place& place) {
   const Seconds until_call_deadline = call_deadline_ - std::chrono::system_clock::now();
   const Clock::time_point deadline =
       seconds_from_now(std::min(max_seconds_, until_call_deadline.count()));
-  context_.set_deadline(deadline);
-  // A light run would wait in the arena for the turns of heavy ones, longer than it takes itself.
-  const bool light =
-      environment_.queue.has_light_lane() && estimate_ <= most_light(environment_.limits);
-  if (!light) context_.set_arena(environment_.arena, static_cast<int>(threads_));
   RunMemory memory(place.memory(), bytes_besides(environment_.limits));
-  const auto turn_heavy = [&] {
-    place.leave_light_lane([this] { return context_.poll().has_value(); });
-  };
-  if (light) {
-    memory.tell_beyond(kLightBytes, turn_heavy);
-    context_.call_at(Clock::now() + kLightTime, turn_heavy);
-  }
-  context_.set_memory(memory, memory.granted());
+  EngineRun run{.context = context_,
+                .memory = memory,
+                .deadline = deadline,
+                .arena = environment_.arena,
+                .threads = threads_};
+  if (environment_.queue.has_light_lane() && estimate_ <= most_light(environment_.limits))
+    run.leave_light_lane = [&] {
+      place.leave_light_lane([this] { return context_.poll().has_value(); });
+    };
   {
     std::lock_guard lock(mutex_);
     work_deadline_ = deadline;
@@ -171,7 +179,7 @@ tl::expected<Summary, Failure> MeshCall::work(WorkQueue::Place& place) {
   environment_.log->info("event=call_started call={} {} waited_seconds={:.3f}", id_, caller_,
                          waited);
   if (!origin_.key.empty() && first_chunk_ == 0) recording_.emplace(environment_.cache.largest());
-  auto summary = call_engine(environment_.engine, std::move(request_), *this, context_);
+  auto summary = call_engine(environment_.engine, std::move(request_), *this, run);
   request_share_ = {};
   if (!summary) return summary;
   if (recording_) environment_.cache.keep(origin_.key, std::move(*recording_).finish(*summary));
@@ -211,7 +219,7 @@ Failure MeshCall::failure_of_cause(StopCause cause) const {
     case StopCause::kTimeUp:
       if (call_is_late) break;
       return {Reason::kDeadlineExceeded, "",
-              fmt::format("the job worked for {} s, which is its limit", max_seconds_)};
+              fmt::format("the run took {} s, which is its limit", max_seconds_)};
     case StopCause::kReaderStalled:
       return {Reason::kReaderStalled, "", "the client reads too slowly"};
     case StopCause::kStopping:
@@ -220,8 +228,8 @@ Failure MeshCall::failure_of_cause(StopCause cause) const {
   return {Reason::kDeadlineExceeded, "", "the call's deadline passed"};
 }
 
-// Calls `send`, which waits for room for a message of so many bytes. A job that waits for its
-// reader leaves its place to another.
+// Calls `send`, which waits for room for a message of so many bytes. A run that waits for its
+// reader leaves its place to another one.
 template <class Send>
 bool MeshCall::when_there_is_room(std::size_t bytes, Send&& send) {
   if (has_room_within(kPatience, bytes)) return send();
@@ -261,6 +269,7 @@ grpc::ByteBuffer MeshCall::progress_message(Clock::time_point now) {
 void MeshCall::tell_end(grpc::StatusCode code, std::string_view reason) const {
   const double seconds = Seconds(Clock::now() - admitted_).count();
   environment_.metrics.call_ended("GenerateMesh", code, seconds);
+  if (code != grpc::StatusCode::OK && !environment_.may_log_failure()) return;
   environment_.log->info(
       "event=call_ended call={} {} method=GenerateMesh status={} reason={} cached={} "
       "triangles={} chunks={} bytes={} seconds={:.3f}",

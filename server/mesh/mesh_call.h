@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One GenerateMesh call that was admitted: it waits in the job queue, runs the engine on a worker
+// One GenerateMesh call that was admitted: it waits in the queue, runs the engine on a worker
 // thread, hands the chunks to its stream, and ends exactly once, whatever stops it. One whose mesh
 // is at hand does none of that but the last.
 //
@@ -42,7 +42,7 @@ enum class StopCause {
   kStopping,       // UNAVAILABLE
 };
 
-// What all jobs share; outlives them.
+// What all calls share; outlives them.
 struct CallEnvironment {
   EngineFn engine;
   Arena& arena;  // where they compute
@@ -52,10 +52,11 @@ struct CallEnvironment {
   WorkQueue& queue;
   Metrics& metrics;
   MeshCache& cache;
-  std::function<void(MessageStream&)> forget;  // drops the owner's pointer to the job
+  std::function<void(MessageStream&)> forget;  // drops the owner's pointer to the call
+  std::function<bool()> may_log_failure;       // see Admission
 };
 
-// Where a job's mesh comes from and goes to: the cache, by its key.
+// Where a call's mesh comes from and goes to: the cache, by its key.
 struct Origin {
   std::string key{};                              // empty: it is not to be kept
   std::shared_ptr<const FinishedMesh> at_hand{};  // null: it is to be made
@@ -75,12 +76,14 @@ class MeshCall final : public MessageStream,
 
   void stop(StopCause cause);
 
-  // Called a few times a second: sends progress, ends the job at its deadline, cuts off a client
+  // Called a few times a second: sends progress, ends the call at its deadline, cuts off a client
   // that reads nothing.
   void tick(Clock::time_point now);
 
  private:
   void run(WorkQueue::Place& place) noexcept override;
+  // Once, as soon as the call is in the queue: whoever put it there may be late.
+  void log_queued();
   void send_what_is_at_hand();
   tl::expected<Summary, Failure> work(WorkQueue::Place& place);
   std::optional<Failure> check_first_chunk(const Summary& summary) const;
@@ -98,7 +101,8 @@ class MeshCall final : public MessageStream,
 
   bool accept(Chunk&& chunk) override;
   void client_gone() override { stop(StopCause::kClientGone); }
-  void ended_for_good() override { environment_.forget(*this); }
+  void ended_for_good() override;
+  void keep_what_waits(WorkQueue::Place& place);
 
   const CallEnvironment& environment_;
   const std::string id_;
@@ -110,6 +114,8 @@ class MeshCall final : public MessageStream,
   const std::uint32_t first_chunk_;  // those before it are not sent
   const bool wants_quadtree_;
   const Origin origin_;
+  std::string queued_line_;  // of the log
+  std::once_flag queued_;
   WorkQueue::Place* place_ = nullptr;  // the worker's own
   const Clock::time_point admitted_ = Clock::now();
   const std::optional<DrainGate::Pass> pass_;
@@ -129,8 +135,10 @@ class MeshCall final : public MessageStream,
   // The ticking thread's own: what was last told, since progress never goes back.
   v1::Progress told_;
 
-  mutable std::mutex mutex_;                        // guards the one below
-  std::optional<Clock::time_point> work_deadline_;  // set when the job begins
+  mutable std::mutex mutex_;                        // guards the three below
+  MemoryGate::Share kept_;                          // of messages that wait for the reader
+  bool over_ = false;                               // the call has ended for good
+  std::optional<Clock::time_point> work_deadline_;  // set when the run begins
 };
 
 }  // namespace weft::server

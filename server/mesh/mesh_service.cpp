@@ -14,8 +14,8 @@
 namespace weft::server {
 namespace {
 
-// Requests up to here are looked up in the cache: the key of a larger one costs gRPC's thread over
-// a millisecond.
+// Requests up to this size are looked up in the cache: the key of a larger one would keep gRPC's
+// thread busy for over a millisecond.
 constexpr std::size_t kMostKeyedBytes = std::size_t{1} << 20;
 
 }  // namespace
@@ -27,10 +27,16 @@ MeshService::MeshService(const ServiceOptions& options, Admission& admission, Me
       metrics_(metrics),
       log_(std::move(log)),
       cache_(options.cache_bytes),
-      environment_{
-          std::move(engine), arena,  options.limits,
-          options.patience,  log_,   queue_,
-          metrics_,          cache_, [this](MessageStream& stream) { calls_.forget(stream); }},
+      environment_{std::move(engine),
+                   arena,
+                   options.limits,
+                   options.patience,
+                   log_,
+                   queue_,
+                   metrics_,
+                   cache_,
+                   [this](MessageStream& stream) { calls_.forget(stream); },
+                   [&admission] { return admission.may_log_failure(); }},
       queue_({.workers = options.jobs,
               .workers_for_light = options.light_jobs,
               .capacity = options.queue,
@@ -66,18 +72,21 @@ void MeshService::generate_mesh(AdmittedCall& call) {
   const std::size_t size = call.bytes.Length();
   auto request = read_mesh_request(std::exchange(call.bytes, {}), options_.limits);
   if (!request) return admission().refuse(call, request.error());
+  // Two bytes of an empty region become 80, so what is parsed may be far more than the message.
+  if (auto failure = admission().hold(call, (*request)->SpaceUsedLong()))
+    return admission().refuse(call, *failure);
   Origin origin = origin_of(**request, size, call.caller);
-  std::shared_ptr<MeshCall> job;
+  std::shared_ptr<MeshCall> mesh_call;
   {
     std::lock_guard lock(mutex_);
-    job = std::make_shared<MeshCall>(environment_, call,
-                                     fmt::format("{}-{}", options_.instance, ++last_number_),
-                                     std::move(*request), std::move(origin));
-    calls_.add(job);
+    mesh_call = std::make_shared<MeshCall>(environment_, call,
+                                           fmt::format("{}-{}", options_.instance, ++last_number_),
+                                           std::move(*request), std::move(origin));
+    calls_.add(mesh_call);
   }
   changed_.notify_all();
-  job->take_call();
-  job->start();
+  mesh_call->take_call();
+  mesh_call->start();
 }
 
 void MeshService::tell_server_info(AdmittedCall& call) {
@@ -111,7 +120,7 @@ void MeshService::tick_until_stopped() {
     try {
       for (const auto& call : calls_.all()) call->tick(now);
     } catch (const std::bad_alloc&) {
-      // The next tick tells of it.
+      // The next tick does it.
     }
     lock.lock();
   }

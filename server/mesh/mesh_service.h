@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // weft.v1.MeshService on gRPC's callback API. A call is parsed, checked against the limits and
 // admitted on gRPC's thread; all the rest happens on workers (work_queue.h). One more thread ticks
-// the jobs a few times a second, for progress, deadlines and stalled clients.
+// the calls a few times a second, for progress, deadlines and stalled clients.
 //
 // Both methods come in through the Admission: messages are made and unmade with our checks, and
 // gRPC carries bytes.
@@ -31,12 +31,12 @@
 namespace weft::server {
 
 struct ServiceOptions {
-  // Threads that compute, in one arena for all jobs. REQUIRES: >= 1.
+  // Threads that compute, in one arena for all runs. REQUIRES: >= 1.
   std::uint32_t threads = 1;
-  // Jobs that run at once, and that wait for their turn. REQUIRES: jobs >= 1.
+  // Runs at the same time, and calls that wait for their turn. REQUIRES: jobs >= 1.
   std::uint32_t jobs = 1;
   std::uint32_t queue = 64;
-  // Jobs on top of these that are light (memory_estimate.h), so that they do not wait for the
+  // Runs on top of these that are light (memory_estimate.h), so that they do not wait for the
   // others. Each computes on a thread of its own.
   std::uint32_t light_jobs = 0;
   // Of the queue, the places and the memory, what one client may have (work_queue.h). 1: all.
@@ -50,7 +50,7 @@ struct ServiceOptions {
   ReaderPatience patience{};
   // Between progress messages.
   std::chrono::steady_clock::duration tick = std::chrono::milliseconds(250);
-  // Tells this process's jobs from another's: job ids are INSTANCE-NUMBER.
+  // Tells this process's calls from another's: their ids are INSTANCE-NUMBER.
   std::string instance = "0";
   v1::GetServerInfoResponse info{};  // what GetServerInfo answers
 };

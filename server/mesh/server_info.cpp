@@ -4,6 +4,7 @@
 #include <chrono>
 #include <string>
 
+#include "server/memory_plan.h"
 #include "server/version.h"
 #include "server/wire/translate.h"
 
@@ -18,11 +19,11 @@ double to_seconds(Duration duration) {
 void add_limits(const ServerOptions& options, v1::ServerLimits& out) {
   const ServiceOptions& service = options.service;
   const Limits& limits = service.limits;
-  out.set_max_points(limits.max_points);
-  out.set_max_segments(limits.max_segments);
-  out.set_max_seeds(limits.max_seeds);
+  for (const CountLimit& row : kCountLimits) {
+    const auto* const field = out.GetDescriptor()->FindFieldByName(std::string(row.name));
+    out.GetReflection()->SetUInt64(&out, field, limits.*row.limit);
+  }
   out.set_max_expression_bytes(limits.max_expression_bytes);
-  out.set_max_raster_values(limits.max_raster_values);
   out.set_max_triangles(limits.max_triangles);
   out.set_max_bytes(limits.max_bytes);
   out.set_max_seconds(limits.max_seconds);
@@ -30,17 +31,18 @@ void add_limits(const ServerOptions& options, v1::ServerLimits& out) {
   out.set_max_concurrent_jobs(service.jobs);
   out.set_max_min_angle_deg(kMaxMinAngleDeg);
   out.set_max_waiting_calls(service.queue);
-  out.set_max_admitted_bytes(options.memory);
+  out.set_max_admitted_bytes(plan_memory(options).runs);
   out.set_stall_seconds(to_seconds(service.patience.stall_timeout));
 }
 
 void add_limits(const JobOptions& jobs, v1::JobLimits& out) {
   out.set_max_queued(jobs.service.max_queued);
-  out.set_max_queued_per_client(jobs.service.max_queued_of_owner);
+  out.set_max_queued_per_client(jobs.service.max_open_of_client);
   out.set_max_attempts(jobs.retry.max_attempts);
   out.set_lease_seconds(to_seconds(jobs.runner.lease));
   out.set_keep_seconds(to_seconds(jobs.runner.keep.age));
   out.set_keep_bytes(jobs.runner.keep.bytes);
+  out.set_keep_jobs_per_client(jobs.runner.keep.jobs_of_owner);
 }
 
 }  // namespace

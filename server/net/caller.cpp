@@ -18,7 +18,7 @@ std::string_view view(const grpc::string_ref& text) {
   return {text.data(), text.size()};
 }
 
-// Nothing if the caller sent none, or more than one.
+// nullopt if the caller sent none, or more than one.
 std::optional<std::string_view> header(const grpc::ServerContextBase& context,
                                        std::string_view name) {
   const auto [first, end] =
@@ -118,7 +118,7 @@ tl::expected<std::string, Failure> Authenticator::token_name(
   const auto token = bearer_token(header);
   if (!token)
     return tl::unexpected(Failure{Reason::kUnauthenticated, "",
-                                  "this server wants a token: `authorization: Bearer TOKEN`"});
+                                  "this server requires a token: `authorization: Bearer TOKEN`"});
   auto name = tokens_->table()->name_of(*token);
   if (!name)
     return tl::unexpected(

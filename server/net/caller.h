@@ -13,6 +13,9 @@
 // Before that an unidentified caller can send at most HTTP/2's first window, 64 KiB per stream:
 // gRPC receives no more until the message is read. If that is too much, require client
 // certificates, too: without one no stream can be opened.
+//
+// This folder has more than 25 files because all services share it: each listens, lets callers in
+// and streams by the same code.
 #pragma once
 
 #include <grpcpp/server_context.h>
@@ -36,6 +39,12 @@ struct Caller {
   std::string peer{};   // the address, as gRPC writes it
   std::string trace{};  // W3C trace id, 32 hexadecimal digits; empty if the caller sent none
   std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();  // of the call
+
+  // Who has a share: the name or, without one, the host.
+  std::string client() const {
+    if (!name.empty()) return name;
+    return peer.substr(0, peer.rfind(':'));  // of ipv4:HOST:PORT and the like
+  }
 
   double seconds_since() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();

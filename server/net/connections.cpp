@@ -34,19 +34,20 @@ const char* security_of(const std::string& address, const TlsOptions& tls) {
 }
 
 void limit_connections(grpc::ServerBuilder& builder) {
-  // A client that vanished without a word is noticed, also where no call is open.
+  // Notices a client that vanished without closing its connection, even if no call is open.
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 30'000);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10'000);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
-  // Clients may ping as often as that, and not more: a ping costs them less than us. Three that
-  // come too early, with nothing sent in between, end the connection.
+  // Clients may ping this often and no more, because a ping costs a client less than the server.
+  // Three early pings in a row, with nothing sent in between, end the connection.
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 10'000);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PING_STRIKES, 2);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMostStreams);
-  // What a call may send before its caller is known: HTTP/2's own 64 KiB. A probe of the line would
-  // let gRPC raise it to megabytes. Once a message is wanted, the window is opened for it.
+  // A call may send HTTP/2's own 64 KiB before its caller is known. Probes of the bandwidth would
+  // let gRPC raise that to megabytes. Once a message is wanted, the window is opened for it.
   builder.AddChannelArgument(GRPC_ARG_HTTP2_BDP_PROBE, 0);
-  // A descriptor is not held by one who never finishes his handshake, or makes no call.
+  // Bounds how long a connection that never finishes its handshake, or makes no call, keeps a
+  // descriptor.
   builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, 20'000);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, 600'000);
 }

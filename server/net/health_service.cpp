@@ -15,7 +15,7 @@ namespace {
 using google::protobuf::internal::WireFormatLite;
 
 constexpr std::size_t kMostBytes = 1024;
-// Each holds a stream of a stranger.
+// Each watch holds a stream, for a caller that nobody knows.
 constexpr std::size_t kMostWatches = 1024;
 // HealthCheckRequest.service, and HealthCheckResponse.status with its values.
 constexpr std::uint32_t kServiceTag =
@@ -25,7 +25,7 @@ constexpr char kServing = 1;
 constexpr char kNotServing = 2;
 constexpr char kServiceUnknown = 3;
 
-// The service that is asked for; nothing if the bytes are malformed.
+// The service that is asked for; nullopt if the bytes are malformed.
 std::optional<std::string> service_in(grpc::ByteBuffer bytes) {
   if (bytes.Length() == 0) return "";
   grpc::ProtoBufferReader reader(&bytes);
@@ -83,7 +83,7 @@ HealthService::HealthService(Admission& admission)
                                        "the bytes are not a grpc.health.v1.HealthCheckRequest"});
     };
   };
-  constexpr bool kUngated = false;  // asked while the server drains, most of all
+  constexpr bool kUngated = false;  // a server that drains is asked, too
   add({"Check", kMostBytes, asked(&HealthService::check), true}, kUngated);
   add({"Watch", kMostBytes, asked(&HealthService::watch), true}, kUngated);
 }
@@ -136,7 +136,7 @@ void HealthService::watch(const AdmittedCall& call, const std::string& service) 
   std::unique_lock lock(mutex_);
   const char now = status_of(serving_, service);
   lock.unlock();
-  if (now != first) watch->tell(now);  // what came before the first message was sent is lost
+  if (now != first) watch->tell(now);  // a change before the first message was sent would be lost
 }
 
 }  // namespace weft::server

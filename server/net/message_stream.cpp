@@ -43,8 +43,8 @@ bool MessageStream::finish(grpc::ByteBuffer last) {
   return first;
 }
 
-// The status is settled before the queue is closed: closing wakes a thread that waits for room, and
-// what that thread makes of it must come second.
+// The status is set before the queue is closed: closing wakes a thread that waits for room, and
+// that thread's status must come second.
 bool MessageStream::abort(grpc::Status status) {
   const bool first = settle(std::move(status));
   queue_.close();

@@ -22,7 +22,7 @@ namespace wire = grpc::reflection::v1;
 using google::protobuf::DescriptorPool;
 using google::protobuf::FileDescriptor;
 
-// Each is a stream that its client may leave open.
+// Each conversation is a stream that its client may leave open.
 constexpr std::size_t kMostConversations = 64;
 constexpr std::chrono::seconds kLongestConversation{60};
 
@@ -62,7 +62,7 @@ wire::ServerReflectionResponse answer_to(const wire::ServerReflectionRequest& re
     add_with_imports(*file, seen, *response.mutable_file_descriptor_response());
   } else {
     response.mutable_error_response()->set_error_code(grpc::StatusCode::NOT_FOUND);
-    response.mutable_error_response()->set_error_message("this server has no such thing");
+    response.mutable_error_response()->set_error_message("this server has no such file or symbol");
   }
   return response;
 }
@@ -74,8 +74,8 @@ const char* name_of(ReflectionService::Version version) {
 
 }  // namespace
 
-// Reads a request, writes its answer, and so on. A read or a write is outstanding until the call is
-// finished, so whatever goes wrong is learned of there.
+// Reads a request, writes its answer, and so on. A read or a write is pending until the call is
+// finished, so every failure shows there.
 class ReflectionService::Conversation final : public RawCall::Writer,
                                               public std::enable_shared_from_this<Conversation> {
  public:
@@ -85,7 +85,7 @@ class ReflectionService::Conversation final : public RawCall::Writer,
   void start(grpc::ByteBuffer first) {
     call_->attach(*this);
     alarm_.Set(std::chrono::system_clock::now() + kLongestConversation,
-               [weak = weak_from_this()](bool due) {  // an alarm keeps its function to its end
+               [weak = weak_from_this()](bool due) {  // an alarm keeps its function until it ends
                  const auto self = due ? weak.lock() : nullptr;
                  if (self) self->cut_off();
                });
@@ -132,7 +132,7 @@ class ReflectionService::Conversation final : public RawCall::Writer,
 ReflectionService::ReflectionService(Version version, Admission& admission,
                                      std::vector<std::string> services)
     : RawService(name_of(version), admission), services_(std::move(services)) {
-  constexpr bool kUngated = false;  // a client who looks around does not hold up a drain
+  constexpr bool kUngated = false;  // a client that explores the server does not delay a drain
   add({"ServerReflectionInfo", kSmallRequest, [this](const auto& call) { converse(*call); }},
       kUngated);
 }

@@ -35,8 +35,8 @@ std::string peer_of(int socket) {
   return fmt::format("ipv6:%5B{}%5D:{}", host, ntohs(v6.sin6_port));
 }
 
-// What has come and is not read yet would be read before the end is seen: some 100,000 calls. TCP
-// throws it away if it is asked for no bytes of it.
+// gRPC would read all that has arrived, about 100,000 calls, before it sees the end of the
+// connection. The kernel discards it if no byte of it is asked for.
 bool shut_down(int socket) {
   if (::shutdown(socket, SHUT_RDWR) != 0) return false;
   constexpr std::size_t kAtOnce = std::size_t{1} << 20;

@@ -28,7 +28,8 @@ int no_passphrase(char*, int, int, void*) {
   return -1;
 }
 
-// gRPC only says that a handshake failed. This finds out beforehand, and says why.
+// gRPC reports only that a handshake failed. This checks the pair beforehand, and says what is
+// wrong.
 tl::expected<void, std::string> check(const TlsOptions& options) {
   const auto bad = [](const char* what, const std::string& file) {
     return tl::unexpected(fmt::format("the {} in {}: {}", what, file, why()));
@@ -62,7 +63,7 @@ tl::expected<std::shared_ptr<grpc::ServerCredentials>, std::string> tls_credenti
     tls.watch_root_certs();
     tls.set_cert_request_type(GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY);
   }
-  // A client has a name, not an address that it could be compared with.
+  // A client's certificate has a name, but no address to compare it with.
   tls.set_certificate_verifier(std::make_shared<grpc::experimental::NoOpCertificateVerifier>());
   tls.set_check_call_host(false);
   return grpc::experimental::TlsServerCredentials(tls);

@@ -117,7 +117,7 @@ std::shared_ptr<const TokenTable> TokenFile::table() const {
   return table_;
 }
 
-// The whole file is read every time: it is small, and its time stamps may stand still while it
+// Reads the whole file every time: it is small, and its time stamp may stay the same when it
 // changes.
 tl::expected<std::optional<TokenTable>, std::string> TokenFile::read() {
   const auto text = contents_of(path_);

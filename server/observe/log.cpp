@@ -43,7 +43,7 @@ class Formatter final : public spdlog::formatter {
   const LogFormat format_;
 };
 
-// gRPC calls a function that knows nothing but the message.
+// gRPC passes its messages to a function without a context, so the format is a template argument.
 template <LogFormat kFormat>
 void log_grpc(gpr_log_func_args* args) {
   if (args->severity == GPR_LOG_SEVERITY_DEBUG) return;

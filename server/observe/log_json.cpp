@@ -13,8 +13,8 @@ std::string in_json(std::string_view text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-// Takes a quoted text out of the rest of a line, which begins after the quote. Nothing where it is
-// not one that log_value made.
+// Takes a quoted text, which begins after the quote, from the rest of a line. Returns nullopt
+// unless log_value made it.
 std::optional<std::string> take_quoted(std::string_view& rest) {
   std::string text;
   while (!rest.empty()) {
@@ -45,7 +45,7 @@ std::optional<std::string> take_quoted(std::string_view& rest) {
   return std::nullopt;
 }
 
-// Takes the value, as JSON.
+// Takes a value from the rest of a line; returns it as JSON.
 std::optional<std::string> take_value(std::string_view& rest) {
   if (!rest.starts_with('"')) {
     const std::string_view word = rest.substr(0, rest.find(' '));
@@ -74,7 +74,7 @@ std::optional<std::string> object_of(std::string_view rest) {
   return json + "}";
 }
 
-// Takes digits; how many.
+// Takes digits, and returns their number.
 std::size_t take_digits(std::string_view& rest) {
   const auto end =
       std::find_if(rest.begin(), rest.end(), [](char c) { return c < '0' || c > '9'; });

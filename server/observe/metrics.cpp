@@ -18,7 +18,7 @@ using prometheus::Family;
 using prometheus::Histogram;
 using prometheus::Registry;
 
-// From a small mesh over a unix socket to the longest job, two or three to a decade.
+// From a small mesh over a unix socket to the longest job: two or three buckets per factor of ten.
 const Histogram::BucketBoundaries kSeconds = {0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1,
                                               0.25,  0.5,    1,     2.5,  5,     10,   30,
                                               60,    120,    300,   600,  1800,  3600};
@@ -56,12 +56,10 @@ Metrics::Metrics(std::string_view version, std::string_view engine_version)
     : requests_(counters(registry_, "weft_requests_total", "Calls that have ended")),
       request_seconds_(
           histograms(registry_, "weft_request_seconds", "From a call to the end of its answer")),
-      jobs_(
-          counters(registry_, "weft_jobs_total",
-                   "Times that jobs came into a state; of those that share a mesh, the mesh counts "
-                   "once it is worked on")),
-      queue_seconds_(
-          histogram(registry_, "weft_queue_seconds", "From being accepted to being worked on")),
+      jobs_(counters(registry_, "weft_jobs_total",
+                     "Jobs that reached a state; jobs that share a mesh count once as running")),
+      queue_seconds_(histogram(registry_, "weft_queue_seconds",
+                               "From being accepted to the start of the work")),
       refine_seconds_(histogram(registry_, "weft_refine_seconds",
                                 "The engine's time on a mesh, without waiting for readers")),
       first_chunk_seconds_(histogram(registry_, "weft_first_chunk_seconds",
@@ -69,7 +67,7 @@ Metrics::Metrics(std::string_view version, std::string_view engine_version)
       triangles_(counter(registry_, "weft_triangles_total",
                          "Triangles that the engine has made, for calls and jobs")),
       streamed_bytes_(counter(registry_, "weft_streamed_bytes_total",
-                              "Bytes of messages with chunks handed to streams")),
+                              "Bytes of messages with chunks that were given to streams")),
       cache_hits_(counter(registry_, "weft_cache_hits_total",
                           "Requests answered with a mesh that was kept, or is being made")),
       cache_misses_(
@@ -77,7 +75,7 @@ Metrics::Metrics(std::string_view version, std::string_view engine_version)
       leases_lost_(counter(
           registry_, "weft_leases_lost_total",
           "Attempts at a mesh whose lease ran out, because their worker was lost or hung")) {
-  // So that the first of a kind shows as an increase, too.
+  // So that the first job in a state shows as an increase, too.
   for (const char* state : {"queued", "running", "succeeded", "failed", "cancelled"})
     jobs_.Add({{"state", state}});
   prometheus::BuildGauge()
@@ -109,10 +107,12 @@ std::string Metrics::text() const {
     std::lock_guard lock(mutex_);
     queues = queues_;
   }
-  auto waiting = gauge_family("weft_queue_length", "Jobs that wait for their turn");
-  auto running = gauge_family("weft_running_jobs", "Jobs that are worked on");
-  auto pausing = gauge_family("weft_pausing_jobs", "Jobs that wait for whoever reads their mesh");
-  auto bytes = gauge_family("weft_admission_bytes", "Memory that running jobs were admitted with");
+  auto waiting = gauge_family("weft_queue_length", "Calls or jobs that wait for their turn");
+  auto running = gauge_family("weft_running_jobs", "Calls or jobs at work");
+  auto pausing =
+      gauge_family("weft_pausing_jobs", "Calls or jobs that wait for the reader of their mesh");
+  auto bytes =
+      gauge_family("weft_admission_bytes", "Memory that calls or jobs at work were admitted with");
   for (const Queue& queue : queues) {
     const QueueFigures figures = queue.figures();
     add_gauge(waiting, queue.name, figures.waiting);

@@ -57,11 +57,11 @@ Response answer(const MetricsPages& pages, http::verb method, beast::string_view
     response.body() = "there are /metrics and /healthz\n";
   }
   response.prepare_payload();
-  if (method == http::verb::head) response.body().clear();  // what it would be is told nevertheless
+  if (method == http::verb::head) response.body().clear();  // its headers stay
   return response;
 }
 
-// One connection: keeps itself alive by what it waits for, and counts as open until it ends.
+// One connection. It lives as long as an operation is pending, and counts as open until it ends.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(tcp::socket socket, const MetricsPages& pages, std::chrono::milliseconds patience,
@@ -86,7 +86,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
                      });
   }
 
-  // It is gone once what it waits for has been told of it.
+  // The connection ends once its pending operations have reported that.
   void close() { stream_.close(); }
 
  private:
@@ -107,7 +107,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   beast::tcp_stream stream_;
   const MetricsPages& pages_;
   const std::chrono::milliseconds patience_;
-  std::list<Connection*>& open_;  // the thread's own
+  std::list<Connection*>& open_;  // used by the thread of the endpoint only
   const std::list<Connection*>::iterator place_;
   beast::flat_buffer buffer_{kMaxRequestBytes};
   http::request_parser<http::empty_body> parser_;
@@ -143,7 +143,7 @@ class MetricsEndpoint::Listener {
   void accept() {
     acceptor_.async_accept([this](error_code error, tcp::socket socket) {
       if (error) return rest();
-      // Whoever is honest has long been answered.
+      // An honest client was answered long ago.
       if (open_.size() >= static_cast<std::size_t>(limits_.connections)) {
         open_.front()->close();
         open_.splice(open_.end(), open_, open_.begin());  // not closed again while it ends
@@ -152,7 +152,7 @@ class MetricsEndpoint::Listener {
       accept();
     });
   }
-  // Where descriptors have run out, trying again at once would keep a processor busy.
+  // If descriptors have run out, trying again at once would keep a processor busy.
   void rest() {
     timer_.expires_after(kBreather);
     timer_.async_wait([this](error_code) { accept(); });
@@ -160,7 +160,8 @@ class MetricsEndpoint::Listener {
 
   const MetricsPages pages_;
   const EndpointLimits limits_;
-  // The longest open first; the thread's own, and last touched when the context goes.
+  // The one that is open longest comes first. Used by the thread only, and at last when the context
+  // is destroyed.
   std::list<Connection*> open_;
   int port_ = 0;
   asio::io_context context_{1};

@@ -61,7 +61,7 @@ std::optional<double> open_descriptors() {
   std::error_code error;
   std::filesystem::directory_iterator each("/proc/self/fd", error);
   if (error) return std::nullopt;
-  double count = -1;  // the folder itself is open meanwhile
+  double count = -1;  // the open folder itself is not counted
   for (const std::filesystem::directory_iterator end; each != end; each.increment(error)) ++count;
   return count;
 }
@@ -83,14 +83,14 @@ std::vector<prometheus::MetricFamily> process_metrics() {
     add("process_resident_memory_bytes", "Memory that is in use", MetricType::Gauge,
         stat->field(24) * static_cast<double>(::sysconf(_SC_PAGESIZE)));
     if (const auto boot = boot_time())
-      add("process_start_time_seconds", "When it was started, in seconds since 1970",
+      add("process_start_time_seconds", "Time of the start, in seconds since 1970",
           MetricType::Gauge, *boot + stat->field(22) / ticks);
   }
   if (const auto count = open_descriptors())
     add("process_open_fds", "File descriptors that are open", MetricType::Gauge, *count);
   rlimit limit{};
   if (::getrlimit(RLIMIT_NOFILE, &limit) == 0)
-    add("process_max_fds", "File descriptors that may be open", MetricType::Gauge,
+    add("process_max_fds", "Maximum number of open file descriptors", MetricType::Gauge,
         static_cast<double>(limit.rlim_cur));
   return families;
 }

@@ -21,6 +21,11 @@ struct LostTask {
   std::int64_t tries = 0;
 };
 
+// What the meshes of one owner may take.
+inline std::int64_t bytes_of_owner(const KeepPolicy& policy) {
+  return static_cast<std::int64_t>(policy.share_of_owner * static_cast<double>(policy.bytes));
+}
+
 // Repeats a step, which returns what it collected, until that is nothing; adds it up in `all`.
 template <class Step>
 StoreResult<void> collect_in_steps(Collected& all, Step&& step) {

@@ -34,7 +34,7 @@ std::string JobIds::next(WallTime now) {
     fill_at_random(std::span(fresh).subspan(kTimeBytes));
     last_ = fresh;
   } else {
-    // The same millisecond, or a clock that was set back: the next number.
+    // In the same millisecond, or if the clock was set back, the next number follows.
     for (std::size_t i = last_.size(); i-- > 0 && ++last_[i] == 0;) {
     }
   }

@@ -91,18 +91,18 @@ struct Submission {
   std::string trace{};  // of the call, for the log of the worker
   // Make a mesh even if one is kept, and share no task. The new mesh replaces the kept one.
   bool no_cache = false;
-  // Maximum waiting tasks, of all owners and of this one. Jobs that join a task or find a mesh are
-  // always accepted.
+  // Maximum waiting tasks of all owners; a job that joins a task is accepted nonetheless. Maximum
+  // jobs of this owner that have not ended. Whoever finds a mesh needs no room.
   std::uint64_t max_queued = std::numeric_limits<std::uint64_t>::max();
-  std::uint64_t max_queued_of_owner = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t max_open_of_owner = std::numeric_limits<std::uint64_t>::max();
 };
 
 enum class SubmitOutcome {
-  kAccepted,      // a new job
-  kFound,         // request_id was used before, for the same key
-  kConflict,      // request_id was used before, for another key: nothing was changed
-  kQueueFull,     // max_queued is reached: nothing was changed
-  kOwnQueueFull,  // max_queued_of_owner is reached: nothing was changed
+  kAccepted,   // a new job
+  kFound,      // request_id was used before, for the same key
+  kConflict,   // request_id was used before, for another key: nothing was changed
+  kQueueFull,  // max_queued is reached: nothing was changed
+  kOwnerFull,  // max_open_of_owner is reached: nothing was changed
 };
 
 struct Submitted {
@@ -173,6 +173,11 @@ struct Reaped {
 struct KeepPolicy {
   std::chrono::seconds age{0};  // since a job's end, or since a mesh was last asked for
   std::uint64_t bytes = 0;      // of chunks; above it, least recently used meshes are removed
+  // The part of `bytes` that the meshes of one owner may take: of the owner of the job for which
+  // they were made. At least 1: any.
+  double share_of_owner = 1;
+  // Jobs of one owner that ended; above it, the oldest are removed.
+  std::uint64_t jobs_of_owner = std::numeric_limits<std::uint64_t>::max();
   // How long a chunk is kept that no mesh refers to: it may be part of a mesh that is being made.
   std::chrono::seconds loose_age{3600};
 };
@@ -220,10 +225,11 @@ class JobStore {
   // --- for workers ---
   // Claims a task that is due and has at most this estimate; nullopt if there is none. The owner
   // with the fewest claims comes first, then the owner that was served longest ago, then the oldest
-  // task.
+  // task. The owners in `except` get none.
   virtual StoreResult<std::optional<Claim>> claim(const std::string& worker,
                                                   std::chrono::milliseconds lease,
-                                                  std::uint64_t max_estimate) = 0;
+                                                  std::uint64_t max_estimate,
+                                                  const std::vector<std::string>& except = {}) = 0;
   virtual StoreResult<Held> renew(const ClaimRef& claim, std::chrono::milliseconds lease,
                                   const std::string& progress) = 0;
   // Does nothing if the chunk is stored already. `sha256` is that of `bytes`.

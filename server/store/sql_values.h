@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "server/store/job_store.h"
@@ -43,6 +44,23 @@ inline std::int64_t bits_of(const std::vector<JobState>& states) {
   std::int64_t bits = states.empty() ? ~std::int64_t{0} : 0;
   for (const JobState state : states) bits |= std::int64_t{1} << static_cast<int>(state);
   return bits;
+}
+
+// Each name in hexadecimal digits, a comma before the first and after each: whatever is in names,
+// a statement can look for one. Empty if there are none.
+inline std::string list_of(const std::vector<std::string>& names) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string list;
+  for (const std::string& name : names) {
+    if (list.empty()) list = ",";
+    for (const char byte : name) {
+      const auto number = static_cast<unsigned char>(byte);
+      list += kDigits[number / 16];
+      list += kDigits[number % 16];
+    }
+    list += ',';
+  }
+  return list;
 }
 
 template <class Rows>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/wire/errors.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstddef>
 
@@ -65,8 +67,8 @@ static_assert(static_cast<int>(ErrorCode::kInternal) == static_cast<int>(kIntern
 
 constexpr int kRetrySeconds = 1;
 
-// The message travels three times, once percent-encoded and twice in base64: six times its bytes
-// at worst, in trailers of at most 8 KiB.
+// A message travels three times, once percent-encoded and twice in base64: at worst six times its
+// bytes, in trailers of at most 8 KiB.
 constexpr std::size_t kMaxMessageBytes = 1000;
 
 std::string cut(std::string text) {
@@ -99,7 +101,7 @@ std::string_view code_name(grpc::StatusCode code) {
 }
 
 Failure failure_of(const Error& error) {
-  return {reason_of(error.code), error.field, error.message};
+  return {reason_of(error.code), error.field, error.message, error.at};
 }
 
 grpc::Status to_status(const Failure& failure, std::string_view job_id) {
@@ -113,7 +115,12 @@ grpc::Status to_status(const Failure& failure, std::string_view job_id) {
   google::rpc::ErrorInfo info;
   info.set_reason(std::string(row.name));
   info.set_domain("weft");
-  if (!job_id.empty()) (*info.mutable_metadata())["job_id"] = std::string(job_id);
+  auto& metadata = *info.mutable_metadata();
+  if (!job_id.empty()) metadata["job_id"] = std::string(job_id);
+  if (failure.at) {
+    metadata["x"] = fmt::format("{}", failure.at->x);
+    metadata["y"] = fmt::format("{}", failure.at->y);
+  }
   details.add_details()->PackFrom(info);
 
   if (!failure.field.empty()) {

@@ -4,12 +4,13 @@
 // exits with 64 + the gRPC code; metrics count by the gRPC code.
 //
 // Example:
-//   Failure failure{Reason::kQueueFull, "", "64 jobs wait already; the limit is 64"};
+//   Failure failure{Reason::kQueueFull, "", "64 calls wait already; the limit is 64"};
 //   reactor->Finish(to_status(failure, job_id));
 #pragma once
 
 #include <grpcpp/support/status.h>
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -70,18 +71,21 @@ Reason reason_of(ErrorCode code);
 // "INVALID_ARGUMENT" and so on.
 std::string_view code_name(grpc::StatusCode code);
 
-// Why a call failed. `field` is the path of the field at fault, empty when none is.
+// Why a call failed. `field` is the path of the field at fault, empty when none is; `at` is as in
+// the engine's errors.
 struct Failure {
   Reason reason = Reason::kInternal;
   std::string field;
   std::string message;
+  std::optional<Point> at{};
 };
 
 Failure failure_of(const Error& error);
 
-// A status whose details are a google.rpc.Status: an ErrorInfo, with the job's id in its metadata
-// unless that is empty, a BadRequest if a field is at fault, a RetryInfo if a retry makes
-// sense. Long messages are cut: a client refuses trailers of more than 8 KiB.
+// A status whose details are a google.rpc.Status: an ErrorInfo, a BadRequest if a field is at
+// fault, a RetryInfo if a retry makes sense. The metadata of the ErrorInfo have the job's id as
+// "job_id", unless that is empty, and the coordinates of the place at fault as "x" and "y", if
+// there is one. Long messages are cut: a client refuses trailers of more than 8 KiB.
 grpc::Status to_status(const Failure& failure, std::string_view job_id);
 
 }  // namespace weft::server

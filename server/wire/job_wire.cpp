@@ -18,8 +18,8 @@ google::protobuf::Timestamp to_wire(WallTime time) {
       std::chrono::duration_cast<std::chrono::microseconds>(time.time_since_epoch()).count());
 }
 
-// What a damaged row holds must not keep a client from reading the message, with all the other jobs
-// in it. Texts that are no UTF-8 would, and messages that do not parse.
+// A damaged row must not keep a client from reading the whole message with all other jobs in it.
+// Text that is not UTF-8, or a message that does not parse, would.
 std::string text_of(const std::string& stored) {
   using google::protobuf::internal::IsStructurallyValidUTF8;
   if (IsStructurallyValidUTF8(stored.data(), static_cast<int>(stored.size()))) return stored;
@@ -34,7 +34,7 @@ void parse_into(Message& message, const std::string& stored) {
   if (!message.ParseFromString(stored)) message.Clear();
 }
 
-// The error is that of the work, which jobs may share: each tells of itself alone.
+// Jobs may share the error of their work, but each one's error names the job itself.
 void name_job(google::rpc::Status& error, const std::string& id) {
   for (google::protobuf::Any& detail : *error.mutable_details()) {
     google::rpc::ErrorInfo info;
@@ -86,6 +86,7 @@ v1::Job to_wire(const JobRecord& record) {
     name_job(*job.mutable_error(), job.id());
   }
   job.set_from_store(record.from_store);
+  job.set_client(text_of(record.owner));
   if (!record.brief.empty()) {
     parse_into(*job.mutable_summary(), record.brief);
     job.mutable_summary()->clear_leaf_boxes();  // of meshes that older servers made

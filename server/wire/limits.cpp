@@ -5,6 +5,8 @@
 
 #include <string_view>
 
+#include "server/wire/names.h"
+
 namespace weft::server {
 namespace {
 
@@ -16,16 +18,17 @@ std::optional<Failure> over(std::string_view field, std::string_view unit, Numbe
                  fmt::format("{}: {} {}; this server's limit is {}", field, value, unit, limit)};
 }
 
-// What takes memory.
+// Counts of what takes memory.
 struct Amounts {
   std::uint64_t points = 0;
   std::uint64_t segments = 0;
   std::uint64_t markers = 0;
   std::uint64_t seeds = 0;
+  std::uint64_t names = 0;
   std::uint64_t expression_bytes = 0;
   std::uint64_t raster_values = 0;
   std::uint64_t sizes_at = 0;
-  // Of all fields that the size may name.
+  // Summed over all fields that the size may name.
   std::uint64_t fields = 0;
   std::uint64_t field_points = 0;
   std::uint64_t field_segments = 0;
@@ -43,6 +46,9 @@ std::optional<Failure> check(const Amounts& amounts, const Limits& limits) {
     return Failure{Reason::kLimitExceeded, "domain.regions",
                    fmt::format("the domain has {} hole and region seeds; this server's limit is {}",
                                amounts.seeds, limits.max_seeds)};
+  if (auto f =
+          over("domain.marker_names", "names of markers and regions", amounts.names, kMaxNames))
+    return f;
   if (auto f =
           over("size.expression", "bytes", amounts.expression_bytes, limits.max_expression_bytes))
     return f;
@@ -72,6 +78,8 @@ std::optional<Failure> check_limits(const WireScan& scan, const Limits& limits) 
       .markers = of_domain(v1::Domain::kSegmentMarkersFieldNumber),
       .seeds =
           of_domain(v1::Domain::kHolesFieldNumber) / 2 + of_domain(v1::Domain::kRegionsFieldNumber),
+      .names = of_domain(v1::Domain::kMarkerNamesFieldNumber) +
+               of_domain(v1::Domain::kRegionNamesFieldNumber),
       .expression_bytes =
           scan.count(*v1::SizeField::descriptor(), v1::SizeField::kExpressionFieldNumber),
       .raster_values = scan.count(*v1::Raster::descriptor(), v1::Raster::kValuesFieldNumber),
@@ -94,13 +102,15 @@ std::optional<Failure> check_limits(const v1::GenerateMeshRequest& request, cons
   const v1::Domain& domain = request.domain();
   const v1::Budget& budget = request.budget();
   const auto count = [](int size, int width) { return static_cast<std::uint64_t>(size / width); };
-  Amounts amounts{.points = count(domain.points_size(), 2),
-                  .segments = count(domain.segments_size(), 2),
-                  .markers = count(domain.segment_markers_size(), 1),
-                  .seeds = count(domain.holes_size(), 2) + count(domain.regions_size(), 1),
-                  .expression_bytes = request.size().expression().size(),
-                  .raster_values = count(request.size().raster().values_size(), 1),
-                  .sizes_at = count(request.size().at_size(), 1)};
+  Amounts amounts{
+      .points = count(domain.points_size(), 2),
+      .segments = count(domain.segments_size(), 2),
+      .markers = count(domain.segment_markers_size(), 1),
+      .seeds = count(domain.holes_size(), 2) + count(domain.regions_size(), 1),
+      .names = count(domain.marker_names_size(), 1) + count(domain.region_names_size(), 1),
+      .expression_bytes = request.size().expression().size(),
+      .raster_values = count(request.size().raster().values_size(), 1),
+      .sizes_at = count(request.size().at_size(), 1)};
   for (const v1::NamedField& field : request.size().fields()) {
     amounts.fields += 1;
     amounts.field_points += count(field.distance().points_size(), 2);
@@ -111,6 +121,9 @@ std::optional<Failure> check_limits(const v1::GenerateMeshRequest& request, cons
     amounts.field_values += count(field.raster().values_size(), 1);
   }
   if (auto f = check(amounts, limits)) return f;
+  if (auto f = over("domain.marker_names", "bytes of names of markers and regions",
+                    name_bytes(domain), kMaxNameBytes))
+    return f;
   if (auto f = over("budget.max_triangles", "triangles", std::uint64_t{budget.max_triangles()},
                     limits.max_triangles))
     return f;

@@ -3,8 +3,10 @@
 // names both the value and the limit.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "engine/engine.h"
 #include "server/wire/errors.h"
@@ -23,13 +25,27 @@ struct Limits {
   std::uint64_t max_expression_bytes = Expression::kMaxLength;
   std::uint64_t max_raster_values = std::uint64_t{1} << 24;
   std::uint64_t max_triangles = kMostTriangles;
-  std::uint64_t max_bytes = std::uint64_t{4} << 30;      // of engine memory a job
-  double max_seconds = 3600;                             // of work a job
+  std::uint64_t max_bytes = std::uint64_t{4} << 30;      // of engine memory per run
+  double max_seconds = 3600;                             // of work per run
   std::uint64_t stream_buffer = std::uint64_t{8} << 20;  // of a mesh that waits for its reader
   std::uint64_t max_request_bytes = std::uint64_t{256} << 20;  // REQUIRES: < 2 GiB
 };
 
-// REQUIRES: check_shape(request) found nothing.
+// A limit on a number of things in a request. `name` is its field in v1::ServerLimits, and with
+// dashes its flag: max_points, --max-points.
+struct CountLimit {
+  std::string_view name;
+  std::uint64_t Limits::*limit;
+  std::string_view about;  // the help of the flag
+};
+inline constexpr std::array kCountLimits = {
+    CountLimit{"max_points", &Limits::max_points, "Maximum points per request"},
+    CountLimit{"max_segments", &Limits::max_segments, "Maximum segments per request"},
+    CountLimit{"max_seeds", &Limits::max_seeds, "Maximum seeds of holes and regions per request"},
+    CountLimit{"max_raster_values", &Limits::max_raster_values, "Maximum values of a size raster"},
+};
+
+// REQUIRES: check_shape(request) returned nullopt.
 std::optional<Failure> check_limits(const v1::GenerateMeshRequest& request, const Limits& limits);
 
 // The same for a request that is not parsed yet, of what takes memory: parsing what passes takes at

@@ -26,6 +26,11 @@ void clear(google::protobuf::Message& message, std::string_view path) {
   if (inner.ByteSizeLong() == 0) reflection.ClearField(&message, field);
 }
 
+void sort_by_id(google::protobuf::RepeatedPtrField<v1::Name>& names) {
+  std::sort(names.begin(), names.end(),
+            [](const v1::Name& a, const v1::Name& b) { return a.id() < b.id(); });
+}
+
 void make_canonical(v1::GenerateMeshRequest& request) {
   request.DiscardUnknownFields();
   for (const std::string_view path : kNotInMeshKey) clear(request, path);
@@ -35,12 +40,14 @@ void make_canonical(v1::GenerateMeshRequest& request) {
     quality.set_placement(v1::PLACEMENT_LATTICE);
   v1::SizeField& size = *request.mutable_size();
   if (size.cells_across() == 0) size.clear_cells_across();  // -0 is 0
+  if (size.gradation() == 0) size.clear_gradation();        // -0 is 0
+  // Fields that the mesh does not need are in the warnings that are kept with it.
   if (size.field_case() == v1::SizeField::FIELD_NOT_SET && size.cells_across() == 0 &&
-      size.at().empty()) {
+      size.at().empty() && size.fields().empty() && !size.gradation_within() &&
+      size.gradation() == 0) {
     request.clear_size();
-  } else {
-    if (size.measure() == v1::MEASURE_UNSPECIFIED) size.set_measure(v1::MEASURE_AREA);
-    if (size.gradation() == 0) size.clear_gradation();  // -0 is 0
+  } else if (size.measure() == v1::MEASURE_UNSPECIFIED) {
+    size.set_measure(v1::MEASURE_AREA);
   }
   v1::Domain& domain = *request.mutable_domain();
   if (domain.fill() == v1::FILL_UNSPECIFIED) domain.set_fill(v1::FILL_SEEDS);
@@ -48,6 +55,8 @@ void make_canonical(v1::GenerateMeshRequest& request) {
   const auto& markers = domain.segment_markers();
   if (std::all_of(markers.begin(), markers.end(), [](int marker) { return marker == 0; }))
     domain.clear_segment_markers();
+  sort_by_id(*domain.mutable_marker_names());
+  sort_by_id(*domain.mutable_region_names());
 }
 
 }  // namespace

@@ -56,6 +56,10 @@ v1::GenerateMeshRequest options_of(const v1::GenerateMeshRequest& request) {
   copy_single_fields(request, options);
   for (const auto& field : request.size().fields())
     copy_single_fields(field, *options.mutable_size()->add_fields());
+  if (!request.domain().marker_names().empty())
+    *options.mutable_domain()->mutable_marker_names() = request.domain().marker_names();
+  if (!request.domain().region_names().empty())
+    *options.mutable_domain()->mutable_region_names() = request.domain().region_names();
   return options;
 }
 

@@ -28,7 +28,7 @@ Failure bad_number(std::string field, double value, std::string_view what) {
   return bad_option(std::move(field), std::move(message));
 }
 
-// Of a Raster or a FieldRaster, which errors call `path`.
+// The shape of a Raster or a FieldRaster, which errors call `path`.
 template <class Grid>
 std::optional<Failure> check_grid(const Grid& grid, const std::string& path) {
   for (const auto& [name, value] : {std::pair{".x", grid.x()}, std::pair{".y", grid.y()}})
@@ -40,7 +40,7 @@ std::optional<Failure> check_grid(const Grid& grid, const std::string& path) {
   if (nodes == 0 || nodes != static_cast<std::uint64_t>(grid.values_size()))
     return bad_array(path + ".values",
                      fmt::format("{}.values holds {} values for {} columns and {} rows; it takes "
-                                 "one a node, and one node at least",
+                                 "one per node, and at least one node",
                                  path, grid.values_size(), grid.columns(), grid.rows()));
   return std::nullopt;
 }
@@ -62,10 +62,10 @@ std::optional<Failure> check_mesh(const v1::FieldMesh& mesh, const std::string& 
   if (auto f = check_length(path + ".triangles", mesh.triangles_size(), 3, "vertex indices"))
     return f;
   if (mesh.triangles_size() == 0)
-    return bad_array(path + ".triangles", path + ".triangles is empty; it takes one at least");
+    return bad_array(path + ".triangles", path + ".triangles is empty; it takes at least one");
   if (mesh.values_size() == mesh.vertices_size() / 2) return std::nullopt;
   return bad_array(path + ".values",
-                   fmt::format("{}.values holds {} values for {} vertices; it takes one a vertex",
+                   fmt::format("{}.values holds {} values for {} vertices; it takes one per vertex",
                                path, mesh.values_size(), mesh.vertices_size() / 2));
 }
 
@@ -87,7 +87,7 @@ std::optional<Failure> check_field(const v1::NamedField& field, const std::strin
                               "width");
 }
 
-// The size whose triangles are those of up to kSamples nodes, on average.
+// The size whose triangles have the mean number of those at up to kSamples nodes.
 double mean_size(const v1::Raster& raster, Measure measure) {
   constexpr int kSamples = 1024;
   const int step = 1 + raster.values_size() / kSamples;
@@ -164,6 +164,7 @@ SizeSpec without_arrays(const v1::SizeField& size) {
   if (!size.has_raster()) spec.value = value_of(size);
   if (size.measure() == v1::MEASURE_EDGE) spec.measure = Measure::kEdge;
   spec.gradation = size.gradation();
+  spec.gradation_within = size.gradation_within();
   spec.cells_across = size.cells_across();
   for (const v1::SizeAt& at : size.at()) spec.at.push_back({at.marker(), at.max_edge()});
   for (const v1::NamedField& field : size.fields()) {
@@ -177,7 +178,7 @@ SizeSpec without_arrays(const v1::SizeField& size) {
 
 std::optional<Failure> check_shape(const v1::SizeField& size) {
   if (!v1::Measure_IsValid(size.measure()))
-    return bad_option("size.measure", fmt::format("size.measure is {}, which is no Measure",
+    return bad_option("size.measure", fmt::format("size.measure is {}, which is not a Measure",
                                                   static_cast<int>(size.measure())));
   for (int i = 0; i < size.fields_size(); ++i)
     if (auto f = check_field(size.fields(i), fmt::format("size.fields[{}]", i))) return f;
@@ -212,7 +213,7 @@ Size size_to_estimate_by(const v1::SizeField& size) {
 }
 
 double bytes_to_expect(const v1::SizeField& size) {
-  // What fields take for each line, value and triangle, roughly: a run asks for what it takes.
+  // Rough bytes per line, value and triangle of a field; a run asks for what it really takes.
   constexpr double kPerLine = 200;
   constexpr double kPerValue = 8;
   constexpr double kPerTriangle = 100;

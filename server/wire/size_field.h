@@ -16,15 +16,15 @@ std::optional<Failure> check_shape(const v1::SizeField& size);
 
 // Refuses what the engine would refuse without the domain: an expression with a fault, names,
 // values that are no sizes. The values of fields it does not look at. Copies no array. REQUIRES:
-// check_shape(size) found nothing.
+// check_shape(size) returned nullopt.
 std::optional<Failure> check_values(const v1::SizeField& size);
 
-// REQUIRES: check_shape(size) found nothing.
+// REQUIRES: check_shape(size) returned nullopt.
 SizeSpec to_engine(const v1::SizeField& size);
 
 // A size that asks for about as many triangles, without a copy of an array; no bound if `size` is
 // none, or names fields: what these ask for is known once they are made. REQUIRES:
-// check_shape(size) found nothing.
+// check_shape(size) returned nullopt.
 Size size_to_estimate_by(const v1::SizeField& size);
 
 // Bytes of memory that the engine takes for arrays of `size`.

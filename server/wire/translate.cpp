@@ -10,10 +10,25 @@
 #include <cstdint>
 #include <utility>
 
+#include "server/wire/names.h"
 #include "server/wire/size_field.h"
 
 namespace weft::server {
 namespace {
+
+v1::SizeWarningKind to_wire(SizeWarning::Kind kind) {
+  switch (kind) {
+    case SizeWarning::Kind::kBoundsNothing:
+      return v1::SIZE_WARNING_KIND_BOUNDS_NOTHING;
+    case SizeWarning::Kind::kCoarseRaster:
+      return v1::SIZE_WARNING_KIND_COARSE_RASTER;
+    case SizeWarning::Kind::kFieldNotNamed:
+      return v1::SIZE_WARNING_KIND_FIELD_NOT_NAMED;
+    case SizeWarning::Kind::kGradationWithinAlone:
+      return v1::SIZE_WARNING_KIND_GRADATION_WITHIN_ALONE;
+  }
+  return v1::SIZE_WARNING_KIND_UNSPECIFIED;
+}
 
 Failure bad_option(std::string field, std::string message) {
   return {Reason::kBadOption, std::move(field), std::move(message)};
@@ -55,9 +70,9 @@ std::optional<Failure> check_domain(const v1::Domain& domain) {
                                     i, region.max_edge()));
   }
   if (!v1::Fill_IsValid(domain.fill()))
-    return bad_option("domain.fill", fmt::format("domain.fill is {}, which is no Fill",
+    return bad_option("domain.fill", fmt::format("domain.fill is {}, which is not a Fill",
                                                  static_cast<int>(domain.fill())));
-  return std::nullopt;
+  return check_names(domain);
 }
 
 std::vector<Point> to_points(const google::protobuf::RepeatedField<double>& pairs) {
@@ -95,7 +110,7 @@ void write_unrefined(const Summary& summary, v1::Unrefined& message) {
   message.set_precision(unrefined.precision);
   message.set_streaming(unrefined.streaming);
   message.set_too_large(unrefined.too_large);
-  if (unrefined.without_excuse() == 0) return;
+  if (unrefined.without_exemption() == 0) return;
   message.set_x(summary.unrefined_at.x);
   message.set_y(summary.unrefined_at.y);
 }
@@ -131,7 +146,7 @@ std::optional<Failure> check_shape(const v1::GenerateMeshRequest& request) {
   const v1::Quality& quality = request.quality();
   if (!v1::Placement_IsValid(quality.placement()))
     return bad_option("quality.placement",
-                      fmt::format("quality.placement is {}, which is no Placement",
+                      fmt::format("quality.placement is {}, which is not a Placement",
                                   static_cast<int>(quality.placement())));
   if (!not_negative(request.budget().max_seconds()))
     return bad_option("budget.max_seconds",
@@ -259,10 +274,16 @@ v1::Summary to_wire(const Summary& summary, std::uint32_t threads) {
   assign(*message.mutable_size_histogram(), summary.size_histogram);
   write_unrefined(summary, *message.mutable_unrefined());
   write_merging(summary.merging, *message.mutable_merging());
+  for (const SizeWarning& warning : summary.size_warnings) {
+    v1::SizeWarning& warned = *message.add_size_warnings();
+    warned.set_kind(to_wire(warning.kind));
+    warned.set_field(warning.field);
+    warned.set_message(warning.message);
+  }
   v1::Timings& timings = *message.mutable_timings();
   timings.set_triangulate_seconds(summary.triangulate_seconds);
   timings.set_size_seconds(summary.size_seconds);
-  timings.set_prelude_seconds(summary.prelude_seconds);
+  timings.set_prelude_seconds(summary.coarse_seconds);
   timings.set_refine_seconds(summary.refine_seconds);
   timings.set_emit_seconds(summary.emit_seconds);
   timings.set_engine_seconds(summary.engine_seconds);
@@ -316,7 +337,7 @@ grpc::ByteBuffer serialize(const google::protobuf::MessageLite& message) {
   const grpc::Status status =
       grpc::GenericSerialize<grpc::ProtoBufferWriter, google::protobuf::MessageLite>(
           message, &bytes, &own_buffer);
-  // Only a message of more than 2 GiB does not serialize, and none here comes near.
+  // Serializing fails only above 2 GiB, and no message here comes near that.
   if (!status.ok()) throw std::length_error(status.error_message());
   return bytes;
 }

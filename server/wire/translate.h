@@ -25,7 +25,7 @@ inline constexpr std::size_t kMaxLeafBoxes = 65'536;
 std::uint32_t to_threads(std::uint32_t wanted, int available);
 
 // Refuses arrays of impossible lengths and what only the wire has (enums, the budget), in constant
-// time but for the regions.
+// time but for the regions and the names.
 std::optional<Failure> check_shape(const v1::GenerateMeshRequest& request);
 
 // Refuses what the engine would refuse before it looks at the domain: options outside their ranges,

@@ -19,7 +19,7 @@ using google::protobuf::internal::WireFormat;
 using google::protobuf::internal::WireFormatLite;
 using google::protobuf::io::CodedInputStream;
 
-// How a field is spelled, if the type has it.
+// How a field is spelled, if the type has the field.
 enum class Spelling { kUnknown, kMessage, kPacked, kText, kPlain };
 
 struct Field {
@@ -58,8 +58,8 @@ class Walk {
  public:
   Walk(CodedInputStream& in, WireScan& scan) : in_(in), scan_(scan) {}
 
-  // False if the bytes are malformed. REQUIRES: the stream has a limit. The types of requests do
-  // not contain themselves, so the depth is theirs.
+  // Returns false if the bytes are malformed. REQUIRES: the stream has a limit. The types of
+  // requests do not contain themselves, so the recursion is as deep as they are.
   bool message(const Descriptor& type) {
     while (const std::uint32_t tag = in_.ReadTag()) {
       if (WireFormatLite::GetTagFieldNumber(tag) == 0) return false;
@@ -115,7 +115,7 @@ class Walk {
       if (!in_.GetDirectBufferPointer(&data, &size)) return false;
       size = std::min(size, length);
       const auto* const bytes = static_cast<const signed char*>(data);
-      // The last byte of a number is the one without its highest bit.
+      // The last byte of a number is the one whose highest bit is 0.
       count += static_cast<std::uint64_t>(
           std::count_if(bytes, bytes + size, [](signed char byte) { return byte >= 0; }));
       if (!in_.Skip(size)) return false;
@@ -138,13 +138,13 @@ class Walk {
   std::uint64_t* last_count_ = nullptr;
 };
 
-// In as many bytes as there are, which is more than a small number needs.
+// Writes the number in as many bytes as there are, which is more than a small number needs.
 void write_length(std::uint8_t* bytes, std::size_t width, std::size_t length) {
   for (std::size_t i = 0; i < width; ++i, length >>= 7)
     bytes[i] = static_cast<std::uint8_t>((length & 0x7f) | (i + 1 < width ? 0x80 : 0));
 }
 
-// Moves what the type knows to the front. Returns how many bytes that is.
+// Moves the fields that the type has to the front. Returns how many bytes they take.
 std::size_t compact(std::uint8_t* bytes, std::size_t size, const Descriptor& type) {
   CodedInputStream in(bytes, static_cast<int>(size));
   std::size_t kept = 0;
@@ -187,7 +187,7 @@ std::uint64_t WireScan::count(const Descriptor& type, int field_number) const {
 }
 
 WireScan scan_wire(const grpc::ByteBuffer& bytes, const Descriptor& type) {
-  grpc::ByteBuffer shared = bytes;  // the reader wants a mutable one; slices are shared
+  grpc::ByteBuffer shared = bytes;  // the reader needs a mutable buffer; slices are shared
   grpc::ProtoBufferReader reader(&shared);
   CodedInputStream in(&reader);
   in.PushLimit(static_cast<int>(bytes.Length()));

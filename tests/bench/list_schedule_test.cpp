@@ -65,7 +65,7 @@ TEST(ListSchedule, WithUnboundedThreadsTheChainIsTheCriticalPath) {
 }
 
 TEST(ListSchedule, PartsWaitForRoomBeforeTheFirstUnsentOne) {
-  // Part 0 takes long; of the others only as many as fit may be built meanwhile.
+  // Part 0 takes long; of the others only as many as fit may be built in the meantime.
   const std::uint32_t ahead = parts_ahead(2);
   std::vector<double> seconds(2 * ahead, 1.0);
   seconds[0] = 10.0 * ahead;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A run of the engine that a trace records, and the schedule that follows from it on other numbers
+// of threads.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -61,7 +63,9 @@ TEST(RecordedRun, TasksOfAStageTakeNoLongerThanTheStageOnOneThread) {
   Recording run;
   run_square(run);
   for (const Trace::Stage& stage : run.trace.stages) {
-    if (stage.graph) EXPECT_LE(work_of(*stage.graph), stage.seconds) << stage.name;
+    if (stage.graph) {
+      EXPECT_LE(work_of(*stage.graph), stage.seconds) << stage.name;
+    }
   }
 }
 

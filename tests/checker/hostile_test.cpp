@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Input that nobody meant: it is a violation, and nothing worse.
+// Input that no sound program writes: it is a violation, and nothing worse.
 #include <gtest/gtest.h>
 
 #include <cmath>

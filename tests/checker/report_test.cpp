@@ -38,11 +38,12 @@ TEST(Report, SaysWhatWasNotJudged) {
 }
 
 TEST(Report, StatesTheFacts) {
-  EXPECT_EQ(to_text(block(1).check()),
-            "triangles 2, vertices 4, edges on segments 4\n"
-            "angles 53.13010235415598 to 63.43494882292201 degrees, area 1\n"
-            "largest area over its bound 1\n"
-            "excused by small input angles 0 (0 with the corner, 0 on its shells), unrefined 0\n");
+  EXPECT_EQ(
+      to_text(block(1).check()),
+      "triangles 2, vertices 4, edges on segments 4\n"
+      "angles 53.13010235415598 to 63.43494882292201 degrees, area 1\n"
+      "largest area over its bound 1\n"
+      "exempt because of small input angles 0 (0 with the corner, 0 on its shells), unrefined 0\n");
 }
 
 TEST(Text, WritesDoublesThatReadBack) {

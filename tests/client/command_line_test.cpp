@@ -94,7 +94,7 @@ TEST_F(CommandLine, RefusesUnknownExtensionsBeforeAnyWork) {
   EXPECT_EQ(run(mesh_to("m.stp")), 2);
   EXPECT_NE(err().find("'.stp' is not that of a mesh that is written: .vtu, .msh, .node, "),
             std::string::npos);
-  EXPECT_EQ(run({"mesh", "in.dxf", "-o", "m.vtu"}), 2);
+  EXPECT_EQ(run({"mesh", "in.stp", "-o", "m.vtu"}), 2);
   EXPECT_EQ(run({"mesh", "in.poly", "--draw", "m.gif"}), 2);
   EXPECT_EQ(run({"mesh", "in.poly"}), 2);
   EXPECT_EQ(run({"mesh"}), 2);
@@ -131,6 +131,16 @@ TEST_F(CommandLine, RefusesFlagsThatWouldDoNothing) {
 
 TEST_F(CommandLine, LetsTheEnvironmentNameWhatACommandHasNoUseFor) {
   EXPECT_EQ(run(mesh_to("m.vtu"), {"WEFT_COLOR=angle", "WEFT_TOKEN_FILE=/nowhere"}), 0) << err();
+}
+
+TEST_F(CommandLine, IsNotEndedByWhatAVariableMeansToAnotherCommand) {
+  const std::string wrong = "WEFT_MIN_ANGLE=61";
+  EXPECT_EQ(run({"convert", (folder_ / "in.poly").string(), (folder_ / "out" / "d.poly").string()},
+                {wrong}),
+            0)
+      << err();
+  EXPECT_EQ(run({"check", "m.vtu"}, {wrong}), 2);
+  EXPECT_NE(err().find("'61'"), std::string::npos) << err();
 }
 
 TEST_F(CommandLine, DrawsTheQuadtreeAndSaysOfHowManyLeaves) {
@@ -269,9 +279,42 @@ TEST_F(CommandLine, ChecksNoMeshAgainstASizeThatNothingExceeds) {
   }
 }
 
+TEST_F(CommandLine, RefusesNumbersThatAreNone) {
+  ASSERT_EQ(run(mesh_to("m.vtu")), 0);
+  const auto refuses = [this](Words words, const std::string& name, const std::string& value,
+                              const std::string& why) {
+    words.push_back(name + "=" + value);
+    EXPECT_EQ(run(words), 2) << name << " " << value << "\n" << out();
+    EXPECT_TRUE(err().starts_with(name + ": '" + value + "' is not " + why + "\n")) << err();
+  };
+  const Words check = {"check", out_file("m.vtu"), "--domain", folder_ / "in.poly"};
+  for (const char* value : {"nan", "-nan", "much"}) {
+    refuses(check, "--min-angle", value, "a number");
+    refuses(check, "--snap", value, "a number");
+    for (const char* name : {"--timeout", "--min-angle", "--min-edge", "--snap", "--max-seconds"})
+      refuses(mesh_to("n.vtu"), name, value, "a number");
+    for (const char* command : {"batch", "get", "watch", "health", "list"})
+      refuses({command, command == std::string("list") ? "--json" : "a"}, "--timeout", value,
+              "a number");
+    refuses({"top"}, "--interval", value, "a number");
+  }
+  refuses(check, "--min-angle", "60.1", "in the range 0 to 60");
+  refuses(mesh_to("n.vtu"), "--timeout", "0", "in the range 0.001 to 1e+09");
+  for (const char* value : {"-1", "-18446744073709551615", "1.5"}) {
+    refuses(check, "--max-unrefined", value, "a count");
+    refuses(mesh_to("n.vtu"), "--retries", value, "a count");
+    refuses({"batch", "a"}, "--jobs", value, "a count");
+    refuses({"list"}, "--limit", value, "a count");
+  }
+  refuses({"list"}, "--limit", "0", "in the range 1 or more");
+  refuses({"batch", "a"}, "--jobs", "257", "in the range 1 to 256");
+}
+
 TEST_F(CommandLine, SuggestsWhatWasProbablyMeant) {
   EXPECT_EQ(run({"mseh", "a.poly"}), 2);
+  EXPECT_TRUE(err().starts_with("no such command 'mseh'\n")) << err();
   EXPECT_NE(err().find("weft: did you mean `mesh`?\n"), std::string::npos) << err();
+  EXPECT_EQ(run({"mseh", "--help"}), 0) << err();
   EXPECT_EQ(run({"mesh", "a.poly", "--sise", "1"}), 2);
   EXPECT_NE(err().find("weft: did you mean `--size`?\n"), std::string::npos) << err();
   EXPECT_EQ(run({"mesh", "a.poly", "--min-angel=20"}), 2);
@@ -294,6 +337,59 @@ TEST_F(CommandLine, DescribesMeshesAndDomains) {
   EXPECT_EQ(run({"info", "a.stp"}), 2);
 }
 
+TEST_F(CommandLine, TellsTheQualityOfMeshes) {
+  ASSERT_EQ(run(mesh_to("m.vtu")), 0);
+  const Words info = {"info", out_file("m.vtu"), "--quality"};
+  const auto with = [&info](Words more) {
+    more.insert(more.begin(), info.begin(), info.end());
+    return more;
+  };
+  EXPECT_EQ(run(with({}), {"LC_ALL=C"}), 0) << err();
+  EXPECT_NE(out().find("\n   45 to 50    ##"), std::string::npos) << out();
+  EXPECT_EQ(out().find("area over its bound"), std::string::npos) << out();
+  EXPECT_EQ(run(with({"--size", "x < 2 ? 1 : 0.4"}), {"LC_ALL=C.UTF-8"}), 0) << err();
+  EXPECT_NE(out().find("█"), std::string::npos) << out();
+  EXPECT_NE(out().find("area 1.25 of its bound\n"), std::string::npos) << out();
+  EXPECT_EQ(run(with({"--json", "--size", "1"})), 0) << err();
+  const auto json = nlohmann::json::parse(out());
+  EXPECT_EQ(json["triangles"], 32);
+  EXPECT_EQ(json["worst"]["by_area_over_bound"][0]["area_over_bound"], 0.5);
+  EXPECT_EQ(run(with({"--size", "x +"})), 2);
+  EXPECT_NE(err().find("the size: "), std::string::npos) << err();
+  EXPECT_EQ(run({"info", folder_ / "in.poly", "--quality"}), 2);
+  EXPECT_EQ(run({"info", out_file("m.vtu"), "--size", "1"}), 2);
+}
+
+TEST_F(CommandLine, ChecksInSentencesAndInJson) {
+  ASSERT_EQ(run(mesh_to("m.vtu")), 0);
+  const Words check = {"check", out_file("m.vtu"), "--domain", folder_ / "in.poly", "--size",
+                       "0.4"};
+  EXPECT_EQ(run(check), 3);
+  EXPECT_NE(out().find("area at most 1.25 of its bound: fails, 32 times; the worst is triangle 0"),
+            std::string::npos)
+      << out();
+  Words json = check;
+  json.push_back("--json");
+  EXPECT_EQ(run(json), 3);
+  EXPECT_EQ(nlohmann::json::parse(out())["rules"]["area"]["violations"], 32);
+}
+
+TEST_F(CommandLine, FindsTheMarkersOfAMeshThatIsOnlyDrawn) {
+  EXPECT_EQ(run({"mesh", folder_ / "in.poly", "--draw", out_file("d.png")}), 0) << err();
+  EXPECT_EQ(out().find("WARNING"), std::string::npos) << out();
+}
+
+TEST_F(CommandLine, OffersColoursByBoundsWhereThereAreBounds) {
+  const auto colors = [this](const char* command) {
+    EXPECT_EQ(run({command, "--help"}), 0) << err();
+    const std::size_t at = out().find("--color ") + 8;
+    return out().substr(at, out().find(' ', at) - at);
+  };
+  for (const char* command : {"mesh", "submit", "fetch"})
+    EXPECT_EQ(colors(command), "angle|size|region|none|auto") << command;
+  EXPECT_EQ(colors("draw"), "angle|size|region|bound|none|auto");
+}
+
 TEST_F(CommandLine, ConvertsMeshes) {
   EXPECT_EQ(run(mesh_to("m.vtu")), 0) << err();
   EXPECT_EQ(run({"convert", out_file("m.vtu"), out_file("m.npz")}), 0) << err();
@@ -308,6 +404,31 @@ TEST_F(CommandLine, ConvertsMeshes) {
   EXPECT_TRUE(contents_of(out_file("m.msh")).starts_with("$MeshFormat\n2.2 0 8\n"));
 }
 
+TEST_F(CommandLine, ConvertNamesMarkersAndRegions) {
+  Words named = mesh_to("m.vtu");
+  for (const char* name : {"marker=1:inlet", "marker=2:outlet"})
+    named.insert(named.end(), {"--names", name});
+  ASSERT_EQ(run(named), 0) << err();
+  EXPECT_EQ(run({"convert", out_file("m.vtu"), out_file("m.npz"), "--names", "marker=2:weir",
+                 "--names", "region=7:fluid"}),
+            0)
+      << err();
+  const Names both{{{1, "inlet"}, {2, "weir"}}, {{7, "fluid"}}};
+  EXPECT_EQ(read_mesh(out_file("m.npz")).value().names, both);
+  EXPECT_EQ(run({"convert", out_file("m.npz"), out_file("m.14"), "--names", "marker=3:sea",
+                 "--open-boundary", "sea"}),
+            0)
+      << err();
+  EXPECT_NE(out().find("m.14: the format does not carry these names: marker 1 'inlet'"),
+            std::string::npos)
+      << out();
+  EXPECT_NE(contents_of(out_file("m.14")).find("open boundary 1, marker 3"), std::string::npos);
+  EXPECT_EQ(run({"convert", out_file("m.npz"), out_file("m.vtu"), "--names", "marker=2:inlet"}), 2);
+  EXPECT_NE(err().find("marker 2 is named 'inlet', as 1 is"), std::string::npos) << err();
+  EXPECT_EQ(run({"convert", out_file("m.npz"), out_file("m.vtu"), "--names", "marker=two:inlet"}),
+            2);
+}
+
 TEST_F(CommandLine, ConvertsDomainsAndWhatAMeshIsOf) {
   folder_.write("d.geojson", R"({"type": "Polygon", "coordinates": [
       [[0, 0], [9, 0], [9, 9], [0, 9], [0, 0]], [[3, 3], [6, 3], [6, 6], [3, 6], [3, 3]]]})");
@@ -320,11 +441,13 @@ TEST_F(CommandLine, ConvertsDomainsAndWhatAMeshIsOf) {
 
 TEST_F(CommandLine, ConvertRefusesWhatMakesNoSense) {
   EXPECT_EQ(run({"convert", folder_ / "in.poly", out_file("m.vtu")}), 2);
-  EXPECT_NE(err().find("is a domain, which becomes a mesh by `weft mesh "), std::string::npos);
+  EXPECT_NE(err().find("is a domain; to mesh it: `weft mesh "), std::string::npos);
   EXPECT_EQ(run({"convert", "m.stl", out_file("m.vtu")}), 2);
   EXPECT_EQ(run({"convert", "m.vtu", out_file("m.stp")}), 2);
   EXPECT_EQ(run({"convert", folder_ / "in.poly", folder_ / "in.poly"}), 2);
   EXPECT_EQ(run({"convert", folder_ / "in.poly", out_file("m.poly"), "--order", "2"}), 2);
+  EXPECT_EQ(run({"convert", folder_ / "in.poly", out_file("m.poly"), "--names", "marker=1:a"}), 2);
+  EXPECT_NE(err().find("--names, --order"), std::string::npos) << err();
   EXPECT_EQ(run({"convert", folder_ / "none.vtu", out_file("m.msh")}), 4);
   EXPECT_EQ(left_in("out"), Words{});
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the commands on jobs draw on a terminal, and what they leave of it.
+// What the commands on jobs draw on a terminal, and in what state they leave it.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>

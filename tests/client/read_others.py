@@ -8,10 +8,13 @@ The domain: a plate of 12 x 12 with a hole of 4 x 4 in the middle and, beside it
 .poly file that comes out is judged by shapely: the faces between its segments, less those with a
 seed of a hole, are the domain.
 
-Needs Debian's python3-gmsh, python3-numpy, python3-pyshp and python3-shapely.
+Rasters become values at the vertices of a mesh.
+
+Needs Debian's python3-gdal, python3-gmsh, python3-numpy, python3-pyshp and python3-shapely.
 """
 
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -21,7 +24,8 @@ import numpy
 import shapefile
 import shapely
 import shapely.wkt
-from shapely.geometry import LineString, MultiPolygon, Point, Polygon
+from osgeo import gdal, ogr
+from shapely.geometry import LineString, MultiLineString, MultiPolygon, Point, Polygon
 from shapely.ops import polygonize, unary_union
 
 import format_table
@@ -48,17 +52,17 @@ def read_poly(path):
     return sections
 
 
-def check(path, markers=None, regions=None):
+def check(path, markers=None, regions=None, area=AREA, digits=9):
     points, segments, holes, seeds = read_poly(path)
     lines = [LineString([points[int(a) - 1], points[int(b) - 1]]) for a, b, _ in segments]
     faces = list(polygonize(unary_union(lines)))
     filled = [f for f in faces if not any(f.contains(Point(h)) for h in holes)]
-    equal("area", round(sum(f.area for f in filled), 9), AREA)
+    equal("area", round(sum(f.area for f in filled), digits), area)
     if markers is not None:
         found = {int(m) for _, _, m in segments}
         equal("markers", found, markers)
     if regions is not None:
-        found = {int(r): round(sum(f.area for f in filled if f.contains(Point(x, y))), 9)
+        found = {int(r): round(sum(f.area for f in filled if f.contains(Point(x, y))), digits)
                  for x, y, r, _ in seeds}
         equal("areas of regions", found, regions)
 
@@ -87,7 +91,7 @@ def write_csv(path):
 
 def gmsh_model(triangles, version, binary=0):
     """Physical curves 5, around the plate, and 6, around the triangle; the hole has none if the
-    triangles tell of it. Physical surfaces 7 and 8."""
+    triangles tell of it. Physical surfaces 7 and 8. The plate's are "outer wall" and "plate"."""
     def write(path):
         gmsh.initialize(["gmsh", "-v", "2"])
         gmsh.option.setNumber("Mesh.MshFileVersion", version)
@@ -104,9 +108,11 @@ def gmsh_model(triangles, version, binary=0):
         geo.synchronize()
         gmsh.model.addPhysicalGroup(1, outer, 5)
         gmsh.model.addPhysicalGroup(1, beside, 6)
+        gmsh.model.setPhysicalName(1, 5, "outer wall")
         if triangles:
             for tag, surface in zip((7, 8), surfaces):
                 gmsh.model.addPhysicalGroup(2, [surface], tag)
+            gmsh.model.setPhysicalName(2, 7, "plate")
         gmsh.model.mesh.generate(2 if triangles else 1)
         gmsh.write(path)
         gmsh.finalize()
@@ -114,16 +120,45 @@ def gmsh_model(triangles, version, binary=0):
 
 
 GMSH = f"Gmsh {gmsh.__version__}"
+GDAL = f"GDAL {gdal.__version__}"
 REGIONS = {7: PLATE.area, 8: 8.0}
+OF_FIELDS = {"markers": {3, 4}, "regions": REGIONS}
+DRAWN = {"markers": {0}, "area": AREA + 16}  # the hole is a face like the others
+def ogr_file(driver, options=(), lines=False):
+    """Polygons with attributes; or, of formats that are drawings, their rings."""
+    def write(path):
+        file = ogr.GetDriverByName(driver).CreateDataSource(path, options=list(options))
+        made = file.CreateLayer("d", geom_type=ogr.wkbMultiLineString if lines else ogr.wkbPolygon)
+        if not lines:
+            for field in ("marker", "region"):
+                made.CreateField(ogr.FieldDefn(field, ogr.OFTInteger))
+        for shape, marker, region in ((PLATE, 3, 7), (Polygon(BESIDE), 4, 8)):
+            for part in MultiLineString([shape.exterior, *shape.interiors]).geoms if lines else (shape,):
+                feature = ogr.Feature(made.GetLayerDefn())
+                if not lines:
+                    feature["marker"], feature["region"] = marker, region
+                feature.SetGeometry(ogr.CreateGeometryFromWkt(part.wkt))
+                made.CreateFeature(feature)
+    return write
+
+
 CASES = [  # file, kind, writer, what writes, what is expected
     ("d.wkt", "", f"shapely {shapely.__version__}", write_wkt, {}),
-    ("d.shp", "", f"pyshp {shapefile.__version__}", write_shapefile,
-     {"markers": {3, 4}, "regions": REGIONS}),
+    ("d.shp", "", f"pyshp {shapefile.__version__}", write_shapefile, OF_FIELDS),
     ("d.csv", "", f"numpy {numpy.__version__}", write_csv, {"markers": {10, 20, 30}}),
     ("d41.msh", " 4.1, text", GMSH, gmsh_model(True, 4.1), {"markers": {0, 5, 6}, "regions": REGIONS}),
     ("d41b.msh", " 4.1, binary", GMSH, gmsh_model(True, 4.1, 1), {"markers": {0, 5, 6}, "regions": REGIONS}),
     ("d22.msh", " 2.2, text", GMSH, gmsh_model(True, 2.2), {"markers": {0, 5, 6}, "regions": REGIONS}),
     ("d22b.msh", " 2.2, binary", GMSH, gmsh_model(True, 2.2, 1), {"markers": {0, 5, 6}, "regions": REGIONS}),
+    ("d.gpkg", "", GDAL, ogr_file("GPKG"), OF_FIELDS),
+    ("d.fgb", "", GDAL, ogr_file("FlatGeobuf"), OF_FIELDS),
+    ("d.kml", "", GDAL, ogr_file("LIBKML"), OF_FIELDS),
+    ("d.gml", "", GDAL, ogr_file("GML"), OF_FIELDS),
+    ("d.dxf", "", GDAL, ogr_file("DXF", lines=True), DRAWN),
+    ("d.dgn", "", GDAL, ogr_file("DGN", lines=True), DRAWN),
+    ("d.tab", "", GDAL, ogr_file("MapInfo File"), {**OF_FIELDS, "digits": 2}),  # in integers
+    ("d.mif", "", GDAL, ogr_file("MapInfo File", ["FORMAT=MIF"]), OF_FIELDS),
+    ("d.gmt", "", GDAL, ogr_file("OGR_GMT"), OF_FIELDS),
 ]
 
 
@@ -139,8 +174,35 @@ def lines_only(weft, folder):
     equal("markers", {int(m) for _, _, m in segments}, {5, 6})
 
 
+RASTERS = [(".asc", "AAIGrid"), (".tif", "GTiff"), (".nc", "netCDF"), (".img", "HFA"), (".bil", "EHdr"),
+           (".vrt", "VRT")]
+
+
+def write_raster(path, driver):
+    """The plane x + 2 y at cells of 0.5, centred from (0, 0) to (4, 3)."""
+    x, y = numpy.meshgrid(numpy.arange(9) / 2, numpy.arange(6, -1, -1) / 2)
+    raster = gdal.GetDriverByName("MEM").Create("", 9, 7, 1, gdal.GDT_Float32)
+    raster.SetGeoTransform((-0.25, 0.5, 0, 3.25, 0, -0.5))
+    raster.GetRasterBand(1).WriteArray(x + 2 * y)
+    if driver == "VRT":  # it has no values of its own
+        raster = gdal.GetDriverByName("GTiff").CreateCopy(path + ".tif", raster)
+        raster.FlushCache()
+    gdal.GetDriverByName(driver).CreateCopy(path, raster).FlushCache()
+
+
+def check_raster(weft, folder, path):
+    """A plane is its own bilinear interpolation."""
+    points = numpy.array([[0, 0], [4, 0], [4, 3], [0.3, 2.7], [1.1, 1.3]])
+    mesh, out = (os.path.join(folder, name) for name in ("three.npz", "values.npz"))
+    numpy.savez(mesh, points=points, triangles=numpy.array([[0, 1, 2], [0, 2, 3], [0, 4, 3]], "u4"))
+    subprocess.run([weft, "convert", mesh, out, "--quiet", "--nodal", "h=" + path], check=True)
+    errors = numpy.load(out)["h"] - points @ [1, 2]
+    equal("values of the raster", float(abs(errors).max()) < 1e-6, True)
+
+
 def main():
-    weft, docs = sys.argv[1:]
+    weft, docs = os.path.abspath(sys.argv[1]), sys.argv[2]
+    gdal.UseExceptions()
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         for name, kind, writer, write, expected in CASES:
@@ -152,7 +214,18 @@ def main():
             print(row, flush=True)
             rows.append(row)
             check(poly, **expected)
+            if writer == GMSH:
+                told = subprocess.run([weft, "info", path], check=True, capture_output=True,
+                                      text=True).stdout
+                equal("names", re.findall(r"'([^']*)'", told), ["plate", "outer wall"])
         lines_only(weft, folder)
+        for extension, driver in RASTERS:
+            path = os.path.join(folder, "raster" + extension)
+            write_raster(path, driver)
+            row = f"| `{extension}`, a raster | {GDAL} |"
+            print(row, flush=True)
+            rows.append(row)
+            check_raster(weft, folder, path)
     format_table.check(docs, "| read by weft | written by |", rows)
 
 

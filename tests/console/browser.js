@@ -9,7 +9,7 @@ import { PNG } from "pngjs";
 import puppeteer from "puppeteer-core";
 import { atEnd, until } from "./weftd.js";
 
-const patience = 60_000; // ms, on a loaded machine
+const patience = 180_000; // ms: software draws a mesh in up to 60 s on a loaded machine
 const size = { width: 1280, height: 720, deviceScaleFactor: 1 };
 
 const chromium = [process.env.CHROMIUM, "/usr/bin/chromium"].find((path) => path && existsSync(path));
@@ -27,6 +27,7 @@ export function openBrowser() {
       "--use-angle=swiftshader",
       "--enable-unsafe-swiftshader",
       "--disable-dev-shm-usage",
+      "--disable-gpu-watchdog", // it ends a software renderer that a loaded machine keeps waiting
       "--font-render-hinting=none",
       "--disable-lcd-text",
       "--force-color-profile=srgb",
@@ -112,8 +113,9 @@ export async function colourAt(page, x, y, side = 1) {
   return colour;
 }
 
-// The middle of a view, as bytes; around that there may be buttons and a legend.
+// The middle of a view once it is drawn, as bytes; around that there may be buttons and a legend.
 export async function middleOf(page, view) {
+  await view.waitForSelector('canvas[data-drawn="whole"]');
   const { x, y, width, height } = await view.boundingBox();
   return pixelsOf(page, { x: x + width / 4, y: y + height / 4, width: width / 2, height: height / 2 });
 }

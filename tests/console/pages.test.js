@@ -169,11 +169,14 @@ async function downloaded(t, page, digest, format) {
   return join(folder, name);
 }
 
+const names = ['marker=2:the "bow" & <hole>', "marker=3:marker 7", "region=0:brass, old"];
+
 for (const format of ["vtu", "msh", "npz", "obj", "off", "ply"])
   test(`a mesh is downloaded as .${format}, as weft fetch writes it`, async (t) => {
     const server = await serverWithJobs(t);
-    const { id, summary } = await ended(server, key, ...keySize);
+    const { id, summary } = await ended(server, key, ...keySize, ...names.flatMap((name) => ["--names", name]));
     const page = await openPage(t, browser, `${server.url}/mesh/${summary.digest}`);
+    await textMatches(page, "aside", /Request[^]*Copy as/); // which has the names
     const file = await downloaded(t, page, summary.digest, format);
     const fetched = join(await folderFor(t), `fetched.${format}`);
     await server.weft("fetch", id, "-o", fetched);
@@ -227,7 +230,7 @@ test("a token is asked for, refused if it is wrong, and kept over a reload", asy
     await page.type("#token", token);
     await page.keyboard.press("Enter");
   };
-  await textMatches(page, ".token", /The server wants a token/);
+  await textMatches(page, ".token", /The server needs a token/);
   await enter("wrong");
   await textMatches(page, ".token", /Token refused/);
   await enter("4f8a1c9d2b7e6f30");
@@ -236,6 +239,31 @@ test("a token is asked for, refused if it is wrong, and kept over a reload", asy
   await page.goto(`${server.url}/server`);
   await page.waitForSelector(".tiles");
   assert.equal(await page.$("#token"), null);
+});
+
+test("a mesh's link is for those with a token of its client's name, and for nobody else", async (t) => {
+  const tokens = join(await folderFor(t), "tokens");
+  const of = { first: "ada-4f8a1c9d2b7e6f30", second: "ada-77c01be9a3d45f21", other: "bob-0a5be81f66d3c942" };
+  await writeFile(tokens, `ada ${of.first}\nada ${of.second}\nbob ${of.other}\n`, { mode: 0o600 });
+  const server = await serverWithJobs(t, ["--tokens", tokens]);
+  const folder = await folderFor(t);
+  const token = join(folder, "token");
+  await writeFile(token, of.first, { mode: 0o600 });
+  const asAda = (...args) => server.weft(...args, "--token-file", token);
+  const id = await asAda("submit", key, ...keySize);
+  await asAda("watch", id);
+  const { summary } = JSON.parse(await asAda("get", id, "--json"));
+  const open = (path, token) => openPage(t, browser, server.url + path, { token });
+
+  const colleague = await open(`/mesh/${summary.digest}`, of.second);
+  await until("the mesh is drawn", () => areDrawn(colleague, 1));
+  const stranger = await open(`/mesh/${summary.digest}`, of.other);
+  await textMatches(stranger, "main", /No job of yours keeps this mesh/);
+  const list = await open("/jobs", of.second);
+  await textMatches(list, "thead", /Triangles\s+Client\s+Attempts/);
+  await textMatches(list, "tbody tr", new RegExp(`${id}[^]*\\sada\\s+1\\s`));
+  await textMatches(await open(`/job/${id}`, of.second), "dl", /Client\s+ada/);
+  await textMatches(await open("/jobs", of.other), "main", /No jobs yet/);
 });
 
 test("without --data the pages of jobs say so", async (t) => {

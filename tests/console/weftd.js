@@ -38,7 +38,7 @@ export async function folderFor(test) {
 }
 
 // Throws with the last that `look` returned if it is not true in time.
-export async function until(what, look, seconds = 60) {
+export async function until(what, look, seconds = 180) {
   const end = Date.now() + 1000 * seconds;
   for (;;) {
     const seen = await look();

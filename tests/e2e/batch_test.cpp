@@ -92,6 +92,7 @@ TEST_F(Pipeline, EndsAsTheCallThatFailedAndReportsTheRest) {
   const Outcome outcome = mesh();
   EXPECT_EQ(outcome.exit_code, 67) << outcome.err;  // INVALID_ARGUMENT
   EXPECT_NE(outcome.err.find("key: "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("\n  size: the size"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.out.find("passed  pipe"), std::string::npos) << outcome.out;
   EXPECT_NE(report("weft-junit.xml").find("errors=\"1\""), std::string::npos);
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import pathlib
+import re
 import subprocess
 import xml.etree.ElementTree as ElementTree
 
@@ -109,6 +110,24 @@ def test_a_dense_mesh_is_colour_and_not_grey(tmp_path: pathlib.Path) -> None:
     assert vivid > 0.3 * 180 * 90
 
 
+def test_areas_over_their_bounds(key: pathlib.Path) -> None:
+    for name, bound, most in (("loose.pdf", ("--size", "1e6"), "1"),
+                              ("tight.pdf", ("--size", "1e-6"), "2 and up"),
+                              ("edge.pdf", ("--edge", "1e3", "--gradation", "0.5"), "1")):
+        text = output_of("pdftotext", "-layout", drawn(key, name, *bound), "-")
+        assert "area over its bound" in text
+        assert re.search(rf"0\s.*\s{most}\n", text), text
+    by_bound, by_size = (PIL.Image.open(drawn(key, "b.png", *flags)).convert("RGB").tobytes()
+                         for flags in (("--size", "abs(y-46)+1"), ("--color", "size")))
+    assert by_bound != by_size
+
+
+def test_only_weft_draw_knows_bounds(tmp_path: pathlib.Path) -> None:
+    done = weft("mesh", MODELS / "key.poly", "--draw", tmp_path / "m.png", "--color", "bound")
+    assert done.returncode == 2
+    assert "draw the mesh by `weft draw MESH --color bound --size EXPR`" in done.stderr
+
+
 def test_degrees_are_as_long_as_on_the_ground(tmp_path: pathlib.Path) -> None:
     file = tmp_path / "north.off"
     file.write_text("OFF\n4 2 0\n10 59.5 0\n11 59.5 0\n11 60.5 0\n10 60.5 0\n3 0 1 2\n3 0 2 3\n")
@@ -133,8 +152,13 @@ def test_degrees_are_as_long_as_on_the_ground(tmp_path: pathlib.Path) -> None:
     (("-o", "m.png", "--draw-size", "100000"),
      "--draw-size: '100000' is not in the range 200 to 8192", 2),
     (("-o", "m.png", "--worst", "0"), "--worst: '0' is not in the range 1 to 1000", 2),
-    (("-o", "m.png", "--color", "pink"), "--color: 'pink' is not angle, size, region, none or auto",
+    (("-o", "m.png", "--color", "pink"), "--color: 'pink' is not angle, size, region, bound, none "
+     "or auto",
      2),
+    (("-o", "m.png", "--color", "bound"), "--color bound needs --size or --edge", 2),
+    (("-o", "m.png", "--color", "size", "--size", "1"), "--size and --edge are for --color bound", 2),
+    (("-o", "m.png", "--size", "x +"), "the size: ", 2),
+    (("-o", "m.png", "--size", "x", "--edge", "1"), "--size and --edge exclude each other", 2),
     (("-o", "square.off"), "is not that of a drawing", 2),
 ])
 def test_errors_are_named_and_leave_nothing(square: pathlib.Path, words: tuple[str, ...],

@@ -15,6 +15,7 @@
 #include "client/formats/domain_formats.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
+#include "tests/support/connected.h"
 
 namespace weft::e2e {
 namespace {
@@ -48,7 +49,8 @@ int few_or_many(int few, int many) {
 std::shared_ptr<grpc::Channel> connect(const std::string& address) {
   grpc::ChannelArguments arguments;
   arguments.SetInt("grpc.use_local_subchannel_pool", 1);
-  return grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), arguments);
+  return connected(
+      grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), arguments));
 }
 
 v1::GenerateMeshRequest repeated_request(int number) {

@@ -14,6 +14,8 @@
 #include <thread>
 #include <vector>
 
+#include "client/call/mesh_call.h"
+#include "client/formats/domain_formats.h"
 #include "tests/e2e/fleet.h"
 #include "tests/e2e/programs.h"
 #include "tests/support/postgres.h"
@@ -42,7 +44,7 @@ class SqliteFile {
   SqliteFile(const SqliteFile&) = delete;
   SqliteFile& operator=(const SqliteFile&) = delete;
 
-  // What a statement answers; 0 if that is nothing.
+  // The result of a statement; 0 if there is none.
   std::int64_t number(const char* sql) const {
     sqlite3_stmt* statement = nullptr;
     EXPECT_EQ(sqlite3_prepare_v2(connection_, sql, -1, &statement, nullptr), SQLITE_OK) << sql;
@@ -57,12 +59,12 @@ class SqliteFile {
   sqlite3* connection_ = nullptr;
 };
 
-// Short, so that a test need not wait for long; as many attempts as there may be kills.
+// Short, so that a test need not wait for long. There are as many attempts as there may be kills.
 std::vector<std::string> with_store(const std::string& flag, const std::string& where) {
   return {flag, where, "--lease", "1", "--max-attempts", "100"};
 }
 
-// The moment at which the server is struck: anywhere in the life of the jobs at hand.
+// The moment at which the server is struck: anywhere in the life of the current jobs.
 void let_work(std::mt19937_64& random) {
   std::this_thread::sleep_for(milliseconds(random() % 120));
 }
@@ -172,7 +174,7 @@ TEST(JobCrash, EitherReplicaMayDieAtAnyTimeUntilAQueueIsDone) {
   expect_all_well(jobs.settle(replicas[1]->address(), reference), count);
 }
 
-// The database holds the last transaction back where all of it is done but the commit.
+// The database holds the last transaction back when all of it is done except the commit.
 TEST(JobCrash, AReplicaKilledBetweenTheLastChunkAndTheCommitLosesNoJob) {
   PostgresServer postgres;
   const std::string uri = postgres.new_database();
@@ -199,6 +201,36 @@ TEST(JobCrash, AReplicaKilledBetweenTheLastChunkAndTheCommitLosesNoJob) {
   EXPECT_GE(tally.attempts, 2 * kStrikes) << "each was struck in its first attempt";
 }
 
+// Of 1 M triangles, or of 94 M.
+v1::GenerateMeshRequest large_request(int /*number*/) {
+  static const auto domain = client::read_domain(model("cylinder.poly")).value();
+  const std::string triangles = std::to_string(few_or_many(1'600'000, 150'000'000));
+  client::RequestOptions options;
+  options.size = "((x>=0 && abs(y)<5) || (x<0 && x^2+y^2<25) ? 1200 : 1e4) / " + triangles;
+  return client::make_request(domain, options);
+}
+
+TEST(JobCrash, AReplicaKilledInTheMiddleOfALargeMeshIsReplacedByAnother) {
+  PostgresServer postgres;
+  const std::string uri = postgres.new_database();
+  const auto arguments = with_store("--store", uri);
+  Reference reference;
+  const v1::Summary expected = reference.summary(large_request(0));
+  Jobs jobs(large_request);
+  PostgresSession look(uri);
+  Server killed(arguments);
+  ASSERT_TRUE(jobs.submit(killed.address()));
+  const auto chunks = [&] { return std::stoul(look.run("SELECT count(*) FROM weft_chunk")); };
+  while (chunks() < expected.chunks() / 2) std::this_thread::sleep_for(milliseconds(2));
+  killed.kill();
+  const std::size_t stored = chunks();
+  Server other(arguments);
+  expect_all_well(jobs.settle(other.address(), reference), 1);
+  std::printf("%lu triangles: killed at chunk %zu of %u; the other took %.0f MiB\n",
+              expected.triangles(), stored, expected.chunks(),
+              static_cast<double>(other.peak_bytes()) / (1 << 20));
+}
+
 // The test holds the file's lock for writing from the moment when the last chunk is there.
 TEST(JobCrash, AServerKilledBetweenTheLastChunkAndTheCommitLosesNoJob) {
   const Folder folder;
@@ -216,7 +248,7 @@ TEST(JobCrash, AServerKilledBetweenTheLastChunkAndTheCommitLosesNoJob) {
     const v1::GenerateMeshRequest request = mixed_request(submitted);
     const std::int64_t all = file.number(kChunks) + reference.summary(request).chunks();
     ASSERT_TRUE(jobs.submit(server.address()));
-    // A mesh that shares a chunk with another is over before all of them are new.
+    // A mesh that shares a chunk with another one ends before all of them are new.
     while (file.number(kChunks) < all && file.number(kLastTask) != 0) std::this_thread::yield();
     file.number("BEGIN IMMEDIATE");
     struck += file.number(kLastTask) != 0;

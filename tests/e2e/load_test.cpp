@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A crowd at one server: each client gets the right mesh, or its own cancellation or deadline, or
-// is told that the server is full and when to come again; and nothing of them stays behind.
+// A crowd of clients at one server: each gets the right mesh, or its own cancellation or deadline,
+// or hears that the server is full and when to come again. Nothing of them stays behind.
 #include <grpcpp/client_context.h>
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ constexpr int kClients = 24;
 constexpr int kClients = 200;
 #endif
 
-// How calls ended. All but `wrong` are as they should be.
+// How calls ended. All kinds are allowed except `wrong`.
 struct Tally {
   std::atomic<int> meshes{0};
   std::atomic<int> cancelled{0};
@@ -202,7 +202,7 @@ TEST(Load, OfManyClientsAtOnceGivesEachItsDueAndLeavesNothingBehind) {
   EXPECT_EQ(tally.meshes + tally.cancelled + tally.late + tally.refused, kClients);
   EXPECT_GT(tally.meshes, 0);
 
-  // Tasks go on for jobs that nobody cancelled; then all is given back.
+  // The tasks of jobs that nobody cancelled go on; in the end everything is given back.
   for (const char* queue : {"calls", "jobs"})
     for (const char* figure : {"weft_queue_length", "weft_running_jobs", "weft_admission_bytes"})
       EXPECT_TRUE(server.shows(std::string(figure) + "{queue=\"" + queue + "\"}", 0))

@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import os
 import pathlib
+import re
 import subprocess
 
 import numpy as np
@@ -155,6 +156,17 @@ def test_a_named_projection_is_used_and_its_metres_are_written(tmp_path: pathlib
     expected = np.array(utm.transform(*zip(*ring))).T
     for point in expected:
         assert np.hypot(*(mesh.points - point).T).min() < 1e-6
+
+
+def test_a_place_in_an_error_is_on_the_globe_too(tmp_path: pathlib.Path):
+    ring = [(-74.0, 40.0), (-73.0, 40.0), (-73.0, 41.0)]
+    done = subprocess.run([WEFT, "mesh", ring_file(tmp_path, ring), "-o", tmp_path / "mesh.vtu", "--lonlat",
+                           "--edge", "d/10", "--field", "d=distance"], capture_output=True, text=True)
+    assert done.returncode == 67
+    assert "\n  --edge: the size falls to 0 on the segment through (" in done.stderr
+    lon, lat = map(float, re.search(r"this one is at longitude (\S+), latitude (\S+)\n", done.stderr).groups())
+    to_border = min(abs(lat - 40), abs(lon + 73), abs((lat - 40) - (lon + 74)))
+    assert -74 < lon <= -73 and 40 <= lat < 41 and to_border < 1e-3, done.stderr
 
 
 def test_the_mesh_in_metres_is_checked(tmp_path: pathlib.Path):

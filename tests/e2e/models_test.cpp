@@ -129,6 +129,19 @@ TEST(Formats, EveryMeshThatIsReadHoldsTheSameBounds) {
   }
 }
 
+TEST(Check, SaysThatItJudgesNoWidths) {
+  const Server server;
+  const Folder folder;
+  const Outcome meshed = run_weft({"mesh", model("key.poly"), "-o", folder / "key.vtu", "--quiet",
+                                   "--cells-across", "2", "--server", server.address()});
+  ASSERT_EQ(meshed.exit_code, 0) << meshed.err;
+  Arguments check{"check", folder / "key.vtu", "--domain", model("key.poly")};
+  EXPECT_EQ(run_weft(check).err, "");
+  const Outcome checked = run_weft(check + Arguments{"--cells-across", "2"});
+  EXPECT_EQ(checked.exit_code, 0) << checked.out;
+  EXPECT_NE(checked.err.find("--cells-across is not judged"), std::string::npos) << checked.err;
+}
+
 TEST(Formats, AMeshIsMeshedAnewAndCoversTheSame) {
   const Server server;
   const Folder folder;

@@ -65,11 +65,14 @@ pid_t start_weft(const std::vector<std::string>& arguments) {
 }
 
 Outcome run_weft(const std::vector<std::string>& arguments) {
+  return run_program(WEFT_BINARY, arguments);
+}
+
+Outcome run_program(const std::string& program, const std::vector<std::string>& arguments) {
   const Folder folder;
   Outcome outcome;
   rusage usage{};
-  outcome.exit_code =
-      wait_for(start(WEFT_BINARY, arguments, folder / "out", folder / "err"), &usage);
+  outcome.exit_code = wait_for(start(program, arguments, folder / "out", folder / "err"), &usage);
   outcome.peak_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
   outcome.out = contents(folder / "out");
   outcome.err = contents(folder / "err");

@@ -26,6 +26,8 @@ struct Outcome {
 
 // Runs build/.../weft with these arguments and waits.
 Outcome run_weft(const std::vector<std::string>& arguments);
+// Any program, by its path.
+Outcome run_program(const std::string& program, const std::vector<std::string>& arguments);
 
 // A weftd on a unix socket; SIGTERM at the end, after which it must exit with 0.
 class Server {

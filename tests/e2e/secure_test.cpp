@@ -111,7 +111,7 @@ TEST_F(Secure, EndsWith78WhereTheTwoDoNotTrustEachOther) {
       weft({"health"}, {"--tls-ca", other_file, "--tls-cert", cert_file_, "--tls-key", key_file_});
   EXPECT_EQ(outcome.exit_code, kUnavailable);
   EXPECT_TRUE(outcome.err.starts_with("weft: the server " + address_)) << outcome.err;
-  EXPECT_NE(outcome.err.find("--tls-ca FILE names who has"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("--tls-ca FILE adds the CA"), std::string::npos) << outcome.err;
 }
 
 TEST_F(Secure, WantsTheNameThatItIsTold) {

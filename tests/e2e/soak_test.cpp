@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a server holds on to: nothing of the jobs that are over, little of those who read slowly.
+// What a server holds on to: nothing of jobs that are over, and little of clients that read slowly.
 #include <grpcpp/client_context.h>
 #include <gtest/gtest.h>
 
@@ -145,7 +145,7 @@ struct SlowReader {
   }
 };
 
-// One message each, again and again.
+// One message after the other.
 template <class Message>
 void read_slowly(std::vector<SlowReader<Message>>& readers, milliseconds pause) {
   for (std::size_t reading = readers.size(); reading > 0;) {
@@ -160,7 +160,7 @@ void read_slowly(std::vector<SlowReader<Message>>& readers, milliseconds pause) 
   for (const SlowReader<Message>& slow : readers) EXPECT_EQ(sha256(slow.digests), slow.digest);
 }
 
-// How much it has grown to at most, told.
+// Returns how much the memory has grown at most, and prints it.
 std::uint64_t growth(std::uint64_t before, const PeakMemory& peak, int readers,
                      std::uint64_t mesh_bytes) {
   std::printf("%d readers of %.1f MiB each: %.1f MiB before, %.1f MiB at most\n", readers,
@@ -213,7 +213,7 @@ v1::GenerateMeshRequest cylinder_of(const std::string& size) {
 }
 
 // The engine holds the mesh that it makes, whoever reads it; no more of it waits to be read than
-// for FetchMesh.
+// with FetchMesh.
 TEST(Soak, SlowReadersOfMeshesInTheMakingHoldLittleBesidesTheEngineAndHoldNobodyBack) {
   // While it reads nothing, a client of gRPC looks at one connection every 5 s: of 50, most would
   // not answer the server's pings in time.

@@ -107,7 +107,7 @@ void expect_the_same_in_pieces(const Server& server, Open open) {
   EXPECT_GE(torn.torn(), whole.chunks.size() - 1) << "the wire did not tear in time";
 }
 
-// Whether the work is repeated, or the mesh still in the server's memory.
+// Whether the work is repeated, or the mesh is still in the server's memory.
 class TornAfterEachChunk : public testing::TestWithParam<bool> {};
 
 TEST_P(TornAfterEachChunk, GenerateMeshIsResumedByteForByte) {

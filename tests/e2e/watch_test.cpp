@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a real weftd shows to those who watch it, and whether that is what the dashboard and the
-// alerts in deploy/ look at.
+// What a real weftd shows to those who watch it, and whether the dashboard and the alerts in
+// deploy/ use it.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

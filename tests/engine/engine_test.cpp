@@ -31,7 +31,7 @@ Error error_of(const MeshRequest& request, const Budget& budget = {}) {
   ExecutionContext context(budget);
   const auto summary = generate_mesh(request, mesh, context);
   EXPECT_FALSE(summary);
-  // What refinement runs into may show when chunks have left already.
+  // What refinement meets may show only after chunks have left.
   if (!summary && summary.error().code != ErrorCode::kBudgetExceeded) {
     EXPECT_EQ(mesh.chunks, 0u);
   }
@@ -77,7 +77,7 @@ TEST(Size, ThatIsAConstantExpressionBelowZeroIsRefused) {
   EXPECT_NE(error.message.find("-1"), std::string::npos) << error.message;
 }
 
-// What the run says is what was said before it.
+// The run reports what was reported before it.
 void expect_same(const std::optional<Error>& judged, const MeshRequest& request) {
   ASSERT_TRUE(judged);
   const Error met = error_of(request);
@@ -193,10 +193,19 @@ TEST(SizeAt, BelowTwiceTheShortestEdgeIsRefused) {
 }
 
 TEST(SizeAt, ThatAsksForTooManyEdgesIsRefusedBeforeTheWork) {
-  const Error error = error_of(with_sizes_at({{2, 1e-6}}), {.triangle_limit = 1'000'000});
+  const Error error = error_of(with_sizes_at({{2, 1e-6}}), {.triangle_limit = 6'000'000});
   EXPECT_EQ(error.code, ErrorCode::kLimitExceeded);
-  EXPECT_EQ(error.field, "size");
-  EXPECT_NE(error.message.find("at least"), std::string::npos) << error.message;
+  EXPECT_EQ(error.field, "size.at");
+  EXPECT_NE(error.message.find("at least 6324"), std::string::npos) << error.message;
+}
+
+TEST(SizeAt, WhoseEdgesTakeMoreThanTheBudgetIsRefusedBeforeTheWork) {
+  const Error error = error_of(with_sizes_at({{2, 1e-6}}), {.max_bytes = 300'000'000});
+  EXPECT_EQ(error.code, ErrorCode::kBudgetExceeded);
+  EXPECT_EQ(error.field, "size.at");
+  EXPECT_NE(error.message.find("6324556 edges, which take 328876"), std::string::npos)
+      << error.message;
+  EXPECT_NE(error.message.find("300000000"), std::string::npos) << error.message;
 }
 
 TEST(Size, ThatDividesByZeroNamesThePoint) {
@@ -217,11 +226,14 @@ TEST(Size, ThatIsInfiniteInAPartOfTheDomainNamesThePoint) {
   const Error error = error_of(request);
   EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
   EXPECT_NE(error.message.find("is inf"), std::string::npos) << error.message;
+  ASSERT_TRUE(error.at);
+  EXPECT_GT(error.at->x, 5);
 }
 
 TEST(Size, ThatNeedsATrillionTrianglesIsRefusedByEstimate) {
   const Error error = error_of({.pslg = square(), .size = 1e-12}, {.triangle_limit = 1'000'000});
   EXPECT_EQ(error.code, ErrorCode::kLimitExceeded);
+  EXPECT_EQ(error.field, "size");
   EXPECT_NE(error.message.find("1000000"), std::string::npos) << error.message;
   const Error graded =
       error_of({.pslg = square(), .size = "1e-12*(1+x)"}, {.triangle_limit = 1'000'000});
@@ -232,6 +244,35 @@ TEST(Size, OfARegionThatNeedsATrillionTrianglesIsRefusedByEstimate) {
   MeshRequest request{.pslg = square()};
   request.pslg.regions.push_back({{0.5, 0.5}, 1, 1e-12});
   EXPECT_EQ(error_of(request, {.triangle_limit = 1'000'000}).code, ErrorCode::kLimitExceeded);
+}
+
+// Edges of a share of the distance to the border.
+MeshRequest request_by_distance(const std::string& size) {
+  MeshRequest request{.pslg = square()};
+  request.size = size;
+  request.size.fields.push_back({"d", DistanceSpec{}});
+  return request;
+}
+
+TEST(Size, ThatVanishesOnASegmentIsRefused) {
+  const Error error = error_of(request_by_distance("0.4*d^2"), {.triangle_limit = 10'000});
+  EXPECT_EQ(error.code, ErrorCode::kBadSizeValue);
+  EXPECT_EQ(error.field, "size");
+  EXPECT_NE(error.message.find("on the segment through (0.5, 0)"), std::string::npos)
+      << error.message;
+  EXPECT_EQ(error.at, (Point{0.5, 0}));
+}
+
+TEST(Size, ThatVanishesOnASegmentMoreSlowlyOrWithALeastValueIsMet) {
+  for (const char* size : {"d", "d^1.2", "max(0.4*d^2, 1e-4)", "max(d - 0.1, 1e-3)"})
+    EXPECT_TRUE(mesh_of(request_by_distance(size))) << size;
+}
+
+TEST(Size, ThatVanishesOnASegmentIsMetDownToTheLeastEdgeOrUpToTheMostTriangles) {
+  MeshRequest request = request_by_distance("0.4*d^2");
+  EXPECT_TRUE(mesh_of(request, {.max_triangles = 100}));
+  request.min_edge = 0.05;
+  EXPECT_TRUE(mesh_of(request));
 }
 
 TEST(Size, ThatIsNowherePositiveIsABadSizeAndNoLimit) {

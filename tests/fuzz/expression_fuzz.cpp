@@ -222,7 +222,7 @@ void judge(const std::uint8_t* data, std::size_t size) {
     must(inside, "bounds", [&] {
       return shown() + " is not in [" + print(bounds.lo) + ", " + print(bounds.hi) + "]";
     });
-    for (const std::string& name : parsed->undefined_at({points.x[i], points.y[i]}))
+    for (const std::string& name : parsed->asked_at({points.x[i], points.y[i]}).undefined)
       must(fields().is_undefined(name, {points.x[i], points.y[i]}), "undefined",
            [&] { return name + ", " + shown(); });
     if (parsed->constant()) must(same(value, *parsed->constant()), "constant", shown);

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "engine/domain/tolerance.h"
@@ -108,6 +110,33 @@ bool is_too_fine(const MeshCase& mesh_case) {
     }
   }
   return false;
+}
+
+bool is_ambiguous(const FieldMesh& mesh) {
+  // Of coordinates: a value of the nearest vertex may be 2^8 times another, and a millionth of it
+  // is seen.
+  const double rounding = 0x1p-53 * 0x1p30 * largest_coordinate(mesh.vertices);
+  for (const auto& edges_of : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = edges_of[k], to = edges_of[(k + 1) % 3];
+      const Line edge{mesh.vertices[from], mesh.vertices[to]};
+      for (const auto& corners : mesh.triangles)
+        for (const std::uint32_t v : corners)
+          if (v != from && v != to && distance(mesh.vertices[v], edge) < rounding) return true;
+    }
+  }
+  return false;
+}
+
+bool asks_for_nothing(const MeshCase& mesh_case) {
+  const SizeSpec& size = mesh_case.request.size;
+  const auto* const expression = std::get_if<std::string>(&size.value);
+  const bool measures = std::any_of(
+      size.fields.begin(), size.fields.end(),
+      [](const FieldSpec& field) { return std::holds_alternative<DistanceSpec>(field.kind); });
+  // The other expressions of mesh_case.cpp add a length, or are clamped above one.
+  return measures && expression != nullptr && expression->find(" + ") == std::string::npos &&
+         expression->find("clamp") == std::string::npos;
 }
 
 }  // namespace weft::fuzz

@@ -21,4 +21,15 @@ bool is_contested(const MeshCase& mesh_case);
 // two segments at a small angle through one vertex where a third crosses both.
 bool is_too_fine(const MeshCase& mesh_case);
 
+// Whether a vertex of a field's mesh lies on an edge that it is no end of, or nearly so: in a
+// needle, at the end of an edge that overlaps another one, beside its copy. Then rounding of a
+// point, or of its distance to two edges, decides which value the point gets where several meet,
+// and the engine and the checker round otherwise: one weighs three corners, the other two ends of
+// an edge.
+bool is_ambiguous(const FieldMesh& mesh);
+
+// Whether the size is a distance somewhere, so that it goes to 0 at what the distance is to: there
+// no triangle is small enough.
+bool asks_for_nothing(const MeshCase& mesh_case);
+
 }  // namespace weft::fuzz

@@ -30,6 +30,7 @@ void broken(std::string_view law, const std::string& evidence, const std::uint8_
   }
   static std::map<std::string, int, std::less<>> kept;  // targets run on one thread
   if (++kept[std::string(law)] > kKept) return;
+  std::filesystem::create_directories(folder);
   const std::filesystem::path file =
       std::filesystem::path(folder) / (std::string(law) + "-" + hash_of(input, size));
   std::ofstream(file, std::ios::binary)

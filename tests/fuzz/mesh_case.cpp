@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <limits>
 #include <utility>
+#include <variant>
 
 namespace weft::fuzz {
 namespace {
@@ -383,15 +384,22 @@ MeshCase decode_mesh_case(ByteSource bytes) {
   if (rarely % 8 == 6) {
     constexpr std::array<double, 4> kGradations{0.15, 0.02, 0.5, 3};
     request.size.gradation = kGradations[rarely / 8 % kGradations.size()];
+    // One in four, and not those that the corpus held before there was a choice.
+    request.size.gradation_within = rarely / 32 % 4 == 1;
   }
   if (rarely % 8 == 7 && !request.pslg.segments.empty()) {
     const std::size_t which = rarely / 8 % request.pslg.segments.size();
     const double max_edge = maker.extent() / static_cast<double>(1 + rarely / 4);
     request.size.at.push_back({request.pslg.segments[which].marker, max_edge});
     if (rarely / 128 == 1) request.size.gradation = 0.25;
+    request.size.gradation_within = rarely / 64 == 2;  // as above
   }
   made.plain = made.plain && request.pslg.snap == 0;
-  made.budget.triangle_limit = kTriangleLimit;
+  const bool has_size =
+      !std::holds_alternative<std::monostate>(request.size.value) || !request.size.at.empty();
+  const bool is_small = has_size && bounds / kAngles.size() % 8 != 1;
+  made.budget.triangle_limit = is_small ? kFewTriangles : kMostTriangles;
+  made.budget.max_bytes = is_small ? kFewBytes : kMostBytes;
   return made;
 }
 
@@ -409,11 +417,12 @@ std::string to_text(const MeshCase& mesh_case) {
   for (const SizeAt& at : request.size.at)
     text += print(" --edge-at marker=%d:%.17g", at.marker, at.max_edge);
   if (request.size.gradation > 0) text += print(" --gradation %.17g", request.size.gradation);
+  if (request.size.gradation_within) text += " --gradation-within";
   if (request.min_edge > 0) text += print(" --min-edge %.17g", request.min_edge);
   if (request.placement == Placement::kCircumcentre) text += " --placement circumcentre";
   if (request.sweeps) text += print(" --optimise %u", *request.sweeps);
   if (pslg.snap > 0) text += print(" --snap %.17g", pslg.snap);
-  if (mesh_case.budget.max_triangles < kTriangleLimit)
+  if (mesh_case.budget.max_triangles != Budget{}.max_triangles)
     text += print(" --max-triangles %llu",
                   static_cast<unsigned long long>(mesh_case.budget.max_triangles));
   text +=

@@ -23,9 +23,12 @@ struct MeshCase {
   bool plain = false;  // nothing was rounded, nothing is to be merged
 };
 
-// Triangles of a case, at most: beyond them the engine refuses or stops. About 40 ms of work with
-// sanitizers.
-inline constexpr std::uint64_t kTriangleLimit = 3000;
+// What a case may take: beyond it the engine refuses or stops. The largest take about 40 ms with
+// sanitizers, as much as a hundred others, so most cases with a size get the small budget.
+inline constexpr std::uint64_t kMostTriangles = 3000;
+inline constexpr std::uint64_t kMostBytes = 8 << 20;  // steep sizes build large trees
+inline constexpr std::uint64_t kFewTriangles = 1000;
+inline constexpr std::uint64_t kFewBytes = 2 << 20;  // less than a local width takes
 
 MeshCase decode_mesh_case(ByteSource bytes);
 

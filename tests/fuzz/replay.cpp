@@ -8,7 +8,9 @@
 // targets that are held to laws: for so many seconds, inputs that are made of those files by
 // chance.
 //
-//   engine_fuzz --seconds 3600 --seed 7 tests/fuzz/corpus/engine
+//   WEFT_FUZZ_FINDINGS=found engine_fuzz --seconds 3600 --seed 7 tests/fuzz/corpus/engine
+//
+// How often a file is taken depends on the time that it takes, so a seed does not repeat a run.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -30,7 +32,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 namespace {
 
-constexpr double kSlow = 3;  // seconds of all threads: a case is bounded to take a fraction of that
+// Seconds of all threads.
+constexpr double kSlow = 3;     // a case is bounded to take a fraction of that
+constexpr double kFast = 1e-4;  // below this, inputs count as equally fast
 
 using Bytes = std::vector<std::uint8_t>;
 using Input = std::pair<std::filesystem::path, Bytes>;
@@ -54,10 +58,23 @@ std::vector<Input> inputs_of(const std::vector<std::filesystem::path>& paths) {
   return inputs;
 }
 
+// Returns the seconds that the target takes for an input.
+double run(const Bytes& bytes) {
+  const std::clock_t before = std::clock();
+  LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
+  return static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+}
+
 // A few changes to one of the inputs, now and then with the end of another, or nothing but chance.
+// What is made of an input takes about as long as the input. Each gets about the same time, not the
+// same number of runs, because a few in a hundred would take most of the time otherwise.
 class Mutator {
  public:
-  Mutator(std::uint64_t seed, const std::vector<Input>& inputs) : random_(seed), inputs_(inputs) {}
+  Mutator(std::uint64_t seed, const std::vector<Input>& inputs) : random_(seed), inputs_(inputs) {
+    std::vector<double> frequencies;
+    for (const auto& [file, bytes] : inputs) frequencies.push_back(1 / std::max(kFast, run(bytes)));
+    some_input_ = {frequencies.begin(), frequencies.end()};
+  }
 
   Bytes next() {
     Bytes bytes;
@@ -66,7 +83,7 @@ class Mutator {
       for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random_());
       return bytes;
     }
-    bytes = inputs_[below(inputs_.size())].second;
+    bytes = inputs_[some_input_(random_)].second;
     if (below(4) == 0) splice(bytes, inputs_[below(inputs_.size())].second);
     for (std::size_t changes = 1 + below(6); changes > 0; --changes) change(bytes);
     return bytes;
@@ -99,6 +116,7 @@ class Mutator {
 
   std::mt19937_64 random_;
   const std::vector<Input>& inputs_;
+  std::discrete_distribution<std::size_t> some_input_;
 };
 
 void run_for(std::chrono::duration<double> time, std::uint64_t seed,
@@ -109,9 +127,7 @@ void run_for(std::chrono::duration<double> time, std::uint64_t seed,
   double slowest = 0;
   while (std::chrono::steady_clock::now() - start < time) {
     const Bytes bytes = mutator.next();
-    const std::clock_t before = std::clock();
-    LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
-    const double took = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+    const double took = run(bytes);
     if (took > kSlow)
       weft::fuzz::broken("slow", std::to_string(took) + " s", bytes.data(), bytes.size());
     slowest = std::max(slowest, took);

@@ -5,6 +5,8 @@
 #
 #   tests/fuzz/run.sh [SECONDS [TARGET...]]    20 seconds and all targets if not said otherwise
 #
+# WEFT_FUZZ_SEED (1 if not set) is the seed. It is fixed so that two runs on one tree draw the same
+# inputs, as far as their time goes; runs of hours take others.
 # WEFT_FUZZ_FINDINGS names a folder to collect broken laws in, without ending (law.h).
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit
@@ -20,7 +22,7 @@ fuzz() {
   mkdir -p "$corpus" "$found"
   # Threads of an arena free what others have allocated, so leaks are looked for at the end alone.
   if build/fuzz/"$target"_fuzz -detect_leaks=0 -timeout=20 -rss_limit_mb=2500 -entropic=0 \
-    -max_total_time="$seconds" -max_len="${longest[$target]}" -print_final_stats=1 \
+    -seed="${WEFT_FUZZ_SEED:-1}" -max_total_time="$seconds" -max_len="${longest[$target]}" -print_final_stats=1 \
     -artifact_prefix="$found/$target-" "$corpus" tests/fuzz/corpus/"$target" >"$log" 2>&1; then
     printf '%-11s %8s inputs, %s\n' "$target" \
       "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")" \

@@ -80,7 +80,7 @@ def test_the_installed_package_for_python_meshes(prefix):
 
 
 def test_licences_are_beside_each_component(prefix):
-    for name in ("weft", "weftd", "python3-weft", "weft-protocol"):
+    for name in ("weft", "weftd", "python3-weft", "weft-protocol-dev"):
         folder = prefix / "share/doc" / name
         for licence in ROOT.glob("LICENSES/*.txt"):
             assert (folder / "LICENSES" / licence.name).read_bytes() == licence.read_bytes()
@@ -146,6 +146,7 @@ WORDS = [
     (["weft", "mesh", "--min"], {"--min-angle", "--min-edge"}),
     (["weft", "mesh", "coa"], {"coast.poly", "coastal.geojson"}),
     (["weft", "mesh", "coast.poly", "--placement", "l"], {"lattice"}),
+    (["weft", "draw", "coast.vtu", "--color", "b"], {"bound"}),
     (["weftd", "--tls-c"], {"--tls-cert", "--tls-client-ca"}),
     (["weftd", "--log-format", ""], {"text", "json"}),
 ]

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 import asyncio
 import inspect
+import threading
+import types
 
 import numpy as np
 import pytest
@@ -54,6 +56,108 @@ def test_errors_are_the_same(server):
             await twin.mesh(KEY, size="1/(x")
     with pytest.raises(weft.InvalidRequest, match="EXPRESSION_SYNTAX"):
         asyncio.run(mesh())
+
+
+def raster_file(folder):
+    gdal = pytest.importorskip("osgeo.gdal")
+    data = gdal.GetDriverByName("GTiff").Create(str(folder / "h.tif"), 40, 40, 1, gdal.GDT_Float32)
+    data.SetGeoTransform((-20, 1, 0, 20, 0, -1))
+    data.GetRasterBand(1).Fill(70_000)
+    del data
+    return folder / "h.tif"
+
+
+BOX = weft.Domain.rings([(0, 0), (4, 0), (4, 3), (0, 3)])
+
+
+@pytest.mark.filterwarnings("ignore::weft.WeftWarning")
+@pytest.mark.parametrize("lonlat", [False, True])
+@pytest.mark.parametrize("method", ["mesh", "submit"])
+def test_the_loop_goes_on_while_a_raster_is_read(job_server, tmp_path, monkeypatch, method, lonlat):
+    file, ticked = raster_file(tmp_path), threading.Event()
+    read = weft._raster_file.RasterFile.read
+
+    async def made():
+        loop, reading = asyncio.get_running_loop(), asyncio.Event()
+
+        def wait_for_a_tick(self, *part):
+            loop.call_soon_threadsafe(reading.set)
+            ticked.wait()  # until the test times out, if the loop stands still
+            return read(self, *part)
+        monkeypatch.setattr(weft._raster_file.RasterFile, "read", wait_for_a_tick)
+
+        async def tick():
+            await reading.wait()
+            ticked.set()
+        async with aio.Client(job_server.target) as twin:
+            return await asyncio.gather(tick(), getattr(twin, method)(
+                BOX, edge="h", fields={"h": weft.raster(file)}, lonlat=lonlat, to_metres=lonlat))
+    assert asyncio.run(made())[1]
+
+
+@pytest.mark.filterwarnings("error::weft.WeftWarning")
+def test_a_warning_does_not_replace_what_is_wrong_in_the_thread():
+    def fails():
+        weft._warning.warn("odd")
+        raise weft.DomainError("wrong")
+
+    with pytest.raises(weft.DomainError, match="^wrong$"):
+        asyncio.run(weft._warning.in_thread(fails))
+    with pytest.raises(weft.WeftWarning, match="^odd$"):
+        asyncio.run(weft._warning.in_thread(weft._warning.warn, "odd"))
+
+
+def test_a_mesh_is_brought_back_to_degrees_while_the_loop_goes_on(server, monkeypatch):
+    ticked, back = threading.Event(), weft._projection.Projection.to_lonlat
+
+    async def mesh():
+        loop = asyncio.get_running_loop()
+
+        def wait_for_a_tick(self, *points):
+            loop.call_soon_threadsafe(ticked.set)
+            ticked.wait()  # until the test times out, if the loop stands still
+            return back(self, *points)
+        monkeypatch.setattr(weft._projection.Projection, "to_lonlat", wait_for_a_tick)
+        async with aio.Client(server.target) as twin:
+            return await twin.mesh(BOX, edge=50_000, lonlat=True)
+    assert asyncio.run(mesh()).points.max() == pytest.approx(4)
+
+
+def test_what_is_wrong_with_a_file_has_its_type_and_its_line(server, tmp_path):
+    file = raster_file(tmp_path)
+
+    async def meshes():
+        async with aio.Client(server.target) as twin:
+            for path, kind in ((tmp_path / "none.poly", OSError), (tmp_path / "none.stl", weft.DomainError)):
+                with pytest.raises(kind):
+                    await twin.mesh(path)
+            with pytest.raises(weft.DomainError, match="none.tif"):
+                await twin.mesh(BOX, edge="h", fields={"h": weft.raster(tmp_path / "none.tif")})
+            stream = twin.stream(BOX, edge="h", fields={"h": weft.raster(file, band=2)})
+            with pytest.raises(weft.DomainError, match="has no band"):
+                await anext(stream)
+            with pytest.raises(TypeError, match="unknown option"):
+                await twin.submit(BOX, egde=1)
+            with pytest.warns(weft.WeftWarning, match="bounds nothing") as caught:
+                await twin.mesh(BOX, edge="h", fields={"h": weft.raster(file)})
+                await twin.mesh(BOX, edge=99)
+            assert {warning.filename for warning in caught} == {__file__}
+    asyncio.run(meshes())
+
+
+def test_the_time_for_reading_is_not_that_of_the_call(server, monkeypatch):
+    read, now, clock = weft.Domain.read, [0.0], weft._retry.time
+    monkeypatch.setattr(weft._retry, "time", types.SimpleNamespace(monotonic=lambda: now[0] + clock.monotonic()))
+
+    def slow(path):
+        now[0] += 3600
+        return read(path)
+    monkeypatch.setattr(weft.Domain, "read", slow)
+
+    async def mesh():
+        async with aio.Client(server.target) as twin:
+            return await twin.mesh(KEY, timeout=600)
+    assert asyncio.run(mesh()).summary.triangles
 
 
 def test_a_task_that_is_cancelled_ends_the_call(server):

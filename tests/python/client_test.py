@@ -179,9 +179,15 @@ def test_a_timeout_ends_a_call(client):
 
 
 def test_a_size_that_is_no_size_is_refused(client):
-    for size in (float("nan"), [1, 2]):
-        with pytest.raises(weft.DomainError, match="size is"):
+    for size in (float("nan"), [1, 2], 10**400, 10**5000):
+        with pytest.raises(weft.DomainError, match="^size is"):
             client.mesh(KEY, size=size)
+        with pytest.raises(weft.DomainError, match="^edge is"):
+            client.mesh(KEY, edge=size)
+
+
+def test_a_size_may_be_a_number_of_numpy(client):
+    assert client.mesh(KEY, edge=np.float32(2)).summary.digest == client.mesh(KEY, edge=2).summary.digest
 
 
 def test_a_server_that_is_absent_is_unavailable(tmp_path):

@@ -9,6 +9,7 @@ import subprocess
 import pytest
 import weft
 
+os.environ["PATH"] = f"{pathlib.Path(os.environ['WEFT_BINARY']).parent}:{os.environ['PATH']}"
 MODELS = pathlib.Path(os.environ["WEFT_MODELS"])
 KEY, KEY_SIZE = MODELS / "key.poly", "0.02*abs(y-46)+0.1"
 

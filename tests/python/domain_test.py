@@ -79,6 +79,41 @@ def test_holes_and_regions_of_seeds_are_kept(client):
     assert set(mesh.edge_markers) == set(range(8))
 
 
+@pytest.mark.parametrize("name", ["max_area", "max_edge"])
+@pytest.mark.parametrize("bound, fault", [
+    (-1, "-1, not positive"), ("abc", '"abc", not a number'), ("0.05", '"0.05", not a number'),
+    (True, "true, not a number"), ([1], r"\[1\], not a number"), (-10**400, "-inf, not positive"),
+    (10**400, "larger than .*"), pytest.param(10**5000, "larger than .*", id="5001 digits"),
+    (np.inf, "larger than .*"), (np.nan, "nan, not positive")])
+def test_a_bound_of_a_region_that_is_none_is_refused(name, bound, fault):
+    feature = {"type": "Feature", "properties": {name: bound},
+               "geometry": {"type": "Polygon", "coordinates": [SQUARE]}}
+    with pytest.raises(weft.DomainError, match=f"^properties.{name} is {fault}$"):
+        weft.Domain.geojson(feature)
+
+
+@pytest.mark.parametrize("name", ["marker", "region"])
+@pytest.mark.parametrize("number, text", [
+    (10**400, "inf"), pytest.param(-10**5000, "-inf", id="5001 digits"), (np.inf, "inf"), (np.nan, "nan"),
+    (2**31, "2147483648"), (0.5, "0.5")])
+def test_a_marker_or_region_that_is_no_integer_of_32_bits_is_refused_by_its_feature(name, number, text):
+    features = named_features(("Polygon", [SQUARE], {}), ("Polygon", [SQUARE], {name: number}))
+    with pytest.raises(weft.DomainError, match=rf"^features\[1\]\.properties\.{name} is {text}, not an integer"):
+        weft.Domain.geojson(features)
+
+
+def test_a_coordinate_that_is_no_number_of_double_precision_is_refused_by_its_path():
+    with pytest.raises(weft.DomainError, match=r"^coordinates\[0\] does not hold positions"):
+        weft.Domain.geojson({"type": "Polygon", "coordinates": [[[0, 0], [10**400, 0], [1, 1], [0, 0]]]})
+
+
+def test_a_bound_of_a_region_that_is_null_is_none():
+    domain = weft.Domain.geojson({
+        "type": "Feature", "properties": {"region": 1, "max_area": None, "max_edge": np.int64(2)},
+        "geometry": {"type": "Polygon", "coordinates": [SQUARE]}})
+    assert (domain.regions[0].max_area, domain.regions[0].max_edge) == (None, 2)
+
+
 def test_a_region_of_a_polygon_with_a_hole_is_outside_the_hole(client):
     # The widest gap between ordinates is at the height of the hole.
     json = {"type": "Feature", "properties": {"region": 3}, "geometry": {
@@ -144,3 +179,85 @@ def test_a_poly_that_is_wrong_is_refused_by_file_and_part(tmp_path, text, words)
     path.write_text(text)
     with pytest.raises(weft.DomainError, match=f"bad.poly: .*{words}"):
         weft.Domain.read(path)
+
+
+def named_features(*features):
+    return {"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": properties, "geometry": {"type": kind, "coordinates": at}}
+        for kind, at, properties in features]}
+
+
+NAMED = named_features(
+    ("Polygon", [SQUARE], {"marker": "wall", "region": "fluid"}),
+    ("LineString", [[1, 1], [2, 2]], {"marker": 1, "marker_name": "gauge"}),
+    ("LineString", [[1, 2], [2, 3]], {"marker": "wall"}),
+    ("Polygon", [[[5, 0], [9, 0], [9, 4], [5, 0]]],
+     {"region": 4, "region_name": "solid", "marker": "", "max_area": 1}))
+
+
+def test_names_of_geojson_come_with_the_mesh_and_markers_are_those_of_the_command_line(
+        client, digest_of, tmp_path):
+    path = tmp_path / "named.geojson"
+    path.write_text(json.dumps(NAMED))
+    mesh = client.mesh(path)
+    assert mesh.digest == digest_of(path)
+    assert mesh.marker_names == {1: "gauge", 2: "wall"}
+    assert mesh.region_names == {1: "fluid", 4: "solid"}
+    assert set(mesh.edge_markers) == {0, 1, 2}
+    assert set(mesh.regions) == {1, 4}
+
+
+def test_names_of_geojson_that_cannot_be_are_left_out_with_a_warning():
+    features = named_features(
+        ("LineString", [[1, 1], [2, 2]], {"marker": 1, "marker_name": "a"}),
+        ("LineString", [[1, 1], [3, 2]], {"marker": 1, "marker_name": "b"}),
+        ("LineString", [[1, 1], [4, 2]], {"marker": 2, "marker_name": "a"}),
+        ("LineString", [[1, 1], [5, 2]], {"marker": "a\nb"}))
+    with pytest.warns(weft.WeftWarning) as warned:
+        domain = weft.Domain.geojson(features)
+    assert domain.marker_names == {1: "a"}
+    assert domain.markers.tolist() == [1, 1, 2, 3]
+    assert [str(w.message) for w in warned] == [
+        "a name of marker 1 is left out: the first is 'a'",
+        "a name of marker 2 is left out: 'a' is another one's, too",
+        "a name of marker 3 is left out: it has a control character"]
+
+
+def test_names_of_a_poly_are_its_comments_and_values_that_are_no_integers(tmp_path):
+    path = tmp_path / "named.poly"
+    path.write_bytes(b"# marker=2:inlet \n3 2 0 0 # caf\xe9\n1 0 0\n2 1 0\n3 1 1\n3 1\n1 1 2 2\n2 2 3 3\n"
+                     b"3 3 1 3\n0\n2\n1 .7 .2 0.0001 -1\n2 .7 .1 4 -1\n# marker=3:in # out: all\r\n"
+                     b" # marker=7:no\n# marker=x:no\n# region=4:fluid\xe2\x80\xa8\n# region=99999999999:no\n")
+    domain = weft.Domain.read(path)
+    assert domain.marker_names == {2: "inlet ", 3: "in # out: all"}
+    assert domain.region_names == {1: "1e-04", 4: "fluid\u2028"}
+
+
+def test_names_that_the_command_line_reads_come_back(tmp_path):
+    path = tmp_path / "rings.csv"
+    path.write_text("x,y,marker\n0,0,quay\n1,0,2\n1,1,open-sea\n0,1,quay\n")
+    domain = weft.Domain.read(path)
+    assert domain.marker_names == {1: "quay", 3: "open-sea"}
+    assert domain.markers.tolist() == [1, 2, 3, 1]
+
+
+def test_what_is_odd_in_a_file_is_a_warning(tmp_path):
+    path = tmp_path / "crossing.csv"
+    path.write_text("0,0\n4,4\n4,0\n0,4\n")
+    with pytest.warns(weft.WeftWarning, match="crosses itself"):
+        weft.Domain.read(path)
+
+
+def test_names_are_checked():
+    triangle = ([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)])
+    domain = weft.Domain(*triangle, marker_names={np.int32(2): "inlet", -1: "Wänd"},
+                         region_names={2: "inlet"})
+    assert domain.marker_names == {2: "inlet", -1: "Wänd"}
+    assert domain.region_names == {2: "inlet"}
+    for names, words in (({2: ""}, "0 bytes"), ({2: "é" * 128}, "256 bytes"),
+                         ({2: "a\nb"}, "control character"), ({2: "a\x85"}, "control character"),
+                         ({1: "a", 2: "a"}, "'a' is there twice"), ({2**31: "a"}, "32 bits"),
+                         ({2: 3}, "no number of a text"), ({"2": "a"}, "no number of a text"),
+                         ({2: "\ud800"}, "no number of a text")):
+        with pytest.raises(weft.DomainError, match=words):
+            weft.Domain(*triangle, marker_names=names)

@@ -22,7 +22,7 @@ def test_a_job_is_submitted_watched_and_fetched(client):
     states = [seen.state for seen in client.watch(job)]
     assert states[-1] is JobState.SUCCEEDED
     done = client.wait(job)
-    assert (done.id, done.attempts) == (job.id, 1)
+    assert (done.id, done.attempts, done.client) == (job.id, 1, "")
     assert done.create_time <= done.start_time <= done.end_time
     mesh = client.fetch(job)
     assert mesh.digest == done.summary.digest
@@ -40,6 +40,17 @@ def test_what_is_kept_is_not_made_again(client):
     client.wait(client.submit(KEY, size=0.3))
     again = client.submit(KEY, size=0.3)
     assert again.from_store and again.state is JobState.SUCCEEDED
+
+
+def test_a_mesh_has_the_names_of_its_domain(client):
+    domain = weft.Domain([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)], markers=[2, 3, 4],
+                         marker_names={2: "inlet", 3: "Wänd"}, region_names={0: "fluid"})
+    for mesh in (client.mesh(domain), client.fetch(client.wait(client.submit(domain)))):
+        assert mesh.marker_names == {2: "inlet", 3: "Wänd"}
+        assert mesh.region_names == {0: "fluid"}
+    plain = client.mesh(weft.Domain(domain.points, domain.segments, domain.markers))
+    assert plain.digest == mesh.digest
+    assert plain.marker_names == {}
 
 
 def test_a_job_that_failed_raises_what_the_mesh_would_have_raised(client):

@@ -113,6 +113,57 @@ def test_a_raster_is_projected_as_on_the_command_line(client, server, run_weft, 
         assert mesh.summary.triangles == pytest.approx(by_command, rel=0.01)
 
 
+def test_a_raster_in_grads_goes_on_over_its_seam_as_on_the_command_line(client, server, run_weft, tmp_path):
+    """Of NTF (Paris), whose turn has 400 grads, and is 2.33722917 degrees east of Greenwich."""
+    gdal = pytest.importorskip("osgeo.gdal")
+    osr = pytest.importorskip("osgeo.osr")
+    domain = ring_file(tmp_path, RINGS["date line by a jump"])
+    x, y = np.meshgrid(np.arange(-199.5, 200), np.arange(99.5, -100, -1))
+    file = tmp_path / "globe.tif"
+    data = gdal.GetDriverByName("GTiff").Create(str(file), 400, 200, 1, gdal.GDT_Float32)
+    data.SetGeoTransform((-200, 1, 0, 100, 0, -1))
+    system = osr.SpatialReference()
+    system.ImportFromEPSG(4807)
+    data.SetProjection(system.ExportToWkt())
+    data.GetRasterBand(1).WriteArray(60_000 + 20_000 * np.cos(2 * np.pi / 400 * 8 * x))
+    del data
+    by_command, _ = read_npz(run_weft, server, tmp_path, domain, "--lonlat", "--edge", "h",
+                             "--field", f"h={file}")
+    mesh = client.mesh(domain, edge="h", fields={"h": weft.raster(file)}, lonlat=True)
+    assert len(mesh.points) == pytest.approx(len(by_command), rel=0.01)
+    by_formula = client.mesh(domain, edge="h", lonlat=True, fields={"h": weft.raster(
+        60_000 + 20_000 * np.cos(np.deg2rad(8 * (np.arange(170, 190, 0.5) - 2.33722917)))[None].repeat(40, 0),
+        origin=(170, -26), spacing=(0.5, 0.5))})
+    assert len(mesh.points) == pytest.approx(len(by_formula.points), rel=0.02)
+
+
+def test_of_a_raster_file_only_the_part_is_read_that_the_plane_needs(
+        client, server, run_weft, tmp_path, monkeypatch):
+    gdal = pytest.importorskip("osgeo.gdal")
+    x, y = np.meshgrid(np.arange(-179.5, 180), np.arange(89.5, -90, -1))
+    file = tmp_path / "globe.tif"
+    data = gdal.GetDriverByName("GTiff").Create(str(file), 360, 180, 1, gdal.GDT_Float32)
+    data.SetGeoTransform((-180, 1, 0, 90, 0, -1))
+    data.GetRasterBand(1).WriteArray((90_000 + 20_000 * np.sin(x) + 20_000 * np.cos(y)))
+    del data
+    sizes, read = [], weft._raster_file.RasterFile.read
+
+    def counted(self, grid, column, row, columns, rows):
+        sizes.append(columns * rows)
+        return read(self, grid, column, row, columns, rows)
+
+    monkeypatch.setattr(weft._raster_file.RasterFile, "read", counted)
+    for name, most in (("round", 30 * 20), ("date line by a jump", 30 * 20), ("pole", 360 * 30)):
+        domain = ring_file(tmp_path, RINGS[name])
+        with pytest.warns(weft.WeftWarning, match="no coordinate system; .*EPSG:4326"):
+            mesh = client.mesh(domain, edge="h", fields={"h": weft.raster(file)}, lonlat=True)
+        by_command = len(read_npz(run_weft, server, tmp_path, domain, "--lonlat", "--edge", "h",
+                                  "--field", f"h={file}")[1])
+        assert mesh.summary.triangles == pytest.approx(by_command, rel=0.02)
+        assert 0 < sum(sizes) <= most
+        sizes.clear()
+
+
 def test_what_cannot_be_projected_is_named(client, tmp_path):
     domain = ring_file(tmp_path, RINGS["one corner"])
     for crs, what in (("EPSG:4326", "not a projected"), ("EPSG:2263", "metres"),

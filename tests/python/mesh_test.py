@@ -105,7 +105,7 @@ def test_a_format_that_nobody_knows_is_refused_and_leaves_nothing(mesh, tmp_path
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("color", [None, "angle", "area", "region", "values"])
+@pytest.mark.parametrize("color", [None, "angle", "size", "area", "region", "values"])
 def test_a_plot_shows_the_whole_domain(mesh, color):
     axes = mesh.plot(np.arange(len(mesh.triangles)) if color == "values" else color)
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
@@ -114,7 +114,7 @@ def test_a_plot_shows_the_whole_domain(mesh, color):
 
 
 def test_a_color_that_is_none_is_refused(mesh):
-    with pytest.raises(ValueError, match="'red'; there are angle, area, region"):
+    with pytest.raises(ValueError, match="'red'; there are angle, size, area, region"):
         mesh.plot("red")
 
 
@@ -124,3 +124,66 @@ def test_a_package_that_is_missing_is_named(monkeypatch):
     monkeypatch.setattr(importlib, "import_module", absent)
     with pytest.raises(weft.MissingPackage, match="python3-matplotlib"):
         _optional.need("matplotlib.pyplot", "Mesh.plot")
+
+
+def grid_mesh(columns, rows):
+    """Of two triangles per unit square."""
+    x, y = np.meshgrid(np.arange(columns + 1.), np.arange(rows + 1.))
+    a = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).ravel()
+    b, c, d = a + 1, a + columns + 2, a + columns + 1
+    triangles = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])]).astype(np.int32)
+    points = np.column_stack([x.ravel(), y.ravel()])
+    none = np.zeros(0, np.int32)
+    return weft.Mesh(points, triangles, np.zeros(len(triangles), np.int32), none.reshape(0, 2), none, none,
+                     none.reshape(0, 2), weft.results.summary_of(points, triangles, 0))
+
+
+def test_a_million_triangles_are_drawn_as_their_means_per_pixel():
+    mesh = grid_mesh(1000, 500)
+    assert len(mesh.triangles) == 1_000_000
+    upper = np.arange(1_000_000) >= 500_000  # of the two in a square, which is a pixel
+    column = mesh.points[mesh.triangles].min(axis=1)[:, 0]
+    axes = mesh.plot(column + np.where(upper, 0.5, 0))
+    picture, = axes.images
+    values = picture.get_array()
+    assert values.shape == (500, 1000)
+    assert np.allclose(values, np.arange(1000) + 0.25, atol=0.1)
+    assert not axes.collections[0].get_paths()  # no triangle on its own
+
+
+def test_pixels_beside_the_mesh_are_empty_and_large_triangles_fill_theirs():
+    points = np.array([[0, 0], [4, 0], [4, 4], [0, 4]], float)
+    corners = points[[[0, 1, 2], [0, 2, 3]]]
+    image = weft._pixels.image(corners, np.array([1., 3]), (0, 0, 8, 4), 80, True)
+    assert image.shape == (40, 80)
+    assert np.isnan(image[:, 40:]).all() and not np.isnan(image[:, :40]).any()
+    assert image[5, 30] == pytest.approx(1) and image[30, 5] == pytest.approx(3)
+    assert image[20, 20] == pytest.approx(2, abs=0.3)  # half of each
+
+
+def test_few_triangles_of_a_large_mesh_are_drawn_one_by_one_in_their_box():
+    axes = grid_mesh(300, 300).plot("size", box=(10, 10, 20, 15), segments=False)
+    assert not axes.images
+    assert axes.get_xlim() == (10, 20) and axes.get_ylim() == (10, 15)
+    assert 100 <= len(axes.collections[0].get_array()) <= 200
+
+
+def test_sizes_have_a_logarithmic_scale(mesh):
+    drawn = mesh.plot("size").collections[0]
+    assert type(drawn.norm).__name__ == "LogNorm"
+    assert np.exp(np.log(drawn.get_array()).mean()) == pytest.approx(
+        np.sqrt(np.exp(np.log(mesh.quality().areas).mean()) * 4 / np.sqrt(3)))
+
+
+def test_a_notebook_gets_a_picture(mesh, monkeypatch):
+    assert mesh._repr_png_().startswith(b"\x89PNG")
+    monkeypatch.setattr(weft.mesh, "need", lambda *_: (_ for _ in ()).throw(weft.MissingPackage("no")))
+    assert mesh._repr_png_() is None
+
+
+def test_files_of_triangle_are_none_of_meshio(mesh, tmp_path):
+    mesh.write(tmp_path / "mesh.node")
+    before = (tmp_path / "mesh.ele").read_text()
+    with pytest.raises(weft.MeshFileError, match="the extension '.ele' is not that of"):
+        mesh.write(tmp_path / "mesh.ele")
+    assert (tmp_path / "mesh.ele").read_text() == before

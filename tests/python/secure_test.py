@@ -19,7 +19,8 @@ def guarded(tmp_path_factory):
                     "-out", folder / "cert.pem"], check=True, capture_output=True)
     with weft.LocalServer(arguments=[
             "--listen", "127.0.0.1:0", "--tls-cert", str(folder / "cert.pem"), "--tls-key",
-            str(folder / "key.pem"), "--tokens", str(folder / "tokens")]) as server:
+            str(folder / "key.pem"), "--tokens", str(folder / "tokens"), "--data",
+            str(folder / "data")]) as server:
         addresses = (server.folder / "ready").read_text().split()
         server.tcp = next(address for address in addresses if address.startswith("127.0.0.1:"))
         server.certificate = folder / "cert.pem"
@@ -30,6 +31,13 @@ def test_a_token_lets_in(guarded):
     with weft.Client(guarded.target, token="secret-of-ada-0016") as client:
         assert client.mesh(KEY).digest
         assert client.server_info().version
+
+
+def test_a_job_names_the_client_that_submitted_it(guarded):
+    with weft.Client(guarded.target, token="secret-of-ada-0016") as client:
+        job = client.submit(KEY)
+        assert job.client == "ada"
+        assert [kept.client for kept in client.list_jobs()] == ["ada"]
 
 
 @pytest.mark.parametrize("token", ["", "wrong"])

@@ -48,9 +48,10 @@ class FaultyStore final : public JobStore {
   }
   StoreResult<std::optional<Claim>> claim(const std::string& worker,
                                           std::chrono::milliseconds lease,
-                                          std::uint64_t max_estimate) override {
-    return unless<std::optional<Claim>>("claim",
-                                        [&] { return store_->claim(worker, lease, max_estimate); });
+                                          std::uint64_t max_estimate,
+                                          const std::vector<std::string>& except) override {
+    return unless<std::optional<Claim>>(
+        "claim", [&] { return store_->claim(worker, lease, max_estimate, except); });
   }
   StoreResult<Held> renew(const ClaimRef& claim, std::chrono::milliseconds lease,
                           const std::string& progress) override {

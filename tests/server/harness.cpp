@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tests/support/connected.h"
+
 namespace weft::server::testing {
 
 Chunk make_chunk(std::uint32_t index, std::size_t bytes) {
@@ -57,7 +59,8 @@ std::shared_ptr<grpc::Channel> TestServer::channel() const {
   grpc::ChannelArguments arguments;
   arguments.SetInt("grpc.use_local_subchannel_pool", 1);  // a connection of its own
   arguments.SetMaxReceiveMessageSize(-1);
-  return grpc::CreateCustomChannel(address(), grpc::InsecureChannelCredentials(), arguments);
+  return connected(
+      grpc::CreateCustomChannel(address(), grpc::InsecureChannelCredentials(), arguments));
 }
 
 std::vector<std::uint32_t> Outcome::chunk_indices() const {

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "tests/support/connected.h"
 #include "tests/support/http.h"
 
 namespace weft::server::testing {
@@ -150,8 +151,8 @@ std::shared_ptr<grpc::Channel> JobServer::channel() const {
   grpc::ChannelArguments arguments;
   arguments.SetInt("grpc.use_local_subchannel_pool", 1);  // a connection of its own
   arguments.SetMaxReceiveMessageSize(-1);
-  return grpc::CreateCustomChannel(server_->addresses().front(), grpc::InsecureChannelCredentials(),
-                                   arguments);
+  return connected(grpc::CreateCustomChannel(server_->addresses().front(),
+                                             grpc::InsecureChannelCredentials(), arguments));
 }
 
 }  // namespace weft::server::testing

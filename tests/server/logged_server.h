@@ -58,13 +58,14 @@ inline bool eventually(const std::function<bool()>& is_so) {
   return true;
 }
 
-// Its meshes are empty.
+// Its meshes are empty, unless another engine is given.
 class LoggedServer {
  public:
-  explicit LoggedServer(const ServerOptions& options, std::unique_ptr<JobStore> store = nullptr) {
-    const EngineFn engine = [](const auto&, ChunkSink& sink, auto&) {
-      return send_chunks(sink, 0);
-    };
+  explicit LoggedServer(
+      const ServerOptions& options, std::unique_ptr<JobStore> store = nullptr,
+      const EngineFn& engine = [](const auto&, ChunkSink& sink, auto&) {
+        return send_chunks(sink, 0);
+      }) {
     auto started = Server::start(options, engine, log_.logger(), std::move(store));
     if (!started) throw std::runtime_error(started.error());
     server_ = std::move(*started);

@@ -9,6 +9,7 @@
 namespace weft::server {
 namespace {
 
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
 
 std::variant<Options, Exit> parse(std::vector<const char*> flags) {
@@ -31,17 +32,47 @@ std::string complaint_about(std::vector<const char*> flags) {
   return text;
 }
 
-TEST(MemoryOptions, LetAllRunsTogetherHaveWhatThereIs) {
+// What --memory leaves for runs: of 12 GiB, an eighth is for messages, a 32nd for pages that are
+// kept, 64 MiB for finished meshes and 32 for the process.
+constexpr std::uint64_t for_runs(std::uint64_t memory) {
+  return memory - memory / 8 - memory / 32 - 96 * kMiB;
+}
+
+TEST(MemoryOptions, LetAllRunsTogetherHaveWhatIsLeftForThem) {
   const ServiceOptions service = service_of({});
   EXPECT_EQ(service.jobs, 4u);
-  EXPECT_EQ(service.limits.max_bytes, 3 * kGiB);
-  EXPECT_EQ(service_of({"--jobs", "1"}).limits.max_bytes, 12 * kGiB);
-  EXPECT_EQ(service_of({"--memory", "8GiB"}).limits.max_bytes, 2 * kGiB);
+  EXPECT_EQ(service.limits.max_bytes, for_runs(12 * kGiB) / 4);
+  EXPECT_EQ(service_of({"--jobs", "1"}).limits.max_bytes, for_runs(12 * kGiB));
+  EXPECT_EQ(service_of({"--memory", "8GiB"}).limits.max_bytes, for_runs(8 * kGiB) / 4);
+}
+
+TEST(MemoryOptions, LeaveRoomForTwoMessagesButNoMoreThanHalf) {
+  EXPECT_EQ(service_of({}).cache_bytes, 64 * kMiB);
+  const ServiceOptions little = service_of({"--memory", "1GiB", "--jobs", "1"});
+  EXPECT_EQ(little.cache_bytes, 32 * kMiB);
+  EXPECT_EQ(little.limits.max_bytes, kGiB / 2 - kGiB / 32 - 64 * kMiB);
+  const ServiceOptions given = service_of(
+      {"--memory", "1GiB", "--max-request-bytes", "100MiB", "--cache-bytes", "0", "--jobs", "1"});
+  EXPECT_EQ(given.cache_bytes, 0u);
+  EXPECT_EQ(given.limits.max_bytes, kGiB - 2 * 100 * kMiB - kGiB / 32 - 32 * kMiB);
+}
+
+// It receives them, too, before they are received from it.
+TEST(MemoryOptions, LeaveAPartForMessagesOfTheConsole) {
+  EXPECT_EQ(service_of({"--console", "127.0.0.1:8080", "--jobs", "1"}).limits.max_bytes,
+            for_runs(12 * kGiB) - 12 * kGiB / 8);
+}
+
+TEST(MemoryOptions, ThatLeaveNothingForRunsAreRefused) {
+  EXPECT_EQ(service_of({"--memory", "147MiB"}).jobs, 4u);
+  const std::string text = complaint_about({"--memory", "128MiB"});
+  EXPECT_NE(text.find("134217728 bytes leave 25165824 for runs"), std::string::npos) << text;
+  complaint_about({"--memory", "1GiB", "--cache-bytes", "1GiB"});
 }
 
 TEST(MemoryOptions, GiveFewerRunsMoreEachIfThatIsWanted) {
   const ServiceOptions service = service_of({"--max-bytes", "5GiB"});
-  EXPECT_EQ(service.jobs, 2u);
+  EXPECT_EQ(service.jobs, 2u);  // of 10.0 GiB
   EXPECT_EQ(service.limits.max_bytes, 5 * kGiB);
   EXPECT_EQ(service_of({"--max-bytes", "1GiB"}).jobs, 4u);
 }
@@ -52,7 +83,7 @@ TEST(MemoryOptions, ThatPromiseMoreThanThereIsAreRefused) {
   EXPECT_NE(text.find("12884901888"), std::string::npos) << text;
   complaint_about({"--max-bytes", "13GiB"});
   complaint_about({"--memory", "1GiB", "--max-bytes", "2GiB", "--jobs", "1"});
-  EXPECT_EQ(service_of({"--max-bytes", "4GiB", "--jobs", "3"}).jobs, 3u);
+  EXPECT_EQ(service_of({"--max-bytes", "3GiB", "--jobs", "3"}).jobs, 3u);
 }
 
 TEST(ClientShare, LeavesSomethingToOthersIfThereMayBeAny) {

@@ -124,8 +124,8 @@ TEST(Reflection, AnswersOneRequestAfterAnotherWithAFileAndWhatItImports) {
   EXPECT_TRUE(holds(by_symbol, "weft/v1/mesh_service.proto"));
   EXPECT_TRUE(holds(by_symbol, "google/protobuf/timestamp.proto"));
   EXPECT_TRUE(holds(reflection.ask(request(kByName, "google/rpc/status.proto")), "Status"));
-  EXPECT_TRUE(
-      holds(reflection.ask(request(kBySymbol, "weft.v1.None")), "this server has no such thing"));
+  EXPECT_TRUE(holds(reflection.ask(request(kBySymbol, "weft.v1.None")),
+                    "this server has no such file or symbol"));
   EXPECT_TRUE(reflection.end().ok());
 }
 

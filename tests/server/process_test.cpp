@@ -118,6 +118,13 @@ v1::GetServerInfoResponse info_of(const std::string& address) {
   return info;
 }
 
+// Its call does not end while nobody reads.
+v1::GenerateMeshRequest endless_request() {
+  v1::GenerateMeshRequest request = testing::valid_request();
+  request.mutable_size()->set_constant(1e-5);  // more than fits between it and an idle reader
+  return request;
+}
+
 class TemporaryFolder : public ::testing::Test {
  protected:
   client::TempFolder folder_;
@@ -173,11 +180,9 @@ TEST_F(TemporaryFolder, ASecondSignalEndsItAtOnceAndLeavesNoSocketFile) {
   const std::string address = "unix:" + (folder_ / "s").string();
   Weftd weftd({"--listen", address, "--drain", "1000"});
   weftd.address();
-  v1::GenerateMeshRequest request = testing::valid_request();
-  request.mutable_size()->set_constant(1e-5);  // more than fits between it and an idle reader
   auto stub = connect(address);
   grpc::ClientContext context;
-  auto reader = stub->GenerateMesh(&context, request);
+  auto reader = stub->GenerateMesh(&context, endless_request());
   v1::GenerateMeshResponse accepted;
   ASSERT_TRUE(reader->Read(&accepted));
   weftd.signal(SIGTERM);
@@ -294,6 +299,44 @@ TEST(Process, EndsWith2OnFlagsOfAStoreWithoutOne) {
     EXPECT_NE(weftd.log().find(flags.front() + " requires --data or --store"), std::string::npos)
         << weftd.log();
   }
+}
+
+TEST_F(TemporaryFolder, HealthAsksTheServerOfTheSameVariables) {
+  const std::string socket = "unix:" + (folder_ / "s").string();
+  const fs::path tokens = folder_ / "tokens";
+  std::ofstream(tokens) << "somebody " << std::string(32, 'x') << '\n';
+  fs::permissions(tokens, fs::perms::owner_read);
+  const Environment environment = {{"WEFT_LISTEN", "127.0.0.1:0," + socket},
+                                   {"WEFT_TOKENS", tokens.string()}};
+  Weftd nobody({"--health"}, environment);
+  EXPECT_EQ(nobody.wait(), 1);
+  EXPECT_NE(nobody.log().find(socket), std::string::npos) << nobody.log();
+  Weftd weftd({}, environment);
+  weftd.address();
+  ASSERT_EQ(weftd.address(), socket);
+  EXPECT_EQ(Weftd({"--health"}, environment).wait(), 0);
+}
+
+TEST_F(TemporaryFolder, HealthFailsWhileTheServerDrains) {
+  const std::string socket = "unix:" + (folder_ / "s").string();
+  Weftd weftd({"--listen", socket, "--drain", "1000"});
+  ASSERT_EQ(weftd.address(), socket);
+  auto stub = connect(socket);
+  grpc::ClientContext context;
+  auto reader = stub->GenerateMesh(&context, endless_request());
+  v1::GenerateMeshResponse accepted;
+  ASSERT_TRUE(reader->Read(&accepted));
+  weftd.signal(SIGTERM);
+  EXPECT_NE(weftd.read_until("event=draining"), "");
+  Weftd health({"--health", "--listen", socket});
+  EXPECT_EQ(health.wait(), 1);
+  EXPECT_NE(health.log().find("is not serving"), std::string::npos) << health.log();
+}
+
+TEST(Process, HealthEndsWith2WithoutASocketToAskAt) {
+  Weftd health({"--health", "--listen", "127.0.0.1:0"});
+  EXPECT_EQ(health.wait(), 2);
+  EXPECT_NE(health.log().find("no unix: address"), std::string::npos) << health.log();
 }
 
 TEST(Process, TellsItsVersion) {

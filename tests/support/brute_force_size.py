@@ -34,6 +34,14 @@ def bilinear(points: Floats, values: Floats, origin: tuple[float, float], step: 
     return below * (1 - v) + above * v
 
 
+def limited(points: Floats, sources: Floats, sizes: Floats, growth: float) -> Floats:
+    """At points (n, 2) the least, over all sources (m, 2), of what the size there grows to."""
+    least = np.empty(len(points))
+    for row, point in enumerate(points):
+        least[row] = (sizes + growth * np.hypot(*(sources - point).T)).min()
+    return least
+
+
 def patches(points: Floats, most: int) -> list[npt.NDArray[np.intp]]:
     """The rows of points (n, 2), in patches that are near together, of at most so many each."""
     whole = [np.arange(len(points))]

@@ -10,8 +10,8 @@
 
 #include "client/base/text.h"
 #include "client/formats/domains/geometry_builder.h"
-#include "client/formats/file_contents.h"
-#include "client/formats/line_scanner.h"
+#include "client/formats/files/file_contents.h"
+#include "client/formats/files/line_scanner.h"
 #include "client/formats/triangle/triangle_points.h"
 
 namespace weft::client {
@@ -89,10 +89,10 @@ class Reader {
   Result<void> corner() {
     Point at;
     std::int64_t ring = 0;
-    std::int32_t marker = 0;
+    std::uint32_t marker = builder_.marker(0);
     for (const Column column : columns_) {
       if (column == Column::kMarker) {
-        const auto value = scanner_.marker("the marker");
+        const auto value = read_marker();
         if (!value) return tl::unexpected(value.error());
         marker = *value;
       } else if (column == Column::kRing) {
@@ -118,6 +118,18 @@ class Reader {
     return {};
   }
 
+  // An integer, or a name that does not begin like a number.
+  Result<std::uint32_t> read_marker() {
+    if (!scanner_.at_line_end() && !starts_with_number()) {
+      const auto name = scanner_.word("the marker");
+      if (!name) return tl::unexpected(name.error());
+      return builder_.marker(*name);
+    }
+    const auto number = scanner_.marker("the marker");
+    if (!number) return tl::unexpected(number.error());
+    return builder_.marker(*number);
+  }
+
   Result<void> end_ring() {
     if (corners_.empty()) return {};
     const std::string path = "the ring from line " + std::to_string(first_line_);
@@ -132,8 +144,8 @@ class Reader {
   LineScanner scanner_;
   GeometryBuilder builder_;
   std::vector<Column> columns_ = {Column::kX, Column::kY};
-  std::vector<Point> corners_;  // of the ring so far
-  std::vector<std::int32_t> markers_;
+  std::vector<Point> corners_;          // of the ring so far
+  std::vector<std::uint32_t> markers_;  // labels
   std::int64_t ring_ = 0;
   std::uint64_t first_line_ = 0;
 };

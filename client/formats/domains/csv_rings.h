@@ -15,8 +15,8 @@
 //
 // A line without a corner ends a ring. If there is a column `ring`, an integer, a ring also ends
 // where it changes. A ring is closed automatically; its first corner may be repeated. `marker`, an
-// integer, is that of the segment from this corner to the next. The points inside an odd number of
-// rings are meshed, so a ring in a ring is a hole.
+// integer or a name of one word, is that of the segment from this corner to the next. The points
+// inside an odd number of rings are meshed, so a ring in a ring is a hole.
 //
 // Errors (kUnreadableInput) carry file:line:column, or name the ring by the line where it starts.
 #pragma once

@@ -13,15 +13,15 @@
 
 #include "client/base/text.h"
 #include "client/formats/domains/geometry_builder.h"
-#include "client/formats/file_contents.h"
-#include "client/formats/json_text.h"
+#include "client/formats/files/file_contents.h"
+#include "client/formats/files/json_text.h"
 
 namespace weft::client {
 namespace {
 
 using Json = nlohmann::json;
 
-// Parsed JSON takes up to twenty times the room of its text.
+// Parsed JSON takes up to twenty times the memory of its text.
 constexpr std::uint64_t kMaxJsonBytes = std::uint64_t{512} << 20;
 constexpr int kMaxJsonDepth = 64;
 
@@ -47,7 +47,7 @@ class Reader {
     return path + "[" + std::to_string(i) + "]";
   }
 
-  // Reads members `name` of `parent`, an array of GeoJSON objects.
+  // Reads the objects of the array that is the member `name` of `parent`.
   Result<void> objects(const Json& parent, const char* name, const std::string& path,
                        const Properties& properties) {
     const auto found = parent.find(name);
@@ -98,15 +98,27 @@ class Reader {
     const auto region = integer("region");
     if (!region) return tl::unexpected(region.error());
     out.region = *region;
+    out.marker_name = text(*found, "marker");
+    out.region_name = text(*found, "region");
+    if (out.marker_name.empty()) out.marker_name = text(*found, "marker_name");
+    if (out.region_name.empty()) out.region_name = text(*found, "region_name");
     for (const auto& [name, bound] :
          {std::pair{"max_area", &out.max_area}, {"max_edge", &out.max_edge}}) {
       const auto value = found->find(name);
-      if (value == found->end() || !value->is_number()) continue;
+      if (value == found->end() || value->is_null()) continue;  // null: a table without the column
+      if (!value->is_number())
+        return bad(member(where, name), "is " + value->dump() + ", not a number");
       *bound = value->get<double>();
       if (!(**bound > 0))
         return bad(member(where, name), "is " + shortest(**bound) + ", not positive");
     }
     return out;
+  }
+
+  // Empty if the member is not a text.
+  static std::string text(const Json& properties, const char* name) {
+    const auto value = properties.find(name);
+    return value != properties.end() && value->is_string() ? value->get<std::string>() : "";
   }
 
   Result<void> geometry(const Json& json, const std::string& type, const std::string& path,
@@ -130,7 +142,7 @@ class Reader {
     if (coordinates == json.end() || !coordinates->is_array())
       return bad(path, "has no array \"coordinates\"");
     const std::string where = member(path, "coordinates");
-    if (coordinates->empty()) return {};  // RFC 7946 allows it: no geometry
+    if (coordinates->empty()) return {};  // RFC 7946 allows an empty array: no geometry
     if (!kind->many) return (this->*kind->part)(*coordinates, where, properties);
     for (std::size_t i = 0; i < coordinates->size(); ++i)
       if (auto read = (this->*kind->part)((*coordinates)[i], element(where, i), properties); !read)

@@ -4,15 +4,16 @@
 //
 // What is meshed: see geometry_builder.h.
 //
-// Members of a Feature's `properties` that are used if they are numbers:
-//   marker    integer: marks the segments of the feature
-//   region    integer: id of the triangles inside the feature's polygons
-//   max_area  positive: bound on the area of these triangles
-//   max_edge  positive: bound on the length of their edges, as --edge
+// Members of a Feature's `properties` that are used:
+//   marker       integer or text: marks the segments of the feature, or names their marker
+//   region       integer or text: id of the triangles inside the feature's polygons, or its name
+//   marker_name  text: what the integer `marker` is called; so is region_name for `region`
+//   max_area     positive number: bound on the area of these triangles
+//   max_edge     positive number: bound on the length of their edges, as --edge
 //
 // Errors (kUnreadableInput) name the line and column if the text is not JSON, otherwise the path
-// of the offender ("features[3].geometry.coordinates[0]"): wrong types, a ring that is not closed,
-// has fewer than 3 distinct points or crosses itself, nesting deeper than 64 levels.
+// of the offender ("features[3].geometry.coordinates[0]"): wrong types, a ring that is not closed
+// or has fewer than 3 distinct points, nesting deeper than 64 levels.
 #pragma once
 
 #include <filesystem>

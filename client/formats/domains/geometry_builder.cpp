@@ -12,7 +12,9 @@
 namespace weft::client {
 namespace {
 
-// The bound on areas that both properties make together.
+constexpr std::size_t kMostTold = 5;  // rings that cross themselves and get a warning each
+
+// The bound on areas that a feature's two properties make together.
 std::optional<double> area_bound(const GeometryProperties& properties) {
   if (!properties.max_edge) return properties.max_area;
   const double of_edge = 0.4330127018922193 * *properties.max_edge * *properties.max_edge;
@@ -25,8 +27,18 @@ tl::unexpected<Error> GeometryBuilder::bad(const std::string& path, const std::s
   return fail(ExitCode::kUnreadableInput, file_ + ": " + (path.empty() ? "" : path + " ") + what);
 }
 
+Result<std::optional<std::int32_t>> GeometryBuilder::integer(const std::string& path,
+                                                             const char* field,
+                                                             std::optional<double> value) const {
+  if (!value) return std::nullopt;
+  constexpr double kMost = std::numeric_limits<std::int32_t>::max();
+  if (!(std::abs(*value) <= kMost) || *value != std::nearbyint(*value))
+    return bad(path + ", field " + field, "is " + shortest(*value) + ", not an integer of 32 bits");
+  return static_cast<std::int32_t>(*value);
+}
+
 bool GeometryBuilder::is_usable(Point at) {
-  // The limit of the service, and what keeps the predicates from overflow.
+  // The limit of the service; it also keeps the predicates from overflow.
   constexpr double kLargest = 1e50;
   return std::abs(at.x) <= kLargest && std::abs(at.y) <= kLargest;
 }
@@ -38,17 +50,20 @@ tl::unexpected<Error> GeometryBuilder::unusable(Point at, const std::string& pat
 Result<GeometryBuilder::Chain> GeometryBuilder::chain(std::span<const Point> positions,
                                                       const std::string& path,
                                                       const GeometryProperties& properties,
-                                                      std::span<const std::int32_t> markers) const {
+                                                      std::span<const std::uint32_t> markers) {
   Chain out;
+  const std::uint32_t label = markers.empty() ? label_of(markers_, NameKind::kMarker,
+                                                         properties.marker, properties.marker_name)
+                                              : 0;
   out.points.reserve(positions.size());
   out.numbers.reserve(positions.size());
   out.markers.reserve(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (!is_usable(positions[i]))
       return unusable(positions[i], path + "[" + std::to_string(i) + "]");
-    const std::int32_t marker = markers.empty() ? properties.marker : markers[i];
+    const std::uint32_t marker = markers.empty() ? label : markers[i];
     if (!out.points.empty() && out.points.back() == positions[i]) {
-      out.markers.back() = marker;  // of the segment that leaves the place
+      out.markers.back() = marker;  // of the segment that begins there
       continue;
     }
     out.points.push_back(positions[i]);
@@ -76,7 +91,8 @@ Result<void> GeometryBuilder::add(const Chain& chain, bool closed, const std::st
                                  chain.numbers[i], "]");
     const std::size_t next = i + 1 < size ? i + 1 : 0;
     domain_.segments.push_back({static_cast<std::uint32_t>(first + i),
-                                static_cast<std::uint32_t>(first + next), chain.markers[i]});
+                                static_cast<std::uint32_t>(first + next),
+                                static_cast<std::int32_t>(chain.markers[i])});
   }
   return {};
 }
@@ -90,7 +106,7 @@ Result<void> GeometryBuilder::point(Point at, const std::string& path) {
 
 Result<void> GeometryBuilder::line(std::span<const Point> positions, const std::string& path,
                                    const GeometryProperties& properties,
-                                   std::span<const std::int32_t> markers) {
+                                   std::span<const std::uint32_t> markers) {
   const auto line = chain(positions, path, properties, markers);
   if (!line) return tl::unexpected(line.error());
   if (line->points.size() < 2) return bad(path, "is a line with fewer than 2 distinct points");
@@ -100,22 +116,30 @@ Result<void> GeometryBuilder::line(std::span<const Point> positions, const std::
   return {};
 }
 
-Result<void> GeometryBuilder::check_crossing(const Chain& ring, const std::string& path) const {
+std::uint32_t GeometryBuilder::label_of(Labels& labels, NameKind kind, std::int32_t number,
+                                        const std::string& name) {
+  if (name.empty()) return labels.of(number);
+  if (number == 0) return labels.of(name);
+  names_.add(kind, number, name);
+  return labels.of(number);
+}
+
+void GeometryBuilder::check_crossing(const Chain& ring, const std::string& path) {
   const auto crossing = find_crossing(ring.points);
-  if (!crossing) return {};
+  if (!crossing || ++crossings_ > kMostTold) return;
   const auto edge = [&ring](std::uint32_t i) {
     const Point a = ring.points[i];
     const Point b = ring.points[i + 1 < ring.points.size() ? i + 1 : 0];
     return "edge " + std::to_string(ring.numbers[i]) + " from " + coordinates(a.x, a.y) + " to " +
            coordinates(b.x, b.y);
   };
-  return bad(path, "is a ring that crosses itself: " + edge(crossing->first) + " crosses " +
-                       edge(crossing->second));
+  domain_.warnings.push_back(file_ + ": " + path + " is a ring that crosses itself: " +
+                             edge(crossing->first) + " crosses " + edge(crossing->second));
 }
 
 Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::string& path,
                                    const GeometryProperties& properties,
-                                   std::span<const std::int32_t> markers, bool must_close) {
+                                   std::span<const std::uint32_t> markers, bool must_close) {
   auto ring = chain(positions, path, properties, markers);
   if (!ring) return tl::unexpected(ring.error());
   if (must_close && positions.size() < 4)
@@ -128,14 +152,19 @@ Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::
                          coordinates(points.back().x, points.back().y));
   if (closed) points.pop_back();
   if (points.size() < 3) return bad(path, "is a ring with fewer than 3 distinct points");
-  if (auto ok = check_crossing(*ring, path); !ok) return ok;
+  check_crossing(*ring, path);
   return add(*ring, true, path);
 }
 
 void GeometryBuilder::end_polygon(const std::string& path, const GeometryProperties& properties) {
   domain_.fill = Domain::Fill::kEvenOdd;
-  if (properties.region || properties.max_area || properties.max_edge)
-    region_polygons_.push_back({{polygon_start_, domain_.segments.size()}, properties, path});
+  if (!properties.region && properties.region_name.empty() && !properties.max_area &&
+      !properties.max_edge)
+    return;
+  const std::uint32_t label =
+      label_of(regions_, NameKind::kRegion, properties.region.value_or(0), properties.region_name);
+  region_polygons_.push_back(
+      {{polygon_start_, domain_.segments.size()}, label, area_bound(properties), path});
 }
 
 Result<Domain> GeometryBuilder::finish() {
@@ -144,13 +173,23 @@ Result<Domain> GeometryBuilder::finish() {
   for (const RegionPolygon& polygon : region_polygons_) ranges.push_back(polygon.range);
   const auto seeds = interior_points(domain_, ranges);
   if (!seeds) return bad("", seeds.error().message);
+  const std::vector<std::int32_t> region_numbers = regions_.numbers();
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const RegionPolygon& polygon = region_polygons_[i];
     if (!(*seeds)[i]) return bad(polygon.path, "is a polygon with a region but without area");
     domain_.region_places.add(i, file_ + ": the region of " + polygon.path + ", seed ", 0, "");
-    domain_.regions.push_back(
-        {*(*seeds)[i], polygon.properties.region.value_or(0), area_bound(polygon.properties)});
+    domain_.regions.push_back({*(*seeds)[i], region_numbers[polygon.label], polygon.max_area});
   }
+  const std::vector<std::int32_t> markers = markers_.numbers();
+  for (Domain::Segment& segment : domain_.segments)
+    segment.marker = markers[static_cast<std::size_t>(segment.marker)];
+  markers_.name_all(NameKind::kMarker, names_);
+  regions_.name_all(NameKind::kRegion, names_);
+  if (crossings_ > kMostTold)
+    domain_.warnings.push_back(file_ + ": " + std::to_string(crossings_ - kMostTold) +
+                               " more rings cross themselves");
+  for (std::string& warning : names_.warnings()) domain_.warnings.push_back(std::move(warning));
+  domain_.names = names_.take();
   if (domain_.fill == Domain::Fill::kEvenOdd) {
     for (const Line& line : lines_) {
       domain_.segment_places.add(domain_.segments.size(),

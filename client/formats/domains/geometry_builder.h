@@ -13,7 +13,8 @@
 //
 // `path` names a part in its file ("features[3].geometry.coordinates[0]"); its position i is then
 // path[i]. Errors (kUnreadableInput) name the file and the path: magnitudes beyond 1e50, a ring
-// that is not closed, has fewer than 3 distinct points or crosses itself.
+// that is not closed or has fewer than 3 distinct points. A ring that crosses itself is a warning:
+// what is inside it is decided by the parity.
 //
 //   GeometryBuilder builder("coast.wkt");
 //   builder.begin_polygon();
@@ -27,43 +28,58 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "client/base/error.h"
 #include "client/formats/domain.h"
 #include "client/formats/domains/interior_point.h"
+#include "client/formats/names.h"
 
 namespace weft::client {
 
 // The properties of a geometry in a file.
+// A name beside a number that is not 0 is that of the number. A name alone stands for a number that
+// the file does not use, the same wherever the name appears.
 struct GeometryProperties {
   std::int32_t marker = 0;             // of its segments
   std::optional<std::int32_t> region;  // of the triangles inside its polygons
   std::optional<double> max_area;      // of these triangles, positive
   std::optional<double> max_edge;      // of these triangles' edges, positive
+  std::string marker_name{};
+  std::string region_name{};
 };
 
 class GeometryBuilder {
  public:
-  explicit GeometryBuilder(std::string file) : file_(std::move(file)) {}
+  explicit GeometryBuilder(std::string file) : file_(std::move(file)), names_(file_) {}
+
+  // A label for a marker, to be given to `line` and `ring`.
+  std::uint32_t marker(std::int32_t number) { return markers_.of(number); }
+  std::uint32_t marker(std::string_view name) { return markers_.of(name); }
 
   Result<void> point(Point at, const std::string& path);
-  // `markers`: one for each position, of the segment that starts there; or empty:
-  // properties.marker.
+  // `markers`: a label for each position, of the segment that starts there; or empty: the marker of
+  // the properties.
   Result<void> line(std::span<const Point> positions, const std::string& path,
                     const GeometryProperties& properties,
-                    std::span<const std::int32_t> markers = {});
+                    std::span<const std::uint32_t> markers = {});
 
   // A polygon is the rings between these two calls.
   void begin_polygon() { polygon_start_ = domain_.segments.size(); }
   // The last position repeats the first; if `must_close` is false it may be left out.
   Result<void> ring(std::span<const Point> positions, const std::string& path,
                     const GeometryProperties& properties,
-                    std::span<const std::int32_t> markers = {}, bool must_close = true);
+                    std::span<const std::uint32_t> markers = {}, bool must_close = true);
   void end_polygon(const std::string& path, const GeometryProperties& properties);
 
   // Returns an error if nothing was added. The builder must not be used afterwards.
   Result<Domain> finish();
+
+  // The number of a feature's field, if it has one, as a marker or a region. Error: it is none.
+  Result<std::optional<std::int32_t>> integer(const std::string& path, const char* field,
+                                              std::optional<double> value) const;
 
   // "coast.wkt: polygon 1 is ...".
   tl::unexpected<Error> bad(const std::string& path, const std::string& what) const;
@@ -76,26 +92,32 @@ class GeometryBuilder {
   };
   struct RegionPolygon {
     PolygonRange range;
-    GeometryProperties properties;
+    std::uint32_t label;
+    std::optional<double> max_area;
     std::string path;
   };
   // Positions without repetitions: each with its number in the file, and its marker.
   struct Chain {
     std::vector<Point> points;
     std::vector<std::size_t> numbers;
-    std::vector<std::int32_t> markers;
+    std::vector<std::uint32_t> markers;  // labels
   };
 
   Result<Chain> chain(std::span<const Point> positions, const std::string& path,
-                      const GeometryProperties& properties,
-                      std::span<const std::int32_t> markers) const;
+                      const GeometryProperties& properties, std::span<const std::uint32_t> markers);
   static bool is_usable(Point at);
   tl::unexpected<Error> unusable(Point at, const std::string& path) const;
-  Result<void> check_crossing(const Chain& ring, const std::string& path) const;
+  std::uint32_t label_of(Labels& labels, NameKind kind, std::int32_t number,
+                         const std::string& name);
+  void check_crossing(const Chain& ring, const std::string& path);
   Result<void> add(const Chain& chain, bool closed, const std::string& path);
 
   std::string file_;
-  Domain domain_;
+  NameReader names_;
+  Labels markers_;
+  Labels regions_;
+  std::size_t crossings_ = 0;  // rings that cross themselves
+  Domain domain_;              // the markers of its segments are labels
   std::size_t polygon_start_ = 0;
   std::vector<Line> lines_;
   std::vector<RegionPolygon> region_polygons_;

@@ -8,9 +8,9 @@
 namespace weft::client {
 namespace {
 
-// A few lines per polygon, through its widest gaps between vertices.
+// Lines per polygon; they pass through its widest gaps between vertices.
 constexpr std::size_t kLinesPerPolygon = 3;
-// Crossings of a line with a segment, over all lines: seconds of work.
+// Crossings of lines with segments, over all lines: some seconds of work.
 constexpr std::uint64_t kMaxWork = 2'000'000'000;
 
 struct ScanLine {
@@ -46,8 +46,8 @@ void add_scan_lines(const Domain& domain, const PolygonRange& range, std::size_t
                       return wide != other ? wide > other : i < j;
                     });
   for (std::size_t k = 0; k < wanted; ++k) {
-    // Vertices of other parts may lie in the gap: take the middle of what they leave around its
-    // own.
+    // Vertices of other parts may lie in the gap, so the middle of the free piece around the gap's
+    // own middle is taken.
     const double middle = ys[gaps[k]] / 2 + ys[gaps[k] + 1] / 2;
     const auto above = std::upper_bound(all_ys.begin(), all_ys.end(), middle);
     const double low = *std::prev(above);
@@ -57,7 +57,7 @@ void add_scan_lines(const Domain& domain, const PolygonRange& range, std::size_t
   }
 }
 
-// Where a line meets a segment, and whether that is one of the polygon's own.
+// Where a line crosses a segment, and whether that segment is one of the polygon's own.
 struct Crossing {
   double x;
   bool own;
@@ -68,7 +68,7 @@ struct Candidate {
   Point at;
 };
 
-// Which pieces of a line count.
+// Which pieces of a line are looked for.
 enum class Pieces { kInside, kHoles };
 
 void consider(const ScanLine& line, Pieces pieces, std::vector<Crossing>& crossings,

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "client/formats/orientation.h"
+#include "client/formats/derived/orientation.h"
 
 namespace weft::client {
 namespace {
@@ -26,8 +26,8 @@ bool interiors_cross(const Edge& s, const Edge& t) {
          orientation(t.left, t.right, s.left) * orientation(t.left, t.right, s.right) < 0;
 }
 
-// The order of edges along the sweep line; collinear ones go by index. It is consistent as long as
-// no crossing has been passed, and the sweep ends at the first.
+// The order of edges along the sweep line; collinear edges are ordered by index. It is consistent
+// up to the first crossing, and there the sweep ends.
 struct Below {
   const std::vector<Edge>* edges;
   bool operator()(std::uint32_t i, std::uint32_t j) const {
@@ -68,7 +68,7 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> find_crossing(std::span<c
   }
   std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
     if (a.at != b.at) return before(a.at, b.at);
-    if (a.starts != b.starts) return b.starts;  // what ends here leaves first
+    if (a.starts != b.starts) return b.starts;  // edges that end here are removed first
     return a.edge < b.edge;
   });
 

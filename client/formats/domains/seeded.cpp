@@ -15,7 +15,7 @@ namespace {
 
 using Segment = Domain::Segment;
 
-// Makes points that coincide one. The first keeps its marker.
+// Merges points that coincide. The first one keeps its marker.
 void join_points(Domain& domain) {
   std::vector<std::uint32_t> order(domain.points.size());
   std::iota(order.begin(), order.end(), std::uint32_t{0});
@@ -46,7 +46,7 @@ void join_points(Domain& domain) {
   domain.point_markers = std::move(markers);
 }
 
-// Segments by their ends; those that repeat an odd number of times bound what is filled.
+// Segments as pairs of ends. Those that occur an odd number of times bound what is filled.
 struct Parity {
   std::vector<Segment> bounding;
   std::vector<Segment> inside;
@@ -69,8 +69,8 @@ Parity by_parity(std::vector<Segment> segments) {
   return out;
 }
 
-// Orders segments, an even number of which meets at every point, ring by ring; no ring visits a
-// point twice.
+// Orders segments ring by ring, so that no ring visits a point twice. REQUIRES: an even number of
+// them meets at each point.
 std::vector<PolygonRange> order_by_ring(std::size_t points, std::vector<Segment>& segments) {
   std::vector<std::uint32_t> starts(points + 1, 0);
   for (const Segment& s : segments) ++starts[s.a + 1], ++starts[s.b + 1];

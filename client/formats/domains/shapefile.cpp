@@ -3,9 +3,7 @@
 
 #include <shapefil.h>
 
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +11,7 @@
 
 #include "client/base/text.h"
 #include "client/formats/domains/geometry_builder.h"
+#include "client/formats/files/file_contents.h"
 
 namespace weft::client {
 namespace {
@@ -27,7 +26,7 @@ struct DestroyShape {
   void operator()(SHPObject* shape) const { ::SHPDestroyObject(shape); }
 };
 
-// Files as Shapelib opens them, which says nothing on stderr: the caller reports.
+// Opens files without Shapelib's own messages on stderr: the caller reports the error.
 SAHooks quiet_hooks() {
   SAHooks hooks;
   ::SASetupDefaultHooks(&hooks);
@@ -35,10 +34,10 @@ SAHooks quiet_hooks() {
   return hooks;
 }
 
-// The attributes of records.
+// The attributes of the records.
 class Table {
  public:
-  // An error if there is a table that cannot be read; none without one.
+  // An error if there is a table that cannot be read. It is no error if there is none.
   Result<void> open(const std::filesystem::path& path, const SAHooks& hooks) {
     std::error_code ignored;
     for (const char* extension : {".dbf", ".DBF"}) {
@@ -59,6 +58,16 @@ class Table {
     const DBFFieldType type = ::DBFGetFieldInfo(table_.get(), index, nullptr, nullptr, nullptr);
     if (type != FTInteger && type != FTDouble) return std::nullopt;
     return ::DBFReadDoubleAttribute(table_.get(), record, index);
+  }
+
+  // Empty if the field is not a text.
+  std::string text(int record, const char* field) const {
+    if (!table_ || record >= ::DBFGetRecordCount(table_.get())) return "";
+    const int index = ::DBFGetFieldIndex(table_.get(), field);
+    if (index < 0 || ::DBFIsAttributeNULL(table_.get(), record, index) != 0) return "";
+    if (::DBFGetFieldInfo(table_.get(), index, nullptr, nullptr, nullptr) != FTString) return "";
+    const char* const value = ::DBFReadStringAttribute(table_.get(), record, index);
+    return value != nullptr ? value : "";
   }
 
  private:
@@ -92,25 +101,19 @@ class Reader {
   }
 
  private:
-  Result<std::optional<std::int32_t>> integer(int record, const std::string& path,
-                                              const char* field) const {
-    const auto value = table_.number(record, field);
-    if (!value) return std::nullopt;
-    constexpr double kMax = std::numeric_limits<std::int32_t>::max();
-    if (!(std::abs(*value) <= kMax) || *value != std::nearbyint(*value))
-      return builder_.bad(path + ", field " + field,
-                          "is " + shortest(*value) + ", not an integer of 32 bits");
-    return static_cast<std::int32_t>(*value);
-  }
-
   Result<GeometryProperties> read_properties(int record, const std::string& path) const {
     GeometryProperties out;
-    const auto marker = integer(record, path, "marker");
+    const auto marker = builder_.integer(path, "marker", table_.number(record, "marker"));
     if (!marker) return tl::unexpected(marker.error());
     out.marker = marker->value_or(0);
-    const auto region = integer(record, path, "region");
+    const auto region = builder_.integer(path, "region", table_.number(record, "region"));
     if (!region) return tl::unexpected(region.error());
     out.region = *region;
+    // Names of fields are cut to ten letters in the format.
+    out.marker_name = table_.text(record, "marker");
+    out.region_name = table_.text(record, "region");
+    if (out.marker_name.empty()) out.marker_name = table_.text(record, "marker_nam");
+    if (out.region_name.empty()) out.region_name = table_.text(record, "region_nam");
     for (const auto& [name, bound] :
          {std::pair{"max_area", &out.max_area}, {"max_edge", &out.max_edge}}) {
       *bound = table_.number(record, name);
@@ -179,6 +182,25 @@ class Reader {
   GeometryBuilder builder_;
 };
 
+// The system in the .prj file, which is Esri's WKT.
+std::optional<CoordinateSystem> system_beside(const std::filesystem::path& path) {
+  constexpr std::uint64_t kMostBytes = 1 << 16;
+  std::error_code ignored;
+  for (const char* extension : {".prj", ".PRJ"}) {
+    const auto name = std::filesystem::path(path).replace_extension(extension);
+    if (!std::filesystem::is_regular_file(name, ignored)) continue;
+    const auto contents = read_file(name, kMostBytes);
+    if (!contents) continue;
+    const std::string text(contents->text());
+    const std::size_t from = text.find('"');
+    const std::size_t to = text.find('"', from + 1);
+    if (from == std::string::npos || to == std::string::npos) continue;
+    return CoordinateSystem{harmless(text.substr(from + 1, to - from - 1)),
+                            text.starts_with("GEOGCS"), text};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<Domain> read_shapefile(const std::filesystem::path& path) {
@@ -186,7 +208,9 @@ Result<Domain> read_shapefile(const std::filesystem::path& path) {
     return fail(ExitCode::kUnreadableInput,
                 path.string() + ": " + (missing ? missing.message() : "is not a regular file"));
   const SAHooks hooks = quiet_hooks();
-  return Reader(path, hooks).read();
+  auto domain = Reader(path, hooks).read();
+  if (domain) domain->system = system_beside(path);
+  return domain;
 }
 
 }  // namespace weft::client

@@ -3,7 +3,7 @@
 // needed; polygons, polylines, points and multipoints, whose altitudes and measures are dropped.
 // Fields `marker`, `region`, `max_area` and `max_edge` of the .dbf beside it, if there is one, mean
 // the same as in GeoJSON (geojson.h). What is meshed: see geometry_builder.h. Coordinates are taken
-// as they are.
+// as they are; a .prj beside it tells their system.
 //
 // Errors (kUnreadableInput) name the file and the record, counted from 0.
 #pragma once

@@ -12,7 +12,7 @@
 
 #include "client/base/text.h"
 #include "client/formats/domains/geometry_builder.h"
-#include "client/formats/file_contents.h"
+#include "client/formats/files/file_contents.h"
 #include "client/formats/triangle/triangle_points.h"
 
 namespace weft::client {
@@ -21,7 +21,7 @@ namespace {
 constexpr int kMaxDepth = 64;  // of collections in collections
 constexpr std::string_view kBlanks = " \t\r\n\f\v";
 
-// Thrown and caught in this file alone.
+// Thrown and caught in this file only.
 struct Malformed {
   Error error;
 };
@@ -55,7 +55,7 @@ class Reader {
   static void must(const Result<void>& done) {
     if (!done) throw Malformed{done.error()};
   }
-  // Lines up to here; counts on from where it was asked last.
+  // The number of lines up to here; counts on from the place of the last call.
   std::size_t line() const {
     const std::size_t here = whole_.size() - rest_.size();
     lines_ += static_cast<std::size_t>(
@@ -86,7 +86,7 @@ class Reader {
     return rest_.empty() ? "the end of the file"
                          : in_quotes(rest_.substr(0, rest_.find_first_of("(), \t\r\n", 1)));
   }
-  // Letters, in upper case; nothing is read where there are none.
+  // Reads letters, and returns them in upper case; reads nothing if there are none.
   std::string word() {
     skip_blanks();
     std::string out;
@@ -118,7 +118,7 @@ class Reader {
     return value;
   }
 
-  // Two numbers, and up to two more that are dropped.
+  // Reads two numbers, and up to two more that are dropped.
   Point position() {
     Point at;
     at.x = number();
@@ -184,7 +184,7 @@ class Reader {
     struct Kind {
       std::string_view name;
       Part part;
-      const char* parts;  // of several: what each is called
+      const char* parts;  // the parts of a collection, as errors call them
     };
     static constexpr Kind kKinds[] = {
         {"POINT", &Reader::point, nullptr},
@@ -227,7 +227,7 @@ class Reader {
   std::string name_;
   std::string_view whole_;
   std::string_view rest_;
-  mutable std::size_t counted_ = 0;  // bytes whose line ends are in lines_
+  mutable std::size_t counted_ = 0;  // bytes whose lines are counted in lines_
   mutable std::size_t lines_ = 0;
   GeometryBuilder builder_;
 };

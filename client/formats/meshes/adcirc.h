@@ -7,18 +7,22 @@
 // without an open piece is an island (IBTYPE 1), in one piece. The domain lies to the left of the
 // nodes of a boundary, so the land is on the right. As ADCIRC requires, a ring of one piece repeats
 // its first node at the end if it is mainland, and not if it is open or an island. Markers of edges
-// inside the domain are lost, and so are regions. Depths are 0, because weft knows no depths.
+// inside the domain are lost, and so are regions. Depths are those of the mesh's bed
+// (bed.h), or 0.
+//
+// This folder has more than 25 files because each format has its own.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "client/base/atomic_file.h"
 #include "client/base/error.h"
+#include "client/formats/derived/vertex_values.h"
 #include "client/formats/mesh.h"
-#include "client/formats/vertex_values.h"
 
 namespace weft::client {
 
@@ -31,7 +35,7 @@ void write_adcirc(const MeshView& mesh, std::span<const std::int32_t> open_bound
 Result<Mesh> read_adcirc(const std::filesystem::path& path);
 
 // The same with the depths, as the array "depth".
-Result<VertexValues> read_adcirc_values(const std::filesystem::path& path,
-                                        const std::string& array);
+Result<MeshWithArrays> read_adcirc_values(const std::filesystem::path& path,
+                                          const std::optional<std::string>& wanted);
 
 }  // namespace weft::client

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <charconv>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "client/formats/file_contents.h"
-#include "client/formats/line_scanner.h"
+#include "client/formats/files/file_contents.h"
+#include "client/formats/files/line_scanner.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/meshes/adcirc.h"
 #include "client/formats/triangle/triangle_points.h"
@@ -17,7 +18,7 @@ constexpr std::int32_t kOpenMarker = 1;
 constexpr std::int32_t kLandMarker = 2;
 constexpr std::int32_t kIslandMarker = 3;
 
-// The number after the word "marker".
+// The number that follows the word "marker".
 std::int32_t marker_of(std::string_view comment, std::int32_t otherwise) {
   constexpr std::string_view kWord = "marker ";
   const std::size_t at = comment.rfind(kWord);
@@ -28,7 +29,7 @@ std::int32_t marker_of(std::string_view comment, std::int32_t otherwise) {
   return marker;
 }
 
-// The depths are read if there is a place for them.
+// Depths are stored if there is a place for them.
 Result<void> read_nodes(LineScanner& scanner, std::uint64_t count, Mesh& mesh,
                         std::vector<double>* depths) {
   mesh.coordinates.reserve(2 * count);
@@ -72,7 +73,7 @@ Result<void> read_elements(LineScanner& scanner, std::uint64_t count, Mesh& mesh
 }
 
 Result<void> read_boundaries(LineScanner& scanner, bool open, Mesh& mesh) {
-  if (!scanner.try_next_line()) return {};  // grids may end before
+  if (!scanner.try_next_line()) return {};  // a grid may end before this
   const auto count = scanner.count("the boundary count");
   if (!count) return tl::unexpected(count.error());
   if (auto line = scanner.next_line("the boundary node count"); !line) return line;
@@ -138,14 +139,19 @@ Result<Mesh> read_adcirc(const std::filesystem::path& path) {
   return read_grid(path, nullptr);
 }
 
-Result<VertexValues> read_adcirc_values(const std::filesystem::path& path,
-                                        const std::string& array) {
-  const auto name = chosen_array(path, {"depth"}, array);
-  if (!name) return tl::unexpected(name.error());
+Result<MeshWithArrays> read_adcirc_values(const std::filesystem::path& path,
+                                          const std::optional<std::string>& wanted) {
+  const auto chosen = chosen_arrays(path, {"depth"}, wanted);
+  if (!chosen) return tl::unexpected(chosen.error());
   std::vector<double> depths;
   auto mesh = read_grid(path, &depths);
   if (!mesh) return tl::unexpected(mesh.error());
-  return validated(path, *name, std::move(*mesh), std::move(depths));
+  MeshWithArrays all{std::move(*mesh), {}};
+  // The format has a column of depths, even if they are unknown.
+  const auto is_known = [](double depth) { return depth != 0; };
+  if (!wanted && std::none_of(depths.begin(), depths.end(), is_known)) return all;
+  all.arrays.push_back({chosen->front(), std::move(depths)});
+  return all;
 }
 
 }  // namespace weft::client

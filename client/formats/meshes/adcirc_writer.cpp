@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "client/formats/mesh_edges.h"
+#include "client/formats/bed.h"
+#include "client/formats/derived/mesh_edges.h"
+#include "client/formats/files/text_writer.h"
 #include "client/formats/meshes/adcirc.h"
-#include "client/formats/text_writer.h"
 
 namespace weft::client {
 namespace {
@@ -17,7 +18,7 @@ constexpr int kIsland = 1;
 
 struct Piece {
   std::vector<std::uint32_t> vertices;
-  std::optional<std::int32_t> marker;  // none: of several
+  std::optional<std::int32_t> marker;  // none if they differ
   int type = kMainland;                // of land
 };
 
@@ -25,18 +26,6 @@ struct Boundaries {
   std::vector<Piece> open;
   std::vector<Piece> land;
 };
-
-// Twice the area inside, negative where the ring is clockwise.
-double signed_area(const MeshView& mesh, std::span<const std::uint32_t> ring) {
-  const double* origin = &mesh.coordinates[2 * std::size_t{ring[0]}];
-  double area = 0;
-  for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
-    const double* a = &mesh.coordinates[2 * std::size_t{ring[i]}];
-    const double* b = &mesh.coordinates[2 * std::size_t{ring[i + 1]}];
-    area += (a[0] - origin[0]) * (b[1] - origin[1]) - (a[1] - origin[1]) * (b[0] - origin[0]);
-  }
-  return area;
-}
 
 void add_ring(const MeshView& mesh, std::span<const std::uint32_t> ring,
               std::span<const std::int32_t> markers, std::span<const std::int32_t> open_markers,
@@ -90,8 +79,9 @@ void write_adcirc(const MeshView& mesh, std::span<const std::int32_t> open_bound
                   OutputFile& file) {
   file.put("weft\n");
   put_line(file, mesh.triangle_count(), mesh.vertex_count());
+  const Bed bed(mesh);
   for (const std::size_t v : mesh.up_to(mesh.vertex_count()))
-    put_line(file, v + 1, mesh.coordinates[2 * v], mesh.coordinates[2 * v + 1], "0.0");
+    put_line(file, v + 1, mesh.coordinates[2 * v], mesh.coordinates[2 * v + 1], bed.depth(v));
   for (const std::size_t t : mesh.up_to(mesh.triangle_count())) {
     const std::uint32_t* corner = &mesh.triangles[3 * t];
     put_line(file, t + 1, 3, corner[0] + std::int64_t{1}, corner[1] + std::int64_t{1},

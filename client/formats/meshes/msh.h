@@ -8,12 +8,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "client/base/atomic_file.h"
 #include "client/base/error.h"
+#include "client/formats/derived/vertex_values.h"
 #include "client/formats/mesh.h"
-#include "client/formats/vertex_values.h"
 
 namespace weft::client {
 
@@ -21,11 +22,14 @@ void write_msh(const MeshView& mesh, OutputFile& file);
 void write_msh22(const MeshView& mesh, OutputFile& file);
 
 // Reads triangles, lines (and points, which are dropped) of a 4.1 or 2.2 file, binary or ASCII. The
-// name or else the tag of an element's first physical group is its region or marker.
+// tag of an element's first physical group is its region or marker, and the group's name is the
+// region's or the marker's, unless that name is "region <id>" or "marker <value>", which is the
+// region or the marker itself.
 Result<Mesh> read_msh(const std::filesystem::path& path);
 
 // The same with the $NodeData of that name, of one component; if it has several, as of several
 // steps of time, the last. A vertex that it does not list has the value NaN.
-Result<VertexValues> read_msh_values(const std::filesystem::path& path, const std::string& array);
+Result<MeshWithArrays> read_msh_values(const std::filesystem::path& path,
+                                       const std::optional<std::string>& wanted);
 
 }  // namespace weft::client

@@ -3,9 +3,9 @@
 #include <span>
 #include <string>
 
+#include "client/formats/files/text_writer.h"
 #include "client/formats/meshes/msh.h"
 #include "client/formats/meshes/msh_groups.h"
-#include "client/formats/text_writer.h"
 
 namespace weft::client {
 namespace {
@@ -34,8 +34,8 @@ void put_elements(OutputFile& file, const MeshView& mesh, std::span<const std::u
 }  // namespace
 
 void write_msh22(const MeshView& mesh, OutputFile& file) {
-  const PhysicalGroups markers(mesh.pages, mesh.edge_markers);
-  const PhysicalGroups regions(mesh.pages, mesh.regions);
+  const PhysicalGroups markers(mesh.pages, mesh.edge_markers, mesh.names->markers);
+  const PhysicalGroups regions(mesh.pages, mesh.regions, mesh.names->regions);
   file.put("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
   put_physical_names(file, markers, regions);
   file.put("$Nodes\n");
@@ -50,6 +50,7 @@ void write_msh22(const MeshView& mesh, OutputFile& file) {
   put_elements(file, mesh, mesh.triangles, mesh.triangle_nodes(), mesh.regions, regions,
                msh_triangle_type(mesh.order), number);
   file.put("$EndElements\n");
+  put_node_data(file, mesh, /*binary=*/false);
 }
 
 }  // namespace weft::client

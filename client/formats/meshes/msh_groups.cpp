@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <string>
 
+#include "client/formats/files/text_writer.h"
+
 namespace weft::client {
 
-PhysicalGroups::PhysicalGroups(PagedMemory* pages, std::span<const std::int32_t> values) {
+PhysicalGroups::PhysicalGroups(PagedMemory* pages, std::span<const std::int32_t> values,
+                               const NameTable& table)
+    : names(table) {
   const auto make_unique = [this] {
     std::sort(ids.begin(), ids.end());
     ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
@@ -24,7 +28,7 @@ PhysicalGroups::PhysicalGroups(PagedMemory* pages, std::span<const std::int32_t>
   std::int32_t free = 0;
   const auto next_free = [this, &free] {
     do ++free;
-    while (std::binary_search(ids.begin(), ids.end(), free));
+    while (std::binary_search(ids.begin(), ids.end(), free) || names.contains(free));
     return free;
   };
   for (const std::int32_t id : ids) tags.push_back(id > 0 ? id : next_free());
@@ -36,16 +40,42 @@ std::size_t PhysicalGroups::find(std::int32_t value) const {
 
 void put_physical_names(OutputFile& file, const PhysicalGroups& markers,
                         const PhysicalGroups& regions) {
-  std::string text =
-      "$PhysicalNames\n" + std::to_string(markers.ids.size() + regions.ids.size()) + "\n";
-  const auto add = [&text](const char* dimension, const char* word, const PhysicalGroups& groups) {
-    for (std::size_t e = 0; e < groups.ids.size(); ++e)
-      text += dimension + std::to_string(groups.tags[e]) + " \"" + word + " " +
-              std::to_string(groups.ids[e]) + "\"\n";
+  std::string text;
+  std::size_t count = 0;
+  const auto put = [&](const char* dimension, std::int32_t tag, const std::string& name) {
+    text += dimension + std::to_string(tag) + " \"" + name + "\"\n";
+    ++count;
   };
-  add("1 ", "marker", markers);
-  add("2 ", "region", regions);
-  file.put(text + "$EndPhysicalNames\n");
+  const auto add = [&put](const char* dimension, const std::string& word,
+                          const PhysicalGroups& groups) {
+    for (std::size_t e = 0; e < groups.ids.size(); ++e) {
+      const std::string* const name = name_of(groups.names, groups.ids[e]);
+      put(dimension, groups.tags[e], name ? *name : word + std::to_string(groups.ids[e]));
+    }
+    for (const auto& [id, name] : groups.names)
+      if (id > 0 && !std::binary_search(groups.ids.begin(), groups.ids.end(), id))
+        put(dimension, id, name);
+  };
+  add("1 ", "marker ", markers);
+  add("2 ", "region ", regions);
+  file.put("$PhysicalNames\n" + std::to_string(count) + "\n" + text + "$EndPhysicalNames\n");
+}
+
+void put_node_data(OutputFile& file, const MeshView& mesh, bool binary) {
+  for (const VertexValues& values : mesh.vertex_values) {
+    // The name; the time 0; step 0, with one component per node.
+    file.put("$NodeData\n1\n\"" + values.name + "\"\n1\n0\n3\n0\n1\n");
+    put_line(file, values.values.size());
+    for (const std::size_t v : mesh.up_to(values.values.size())) {
+      if (!binary) {
+        put_line(file, v + 1, values.values[v]);
+        continue;
+      }
+      file.put_raw(static_cast<std::int32_t>(v + 1));
+      file.put_raw(values.values[v]);
+    }
+    file.put(binary ? "\n$EndNodeData\n" : "$EndNodeData\n");
+  }
 }
 
 }  // namespace weft::client

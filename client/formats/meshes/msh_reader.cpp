@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "client/base/text.h"
-#include "client/formats/file_contents.h"
+#include "client/formats/files/file_contents.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/meshes/msh.h"
 
@@ -23,13 +23,13 @@ namespace {
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{64} << 30;
 constexpr std::string_view kBlanks = " \t\r\n";
 
-// Types of elements; the first two are the dimensions, too.
+// The types of elements. The first two are also their dimensions.
 constexpr std::int32_t kLine = 1;
 constexpr std::int32_t kTriangle = 2;
 constexpr std::int32_t kPoint = 15;
 
-// Thrown and caught in this file alone: a format of nested counts reads best without a check after
-// every field.
+// Thrown and caught in this file only: a format of nested counts is easiest to read without a check
+// after every field.
 struct Malformed {
   std::string why;
 };
@@ -37,7 +37,7 @@ struct Malformed {
 class Reader {
  public:
   Reader(std::filesystem::path path, std::string_view text)
-      : path_(std::move(path)), whole_(text), rest_(text) {}
+      : path_(std::move(path)), whole_(text), rest_(text), names_(path_.string()) {}
 
   Result<Mesh> read() {
     return read_or_refuse<Mesh>([this] {
@@ -46,18 +46,23 @@ class Reader {
     });
   }
 
-  Result<VertexValues> read_values(const std::string& wanted) {
-    return read_or_refuse<VertexValues>([&]() -> Result<VertexValues> {
+  Result<MeshWithArrays> read_values(const std::optional<std::string>& wanted) {
+    return read_or_refuse<MeshWithArrays>([&]() -> Result<MeshWithArrays> {
       read_sections();
       std::vector<std::string> names;
       for (const auto& [name, data] : node_data_) names.push_back(name);
-      const auto name = chosen_array(path_, names, wanted);
-      if (!name) return tl::unexpected(name.error());
-      rest_ = node_data_.at(*name);
-      std::vector<double> values = read_node_data();
+      const auto chosen = chosen_arrays(path_, std::move(names), wanted);
+      if (!chosen) return tl::unexpected(chosen.error());
+      std::vector<NamedArray> arrays;
+      for (const std::string& name : *chosen) {
+        rest_ = node_data_.at(name);
+        arrays.push_back(
+            {name, read_or_refuse<std::vector<double>>(
+                       [this]() -> Result<std::vector<double>> { return read_node_data(); })});
+      }
       auto mesh = validated(path_, std::move(mesh_));
       if (!mesh) return tl::unexpected(mesh.error());
-      return validated(path_, *name, std::move(*mesh), std::move(values));
+      return MeshWithArrays{std::move(*mesh), std::move(arrays)};
     });
   }
 
@@ -83,7 +88,7 @@ class Reader {
         has_format = true;
       } else if (!has_format) {
         throw Malformed{"is not a Gmsh mesh: it does not start with $MeshFormat"};
-      } else if (line == "$PhysicalNames") {
+      } else if (line == "$PhysicalNames") {  // text even in binary files
         read_names();
       } else if (line == "$Entities") {
         read_entities();
@@ -102,6 +107,8 @@ class Reader {
     }
     if (!has_format) throw Malformed{"is empty"};
     if (!has_nodes_ || !has_elements_) throw Malformed{"has no $Nodes or no $Elements"};
+    mesh_.warnings = names_.warnings();
+    mesh_.names = names_.take();
   }
 
   // The next line that is not blank; empty at the end.
@@ -146,7 +153,7 @@ class Reader {
     return value;
   }
 
-  // A number of items to come, each of at least one byte.
+  // The number of items that follow, each of which takes one byte at least.
   std::uint64_t count() {
     const auto value = next<std::uint64_t>();
     if (value > rest_.size())
@@ -180,17 +187,22 @@ class Reader {
       const std::string_view line = next_line();
       if (line.size() < 2 || !line.starts_with('"') || !line.ends_with('"'))
         throw Malformed{"a physical name is not in quotes"};
-      std::string_view name = line.substr(1, line.size() - 2);
-      for (const std::string_view word : {"region ", "marker "}) {
-        if (!name.starts_with(word)) continue;
-        name.remove_prefix(word.size());
-        std::int32_t id = 0;
-        const auto [end, problem] = std::from_chars(name.data(), name.data() + name.size(), id);
-        if (problem == std::errc() && end == name.data() + name.size())
-          id_of_group_[{dimension, tag}] = id;
-        break;
-      }
+      read_name({dimension, tag}, line.substr(1, line.size() - 2));
     }
+  }
+
+  void read_name(Tag group, std::string_view name) {
+    for (const std::string_view word : {"region ", "marker "}) {
+      if (!name.starts_with(word)) continue;
+      const std::string_view number = name.substr(word.size());
+      std::int32_t id = 0;
+      const auto [end, problem] = std::from_chars(number.data(), number.data() + number.size(), id);
+      if (problem != std::errc() || end != number.data() + number.size()) continue;
+      id_of_group_[group] = id;
+      return;
+    }
+    if (group.first == kLine) names_.add(NameKind::kMarker, group.second, name);
+    if (group.first == kTriangle) names_.add(NameKind::kRegion, group.second, name);
   }
 
   void read_entities() {
@@ -213,7 +225,7 @@ class Reader {
     }
   }
 
-  // The region or marker of an entity: 0 where it has no group.
+  // The region or marker of an entity; 0 if it has no group.
   std::int32_t id_of(Tag entity) const {
     const auto group = group_of_entity_.find(entity);
     if (group == group_of_entity_.end()) return 0;
@@ -274,7 +286,7 @@ class Reader {
     take_nodes(place_of_tag, coordinates);
   }
 
-  // A number of items to come, as text even in binary files of 2.2.
+  // The number of items that follow, which is text even in binary files of 2.2.
   std::uint64_t text_count() {
     const auto value = text_number<std::uint64_t>();
     if (value > rest_.size() || value > std::numeric_limits<std::uint32_t>::max())
@@ -286,7 +298,7 @@ class Reader {
   // `place_of_tag`: tag of a node, its place in `coordinates`.
   void take_nodes(std::vector<std::pair<std::uint64_t, std::uint64_t>>& place_of_tag,
                   const std::vector<double>& coordinates) {
-    // Vertices go by tag, so that a mesh comes back in the order in which it was written.
+    // Vertices are sorted by tag, so that a mesh is read back in the order in which it was written.
     std::sort(place_of_tag.begin(), place_of_tag.end());
     for (const auto& [tag, place] : place_of_tag) {
       if (!tags_.empty() && tags_.back() == tag)
@@ -310,7 +322,7 @@ class Reader {
     return static_cast<std::uint32_t>(found - tags_.begin());
   }
 
-  // Of $NodeData the name, and where the rest begins.
+  // The name of a section $NodeData, and where its rest begins.
   void keep_node_data() {
     const auto texts = text_number<std::uint64_t>();
     std::string_view name = next_line();
@@ -321,13 +333,13 @@ class Reader {
     node_data_.insert_or_assign(std::string(name.substr(1, name.size() - 2)), rest_);
   }
 
-  // For each vertex the value of the node data whose name was read.
+  // The value at each vertex of the node data whose name was read.
   std::vector<double> read_node_data() {
     const auto reals = text_number<std::uint64_t>();
     for (std::uint64_t i = 0; i < reals; ++i) text_number<double>();
     const auto integers = text_number<std::uint64_t>();
     if (integers < 3) throw Malformed{"node data has fewer than 3 integers"};
-    text_number<std::int64_t>();  // the step of time
+    text_number<std::int64_t>();  // the time step
     const auto components = text_number<std::int64_t>();
     if (components != 1)
       throw Malformed{"the node data has " + std::to_string(components) +
@@ -421,8 +433,9 @@ class Reader {
   std::map<Tag, std::int32_t> id_of_group_;
   std::map<Tag, std::int32_t> group_of_entity_;
   std::vector<std::uint64_t> tags_;  // of the vertices, ascending
-  // What follows the names of $NodeData.
+  // What follows each name of a section $NodeData.
   std::map<std::string, std::string_view> node_data_;
+  NameReader names_;
   Mesh mesh_;
 };
 
@@ -434,10 +447,11 @@ Result<Mesh> read_msh(const std::filesystem::path& path) {
   return Reader(path, contents->text()).read();
 }
 
-Result<VertexValues> read_msh_values(const std::filesystem::path& path, const std::string& array) {
+Result<MeshWithArrays> read_msh_values(const std::filesystem::path& path,
+                                       const std::optional<std::string>& wanted) {
   const auto contents = read_file(path, kMaxFileBytes);
   if (!contents) return tl::unexpected(contents.error());
-  return Reader(path, contents->text()).read_values(array);
+  return Reader(path, contents->text()).read_values(wanted);
 }
 
 }  // namespace weft::client

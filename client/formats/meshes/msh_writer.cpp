@@ -10,14 +10,14 @@
 namespace weft::client {
 namespace {
 
-// Things, numbered from 0, sorted by their entity, then by number.
+// Items 0 to n - 1, sorted by their entity, then by number.
 class ByEntity {
  public:
-  // entity_of(i) is below `entities`; it is asked twice for every i, in their order.
+  // entity_of(i) is below `entities`; it is called twice for every i, in order.
   template <class EntityOf>
   ByEntity(const MeshView& mesh, std::size_t entities, std::size_t count, EntityOf&& entity_of)
       : starts_(entities + 1, 0) {
-    if (entities <= 1) {  // they are sorted as they are
+    if (entities <= 1) {  // they are sorted already
       starts_.back() = entities * count;
       return;
     }
@@ -31,7 +31,7 @@ class ByEntity {
 
   std::size_t size() const { return starts_.back(); }
   std::size_t size(std::size_t entity) const { return starts_[entity + 1] - starts_[entity]; }
-  // The things of one entity: each(i) for every one.
+  // Calls each(i) for the items of one entity.
   template <class Each>
   void for_each(const MeshView& mesh, std::size_t entity, Each&& each) const {
     const std::size_t first = starts_[entity];
@@ -41,10 +41,10 @@ class ByEntity {
 
  private:
   std::vector<std::size_t> starts_;    // of each entity; one more at the end
-  ScratchArray<std::uint32_t> order_;  // empty: as they are
+  ScratchArray<std::uint32_t> order_;  // empty if they are sorted already
 };
 
-// The entity of each value. Runs of equal ones are long, so the last one is remembered.
+// The entity of each value. Equal values come in long runs, so the last one is remembered.
 class EntityOf {
  public:
   EntityOf(const PhysicalGroups& groups, std::span<const std::int32_t> values)
@@ -68,8 +68,8 @@ class EntityOf {
 
 // The elements of one dimension. Entity e has the tag e + 1 and is the one of its physical group.
 struct Groups : PhysicalGroups {
-  Groups(const MeshView& mesh, std::span<const std::int32_t> of_elements)
-      : PhysicalGroups(mesh.pages, of_elements),
+  Groups(const MeshView& mesh, std::span<const std::int32_t> of_elements, const NameTable& table)
+      : PhysicalGroups(mesh.pages, of_elements, table),
         values(of_elements),
         elements(mesh, ids.size(), values.size(), EntityOf(*this, values)) {}
   EntityOf entity_of() const { return {*this, values}; }
@@ -78,7 +78,7 @@ struct Groups : PhysicalGroups {
   ByEntity elements;
 };
 
-// Corners and physical group of each entity; nothing of what bounds it.
+// The corners and the physical group of each entity, without the entities that bound it.
 void put_entities(OutputFile& file, const MeshView& mesh, const Groups& curves,
                   const Groups& surfaces) {
   file.put("$Entities\n");
@@ -117,8 +117,8 @@ void put_entities(OutputFile& file, const MeshView& mesh, const Groups& curves,
 
 void put_nodes(OutputFile& file, const MeshView& mesh, const Groups& curves,
                const Groups& surfaces) {
-  // Entities are curves, then surfaces. A node is of the first edge at it, else of the first
-  // triangle, else of entity 0.
+  // Entities are curves, then surfaces. A node belongs to the first edge at it, or else to the
+  // first triangle, or else to entity 0.
   const std::size_t entities = curves.ids.size() + surfaces.ids.size();
   ScratchArray<std::uint32_t> entity_of(mesh.pages, mesh.vertex_count());  // plus 1; 0: of none
   const auto claim = [&mesh, &entity_of](std::span<const std::uint32_t> nodes, std::size_t each,
@@ -184,15 +184,16 @@ void put_elements(OutputFile& file, const MeshView& mesh, const Groups& curves,
 }  // namespace
 
 void write_msh(const MeshView& mesh, OutputFile& file) {
-  const Groups curves(mesh, mesh.edge_markers);
-  const Groups surfaces(mesh, mesh.regions);
+  const Groups curves(mesh, mesh.edge_markers, mesh.names->markers);
+  const Groups surfaces(mesh, mesh.regions, mesh.names->regions);
   file.put("$MeshFormat\n4.1 1 8\n");
-  file.put_raw(std::int32_t{1});  // tells the byte order
+  file.put_raw(std::int32_t{1});  // shows the byte order
   file.put("\n$EndMeshFormat\n");
   put_physical_names(file, curves, surfaces);
   put_entities(file, mesh, curves, surfaces);
   put_nodes(file, mesh, curves, surfaces);
   put_elements(file, mesh, curves, surfaces);
+  put_node_data(file, mesh, /*binary=*/true);
 }
 
 }  // namespace weft::client

@@ -6,16 +6,22 @@
 //   regions       (triangles,)    int32
 //   edges         (edges, 2)      uint32: the edges on input segments
 //   edge_markers  (edges,)        int32
+//   parts         (triangles,)    int32, if the mesh is divided
+//   marker_ids    (names,)        int32, and
+//   marker_names  (names,)        texts: what these markers are called, if any is
+//   region_ids, region_names      the same of regions
+//   and values at the vertices, (vertices,) float64, by their names
 // Written uncompressed, with 64-bit sizes.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "client/base/atomic_file.h"
 #include "client/base/error.h"
+#include "client/formats/derived/vertex_values.h"
 #include "client/formats/mesh.h"
-#include "client/formats/vertex_values.h"
 
 namespace weft::client {
 
@@ -23,10 +29,11 @@ void write_npz(const MeshView& mesh, OutputFile& file);
 
 // Reads archives of numpy.savez and numpy.savez_compressed that hold `points` (of 2 or 3 columns,
 // the third is dropped) and `triangles`, and perhaps the others; little-endian, in C order, floats
-// of 4 or 8 bytes, integers of 4 or 8 bytes.
+// of 4 or 8 bytes, integers of 4 or 8 bytes, texts of NumPy's type U.
 Result<Mesh> read_npz(const std::filesystem::path& path);
 
 // The same with an array (vertices,) of floats under any other name.
-Result<VertexValues> read_npz_values(const std::filesystem::path& path, const std::string& array);
+Result<MeshWithArrays> read_npz_values(const std::filesystem::path& path,
+                                       const std::optional<std::string>& wanted);
 
 }  // namespace weft::client

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "client/base/text.h"
-#include "client/formats/file_contents.h"
+#include "client/formats/files/file_contents.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/meshes/npz.h"
 
@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{64} << 30;
 
-// Thrown and caught in this file alone.
+// Thrown and caught in this file only.
 struct Malformed {
   std::string why;
 };
@@ -45,8 +45,8 @@ std::string_view piece(std::string_view bytes, std::uint64_t at, std::uint64_t s
 }
 
 std::string inflated(std::string_view packed, std::uint64_t size) {
-  // Deflate shrinks to no less than a thousandth: what claims more is refused before it gets
-  // memory.
+  // Deflate cannot shrink to less than a thousandth, so an entry that claims more is refused before
+  // any memory is taken for it.
   constexpr std::uint64_t kMostGrowth = 1100;
   if (size / kMostGrowth > packed.size() + 1) throw Malformed{"an array claims an absurd size"};
   std::string out(size, '\0');
@@ -73,7 +73,7 @@ std::string inflated(std::string_view packed, std::uint64_t size) {
   return out;
 }
 
-// The arrays of an archive, by name less ".npy".
+// The arrays of an archive, by name without ".npy".
 class Archive {
  public:
   explicit Archive(std::string_view bytes) : bytes_(bytes) {
@@ -145,7 +145,7 @@ class Archive {
     return at + 46 + name_size + extra_size + comment_size;
   }
 
-  // 64-bit sizes stand, in this order, for those whose 32 bits are all set.
+  // If one of the 32-bit sizes has all bits set, its 64-bit size stands here, in this order.
   static void read_extra(std::string_view extra, Entry& entry) {
     while (extra.size() >= 4) {
       const auto id = number_at<std::uint16_t>(extra, 0);
@@ -166,12 +166,12 @@ class Archive {
   std::map<std::string, std::string> unpacked_;
 };
 
-// A .npy file: its head, taken apart, and its values.
+// A .npy file: the parsed header, and the values.
 struct Array {
   std::string type;                  // "<f8"
   std::vector<std::uint64_t> shape;  // one or two
   std::string_view values;
-  std::size_t item() const { return static_cast<std::size_t>(type[2] - '0'); }
+  std::size_t item = 0;  // bytes
 };
 
 Array parse_npy(const std::string& name, std::string_view bytes) {
@@ -192,9 +192,17 @@ Array parse_npy(const std::string& name, std::string_view bytes) {
   Array array;
   const std::string_view type = after("'descr': '");
   array.type = type.substr(0, type.find('\''));
-  const bool known = array.type == "<f8" || array.type == "<f4" || array.type == "<i4" ||
+  const bool is_text = array.type.starts_with("<U");
+  const bool known = is_text || array.type == "<f8" || array.type == "<f4" || array.type == "<i4" ||
                      array.type == "<i8" || array.type == "<u4" || array.type == "<u8";
   if (!known) throw bad("has the type " + in_quotes(array.type) + ", which is not read");
+  std::uint64_t item = 0;  // in bytes, or in letters
+  const char* const type_end = array.type.data() + array.type.size();
+  const auto [item_end, item_problem] = std::from_chars(array.type.data() + 2, type_end, item);
+  constexpr std::uint64_t kMostLetters = 1 << 20;
+  if (item_problem != std::errc() || item_end != type_end || item == 0 || item > kMostLetters)
+    throw bad("has the type " + in_quotes(array.type) + ", which is not read");
+  array.item = is_text ? 4 * item : item;
   if (after("'fortran_order': ").starts_with("True")) throw bad("is in Fortran's order");
   std::string_view shape = after("'shape': (");
   shape = shape.substr(0, shape.find(')'));
@@ -210,7 +218,7 @@ Array parse_npy(const std::string& name, std::string_view bytes) {
     shape.remove_prefix(std::min(shape.find_first_not_of(", "), shape.size()));
   }
   array.values = bytes.substr(start + size);
-  if (array.values.size() / array.item() < count) throw bad("is cut short");
+  if (array.values.size() / array.item < count) throw bad("is cut short");
   return array;
 }
 
@@ -233,7 +241,7 @@ void convert(const std::string& name, const Array& array, std::size_t columns, s
   }
 }
 
-// Takes the first `columns` columns of the array.
+// The first `columns` columns of the array.
 template <class Out>
 std::vector<Out> column_values(Archive& archive, const std::string& name, std::size_t columns) {
   const Array array = parse_npy(name, archive.array(name));
@@ -258,18 +266,78 @@ std::vector<Out> column_values(Archive& archive, const std::string& name, std::s
                   ", which does not fit"};
 }
 
-constexpr std::string_view kMeshArrays[] = {"points", "triangles", "regions", "edges",
-                                            "edge_markers"};
+constexpr std::string_view kMeshArrays[] = {
+    "points", "triangles",  "regions",      "edges",      "edge_markers",
+    "parts",  "marker_ids", "marker_names", "region_ids", "region_names"};
 
-Mesh mesh_of(Archive& archive) {
+void append_utf8(std::uint32_t point, std::string& out) {
+  const auto put = [&out](std::uint32_t byte) { out += static_cast<char>(byte); };
+  if (point < 0x80) return put(point);
+  if (point < 0x800) {
+    put(0xc0 | point >> 6);
+  } else {
+    if (point < 0x10000) {
+      put(0xe0 | point >> 12);
+    } else {
+      put(0xf0 | (point >> 18 & 7));  // a number that is no code point gives invalid UTF-8
+      put(0x80 | (point >> 12 & 0x3f));
+    }
+    put(0x80 | (point >> 6 & 0x3f));
+  }
+  put(0x80 | (point & 0x3f));
+}
+
+std::vector<std::string> texts(Archive& archive, const std::string& name) {
+  const Array array = parse_npy(name, archive.array(name));
+  if (!array.type.starts_with("<U") || array.shape.size() != 1)
+    throw Malformed{"array " + in_quotes(name) + " is not one of texts"};
+  std::vector<std::string> out;
+  for (std::uint64_t row = 0; row < array.shape[0]; ++row) {
+    std::string& text = out.emplace_back();
+    for (std::size_t at = 0; at < array.item; at += 4) {
+      std::uint32_t point = 0;
+      std::memcpy(&point, array.values.data() + row * array.item + at, sizeof point);
+      if (point == 0) break;
+      append_utf8(point, text);
+    }
+  }
+  return out;
+}
+
+void read_names(Archive& archive, NameKind kind, NameReader& names) {
+  const std::string word(word_of(kind));
+  if (!archive.has(word + "_ids") || !archive.has(word + "_names")) return;
+  const auto ids = column_values<std::int32_t>(archive, word + "_ids", 1);
+  const auto all = texts(archive, word + "_names");
+  if (ids.size() != all.size())
+    throw Malformed{"arrays '" + word + "_ids' and '" + word + "_names' differ in length"};
+  for (std::size_t i = 0; i < ids.size(); ++i) names.add(kind, ids[i], all[i]);
+}
+
+Mesh mesh_of(const std::filesystem::path& path, Archive& archive) {
   Mesh mesh;
   mesh.coordinates = column_values<double>(archive, "points", 2);
   mesh.triangles = column_values<std::uint32_t>(archive, "triangles", 3);
   if (archive.has("regions")) mesh.regions = column_values<std::int32_t>(archive, "regions", 1);
+  if (archive.has("parts")) mesh.parts = column_values<std::int32_t>(archive, "parts", 1);
   if (archive.has("edges")) mesh.edges = column_values<std::uint32_t>(archive, "edges", 2);
   if (archive.has("edge_markers"))
     mesh.edge_markers = column_values<std::int32_t>(archive, "edge_markers", 1);
+  NameReader names(path.string());
+  read_names(archive, NameKind::kMarker, names);
+  read_names(archive, NameKind::kRegion, names);
+  mesh.warnings = names.warnings();
+  mesh.names = names.take();
   return mesh;
+}
+
+Result<std::vector<double>> values_of(const std::filesystem::path& path, Archive& archive,
+                                      const std::string& name) {
+  try {
+    return column_values<double>(archive, name, 1);
+  } catch (const Malformed& malformed) {
+    return fail(ExitCode::kUnreadableInput, path.string() + ": " + malformed.why);
+  }
 }
 
 // What `read` makes of the archive of that file.
@@ -289,21 +357,26 @@ auto read_archive(const std::filesystem::path& path, const Read& read)
 }  // namespace
 
 Result<Mesh> read_npz(const std::filesystem::path& path) {
-  return read_archive(path, [&](Archive& archive) { return validated(path, mesh_of(archive)); });
+  return read_archive(path,
+                      [&](Archive& archive) { return validated(path, mesh_of(path, archive)); });
 }
 
-Result<VertexValues> read_npz_values(const std::filesystem::path& path, const std::string& array) {
-  return read_archive(path, [&](Archive& archive) -> Result<VertexValues> {
+Result<MeshWithArrays> read_npz_values(const std::filesystem::path& path,
+                                       const std::optional<std::string>& wanted) {
+  return read_archive(path, [&](Archive& archive) -> Result<MeshWithArrays> {
     std::vector<std::string> names = archive.names();
     std::erase_if(names, [](const std::string& name) {
       return std::find(std::begin(kMeshArrays), std::end(kMeshArrays), name) !=
              std::end(kMeshArrays);
     });
-    const auto name = chosen_array(path, names, array);
-    if (!name) return tl::unexpected(name.error());
-    auto mesh = validated(path, mesh_of(archive));
+    const auto chosen = chosen_arrays(path, std::move(names), wanted);
+    if (!chosen) return tl::unexpected(chosen.error());
+    auto mesh = validated(path, mesh_of(path, archive));
     if (!mesh) return tl::unexpected(mesh.error());
-    return validated(path, *name, std::move(*mesh), column_values<double>(archive, *name, 1));
+    MeshWithArrays all{std::move(*mesh), {}};
+    for (const std::string& name : *chosen)
+      all.arrays.push_back({name, values_of(path, archive, name)});
+    return all;
   });
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -33,12 +34,12 @@ using U16 = std::uint16_t;
 using U32 = std::uint32_t;
 using U64 = std::uint64_t;
 
-constexpr U16 kVersion = 45;             // of the format: with 64-bit sizes
+constexpr U16 kVersion = 45;             // 4.5, which has 64-bit sizes
 constexpr U16 kDate = (46 << 9) | 0x21;  // 1 January 2026: the same mesh gives the same file
 constexpr U32 kIn64Bits = 0xffffffff;
-constexpr U16 kExtra64 = 1;  // the extra field that holds the 64 bits
+constexpr U16 kExtra64 = 1;  // the extra field with the 64-bit sizes
 
-// An archive of files that are stored as they are (PKWARE's APPNOTE.TXT, 4.3).
+// An archive whose files are stored without compression (PKWARE's APPNOTE.TXT, 4.3).
 class Zip {
  public:
   explicit Zip(OutputFile& file) : file_(file) {}
@@ -78,7 +79,8 @@ class Zip {
   }
 
  private:
-  // What the local and the central header of an entry share, up to the length of the extra field.
+  // What the local and the central header of an entry have in common, up to the length of the extra
+  // field.
   static std::string common(U32 crc, const std::string& name, U16 extra) {
     return (Header() << kVersion << U16{0} << U16{0} << U16{0} << kDate << crc << kIn64Bits
                      << kIn64Bits << static_cast<U16>(name.size()) << extra)
@@ -95,7 +97,7 @@ class Zip {
   std::string entries_;  // the central directory
 };
 
-// The head of a .npy file (version 1.0), padded to a multiple of 64 bytes.
+// The header of a .npy file (version 1.0), padded to a multiple of 64 bytes.
 std::string npy_head(const char* type, std::size_t rows, std::size_t columns) {
   std::string text = "{'descr': '" + std::string(type) + "', 'fortran_order': False, 'shape': (" +
                      std::to_string(rows) + "," +
@@ -109,11 +111,50 @@ std::string npy_head(const char* type, std::size_t rows, std::size_t columns) {
 }
 
 template <class T>
-void add_array(Zip& zip, const char* name, const char* type, std::size_t columns,
+void add_array(Zip& zip, const std::string& name, const char* type, std::size_t columns,
                std::span<const T> values, PagedMemory* pages) {
   const auto bytes = std::as_bytes(values);
-  zip.add(std::string(name) + ".npy", npy_head(type, values.size() / columns, columns),
+  zip.add(name + ".npy", npy_head(type, values.size() / columns, columns),
           std::span(reinterpret_cast<const char*>(bytes.data()), bytes.size()), pages);
+}
+
+// The code points of a name, which is UTF-8.
+std::vector<U32> code_points(const std::string& name) {
+  std::vector<U32> points;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte & 0xc0) == 0x80) {
+      points.back() = points.back() << 6 | (byte & 0x3fu);
+    } else {
+      points.push_back(byte < 0x80   ? byte
+                       : byte < 0xe0 ? byte & 0x1fu
+                       : byte < 0xf0 ? byte & 0xfu
+                                     : byte & 7u);
+    }
+  }
+  return points;
+}
+
+// NumPy's texts all have the same length, and are padded with zeros.
+void add_names(Zip& zip, const std::string& kind, const NameTable& names) {
+  if (names.empty()) return;
+  std::vector<std::int32_t> ids;
+  std::vector<std::vector<U32>> texts;
+  std::size_t longest = 1;
+  for (const auto& [id, name] : names) {
+    ids.push_back(id);
+    texts.push_back(code_points(name));
+    longest = std::max(longest, texts.back().size());
+  }
+  std::vector<U32> table;
+  for (std::vector<U32>& text : texts) {
+    text.resize(longest);
+    table.insert(table.end(), text.begin(), text.end());
+  }
+  add_array(zip, kind + "_ids", "<i4", 1, std::span<const std::int32_t>(ids), nullptr);
+  const auto bytes = std::as_bytes(std::span(table));
+  zip.add(kind + "_names.npy", npy_head(("<U" + std::to_string(longest)).c_str(), ids.size(), 1),
+          std::span(reinterpret_cast<const char*>(bytes.data()), bytes.size()), nullptr);
 }
 
 }  // namespace
@@ -125,6 +166,11 @@ void write_npz(const MeshView& mesh, OutputFile& file) {
   add_array(zip, "regions", "<i4", 1, mesh.regions, mesh.pages);
   add_array(zip, "edges", "<u4", 2, mesh.edges, mesh.pages);
   add_array(zip, "edge_markers", "<i4", 1, mesh.edge_markers, mesh.pages);
+  if (!mesh.parts.empty()) add_array(zip, "parts", "<i4", 1, mesh.parts, mesh.pages);
+  add_names(zip, "marker", mesh.names->markers);
+  add_names(zip, "region", mesh.names->regions);
+  for (const VertexValues& values : mesh.vertex_values)
+    add_array(zip, values.name, "<f8", 1, values.values, mesh.pages);
   zip.finish();
 }
 

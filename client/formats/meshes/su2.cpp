@@ -5,18 +5,16 @@
 #include <charconv>
 #include <limits>
 #include <map>
-#include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "client/base/text.h"
-#include "client/formats/file_contents.h"
-#include "client/formats/line_scanner.h"
-#include "client/formats/mesh_edges.h"
+#include "client/formats/derived/mesh_edges.h"
+#include "client/formats/files/file_contents.h"
+#include "client/formats/files/line_scanner.h"
+#include "client/formats/files/text_writer.h"
 #include "client/formats/mesh_formats.h"
-#include "client/formats/text_writer.h"
 #include "client/formats/triangle/triangle_points.h"
 
 namespace weft::client {
@@ -39,7 +37,7 @@ class Reader {
     }
     if (!has_points_ || !has_elements_)
       return fail(ExitCode::kUnreadableInput, path.string() + ": has no NPOIN or no NELEM");
-    name_markers();
+    number_markers(path.string());
     return validated(path, std::move(mesh_));
   }
 
@@ -74,7 +72,7 @@ class Reader {
         return scanner_.error("the element's type is " + std::to_string(*found) + ", only " +
                               std::to_string(type) + " is read here");
       for (int k = 0; k < (type == kTriangle ? 3 : 2); ++k) {
-        // Points may follow: their numbers are judged at the end.
+        // Points may come later, so their numbers are checked at the end.
         const auto v = read_index(scanner_, "a point of the element", 0,
                                   std::numeric_limits<std::uint32_t>::max());
         if (!v) return tl::unexpected(v.error());
@@ -113,29 +111,30 @@ class Reader {
     return elements("the marker's element count", kLine, mesh_.edges);
   }
 
-  void name_markers() {
-    const auto number = [](const std::string& tag) -> std::optional<std::int32_t> {
+  // A tag that is an integer is the marker itself; any other tag is the name of a marker.
+  void number_markers(const std::string& file) {
+    Labels labels;
+    std::vector<std::uint32_t> label_of_tag;
+    for (const std::string& tag : tags_) {
       std::int32_t value = 0;
       const auto [end, problem] = std::from_chars(tag.data(), tag.data() + tag.size(), value);
-      if (problem != std::errc() || end != tag.data() + tag.size()) return std::nullopt;
-      return value;
-    };
-    std::set<std::int32_t> taken;
-    for (const std::string& tag : tags_)
-      if (const auto value = number(tag)) taken.insert(*value);
-    std::map<std::string, std::int32_t> marker_of;
-    std::int32_t next = 1;
+      const bool is_number = problem == std::errc() && end == tag.data() + tag.size();
+      label_of_tag.push_back(is_number ? labels.of(value) : labels.of(tag));
+    }
+    const std::vector<std::int32_t> numbers = labels.numbers();
     mesh_.edge_markers.resize(mesh_.edges.size() / 2);
     for (std::size_t i = 0; i < tags_.size(); ++i) {
-      const auto [found, is_new] = marker_of.try_emplace(tags_[i], 0);
-      if (is_new) {
-        while (taken.contains(next)) ++next;
-        const auto value = number(tags_[i]);
-        found->second = value ? *value : next++;
-      }
-      std::fill(mesh_.edge_markers.begin() + static_cast<std::ptrdiff_t>(first_edges_[i]),
-                mesh_.edge_markers.end(), found->second);
+      const auto at = [this](std::size_t k) {
+        return k < first_edges_.size() ? first_edges_[k] : mesh_.edge_markers.size();
+      };
+      std::fill(mesh_.edge_markers.begin() + static_cast<std::ptrdiff_t>(at(i)),
+                mesh_.edge_markers.begin() + static_cast<std::ptrdiff_t>(at(i + 1)),
+                numbers[label_of_tag[i]]);
     }
+    NameReader names(file);
+    labels.name_all(NameKind::kMarker, names);
+    mesh_.warnings = names.warnings();
+    mesh_.names = names.take();
   }
 
   LineScanner scanner_;
@@ -168,7 +167,8 @@ void write_su2(const MeshView& mesh, OutputFile& file) {
           rings.vertices[i], rings.vertices[i + 1 < rings.starts[r + 1] ? i + 1 : rings.starts[r]]);
   put_line(file, "NMARK=", by_marker.size());
   for (const auto& [marker, edges] : by_marker) {
-    put_line(file, "MARKER_TAG=", marker);
+    const std::string* const name = name_of(mesh.names->markers, marker);
+    put_line(file, "MARKER_TAG=", name ? *name : std::to_string(marker));
     put_line(file, "MARKER_ELEMS=", edges.size());
     for (const auto& [a, b] : edges) put_line(file, kLine, a, b);
   }

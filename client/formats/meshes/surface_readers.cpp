@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <charconv>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "client/base/text.h"
-#include "client/formats/file_contents.h"
-#include "client/formats/line_scanner.h"
+#include "client/formats/files/file_contents.h"
+#include "client/formats/files/line_scanner.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/meshes/surface_formats.h"
 #include "client/formats/triangle/triangle_points.h"
@@ -24,7 +26,7 @@ Result<void> read_xy(LineScanner& scanner, Mesh& mesh) {
 
 class ObjReader {
  public:
-  explicit ObjReader(LineScanner scanner) : scanner_(std::move(scanner)) {}
+  explicit ObjReader(LineScanner scanner) : scanner_(std::move(scanner)), names_(scanner_.name()) {}
 
   Result<Mesh> read() {
     while (scanner_.try_next_line()) {
@@ -37,11 +39,16 @@ class ObjReader {
       if (*key == "g") group();
       if (!done) return tl::unexpected(done.error());
     }
+    number(NameKind::kRegion, regions_, mesh_.regions);
+    number(NameKind::kMarker, markers_, mesh_.edge_markers);
+    mesh_.warnings = names_.warnings();
+    mesh_.names = names_.take();
     return std::move(mesh_);
   }
 
  private:
-  // "7", "7/1", "7//3": the vertex, from 1 on, or backwards from the last one if negative.
+  // "7", "7/1", "7//3": the number of a vertex, from 1, or backwards from the last one if it is
+  // negative.
   Result<std::uint32_t> vertex() {
     const auto field = scanner_.word("a vertex");
     if (!field) return tl::unexpected(field.error());
@@ -66,37 +73,50 @@ class ObjReader {
       mesh_.triangles.push_back(*v);
     }
     if (!scanner_.at_line_end()) return scanner_.error("the face is not a triangle");
-    mesh_.regions.push_back(region_);
+    mesh_.regions.push_back(label_in(regions_, "region_"));
     return {};
   }
 
   Result<void> line() {
     auto from = vertex();
     if (!from) return tl::unexpected(from.error());
+    const std::int32_t marker = label_in(markers_, "marker_");
     do {
       const auto to = vertex();
       if (!to) return tl::unexpected(to.error());
       mesh_.edges.insert(mesh_.edges.end(), {*from, *to});
-      mesh_.edge_markers.push_back(marker_);
+      mesh_.edge_markers.push_back(marker);
       from = to;
     } while (!scanner_.at_line_end());
     return {};
   }
 
+  // "region_7" is region 7, and 0 for edges; any other group names the region or the marker.
   void group() {
-    region_ = marker_ = 0;
-    const std::string_view name = scanner_.rest_of_line();
-    const auto number = [name](std::string_view word, std::int32_t& value) {
-      if (name.starts_with(word))
-        std::from_chars(name.data() + word.size(), name.data() + name.size(), value);
-    };
-    number("region_", region_);
-    number("marker_", marker_);
+    group_ = scanner_.rest_of_line();
+    group_ = group_.substr(0, group_.find_first_of(" \t\r\f\v"));
+  }
+
+  std::int32_t label_in(Labels& labels, std::string_view word) const {
+    std::int32_t number = 0;
+    if (group_.starts_with(word))
+      std::from_chars(group_.data() + word.size(), group_.data() + group_.size(), number);
+    const bool is_name = !group_.empty() && group_ != "default" && !group_.starts_with("region_") &&
+                         !group_.starts_with("marker_");
+    return static_cast<std::int32_t>(is_name ? labels.of(group_) : labels.of(number));
+  }
+
+  void number(NameKind kind, const Labels& labels, std::vector<std::int32_t>& of_elements) {
+    const std::vector<std::int32_t> numbers = labels.numbers();
+    for (std::int32_t& label : of_elements) label = numbers[static_cast<std::size_t>(label)];
+    labels.name_all(kind, names_);
   }
 
   LineScanner scanner_;
-  std::int32_t region_ = 0;
-  std::int32_t marker_ = 0;
+  std::string_view group_;
+  Labels regions_;
+  Labels markers_;
+  NameReader names_;
   Mesh mesh_;
 };
 

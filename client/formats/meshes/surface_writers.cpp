@@ -3,8 +3,8 @@
 #include <span>
 #include <string>
 
+#include "client/formats/files/text_writer.h"
 #include "client/formats/meshes/surface_formats.h"
-#include "client/formats/text_writer.h"
 
 namespace weft::client {
 
@@ -12,18 +12,19 @@ void write_obj(const MeshView& mesh, OutputFile& file) {
   for (const std::size_t v : mesh.up_to(mesh.vertex_count()))
     put_line(file, "v", mesh.coordinates[2 * v], mesh.coordinates[2 * v + 1], 0);
   const auto put_group = [&file](const char* word, std::span<const std::int32_t> values,
-                                 std::size_t i) {
-    if (i == 0 || values[i] != values[i - 1])
-      file.put(std::string("g ") + word + std::to_string(values[i]) + "\n");
+                                 const NameTable& names, std::size_t i) {
+    if (i > 0 && values[i] == values[i - 1]) return;
+    const std::string* const name = name_of(names, values[i]);
+    put_line(file, "g", name ? *name : word + std::to_string(values[i]));
   };
   for (const std::size_t t : mesh.up_to(mesh.triangle_count())) {
-    put_group("region_", mesh.regions, t);
+    put_group("region_", mesh.regions, mesh.names->regions, t);
     const std::uint32_t* corner = &mesh.triangles[3 * t];
     put_line(file, "f", corner[0] + std::int64_t{1}, corner[1] + std::int64_t{1},
              corner[2] + std::int64_t{1});
   }
   for (const std::size_t e : mesh.up_to(mesh.edge_count())) {
-    put_group("marker_", mesh.edge_markers, e);
+    put_group("marker_", mesh.edge_markers, mesh.names->markers, e);
     put_line(file, "l", mesh.edges[2 * e] + std::int64_t{1},
              mesh.edges[2 * e + 1] + std::int64_t{1});
   }

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTK's unstructured grid, XML with raw appended data (VTK file formats, "XML file formats"):
 // points in 3D with z = 0; the triangles, then the edges on input segments as line cells; cell data
-// `region` (0 on lines) and `marker` (0 on triangles), both Int32. Of second order: quadratic
+// `region` (0 on lines), `marker` (0 on triangles) and, if the mesh is divided, `part` (-1 on
+// lines), all Int32; values at nodes as point data of their names. Of second order: quadratic
 // triangles and quadratic edges.
+//
+// Names of markers and regions are field data, as meshio has Gmsh's physical names there: an Int32
+// array for each name, which holds the id and the dimension: 1 for a marker, 2 for a region.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "client/base/atomic_file.h"
 #include "client/base/error.h"
+#include "client/formats/derived/vertex_values.h"
 #include "client/formats/mesh.h"
-#include "client/formats/vertex_values.h"
 
 namespace weft::client {
 
@@ -22,6 +27,7 @@ void write_vtu(const MeshView& mesh, OutputFile& file);
 Result<Mesh> read_vtu(const std::filesystem::path& path);
 
 // The same with an array of its point data, of one component.
-Result<VertexValues> read_vtu_values(const std::filesystem::path& path, const std::string& array);
+Result<MeshWithArrays> read_vtu_values(const std::filesystem::path& path,
+                                       const std::optional<std::string>& wanted);
 
 }  // namespace weft::client

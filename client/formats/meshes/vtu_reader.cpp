@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "client/base/text.h"
-#include "client/formats/file_contents.h"
+#include "client/formats/files/file_contents.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/meshes/vtu.h"
 
@@ -23,14 +26,14 @@ constexpr std::string_view kBlanks = " \t\r\n";
 
 using Attributes = std::map<std::string_view, std::string_view>;
 
-// A start tag and what follows it.
+// A start tag and the text after it.
 struct Tag {
   std::string_view name;
   Attributes attributes;
   std::string_view text;  // up to the next '<'
 };
 
-// An array of the grid, its values not yet read.
+// An array of the grid whose values are not read yet.
 struct Array {
   std::string_view type;
   bool ascii = false;
@@ -48,17 +51,18 @@ class Reader {
     return mesh();
   }
 
-  Result<VertexValues> read_values(const std::string& wanted) {
+  Result<MeshWithArrays> read_values(const std::optional<std::string>& wanted) {
     if (auto scanned = scan(); !scanned) return tl::unexpected(scanned.error());
     std::vector<std::string> names;
     for (const auto& [name, array] : point_arrays_) names.emplace_back(name);
-    const auto name = chosen_array(path_, names, wanted);
-    if (!name) return tl::unexpected(name.error());
-    auto at_points = values<double>(point_arrays_, *name, points_);
-    if (!at_points) return tl::unexpected(at_points.error());
+    const auto chosen = chosen_arrays(path_, std::move(names), wanted);
+    if (!chosen) return tl::unexpected(chosen.error());
     auto read = mesh();
     if (!read) return tl::unexpected(read.error());
-    return validated(path_, *name, std::move(*read), std::move(*at_points));
+    MeshWithArrays all{std::move(*read), {}};
+    for (const std::string& name : *chosen)
+      all.arrays.push_back({name, values<double>(point_arrays_, name, points_)});
+    return all;
   }
 
  private:
@@ -76,8 +80,10 @@ class Reader {
     if (!regions) return tl::unexpected(regions.error());
     const auto markers = optional_values("marker");
     if (!markers) return tl::unexpected(markers.error());
+    const auto parts = optional_values("part");
 
     Mesh mesh;
+    read_names(mesh);
     mesh.coordinates.reserve(2 * points_);
     for (std::size_t i = 0; i < points_; ++i)
       mesh.coordinates.insert(mesh.coordinates.end(), {(*points)[3 * i], (*points)[3 * i + 1]});
@@ -100,8 +106,12 @@ class Reader {
         if (type != 1) list.push_back(static_cast<std::uint32_t>(v));
       }
       if (type == 5) mesh.regions.push_back(regions->empty() ? 0 : (*regions)[cell]);
+      if (type == 5 && parts && !parts->empty()) mesh.parts.push_back((*parts)[cell]);
       if (type == 3) mesh.edge_markers.push_back(markers->empty() ? 0 : (*markers)[cell]);
     }
+    // Other programs may use the name for something else.
+    if (std::any_of(mesh.parts.begin(), mesh.parts.end(), [](std::int32_t p) { return p < 0; }))
+      mesh.parts.clear();
     return validated(path_, std::move(mesh));
   }
 
@@ -153,6 +163,7 @@ class Reader {
     bool is_grid = false;
     bool in_points = false;
     bool in_point_data = false;
+    bool in_field_data = false;
     for (;;) {
       const auto next = next_tag();
       if (!next) return tl::unexpected(next.error());
@@ -164,7 +175,10 @@ class Reader {
         if (tag.attributes["byte_order"] == "BigEndian") return refuse("is big-endian");
         if (tag.attributes.contains("compressor")) return refuse("is compressed");
         wide_headers_ = tag.attributes["header_type"] == "UInt64";
+      } else if (tag.name == "FieldData") {
+        in_field_data = true;
       } else if (tag.name == "Piece") {
+        in_field_data = false;
         const auto points = number(tag.attributes["NumberOfPoints"]);
         const auto cells = number(tag.attributes["NumberOfCells"]);
         if (!points || !cells || *points > std::numeric_limits<std::uint32_t>::max() ||
@@ -181,6 +195,8 @@ class Reader {
         in_point_data = true;
       } else if (tag.name == "Cells" || tag.name == "CellData") {
         in_point_data = false;
+      } else if (tag.name == "DataArray" && in_field_data) {
+        keep_field(tag);
       } else if (tag.name == "DataArray") {
         if (auto kept = keep(tag, in_points, in_point_data ? point_arrays_ : arrays_); !kept)
           return kept;
@@ -193,6 +209,46 @@ class Reader {
         return {};
       }
     }
+  }
+
+  // Field data may hold anything; what is not a name is skipped.
+  void keep_field(Tag& tag) {
+    Array array;
+    array.type = tag.attributes["type"];
+    array.ascii = tag.attributes["format"] == "ascii";
+    array.text = tag.text;
+    const auto offset = number(tag.attributes["offset"]);
+    if (!array.ascii && !(tag.attributes["format"] == "appended" && offset)) return;
+    array.offset = offset.value_or(0);
+    fields_.emplace_back(tag.attributes["Name"], array);
+  }
+
+  void read_names(Mesh& mesh) const {
+    NameReader names(path_.string());
+    for (const auto& [name, array] : fields_) {
+      if (!array.type.starts_with("Int")) continue;
+      const auto entry = values_of<std::int32_t>(array, name, 2);
+      if (!entry || ((*entry)[1] != 1 && (*entry)[1] != 2)) continue;
+      names.add((*entry)[1] == 1 ? NameKind::kMarker : NameKind::kRegion, (*entry)[0],
+                unescaped(name));
+    }
+    mesh.warnings = names.warnings();
+    mesh.names = names.take();
+  }
+
+  static std::string unescaped(std::string_view text) {
+    static constexpr std::pair<std::string_view, char> kEntities[] = {
+        {"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}};
+    std::string out;
+    while (!text.empty()) {
+      const auto* const found =
+          std::find_if(std::begin(kEntities), std::end(kEntities),
+                       [text](const auto& entity) { return text.starts_with(entity.first); });
+      const bool is_entity = found != std::end(kEntities);
+      out += is_entity ? found->second : text[0];
+      text.remove_prefix(is_entity ? found->first.size() : 1);
+    }
+    return out;
   }
 
   Result<void> keep(Tag& tag, bool is_points, Arrays& arrays) {
@@ -213,7 +269,7 @@ class Reader {
     return {};
   }
 
-  // Converts one value; none when it does not fit in T.
+  // Converts one value; nullopt if it does not fit into T.
   template <class T, class From>
   static std::optional<T> convert(From value) {
     if constexpr (std::is_floating_point_v<T>) {
@@ -258,7 +314,12 @@ class Reader {
                                 std::uint64_t count) const {
     const auto found = arrays.find(name);
     if (found == arrays.end()) return refuse("has no array " + in_quotes(name));
-    const Array& array = found->second;
+    return values_of<T>(found->second, name, count);
+  }
+
+  template <class T>
+  Result<std::vector<T>> values_of(const Array& array, std::string_view name,
+                                   std::uint64_t count) const {
     std::vector<T> out;
     bool read = false;
     if (array.ascii) {
@@ -300,7 +361,8 @@ class Reader {
   std::filesystem::path path_;
   std::string_view rest_;
   Arrays point_arrays_;
-  Arrays arrays_;  // all others
+  Arrays arrays_;                                           // all others
+  std::vector<std::pair<std::string_view, Array>> fields_;  // of the grid
   std::string_view appended_;
   bool has_piece_ = false;
   bool wide_headers_ = false;
@@ -316,10 +378,11 @@ Result<Mesh> read_vtu(const std::filesystem::path& path) {
   return Reader(path, contents->text()).read();
 }
 
-Result<VertexValues> read_vtu_values(const std::filesystem::path& path, const std::string& array) {
+Result<MeshWithArrays> read_vtu_values(const std::filesystem::path& path,
+                                       const std::optional<std::string>& wanted) {
   const auto contents = read_file(path, kMaxFileBytes);
   if (!contents) return tl::unexpected(contents.error());
-  return Reader(path, contents->text()).read_values(array);
+  return Reader(path, contents->text()).read_values(wanted);
 }
 
 }  // namespace weft::client

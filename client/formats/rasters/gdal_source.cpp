@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "client/base/text.h"
-#include "client/formats/rasters/gdal_library.h"
+#include "client/formats/files/gdal_library.h"
 #include "client/formats/rasters/raster_source.h"
 
 namespace weft::client {
@@ -21,7 +21,7 @@ namespace {
 
 constexpr float kNoData = std::numeric_limits<float>::quiet_NaN();
 constexpr double kTwoPi = 6.283185307179586;
-// Values in memory while they are converted.
+// Values that are held in memory while they are converted.
 constexpr std::uint32_t kChunkValues = 1U << 21;
 
 using Dataset = std::unique_ptr<void, decltype(&GDALClose)>;
@@ -59,7 +59,7 @@ class ReprojectedPlane final : public PlaneToRaster {
   mutable std::vector<int> succeeded_;
 };
 
-// Finds the band of a file that the user means.
+// Finds the band of a file that the user asks for.
 class BandChoice {
  public:
   BandChoice(const Gdal& gdal, std::string name, std::string_view wanted)
@@ -113,7 +113,7 @@ class BandChoice {
     return found;
   }
 
-  // What is wanted, up to a colon, which is dropped.
+  // The part of the wish up to a colon, which is dropped.
   std::string_view take_word() {
     const std::size_t end = std::min(wanted_.find(':'), wanted_.size());
     const std::string_view word = wanted_.substr(0, end);
@@ -121,7 +121,7 @@ class BandChoice {
     return word;
   }
 
-  // From 0, of the one that has the name, or the number; nullopt if there is none.
+  // The index, from 0, of the one with that name or number; nullopt if there is none.
   static std::optional<std::size_t> find(std::string_view word,
                                          const std::vector<std::string>& names) {
     if (const auto at = std::find(names.begin(), names.end(), word); at != names.end())
@@ -134,20 +134,29 @@ class BandChoice {
     return number - 1;
   }
 
+  static std::string label(const std::vector<std::string>& names, std::size_t index) {
+    const std::string number = std::to_string(index + 1);
+    return names[index].empty() ? number : number + " " + in_quotes(names[index]);
+  }
+
   static std::string list(const std::vector<std::string>& names) {
     constexpr std::size_t kMost = 24;
     std::string text;
     for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
       if (i > 0) text += ", ";
-      text += std::to_string(i + 1);
-      if (!names[i].empty()) text += " " + in_quotes(names[i]);
+      text += label(names, i);
     }
     return names.size() > kMost ? text + ", ..." : text;
   }
 
+  // "there are 1 'depth', 2 'speed'"
+  static std::string all_of(const std::vector<std::string>& names) {
+    return (names.size() == 1 ? "there is only " : "there are ") + list(names);
+  }
+
   tl::unexpected<Error> several(const std::string& what, const std::vector<std::string>& names) {
     return unreadable(name_, "has " + std::to_string(names.size()) + " " + what +
-                                 "; name one as in " + name_ + ":1; there are " + list(names));
+                                 "; name one as in " + name_ + ":1; " + all_of(names));
   }
 
   Result<Dataset> open_variable(const std::vector<Variable>& variables) {
@@ -157,7 +166,7 @@ class BandChoice {
     const std::string_view word = take_word();
     const auto index = word.empty() ? std::optional<std::size_t>(0) : find(word, names);
     if (!index)
-      return unreadable(name_, "has no variable " + in_quotes(word) + "; there are " + list(names));
+      return unreadable(name_, "has no variable " + in_quotes(word) + "; " + all_of(names));
     name_ += ":" + names[*index];
     return open(variables[*index].address);
   }
@@ -165,7 +174,7 @@ class BandChoice {
   Result<GDALRasterBandH> band_of(GDALDatasetH dataset) {
     const int count = gdal_.GDALGetRasterCount(dataset);
     std::vector<std::string> names;
-    std::optional<std::size_t> index;  // the only one that is no transparency
+    std::optional<std::size_t> index;  // the only band that is not for transparency
     std::size_t opaque = 0;
     bool of_one_variable = true;
     for (int i = 1; i <= count; ++i) {
@@ -178,21 +187,29 @@ class BandChoice {
       ++opaque;
     }
     if (names.empty()) return unreadable(name_, "has no band");
+    std::string_view asked = wanted_;
     std::string_view word = take_word();
-    if (of_one_variable && word == names.front()) word = take_word();
-    if (word.empty()) {
+    if (of_one_variable && word == names.front()) {
+      asked = wanted_;
+      word = take_word();
+    }
+    if (asked.empty()) {
       if (opaque != 1) return several("bands", names);
     } else {
       index = find(word, names);
-      if (!index)
-        return unreadable(name_, "has no band " + in_quotes(word) + "; there are " + list(names));
+      if (!index || !wanted_.empty())
+        return unreadable(name_, "has no band " + in_quotes(asked) + "; " + all_of(names));
     }
-    return gdal_.GDALGetRasterBand(dataset, static_cast<int>(*index) + 1);
+    GDALRasterBandH band = gdal_.GDALGetRasterBand(dataset, static_cast<int>(*index) + 1);
+    if (gdal_.GDALDataTypeIsComplex(gdal_.GDALGetRasterDataType(band)) != 0)
+      return unreadable(name_,
+                        "the values of band " + label(names, *index) + " are complex numbers");
+    return band;
   }
 
   const Gdal& gdal_;
   std::string name_;
-  std::string_view wanted_;  // what is left of it
+  std::string_view wanted_;  // the part that is not used yet
 };
 
 class GdalSource final : public RasterSource {
@@ -206,11 +223,9 @@ class GdalSource final : public RasterSource {
         levels_.push_back(overview);
   }
 
-  // What the file says of the raster.
+  // What the file says about the raster.
   Result<void> describe() {
     const GdalErrors errors(gdal_);
-    if (gdal_.GDALDataTypeIsComplex(gdal_.GDALGetRasterDataType(levels_[0])) != 0)
-      return unreadable(shape_.name, "its values are complex numbers");
     int has_scale = 0;
     int has_offset = 0;
     const double scale = gdal_.GDALGetRasterScale(levels_[0], &has_scale);
@@ -240,12 +255,18 @@ class GdalSource final : public RasterSource {
     return {};
   }
 
+  bool is_in(const CoordinateSystem& system) const override {
+    const GdalErrors quiet(gdal_);
+    OGRSpatialReferenceH given = gdal_.GDALGetSpatialRef(dataset_.get());
+    if (given == nullptr) return true;
+    if (gdal_.OSRIsGeographic(given) != 0) return system.geographic;
+    const Crs wanted = own(gdal_.OSRNewSpatialReference(nullptr));
+    return gdal_.OSRSetFromUserInput(wanted.get(), system.definition.c_str()) == OGRERR_NONE &&
+           gdal_.OSRIsSame(given, wanted.get()) != 0;
+  }
+
   Result<std::unique_ptr<PlaneToRaster>> from_plane(const std::string& crs) override {
     const GdalErrors errors(gdal_);
-    const auto own = [this](OGRSpatialReferenceH handle) {
-      gdal_.OSRSetAxisMappingStrategy(handle, OAMS_TRADITIONAL_GIS_ORDER);
-      return Crs(handle, gdal_.OSRDestroySpatialReference);
-    };
     const Crs plane = own(gdal_.OSRNewSpatialReference(nullptr));
     if (gdal_.OSRSetFromUserInput(plane.get(), crs.c_str()) != OGRERR_NONE)
       return fail(ExitCode::kUnreadableInput, "the coordinate system " + in_quotes(crs) +
@@ -262,6 +283,12 @@ class GdalSource final : public RasterSource {
   }
 
  private:
+  // Longitude comes before latitude.
+  Crs own(OGRSpatialReferenceH handle) const {
+    gdal_.OSRSetAxisMappingStrategy(handle, OAMS_TRADITIONAL_GIS_ORDER);
+    return Crs(handle, gdal_.OSRDestroySpatialReference);
+  }
+
   // Pixel (column, row) of the file is at (t[0] + column * t[1] + row * t[2],
   // t[3] + column * t[4] + row * t[5]).
   Result<void> locate() {
@@ -273,7 +300,7 @@ class GdalSource final : public RasterSource {
     for (const double number : t) text += (text.empty() ? "" : ", ") + shortest(number);
     const double columns = gdal_.GDALGetRasterBandXSize(levels_[0]);
     const double rows = gdal_.GDALGetRasterBandYSize(levels_[0]);
-    // What moves no pixel by a hundredth of itself is a rounding error.
+    // A shear that moves no pixel by a hundredth of itself is a rounding error.
     if (!(std::abs(t[2]) * rows <= std::abs(t[1]) / 100 &&
           std::abs(t[4]) * columns <= std::abs(t[5]) / 100))
       return unreadable(shape_.name, "its geotransform, " + text +

@@ -17,14 +17,14 @@ namespace {
 
 constexpr float kNoData = std::numeric_limits<float>::quiet_NaN();
 
-// The difference of two x, less whole turns.
+// The difference of two x, without whole turns.
 double short_way(double difference, double turn) {
   return turn > 0 ? difference - turn * std::round(difference / turn) : difference;
 }
 
-// The raster's box that holds the plane's box, and some more; nullopt if no point of the border has
-// a counterpart. What is inside of the border is inside of its image; but for a pole, which has no
-// longitude: round it the longitudes of the border make a turn, or jump.
+// The box of the raster that holds the box of the plane, and some more; nullopt if no point of the
+// border has a counterpart. The inside of the border maps to the inside of its image, except at a
+// pole, which has no longitude: there the longitudes along the border make a turn, or jump.
 std::optional<RasterBox> box_in_raster(const PlaneToRaster& from_plane, const RasterBox& box,
                                        double turn) {
   constexpr int kSteps = 256;
@@ -43,8 +43,8 @@ std::optional<RasterBox> box_in_raster(const PlaneToRaster& from_plane, const Ra
 
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   RasterBox found{kInfinity, kInfinity, -kInfinity, -kInfinity};
-  double at = 0;     // x, followed along the border
-  double first = 0;  // where it began
+  double at = 0;     // x, continued along the border
+  double first = 0;  // where it started
   bool begun = false;
   bool jumps = false;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -67,15 +67,15 @@ std::optional<RasterBox> box_in_raster(const PlaneToRaster& from_plane, const Ra
     return RasterBox{-turn / 2, found.min_y, turn / 2, found.max_y};
   }
   const double pad_x = (found.max_x - found.min_x) / 64;
-  // Near the origin, whatever the turn in which the border began.
+  // The turn that is nearest to the origin, in whatever turn the border began.
   const double shift = turn > 0 ? short_way(found.min_x, turn) - found.min_x : 0;
   found.min_x += shift - pad_x;
   found.max_x += shift + pad_x;
   return found;
 }
 
-// The edge of a square of the plane that is as large as a cell of the raster, about the middle of
-// the box's points; nullopt if none has a counterpart.
+// The edge of a square of the plane that is as large as a cell of the raster, around the middle of
+// the box's points; nullopt if none of them has a counterpart.
 std::optional<double> cell_size(const PlaneToRaster& from_plane, const RasterBox& box,
                                 const RasterGrid& raster, double turn) {
   constexpr int kPoints = 7;
@@ -100,9 +100,10 @@ std::optional<double> cell_size(const PlaneToRaster& from_plane, const RasterBox
   return *middle;
 }
 
-// Of the nodes with data, if the nearest has any. Around the nodes it is as at the border, so far
-// that the corners of the plane's cells in which the raster ends are defined: a field is undefined
-// in a cell with a corner that is, and a raster that just covers the domain must do.
+// Bilinear between the nodes with data, if the nearest node has data. Within kBeside cells around
+// the nodes, the values at the border go on. A field is undefined in a cell with an undefined
+// corner; so the corners of the plane's cells in which the raster ends are defined, and a raster
+// that just covers the domain is enough.
 class Bilinear {
  public:
   Bilinear(const FieldRaster& raster, double turn)
@@ -144,10 +145,10 @@ class Bilinear {
   }
 
   const FieldRaster& raster_;
-  double period_;  // in columns; 0: there is none
+  double period_;  // in columns; 0 if the raster has none
 };
 
-// Square cells over the box, and two nodes more on each side.
+// Square cells over the box, and two more nodes on each side.
 FieldRaster grid_over(const RasterBox& box, double size, std::uint64_t max_values) {
   FieldRaster out;
   const double width = box.max_x - box.min_x;

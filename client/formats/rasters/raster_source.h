@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "client/base/error.h"
+#include "client/formats/domain.h"
 #include "client/formats/field_raster.h"
 
 namespace weft::client {
@@ -60,6 +61,9 @@ class RasterSource {
   // Row i of the part, from the southmost, to out + i * stride.
   virtual Result<void> read(std::size_t grid, const RasterPart& part, float* out,
                             std::size_t stride) = 0;
+  // Whether its coordinates are those of the system, or it has none, or both are longitudes and
+  // latitudes.
+  virtual bool is_in(const CoordinateSystem& system) const = 0;
   // If the raster has no coordinate system, it is taken for longitudes and latitudes of WGS 84.
   virtual Result<std::unique_ptr<PlaneToRaster>> from_plane(const std::string& crs) = 0;
 

@@ -15,13 +15,13 @@ namespace {
 
 constexpr float kNoData = std::numeric_limits<float>::quiet_NaN();
 constexpr std::int64_t kMargin = 2;  // nodes on each side of the box
-// Beyond that averaging takes minutes.
+// The most values to average: more would take minutes.
 constexpr double kMostRead = 1e11;
-// Values in memory while they are averaged.
+// Values that are held in memory while they are averaged.
 constexpr std::int64_t kTileValues = std::int64_t{1} << 22;
 
-// Nodes of an axis, counted from the grid's first one. They may lie outside of the grid if it goes
-// on there by a turn.
+// Nodes of an axis, counted from the grid's first one. They may lie outside of the grid if it
+// continues there by a turn.
 struct Nodes {
   std::int64_t first = 0;
   std::int64_t count = 0;
@@ -30,10 +30,10 @@ struct Nodes {
 // How a grid is laid over the box.
 struct Placed {
   double x = 0;             // of column 0
-  std::int64_t period = 0;  // column i + period is column i; 0: there is no such number
+  std::int64_t period = 0;  // column i + period is column i; 0 if the grid does not wrap around
 };
 
-// What is to be read: means over squares of factor_x * factor_y nodes, from the first ones on.
+// What is to be read: means over squares of factor_x * factor_y nodes, from the first node on.
 struct Plan {
   std::size_t grid = 0;
   Placed placed;
@@ -52,7 +52,7 @@ std::string text(const RasterBox& box) {
   return coordinates(box.min_x, box.min_y) + " to " + coordinates(box.max_x, box.max_y);
 }
 
-// The nodes between both numbers, and `margin` more on each side.
+// The nodes between the two numbers, and `margin` more on each side.
 Nodes nodes_between(double low, double high, double first, double step, std::int64_t margin) {
   const auto node = [&](double at) { return std::clamp((at - first) / step, -1e12, 1e12); };
   const auto begin = static_cast<std::int64_t>(std::ceil(node(low))) - margin;
@@ -70,7 +70,7 @@ std::int64_t modulo(std::int64_t a, std::int64_t period) {
   return ((a % period) + period) % period;
 }
 
-// Without the columns before the first and behind the last one that have values.
+// Drops the columns before the first one, and after the last one, that has values.
 Nodes with_values(Nodes nodes, std::int64_t columns, std::int64_t period) {
   std::int64_t begin = nodes.first;
   std::int64_t end = nodes.first + std::min(nodes.count, 2 * period);
@@ -112,7 +112,7 @@ class Window {
   }
 
  private:
-  // By how many turns the raster is shifted; false if it does not meet the box.
+  // The number of turns by which the raster is shifted; false if it does not meet the box.
   bool place() {
     const RasterBox extent = shape_.grids[0].extent();
     if (extent.max_y < box_.min_y || extent.min_y > box_.max_y) return false;
@@ -150,7 +150,7 @@ class Window {
   Plan plan(std::size_t index, std::int64_t factor) const {
     const RasterGrid& grid = shape_.grids[index];
     Plan plan{index, {grid.x + shift_, 0}, {}, {}, 1, 1};
-    // A seam that misses the nodes by more than a tenth of a cell is none.
+    // A seam counts only if it meets the nodes to within a tenth of a cell.
     if (const double period = turn_ / grid.dx;
         turn_ > 0 && period < 1e9 && period > 1.5 && std::abs(period - std::round(period)) <= 0.1)
       plan.placed.period = static_cast<std::int64_t>(std::round(period));
@@ -166,7 +166,7 @@ class Window {
     return plan;
   }
 
-  // Of a grid, the plan that averages least.
+  // The plan for one grid that averages least.
   Plan plan_of_grid(std::size_t index) const {
     const auto most = static_cast<double>(max_values_);
     Plan found = plan(index, 1);
@@ -176,7 +176,7 @@ class Window {
     return found;
   }
 
-  // That of most values; the coarsest grid of those, because it is read the fastest.
+  // The plan with most values; of several, the one of the coarsest grid, which is read fastest.
   Plan best_plan() const {
     Plan best = plan_of_grid(0);
     if (best.factor_x == 1 && best.factor_y == 1) return best;
@@ -200,7 +200,7 @@ class Window {
     out_.values.assign(std::size_t{out_.columns} * out_.rows, kNoData);
   }
 
-  // Columns and rows of the plan from its first ones on, to `out`, by rows; `out` is NaN before.
+  // Reads the plan's columns and rows into `out`, row by row. REQUIRES: `out` holds NaN.
   Result<void> read_tile(const Plan& plan, std::int64_t column, std::int64_t columns,
                          std::int64_t row, std::int64_t rows, float* out) {
     const RasterGrid& grid = shape_.grids[plan.grid];
@@ -237,7 +237,7 @@ class Window {
     return {};
   }
 
-  // Means from (column, row) on, at most so many.
+  // Means from (column, row) on; at most as many as fit in memory.
   Result<void> read_tile_of_means(const Plan& plan, std::int64_t column, std::int64_t most_columns,
                                   std::int64_t row, std::int64_t most_rows) {
     const std::int64_t fx = plan.factor_x;

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "client/formats/mesh_edges.h"
-#include "client/formats/text_writer.h"
+#include "client/formats/derived/mesh_edges.h"
+#include "client/formats/files/text_writer.h"
 
 namespace weft::client {
 
@@ -19,7 +19,7 @@ void write_triangle_edges(const MeshView& mesh, OutputFile& file) {
 
 void write_triangle_neighbours(const MeshView& mesh, OutputFile& file) {
   const MeshEdges edges(mesh);
-  // Of the triangles at an edge the exclusive or: with one of them it gives the other.
+  // The exclusive or of the triangles at each edge: with one of them, it gives the other.
   ScratchArray<std::uint32_t> both(mesh.pages, edges.size());
   for (const std::size_t side : mesh.up_to(mesh.triangles.size()))
     both[edges.of_side(side)] ^= static_cast<std::uint32_t>(side / 3);

@@ -7,18 +7,20 @@
 #include <utility>
 #include <vector>
 
+#include "client/base/text.h"
 #include "client/formats/domains/region_values.h"
-#include "client/formats/file_contents.h"
-#include "client/formats/line_scanner.h"
+#include "client/formats/files/file_contents.h"
+#include "client/formats/files/line_scanner.h"
+#include "client/formats/files/text_writer.h"
 #include "client/formats/mesh_formats.h"
-#include "client/formats/text_writer.h"
+#include "client/formats/triangle/triangle_names.h"
 #include "client/formats/triangle/triangle_points.h"
 
 namespace weft::client {
 namespace {
 
-// The marker of the input point if there is one that is not 0, else of the first edge whose is not
-// 0, else 1 on edges.
+// The marker of the input point if it has one other than 0; else that of the first edge with one
+// other than 0; else 1 if the vertex is on an edge.
 ScratchArray<std::int32_t> vertex_markers(const MeshView& mesh) {
   ScratchArray<std::int32_t> markers(mesh.pages, mesh.vertex_count());
   if (!mesh.input_point_markers.empty())
@@ -33,7 +35,8 @@ ScratchArray<std::int32_t> vertex_markers(const MeshView& mesh) {
   return markers;
 }
 
-Result<void> read_triangles(const std::filesystem::path& path, std::int64_t base, Mesh& mesh) {
+Result<void> read_triangles(const std::filesystem::path& path, std::int64_t base, Mesh& mesh,
+                            NameReader& names) {
   const auto contents = read_file(path, kMaxTextBytes);
   if (!contents) return tl::unexpected(contents.error());
   LineScanner scanner(path.string(), contents->text());
@@ -78,10 +81,12 @@ Result<void> read_triangles(const std::filesystem::path& path, std::int64_t base
   const RegionIds ids(regions);
   std::transform(regions.begin(), regions.end(), std::back_inserter(mesh.regions),
                  [&ids](double attribute) { return ids.of(attribute); });
+  for (const auto& [id, value] : ids.assigned()) names.add(NameKind::kRegion, id, shortest(value));
   return {};
 }
 
-Result<void> read_edges(const std::filesystem::path& path, std::int64_t base, Mesh& mesh) {
+Result<void> read_edges(const std::filesystem::path& path, std::int64_t base, Mesh& mesh,
+                        NameReader& names) {
   const auto contents = read_file(path, kMaxTextBytes);
   if (!contents) return tl::unexpected(contents.error());
   LineScanner scanner(path.string(), contents->text());
@@ -113,6 +118,7 @@ Result<void> read_edges(const std::filesystem::path& path, std::int64_t base, Me
     }
     mesh.edge_markers.push_back(marker);
   }
+  read_names(contents->text(), names);
   return {};
 }
 
@@ -144,6 +150,7 @@ void write_triangle_mesh(const MeshView& mesh, OutputFile& node, OutputFile& ele
              mesh.edge_markers[e]);
   }
   put_line(poly, 0);
+  put_names(*mesh.names, poly);
 }
 
 Result<Mesh> read_triangle_mesh(const std::filesystem::path& path) {
@@ -156,12 +163,15 @@ Result<Mesh> read_triangle_mesh(const std::filesystem::path& path) {
     mesh.coordinates.push_back(point.x);
     mesh.coordinates.push_back(point.y);
   }
-  if (auto read = read_triangles(base.replace_extension(".ele"), points->base, mesh); !read)
+  NameReader names(path.string());
+  if (auto read = read_triangles(base.replace_extension(".ele"), points->base, mesh, names); !read)
     return tl::unexpected(read.error());
   std::error_code ignored;
   if (std::filesystem::exists(base.replace_extension(".poly"), ignored))
-    if (auto read = read_edges(base, points->base, mesh); !read)
+    if (auto read = read_edges(base, points->base, mesh, names); !read)
       return tl::unexpected(read.error());
+  mesh.warnings = names.warnings();
+  mesh.names = names.take();
   return validated(path, std::move(mesh));
 }
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "client/formats/file_contents.h"
+#include "client/formats/files/file_contents.h"
 
 namespace weft::client {
 

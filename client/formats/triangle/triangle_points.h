@@ -11,7 +11,7 @@
 
 #include "client/base/error.h"
 #include "client/formats/domain.h"
-#include "client/formats/line_scanner.h"
+#include "client/formats/files/line_scanner.h"
 
 namespace weft::client {
 

@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "client/base/text.h"
-#include "client/formats/file_contents.h"
-#include "client/formats/line_scanner.h"
-#include "client/formats/text_writer.h"
+#include "client/formats/files/file_contents.h"
+#include "client/formats/files/line_scanner.h"
+#include "client/formats/files/text_writer.h"
+#include "client/formats/triangle/triangle_names.h"
 #include "client/formats/triangle/triangle_points.h"
 
 namespace weft::client {
@@ -87,7 +88,7 @@ Result<void> read_regions(LineScanner& scanner, Domain& domain) {
     const auto attribute = scanner.real("the region's attribute");
     if (!attribute) return tl::unexpected(attribute.error());
     attributes.push_back(*attribute);
-    double max_area = *attribute;  // a lone value is both
+    double max_area = *attribute;  // a single value is both
     if (!scanner.at_line_end()) {
       const auto area = scanner.real("the region's maximum area");
       if (!area) return tl::unexpected(area.error());
@@ -105,8 +106,7 @@ Result<void> read_regions(LineScanner& scanner, Domain& domain) {
   return {};
 }
 
-// What the file that the domain came from has in the place of a region's id, if that is another
-// number.
+// The number that the domain's file has in the place of a region's id, if it is not the id.
 std::optional<double> value_of(const Domain& domain, std::int32_t id) {
   const auto found = std::find_if(domain.region_values.begin(), domain.region_values.end(),
                                   [id](const RegionValue& known) { return known.id == id; });
@@ -136,6 +136,13 @@ Result<Domain> read_triangle_poly(const std::filesystem::path& path) {
     return tl::unexpected(read.error());
   if (auto read = read_holes(scanner, domain); !read) return tl::unexpected(read.error());
   if (auto read = read_regions(scanner, domain); !read) return tl::unexpected(read.error());
+
+  NameReader names(path.string());
+  for (const auto& [id, value] : domain.region_values)
+    names.add(NameKind::kRegion, id, shortest(value));
+  read_names(contents->text(), names);
+  domain.warnings = names.warnings();
+  domain.names = names.take();
   return domain;
 }
 
@@ -163,6 +170,9 @@ void write_triangle_poly(const Domain& domain, OutputFile& file) {
     value ? put_line(file, i + 1, region.at.x, region.at.y, *value, max_area)
           : put_line(file, i + 1, region.at.x, region.at.y, region.id, max_area);
   }
+  Names names = domain.names;
+  for (const RegionValue& value : domain.region_values) names.regions.erase(value.id);
+  put_names(names, file);
 }
 
 }  // namespace weft::client

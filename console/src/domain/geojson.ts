@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A domain from GeoJSON (RFC 7946), with the properties marker, region and max_area of features.
+// A domain from GeoJSON (RFC 7946), with the properties marker, region, their names, max_area and max_edge
+// of features.
 // Errors (FileError) name the path of the offender, such as features[3].geometry.coordinates[0].
 import { FileError } from "./file-error";
 import { GeometryBuilder, noProperties, type Properties } from "./geometry-builder";
@@ -8,6 +9,7 @@ import type { PlanarDomain, Point } from "./planar-domain";
 type Json = { [name: string]: unknown };
 
 const deepest = 64;
+const equilateral = 0.4330127018922193; // area of the triangle of edges 1
 
 export function readGeoJson(name: string, text: string): PlanarDomain {
   let root: unknown;
@@ -59,10 +61,18 @@ function propertiesOf(feature: Json, path: string): Properties {
     return value;
   };
   const isId = (value: number) => value === (value | 0);
+  const isPositive = (value: number) => value > 0;
+  // A text instead of a number, or beside it.
+  const text = (name: string) => [given[name], given[`${name}_name`]].find((value) => value && typeof value === "string");
+  const maxArea = number("max_area", "positive", isPositive);
+  const maxEdge = number("max_edge", "positive", isPositive);
+  const bounds = [maxArea, maxEdge && equilateral * maxEdge * maxEdge].filter((bound) => bound !== undefined);
   return {
     marker: number("marker", "an integer of 32 bits", isId) ?? 0,
     region: number("region", "an integer of 32 bits", isId),
-    maxArea: number("max_area", "positive", (value) => value > 0),
+    maxArea: bounds.length > 0 ? Math.min(...bounds) : undefined,
+    markerName: String(text("marker") ?? ""),
+    regionName: String(text("region") ?? ""),
   };
 }
 

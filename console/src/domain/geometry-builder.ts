@@ -6,22 +6,29 @@
 //   - With lines alone every bounded face is meshed.
 import { FileError } from "./file-error";
 import { interiorPoint } from "./interior-point";
+import { Labels } from "./names";
 import type { PlanarDomain, Point, RegionSeed } from "./planar-domain";
 
 export interface Properties {
   marker: number; // of segments
   region: number | undefined;
   maxArea: number | undefined;
+  markerName: string; // empty: none
+  regionName: string;
 }
 
-export const noProperties: Properties = { marker: 0, region: undefined, maxArea: undefined };
+export const noProperties: Properties = {
+  marker: 0, region: undefined, maxArea: undefined, markerName: "", regionName: "",
+};
 
 export class GeometryBuilder {
   private readonly points: number[] = [];
   private readonly segments: number[] = [];
-  private readonly markers: number[] = [];
+  private readonly markers: number[] = []; // labels
+  private readonly markerLabels = new Labels("marker");
+  private readonly regionLabels = new Labels("region");
   private readonly lines: { from: number; to: number }[] = []; // of segments
-  private readonly regions: RegionSeed[] = [];
+  private readonly regions: RegionSeed[] = []; // their ids are labels
   private filled = false;
 
   point(at: Point): void {
@@ -30,7 +37,7 @@ export class GeometryBuilder {
 
   line(positions: readonly Point[], properties: Properties): void {
     const from = this.markers.length;
-    this.chain(positions, false, properties.marker);
+    this.chain(positions, false, properties);
     this.lines.push({ from, to: this.markers.length });
   }
 
@@ -42,14 +49,14 @@ export class GeometryBuilder {
         throw new FileError(`${place}[${i}]`, "is a ring that is not closed");
       if (new Set(ring.map(([x, y]) => `${x} ${y}`)).size < 3)
         throw new FileError(`${place}[${i}]`, "is a ring of fewer than 3 points");
-      this.chain(ring.slice(0, -1), true, properties.marker);
+      this.chain(ring.slice(0, -1), true, properties);
     });
     if (rings.length > 0) this.filled = true;
-    const { region, maxArea } = properties;
-    if (rings.length === 0 || (region === undefined && maxArea === undefined)) return;
+    const { region, regionName, maxArea } = properties;
+    if (rings.length === 0 || (region === undefined && !regionName && maxArea === undefined)) return;
     const seed = interiorPoint(rings);
     if (!seed) throw new FileError(place, "is a polygon with a region but without area");
-    this.regions.push({ x: seed[0], y: seed[1], id: region ?? 0, maxArea });
+    this.regions.push({ x: seed[0], y: seed[1], id: this.regionLabels.of(region ?? 0, regionName), maxArea });
   }
 
   finish(name: string): PlanarDomain {
@@ -57,19 +64,26 @@ export class GeometryBuilder {
     if (this.filled)
       for (const { from, to } of this.lines)
         for (let i = from; i < to; ++i) this.segment(this.segments[2 * i], this.segments[2 * i + 1], this.markers[i]);
+    const markers = this.markerLabels.numbers();
+    const regions = this.regionLabels.numbers();
+    const [ofMarkers, ofRegions] = [this.markerLabels.reader, this.regionLabels.reader];
     return {
       name,
       points: Float64Array.from(this.points),
       segments: Uint32Array.from(this.segments),
-      markers: Int32Array.from(this.markers),
+      markers: Int32Array.from(this.markers, (label) => markers[label]!),
       holes: new Float64Array(),
-      regions: this.regions,
+      regions: this.regions.map((seed) => ({ ...seed, id: regions[seed.id]! })),
       evenOdd: this.filled,
+      markerNames: ofMarkers.names,
+      regionNames: ofRegions.names,
+      warnings: [...ofMarkers.warnings, ...ofRegions.warnings],
     };
   }
 
   // Positions that repeat the one before are dropped.
-  private chain(positions: readonly Point[], closed: boolean, marker: number): void {
+  private chain(positions: readonly Point[], closed: boolean, properties: Properties): void {
+    const marker = this.markerLabels.of(properties.marker, properties.markerName);
     const first = this.points.length / 2;
     positions.forEach(([x, y], i) => {
       if (i > 0 && x === positions[i - 1][0] && y === positions[i - 1][1]) return;

@@ -3,6 +3,7 @@
 import { create } from "@bufbuild/protobuf";
 import { DomainSchema, Fill, type Domain } from "../gen/weft/v1/mesh_service_pb";
 import type { Box } from "../view/picture";
+import type { Names } from "./names";
 
 export interface RegionSeed {
   x: number;
@@ -19,6 +20,9 @@ export interface PlanarDomain {
   holes: Float64Array; // x0, y0, x1, y1, ...
   regions: RegionSeed[];
   evenOdd: boolean; // whether rings within rings are holes
+  markerNames: Names;
+  regionNames: Names;
+  warnings: string[]; // what of the file was left out
 }
 
 export type Point = [x: number, y: number];
@@ -46,6 +50,8 @@ export function segmentEnds({ points, segments }: PlanarDomain): Float64Array {
   return ends;
 }
 
+const named = (names: Names) => [...names].map(([id, name]) => ({ id, name }));
+
 // `snap` as in weft.v1.Domain.
 export function toMessage(domain: PlanarDomain, snap: number): Domain {
   return create(DomainSchema, {
@@ -56,5 +62,7 @@ export function toMessage(domain: PlanarDomain, snap: number): Domain {
     regions: domain.regions.map(({ x, y, id, maxArea }) => ({ x, y, id, maxArea })),
     fill: domain.evenOdd ? Fill.EVEN_ODD : Fill.SEEDS,
     snap,
+    markerNames: named(domain.markerNames),
+    regionNames: named(domain.regionNames),
   });
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A domain from Triangle's .poly: points, segments with markers, holes, regions. Errors (FileError)
+// A domain from Triangle's .poly: points, segments with markers, holes, regions, and names in comments. Errors (FileError)
 // name the line. The points of a .node beside it cannot be read, because a page is given one file.
 import { FileError } from "./file-error";
+import { NameReader } from "./names";
 import type { PlanarDomain, RegionSeed } from "./planar-domain";
 
 class Lines {
@@ -107,7 +108,17 @@ export function readPoly(name: string, text: string): PlanarDomain {
     lines.next("a hole");
     [holes[i], holes[i + 1]] = readSeed(lines);
   }
-  return { name, points, segments, markers, holes, regions: readRegions(lines), evenOdd: false };
+  const names = { marker: new NameReader("marker"), region: new NameReader("region") };
+  const regions = readRegions(lines, names.region);
+  // As client/formats/triangle/triangle_names.h has them.
+  for (const [, kind, id, called] of text.matchAll(/^# (marker|region)=(-?\d+):([^\n]*?)\r?$/gm))
+    if (Number(id) === (Number(id) | 0)) names[kind as keyof typeof names].add(Number(id), called!);
+  return {
+    name, points, segments, markers, holes, regions, evenOdd: false,
+    markerNames: names.marker.names,
+    regionNames: names.region.names,
+    warnings: [...names.marker.warnings, ...names.region.warnings],
+  };
 }
 
 function readSeed(lines: Lines): [number, number] {
@@ -116,7 +127,7 @@ function readSeed(lines: Lines): [number, number] {
 }
 
 // The optional last section.
-function readRegions(lines: Lines): RegionSeed[] {
+function readRegions(lines: Lines, names: NameReader): RegionSeed[] {
   if (!lines.tryNext()) return [];
   const regions: RegionSeed[] = [];
   const attributes: number[] = [];
@@ -133,6 +144,7 @@ function readRegions(lines: Lines): RegionSeed[] {
   if (lines.tryNext()) throw lines.error("the file goes on after its last region");
   const ids = regionIds(attributes);
   regions.forEach((region, i) => (region.id = ids.get(attributes[i])!));
+  for (const [value, id] of ids) if (value !== id) names.add(id, String(value));
   return regions;
 }
 

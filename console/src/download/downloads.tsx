@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The files of a mesh that the server keeps, written by a worker as its chunks come.
 import { useEffect, useRef, useState } from "preact/hooks";
+import { namesOf } from "../domain/names";
 import type { Job } from "../gen/weft/v1/job_service_pb";
+import type { Summary } from "../gen/weft/v1/mesh_service_pb";
 import { countText } from "../jobs/job-parts";
 import { currentSession } from "../session";
 import { formats, type Format } from "./formats";
@@ -16,7 +18,8 @@ function keep(file: Blob, name: string): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 
-export function Downloads({ job, digest }: { job: Job; digest: string }) {
+// `summary`: with the request, which has the names.
+export function Downloads({ job, summary, digest }: { job: Job; summary: Summary | undefined; digest: string }) {
   const [said, setSaid] = useState("");
   const worker = useRef<Worker>();
   const [busy, setBusy] = useState(false);
@@ -45,7 +48,7 @@ export function Downloads({ job, digest }: { job: Job; digest: string }) {
       stop();
       setSaid("the file could not be written");
     };
-    const order: Order = { job: job.id, format, token: currentSession().token };
+    const order: Order = { job: job.id, format, names: namesOf(summary?.request), token: currentSession().token };
     started.postMessage(order);
   };
 

@@ -2,10 +2,12 @@
 // Files of meshes, written from the chunks as they come. The formats and their names for regions and
 // markers are those of `weft` (docs/formats.md), so that a file from here is as good as one from there.
 //
-//   const writer = formats.vtu.begin();
+//   const writer = formats.vtu.begin(names);
 //   for (const chunk of chunks) writer.add(chunk);
 //   const file = await writer.finish();
+import type { MeshNames, Names } from "../domain/names";
 import { Section } from "./sections";
+import { gmshName, inXml, objGroup, spelled } from "./spelling";
 
 // The arrays of a weft.v1.Chunk that files need. An empty `regions` or `edgeMarkers` means zeros.
 export interface MeshPiece {
@@ -55,12 +57,22 @@ function inSpace(coordinates: ArrayLike<number>): Float64Array<ArrayBuffer> {
   return out;
 }
 
+// An array for each name: the number, and the dimension of what has it.
+function fieldData({ markers, regions }: MeshNames): string {
+  const rows = [[markers, 1], [regions, 2]].flatMap(([names, dimension]) =>
+    [...(names as Names)].sort(([a], [b]) => a - b).map(([id, name]) =>
+      `<DataArray type="Int32" Name="${inXml(name)}" NumberOfTuples="2" format="ascii">${id} ${dimension}</DataArray>\n`));
+  return rows.length > 0 ? `<FieldData>\n${rows.join("")}</FieldData>\n` : "";
+}
+
 class Vtu implements MeshWriter {
   private points = new Section();
   private corners = new Section();
   private regions = new Section();
   private edges = new Section();
   private markers = new Section();
+
+  constructor(private readonly names: MeshNames) {}
 
   add(piece: MeshPiece): void {
     this.points.put(inSpace(piece.coordinates));
@@ -97,7 +109,7 @@ class Vtu implements MeshWriter {
     ];
     let head =
       '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" ' +
-      `header_type="UInt64">\n<UnstructuredGrid><Piece NumberOfPoints="${this.points.size / 24}" ` +
+      `header_type="UInt64">\n<UnstructuredGrid>${fieldData(this.names)}<Piece NumberOfPoints="${this.points.size / 24}" ` +
       `NumberOfCells="${triangles + edges}">\n`;
     let offset = 0;
     const body: BlobPart[] = [];
@@ -116,6 +128,9 @@ class Vtu implements MeshWriter {
 class Groups {
   private readonly sections = new Map<number, Section>();
 
+  // `word`: what they are, and are called if they have no name.
+  constructor(private readonly word: string, private readonly names: Names) {}
+
   of(value: number): Section {
     const known = this.sections.get(value);
     if (known) return known;
@@ -132,19 +147,33 @@ class Groups {
       .map(([value, section]) => {
         if (value > 0) return { value, tag: value, section };
         do ++free;
-        while (this.sections.has(free));
+        while (this.sections.has(free) || this.names.has(free));
         return { value, tag: free, section };
       });
+  }
+
+  // The lines of $PhysicalNames. A positive number that has a name, but no element, is there, too.
+  physicalNames(dimension: number): string[] {
+    const names = spelled(this.names, gmshName);
+    return [
+      ...this.sorted().map(({ value, tag }) => [tag, names.get(value) ?? `${this.word} ${value}`]),
+      ...[...names].filter(([id]) => id > 0 && !this.sections.has(id)),
+    ].map(([tag, name]) => `${dimension} ${tag} "${name}"\n`);
   }
 }
 
 class Msh implements MeshWriter {
   private readonly points = new Section();
-  private readonly surfaces = new Groups();
-  private readonly curves = new Groups();
+  private readonly surfaces: Groups;
+  private readonly curves: Groups;
   private readonly low = [Infinity, Infinity, 0];
   private readonly high = [-Infinity, -Infinity, 0];
   private elements = 0;
+
+  constructor({ markers, regions }: MeshNames) {
+    this.surfaces = new Groups("region", regions);
+    this.curves = new Groups("marker", markers);
+  }
 
   add(piece: MeshPiece): void {
     this.points.put(inSpace(piece.coordinates));
@@ -176,10 +205,7 @@ class Msh implements MeshWriter {
     const vertices = this.points.size / 24;
     const curves = this.curves.sorted();
     const surfaces = this.surfaces.sorted();
-    const names = [
-      ...curves.map(({ value, tag }) => `1 ${tag} "marker ${value}"\n`),
-      ...surfaces.map(({ value, tag }) => `2 ${tag} "region ${value}"\n`),
-    ];
+    const names = [...this.curves.physicalNames(1), ...this.surfaces.physicalNames(2)];
     const parts: BlobPart[] = ["$MeshFormat\n4.1 1 8\n", i32(1), "\n$EndMeshFormat\n"];
     parts.push(`$PhysicalNames\n${names.length}\n${names.join("")}$EndPhysicalNames\n`);
     parts.push("$Entities\n", u64(0, curves.length, surfaces.length, 0));
@@ -238,6 +264,27 @@ class Npz implements MeshWriter {
     { name: "edge_markers.npy", type: "<i4", width: 4, columns: 1, body: new Section() },
   ];
 
+  constructor({ markers, regions }: MeshNames) {
+    this.addNames("marker", markers);
+    this.addNames("region", regions);
+  }
+
+  // NumPy's texts have one length, and are padded with zeros.
+  private addNames(kind: string, names: Names): void {
+    if (names.size === 0) return;
+    const sorted = [...names].sort(([a], [b]) => a - b);
+    const texts = sorted.map(([, name]) => Array.from(name, (letter) => letter.codePointAt(0)!));
+    const longest = Math.max(...texts.map(({ length }) => length));
+    const ids = new Section();
+    ids.put(Int32Array.from(sorted, ([id]) => id));
+    const table = new Section();
+    table.put(Uint32Array.from(texts.flatMap((text) => [...text, ...Array<number>(longest - text.length).fill(0)])));
+    this.arrays.push(
+      { name: `${kind}_ids.npy`, type: "<i4", width: 4, columns: 1, body: ids },
+      { name: `${kind}_names.npy`, type: `<U${longest}`, width: 4 * longest, columns: 1, body: table },
+    );
+  }
+
   add(piece: MeshPiece): void {
     [
       Float64Array.from(piece.coordinates),
@@ -289,6 +336,13 @@ class Obj implements MeshWriter {
   private readonly edges = new Section();
   private region: number | undefined;
   private marker: number | undefined;
+  private readonly regions: Names;
+  private readonly markers: Names;
+
+  constructor({ markers, regions }: MeshNames) {
+    this.regions = spelled(regions, objGroup);
+    this.markers = spelled(markers, objGroup);
+  }
 
   add(piece: MeshPiece): void {
     const { coordinates: c, triangles: t, edges: e } = piece;
@@ -296,14 +350,16 @@ class Obj implements MeshWriter {
     for (let i = 0; i < c.length; i += 2) text += `v ${c[i]} ${c[i + 1]} 0\n`;
     for (let i = 0; i < t.length; i += 3) {
       const region = piece.regions[i / 3] ?? 0;
-      if (region !== this.region) text += `g region_${(this.region = region)}\n`;
+      if (region !== this.region) text += `g ${this.regions.get(region) ?? `region_${region}`}\n`;
+      this.region = region;
       text += `f ${t[i]! + 1} ${t[i + 1]! + 1} ${t[i + 2]! + 1}\n`;
     }
     this.lines.text(text);
     text = "";
     for (let i = 0; i < e.length; i += 2) {
       const marker = piece.edgeMarkers[i / 2] ?? 0;
-      if (marker !== this.marker) text += `g marker_${(this.marker = marker)}\n`;
+      if (marker !== this.marker) text += `g ${this.markers.get(marker) ?? `marker_${marker}`}\n`;
+      this.marker = marker;
       text += `l ${e[i]! + 1} ${e[i + 1]! + 1}\n`;
     }
     this.edges.text(text);
@@ -365,13 +421,13 @@ class Ply implements MeshWriter {
 }
 
 export const formats = {
-  vtu: { for: "ParaView", begin: () => new Vtu() },
-  msh: { for: "Gmsh 4.1", begin: () => new Msh() },
-  npz: { for: "NumPy", begin: () => new Npz() },
-  obj: { for: "Wavefront", begin: () => new Obj() },
+  vtu: { for: "ParaView", begin: (names) => new Vtu(names) },
+  msh: { for: "Gmsh 4.1", begin: (names) => new Msh(names) },
+  npz: { for: "NumPy", begin: (names) => new Npz(names) },
+  obj: { for: "Wavefront", begin: (names) => new Obj(names) },
   ply: { for: "Stanford, triangles alone", begin: () => new Ply() },
   off: { for: "Geomview, triangles alone", begin: () => new Off() },
-} satisfies Record<string, { for: string; begin: () => MeshWriter }>;
+} satisfies Record<string, { for: string; begin: (names: MeshNames) => MeshWriter }>;
 
 // The extension of a file.
 export type Format = keyof typeof formats;

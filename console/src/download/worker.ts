@@ -4,11 +4,13 @@
 import { ConnectError, createClient } from "@connectrpc/connect";
 import { createGrpcWebTransport } from "@connectrpc/connect-web";
 import { JobService } from "../gen/weft/v1/job_service_pb";
+import type { MeshNames } from "../domain/names";
 import { formats, type Format } from "./formats";
 
 export interface Order {
   job: string;
   format: Format;
+  names: MeshNames;
   token: string; // empty: none
 }
 
@@ -16,8 +18,8 @@ export type News = { triangles: number } | { file: Blob } | { problem: string };
 
 const tell = (news: News) => postMessage(news);
 
-async function fetchFile({ job, format, token }: Order): Promise<Blob> {
-  const writer = formats[format].begin();
+async function fetchFile({ job, format, names, token }: Order): Promise<Blob> {
+  const writer = formats[format].begin(names);
   let triangles = 0;
   let chunks = 0;
   let complete = false;

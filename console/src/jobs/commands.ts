@@ -15,6 +15,7 @@ function optionsOf({ domain, quality, size, budget, allowUnrefined }: GenerateMe
     ["optimise", quality?.optimise],
     ["snap", domain?.snap || undefined],
     ["gradation", size?.gradation || undefined],
+    ["gradation_within", size?.gradationWithin || undefined],
     ["cells_across", size?.cellsAcross || undefined],
     ["max_triangles", budget?.maxTriangles ? Number(budget.maxTriangles) : undefined],
     ["max_seconds", budget?.maxSeconds || undefined],

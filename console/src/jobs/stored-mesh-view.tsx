@@ -2,18 +2,19 @@
 // The picture of a mesh that the server keeps, drawn as its chunks come.
 import { useEffect } from "preact/hooks";
 import { explain } from "../client";
+import { namesOf } from "../domain/names";
 import type { Job } from "../gen/weft/v1/job_service_pb";
 import { useMeshRun, useRunState } from "../view/mesh-run";
 import { MeshView } from "../view/mesh-view";
 
 export function StoredMeshView({ job, label }: { job: Job; label: string }) {
   const run = useMeshRun();
-  const { phase, triangles, error } = useRunState(run);
+  const { phase, triangles, summary, error } = useRunState(run);
   const start = () => run.start({ kind: "job", id: job.id });
   useEffect(start, [run, job.id]);
   return (
     <div class="stored-mesh" role="group" aria-label={label}>
-      <MeshView run={run} />
+      <MeshView run={run} regionNames={namesOf(summary?.request).regions} />
       {phase === "running" && (
         <progress max={Number(job.summary?.triangles ?? 1n)} value={triangles} aria-label="Received" />
       )}

@@ -54,6 +54,7 @@ export function factsOf(summary: Summary): Fact[] {
     { name: "Peak of memory", text: bytesText(summary.peakEngineBytes), varies: true },
     { name: "Engine version", text: summary.engineVersion },
   );
+  for (const { message } of summary.sizeWarnings) facts.push({ name: "Warning", text: message });
   return facts;
 }
 
@@ -61,7 +62,7 @@ export function SummaryFacts({ summary }: { summary: Summary }) {
   return (
     <dl class="facts">
       {factsOf(summary).map(({ name, text, varies }) => (
-        <div key={name}>
+        <div key={name + text}>
           <dt>{name}</dt>
           <dd data-varies={varies || undefined}>{text}</dd>
         </div>

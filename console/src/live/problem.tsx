@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Says what keeps a page from showing what is true now. That the server is away, or wants a token, is
+// Says what keeps a page from showing what is true now. That the server is away, or needs a token, is
 // said by the console's own banner, on every page.
 import { Code, ConnectError } from "@connectrpc/connect";
 import { explain } from "../client";

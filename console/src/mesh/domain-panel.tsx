@@ -77,6 +77,7 @@ export function DomainPanel({ domain, text, example, problem, drawing, onExample
           {count(domain.points.length / 2)} points, {count(domain.markers.length)} segments{size && `, ${size}`}
         </p>
       )}
+      {!drawing && domain.warnings.length > 0 && <p class="problem" role="status">{domain.warnings.join("; ")}</p>}
     </section>
   );
 }

@@ -19,8 +19,10 @@ function Problem({ id, text }: { id: string; text: string | undefined }) {
   );
 }
 
+type NumberField = Exclude<keyof FormText, "gradationWithin">;
+
 export function MeshForm({ form, problems, onChange }: Props) {
-  const field = (name: keyof FormText, label: string, placeholder: string, hint: string) => (
+  const field = (name: NumberField, label: string, placeholder: string, hint: string) => (
     <div class="field">
       <label for={name} title={hint}>
         {label}
@@ -86,6 +88,17 @@ export function MeshForm({ form, problems, onChange }: Props) {
           </>
         )}
         {field("gradation", "Gradation", "no limit", "How fast edges may grow per unit of length, such as 0.2")}
+        {form.gradation.trim() !== "" && (
+          <label title="Distances for the gradation are measured around land, not across it">
+            <input
+              type="checkbox"
+              id="gradationWithin"
+              checked={form.gradationWithin}
+              onChange={(event) => onChange({ gradationWithin: event.currentTarget.checked })}
+            />
+            within the domain
+          </label>
+        )}
         {field("cellsAcross", "Edges across", "no bound", "At least this many edges across every channel")}
       </fieldset>
       <fieldset>

@@ -108,6 +108,7 @@ export function RunStatus({ run, told }: { run: MeshRun; told: boolean }) {
         </div>
       )}
       <Figures state={state} />
+      {summary?.sizeWarnings.map(({ message }) => <p key={message} class="problem">{message}</p>)}
     </section>
   );
 }

@@ -41,6 +41,12 @@ function Times({ job }: { job: JobMessage }) {
             <dd class="mono cut">{job.requestId}</dd>
           </div>
         )}
+        {job.client && (
+          <div>
+            <dt>Client</dt>
+            <dd class="cut">{job.client}</dd>
+          </div>
+        )}
         {job.attempts > 0 && (
           <div>
             <dt>Attempts</dt>

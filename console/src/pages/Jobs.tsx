@@ -25,12 +25,13 @@ const filters: { label: string; states: JobState[] }[] = [
 
 interface RowProps {
   job: Job;
+  named: boolean; // with its client
   changed: () => void;
   picked: boolean;
   pick: () => void;
 }
 
-function Row({ job, changed, picked, pick }: RowProps) {
+function Row({ job, named, changed, picked, pick }: RowProps) {
   const triangles = trianglesOf(job);
   return (
     <tr>
@@ -61,6 +62,7 @@ function Row({ job, changed, picked, pick }: RowProps) {
             countText(triangles)
           ))}
       </td>
+      {named && <td class="cut" title={job.client}>{job.client}</td>}
       <td class="number">{job.attempts || ""}</td>
       <td class="number"><Age time={job.createTime} /></td>
       <td class="actions"><JobActions job={job} changed={changed} /></td>
@@ -81,6 +83,7 @@ export function JobsPage() {
   const pick = (id: string) =>
     setPicked(picked.includes(id) ? picked.filter((each) => each !== id) : [...picked, id].slice(-2));
   const jobs = list.value?.jobs ?? [];
+  const named = jobs.some(({ client }) => client !== ""); // the server tells clients apart
   const next = list.value?.nextPageToken;
   return (
     <section aria-labelledby="title" class="page">
@@ -124,6 +127,7 @@ export function JobsPage() {
                 <th scope="col">Job</th>
                 <th scope="col">Progress</th>
                 <th scope="col" class="number">Triangles</th>
+                {named && <th scope="col" class="client">Client</th>}
                 <th scope="col" class="number">Attempts</th>
                 <th scope="col" class="number">Age</th>
                 <th scope="col"><span class="hidden">Actions</span></th>
@@ -134,6 +138,7 @@ export function JobsPage() {
                 <Row
                   key={job.id}
                   job={job}
+                  named={named}
                   changed={list.again}
                   picked={picked.includes(job.id)}
                   pick={() => pick(job.id)}

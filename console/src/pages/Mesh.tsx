@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The first page: a domain, what its mesh must satisfy, and the mesh as it comes.
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import { explain, jobs } from "../client";
 import { readFile } from "../domain/domain-file";
 import { examples, geoJsonOf, type Example } from "../domain/examples";
 import { readGeoJson } from "../domain/geojson";
+import { namesOf } from "../domain/names";
 import { boxOf, segmentEnds, type PlanarDomain } from "../domain/planar-domain";
 import type { GenerateMeshRequest } from "../gen/weft/v1/mesh_service_pb";
 import { pythonProgram, shellCommand } from "../jobs/commands";
@@ -16,6 +17,7 @@ import { RunStatus } from "../mesh/run-status";
 import { SketchBar } from "../mesh/sketch-bar";
 import { emptyForm, fieldOf, isRequest, requestOf, type FormText, type Problems } from "../request/form";
 import { navigate } from "../router";
+import { boundAt } from "../size/bound-at";
 import { heatMapOf } from "../size/heat-map";
 import { figure } from "../text";
 import { boundsOf } from "../view/bounds";
@@ -34,6 +36,11 @@ interface Source {
 }
 
 const sourceOf = ({ name, file, text }: Example): Source => ({ domain: readGeoJson(file, text), text, example: name });
+
+// What a domain of one's own begins with, beside a size; what was asked of angles and points stays.
+const unbounded: Partial<FormText> = {
+  sizeKind: "edge", gradation: "", gradationWithin: false, cellsAcross: "", maxTriangles: "", snap: "",
+};
 
 // Where a first drawing goes.
 const sheet = { ends: new Float64Array(), box: [0, 0, 10, 7] as [number, number, number, number] };
@@ -76,7 +83,8 @@ export function MeshPage() {
     [domain, sketch],
   );
   const heat = useHeatMap(form, sketch ? undefined : domain);
-  const bounds = useMemo(() => boundsOf(asked?.request), [asked]);
+  const bounds = useMemo(() => boundsOf(asked?.request, domain), [asked]);
+  const regionNames = useMemo(() => namesOf(asked?.request).regions, [asked]);
 
   const use = (next: Source, change: Partial<FormText>) => {
     run.close();
@@ -94,7 +102,7 @@ export function MeshPage() {
     // An edge that gives some thousands of triangles, to begin with.
     const edge = box ? Number((Math.hypot(box[2] - box[0], box[3] - box[1]) / 100).toPrecision(1)) : "";
     use({ domain: answer.domain, text: undefined, example: undefined }, {
-      sizeKind: "edge", size: String(edge), gradation: "", cellsAcross: "", maxTriangles: "", snap: "",
+      ...unbounded, size: String(edge),
     });
   };
   const draw = () => {
@@ -110,7 +118,7 @@ export function MeshPage() {
     const text = geoJsonOf([{ rings: sketch.rings }]);
     desk.current!.querySelector<HTMLElement>("#size")?.focus();
     use({ domain: readGeoJson("drawing.geojson", text), text, example: undefined }, {
-      sizeKind: "edge", size: "0.2", gradation: "", cellsAcross: "", maxTriangles: "", snap: "",
+      ...unbounded, size: "0.2",
     });
   };
 
@@ -149,7 +157,8 @@ export function MeshPage() {
   const told = at !== undefined && asked?.form[at] === form[at];
   const problems = told ? { ...wrong, [at]: failure!.message } : wrong;
 
-  useEffect(() => {
+  // At once, so that a key just after a button means what the page says then.
+  useLayoutEffect(() => {
     const keys = (event: KeyboardEvent) => {
       if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) start();
       else if (event.key === "Escape" && run.state.phase === "running") run.cancel();
@@ -213,7 +222,7 @@ export function MeshPage() {
           )}
         </div>
       </form>
-      <MeshView run={run} outline={outline} bounds={bounds} sketch={sketch} backdrop={heat}>
+      <MeshView run={run} regionNames={regionNames} outline={outline} bounds={bounds} sketch={sketch} backdrop={heat}>
         {heat && state.chunks === 0 && (
           <Scale
             title={form.sizeKind === "edge" ? "Length of edges, as asked for" : "Area, as asked for"}
@@ -228,7 +237,11 @@ export function MeshPage() {
         <div class="desk-scroll">
           {state.phase === "idle" && <Keys drawing={sketch !== undefined} />}
           <RunStatus run={run} told={told} />
-          <MeshFigures run={run} bounds={bounds} />
+          <MeshFigures
+            run={run}
+            regionNames={regionNames}
+            boundAt={asked && ((centroid, region) => boundAt(asked.form, domain, centroid, region))}
+          />
           {asked && state.phase === "done" && (
             <div class="row copies" role="group" aria-label="Copy the request">
               <span class="faint">Copy as</span>

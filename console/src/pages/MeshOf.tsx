@@ -19,7 +19,7 @@ function Missing({ digest }: { digest: string }) {
       <p>No job of yours keeps this mesh.</p>
       <ul>
         <li>The server keeps meshes for a while only; <a href="/server">how long</a> is among its limits.</li>
-        <li>Callers with different tokens see their own jobs only.</li>
+        <li>If the server wants tokens, a mesh is shown to those with a token of the same name only.</li>
         <li>A mesh from the page Mesh is kept once it is submitted as a job.</li>
       </ul>
       {!isDigest(digest) && <p>A mesh's name has 64 digits from 0 to f; this is none.</p>}
@@ -57,7 +57,7 @@ export function MeshOfPage({ digest }: { digest: string }) {
         </h1>
         <Copy label="Copy the link" text={location.href} />
         <span class="gap" />
-        {job && <Downloads job={job} digest={digest} />}
+        {job && <Downloads job={job} summary={summary} digest={digest} />}
       </header>
       <Problem of={found.problem} />
       {found.value && !job && <Missing digest={digest} />}

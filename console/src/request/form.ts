@@ -13,6 +13,7 @@ export interface FormText {
   sizeKind: "none" | "edge" | "area";
   size: string; // a number or an expression
   gradation: string; // these may be empty
+  gradationWithin: boolean; // of effect with a gradation alone
   cellsAcross: string;
   minAngle: string;
   maxTriangles: string;
@@ -24,6 +25,7 @@ export const emptyForm: FormText = {
   sizeKind: "edge",
   size: "",
   gradation: "",
+  gradationWithin: false,
   cellsAcross: "",
   minAngle: "25",
   maxTriangles: "",
@@ -85,6 +87,7 @@ export function requestOf(form: FormText, domain: PlanarDomain): GenerateMeshReq
       measure: form.sizeKind === "edge" ? Measure.EDGE : Measure.AREA,
       fields: form.sizeKind === "none" ? [] : used.map((name) => ({ name, kind: known[name] })),
       gradation,
+      gradationWithin: Boolean(gradation) && form.gradationWithin,
       cellsAcross,
     },
     quality: {

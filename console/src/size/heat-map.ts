@@ -6,6 +6,7 @@ import type { FormText } from "../request/form";
 import { scaleColour } from "../view/colours";
 import type { Box } from "../view/picture";
 import { compile } from "./expression";
+import { nearestOf } from "./nearest";
 
 export interface HeatMap {
   box: Box;
@@ -15,7 +16,6 @@ export interface HeatMap {
 }
 
 const longest = 160; // cells along the longer side, at most
-const mostWork = 3e7; // distances from a cell to a segment
 
 // Undefined if the size is a number or none, or if the page cannot compute it.
 export function heatMapOf(form: FormText, domain: PlanarDomain, box: Box | undefined): HeatMap | undefined {
@@ -23,9 +23,8 @@ export function heatMapOf(form: FormText, domain: PlanarDomain, box: Box | undef
   const value = compile(form.size, ["distance"]);
   if (!value) return undefined;
   const [width, height] = [box[2] - box[0], box[3] - box[1]];
-  const away = /\bdistance\b/.test(form.size);
-  const room = away ? Math.floor(Math.sqrt(mostWork / domain.markers.length)) : longest;
-  const cell = Math.max(width, height) / Math.min(longest, Math.max(room, 1));
+  const nearest = /\bdistance\b/.test(form.size) ? nearestOf(domain) : undefined;
+  const cell = Math.max(width, height) / longest;
   if (!(cell > 0) || !(width > 0) || !(height > 0)) return undefined;
   const columns = Math.max(1, Math.ceil(width / cell));
   const rows = Math.max(1, Math.ceil(height / cell));
@@ -39,7 +38,7 @@ export function heatMapOf(form: FormText, domain: PlanarDomain, box: Box | undef
     const inside = stretches(domain, y);
     for (let column = 0; column < columns; ++column) {
       const x = box[0] + ((column + 0.5) * width) / columns;
-      if (away) field[0] = distanceTo(domain, x, y);
+      if (nearest) field[0] = nearest.distance(x, y);
       const size = value(x, y, field);
       values[row * columns + column] = size;
       if (!(size > 0 && size < Infinity) || !inside.some(([from, to]) => x >= from && x <= to)) continue;
@@ -70,19 +69,4 @@ function stretches({ points, segments, evenOdd }: PlanarDomain, y: number): [num
   if (found.length < 2) return [];
   if (!evenOdd) return [[found[0], found[found.length - 1]]];
   return Array.from({ length: found.length >> 1 }, (_, i) => [found[2 * i], found[2 * i + 1]]);
-}
-
-// To the nearest segment.
-export function distanceTo({ points, segments }: PlanarDomain, x: number, y: number): number {
-  let least = Infinity;
-  for (let i = 0; i < segments.length; i += 2) {
-    const [a, b] = [2 * segments[i], 2 * segments[i + 1]];
-    const [dx, dy] = [points[b] - points[a], points[b + 1] - points[a + 1]];
-    const length = dx * dx + dy * dy;
-    const along = length > 0 ? ((x - points[a]) * dx + (y - points[a + 1]) * dy) / length : 0;
-    const t = Math.min(1, Math.max(0, along));
-    const [ex, ey] = [points[a] + t * dx - x, points[a + 1] + t * dy - y];
-    least = Math.min(least, ex * ex + ey * ey);
-  }
-  return Math.sqrt(least);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the colours mean.
+import type { Names } from "../domain/names";
 import { css, regionColour, scaleColour, type ColourBy } from "./colours";
 import { figure } from "../text";
 
@@ -26,7 +27,18 @@ export function Scale({ title, by, ends }: { title: string; by: "angle" | "area"
   );
 }
 
-export function Legend({ by, range, regions }: { by: ColourBy; range: [number, number]; regions: number[] }) {
+interface LegendProps {
+  by: ColourBy;
+  range: [number, number];
+  regions: number[];
+  names: Names; // of regions
+}
+
+// "none", "7", or "7 fluid".
+export const regionText = (id: number, names: Names) =>
+  id === 0 && !names.has(id) ? "none" : names.has(id) ? `${id} ${names.get(id)}` : String(id);
+
+export function Legend({ by, range, regions, names }: LegendProps) {
   if (by === "none") return null;
   if (by === "chunk") return <p class="legend">A colour for each chunk, and so for each leaf of the quadtree</p>;
   if (by === "region")
@@ -39,7 +51,7 @@ export function Legend({ by, range, regions }: { by: ColourBy; range: [number, n
               <svg width="12" height="12" aria-hidden="true">
                 <rect width="12" height="12" rx="2" fill={css(regionColour(slot))} />
               </svg>
-              {id === 0 ? "none" : id}
+              {regionText(id, names)}
             </li>
           ))}
           {regions.length > mostRegions && <li>and {regions.length - mostRegions} more</li>}

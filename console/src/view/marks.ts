@@ -21,13 +21,25 @@ export interface Backdrop {
   ends: Float64Array; // of the segments that it lies within, by parity
 }
 
+// Of a chunk that has just come.
+export interface Flash {
+  box: Box;
+  strength: number; // 0 to 1
+}
+
+// Whether nothing is marked but the scale, which does not move with the picture.
+export function isStill(shown: Shown, state: RunState, flashes: Flash[]): boolean {
+  const overMesh = shown.quadtree || shown.worst || state.picked !== undefined || flashes.length > 0;
+  return !overMesh && !shown.sketch && !(shown.backdrop && state.chunks === 0);
+}
+
 export function paintMarks(
   on: CanvasRenderingContext2D,
   camera: Camera,
   ratio: number,
   shown: Shown,
   state: RunState,
-  flashes: { box: Box; strength: number }[],
+  flashes: Flash[],
 ): void {
   const width = Math.round(camera.width * ratio);
   const height = Math.round(camera.height * ratio);

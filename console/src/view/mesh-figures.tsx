@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the page counts of a run while it comes: histograms, the worst triangles, the picked one.
 import { count, figure } from "../text";
-import { boundOf, type Bounds } from "./bounds";
+import type { PlaceBound } from "../size/bound-at";
+import type { Names } from "../domain/names";
 import { css, scaleColour } from "./colours";
+import { regionText } from "./legend";
 import { useRunState, type MeshRun } from "./mesh-run";
 import type { PickedTriangle } from "./store";
 
@@ -42,8 +44,19 @@ function Histogram({ title, bins, ends }: { title: string; bins: Bin[]; ends: st
   );
 }
 
-function Picked({ picked, bounds, run }: { picked: PickedTriangle; bounds: Bounds | undefined; run: MeshRun }) {
-  const bound = bounds && boundOf(bounds, picked.region);
+// The bound on the area of a triangle at a centroid.
+export type BoundAt = (centroid: [number, number], region: number) => PlaceBound | undefined;
+
+interface PickedProps {
+  picked: PickedTriangle;
+  boundAt: BoundAt | undefined;
+  names: Names; // of regions
+  run: MeshRun;
+}
+
+function Picked({ picked, boundAt, names, run }: PickedProps) {
+  const [[ax, ay], [bx, by], [cx, cy]] = picked.corners;
+  const bound = boundAt?.([(ax + bx + cx) / 3, (ay + by + cy) / 3], picked.region);
   return (
     <section class="picked" aria-live="polite" aria-label="Picked triangle">
       <header>
@@ -57,16 +70,16 @@ function Picked({ picked, bounds, run }: { picked: PickedTriangle; bounds: Bound
         <dd>{picked.angles.map((angle) => `${angle.toFixed(1)}°`).join(" ")}</dd>
         <dt>Area</dt>
         <dd>{figure(picked.area)}</dd>
-        {bound !== undefined && (
+        {bound && (
           <>
-            <dt>Bound</dt>
+            <dt>{bound.isExact ? "Bound" : "Bound, at most"}</dt>
             <dd>
-              {figure(bound)} ({((100 * picked.area) / bound).toFixed(1)} %)
+              {figure(bound.area)} ({((100 * picked.area) / bound.area).toFixed(1)} %)
             </dd>
           </>
         )}
         <dt>Region</dt>
-        <dd>{picked.region === 0 ? "none" : picked.region}</dd>
+        <dd>{regionText(picked.region, names)}</dd>
         <dt>Chunk</dt>
         <dd>{picked.chunk}</dd>
         <dt>Neighbours</dt>
@@ -86,13 +99,19 @@ function Picked({ picked, bounds, run }: { picked: PickedTriangle; bounds: Bound
   );
 }
 
-export function MeshFigures({ run, bounds }: { run: MeshRun; bounds?: Bounds | undefined }) {
+interface FiguresProps {
+  run: MeshRun;
+  regionNames: Names;
+  boundAt?: BoundAt | undefined;
+}
+
+export function MeshFigures({ run, regionNames, boundAt }: FiguresProps) {
   const { census, picked, triangles, summary } = useRunState(run);
   if (!census || triangles === 0) return null;
   const { angles, areas, firstArea, worst } = census;
   return (
     <div class="mesh-figures">
-      {picked && <Picked picked={picked} bounds={bounds} run={run} />}
+      {picked && <Picked picked={picked} boundAt={boundAt} names={regionNames} run={run} />}
       <Histogram
         title="Smallest angles"
         bins={angles.map((n, i) => ({

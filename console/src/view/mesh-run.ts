@@ -12,6 +12,7 @@ import { useEffect, useState } from "preact/hooks";
 import { noteFailure } from "../client";
 import { GenerateMeshRequestSchema, SummarySchema, type Summary } from "../gen/weft/v1/mesh_service_pb";
 import { currentSession } from "../session";
+import type { Bounds } from "./bounds";
 import type { Census } from "./census";
 import type { FromWorker, ToWorker } from "./messages";
 import type { Box, ChunkPicture } from "./picture";
@@ -44,6 +45,8 @@ export interface RunPainter {
   reset(): void;
   // Takes the arrays.
   chunk(picture: ChunkPicture): void;
+  // A chunk that came before, for wantPictures().
+  again(picture: ChunkPicture): void;
   lines(chunk: number, lines: Uint32Array, inside: number): void;
 }
 
@@ -59,6 +62,7 @@ export class MeshRun {
   private worker: Worker | undefined;
   private readonly listeners = new Set<() => void>();
   private telling = false;
+  private wish = 0; // that pictures are for; others are late
 
   // Forgets the mesh before.
   start(source: MeshSource): void {
@@ -66,6 +70,7 @@ export class MeshRun {
     this.state = { ...idle, phase: "running", started: performance.now() };
     const worker = new Worker(new URL("./mesh-worker.ts", import.meta.url), { type: "module" });
     this.worker = worker;
+    this.wish = 0;
     worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.hear(data);
     // Without a message the worker's file did not come.
     worker.onerror = ({ message }) =>
@@ -112,6 +117,12 @@ export class MeshRun {
   // The painter is told of them later.
   wantLines(chunk: number): void {
     this.say({ type: "lines", chunk });
+  }
+
+  // The painter is given all chunks again, one after the other, from now on with areas over these
+  // bounds instead of areas if there are any. It has forgotten those from before.
+  wantPictures(over: Bounds | undefined): void {
+    this.say({ type: "pictures", wish: ++this.wish, over });
   }
 
   // The painter calls it after each frame with triangles.
@@ -161,10 +172,14 @@ export class MeshRun {
               ]
             : more,
         });
-        this.painter?.chunk(picture);
+        if (message.wish === this.wish) this.painter?.chunk(picture);
         this.say({ type: "drawn" });
         break;
       }
+      case "again":
+        if (message.wish === this.wish) this.painter?.again(message.picture);
+        this.say({ type: "drawn" });
+        break;
       case "census": {
         const { census, chunks, vertices, triangles } = message;
         this.change({ census, chunks, vertices, triangles });

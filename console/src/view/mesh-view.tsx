@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mesh to look at, with its tools and its legend.
 //
-//   <MeshView run={run} bounds={boundsOf(summary.request)} />
+//   <MeshView run={run} regionNames={namesOf(request).regions} bounds={boundsOf(summary.request)} />
 import type { ComponentChildren } from "preact";
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
+import type { Names } from "../domain/names";
 import { useTheme } from "../theme";
 import type { Bounds } from "./bounds";
 import type { Census } from "./census";
@@ -18,6 +19,7 @@ import "./view.css";
 
 export interface MeshViewProps {
   run: MeshRun;
+  regionNames: Names;
   outline?: { ends: Float64Array; box: Box | undefined } | undefined; // x, y of both ends of each segment
   bounds?: Bounds | undefined; // of areas, for their colour
   sketch?: Sketch | undefined; // takes clicks and keys while there is one
@@ -45,12 +47,13 @@ function areaRange({ areas, firstArea }: Census): [number, number] {
   return [firstArea + first / 2, firstArea + areas.length / 2];
 }
 
-export function MeshView({ run, outline, bounds, sketch, backdrop, children }: MeshViewProps) {
+export function MeshView({ run, regionNames, outline, bounds, sketch, backdrop, children }: MeshViewProps) {
   const state = useRunState(run);
   const theme = useTheme();
   const canvas = useRef<HTMLCanvasElement>(null);
   const marks = useRef<HTMLCanvasElement>(null);
   const [viewport, setViewport] = useState<Viewport | null>();
+  const [lost, setLost] = useState(false);
   const [wanted, setBy] = useState<ColourBy>("angle");
   const [edges, setEdges] = useState(true);
   const [quadtree, setQuadtree] = useState(false);
@@ -62,11 +65,12 @@ export function MeshView({ run, outline, bounds, sketch, backdrop, children }: M
   );
 
   useEffect(() => {
-    const made = Viewport.on(canvas.current!, marks.current!, run) ?? null;
+    const made = Viewport.on(canvas.current!, marks.current!, run, setLost) ?? null;
     setViewport(made);
     return () => made?.close();
   }, [run]);
-  useEffect(() => viewport?.outline(outline?.ends ?? none, outline?.box), [viewport, outline]);
+  // At once: a mesh that is asked for next is not cleared away.
+  useLayoutEffect(() => viewport?.outline(outline?.ends ?? none, outline?.box), [viewport, outline]);
   useEffect(
     () => viewport?.set({ by, range, edges, quadtree, worst, dark: theme === "dark", bounds, sketch, backdrop }),
     [viewport, by, range, edges, quadtree, worst, theme, bounds, sketch, backdrop],
@@ -138,7 +142,13 @@ export function MeshView({ run, outline, bounds, sketch, backdrop, children }: M
         {viewport === null && (
           <p class="problem view-problem">This browser has no WebGL2, which the picture needs. Figures and downloads work without.</p>
         )}
-        {state.triangles > 0 && <Legend by={by} range={range} regions={state.regions} />}
+        {lost && (
+          <p class="problem view-problem" role="alert">
+            The browser has taken the graphics card away from this page. The picture comes back with it; if it does
+            not, load the page again. Figures and downloads work without.
+          </p>
+        )}
+        {state.triangles > 0 && <Legend by={by} range={range} regions={state.regions} names={regionNames} />}
         {children}
       </div>
     </div>

@@ -8,10 +8,11 @@ import { createGrpcWebTransport } from "@connectrpc/connect-web";
 import { PackedResponseSchema, type PackedChunk } from "../gen/console/packed_pb";
 import { JobService } from "../gen/weft/v1/job_service_pb";
 import { GenerateMeshRequestSchema, MeshService, SummarySchema } from "../gen/weft/v1/mesh_service_pb";
+import { boundFunction, type BoundOf } from "./bounds";
 import { Counter } from "./census";
 import type { FromWorker, ToWorker } from "./messages";
 import { unpackChunk } from "./packed";
-import { linesOf, pictureOf, RegionSlots } from "./picture";
+import { linesOf, pictureOf, RegionSlots, type ChunkPicture } from "./picture";
 import { MeshStore } from "./store";
 
 const mostUndrawn = 8;
@@ -22,15 +23,37 @@ const slots = new RegionSlots();
 const counter = new Counter();
 const stop = new AbortController();
 let undrawn = 0;
-let mayRead: (() => void) | undefined;
+const untilDrawn: (() => void)[] = [];
 let chunks = 0;
 let lastCensus = 0;
+let wish = 0; // what pictures are for
+let over: BoundOf | undefined; // that pictures show areas over
 
 const say = (message: FromWorker, transfer: Transferable[] = []) => postMessage(message, { transfer });
 
 function sayCensus(): void {
   lastCensus = performance.now();
   say({ type: "census", census: counter.census(), chunks, vertices: store.vertices, triangles: store.triangles });
+}
+
+function sayPicture(message: FromWorker & { picture: ChunkPicture }): void {
+  ++undrawn;
+  const { positions, values, indices, grid, thumbnail } = message.picture;
+  say(message, [positions, values, indices, grid, thumbnail].map(({ buffer }) => buffer));
+}
+
+async function room(): Promise<void> {
+  while (undrawn >= mostUndrawn) await new Promise<void>((resolve) => untilDrawn.push(resolve));
+}
+
+async function sayPicturesAgain(): Promise<void> {
+  const own = wish;
+  for (const chunk of store.chunks()) {
+    await room();
+    if (own !== wish) return; // they are wanted otherwise now
+    const picture = pictureOf(chunk, store.coordinates, slots, () => {}, over);
+    if (picture) sayPicture({ type: "again", wish, picture });
+  }
 }
 
 function take(packed: PackedChunk): void {
@@ -46,18 +69,12 @@ function take(packed: PackedChunk): void {
       }
       return { triangle: chunk.firstTriangle + triangle, chunk: chunk.index, x, y };
     }),
+    over,
   );
   if (picture) {
     store.keep(chunk, picture.box);
-    ++undrawn;
     const { vertices, triangles } = store;
-    say({ type: "chunk", picture, vertices, triangles, regions: [...slots.ids] }, [
-      picture.positions.buffer,
-      picture.values.buffer,
-      picture.indices.buffer,
-      picture.grid.buffer,
-      picture.thumbnail.buffer,
-    ]);
+    sayPicture({ type: "chunk", wish, picture, vertices, triangles, regions: [...slots.ids] });
   }
   if (performance.now() - lastCensus > censusEvery) sayCensus();
 }
@@ -105,7 +122,7 @@ async function read(request: Uint8Array | string, token: string): Promise<void> 
       }
       case "chunk":
         take(message.value);
-        if (undrawn >= mostUndrawn) await new Promise<void>((resolve) => (mayRead = resolve));
+        await room();
         break;
       case "summary":
         summary = toBinary(SummarySchema, message.value);
@@ -133,12 +150,10 @@ onmessage = ({ data }: MessageEvent<ToWorker>) => {
       break;
     case "cancel":
       stop.abort();
-      mayRead?.();
       break;
     case "drawn":
       --undrawn;
-      mayRead?.();
-      mayRead = undefined;
+      untilDrawn.shift()?.();
       break;
     case "lines": {
       const chunk = store.chunk(data.chunk);
@@ -147,6 +162,11 @@ onmessage = ({ data }: MessageEvent<ToWorker>) => {
       say({ type: "lines", chunk: data.chunk, lines, inside }, [lines.buffer]);
       break;
     }
+    case "pictures":
+      wish = data.wish;
+      over = data.over && boundFunction(data.over);
+      void sayPicturesAgain();
+      break;
     case "pick":
       say({ type: "picked", picked: store.pick(data.x, data.y) });
       break;

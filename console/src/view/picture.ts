@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the graphics card needs of a chunk: its triangles as they are, and an image of it for when
 // they are smaller than pixels.
+import type { BoundOf } from "./bounds";
 import type { MeshChunk } from "./packed";
 import { thumbnailOf } from "./thumbnail";
 import { figures } from "./triangle";
@@ -15,13 +16,15 @@ export interface ChunkPicture {
   // Relative to the middle of the box, so that 32 bits are enough at any zoom.
   positions: Float32Array;
   // Four for each vertex: of the triangle whose third vertex it is, the smallest angle over 60
-  // degrees, the logarithm of the area from logAreaLow to logAreaHigh, the region's slot, 0. If it is
-  // the third vertex of none, of one of its triangles.
+  // degrees, what is shown of the area from shownLow to shownHigh, the region's slot, the logarithm of
+  // the area from logAreaLow to logAreaHigh. If it is the third vertex of none, of one of its triangles.
   values: Uint8Array;
   indices: Uint16Array | Uint32Array;
   logAreaLow: number; // to base 2
   logAreaHigh: number;
-  // The same values for each cell of a grid over the box, rows from below, times the covered share
+  shownLow: number; // logarithms to base 2 of the area, or of the area over its bound
+  shownHigh: number;
+  // The first three values for each cell of a grid over the box, rows from below, times the covered share
   // of the cell, which comes fourth; the slot is that of one of the triangles.
   grid: Uint8Array;
   gridWidth: number;
@@ -71,18 +74,40 @@ export class LocalVertices {
   }
 }
 
+// Of the area over its bound: a byte tells what lies between well enough.
+const leastRatio = -8;
+const mostRatio = 3;
+
+// From the least to the greatest of some values, as a byte has them.
+class Scale {
+  readonly low: number;
+  readonly high: number;
+  private readonly spread: number;
+
+  constructor(values: Float32Array) {
+    this.low = values.reduce((least, value) => Math.min(least, value), Infinity);
+    this.high = values.reduce((most, value) => Math.max(most, value), -Infinity);
+    this.spread = this.high > this.low ? 255 / (this.high - this.low) : 0;
+  }
+
+  at(value: number): number {
+    return (value - this.low) * this.spread;
+  }
+}
+
 const gridCells = 256; // at most, along the longer side of the box
 // Coverage from which a cell counts as full.
 const fullFrom = 0.35;
 const beside = [[-1, 0], [1, 0], [0, -1], [0, 1], [-1, -1], [1, -1], [-1, 1], [1, 1]];
 
 // Undefined if the chunk has no triangles. `coordinates` are those of the whole mesh so far;
-// `visit` is told of each triangle.
+// `visit` is told of each triangle. With `over`, areas over these bounds are shown instead of areas.
 export function pictureOf(
   chunk: MeshChunk,
   coordinates: Float64Array,
   slots: RegionSlots,
   visit: (triangle: number, area: number, minAngle: number) => void,
+  over?: BoundOf,
 ): ChunkPicture | undefined {
   const count = chunk.triangles.length / 3;
   if (count === 0) return undefined;
@@ -93,10 +118,9 @@ export function pictureOf(
 
   const angle = new Float32Array(count);
   const logArea = new Float32Array(count);
+  const shown = over ? new Float32Array(count) : logArea;
   let area = 0;
   let squares = 0;
-  let low = Infinity;
-  let high = -Infinity;
   for (let t = 0; t < count; ++t) {
     const a = 2 * chunk.triangles[3 * t], b = 2 * chunk.triangles[3 * t + 1], c = 2 * chunk.triangles[3 * t + 2];
     const f = figures(
@@ -107,10 +131,14 @@ export function pictureOf(
     squares += f.area * f.area;
     angle[t] = f.minAngle;
     logArea[t] = Math.log2(Math.max(f.area, 1e-300));
-    if (logArea[t] < low) low = logArea[t];
-    if (logArea[t] > high) high = logArea[t];
+    if (!over) continue;
+    const x = (coordinates[a] + coordinates[b] + coordinates[c]) / 3;
+    const y = (coordinates[a + 1] + coordinates[b + 1] + coordinates[c + 1]) / 3;
+    const ratio = Math.log2(f.area / over(x, y, chunk.regions.length > 0 ? chunk.regions[t] : 0));
+    shown[t] = Math.min(Math.max(Number.isNaN(ratio) ? -Infinity : ratio, leastRatio), mostRatio);
   }
-  const spread = high > low ? 255 / (high - low) : 0;
+  const areas = new Scale(logArea);
+  const shades = over ? new Scale(shown) : areas;
 
   // A triangle's values are those of its third vertex, so each needs one of its own: one of its
   // corners that no other has taken, or a copy.
@@ -142,8 +170,9 @@ export function pictureOf(
     positions[2 * v + 1] = coordinates[2 * global + 1] - middleY;
     const t = owner[v] > 0 ? owner[v] - 1 : touching[v];
     values[4 * v] = anglePart(angle[t]);
-    values[4 * v + 1] = Math.round((logArea[t] - low) * spread);
+    values[4 * v + 1] = Math.round(shades.at(shown[t]));
     values[4 * v + 2] = slotOf(t);
+    values[4 * v + 3] = Math.round(areas.at(logArea[t]));
   }
 
   const width = box[2] - box[0];
@@ -157,7 +186,7 @@ export function pictureOf(
     const at = (i: number, d: number) => coordinates[2 * chunk.triangles[3 * t + i] + d] - box[d];
     grid.add(
       at(0, 0) * fx, at(0, 1) * fy, at(1, 0) * fx, at(1, 1) * fy, at(2, 0) * fx, at(2, 1) * fy,
-      anglePart(angle[t]), (logArea[t] - low) * spread, slotOf(t),
+      anglePart(angle[t]), shades.at(shown[t]), slotOf(t),
     );
   }
   const pixels = grid.pixels();
@@ -169,8 +198,10 @@ export function pictureOf(
     positions,
     values,
     indices: vertices <= 65536 ? Uint16Array.from(indices) : indices,
-    logAreaLow: low,
-    logAreaHigh: high,
+    logAreaLow: areas.low,
+    logAreaHigh: areas.high,
+    shownLow: shades.low,
+    shownHigh: shades.high,
     grid: pixels,
     gridWidth: grid.width,
     gridHeight: grid.height,

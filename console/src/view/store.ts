@@ -47,6 +47,11 @@ export class MeshStore {
     return this.kept.get(index)?.chunk;
   }
 
+  // In the order in which they came; those that come meanwhile, too.
+  *chunks(): Generator<MeshChunk> {
+    for (const { chunk } of this.kept.values()) yield chunk;
+  }
+
   // The triangle at a point; undefined if there is none.
   pick(x: number, y: number): PickedTriangle | undefined {
     for (const { chunk, box } of this.kept.values()) {

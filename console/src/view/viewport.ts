@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The canvas of a mesh: draws what a run brings, and takes the mouse, the wheel, fingers and keys.
 // Two canvases lie on each other: triangles below, drawn by the renderer, marks above.
-import { boundLogarithms, type Bounds } from "./bounds";
+import { boundLogarithms, varies, type Bounds } from "./bounds";
 import { Camera } from "./camera";
 import type { ColourBy } from "./colours";
-import type { MeshRun, RunPainter } from "./mesh-run";
-import { paintMarks, type Backdrop } from "./marks";
+import type { MeshRun, RunPainter, RunState } from "./mesh-run";
+import { isStill, paintMarks, type Backdrop, type Flash } from "./marks";
 import type { Box, ChunkPicture } from "./picture";
 import { Renderer } from "./renderer";
+import type { Style } from "./scene";
 import type { Sketch } from "./sketch";
 
 export interface ViewSettings {
@@ -34,30 +35,38 @@ interface Flight {
 
 export class Viewport implements RunPainter {
   readonly camera = new Camera();
-  private readonly renderer: Renderer;
+  private renderer: Renderer | undefined; // while the graphics card has what it was given
   private readonly marks: CanvasRenderingContext2D;
   private readonly stop = new AbortController();
   private readonly observer: ResizeObserver;
   private readonly flashes = new Map<number, { box: Box; start: number }>();
   private settings: ViewSettings | undefined;
   private home: Box | undefined; // of the domain, or of the mesh so far
+  private segments: { ends: Float64Array; middle: [number, number] } = { ends: new Float64Array(), middle: [0, 0] };
   private outlined = false;
   private untouched = true; // the camera follows `home`
   private flight: Flight | undefined;
   private asked = false;
+  private over: Bounds | undefined; // that the pictures show areas over; undefined if areas alone
+  private stillMarks = ""; // what the painted marks depend on; empty if on the place, too
 
-  // Undefined if the browser has no WebGL2.
-  static on(canvas: HTMLCanvasElement, marks: HTMLCanvasElement, run: MeshRun): Viewport | undefined {
-    let viewport: Viewport | undefined;
-    const renderer = Renderer.on(canvas, (chunk) => viewport?.run.wantLines(chunk));
-    if (renderer) viewport = new Viewport(canvas, marks, run, renderer);
-    return viewport;
+  // Undefined if the browser has no WebGL2. `tellLost` is called when the browser takes the graphics
+  // card away, and when it gives it back.
+  static on(
+    canvas: HTMLCanvasElement,
+    marks: HTMLCanvasElement,
+    run: MeshRun,
+    tellLost: (lost: boolean) => void,
+  ): Viewport | undefined {
+    const renderer = Renderer.on(canvas, (chunk) => run.wantLines(chunk));
+    return renderer && new Viewport(canvas, marks, run, tellLost, renderer);
   }
 
   private constructor(
     private readonly canvas: HTMLCanvasElement,
     marks: HTMLCanvasElement,
     private readonly run: MeshRun,
+    private readonly tellLost: (lost: boolean) => void,
     renderer: Renderer,
   ) {
     this.renderer = renderer;
@@ -72,19 +81,31 @@ export class Viewport implements RunPainter {
   close(): void {
     this.stop.abort();
     this.observer.disconnect();
-    this.renderer.clear();
+    this.renderer?.clear();
   }
 
   set(settings: ViewSettings): void {
     this.settings = settings;
+    this.wantPictures();
     this.ask();
+  }
+
+  // Has the pictures show what the settings want, if they do not.
+  private wantPictures(): void {
+    const { by, bounds } = this.settings!;
+    const over = by === "ratio" && varies(bounds) ? bounds : undefined;
+    if (over === this.over) return;
+    this.over = over;
+    this.renderer?.clear();
+    this.run.wantPictures(over);
   }
 
   // Segments drawn until the mesh is there, and above it; x, y of both ends of each.
   outline(ends: Float64Array, box: Box | undefined): void {
     this.outlined = box !== undefined;
-    this.renderer.setOutline(ends, box ? [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2] : [0, 0]);
-    this.renderer.clear();
+    this.segments = { ends, middle: box ? [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2] : [0, 0] };
+    this.renderer?.setOutline(ends, this.segments.middle);
+    this.renderer?.clear();
     this.flashes.clear();
     this.home = box;
     this.untouched = true;
@@ -125,14 +146,16 @@ export class Viewport implements RunPainter {
   // --- what the run brings ---
 
   reset(): void {
-    this.renderer.clear();
+    this.renderer?.clear();
     this.flashes.clear();
+    this.over = undefined;
+    if (this.settings) this.wantPictures();
     if (!this.outlined) this.home = undefined;
     this.ask();
   }
 
   chunk(picture: ChunkPicture): void {
-    this.renderer.add(picture);
+    this.renderer?.add(picture);
     if (!still()) this.flashes.set(picture.index, { box: picture.box, start: performance.now() });
     const { box } = this.run.state;
     if (!this.outlined && box) {
@@ -142,8 +165,13 @@ export class Viewport implements RunPainter {
     this.ask();
   }
 
+  again(picture: ChunkPicture): void {
+    this.renderer?.add(picture);
+    this.ask();
+  }
+
   lines(chunk: number, lines: Uint32Array, inside: number): void {
-    this.renderer.setLines(chunk, lines, inside);
+    this.renderer?.setLines(chunk, lines, inside);
     this.ask();
   }
 
@@ -159,12 +187,12 @@ export class Viewport implements RunPainter {
   }
 
   private frame(now: number): void {
-    const { settings, camera } = this;
-    if (!settings || camera.width <= 1) return;
+    const { settings, camera, renderer } = this;
+    if (!settings || !renderer || camera.width <= 1) return;
     this.advance(now);
     const ratio = devicePixelRatio;
     const { state } = this.run;
-    this.renderer.draw(camera, ratio, {
+    const style = {
       by: settings.by,
       edges: settings.edges,
       range: settings.range,
@@ -172,21 +200,34 @@ export class Viewport implements RunPainter {
       plain: settings.dark ? [0.15, 0.2, 0.24] : [0.9, 0.93, 0.95],
       ink: settings.by === "none" && settings.dark ? [0.75, 0.82, 0.87] : [0.05, 0.09, 0.12],
       outline: settings.dark ? [0.87, 0.91, 0.94] : [0.05, 0.09, 0.12],
-    });
+    } satisfies Style;
+    const progress = renderer.draw(camera, ratio, style, now);
+    const drawn = progress === "whole" ? "whole" : "partly";
+    if (this.canvas.dataset.drawn !== drawn) this.canvas.dataset.drawn = drawn;
     for (const [index, { start }] of this.flashes) if (now - start > flashTime) this.flashes.delete(index);
     const flashes = [...this.flashes.values()].map(({ box, start }) => ({
       box,
       strength: Math.min(1, Math.max(0, 1 - (now - start) / flashTime)),
     }));
+    this.paintMarks(camera, ratio, settings, state, flashes);
+    if (renderer.size > 0) this.run.painted();
+    if (this.flashes.size > 0 || this.flight || progress === "drawing") this.ask();
+  }
+
+  // If nothing that moves with the picture is marked, painting them once is enough.
+  private paintMarks(camera: Camera, ratio: number, settings: ViewSettings, state: RunState, flashes: Flash[]): void {
+    const still = isStill(settings, state, flashes)
+      ? [camera.scale, camera.width, camera.height, ratio, settings.dark].join()
+      : "";
+    if (still !== "" && still === this.stillMarks) return;
+    this.stillMarks = still;
     paintMarks(this.marks, camera, ratio, settings, state, flashes);
-    if (this.renderer.size > 0) this.run.painted();
-    if (this.flashes.size > 0 || this.flight) this.ask();
   }
 
   private fly(to: { x: number; y: number; scale: number }): void {
     const { x, y, scale } = this.camera;
     this.flight = { from: { x, y, scale }, to: { x: to.x, y: to.y, scale: to.scale }, start: performance.now() };
-    if (still() || this.renderer.size === 0) this.flight.start = -Infinity;
+    if (still() || !this.renderer?.size) this.flight.start = -Infinity;
     this.ask();
   }
 
@@ -210,6 +251,16 @@ export class Viewport implements RunPainter {
     this.ask();
   }
 
+  // The graphics card is back, and has forgotten all.
+  private restore(): void {
+    this.renderer = Renderer.on(this.canvas, (chunk) => this.run.wantLines(chunk));
+    if (!this.renderer) return;
+    this.renderer.setOutline(this.segments.ends, this.segments.middle);
+    this.run.wantPictures(this.over);
+    this.tellLost(false);
+    this.ask();
+  }
+
   // --- input ---
 
   private touch(): void {
@@ -220,6 +271,12 @@ export class Viewport implements RunPainter {
   private listen(): void {
     const { canvas, camera } = this;
     const options = { signal: this.stop.signal };
+    canvas.addEventListener("webglcontextlost", (event) => {
+      event.preventDefault(); // otherwise it would not be given back
+      this.renderer = undefined;
+      this.tellLost(true);
+    }, options);
+    canvas.addEventListener("webglcontextrestored", () => this.restore(), options);
     const pointers = new Map<number, [number, number]>();
     let moved = 0;
     const place = (event: MouseEvent): [number, number] => {

@@ -35,7 +35,7 @@ Arrangement extract(const std::vector<Point>& points, const Triangulation& t,
     if (v == kNone) continue;
     number[v] = static_cast<std::uint32_t>(result.vertices.size());
     result.input_point.push_back(id < inputs ? id : kNone);
-    result.vertices.push_back(id < inputs ? points[id] : t.at(v));  // of 0 and -0, the first
+    result.vertices.push_back(id < inputs ? points[id] : t.at(v));  // the first of 0 and -0
   }
 
   std::vector<std::uint32_t> face_number(t.faces());
@@ -82,7 +82,7 @@ Arrangement arrange(const Pslg& pslg, StopPoller& poller, std::uint64_t max_spli
     if (span.size < 3) throw Stopped{closed_by_merging(merging)};
     triangulation.emplace(poller).build(points, span.point[0], span.point[1], span.point[2]);
   };
-  // In most cases the triangulation tells that there is nothing to merge.
+  // In most cases the triangulation shows that there is nothing to merge.
   std::vector<Point> merged;
   const std::vector<Point>* points = &pslg.points;
   const bool wants_snapping = pslg.snap == merging.tolerance;

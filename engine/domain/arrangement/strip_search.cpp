@@ -22,7 +22,7 @@ bool StripSearch::leads_on(Edge edge) const {
   const Vertex a = t_.right(edge), b = t_.left(edge);
   if (a == Triangulation::kInfinite || b == Triangulation::kInfinite) return false;
   const Place p = place(a), q = place(b);
-  // Around an end of the edge: the tangent of 30 degrees is 0.577.
+  // Near an end of the edge the strip is a wedge: the tangent of 30 degrees is 0.577.
   constexpr double kTangent = 0.58;
   if (a == u_ || b == u_) {
     const Place far = a == u_ ? q : p;

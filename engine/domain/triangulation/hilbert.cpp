@@ -69,8 +69,8 @@ constexpr unsigned kDigitBits = 12;
 constexpr unsigned kDigits = 2 * kLevels / kDigitBits;
 static_assert(2 * kLevels % kDigitBits == 0);
 
-// By the digits from `first` on, the least significant one first, so that entries equal in these
-// keep their order. A standard sort of millions of entries could not be stopped in time.
+// Sorts by the digits from `first` on, the least significant one first; entries that are equal in
+// these keep their order. std::sort of millions of entries could not be stopped in time.
 void radix_sort(std::vector<Entry>& entries, unsigned first, StopPoller& poller) {
   constexpr std::size_t kValues = std::size_t{1} << kDigitBits;
   std::vector<std::uint32_t> starts((kDigits - first) * kValues);
@@ -93,18 +93,24 @@ void radix_sort(std::vector<Entry>& entries, unsigned first, StopPoller& poller)
   }
 }
 
-// By key; entries with equal keys keep their order. Few entries differ in the upper half of their
-// keys already, all but neighbours: half of the passes, and the neighbours by themselves.
+// Sorts by key; entries with equal keys keep their order. The upper halves of most keys differ, so
+// half of the passes sort all but a few neighbours, which are then sorted by themselves. The tables
+// of the passes take longer than comparing a handful.
 void sort_by_key(std::vector<Entry>& entries, StopPoller& poller) {
+  constexpr std::size_t kHandful = 1 << 9;
   constexpr std::size_t kFew = 1 << 16;
+  const auto by_key = [](const Entry& a, const Entry& b) { return a.key < b.key; };
+  if (entries.size() < kHandful) {
+    std::stable_sort(entries.begin(), entries.end(), by_key);
+    return;
+  }
   if (entries.size() >= kFew) return radix_sort(entries, 0, poller);
   constexpr unsigned kUpper = kDigits / 2;
   radix_sort(entries, kUpper, poller);
   const auto upper = [](const Entry& e) { return e.key >> kUpper * kDigitBits; };
   for (auto first = entries.begin(), last = first; first != entries.end(); first = last) {
     while (++last != entries.end() && upper(*last) == upper(*first)) continue;
-    if (last - first > 1)
-      std::stable_sort(first, last, [](const Entry& a, const Entry& b) { return a.key < b.key; });
+    if (last - first > 1) std::stable_sort(first, last, by_key);
   }
 }
 

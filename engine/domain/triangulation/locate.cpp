@@ -51,8 +51,8 @@ Location locate(const Arrangement& a, Point p, std::uint32_t start, StopPoller& 
   }
 }
 
-// Floods the triangles across edges that are so near; once one of their vertices is, it is done. So
-// it passes few triangles even beside a vertex of many.
+// Floods the triangles across edges that are within `radius`, and stops as soon as one of their
+// vertices is. So it visits few triangles even beside a vertex of high degree.
 bool is_near(const Arrangement& a, Point p, std::uint32_t triangle, double radius,
              StopPoller& poller) {
   std::vector<std::uint32_t> stack{triangle};

@@ -71,8 +71,8 @@ void SegmentInserter::insert_pieces() {
 }
 
 // Leads every edge through the vertices beside it, until none is left: an edge that was inserted
-// early knows nothing of the vertices that came later, and none of those beside the triangles that
-// it passes through.
+// early did not see the vertices that came later, nor any vertex that is not a corner of the
+// triangles that it crosses.
 void SegmentInserter::separate() {
   StripSearch strip(t_, 0.5 * merging_.tolerance, poller_);
   for (bool is_done = false; !is_done;) {
@@ -100,11 +100,11 @@ void SegmentInserter::separate() {
   }
 }
 
-// Looks from both ends in turn, so that a hub of many segments does not cost its degree each time.
+// Looks from both ends in turn, so that a vertex of high degree does not cost its degree each time.
 void SegmentInserter::insert(const Piece& piece) {
   poller_.step();
   if (const Edge edge = t_.find_edge(piece.u, piece.v); edge.face != kNone) {
-    // The edge is there, but may pass by a vertex within the snapping distance, a corner of the
+    // The edge is there, but a vertex may lie within the snapping distance of it: the apex of a
     // needle beside it.
     for (const Edge& side : {edge, t_.mirror(edge)}) {
       const Vertex apex = t_.apex(side);
@@ -177,7 +177,8 @@ void SegmentInserter::cross(Edge edge, const Piece& piece) {
                          distance_to_line(p, r, l) < merging_.tolerance;
     if (is_near && meet_at(p, edge, piece)) return;
   }
-  // Merging has bent the two, so that they cross elsewhere than their segments, if these do.
+  // Merging may have bent the two: they may cross elsewhere than their segments do, or these may
+  // not cross at all.
   const Point p = crossing_point(u, v, r, l);
   if (!meet_at(p, edge, piece)) meet_in_new_vertex(p, edge, piece);
 }
@@ -198,7 +199,7 @@ bool SegmentInserter::meet_at(Point p, Edge edge, const Piece& piece) {
   return true;
 }
 
-// The two are led through w, unless it is an end.
+// Leads both through w, unless w is an end.
 void SegmentInserter::meet_in(Vertex w, Edge edge, const Piece& piece) {
   if (w == piece.u || w == piece.v) {
     push(piece.u, piece.v, piece.constraint);
@@ -229,8 +230,8 @@ void SegmentInserter::meet_in_new_vertex(Point p, Edge edge, const Piece& piece)
   const auto id = static_cast<std::uint32_t>(pslg_.points.size()) + crossings_;
   Vertex w;
   if (splits_cleanly(edge, p)) {
-    // As if p lay on the edge. The general way gives the same; this one spares the triangles
-    // around a long edge from losing its constraint and getting it back.
+    // Inserts p as if it lay on the edge. The general case gives the same; this one does not remove
+    // the constraint of a long edge and put it back.
     count_split();
     insert_on(edge, p, id, w);
   } else {
@@ -259,7 +260,7 @@ SegmentInserter::Vertex SegmentInserter::insert_crossing(Point p, std::uint32_t 
   return w;
 }
 
-// Splits a constrained edge, whose halves may come to differ.
+// Splits a constrained edge. Its halves may come to differ from it.
 void SegmentInserter::insert_on(Edge edge, Point p, std::uint32_t id, Vertex& w) {
   const Vertex right = t_.right(edge);
   const Constraint constraint = constraints_[t_.constraint(edge)];
@@ -272,14 +273,14 @@ void SegmentInserter::push(Vertex u, Vertex v, const Constraint& constraint) {
   if (u != v) pieces_.push_back({u, v, constraint});
 }
 
-// u to w comes first.
+// Queues both halves; the one from u to w is taken first.
 void SegmentInserter::push_through(Vertex w, const Piece& piece) {
   count_split();
   push(w, piece.v, piece.constraint);
   push(piece.u, w, piece.constraint);
 }
 
-// The same, and takes note of how far that moves the segment.
+// The same, and records how far that moves the segment.
 void SegmentInserter::merge_through(Vertex w, const Piece& piece) {
   const auto [a, b] = input_segment(piece.constraint);
   if (const double off = distance_to_segment(at(w), a, b); off > rounding_) {
@@ -319,8 +320,8 @@ void SegmentInserter::count_split() {
                        " times, which is the limit"}};
 }
 
-// Within the tolerance of both the piece and its input segment; or within half of it of the piece,
-// however far earlier merges have led this from its segment.
+// True within the tolerance of both the piece and its input segment, or within half the tolerance
+// of the piece, however far earlier merges have led it from its segment.
 bool SegmentInserter::touches(Vertex w, const Piece& piece) const {
   const Point u = at(piece.u), v = at(piece.v), p = at(w);
   const double x = v.x - u.x, y = v.y - u.y;
@@ -341,7 +342,7 @@ bool SegmentInserter::shortens(Vertex u, Point p, Vertex v) const {
   return distance2(at(u), p) < whole2 && distance2(p, at(v)) < whole2;
 }
 
-// What was between segments and is gone.
+// Counts the faces that lay between segments and are gone.
 void SegmentInserter::count_faces() {
   const Connectivity loops = connectivity(shrunk_, poller_);
   const Connectivity runs = connectivity(coincident_, poller_);

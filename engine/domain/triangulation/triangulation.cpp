@@ -47,7 +47,8 @@ void Triangulation::build(const std::vector<Point>& points, std::uint32_t a, std
   for (const Vertex next : insertion_order()) {
     poller_.step();
     if (exists(next)) continue;
-    // The walk begins at the nearest of those before it along the curve, if it is not far.
+    // The walk begins at the nearest of the vertices before it along the curve, if that one is
+    // near.
     constexpr Vertex kLookBack = 16;
     Vertex near = last;
     for (Vertex back = next; back-- > 0 && next - back <= kLookBack;) {
@@ -110,7 +111,7 @@ void Triangulation::insert_delaunay(Vertex v, std::uint32_t start) {
     if (id_[v] < id_[coincident]) std::swap(id_[v], id_[coincident]);
     return;
   }
-  // The nearest of the vertices that are there is on the cavity's border.
+  // The nearest of the vertices so far is on the border of the cavity.
   if (cavity_.find(faces_.data(), points_.data(), p, first)) [[likely]] {
     nearest2_ = std::min(nearest2_, cavity_.nearest2());
     return fill_cavity(v, cavity_.faces(), cavity_.size(), cavity_.border());
@@ -124,10 +125,9 @@ void Triangulation::insert_delaunay(Vertex v, std::uint32_t start) {
   fill_cavity(v, dead_.data(), count, border_.data());
 }
 
-// Collects the faces in conflict with p in dead_, and what is around them in border_: any number,
-// infinite ones, too. The faces
-// are a tree, because no vertex is inside the cavity: so none is met twice, nothing need be marked,
-// and the border comes out counter-clockwise.
+// Collects the faces in conflict with p in dead_, and the edges around them in border_: any number
+// of them, infinite ones, too. The faces form a tree, because no vertex is inside the cavity. So
+// none is met twice, none has to be marked, and the border comes out counter-clockwise.
 void Triangulation::find_cavity(Point p, std::uint32_t first) {
   dead_.assign(1, first);
   border_.clear();
@@ -149,8 +149,9 @@ void Triangulation::find_cavity(Point p, std::uint32_t first) {
   }
 }
 
-// Replaces the cavity's `count` faces by those from v to each edge of its border, which are two
-// more. There is room for three more faces, and the border ends with its first edge once more.
+// Replaces the `count` faces of the cavity by those from v to each edge of its border, which are
+// two more. REQUIRES: there is room for three more faces, and the border ends with its first edge
+// once more.
 void Triangulation::fill_cavity(Vertex v, std::uint32_t* dead, std::size_t count,
                                 const Border* border) {
   for (std::size_t k = 0; k < 2; ++k) {
@@ -173,9 +174,9 @@ void Triangulation::fill_cavity(Vertex v, std::uint32_t* dead, std::size_t count
   face_of_[v] = dead[0];
 }
 
-// Walks to a face in conflict with p: one that contains it, or outside one whose edge it sees. Of
-// each face it knows the edge that it came across; which of the other two to cross is hard to
-// foresee, so both are tested, and there is no branch on the choice.
+// Walks to a face in conflict with p: one that contains it, or, outside the hull, one whose edge it
+// sees. In each face the walk knows the edge that it came across. Which of the other two it crosses
+// next is hard to predict, so both are tested without a branch.
 std::uint32_t Triangulation::find_conflict(Point p, std::uint32_t start, Vertex& coincident) const {
   Edge e{start, 0};
   if (is_infinite(start)) e.i = index(start, kInfinite);
@@ -199,7 +200,7 @@ std::uint32_t Triangulation::find_conflict(Point p, std::uint32_t start, Vertex&
     const bool left_unsure = std::fabs(of_left) <= orientation_error(lq, ql);
     const bool right_unsure = std::fabs(of_right) <= orientation_error(qr, rq);
     if (left_unsure | right_unsure) [[unlikely]] {
-      // Where p is a vertex of the face, one of the two is 0.
+      // If p is a vertex of the face, one of the two is 0.
       for (const Vertex v : face.vertex)
         if (at(v) == p) {
           coincident = v;
@@ -282,8 +283,8 @@ void Triangulation::flip(Edge e) {
   if (b != kInfinite) face_of_[b] = s;
 }
 
-// C. Lawson's flips until every edge without a constraint is Delaunay again; stack_ has those that
-// may not be.
+// Flips edges (C. Lawson) until every edge without a constraint is Delaunay again; stack_ holds
+// those that may not be.
 void Triangulation::restore() {
   while (!stack_.empty()) {
     poller_.step();
@@ -291,7 +292,7 @@ void Triangulation::restore() {
     stack_.pop_back();
     if (constraint(e) != kNone) continue;
     const Edge m = mirror(e);
-    // An edge of the hull stays. An edge to infinity goes where the hull would not be convex.
+    // Edges of the hull stay. Edges to infinity are flipped where the hull would not be convex.
     if (apex(e) == kInfinite || apex(m) == kInfinite) continue;
     if (!conflicts(faces_[m.face], at(apex(e)))) continue;
     flip(e);
@@ -309,8 +310,9 @@ void Triangulation::unconstrain(Edge e) {
 }
 
 // Digs along the segment by flips at u, and repairs what is left on both sides. Faces may be
-// clockwise meanwhile. Source: Triangle's constrainededge() and delaunayfixup(), whose recursion is
-// a stack here, because it may be as deep as the edge crosses faces.
+// clockwise in the meantime. Source: Triangle's constrainededge() and delaunayfixup(). Their
+// recursion is a stack here, because it may be as deep as the number of faces that the edge
+// crosses.
 Triangulation::Edge Triangulation::insert_edge(Vertex u, Vertex v, Edge first) {
   const auto origin_previous = [this](Edge e) {
     const Edge m = mirror(e);
@@ -328,7 +330,7 @@ Triangulation::Edge Triangulation::insert_edge(Vertex u, Vertex v, Edge first) {
       fix_up(other, true);
       return find_edge(u, v);
     }
-    // Of e, what a fix-up leaves: the edge between far and u, seen from the side that is dug next.
+    // A fix-up leaves of e the edge between far and u, seen from the side that is dug next.
     if (orientation(a, b, at(far)) > 0) {
       fix_up(other, true);
       e = {e.face, cw(e.i)};
@@ -340,8 +342,8 @@ Triangulation::Edge Triangulation::insert_edge(Vertex u, Vertex v, Edge first) {
   }
 }
 
-// Makes the polygon Delaunay that has edge e, at u, and lies on the dug side: `left_side` of the
-// segment or the other.
+// Makes the polygon at edge e Delaunay that lies on the dug side: `left_side` says which side of
+// the segment that is.
 void Triangulation::fix_up(Edge e, bool left_side) {
   stack_.assign(1, pack(e.face, e.i));
   while (!stack_.empty()) {

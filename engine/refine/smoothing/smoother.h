@@ -169,7 +169,7 @@ class Smoother {
   }
 
   // Finds the star of a vertex, relative to it. Returns false if the task does not own all of it,
-  // or one of its triangles is excused.
+  // or one of its triangles is refused.
   bool find_star(Corner corner) {
     vertex_ = corner.vertex;
     centre_ = mesh_.vertices[vertex_];
@@ -184,7 +184,7 @@ class Smoother {
       RingPoint& end = ring_.points[size_ + 1];  // of this triangle's edge of the link
       end.vertex = triangle.vertex[kPrevious[k]];
       if (!ownership_.owns(mesh_.vertices[end.vertex]) || triangle.badness() != kGood ||
-          triangle.excuse() != Excuse::kNone) {
+          triangle.refusal() != Refusal::kNone) {
         return false;
       }
       triangles_[size_] = t;

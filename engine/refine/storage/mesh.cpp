@@ -11,8 +11,8 @@
 namespace weft {
 namespace {
 
-// Builds with a sanitizer overwrite what is given back, with what are NaNs as coordinates: so
-// whoever reads it nonetheless is found out, by its mesh or by ThreadSanitizer.
+// Builds with a sanitizer overwrite what is given back with a pattern whose coordinates are NaN. So
+// a use after that is found, by its mesh or by ThreadSanitizer.
 #ifdef WEFT_SPOILS_RETURNED
 constexpr bool kSpoilsReturned = true;
 #else
@@ -41,9 +41,9 @@ Triangle linked(const Domain& domain, const Domain::Triangle& from) {
   for (std::uint32_t i = 0; i < 3; ++i) {
     to.vertex[i] = from.vertex[i];
     to.flags |= static_cast<std::uint32_t>(from.subsegment[i] != kNone) << i;
-    // Which edge it is of the triangle across is hard to foresee: so there is no branch on it. The
-    // one before the corner where the edge ends, as seen from here.
-    const std::uint32_t is_open = from.neighbor[i] == kNone;  // then anybody stands in
+    // The same edge in the triangle across: the one before the corner where the edge ends, as seen
+    // from here. Which of the three it is is hard to predict, so there is no branch on it.
+    const std::uint32_t is_open = from.neighbor[i] == kNone;  // then another triangle stands in
     const Domain::Triangle& across = domain.triangles[std::min(from.neighbor[i], last)];
     const std::uint32_t end = from.vertex[kPrevious[i]];
     const std::uint32_t corner = 1 * static_cast<std::uint32_t>(across.vertex[1] == end) +
@@ -59,14 +59,14 @@ Result<Mesh> Mesh::from(const Domain& domain, std::uint64_t max_triangles,
                         double expected_triangles, const ExecutionContext& context) {
   constexpr double kWorthHugePages = 100'000;
   constexpr std::uint32_t kPollInterval = 1 << 16;
-  constexpr std::uint64_t kSlack = 1 << 22;  // slots that tasks leave unused, at the least
+  constexpr std::uint64_t kSlack = 1 << 22;  // slots that tasks leave unused, at least
   const std::uint64_t initial = domain.triangles.size();
   if (initial > kMaxTriangles) {
     return fail(ErrorCode::kLimitExceeded, "domain",
                 "the triangulation of the domain has " + std::to_string(initial) +
                     " triangles, more than " + std::to_string(kMaxTriangles));
   }
-  // Address space is all that the room takes: twice the limit is far more than tasks leave dead.
+  // The room takes address space only: twice the limit is far more than tasks leave unused.
   const std::uint64_t slots = std::min<std::uint64_t>(
       kMaxTriangles, 2 * std::clamp<std::uint64_t>(max_triangles, initial, kMaxTriangles) + kSlack);
   const Pages pages = expected_triangles > kWorthHugePages ? Pages::kHuge : Pages::kAny;
@@ -91,7 +91,8 @@ Result<Mesh> Mesh::from(const Domain& domain, std::uint64_t max_triangles,
     if (error) return tl::unexpected(*error);
   }
 
-  // The blocks of owner 0: what tells the owner is zero already.
+  // The first blocks belong to owner 0. The memory of owners is zero at first, so nothing is
+  // written for it.
   mesh.triangle_pool =
       std::make_unique<BlockPool>(blocks_for(initial, kTriangleBlock), triangle_blocks);
   mesh.vertex_pool =

@@ -51,8 +51,8 @@ inline constexpr Badness kSkinny = 1;
 inline constexpr Badness kLarge = 2;
 inline constexpr Badness kWorst = 255;
 
-// Why a triangle stays bad.
-enum class Excuse : std::uint32_t {
+// Why refinement refuses to improve a triangle that is bad.
+enum class Refusal : std::uint32_t {
   kNone = 0,
   kSmallInputAngle = 1,  // two segments of the input force it
   kEdgeFloor = 2,        // the caller's own floor on edges
@@ -61,7 +61,7 @@ enum class Excuse : std::uint32_t {
 
 struct alignas(32) Triangle {
   std::uint32_t vertex[3];
-  // Bits 0-2: edge i lies on a segment; 3: dead; 4-5: Excuse; 6: excused though too large; 7:
+  // Bits 0-2: edge i lies on a segment; 3: dead; 4-5: Refusal; 6: refused though too large; 7:
   // deferred; 8-15: Badness.
   std::uint32_t flags;
   HalfEdge neighbor[3];
@@ -71,15 +71,15 @@ struct alignas(32) Triangle {
   std::uint32_t segment_bits() const { return flags & 7; }
   bool dead() const { return flags >> 3 & 1; }
   Badness badness() const { return flags >> 8; }
-  Excuse excuse() const { return static_cast<Excuse>(flags >> 4 & 3); }
-  // Whether a triangle that is bad or excused is larger than its bound.
+  Refusal refusal() const { return static_cast<Refusal>(flags >> 4 & 3); }
+  // Whether a triangle that is bad or refused is larger than its bound.
   bool too_large() const { return badness() >= kLarge || (flags >> 6 & 1); }
-  // Each of these two clears what the other set, except too_large: an excused triangle is no longer
+  // Each of these two clears what the other set, except too_large: a refused triangle is no longer
   // to be refined.
   void set_badness(Badness b) { flags = (flags & 7) | b << 8; }
-  void set_excuse(Excuse e) {
+  void set_refusal(Refusal why) {
     const std::uint32_t large = too_large() ? 1u << 6 : 0;
-    flags = (flags & 7) | static_cast<std::uint32_t>(e) << 4 | large;
+    flags = (flags & 7) | static_cast<std::uint32_t>(why) << 4 | large;
   }
   // Whether the running task has deferred it: the queue may have further entries of it.
   bool deferred() const { return flags >> 7 & 1; }

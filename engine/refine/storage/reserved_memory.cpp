@@ -20,18 +20,18 @@ struct Range {
   std::size_t bytes = 0;
 };
 
-// Of one range.
+// Bytes of one range.
 constinit std::atomic<std::size_t> most_kept = ReservedMemory::kKeptBytes;
 
 void give_back(const Range& range) {
   if (range.data) munmap(range.data, range.bytes);
 }
 
-// Ranges of one kind of pages that nobody uses, the one left last in front. Outlives whatever is
-// static.
+// Ranges of one kind of pages that nobody uses; the one that was left last is in front. Outlives
+// all static objects.
 class KeptRanges {
  public:
-  // The smallest that has room; of those, the one left last.
+  // The smallest range that has room; of several, the one that was left last.
   std::optional<Range> take(std::size_t bytes) {
     const std::lock_guard lock(mutex_);
     const auto best =

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Address space for the most that a job may need: the system commits a page when it is first
+// Address space for the most that a run may need: the system commits a page when it is first
 // touched, so arrays in it grow without moving.
 //
 // Large ranges use huge pages, which saves 18 % of the refinement time at 1 M triangles. Small ones
 // do not, because clearing 2 MiB costs more than a small mesh.
 //
-// The ranges of a job are kept for later jobs, because clearing new pages took 6 % of the time of
+// The ranges of a run are kept for later runs, because clearing new pages took 6 % of the time of
 // one thread at 1 M triangles and 8 % of two, and a third of all page faults at 18,000 triangles.
 // Up to kKeptBytes are kept, of up to kKeptRanges ranges with huge pages and as many without, or
 // less if `keep_at_most` says so. The system may take these pages if memory is short while they are
@@ -19,7 +19,7 @@
 
 namespace weft {
 
-// kAny: huge pages if another job has left some, otherwise small ones.
+// kAny: huge pages if another run has left some, otherwise small ones.
 enum class Pages { kSmall, kAny, kHuge };
 
 class ReservedMemory {
@@ -32,7 +32,7 @@ class ReservedMemory {
   // `pages` is kSmall. Thread-safe. Errors: kOutOfMemory.
   static Result<ReservedMemory> reserve(std::size_t bytes, Pages pages);
 
-  // Bounds the bytes kept of all ranges together, from the next range that a job leaves.
+  // Bounds the bytes kept of all ranges together, from the next range that a run leaves.
   // Thread-safe.
   static void keep_at_most(std::size_t bytes);
 

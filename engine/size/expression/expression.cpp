@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/size/expression/lexer.h"
 #include "engine/size/expression/names.h"
 #include "engine/size/expression/parser.h"
 #include "engine/size/expression/program.h"
@@ -52,14 +53,36 @@ bool is_name(std::string_view text) {
          std::all_of(text.begin(), text.end(), rest);
 }
 
+// The coordinate x as a field.
+class Abscissa final : public Field {
+ public:
+  void evaluate(std::size_t n, const double* x, const double*,
+                double* out) const noexcept override {
+    std::copy_n(x, (n + kLanes - 1) / kLanes * kLanes, out);
+  }
+  Interval bounds(const Box& box) const noexcept override { return {box.min_x, box.max_x}; }
+  double steepness(const Box&) const noexcept override { return 1; }
+  std::size_t operations() const noexcept override { return 1; }
+};
+
+bool reads_coordinates(const expr::Program& program) {
+  const auto is_coordinate = [](const expr::Operand& operand) {
+    return operand.from == expr::Operand::From::kRegister && operand.reg < expr::kFirstFieldInput;
+  };
+  return std::any_of(program.begin(), program.end(), [&](const expr::Instruction& instruction) {
+    const auto first = instruction.operands.begin();
+    return std::any_of(first, first + expr::arity(instruction.op), is_coordinate);
+  });
+}
+
 }  // namespace
 
 struct Expression::Program {
   expr::Program code;
   expr::ThreadedCode threaded;
-  std::vector<const Field*> fields;                  // the inputs from kFirstFieldInput on
-  std::vector<std::string> names;                    // of these
-  std::vector<std::unique_ptr<const Field>> slopes;  // those of them that belong to no one else
+  std::vector<const Field*> fields;  // the inputs of the program, from kFirstFieldInput on
+  std::vector<std::string> names;    // of the fields
+  std::vector<std::unique_ptr<const Field>> slopes;  // the fields that the expression itself owns
   std::optional<double> constant;
 };
 
@@ -93,6 +116,25 @@ Result<Expression::Judged> Expression::check(std::string_view source,
   Judged judged{std::vector<bool>(names.size()), made->constant};
   for (const expr::FieldInput& input : made->fields) judged.used[input.field] = true;
   return judged;
+}
+
+std::vector<std::string> Expression::arguments_of_min(std::string_view source) {
+  expr::Lexer lexer(source);
+  if (lexer.next().text != "min" || lexer.next().text != "(") return {};
+  std::vector<std::string> arguments;
+  std::size_t depth = 1;
+  std::size_t first = source.find('(') + 1;
+  while (depth > 0) {
+    const expr::Token token = lexer.next();
+    if (token.text == "(") ++depth;
+    if (token.text == ")") --depth;
+    if (depth == 0 || (depth == 1 && token.text == ",")) {
+      arguments.emplace_back(source.substr(first, token.offset - first));
+      first = token.offset + 1;
+    }
+  }
+  if (lexer.next().kind != expr::Token::Kind::kEnd) return {};
+  return arguments;
 }
 
 std::optional<Error> Expression::check_names(std::span<const std::string> names) {
@@ -139,11 +181,25 @@ std::optional<double> Expression::constant() const noexcept {
   return program_->constant;
 }
 
-std::vector<std::string> Expression::undefined_at(Point p) const {
-  std::vector<std::string> names;
+std::unique_ptr<const SizeFunction> Expression::along(const Field& field) const {
+  static const Abscissa kAbscissa;
+  if (program_->fields.size() != 1 || program_->fields[0] != &field ||
+      reads_coordinates(program_->code))
+    return nullptr;
+  std::unique_ptr<Program> along(new Program{program_->code,
+                                             expr::ThreadedCode(program_->code),
+                                             {&kAbscissa},
+                                             program_->names,
+                                             {},
+                                             program_->constant});
+  return std::unique_ptr<const SizeFunction>(new Expression(std::move(along)));
+}
+
+SizeFunction::Asked Expression::asked_at(Point p) const {
+  Asked asked{(*this)(p)};
   for (std::size_t i = 0; i < program_->fields.size(); ++i)
-    if (std::isnan((*program_->fields[i])(p))) names.push_back(program_->names[i]);
-  return names;
+    if (std::isnan((*program_->fields[i])(p))) asked.undefined.push_back(program_->names[i]);
+  return asked;
 }
 
 std::size_t Expression::operations() const noexcept {

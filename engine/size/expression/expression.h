@@ -31,6 +31,9 @@
 //   Result<Expression> size = Expression::parse("x^2 + y^2 < 25 ? 1e-3 : 1e-2");
 //   double bound = (*size)({3, 4});                      // 1e-2
 //   double least = size->bounds({0, 0, 3, 3}).lo;        // 1e-3
+//
+// This folder has more than 25 files because it is a small compiler: lexer, parser, graph, program,
+// and one evaluator each for values, bounds and steepness.
 #pragma once
 
 #include <cstddef>
@@ -80,6 +83,9 @@ class Expression final : public SizeFunction {
   // What parse would say of an expression that names these fields.
   static Result<Judged> check(std::string_view source, std::span<const std::string> names);
 
+  // The arguments, if all of the source is min(a, b, ...); otherwise none. REQUIRES: it parses.
+  static std::vector<std::string> arguments_of_min(std::string_view source);
+
   // Judges the names of fields: letters, digits and _, a letter or _ first, at most kMaxNameLength
   // bytes, none twice, none that means something else already. The error (kBadOption) names
   // "size.fields[i].name".
@@ -104,7 +110,8 @@ class Expression final : public SizeFunction {
   // The value if neither x, y nor a field is left after folding.
   std::optional<double> constant() const noexcept override;
 
-  std::vector<std::string> undefined_at(Point p) const override;
+  std::unique_ptr<const SizeFunction> along(const Field& field) const override;
+  Asked asked_at(Point p) const override;
 
   // At most kMaxOperations, and those of the fields.
   std::size_t operations() const noexcept override;

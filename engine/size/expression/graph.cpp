@@ -12,8 +12,8 @@ namespace weft::expr {
 
 namespace {
 
-// The same bits either way round, so that a+b and b+a are one node. Not kMin and kMax: of two
-// zeros they give the second.
+// Whether the operands may be swapped without a change of a bit, so that a+b and b+a are one node.
+// Not kMin and kMax: of two zeros they give the second.
 bool commutes(Op op) {
   return op == Op::kAdd || op == Op::kMultiply || op == Op::kEqual || op == Op::kNotEqual ||
          op == Op::kAnd || op == Op::kOr;
@@ -69,7 +69,7 @@ NodeId Graph::binary(Op op, NodeId a, NodeId b) {
     const double value = apply(op, nodes_[a].value, nodes_[b].value);
     return is_truth(op) ? truth_constant(value != 0) : constant(value);
   }
-  // A square knows that it is not negative; its product does not.
+  // The bounds of a square are not negative; those of a product may be.
   if (op == Op::kMultiply && a == b) return intern({.op = Op::kPowN, .exponent = 2, .args = {a}});
   if (commutes(op) && b < a) std::swap(a, b);
   return intern({.op = op, .args = {a, b}});

@@ -16,18 +16,35 @@ Interval truth(bool always, bool never) {
   return always ? kTrue : never ? kFalse : kEitherTruth;
 }
 
-// NaN in all of the box, as the bounds of a field may tell.
+// NaN in all of the box, which the bounds of a field may say.
 bool never_defined(const Interval& a) {
   return a.lo > a.hi;
 }
 
-// Non-decreasing as computed, NaN nowhere.
+// The value if an operand is NaN.
+Interval of_undefined(Op op) {
+  switch (op) {
+    case Op::kLess:
+    case Op::kLessEqual:
+    case Op::kEqual:
+      return kFalse;
+    case Op::kNotEqual:
+      return kTrue;
+    case Op::kPow:    // pow(NaN, 0) is 1
+    case Op::kHypot:  // hypot(NaN, inf) is inf
+      return kAnything;
+    default:
+      return kUndefined;
+  }
+}
+
+// For operations whose computed value never decreases, and that never make a NaN.
 Interval increasing(Op op, const Interval& a) {
   return {apply(op, 0, a.lo), apply(op, 0, a.hi), a.may_be_nan};
 }
 
 Interval sqrt_bounds(const Interval& a) {
-  if (a.hi < 0) return kAnything;
+  if (a.hi < 0) return kUndefined;
   const double lo = a.lo < 0 ? -0.0 : apply(Op::kSqrt, 0, a.lo);
   return {lo, apply(Op::kSqrt, 0, a.hi), a.may_be_nan || a.lo < 0};
 }
@@ -97,7 +114,7 @@ Interval constant_bounds(double value) {
 
 Interval unary_bounds(Op op, int exponent, const Interval& a) {
   if (op == Op::kDefined) return truth(!a.may_be_nan, never_defined(a));
-  if (never_defined(a)) return kAnything;
+  if (never_defined(a)) return of_undefined(op);
   switch (op) {
     case Op::kCopy:
     case Op::kToNumber:
@@ -122,7 +139,7 @@ Interval unary_bounds(Op op, int exponent, const Interval& a) {
 
 Interval binary_bounds(Op op, const Interval& a, const Interval& b) {
   if (op == Op::kCoalesce) return coalesce_bounds(a, b);
-  if (never_defined(a) || never_defined(b)) return is_truth(op) ? kEitherTruth : kAnything;
+  if (never_defined(a) || never_defined(b)) return of_undefined(op);
   const bool nan = either_nan(a, b);
   switch (op) {
     case Op::kAdd:

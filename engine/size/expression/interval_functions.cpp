@@ -37,7 +37,7 @@ Interval exp_bounds(const Interval& a) {
 }
 
 Interval log_bounds(const Interval& a) {
-  if (a.hi < 0) return kAnything;
+  if (a.hi < 0) return kUndefined;
   const double lo = a.lo <= 0 ? -kInfinity : apply(Op::kLog, 0, a.lo);
   return widened({lo, apply(Op::kLog, 0, a.hi), a.may_be_nan || a.lo < 0});
 }
@@ -115,7 +115,7 @@ Interval pow_bounds(const Interval& base, const Interval& exponent) {
   const bool fixed = exponent.lo == exponent.hi;
   if (fixed && std::floor(exponent.lo) == exponent.lo) return whole_pow_bounds(base, exponent);
   if (base.lo < 0) return kAnything;
-  // From -0, which only odd whole exponents tell from +0.
+  // The base may be -0, which differs from +0 for odd integer exponents alone.
   const Interval power = positive_pow_bounds(magnitude(base), exponent);
   if (fixed) return power;
   return exponent.lo > 0 ? Interval{lesser(power.lo, -0.0), power.hi, false} : kAnything;

@@ -56,13 +56,13 @@ std::size_t distance(std::string_view a, std::string_view b) {
 
 std::optional<std::string_view> nearest(std::string_view name,
                                         std::span<const std::string> fields) {
-  constexpr std::size_t kLongest = 64;  // a field's name is no longer
+  constexpr std::size_t kLongest = 64;  // names of fields are no longer
   if (name.size() > kLongest) return std::nullopt;
   std::optional<std::string_view> best;
-  std::size_t best_distance = (name.size() + 2) / 3;  // one slip in three letters
+  std::size_t best_distance = (name.size() + 2) / 3;  // one error per three letters
   if (name.size() == 1) best_distance = 1;
   const auto consider = [&](std::string_view candidate) {
-    // A wrong letter alone is no slip: z is not a misspelt x.
+    // One wrong letter alone is no misspelling: z is not a misspelt x.
     const std::size_t d = distance(name, candidate);
     if (d < best_distance || (d == best_distance && !best && name.size() > 1)) {
       best = candidate;

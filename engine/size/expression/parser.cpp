@@ -157,7 +157,7 @@ class Parser {
     return graph_.input(static_cast<std::uint16_t>(kFirstFieldInput + number));
   }
 
-  // The one function that takes a field, not its value.
+  // The one function that takes a field itself, instead of its value.
   NodeId slope(const Token& open) {
     const Token argument = token_;
     const auto field =

@@ -72,7 +72,7 @@ std::vector<NodeId> schedule(const Graph& graph, NodeId root) {
 struct Lifetime {
   std::uint32_t computed = kNone;
   std::uint32_t last_use = 0;
-  bool used_later = false;  // by more than the next instruction
+  bool used_later = false;  // by an instruction after the next one
   std::uint16_t reg = 0;
 };
 

@@ -11,7 +11,7 @@ namespace weft::expr {
 
 namespace {
 
-// Without a value at first: to give all of them one took most of the time of a short program.
+// Not initialised: to give all of them a value took most of the time of a short program.
 union Register {
   Register() {}
   Interval value;
@@ -51,7 +51,7 @@ Interval bounds(const Program& program, const Box& box,
     }
     if (instruction.store) registers[*instruction.store].value = accumulator;
   }
-  return accumulator.lo > accumulator.hi ? Interval{} : accumulator;
+  return accumulator;
 }
 
 }  // namespace weft::expr

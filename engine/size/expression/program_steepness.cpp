@@ -83,7 +83,7 @@ Slope chain(const Interval& value, const Slope& a, const Interval& by_a, const S
           times(largest(by_a), a.length) + times(largest(by_b), b.length)};
 }
 
-// One of the two, nobody knows which.
+// The value is one of the two, and it is not known which.
 Slope one_of(const Interval& value, const Slope& a, const Slope& b) {
   return {value, either(a.dx, b.dx), either(a.dy, b.dy), std::max(a.length, b.length)};
 }
@@ -140,8 +140,9 @@ Slope unary(Op op, int exponent, const Slope& a) {
   }
 }
 
-// In a change of (a, b) hypot changes by its length at most: by the largest singular value of the
-// matrix of the derivatives, which the sums of its rows and columns bound.
+// If (a, b) changes, hypot changes by at most the length of that change. That is bounded by the
+// largest singular value of the matrix of derivatives, which the sums of its rows and columns
+// bound.
 Slope hypot_slope(const Interval& value, const Slope& a, const Slope& b) {
   const double ax = largest(a.dx);
   const double ay = largest(a.dy);

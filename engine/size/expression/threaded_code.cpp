@@ -7,8 +7,8 @@
 #include "engine/size/expression/lanes.h"
 #include "engine/size/expression/parser.h"
 
-// Both compilers turn the jump to the next handler into a jump when they optimise; clang can be
-// made to promise it. Without it the stack grows by one small frame an operation, which
+// Both compilers turn the call of the next handler into a jump if they optimise; clang can be made
+// to promise it. Without the jump, the stack grows by one small frame per operation, which
 // kMaxOperations bounds.
 #if defined(__clang__)
 #define WEFT_TAIL_CALL [[clang::musttail]] return

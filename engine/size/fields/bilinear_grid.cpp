@@ -10,14 +10,14 @@ namespace weft {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-// Beside a grid that is undefined outside, in cells: half a pixel, and what a client that computes
-// its corner may round.
+// How far beyond its nodes a grid still has values if it is undefined outside, in cells: half a
+// pixel, and what a client may round when it computes the corner.
 constexpr double kSlack = 0.5 + 0x1p-20;
-// For at most ten roundings of values up to the largest in absolute value, here and where a point
-// is evaluated.
+// Covers ten roundings, of values up to the largest in absolute value: here and where a point is
+// evaluated.
 constexpr double kRounding = 0x1p-48;
 
-// Of one part of the gradient, times the step: from p at the one side of the cell to q at the
+// One component of the gradient, times the step: it goes from p on one side of the cell to q on the
 // other.
 double between(double p, double q, double t) {
   return std::clamp(p + t * (q - p), std::min(p, q), std::max(p, q));
@@ -38,10 +38,9 @@ Interval lengths_between(double p, double q, Interval t) {
   return {hi < 0 ? -hi : 0.0, std::max(-lo, hi), false};
 }
 
-// Of what may have no value at all.
+// kUndefined if nothing was found: then no point has a value.
 Interval known(const Interval& found) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  return found.lo <= found.hi ? found : Interval{kInfinity, -kInfinity, true};
+  return found.lo <= found.hi ? found : kUndefined;
 }
 
 }  // namespace
@@ -55,8 +54,10 @@ auto BilinearGrid<T, kOutside>::place(double coordinate, double origin, double s
   const double steps = (coordinate - origin) / step;
   const double within = steps > 0 ? std::min(steps, static_cast<double>(last)) : 0.0;
   const std::uint32_t node = std::min(static_cast<std::uint32_t>(within), last_cell(count));
-  return {node, std::min(node + 1, last), within - node,
-          kOutside == Outside::kNearest || (steps >= -kSlack && steps <= last + kSlack)};
+  int side = 0;
+  if constexpr (kOutside == Outside::kUndefined)
+    side = steps < -kSlack ? -1 : steps <= last + kSlack ? 0 : 1;
+  return {node, std::min(node + 1, last), within - node, side};
 }
 
 template <class T, Outside kOutside>
@@ -65,12 +66,16 @@ auto BilinearGrid<T, kOutside>::places(const Box& box) const noexcept -> Places 
   const Place right = place_x(box.max_x);
   const Place bottom = place_y(box.min_y);
   const Place top = place_y(box.max_y);
+  const auto beside = [](const Place& from, const Place& to) {
+    return from.side != 0 && from.side == to.side;
+  };
   return {left,
           right,
           bottom,
           top,
           right.node - left.node <= kAtATime && top.node - bottom.node <= kAtATime,
-          left.inside && right.inside && bottom.inside && top.inside};
+          left.side == 0 && right.side == 0 && bottom.side == 0 && top.side == 0,
+          beside(left, right) || beside(bottom, top)};
 }
 
 template <class T, Outside kOutside>
@@ -83,8 +88,8 @@ double BilinearGrid<T, kOutside>::value(const Place& x, const Place& y) const no
   const double high = c + x.t * (d - c);
   const double least = std::min(std::min(a, b), std::min(c, d));
   const double most = std::max(std::max(a, b), std::max(c, d));
-  // Rounding is hardly ever at odds with this; the clamp costs less than the proof of never. A NaN
-  // passes through.
+  // Rounding hardly ever leaves the range of the four, but the clamp costs less than a proof that
+  // it never does. A NaN passes through.
   return std::clamp(low + y.t * (high - low), least, most);
 }
 
@@ -105,7 +110,7 @@ void BilinearGrid<T, kOutside>::evaluate(std::size_t n, const double* x, const d
   for (std::size_t k = 0; k < n; ++k) {
     const Place at_x = place_x(x[k]);
     const Place at_y = place_y(y[k]);
-    out[k] = at_x.inside && at_y.inside ? value(at_x, at_y) : kNan;
+    out[k] = at_x.side == 0 && at_y.side == 0 ? value(at_x, at_y) : kNan;
   }
 }
 
@@ -115,7 +120,7 @@ void BilinearGrid<T, kOutside>::evaluate_slope(std::size_t n, const double* x, c
   for (std::size_t k = 0; k < n; ++k) {
     const Place at_x = place_x(x[k]);
     const Place at_y = place_y(y[k]);
-    out[k] = at_x.inside && at_y.inside ? slope(at_x, at_y) : kNan;
+    out[k] = at_x.side == 0 && at_y.side == 0 ? slope(at_x, at_y) : kNan;
   }
 }
 
@@ -123,7 +128,7 @@ template <class T, Outside kOutside>
 Interval BilinearGrid<T, kOutside>::node_extremes(std::uint32_t i0, std::uint32_t i1,
                                                   std::uint32_t j0,
                                                   std::uint32_t j1) const noexcept {
-  constexpr std::size_t kLanes = 4;  // so that the compiler takes them at once
+  constexpr std::size_t kLanes = 4;  // so that the compiler uses vectors
   std::array<T, kLanes> lo;
   std::array<T, kLanes> hi;
   lo.fill(std::numeric_limits<T>::infinity());
@@ -196,14 +201,15 @@ std::optional<Error> BilinearGrid<T, kOutside>::build_slope_bounds(
       context);
 }
 
-// Bilinear in each cell: the extremes are at the corners of what the box cuts out of the cells.
+// The values are bilinear in each cell, so the extremes are at the corners of the pieces into which
+// the cells cut the box.
 template <class T, Outside kOutside>
 Interval BilinearGrid<T, kOutside>::at_corners(const Places& box) const noexcept {
   using Stops = std::array<Place, kAtATime + 2>;
   const auto stops = [](const Place& from, const Place& to, Stops& places) {
     std::size_t count = 0;
     places[count++] = from;
-    for (std::uint32_t i = from.node + 1; i <= to.node; ++i) places[count++] = {i, i, 0, true};
+    for (std::uint32_t i = from.node + 1; i <= to.node; ++i) places[count++] = {i, i, 0, 0};
     places[count++] = to;
     return count;
   };
@@ -220,6 +226,7 @@ Interval BilinearGrid<T, kOutside>::at_corners(const Places& box) const noexcept
 template <class T, Outside kOutside>
 Interval BilinearGrid<T, kOutside>::bounds(const Box& box) const noexcept {
   const Places at = places(box);
+  if (at.outside) return kUndefined;
   const auto extremes = [this](auto i0, auto i1, auto j0, auto j1) {
     return nodes_.over(i0, i1, j0, j1, [this](auto k0, auto k1, auto l0, auto l1) {
       return node_extremes(k0, k1, l0, l1);
@@ -227,7 +234,7 @@ Interval BilinearGrid<T, kOutside>::bounds(const Box& box) const noexcept {
   };
   const auto last = [](const Place& p) { return p.t > 0 ? p.next : p.node; };
   Interval nodes = extremes(at.left.node, last(at.right), at.bottom.node, last(at.top));
-  // A cell is undefined even if the node that is NaN has no weight.
+  // A cell with a NaN at a corner is undefined, even where that corner has no weight.
   if constexpr (kOutside == Outside::kUndefined)
     nodes.may_be_nan =
         !at.inside || nodes.may_be_nan ||
@@ -243,6 +250,7 @@ Interval BilinearGrid<T, kOutside>::bounds(const Box& box) const noexcept {
 template <class T, Outside kOutside>
 Interval BilinearGrid<T, kOutside>::slope_bounds(const Box& box) const noexcept {
   const Places at = places(box);
+  if (at.outside) return kUndefined;
   Interval found = kNoValue;
   if (at.few) {
     const auto part = [](std::uint32_t i, const Place& from, const Place& to) {

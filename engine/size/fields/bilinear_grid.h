@@ -73,17 +73,19 @@ class BilinearGrid {
  private:
   static constexpr std::uint32_t kAtATime = BlockPyramid::kAtATime;
 
-  // Where a coordinate lies among the nodes: between `node` and `next`, at `t`.
+  // Where a coordinate lies among the nodes: between `node` and `next`, at `t`; on which side of
+  // where there are values, -1 or 1, or 0 within.
   struct Place {
     std::uint32_t node;
     std::uint32_t next;
     double t;
-    bool inside;
+    int side;
   };
   struct Places {
     Place left, right, bottom, top;
-    bool few;     // at most kAtATime cells each way
-    bool inside;  // all of the box
+    bool few;      // at most kAtATime cells each way
+    bool inside;   // all of the box
+    bool outside;  // all of the box
   };
 
   // A grid that ends somewhere has its last nodes in its last cells; if it goes on as it ends, they

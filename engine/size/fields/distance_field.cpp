@@ -15,19 +15,26 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 0x1p500;  // of a coordinate whose square is finite
-constexpr double kRounding = 0x1p-46;  // of the lengths at work: more than all roundings together
+constexpr double kRounding = 0x1p-46;  // of the lengths; more than all roundings together
 
-// Entries of the lists, and of nodes as kNodeCost, that a subtree may have for each of its lines.
+// The allowance of a subtree per line, in entries of lists; a node counts as kNodeCost of them.
 constexpr std::uint64_t kListedPerLine = 24;
 constexpr std::uint64_t kListedBesides = std::uint64_t{1} << 16;
+// Far from the lines, lists are long where boxes are not small: of some ten thousand lines, on
+// which most domains have their distance, more may be listed.
+constexpr std::uint64_t kMoreListedPerLine = 32;
+constexpr std::uint64_t kMostListedBesides = std::uint64_t{1} << 18;
 constexpr std::uint64_t kNodeCost = 2;
-// A leaf lists so many lines, or, because a straight line of n pieces has n parallel cells, so many
-// for each side of it that they are away; but no more than kMostInLeaf if they can be parted.
+// A leaf lists at most so many lines, or so many per side of the leaf that they are away, because a
+// straight line of n pieces has n parallel cells. It never lists more than kMostInLeaf if they can
+// be told apart.
 constexpr double kInLeaf = 8;
 constexpr double kInLeafPerSide = 2;
 constexpr double kMostInLeaf = 64;
 constexpr std::uint32_t kShort = 16;  // a list that is hardly slower than the tree
-constexpr int kSubtreeLevel = 4;      // whose subtrees are built on many threads
+// A look of the tree costs as much as so many lines of a list, which eight points share.
+constexpr std::uint32_t kLinesPerLook = 4;
+constexpr int kSubtreeLevel = 4;  // the level whose subtrees are built on many threads
 
 double largest(const Box& box) {
   return std::max(std::max(std::fabs(box.min_x), std::fabs(box.max_x)),
@@ -40,22 +47,22 @@ __m128d select(__m128d mask, __m128d a, __m128d b) {
 
 }  // namespace
 
-// Builds a part of the quadtree: nodes, the part's root first, and lists.
+// Builds a part of the quadtree: its nodes, the root first, and the lists of its leaves.
 class ListBuilder {
  public:
   using Node = DistanceField::Node;
-  // A node whose fate is open: its box, and the lines that may be nearest in it.
+  // A node that is still to be built: its box, and the lines that may be nearest in it.
   struct Pending {
     std::uint32_t node = 0;
     int depth = 0;
     std::uint32_t ix = 0;
     std::uint32_t iy = 0;
-    double distance = 0;        // at the middle
-    std::uint64_t allowed = 0;  // cost of its subtree
+    double distance = 0;        // at the middle of the box
+    std::uint64_t allowed = 0;  // for its subtree
     std::vector<std::uint32_t> lines;
   };
 
-  // Nodes at `last_level` that are to be split are left in `later`.
+  // Nodes at `last_level` that are to be split stay in `later`.
   ListBuilder(const DistanceField& field, const Box& wanted, int last_level,
               const ExecutionContext& context)
       : field_(field), wanted_(wanted), last_level_(last_level), context_(context) {}
@@ -66,13 +73,13 @@ class ListBuilder {
     return split(std::move(root));
   }
 
-  // Leaves in `pending.lines` those of `from` that may be nearest in the box.
+  // Sets `pending.lines` to those of `from` that may be nearest in the box.
   std::optional<Error> filter(const std::vector<std::uint32_t>& from, Pending& pending);
 
   std::vector<Node> nodes;
   std::vector<std::uint32_t> lists;
   std::vector<Pending> later;
-  double looks = 0;  // of all leaves together, boxes of the tree and lines
+  double looks = 0;  // boxes of the tree and lines that a search visits, summed over the leaves
   std::size_t leaves = 0;
 
  private:
@@ -88,19 +95,19 @@ class ListBuilder {
   const Box& wanted_;
   const int last_level_;
   const ExecutionContext& context_;
-  std::vector<Corners> corners_;  // for filter
+  std::vector<Corners> corners_;  // scratch memory of `filter`
 };
 
 Box ListBuilder::box_of(const Pending& pending) const {
   const double side = std::ldexp(2 * field_.root_, -pending.depth);
-  const double grown = 0x1p-40;  // rounding may put a point into the box beside its own
+  const double grown = 0x1p-40;  // because rounding may put a point into the neighbouring box
   const double x = pending.ix * side - field_.root_;
   const double y = pending.iy * side - field_.root_;
   return {x - grown, y - grown, x + side + grown, y + side + grown};
 }
 
 std::optional<Error> ListBuilder::filter(const std::vector<std::uint32_t>& from, Pending& pending) {
-  constexpr std::size_t kAtATime = 1 << 14;  // lines, for 200 us or so
+  constexpr std::size_t kAtATime = 1 << 14;  // lines; takes about 200 us
   constexpr int kSamples = 5;                // the corners and the middle
   const std::vector<StraightLine>& lines = field_.tree_.lines();
   const Box box = box_of(pending);
@@ -168,9 +175,9 @@ void ListBuilder::add_leaf(const Pending& pending) {
     const Box box = box_of(pending);
     const Point middle{0.5 * (box.min_x + box.max_x), 0.5 * (box.min_y + box.max_y)};
     const LineTree::Nearest found = field_.tree_.nearest(middle, pending.lines[0]);
-    if (found.looks < count) {
+    if (kLinesPerLook * found.looks < count) {
       node = {found.line, DistanceField::kByTree};
-      cost = found.looks;
+      cost = kLinesPerLook * found.looks;
     }
   }
   if (node.count == count) lists.insert(lists.end(), pending.lines.begin(), pending.lines.end());
@@ -242,14 +249,10 @@ Result<DistanceField> DistanceField::make(std::vector<Line> lines, const Box& bo
                 "a distance to " + std::to_string(lines.size()) + " lines; the limit is " +
                     std::to_string(kMostLines));
   }
-  const std::uint64_t bytes = kBytesPerLine * lines.size() + kBytesBesides;
-  if (bytes > context.budget().max_bytes) {
-    return fail(ErrorCode::kBudgetExceeded, "budget.max_bytes",
-                "a distance to " + std::to_string(lines.size()) +
-                    " lines needs more than the budget of " +
-                    std::to_string(context.budget().max_bytes) + " bytes");
-  }
-  if (auto error = context.need_bytes(bytes)) return tl::unexpected(*error);
+  const std::uint64_t bytes = bytes_to_make(lines.size());
+  if (auto error =
+          context.need_bytes(bytes, "a distance to " + std::to_string(lines.size()) + " lines"))
+    return tl::unexpected(*error);
 
   DistanceField field(box);
   std::vector<StraightLine> straight;
@@ -276,10 +279,11 @@ std::optional<Error> DistanceField::add_quadtree(const Box& box, const Execution
   const Box wanted{low.x, low.y, high.x, high.y};
   const std::size_t n = tree_.lines().size();
 
-  // The first levels, then each subtree below them on one thread.
+  // Builds the first levels, then each subtree below them on one thread.
   ListBuilder top(*this, wanted, kSubtreeLevel, context);
   ListBuilder::Pending root;
-  root.allowed = kListedPerLine * n + kListedBesides;
+  root.allowed =
+      kListedPerLine * n + std::min(kListedBesides + kMoreListedPerLine * n, kMostListedBesides);
   {
     std::vector<std::uint32_t> all(n);
     for (std::uint32_t i = 0; i < n; ++i) all[i] = i;
@@ -297,7 +301,7 @@ std::optional<Error> DistanceField::add_quadtree(const Box& box, const Execution
       }))
     return error;
 
-  // One behind the other.
+  // Joins the parts, one behind the other.
   std::size_t nodes = top.nodes.size();
   std::size_t listed = top.lists.size();
   for (const ListBuilder& part : parts) {
@@ -398,7 +402,7 @@ void DistanceField::eight(const Lanes& at, __m128d* out) const noexcept {
     left &= ~same;
     const Node node = nodes_[leaves[lane]];
     const std::uint32_t* const list = lists_.data() + node.first;
-    // What another lane's leaf lists is a line, too, so it lowers nothing below the least of all.
+    // Other lanes may take the lines of this leaf, too: their distances then stay above the least.
     if (__builtin_popcount(same) > 2) {
       for (std::uint32_t i = 0; i < node.count; ++i)
         take_nearer<4>(tree_.lines()[list[i]], at.x, at.y, best);
@@ -437,6 +441,24 @@ void DistanceField::eight(const Lanes& at, __m128d* out) const noexcept {
   }
 }
 
+// The value of `eight`, bit for bit.
+double DistanceField::one(Point p) const noexcept {
+  const __m128d cell =
+      _mm_mul_pd(_mm_add_pd(_mm_set_pd(p.y, p.x), _mm_set1_pd(root_)), _mm_set1_pd(cells_));
+  alignas(16) int at[4];
+  _mm_store_si128(reinterpret_cast<__m128i*>(at), _mm_cvttpd_epi32(_mm_floor_pd(cell)));
+  const std::uint32_t in = leaf(at[0], at[1]);
+  if (in == kNone || nodes_[in].count == kByTree)
+    return std::sqrt(tree_.nearest(p, in == kNone ? 0 : nodes_[in].first).square);
+  const __m128d x = _mm_set1_pd(p.x);
+  const __m128d y = _mm_set1_pd(p.y);
+  __m128d best = _mm_set1_pd(kInfinity);
+  const std::uint32_t* const list = lists_.data() + nodes_[in].first;
+  for (std::uint32_t i = 0; i < nodes_[in].count; ++i)
+    take_nearer<1>(tree_.lines()[list[i]], &x, &y, &best);
+  return std::sqrt(_mm_cvtsd_f64(best));
+}
+
 void DistanceField::evaluate(std::size_t n, const double* x, const double* y,
                              double* out) const noexcept {
   const __m128d cx = _mm_set1_pd(centre_.x);
@@ -463,12 +485,7 @@ DistanceField::Around DistanceField::around(const Box& box) const noexcept {
   const Point middle{0.5 * low.x + 0.5 * high.x, 0.5 * low.y + 0.5 * high.y};
   if (!(largest({low.x, low.y, high.x, high.y}) <= kFarthest))
     return {middle, kInfinity, 0, kInfinity};
-  Lanes at;
-  __m128d value[4];
-  std::fill_n(at.x, 4, _mm_set1_pd(middle.x));
-  std::fill_n(at.y, 4, _mm_set1_pd(middle.y));
-  eight(at, value);
-  const double distance = _mm_cvtsd_f64(value[0]);
+  const double distance = one(middle);
   const double width = high.x - low.x;
   const double height = high.y - low.y;
   const double radius = 0.5 * std::sqrt(width * width + height * height);
@@ -478,16 +495,20 @@ DistanceField::Around DistanceField::around(const Box& box) const noexcept {
           distance + radius + rounding};
 }
 
-Interval DistanceField::bounds(const Box& box) const noexcept {
-  const Around at = around(box);
+Interval DistanceField::bounds_of(const Around& at) const noexcept {
   return {at.least * unit_, at.most * unit_, false};
 }
 
-// The line that is nearest to a point of the box is no farther from its middle than that one's
-// distance and the way there.
-double DistanceField::least_near(const LineTree::Numbers& numbers, const Box& box) const noexcept {
+Interval DistanceField::bounds(const Box& box) const noexcept {
+  return bounds_of(around(box));
+}
+
+// The line that is nearest to some point of the box is at most at.most + at.radius away from the
+// middle.
+DistanceField::Near DistanceField::near(const LineTree::Numbers& numbers,
+                                        const Box& box) const noexcept {
   const Around at = around(box);
-  return tree_.least_near(numbers, at.middle, at.most + at.radius);
+  return {bounds_of(at), tree_.least_near(numbers, at.middle, at.most + at.radius)};
 }
 
 std::vector<Line> DistanceField::lines() const {

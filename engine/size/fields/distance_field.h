@@ -23,6 +23,7 @@
 //   double d = (*coast)({0.5, 0.5});
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -43,9 +44,11 @@ struct Line {
 
 class DistanceField final : public Field {
  public:
-  // What `make` takes at most for each line, and besides.
-  static constexpr std::uint64_t kBytesPerLine = 256;
-  static constexpr std::uint64_t kBytesBesides = std::uint64_t{1} << 20;
+  // What `make` takes at most for some fields that have so many lines together.
+  static constexpr std::uint64_t bytes_to_make(std::uint64_t lines, std::uint64_t fields = 1) {
+    constexpr std::uint64_t kMega = std::uint64_t{1} << 20;
+    return 256 * lines + std::min(kMega * fields + 512 * lines, 4 * kMega * fields);
+  }
   static constexpr std::size_t kMostLines = std::size_t{1} << 27;
 
   // `box` is where the field is asked for most: the domain's.
@@ -70,8 +73,11 @@ class DistanceField final : public Field {
   LineTree::Numbers with_leasts(std::vector<double> of_line) const {
     return tree_.with_leasts(std::move(of_line));
   }
-  // The least number of the lines that are nearest to some point of the box, and of some others.
-  double least_near(const LineTree::Numbers& numbers, const Box& box) const noexcept;
+  struct Near {
+    Interval bounds;  // of the distance over a box
+    double least;     // number of the lines nearest to some point of the box, and of some others
+  };
+  Near near(const LineTree::Numbers& numbers, const Box& box) const noexcept;
 
   // 1 everywhere, because it is but for a set without area.
   std::unique_ptr<const Field> slope() const override;
@@ -103,6 +109,7 @@ class DistanceField final : public Field {
   void fill_table(std::uint32_t node, int depth, std::uint32_t ix, std::uint32_t iy);
   std::uint32_t leaf(int ix, int iy) const noexcept;
   void eight(const Lanes& at, __m128d* out) const noexcept;
+  double one(Point p) const noexcept;  // REQUIRES: coordinates up to 2^500
   // Around the middle of a box, in the coordinates inside: `least` and `most` of the distance, with
   // its rounding.
   struct Around {
@@ -112,6 +119,7 @@ class DistanceField final : public Field {
     double most;
   };
   Around around(const Box& box) const noexcept;
+  Interval bounds_of(const Around& at) const noexcept;
 
   Point centre_;
   double scale_ = 1;  // a power of two

@@ -11,7 +11,7 @@
 namespace weft {
 namespace {
 
-// The coordinates that lines are told apart by, doubled.
+// The coordinates by which lines are told apart, doubled.
 double coordinate(const StraightLine& line, int axis) {
   switch (axis) {
     case 0:
@@ -25,7 +25,7 @@ double coordinate(const StraightLine& line, int axis) {
   }
 }
 
-// Calls f(i) for i < n in groups, so that a group has work for some 100 us.
+// Calls f(i) for i < n in groups that take about 100 us each.
 template <class F>
 std::optional<Error> in_groups(const ExecutionContext& context, std::size_t n, std::size_t lines,
                                F&& f) {
@@ -70,7 +70,7 @@ Result<LineTree> LineTree::make(std::vector<StraightLine> lines, const Execution
   tree.boxes_.resize(2 * ranges.size());
   for (int level = 0; level <= levels; ++level) {
     const std::size_t nodes = std::size_t{1} << level;
-    const std::size_t leaves = ranges.size() / nodes;  // of each
+    const std::size_t leaves = ranges.size() / nodes;  // per node
     if (auto error = in_groups(context, nodes, n, [&](std::size_t i) {
           tree.boxes_[nodes + i] =
               tree.box_around(tree.first_[i * leaves], tree.first_[(i + 1) * leaves]);
@@ -85,13 +85,13 @@ std::size_t LineTree::bytes() const noexcept {
          first_.capacity() * sizeof(std::uint32_t);
 }
 
-// Orders the lines of the range. All but one are dropped if they are the same.
+// Orders the lines of the range, and drops all but one if they are the same.
 void LineTree::split(Range& range, Range* halves) {
   const auto begin = lines_.begin() + range.first;
   constexpr double kSame = 0x1p-42;
   int widest = 0;
   double most = 0;
-  double magnitude = 2;  // twice the unit
+  double magnitude = 2;  // twice the unit of length
   for (int axis = 0; axis < 4; ++axis) {
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
@@ -129,7 +129,7 @@ LineTree::TurnedBox LineTree::box_around(std::size_t first, std::size_t end) con
   Box straight;
   for_each_end([&](Point p) { straight.add(p); });
   box.middle = {0.5 * (straight.min_x + straight.max_x), 0.5 * (straight.min_y + straight.max_y)};
-  // The principal axis of the ends.
+  // The principal axis of the end points.
   const double extent = std::max(straight.width(), straight.height());
   if (extent > 0) {
     const double scale = 1 / extent;
@@ -181,14 +181,14 @@ LineTree::TurnedBox LineTree::box_around(std::size_t first, std::size_t end) con
     box.half_along = std::max(box.half_along, std::fabs(x * box.ex + y * box.ey));
     box.half_across = std::max(box.half_across, std::fabs(y * box.ex - x * box.ey));
   });
-  // For the rounding of all distances to lines within, as far as it grows with their length.
+  // Covers the rounding of all distances to lines within, so far as it grows with their length.
   const double rounding = 0x1p-46 * (box.half_along + box.half_across);
   box.half_along += rounding;
   box.half_across += rounding;
   return box;
 }
 
-// What the square to a line in the box cannot be below.
+// A lower bound of the squared distance to any line in the box.
 double LineTree::least(const TurnedBox& box, Point p) noexcept {
   if (box.half_along < 0) return std::numeric_limits<double>::infinity();
   const double x = p.x - box.middle.x;

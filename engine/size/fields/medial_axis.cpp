@@ -23,9 +23,9 @@ constexpr double kCosHalfAngle = 0.5403023058681398;  // cos(kObjectAngle / 2)
 constexpr double kCosAngle = -0.4161468365471424;     // cos(kObjectAngle)
 // Longest piece of a wall, in heights of a triangle of the axis on it.
 constexpr double kLongestPiece = 0.5;
-// How near to a corner the axis comes, along the shorter of its two walls.
+// How near the axis comes to a corner, as a part of the shorter of its two walls.
 constexpr double kOfTip = 0.5;
-// The walls of every ear are halved in so many rounds, because a domain may be all ears.
+// The walls of every ear are halved in so many rounds, because a domain may consist of ears.
 constexpr int kRoundsOfEars = 2;
 
 constexpr std::uint32_t kCorners = 4;  // of a frame around the walls
@@ -39,12 +39,7 @@ double length(Point a, Point b) {
 }
 
 void require(std::uint64_t bytes, const ExecutionContext& context) {
-  const std::uint64_t limit = context.budget().max_bytes;
-  if (bytes > limit)
-    throw Stopped{{ErrorCode::kBudgetExceeded, "",
-                   "the local width takes about " + std::to_string(bytes) +
-                       " bytes, the limit is " + std::to_string(limit)}};
-  if (auto error = context.need_bytes(bytes)) throw Stopped{*error};
+  if (auto error = context.need_bytes(bytes, "the local width")) throw Stopped{*error};
 }
 
 // The walls, and a frame around them: no wall is on the convex hull then. The first points are the
@@ -95,7 +90,9 @@ class Axis {
   using Edge = Triangulation::Edge;
   using Vertex = Triangulation::Vertex;
 
-  // A triangle of the meshed area. Side i is opposite corner i.
+  static constexpr std::uint8_t kUnknown = 2;
+
+  // A triangle of the meshed area. Side i is opposite corner i. An ear has two walls.
   struct Shape {
     Point corner[3];
     double side[3];
@@ -104,9 +101,9 @@ class Axis {
     double area2;  // twice the area
     double radius;
     bool is_ear;
-    bool is_sharp;    // an ear whose corner the axis enters
-    bool is_at_tip;   // no ear, in a corner of walls that the axis does not enter so far
-    bool is_on_axis;  // its circle is a disk of the axis
+    bool is_sharp;    // an ear, and the axis runs into its corner
+    bool is_at_tip;   // not an ear; near a corner of walls, where the axis does not come
+    bool is_on_axis;  // its circumcircle is a disk of the axis
   };
 
   void triangulate_walls();
@@ -119,6 +116,8 @@ class Axis {
     return {std::clamp(p.x, box_.min_x, box_.max_x), std::clamp(p.y, box_.min_y, box_.max_y)};
   }
   bool is_wall(Edge e) const { return t_.constraint(e) != kNone; }
+  // Whether the edge leads in or out of the meshed area.
+  bool leads_over(Edge e) const { return is_wall(e) && constraints_[t_.constraint(e)].odd; }
   bool are_at_tip(Vertex u, Vertex v) const;
   Shape shape(std::uint32_t face) const;
   bool wants_halving(const Shape& s, int i, int round) const;
@@ -130,10 +129,10 @@ class Axis {
   StopPoller& poller_;
   Triangulation t_;
   std::vector<Arrangement::Constraint> constraints_;
-  std::vector<std::uint8_t> inside_;  // per face of the triangulation
+  std::vector<std::uint8_t> inside_;  // per face of the triangulation: 0, 1, or kUnknown meanwhile
   std::vector<std::uint32_t> wall_;   // per vertex: the wall that it halves, or kNone
   Box box_;                           // of the walls
-  double shortest_ = 0;               // no wall shorter than that is halved
+  double shortest_ = 0;               // walls up to this length are not halved
 };
 
 void Axis::triangulate_walls() {
@@ -153,14 +152,15 @@ void Axis::triangulate_walls() {
     box_.add(walls_.points[s.a]);
     perimeter += length(walls_.points[s.a], walls_.points[s.b]);
   }
-  const auto pieces = static_cast<double>(2 * walls_.segments.size() + (std::size_t{1} << 17));
+  const std::size_t walls = walls_.segments.size();
+  const auto pieces = static_cast<double>(
+      std::min(64 * walls + (std::size_t{1} << 13), 2 * walls + (std::size_t{1} << 17)));
   shortest_ = std::max(perimeter / pieces, 4 * merging.tolerance);
 }
 
 // The walls are the border of the meshed area, so each that is crossed on the way from infinity
 // leads in or out of it.
 void Axis::find_inside() {
-  constexpr std::uint8_t kUnknown = 2;
   inside_.assign(t_.faces(), kUnknown);
   std::uint32_t start = 0;
   while (!t_.is_infinite(start)) ++start;
@@ -173,8 +173,7 @@ void Axis::find_inside() {
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t next = t_.mirror({f, i}).face;
       if (inside_[next] != kUnknown) continue;
-      const bool leads_over = is_wall({f, i}) && constraints_[t_.constraint({f, i})].odd;
-      inside_[next] = inside_[f] ^ static_cast<std::uint8_t>(leads_over);
+      inside_[next] = inside_[f] ^ static_cast<std::uint8_t>(leads_over({f, i}));
       stack.push_back(next);
     }
   }
@@ -190,7 +189,7 @@ bool Axis::are_at_tip(Vertex u, Vertex v) const {
   const double shorter = std::min(distance2(walls_.points[a.a], walls_.points[a.b]),
                                   distance2(walls_.points[b.a], walls_.points[b.b]));
   return std::max(distance2(tip, t_.at(u)), distance2(tip, t_.at(v))) <=
-         kOfTip * kOfTip * shorter * (1 + 1e-9);  // for the rounding of halves
+         kOfTip * kOfTip * shorter * (1 + 1e-9);  // covers the rounding of halves
 }
 
 Axis::Shape Axis::shape(std::uint32_t face) const {
@@ -222,7 +221,7 @@ Axis::Shape Axis::shape(std::uint32_t face) const {
   return s;
 }
 
-// Whether wall i is too long beside the triangle.
+// Whether wall i is too long for the axis in this triangle.
 bool Axis::wants_halving(const Shape& s, int i, int round) const {
   if (!s.is_wall[i]) return false;
   if (s.is_ear) {
@@ -238,8 +237,8 @@ bool Axis::wants_halving(const Shape& s, int i, int round) const {
   return p * p + q * q - square < 2 * p * q * kCosHalfAngle;
 }
 
-// Whether the triangle would have to be smaller to tell where the axis is, and cannot be. Asked
-// once all walls are halved.
+// Whether only a smaller triangle would show where the axis is, and its walls cannot be halved
+// further. Called once all walls are halved.
 bool Axis::is_too_narrow(const Shape& s) const {
   if (s.is_ear) return false;
   for (int i = 0; i < 3; ++i)
@@ -247,7 +246,7 @@ bool Axis::is_too_narrow(const Shape& s) const {
   return false;
 }
 
-// In rounds: each looks at the triangles that the one before changed.
+// Works in rounds: each one visits the triangles that the last one changed.
 void Axis::halve_walls() {
   std::vector<std::uint32_t> changed;
   for (std::uint32_t f = 0; f < t_.faces(); ++f)
@@ -279,8 +278,8 @@ void Axis::halve_walls() {
   }
 }
 
-// Adds the triangles that are new to `changed`: none if the wall is halved already, or too short
-// for its middle to be told from its neighbours.
+// Adds the new triangles to `changed`: none if the wall is halved already, or too short for its
+// middle to differ from its ends.
 void Axis::halve(Vertex u, Vertex v, std::vector<std::uint32_t>& changed) {
   Edge edge = t_.find_edge(u, v);
   if (edge.face == kNone) return;
@@ -295,12 +294,16 @@ void Axis::halve(Vertex u, Vertex v, std::vector<std::uint32_t>& changed) {
   const std::uint8_t sides[2] = {inside_[edge.face], inside_[behind.face]};
   const std::uint32_t wall = constraints_[t_.constraint(edge)].segment;
   const auto id = static_cast<std::uint32_t>(t_.vertices());
+  // After the insertion these numbers may be those of triangles on the other side.
+  const auto faces = static_cast<std::uint32_t>(t_.faces());
+  const std::uint32_t split[4] = {edge.face, behind.face, faces, faces + 1};
   const Vertex w = t_.insert(p, id, {Triangulation::At::kEdge, edge});
   inside_.resize(t_.faces());
+  for (const std::uint32_t f : split) inside_[f] = kUnknown;
   wall_.resize(t_.vertices(), kNone);
   wall_[w] = wall;
-  // All triangles that are new are around w: from the wall's left half over the near side to its
-  // right half, then over the far side.
+  // The triangles around w: from the wall's left half over the near side to its right half, then
+  // over the far side.
   edge = t_.find_edge(w, to);
   if (t_.right(edge) != w) edge = t_.mirror(edge);
   int side = 0;
@@ -313,6 +316,20 @@ void Axis::halve(Vertex u, Vertex v, std::vector<std::uint32_t>& changed) {
     if (is_wall(next)) side ^= 1;
     face = t_.mirror(next).face;
   } while (face != edge.face);
+  // The middle is rounded, so a triangle that is flat to within rounding may be new and not have
+  // the corner w.
+  for (bool all_known = false; !all_known;) {
+    poller_.step();
+    all_known = true;
+    for (const std::uint32_t f : split) {
+      for (int i = 0; i < 3 && inside_[f] == kUnknown; ++i) {
+        const std::uint32_t next = t_.mirror({f, i}).face;
+        if (inside_[next] != kUnknown)
+          inside_[f] = inside_[next] ^ static_cast<std::uint8_t>(leads_over({f, i}));
+      }
+      all_known = all_known && inside_[f] != kUnknown;
+    }
+  }
 }
 
 // The lines between the centres of neighbours, the lines through narrow passages, and for each

@@ -43,8 +43,7 @@ Box widened(const Box& box, double by) {
 }
 
 Interval known(const Interval& found) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  return found.lo <= found.hi ? found : Interval{kInfinity, -kInfinity, true};
+  return found.lo <= found.hi ? found : kUndefined;
 }
 
 class MeshSlope final : public Field {
@@ -120,7 +119,8 @@ std::optional<Error> MeshField::check(const std::string& path,
 
 std::optional<Error> MeshField::build(const std::string& path, const ExecutionContext& context) {
   constexpr std::size_t kPollInterval = 1 << 18;
-  if (auto error = context.need_bytes(bytes() + bytes_to_make(mesh_.triangles.size())))
+  if (auto error =
+          context.need_bytes(bytes() + bytes_to_make(mesh_.triangles.size()), "a field of a mesh"))
     return error;
   std::vector<NumberedTriangle> triangles;
   triangles.reserve(mesh_.triangles.size());
@@ -142,6 +142,7 @@ std::optional<Error> MeshField::build(const std::string& path, const ExecutionCo
                  path + ".triangles has no triangle with an area"};
   mesh_.triangles = {};
   if (auto error = tree_.build(mesh_.vertices, std::move(triangles), context)) return error;
+  if (auto error = cells_.build(tree_, context)) return error;
   const double extent = std::max(tree_.box().width(), tree_.box().height());
   within_ = widened(tree_.box(), 0x1p20 * extent);
   rounding_ = 0x1p-46 * extent;
@@ -151,8 +152,8 @@ std::optional<Error> MeshField::build(const std::string& path, const ExecutionCo
   return std::nullopt;
 }
 
-// Just two triangles that lie on two sides of an edge take it from one end to the other and back,
-// because all are counter-clockwise.
+// An edge is inside if just two triangles have it, one in each direction, because all are
+// counter-clockwise; all others are border edges.
 std::optional<Error> MeshField::find_border(const ExecutionContext& context) {
   const auto& triangles = tree_.triangles();
   std::vector<Keyed> edges(3 * triangles.size());
@@ -208,26 +209,29 @@ std::optional<Error> MeshField::add_hulls(const ExecutionContext& context) {
   return std::nullopt;
 }
 
-// Centroids along the tree's curve, and points in and around the box of the mesh.
+// The mean over centroids along the tree's curve, and points in and around the box of the mesh.
 void MeshField::measure() {
   constexpr std::size_t kAlong = 256;
-  constexpr int kEachWay = 12;
-  std::size_t most = 0;
+  constexpr std::size_t kEachWay = 12;
+  constexpr std::size_t kPerVisit = 4;
+  std::size_t visits = 0;
   const std::size_t places = tree_.triangles().size();
-  for (std::size_t i = 0; i < std::min(kAlong, places); ++i) {
-    const auto place = static_cast<std::uint32_t>(i * places / std::min(kAlong, places));
-    most = std::max(
-        most, find(centroid(tree_.corner(place, 0), tree_.corner(place, 1), tree_.corner(place, 2)))
-                  .visits);
+  const std::size_t along = std::min(kAlong, places);
+  for (std::size_t i = 0; i < along; ++i) {
+    const auto place = static_cast<std::uint32_t>(i * places / along);
+    visits += find(centroid(tree_.corner(place, 0), tree_.corner(place, 1), tree_.corner(place, 2)))
+                  .visits;
   }
   const Box& box = tree_.box();
-  for (int i = 0; i < kEachWay; ++i) {
-    for (int j = 0; j < kEachWay; ++j)
-      most = std::max(most, find({box.min_x + box.width() * (1.2 * (i + 0.5) / kEachWay - 0.1),
-                                  box.min_y + box.height() * (1.2 * (j + 0.5) / kEachWay - 0.1)})
-                                .visits);
+  const auto spread = [](std::size_t i) {
+    return 1.2 * (static_cast<double>(i) + 0.5) / kEachWay - 0.1;
+  };
+  for (std::size_t i = 0; i < kEachWay; ++i) {
+    for (std::size_t j = 0; j < kEachWay; ++j)
+      visits +=
+          find({box.min_x + box.width() * spread(i), box.min_y + box.height() * spread(j)}).visits;
   }
-  operations_ = kLanes * 2 * most;
+  operations_ = kLanes * (10 + kPerVisit * visits / (along + kEachWay * kEachWay));
 }
 
 Point MeshField::brought_near(Point p) const noexcept {
@@ -236,8 +240,16 @@ Point MeshField::brought_near(Point p) const noexcept {
 }
 
 TriangleTree::Found MeshField::find(Point p) const noexcept {
-  TriangleTree::Found found = tree_.holding(p);
-  if (found.place != kNone) return found;
+  TriangleTree::Found found;
+  if (const auto near = cells_.near(p)) {
+    for (const std::uint32_t place : *near) {
+      ++found.visits;
+      if (tree_.holds(place, p)) return {place, 0, p, found.visits};
+    }
+  } else {
+    found = tree_.holding(p);
+    if (found.place != kNone) return found;
+  }
   const std::size_t visits = found.visits;
   found = tree_.nearest(p);
   found.visits += visits;
@@ -255,7 +267,7 @@ double MeshField::value_in(std::uint32_t place, Point p) const noexcept {
   const double at_a = vertex_value(place, 0);
   const double at_b = vertex_value(place, 1);
   const double at_c = vertex_value(place, 2);
-  // Rounding does not leave the range of the three. A NaN passes through.
+  // Keeps the result within the range of the three. A NaN passes through.
   return std::clamp((1 - to_b - to_c) * at_a + to_b * at_b + to_c * at_c,
                     std::min(std::min(at_a, at_b), at_c), std::max(std::max(at_a, at_b), at_c));
 }
@@ -283,7 +295,11 @@ double MeshField::value_at(Point p) const noexcept {
 
 void MeshField::evaluate(std::size_t n, const double* x, const double* y,
                          double* out) const noexcept {
-  for (std::size_t i = 0; i < n; ++i) out[i] = value_at({x[i], y[i]});
+  for (std::size_t i = 0; i < n; ++i) {
+    // Batches are filled up with copies of a point.
+    const bool again = i > 0 && x[i] == x[i - 1] && y[i] == y[i - 1];
+    out[i] = again ? out[i - 1] : value_at({x[i], y[i]});
+  }
 }
 
 double MeshField::slope_at(Point p) const noexcept {
@@ -303,7 +319,7 @@ auto MeshField::hull_of(std::uint32_t place) const noexcept -> Hull {
   }
   const double slope = slope_of(place);
   add(hull.slope, slope);
-  hull.slope.may_be_nan = std::isnan(slope);  // values near the largest double
+  hull.slope.may_be_nan = std::isnan(slope);  // if values are near the largest double
   return hull;
 }
 
@@ -370,10 +386,10 @@ auto MeshField::hull_over(const Box& box) const noexcept -> Hull {
   return all;
 }
 
-// How many triangles hold a point changes only at border edges. So in a box that meets none the
-// middle tells it for all: if one triangle holds it, each point is in just one triangle, or so near
-// to one that `rounding_` covers it. In any other box a point is at most as far from a triangle as
-// the middle is, and half a diagonal.
+// How many triangles hold a point changes only at border edges. So in a box that meets none, the
+// middle decides for all points: if one triangle holds the middle, each point is in exactly one
+// triangle, or so near to one that `rounding_` covers it. In any other box, a point is at most half
+// a diagonal farther from a triangle than the middle is.
 auto MeshField::look(const Box& box) const noexcept -> Look {
   const Point from = brought_near({box.min_x, box.min_y});
   const Point to = brought_near({box.max_x, box.max_y});
@@ -419,7 +435,8 @@ std::unique_ptr<const Field> MeshField::slope() const {
 std::size_t MeshField::bytes() const noexcept {
   std::size_t bytes = mesh_.vertices.capacity() * sizeof(Point) +
                       mesh_.triangles.capacity() * sizeof(mesh_.triangles[0]) +
-                      mesh_.values.capacity() * sizeof(double) + tree_.bytes() + border_.capacity();
+                      mesh_.values.capacity() * sizeof(double) + tree_.bytes() + cells_.bytes() +
+                      border_.capacity();
   for (const auto& level : hulls_) bytes += level.capacity() * sizeof(Hull);
   return bytes;
 }

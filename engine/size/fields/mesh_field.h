@@ -29,6 +29,7 @@
 #include "engine/base/context.h"
 #include "engine/base/error.h"
 #include "engine/size/field.h"
+#include "engine/size/fields/triangle_cells.h"
 #include "engine/size/fields/triangle_tree.h"
 
 namespace weft {
@@ -57,12 +58,13 @@ class MeshField final : public Field {
   double steepness(const Box& box) const noexcept override;
   std::unique_ptr<const Field> slope() const override;
   std::size_t bytes() const noexcept override;
-  // Measured when it is made: of the longest search among some hundred of points.
+  // Measured when it is made: the mean over some hundred of points.
   std::size_t operations() const noexcept override { return operations_; }
 
   // What `make` takes at most, the mesh itself not counted.
   static std::uint64_t bytes_to_make(std::uint64_t triangles) {
-    return TriangleTree::bytes_to_build(triangles) + 100 * triangles;
+    return TriangleTree::bytes_to_build(triangles) + TriangleCells::bytes_to_build(triangles) +
+           100 * triangles;
   }
 
   // As `evaluate` and `bounds`, of the length of the gradient.
@@ -105,6 +107,7 @@ class MeshField final : public Field {
 
   FieldMesh mesh_;     // its triangles are empty, because the tree holds them
   TriangleTree tree_;  // refers to the vertices, which stay where they are when the mesh moves
+  TriangleCells cells_;
   std::vector<std::uint8_t> border_;      // of each place, a bit for each of its edges
   std::vector<std::vector<Hull>> hulls_;  // [level]: of the tree's items
   Box within_;                            // where coordinates count as they are

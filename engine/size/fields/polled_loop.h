@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A parallel loop that stops when the job must stop: f(0) to f(n - 1), on as many threads as the
-// job may take, with a poll before each.
+// A parallel loop that stops when the run must stop: f(0) to f(n - 1), on as many threads as the
+// run may take, with a poll before each.
 #pragma once
 
 #include <atomic>

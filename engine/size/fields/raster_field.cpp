@@ -31,7 +31,7 @@ std::optional<Error> check_values(const FieldRaster& raster, const std::string& 
                                   const ExecutionContext& context) {
   constexpr std::size_t kAtOnce = 1 << 18;
   const std::vector<float>& values = raster.values;
-  // Of each group the first value that is infinite, or kAtOnce.
+  // Per group, the index of the first value that is infinite; kAtOnce if there is none.
   std::vector<std::uint32_t> first((values.size() + kAtOnce - 1) / kAtOnce);
   const auto stop = polled_loop(context, first.size(), [&](std::size_t group) {
     const auto from = values.begin() + static_cast<std::ptrdiff_t>(group * kAtOnce);
@@ -65,7 +65,8 @@ Result<RasterField> RasterField::make(FieldRaster raster, const std::string& pat
                                       const ExecutionContext& context) {
   if (auto error = check_values(raster, path, context)) return tl::unexpected(*error);
   const std::uint64_t held = raster.values.capacity() * sizeof(float);
-  if (auto error = context.need_bytes(held + bytes_to_make(raster.columns, raster.rows)))
+  if (auto error = context.need_bytes(held + bytes_to_make(raster.columns, raster.rows),
+                                      "a field of a raster"))
     return tl::unexpected(*error);
   RasterField field(std::move(raster));
   if (auto error = field.grid_.build_bounds(context)) return tl::unexpected(*error);

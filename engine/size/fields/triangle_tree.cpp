@@ -47,7 +47,7 @@ std::optional<Error> TriangleTree::build(const std::vector<Point>& vertices,
       if (auto error = context.poll()) return error;
     }
   }
-  // A mesh has an area, so its box has; and so no scale is infinite, but for tiny meshes.
+  // A mesh has an area, so its box has one; so the scale is finite, unless the mesh is tiny.
   const double side = std::max(box_.width(), box_.height());
   std::vector<Keyed> order(triangles.size());
   const std::size_t groups = (order.size() + kAtOnce - 1) / kAtOnce;
@@ -79,7 +79,7 @@ std::optional<Error> TriangleTree::add_levels(const ExecutionContext& context) {
        items = (items + kFan - 1) / kFan) {
     const std::size_t level = quads_.size();
     std::vector<Quad> made((items + kFan - 1) / kFan);
-    // The box and the least number of item i of this level.
+    // The box of item i of this level, and the least number of a triangle in it.
     const auto extent = [&](std::size_t i) {
       std::pair<Box, std::uint32_t> all{Box{}, kNone};
       if (level == 0) {
@@ -123,18 +123,8 @@ std::size_t TriangleTree::bytes() const noexcept {
   return bytes;
 }
 
-// In the box, too: rounding may put a point beside a long triangle into it, but no further than the
-// tree looks.
-bool TriangleTree::holds(const NumberedTriangle& t, Point p) const noexcept {
-  const auto& v = t.vertex;
-  if (side(v[0], v[1], p) < 0 || side(v[1], v[2], p) < 0 || side(v[2], v[0], p) < 0) return false;
-  Box box;
-  for (const std::uint32_t vertex : v) box.add(vertices_[vertex]);
-  return room_in(box, p) >= 0;
-}
-
-// Calls take(place) for triangles that hold p, if their number is below `below`, which may fall
-// meanwhile. Returns what Found::visits says.
+// Calls take(place) for triangles that hold p and whose number is below `below`, which `take` may
+// lower. Returns what Found::visits means.
 template <class Take>
 std::size_t TriangleTree::visit_holding(Point p, const std::uint32_t& below,
                                         const Take& take) const noexcept {
@@ -147,7 +137,7 @@ std::size_t TriangleTree::visit_holding(Point p, const std::uint32_t& below,
     if (item.level == 0) {
       const std::size_t end = std::min<std::size_t>(item.index * kFan + kFan, triangles_.size());
       for (std::size_t place = item.index * kFan; place < end; ++place)
-        if (triangles_[place].number < below && holds(triangles_[place], p))
+        if (triangles_[place].number < below && holds(static_cast<std::uint32_t>(place), p))
           take(static_cast<std::uint32_t>(place));
       continue;
     }

@@ -65,6 +65,17 @@ class TriangleTree {
     std::size_t visits = 0;  // items and triangles that were looked at
   };
 
+  // Whether the triangle holds p, its border included.
+  //
+  // Tests the box, too: by rounding, a point beside a long triangle may seem to be inside, but the
+  // tree does not search beyond the box.
+  bool holds(std::uint32_t place, Point p) const noexcept {
+    const auto& v = triangles_[place].vertex;
+    if (side(v[0], v[1], p) < 0 || side(v[1], v[2], p) < 0 || side(v[2], v[0], p) < 0) return false;
+    Box box;
+    for (const std::uint32_t vertex : v) box.add(vertices_[vertex]);
+    return room_in(box, p) >= 0;
+  }
   // The triangle with the lowest number that holds p, its border included; kNone if none does.
   Found holding(Point p) const noexcept;
   // How many triangles hold p; two stands for more.
@@ -80,10 +91,10 @@ class TriangleTree {
   // Twice the area of (a, b, p), with the sign of its orientation; of the same magnitude for (b,
   // a).
   double side(std::uint32_t a, std::uint32_t b, Point p) const noexcept {
-    if (a > b) return -side(b, a, p);
-    const Point from = vertices_[a];
-    const Point to = vertices_[b];
-    return (to.x - from.x) * (p.y - from.y) - (to.y - from.y) * (p.x - from.x);
+    const Point from = vertices_[std::min(a, b)];
+    const Point to = vertices_[std::max(a, b)];
+    const double doubled = (to.x - from.x) * (p.y - from.y) - (to.y - from.y) * (p.x - from.x);
+    return a > b ? -doubled : doubled;
   }
 
  private:
@@ -108,7 +119,6 @@ class TriangleTree {
   };
 
   Item root() const noexcept { return {static_cast<std::uint32_t>(quads_.size()), 0}; }
-  bool holds(const NumberedTriangle& t, Point p) const noexcept;
   template <class Take>
   std::size_t visit_holding(Point p, const std::uint32_t& below, const Take& take) const noexcept;
   void take_if_nearer(std::uint32_t place, Point p, Found& best) const noexcept;

@@ -16,8 +16,9 @@ double length(Point a, Point b) {
   return std::sqrt(distance2(a, b));
 }
 
-// No point of the line from a to b is nearer, because nobody comes nearer than by the way: the line
-// is halved until that tells the distance to kTight, or kDepth times. At the ends it is known.
+// The least distance at a point of the line from a to b. Along the line the distance changes no
+// faster than the point moves; the line is halved until that bounds the distance to within kTight,
+// or kDepth times. It is known at the ends.
 double least_distance(const DistanceField& field, const Line& line, double at_a, double at_b,
                       int depth = 0) {
   constexpr double kTight = 0.98;
@@ -37,10 +38,10 @@ Result<WidthField> WidthField::make(const Domain& domain, const ExecutionContext
   if (!axis) return tl::unexpected(std::move(axis).error());
   Box box;
   for (const Line& wall : axis->walls) box.add(wall.a);
-  // Either of the fields announces its own bytes only.
+  // Each of the two fields announces its own bytes only.
   const std::uint64_t lines = axis->walls.size() + axis->axis.size();
-  if (auto error = context.need_bytes(domain.bytes() + DistanceField::kBytesPerLine * lines +
-                                      2 * DistanceField::kBytesBesides))
+  if (auto error = context.need_bytes(domain.bytes() + DistanceField::bytes_to_make(lines, 2),
+                                      "the local width"))
     return tl::unexpected(*std::move(error));
   Result<DistanceField> to_walls = DistanceField::make(std::move(axis->walls), box, context);
   if (!to_walls) return tl::unexpected(std::move(to_walls).error());
@@ -53,7 +54,7 @@ WidthField::WidthField(DistanceField to_walls, DistanceField to_axis, const Box&
     : to_walls_(std::move(to_walls)),
       to_axis_(std::move(to_axis)),
       most_(std::min(box.width(), box.height())) {
-  // More than all coordinates round.
+  // More than the rounding of all coordinates.
   const double rounding =
       1e-13 * std::max({std::fabs(box.min_x), std::fabs(box.max_x), std::fabs(box.min_y),
                         std::fabs(box.max_y), box.width(), box.height()});
@@ -78,9 +79,8 @@ void WidthField::evaluate(std::size_t n, const double* x, const double* y,
 
 Interval WidthField::bounds(const Box& box) const noexcept {
   const Interval walls = to_walls_.bounds(box);
-  const Interval axis = to_axis_.bounds(box);
-  const double about_axis = std::min(2 * to_axis_.least_near(radii_, box), most_);
-  return {std::max(width(walls.lo, axis.lo), about_axis), width(walls.hi, axis.hi),
+  const auto [axis, radius] = to_axis_.near(radii_, box);
+  return {std::max(width(walls.lo, axis.lo), std::min(2 * radius, most_)), width(walls.hi, axis.hi),
           walls.may_be_nan || axis.may_be_nan};
 }
 

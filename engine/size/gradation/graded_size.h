@@ -69,7 +69,7 @@ class GradedSize final : public SizeFunction {
     return limit_.empty() ? size_->edge_steepness(box) : std::numeric_limits<double>::infinity();
   }
   std::optional<double> constant() const noexcept override { return size_->constant(); }
-  std::vector<std::string> undefined_at(Point p) const override { return size_->undefined_at(p); }
+  Asked asked_at(Point p) const override { return size_->asked_at(p); }
   std::size_t bytes() const noexcept override { return limit_.bytes(); }
   std::size_t operations() const noexcept override {
     return size_->operations() + (limit_.empty() ? 0 : kOperations);

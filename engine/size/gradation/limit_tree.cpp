@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// More than what the few operations of a comparison round.
+// More than the few operations of a comparison round.
 constexpr double kSlack = 1e-12;
 
 using Source = SourceTree::Node;
@@ -103,15 +103,15 @@ class LimitTreeBuilder {
   static constexpr std::size_t kAtATime = 64;  // boxes: about 50 us
   static constexpr std::size_t kGroupsAtATime = 256;
   static constexpr std::size_t kShort = 24;    // a leaf's list
-  static constexpr std::size_t kTooLong = 96;  // what is not worth an attempt
+  static constexpr std::size_t kTooLong = 96;  // a longer list is given up at once
 
   static constexpr std::size_t kCorners = 4;
   static constexpr std::size_t kSpots = 5;  // the corners and the middle
 
   // A node's cone over a box.
   struct Over {
-    std::array<double, kSpots> above;    // the cone of some source below is no higher
-    std::array<double, kCorners> below;  // a plane that all of them are above
+    std::array<double, kSpots> above;    // the lowest cone below the node is no higher
+    std::array<double, kCorners> below;  // a plane that is below all of these cones
   };
   struct Scratch {
     List list;  // what may be the lowest somewhere in a box
@@ -142,11 +142,11 @@ class LimitTreeBuilder {
   std::uint64_t held_ = 0;
 };
 
-// Drops a node if another one is lower all over the box, or the size is.
+// Drops a node if another node, or the size, is lower everywhere in the box.
 //
 // The cone of m is convex. That of n is above its tangent plane at the middle of the box. So if m
-// is below that plane at the four corners, it is below n's cone in all of the box. The lowest at
-// each corner and in the middle are tried as m.
+// is below that plane at the four corners, it is below n's cone in all of the box. The nodes that
+// are lowest at each corner and in the middle are tried as m.
 void LimitTreeBuilder::prune(Scratch& scratch, const Box& box, double highest) const {
   List& list = scratch.list;
   std::vector<Over>& over = scratch.over;
@@ -193,8 +193,8 @@ void LimitTreeBuilder::prune(Scratch& scratch, const Box& box, double highest) c
   list.resize(kept);
 }
 
-// Replaces nodes by their children, until none is left that `opens`. False if the list grew too
-// long.
+// Replaces each node that `opens` by its children, until there is none. Returns false if the list
+// grew too long.
 template <class Opens>
 bool LimitTreeBuilder::open(Scratch& scratch, const Box& box, double highest,
                             std::size_t most_listed, Opens opens) const {
@@ -263,7 +263,7 @@ std::optional<Error> LimitTreeBuilder::judge(const Level& level, const Pending& 
   double lowest = kInfinity;
   for (const std::uint32_t n : list)
     lowest = std::min(lowest, lowest_over(sources_[n], gradation_, box));
-  // As small as the sources beside it.
+  // The box is as small as the sources beside it.
   const bool small = gradation_ * size <= SourceTree::kTolerance * lowest;
   if (before <= kShort || small) {
     List kept = list;
@@ -319,8 +319,8 @@ std::optional<Error> LimitTreeBuilder::hold(const Level& level, const Level& nex
   const std::uint64_t bytes =
       domain_.bytes() + size_.bytes() + tree_.bytes() + of(level) + of(next);
   if (bytes <= held_) return std::nullopt;
-  held_ = bytes + bytes / 2;
-  return context_.need_bytes(held_);
+  held_ = std::max(bytes, std::min(bytes + bytes / 2, context_.budget().max_bytes));
+  return context_.need_bytes(held_, "the gradation");
 }
 
 std::optional<Error> LimitTreeBuilder::run() {
@@ -440,7 +440,7 @@ void LimitTree::evaluate(const double* x, const double* y, double* edge) const n
 // Recursion ends kMaxDepth below the root.
 void LimitTree::add_bounds(const Node& node, const Box& at, const Box& box,
                            Interval& found) const noexcept {
-  constexpr double kFine = 0.125;  // of the box's size: not looked into
+  constexpr double kFine = 0.125;  // of the size of the box: smaller nodes are not looked into
   const bool within = at.min_x >= box.min_x && at.max_x <= box.max_x && at.min_y >= box.min_y &&
                       at.max_y <= box.max_y;
   const bool fine = at.width() < kFine * std::max(box.width(), box.height());

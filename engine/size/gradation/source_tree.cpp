@@ -18,16 +18,16 @@ namespace weft {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// More than what the few operations of a comparison round.
+// More than the few operations of a comparison round.
 constexpr double kSlack = 1e-9;
-// Edges below this have areas that are no normal numbers.
+// The areas of edges below this are not normal numbers.
 constexpr double kLeastEdge = 1e-150;
 
 double diagonal(const Box& box) {
   return std::sqrt(box.width() * box.width() + box.height() * box.height());
 }
 
-// The largest distance of a point to one of the box.
+// The largest distance from a point of the box.
 double farthest(Point p, const Box& box) {
   const double dx = std::max(p.x - box.min_x, box.max_x - p.x);
   const double dy = std::max(p.y - box.min_y, box.max_y - p.y);
@@ -38,17 +38,17 @@ double farthest(Point p, const Box& box) {
 struct Sample {
   Point p;
   double edge = kInfinity;
-  // The longest at the corners of a box and in the middles of its sides; infinity if the domain
-  // does not hold all of the box.
+  // The longest edge at the corners of a box and in the middles of its sides; infinity if the
+  // domain does not hold all of the box.
   double highest = kInfinity;
-  bool bad = false;  // no size may be like this: negative or NaN
+  bool bad = false;  // negative or NaN, which no size may be
 };
 
-// One that may lie below all of a box. If its box was divided at the last level, the children's
-// samples may lie lower still.
+// A sample that may lie below all of a box. If its box was divided at the last level, samples of
+// the children may lie lower still.
 struct Candidate {
   Sample sample;
-  std::uint32_t slot = kNone;  // of its box at its level
+  std::uint32_t slot = kNone;  // of its box, at its level
 };
 
 struct Candidates {
@@ -57,7 +57,7 @@ struct Candidates {
   std::size_t count = 0;
 };
 
-// The lowest at a point, in order.
+// The samples that are lowest at a point, sorted.
 class LowestAt {
  public:
   LowestAt(Point at, double gradation) : at_(at), gradation_(gradation) {}
@@ -86,8 +86,8 @@ class LowestAt {
   std::array<double, Candidates::kMost> heights_{};
 };
 
-// Half-planes that hold all points: those of the longest sides of their convex hull, which is
-// found by A. M. Andrew's "Another efficient algorithm for convex hulls in two dimensions" (1979).
+// Half-planes that hold all points: those of the longest sides of their convex hull, which is found
+// by A. M. Andrew's "Another efficient algorithm for convex hulls in two dimensions" (1979).
 class Hull {
  public:
   explicit Hull(std::vector<Point> points);
@@ -126,7 +126,7 @@ Hull::Hull(std::vector<Point> points) {
   lengths.resize(std::min(lengths.size(), kMostSides));
   for (const auto& [length, i] : lengths) {
     const Point normal{(ring[i + 1].y - ring[i].y) / -length, (ring[i + 1].x - ring[i].x) / length};
-    // Of all corners of the hull: what the tests above round is made good.
+    // Taken over all corners of the hull, so that the rounding of the tests above does not matter.
     double reach = -kInfinity;
     for (const Point p : ring) reach = std::max(reach, normal.x * p.x + normal.y * p.y);
     sides_.push_back({normal, reach});
@@ -143,7 +143,7 @@ bool Hull::misses(const Box& box) const {
   });
 }
 
-// A box whose fate is to be decided.
+// A box that is to be looked at.
 struct Pending {
   DomainBox at;
   std::uint32_t node = 0;
@@ -154,7 +154,7 @@ struct Level {
   std::vector<Pending> boxes;
   std::vector<std::uint32_t> triangles;
   std::vector<Candidates> families;
-  std::vector<std::uint32_t> children_of;  // slot of the last level -> first slot of this one
+  std::vector<std::uint32_t> children_of;  // slot at the level before -> first slot at this one
 };
 
 struct Seen {
@@ -176,8 +176,8 @@ struct Verdict {
 struct Group {
   std::vector<Verdict> verdicts;
   std::vector<std::uint32_t> triangles;  // of the children, one after the other
-  bool asked_how_far = false;            // a box outside the domain is from it
-  bool blocked = false;                  // a walk cannot cross a box outside the domain
+  bool asked_how_far = false;            // the distance of a box to the border was needed
+  bool blocked = false;                  // no walk may cross some box outside the domain
 };
 
 void reach(const Interval& edge, Interval& all) {
@@ -185,7 +185,7 @@ void reach(const Interval& edge, Interval& all) {
   all.hi = std::max(all.hi, edge.hi);
 }
 
-// Boxes divided in four without end, until a node says otherwise.
+// Boxes as they were divided; `compact` makes nodes of them.
 struct Draft {
   Box box;
   double edge = kInfinity;
@@ -205,7 +205,7 @@ class Builder {
     for (const Point p : domain.vertices) around_.add(p);
   }
 
-  // Whether it came to an end: borders have to count otherwise.
+  // Returns false if the division did not come to an end: then borders have to count.
   Result<bool> run();
   std::vector<SourceTree::Node> compact();
 
@@ -235,7 +235,7 @@ class Builder {
   const bool borders_count_;
   const Hull hull_;
   Box around_;
-  Interval met_{kInfinity, 0};        // of edges in the domain, where no box is left
+  Interval met_{kInfinity, 0};        // of edges in the boxes that are done
   Interval all_{kInfinity, 0};        // of edges in the domain
   std::optional<DistanceField> far_;  // to the border of the domain; made when it is asked for
   std::vector<Draft> drafts_;
@@ -244,7 +244,7 @@ class Builder {
 
 Interval Builder::edges(const Box& box) const {
   const Interval areas = size_.bounds(box);
-  if (areas.lo > areas.hi || !(areas.hi > 0)) return {kInfinity, -kInfinity, true};
+  if (areas.lo > areas.hi || !(areas.hi > 0)) return kUndefined;
   return {areas.lo > 0 ? SizeFunction::edge_of_area(areas.lo) : 0,
           SizeFunction::edge_of_area(areas.hi), areas.may_be_nan || !(areas.lo > 0)};
 }
@@ -278,7 +278,7 @@ Sample Builder::sample(const DomainBox& at, const std::uint32_t* triangles) cons
       center.x += part.corners[i].x / static_cast<double>(part.count);
       center.y += part.corners[i].y / static_cast<double>(part.count);
     }
-    // Away from the sides, because the corners are rounded.
+    // Inwards from the sides, because the corners are rounded.
     constexpr double kInwards = 1e-3;
     for (std::size_t i = 0; i < Field::kLanes; ++i) {
       const Point p = i < part.count ? part.corners[i] : center;
@@ -315,7 +315,7 @@ bool Builder::above(const Candidates& candidates, const Box& box, double edge) c
   return false;
 }
 
-// If the bounds are far apart, it need not be asked how steep the size is: children will tell.
+// If the bounds are far apart, the steepness is not asked for: the children will decide.
 bool Builder::gentle(const Box& box, const Interval& edge) const {
   constexpr double kFar = 8;
   if (edge.may_be_nan || edge.lo > edge.hi) return false;
@@ -335,8 +335,8 @@ bool Builder::on_border(const DomainBox& at, const std::uint32_t* triangles) con
   return false;
 }
 
-// Whether no walk that counts crosses the box, which lies outside the domain: any is so long that
-// a cone is above all sizes at its end.
+// Whether no walk that matters crosses the box, which lies outside the domain. A walk there would
+// be so long that a cone is above all sizes at its end.
 bool Builder::irrelevant(const Box& box, Group& group) const {
   if (!far_) {
     group.asked_how_far = true;
@@ -353,9 +353,9 @@ std::optional<Error> Builder::measure_distance() {
       if (domain_.triangles[t].neighbor[k] == kNone)
         borders.push_back({c[(k + 1) % 3], c[(k + 2) % 3]});
   }
-  if (auto error = context_.need_bytes(domain_.bytes() + size_.bytes() + held_ +
-                                       borders.size() * DistanceField::kBytesPerLine +
-                                       DistanceField::kBytesBesides))
+  if (auto error = context_.need_bytes(
+          domain_.bytes() + size_.bytes() + held_ + DistanceField::bytes_to_make(borders.size()),
+          "the gradation"))
     return error;
   auto made = DistanceField::make(std::move(borders), around_, context_);
   if (!made) return std::move(made).error();
@@ -363,8 +363,8 @@ std::optional<Error> Builder::measure_distance() {
   return std::nullopt;
 }
 
-// What the domain holds of a box. If a walk crosses no box outside the domain, it need not meet
-// more of it.
+// The part of a box that the domain has. If no walk crosses a box outside the domain, none needs
+// more than this part.
 Box Builder::shrunk(const DomainBox& at, const std::uint32_t* triangles) const {
   constexpr std::uint32_t kFew = 16;
   if (!borders_count_ || at.inside || at.count > kFew) return at.box;
@@ -379,8 +379,8 @@ Box Builder::shrunk(const DomainBox& at, const std::uint32_t* triangles) const {
 std::optional<Error> Builder::judge(const Level& level, const std::vector<Seen>& seen,
                                     std::size_t slot, int depth, bool may_divide,
                                     TrianglePoll& poll, Group& group) const {
-  constexpr int kBadDepth = 6;      // so fine it is looked where no mesh will be made
-  constexpr int kNoSizeDepth = 10;  // and where a size has no value outside the domain
+  constexpr int kBadDepth = 6;      // how fine to look where no mesh will be made
+  constexpr int kNoSizeDepth = 10;  // how fine, if the size has no value outside the domain
   const Pending& pending = level.boxes[slot];
   const DomainBox& at = pending.at;
   const std::uint32_t* const triangles = level.triangles.data() + at.first;
@@ -411,7 +411,7 @@ std::optional<Error> Builder::judge(const Level& level, const std::vector<Seen>&
   const bool border = borders_count_ && on_border(at, triangles);
   if (!border && gentle(at.box, edge)) return std::nullopt;
   const double finest = std::max(SourceTree::kTolerance, SourceTree::kSmallest * gradation_);
-  // From any point, the box is no nearer than one of its samples by more than half a side.
+  // Seen from any point, one of the box's samples is at most half a side farther than the box.
   const double off = std::min(gradation_ * diagonal(at.box),
                               seen[slot].sample.highest - edge.lo +
                                   0.5 * gradation_ * std::max(at.box.width(), at.box.height()));
@@ -454,8 +454,8 @@ std::optional<Error> Builder::hold(const Level& level, const Level& next) {
                               drafts_.capacity() * (sizeof(Draft) + sizeof(SourceTree::Node)) +
                               of(level) + of(next);
   if (bytes <= held_) return std::nullopt;
-  held_ = bytes + bytes / 2;
-  return context_.need_bytes(held_);
+  held_ = std::max(bytes, std::min(bytes + bytes / 2, context_.budget().max_bytes));
+  return context_.need_bytes(held_, "the gradation");
 }
 
 // Returns the sources among them.
@@ -551,7 +551,7 @@ Result<bool> Builder::run() {
   return true;
 }
 
-// Leaves nodes without a source away, and those with a single child.
+// Drops nodes without a source, and replaces those with a single child by that child.
 std::vector<SourceTree::Node> Builder::compact() {
   // Bottom up: the box and the least edge of the sources below.
   std::vector<Draft>& whole = drafts_;
@@ -571,7 +571,7 @@ std::vector<SourceTree::Node> Builder::compact() {
   if (whole[0].edge == kInfinity) return nodes;
   std::vector<std::uint32_t> from;  // the draft of each node
   const auto add = [&](std::uint32_t d) {
-    for (;;) {  // down single children
+    for (;;) {  // skips nodes with a single child
       std::uint32_t only = kNone;
       unsigned count = 0;
       for (unsigned c = 0; c < 4 && whole[d].first_child != 0; ++c) {

@@ -9,9 +9,9 @@ namespace weft {
 
 ConformalMap::ConformalMap(Point centre, double radius, const Exponent& u, double scale)
     : centre_(centre), radius_(radius), inverse_radius_(1 / radius) {
-  constexpr double kNegligible = 1e-3;  // spacings
-  std::array<Complex, kDegree> e{};     // of exp(-U)
-  // A turn of all of the lattice, by Im u[0], is for `move`.
+  constexpr double kNegligible = 1e-3;  // in spacings of the lattice
+  std::array<Complex, kDegree> e{};     // coefficients of exp(-U)
+  // `move` turns the lattice as a whole, by Im u[0].
   e[0].re = radius * Sleef_cinz_expd1_u10purec(-u[0].re) / scale;
   for (std::size_t n = 0; n < e.size(); ++n) {
     if (n > 0) {

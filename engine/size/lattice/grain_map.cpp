@@ -13,14 +13,14 @@ namespace {
 using Grain = GrainMap::Grain;
 using Kind = GrainMap::Kind;
 
-// A square whose fate is to be decided.
+// A square that is to be looked at.
 struct Pending {
   std::uint32_t node = 0;
   Point centre{};
   double half = 0;
 };
 
-// What a look at a square tells: its grain, and whether smaller ones would be better.
+// The result of looking at a square: its grain, and whether smaller ones would be better.
 struct Look {
   Grain grain;
   bool split = false;
@@ -34,7 +34,7 @@ struct alignas(64) Sampled {
 };
 static_assert(HarmonicFitter::kSamples % SizeFunction::kLanes == 0);
 
-// Whether a quarter of the samples is bit for bit that to the right and that above.
+// Whether a quarter of the samples have the same bits as those to the right and above.
 bool mostly_equal(const double* size) {
   constexpr std::size_t kGrid = HarmonicFitter::kGrid;
   std::size_t equal = 0;
@@ -98,7 +98,7 @@ class Surveyor {
       grain.kind = Kind::kStepped;
       return look;
     }
-    // The indices of the lattice are exact far beyond: so many rows no mesh has.
+    // The indices of the lattice are exact far beyond kMostRows, and no mesh has so many rows.
     if (!sizes || hi > kMostRatio * lo || !(rows < kMostRows)) return look;
     if (!small && missed(size_.bounds(grain.box), lo, hi)) return look;
 
@@ -157,7 +157,7 @@ Result<GrainMap> GrainMap::build(const SizeFunction& size, const SizeMap& map, c
     std::vector<Pending> next;
     for (std::size_t i = 0; i < level.size(); ++i) {
       const Pending& square = level[i];
-      // Squares whose turn is still to come are grains at least.
+      // Each square whose turn is still to come gives one grain at least.
       const std::size_t known = grains.grains_.size() + (level.size() - i) + next.size();
       if (!looks[i].split || depth == kMaxDepth || known + 3 > kMaxGrains) {
         grains.nodes_[square.node].grain = static_cast<std::uint32_t>(grains.grains_.size());
@@ -239,7 +239,8 @@ std::vector<GrainMap::Contact> GrainMap::contacts_of(std::uint32_t grain) const 
         const double to = across_x ? next.max_y : next.max_x;
         if (other != grain && grains_[other].kind == Kind::kFit)
           contacts.push_back({other, place(0.5 * (std::max(first, from) + std::min(last, to)))});
-        if (!(to >= along)) break;  // the side ends outside of the whole, or in rounding
+        if (!(to >= along)) break;          // the side ends outside, or only rounding is left
+        if (!(to + beyond > along)) break;  // far from the origin, `beyond` may round to nothing
         along = to + beyond;
       }
     }

@@ -36,7 +36,7 @@
 // neighbour. Neighbours follow breadth first from the constant grains, and then from the first
 // grain of each part that was not reached.
 //
-// All threads of the job examine squares and their neighbours; the order of the grains
+// All threads of the run examine squares and their neighbours; the order of the grains
 // does not depend on them. A square that is split holds at least 140 triangles, so their number is
 // in proportion to the mesh: 48 on the pipe model, in 0.2 ms. Thread-safety: immutable once built.
 #pragma once

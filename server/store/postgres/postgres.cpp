@@ -34,7 +34,7 @@ std::string one_line(const char* message) {
 StoreErrorKind kind_of(std::string_view state) {
   if (state == "53100") return StoreErrorKind::kFull;
   const std::string_view group = state.substr(0, 2);
-  // What is stored is damaged, or the tables are not those that the statement is about.
+  // The data are damaged, or the tables are not the ones that the statement expects.
   if (group == "XX" || group == "42") return StoreErrorKind::kBroken;
   return StoreErrorKind::kUnavailable;
 }
@@ -62,7 +62,7 @@ Value Value::null_like(Value value) {
 
 StoreResult<std::unique_ptr<Connection>> Connection::open(const Options& options) {
   const std::string timeout = std::to_string(options.connect_timeout.count());
-  // A peer that vanished is found out about within half a minute, also where nothing is sent.
+  // Notices within half a minute that the server has vanished, even if nothing is sent.
   const std::array keywords{"dbname",
                             "connect_timeout",
                             "application_name",
@@ -85,10 +85,10 @@ StoreResult<std::unique_ptr<Connection>> Connection::open(const Options& options
     return tl::unexpected(StoreError{StoreErrorKind::kUnavailable, one_line(PQerrorMessage(raw))});
   }
   PQsetnonblocking(raw, 1);
-  // libpq would print what the server says beside its answers.
+  // libpq would print the server's notices to stderr.
   PQsetNoticeProcessor(
       raw, [](void*, const char*) {}, nullptr);
-  // A server that was stopped in the middle of a transaction must not hold its locks for ever.
+  // A server that stops in the middle of a transaction must not hold its locks for ever.
   const std::string ms = std::to_string(options.statement_timeout.count());
   const std::string settings = "SET statement_timeout = " + ms +
                                ";SET idle_in_transaction_session_timeout = " + ms +
@@ -131,7 +131,7 @@ StoreResult<Result> Connection::run(const char* sql, std::initializer_list<Value
   std::vector<int> binary(values.size(), 1);
   for (const Value& value : values) {
     const bool copied = value.type_ == kBigint || value.type_ == kBool;
-    // An empty view may point nowhere, which libpq would take for null.
+    // An empty view may be a null pointer, which libpq would take for NULL.
     const char* const there = value.bytes_.data() == nullptr ? "" : value.bytes_.data();
     types.push_back(value.type_);
     bytes.push_back(value.null_ ? nullptr : copied ? value.number_ : there);

@@ -56,7 +56,7 @@ void end_task_without_jobs(Transaction& transaction, std::int64_t task) {
       task);
 }
 
-// Of digests in order, each followed by its size, the highest byte first.
+// `packed` holds digests in order, each followed by its size, the highest byte first.
 std::vector<StoredChunk> read_chunks(std::string_view packed) {
   constexpr std::size_t kDigest = 32;
   constexpr std::size_t kEach = kDigest + 8;
@@ -69,6 +69,13 @@ std::vector<StoredChunk> read_chunks(std::string_view packed) {
     packed.remove_prefix(kEach);
   }
   return chunks;
+}
+
+// The owner's jobs that have not ended.
+std::uint64_t count_open(Transaction& transaction, const std::string& owner) {
+  Rows rows =
+      transaction.run("SELECT count(*) FROM weft_job WHERE owner = $1 AND ended IS NULL", owner);
+  return rows.next() ? to_unsigned(rows.integer(0)) : 0;
 }
 
 }  // namespace
@@ -84,7 +91,7 @@ void settle_jobs(Transaction& transaction, std::int64_t task, const std::string&
 }
 
 StoreResult<Submitted> PostgresJobs::submit(const Submission& submission) {
-  // Given once: what a first attempt may have left behind, a second one finds by it.
+  // Given once, so that a second attempt finds what the first one may have stored.
   const std::string id = ids_.next(std::chrono::system_clock::now());
   bool again = false;
   return core_->run(Begin::kDurable, Repeat::kWhenUnclear, [&](Transaction& transaction) {
@@ -101,7 +108,7 @@ StoreResult<Submitted> PostgresJobs::submit(const Submission& submission) {
 Submitted PostgresJobs::submit_in(Transaction& transaction, const Submission& submission,
                                   const std::string& id) {
   if (!submission.request_id.empty()) {
-    // Of several that come at once with the same one, the others wait for the first.
+    // If several come at once with the same request id, all but the first wait for it.
     transaction.run("SELECT pg_advisory_xact_lock(hashtextextended($1, hashtext($2)))",
                     submission.owner, submission.request_id);
     Rows rows = transaction.run(kJobByRequestId, submission.owner, submission.request_id);
@@ -114,30 +121,25 @@ Submitted PostgresJobs::submit_in(Transaction& transaction, const Submission& su
 
   std::optional<std::int64_t> task;
   bool kept = false;
-  // In this order: a task that is gone may just have become a mesh.
+  // The task first: it may become a mesh between the two statements.
   const auto find = [&] {
     if (submission.no_cache) return false;
     task = find_shared_task(transaction, submission);
     kept = !task && ask_for_mesh(transaction, submission.key);
     return task || kept;
   };
-  if (!find()) {
-    // Tasks are added one after another: so they are counted right, and none is added that another
-    // has just added.
+  const bool found = find();
+  // Not locked: submissions that come at once may exceed this limit.
+  if (!kept && count_open(transaction, submission.owner) >= submission.max_open_of_owner)
+    return {SubmitOutcome::kOwnerFull, {}};
+  if (!found) {
+    // One submission at a time, so that the tasks are counted correctly, and none is added twice.
     transaction.run("SELECT pg_advisory_xact_lock($1)", kQueueLock);
     if (!find()) {
-      Rows count = transaction.run(
-          "SELECT count(*), count(*) FILTER (WHERE owner = $1) FROM weft_task WHERE state = 0",
-          submission.owner);
-      if (count.next()) {
-        if (to_unsigned(count.integer(0)) >= submission.max_queued) {
-          return {SubmitOutcome::kQueueFull, {}};
-        }
-        if (to_unsigned(count.integer(1)) >= submission.max_queued_of_owner) {
-          return {SubmitOutcome::kOwnQueueFull, {}};
-        }
-      }
-      // One with a smaller budget is shared no more.
+      Rows queued = transaction.run("SELECT count(*) FROM weft_task WHERE state = 0");
+      if (queued.next() && to_unsigned(queued.integer(0)) >= submission.max_queued)
+        return {SubmitOutcome::kQueueFull, {}};
+      // An earlier task with a smaller budget is no longer shared.
       if (!submission.no_cache)
         transaction.change("UPDATE weft_task SET shared = false WHERE key = $1 AND shared",
                            Blob{submission.key});
@@ -156,7 +158,7 @@ Submitted PostgresJobs::submit_in(Transaction& transaction, const Submission& su
           find_job(transaction, submission.owner, id).value_or(JobRecord{})};
 }
 
-// One without a task has succeeded.
+// A job without a task has succeeded.
 void PostgresJobs::insert_job(Transaction& transaction, const Submission& submission,
                               const std::string& id, std::optional<std::int64_t> task) {
   std::optional<std::string_view> request_id;
@@ -242,7 +244,7 @@ StoreResult<std::optional<StoredMesh>> PostgresJobs::mesh(const std::string& key
         return mesh;
       });
   if (found && *found) {
-    // Where this fails, as on a disk that is full, the mesh is there all the same.
+    // If this fails, for example because the disk is full, the mesh is there all the same.
     (void)core_->run(Begin::kLater, Repeat::kNever,
                      [&](Transaction& transaction) { return ask_for_mesh(transaction, key); });
   }

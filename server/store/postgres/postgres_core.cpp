@@ -61,7 +61,7 @@ PostgresCore::Lease::~Lease() {
     const std::lock_guard lock(core.mutex_);
     ++core.free_;
     if (connection->broken()) {
-      // The others go back to the same server, which has ended them too more often than not.
+      // The other idle connections go to the same server, so most likely they were closed, too.
       useless.swap(core.idle_);
       useless.push_back(std::move(connection));
     } else {

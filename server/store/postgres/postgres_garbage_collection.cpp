@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The house-keeping of the PostgreSQL store: leases that ran out, what is kept too long, figures.
-// What may be much is done in steps. Servers that do the same at once do not wait for each other.
+// Garbage collection of the PostgreSQL store: leases that ran out, what was kept too long, figures.
+// Large deletions are done in steps. Servers that collect at the same time do not wait for each
+// other.
 #include "server/store/garbage_collection.h"
 #include "server/store/postgres/postgres_jobs.h"
 #include "server/store/sql_values.h"
@@ -27,7 +28,7 @@ std::vector<LostTask> find_lost(Transaction& transaction, std::int64_t max_attem
   return lost;
 }
 
-// Whether this transaction is the one that collects; no other does until it ends.
+// Whether this transaction may collect. Only one can until it ends.
 bool collects(Transaction& transaction) {
   Rows rows = transaction.run("SELECT pg_try_advisory_xact_lock($1)", kCollectLock);
   return rows.next() && rows.integer(0) != 0;
@@ -38,6 +39,25 @@ std::uint64_t delete_jobs(Transaction& transaction, std::int64_t age) {
       transaction.change("DELETE FROM weft_job WHERE id IN (SELECT id FROM weft_job "
                          "WHERE ended <= now() - $1 * interval '1 microsecond' LIMIT $2)",
                          age, kJobsAtOnce));
+}
+
+// Deletes some of the oldest ended jobs of an owner who has too many.
+std::uint64_t delete_surplus_jobs(Transaction& transaction, std::int64_t most) {
+  std::string owner;
+  std::int64_t surplus = 0;
+  {
+    Rows rows = transaction.run(
+        "SELECT owner, count(*) - $1 FROM weft_job WHERE ended IS NOT NULL GROUP BY owner "
+        "HAVING count(*) > $1 LIMIT 1",
+        most);
+    if (!rows.next()) return 0;
+    owner = rows.bytes(0);
+    surplus = rows.integer(1);
+  }
+  return to_unsigned(transaction.change(
+      "DELETE FROM weft_job WHERE id IN (SELECT id FROM weft_job WHERE owner = $1 "
+      "AND ended IS NOT NULL ORDER BY id LIMIT $2)",
+      owner, std::min<std::int64_t>(surplus, kJobsAtOnce)));
 }
 
 // Bytes of the chunks that belong to meshes.
@@ -74,14 +94,15 @@ std::vector<OldMesh> find_oldest(Transaction& transaction, std::int64_t age) {
   return oldest;
 }
 
-// Some of those that nobody asked for so long, and of those in the way of `bytes`.
+// Deletes some of the meshes that nobody asked for since `age`, or that exceed `bytes`, the oldest
+// first.
 std::uint64_t delete_meshes(Transaction& transaction, std::int64_t age, std::int64_t bytes) {
   std::int64_t kept = bytes_of_meshes(transaction);
   std::uint64_t deleted = 0;
   for (const OldMesh& mesh : find_oldest(transaction, age)) {
     if (!mesh.aged && kept <= bytes) break;
     const std::int64_t own = bytes_of_its_own(transaction, mesh.id);
-    // Unless somebody has just asked for it.
+    // Not if somebody has just asked for it.
     const bool gone =
         transaction.change("DELETE FROM weft_mesh WHERE id = $1 AND weft_micros(asked) = $2",
                            mesh.id, mesh.asked) == 1;
@@ -92,11 +113,51 @@ std::uint64_t delete_meshes(Transaction& transaction, std::int64_t age, std::int
   return deleted;
 }
 
-// Some of the chunks that belong to no mesh and were not put for so long.
+// Deletes some meshes of an owner whose meshes take more than `bytes`: those that were asked for
+// longest ago.
+std::uint64_t delete_surplus_meshes(Transaction& transaction, std::int64_t bytes) {
+  std::string owner;
+  std::int64_t surplus = 0;
+  {
+    Rows rows = transaction.run(
+        "SELECT owner, (sum(size) - $1)::bigint FROM weft_mesh "
+        "JOIN weft_mesh_chunk ON mesh = weft_mesh.id JOIN weft_chunk ON sha256 = chunk "
+        "GROUP BY owner HAVING sum(size) > $1 LIMIT 1",
+        bytes);
+    if (!rows.next()) return 0;
+    owner = rows.bytes(0);
+    surplus = rows.integer(1);
+  }
+  struct Mesh {
+    std::int64_t id = 0;
+    std::int64_t asked = 0;
+    std::int64_t bytes = 0;
+  };
+  std::vector<Mesh> oldest;
+  {
+    Rows rows = transaction.run(
+        "SELECT id, weft_micros(asked), (SELECT coalesce(sum(size), 0)::bigint "
+        "FROM weft_mesh_chunk JOIN weft_chunk ON sha256 = chunk WHERE mesh = weft_mesh.id) "
+        "FROM weft_mesh WHERE owner = $1 ORDER BY asked LIMIT $2",
+        owner, kMeshesAtOnce);
+    while (rows.next()) oldest.push_back({rows.integer(0), rows.integer(1), rows.integer(2)});
+  }
+  std::uint64_t deleted = 0;
+  for (const Mesh& mesh : oldest) {
+    if (surplus <= 0) break;
+    surplus -= mesh.bytes;
+    // Not if somebody has just asked for it.
+    deleted += to_unsigned(transaction.change(
+        "DELETE FROM weft_mesh WHERE id = $1 AND weft_micros(asked) = $2", mesh.id, mesh.asked));
+  }
+  return deleted;
+}
+
+// Deletes some of the chunks that belong to no mesh and were not stored again since `age`.
 Collected delete_loose_chunks(Transaction& transaction, std::int64_t age) {
   std::vector<std::pair<std::string, std::uint64_t>> loose;
   {
-    // One that `finish` is just taking into a mesh is locked.
+    // A chunk that `finish` is just adding to a mesh is locked.
     Rows rows = transaction.run(
         "SELECT sha256, size FROM weft_chunk "
         "WHERE touched <= now() - $1 * interval '1 microsecond' "
@@ -107,7 +168,7 @@ Collected delete_loose_chunks(Transaction& transaction, std::int64_t age) {
   }
   Collected deleted;
   for (const auto& [sha256, size] : loose) {
-    // One that was taken into a mesh before it was locked here.
+    // Not if it was added to a mesh before it was locked here.
     const bool gone = transaction.change(
                           "DELETE FROM weft_chunk WHERE sha256 = $1 AND NOT EXISTS "
                           "(SELECT FROM weft_mesh_chunk WHERE chunk = $1)",
@@ -119,7 +180,7 @@ Collected delete_loose_chunks(Transaction& transaction, std::int64_t age) {
   return deleted;
 }
 
-// Nobody asks any more how a task ended an hour ago.
+// Nobody asks for the outcome of a task that ended an hour ago.
 void forget_what_is_over(Transaction& transaction) {
   transaction.change("DELETE FROM weft_settled WHERE at <= now() - interval '1 hour'");
   transaction.change("DELETE FROM weft_served WHERE owner NOT IN (SELECT owner FROM weft_task)");
@@ -154,8 +215,11 @@ StoreResult<Collected> PostgresJobs::collect(const KeepPolicy& policy) {
     return core_->run(Begin::kLater, Repeat::kNever, [&](Transaction& transaction) {
       Collected step;
       if (!collects(transaction)) return step;
-      step.jobs = delete_jobs(transaction, to_micros(policy.age));
-      step.meshes = delete_meshes(transaction, to_micros(policy.age), to_sql(policy.bytes));
+      step.jobs = delete_jobs(transaction, to_micros(policy.age)) +
+                  delete_surplus_jobs(transaction, to_sql(policy.jobs_of_owner));
+      if (policy.share_of_owner < 1)
+        step.meshes = delete_surplus_meshes(transaction, bytes_of_owner(policy));
+      step.meshes += delete_meshes(transaction, to_micros(policy.age), to_sql(policy.bytes));
       if (step.jobs + step.meshes != 0) core_->announce(transaction);
       return step;
     });

@@ -35,7 +35,8 @@ class PostgresJobs final : public JobStore {
 
   StoreResult<std::optional<Claim>> claim(const std::string& worker,
                                           std::chrono::milliseconds lease,
-                                          std::uint64_t max_estimate) override;
+                                          std::uint64_t max_estimate,
+                                          const std::vector<std::string>& except) override;
   StoreResult<Held> renew(const ClaimRef& claim, std::chrono::milliseconds lease,
                           const std::string& progress) override;
   StoreResult<void> put_chunk(const std::string& sha256, std::string_view bytes) override;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr milliseconds kFirstPause{100};
 constexpr milliseconds kLongestPause{5'000};
-// Now and then a statement is sent, or nobody would notice that the other end has vanished.
+// Statements are sent this often, so that a server that vanished is noticed.
 constexpr milliseconds kAliveInterval{10'000};
 
 }  // namespace

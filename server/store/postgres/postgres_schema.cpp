@@ -7,10 +7,10 @@
 namespace weft::server {
 namespace {
 
-// The columns mean what those of the same name in sqlite_schema.cpp mean.
+// The columns mean what those with the same names in sqlite_schema.cpp mean.
 //
-// Requests and chunks are coordinates and connectivity: they are not worth compressing. What is
-// stored out of line is not written again when other columns change.
+// Requests and chunks are coordinates and connectivity, which do not compress well. Values that are
+// stored out of line are not written again when other columns change.
 constexpr const char* kVersion1 = R"sql(
 CREATE TABLE weft_task (
   id        bigint      GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
@@ -114,8 +114,8 @@ CREATE TABLE weft_mesh_chunk (
 CREATE INDEX weft_mesh_chunk_of ON weft_mesh_chunk (chunk);
 )sql";
 
-// What lists show of a mesh stands apart from its summary, which may be of some MiB. Servers of
-// version 1 that are still at work go on.
+// What lists show of a mesh is stored apart from its summary, which may take some MiB. Servers of
+// version 1 that are still running go on working.
 constexpr const char* kVersion2 = R"sql(
 ALTER TABLE weft_task ADD COLUMN trace text NOT NULL DEFAULT '';
 
@@ -145,10 +145,16 @@ ALTER TABLE weft_task ADD COLUMN max_bytes  bigint NOT NULL DEFAULT 0;
 ALTER TABLE weft_task ADD COLUMN max_micros bigint NOT NULL DEFAULT 0;
 )sql";
 
-// The n-th brings version n to version n + 1.
-constexpr std::array kMigrations{kVersion1, kVersion2, kVersion3};
+// Servers of version 3 that are still running store meshes without an owner.
+constexpr const char* kVersion4 = R"sql(
+ALTER TABLE weft_mesh ADD COLUMN owner text NOT NULL DEFAULT '';
+CREATE INDEX weft_job_open ON weft_job (owner) WHERE ended IS NULL;
+)sql";
 
-// Any number that other programs are unlikely to lock.
+// The n-th brings version n to version n + 1.
+constexpr std::array kMigrations{kVersion1, kVersion2, kVersion3, kVersion4};
+
+// A number that other programs are unlikely to lock.
 constexpr std::int64_t kMigrationLock = 0x77656674'0001;
 
 }  // namespace

@@ -14,14 +14,15 @@ namespace {
 
 constexpr std::size_t kDigestBytes = 32;
 
-// The oldest task that is due of the owner whose turn it is, unless another is just about to take
-// it: then the next one. Owners come in order, and the first task found ends the search: so no
-// other is locked.
+// The oldest due task of the owner whose turn it is; if another server is just taking that one, the
+// next. Owners come in order, and the search ends at the first task that is found, so no other task
+// is locked.
 constexpr const char* kClaim = R"sql(
 WITH owner_of_due AS (
   SELECT owner FROM (
     SELECT owner, min(id) AS oldest FROM weft_task
     WHERE state = 0 AND due <= now() AND weight <= $3 GROUP BY owner) AS due
+  WHERE strpos($4, ',' || encode(convert_to(owner, 'UTF8'), 'hex') || ',') = 0
   ORDER BY (SELECT count(*) FROM weft_task AS running
             WHERE running.state = 1 AND running.owner = due.owner),
            (SELECT coalesce(max(turn), 0) FROM weft_served WHERE weft_served.owner = due.owner),
@@ -54,7 +55,7 @@ std::optional<std::string> lock_held(Transaction& transaction, const ClaimRef& c
   return rows.bytes(0);
 }
 
-// Whether it was this claim that ended the task so.
+// Whether it was this claim that ended the task in this state.
 bool has_settled(Transaction& transaction, const ClaimRef& claim, JobState state) {
   return transaction
       .run("SELECT 1 FROM weft_settled WHERE task = $1 AND attempt = $2 AND state = $3", claim.task,
@@ -72,7 +73,8 @@ void settle(Transaction& transaction, const ClaimRef& claim, JobState state,
 }
 
 // False if a chunk is missing.
-bool insert_mesh(Transaction& transaction, const std::string& key, const StoredMesh& mesh) {
+bool insert_mesh(Transaction& transaction, std::int64_t task, const std::string& key,
+                 const StoredMesh& mesh) {
   std::string digests;
   for (const StoredChunk& chunk : mesh.chunks) {
     if (chunk.sha256.size() != kDigestBytes) return false;
@@ -81,10 +83,10 @@ bool insert_mesh(Transaction& transaction, const std::string& key, const StoredM
   std::int64_t id = 0;
   {
     Rows rows = transaction.run(
-        "INSERT INTO weft_mesh (key, summary, brief) VALUES ($1, $2, $3) "
-        "ON CONFLICT (key) DO UPDATE SET summary = excluded.summary, brief = excluded.brief, "
-        "asked = clock_timestamp() RETURNING id",
-        Blob{key}, Blob{mesh.summary}, Blob{mesh.brief});
+        "INSERT INTO weft_mesh (key, summary, brief, owner) SELECT $2, $3, $4, owner "
+        "FROM weft_task WHERE id = $1 ON CONFLICT (key) DO UPDATE SET summary = excluded.summary, "
+        "brief = excluded.brief, owner = excluded.owner, asked = clock_timestamp() RETURNING id",
+        task, Blob{key}, Blob{mesh.summary}, Blob{mesh.brief});
     if (rows.next()) id = rows.integer(0);
   }
   transaction.change("DELETE FROM weft_mesh_chunk WHERE mesh = $1", id);
@@ -101,12 +103,15 @@ bool insert_mesh(Transaction& transaction, const std::string& key, const StoredM
 
 StoreResult<std::optional<Claim>> PostgresJobs::claim(const std::string& worker,
                                                       std::chrono::milliseconds lease,
-                                                      std::uint64_t max_estimate) {
-  // Durable: were the attempt forgotten in a crash of the database, it would be given twice. Not
-  // again when it is unclear: the lease of a task that nobody knows of runs out by itself.
+                                                      std::uint64_t max_estimate,
+                                                      const std::vector<std::string>& except) {
+  // Durable, because an attempt that a crash of the database forgets would be given twice. Not
+  // repeated if the outcome is unclear: the lease of a task that nobody knows of runs out by
+  // itself.
   return core_->run(Begin::kDurable, Repeat::kNever, [&](Transaction& transaction) {
     std::optional<Claim> claim;
-    Rows rows = transaction.run(kClaim, worker, to_micros(lease), to_sql(max_estimate));
+    const std::string excluded = list_of(except);
+    Rows rows = transaction.run(kClaim, worker, to_micros(lease), to_sql(max_estimate), excluded);
     if (!rows.next()) return claim;
     claim.emplace();
     claim->ref = {rows.integer(0), static_cast<std::uint32_t>(rows.integer(1))};
@@ -137,7 +142,7 @@ StoreResult<Held> PostgresJobs::renew(const ClaimRef& claim, std::chrono::millis
 
 StoreResult<void> PostgresJobs::put_chunk(const std::string& sha256, std::string_view bytes) {
   const auto put = core_->run(Begin::kLater, Repeat::kWhenUnclear, [&](Transaction& transaction) {
-    // Most of what is there already need not travel.
+    // If the chunk is there already, as most are, it is not sent.
     const bool there =
         transaction.change("UPDATE weft_chunk SET touched = clock_timestamp() WHERE sha256 = $1",
                            Blob{sha256}) == 1;
@@ -158,7 +163,7 @@ StoreResult<Held> PostgresJobs::finish(const ClaimRef& claim, const StoredMesh& 
     if (!key) {
       return has_settled(transaction, claim, JobState::kSucceeded) ? Held::kHeld : Held::kLost;
     }
-    if (!insert_mesh(transaction, *key, mesh)) {
+    if (!insert_mesh(transaction, claim.task, *key, mesh)) {
       transaction.fail({StoreErrorKind::kUnavailable, "a chunk of the mesh is not in the store"});
       return Held::kHeld;
     }

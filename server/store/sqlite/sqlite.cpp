@@ -11,7 +11,7 @@ namespace {
 // Other processes may look into the file, and a checkpoint waits for those who read.
 constexpr int kBusyMs = 10'000;
 
-// SQLite calls most failures to write an I/O error; why, the system said.
+// SQLite reports most failed writes as an I/O error; errno says why.
 bool is_full(int code, int system_error) {
   return code == SQLITE_FULL ||
          (code == SQLITE_IOERR &&
@@ -19,7 +19,7 @@ bool is_full(int code, int system_error) {
 }
 
 StoreError explain(sqlite3* database, int extended) {
-  // SQLite keeps what the system said of a failed statement, but not of a failed commit.
+  // SQLite keeps errno for a failed statement, but not for a failed commit.
   const int latest = errno;
   const int kept = database == nullptr ? 0 : sqlite3_system_errno(database);
   const int system_error = kept != 0 ? kept : latest;
@@ -94,7 +94,7 @@ bool Rows::next() {
   const int code = sqlite3_step(statement_);
   if (code == SQLITE_ROW) return true;
   if (code != SQLITE_DONE) transaction_.check(code);
-  // It would start again.
+  // Another step would run it again.
   sqlite3_reset(statement_);
   sqlite3_clear_bindings(statement_);
   statement_ = nullptr;
@@ -119,12 +119,12 @@ std::string Rows::bytes(int column) const {
 Transaction::Transaction(Connection& connection, Access access)
     : connection_(connection),
       changes_before_(sqlite3_total_changes64(connection.database_.get())) {
-  // A writer takes the lock at once: one that began as a reader could not wait for it.
+  // A writer locks at once, because a reader could not wait for the lock later.
   open_ = !run(access == Access::kWrite ? "BEGIN IMMEDIATE" : "BEGIN").next() && !failed();
 }
 
 Transaction::~Transaction() {
-  // Some errors have undone it already.
+  // Some errors have rolled it back already.
   if (open_ && sqlite3_get_autocommit(connection_.database_.get()) == 0) {
     sqlite3_exec(connection_.database_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
   }

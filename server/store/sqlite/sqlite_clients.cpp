@@ -23,13 +23,16 @@ constexpr std::string_view kJobsOfOwner =
     "state) & ?3 "
     "ORDER BY id DESC LIMIT ?4";
 
-// The number of tasks that wait: of all, and of this owner.
-std::pair<std::uint64_t, std::uint64_t> count_queued(Transaction& transaction,
-                                                     const std::string& owner) {
-  Rows rows = transaction.run(
-      "SELECT count(*), coalesce(sum(owner = ?1), 0) FROM task WHERE state = 0", owner);
-  if (!rows.next()) return {};
-  return {to_unsigned(rows.integer(0)), to_unsigned(rows.integer(1))};
+// The tasks that wait.
+std::uint64_t count_queued(Transaction& transaction) {
+  Rows rows = transaction.run("SELECT count(*) FROM task WHERE state = 0");
+  return rows.next() ? to_unsigned(rows.integer(0)) : 0;
+}
+
+// The owner's jobs that have not ended.
+std::uint64_t count_open(Transaction& transaction, const std::string& owner) {
+  Rows rows = transaction.run("SELECT count(*) FROM job WHERE owner = ?1 AND ended IS NULL", owner);
+  return rows.next() ? to_unsigned(rows.integer(0)) : 0;
 }
 
 }  // namespace
@@ -90,10 +93,10 @@ Submitted SqliteJobs::submit_in(Transaction& transaction, const Submission& subm
       if (rows.next()) task = rows.integer(0);
     }
   }
+  if (!ended && count_open(transaction, submission.owner) >= submission.max_open_of_owner)
+    return {SubmitOutcome::kOwnerFull, {}};
   if (!task && !ended) {
-    const auto [queued, own] = count_queued(transaction, submission.owner);
-    if (queued >= submission.max_queued) return {SubmitOutcome::kQueueFull, {}};
-    if (own >= submission.max_queued_of_owner) return {SubmitOutcome::kOwnQueueFull, {}};
+    if (count_queued(transaction) >= submission.max_queued) return {SubmitOutcome::kQueueFull, {}};
     // One with a smaller budget is shared no more.
     if (!submission.no_cache)
       transaction.change("UPDATE task SET shared = 0 WHERE key = ?1 AND shared", key);

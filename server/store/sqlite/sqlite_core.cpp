@@ -15,9 +15,8 @@
 namespace weft::server {
 namespace {
 
-// The page size and the vacuum hold for a file that is new, the others for the connection. The log
-// is cut back to what a checkpoint usually leaves, and foreign keys are what keeps a chunk that a
-// mesh refers to.
+// The page size and the vacuum apply to a new file, the others to the connection. The log is cut
+// back to what a checkpoint usually leaves. Foreign keys keep a chunk that a mesh refers to.
 constexpr const char* kWriterSettings = R"sql(
 PRAGMA page_size = 16384;
 PRAGMA auto_vacuum = INCREMENTAL;
@@ -56,7 +55,7 @@ StoreResult<FileHandle> lock_folder(const std::string& folder) {
       StoreError{StoreErrorKind::kUnavailable, folder + " is in use by another weftd"});
 }
 
-// SQLite makes a new file as the umask says, and the files beside it as that one.
+// SQLite gives a new file the permissions of the umask, and the files beside it those of the first.
 StoreResult<void> make_private(const std::string& path) {
   const FileHandle file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
   if (file.get() < 0) return tl::unexpected(failed_at(path));
@@ -124,8 +123,8 @@ StoreResult<void> SqliteCore::give_space_back() {
     if (*free_pages == 0) break;
     if (auto done = writer_->execute(step.c_str()); !done) return done;
   }
-  // The file shrinks at a checkpoint. This one waits for those who read, and empties the log, which
-  // with readers at all times would otherwise only grow.
+  // A checkpoint shrinks the file. This one waits for readers and empties the log, which would only
+  // grow if there are readers at all times.
   const std::lock_guard lock(writing_);
   return writer_->execute("PRAGMA wal_checkpoint(TRUNCATE)");
 }

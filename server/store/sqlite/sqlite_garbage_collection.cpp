@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The house-keeping of the SQLite store: leases that ran out, what is kept too long, figures. What
-// may be much is done in steps, so that others write between.
+// Garbage collection of the SQLite store: leases that ran out, what was kept too long, figures.
+// Large deletions are done in steps, so that others can write in between.
 #include <algorithm>
 
 #include "server/store/garbage_collection.h"
@@ -14,7 +14,7 @@ using sqlite::Transaction;
 
 namespace {
 
-// Nobody asks any more how a task ended that long ago.
+// Nobody asks for the outcome of a task that ended this long ago.
 constexpr std::chrono::hours kSettledAge{1};
 
 std::vector<LostTask> find_lost(Transaction& transaction, std::int64_t now,
@@ -32,6 +32,25 @@ std::uint64_t delete_jobs(Transaction& transaction, std::int64_t ended) {
   return to_unsigned(transaction.change(
       "DELETE FROM job WHERE id IN (SELECT id FROM job WHERE ended <= ?1 LIMIT ?2)", ended,
       kJobsAtOnce));
+}
+
+// Deletes some of the oldest ended jobs of an owner who has too many.
+std::uint64_t delete_surplus_jobs(Transaction& transaction, std::int64_t most) {
+  std::string owner;
+  std::int64_t surplus = 0;
+  {
+    Rows rows = transaction.run(
+        "SELECT owner, count(*) - ?1 FROM job WHERE ended IS NOT NULL GROUP BY owner "
+        "HAVING count(*) > ?1 LIMIT 1",
+        most);
+    if (!rows.next()) return 0;
+    owner = rows.bytes(0);
+    surplus = rows.integer(1);
+  }
+  return to_unsigned(transaction.change(
+      "DELETE FROM job WHERE id IN (SELECT id FROM job WHERE owner = ?1 AND ended IS NOT NULL "
+      "ORDER BY id LIMIT ?2)",
+      owner, std::min<std::int64_t>(surplus, kJobsAtOnce)));
 }
 
 void forget_what_is_over(Transaction& transaction, std::int64_t settled) {
@@ -56,7 +75,8 @@ std::int64_t bytes_of_its_own(Transaction& transaction, std::int64_t mesh) {
   return rows.next() ? rows.integer(0) : 0;
 }
 
-// Some of those that nobody asked for since `asked`, and of those in the way of `bytes`.
+// Deletes some of the meshes that nobody asked for since `asked`, or that exceed `bytes`, the
+// oldest first.
 std::uint64_t delete_meshes(Transaction& transaction, std::int64_t asked, std::int64_t bytes) {
   std::vector<std::pair<std::int64_t, std::int64_t>> oldest;  // id, when it was asked for
   {
@@ -75,7 +95,40 @@ std::uint64_t delete_meshes(Transaction& transaction, std::int64_t asked, std::i
   return deleted;
 }
 
-// Some of the chunks that belong to no mesh and were not put since `touched`.
+// Deletes some meshes of an owner whose meshes take more than `bytes`: those that were asked for
+// longest ago.
+std::uint64_t delete_surplus_meshes(Transaction& transaction, std::int64_t bytes) {
+  std::string owner;
+  std::int64_t surplus = 0;
+  {
+    Rows rows = transaction.run(
+        "SELECT owner, sum(size) - ?1 FROM mesh JOIN mesh_chunk ON mesh_chunk.mesh = mesh.id "
+        "JOIN chunk ON chunk.id = mesh_chunk.chunk GROUP BY owner HAVING sum(size) > ?1 LIMIT 1",
+        bytes);
+    if (!rows.next()) return 0;
+    owner = rows.bytes(0);
+    surplus = rows.integer(1);
+  }
+  std::vector<std::pair<std::int64_t, std::int64_t>> oldest;  // id, bytes
+  {
+    Rows rows = transaction.run(
+        "SELECT id, (SELECT coalesce(sum(size), 0) FROM mesh_chunk JOIN chunk ON chunk.id = "
+        "mesh_chunk.chunk WHERE mesh_chunk.mesh = mesh.id) FROM mesh WHERE owner = ?1 "
+        "ORDER BY asked LIMIT ?2",
+        owner, kMeshesAtOnce);
+    while (rows.next()) oldest.emplace_back(rows.integer(0), rows.integer(1));
+  }
+  std::uint64_t deleted = 0;
+  for (const auto& [mesh, size] : oldest) {
+    if (surplus <= 0) break;
+    surplus -= size;
+    transaction.change("DELETE FROM mesh WHERE id = ?1", mesh);
+    ++deleted;
+  }
+  return deleted;
+}
+
+// Deletes some of the chunks that belong to no mesh and were not stored again since `touched`.
 Collected delete_loose_chunks(Transaction& transaction, std::int64_t touched) {
   Collected deleted;
   std::vector<std::int64_t> loose;
@@ -127,8 +180,11 @@ StoreResult<Collected> SqliteJobs::collect(const KeepPolicy& policy) {
   const auto ended = collect_in_steps(all, [&] {
     return core_->write(Durability::kLater, [&](Transaction& transaction) {
       Collected step;
-      step.jobs = delete_jobs(transaction, aged);
-      step.meshes = delete_meshes(transaction, aged, to_sql(policy.bytes));
+      step.jobs = delete_jobs(transaction, aged) +
+                  delete_surplus_jobs(transaction, to_sql(policy.jobs_of_owner));
+      if (policy.share_of_owner < 1)
+        step.meshes = delete_surplus_meshes(transaction, bytes_of_owner(policy));
+      step.meshes += delete_meshes(transaction, aged, to_sql(policy.bytes));
       return step;
     });
   });

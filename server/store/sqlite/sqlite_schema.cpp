@@ -114,7 +114,7 @@ CREATE TABLE mesh_chunk (
 CREATE INDEX mesh_chunk_of ON mesh_chunk (chunk);
 )sql";
 
-// What lists show of a mesh stands apart from its summary, which may be of some MiB.
+// What lists show of a mesh is stored apart from its summary, which may take some MiB.
 constexpr const char* kVersion2 = R"sql(
 ALTER TABLE task ADD COLUMN trace TEXT NOT NULL DEFAULT '';
 
@@ -143,14 +143,22 @@ SELECT job.id, job.owner, job.request_id, job.key,
 FROM job LEFT JOIN task ON task.id = job.task;
 )sql";
 
-// What the work may use; tasks of before are joined by nobody who asks for anything.
+// What the work may use. Tasks from before version 3 are shared only by jobs that ask for no
+// budget.
 constexpr const char* kVersion3 = R"sql(
 ALTER TABLE task ADD COLUMN max_bytes  INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE task ADD COLUMN max_micros INTEGER NOT NULL DEFAULT 0;
 )sql";
 
+// Adds the owners of meshes, and an index of the open jobs of an owner. Meshes from before version
+// 4 have no owner.
+constexpr const char* kVersion4 = R"sql(
+ALTER TABLE mesh ADD COLUMN owner TEXT NOT NULL DEFAULT '';  -- of the job it was made for
+CREATE INDEX job_open ON job (owner) WHERE ended IS NULL;
+)sql";
+
 // The n-th brings version n to version n + 1.
-constexpr std::array kMigrations{kVersion1, kVersion2, kVersion3};
+constexpr std::array kMigrations{kVersion1, kVersion2, kVersion3, kVersion4};
 
 }  // namespace
 

@@ -11,7 +11,8 @@ namespace weft::server {
 StoreResult<std::unique_ptr<JobStore>> SqliteStore::open(Options options) {
   auto core = SqliteCore::open(std::move(options));
   if (!core) return tl::unexpected(core.error());
-  // Who holds a lease was the server before this one, and is gone: nobody need wait for its end.
+  // Leases belong to the server that ran before this one and is gone, so nobody waits for their
+  // end.
   const auto expired = (*core)->write(Durability::kLater, [](sqlite::Transaction& transaction) {
     return transaction.change("UPDATE task SET lease_end = 0 WHERE lease_end IS NOT NULL");
   });

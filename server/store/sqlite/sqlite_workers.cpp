@@ -11,11 +11,12 @@ using sqlite::Transaction;
 
 namespace {
 
-// The oldest task of each owner that is due, and of those the one whose turn it is.
+// Of the oldest due tasks of all owners but some, the one of the owner whose turn it is.
 constexpr std::string_view kNextTask = R"sql(
 SELECT first FROM (
   SELECT owner, min(id) AS first FROM task WHERE state = 0 AND due <= ?1 AND weight <= ?2
   GROUP BY owner) AS candidate
+WHERE instr(?3, ',' || lower(hex(owner)) || ',') = 0
 ORDER BY (SELECT count(*) FROM task WHERE task.state = 1 AND task.owner = candidate.owner),
          (SELECT coalesce(max(turn), 0) FROM served WHERE served.owner = candidate.owner),
          first
@@ -28,7 +29,7 @@ bool holds(Transaction& transaction, const ClaimRef& claim) {
       .next();
 }
 
-// Whether it was this claim that ended the task so.
+// Whether it was this claim that ended the task in this state.
 bool has_settled(Transaction& transaction, const ClaimRef& claim, JobState state) {
   return transaction
       .run("SELECT 1 FROM settled WHERE task = ?1 AND attempt = ?2 AND state = ?3", claim.task,
@@ -46,14 +47,15 @@ void settle(Transaction& transaction, const ClaimRef& claim, JobState state,
 }
 
 // False if a chunk is missing.
-bool insert_mesh(Transaction& transaction, const std::string& key, const StoredMesh& mesh,
-                 WallTime now) {
+bool insert_mesh(Transaction& transaction, std::int64_t task, const std::string& key,
+                 const StoredMesh& mesh, WallTime now) {
   transaction.change("DELETE FROM mesh WHERE key = ?1", Blob{key});
   std::int64_t id = 0;
   {
-    Rows rows =
-        transaction.run("INSERT INTO mesh (key, asked, brief) VALUES (?1, ?2, ?3) RETURNING id",
-                        Blob{key}, to_micros(now), Blob{mesh.brief});
+    Rows rows = transaction.run(
+        "INSERT INTO mesh (key, asked, brief, owner) SELECT ?2, ?3, ?4, owner FROM task "
+        "WHERE id = ?1 RETURNING id",
+        task, Blob{key}, to_micros(now), Blob{mesh.brief});
     if (rows.next()) id = rows.integer(0);
   }
   transaction.change("INSERT INTO mesh_summary (mesh, bytes) VALUES (?1, ?2)", id,
@@ -73,13 +75,15 @@ bool insert_mesh(Transaction& transaction, const std::string& key, const StoredM
 
 StoreResult<std::optional<Claim>> SqliteJobs::claim(const std::string& worker,
                                                     std::chrono::milliseconds lease,
-                                                    std::uint64_t max_estimate) {
+                                                    std::uint64_t max_estimate,
+                                                    const std::vector<std::string>& except) {
   return core_->write(Durability::kLater, [&](Transaction& transaction) {
     std::optional<Claim> claim;
     const std::int64_t now = to_micros(core_->now());
     std::optional<std::int64_t> task;
     {
-      Rows rows = transaction.run(kNextTask, now, to_sql(max_estimate));
+      const std::string excluded = list_of(except);
+      Rows rows = transaction.run(kNextTask, now, to_sql(max_estimate), excluded);
       if (rows.next()) task = rows.integer(0);
     }
     if (!task) return claim;
@@ -150,7 +154,7 @@ StoreResult<Held> SqliteJobs::finish(const ClaimRef& claim, const StoredMesh& me
       Rows rows = transaction.run("SELECT key FROM task WHERE id = ?1", claim.task);
       if (rows.next()) key = rows.bytes(0);
     }
-    if (!insert_mesh(transaction, key, mesh, now)) {
+    if (!insert_mesh(transaction, claim.task, key, mesh, now)) {
       transaction.fail({StoreErrorKind::kUnavailable, "a chunk of the mesh is not in the store"});
       return Held::kHeld;
     }

@@ -204,8 +204,87 @@ TEST(Merging, AChainBendsOnlyAtWhatPullsIt) {
   EXPECT_TRUE(problem.check().ok()) << to_text(problem.check());
 }
 
-// A square far from the origin, all of it holes but for a triangle, whose tip is by so much of T
-// below the square's lower side. If `beyond`, two segments cross at the tip and go on.
+// A room of 4 x 4 of which the mesh has the triangle below its top; the rest is hole. The right
+// side is bent, because the bottom is there twice and ends 0.005 apart, and the mesh lacks it. Edge
+// 1 is the piece of the triangle's right side, marker 5, that begins within T of it.
+Problem corner() {
+  Problem problem;
+  Domain& domain = problem.domain;
+  domain.points = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {2, 0}, {3.995, 0}};
+  domain.segments = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {3, 4}, {2, 4}, {0, 5}};
+  domain.markers = {1, 2, 3, 4, 5, 5, 1};
+  domain.holes = {{0.5, 1}, {3.5, 1}};
+  domain.snap = kSnap;
+  Mesh& mesh = problem.mesh;
+  mesh.vertices = {{4, 4}, {0, 4}, {2, 0}, {3.996, 3.992}};
+  mesh.triangles = {{1, 2, 3}, {0, 1, 3}};
+  mesh.edges = {{2, 3, 5}, {3, 0, 5}, {0, 1, 3}, {1, 2, 5}};
+  return problem;
+}
+
+// A room of 4 x 4, and a segment, marker 5, that passes below it and is led through its corner
+// (4, 0). Edge 0 is the last piece of the bottom, which has no marker; it is within T of the
+// segment.
+Problem passed_corner() {
+  Problem problem;
+  problem.domain.points = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, -0.03}, {4.02, 0}};
+  problem.domain.segments = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}};
+  problem.domain.markers = {0, 2, 3, 4, 5};
+  problem.domain.snap = kSnap / 10;
+  problem.mesh.vertices = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {3.9, 0}};
+  problem.mesh.triangles = {{0, 4, 3}, {4, 2, 3}, {4, 1, 2}};
+  problem.mesh.edges = {{4, 1, 0}, {0, 4, 0}, {1, 2, 2}, {2, 3, 3}, {3, 0, 4}};
+  return problem;
+}
+
+// A room of 4 x 4, and a segment, marker 5, that leaves it at point 4 on the bottom, at a small
+// angle, and is led through point 5 there, 0.0005 beside it. Edge 2 is the next piece of the
+// bottom.
+Problem slow_leave() {
+  Problem problem;
+  problem.domain.points = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {1, 0}, {1.05, 0}, {3.95, -0.03}};
+  problem.domain.segments = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 6}};
+  problem.domain.markers = {0, 2, 3, 4, 5};
+  problem.domain.snap = kSnap / 10;
+  problem.mesh.vertices = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {1, 0}, {1.05, 0}, {1.08, 0}};
+  problem.mesh.triangles = {{0, 4, 3}, {4, 5, 3}, {5, 6, 3}, {6, 2, 3}, {6, 1, 2}};
+  problem.mesh.edges = {{0, 4, 0}, {4, 5, 5}, {5, 6, 0}, {6, 1, 0},
+                        {1, 2, 2}, {2, 3, 3}, {3, 0, 4}};
+  return problem;
+}
+
+TEST(Merging, AnEdgeOnASegmentMayHaveItsMarkerBesideABentOne) {
+  for (const Problem& problem : {corner(), passed_corner(), slow_leave()}) {
+    const Report report = problem.check();
+    EXPECT_TRUE(report.ok()) << to_text(report);
+  }
+}
+
+TEST(Merging, KnowsTheMarkersBesideBentSegments) {
+  Problem problem = corner();
+  problem.mesh.edges[1].marker = 7;
+  EXPECT_EQ(violated(problem.check()), Rules{Rule::kMarkers}) << "that of no segment";
+  problem = passed_corner();
+  problem.mesh.edges[0].marker = 7;
+  EXPECT_EQ(violated(problem.check()), Rules{Rule::kMarkers}) << "that of no segment";
+  problem = passed_corner();
+  problem.mesh.edges[1].marker = 5;
+  EXPECT_EQ(violated(problem.check()), Rules{Rule::kMarkers}) << "that of one far away";
+  problem = corner();
+  problem.mesh.edges[0].marker = 2;
+  EXPECT_EQ(violated(problem.check()), Rules{Rule::kMarkers}) << "that of one far away";
+}
+
+TEST(Merging, ASegmentOutsideDoesNotTakeTheEdgesOfOthers) {
+  // Otherwise the last piece of the bottom would be two segments, and no border by this rule.
+  Problem problem = passed_corner();
+  problem.domain.fill = Fill::kEvenOdd;
+  const Report report = problem.check();
+  EXPECT_TRUE(report.ok()) << to_text(report);
+}
+
+// A square far from the origin. All of it is hole, except a triangle whose tip is below the
+// square's lower side, by so much of T. If `beyond`, two segments cross at the tip and go on.
 Problem tip(double below, bool beyond) {
   constexpr double kFar = 1e6;
   const double y = -below * 0x1p-40 * kFar;

@@ -116,6 +116,24 @@ TEST(Gaps, ALineThatStopsAnUlpShortOfASegmentDivides) {
   }
 }
 
+// A needle with its tip at (0, 1 + height), and the mesh of its part below the point (0, 1), which
+// lies on its right side.
+Problem needle(double width, double height) {
+  Problem problem;
+  problem.domain.points = {{-width, 0}, {0, 0}, {0, 1 + height}, {0, 1}};
+  problem.domain.segments = {{0, 1}, {1, 2}, {2, 0}};
+  problem.mesh.vertices = {{-width, 0}, {0, 0}, {0, 1}};
+  problem.mesh.triangles = {{0, 1, 2}};
+  problem.mesh.edges = {{0, 1, 0}, {1, 2, 0}, {2, 0, 0}};
+  return problem;
+}
+
+TEST(Gaps, APointWithinRoundingOfBothSidesClosesATip) {
+  const Report report = needle(1e-9, 1e-7).check();
+  EXPECT_TRUE(report.ok()) << to_text(report);
+  EXPECT_TRUE(violated(needle(1e-3, 1e-7).check()).contains(Rule::kPoints)) << "1e-10 beside one";
+}
+
 TEST(Gaps, ALineThatStopsVisiblyShortDoesNot) {
   Domain domain;
   domain.points = {{0, 0}, {3, 1}, {0, 1}, {0.3, 0.1 + 1e-14}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rule 6: which small angles a small input angle excuses.
+// Rule 6: which small angles a small input angle exempts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,15 +34,15 @@ Problem wedge(double degrees, double low, double high) {
   return problem;
 }
 
-TEST(Exemption, TheCornerAndTheShellsOfASmallInputAngleAreExcused) {
+TEST(Exemption, TheCornerAndTheShellsOfASmallInputAngleAreExempt) {
   const Report report = wedge(10, 1, 1).check();
   EXPECT_TRUE(report.ok()) << to_text(report);
-  EXPECT_EQ(report.facts.excused_corner, 1u);
-  EXPECT_EQ(report.facts.excused_shell, 2u);
+  EXPECT_EQ(report.facts.exempt_corner, 1u);
+  EXPECT_EQ(report.facts.exempt_shell, 2u);
   EXPECT_EQ(report.facts.unrefined, 0u);
 }
 
-TEST(Exemption, NothingIsExcusedWhereItIsNotAllowed) {
+TEST(Exemption, NothingIsExemptWhereItIsNotAllowed) {
   Problem problem = wedge(10, 1, 1);
   problem.requirements.allow_small_input_angles = false;
   const Report report = problem.check();
@@ -56,14 +56,14 @@ TEST(Exemption, PointsAtUnequalDistanceAreNoShell) {
 }
 
 TEST(Exemption, DistancesAreTheSameToWithinRounding) {
-  EXPECT_EQ(wedge(10, 1, 1 + 0x1p-46).check().facts.excused_shell, 2u);
+  EXPECT_EQ(wedge(10, 1, 1 + 0x1p-46).check().facts.exempt_shell, 2u);
   const Report report = wedge(10, 1, 1 + 0x1p-43).check();
   EXPECT_TRUE(violated(report).contains(Rule::kAngle)) << to_text(report);
 }
 
-TEST(Exemption, AnInputAngleAboveTheBoundNeedsNoExcuse) {
+TEST(Exemption, AnInputAngleAboveTheBoundNeedsNoExemption) {
   const Report report = wedge(30, 1, 1).check();
-  EXPECT_EQ(report.facts.excused_corner, 0u);
+  EXPECT_EQ(report.facts.exempt_corner, 0u);
 }
 
 TEST(Exemption, ASkinnyTriangleAwayFromSegmentsHasNone) {
@@ -77,10 +77,10 @@ TEST(Exemption, ASkinnyTriangleAwayFromSegmentsHasNone) {
   problem.requirements.min_angle_deg = 20;
   const Report report = problem.check();
   EXPECT_TRUE(violated(report).contains(Rule::kAngle)) << to_text(report);
-  EXPECT_EQ(report.facts.excused_corner + report.facts.excused_shell, 0u);
+  EXPECT_EQ(report.facts.exempt_corner + report.facts.exempt_shell, 0u);
 }
 
-TEST(Exemption, AWideInputAngleExcusesNothing) {
+TEST(Exemption, AWideInputAngleExemptsNothing) {
   // The short edge joins two sides of a right angle at equal distance from it.
   Problem problem;
   problem.domain.points = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -95,7 +95,7 @@ TEST(Exemption, AWideInputAngleExcusesNothing) {
   EXPECT_EQ(report.total(Rule::kAngle), 1u);
 }
 
-TEST(Exemption, SegmentsThatCrossExcuseToo) {
+TEST(Exemption, SegmentsThatCrossExemptToo) {
   // Two lines through (1, 0), which is no input point, 10 degrees apart; the mesh is the hourglass.
   const double slope = std::tan(5 * std::acos(-1.0) / 180);
   Problem problem;
@@ -108,7 +108,7 @@ TEST(Exemption, SegmentsThatCrossExcuseToo) {
   problem.requirements.min_angle_deg = 20;
   const Report report = problem.check();
   EXPECT_TRUE(report.ok()) << to_text(report);
-  EXPECT_EQ(report.facts.excused_corner, 2u);
+  EXPECT_EQ(report.facts.exempt_corner, 2u);
 }
 
 }  // namespace

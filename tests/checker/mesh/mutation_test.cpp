@@ -9,7 +9,7 @@
 namespace weft::check::testing {
 namespace {
 
-// Applies one random change; false if the dice gave one that changes nothing.
+// Applies one random change. Returns false if that changes nothing.
 class Mutator {
  public:
   explicit Mutator(std::uint64_t seed) : random_(seed) {}

@@ -142,6 +142,24 @@ TEST(Lengths, GrowByTheGradationFromSegmentsWithASizeAtTheirMarker) {
   EXPECT_EQ(violated(problem.check()), (Rules{Rule::kArea, Rule::kLengths}));
 }
 
+TEST(Area, GrowsByTheGradationFromRegionsWithABoundOfTheirOwn) {
+  Problem problem = block_with_regions();  // triangles of area 0.5
+  problem.requirements = {};
+  problem.domain.regions[0].max_area = 0.49;
+  EXPECT_EQ(problem.check().total(Rule::kArea), 36u);
+  for (const SizeSpec::Value& value : {SizeSpec::Value(), SizeSpec::Value(10.0)}) {
+    problem.requirements.size.value = value;
+    // 0.5 about 0.02 from the nearest centroid, and beyond the region from 0.17.
+    problem.requirements.size.gradation = 0.5;
+    EXPECT_EQ(problem.check().total(Rule::kArea), 36u);
+    // Those of the region alone have 0.98; the bounds of the others are larger.
+    EXPECT_GT(problem.check().facts.ideal_ratio, 1);
+    problem.requirements.size.gradation = 0.01;
+    EXPECT_GT(problem.check().total(Rule::kArea), 36u);
+    EXPECT_LT(problem.check().total(Rule::kArea), 72u);
+  }
+}
+
 TEST(Unrefined, AsManyAsAreAllowedAreNoViolation) {
   Problem problem = block(2);
   problem.requirements.max_area = 0.4;

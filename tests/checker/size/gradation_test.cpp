@@ -67,14 +67,18 @@ TEST(Gradation, BrokenByOnePercentInOneTriangleIsFound) {
     size.gradation = 0.5;
     return size;
   };
-  problem.requirements.size = spot(1.0001);
-  EXPECT_TRUE(problem.check().ok()) << to_text(problem.check());
-  problem.requirements.size = spot(0.98);
-  const Report report = problem.check();
-  EXPECT_EQ(violated(report), Rules{Rule::kArea});
-  EXPECT_EQ(report.total(Rule::kArea), 1u);
-  EXPECT_EQ(report.facts.first_unrefined_at, (Vec2{0.5, 1.0 / 3}));
-  EXPECT_NE(to_text(report).find("because sizes grow by at most 0.5"), std::string::npos);
+  for (const bool within : {false, true}) {
+    problem.requirements.size = spot(1.0001);
+    problem.requirements.size.gradation_within = within;
+    EXPECT_TRUE(problem.check().ok()) << to_text(problem.check());
+    problem.requirements.size = spot(0.98);
+    problem.requirements.size.gradation_within = within;
+    const Report report = problem.check();
+    EXPECT_EQ(violated(report), Rules{Rule::kArea});
+    EXPECT_EQ(report.total(Rule::kArea), 1u);
+    EXPECT_EQ(report.facts.first_unrefined_at, (Vec2{0.5, 1.0 / 3}));
+    EXPECT_NE(to_text(report).find("because sizes grow by at most 0.5"), std::string::npos);
+  }
   problem.requirements.size.gradation = 0;
   EXPECT_TRUE(problem.check().ok());
 }

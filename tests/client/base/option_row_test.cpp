@@ -12,7 +12,6 @@ struct Options {
   std::optional<double> angle{};
   std::optional<double> seconds{};
   std::optional<std::uint32_t> count{};
-  std::vector<std::int32_t> markers{};
   bool on = false;
   int order = 1;
 };
@@ -20,7 +19,6 @@ struct Options {
 const OptionValue<Options> kAngle = number("DEG", &Options::angle);
 const OptionValue<Options> kSeconds = number("S", &Options::seconds, 0.5, 100);
 const OptionValue<Options> kCount = number("N", &Options::count, 1);
-const OptionValue<Options> kMarkers = integers("MARKER", &Options::markers);
 const OptionValue<Options> kOn = on_or_off(&Options::on);
 const OptionValue<Options> kOrder = one_of(&Options::order, {{"one", 1}, {"two", 2}, {"six", 6}});
 
@@ -41,7 +39,7 @@ TEST(OptionRow, ReadsANumberAsTheNearestDouble) {
   EXPECT_EQ(after(kAngle, {"-2.5e1"}).angle, -25);
   // By way of a long double, it would be the neighbour of this.
   EXPECT_EQ(after(kAngle, {"0.0010549"}).angle, 0.0010549);
-  for (const char* text : {"", "much", "1x", "1 ", ".inf"})
+  for (const char* text : {"", "much", "1x", "1 ", ".inf", "nan", "-nan"})
     EXPECT_EQ(fault(kAngle, {text}), "'" + std::string(text) + "' is not a number");
 }
 
@@ -49,7 +47,8 @@ TEST(OptionRow, HoldsANumberToItsRange) {
   EXPECT_EQ(kSeconds.range, "0.5 to 100");
   EXPECT_EQ(after(kSeconds, {"0.5"}).seconds, 0.5);
   EXPECT_EQ(after(kSeconds, {"100"}).seconds, 100);
-  for (const char* text : {"0.49", "100.1", "inf", "nan"})
+  EXPECT_EQ(fault(kSeconds, {"nan"}), "'nan' is not a number");
+  for (const char* text : {"0.49", "100.1", "inf"})
     EXPECT_EQ(fault(kSeconds, {text}),
               "'" + std::string(text) + "' is not in the range 0.5 to 100");
 }
@@ -63,12 +62,12 @@ TEST(OptionRow, ReadsACount) {
     EXPECT_EQ(fault(kCount, {text}), "'" + std::string(text) + "' is not a count");
 }
 
-TEST(OptionRow, ReplacesAListByTheTexts) {
-  Options options{.markers = {7}};
-  EXPECT_EQ(kMarkers.read({"1", "-2"}, "", options), "");
-  EXPECT_EQ(options.markers, (std::vector<std::int32_t>{1, -2}));
-  EXPECT_EQ(kMarkers.read({"3", "x"}, "", options), "'x' is not an integer");
-  EXPECT_EQ(options.markers, (std::vector<std::int32_t>{1, -2}));
+TEST(OptionRow, ReadsANumberWithoutOptionsAroundIt) {
+  double plain = 7;
+  EXPECT_EQ(number<double>("S", 1, 9).read({"3"}, "", plain), "");
+  EXPECT_EQ(plain, 3);
+  EXPECT_EQ(number<double>("S", 1, 9).read({"10"}, "", plain), "'10' is not in the range 1 to 9");
+  EXPECT_EQ(plain, 3);
 }
 
 TEST(OptionRow, ReadsTrueAndFalse) {

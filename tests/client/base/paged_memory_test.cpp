@@ -226,6 +226,7 @@ TEST(MeshSpool, ShowsEachPieceWithAllVerticesSoFar) {
   EXPECT_EQ(spool->triangles(), 180'000u);
   EXPECT_EQ(spool->edges(), 1200u);
   EXPECT_EQ(spool->view().value().triangle_count(), 0u);
+  EXPECT_TRUE(std::ranges::equal(spool->view().value().edge_markers, mesh.edge_markers));
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ TEST_F(JobCalls, NeedAServerThatIsNamed) {
 
 TEST_F(JobCalls, SubmitOnceWhereTheAnswerIsLost) {
   jobs_.fail("SubmitJob", {{.done = true}, {.done = false}, {.done = true}});
-  const auto job = server_.submit(submission("nightly"), nullptr);
+  const auto job = server_.submit(submission("nightly"));
   ASSERT_TRUE(job) << job.error().message;
   EXPECT_EQ(job->request_id(), "nightly");
   EXPECT_EQ(jobs_.count(), 1u);
@@ -62,7 +62,7 @@ TEST_F(JobCalls, SubmitOnceWhereTheAnswerIsLost) {
 
 TEST_F(JobCalls, SubmitAgainWhenAQueueHasRoom) {
   jobs_.fail("SubmitJob", {{.status = queue_full(1)}, {.status = queue_full(1)}});
-  EXPECT_TRUE(server_.submit(submission("a"), nullptr));
+  EXPECT_TRUE(server_.submit(submission("a")));
   EXPECT_EQ(jobs_.calls("SubmitJob"), 3u);
 }
 
@@ -74,7 +74,7 @@ TEST_F(JobCalls, GiveEveryErrorItsExitCodeAtOnce) {
          {"SubmitJob", "GetJob", "ListJobs", "WatchJob", "CancelJob", "DeleteJob", "FetchMesh"})
       jobs_.fail(call, fault);
     jobs_.put(sample_job("job-1", v1::JOB_STATE_SUCCEEDED));
-    EXPECT_EQ(exit_of(server_.submit(submission("a"), nullptr)), 64 + code);
+    EXPECT_EQ(exit_of(server_.submit(submission("a"))), 64 + code);
     EXPECT_EQ(exit_of(server_.get("job-1")), 64 + code);
     EXPECT_EQ(exit_of(server_.list({}, {})), 64 + code);
     EXPECT_EQ(exit_of(server_.cancel("job-1")), 64 + code);
@@ -171,7 +171,7 @@ class Watch : public JobCalls {
  protected:
   std::string submit() {
     jobs_.plan(steps_to_success());
-    return server_.submit(submission("a"), nullptr).value().id();
+    return server_.submit(submission("a")).value().id();
   }
   // States, and triangles of those that run.
   std::vector<std::string> seen_;

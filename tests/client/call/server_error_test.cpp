@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "client/base/text.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 
@@ -34,7 +35,7 @@ TEST(ServerError, NamesReasonFieldAndPlaceInTheFile) {
   const Domain domain = domain_with_places();
   const Error error =
       error_of(refusal("domain.segments[2].b", "segment 2 ends at point 7, but there are 3 points"),
-               "unix:/s", &domain);
+               "unix:/s", {.domain = &domain});
   EXPECT_EQ(static_cast<int>(error.exit), 67);
   EXPECT_EQ(error.message,
             "the server unix:/s answers INVALID_ARGUMENT (INDEX_OUT_OF_RANGE)\n"
@@ -42,21 +43,68 @@ TEST(ServerError, NamesReasonFieldAndPlaceInTheFile) {
             "  segment 2 ends at point 7, but there are 3 points");
 }
 
+TEST(ServerError, NamesTheFlagOrTheKeyThatSetTheField) {
+  RequestOptions options{.edge = "x + )", .given = {"edge"}};
+  const auto status = refusal("size.expression", "unexpected ')'\nx + )\n    ^");
+  EXPECT_EQ(error_of(status, "a", {.options = &options}).message,
+            "the server a answers INVALID_ARGUMENT (INDEX_OUT_OF_RANGE)\n"
+            "  --edge: unexpected ')'\n"
+            "  x + )\n"
+            "      ^");
+  options.from_manifest = true;
+  EXPECT_NE(error_of(status, "a", {.options = &options}).message.find("\n  edge: unexpected"),
+            std::string::npos);
+  const auto other = refusal("threads", "threads is 9");
+  EXPECT_TRUE(error_of(other, "a", {.options = &options})
+                  .message.ends_with("\n  field threads\n  threads is 9"));
+}
+
+TEST(ServerError, GivesPlacesInThePlaneOnTheGlobe) {
+  if (!Projection::available()) GTEST_SKIP() << "built without PROJ";
+  Domain domain;
+  domain.points = {{-72, 37}, {-71, 37}, {-71, 38}};
+  const auto projection = DomainProjection::project(domain, {.lonlat = true});
+  ASSERT_TRUE(projection) << projection.error().message;
+  google::rpc::Status details;
+  google::rpc::ErrorInfo info;
+  const auto message = [&](grpc::StatusCode code) {
+    details.clear_details();
+    details.add_details()->PackFrom(info);
+    return error_of({code, "no", details.SerializeAsString()}, "a", {.projection = &*projection})
+        .message;
+  };
+  const std::string plane = "\n  no\n  places are in metres of " + projection->name();
+  EXPECT_TRUE(message(grpc::StatusCode::INVALID_ARGUMENT).ends_with(plane));
+  const Point at = projection->to_plane({-71.25, 37.5});
+  EXPECT_TRUE(message(grpc::StatusCode::RESOURCE_EXHAUSTED).ends_with("\n  no"));
+  (*info.mutable_metadata())["x"] = shortest(at.x);
+  EXPECT_TRUE(message(grpc::StatusCode::INVALID_ARGUMENT).ends_with(plane)) << "half a place";
+  (*info.mutable_metadata())["y"] = shortest(at.y);
+  const std::string globe = plane + "; this one is at longitude -71.250000, latitude 37.500000";
+  EXPECT_TRUE(message(grpc::StatusCode::INVALID_ARGUMENT).ends_with(globe))
+      << message(grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_TRUE(message(grpc::StatusCode::FAILED_PRECONDITION).ends_with(globe));
+  EXPECT_TRUE(message(grpc::StatusCode::RESOURCE_EXHAUSTED).ends_with(globe));
+  (*info.mutable_metadata())["x"] = "1e300";
+  EXPECT_TRUE(message(grpc::StatusCode::INVALID_ARGUMENT).ends_with(plane));
+  (*info.mutable_metadata())["x"] = "east";
+  EXPECT_TRUE(message(grpc::StatusCode::INVALID_ARGUMENT).ends_with(plane));
+}
+
 TEST(ServerError, KeepsACaretUnderItsColumn) {
-  const Error error =
-      error_of(refusal("size.expression", "unexpected ')'\nx + )\n    ^"), "a", nullptr);
+  const Error error = error_of(refusal("size.expression", "unexpected ')'\nx + )\n    ^"), "a");
   EXPECT_TRUE(error.message.ends_with("\n  unexpected ')'\n  x + )\n      ^"));
 }
 
 TEST(ServerError, HintsAtTheFlagsOfAConnectionThatDidNotComeAbout) {
   const auto message = [](grpc::StatusCode code, const std::string& why) {
     return error_of(grpc::Status(code, "failed to connect to all addresses; last error: " + why),
-                    "a", nullptr)
+                    "a")
         .message;
   };
   const auto unavailable = grpc::StatusCode::UNAVAILABLE;
   EXPECT_TRUE(message(unavailable, "Ssl handshake failed: SSL_ERROR_SSL: certificate verify failed")
-                  .ends_with("--tls-ca FILE names who has"));
+                  .ends_with("--tls-ca FILE adds the CA"));
   EXPECT_TRUE(message(unavailable, "Peer name a is not in peer certificate")
                   .ends_with("--tls-server-name NAME gives that name"));
   EXPECT_TRUE(message(unavailable, "Ssl handshake failed: SSL_ERROR_SSL: wrong version number")
@@ -73,7 +121,7 @@ TEST(ServerError, SaysWhichFlagTakesAMeshThatMissesItsBounds) {
   details.add_details()->PackFrom(info);
   const Error error = error_of(
       {grpc::StatusCode::FAILED_PRECONDITION, "12 triangles miss", details.SerializeAsString()},
-      "a", nullptr);
+      "a");
   EXPECT_EQ(static_cast<int>(error.exit), 73);
   EXPECT_EQ(error.message,
             "the server a answers FAILED_PRECONDITION (BOUNDS_NOT_MET)\n"
@@ -82,13 +130,12 @@ TEST(ServerError, SaysWhichFlagTakesAMeshThatMissesItsBounds) {
 }
 
 TEST(ServerError, LetsNoControlCharactersReachTheTerminal) {
-  const Error error = error_of({grpc::StatusCode::UNKNOWN, "\x1b[2Jboo"}, "a", nullptr);
+  const Error error = error_of({grpc::StatusCode::UNKNOWN, "\x1b[2Jboo"}, "a");
   EXPECT_EQ(error.message, "the server a answers UNKNOWN\n  ?[2Jboo");
 }
 
 TEST(ServerError, LivesWithDetailsThatAreGarbage) {
-  const Error error =
-      error_of({grpc::StatusCode::UNAVAILABLE, "gone", "\xff\xff garbage"}, "a", nullptr);
+  const Error error = error_of({grpc::StatusCode::UNAVAILABLE, "gone", "\xff\xff garbage"}, "a");
   EXPECT_EQ(static_cast<int>(error.exit), 78);
 }
 

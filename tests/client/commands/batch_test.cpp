@@ -43,7 +43,7 @@ TEST(QualityGate, NamesFigureValueAndBoundWhereAMeshFails) {
   EXPECT_EQ(violation("max-vertices=49", summary_of(100)), "max-vertices is 50, more than 49");
 }
 
-TEST(QualityGate, ExcusesWhatTheInputForces) {
+TEST(QualityGate, ExemptsWhatTheInputForces) {
   v1::Summary summary = summary_of(100);
   summary.mutable_unrefined()->set_small_input_angle(7);
   EXPECT_FALSE(violation("max-unrefined=0", summary));
@@ -58,7 +58,7 @@ TEST(QualityGate, ExcusesWhatTheInputForces) {
 TEST(QualityGate, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(QualityGate::parse("min-angle").error().message,
             "'min-angle' is not FIGURE=BOUND, such as min-angle=20");
-  EXPECT_NE(QualityGate::parse("angle=20").error().message.find("'angle' is no figure"),
+  EXPECT_NE(QualityGate::parse("angle=20").error().message.find("'angle' is not a figure"),
             std::string::npos);
   EXPECT_EQ(QualityGate::parse("min-angle=20x").error().message,
             "min-angle: '20x' is not a number");
@@ -147,13 +147,35 @@ meshes:
   EXPECT_EQ(meshes->back().output.writing.open_boundaries, (std::vector<std::int32_t>{3}));
 }
 
+TEST_F(Manifest, HasNamesAsTablesOrAsTheFlagDoes) {
+  const auto meshes = read(R"(
+meshes:
+  - {name: a, input: a.poly, names: {marker: {2: inlet, -3: "the wall"}, region: {1: fluid}}}
+  - {name: b, input: b.poly, names: [marker=2:in:let], output: b.14, open-boundary: [in, 3]}
+)");
+  ASSERT_TRUE(meshes) << meshes.error().message;
+  Names names;
+  ASSERT_TRUE(set_names(meshes->front().request_options.names, names));
+  EXPECT_EQ(names.markers, (NameTable{{2, "inlet"}, {-3, "the wall"}}));
+  EXPECT_EQ(names.regions, (NameTable{{1, "fluid"}}));
+  ASSERT_EQ(meshes->back().request_options.names.size(), 1u);
+  EXPECT_EQ(meshes->back().request_options.names[0].name, "in:let");
+  EXPECT_EQ(meshes->back().output.writing.open_boundaries, (std::vector<std::int32_t>{3}));
+  EXPECT_EQ(meshes->back().output.writing.open_boundary_names, (std::vector<std::string>{"in"}));
+  EXPECT_EQ(error("meshes:\n  - name: a\n    input: a.poly\n    names: {2: inlet}\n"),
+            ":4: names: not a table of ids to names");
+  EXPECT_EQ(error("meshes:\n  - name: a\n    input: a.poly\n    names: {marker: {x: inlet}}\n"),
+            ":4: names: 'marker=x:inlet' is not a name of a marker or a region, such as "
+            "marker=2:inlet");
+}
+
 TEST_F(Manifest, NamesLineAndKeyOfWhatItDoesNotUnderstand) {
   EXPECT_EQ(error("meshes:\n  - name: a\n    input: a.poly\n    siez: 1\n"),
-            ":4: 'siez' is no key here: did you mean `size`?");
+            ":4: 'siez' is not a key here: did you mean `size`?");
   EXPECT_EQ(error("meshes:\n  - name: a\n    input: a.poly\n    wondrous: 1\n"),
-            ":4: 'wondrous' is no key here");
+            ":4: 'wondrous' is not a key here");
   EXPECT_EQ(error("defaults: {min-agle: 20}\nmeshes: [{name: a, input: a.poly}]\n"),
-            ":1: 'min-agle' is no key here: did you mean `min-angle`?");
+            ":1: 'min-agle' is not a key here: did you mean `min-angle`?");
   EXPECT_EQ(error("meshes:\n  - name: a\n    input: a.poly\n    min-angle: [20]\n"),
             ":4: min-angle: not a single value");
   EXPECT_EQ(error("meshes:\n  - name: a\n    input: a.poly\n    min-angle: much\n"),
@@ -170,8 +192,9 @@ TEST_F(Manifest, NamesLineAndKeyOfWhatItDoesNotUnderstand) {
   EXPECT_EQ(error("meshes:\n  - {input: a.poly}\n"), ":2: a mesh without a name");
   EXPECT_EQ(error("meshes:\n  - {name: a}\n"), ":2: a: a mesh without an input");
   EXPECT_EQ(error("meshes: []\n"), ":1: meshes: not a list of at least one mesh");
-  EXPECT_EQ(error("mesh: []\n"), ":1: 'mesh' is no key here: there are defaults and meshes");
-  EXPECT_EQ(error("defaults: {name: a}\nmeshes: [{input: a.poly}]\n"), ":1: 'name' is no key here");
+  EXPECT_EQ(error("mesh: []\n"), ":1: 'mesh' is not a key here; the keys are defaults and meshes");
+  EXPECT_EQ(error("defaults: {name: a}\nmeshes: [{input: a.poly}]\n"),
+            ":1: 'name' is not a key here: did you mean `names`?");
   EXPECT_NE(error("meshes:\n  - {name: a, input: a.poly, output: a.xyz}\n").find(":2: output: "),
             std::string::npos);
 }

@@ -243,6 +243,53 @@ TEST_F(JobCommands, FetchWritesTheMeshAsMeshDoes) {
     EXPECT_EQ(contents, contents_of(out_file(name))) << name;
 }
 
+// As `weft mesh` does.
+TEST_F(JobCommands, DownloadsWarnOfTheBudgetAndOfMarkers) {
+  plan(v1::JOB_STATE_SUCCEEDED);
+  jobs_.mesh.back().mutable_summary()->mutable_request()->mutable_budget()->set_max_triangles(9);
+  folder_.write("odd.poly",
+                "4 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n"
+                "4 1\n1 1 2 1\n2 2 3 1\n3 3 4 1\n4 4 1 99\n0\n");
+  const std::string budget =
+      "the mesh has 32 triangles, more than the 9 of --max-triangles, because the domain alone";
+  const std::string boundary = "no edge of the mesh carries marker 7 of --open-boundary";
+  const std::string hidden = "no edge of the mesh carries marker 99 of the input";
+  const Words output = {"-o", out_file("g.14"), "--open-boundary", "7"};
+  const auto with = [&output](Words words) {
+    words.insert(words.end(), output.begin(), output.end());
+    return words;
+  };
+  ASSERT_EQ(ask(with({"submit", folder_ / "odd.poly", "--max-triangles", "9", "--wait"})), 0)
+      << err();
+  for (const std::string& warning : {budget, boundary, hidden})
+    EXPECT_NE(err().find("WARNING: " + warning), std::string::npos) << err();
+  ASSERT_EQ(ask(with({"fetch", "job-1"})), 0) << err();
+  EXPECT_NE(out().find("WARNING: " + budget), std::string::npos) << out();
+  EXPECT_NE(out().find("WARNING: " + boundary), std::string::npos) << out();
+  EXPECT_EQ(out().find(hidden), std::string::npos) << out();
+  ASSERT_EQ(ask(with({"fetch", "job-1", "--domain", folder_ / "odd.poly"})), 0) << err();
+  EXPECT_NE(out().find("WARNING: " + hidden), std::string::npos) << out();
+  jobs_.mesh.back().mutable_summary()->clear_request();
+  ASSERT_EQ(ask({"fetch", "job-1", "-o", out_file("g.14"), "--open-boundary", "1"}), 0) << err();
+  EXPECT_EQ(out().find("WARNING"), std::string::npos) << out();
+}
+
+TEST_F(JobCommands, WatchPrintsTheServersWarningsOfTheSize) {
+  v1::Job job = sample_job("a", v1::JOB_STATE_SUCCEEDED);
+  job.mutable_summary()->add_size_warnings()->set_message("the size is odd");
+  jobs_.put(job);
+  EXPECT_EQ(ask({"watch", "a"}), 0) << err();
+  EXPECT_NE(out().find("\nWARNING: the size is odd\n"), std::string::npos) << out();
+}
+
+TEST_F(JobCommands, FetchPrintsTheServersWarningsOfTheSize) {
+  jobs_.put(sample_job("job-1", v1::JOB_STATE_SUCCEEDED));
+  auto& warning = *jobs_.mesh.back().mutable_summary()->add_size_warnings();
+  warning.set_message("the size is \x1b[31modd");
+  ASSERT_EQ(ask({"fetch", "job-1", "-o", out_file("odd.vtu")}), 0) << err();
+  EXPECT_NE(out().find("\nWARNING: the size is ?[31modd\n"), std::string::npos) << out();
+}
+
 TEST_F(JobCommands, FetchGoesOnWhereItBreaks) {
   jobs_.put(sample_job("job-1", v1::JOB_STATE_SUCCEEDED));
   jobs_.fail("FetchMesh", {{.messages = 2}, {.messages = 0}, {.messages = 2}});

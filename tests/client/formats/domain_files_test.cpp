@@ -2,9 +2,9 @@
 // Domains from well-known text, shapefiles, tables of rings and meshes, and back to .poly.
 #include <gtest/gtest.h>
 
+#include "client/formats/derived/mesh_domain.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/domains/seeded.h"
-#include "client/formats/mesh_domain.h"
 #include "tests/client/support/mesh_files.h"
 #include "tests/client/support/sample_mesh.h"
 #include "tests/client/support/shapefile_writer.h"
@@ -105,6 +105,21 @@ TEST_F(DomainFile, ShapefilesBringTheirAttributes) {
   EXPECT_TRUE(domain->point_places.locate(5).ends_with("d.shp: record 0, ring 1[1]"));
   std::filesystem::remove(folder_ / "d.dbf");
   EXPECT_EQ(markers(read_domain(folder_ / "d.shp").value()), std::vector<std::int32_t>(10, 0));
+}
+
+TEST_F(DomainFile, ShapefilesHaveTheCoordinateSystemBesideThem) {
+  write_sample_shapefile(folder_ / "d");
+  EXPECT_EQ(read_domain(folder_ / "d.shp")->system, std::nullopt);
+  folder_.write("d.prj", R"(PROJCS["WGS_1984_UTM_Zone_18N",GEOGCS["GCS_WGS_1984"]])");
+  const auto plane = read_domain(folder_ / "d.shp")->system;
+  ASSERT_TRUE(plane);
+  EXPECT_EQ(plane->name, "WGS_1984_UTM_Zone_18N");
+  EXPECT_FALSE(plane->geographic);
+  EXPECT_TRUE(plane->definition.starts_with("PROJCS["));
+  folder_.write("d.prj", R"(GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984"]])");
+  EXPECT_TRUE(read_domain(folder_ / "d.shp")->system->geographic);
+  folder_.write("d.prj", "\"");
+  EXPECT_EQ(read_domain(folder_ / "d.shp")->system, std::nullopt);
 }
 
 TEST_F(DomainFile, ShapefilesTellWhatIsMissing) {

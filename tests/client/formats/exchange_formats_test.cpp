@@ -46,6 +46,30 @@ TEST_F(ExchangeFormat, NpzAndObjComeBackAsTheyWere) {
   }
 }
 
+TEST_F(ExchangeFormat, PartsComeBack) {
+  Mesh mesh = square_mesh(2);
+  mesh.parts = {0, 0, 1, 1, 2, 2, 3, 3};
+  for (const char* name : {"m.npz", "m.vtu", "m.nc"}) {
+    const auto back = round_trip(mesh, name);
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(back->parts, mesh.parts) << name;
+  }
+}
+
+TEST_F(ExchangeFormat, PartsThatAreNoneAreRefusedOrLeftOutOfVtu) {
+  Mesh mesh = square_mesh(1);
+  mesh.parts = {0, -1};
+  for (const char* name : {"m.npz", "m.nc"}) {
+    const auto back = round_trip(mesh, name);
+    ASSERT_FALSE(back) << name;
+    EXPECT_TRUE(back.error().message.ends_with("triangle 1 has the part -1, they count from 0"))
+        << back.error().message;
+  }
+  const auto back = round_trip(mesh, "m.vtu");
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_TRUE(back->parts.empty());
+}
+
 TEST_F(ExchangeFormat, Su2AndAdcircComeBackWithTheirBoundary) {
   const Mesh mesh = square_mesh(30);
   for (const char* name : {"m.su2", "m.14", "m.GRD"}) {
@@ -66,8 +90,10 @@ TEST_F(ExchangeFormat, OffComesBackWithItsTriangles) {
 }
 
 TEST_F(ExchangeFormat, EveryFormatTakesAMeshThatIsEmpty) {
-  for (const char* name : {"m.vtu", "m.msh", "m.node", "m.edge", "m.neigh", "m.14", "m.su2",
-                           "m.npz", "m.geojson", "m.obj", "m.off", "m.ply", "m.stl"})
+  std::filesystem::create_directories(folder_ / "constant/polyMesh");  // of .foam
+  for (const char* name : {"m.vtu", "m.msh", "m.node", "m.edge", "m.neigh",   "m.14",  "m.su2",
+                           "m.2dm", "m.nc",  "m.slf",  "m.npz",  "m.geojson", "m.obj", "m.off",
+                           "m.ply", "m.stl", "m.xdmf", "m.exo",  "m.disv",    "m.foam"})
     EXPECT_TRUE(write_files(MeshView{}, folder_ / name)) << name;
   for (const char* name :
        {"m.vtu", "m.msh", "m.node", "m.14", "m.su2", "m.npz", "m.obj", "m.off"}) {
@@ -83,7 +109,7 @@ TEST_F(ExchangeFormat, AdcircTellsOpenBoundariesFromLandByMarker) {
   write_mesh(*mesh_format("fort.14"), square_mesh(1).view(), files, {.open_boundaries = {2, 3}});
   ASSERT_TRUE(commit(files));
   EXPECT_EQ(contents_of(folder_ / "fort.14"),
-            "weft\n2 4\n1 0 0 0.0\n2 1 0 0.0\n3 0 1 0.0\n4 1 1 0.0\n1 3 1 2 4\n2 3 1 4 3\n"
+            "weft\n2 4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 1 1 0\n1 3 1 2 4\n2 3 1 4 3\n"
             "2 = Number of open boundaries\n4 = Total number of open boundary nodes\n"
             "2 0 = Number of nodes for open boundary 1, marker 2\n2\n4\n"
             "2 0 = Number of nodes for open boundary 2, marker 3\n4\n3\n"
@@ -199,7 +225,8 @@ TEST_F(ExchangeFormat, SecondOrderIsForFormatsThatHaveIt) {
   ASSERT_FALSE(checked);
   EXPECT_EQ(checked.error().exit, ExitCode::kUsage);
   EXPECT_EQ(checked.error().message,
-            "m.su2: the extension '.su2' is not that of a mesh of second order: .vtu, .msh, .node");
+            "m.su2: the extension '.su2' is not that of a mesh of second order: .vtu, .msh, .node, "
+            ".xdmf, .exo, .e");
 }
 
 }  // namespace

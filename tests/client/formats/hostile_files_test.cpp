@@ -62,8 +62,11 @@ class HostileMesh : public testing::TestWithParam<const char*> {};
 
 TEST_P(HostileMesh, IsRefusedOrRead) {
   TempFolder folder;
-  const Mesh mesh = square_mesh(3);
-  for (const char* name : {"m.node", "m.vtu", "m.msh", "m.14", "m.su2", "m.npz", "m.obj", "m.off"})
+  Mesh mesh = square_mesh(3);
+  mesh.names.markers = {{1, "inlet"}, {2, "out & let"}, {3, "w\u00e4nd"}};
+  mesh.names.regions = {{7, "fluid"}};
+  for (const char* name :
+       {"m.node", "m.vtu", "m.msh", "m.14", "m.su2", "m.npz", "m.obj", "m.off", "m.2dm", "m.nc"})
     ASSERT_TRUE(write_files(mesh.view(), folder / name));
   const std::filesystem::path path = folder / GetParam();
   damage(path, [&path] {
@@ -80,7 +83,7 @@ TEST_P(HostileMesh, IsRefusedOrRead) {
 
 INSTANTIATE_TEST_SUITE_P(Formats, HostileMesh,
                          testing::Values("m.node", "m.ele", "m.poly", "m.vtu", "m.msh", "m.14",
-                                         "m.su2", "m.npz", "m.obj", "m.off"));
+                                         "m.su2", "m.npz", "m.obj", "m.off", "m.2dm", "m.nc"));
 
 TEST(HostileMesh, OfGmsh22IsRefusedOrRead) {
   TempFolder folder;
@@ -105,7 +108,7 @@ TEST(HostileDomain, GeoJsonIsRefusedOrRead) {
   TempFolder folder;
   const auto path =
       folder.write("d.geojson", R"({"type": "FeatureCollection", "features": [{"type": "Feature",
-      "properties": {"marker": 3, "region": 4, "max_area": 0.5}, "geometry": {"type":
+      "properties": {"marker": 3, "region": "bay", "max_area": 0.5}, "geometry": {"type":
       "MultiPolygon", "coordinates": [[[[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]],
       [[1, 1], [2, 1], [2, 2], [1, 1]]]]}}, {"type": "Feature", "properties": null, "geometry":
       {"type": "LineString", "coordinates": [[0.5, 0.5], [3.5, 0.5]]}}]})");

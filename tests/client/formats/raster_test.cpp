@@ -56,7 +56,7 @@ TEST_F(RasterFile, IsRefusedWhereACellHasNoPositiveValue) {
   const std::string header =
       "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n";
   EXPECT_EQ(refusal(header + "1 -9999\n"),
-            "g.asc:7:3: a cell without a value: the bound there is for you to say");
+            "g.asc:7:3: a cell without a value, but a size needs one in every cell");
   EXPECT_EQ(refusal(header + "0 1\n"), "g.asc:7:1: the bound on the area is not positive");
   EXPECT_EQ(refusal(header + "nan 1\n").substr(0, 8), "g.asc:7:");
 }

@@ -24,6 +24,20 @@ TEST(JobText, ListsJobsInATable) {
   EXPECT_EQ(job_table({}), "ID  STATE  CREATED  DONE  TRIANGLES  ERROR\n");
 }
 
+TEST(JobText, NamesClientsIfTheServerTellsThemApart) {
+  std::vector<v1::Job> jobs = {sample_job("job-9", v1::JOB_STATE_FAILED),
+                               sample_job("job-8", v1::JOB_STATE_QUEUED)};
+  jobs[0].set_client("ann");
+  jobs[1].set_client("b\x1b[2J");
+  EXPECT_EQ(job_table(jobs),
+            "ID     STATE   CREATED               DONE  TRIANGLES  CLIENT  ERROR\n"
+            "job-9  failed  2026-11-20T16:00:00Z                   ann     RESOURCE_EXHAUSTED "
+            "(BUDGET_EXCEEDED)\n"
+            "job-8  queued  2026-11-20T16:00:00Z                   b?[2J\n");
+  EXPECT_NE(job_text(jobs[0]).find("\nclient     ann\n"), std::string::npos);
+  EXPECT_EQ(job_json(jobs[0])["client"], "ann");
+}
+
 TEST(JobText, SaysOneFieldALine) {
   v1::Job job = sample_job("job-1", v1::JOB_STATE_SUCCEEDED);
   job.set_request_id("nightly");
@@ -38,7 +52,7 @@ TEST(JobText, SaysOneFieldALine) {
             "attempts   1\n"
             "worker     mill-1\n"
             "mesh       32 triangles, 25 vertices, angles 45.00 to 90.00 degrees\n"
-            "           2 triangles miss a bound: the most triangles allowed were reached\n");
+            "           2 triangles miss a bound because --max-triangles was reached\n");
   EXPECT_NE(job_text(sample_job("job-1", v1::JOB_STATE_FAILED))
                 .find("error      RESOURCE_EXHAUSTED (BUDGET_EXCEEDED)\n"
                       "           the mesh needs more than 1000 bytes\n"),
@@ -58,12 +72,16 @@ TEST(JobText, GivesProgramsTheFieldsThatAreSet) {
   EXPECT_EQ(job_json(sample_job("job-1", v1::JOB_STATE_FAILED))["error"],
             Json::parse(R"({"code": 8, "reason": "BUDGET_EXCEEDED", "fields": [],
               "message": "the mesh needs more than 1000 bytes"})"));
-  EXPECT_EQ(job_json(sample_job("job-1", v1::JOB_STATE_SUCCEEDED))["summary"]["triangles"], 32);
+  v1::Job done = sample_job("job-1", v1::JOB_STATE_SUCCEEDED);
+  EXPECT_EQ(job_json(done)["summary"]["triangles"], 32);
+  EXPECT_FALSE(job_json(done).contains("warnings"));
+  done.mutable_summary()->add_size_warnings()->set_message("the size is odd");
+  EXPECT_EQ(job_json(done)["warnings"], Json({"the size is odd"}));
 }
 
 TEST(JobText, MakesAnErrorOfEveryEndButSuccess) {
   const auto exit_of = [](v1::JobState state) {
-    const auto error = job_error(sample_job("job-1", state), nullptr);
+    const auto error = job_error(sample_job("job-1", state));
     return error ? static_cast<int>(error->exit) : 0;
   };
   EXPECT_EQ(exit_of(v1::JOB_STATE_SUCCEEDED), 0);
@@ -71,7 +89,7 @@ TEST(JobText, MakesAnErrorOfEveryEndButSuccess) {
   EXPECT_EQ(exit_of(v1::JOB_STATE_CANCELLED), 65);
   EXPECT_EQ(exit_of(v1::JOB_STATE_RUNNING), 73);
   EXPECT_EQ(exit_of(v1::JOB_STATE_QUEUED), 73);
-  EXPECT_EQ(job_error(sample_job("job-1", v1::JOB_STATE_FAILED), nullptr)->message,
+  EXPECT_EQ(job_error(sample_job("job-1", v1::JOB_STATE_FAILED))->message,
             "the job job-1 failed with RESOURCE_EXHAUSTED (BUDGET_EXCEEDED)\n"
             "  the mesh needs more than 1000 bytes");
 }
@@ -85,7 +103,7 @@ TEST(JobText, LivesWithJobsThatMakeNoSense) {
   EXPECT_EQ(job_text(job).find('\x1b'), std::string::npos);
   EXPECT_EQ(job_table({{job}}).find('\x1b'), std::string::npos);
   EXPECT_FALSE(json_line(job_json(job)).empty());
-  EXPECT_EQ(job_error(job, nullptr)->exit, ExitCode::kInternal);
+  EXPECT_EQ(job_error(job)->exit, ExitCode::kInternal);
   job.set_state(static_cast<v1::JobState>(77));
   EXPECT_NE(job_text(job).find("state      unknown\n"), std::string::npos);
 }

@@ -56,7 +56,7 @@ TEST(ProgressBar, DoesNotOverflowWhenTheEstimateWasLow) {
             "receiving [##############################] 9 triangles so far");
 }
 
-// Of the work a third is left when nearly all triangles are there.
+// A third of the work is left when nearly all triangles are made.
 TEST(ProgressBar, TellsOneShareOfTheWorkOnly) {
   const v1::Progress late = at(v1::STAGE_REFINE, 9'548'285, 9'704'887, 0.75);
   EXPECT_EQ(progress_text(late, false), "refining, 75 % done, 9,548,285 triangles so far");

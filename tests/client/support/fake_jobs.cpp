@@ -331,7 +331,7 @@ grpc::Status queue_full(std::int64_t milliseconds) {
   retry.mutable_retry_delay()->set_nanos(
       static_cast<std::int32_t>(milliseconds % 1000 * 1'000'000));
   details.add_details()->PackFrom(retry);
-  return {grpc::StatusCode::RESOURCE_EXHAUSTED, "64 jobs wait already",
+  return {grpc::StatusCode::RESOURCE_EXHAUSTED, "64 calls wait already",
           details.SerializeAsString()};
 }
 

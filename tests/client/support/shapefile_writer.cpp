@@ -43,4 +43,23 @@ void write_sample_shapefile(const std::filesystem::path& base) {
   ::DBFClose(table);
 }
 
+void write_named_shapefile(const std::filesystem::path& base) {
+  SHPInfo* shapes = ::SHPCreate(base.c_str(), SHPT_POLYGON);
+  add(shapes, {{0, 0, 4, 0}, {0, 4, 0, 0}, {0}});
+  add(shapes, {{10, 10, 11, 10}, {0, 1, 0, 0}, {0}});
+  ::SHPClose(shapes);
+
+  DBFInfo* table = ::DBFCreate(base.c_str());
+  ::DBFAddField(table, "marker", FTString, 20, 0);
+  ::DBFAddField(table, "region", FTInteger, 9, 0);
+  ::DBFAddField(table, "region_nam", FTString, 20, 0);
+  ::DBFWriteStringAttribute(table, 0, 0, "coast");
+  ::DBFWriteIntegerAttribute(table, 0, 1, 5);
+  ::DBFWriteStringAttribute(table, 0, 2, "bay");
+  ::DBFWriteStringAttribute(table, 1, 0, "island");
+  ::DBFWriteNULLAttribute(table, 1, 1);
+  ::DBFWriteNULLAttribute(table, 1, 2);
+  ::DBFClose(table);
+}
+
 }  // namespace weft::client

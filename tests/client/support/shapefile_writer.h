@@ -10,4 +10,7 @@ namespace weft::client {
 // max_area 0.5; and a triangle, marker 4, without the others.
 void write_sample_shapefile(const std::filesystem::path& base);
 
+// Two triangles: marker "coast" and region 5, "bay"; marker "island" without a region.
+void write_named_shapefile(const std::filesystem::path& base);
+
 }  // namespace weft::client

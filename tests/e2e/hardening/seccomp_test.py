@@ -140,7 +140,7 @@ def test_the_console_is_served(server: Server, certificate: pathlib.Path) -> Non
 
 
 def test_the_health_check_of_the_image_works_under_the_profile(server: Server) -> None:
-    assert run(*UNDER_PROFILE, WEFT, "health", "--server", server.socket) == "serving\n"
+    run(*UNDER_PROFILE, WEFTD, "--health", "--listen", server.socket)
 
 
 def test_sigterm_drains(server: Server) -> None:

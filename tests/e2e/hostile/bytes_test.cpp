@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes that no client of ours sends, on every method there is: each call is answered, and the
-// server goes on.
+// Bytes that no client of weft sends, for every method: each call is answered, and the server goes
+// on.
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/dynamic_message.h>
 #include <google/protobuf/message.h>
@@ -74,7 +74,7 @@ class Scribbler {
   google::protobuf::DynamicMessageFactory factory_;
 };
 
-// What parsers have stumbled over.
+// Bytes that parsers have failed on.
 std::vector<std::string> malformed() {
   return {
       "",

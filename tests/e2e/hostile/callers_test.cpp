@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What callers whom the server knows can do to it: a message costs no more memory than its bytes
+// What callers that the server knows can do to it: a message takes no more memory than its bytes
 // and what the limits admit, and one that does not come is given up.
 #include <gtest/gtest.h>
 

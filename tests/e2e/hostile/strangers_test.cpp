@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What callers without a token can do to a server that wants one: its memory and its log stay
+// What callers without a token can do to a server that requires one: its memory and its log stay
 // small, and others are answered meanwhile. Before calls were identified ahead of their messages,
-// on two cores: unknown fields 604 MB for 60 MiB, bodies that never end 2,072 MB, resets 863 MB.
+// the memory on two cores was: unknown fields 604 MB for 60 MiB, bodies that never end 2,072 MB,
+// resets 863 MB.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -28,9 +29,9 @@ using std::chrono::seconds;
 using std::chrono::steady_clock;
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
-// That a stranger may raise the server's memory by.
+// By how much a stranger may raise the server's memory.
 constexpr std::uint64_t kMostMemory = 64 * kMiB;
-// That he may make it log: at once, and in each second that a test takes.
+// How much a stranger may make it log: at once, and in each second that a test takes.
 constexpr double kMostLog = 50'000;
 constexpr double kMostLogPerSecond = 1'000'000 / 60.0;
 constexpr const char* kToken = "an-honest-clients-token";
@@ -89,7 +90,7 @@ TEST_F(Strangers, GainNothingByUnknownFields) {
   const auto channel = connect(tcp());
   for (const std::string method : kMethods)
     for (const std::string& part : {std::string("\x7b\x7c"), std::string("\x78\x00", 2)})
-      // A watch goes on by its nature.
+      // A watch goes on by design.
       if (!method.ends_with("/Watch"))
         (void)raw_unary(channel, method.c_str(), repeated(part, 8 * kMiB));
   expect_no_harm();

@@ -37,8 +37,8 @@ struct RandomGraph {
   Edges edges;
 };
 
-// Takes down when tasks begin and end. Plain integers, so that ThreadSanitizer also judges whether
-// what a task wrote is seen by those that depend on it.
+// Records when tasks begin and end. These are plain integers, so that ThreadSanitizer also judges
+// whether what a task wrote is visible to tasks that depend on it.
 class Record {
  public:
   explicit Record(const RandomGraph& g) : edges_(g.edges), ended_(g.graph.size(), 0) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The same domain gives the same bytes, whatever the heap holds and on whatever thread it is made.
 #include <gtest/gtest.h>
 
 #include <cstring>

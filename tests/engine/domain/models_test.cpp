@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The domains of the models in tests/models.
 #include <gtest/gtest.h>
 
 #include "engine/domain/domain.h"

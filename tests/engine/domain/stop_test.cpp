@@ -2,6 +2,7 @@
 // Cancellation, deadline, budgets, limits.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -64,15 +65,21 @@ TEST(Stop, ACancelledJobDoesNoWork) {
   EXPECT_EQ(stopped(square(), context), ErrorCode::kCancelled);
 }
 
-// Stops within kPromptly of the deadline; where the work is done before it, that is as well.
-ErrorCode expect_prompt_stop(const Pslg& pslg, std::int64_t ms) {
+// Stops soon after the deadline, or ends before it. One of three tries must succeed, because other
+// programs slow the release of memory in processor time, too.
+ErrorCode expect_prompt_stop(const Pslg& pslg, std::int64_t ms, std::int64_t soon = kPromptly) {
   SCOPED_TRACE(ms);
-  ExecutionContext context;
-  const nanoseconds start = processor_time();
-  context.set_deadline(ExecutionContext::Clock::now() + milliseconds(ms));
-  const ErrorCode code = stopped(pslg, context);
-  EXPECT_LE(duration_cast<milliseconds>(processor_time() - start).count(), ms + kPromptly);
-  return code;
+  std::int64_t took = 0;
+  for (int i = 0; i < 3; ++i) {
+    ExecutionContext context;
+    const nanoseconds start = processor_time();
+    context.set_deadline(ExecutionContext::Clock::now() + milliseconds(ms));
+    const ErrorCode code = stopped(pslg, context);
+    took = duration_cast<milliseconds>(processor_time() - start).count();
+    if (took <= ms + soon) return code;
+  }
+  ADD_FAILURE() << "stopped after " << took << " ms";
+  return ErrorCode::kInternal;
 }
 
 void expect_prompt_stops(const Pslg& pslg) {
@@ -80,13 +87,15 @@ void expect_prompt_stops(const Pslg& pslg) {
     EXPECT_EQ(expect_prompt_stop(pslg, ms), ErrorCode::kDeadlineExceeded);
 }
 
-// After so many tenths of the time that the whole takes.
+// After so many tenths of the time that the whole takes, and by the next tenth where the machine is
+// slow.
 void expect_prompt_stops(const Pslg& pslg, std::initializer_list<int> tenths) {
   const ExecutionContext context;
   const nanoseconds start = processor_time();
   ASSERT_TRUE(triangulate(pslg, context));
   const auto whole = duration_cast<milliseconds>(processor_time() - start).count();
-  for (const int tenth : tenths) expect_prompt_stop(pslg, whole * tenth / 10);
+  const std::int64_t soon = std::max<std::int64_t>(kPromptly, whole / 10);
+  for (const int tenth : tenths) expect_prompt_stop(pslg, whole * tenth / 10, soon);
 }
 
 // A million where nothing slows it down.
@@ -138,7 +147,8 @@ TEST(Stop, PointsOverTheByteBudgetAreRefusedBeforeWork) {
   ASSERT_FALSE(domain);
   EXPECT_EQ(domain.error().code, ErrorCode::kBudgetExceeded);
   EXPECT_EQ(domain.error().message,
-            "triangulating the domain takes about 1120 bytes, the limit is 1000");
+            "triangulating the domain takes about 1120 bytes with all that the run holds, the "
+            "budget is 1000");
 }
 
 TEST(Stop, CrossingsOverTheByteBudgetAreRefused) {

@@ -93,7 +93,7 @@ TEST(BoundsError, IsNoneForWhatTheCallersBudgetLeaves) {
   const auto summary = generate_mesh(request, mesh, context);
   ASSERT_TRUE(summary) << summary.error().message;
   EXPECT_GT(summary->unrefined.budget, 0u);
-  EXPECT_EQ(summary->unrefined.without_excuse(), 0u);
+  EXPECT_EQ(summary->unrefined.without_exemption(), 0u);
 }
 
 TEST(BoundsError, EndsAStreamAfterItsChunksAndIsTheSameOnAnyNumberOfThreads) {
@@ -141,7 +141,10 @@ std::string message_of(const Unrefined& unrefined) {
   Summary summary;
   summary.unrefined = unrefined;
   summary.unrefined_at = {0.25, -2};
-  return bounds_error(summary, 20).value_or(Error{}).message;
+  const Error error = bounds_error(summary, 20).value_or(Error{});
+  EXPECT_EQ(error.at.has_value(), !error.message.empty());
+  EXPECT_EQ(error.at.value_or(summary.unrefined_at), summary.unrefined_at);
+  return error.message;
 }
 
 TEST(BoundsError, TellsTheReasonsApart) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several jobs on one arena.
+// Several runs on one arena.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -11,7 +11,7 @@
 namespace weft {
 namespace {
 
-// Blocks at one chunk until it may go on.
+// Blocks at a chunk until it is allowed to go on.
 struct BlockingSink : ChunkSink {
   explicit BlockingSink(std::uint32_t at) : at(at) {}
   bool accept(Chunk&& chunk) override {

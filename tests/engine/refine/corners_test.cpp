@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kRadians = 3.14159265358979323846 / 180;
 
-// What the checker accepts, with all that was not excused within its bounds.
+// What the checker accepts, with all that was not exempt within its bounds.
 Summary mesh(const Pslg& pslg, double min_angle_deg, const SizeSpec& size = {}) {
   const MeshRequest request{.pslg = pslg, .size = size, .min_angle_deg = min_angle_deg};
   CollectedMesh collected;
@@ -239,7 +239,7 @@ TEST(Wedge, WithALongerArmBetweenOthersIsMatchedByEach) {
   EXPECT_LE(mesh(pslg, 20).triangles, 300u);
 }
 
-TEST(Wedge, BetweenEndsAtNearlyTheSameDistanceIsExcusedByNeither) {
+TEST(Wedge, BetweenEndsAtNearlyTheSameDistanceIsExemptByNeither) {
   // The arm between is split at the distance of one; the other's is off by 6e-7 of it.
   Pslg pslg;
   add_box(pslg, {-1, -1}, {2, 2});

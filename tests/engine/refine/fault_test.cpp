@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory that runs out, at any moment and on any thread, ends the job with a typed error and leaves
-// the arena fit for the next.
+// Memory that runs out, at any moment and on any thread, ends the run with a typed error and leaves
+// the arena fit for the next run.
 #include <gtest/gtest.h>
 
 #include <atomic>

@@ -165,19 +165,45 @@ TEST(GrantedMemory, IsAskedForBeforeTheDomainIsTriangulated) {
   EXPECT_GT(source.asked, 20'000 * 200);
 }
 
-TEST(Context, CallsOnceWhatIsToBeCalledAtATime) {
+// Whatever stopped it, and however far it came.
+TEST(Context, ServesAJobThatBeginsAgain) {
+  const MeshRequest request = busy_square(200'000, 4'000);
+  const std::string expected = outcome(mesh_on(nullptr, request));
+  Arena arena(2);
   ExecutionContext context;
-  int called = 0;
-  context.call_at(ExecutionContext::Clock::now() + std::chrono::milliseconds(5), [&] {
-    ++called;
-    EXPECT_FALSE(context.poll());  // as a wait in it does
-  });
-  EXPECT_FALSE(context.poll());
-  EXPECT_EQ(called, 0);
-  std::this_thread::sleep_for(std::chrono::milliseconds(6));
-  EXPECT_FALSE(context.poll());
-  EXPECT_FALSE(context.poll());
-  EXPECT_EQ(called, 1);
+  context.set_deadline(ExecutionContext::Clock::now() + std::chrono::milliseconds(5));
+  ForgetfulSink sink;
+  const auto first = generate_mesh(request, sink, context);
+  ASSERT_FALSE(first);
+  EXPECT_EQ(first.error().code, ErrorCode::kDeadlineExceeded);
+  context.begin_again();
+  EXPECT_EQ(context.progress().stage, Stage::kQueued);
+  EXPECT_EQ(context.progress().triangles, 0);
+  context.set_deadline(ExecutionContext::Clock::now() + std::chrono::minutes(5));
+  context.set_arena(arena);
+  const auto again = generate_mesh(request, sink, context);
+  EXPECT_EQ(outcome(again), expected);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(context.progress().triangles, again->triangles);
+}
+
+TEST(Context, ReportsNoSmallerFractionIfItsRunBeginsAgain) {
+  ExecutionContext context;
+  context.add_fraction(0.4);
+  context.begin_again();
+  EXPECT_EQ(context.progress().fraction, 0.4);
+  context.add_fraction(0.3);
+  EXPECT_EQ(context.progress().fraction, 0.4);
+  context.add_fraction(0.3);
+  EXPECT_EQ(context.progress().fraction, 0.6);
+}
+
+TEST(Context, StaysCancelledIfItsJobBeginsAgain) {
+  ExecutionContext context;
+  context.cancel();
+  context.begin_again();
+  ASSERT_TRUE(context.poll());
+  EXPECT_EQ(context.poll()->code, ErrorCode::kCancelled);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the mesh lies while it is refined: blocks by runs of a thread, and pages that outlive jobs.
+// Where the mesh is stored while it is refined: blocks by the runs of a thread, and pages that
+// outlive runs of the engine.
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "engine/engine.h"
@@ -17,7 +18,7 @@ namespace weft {
 namespace {
 
 // Meshes, and holds the mesh to the checker: all triangles are within their bounds, and there is no
-// input angle to excuse one.
+// input angle to exempt one.
 Summary within_bounds(const MeshRequest& request) {
   CollectedMesh collected;
   ExecutionContext context;
@@ -50,6 +51,30 @@ void for_plans(int count, Check&& check) {
                                     << plan.decimals << " decimals");
     check(plan);
   }
+}
+
+// Random segments, of which some are led through ends and along edges of others: the checker, which
+// knows only the mesh, finds their chains by trying.
+TEST(Merged, SegmentsAreFoundBesideOthers) {
+  MeshRequest request{.allow_unrefined = true};
+  add_box(request.pslg, {0, 0}, {1, 1});
+  const std::pair<Point, Point> segments[] = {
+      {{0.061564942882428753, 0.29759135786384261}, {0.038700030712937372, 0.5328858185756512}},
+      {{0.7417828504969165, 0.12145409875747326}, {0.9048694263830922, 0.6485239559575513}},
+      {{0.48517176307808374, 0.21224425466129426}, {0.52022179948258629, 0.73986922960504942}},
+      {{0.72636652257181911, 0.92016494844089691}, {0.48811189306285901, 0.72975938237654936}},
+      {{0.41388290829491858, 0.78587545002865689}, {0.58603064785998105, 0.24795625991059245}},
+      {{0.75779811810511444, 0.77743740346530832}, {0.48697094574381861, 0.72784325026041241}},
+      {{0.21152955844936905, 0.61672315724551707}, {0.80242084227332788, 0.5479684135517533}},
+      {{0.1543615295380073, 0.87310162200032693}, {0.49168957682829106, 0.22910919071797287}}};
+  for (const auto& [from, to] : segments) add_segment(request.pslg, from, to);
+  request.pslg.holes = {{0.38240671608883281, 0.2073900116217513}};
+  request.pslg.snap = 0.01;
+  CollectedMesh collected;
+  ExecutionContext context;
+  const auto summary = generate_mesh(request, collected, context);
+  ASSERT_TRUE(summary) << summary.error().message;
+  EXPECT_EQ(verdict(request, collected, *summary), "");
 }
 
 TEST(FloorPlans, AreMeshedWithinTheirBounds) {

@@ -63,7 +63,7 @@ TEST(Needles, InAFanOfHolesKeepTheirSidesApart) {
 }
 
 // The piece that is not split has triangles on one side alone, and its far end is what is too near.
-TEST(Needles, RefusedForTheShortestEdgeAreExcusedByIt) {
+TEST(Needles, RefusedForTheShortestEdgeAreExemptByIt) {
   MeshRequest request{.min_angle_deg = 25, .min_edge = 261.90476190476193};
   request.pslg.points = {{4800, 3600},     {-1000, 8000},          {4203.4, 4398.8},
                          {4202.8, 4404.6}, {4212.0625, 4400.0625}, {0, 0}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every way to end a job early, on several threads.
+// Every way to end a run early, on several threads.
 #include <gtest/gtest.h>
 #include <malloc.h>
 #include <unistd.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One request, one mesh, bit for bit: at every number of threads, and without an arena. Leaves are
-// small, so that borders dominate. Each mesh is judged once; what is the same needs no second look.
+// One request, one mesh, bit for bit, at every number of threads and without an arena. Leaves are
+// small, so that borders dominate. Each mesh is judged once, because equal meshes need no second
+// judgement.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -304,7 +305,7 @@ INSTANTIATE_TEST_SUITE_P(Of, ParallelSegments, testing::Values(SizeSpec{}, SizeS
                            return info.param.value.index() != 0 ? "ASize" : "NoSize";
                          });
 
-// What leaves add to the triangles of one leaf: 1.02 is 2 %.
+// How many triangles leaves add to those of one leaf: 1.02 is 2 %.
 double cost_of_leaves(MeshRequest request, std::size_t* leaves) {
   const auto many = mesh_on(nullptr, request);
   request.leaf_triangles = std::numeric_limits<double>::infinity();
@@ -334,7 +335,7 @@ TEST(Leaves, ThatAreNotBusyKeepTheGuarantee) {
   const auto summary = expect_one_mesh(request);
   ASSERT_TRUE(summary);
   EXPECT_GE(summary->leaves.size(), 64u);
-  EXPECT_EQ(summary->unrefined.without_excuse(), 0u);
+  EXPECT_EQ(summary->unrefined.without_exemption(), 0u);
 }
 
 TEST(Leaves, AreSmallerThanAMillionthOfTheDomainWhereASpotIs) {

@@ -156,6 +156,18 @@ TEST(Placement, OfHostileSizesEndsWithASoundMeshOrATypedError) {
   }
 }
 
+// A millionth of a grain is less there than the distance of two coordinates.
+TEST(Placement, EndsFarFromTheOrigin) {
+  MeshRequest request;
+  add_ring(request.pslg, {{499999.9, 4649999.9},
+                          {499999.90081289806, 4649999.9},
+                          {499999.90081289806, 4649999.900484917},
+                          {499999.9, 4649999.900812899}});
+  request.size = "1.6257960545553545e-05 + 0.05*hypot(x-499999.9007186544, y-4649999.900133713)";
+  request.size.measure = Measure::kEdge;
+  EXPECT_GT(sound(request).summary.triangles, 500u);
+}
+
 TEST(Placement, IsTheSameAtEveryNumberOfThreads) {
   std::vector<MeshRequest> requests{sized_square("1e-3*(1.5+sin(x)*cos(y))", 30),
                                     sized_square("hypot(x-5,y-5)<3 ? 1e-3 : 1e-2"),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a job tells of its progress, sampled whenever a chunk leaves.
+// What a run reports of its progress, sampled whenever a chunk leaves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -66,7 +66,7 @@ TEST(Fraction, OfAMeshThatIsCutOffIsOfTheTrianglesAllowed) {
   EXPECT_EQ(context.progress().fraction, 1);
 }
 
-// What is there to see while one task refines: no chunk has left.
+// What can be seen while one task refines, before any chunk has left.
 TEST(Fraction, FollowsTheTrianglesWhereOneTaskMakesThem) {
   ExecutionContext context;
   context.report_expected(1'000);

@@ -78,7 +78,7 @@ TEST_P(Quadtrees, HaveTheDomainInTheirSquare) {
   });
 }
 
-// The most that the leaves weigh that a line across x, or across y, cuts.
+// The largest total weight of leaves that a line across x, or across y, cuts.
 double most_cut(const std::vector<Quadtree::Leaf>& leaves, bool along_x) {
   double most = 0;
   for (const Quadtree::Leaf& at : leaves) {

@@ -116,6 +116,54 @@ TEST(SizeSpec, WithALimitToItsGradationGrowsByNoMore) {
   EXPECT_GE(edge(3), 1.1 * 0.95);
 }
 
+// The limit of min(a, b) is the least of both limits; that of a steep distance is known without a
+// search, whatever stands beside it.
+TEST(SizeSpec, OfALeastValueIsLimitedInItsParts) {
+  const auto limited = [](const std::string& expression) {
+    SizeSpec spec = with_field(expression, DistanceSpec{});
+    spec.measure = Measure::kEdge;
+    spec.gradation = 0.2;
+    auto size = made(spec);
+    EXPECT_TRUE(size) << size.error().message;
+    return std::move(*size);
+  };
+  const auto edge = [](const Size& size, Point p) {
+    return SizeFunction::edge_of_area(size.function()(p));
+  };
+  const Size by_border = limited("0.1 + 0.9*f");
+  const Size by_place = limited("0.3 + 0.7*x");
+  const Size both = limited(" min(0.1 + 0.9*f, max(0.3, 0.2) + 0.7*x)");
+  const Size other_order = limited("min(0.3 + 0.7*x, min(0.1 + 0.9*f, 10))");
+  const Size in_a_sum = limited("0 + min(0.1 + 0.9*f, 0.3 + 0.7*x)");
+  for (double x = 0.05; x < 4; x += 0.17) {
+    for (double y = 0.05; y < 4; y += 0.17) {
+      const Point p{x, y};
+      const double least = std::min(edge(by_border, p), edge(by_place, p));
+      EXPECT_LE(edge(both, p), least * (1 + 1e-12)) << x << " " << y;
+      EXPECT_GE(edge(both, p), least * 0.95);
+      EXPECT_GE(edge(other_order, p), least * 0.95);
+      const Interval bounds = both.function().bounds({x, y, x + 0.1, y + 0.1});
+      EXPECT_LE(bounds.lo, both.function()(p));
+      EXPECT_GE(bounds.hi, both.function()({x + 0.05, y + 0.1}));
+    }
+  }
+  // At the border itself the sources would have lowered it.
+  EXPECT_EQ(edge(both, {3.9, 0}), edge(by_border, {3.9, 0}));
+  EXPECT_LT(both.bytes(), in_a_sum.bytes());
+}
+
+TEST(SizeSpec, OfALeastValueNamesTheFieldThatIsUndefined) {
+  SizeSpec spec = with_field("min(1 + 0.9*f, g)", DistanceSpec{});
+  spec.fields.push_back({"g", FieldRaster{{0, 0}, 1, 1, 3, 3, std::vector<float>(9, 2)}});
+  spec.gradation = 0.2;
+  const auto size = made(spec);
+  ASSERT_TRUE(size) << size.error().message;
+  EXPECT_TRUE(std::isnan(size->function()({3, 3})));
+  EXPECT_EQ(size->function().asked_at({3, 3}).undefined, std::vector<std::string>{"g"});
+  EXPECT_TRUE(size->function().bounds({1, 1, 3, 3}).may_be_nan);
+  EXPECT_GT(size->function()({1, 1}), 0);
+}
+
 TEST(SizeSpec, AtAMarkerGrowsFromItsSegmentsByTheGradation) {
   SizeSpec spec = 1.0;
   spec.measure = Measure::kEdge;
@@ -139,6 +187,30 @@ TEST(SizeSpec, AtAMarkerGrowsFromItsSegmentsByTheGradation) {
   }
   spec.value = std::monostate();
   EXPECT_NEAR(made(spec)->function()({2, 4}), std::sqrt(3) / 4 * 1.25 * 1.25, 1e-12);
+}
+
+TEST(SizeSpec, GrowsByTheGradationFromARegionWithABoundOfItsOwn) {
+  Pslg pslg = square();  // with a region of edges of length 0.1 below y = 1
+  pslg.points.insert(pslg.points.end(), {{0, 1}, {4, 1}});
+  pslg.segments.push_back({6, 7});
+  pslg.regions.push_back({{2, 0.5}, 1, SizeFunction::area_of_edge(0.1)});
+  const ExecutionContext context;
+  const Domain domain = *triangulate(pslg, context);
+  for (const SizeSpec::Value& value :
+       {SizeSpec::Value(), SizeSpec::Value(1.0), SizeSpec::Value("1 + 0.01*y")}) {
+    SizeSpec spec = value;
+    spec.measure = Measure::kEdge;
+    const auto free = make_size(spec, pslg, domain, context);
+    EXPECT_GT(free->function()({2, 1.5}), 0.3);
+    spec.gradation = 0.2;
+    const auto size = make_size(spec, pslg, domain, context);
+    for (const double y : {1.0, 1.5, 3.0})
+      EXPECT_NEAR(SizeFunction::edge_of_area(size->function()({2, y})), 0.1 + 0.2 * (y - 1), 1e-9);
+  }
+  SizeSpec small = 0.09;
+  small.measure = Measure::kEdge;
+  small.gradation = 0.2;
+  EXPECT_TRUE(make_size(small, pslg, domain, context)->function().constant());
 }
 
 TEST(SizeSpec, AtAMarkerNamesWhatIsWrong) {
@@ -226,6 +298,48 @@ TEST(SizeSpec, OfManyFieldsAsksForTheMemoryOfAll) {
 
   const ExecutionContext poor(Budget{.max_bytes = 3'000'000});
   EXPECT_EQ(make_size(spec, pslg, domain, poor).error().code, ErrorCode::kBudgetExceeded);
+}
+
+TEST(SizeSpec, OfEveryKindKeepsToTheBudget) {
+  struct Source final : MemorySource {
+    Result<std::uint64_t> grant(std::uint64_t needed, const ExecutionContext&) override {
+      most = std::max(most, needed);
+      return needed;
+    }
+    std::uint64_t most = 0;
+  };
+  const Pslg pslg = square();
+  ExecutionContext alone;
+  const Domain domain = *triangulate(pslg, alone);
+  const FieldRaster raster{{0, 0}, 0.01, 0.01, 500, 500, std::vector<float>(250'000, 1)};
+  FieldMesh mesh;
+  for (std::uint32_t i = 0; i < 3000; ++i) {
+    mesh.vertices.push_back({0.01 * i, 0});
+    mesh.vertices.push_back({0.01 * i, 1});
+    mesh.values.insert(mesh.values.end(), {1, 2});
+    if (i > 0) mesh.triangles.push_back({2 * i - 2, 2 * i, 2 * i - 1});
+  }
+  SizeSpec graded = "0.1 + abs(x - 1) + abs(y - 1)";
+  graded.gradation = 0.05;
+  SizeSpec wide = 1.0;
+  wide.cells_across = 3;
+  SizeSpec at_marker = "1 + x/8";
+  at_marker.at.push_back({.marker = 7, .max_edge = 0.1});
+  at_marker.gradation = 0.3;
+  for (const SizeSpec& spec :
+       {with_field("f", raster), with_field("f", mesh), with_field("f", WidthSpec{}),
+        with_field("f", DistanceSpec{.points = std::vector<Point>(20'000, {1, 1})}), wide, graded,
+        at_marker}) {
+    Source source;
+    ExecutionContext rich;
+    rich.set_memory(source, 0);
+    ASSERT_TRUE(make_size(spec, pslg, domain, rich));
+    const ExecutionContext poor(Budget{.max_bytes = source.most / 2});
+    const auto refused = make_size(spec, pslg, domain, poor);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::kBudgetExceeded);
+    EXPECT_EQ(refused.error().field, "budget.max_bytes");
+  }
 }
 
 // Memory is asked for before it is taken, so the promise must cover it.

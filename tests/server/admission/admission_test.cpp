@@ -2,6 +2,8 @@
 // How calls come in: who is asked what, how much and how long he may send, what is logged of it.
 #include "server/admission/admission.h"
 
+#include <thread>
+
 #include "server/admission/refusal_log.h"
 #include "server/net/reset_guard.h"
 #include "tests/client/support/temp_folder.h"
@@ -101,6 +103,73 @@ TEST(Admission, CountsRefusalsThatItDoesNotLog) {
   for (int i = 0; i < 200; ++i) EXPECT_FALSE(ask(channel).ok());
   EXPECT_TRUE(eventually([&] { return server.log().contains("event=lines_left_out count="); }));
   EXPECT_LE(times(server.log().text(), "event=call_refused"), 100u);
+}
+
+grpc::Status mesh(const LoggedServer& server, const v1::GenerateMeshRequest& request) {
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + seconds(60));
+  const auto stub = v1::MeshService::NewStub(plain(server));
+  const auto reader = stub->GenerateMesh(&context, request);
+  for (v1::GenerateMeshResponse response; reader->Read(&response);) continue;
+  return reader->Finish();
+}
+
+TEST(Admission, CountsFailuresOfCallsThatItDoesNotLog) {
+  ServerOptions options = local();
+  options.admission.refusal_lines = 3;
+  LoggedServer server(options);
+  v1::GenerateMeshRequest request = valid_request();
+  request.set_first_chunk(1);  // the mesh has none
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(mesh(server, request).error_code(), grpc::OUT_OF_RANGE);
+  EXPECT_TRUE(eventually([&] { return server.log().contains("event=lines_left_out count="); }));
+  EXPECT_LE(times(server.log().text(), "event=call_ended"), 60u);
+}
+
+TEST(Admission, HoldsMemoryForWhatIsParsedInsteadOfItsMessage) {
+  constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+  Log log;
+  Metrics metrics("", "");
+  const Authenticator everybody(nullptr);
+  MemoryGate gate({.capacity = 100 * kMiB}, [] {});
+  Admission admission({.request_bytes = 10 * kMiB, .memory = &gate}, everybody, metrics,
+                      log.logger());
+  AdmittedCall first{};
+  AdmittedCall second{};
+  EXPECT_FALSE(admission.hold(first, 4 * kMiB));
+  EXPECT_FALSE(admission.hold(first, 8 * kMiB));
+  EXPECT_EQ(gate.taken(), 8 * kMiB);
+  const auto failure = admission.hold(second, 4 * kMiB);
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->reason, Reason::kOutOfMemory);
+  EXPECT_FALSE(admission.hold(first, 2 * kMiB));
+  EXPECT_FALSE(admission.hold(second, 4 * kMiB));
+  EXPECT_EQ(gate.taken(), 6 * kMiB);
+}
+
+// Two bytes of an empty region become 80.
+TEST(Admission, RefusesAMessageWhoseParsedRegionsFindNoMemory) {
+  Event works;
+  Event may_end;
+  ServerOptions options = local();
+  options.memory = std::uint64_t{256} << 20;
+  options.service.limits.max_request_bytes = std::size_t{4} << 20;  // 32 MiB for messages
+  options.service.limits.max_seeds = 1'000'000;
+  LoggedServer server(options, nullptr, [&](const auto&, ChunkSink& sink, auto&) {
+    works.set();
+    EXPECT_TRUE(may_end.wait());
+    return send_chunks(sink, 0);
+  });
+  v1::GenerateMeshRequest many = valid_request();
+  for (int i = 0; i < 900'000; ++i) many.mutable_domain()->add_regions();
+  std::thread first([&] { EXPECT_TRUE(mesh(server, many).ok()); });
+  EXPECT_TRUE(works.wait());
+  v1::GenerateMeshRequest few = valid_request();
+  for (int i = 0; i < 20'000; ++i) few.mutable_domain()->add_regions();
+  ASSERT_LT(few.ByteSizeLong(), kSmallRequest);
+  EXPECT_EQ(mesh(server, few).error_message(),
+            "other large requests take the memory that there is for them");
+  may_end.set();
+  first.join();
 }
 
 TEST(RefusalLog, TellsHowManyLinesWereLeftOut) {

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <future>
+#include <limits>
 #include <string>
 #include <thread>
 #include <vector>
@@ -38,6 +39,43 @@ TEST(MemoryGate, GivesWhoeverIsAloneWhatThereIs) {
   EXPECT_EQ(heavy->bytes(), 70);
   EXPECT_EQ(gate.taken(), 100);
   EXPECT_FALSE(gate.take({.estimate = 1}));
+}
+
+TEST(MemoryGate, LetsTheLargestRunBeginThoughSomebodyReads) {
+  MemoryGate gate({.capacity = 100, .of_client = 40}, kNoRoom);
+  const auto reader = gate.take({.estimate = 40, .client = "ann", .reader = true});
+  ASSERT_TRUE(reader);
+  EXPECT_FALSE(gate.take({.estimate = 1, .client = "ann"})) << "it is part of its client's";
+  EXPECT_TRUE(gate.take({.estimate = 1000, .client = "bob"}));
+}
+
+TEST(MemoryGate, LetsTheLargestRunBeginThoughSomebodyReadsWhatARunMade) {
+  int notified = 0;
+  MemoryGate gate({.capacity = 100, .for_light = 30, .of_client = 20}, [&] { ++notified; });
+  auto share = gate.take({.estimate = 20, .client = "ann", .light = true});
+  ASSERT_TRUE(share);
+  EXPECT_FALSE(gate.take({.estimate = 1000, .client = "bob"}));
+  share->turn_reader();
+  EXPECT_EQ(notified, 1);
+  EXPECT_EQ(gate.taken(), 20);
+  EXPECT_FALSE(gate.take({.estimate = 1, .client = "ann"})) << "it is part of its client's";
+  EXPECT_EQ(gate.room(true), std::numeric_limits<std::int64_t>::max());
+  const auto heavy = gate.take({.estimate = 1000, .client = "bob"});
+  ASSERT_TRUE(heavy);
+  EXPECT_EQ(heavy->bytes(), 80);
+  share->shrink_to(0);
+  share.reset();
+  EXPECT_FALSE(gate.take({.estimate = 1000, .client = "cid"})) << "bob's is still at work";
+}
+
+TEST(MemoryGate, TakesBackAShareOfNothing) {
+  MemoryGate gate({.capacity = 100}, kNoRoom);
+  {
+    const auto of_another = gate.take({.estimate = 10, .client = "ann"});
+    auto share = gate.take({.estimate = 10, .client = "bob"});
+    share->shrink_to(0);
+  }
+  EXPECT_EQ(gate.taken(), 0);
 }
 
 TEST(MemoryGate, RefusesARequestThatDoesNotFitThoughNothingRuns) {
@@ -214,19 +252,23 @@ TEST(RunMemory, GrantsWhatIsNotHeldBesides) {
   EXPECT_EQ(*memory.grant(71, run), 70 + kStep);
 }
 
-TEST(RunMemory, TellsOnceThatTheRunGoesBeyondABound) {
+TEST(RunMemory, EndsARunAtItsLimitUntilThatBeginsAgain) {
   MemoryGate gate({.capacity = 10 * kStep}, kNoRoom);
   auto share = gate.take({.estimate = 100});
-  int told = 0;
-  RunMemory memory(*share, 0);
-  memory.tell_beyond(50, [&] { ++told; });
+  RunMemory memory(*share, 30);
+  memory.limit_to(50);
   ExecutionContext run;
   run.set_memory(memory, memory.granted());
-  EXPECT_EQ(run.need_bytes(50), std::nullopt);
-  EXPECT_EQ(told, 0);
-  EXPECT_EQ(run.need_bytes(51), std::nullopt);
-  EXPECT_EQ(run.need_bytes(5 * kStep), std::nullopt);
-  EXPECT_EQ(told, 1);
+  EXPECT_EQ(run.need_bytes(50, "the run"), std::nullopt);
+  EXPECT_FALSE(memory.limit_was_reached());
+  EXPECT_TRUE(run.need_bytes(51, "the run"));
+  EXPECT_TRUE(memory.limit_was_reached());
+  memory.begin_again();
+  EXPECT_EQ(gate.taken(), 30) << "what is besides";
+  run.begin_again();
+  run.set_memory(memory, memory.granted());
+  EXPECT_EQ(run.need_bytes(5 * kStep, "the run"), std::nullopt);
+  EXPECT_EQ(gate.taken(), 30 + 5 * kStep);
 }
 
 }  // namespace

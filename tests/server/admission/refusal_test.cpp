@@ -73,6 +73,24 @@ void expect_refused(const Case& each, grpc::StatusCode code, const char* reason)
   EXPECT_EQ(details.bad_request->field_violations(0).field(), each.field);
 }
 
+void add_name(google::protobuf::RepeatedPtrField<v1::Name>& table, int id,
+              const std::string& text) {
+  v1::Name& name = *table.Add();
+  name.set_id(id);
+  name.set_name(text);
+}
+
+// A case of a marker's name, after one that is sound: marker 2 is "inlet".
+Case name_case(const char* name, int id, const std::string& text, const char* field,
+               const char* in_message) {
+  return {name,
+          [=](v1::GenerateMeshRequest& r) {
+            add_name(*r.mutable_domain()->mutable_marker_names(), 2, "inlet");
+            add_name(*r.mutable_domain()->mutable_marker_names(), id, text);
+          },
+          field, in_message};
+}
+
 class OverLimit : public Refusals {};
 TEST_P(OverLimit, IsRefusedNamingFieldValueAndLimit) {
   expect_refused(GetParam(), grpc::StatusCode::RESOURCE_EXHAUSTED, "LIMIT_EXCEEDED");
@@ -122,6 +140,21 @@ INSTANTIATE_TEST_SUITE_P(
                for (int i = 0; i < 81; ++i) r.mutable_domain()->add_regions();
              },
              "domain.regions", "81 hole and region seeds; this server's limit is 80"},
+        Case{"Names",
+             [](Request& r) {
+               for (int i = 0; i < 8192; ++i) r.mutable_domain()->add_marker_names();
+               for (int i = 0; i < 8193; ++i) r.mutable_domain()->add_region_names();
+             },
+             "domain.marker_names",
+             "16385 names of markers and regions; this server's limit is 16384"},
+        Case{"NameBytes",
+             [](Request& r) {
+               for (int i = 0; i < 4200; ++i)
+                 add_name(*r.mutable_domain()->mutable_region_names(), i,
+                          std::to_string(1000 + i) + std::string(246, 'x'));
+             },
+             "domain.marker_names",
+             "1050000 bytes of names of markers and regions; this server's limit is 1048576"},
         Case{"Expression",
              [](Request& r) { r.mutable_size()->set_expression(std::string(71, '1')); },
              "size.expression", "71 bytes; this server's limit is 70"},
@@ -227,6 +260,26 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Refusal, BadOption,
     ::testing::Values(
+        name_case("EmptyName", 3, "", "domain.marker_names[1].name", "is empty"),
+        name_case("LongName", 3, std::string(256, 'x'), "domain.marker_names[1].name",
+                  "has 256 bytes; a name has at most 255"),
+        name_case("LineInName", 3, "in\nlet", "domain.marker_names[1].name",
+                  "has a control character at byte 2"),
+        name_case("DeleteInName", 3, "\x7f", "domain.marker_names[1].name",
+                  "has a control character at byte 0"),
+        name_case("NextLineInName", 3, "caf\xc3\xa9\xc2\x85", "domain.marker_names[1].name",
+                  "has a control character at byte 5"),
+        name_case("NameTwice", 3, "inlet", "domain.marker_names[1].name",
+                  "is 'inlet', which is the name of 2 already"),
+        name_case("NamedTwice", 2, "outlet", "domain.marker_names[1].id",
+                  "is 2, which domain.marker_names[0].id names already"),
+        Case{"RegionNamedTwice",
+             [](Request& r) {
+               auto& names = *r.mutable_domain()->mutable_region_names();
+               for (const int id : {5, 1, 3, 1, 5})
+                 add_name(names, id, std::to_string(names.size()));
+             },
+             "domain.region_names[3].id", "is 1, which domain.region_names[1].id names already"},
         Case{"NoDomain", [](Request& r) { r.clear_domain(); }, "domain", "required"},
         Case{"Fill", [](Request& r) { r.mutable_domain()->set_fill(static_cast<v1::Fill>(9)); },
              "domain.fill", "9"},
@@ -324,6 +377,43 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"Name", [](Request& r) { r.mutable_size()->set_expression("nan"); },
                            "size.expression", "line 1, column 1"}),
     name_of);
+
+TEST(Refusal, OfNamesThatAreNoTextNamesTheMessage) {
+  TestServer server(must_not_run());
+  v1::GenerateMeshRequest request = valid_request();
+  add_name(*request.mutable_domain()->mutable_marker_names(), 2, "inlet");
+  std::string bytes = request.SerializeAsString();
+  bytes[bytes.find("inlet")] = '\xff';
+  const grpc::Status status = raw_generate_mesh(server.channel(), bytes);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(details_of(status).error_info.reason(), "MALFORMED_REQUEST");
+}
+
+TEST(Refusal, OfManyEmptyNamesComesBeforeTheyAreParsed) {
+  TestServer server(must_not_run());
+  std::string names;
+  for (int i = 0; i < 16'385; ++i) names += std::string("\x42\x00", 2);
+  v1::GenerateMeshRequest request;
+  ASSERT_TRUE(request.mutable_domain()->ParseFromString(names));
+  const grpc::Status status = raw_generate_mesh(server.channel(), request.SerializeAsString());
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_NE(status.error_message().find("16385 names"), std::string::npos);
+}
+
+TEST(Refusal, AdmitsNamesAtTheirLimits) {
+  TestServer server([](const auto&, ChunkSink& sink, auto&) { return send_chunks(sink, 0); },
+                    small_limits());
+  v1::GenerateMeshRequest request = valid_request();
+  auto& markers = *request.mutable_domain()->mutable_marker_names();
+  auto& regions = *request.mutable_domain()->mutable_region_names();
+  add_name(markers, 2, std::string(255, 'x'));
+  add_name(markers, std::numeric_limits<int>::min(), "\xc3\xa9 \"<&");
+  add_name(regions, 2, "inlet");
+  for (int i = 3; regions.size() + markers.size() < 16'384; ++i)
+    add_name(regions, i, std::to_string(i));
+  const Outcome outcome = call(*server.stub(), request);
+  EXPECT_TRUE(outcome.status.ok()) << outcome.status.error_message();
+}
 
 TEST(Refusal, AdmitsWhatIsExactlyAtTheLimits) {
   TestServer server([](const auto&, ChunkSink& sink, auto&) { return send_chunks(sink, 0); },

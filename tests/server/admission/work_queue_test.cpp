@@ -252,7 +252,24 @@ TEST(WorkQueue, LetsOneClientHaveItsShareOfWhatMayWait) {
   EXPECT_EQ(queue.capacity_of_client(), 2u);
   EXPECT_TRUE(pushed(queue, make_task([] {}), "b"));
   EXPECT_TRUE(pushed(queue, make_task([] {}), "c"));
-  EXPECT_EQ(queue.push(make_task([] {}), {.client = "d"}), WorkQueue::Pushed::kQueueFull);
+  EXPECT_EQ(queue.push(make_task([] {}), {.client = "c"}), WorkQueue::Pushed::kQueueFull);
+  busy.release.set();
+}
+
+TEST(WorkQueue, HasRoomForAClientOfWhomNothingWaitsUpToTwiceTheCapacity) {
+  Busy busy;
+  WorkQueue queue({.workers = 1, .capacity = 4, .client_share = 0.75});
+  busy.occupy(queue);
+  const auto push = [&](const char* client) {
+    return queue.push(make_task([] {}), {.client = client, .estimate = 0});
+  };
+  for (const char* client : {"a", "a", "b", "b"}) EXPECT_EQ(push(client), WorkQueue::Pushed::kYes);
+  EXPECT_EQ(push("a"), WorkQueue::Pushed::kQueueFull);
+  for (const char* client : {"c", "d", "e", "f"}) {
+    EXPECT_EQ(push(client), WorkQueue::Pushed::kYes);
+    EXPECT_EQ(push(client), WorkQueue::Pushed::kQueueFull);
+  }
+  EXPECT_EQ(push("g"), WorkQueue::Pushed::kQueueFull);
   busy.release.set();
 }
 
@@ -330,6 +347,87 @@ TEST(WorkQueue, LetsAnItemThatMovesGoOnOnceItIsStopped) {
   ASSERT_TRUE(moves.wait());
   stopped = true;
   EXPECT_TRUE(ended.wait());
+  busy.release.set();
+}
+
+// The main place is busy, so that only the light one is left.
+class Distrust : public testing::TestWithParam<double> {
+ protected:
+  Distrust() {
+    Event runs;
+    EXPECT_TRUE(pushed(queue_, make_task([&] {
+                         runs.set();
+                         EXPECT_TRUE(busy_.release.wait());
+                       }),
+                       "a", 1000));
+    EXPECT_TRUE(runs.wait());
+  }
+  void turn_out_heavy(const char* client) {
+    Event moves;
+    EXPECT_TRUE(pushed(queue_, make_placed([&](WorkQueue::Place& place) {
+                         place.leave_light_lane([&] {
+                           moves.set();
+                           return true;
+                         });
+                       }),
+                       client, 10));
+    EXPECT_TRUE(moves.wait());
+    // It waits for the other place until it has seen that it is to stop.
+    while (queue_.running() > 1 || queue_.waiting() > 0) std::this_thread::yield();
+  }
+
+  Busy busy_;
+  WorkQueue queue_{{.workers = 1,
+                    .workers_for_light = 1,
+                    .capacity = 10,
+                    .light = 10,
+                    .client_share = GetParam()}};
+};
+
+INSTANTIATE_TEST_SUITE_P(OfClients, Distrust, testing::Values(0.75, 1.0));
+
+TEST_P(Distrust, KeepsTheLightPlaceFromAClientWhoseItemTurnedOutHeavyIfClientsAreToldApart) {
+  turn_out_heavy("b");
+  Event of_b;
+  Event of_c;
+  ASSERT_TRUE(pushed(queue_, make_task([&] { of_b.set(); }), "b", 10));
+  ASSERT_TRUE(pushed(queue_, make_task([&] { of_c.set(); }), "c", 10));
+  EXPECT_TRUE(of_c.wait());
+  if (GetParam() < 1) {
+    EXPECT_EQ(queue_.waiting(), 1u) << "b is for the main place";
+  } else {
+    EXPECT_TRUE(of_b.wait());
+  }
+  busy_.release.set();
+  EXPECT_TRUE(of_b.wait());
+}
+
+TEST(WorkQueue, TrustsAClientAgainAfterAWhile) {
+  Busy busy;
+  WorkQueue queue({.workers = 1,
+                   .workers_for_light = 1,
+                   .capacity = 10,
+                   .light = 10,
+                   .client_share = 0.75,
+                   .distrust = std::chrono::milliseconds(1)});
+  Event runs;
+  ASSERT_TRUE(pushed(queue, make_task([&] {
+                       runs.set();
+                       EXPECT_TRUE(busy.release.wait());
+                     }),
+                     "a", 1000));
+  ASSERT_TRUE(runs.wait());
+  Event ended;
+  ASSERT_TRUE(pushed(queue, make_placed([&](WorkQueue::Place& place) {
+                       place.leave_light_lane([] { return true; });
+                       ended.set();
+                     }),
+                     "b", 10));
+  ASSERT_TRUE(ended.wait());
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  Event again;
+  ASSERT_TRUE(pushed(queue, make_task([&] { again.set(); }), "b", 10));
+  EXPECT_TRUE(again.wait());
   busy.release.set();
 }
 

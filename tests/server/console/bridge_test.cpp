@@ -5,6 +5,7 @@
 #include <deque>
 #include <thread>
 
+#include "server/console/frames.h"
 #include "tests/server/console/console_server.h"
 #include "tests/server/raw_call.h"
 #include "tests/support/http.h"
@@ -140,16 +141,64 @@ TEST(Bridge, BoundsABodyOfManySmallMessages) {
   options.service.limits.max_request_bytes = 1000;
   ConsoleServer server(empty_mesh(), options);
   std::string body;
-  while (body.size() < 10'000) body += framed("");
+  while (body.size() < 10'000) body += framed(std::string("\x3a\x00", 2));
   WebConnection browser(server.address());
-  browser.send(call_request(kGenerateMesh, body));
-  EXPECT_FALSE(browser.read_call().status().ok());
+  browser.send(
+      call_request("/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo", body));
+  EXPECT_EQ(reason_of(browser.read_call()), "LIMIT_EXCEEDED");
+}
+
+// Text mode: its frames in base64, here in segments that are padded each.
+std::string text_request(const std::string& path, const std::string& text) {
+  return call_request(path, text, {{"Content-Type", "application/grpc-web-text"}});
+}
+
+TEST(Bridge, AnswersACallInText) {
+  ConsoleServer server;
+  WebConnection browser(server.address());
+  browser.send(text_request(kServerInfo, "AAA=AAAA"));  // an empty message
+  const WebResponse response = browser.read_response();
+  EXPECT_EQ(response.status, 200);
+  EXPECT_EQ(response.header("content-type"), "application/grpc-web-text+proto");
+  const std::string bytes = Base64Reader().feed(response.body).value_or("");
+  ASSERT_GT(bytes.size(), kFrameHeader);
+  const auto length =
+      std::size_t{static_cast<unsigned char>(bytes[3])} << 8 | static_cast<unsigned char>(bytes[4]);
+  v1::GetServerInfoResponse info;
+  EXPECT_TRUE(info.ParseFromString(bytes.substr(kFrameHeader, length)));
+  EXPECT_FALSE(info.engine_version().empty());
+  EXPECT_EQ(bytes.substr(kFrameHeader + length), framed("grpc-status: 0\r\n", kTrailerFlag));
+}
+
+TEST(Bridge, RefusesTextThatIsNotBase64) {
+  ConsoleServer server;
+  for (const char* text : {"AAA*AAAA", "****AAAAAAA=", "====", "AAA=AAA", "AAAAAAE=", "AAAA A=="}) {
+    WebConnection browser(server.address());
+    browser.send(text_request(kServerInfo, text));
+    const WebResponse response = browser.read_response();
+    const std::string bytes = Base64Reader().feed(response.body).value_or("");
+    ASSERT_GT(bytes.size(), kFrameHeader) << text;
+    EXPECT_EQ(bytes.substr(kFrameHeader, 16), "grpc-status: 3\r\n") << text;
+  }
+}
+
+// gRPC reports the end of a call that was dropped a little later, perhaps after the last connection
+// was closed.
+TEST(Bridge, StopsAtOnceAfterCallsWereDropped) {
+  for (int round = 0; round < 40; ++round) {
+    ConsoleServer server;
+    for (int call = 0; call < 8; ++call) {
+      WebConnection browser(server.address());
+      browser.send(text_request(kServerInfo, "===="));
+      browser.read_response();
+    }
+  }
 }
 
 TEST(Bridge, TakesCallsOfItsOwnTypeOnly) {
   ConsoleServer server;
   for (const char* type : {"", "application/json", "text/plain", "application/grpc",
-                           "application/grpc-web-text", "application/x-www-form-urlencoded"}) {
+                           "application/grpc-web-texts", "application/x-www-form-urlencoded"}) {
     WebConnection browser(server.address());
     browser.send(call_request(kServerInfo, framed(""), {{"Content-Type", type}}));
     EXPECT_EQ(browser.read_response().status, 415) << type;
@@ -238,6 +287,7 @@ TEST(Bridge, CancelsTheCallOfABrowserThatGoesAway) {
 TEST(Bridge, ABrowserThatStopsReadingStopsTheEngine) {
   constexpr std::uint32_t kMost = 40;
   std::atomic<std::uint32_t> sent{0};
+  Event begun;  // the engine is at work for the slow one
   Event refused;
   std::atomic<bool> first{true};
   ServerOptions options = with_console();
@@ -245,6 +295,7 @@ TEST(Bridge, ABrowserThatStopsReadingStopsTheEngine) {
   ConsoleServer server(
       [&](const auto&, ChunkSink& sink, auto&) {
         if (!first.exchange(false)) return send_chunks(sink, 50, kMaxChunkBytes);
+        begun.set();
         auto result = send_until_refused(sink, sent);
         refused.set();
         return result;
@@ -254,6 +305,7 @@ TEST(Bridge, ABrowserThatStopsReadingStopsTheEngine) {
     WebConnection slow(server.address(), nullptr, 1 << 16);
     slow.send(call_request(kGenerateMesh, framed(mesh_request())));
     EXPECT_EQ(slow.read_head().status, 200);
+    ASSERT_TRUE(begun.wait()) << "the answer begins before the engine does";
     for (int i = 0; i < 3; ++i) {
       const WebOutcome other = web_call(server.address(), kGenerateMesh, mesh_request());
       EXPECT_TRUE(other.status().ok()) << other.status().error_message();

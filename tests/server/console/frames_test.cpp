@@ -121,5 +121,19 @@ TEST(Base64, IsThatOfItsStandard) {
     EXPECT_EQ(from_base64(wrong), std::nullopt) << wrong;
 }
 
+TEST(Base64, IsReadInPiecesAndWithPaddingWithin) {
+  const std::string text = "Zm9vYg==Zm8=YmFy";
+  for (std::size_t i = 0; i <= text.size(); ++i) {
+    Base64Reader reader;
+    const auto first = reader.feed(text.substr(0, i));
+    ASSERT_TRUE(first);
+    EXPECT_EQ(reader.at_border(), i % 4 == 0);
+    EXPECT_EQ(*first + reader.feed(text.substr(i)).value_or("?"), "foobfobar");
+    EXPECT_TRUE(reader.at_border());
+  }
+  for (const char* wrong : {"Zm9*", "====", "Z===", "Zg=v", "Zm9vY g=", "\xff\xff\xff\xff"})
+    EXPECT_EQ(Base64Reader().feed(wrong), std::nullopt) << wrong;
+}
+
 }  // namespace
 }  // namespace weft::server::testing

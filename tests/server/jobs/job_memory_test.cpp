@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Jobs when there is no memory for them outside the engine: it costs an attempt at most, never the
-// server, and what was taken is given back. The same within the engine, but where it is the job's
-// own budget that runs out.
+// Jobs if there is no memory for them outside of the engine: that costs at most an attempt, never
+// the server, and everything that was taken is given back. Within the engine it is the same, unless
+// the job's own budget runs out.
 #include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
 #include <new>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
 
 #include "tests/server/faulty_store.h"
 #include "tests/server/job_harness.h"
@@ -142,6 +149,90 @@ TEST(WantOfMemory, WhileAJobIsWatchedEndsTheWatchAlone) {
   EXPECT_EQ(reader->Finish().error_code(), grpc::INTERNAL);
   short_of_memory = false;
   EXPECT_EQ(client.get(id).message.job().state(), v1::JOB_STATE_RUNNING);
+}
+
+// A fetched mesh of 16 chunks whose client reads nothing. gRPC buffers the first messages.
+class FetchedMesh : public ::testing::Test {
+ protected:
+  using Reader = std::unique_ptr<grpc::ClientReader<v1::FetchMeshResponse>>;
+
+  void serve(double client_share) {
+    server_.emplace([](const auto&, ChunkSink& sink,
+                       auto&) { return send_chunks(sink, kChunks, kMaxChunkBytes / 2); },
+                    quick_jobs(), ServiceOptions{.jobs = 2, .client_share = client_share},
+                    [this](std::unique_ptr<JobStore> store) -> std::unique_ptr<JobStore> {
+                      return std::make_unique<FaultyStore>(std::move(store),
+                                                           [this](std::string_view call) {
+                                                             if (call == "chunk") ++chunks_read_;
+                                                             return std::optional<StoreError>();
+                                                           });
+                    });
+    JobClient client = server_->client();
+    id_ = client.submit(valid_request());
+    EXPECT_EQ(client.wait(id_).state(), v1::JOB_STATE_SUCCEEDED);
+    EXPECT_TRUE(eventually([&] { return held() == 0; }));
+  }
+
+  Reader fetch(grpc::ClientContext& context) {
+    v1::FetchMeshRequest request;
+    request.set_id(id_);
+    stub_ = v1::JobService::NewStub(server_->channel());
+    return stub_->FetchMesh(&context, request);
+  }
+
+  static std::uint32_t chunks_of(Reader& reader) {
+    std::uint32_t chunks = 0;
+    v1::FetchMeshResponse message;
+    while (reader->Read(&message)) chunks += message.has_chunk() ? 1 : 0;
+    EXPECT_TRUE(reader->Finish().ok());
+    return chunks;
+  }
+
+  int chunks_read_at_rest() const {
+    int before = -1;
+    while (before != chunks_read_) {
+      before = chunks_read_;
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    }
+    return before;
+  }
+
+  double held() const { return server_->metric("weft_admission_bytes{queue=\"calls\"}"); }
+
+  static constexpr std::uint32_t kChunks = 16;
+  std::string id_;
+  std::atomic<int> chunks_read_{0};
+  std::optional<JobServer> server_;
+  std::unique_ptr<v1::JobService::Stub> stub_;
+};
+
+TEST_F(FetchedMesh, HoldsMemoryOfWhatIsReadAhead) {
+  serve(1);
+  grpc::ClientContext context;
+  Reader reader = fetch(context);
+  EXPECT_TRUE(eventually([&] { return chunks_read_ >= 4; }));
+  EXPECT_GT(held(), 0);
+  EXPECT_EQ(chunks_of(reader), kChunks);
+  EXPECT_TRUE(eventually([&] { return held() == 0; }));
+}
+
+// The client's first reader has all of its share.
+TEST_F(FetchedMesh, IsReadNoFurtherAheadThanThereIsMemory) {
+  serve(1e-9);
+  grpc::ClientContext first_context;
+  Reader first = fetch(first_context);
+  EXPECT_TRUE(eventually([&] { return chunks_read_ >= 4; }));
+  const double of_one = held();
+  EXPECT_GT(of_one, 0);
+  const int by_first = chunks_read_at_rest();
+  grpc::ClientContext second_context;
+  Reader second = fetch(second_context);
+  EXPECT_TRUE(eventually([&] { return chunks_read_ > by_first; }));
+  EXPECT_LT(chunks_read_at_rest() - by_first, by_first);
+  EXPECT_EQ(held(), of_one);
+  EXPECT_EQ(chunks_of(second), kChunks);
+  EXPECT_EQ(chunks_of(first), kChunks);
+  EXPECT_TRUE(eventually([&] { return held() == 0; }));
 }
 
 TEST(JobAttempts, ThatWereCutShortByAStopDoNotCount) {

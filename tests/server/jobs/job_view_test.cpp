@@ -4,6 +4,7 @@
 #include <sstream>
 #include <string>
 
+#include "server/memory_plan.h"
 #include "tests/server/job_harness.h"
 
 namespace weft::server::testing {
@@ -74,6 +75,12 @@ TEST(Jobs, KeepTheOptionsOfTheirRequestWithTheMesh) {
   depth.set_name("depth");
   depth.mutable_distance()->mutable_points()->Add(1);
   depth.mutable_distance()->mutable_points()->Add(2);
+  v1::Name& inlet = *request.mutable_domain()->add_marker_names();
+  inlet.set_id(2);
+  inlet.set_name("inlet");
+  v1::Name& fluid = *request.mutable_domain()->add_region_names();
+  fluid.set_id(-1);
+  fluid.set_name("fl\u00fcssig");
   v1::GenerateMeshRequest options = request;
   options.mutable_domain()->clear_points();
   options.mutable_domain()->clear_segments();
@@ -87,6 +94,21 @@ TEST(Jobs, KeepTheOptionsOfTheirRequestWithTheMesh) {
   const v1::Summary fetched = client.fetch(id).messages.back().summary();
   EXPECT_EQ(fetched.request().DebugString(), options.DebugString());
   EXPECT_FALSE(client.list({}).message.jobs(0).summary().has_request());
+}
+
+TEST(Jobs, OfTheSameMeshWithOtherNamesHaveTheirOwn) {
+  JobServer server(engine_of_triangles(1));
+  JobClient client = server.client();
+  v1::GenerateMeshRequest request = valid_request();
+  v1::Name& name = *request.mutable_domain()->add_marker_names();
+  name.set_id(2);
+  for (const char* text : {"inlet", "outlet"}) {
+    name.set_name(text);
+    const std::string id = client.submit(request);
+    client.wait(id);
+    const v1::Summary fetched = client.fetch(id).messages.back().summary();
+    EXPECT_EQ(fetched.request().domain().marker_names(0).name(), text);
+  }
 }
 
 TEST(JobLogs, CarryTheTraceOfTheCallThroughTheWork) {
@@ -178,9 +200,9 @@ TEST(JobMetrics, CountATaskWhoseWorkersAreAllLost) {
 TEST(GetServerInfo, TellsHowJobsAreQueuedAndKept) {
   JobOptions jobs = quick_jobs();
   jobs.service.max_queued = 7;
-  jobs.service.max_queued_of_owner = 3;
+  jobs.service.max_open_of_client = 3;
   jobs.retry.max_attempts = 5;
-  jobs.runner.keep = {.age = std::chrono::hours(2), .bytes = 4096};
+  jobs.runner.keep = {.age = std::chrono::hours(2), .bytes = 4096, .jobs_of_owner = 7};
   ServiceOptions service{.jobs = 2, .queue = 11};
   service.patience.stall_timeout = std::chrono::milliseconds(2500);
   const JobServer server(engine_of_triangles(1), jobs, {}, service);
@@ -189,7 +211,9 @@ TEST(GetServerInfo, TellsHowJobsAreQueuedAndKept) {
   const auto stub = v1::MeshService::NewStub(server.channel());
   ASSERT_TRUE(stub->GetServerInfo(&context, {}, &info).ok());
   EXPECT_EQ(info.limits().max_waiting_calls(), 11u);
-  EXPECT_EQ(info.limits().max_admitted_bytes(), std::uint64_t{8} << 30);
+  ServerOptions options;
+  options.service.limits = service.limits;
+  EXPECT_EQ(info.limits().max_admitted_bytes(), plan_memory(options).runs);
   EXPECT_EQ(info.limits().stall_seconds(), 2.5);
   EXPECT_EQ(info.jobs().max_queued(), 7u);
   EXPECT_EQ(info.jobs().max_queued_per_client(), 3u);
@@ -197,6 +221,7 @@ TEST(GetServerInfo, TellsHowJobsAreQueuedAndKept) {
   EXPECT_EQ(info.jobs().lease_seconds(), 5);
   EXPECT_EQ(info.jobs().keep_seconds(), 7200);
   EXPECT_EQ(info.jobs().keep_bytes(), 4096u);
+  EXPECT_EQ(info.jobs().keep_jobs_per_client(), 7u);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ TEST(LightSlot, IsLeftByAJobThatTurnsOutHeavy) {
   Event heavy_runs;
   Event heavy_may_end;
   Event impostor_runs;
-  std::atomic<bool> impostor_may_end{false};
+  std::atomic<int> runs_in_arena{0};
   std::atomic<bool> light_in_arena{false};
   ServiceOptions service;
   service.jobs = 1;
@@ -37,10 +37,13 @@ TEST(LightSlot, IsLeftByAJobThatTurnsOutHeavy) {
           EXPECT_TRUE(heavy_may_end.wait());
           return send_chunks(sink, 1);
         }
-        if (context.arena() != nullptr) light_in_arena = true;
-        if (request.min_angle_deg == kImpostorAngle) {
+        const bool in_arena = context.arena() != nullptr;
+        if (request.min_angle_deg != kImpostorAngle) {
+          light_in_arena = in_arena;
+        } else {
           impostor_runs.set();
-          while (!impostor_may_end) {
+          runs_in_arena += in_arena;
+          while (!in_arena) {
             if (auto error = context.poll()) return tl::unexpected(*error);
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
           }
@@ -56,10 +59,11 @@ TEST(LightSlot, IsLeftByAJobThatTurnsOutHeavy) {
   const v1::Job light = client.wait(client.submit(request(1, 20)));
   EXPECT_EQ(light.state(), v1::JOB_STATE_SUCCEEDED);
   EXPECT_FALSE(light_in_arena);
-  impostor_may_end = true;
+  EXPECT_EQ(runs_in_arena, 0) << "it waits for the slot";
   heavy_may_end.set();
   EXPECT_EQ(client.wait(heavy).state(), v1::JOB_STATE_SUCCEEDED);
   EXPECT_EQ(client.wait(impostor).state(), v1::JOB_STATE_SUCCEEDED);
+  EXPECT_EQ(runs_in_arena, 1);
 }
 
 }  // namespace

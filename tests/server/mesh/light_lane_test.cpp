@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs that were judged light, and are not.
+// Runs that were judged to be light, and are not.
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -14,13 +14,14 @@ constexpr double kHeavySize = 1e-9;   // of a request that is judged heavy
 constexpr double kImpostorAngle = 1;  // of one that is not, though its run is
 constexpr std::uint64_t kMuchMemory = 2 * kLightBytes;
 
-// An engine for these two, and for all else, which is light.
+// An engine for these two, and for all else, which is light. The impostor ends once it runs in the
+// arena.
 struct Scripted {
   bool grows = false;  // the impostor takes memory; otherwise it takes time
   Event heavy_runs;
   Event heavy_may_end;
   Event impostor_runs;
-  std::atomic<bool> impostor_may_end{false};
+  std::atomic<int> runs_of_impostor{0};
   std::atomic<int> threads_of_impostor{0};
 
   Result<Summary> operator()(const MeshRequest& request, ChunkSink& sink,
@@ -30,11 +31,12 @@ struct Scripted {
       EXPECT_TRUE(heavy_may_end.wait());
     }
     if (request.min_angle_deg == kImpostorAngle) {
+      ++runs_of_impostor;
       threads_of_impostor = context.threads();
       impostor_runs.set();
       if (grows)
-        if (auto error = context.need_bytes(kMuchMemory)) return tl::unexpected(*error);
-      while (!impostor_may_end) {
+        if (auto error = context.need_bytes(kMuchMemory, "the run")) return tl::unexpected(*error);
+      while (context.arena() == nullptr) {
         if (auto error = context.poll()) return tl::unexpected(*error);
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
@@ -68,13 +70,15 @@ TEST_P(LightLane, IsLeftByARunThatTurnsOutHeavy) {
   ASSERT_TRUE(engine.impostor_runs.wait());  // and this one that in the light lane
   const Outcome light = call(*server.stub(), request(1, 20));
   EXPECT_TRUE(light.status.ok()) << light.status.error_message();
+  EXPECT_EQ(engine.runs_of_impostor, 1);
   EXPECT_EQ(engine.threads_of_impostor, 1);
-  engine.impostor_may_end = true;
   engine.heavy_may_end.set();
   first.join();
   second.join();
   EXPECT_TRUE(heavy.status.ok()) << heavy.status.error_message();
   EXPECT_TRUE(impostor.status.ok()) << impostor.status.error_message();
+  EXPECT_EQ(engine.runs_of_impostor, 2);
+  EXPECT_EQ(engine.threads_of_impostor, 3) << "in the arena, where turns are taken";
 }
 
 TEST_P(LightLane, OfARunThatIsCancelledWhileItMovesIsLeftForGood) {

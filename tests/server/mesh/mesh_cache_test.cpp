@@ -44,6 +44,22 @@ TEST(MeshCache, NeverHoldsMoreThanItsCapacity) {
   EXPECT_GT(cache.bytes(), kMiB / 2);
 }
 
+TEST(MeshCache, KeepsWhatIsReadAndNothingForWhichThereIsNoRoomBesides) {
+  MeshCache cache(kMiB);
+  for (const char* key : {"a", "b", "c"}) cache.keep(key, mesh_of(kMiB / 4));
+  auto reader_of_a = cache.find("a");
+  auto reader_of_b = cache.find("b");
+  auto reader_of_c = cache.find("c");
+  cache.keep("large", mesh_of(kMiB * 3 / 8));
+  EXPECT_FALSE(cache.find("large"));
+  for (const char* key : {"a", "b", "c"}) EXPECT_TRUE(cache.find(key)) << key;
+  reader_of_b.reset();
+  cache.keep("large", mesh_of(kMiB * 3 / 8));
+  EXPECT_TRUE(cache.find("large"));
+  EXPECT_TRUE(cache.find("a"));
+  EXPECT_FALSE(cache.find("b"));
+}
+
 TEST(MeshCache, CountsAMeshThatIsKeptTwiceOnce) {
   MeshCache cache(kMiB);
   cache.keep("a", mesh_of(100));

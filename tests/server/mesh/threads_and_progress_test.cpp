@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a job gets of the server's threads, and of the stream while it works.
+// What a call gets of the server's threads, and of the stream while it works.
 
 #include <thread>
 
@@ -8,7 +8,7 @@
 namespace weft::server::testing {
 namespace {
 
-// What the job computed on, and what its client was told.
+// What the call computed on, and what its client was sent.
 struct Threads {
   int context = 0;
   std::uint32_t accepted = 0;

@@ -170,20 +170,25 @@ TEST_P(StoreTest, AFullQueueTakesNoFurtherTask) {
   submit({.owner = "cid", .key = key_of("3"), .max_queued = 2});
 }
 
-TEST_P(StoreTest, AnOwnerWithAFullQueueKeepsNobodyElseOut) {
-  submit({.owner = "ann", .key = key_of("1")});
-  const auto refused =
-      store_->submit({.owner = "ann", .key = key_of("2"), .max_queued_of_owner = 1});
-  EXPECT_EQ(refused->outcome, SubmitOutcome::kOwnQueueFull);
-  submit({.owner = "bob", .key = key_of("2"), .max_queued_of_owner = 1});
+TEST_P(StoreTest, AnOwnerWithTooManyOpenJobsKeepsNobodyElseOut) {
+  const JobRecord first = submit({.owner = "ann", .key = key_of("1")});
+  const auto outcome_of = [&](const char* key) {
+    return store_->submit({.owner = "ann", .key = key_of(key), .max_open_of_owner = 1})->outcome;
+  };
+  EXPECT_EQ(outcome_of("2"), SubmitOutcome::kOwnerFull);
+  EXPECT_EQ(outcome_of("1"), SubmitOutcome::kOwnerFull) << "it would join its own task";
+  claim();
+  EXPECT_EQ(outcome_of("2"), SubmitOutcome::kOwnerFull) << "one that runs has not ended";
+  submit({.owner = "bob", .key = key_of("1"), .max_open_of_owner = 1});
+  ASSERT_TRUE(store_->cancel("ann", first.id));
+  EXPECT_EQ(outcome_of("2"), SubmitOutcome::kAccepted);
 }
 
-TEST_P(StoreTest, WhoeverJoinsATaskOrFindsAMeshNeedsNoRoom) {
+TEST_P(StoreTest, WhoeverFindsAMeshNeedsNoRoomNorWhoeverJoinsATaskAPlaceInTheQueue) {
   made("kept", {"a"});
   submit("ann", "waiting");
-  for (const char* key : {"kept", "waiting"}) {
-    submit({.owner = "ann", .key = key_of(key), .max_queued = 0, .max_queued_of_owner = 0});
-  }
+  submit({.owner = "ann", .key = key_of("kept"), .max_queued = 0, .max_open_of_owner = 0});
+  submit({.owner = "ann", .key = key_of("waiting"), .max_queued = 0});
 }
 
 TEST_P(StoreTest, CancellingTheLastJobOfATaskTakesTheTaskAlong) {

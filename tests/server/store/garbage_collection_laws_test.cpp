@@ -19,6 +19,38 @@ TEST_P(StoreTest, JobsThatEndedLongAgoAreCollected) {
   EXPECT_EQ(list({.owner = "ann"}), (std::vector<std::string>{young.id, running.id}));
 }
 
+TEST_P(StoreTest, OfAnOwnersJobsThatEndedTheOldestAreCollected) {
+  made("k", {"a"});  // ann's, and those that follow find it
+  std::vector<std::string> young;
+  const JobRecord open = submit("ann", "open");
+  for (int i = 0; i < 1100; ++i) young.push_back(submit("ann", "k").id);
+  const JobRecord other = submit("bob", "k");
+  const auto collected = store_->collect({.age = hours(1), .bytes = kAnyBytes, .jobs_of_owner = 3});
+  ASSERT_TRUE(collected) << collected.error().message;
+  EXPECT_EQ(collected->jobs, 1098U);
+  EXPECT_EQ(list({.owner = "ann"}),
+            (std::vector<std::string>{young[1099], young[1098], young[1097], open.id}));
+  EXPECT_EQ(list({.owner = "bob"}), std::vector<std::string>{other.id});
+}
+
+TEST_P(StoreTest, AnOwnersMeshesTakeTheirShareAtMost) {
+  const auto of = [&](const char* owner, const char* key, char chunk) {
+    submit(owner, key);
+    ASSERT_EQ(store_->finish(claim().ref, put({std::string(1000, chunk)})), Held::kHeld);
+    backend_->pass(seconds(1));
+  };
+  of("bob", "oldest", 'o');
+  for (const char* key : {"a", "b", "c", "d"}) of("ann", key, *key);
+  ASSERT_TRUE(mesh("a"));
+  const KeepPolicy policy{.age = hours(1), .bytes = 4000, .share_of_owner = 0.5};
+  const auto collected = store_->collect(policy);
+  ASSERT_TRUE(collected) << collected.error().message;
+  EXPECT_EQ(collected->meshes, 2U);
+  EXPECT_TRUE(mesh("oldest") && mesh("a") && mesh("d"));
+  EXPECT_FALSE(mesh("b") || mesh("c"));
+  EXPECT_EQ(store_->collect(policy)->meshes, 0U);
+}
+
 TEST_P(StoreTest, MeshesThatNobodyAskedForAreCollectedWithTheirChunks) {
   made("old", {"a", "shared"});
   made("asked", {"b"});

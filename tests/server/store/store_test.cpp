@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Runs the laws of job_store.h, which are in the files beside this one, on each store.
 #include "tests/server/store/store_test.h"
 
 #include <openssl/sha.h>

@@ -62,6 +62,22 @@ TEST_P(StoreTest, TheOwnerWithTheFewestClaimsComesFirst) {
   EXPECT_EQ(claims, (std::map<std::string, int>{{"ann", 3}, {"bob", 3}, {"cid", 1}}));
 }
 
+TEST_P(StoreTest, OwnersThatAreExceptedGetNoClaim) {
+  const std::string strange = "o'hara, \xc3\xa9\"%_";
+  for (const std::string& owner : {std::string("ann"), std::string("an"), strange, std::string()})
+    submit(owner, "of " + owner);
+  const auto next = [&](const std::vector<std::string>& except) {
+    const auto claimed = store_->claim("worker", hours(1), kAnyEstimate, except);
+    EXPECT_TRUE(claimed) << claimed.error().message;
+    return *claimed ? (*claimed)->owner : "none";
+  };
+  EXPECT_EQ(next({"ann", "an", strange, ""}), "none");
+  EXPECT_EQ(next({"ann", "an", ""}), strange);
+  EXPECT_EQ(next({"an", "", "bob"}), "ann");
+  EXPECT_EQ(next({"", "ann"}), "an");
+  EXPECT_EQ(next({"ann"}), "");
+}
+
 TEST_P(StoreTest, OwnersWithTheSameNumberOfClaimsTakeTurns) {
   for (const char* owner : {"ann", "bob", "cid"}) {
     for (int i = 0; i < 3; ++i) submit(owner, owner + std::to_string(i));

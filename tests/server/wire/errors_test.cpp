@@ -5,6 +5,9 @@
 
 #include <set>
 
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+
 namespace weft::server {
 namespace {
 
@@ -30,6 +33,26 @@ TEST(ErrorTable, TellsBadRequestsFromLimitsAndFromOurOwnFaults) {
 TEST(ErrorTable, TellsTheJobsOwnBudgetFromTheMachinesMemory) {
   EXPECT_FALSE(row_of(Reason::kBudgetExceeded).retryable);
   EXPECT_TRUE(row_of(Reason::kOutOfMemory).retryable);
+}
+
+google::rpc::ErrorInfo info_of(const Failure& failure, std::string_view job_id) {
+  google::rpc::Status details;
+  google::rpc::ErrorInfo info;
+  EXPECT_TRUE(details.ParseFromString(to_status(failure, job_id).error_details()));
+  EXPECT_TRUE(details.details_size() > 0 && details.details(0).UnpackTo(&info));
+  return info;
+}
+
+TEST(ToStatus, GivesThePlaceAtFaultExactly) {
+  const Error error{ErrorCode::kBadSizeValue, "size", "the size is 0", Point{0.1, -2e-30}};
+  const auto metadata = info_of(failure_of(error), "job-1").metadata();
+  EXPECT_EQ(metadata.at("x"), "0.1");
+  EXPECT_EQ(metadata.at("y"), "-2e-30");
+  EXPECT_EQ(metadata.at("job_id"), "job-1");
+}
+
+TEST(ToStatus, OfNoPlaceHasNoCoordinates) {
+  EXPECT_TRUE(info_of({Reason::kBadOption, "threads", "no"}, "").metadata().empty());
 }
 
 TEST(CodeName, IsTheNameThatGrpcGivesTheCode) {

@@ -14,6 +14,7 @@ TEST(JobWire, WritesWhatClientsCanReadWhateverTheRecordHolds) {
   record.id = "id\xff";
   record.request_id = "\xc3\x28";
   record.worker = "w\x80";
+  record.owner = "o\x80";
   record.progress = "\x0f";
   record.error = record.progress;
   record.brief = "\xb2\x01\x02\xff\xff";  // engine_version, no UTF-8
@@ -23,6 +24,7 @@ TEST(JobWire, WritesWhatClientsCanReadWhateverTheRecordHolds) {
   EXPECT_EQ(read.id(), "id?");
   EXPECT_EQ(read.request_id(), "?(");
   EXPECT_EQ(read.worker(), "w?");
+  EXPECT_EQ(read.client(), "o?");
   EXPECT_EQ(read.summary().engine_version(), "");
 }
 

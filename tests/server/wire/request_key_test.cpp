@@ -100,6 +100,24 @@ TEST(MeshKey, DependsOnEveryFieldOfARegion) {
   }
 }
 
+// A mesh that is found by its key has the names that were asked for.
+TEST(MeshKey, DependsOnEveryFieldOfAName) {
+  v1::GenerateMeshRequest request = valid_request();
+  request.mutable_domain()->add_marker_names();
+  request.mutable_domain()->add_region_names();
+  const std::string key = mesh_key(request);
+  const Descriptor& name = *v1::Name::descriptor();
+  std::set<std::string> keys = {key};
+  for (int i = 0; i < name.field_count(); ++i) {
+    v1::GenerateMeshRequest marker = request;
+    change(*marker.mutable_domain()->mutable_marker_names(0), *name.field(i));
+    EXPECT_TRUE(keys.insert(mesh_key(marker)).second) << name.field(i)->full_name();
+    v1::GenerateMeshRequest region = request;
+    change(*region.mutable_domain()->mutable_region_names(0), *name.field(i));
+    EXPECT_TRUE(keys.insert(mesh_key(region)).second) << name.field(i)->full_name();
+  }
+}
+
 TEST(MeshKey, LeavesOutWhatDoesNotChangeTheMesh) {
   v1::GenerateMeshRequest request = valid_request();
   request.mutable_budget()->set_max_triangles(7);
@@ -130,6 +148,41 @@ TEST(MeshKey, IsTheSameForADefaultThatIsWrittenOut) {
   EXPECT_EQ(mesh_key(request), key);
 }
 
+// Regions have bounds of their own, from which a gradation grows.
+TEST(MeshKey, HasWhatASizeWithoutAValueSays) {
+  const auto key_of = [](void (*change)(v1::SizeField&)) {
+    v1::GenerateMeshRequest request = valid_request();
+    request.clear_size();
+    request.mutable_domain()->add_regions()->set_max_area(0.1);
+    change(*request.mutable_size());
+    return mesh_key(request);
+  };
+  const std::string none = key_of([](v1::SizeField&) {});
+  const std::string steep = key_of([](v1::SizeField& size) { size.set_gradation(1); });
+  EXPECT_NE(steep, none);
+  EXPECT_NE(key_of([](v1::SizeField& size) { size.set_gradation(0.1); }), steep);
+  EXPECT_NE(key_of([](v1::SizeField& size) { size.set_gradation_within(true); }), none);
+  EXPECT_NE(key_of([](v1::SizeField& size) { size.add_fields()->set_name("d"); }), none);
+  EXPECT_EQ(key_of([](v1::SizeField& size) { size.set_measure(v1::MEASURE_EDGE); }), none);
+}
+
+TEST(MeshKey, IsTheSameForNamesInAnyOrder) {
+  const auto key_of = [](std::initializer_list<int> ids) {
+    v1::GenerateMeshRequest request = valid_request();
+    for (const int id : ids) {
+      for (auto* names : {request.mutable_domain()->mutable_marker_names(),
+                          request.mutable_domain()->mutable_region_names()}) {
+        v1::Name& name = *names->Add();
+        name.set_id(id);
+        name.set_name("name " + std::to_string(id));
+      }
+    }
+    return mesh_key(request);
+  };
+  EXPECT_EQ(key_of({1, 2, -3}), key_of({-3, 2, 1}));
+  EXPECT_NE(key_of({1, 2}), key_of({1, 2, -3}));
+}
+
 struct Change {
   const char* name;
   void (*make)(v1::GenerateMeshRequest&);
@@ -158,6 +211,11 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"Raster", [](auto& r) { r.mutable_size()->mutable_raster()->add_values(1); }},
         Change{"Measure", [](auto& r) { r.mutable_size()->set_measure(v1::MEASURE_EDGE); }},
         Change{"Gradation", [](auto& r) { r.mutable_size()->set_gradation(0.2); }},
+        Change{"GradationWithin",
+               [](auto& r) {
+                 r.mutable_size()->set_gradation(0.2);
+                 r.mutable_size()->set_gradation_within(true);
+               }},
         Change{"SizeAt", [](auto& r) { r.mutable_size()->add_at(); }},
         Change{"RegionEdge", [](auto& r) { r.mutable_domain()->add_regions()->set_max_edge(1); }},
         Change{"CellsAcross", [](auto& r) { r.mutable_size()->set_cells_across(3); }},

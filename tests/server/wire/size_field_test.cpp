@@ -59,6 +59,7 @@ TEST(SizeField, BringsItsFieldsItsMeasureAndItsGradation) {
   v1::SizeField size = expression("a + b + c + d");
   size.set_measure(v1::MEASURE_EDGE);
   size.set_gradation(0.25);
+  size.set_gradation_within(true);
   size.set_cells_across(3);
   size.add_at()->set_marker(-2);
   size.mutable_at(0)->set_max_edge(0.5);
@@ -83,6 +84,7 @@ TEST(SizeField, BringsItsFieldsItsMeasureAndItsGradation) {
   const SizeSpec spec = to_engine(size);
   EXPECT_EQ(spec.measure, Measure::kEdge);
   EXPECT_EQ(spec.gradation, 0.25);
+  EXPECT_TRUE(spec.gradation_within);
   EXPECT_EQ(spec.cells_across, 3);
   ASSERT_EQ(spec.at.size(), 1u);
   EXPECT_EQ(spec.at[0].marker, -2);

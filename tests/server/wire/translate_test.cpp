@@ -85,7 +85,7 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   summary.merging = {32, 33, 34, 35, {36, 37}, 38, {39, 40}};
   summary.triangulate_seconds = 14;
   summary.size_seconds = 15;
-  summary.prelude_seconds = 15.5;
+  summary.coarse_seconds = 15.5;
   summary.refine_seconds = 16;
   summary.emit_seconds = 17;
   summary.engine_seconds = 18;
@@ -96,6 +96,10 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   summary.deferred = 23;
   summary.rounds = 24;
   summary.leaves.resize(25);
+  summary.size_warnings = {{SizeWarning::Kind::kCoarseRaster, "depth", "is coarse"},
+                           {SizeWarning::Kind::kBoundsNothing, "", "is large"},
+                           {SizeWarning::Kind::kFieldNotNamed, "d", "is not named"},
+                           {SizeWarning::Kind::kGradationWithinAlone, "", "is alone"}};
   const v1::Summary message = to_wire(summary, 26);
   EXPECT_EQ(message.vertices(), 1u);
   EXPECT_EQ(message.triangles(), 2u);
@@ -109,6 +113,13 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   EXPECT_EQ(message.ideal_ratio(), 43);
   EXPECT_EQ(message.lattice_share(), 44);
   EXPECT_TRUE(message.streamed());
+  ASSERT_EQ(message.size_warnings_size(), 4);
+  EXPECT_EQ(message.size_warnings(0).kind(), v1::SIZE_WARNING_KIND_COARSE_RASTER);
+  EXPECT_EQ(message.size_warnings(0).field(), "depth");
+  EXPECT_EQ(message.size_warnings(0).message(), "is coarse");
+  EXPECT_EQ(message.size_warnings(1).kind(), v1::SIZE_WARNING_KIND_BOUNDS_NOTHING);
+  EXPECT_EQ(message.size_warnings(2).kind(), v1::SIZE_WARNING_KIND_FIELD_NOT_NAMED);
+  EXPECT_EQ(message.size_warnings(3).kind(), v1::SIZE_WARNING_KIND_GRADATION_WITHIN_ALONE);
   ASSERT_EQ(message.angle_histogram_size(), 18);
   EXPECT_EQ(message.angle_histogram(17), 8u);
   ASSERT_EQ(message.aspect_histogram_size(), 9);

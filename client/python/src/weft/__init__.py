@@ -9,6 +9,9 @@
     mesh.write("coast.vtu")
 
 Lengths are in the unit of the domain, areas in its square, angles in degrees, times in seconds.
+
+This folder has more than 25 files because it is one package: what users import, from `weft` itself,
+beside the modules that these share, whose names begin with an underscore.
 """
 
 from . import aio
@@ -21,13 +24,13 @@ from .domain import Domain, DomainLike, Region
 from .errors import (AlreadyExists, BoundsNotMet, Cancelled, DamagedStream, DeadlineExceeded,
                      DomainError, FailedPrecondition, FieldViolation, InvalidRequest, LimitExceeded,
                      LocalServerError, MeshFileError, MissingPackage, NotFound, ServerError,
-                     Unauthenticated, Unavailable, WeftError)
+                     Unauthenticated, Unavailable, WeftError, WeftWarning)
 from .fields import Field, distance, on_mesh, raster, width
 from .local import LocalServer, local
 from .mesh import Mesh
 from .quality import Quality
-from .results import (Accepted, Job, JobState, Merging, Progress, ServerInfo, ServerLimits, Summary,
-                      Timings, Unrefined)
+from .results import (Accepted, Job, JobState, Merging, Progress, ServerInfo, ServerLimits,
+                      SizeWarning, Summary, Timings, Unrefined)
 from .size import Raster, Size
 
 __all__ = [
@@ -36,7 +39,7 @@ __all__ = [
     "FieldViolation", "InvalidRequest", "Job", "JobState", "LimitExceeded", "LocalServer",
     "LocalServerError", "Merging", "Mesh", "MeshFileError", "MeshOptions", "MeshStream",
     "MissingPackage", "NotFound", "Progress", "Quality", "Raster", "Region", "ServerError",
-    "ServerInfo", "ServerLimits", "Size", "Summary", "TLS", "Timings", "Unauthenticated",
-    "Unavailable", "Unrefined", "WeftError", "__version__", "aio", "distance", "local", "on_mesh",
-    "raster", "width",
+    "ServerInfo", "ServerLimits", "Size", "SizeWarning", "Summary", "TLS", "Timings",
+    "Unauthenticated", "Unavailable", "Unrefined", "WeftError", "WeftWarning", "__version__", "aio",
+    "distance", "local", "on_mesh", "raster", "width",
 ]

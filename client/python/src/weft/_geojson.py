@@ -1,29 +1,36 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A domain from a GeoJSON object, by the rules of client/formats/domains/geojson.h: the same file gives the
-same request, and so the same mesh, as the command line does. A ring that crosses itself is taken as
-it is, inside by the even-odd rule.
+"""A domain from a GeoJSON object, by the rules of client/formats/domains/geojson.h: the same file
+gives the same request, and so the same mesh, as on the command line. A ring that crosses itself is
+taken as it is, inside by the even-odd rule.
 """
 
 from __future__ import annotations
 
+import math
+import numbers
 from collections.abc import Callable
+from json import dumps
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from ._names import Label, Labels
+from ._text import shortest
 from .errors import DomainError
 
 Points = npt.NDArray[np.float64]
 
 
 class _Reader:
-    def __init__(self) -> None:
+    def __init__(self, file: str) -> None:
+        self.marker_labels, self.region_labels = Labels("marker", file), Labels("region", file)
         self.points: list[Points] = []
         self.segments: list[npt.NDArray[np.int64]] = []
-        self.markers: list[npt.NDArray[np.int32]] = []
+        self.markers: list[Label] = []  # of each of `segments`
         self.lines: list[int] = []  # of `segments`, those that are no rings
-        self.polygons: list[tuple[slice, dict[str, Any], str]] = []  # those that ask for a region
+        # Those that ask for a region: their segments, its label, their properties, their path.
+        self.polygons: list[tuple[slice, Label, dict[str, Any], str]] = []
         self.even_odd = False
         self.count = 0
 
@@ -84,8 +91,9 @@ class _Reader:
                 raise DomainError(f"{path}[{i}] is a ring with fewer than 3 distinct points")
             self.chain(points[:-1], True, properties)
         self.even_odd = True
-        if {"region", "max_area", "max_edge"} & properties.keys():
-            self.polygons.append((slice(first, len(self.segments)), properties, path))
+        if {"region", "region_name", "max_area", "max_edge"} & properties.keys():
+            self.polygons.append((slice(first, len(self.segments)), self.region_labels.of(properties),
+                                  properties, path))
 
     def chain(self, points: Points, closed: bool, properties: dict[str, Any]) -> None:
         numbers = np.arange(self.count, self.count + len(points))
@@ -93,7 +101,7 @@ class _Reader:
         self.points.append(points)
         self.count += len(points)
         self.segments.append(segments if closed else segments[:-1])
-        self.markers.append(np.full(len(self.segments[-1]), properties.get("marker", 0), np.int32))
+        self.markers.append(self.marker_labels.of(properties))
 
     def domain(self, region: Callable[..., Any]) -> dict[str, Any]:
         """What Domain is made of."""
@@ -101,29 +109,34 @@ class _Reader:
             raise DomainError("it holds no geometry")
         points = np.concatenate(self.points)
         every = np.concatenate([*self.segments, np.zeros((0, 2), np.int64)])
+        marker_of, marker_names = self.marker_labels.numbers()
+        region_of, region_names = self.region_labels.numbers()
         regions = []
-        for polygon, properties, path in self.polygons:
+        for polygon, label, properties, path in self.polygons:
             seed = _interior_point(points, np.concatenate(self.segments[polygon]), every)
             if seed is None:
                 raise DomainError(f"{path} is a polygon with a region but without area")
-            regions.append(region(*seed, properties.get("region", 0), properties.get("max_area"),
+            regions.append(region(*seed, region_of[label], properties.get("max_area"),
                                   properties.get("max_edge")))
         # Two coincident segments leave the parity of even-odd filling alone.
         twice = self.lines if self.even_odd else []
         return {
             "points": points,
             "segments": np.concatenate([every, *(self.segments[i] for i in twice)]),
-            "markers": np.concatenate([*self.markers, *(self.markers[i] for i in twice),
-                                       np.zeros(0, np.int32)]),
+            "markers": np.concatenate([np.zeros(0, np.int32), *(
+                np.full(len(self.segments[i]), marker_of[self.markers[i]], np.int32)
+                for i in (*range(len(self.segments)), *twice))]),
             "regions": regions,
+            "marker_names": marker_names,
+            "region_names": region_names,
             "fill": "even-odd" if self.even_odd else "seeds",
         }
 
 
-def read(json: Any, region: Callable[..., Any]) -> dict[str, Any]:
+def read(json: Any, region: Callable[..., Any], file: str = "") -> dict[str, Any]:
     """The arguments of Domain; `region` makes a Region of x, y, id, max_area and
-    max_edge."""
-    reader = _Reader()
+    max_edge; `file`: what warnings name."""
+    reader = _Reader(file)
     reader.read(json, "", {})
     return reader.domain(region)
 
@@ -133,23 +146,42 @@ def _properties(properties: Any, path: str) -> dict[str, Any]:
     for name in ("marker", "region"):
         value = properties.get(name)
         if isinstance(value, (int, float)) and not isinstance(value, bool):
-            if value != int(value) or not -2**31 <= value < 2**31:
-                raise DomainError(f"{path}.{name} is {value}, not an integer of 32 bits")
+            if not -2**31 <= value < 2**31 or value != int(value):
+                raise DomainError(f"{path}.{name} is {shortest(_float(value))}, not an integer of 32 "
+                                  "bits")
             found[name] = int(value)
+        texts = (properties.get(key) for key in (name, f"{name}_name"))
+        if text := next((text for text in texts if text and isinstance(text, str)), ""):
+            found[f"{name}_name"] = text
     for name in ("max_area", "max_edge"):
         bound = properties.get(name)
-        if isinstance(bound, (int, float)) and not isinstance(bound, bool):
-            if not bound > 0:
-                raise DomainError(f"{path}.{name} is {bound}, not positive")
-            found[name] = float(bound)
+        if bound is None:  # as programs write features that lack a column of their table
+            continue
+        if isinstance(bound, bool) or not isinstance(bound, numbers.Real):
+            raise DomainError(f"{path}.{name} is {dumps(bound, default=repr)}, not a number")
+        number = _float(bound)
+        if not number > 0:
+            raise DomainError(f"{path}.{name} is {shortest(number)}, not positive")
+        if math.isinf(number):
+            raise DomainError(f"{path}.{name} is larger than the largest number of double precision, "
+                              "1.8e308")
+        found[name] = number
     return found
+
+
+def _float(value: Any) -> float:
+    """Infinite if it is too large for one: an integer has no largest."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
 
 
 def _positions(positions: Any, path: str) -> Points:
     """(n, 2), less those that repeat their predecessor."""
     try:
         points = np.array([position[:2] for position in positions], np.float64).reshape(-1, 2)
-    except (TypeError, ValueError, IndexError):
+    except (TypeError, ValueError, IndexError, OverflowError):
         raise DomainError(f"{path} does not hold positions [x, y]") from None
     if len(points) == 0:
         return points

@@ -5,22 +5,31 @@ from __future__ import annotations
 
 import itertools
 import pathlib
+import re
 from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from ._names import FileNames
 from .errors import DomainError
+
+_NAME = re.compile(r"# (marker|region)=(-?[0-9]+):(.*)")  # see client/formats/triangle/triangle_names.h
 
 
 class _Lines:
     """The lines of a file that say something, one after the other."""
 
     def __init__(self, path: pathlib.Path) -> None:
-        stripped = (line.partition("#")[0].strip() for line in path.read_text().splitlines())
+        # Comments may be in any encoding; a name that is not UTF-8 is left out.
+        text = path.read_text("utf-8", "surrogateescape")
+        lines = text.split("\n")
+        stripped = (line.partition("#")[0].strip() for line in lines)
         self._lines = [line for line in stripped if line]
         self._at = 0
+        named = (_NAME.fullmatch(line) for line in lines)
+        self.names = [(found[1], int(found[2]), found[3]) for found in named if found]
 
     def header(self, what: str, least: int) -> list[int]:
         if self._at >= len(self._lines):
@@ -96,12 +105,28 @@ def read(path: pathlib.Path, region: Callable[..., Any]) -> dict[str, Any]:
     # A lone value is both the attribute and the maximum area, as Triangle documents it.
     regions = [region(row[1], row[2], ids[row[3]], area if (area := row[3:5][-1]) > 0 else None)
                for row in rows]
+    region_values = {number: value for value, number in ids.items() if number != value}
+    names = {kind: FileNames(kind, str(path)) for kind in ("marker", "region")}
+    for number, value in region_values.items():
+        names["region"].add(number, _shortest(value))
+    for kind, number, name in lines.names:
+        if -2**31 <= number < 2**31:
+            names[kind].add(number, name)
     return {
         "points": vertices[:, 1:3],
         "segments": segments[:, 1:3] - first,
         "markers": segments[:, 3] if marked else np.zeros(0, np.int32),
         "holes": holes[:, 1:3],
         "regions": regions,
-        "region_values": {number: value for value, number in ids.items() if number != value},
+        "region_values": region_values,
+        "marker_names": names["marker"].table,
+        "region_names": names["region"].table,
         "fill": "seeds",
     }
+
+
+def _shortest(value: float) -> str:
+    """As the command line writes it: in the shorter notation."""
+    fixed = np.format_float_positional(value, trim="-")
+    scientific = np.format_float_scientific(value, trim="-", exp_digits=2)
+    return fixed if len(fixed) <= len(scientific) else scientific

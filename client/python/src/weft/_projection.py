@@ -15,10 +15,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from . import _projected_raster
 from ._optional import need
+from ._raster_window import Window
 from .domain import Domain
 from .errors import DomainError
-from .fields import Distance, Field, MeshField, RasterField
+from .fields import Distance, Field, FileField, MeshField, RasterField
 
 Floats = npt.NDArray[np.float64]
 
@@ -68,7 +70,12 @@ class Projection:
         if isinstance(field, MeshField) and not self.to_metres:
             return dataclasses.replace(field, points=self._finite("on_mesh", field.points))
         if isinstance(field, RasterField):
-            return self._raster(field)
+            window = Window(field.values, field.origin, field.spacing)
+            return RasterField(**vars(_projected_raster.of_array(window, self._plane,
+                                                                 self.domain.box())))
+        if isinstance(field, FileField):
+            return RasterField(**vars(_projected_raster.of_file(
+                field.open(), self._plane, self.domain.box(), field.most)))
         return field
 
     def _forward(self, lonlat: Floats) -> Floats:
@@ -153,31 +160,6 @@ class Projection:
         d, away = at[:, 3] - origin, at[:, :3] - origin[:, None]
         off = np.abs(away[..., 0] * d[:, None, 1] - away[..., 1] * d[:, None, 0])
         return bool((off <= _STRAIGHT * (d**2).sum(axis=1)[:, None]).all())
-
-    def _raster(self, raster: RasterField) -> RasterField:
-        """Square cells of the raster's resolution over the domain, each with the bilinear value."""
-        pyproj = need("pyproj", "a raster on a domain in longitude and latitude")
-        crs = pyproj.CRS.from_user_input(raster.crs or "EPSG:4326")
-        turn = 360.0 if crs.is_geographic else 0.0
-        back = pyproj.Transformer.from_crs(self._plane, crs, always_xy=True)
-        lower, upper = self._metres.min(axis=0), self._metres.max(axis=0)
-        size = _cell_size(back, lower, upper, raster.spacing[0] * raster.spacing[1], turn)
-        counts = np.ceil((upper - lower) / size) + 5
-        while counts.prod() > _MOST_VALUES:
-            size *= 1.01
-            counts = np.ceil((upper - lower) / size) + 5
-        columns, rows = counts.astype(int).tolist()
-        first = lower - 2 * size
-        x = first[0] + size * np.arange(columns)
-        values = np.empty((rows, columns), np.float32)
-        for j in range(rows):
-            at = back.transform(x, np.full(columns, first[1] + size * j))
-            values[j] = _bilinear(raster, at[0], at[1], turn)
-        return dataclasses.replace(raster, values=values, origin=(float(first[0]), float(first[1])),
-                                   spacing=(float(size), float(size)), crs=None)
-
-
-_MOST_VALUES = 16 << 20
 
 
 class _Extent:
@@ -348,48 +330,3 @@ def _rounded(value: float) -> float:
 def _degrees(value: float) -> str:
     digits = f"{value:.5f}".rstrip("0").removesuffix(".")
     return "0" if digits == "-0" else digits
-
-
-def _short_way(difference: Any, turn: float) -> Any:
-    return difference - turn * np.round(difference / turn) if turn else difference
-
-
-def _cell_size(back: Any, lower: Floats, upper: Floats, cell: float, turn: float) -> float:
-    """The edge of a square of the plane that is as large as a cell of the raster."""
-    step = (upper - lower).max() / 1024
-    i, j = np.meshgrid((np.arange(7) + 0.5) / 7, (np.arange(7) + 0.5) / 7, indexing="ij")
-    x, y = lower[0] + (upper[0] - lower[0]) * i.ravel(), lower[1] + (upper[1] - lower[1]) * j.ravel()
-    (x0, y0), (x1, y1), (x2, y2) = (back.transform(x + dx, y + dy)
-                                    for dx, dy in ((0, 0), (step, 0), (0, step)))
-    with np.errstate(all="ignore"):
-        cells = np.abs(_short_way(x1 - x0, turn) * (y2 - y0)
-                       - _short_way(x2 - x0, turn) * (y1 - y0)) / cell
-        sizes = step / np.sqrt(cells)
-    sizes = np.sort(sizes[np.isfinite(sizes) & (sizes > 0)])
-    if not len(sizes):
-        raise DomainError("raster: the domain has no counterpart in its coordinate system")
-    return float(sizes[len(sizes) // 2])
-
-
-def _bilinear(raster: RasterField, x: Floats, y: Floats, turn: float) -> Floats:
-    """Of the nodes with data, if the nearest has any; up to two cells beside the raster."""
-    values, (dx, dy) = raster.values, raster.spacing
-    rows, columns = values.shape
-    u, v = (x - raster.origin[0]) / dx, (y - raster.origin[1]) / dy
-    if turn:
-        u = u - turn / dx * np.floor((u + 0.5) * dx / turn)
-    with np.errstate(invalid="ignore"):
-        inside = (u >= -2) & (u <= columns + 1) & (v >= -2) & (v <= rows + 1)
-    u = np.clip(np.where(inside, u, 0), 0, columns - 1)
-    v = np.clip(np.where(inside, v, 0), 0, rows - 1)
-    nearest = values[np.floor(v + 0.5).astype(int), np.floor(u + 0.5).astype(int)]
-    i, j = np.floor(u).astype(int), np.floor(v).astype(int)
-    total, weights = np.zeros(len(u)), np.zeros(len(u))
-    for di, wu in ((0, 1 - (u - i)), (1, u - i)):
-        for dj, wv in ((0, 1 - (v - j)), (1, v - j)):
-            value = values[np.minimum(j + dj, rows - 1), np.minimum(i + di, columns - 1)]
-            weight = np.where(np.isnan(value), 0, wu * wv)
-            total += weight * np.where(weight > 0, value, 0)
-            weights += weight
-    with np.errstate(invalid="ignore"):
-        return np.where(inside & ~np.isnan(nearest), total / weights, np.nan)

@@ -6,12 +6,14 @@ and indices of the chunks, the digests. Knows no gRPC; what feeds it may resume 
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from . import _protocol, _wire, results
 from ._projection import Projection
+from ._warning import warn
 from ._wire import Chunk
 from .errors import DamagedStream
 from .mesh import Mesh
@@ -23,6 +25,12 @@ _Summary = _protocol.message("weft.v1.Summary")
 
 def _damaged(what: str) -> DamagedStream:
     return DamagedStream(f"the stream is damaged: {what}")
+
+
+def _names_of(domain: Any) -> tuple[dict[int, str], dict[int, str]]:
+    """Of markers and of regions, as a weft.v1.Domain has them."""
+    return ({entry.id: entry.name for entry in domain.marker_names},
+            {entry.id: entry.name for entry in domain.region_names})
 
 
 def _digest(chunk: Chunk) -> bytes:
@@ -37,14 +45,20 @@ def _digest(chunk: Chunk) -> bytes:
 class MeshReceiver:
     """Receives one mesh, in one stream or in several that go on with each other.
 
-    `points` and `segments` count those of the domain, where it is known. `projected`: of a domain
-    in longitude and latitude, back to which it leads.
+    `points` and `segments` count those of the domain, if it is known. `projected`: the projection of a
+    domain in longitude and latitude, by which the mesh is brought back. `names`: of the domain's markers and regions;
+    None: those that the server has kept. `sampled`: the size's raster was sampled from a function, of
+    which the sampling has warned already.
     """
 
     def __init__(self, points: int | None = None, segments: int | None = None,
-                 projected: Projection | None = None) -> None:
+                 projected: Projection | None = None,
+                 names: tuple[Mapping[int, str], Mapping[int, str]] | None = None,
+                 sampled: bool = False) -> None:
         self._limits = (points, segments)
+        self._names = names
         self._projected = projected
+        self._sampled = sampled
         self._awaits_accepted = True
         self._sha256 = hashlib.sha256()
         self._parts: list[Chunk] = []
@@ -78,7 +92,10 @@ class MeshReceiver:
             elif kind == _wire.PROGRESS:
                 return results.progress(_Progress.FromString(bytes(data)))
             elif kind == _wire.SUMMARY:
-                self._receive_summary(results.summary(_Summary.FromString(bytes(data))))
+                summary = _Summary.FromString(bytes(data))
+                self._receive_summary(results.summary(summary))
+                if self._names is None:
+                    self._names = _names_of(summary.request.domain)
             else:
                 raise _damaged("a message is of an unknown kind")
         except _protocol.DecodeError as error:
@@ -131,12 +148,16 @@ class MeshReceiver:
         if self._sha256.hexdigest() != summary.digest:
             raise _damaged("the mesh does not match the SHA-256 of the summary")
         self.summary = summary
+        for warning in summary.size_warnings:
+            if not (self._sampled and warning.kind == "coarse_raster"):
+                warn(warning.message)
 
     def mesh(self) -> Mesh:
         """The mesh, once the summary is there; gives up the chunks."""
         if self.summary is None:
             raise _damaged("it ended without a summary")
         parts, self._parts = self._parts, []
+        marker_names, region_names = self._names or ({}, {})
 
         def joined(name: str, shape: tuple[int, ...], dtype: type) -> Any:
             return np.concatenate([np.empty(shape, dtype), *(getattr(p, name) for p in parts)])
@@ -153,4 +174,6 @@ class MeshReceiver:
             edge_markers=joined("edge_markers", (0,), np.int32),
             edge_segments=joined("edge_segments", (0,), np.int32),
             input_points=input_points,
-            summary=self.summary)
+            summary=self.summary,
+            marker_names=marker_names,
+            region_names=region_names)

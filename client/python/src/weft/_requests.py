@@ -3,15 +3,23 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
+import numbers
 from collections.abc import Mapping
 from typing import Any, Literal, TypedDict
 
+import numpy as np
+
 from . import _protocol
+from ._names import marker_of
 from ._projection import Projection
-from .domain import Domain
+from ._raster_window import MOST_VALUES
+from ._receiver import MeshReceiver
+from ._warning import keeping_warnings, warn
+from .domain import Domain, DomainLike, as_domain
 from .errors import DomainError
-from .fields import Field
+from .fields import Field, FileField, RasterField, check_is_field
 from .size import Raster, Size
 
 
@@ -19,20 +27,24 @@ class MeshOptions(TypedDict, total=False):
     """What else a mesh may be asked for; the defaults are the server's."""
 
     edge: Size
-    """The length of edges, instead of `size`: triangles are at most as large as the equilateral one
-    with this edge at their centroid. A number, an expression in x, y and names of `fields`, a
+    """The length of edges, instead of `size`: no triangle is larger than the equilateral one whose
+    edges have the length at its centroid. A number, an expression in x, y and names of `fields`, a
     Raster or a function of lengths."""
     fields: Mapping[str, Field]
     """What `edge` or `size` may name besides x and y: see distance, raster, on_mesh and width."""
     gradation: float
-    """How much the length of edges may grow per unit of length; a size that grows faster is lowered.
-    Default: no limit."""
-    edge_at: Mapping[int, float]
-    """How long edges may be on segments, by their marker: `{2: 500}`. With `gradation`, edges grow
-    from there by it at most."""
+    """Maximum growth of the length of edges per unit of distance; a size that grows faster is
+    lowered. Default: no limit."""
+    gradation_within: bool
+    """Whether distances for `gradation` are measured within the domain, around land, instead of
+    across it. Default: False."""
+    edge_at: Mapping[int, float] | Mapping[str, float] | Mapping[int | str, float]
+    """Maximum length of edges on segments, by their marker, a number or a name of the domain's
+    `marker_names`: `{2: 500, "inlet": 100}`. With `gradation`, lengths
+    grow from there by at most that."""
     cells_across: float
-    """How many edges fit across the domain at least, about, where it is narrow: no edge is wanted
-    longer than the local width divided by it. Best with `gradation`. Default: any number."""
+    """Minimum number of edges across the domain, roughly: no edge is wanted longer than the local
+    width divided by it. Best with `gradation`. Default: any number."""
     lonlat: bool
     """The domain is in longitude and latitude, in degrees: it is meshed in a plane in metres, so that
     angles hold on the ground, and the points of the mesh are in longitude and latitude. Sizes are
@@ -47,8 +59,8 @@ class MeshOptions(TypedDict, total=False):
     """No edge shorter than this is made, in the unit of the points."""
     placement: Literal["lattice", "circumcentre"]
     """Where the points go that split triangles larger than their bound: to a lattice that follows
-    the size, with a third fewer triangles, or to circumcentres, without any direction in the mesh.
-    Default: lattice."""
+    the size, with a third fewer triangles, or to circumcentres, which give the mesh no preferred
+    direction. Default: lattice."""
     optimise: int
     """Sweeps of smoothing, 0 to 16: vertices around angles below 48 degrees move to where the
     smallest angle around them is largest. Default: 2 if the size makes nearly all triangles, on a
@@ -57,14 +69,14 @@ class MeshOptions(TypedDict, total=False):
     """Merge everything of the domain that lies nearer together than this first, in the unit of the
     points; `summary.merging` tells what moved."""
     allow_unrefined: bool
-    """Take a mesh with triangles that miss a bound though nothing excuses them, instead of
+    """Take a mesh with triangles that miss a bound although nothing exempts them, instead of
     BoundsNotMet."""
     max_triangles: int
     """Refinement stops here and gives the mesh that it has."""
     max_seconds: float
-    """Of work; over it, DeadlineExceeded."""
+    """Maximum seconds of work; beyond it, DeadlineExceeded."""
     threads: int
-    """That compute, at most; the mesh does not depend on it. Default: all of the server."""
+    """Maximum threads that compute; the mesh does not depend on it. Default: all of the server."""
     quadtree: bool
     """Whether `summary.leaf_boxes` is filled."""
     no_cache: bool
@@ -97,19 +109,21 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
     _fill_domain(domain, request.domain)
     if size is not None and options.get("edge") is not None:
         raise ValueError("size and edge exclude each other")
-    _fill_size(size, domain, request.size)
+    _fill_size(size, domain, request.size, lengths=False)
     if options.get("edge") is not None:
-        _fill_size(options["edge"], domain, request.size)
+        _fill_size(options["edge"], domain, request.size, lengths=True)
         request.size.measure = _EDGE
     if "cells_across" in options:
         request.size.cells_across = options["cells_across"]
     if "gradation" in options:
         request.size.gradation = options["gradation"]
+    if options.get("gradation_within"):
+        if "gradation" not in options:
+            raise ValueError("gradation_within needs gradation, whose distances it is about")
+        request.size.gradation_within = True
     for marker, max_edge in options.get("edge_at", {}).items():
-        request.size.at.add(marker=marker, max_edge=max_edge)
-    for name, field in options.get("fields", {}).items():
-        in_plane = field if projected is None else projected.field(field)
-        in_plane._fill(request.size.fields.add(name=name))
+        request.size.at.add(marker=marker_of(marker, domain.marker_names), max_edge=max_edge)
+    _fill_fields(options.get("fields", {}), domain, projected, request.size.fields)
     request.quality.min_angle_deg = min_angle
     if "min_edge" in options:
         request.quality.min_edge = options["min_edge"]
@@ -132,8 +146,21 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
     return request
 
 
-def job_request(domain: Domain, size: Size, min_angle: float, options: MeshOptions) -> Any:
+def stream_request(domain: DomainLike, size: Size, min_angle: float,
+                   options: MeshOptions) -> tuple[Any, MeshReceiver]:
+    """A GenerateMeshRequest, and what takes its mesh."""
+    domain = as_domain(domain)
+    projected = projection(domain, options)
+    request = mesh_request(domain, size, min_angle, options, projected)
+    sent = domain if projected is None else projected.domain
+    return request, MeshReceiver(len(sent.points), len(sent.segments), projected,
+                                 (sent.marker_names, sent.region_names),
+                                 sampled=callable(size) or callable(options.get("edge")))
+
+
+def job_request(domain: DomainLike, size: Size, min_angle: float, options: MeshOptions) -> Any:
     """A GenerateMeshRequest of which nobody keeps the projection until the mesh is fetched."""
+    domain = as_domain(domain)
     projected = projection(domain, options)
     if projected is not None and not projected.to_metres:
         raise ValueError("the mesh of a job is fetched in metres of the projection: say so with "
@@ -150,17 +177,39 @@ def _fill_domain(domain: Domain, message: Any) -> None:
     for region in domain.regions:
         message.regions.add(x=region.x, y=region.y, id=region.id, max_area=region.max_area,
                             max_edge=region.max_edge)
+    for table, names in ((message.marker_names, domain.marker_names),
+                         (message.region_names, domain.region_names)):
+        for number, name in names.items():
+            table.add(id=number, name=name)
     message.fill = _FILLS[domain.fill]
 
 
-def _fill_size(size: Size, domain: Domain, message: Any) -> None:
+def _fill_fields(fields: Mapping[str, Field], domain: Domain, projected: Projection | None,
+                 messages: Any) -> None:
+    rasters = sum(isinstance(field, (FileField, RasterField)) for field in fields.values())
+    # They share the server's limit; less is read of each file if they have more together.
+    for most in (MOST_VALUES, MOST_VALUES // max(rasters, 1)):
+        del messages[:]
+        with keeping_warnings() as sentences:
+            for name, field in fields.items():
+                check_is_field(name, field)
+                if isinstance(field, FileField):
+                    field = dataclasses.replace(field, most=most)
+                in_plane = field if projected is None else projected.field(field)
+                in_plane._fill(messages.add(name=name), domain)
+        if sum(len(message.raster.values) for message in messages) <= MOST_VALUES:
+            break
+    for sentence in sentences:
+        warn(sentence)
+
+
+def _fill_size(size: Size, domain: Domain, message: Any, *, lengths: bool) -> None:
     if size is None:
         return
     if callable(size):
-        if not len(domain.points):
-            raise DomainError("the domain has no points")
-        (left, bottom), (right, top) = domain.points.min(axis=0), domain.points.max(axis=0)
-        size = Raster.sample(size, (left, bottom, right, top))
+        middles = domain.points[domain.segments].mean(axis=1)
+        size = Raster.adaptive(size, domain.box(),
+                               np.concatenate([domain.points, middles]), lengths=lengths)
     if isinstance(size, Raster):
         raster = message.raster
         raster.x, raster.y = size.origin
@@ -174,6 +223,11 @@ def _fill_size(size: Size, domain: Domain, message: Any) -> None:
         except ValueError:
             message.expression = size
             return
-    if not (isinstance(size, (int, float)) and math.isfinite(size)):
-        raise DomainError(f"size is {size!r}; see weft.Size")
-    message.constant = size
+    name = "edge" if lengths else "size"
+    try:
+        number = float(size) if isinstance(size, numbers.Real) else math.nan
+    except OverflowError:
+        raise DomainError(f"{name} is a number beyond double precision") from None
+    if not math.isfinite(number):
+        raise DomainError(f"{name} is {size!r}; see weft.Size")
+    message.constant = number

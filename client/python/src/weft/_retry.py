@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""When a call is made again, as client/call/retry.h has it: where the server was away (UNAVAILABLE)
-and where it says itself that the same call may succeed later, as when its queue is full. Each wait
+"""When a call is made again, as client/call/retry.h has it: if the server was away (UNAVAILABLE),
+or if it says itself that the same call may succeed later, as when its queue is full. Each wait
 is twice as long as the one before, as long as nothing new comes, and at least as long as the server
 asks for; a quarter more or less by chance.
 """
@@ -27,7 +27,7 @@ class Retry:
         self._failures = 0
 
     def time_left(self) -> float | None:
-        """Seconds that the next attempt may take. Raises DeadlineExceeded where there are none."""
+        """Seconds that the next attempt may take. Raises DeadlineExceeded if there are none."""
         if self._deadline is None:
             return None
         left = self._deadline - time.monotonic()
@@ -37,7 +37,7 @@ class Retry:
         return left
 
     def wait_after(self, error: ServerError) -> float:
-        """Seconds to wait before the next attempt; raises the error where it was the last."""
+        """Seconds to wait before the next attempt; raises the error if it was the last."""
         asked = error.retry_after
         if self._failures >= self._attempts or (asked is None and not isinstance(error, Unavailable)):
             raise error

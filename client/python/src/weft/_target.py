@@ -42,7 +42,7 @@ class Connection:
 
 def connection(target: str | None, token: str | None, tls: TLS | bool | None,
                insecure: bool) -> Connection:
-    """Raises WeftError where no server is named, or the token would travel unencrypted."""
+    """Raises WeftError if no server is named, or the token would travel unencrypted."""
     target = target or os.environ.get("WEFT_SERVER")
     if not target:
         raise WeftError("no server is named: give a target, or WEFT_SERVER; weft.local() starts one")

@@ -48,7 +48,7 @@ class Chunk:
     edge_markers: Ints
     """(k,) int32: marker per edge."""
     edge_segments: Ints
-    """(k,) int32: index of the input segment per edge; the lowest where several overlap."""
+    """(k,) int32: index of the input segment per edge; the lowest if several overlap."""
     input_points: Ints
     """(p, 2) int32: vertex number and index of the input point."""
     box: Floats

@@ -5,12 +5,16 @@
         mesh = await client.mesh("key.poly", size=0.1)
         async with client.stream("key.poly", size=0.01) as stream:
             async for chunk in stream: ...
+
+Files of fields are read, and functions called that give sizes, in a thread of asyncio.to_thread. A call
+that is cancelled ends at once, its thread once it has read the file or called the function.
 """
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
+import functools
 import os
 from collections.abc import AsyncIterator, Callable, Iterable, Sequence
 from types import TracebackType
@@ -20,10 +24,11 @@ import grpc
 
 from . import _jobs, _protocol, _target, errors, results
 from ._receiver import MeshReceiver
-from ._requests import MeshOptions, job_request, mesh_request, projection
+from ._requests import MeshOptions, job_request, stream_request
 from ._retry import Retry
+from ._warning import in_thread
 from ._wire import Chunk
-from .domain import DomainLike, as_domain
+from .domain import DomainLike
 from .local import LocalServer
 from .mesh import Mesh
 from .results import Job, JobState, Progress, ServerInfo
@@ -59,7 +64,7 @@ class Client:
     async def mesh(self, domain: DomainLike, size: Size = None, min_angle: float = 20, *,
                    on_progress: Callable[[Progress], object] | None = None,
                    timeout: float | None = None, **options: Unpack[MeshOptions]) -> Mesh:
-        """See weft.Client.mesh."""
+        """See weft.Client.mesh, which explains every option; help(client.mesh) shows it."""
         async with self.stream(domain, size, min_angle, on_progress=on_progress, timeout=timeout,
                                **options) as stream:
             return await stream.mesh()
@@ -68,12 +73,8 @@ class Client:
                on_progress: Callable[[Progress], object] | None = None,
                timeout: float | None = None, **options: Unpack[MeshOptions]) -> MeshStream:
         """See weft.Client.stream."""
-        domain = as_domain(domain)
-        projected = projection(domain, options)
-        request = mesh_request(domain, size, min_angle, options, projected)
-        sent = domain if projected is None else projected.domain
-        return MeshStream(self, _protocol.GENERATE_MESH, request, timeout, on_progress,
-                          MeshReceiver(len(sent.points), len(sent.segments), projected))
+        make = functools.partial(stream_request, domain, size, min_angle, options)
+        return MeshStream(self, _protocol.GENERATE_MESH, make, timeout, on_progress)
 
     async def server_info(self) -> ServerInfo:
         """See weft.Client.server_info."""
@@ -83,7 +84,7 @@ class Client:
                      request_id: str | None = None, timeout: float | None = None,
                      **options: Unpack[MeshOptions]) -> Job:
         """See weft.Client.submit."""
-        mesh = job_request(as_domain(domain), size, min_angle, options)
+        mesh = await in_thread(job_request, domain, size, min_angle, options)
         answer = await self._call(_protocol.SUBMIT_JOB, timeout, mesh=mesh, no_cache=mesh.no_cache,
                                   request_id=_jobs.request_id(request_id))
         return results.job(answer.job)
@@ -149,7 +150,7 @@ class Client:
     def stream_job(self, job: Job | str, timeout: float | None = None) -> MeshStream:
         """See weft.Client.stream_job."""
         request = _protocol.FETCH_MESH.request(id=_jobs.id_of(job))
-        return MeshStream(self, _protocol.FETCH_MESH, request, timeout, None, MeshReceiver())
+        return MeshStream(self, _protocol.FETCH_MESH, lambda: (request, MeshReceiver()), timeout, None)
 
     def _retry(self, timeout: float | None) -> Retry:
         return Retry(self._retries, timeout, self.target)
@@ -173,7 +174,7 @@ class Client:
                 return await call(method.request(**fields), timeout=retry.time_left(),
                                   metadata=self._metadata)
             except grpc.RpcError as broken:
-                error = errors.of_call(broken, self.target)
+                error = errors.of_call(broken, self.target, fields.get("mesh"))
             # Where the answer to the first attempt was lost, the job may be gone already.
             if repeated and method is _protocol.DELETE_JOB and isinstance(error, errors.NotFound):
                 return method.response()
@@ -191,17 +192,20 @@ class Client:
 
 
 class MeshStream(AsyncIterator[Chunk]):
-    """See weft.MeshStream."""
+    """See weft.MeshStream. The request is made once its context is entered, or its first chunk is
+    awaited, in a thread: that is where errors of files come, and where a function of x and y is
+    called."""
 
-    def __init__(self, client: Client, method: _protocol.Method, request: Any,
-                 timeout: float | None, on_progress: Callable[[Progress], object] | None,
-                 receiver: MeshReceiver) -> None:
+    def __init__(self, client: Client, method: _protocol.Method,
+                 make: Callable[[], tuple[Any, MeshReceiver]], timeout: float | None,
+                 on_progress: Callable[[Progress], object] | None) -> None:
         self._client = client
         self._method = method
-        self._request = request
-        self._retry = client._retry(timeout)
+        self._make = make
+        self._timeout = timeout
         self._on_progress = on_progress
-        self._receiver = receiver
+        self._request: Any = None  # until it is made
+        self._receiver = MeshReceiver()
         self._call: Any = None
 
     @property
@@ -218,7 +222,7 @@ class MeshStream(AsyncIterator[Chunk]):
         """Receives what is left and gives the whole mesh, also the chunks iterated over before."""
         async for _ in self:
             pass
-        return self._receiver.mesh()
+        return await in_thread(self._receiver.mesh)
 
     def close(self) -> None:
         """Ends the call; does nothing to a stream that has ended."""
@@ -227,6 +231,7 @@ class MeshStream(AsyncIterator[Chunk]):
             self._call = None
 
     async def __aenter__(self) -> Self:
+        await self._prepare()
         return self
 
     async def __aexit__(self, kind: type[BaseException] | None, value: BaseException | None,
@@ -236,13 +241,19 @@ class MeshStream(AsyncIterator[Chunk]):
     def __aiter__(self) -> Self:
         return self
 
+    async def _prepare(self) -> None:
+        if self._request is None:
+            self._request, self._receiver = await in_thread(self._make)
+            self._retry = self._client._retry(self._timeout)
+
     async def __anext__(self) -> Chunk:
+        await self._prepare()
         while self._receiver.summary is None:
             try:
                 message = await self._open().read()
             except grpc.RpcError as broken:
                 self._call = None
-                error = errors.of_call(broken, self._client.target)
+                error = errors.of_call(broken, self._client.target, self._request)
                 await self._client._wait(self._retry.wait_after(error))
                 continue
             if message is grpc.aio.EOF:

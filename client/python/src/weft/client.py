@@ -12,10 +12,10 @@ import grpc
 
 from . import _jobs, _protocol, _target, errors, results
 from ._receiver import MeshReceiver
-from ._requests import MeshOptions, job_request, mesh_request, projection
+from ._requests import MeshOptions, job_request, stream_request
 from ._retry import Retry
 from ._wire import Chunk
-from .domain import DomainLike, as_domain
+from .domain import DomainLike
 from .mesh import Mesh
 from .results import Job, JobState, Progress, ServerInfo
 from .size import Size
@@ -26,7 +26,7 @@ class Client:
 
     `target`: "host:port" or "unix:/path"; default: $WEFT_SERVER. `token`: the bearer token; default:
     $WEFT_TOKEN. `tls`: True, or a TLS. `insecure`: send a token unencrypted even to other machines.
-    `retries`: how often a call is made again, one after the other without anything new, where the
+    `retries`: how often in a row a call is made again, without any progress in between, if the
     server was away or asks for it; streams go on where they broke.
 
     Methods raise ServerError (errors.py) when a call fails in the end, and DamagedStream for what
@@ -64,8 +64,48 @@ class Client:
              **options: Unpack[MeshOptions]) -> Mesh:
         """Meshes a domain.
 
-        `domain`: see DomainLike. `size`: see Size. `min_angle`: lower bound on every angle, in
-        degrees, 0 to 34. `on_progress`: called a few times a second. `options`: see MeshOptions.
+        `domain`: a Domain, the path of a file, a GeoJSON object, a shapely geometry, arrays (n, 2) of
+        rings; see DomainLike.
+        `size`: upper bound on the areas of triangles, squared units of the domain: a positive number,
+        an expression in x, y and names of `fields`, a Raster, a function of two arrays; default: none.
+        `min_angle`: lower bound on every angle, degrees, 0 to 36; default: 20. Beside smaller angles of
+        the domain it cannot hold.
+        `on_progress`: called with a Progress a few times a second; default: not.
+        `timeout`: seconds, of all attempts together; default: none.
+
+        Size, in units of the domain (metres with `lonlat`):
+        `edge`: length of edges, instead of `size` and of the same kinds; default: none.
+        `fields`: {name: Field} that `edge` or `size` may name; default: none.
+        `gradation`: maximum growth of edges per unit of distance, above 0; default: no limit.
+        `gradation_within`: True to measure that within the domain, around land; default: False.
+        `edge_at`: {marker or its name: length of edges on these segments}, above 0; default: none.
+        `cells_across`: minimum number of edges across the domain, above 0; default: any number.
+        `min_edge`: no edge shorter than this is made, from 0; default: 0.
+
+        Place:
+        `lonlat`: True if the domain is in longitude and latitude, degrees; default: False.
+        `crs`: name of the projection, implies `lonlat`; default: the one that distorts least.
+        `to_metres`: leave the mesh in metres of the projection, implies `lonlat`; default: False.
+        `snap`: merge what lies nearer together than this, units of the domain, from 0; default: 0.
+
+        Triangles:
+        `placement`: "lattice" or "circumcentre", where points go; default: "lattice".
+        `optimise`: sweeps of smoothing, 0 to 16; default: 0 or 2, see MeshOptions.
+        `allow_unrefined`: take a mesh that misses a bound; default: False, which raises BoundsNotMet.
+
+        Work:
+        `max_triangles`: refinement stops here, from 1; default: the server's limit.
+        `max_seconds`: maximum seconds of work, above 0, beyond it DeadlineExceeded; default: the
+        server's limit.
+        `threads`: maximum threads that compute, from 1; default: all of the server. The mesh does not
+        depend on it.
+        `quadtree`: whether `summary.leaf_boxes` is filled; default: False.
+        `no_cache`: make the mesh again even if the server has it; default: False.
+
+        Raises InvalidRequest with the field at fault, DomainError before that if it is known here.
+        A WeftWarning says where a function was sampled too coarsely, see Raster.adaptive; that a
+        size is larger than the domain, a raster of sizes coarser than the edges it asks for, or a
+        field not named.
         """
         with self.stream(domain, size, min_angle, on_progress=on_progress, timeout=timeout,
                          **options) as stream:
@@ -84,12 +124,8 @@ class Client:
         Of a domain in longitude and latitude, the chunks are in metres, and the mesh at the end in
         degrees.
         """
-        domain = as_domain(domain)
-        projected = projection(domain, options)
-        request = mesh_request(domain, size, min_angle, options, projected)
-        sent = domain if projected is None else projected.domain
-        return MeshStream(self, _protocol.GENERATE_MESH, request, timeout, on_progress,
-                          MeshReceiver(len(sent.points), len(sent.segments), projected))
+        request, receiver = stream_request(domain, size, min_angle, options)
+        return MeshStream(self, _protocol.GENERATE_MESH, request, timeout, on_progress, receiver)
 
     def server_info(self) -> ServerInfo:
         """What the server is and what it admits."""
@@ -104,7 +140,7 @@ class Client:
         one by chance. The rest is as in `mesh`; of a domain in longitude and latitude the mesh is
         fetched in metres, so `to_metres` must be set.
         """
-        mesh = job_request(as_domain(domain), size, min_angle, options)
+        mesh = job_request(domain, size, min_angle, options)
         answer = self._call(_protocol.SUBMIT_JOB, timeout, mesh=mesh, no_cache=mesh.no_cache,
                             request_id=_jobs.request_id(request_id))
         return results.job(answer.job)
@@ -145,7 +181,7 @@ class Client:
 
     def wait(self, job: Job | str, *, on_progress: Callable[[Progress], object] | None = None,
              timeout: float | None = None) -> Job:
-        """The job, once it has succeeded; raises its error where it failed or was cancelled."""
+        """The job, once it has succeeded; raises its error if it failed or was cancelled."""
         for seen in self.watch(job, timeout):
             if on_progress and seen.progress:
                 on_progress(seen.progress)
@@ -158,7 +194,7 @@ class Client:
         return results.job(self._call(_protocol.CANCEL_JOB, id=_jobs.id_of(job)).job)
 
     def delete(self, job: Job | str) -> None:
-        """Forgets a job that has ended; FailedPrecondition for one that has not."""
+        """Deletes a job that has ended; raises FailedPrecondition for one that has not."""
         self._call(_protocol.DELETE_JOB, id=_jobs.id_of(job))
 
     def fetch(self, job: Job | str, timeout: float | None = None) -> Mesh:
@@ -192,7 +228,7 @@ class Client:
                 return call(method.request(**fields), timeout=retry.time_left(),
                             metadata=self._metadata)
             except grpc.RpcError as broken:
-                error = errors.of_call(broken, self.target)
+                error = errors.of_call(broken, self.target, fields.get("mesh"))
             # Where the answer to the first attempt was lost, the job may be gone already.
             if repeated and method is _protocol.DELETE_JOB and isinstance(error, errors.NotFound):
                 return method.response()
@@ -266,7 +302,8 @@ class MeshStream(Iterator[Chunk]):
                 message = next(self._open(), None)
             except grpc.RpcError as broken:
                 self._call = None
-                self._client._wait(self._retry.wait_after(errors.of_call(broken, self._client.target)))
+                error = errors.of_call(broken, self._client.target, self._request)
+                self._client._wait(self._retry.wait_after(error))
                 continue
             if message is None:
                 raise errors.DamagedStream("the stream is damaged: it ended without a summary")

@@ -11,13 +11,15 @@ import dataclasses
 import json
 import os
 import pathlib
+import tempfile
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _geojson, _poly
+from . import _convert, _geojson, _names, _poly
+from ._warning import warn
 from .errors import DomainError
 
 Fill = Literal["seeds", "even-odd"]
@@ -51,10 +53,13 @@ class Domain:
     `regions`: seeds of faces with an id and an area bound of their own.
     `fill`: "seeds" meshes every bounded face that no hole floods; "even-odd" the points inside an
     odd number of rings, as polygons mean it.
+    `marker_names`, `region_names`: what markers and regions are called, by number:
+    `{2: "inlet"}`; each name once, UTF-8 of 1 to 255 bytes without control characters. The mesh
+    comes back with them.
     `region_values`: the attributes of a .poly file that are no integers, by the id that stands for
     each; no server needs them.
 
-    Raises DomainError where shapes, types or numbers make no sense; what only geometry can tell is
+    Raises DomainError if shapes, types or numbers make no sense; what only geometry can tell is
     the server's to find.
 
         Domain([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)])
@@ -68,6 +73,8 @@ class Domain:
     regions: Sequence[Region] = ()
     fill: Fill = "seeds"
     region_values: Mapping[int, float] = dataclasses.field(default_factory=dict)
+    marker_names: Mapping[int, str] = dataclasses.field(default_factory=dict)
+    region_names: Mapping[int, str] = dataclasses.field(default_factory=dict)
 
     def __post_init__(self) -> None:
         points = _floats("points", self.points)
@@ -83,8 +90,17 @@ class Domain:
         if self.fill not in ("seeds", "even-odd"):
             raise DomainError(f"fill is {self.fill!r}; there are 'seeds' and 'even-odd'")
         for name, value in (("points", points), ("segments", segments), ("markers", markers),
-                            ("holes", _floats("holes", self.holes)), ("regions", tuple(self.regions))):
+                            ("holes", _floats("holes", self.holes)), ("regions", tuple(self.regions)),
+                            ("marker_names", _names.checked("marker_names", self.marker_names)),
+                            ("region_names", _names.checked("region_names", self.region_names))):
             object.__setattr__(self, name, value)
+
+    def box(self) -> tuple[float, float, float, float]:
+        """Around the points: min x, min y, max x, max y. Raises DomainError if there are none."""
+        if not len(self.points):
+            raise DomainError("the domain has no points")
+        (left, bottom), (right, top) = self.points.min(axis=0).tolist(), self.points.max(axis=0).tolist()
+        return left, bottom, right, top
 
     @staticmethod
     def rings(*rings: npt.ArrayLike) -> Domain:
@@ -100,33 +116,47 @@ class Domain:
         """From a GeoJSON object (RFC 7946), as `json.load` gives it.
 
         With polygons, the points inside an odd number of rings are meshed, and lines become edges;
-        of lines alone, every bounded face. Points become vertices. The members `marker`, `region`
-        (integers), `max_area` and `max_edge` of a feature's properties are read.
+        of lines alone, every bounded face. Points become vertices. The members `marker` and `region`
+        of a feature's properties are read, integers or names, `marker_name` and `region_name`
+        beside integers, `max_area` and `max_edge`.
         """
         return Domain(**_geojson.read(json, Region))
 
     @staticmethod
     def read(path: str | os.PathLike[str]) -> Domain:
-        """From a file: .poly (Triangle), .geojson or .json.
+        """From a file of a format that the command line knows: .poly (Triangle), .geojson or .json,
+        which are read here; .wkt, .shp, .csv, meshes and all others are read by the program weft,
+        which is in the package or in the PATH. See docs/formats.md. A WeftWarning
+        says what is odd in it.
 
-        Raises DomainError where its contents make no sense, OSError where it cannot be read.
+        Raises DomainError if its contents make no sense, its format is unknown, or the program is
+        needed and missing; OSError if it cannot be read.
         """
         path = pathlib.Path(path)
+        suffix = path.suffix.lower()
         try:
-            if path.suffix == ".poly":
+            if suffix == ".poly":
                 return Domain(**_poly.read(path, Region))
-            if path.suffix in (".geojson", ".json"):
-                return Domain.geojson(json.loads(path.read_text()))
+            if suffix in (".geojson", ".json"):
+                return Domain(**_geojson.read(json.loads(path.read_text()), Region, str(path)))
         except ValueError as error:
             raise DomainError(f"{path}: {error}") from None
-        raise DomainError(f"{path}: domains are read from .poly, .geojson and .json")
+        with tempfile.TemporaryDirectory(prefix="weft-") as folder:
+            poly = pathlib.Path(folder) / "domain.poly"
+            try:
+                warned = _convert.convert(path, poly, error=DomainError)
+            except _convert.Refused as refused:
+                raise DomainError(str(refused)) from None
+            for sentence in warned:
+                warn(sentence)
+            return Domain(**_poly.read(poly, Region))
 
 
 DomainLike = Union[Domain, str, "os.PathLike[str]", dict[str, Any], npt.NDArray[Any],
                    Sequence[npt.NDArray[Any]], Any]
-"""What is taken for a domain: a Domain; the path of a file; a GeoJSON object; whatever has a
-`__geo_interface__`, such as a shapely geometry or a GeoDataFrame; an array (n, 2), the ring of a
-polygon, or a sequence of them."""
+"""What is taken for a domain: a Domain; the path of a file, see Domain.read; a GeoJSON object; an
+object with a `__geo_interface__`, such as a shapely geometry or a GeoDataFrame; an array (n, 2),
+which is the ring of a polygon, or a sequence of them."""
 
 
 def as_domain(domain: DomainLike) -> Domain:

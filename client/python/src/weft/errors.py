@@ -13,6 +13,7 @@ import dataclasses
 from typing import Any
 
 from . import _protocol
+from ._arguments import argument_of
 
 _Status = _protocol.message("google.rpc.Status")
 _DETAILS = {name: _protocol.message(f"google.rpc.{name}")
@@ -29,7 +30,12 @@ class DomainError(WeftError, ValueError):
 
 
 class MeshFileError(WeftError, ValueError):
-    """No file of this kind can be written."""
+    """A file is not a mesh, or its format can be neither read nor written."""
+
+
+class WeftWarning(UserWarning):
+    """The result is not quite what was asked for, or what was asked for is hardly meant: a file does
+    not hold all of the mesh, a size was sampled too coarsely, bounds nothing or names no field."""
 
 
 class DamagedStream(WeftError):
@@ -52,6 +58,8 @@ class FieldViolation:
     """Its path, such as `domain.segments[17].b`."""
     description: str
     """What is wrong with it."""
+    argument: str = ""
+    """What Client.mesh calls it, such as `fields['coast']`; empty if it has no other name."""
 
 
 class ServerError(WeftError):
@@ -70,7 +78,7 @@ class ServerError(WeftError):
         self.violations = violations
         """The fields of the request that are at fault."""
         self.retry_after = retry_after
-        """Seconds after which the same call may succeed; None where it will not."""
+        """Seconds after which the same call may succeed; None if it will not."""
         self.job_id = job_id
         """Names the job in the server's log; may be empty."""
 
@@ -109,7 +117,7 @@ class FailedPrecondition(ServerError):
 
 
 class BoundsNotMet(FailedPrecondition):
-    """BOUNDS_NOT_MET: triangles of the mesh miss a bound though nothing excuses them; the message says
+    """BOUNDS_NOT_MET: triangles of the mesh miss a bound although nothing exempts them; the message says
     how many, why and where. `allow_unrefined=True` gives the mesh all the same."""
 
 
@@ -135,8 +143,9 @@ _CLASSES: dict[str, type[ServerError]] = {
 _REASONS: dict[str, type[ServerError]] = {"BOUNDS_NOT_MET": BoundsNotMet}
 
 
-def of_status(status: Any, subject: str) -> ServerError:
-    """The exception for a google.rpc.Status; `subject` begins its message."""
+def of_status(status: Any, subject: str, request: Any = None) -> ServerError:
+    """The exception for a google.rpc.Status; `subject` begins its message. `request`: the
+    GenerateMeshRequest that it is about, if it is known."""
     found = {name: kind() for name, kind in _DETAILS.items()}
     for detail in status.details:
         name = detail.type_url.rpartition(".")[2]
@@ -149,9 +158,11 @@ def of_status(status: Any, subject: str) -> ServerError:
     known = _CODES.get(status.code)
     code = known.name if known else f"status {status.code}"
     text = f"{subject} {code}" + (f" ({info.reason})" if info.reason else "")
-    violations = tuple(FieldViolation(v.field, v.description) for v in bad.field_violations)
+    violations = tuple(FieldViolation(v.field, v.description, argument_of(v.field, request))
+                       for v in bad.field_violations)
     for violation in violations:
-        text += f"\n  field {violation.field}"
+        argument = f"argument {violation.argument}, " if violation.argument else ""
+        text += f"\n  {argument}field {violation.field}"
     if status.message:
         text += "\n  " + status.message.replace("\n", "\n  ")
     delay = None
@@ -163,8 +174,8 @@ def of_status(status: Any, subject: str) -> ServerError:
         retry_after=delay, job_id=info.metadata.get("job_id", ""))
 
 
-def of_call(call: Any, target: str) -> ServerError:
-    """The exception for a grpc.RpcError."""
+def of_call(call: Any, target: str, request: Any = None) -> ServerError:
+    """The exception for a grpc.RpcError. `request`: as above."""
     status = _Status()
     for key, value in call.trailing_metadata() or ():
         if key == "grpc-status-details-bin":
@@ -174,4 +185,4 @@ def of_call(call: Any, target: str) -> ServerError:
                 status.Clear()
     status.code = call.code().value[0]
     status.message = call.details() or ""
-    return of_status(status, f"the server {target} answers")
+    return of_status(status, f"the server {target} answers", request)

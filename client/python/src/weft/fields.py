@@ -11,19 +11,23 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from types import FunctionType
 from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from ._optional import need
+from ._names import marker_of
+from ._raster_file import RasterFile
+from ._raster_window import MOST_VALUES, read_window
 from .errors import DomainError
 
 if TYPE_CHECKING:
+    from .domain import Domain
     from .mesh import Mesh
 
-Field = Union["Distance", "RasterField", "MeshField", "Width"]
+Field = Union["Distance", "RasterField", "FileField", "MeshField", "Width"]
 """A number at every point: see distance, raster, on_mesh and width."""
 
 _BYTES = 2  # the wire type of packed arrays
@@ -33,14 +37,14 @@ _BYTES = 2  # the wire type of packed arrays
 class Distance:
     """See distance."""
 
-    markers: npt.NDArray[np.int32]
+    markers: Sequence[int | str]
     points: npt.NDArray[np.float64]
     segments: npt.NDArray[np.uint32]
 
-    def _fill(self, message: Any) -> None:
+    def _fill(self, message: Any, domain: Domain) -> None:
         to = message.distance
         to.SetInParent()
-        to.markers.extend(self.markers.tolist())
+        to.markers.extend(marker_of(marker, domain.marker_names) for marker in self.markers)
         to.MergeFromString(_packed(2, self.points.astype("<f8")))
         to.segments.extend(self.segments.ravel().tolist())
 
@@ -52,14 +56,30 @@ class RasterField:
     values: npt.NDArray[np.float32]
     origin: tuple[float, float]
     spacing: tuple[float, float]
-    crs: str | None = None
 
-    def _fill(self, message: Any) -> None:
+    def _fill(self, message: Any, domain: Domain) -> None:
         to = message.raster
         to.x, to.y = self.origin
         to.dx, to.dy = self.spacing
         to.rows, to.columns = self.values.shape
         to.MergeFromString(_packed(7, self.values.astype("<f4")))
+
+
+@dataclasses.dataclass(frozen=True)
+class FileField:
+    """See raster: of a file, which is read when the domain is known."""
+
+    path: str
+    band: str
+    most: int = MOST_VALUES
+    """Values to send at most."""
+
+    def open(self) -> RasterFile:
+        return RasterFile(self.path, self.band)
+
+    def _fill(self, message: Any, domain: Domain) -> None:
+        window = read_window(self.open(), domain.box(), self.most)
+        RasterField(**vars(window))._fill(message, domain)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -70,7 +90,7 @@ class MeshField:
     triangles: npt.NDArray[np.int32]
     values: npt.NDArray[np.float64]
 
-    def _fill(self, message: Any) -> None:
+    def _fill(self, message: Any, domain: Domain) -> None:
         to = message.mesh
         to.MergeFromString(_packed(1, self.points.astype("<f8")))
         to.triangles.extend(self.triangles.ravel().tolist())
@@ -81,19 +101,19 @@ class MeshField:
 class Width:
     """See width."""
 
-    def _fill(self, message: Any) -> None:
+    def _fill(self, message: Any, domain: Domain) -> None:
         message.width.SetInParent()
 
 
-def distance(*, marker: int | Iterable[int] = (), points: npt.ArrayLike | None = None,
+def distance(*, marker: int | str | Iterable[int | str] = (), points: npt.ArrayLike | None = None,
              segments: npt.ArrayLike | None = None) -> Distance:
     """The distance to the nearest of some segments or points, in the unit of the domain.
 
     Without arguments: to all segments of the domain. `marker`: to those with this marker, or with
-    one of these. `points`, (n, 2): to these instead; `segments`, (m, 2): to the segments that join
-    two of them each. Raises DomainError.
+    one of these; numbers, or names of the domain's `marker_names`. `points`, (n, 2): to these
+    instead; `segments`, (m, 2): to the segments that join two of them each. Raises DomainError.
     """
-    markers = np.atleast_1d(np.asarray(marker if isinstance(marker, int) else list(marker), np.int32))
+    markers = tuple(marker) if isinstance(marker, Iterable) and not isinstance(marker, str) else (marker,)
     if points is None:
         if segments is not None:
             raise DomainError("distance: segments without points")
@@ -106,17 +126,22 @@ def distance(*, marker: int | Iterable[int] = (), points: npt.ArrayLike | None =
 
 def raster(source: npt.ArrayLike | str | os.PathLike[str], *,
            origin: tuple[float, float] | None = None, spacing: tuple[float, float] | None = None,
-           band: int = 1) -> RasterField:
+           band: int | str | None = None) -> RasterField | FileField:
     """Values on a grid: bilinear between its nodes; undefined outside, and beside a NaN.
 
     `source`: an array (rows, columns), `source[j, i]` at `(origin[0] + i * spacing[0], origin[1] +
-    j * spacing[1])`; or the path of a raster that GDAL reads (needs the package gdal), whose
-    `band` it is, and whose nodes are the centres of its cells. On a domain in longitude and latitude
-    it is projected: a file by its own coordinate system, an array from longitude and latitude.
-    Raises DomainError, MissingPackage.
+    j * spacing[1])`; or the path of a raster that GDAL reads (needs the package gdal), whose nodes are
+    the centres of its cells. `band`: the number of a band, from 1, or its name; of a file of several
+    variables, such as NetCDF, the name or the number of one, and "name:number" one band of it;
+    default: the only one. A file is read when a mesh is asked for: what the box of the domain needs
+    of it, and two more nodes on each side; of more than 16 Mi values an overview or means over
+    squares of them, with a WeftWarning that has both resolutions. On a domain in longitude and
+    latitude it is projected: a file by its own coordinate system, an array from longitude and
+    latitude.
+    Raises DomainError; of a file, the methods that ask for a mesh do so, or raise MissingPackage.
     """
     if isinstance(source, (str, os.PathLike)):
-        return _read_raster(os.fspath(source), band)
+        return FileField(os.fspath(source), "" if band is None else str(band))
     values = np.ascontiguousarray(source, np.float32)
     if values.ndim != 2 or values.size == 0:
         raise DomainError(f"raster: values of shape {values.shape}, expected (rows, columns)")
@@ -133,8 +158,8 @@ def on_mesh(mesh: Mesh | tuple[npt.ArrayLike, npt.ArrayLike], values: npt.ArrayL
     """Values at the vertices of an earlier mesh: linear in each triangle, outside that of the
     nearest point.
 
-    `mesh`: a Mesh, or its points (n, 2) and triangles (m, 3). `values`: (n,), NaN where the field
-    is undefined. Raises DomainError.
+    `mesh`: a Mesh, or its points (n, 2) and triangles (m, 3). `values`: (n,), NaN at vertices
+    where the field is undefined. Raises DomainError.
 
         mesh = client.mesh(domain, edge="h", fields={"h": weft.on_mesh(mesh, h)})
     """
@@ -151,6 +176,15 @@ def width() -> Width:
     """The local width of the domain: the diameter of the largest disk inside it that holds the
     point."""
     return Width()
+
+
+def check_is_field(name: str, field: object) -> None:
+    """Raises DomainError, which names the field, if it is none."""
+    if isinstance(field, (Distance, RasterField, FileField, MeshField, Width)):
+        return
+    given = f"the function {field.__name__}" if isinstance(field, FunctionType) else repr(field)[:80]
+    raise DomainError(f"fields[{name!r}] is {given}, not a field; fields are made by "
+                      "weft.distance(...), weft.raster(...), weft.on_mesh(...) and weft.width()")
 
 
 def _table(what: str, rows: npt.ArrayLike, kind: Any, columns: int) -> Any:
@@ -171,29 +205,3 @@ def _packed(number: int, array: npt.NDArray[Any]) -> bytes:
         size >>= 7
     head.append(size)
     return bytes(head) + data
-
-
-def _read_raster(path: str, band: int) -> RasterField:
-    gdal = need("osgeo.gdal", "weft.raster of a file", "gdal")
-    gdal.UseExceptions()
-    try:
-        data = gdal.Open(path)
-        left, dx, shear, top, other_shear, dy = data.GetGeoTransform()
-        layer = data.GetRasterBand(band)
-        values = layer.ReadAsArray().astype(np.float32)
-        mask = layer.GetMaskBand().ReadAsArray() == 0
-        crs = data.GetProjection() or None
-        scale, offset = layer.GetScale(), layer.GetOffset()
-    except RuntimeError as error:
-        raise DomainError(f"raster: {error}") from error
-    if shear or other_shear:
-        raise DomainError(f"raster: the grid of {path} is turned or sheared")
-    if scale not in (None, 1.0) or offset not in (None, 0.0):
-        values = values * np.float32(scale or 1) + np.float32(offset or 0)
-    values[mask] = np.nan
-    if dx < 0:
-        values, left, dx = values[:, ::-1], left + dx * values.shape[1], -dx
-    if dy < 0:
-        values, top, dy = values[::-1], top + dy * values.shape[0], -dy
-    made = raster(values, origin=(left + dx / 2, top + dy / 2), spacing=(dx, dy))
-    return dataclasses.replace(made, crs=crs)

@@ -6,7 +6,6 @@ from __future__ import annotations
 import contextlib
 import os
 import pathlib
-import shutil
 import subprocess
 import tempfile
 import time
@@ -14,6 +13,7 @@ from collections.abc import Iterator, Sequence
 from types import TracebackType
 from typing import Self
 
+from . import _carried
 from .client import Client
 from .errors import LocalServerError
 
@@ -24,18 +24,19 @@ _STOP_SECONDS = 5.0
 class LocalServer:
     """A weftd on a unix socket in a temporary folder; ends with its context, or with this process.
 
-    `weftd`: the program; default: $WEFT_WEFTD, or weftd in the PATH. `arguments`: more flags, such
-    as ["--threads", "2", "--data", folder]. Raises LocalServerError where it does not start.
+    `weftd`: the program; default: $WEFT_WEFTD, or that which the package carries, or weftd in the
+    PATH. `arguments`: more flags, such as ["--threads", "2", "--data", folder]. Raises
+    LocalServerError if it does not start.
 
         with weft.LocalServer() as server, weft.Client(server.target) as client: ...
     """
 
     def __init__(self, weftd: str | os.PathLike[str] | None = None,
                  arguments: Sequence[str] = ()) -> None:
-        program = os.fspath(weftd or os.environ.get("WEFT_WEFTD") or shutil.which("weftd") or "")
+        program = os.fspath(weftd or os.environ.get("WEFT_WEFTD") or _carried.program("weftd") or "")
         if not program:
-            raise LocalServerError("no private weftd: it is not in the PATH; give its path, or "
-                                   "WEFT_WEFTD")
+            raise LocalServerError("no private weftd: the package carries none, and it is not in the "
+                                   "PATH; give its path, or WEFT_WEFTD")
         self._cleanup = contextlib.ExitStack()
         with contextlib.ExitStack() as stack:
             self.folder = pathlib.Path(stack.enter_context(_folder()))

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _protocol, errors
+from .quality import quality_of
 
 T = TypeVar("T")
 
@@ -99,6 +100,18 @@ class Merging:
 
 
 @dataclasses.dataclass(frozen=True)
+class SizeWarning:
+    """A size that is probably not what the client wants; the client warns of it with `message`, too."""
+
+    kind: str
+    """`bounds_nothing`, `coarse_raster`, `field_not_named`, `gradation_within_alone`, or one that this
+    client does not know: empty."""
+    field: str
+    """Name of the field that is meant; empty if none is."""
+    message: str
+
+
+@dataclasses.dataclass(frozen=True)
 class Timings:
     """Where the time went, in seconds: wall time, but work summed over the threads for the stages
     `refine` and `emit`, which overlap."""
@@ -163,6 +176,7 @@ class Summary:
     made it."""
     digest: str
     """SHA-256 in hexadecimal: the name of the mesh."""
+    size_warnings: tuple[SizeWarning, ...]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -221,7 +235,7 @@ class Job:
     state: JobState
     create_time: datetime.datetime | None
     start_time: datetime.datetime | None
-    """When work on it first began; None where it has not, or where the mesh was kept already."""
+    """When work on it first began; None if it has not, or if the mesh was kept already."""
     end_time: datetime.datetime | None
     attempts: int
     """More than 1 if a worker was lost."""
@@ -234,6 +248,8 @@ class Job:
     """Where it succeeded and the mesh is still kept; without `leaf_boxes`."""
     from_store: bool
     """Whether the mesh was kept already when the job was accepted."""
+    client: str
+    """Name of the client that submitted it; empty if the server does not identify clients."""
 
 
 def accepted(message: Any) -> Accepted:
@@ -254,7 +270,37 @@ def summary(message: Any) -> Summary:
                  merging=_take(Merging, message.merging),
                  timings=_take(Timings, message.timings),
                  leaf_boxes=np.array(message.leaf_boxes, np.float64).reshape(-1, 4),
-                 digest=message.sha256.hex())
+                 digest=message.sha256.hex(),
+                 size_warnings=tuple(map(_size_warning, message.size_warnings)))
+
+
+def _size_warning(message: Any) -> SizeWarning:
+    kinds = _protocol.enum("weft.v1.SizeWarningKind").values_by_number
+    prefix = "SIZE_WARNING_KIND_"
+    kind = kinds[message.kind].name.removeprefix(prefix).lower() if message.kind in kinds else ""
+    return SizeWarning("" if kind == "unspecified" else kind, message.field, message.message)
+
+
+def summary_of(points: npt.NDArray[np.float64], triangles: npt.NDArray[np.int32],
+               edges: int) -> Summary:
+    """What the triangles of a mesh tell; the rest is 0 or empty."""
+    quality = quality_of(points, triangles)
+    angles = np.concatenate([quality.min_angles, quality.max_angles,
+                             180 - quality.min_angles - quality.max_angles])
+    corners = points[triangles]
+    squares = ((np.roll(corners, -1, axis=1) - corners)**2).sum(axis=(1, 2))
+    empty = _protocol.message("weft.v1.Summary")()
+    known = {
+        "vertices": len(points), "triangles": len(triangles), "edges": edges, "area": quality.area,
+        "angle_histogram": np.histogram(angles, np.linspace(0, 180, 19))[0],
+        "aspect_histogram": np.histogram(
+            quality.aspects, [0, 1.1, 1.25, 1.5, 2, 3, 5, 10, 100, np.inf])[0]}
+    if len(triangles):
+        known.update(
+            min_angle_deg=quality.min_angle, max_angle_deg=quality.max_angle,
+            min_angle_p1_deg=float(np.quantile(quality.min_angles, 0.01)),
+            mean_quality=float((4 * np.sqrt(3) * quality.areas / squares).mean()))
+    return dataclasses.replace(summary(empty), **known)
 
 
 def server_info(message: Any) -> ServerInfo:

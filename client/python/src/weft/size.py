@@ -10,20 +10,21 @@ from typing import Union
 import numpy as np
 import numpy.typing as npt
 
+from . import _sampling
 from .errors import DomainError
 
 Floats = npt.NDArray[np.float64]
 Size = Union[float, str, "Raster", Callable[[Floats, Floats], npt.ArrayLike], None]
 """Upper bound on the area of a triangle at its centroid, in squared units of the domain: a number;
-an expression in x, y and names of fields; a Raster; a function, which `Raster.sample` samples over the domain; or
-None for no bound."""
+an expression in x, y and names of fields; a Raster; a function of two arrays, see Raster.adaptive,
+which samples it; or None for no bound."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Raster:
     """A size on a grid: bilinear between its nodes, outside it that of its nearest point.
 
-    `values`: (rows, columns) float64, squared units of the domain, positive and finite, also where
+    `values`: (rows, columns) float64, squared units of the domain, positive and finite, even where
     there is no domain; `values[j, i]` is at `(origin[0] + i * spacing[0], origin[1] + j *
     spacing[1])`. `origin`, `spacing`: (x, y), in the unit of the domain. Raises DomainError.
 
@@ -62,9 +63,23 @@ class Raster:
         columns = int(np.ceil((right - left) / step - 1e-9)) + 1
         rows = int(np.ceil((top - bottom) / step - 1e-9)) + 1
         x, y = np.meshgrid(left + step * np.arange(columns), bottom + step * np.arange(rows))
-        try:
-            values = np.broadcast_to(np.asarray(function(x, y), np.float64), x.shape)
-        except (TypeError, ValueError) as error:
-            raise DomainError(f"size: the function of arrays {x.shape} does not give such an array: "
-                              f"{error}") from error
-        return Raster(values, (left, bottom), (step, step))
+        return Raster(_sampling.evaluate(function, x, y), (left, bottom), (step, step))
+
+    @staticmethod
+    def adaptive(function: Callable[[Floats, Floats], npt.ArrayLike],
+                 box: tuple[float, float, float, float], points: npt.ArrayLike = (), *,
+                 lengths: bool = False) -> Raster:
+        """As `sample`, with as many samples as the function needs: 513 along the longer side, then 1025
+        and 2049 if it changes between them.
+
+        The function is looked at in the middles of the cells of the first grid and at `points`, (p,
+        2); `client.mesh` takes the vertices of the domain and the middles of its segments. Where it
+        is off there by more than a quarter of the length of edges, and the cell is larger than the
+        triangles that it asks for, the next grid is evaluated, too. A WeftWarning says where even the
+        last is too coarse. What shows in none of these places is missed. `lengths`: the function
+        gives lengths of edges, not areas. The function is called with arrays (p,) or (rows, columns),
+        for some millions of points at most.
+        """
+        probes = np.asarray(points, np.float64).reshape(-1, 2)
+        values, origin, step = _sampling.sample(function, box, probes, lengths)
+        return Raster(values, origin, (step, step))

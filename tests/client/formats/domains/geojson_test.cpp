@@ -122,11 +122,27 @@ TEST_F(GeoJson, RefusesAnUnclosedRing) {
             "starts at (0, 0) and ends at (0, 4)");
 }
 
-TEST_F(GeoJson, RefusesARingThatCrossesItselfAndNamesTheEdges) {
-  EXPECT_EQ(refusal(R"({"type": "Polygon", "coordinates":
-      [[[0, 0], [4, 4], [4, 0], [0, 4], [0, 0]]]})"),
-            "map.geojson: coordinates[0] is a ring that crosses itself: edge 0 from (0, 0) to (4, "
-            "4) crosses edge 2 from (4, 0) to (0, 4)");
+TEST_F(GeoJson, WarnsOfARingThatCrossesItselfAndNamesTheEdges) {
+  const auto domain = read(R"({"type": "Feature", "properties": {"region": 7}, "geometry":
+      {"type": "Polygon", "coordinates": [[[0, 0], [4, 4], [4, 0], [0, 4], [0, 0]]]}})");
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->segments.size(), 4u);
+  EXPECT_EQ(domain->regions.size(), 1u);
+  ASSERT_EQ(domain->warnings.size(), 1u);
+  EXPECT_TRUE(domain->warnings[0].ends_with(
+      "map.geojson: geometry.coordinates[0] is a ring that crosses itself: edge 0 from (0, 0) to "
+      "(4, 4) crosses edge 2 from (4, 0) to (0, 4)"))
+      << domain->warnings[0];
+}
+
+TEST_F(GeoJson, CountsTheRingsThatCrossThemselves) {
+  std::string rings;
+  for (int i = 0; i < 8; ++i)
+    rings += std::string(i == 0 ? "" : ",") + "[[[0, 0], [4, 4], [4, 0], [0, 4], [0, 0]]]";
+  const auto domain = read(R"({"type": "MultiPolygon", "coordinates": [)" + rings + "]}");
+  ASSERT_TRUE(domain) << domain.error().message;
+  ASSERT_EQ(domain->warnings.size(), 6u);
+  EXPECT_TRUE(domain->warnings[5].ends_with("map.geojson: 3 more rings cross themselves"));
 }
 
 TEST_F(GeoJson, RefusesARingWithTooFewPositions) {
@@ -163,6 +179,10 @@ TEST_F(GeoJson, RefusesPropertiesThatCannotBeMeant) {
             "map.geojson: properties.region is 1e+10, not an integer of 32 bits");
   EXPECT_EQ(with(R"({"max_area": 0})"), "map.geojson: properties.max_area is 0, not positive");
   EXPECT_EQ(with(R"({"max_edge": -1})"), "map.geojson: properties.max_edge is -1, not positive");
+  EXPECT_EQ(with(R"({"max_edge": "0.05"})"),
+            "map.geojson: properties.max_edge is \"0.05\", not a number");
+  EXPECT_EQ(with(R"({"max_area": true})"),
+            "map.geojson: properties.max_area is true, not a number");
 }
 
 TEST_F(GeoJson, SaysWhereTheTextIsNotJson) {

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "client/formats/orientation.h"
+#include "client/formats/derived/orientation.h"
 
 namespace weft::client {
 namespace {

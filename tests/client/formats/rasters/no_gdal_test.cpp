@@ -2,6 +2,7 @@
 // What a weft that was built without GDAL says.
 #include <gtest/gtest.h>
 
+#include "client/formats/domains/ogr.h"
 #include "client/formats/rasters/raster_source.h"
 
 namespace weft::client {
@@ -13,6 +14,21 @@ TEST(NoGdal, IsNamedInTheError) {
   EXPECT_EQ(source.error().exit, ExitCode::kUnreadableInput);
   EXPECT_EQ(source.error().message,
             "gebco.tif: this weft was built without GDAL; of rasters it reads .asc alone");
+}
+
+TEST(NoGdal, IsNamedInTheErrorOfADomain) {
+  const auto domain = read_with_ogr("coast.gpkg", {});
+  ASSERT_FALSE(domain);
+  EXPECT_EQ(domain.error().exit, ExitCode::kUnreadableInput);
+  EXPECT_EQ(domain.error().message,
+            "coast.gpkg: this weft was built without GDAL, which reads such files");
+}
+
+TEST(NoGdal, ComparesCoordinateSystemsByTheirText) {
+  const CoordinateSystem utm{"UTM", false, "EPSG:32618"};
+  EXPECT_TRUE(are_same(utm, {"zone 18", false, "EPSG:32618"}));
+  EXPECT_FALSE(are_same(utm, {"UTM", false, "EPSG:32619"}));
+  EXPECT_TRUE(are_same({"WGS 84", true, "a"}, {"NAD27", true, "b"}));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <random>
 #include <vector>
@@ -51,6 +52,19 @@ TEST(Hilbert, StepsFromCellToNeighbourOnAGrid) {
 TEST(Hilbert, KeepsTheOrderOfCoincidentPoints) {
   const std::vector<std::uint32_t> order = order_of(std::vector<Point>(200, Point{1, 2}));
   EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
+}
+
+TEST(Hilbert, OrdersFewAsAmongMany) {
+  std::vector<Point> points = random_points(70'000, 1);
+  for (const double corner : {0.0, 0x1p32}) points.push_back({corner, corner});
+  std::rotate(points.begin(), points.end() - 2, points.end());  // few have the box of many
+  const std::vector<std::uint32_t> all = order_of(points);
+  for (const std::uint32_t n : {10u, 511u, 512u, 5000u}) {
+    std::vector<std::uint32_t> among;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(among),
+                 [n](std::uint32_t i) { return i < n; });
+    EXPECT_EQ(order_of({points.begin(), points.begin() + n}), among) << n;
+  }
 }
 
 TEST(Hilbert, OrdersACrowdAsIfNothingWereFarAway) {

@@ -40,7 +40,7 @@ struct Built {
   Triangulation t{poller};
 };
 
-// The first law that is broken; nothing if none is.
+// The first law that is broken; empty if none is.
 std::optional<std::string> broken_law(const Triangulation& t) {
   std::size_t vertices = 0;
   for (Vertex v = 0; v < t.vertices(); ++v) {
@@ -151,7 +151,7 @@ void expect_same_in_any_order(const std::vector<Point>& points) {
   }
 }
 
-// Leads a constrained edge from u to v. False, and nothing done, where a vertex or another
+// Leads a constrained edge from u to v. Returns false, and changes nothing, if a vertex or another
 // constrained edge is in the way.
 bool lead(Triangulation& t, Vertex u, Vertex v, std::uint32_t constraint) {
   if (const Edge e = t.find_edge(u, v); e.face != kNone) {
@@ -346,7 +346,7 @@ void expect_edges_in_any_order(const std::vector<Point>& points, unsigned seed) 
   ASSERT_EQ(broken_law(other.t), std::nullopt);
   EXPECT_TRUE(faces_of(other.t) == faces_of(built.t));
   for (const auto& [a, b] : edges) {
-    // One that was led twice is gone, maybe.
+    // An edge that was led twice may be gone.
     if (const Edge e = built.t.find_edge(built[a], built[b]); e.face != kNone)
       built.t.unconstrain(e);
   }

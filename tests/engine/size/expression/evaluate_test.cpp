@@ -31,7 +31,7 @@ double value(const std::string& source, double x, double y) {
   return parsed(source)({x, y});
 }
 
-// All NaNs are one: which one it is, nobody may ask.
+// All NaNs are equal: which one it is must not matter.
 std::uint64_t bits(double v) {
   return std::bit_cast<std::uint64_t>(std::isnan(v) ? kNan : v);
 }

@@ -141,6 +141,27 @@ TEST(FieldsOfExpressions, HaveBoundsThatHoldAndGuardsThatAreSeen) {
   EXPECT_EQ(Expression::parse("defined(depth) ? depth : 5", kFields)->bounds(undefined).hi, 5);
 }
 
+TEST(FieldsOfExpressions, LeaveUndefinedWhatIsComputedOfThemWhereTheyAre) {
+  const auto bounds = [](const char* source) {
+    return Expression::parse(source, kFields)->bounds({6, 0, 7, 1});
+  };
+  for (const char* const source :
+       {"depth + 1", "1 - depth", "2*depth", "depth/coast", "-depth", "abs(depth)", "depth^2",
+        "sqrt(depth)", "exp(depth)", "sin(depth)", "floor(depth)", "min(depth, 3)", "max(3, depth)",
+        "atan2(1, depth)", "1 + 0.3*max(2, depth)", "coast < 9 ? depth : depth + 1"}) {
+    EXPECT_GT(bounds(source).lo, bounds(source).hi) << source;
+    EXPECT_TRUE(bounds(source).may_be_nan) << source;
+  }
+  for (const char* const source : {"pow(depth, coast - 6)", "hypot(depth, 1/(coast - 6))"}) {
+    EXPECT_EQ(bounds(source).hi, std::numeric_limits<double>::infinity()) << source;
+    EXPECT_TRUE(bounds(source).may_be_nan) << source;
+  }
+  for (const char* const source : {"depth < 3", "depth <= 3", "depth > 3", "depth == depth"})
+    EXPECT_EQ(bounds(source).hi, 0) << source;
+  EXPECT_EQ(bounds("depth != 3").lo, 1);
+  EXPECT_EQ(bounds("depth < 3 ? 1 : 2").lo, 2);
+}
+
 TEST(FieldsOfExpressions, AreExplainedIfMisspelt) {
   EXPECT_THAT(message("detph"), HasSubstr("unknown name 'detph'; did you mean 'depth'?"));
   EXPECT_THAT(message("bathymetry"), HasSubstr("the variables are x, y, coast and depth"));

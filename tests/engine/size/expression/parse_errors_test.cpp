@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is refused, and where the finger points.
+// What is refused, and which place the error names.
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -146,5 +146,18 @@ TEST(Grammar, ConstantsFoldAndSayThatTheyAreConstant) {
   }
 }
 
+TEST(Expression, TellsTheArgumentsOfAMinimum) {
+  const auto of = [](const char* source) { return Expression::arguments_of_min(source); };
+  using Arguments = std::vector<std::string>;
+  EXPECT_EQ(of("min(x, 2)"), (Arguments{"x", " 2"}));
+  EXPECT_EQ(of(" min ( max(x, 1) , (y), clamp(x, 0, 1) ) "),
+            (Arguments{" max(x, 1) ", " (y)", " clamp(x, 0, 1) "}));
+  EXPECT_EQ(of("min(x, 2) + 1"), Arguments{});
+  EXPECT_EQ(of("1 + min(x, 2)"), Arguments{});
+  EXPECT_EQ(of("min(x, 2) < min(y, 3) ? 1 : 2"), Arguments{});
+  EXPECT_EQ(of("max(x, 2)"), Arguments{});
+  EXPECT_EQ(of("x"), Arguments{});
+}
+
 }  // namespace
 }  // namespace weft

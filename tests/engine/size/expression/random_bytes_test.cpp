@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parser against bytes that nobody meant: it answers, with a value or with an error.
+// The parser with random bytes: it returns a value or an error.
 #include <gtest/gtest.h>
 
 #include <array>

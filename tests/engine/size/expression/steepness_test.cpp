@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Bounds of the steepness of expressions over boxes.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -480,7 +480,7 @@ TEST(DistanceField, AnnouncesItsMemory) {
   const auto field = DistanceField::make(lines, kUnit, context);
   ASSERT_TRUE(field);
   EXPECT_GE(source.asked, field->bytes());
-  EXPECT_LE(source.asked, 300 * lines.size() + (2u << 20));
+  EXPECT_LE(source.asked, 300 * lines.size() + (4u << 20));
 
   ExecutionContext refused;
   source.refuses = true;

@@ -99,6 +99,26 @@ TEST(RasterField, IsUndefinedOutside) {
   EXPECT_TRUE(field.bounds({9, 18, 13, 26.1}).may_be_nan);
 }
 
+TEST(RasterField, HasNoBoundsInABoxBesideIt) {
+  const FieldRaster one_node{{0, 0}, 1, 1, 1, 1, {3}};
+  const RasterField fields[] = {made(kSmall), made(one_node)};
+  const Box of_values[] = {{9, 18, 13, 26}, {-0.5, -0.5, 0.5, 0.5}};
+  for (int i = 0; i < 2; ++i) {
+    const Box& b = of_values[i];
+    const auto slope = fields[i].slope();
+    for (const Box& beside : {Box{b.min_x - 2, b.min_y, b.min_x - 0.1, b.max_y},
+                              Box{b.max_x + 0.1, b.min_y, b.max_x + 2, b.max_y},
+                              Box{b.min_x, b.min_y - 2, b.max_x, b.min_y - 0.1},
+                              Box{b.min_x, b.max_y + 0.1, b.max_x, b.max_y + 2}}) {
+      EXPECT_GT(fields[i].bounds(beside).lo, fields[i].bounds(beside).hi);
+      EXPECT_GT(slope->bounds(beside).lo, slope->bounds(beside).hi);
+    }
+    const Box around{b.min_x - 2, b.min_y - 2, b.max_x + 2, b.max_y + 2};
+    EXPECT_LE(fields[i].bounds(around).lo, fields[i].bounds(around).hi);
+    EXPECT_LE(slope->bounds(around).lo, slope->bounds(around).hi);
+  }
+}
+
 TEST(RasterField, HasHalfACellBesideTheGridTheValueOfTheNearestPoint) {
   const RasterField field = made(kSmall);
   EXPECT_EQ(field({9, 18}), field({10, 20}));

@@ -458,8 +458,8 @@ TEST(WidthField, AnnouncesItsMemoryBeforeItTakesIt) {
   EXPECT_GE(rich.most(), domain.bytes() + 300 * axis->axis.size());
   const Result<WidthField> width = WidthField::make(domain, context);
   ASSERT_TRUE(width) << width.error().message;
-  EXPECT_GE(rich.most(), domain.bytes() + DistanceField::kBytesPerLine *
-                                              (axis->walls.size() + axis->axis.size()));
+  EXPECT_GE(rich.most(), domain.bytes() + DistanceField::bytes_to_make(
+                                              axis->walls.size() + axis->axis.size(), 2));
   EXPECT_GE(rich.most(), domain.bytes() + width->bytes());
 
   Source poor(domain.bytes() + 100'000);

@@ -40,7 +40,7 @@ TEST_F(PostgresTest, ADatabaseOfANewerVersionIsRefused) {
   const auto opened = PostgresStore::open({.uri = uri_});
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().kind, StoreErrorKind::kBroken);
-  EXPECT_EQ(opened.error().message, "the database is of version 99; this weftd knows none after 3");
+  EXPECT_EQ(opened.error().message, "the database is of version 99; this weftd knows none after 4");
 }
 
 TEST_F(PostgresTest, ADatabaseOfVersion1KeepsItsJobsAndMeshes) {
@@ -54,7 +54,8 @@ TEST_F(PostgresTest, ADatabaseOfVersion1KeepsItsJobsAndMeshes) {
     store->submit({.owner = "ann", .key = key_of("other"), .request = "make it"});
   }
   postgres_server().execute(uri_,
-                            "DROP VIEW weft_job_now; ALTER TABLE weft_mesh DROP COLUMN brief;"
+                            "DROP VIEW weft_job_now; DROP INDEX weft_job_open;"
+                            "ALTER TABLE weft_mesh DROP COLUMN brief, DROP COLUMN owner;"
                             "ALTER TABLE weft_task DROP COLUMN trace, DROP COLUMN max_bytes, "
                             "DROP COLUMN max_micros;"
                             "DELETE FROM weft_schema WHERE version > 1");

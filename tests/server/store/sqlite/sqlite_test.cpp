@@ -67,7 +67,7 @@ TEST_F(SqliteTest, AFileOfANewerVersionIsRefusedAndLeftAlone) {
   const auto opened = open();
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().kind, StoreErrorKind::kBroken);
-  EXPECT_EQ(opened.error().message, file + " is of version 99; this weftd knows none after 3");
+  EXPECT_EQ(opened.error().message, file + " is of version 99; this weftd knows none after 4");
   auto connection = sqlite::Connection::open(file, sqlite::Access::kWrite);
   EXPECT_EQ((*connection)->pragma("PRAGMA user_version"), 99);
 }
@@ -86,6 +86,8 @@ TEST_F(SqliteTest, AFileOfVersion1KeepsItsJobsAndMeshes) {
     auto connection = sqlite::Connection::open(path() + "/weft.db", sqlite::Access::kWrite);
     ASSERT_TRUE((*connection)
                     ->execute("DROP VIEW job_now;"
+                              "DROP INDEX job_open;"
+                              "ALTER TABLE mesh DROP COLUMN owner;"
                               "UPDATE mesh SET brief = (SELECT bytes FROM mesh_summary);"
                               "DROP TABLE mesh_summary;"
                               "ALTER TABLE mesh RENAME COLUMN brief TO summary;"

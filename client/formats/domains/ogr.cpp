@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/formats/domains/ogr.h"
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "client/base/option_row.h"
+#include "client/base/text.h"
+#include "client/formats/domains/geometry_builder.h"
+#include "client/formats/domains/ogr_formats.h"
+#include "client/formats/files/gdal_library.h"
+#include "client/formats/mesh_formats.h"
+
+namespace weft::client {
+namespace {
+
+constexpr int kMaxDepth = 64;  // of geometries in geometries
+
+using Dataset = std::unique_ptr<void, decltype(&GDALClose)>;
+using Feature = std::unique_ptr<std::remove_pointer_t<OGRFeatureH>, decltype(&OGR_F_Destroy)>;
+using Geometry =
+    std::unique_ptr<std::remove_pointer_t<OGRGeometryH>, decltype(&OGR_G_DestroyGeometry)>;
+using Crs = std::unique_ptr<std::remove_pointer_t<OGRSpatialReferenceH>,
+                            decltype(&OSRDestroySpatialReference)>;
+
+class Reader {
+ public:
+  Reader(const Gdal& gdal, const std::filesystem::path& path)
+      : gdal_(gdal), path_(path), builder_(path.string()) {}
+
+  Result<Domain> read(const OgrFormat& format, const LayerOptions& options) {
+    // An absolute path cannot begin with a prefix that GDAL would interpret, such as "GPKG:".
+    const std::string address = std::filesystem::absolute(path_).string();
+    if (address.starts_with("/vsi"))
+      return builder_.bad("", "is in a folder whose name GDAL takes for another file system");
+    Dataset dataset(nullptr, gdal_.GDALClose);
+    {
+      const GdalErrors errors(gdal_);
+      dataset.reset(gdal_.GDALOpenEx(address.c_str(),
+                                     GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+                                     format.drivers, format.options, nullptr));
+      if (!dataset) return builder_.bad("", "is damaged, or of another format: " + errors.first());
+    }
+    const auto layers = choose(dataset.get(), options.layers);
+    if (!layers) return tl::unexpected(layers.error());
+    for (OGRLayerH layer : *layers)
+      if (auto added = add_layer(layer, options.where); !added)
+        return tl::unexpected(added.error());
+    auto domain = builder_.finish();
+    if (domain && crs_ != nullptr) domain->system = system();
+    return domain;
+  }
+
+ private:
+  CoordinateSystem system() const {
+    const char* name = gdal_.OSRGetName(crs_);
+    CoordinateSystem found{
+        harmless(name != nullptr && *name != '\0' ? name : "an unnamed coordinate system"),
+        gdal_.OSRIsGeographic(crs_) != 0, ""};
+    const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
+    char* text = nullptr;
+    if (gdal_.OSRExportToWktEx(crs_, &text, options) == OGRERR_NONE) found.definition = text;
+    gdal_.VSIFree(text);
+    return found;
+  }
+
+  std::string name_of(OGRLayerH layer) const { return gdal_.OGR_L_GetName(layer); }
+
+  std::string list(const std::vector<OGRLayerH>& layers) const {
+    constexpr std::size_t kMost = 24;
+    std::string text;
+    for (std::size_t i = 0; i < layers.size() && i < kMost; ++i)
+      text += (i > 0 ? ", " : "") + in_quotes(name_of(layers[i]));
+    return layers.size() > kMost ? text + ", ..." : text;
+  }
+
+  // The layers that are named, or the only one that has a feature.
+  Result<std::vector<OGRLayerH>> choose(GDALDatasetH dataset,
+                                        const std::vector<std::string>& names) const {
+    const GdalErrors quiet(gdal_);
+    std::vector<OGRLayerH> all;
+    for (int i = 0; i < gdal_.GDALDatasetGetLayerCount(dataset); ++i)
+      all.push_back(gdal_.GDALDatasetGetLayer(dataset, i));
+    std::vector<OGRLayerH> chosen;
+    for (const std::string& name : names) {
+      OGRLayerH layer = gdal_.GDALDatasetGetLayerByName(dataset, name.c_str());
+      if (layer == nullptr)
+        return builder_.bad("", "has no layer " + in_quotes(name) + "; there are " + list(all));
+      chosen.push_back(layer);
+    }
+    if (!names.empty() || all.size() == 1) return names.empty() ? all : chosen;
+    for (OGRLayerH layer : all)
+      if (gdal_.OGR_L_GetFeatureCount(layer, TRUE) != 0) chosen.push_back(layer);
+    if (chosen.size() > 1)
+      return builder_.bad("", "has " + std::to_string(chosen.size()) +
+                                  " layers; name those that are meant by --layer; there are " +
+                                  list(chosen));
+    return chosen;
+  }
+
+  Result<void> add_layer(OGRLayerH layer, const std::string& where) {
+    const std::string name = "layer " + in_quotes(name_of(layer));
+    if (auto ok = check_system(layer, name); !ok) return ok;
+    const auto unreadable = [&](const GdalErrors& errors) {
+      return builder_.bad(name + (where.empty() ? "" : ", --where " + in_quotes(where)),
+                          "cannot be read: " + errors.first());
+    };
+    const GdalErrors errors(gdal_);
+    if (!where.empty() && gdal_.OGR_L_SetAttributeFilter(layer, where.c_str()) != OGRERR_NONE)
+      return unreadable(errors);
+    gdal_.OGR_L_ResetReading(layer);
+    const GdalErrors reading(gdal_);
+    for (;;) {
+      const Feature feature(gdal_.OGR_L_GetNextFeature(layer), gdal_.OGR_F_Destroy);
+      if (!feature) break;
+      const std::string path =
+          name + ", feature " + std::to_string(gdal_.OGR_F_GetFID(feature.get()));
+      if (auto added = add_feature(feature.get(), path); !added) return added;
+    }
+    if (reading.any()) return unreadable(reading);
+    return {};
+  }
+
+  // All layers have one coordinate system.
+  Result<void> check_system(OGRLayerH layer, const std::string& name) {
+    const GdalErrors quiet(gdal_);
+    OGRSpatialReferenceH crs = gdal_.OGR_L_GetSpatialRef(layer);
+    const bool same =
+        crs == nullptr || crs_ == nullptr ? crs == crs_ : gdal_.OSRIsSame(crs, crs_) != 0;
+    if (!first_ && !same)
+      return builder_.bad(name, "has another coordinate system than the layer before it");
+    first_ = false;
+    crs_ = crs;
+    return {};
+  }
+
+  Result<void> add_feature(OGRFeatureH feature, const std::string& path) {
+    OGRGeometryH geometry = gdal_.OGR_F_GetGeometryRef(feature);
+    if (geometry == nullptr) return {};
+    const auto properties = read_properties(feature, path);
+    if (!properties) return tl::unexpected(properties.error());
+    if (gdal_.OGR_G_HasCurveGeometry(geometry, FALSE) == 0)
+      return add_geometry(geometry, path, *properties, 0);
+    const Geometry linear(gdal_.OGR_G_GetLinearGeometry(geometry, 0, nullptr),
+                          gdal_.OGR_G_DestroyGeometry);
+    if (!linear) return builder_.bad(path, "has curves that GDAL does not make chords of");
+    return add_geometry(linear.get(), path, *properties, 0);
+  }
+
+  std::optional<double> number(OGRFeatureH feature, const char* field) const {
+    const int index = gdal_.OGR_F_GetFieldIndex(feature, field);
+    if (index < 0 || gdal_.OGR_F_IsFieldSetAndNotNull(feature, index) == 0) return std::nullopt;
+    std::optional<double> value;
+    const auto type = gdal_.OGR_Fld_GetType(gdal_.OGR_F_GetFieldDefnRef(feature, index));
+    if (type == OFTInteger || type == OFTInteger64 || type == OFTReal)
+      value = gdal_.OGR_F_GetFieldAsDouble(feature, index);
+    else if (type == OFTString)
+      value = value_of<double>(gdal_.OGR_F_GetFieldAsString(feature, index));
+    return value && std::isfinite(*value) ? value : std::nullopt;
+  }
+
+  // The text of a field; empty if it is a number or there is none.
+  std::string text(OGRFeatureH feature, const char* field) const {
+    const int index = gdal_.OGR_F_GetFieldIndex(feature, field);
+    if (index < 0 || gdal_.OGR_F_IsFieldSetAndNotNull(feature, index) == 0) return "";
+    if (gdal_.OGR_Fld_GetType(gdal_.OGR_F_GetFieldDefnRef(feature, index)) != OFTString) return "";
+    const std::string value = gdal_.OGR_F_GetFieldAsString(feature, index);
+    return value_of<double>(value) ? "" : value;
+  }
+
+  Result<GeometryProperties> read_properties(OGRFeatureH feature, const std::string& path) const {
+    GeometryProperties out;
+    const auto marker = builder_.integer(path, "marker", number(feature, "marker"));
+    if (!marker) return tl::unexpected(marker.error());
+    out.marker = marker->value_or(0);
+    const auto region = builder_.integer(path, "region", number(feature, "region"));
+    if (!region) return tl::unexpected(region.error());
+    out.region = *region;
+    out.marker_name = text(feature, "marker");
+    out.region_name = text(feature, "region");
+    if (out.marker_name.empty()) out.marker_name = text(feature, "marker_name");
+    if (out.region_name.empty()) out.region_name = text(feature, "region_name");
+    for (const auto& [name, bound] :
+         {std::pair{"max_area", &out.max_area}, {"max_edge", &out.max_edge}}) {
+      *bound = number(feature, name);
+      if (*bound && !(**bound > 0))
+        return builder_.bad(path + ", field " + name, "is " + shortest(**bound) + ", not positive");
+    }
+    return out;
+  }
+
+  std::vector<Point> points_of(OGRGeometryH line) const {
+    const int count = gdal_.OGR_G_GetPointCount(line);
+    std::vector<Point> points(static_cast<std::size_t>(count));
+    if (count > 0)
+      gdal_.OGR_G_GetPoints(line, &points[0].x, sizeof(Point), &points[0].y, sizeof(Point), nullptr,
+                            0);
+    return points;
+  }
+
+  Result<void> add_geometry(OGRGeometryH geometry, const std::string& path,
+                            const GeometryProperties& properties, int depth) {
+    if (depth > kMaxDepth)
+      return builder_.bad(path, "is nested deeper than " + std::to_string(kMaxDepth) + " levels");
+    if (gdal_.OGR_G_IsEmpty(geometry) != 0) return {};
+    const int parts = gdal_.OGR_G_GetGeometryCount(geometry);
+    switch (gdal_.OGR_GT_Flatten(gdal_.OGR_G_GetGeometryType(geometry))) {
+      case wkbPoint:
+        return builder_.point(points_of(geometry).at(0), path);
+      case wkbLineString:
+        return builder_.line(points_of(geometry), path, properties);
+      case wkbPolygon:
+      case wkbTriangle:
+        builder_.begin_polygon();
+        for (int i = 0; i < parts; ++i)
+          if (auto added =
+                  builder_.ring(points_of(gdal_.OGR_G_GetGeometryRef(geometry, i)),
+                                path + ", ring " + std::to_string(i), properties, {}, false);
+              !added)
+            return added;
+        builder_.end_polygon(path, properties);
+        return {};
+      case wkbMultiPoint:
+      case wkbMultiLineString:
+      case wkbMultiPolygon:
+      case wkbGeometryCollection:
+      case wkbPolyhedralSurface:
+      case wkbTIN:
+        for (int i = 0; i < parts; ++i)
+          if (auto added =
+                  add_geometry(gdal_.OGR_G_GetGeometryRef(geometry, i),
+                               path + ", part " + std::to_string(i), properties, depth + 1);
+              !added)
+            return added;
+        return {};
+      default:
+        return builder_.bad(path, "is a " + harmless(gdal_.OGR_G_GetGeometryName(geometry)) +
+                                      ", which is no polygon, line or point");
+    }
+  }
+
+  const Gdal& gdal_;
+  const std::filesystem::path& path_;
+  GeometryBuilder builder_;
+  bool first_ = true;                   // no layer was read yet
+  OGRSpatialReferenceH crs_ = nullptr;  // of the layers, which own it
+};
+
+}  // namespace
+
+Result<Domain> read_with_ogr(const std::filesystem::path& path, const LayerOptions& options) {
+  if (std::error_code missing; !std::filesystem::is_regular_file(path, missing))
+    return fail(ExitCode::kUnreadableInput,
+                path.string() + ": " + (missing ? missing.message() : "is not a regular file"));
+  const auto gdal = load_gdal();
+  if (!gdal) return fail(gdal.error().exit, path.string() + ": " + gdal.error().message);
+  return Reader(**gdal, path).read(*ogr_format(lower_extension(path)), options);
+}
+
+bool are_same(const CoordinateSystem& a, const CoordinateSystem& b) {
+  if ((a.geographic && b.geographic) || a.definition == b.definition) return true;
+  const auto gdal = load_gdal();
+  if (!gdal) return false;
+  const GdalErrors quiet(**gdal);
+  const auto made = [&](const CoordinateSystem& system) {
+    Crs crs((*gdal)->OSRNewSpatialReference(nullptr), (*gdal)->OSRDestroySpatialReference);
+    if ((*gdal)->OSRSetFromUserInput(crs.get(), system.definition.c_str()) != OGRERR_NONE)
+      crs.reset();
+    return crs;
+  };
+  const Crs first = made(a);
+  const Crs second = made(b);
+  return first && second && (*gdal)->OSRIsSame(first.get(), second.get()) != 0;
+}
+
+}  // namespace weft::client

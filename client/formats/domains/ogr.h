@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads a domain by OGR, GDAL's half for vectors: polygons, lines and points of any dimension,
+// whose heights and measures are dropped, and curves, as chords of at most 4 degrees. Fields
+// `marker`, `region`, `max_area` and `max_edge`, of numbers or of texts that are numbers, mean the
+// same as in GeoJSON (geojson.h). What is meshed: see geometry_builder.h. Coordinates are taken as
+// they are, longitude before latitude.
+//
+// Only the file and those that its format keeps beside it are opened: no other format is tried, and
+// nothing is fetched that a file names.
+//
+// Errors (kUnreadableInput) name the file, the layer and the feature: GDAL is missing; a layer that
+// does not exist, or several of which none is named; a condition that is no SQL; layers in
+// different coordinate systems; those of GeometryBuilder.
+#pragma once
+
+#include <filesystem>
+
+#include "client/base/error.h"
+#include "client/formats/domain.h"
+#include "client/formats/files/layer_options.h"
+
+namespace weft::client {
+
+// REQUIRES: the file's extension is that of an ogr_format (ogr_formats.h).
+Result<Domain> read_with_ogr(const std::filesystem::path& path, const LayerOptions& options);
+
+// Whether coordinates mean the same place in both, but for the datum of longitudes and latitudes.
+bool are_same(const CoordinateSystem& a, const CoordinateSystem& b);
+
+}  // namespace weft::client

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// SELAFIN (Serafin), the geometry file of TELEMAC (TELEMAC's user manual, "The SELAFIN format"):
+// one time step, in double precision, big-endian records of Fortran. Variables are BOTTOM, the
+// elevation of the bed (bed.h), or 0, in metres, and the other values at nodes by their names. The
+// boundary is numbered, the rings around the outside counter-clockwise, then those around islands
+// clockwise. Markers and regions are lost.
+//
+// A record has less than 2 GiB: more than 178,956,969 triangles are a failure of the file (EFBIG).
+#pragma once
+
+#include "client/base/atomic_file.h"
+#include "client/formats/mesh.h"
+
+namespace weft::client {
+
+void write_selafin(const MeshView& mesh, OutputFile& file);
+
+}  // namespace weft::client

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// SMS's mesh file, .2dm (https://www.xmswiki.com/wiki/SMS:2D_Mesh_Files_*.2dm), as SMS, QGIS and
+// BASEMENT read it: E3T lines, triangles with their region as the material; ND lines, vertices with
+// the elevation of the bed (bed.h), or 0; NS lines, node strings along the boundary, cut
+// where the marker changes, each with its marker behind the last node, which is negative. A ring
+// of one marker repeats its first node. Markers of edges inside are lost.
+//
+// Names are in quotation marks: a marker's behind its number in the NS line, a region's in a MAT
+// line between BEG2DMBC and END2DMBC, as SMS has that of a material.
+#pragma once
+
+#include <filesystem>
+
+#include "client/base/atomic_file.h"
+#include "client/base/error.h"
+#include "client/formats/mesh.h"
+
+namespace weft::client {
+
+void write_2dm(const MeshView& mesh, OutputFile& file);
+
+// Reads these cards of a file; others are passed over, but for elements that are no triangles.
+Result<Mesh> read_2dm(const std::filesystem::path& path);
+
+}  // namespace weft::client

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// --nodal: values at the vertices of a mesh that is written, and how they are taken from rasters.
+//
+//   NodalOption depth{"depth", {RasterPath{"survey.tif", ""}, 5.0}};
+//   auto sampled = sample_nodal(depth, mesh, "", mesh.coordinates);
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "client/base/error.h"
+#include "client/base/paged_memory.h"
+#include "client/formats/field_raster.h"
+#include "client/formats/mesh.h"
+
+namespace weft::client {
+
+struct NodalOption {
+  std::string name;
+  // A vertex has the value of the first that has one there: a raster, or a number, which has a
+  // value everywhere.
+  std::vector<std::variant<RasterPath, double>> sources;
+
+  friend bool operator==(const NodalOption&, const NodalOption&) = default;
+};
+
+// Adds "NAME=FILE", "NAME=FILE:BAND" or "NAME=NUMBER" to the options: a source more if there is the
+// name. A relative path is below `folder`. Returns an empty text, or what is wrong. A name has at
+// most 16 letters, digits and underscores, the first a letter.
+std::string add_nodal(const std::string& text, const std::filesystem::path& folder,
+                      std::vector<NodalOption>& options);
+
+// Empty if values of this name can be given beside the options; otherwise what is wrong with it.
+std::string nodal_name_fault(const std::string& name, const std::vector<NodalOption>& options);
+
+struct SampledValues {
+  ScratchArray<double> values;  // one per vertex
+  std::vector<std::string> warnings;
+};
+
+// Rasters are bilinear between the centres of their cells, and have no value more than half a cell
+// outside of them or beside a cell without one. With `crs`, the mesh is in the plane of that
+// projection, and rasters are projected as those of fields are. `places` has the coordinates of the
+// vertices for messages.
+//
+// Errors (kUnreadableInput): those of field_raster.h; a vertex without a value, with its number and
+// its place. Memory: that of the rasters, one at a time, and the values in the mesh's pages.
+Result<SampledValues> sample_nodal(const NodalOption& option, const MeshView& mesh,
+                                   const std::string& crs, std::span<const double> places);
+
+}  // namespace weft::client

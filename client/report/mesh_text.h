@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// The report on a mesh that a server made, for people and for programs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "client/call/mesh_report.h"
+#include "client/formats/domains/region_values.h"
+#include "client/report/json_line.h"
+#include "weft/v1/mesh_service.pb.h"
+
+namespace weft::client {
+
+// The figures of the mesh only.
+Json summary_json(const v1::Summary& summary);
+
+// These figures, and what the client measured.
+Json mesh_json(const MeshReport& report, const MeshTimes& times);
+
+// "943,075 triangles, 472,520 vertices, angles 20.04 to 139.72 degrees\n", a line for each reason
+// why triangles miss a bound, and lines on what was merged.
+std::string summary_text(const v1::Summary& summary);
+
+// A line for each, such as "WARNING: the size does not name the field 'd'\n".
+std::string size_warnings_text(const v1::Summary& summary);
+
+// "WARNING: 12 triangles without exemption, 9 above the bound on their area and 3 below the minimum
+// angle, because double precision ends; the first is at (1, 2)\n"; empty if there are none.
+std::string unrefined_warning(const v1::Unrefined& unrefined);
+
+// "merged within 0.001: 12 points moved, 3 segments bent, by 0.0007 at most, at (1, 2)\n2 faces of
+// the input vanished, one at (1, 2)\n"; empty if nothing was merged.
+std::string merging_text(const v1::Merging& merging);
+
+// "region 1 = 0.35\n", one line per region.
+std::string region_values_text(std::span<const RegionValue> values);
+// {"1": 0.35}
+Json region_values_json(std::span<const RegionValue> values);
+
+// A warning if the mesh has more triangles than `max_triangles` of its budget, because the domain's
+// own triangulation is never reduced; nullopt if it has not.
+std::optional<std::string> budget_warning(const v1::Summary& summary,
+                                          std::optional<std::uint64_t> max_triangles);
+
+// summary_text, a line on where the time went, one on the projection if there is one, and one line
+// per warning.
+std::string mesh_text(const MeshReport& report, const MeshTimes& times);
+
+}  // namespace weft::client

@@ -1,0 +1,84 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Makes everything that is released, from a clone of the commit that is checked out:
+#
+#   deploy/release.sh OUT      OUT is a folder, which is made and must be empty
+#
+# packages for Debian, the package for Python with and without programs and as sources, the images as
+# OCI archives, a software bill of materials (CycloneDX), and SHA256SUMS of them. The version is that of
+# CMakeLists.txt; the maintainer of the packages for Debian is WEFT_MAINTAINER, if that is set. Needs what
+# deploy/install-deps.sh installs, and root for the images: without root, or buildah or debootstrap, it
+# says that they are left out.
+#
+# Fails if the tree has changes that are not committed, because the clone would not have them. The same
+# commit on a machine with the same packages gives the same bytes, except for the images, into which apt
+# installs what Debian has today.
+set -euo pipefail
+out=${1:?usage: deploy/release.sh OUT}
+tree=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
+
+say() { printf '==> %s (at %d s)\n' "$*" $SECONDS; }
+fail() {
+  printf 'release.sh: %s\n' "$*" >&2
+  exit 1
+}
+
+changes=$(git -C "$tree" status --porcelain)
+[[ -z $changes ]] || fail $'the tree has changes that are not committed:\n'"$changes"
+mkdir -p "$out"
+out=$(realpath "$out")
+[[ -z $(ls -A "$out") ]] || fail "$out is not empty"
+
+scratch=$(mktemp -d)
+# buildah leaves the file systems of the images' layers mounted.
+tidy_up() {
+  awk -v inside="$scratch/" 'index($2, inside) == 1 { print $2 }' /proc/mounts | sort -r |
+    xargs --no-run-if-empty umount
+  rm -rf --one-file-system "$scratch"
+}
+trap tidy_up EXIT
+clone=$scratch/weft
+git clone --quiet "$tree" "$clone"
+cd "$clone"
+SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
+export SOURCE_DATE_EPOCH
+
+say "build of $(git rev-parse HEAD)"
+build() { # as tests/run.sh does, whose cache then serves
+  cmake --preset "$1" -DBUILD_TESTING=OFF -DWEFT_WERROR=ON \
+    ${WEFT_MAINTAINER:+"-DWEFT_MAINTAINER=$WEFT_MAINTAINER"} &&
+    cmake --build --preset "$1"
+}
+for preset in release portable; do
+  build $preset >"$scratch/build.log" 2>&1 ||
+    fail "the preset $preset does not build: $(tail -n 30 "$scratch/build.log")"
+done
+version=$(build/release/weftd --version | cut -d ' ' -f 2)
+
+say "packages for Debian"
+cpack --config build/release/CPackConfig.cmake -B "$scratch/packages" >"$scratch/cpack.log" 2>&1 ||
+  fail "cpack failed: $(tail "$scratch/cpack.log")"
+mv "$scratch"/packages/*.deb "$out"
+
+say "packages for Python"
+/usr/bin/python3 -B deploy/package/wheels.py build/portable "$out"
+
+say "bill of materials"
+/usr/bin/python3 -B deploy/package/bill_of_materials.py build/release "$out/weft-$version.cdx.json"
+(cd deploy && npm ci --silent --ignore-scripts --no-audit --no-fund)
+node deploy/check-bill.mjs "$out/weft-$version.cdx.json"
+
+if ((EUID == 0)) && command -v buildah >/dev/null && command -v debootstrap >/dev/null; then
+  say "images"
+  deploy/image.sh "$scratch/image"
+  for name in weftd weft; do
+    STORAGE_DRIVER=vfs buildah --root "$scratch/image/images" --runroot "$scratch/image/run" \
+      push --quiet "localhost/$name" "oci-archive:$out/$name-$version-image.tar:$name:$version"
+  done
+else
+  echo "the images are left out, for want of root, buildah or debootstrap"
+fi
+
+(cd "$out" && sha256sum -- * >"$scratch/sums" && mv "$scratch/sums" SHA256SUMS)
+say "weft $version is in $out"
+(cd "$out" && du --apparent-size --block-size=1000 -- *)

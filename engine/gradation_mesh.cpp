@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/gradation_mesh.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/size/gradation/mesh_limit.h"
+
+namespace weft {
+
+GradationMesh::GradationMesh(const MeshRequest& request) : size_(request.size) {
+  for (const RegionSeed& region : request.pslg.regions) {
+    if (!region.max_area) continue;
+    const double edge = SizeFunction::edge_of_area(*region.max_area);
+    const auto [known, added] = region_edges_.emplace(region.id, edge);
+    if (!added) known->second = std::min(known->second, edge);
+  }
+}
+
+// Above a gradation of 0.8, the mesh would have too many triangles.
+double GradationMesh::share_of_edges(double gradation) {
+  return std::clamp(kResolution / gradation, 0.1, 1.5);
+}
+
+void GradationMesh::lower(std::uint32_t v, double to) {
+  mesh_.values[v] = std::min(mesh_.values[v], to);
+}
+
+bool GradationMesh::accept(Chunk&& chunk) {
+  for (std::size_t i = 0; i < chunk.coordinates.size(); i += 2)
+    mesh_.vertices.push_back({chunk.coordinates[i], chunk.coordinates[i + 1]});
+  mesh_.values.resize(mesh_.vertices.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < chunk.triangles.size(); i += 3)
+    mesh_.triangles.push_back({chunk.triangles[i], chunk.triangles[i + 1], chunk.triangles[i + 2]});
+  for (std::size_t t = 0; t < chunk.triangles.size() / 3; ++t) {
+    const auto found = region_edges_.find(chunk.regions.empty() ? 0 : chunk.regions[t]);
+    if (found == region_edges_.end()) continue;
+    for (unsigned k = 0; k < 3; ++k) lower(chunk.triangles[3 * t + k], found->second);
+  }
+  for (const Chunk::Edge& edge : chunk.edges)
+    for (const SizeAt& at : size_.at)
+      if (at.marker == edge.marker)
+        for (const std::uint32_t v : {edge.a, edge.b}) lower(v, at.max_edge);
+  return true;
+}
+
+Result<MeshField> GradationMesh::limit(const SizeFunction& size, std::uint64_t held,
+                                       const ExecutionContext& context) && {
+  const std::uint64_t bytes = mesh_.vertices.capacity() * sizeof(Point) +
+                              mesh_.values.capacity() * sizeof(double) +
+                              mesh_.triangles.capacity() * sizeof(mesh_.triangles[0]) +
+                              MeshField::bytes_to_make(mesh_.triangles.size());
+  if (auto error = context.need_bytes(held + bytes, "the gradation within the domain"))
+    return tl::unexpected(*error);
+  if (auto error = lower_to_size(size, size_.gradation, mesh_, context))
+    return tl::unexpected(*error);
+  if (auto error = limit_slopes(size_.gradation, mesh_, context)) return tl::unexpected(*error);
+  for (double& value : mesh_.values) value = std::min(value, SizeFunction::kUnreachedEdge);
+  return MeshField::make(std::move(mesh_), "size.gradation", context);
+}
+
+}  // namespace weft

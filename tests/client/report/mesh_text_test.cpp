@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/report/mesh_text.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace weft::client {
+namespace {
+
+v1::Summary summary_with_warnings() {
+  v1::Summary summary;
+  v1::Unrefined& unrefined = *summary.mutable_unrefined();
+  unrefined.set_edge_floor(7);
+  unrefined.set_precision(1200);
+  unrefined.set_too_large(200);
+  unrefined.set_x(0.5);
+  unrefined.set_y(-3);
+  v1::Merging& merging = *summary.mutable_merging();
+  merging.set_tolerance(0.001);
+  merging.set_points(12);
+  merging.set_segments(1);
+  merging.set_farthest(0.0007);
+  merging.set_farthest_x(1);
+  merging.set_farthest_y(2);
+  merging.set_vanished_faces(2);
+  merging.set_vanished_x(4);
+  merging.set_vanished_y(5);
+  return summary;
+}
+
+TEST(MeshReport, HasAWarningOnce) {
+  MeshReport report;
+  report.warnings = {"a"};
+  add_warnings({"b", "a", "b"}, report);
+  EXPECT_EQ(report.warnings, (std::vector<std::string>{"a", "b"}));
+}
+
+TEST(MeshReport, WarnsOfTrianglesWithoutExemptionAndTellsWhatWasMerged) {
+  const std::string text = summary_text(summary_with_warnings());
+  EXPECT_EQ(
+      text.substr(text.find('\n') + 1),
+      "7 triangles miss a bound because edges would become too short\n"
+      "WARNING: 1,200 triangles without exemption, 200 above the bound on their area and 1,000 "
+      "below the minimum angle, because double precision ends; the first is at (0.5, -3)\n"
+      "merged within 0.001: 12 points moved, 1 segment bent, by 0.0007 at most, at (1, 2)\n"
+      "2 faces of the input vanished, one at (4, 5)\n");
+}
+
+TEST(MeshReport, SaysNothingOfWhatDidNotHappen) {
+  v1::Summary summary;
+  summary.mutable_merging()->set_tolerance(1e-9);
+  const std::string text = summary_text(summary);
+  EXPECT_EQ(text.find('\n'), text.size() - 1);
+}
+
+TEST(MeshReport, SpeaksOfOneAsOfOne) {
+  v1::Summary summary;
+  summary.mutable_unrefined()->set_small_input_angle(1);
+  EXPECT_NE(summary_text(summary).find("\n1 triangle misses a bound because a small angle"),
+            std::string::npos);
+  v1::Unrefined unrefined;
+  unrefined.set_streaming(1);
+  EXPECT_EQ(
+      unrefined_warning(unrefined),
+      "WARNING: 1 triangle without exemption, 1 below the minimum angle, because the mesh around "
+      "had been sent already; the first is at (0, 0)\n");
+  v1::Merging merging;
+  merging.set_points(1);
+  merging.set_tolerance(0.5);
+  merging.set_farthest(0.25);
+  merging.set_vanished_faces(1);
+  EXPECT_EQ(merging_text(merging),
+            "merged within 0.5: 1 point moved, by 0.25 at most, at (0, 0)\n"
+            "1 face of the input vanished, at (0, 0)\n");
+}
+
+TEST(MeshReport, GivesProgramsThePlacesIfThereAreAny) {
+  const Json json = summary_json(summary_with_warnings());
+  EXPECT_EQ(json["unrefined"]["precision"], 1200);
+  EXPECT_EQ(json["unrefined"]["too_large"], 200);
+  EXPECT_EQ(json["unrefined"]["at"], Json::parse("[0.5, -3.0]"));
+  EXPECT_EQ(json["merging"]["farthest_at"], Json::parse("[1.0, 2.0]"));
+  EXPECT_EQ(json["merging"]["vanished_at"], Json::parse("[4.0, 5.0]"));
+  EXPECT_FALSE(summary_json({})["unrefined"].contains("at"));
+  EXPECT_FALSE(summary_json({})["merging"].contains("farthest_at"));
+}
+
+TEST(MeshReport, TellsTheAttributesThatIdsStandFor) {
+  const std::vector<RegionValue> values = {{1, 0.35}, {3, -2.5}};
+  EXPECT_EQ(region_values_text(values), "region 1 = 0.35\nregion 3 = -2.5\n");
+  EXPECT_EQ(region_values_json(values), Json::parse(R"({"1": 0.35, "3": -2.5})"));
+  std::vector<RegionValue> many;
+  for (int id = 1; id <= 23; ++id) many.push_back({id, id + 0.5});
+  EXPECT_TRUE(region_values_text(many).ends_with("region 20 = 20.5\nand 3 more regions\n"));
+}
+
+TEST(BudgetWarning, IsOfAMeshWithMoreTrianglesThanWereAllowed) {
+  v1::Summary summary;
+  summary.set_triangles(9580);
+  EXPECT_EQ(budget_warning(summary, std::nullopt), std::nullopt);
+  EXPECT_EQ(budget_warning(summary, 9580), std::nullopt);
+  EXPECT_EQ(budget_warning(summary, 1000),
+            "the mesh has 9,580 triangles, more than the 1,000 of --max-triangles, because the "
+            "domain alone, without refinement, has that many");
+}
+
+TEST(MeshText, EndsWithTheWarningsThatJsonListsToo) {
+  MeshReport report;
+  EXPECT_FALSE(mesh_json(report, {}).contains("warnings"));
+  report.warnings = {"one", "two"};
+  EXPECT_TRUE(mesh_text(report, {}).ends_with("\nWARNING: one\nWARNING: two\n"));
+  EXPECT_EQ(mesh_json(report, {})["warnings"], Json({"one", "two"}));
+}
+
+}  // namespace
+}  // namespace weft::client

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What deploy/release.sh is made of. tests/package.sh tries the packages themselves."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(os.environ["WEFT_BUILD"])
+sys.path.insert(0, str(ROOT / "deploy/package"))
+import bill_of_materials  # noqa: E402
+import components  # noqa: E402
+import wheels  # noqa: E402
+
+
+@pytest.fixture
+def tree(tmp_path):
+    """A clone in small, with nothing in it that builds."""
+    folder = tmp_path / "tree"
+    (folder / "deploy").mkdir(parents=True)
+    shutil.copy(ROOT / "deploy/release.sh", folder / "deploy")
+    git = ["git", "-C", folder, "-c", "user.name=test", "-c", "user.email=test@example.org"]
+    for words in (["init", "-q"], ["add", "-A"], ["commit", "-q", "-m", "All"]):
+        subprocess.run([*git, *words], check=True)
+    return folder
+
+
+def release(tree, out):
+    return subprocess.run([tree / "deploy/release.sh", out], capture_output=True, text=True)
+
+
+def test_changes_that_are_not_committed_are_not_released(tree, tmp_path):
+    (tree / "new.cpp").touch()
+    done = release(tree, tmp_path / "out")
+    assert done.returncode == 1 and "new.cpp" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_nothing_is_released_into_a_folder_with_something_else(tree, tmp_path):
+    (tmp_path / "old.whl").touch()
+    done = release(tree, tmp_path)
+    assert (done.returncode, done.stderr) == (1, f"release.sh: {tmp_path} is not empty\n")
+
+
+@pytest.fixture(scope="module")
+def bill():
+    return bill_of_materials.bill(BUILD)
+
+
+def judged(bill, folder):
+    """The exit code and the words of the judge by CycloneDX's schema."""
+    (folder / "bill.json").write_text(json.dumps(bill))
+    done = subprocess.run(["node", ROOT / "deploy/check-bill.mjs", folder / "bill.json"],
+                          capture_output=True, text=True)
+    return done.returncode, done.stderr
+
+
+def test_the_bill_of_materials_fits_its_schema(bill, tmp_path):
+    assert judged(bill, tmp_path) == (0, "")
+    wrong = {**bill, "components": [{"type": "no such type", "name": "x"}]}
+    assert judged(wrong, tmp_path)[0] == 1
+
+
+@pytest.mark.parametrize("program", ["weft", "weftd"])
+def test_the_bill_has_what_the_programs_are_made_of(bill, program):
+    on, = (each["dependsOn"] for each in bill["dependencies"] if each["ref"] == program)
+    by_reference = {each["bom-ref"]: each for each in bill["components"]}
+    names = {by_reference[reference]["name"] for reference in on}
+    assert {"libc6", "libprotobuf32", "libgrpc-dev"} <= names
+    assert ("libcgal-dev" in names) == (program == "weftd")
+    assert ("libcairo2" in names) == (program == "weft")
+    loaded = components.packages_of(components.loaded_by(BUILD / program).values())
+    assert {package.name for package in loaded} <= names
+
+
+def test_the_bill_tells_tools_from_what_is_released(bill):
+    scopes = {each["name"]: each.get("scope") for each in bill["components"]}
+    assert scopes["@bufbuild/buf"] == scopes["@grpc/grpc-js"] == "excluded"
+    assert scopes["grpcio"] is scopes["libssl3"] is None
+
+
+def test_a_file_of_no_package_has_no_place_in_the_bill(tmp_path):
+    with pytest.raises(LookupError, match="strange.so"):
+        components.packages_of([tmp_path / "strange.so"])
+
+
+@pytest.fixture
+def carried(tmp_path):
+    """weftd as a wheel carries it."""
+    wheels.carry(BUILD, tmp_path)
+    return tmp_path
+
+
+def test_a_wheel_carries_what_its_programs_load(carried, monkeypatch):
+    monkeypatch.setattr(wheels, "UNDER_THE_GPL", set())  # this build has PROJ
+    assert list(wheels.faults(carried)) == []
+    (carried / "lib/libtbb.so.12").unlink()
+    assert "weftd needs libtbb.so.12, which the system need not have" in wheels.faults(carried)
+
+
+def test_a_wheel_needs_no_newer_system_than_it_says(carried, monkeypatch):
+    monkeypatch.setitem(wheels.NEWEST, "GLIBC", (2, 33))
+    assert "weftd needs GLIBC_2.34 of libc.so.6" in wheels.faults(carried)
+
+
+def test_a_wheel_looks_for_libraries_in_itself(carried):
+    shutil.copy(BUILD / "weftd", carried / "bin/weftd")
+    assert "weftd looks for libraries in []" in wheels.faults(carried)
+
+
+def test_a_wheel_carries_nothing_under_the_gpl(carried):
+    (carried / "lib/libreadline.so.8").symlink_to("libtbb.so.12")
+    assert "libreadline.so.8 is under the GPL" in wheels.faults(carried)
