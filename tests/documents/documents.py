@@ -21,8 +21,10 @@ deploy/ and client/ are there. Programs, servers, certificates and databases are
 
     <!-- not run: REASON -->    on a line of its own before a block that cannot be run here
 
-What varies from run to run and from machine to machine is in printed.py; a line `...` stands for any
-number of lines.
+    <!-- within 1e-4: REASON -->    before a block that shows output: the tolerance of its numbers
+
+Words are compared exactly, numbers within the tolerance of printed.py. What varies from run to run and from machine to machine is in printed.py; a line `...` stands for any number
+of lines.
 
 A picture that a page shows must be one that its commands have drawn, in a file of that name, and
 must look like it; tests/console makes and compares those of the console, console-*.png. A link to a

@@ -22,6 +22,9 @@ WRONG = {
                                            7, "this fails"),
     "Python raises": ("```python\nx = 1\nassert x == 2\n```\n", 3, "AssertionError"),
     "Python is no Python": ("```python\n\nx = (\n```\n", 3, "SyntaxError"),
+    "a number of another machine is too far": ("```console\n$ echo 1.00000001\n1.00000002\n```\n", 3, "prints\n1"),
+    "a count is another": ("```console\n$ echo 17,997 triangles\n17,998 triangles\n```\n", 3, "prints\n17"),
+    "a digest is another": ("```console\n$ echo 11e2\n12e2\n```\n", 3, "prints\n11e2"),
     "Python prints something else": ("```python\nprint(1)\n```\n\n```text\n2\n```\n", 6, "prints\n1"),
     "a server does not start": ("```sh\nweftd --threads 0 2> log &\ntrue\n```\n", 2, "has ended"),
     "a picture that nothing draws": ("![a](other.png)\n", 1, "draws other.png"),
@@ -62,6 +65,27 @@ def test_what_varies_may_vary(run):
     good, found = run("```console\n$ echo engine 0.1 s on 3 threads; echo 01M7X1A35W9ZDPEA399XA0S1TN\n"
                       "engine 2.5 s on 1 threads\n01AAAAAAAAAAAAAAAAAAAAAAAA\n```\n")
     assert good, found
+
+
+def test_last_digits_may_be_those_of_another_processor(run):
+    good, found = run("```console\n$ echo drag 29.134024615825442, -1.5e-12 of 1,234,567\n"
+                      "drag 29.13402461582536, -1.5000000001e-12 of 1,234,567\n```\n")
+    assert good, found
+
+
+def test_a_page_can_ask_for_another_tolerance(run):
+    page = "<!-- within 1e-3: as scipy has it -->\n```console\n$ echo 17,997 in a row\n17,998 in a row\n```\n"
+    good, found = run(page)
+    assert good, found
+    good, found = run(page + page.split("\n", 1)[1])
+    assert not good and "page.md:9: " in found
+
+
+def test_lines_left_out_may_be_any(run):
+    good, found = run("```console\n$ seq 9\n1\n...\n5\n6\n...\n9\n```\n")
+    assert good, found
+    good, found = run("```console\n$ seq 9\n1\n...\n6\n5\n...\n```\n")
+    assert not good
 
 
 def test_a_page_keeps_its_variables_its_server_and_its_errors(run):

@@ -8,9 +8,11 @@ import pathlib
 import re
 
 from interpreter import Failed
+from printed import TOLERANCE
 
 FENCE = re.compile(r"```(\w*)")
 NOT_RUN = re.compile(r"<!-- not run: (.+) -->")
+WITHIN = re.compile(r"<!-- within (\S+): .+ -->")
 FILE_NAME = re.compile(r"# ([\w./-]+\.\w+)")
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ROOMS = "proto|engine|server|client|checker|tests|bench|deploy|docs"
@@ -27,6 +29,8 @@ class Block:
     """Of the page, on which the code begins."""
     not_run: str = ""
     """Why, where it is not."""
+    tolerance: float = TOLERANCE
+    """Of the numbers that it shows as output."""
     output: Block | None = None
     """What it must print, where the page shows that."""
 
@@ -57,16 +61,18 @@ def read(path: pathlib.Path) -> Page:
     blocks: list[Block] = []
     links: dict[str, list[tuple[int, str]]] = {"": [], "!": []}
     block = None
-    not_run = ""
+    not_run, tolerance = "", TOLERANCE
     for number, line in enumerate(path.read_text().splitlines(), start=1):
         if block is None:
             if fence := FENCE.fullmatch(line):
-                block = Block(fence[1], "", number + 1, not_run)
-                not_run = ""
+                block = Block(fence[1], "", number + 1, not_run, tolerance)
+                not_run, tolerance = "", TOLERANCE
             elif line.lstrip().startswith("```"):
                 raise Failed(number, "this begins no block that the test knows")
             elif reason := NOT_RUN.fullmatch(line):
                 not_run = reason[1]
+            elif within := WITHIN.fullmatch(line):
+                tolerance = float(within[1])
             else:
                 for mark, target in LINK.findall(re.sub("`[^`]*`", "`", line)):
                     links[mark].append((number, target))

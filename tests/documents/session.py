@@ -114,7 +114,8 @@ class Session:
             at += len(command)
             shown = list(itertools.takewhile(lambda line: not line.startswith("$ "), lines[at:]))
             printed = self._call(self.shell, "".join(command), shown=True)
-            self._compare(pages.Block("text", "".join(shown), block.line + at), printed)
+            self._compare(pages.Block("text", "".join(shown), block.line + at, tolerance=block.tolerance),
+                          printed)
             at += len(shown)
 
     def _call(self, runner: interpreter.Interpreter, code: str, shown: bool = False) -> str:
@@ -126,7 +127,7 @@ class Session:
         return without_progress(printed)
 
     def _compare(self, expected: pages.Block | None, printed: str) -> None:
-        if expected is None or is_as_shown(printed, expected.code):
+        if expected is None or is_as_shown(printed, expected.code, expected.tolerance):
             return
         if not self.anew:
             raise Failed(expected.line, f"the page shows\n{expected.code}but it prints\n{printed}")
