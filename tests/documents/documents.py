@@ -2,11 +2,12 @@
 """Runs what the documents tell their readers to run, and fails, with file and line, where a command
 fails or prints something else than the page shows.
 
-    documents.py BUILD [--anew] [PAGE...]
+    documents.py BUILD [--anew] [--processor NAME] [PAGE...]
 
 BUILD is the folder of weft, weftd and python/, such as build/release. Pages are README.md,
 CONTRIBUTING.md, docs/**/*.md and client/python/README.md, but for those that docs/generate.py makes. With --anew the
-pages get what their commands print and draw now, for a person to look at.
+pages get what their commands print and draw now, for a person to look at. With --processor they run as
+on one of processors.py, so that what only holds on this machine is seen on this machine.
 
 A page is run from its top in an empty folder that stands for the root of the repository: tests/,
 deploy/ and client/ are there. Programs, servers, certificates and databases are real.
@@ -44,6 +45,7 @@ import time
 
 import page as pages
 import pictures
+import processors
 from interpreter import Failed
 from session import DATABASE, ROOT, Session
 
@@ -96,7 +98,9 @@ def main() -> None:
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("pages", type=pathlib.Path, nargs="*")
     parser.add_argument("--anew", action="store_true")
+    parser.add_argument("--processor", choices=processors.NAMES, default="own")
     arguments = parser.parse_intermixed_args()
+    os.environ |= processors.environment(arguments.processor)
     paths = [p.resolve() for p in arguments.pages] or [
         ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "client/python/README.md",
         ROOT / "client/examples/README.md",

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "tests/e2e/programs.h"
+#include "tests/support/paths.h"
 
 namespace weft::e2e {
 namespace {
@@ -27,8 +28,9 @@ class Pipeline : public testing::Test {
   Outcome mesh(const std::string& flags = "", const std::string& environment = "") const {
     const std::string command =
         "cd " + folder_.path().string() +
-        " && PATH=" + std::filesystem::path(WEFT_BINARY).parent_path().string() + ":$PATH " +
-        environment + " " WEFT_DEPLOY "/ci/mesh.sh meshes.yaml " + flags + " >out.txt 2>err.txt";
+        " && PATH=" + std::filesystem::path(testing::kWeft).parent_path().string() + ":$PATH " +
+        environment + " " + testing::kDeploy + "/ci/mesh.sh meshes.yaml " + flags +
+        " >out.txt 2>err.txt";
     const int status = std::system(command.c_str());
     return {.exit_code = WEXITSTATUS(status),
             .out = client::contents_of(folder_ / "out.txt"),

@@ -19,6 +19,7 @@
 #include <thread>
 
 #include "tests/support/http.h"
+#include "tests/support/paths.h"
 
 extern char** environ;
 
@@ -61,11 +62,11 @@ int wait_for(pid_t pid, rusage* usage = nullptr) {
 }  // namespace
 
 pid_t start_weft(const std::vector<std::string>& arguments) {
-  return start(WEFT_BINARY, arguments, "/dev/null", "/dev/null");
+  return start(testing::kWeft, arguments, "/dev/null", "/dev/null");
 }
 
 Outcome run_weft(const std::vector<std::string>& arguments) {
-  return run_program(WEFT_BINARY, arguments);
+  return run_program(testing::kWeft, arguments);
 }
 
 Outcome run_program(const std::string& program, const std::vector<std::string>& arguments) {
@@ -89,7 +90,7 @@ void Server::start() {
   std::filesystem::remove(port_file);
   std::vector<std::string> all{"--listen", address_, "--port-file", port_file};
   all.insert(all.end(), arguments_.begin(), arguments_.end());
-  pid_ = e2e::start(WEFTD_BINARY, all, folder_ / "out", folder_ / "err");
+  pid_ = e2e::start(testing::kWeftd, all, folder_ / "out", folder_ / "err");
   while (!std::filesystem::exists(port_file)) {
     if (waitpid(pid_, nullptr, WNOHANG) != 0) {
       pid_ = -1;
@@ -172,7 +173,7 @@ bool Server::shows(const std::string& series, double value) const {
 }
 
 std::string model(const std::string& name) {
-  return std::string(WEFT_MODELS) + "/" + name;
+  return std::string(testing::kModels) + "/" + name;
 }
 
 }  // namespace weft::e2e

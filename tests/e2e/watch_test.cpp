@@ -9,6 +9,7 @@
 
 #include "tests/e2e/programs.h"
 #include "tests/support/http.h"
+#include "tests/support/paths.h"
 
 namespace weft::e2e {
 namespace {
@@ -50,9 +51,10 @@ std::set<std::string> names_in(const std::string& text, const char* pattern) {
 
 TEST_F(Watched, ShowsEveryMetricThatDashboardAndAlertsLookAt) {
   const std::set<std::string> shown = names_in(scrape_, R"((?:^|\n)([a-z_]+)[ {])");
-  for (const char* file : {WEFT_DEPLOY "/grafana-dashboard.json", WEFT_DEPLOY "/alerts.yaml"}) {
+  for (const char* file : {"/grafana-dashboard.json", "/alerts.yaml"}) {
     const std::set<std::string> wanted =
-        names_in(client::contents_of(file), R"(\b((?:weft|process)_[a-z_]+)\b)");
+        names_in(client::contents_of(std::string(testing::kDeploy) + file),
+                 R"(\b((?:weft|process)_[a-z_]+)\b)");
     EXPECT_GE(wanted.size(), 8u) << file;
     for (const std::string& name : wanted)
       EXPECT_TRUE(shown.contains(name)) << file << " looks at " << name;
@@ -60,8 +62,8 @@ TEST_F(Watched, ShowsEveryMetricThatDashboardAndAlertsLookAt) {
 }
 
 TEST_F(Watched, HasADashboardThatLooksAtEveryMetricOfWeft) {
-  const auto dashboard =
-      nlohmann::json::parse(client::contents_of(WEFT_DEPLOY "/grafana-dashboard.json"));
+  const auto dashboard = nlohmann::json::parse(
+      client::contents_of(std::string(testing::kDeploy) + "/grafana-dashboard.json"));
   std::string expressions;
   for (const auto& panel : dashboard.at("panels"))
     for (const auto& target : panel.at("targets"))

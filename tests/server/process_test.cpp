@@ -18,6 +18,7 @@
 
 #include "tests/client/support/temp_folder.h"
 #include "tests/server/harness.h"
+#include "tests/support/paths.h"
 
 namespace weft::server {
 namespace {
@@ -48,7 +49,7 @@ class Weftd {
       ::dup2(out[1], STDOUT_FILENO);
       ::dup2(out[1], STDERR_FILENO);
       ::alarm(30);  // a server that should have ended fails the test instead of hanging it
-      ::execve(WEFTD_PATH, argv.data(), envp.data());
+      ::execve(weft::testing::kWeftd, argv.data(), envp.data());
       ::_exit(127);
     }
     ::close(in[0]);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/poly.h"
+#include "tests/support/paths.h"
 
 #include <cstdint>
 #include <fstream>
@@ -114,7 +115,7 @@ Pslg read_poly(const std::string& path) {
 }
 
 std::string model(const std::string& name) {
-  return std::string(WEFT_MODELS) + "/" + name;
+  return std::string(testing::kModels) + "/" + name;
 }
 
 }  // namespace weft

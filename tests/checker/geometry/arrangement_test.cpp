@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "checker/geometry/arrangement.h"
+#include "tests/support/paths.h"
 
 #include <gtest/gtest.h>
 
@@ -262,7 +263,7 @@ TEST(Contacts, StopsAtItsLimit) {
 }
 
 TEST(Arrangement, OfACoastlineIsThatOfItsRings) {
-  std::ifstream file(WEFT_TEST_MODELS "/us-east-coast.poly");
+  std::ifstream file(std::string(weft::testing::kModels) + "/us-east-coast.poly");
   std::string comment;
   std::getline(file, comment);
   std::size_t count = 0;

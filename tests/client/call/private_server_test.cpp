@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "tests/client/support/temp_folder.h"
+#include "tests/support/paths.h"
 
 namespace weft::client {
 namespace {
@@ -23,7 +24,7 @@ class Private : public testing::Test {
   }
   static PrivateServerOptions fake(const char* behaviour) {
     ::setenv("FAKE_WEFTD", behaviour, 1);
-    return {.weftd = WEFT_FAKE_WEFTD};
+    return {.weftd = weft::testing::kFakeWeftd};
   }
   static bool is_alive(pid_t pid) { return ::kill(pid, 0) == 0; }
 

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "tests/client/formats/rasters/field_raster_file.h"
+#include "tests/support/paths.h"
 
 namespace weft::client {
 namespace {
@@ -386,7 +387,7 @@ TEST_F(FieldRasterFile, MustBeAFile) {
 }
 
 TEST(Weft, DoesNotLoadGdalWhenItStarts) {
-  FILE* const list = ::popen("ldd " WEFT_BINARY, "r");
+  FILE* const list = ::popen((std::string("ldd ") + weft::testing::kWeft).c_str(), "r");
   ASSERT_NE(list, nullptr);
   std::string text;
   for (int c; (c = std::fgetc(list)) != EOF;) text += static_cast<char>(c);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "tests/client/support/temp_folder.h"
+#include "tests/support/paths.h"
 
 namespace weft::client {
 
@@ -32,9 +33,10 @@ class WeftProcess : public testing::Test {
 
   // `terminal` is stdin and stdout of the process, where there is one.
   pid_t start(const Words& words, const Words& variables = {}, int terminal = -1) {
-    Words arguments = {WEFT_BINARY};
+    Words arguments = {weft::testing::kWeft};
     arguments.insert(arguments.end(), words.begin(), words.end());
-    Words environment = {"WEFT_WEFTD=" WEFT_FAKE_WEFTD, "TMPDIR=" + (folder_ / "tmp").string(),
+    Words environment = {std::string("WEFT_WEFTD=") + weft::testing::kFakeWeftd,
+                         "TMPDIR=" + (folder_ / "tmp").string(),
                          "FAKE_WEFTD_PID=" + (folder_ / "pid").string()};
     if (const char* const leaks = std::getenv("LSAN_OPTIONS"))
       environment.push_back(std::string("LSAN_OPTIONS=") + leaks);
@@ -57,8 +59,8 @@ class WeftProcess : public testing::Test {
     posix_spawn_file_actions_addopen(&actions, 2, (folder_ / "stderr").c_str(),
                                      O_WRONLY | O_CREAT | O_TRUNC, 0600);
     pid_t pid = 0;
-    EXPECT_EQ(::posix_spawn(&pid, WEFT_BINARY, &actions, nullptr, pointers(arguments).data(),
-                            pointers(environment).data()),
+    EXPECT_EQ(::posix_spawn(&pid, weft::testing::kWeft, &actions, nullptr,
+                            pointers(arguments).data(), pointers(environment).data()),
               0);
     posix_spawn_file_actions_destroy(&actions);
     return pid;

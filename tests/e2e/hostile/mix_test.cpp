@@ -19,6 +19,7 @@
 #include "tests/e2e/hostile/kinds.h"
 #include "tests/e2e/programs.h"
 #include "tests/support/event.h"
+#include "tests/support/paths.h"
 
 namespace weft::e2e {
 namespace {
@@ -134,7 +135,7 @@ TEST(HostileMix, HarmsNoHonestClient) {
   const std::uint64_t logged = server.logged_bytes();
   Outcome hostile;
   std::thread at_work([&] {
-    hostile = run_program(WEFT_HOSTILE_CLIENTS, {address, std::to_string(seconds)});
+    hostile = run_program(testing::kHostileClients, {address, std::to_string(seconds)});
   });
   const Waits beside = ask_honestly(address, digest, seconds);
   const double log = static_cast<double>(server.logged_bytes() - logged) -

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/client/support/temp_folder.h"
+#include "tests/support/paths.h"
 
 namespace weft::client {
 namespace {
@@ -109,7 +110,7 @@ TEST_F(GeoJson, DropsPositionsThatRepeatAndKeepsTheirNumbers) {
 }
 
 TEST_F(GeoJson, ReadsTheCoast) {
-  const auto domain = read_geojson(WEFT_MODELS "/us-east-coast.geojson");
+  const auto domain = read_geojson(std::string(weft::testing::kModels) + "/us-east-coast.geojson");
   ASSERT_TRUE(domain) << domain.error().message;
   EXPECT_EQ(domain->points.size(), 9370u);
 }

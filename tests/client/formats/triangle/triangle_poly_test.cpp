@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/client/support/temp_folder.h"
+#include "tests/support/paths.h"
 
 namespace weft::client {
 namespace {
@@ -86,7 +87,8 @@ TEST_F(TrianglePoly, SaysThatTheNodeFileIsMissing) {
 
 TEST_F(TrianglePoly, ReadsTheModels) {
   for (const char* name : {"pipe", "key", "cylinder", "us-east-coast"}) {
-    const auto domain = read_triangle_poly(std::string(WEFT_MODELS "/") + name + ".poly");
+    const auto domain =
+        read_triangle_poly(std::string(weft::testing::kModels) + "/" + name + ".poly");
     ASSERT_TRUE(domain) << domain.error().message;
     EXPECT_EQ(domain->points.size(), domain->segments.size()) << name;
   }
