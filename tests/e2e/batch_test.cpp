@@ -13,7 +13,7 @@
 namespace weft::e2e {
 namespace {
 
-class Pipeline : public testing::Test {
+class Pipeline : public ::testing::Test {
  protected:
   Pipeline() { write_manifest("0.01"); }
 
