@@ -28,10 +28,24 @@ struct RegionSeed {
   std::optional<double> max_area;  // squared units
 };
 
+// A polygon, as the segments that name it draw it: what an odd number of them separates from
+// infinity. Of all that cover a face and have a region, the one of the highest priority gives the
+// face its region; of several, the smallest; of several of one size, the first. The least bound of
+// all holds.
+struct Area {
+  std::optional<std::int32_t> region;
+  std::int32_t priority = 0;
+  std::optional<double> max_area;  // squared units
+  bool is_hole = false;            // carves what it covers away, and has no other effect
+};
+
 // Which faces of the segments' arrangement are meshed.
 enum class Fill : std::uint8_t {
-  kSeeds,    // every bounded face without a hole seed
-  kEvenOdd,  // faces without a hole seed, an odd number of segments away from infinity
+  kSeeds,  // every bounded face without a hole seed
+  // Faces without a hole seed, an odd number of segments away from infinity; if there are areas,
+  // faces that an odd number of them covers.
+  kEvenOdd,
+  kUnion,  // faces without a hole seed that an area covers
 };
 
 struct Domain {
@@ -40,6 +54,9 @@ struct Domain {
   std::vector<std::int32_t> markers;                   // one per segment, or empty: all 0
   std::vector<Vec2> holes;
   std::vector<RegionSeed> regions;
+  std::vector<Area> areas;
+  std::vector<std::uint32_t>
+      segment_areas;  // one per segment, or empty: 0, or 1 + an index into areas
   Fill fill = Fill::kSeeds;
   double snap = 0;  // features nearer than this must be merged (tolerance.h); at least 0
 };

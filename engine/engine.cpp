@@ -160,6 +160,7 @@ class Run {
     if (!domain) return domain.error();
     domain_ = std::move(*domain);
     summary_.merging = domain_.merging;
+    summary_.overlap = domain_.overlap;
     for (Point p : domain_.vertices) summary_.box.add(p);
     if (auto error = check_extent(summary_.box)) return error;
     summary_.triangulate_seconds = clock_.lap();

@@ -9,12 +9,15 @@
 namespace weft {
 
 GradationMesh::GradationMesh(const MeshRequest& request) : size_(request.size) {
-  for (const RegionSeed& region : request.pslg.regions) {
-    if (!region.max_area) continue;
-    const double edge = SizeFunction::edge_of_area(*region.max_area);
-    const auto [known, added] = region_edges_.emplace(region.id, edge);
+  const auto add = [&](std::int32_t region, double max_area) {
+    const double edge = SizeFunction::edge_of_area(max_area);
+    const auto [known, added] = region_edges_.emplace(region, edge);
     if (!added) known->second = std::min(known->second, edge);
-  }
+  };
+  for (const RegionSeed& region : request.pslg.regions)
+    if (region.max_area) add(region.id, *region.max_area);
+  for (const Area& area : request.pslg.areas)
+    if (area.region && area.max_area) add(*area.region, *area.max_area);
 }
 
 // Above a gradation of 0.8, the mesh would have too many triangles.

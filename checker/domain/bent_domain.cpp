@@ -44,6 +44,7 @@ class Bender {
         first_piece_(domain.segments.size() + 1, 0) {
     result_.domain.holes = domain.holes;
     result_.domain.regions = domain.regions;
+    result_.domain.areas = domain.areas;
     result_.domain.fill = domain.fill;
     result_.domain.points = domain.points;
     result_.domain.snap = domain.snap;
@@ -146,6 +147,8 @@ class Bender {
     result_.is_tear.push_back(is_tear);
     result_.domain.segments.push_back({from, to});
     result_.domain.markers.push_back(marker(s));
+    if (!domain_.segment_areas.empty())
+      result_.domain.segment_areas.push_back(domain_.segment_areas[s]);
     result_.origin.push_back(s);
     result_.slack.push_back(near_.is_bent(s) ? sliver_slack() : 0);
     ++first_piece_[s + 1];

@@ -2,6 +2,8 @@
 #include "checker/domain/domain_rules.h"
 
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "checker/text.h"
 
@@ -34,6 +36,24 @@ bool judge_domain(const Domain& domain, Findings& findings) {
     if (a >= domain.points.size() || b >= domain.points.size())
       bad("segment ", i, " joins points ", a, " and ", b, ", but there are ", domain.points.size());
   }
+  if (!domain.segment_areas.empty() && domain.segment_areas.size() != domain.segments.size()) {
+    bad(domain.segment_areas.size(), " areas for ", domain.segments.size(), " segments");
+    return false;
+  }
+  // Every area's segments close: an even number of their ends is at every point.
+  std::set<std::pair<std::uint32_t, std::uint32_t>> open;  // area and point
+  for (std::size_t i = 0; i < domain.segment_areas.size(); ++i) {
+    const std::uint32_t area = domain.segment_areas[i];
+    if (area > domain.areas.size())
+      bad("segment ", i, " is of area ", area - 1, ", but there are ", domain.areas.size());
+    if (area != 0)
+      for (const std::uint32_t point : domain.segments[i])
+        if (const auto [at, is_new] = open.emplace(area - 1, point); !is_new) open.erase(at);
+  }
+  for (const auto& [area, point] : open) bad("area ", area, " is open at point ", point);
+  for (std::size_t i = 0; i < domain.areas.size(); ++i)
+    if (domain.areas[i].max_area && !(*domain.areas[i].max_area > 0))
+      bad("area ", i, " has the bound ", *domain.areas[i].max_area, ", which is not positive");
   if (!(domain.snap >= 0 && domain.snap <= kMaxMagnitude))
     bad("the merging distance ", domain.snap, " is not finite or below 0");
   if (!domain.markers.empty() && domain.markers.size() != domain.segments.size())

@@ -6,8 +6,11 @@
 #include <deque>
 #include <limits>
 #include <numeric>
+#include <optional>
+#include <span>
 
 #include "checker/domain/slivers.h"
+#include "checker/geometry/cover.h"
 #include "checker/text.h"
 
 namespace weft::check {
@@ -130,18 +133,65 @@ std::vector<FaceRole> fill_even_odd(const BentDomain& bent, const Arrangement& a
   return roles;
 }
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// What the areas that cover a face, ascending, make of it. `size`: of each area.
+FaceRole role_of(const Domain& domain, std::span<const std::uint32_t> covering,
+                 std::span<const double> size) {
+  FaceRole role;
+  std::size_t areas = 0;
+  bool is_hole = false;
+  std::optional<std::uint32_t> first;
+  const auto comes_before = [&](std::uint32_t a, std::uint32_t b) {
+    if (domain.areas[a].priority != domain.areas[b].priority)
+      return domain.areas[a].priority > domain.areas[b].priority;
+    return size[a] < size[b];
+  };
+  role.max_area = kInfinity;
+  for (const std::uint32_t a : covering) {
+    const Area& area = domain.areas[a];
+    is_hole = is_hole || area.is_hole;
+    if (area.is_hole) continue;
+    ++areas;
+    role.max_area = std::min(role.max_area, area.max_area.value_or(kInfinity));
+    if (area.region && (!first || comes_before(a, *first))) first = a;
+  }
+  role.kept = !is_hole && (domain.fill == Fill::kSeeds ||
+                           (domain.fill == Fill::kUnion ? areas > 0 : areas % 2 == 1));
+  if (!first) return role;
+  role.region = *domain.areas[*first].region;
+  for (const std::uint32_t a : covering) {
+    const Area& area = domain.areas[a];
+    if (area.is_hole || !area.region || area.priority != domain.areas[*first].priority) continue;
+    role.is_region_open = role.is_region_open ||
+                          (size[a] != size[*first] && size[a] - size[*first] <= 1e-9 * size[a]);
+  }
+  return role;
+}
+
+std::vector<FaceRole> fill_by_areas(const BentDomain& bent, const Arrangement& arrangement) {
+  const auto covering = covering_areas(bent, arrangement);
+  std::vector<double> size(bent.domain.areas.size(), 0.0);
+  for (std::size_t f = 1; f < covering.size(); ++f)
+    for (const std::uint32_t a : covering[f]) size[a] += arrangement.faces()[f].area;
+  std::vector<FaceRole> roles;
+  for (const auto& areas : covering) roles.push_back(role_of(bent.domain, areas, size));
+  return roles;
+}
+
 }  // namespace
 
 std::vector<FaceRole> fill_faces(const BentDomain& bent, const Arrangement& arrangement,
                                  Findings& findings) {
   const Domain& domain = bent.domain;
   std::vector<FaceRole> roles;
-  if (domain.fill == Fill::kEvenOdd) {
+  if (!domain.areas.empty())
+    roles = fill_by_areas(bent, arrangement);
+  else if (domain.fill == Fill::kEvenOdd)
     roles = fill_even_odd(bent, arrangement);
-  } else {
-    roles.assign(arrangement.faces().size(), {.kept = true});
-    roles[0].kept = false;
-  }
+  else
+    roles.assign(arrangement.faces().size(), {.kept = domain.fill == Fill::kSeeds});
+  roles[0].kept = false;
   const auto face_at = [&](std::string_view kind, std::size_t i, Vec2 seed) -> FaceRole* {
     const Arrangement::Place place = arrangement.locate(seed);
     if (!place.edge) return &roles[place.face];
@@ -153,6 +203,7 @@ std::vector<FaceRole> fill_faces(const BentDomain& bent, const Arrangement& arra
     });
     return nullptr;
   };
+  const std::vector<FaceRole> without_seeds = roles;
   for (std::size_t i = 0; i < domain.holes.size(); ++i)
     if (FaceRole* role = face_at("hole", i, domain.holes[i])) role->kept = role->open = false;
   for (std::size_t i = 0; i < domain.regions.size(); ++i) {
@@ -160,7 +211,9 @@ std::vector<FaceRole> fill_faces(const BentDomain& bent, const Arrangement& arra
     FaceRole* role = face_at("region", i, seed.at);
     if (role == nullptr) continue;
     role->region = seed.id;
-    role->max_area = seed.max_area.value_or(std::numeric_limits<double>::infinity());
+    role->is_region_open = false;
+    const double of_areas = without_seeds[static_cast<std::size_t>(role - roles.data())].max_area;
+    role->max_area = std::min(seed.max_area.value_or(kInfinity), of_areas);
   }
   return roles;
 }

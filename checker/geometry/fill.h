@@ -16,14 +16,15 @@ struct FaceRole {
   bool kept = false;
   bool open = false;  // the mesher may choose whether the whole face is meshed
   std::int32_t region = 0;
+  bool is_region_open = false;  // which of several areas is the smallest is within rounding
   double max_area = std::numeric_limits<double>::infinity();
   friend bool operator==(const FaceRole&, const FaceRole&) = default;
 };
 
 // One role per face. Fill::kEvenOdd keeps the faces that a path from infinity reaches by crossing
 // an odd number of segments; if paths differ (segments that do not close), the one that crosses
-// fewest counts. Coincident segments count once each. A seed on a segment is a violation of
-// kDomain, because its face is ambiguous.
+// fewest counts. Coincident segments count once each. If there are areas, they decide. A seed on a
+// segment is a violation of kDomain, because its face is ambiguous.
 //
 // If paths differ, the way in which slivers were merged decides which path crosses fewest. Then a
 // face is open if two bounds on that number differ: that of paths that enter no sliver, and that of

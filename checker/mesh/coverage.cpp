@@ -138,7 +138,8 @@ std::vector<std::uint32_t> judge_coverage(const BentDomain& bent, const Arrangem
     const std::uint32_t face = face_of_patch[patch];
     patches.of_triangle[t] = face;
     const std::int32_t region = mesh.regions.empty() ? 0 : mesh.regions[t];
-    if (!(roles[face].kept || roles[face].open) || region == roles[face].region || is_sliver[patch])
+    if (!(roles[face].kept || roles[face].open) || region == roles[face].region ||
+        roles[face].is_region_open || is_sliver[patch])
       continue;
     findings.add(Rule::kRegions, [&] {
       return say("triangle ", t, " at ", centroid(mesh, static_cast<std::uint32_t>(t)),

@@ -32,6 +32,18 @@ void fill(const NameTable& table, google::protobuf::RepeatedPtrField<v1::Name>& 
   }
 }
 
+v1::Fill to_wire(Domain::Fill fill) {
+  switch (fill) {
+    case Domain::Fill::kSeeds:
+      return v1::FILL_SEEDS;
+    case Domain::Fill::kEvenOdd:
+      return v1::FILL_EVEN_ODD;
+    case Domain::Fill::kUnion:
+      return v1::FILL_UNION;
+  }
+  return v1::FILL_UNSPECIFIED;
+}
+
 void fill(const Domain& domain, v1::Domain& out) {
   auto* points = out.mutable_points();
   points->Reserve(static_cast<int>(2 * domain.points.size()));
@@ -62,7 +74,15 @@ void fill(const Domain& domain, v1::Domain& out) {
   }
   fill(domain.names.markers, *out.mutable_marker_names());
   fill(domain.names.regions, *out.mutable_region_names());
-  out.set_fill(domain.fill == Domain::Fill::kEvenOdd ? v1::FILL_EVEN_ODD : v1::FILL_SEEDS);
+  out.set_fill(to_wire(domain.fill));
+  if (domain.areas.empty()) return;
+  for (const Domain::Area& given : domain.areas) {
+    v1::Area& area = *out.add_areas();
+    if (given.region) area.set_region(*given.region);
+    if (given.max_area) area.set_max_area(*given.max_area);
+    area.set_hole(given.is_hole);
+  }
+  for (const Domain::Segment& segment : domain.segments) out.add_segment_areas(segment.area);
 }
 
 v1::SizeField to_size(const std::string& text) {

@@ -45,6 +45,7 @@ struct RequestOptions {
   std::optional<double> max_seconds{};
   std::optional<std::uint32_t> threads{};
   std::optional<double> snap{};  // features nearer together are merged first
+  PolygonFill fill = PolygonFill::kUnion;
   bool allow_unrefined = false;  // accept a mesh that misses its bounds without exemption
   bool quadtree = false;         // ask for the quadtree, to draw it
   bool no_cache = false;         // make it anew, even if the server has it in memory

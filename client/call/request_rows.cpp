@@ -126,6 +126,11 @@ const OptionRows<Request>& other_rows() {
       {"snap", "WEFT_SNAP",
        "First merge points and segments of the domain that are nearer together than this",
        "only what double precision cannot keep apart", number("D", &Request::snap), "domain.snap"},
+      {"fill", "WEFT_FILL",
+       "What is meshed where polygons overlap: union all that any of them covers, even-odd what an "
+       "odd "
+       "number of them covers, difference the first less the others",
+       "union", fill_value(&Request::fill), "domain.fill"},
       {"allow-unrefined", "WEFT_ALLOW_UNREFINED",
        "Accept a mesh with triangles that miss a bound although neither the domain nor a flag "
        "forces them to",

@@ -21,6 +21,14 @@ const OptionRows<RequestOptions>& name_rows();
 // All, those of size_rows first. What they read is `given` then.
 const OptionRows<RequestOptions>& request_rows();
 
+// How polygons that overlap are filled.
+template <class Options>
+OptionValue<Options> fill_value(PolygonFill Options::*field) {
+  return one_of(field, {{"union", PolygonFill::kUnion},
+                        {"even-odd", PolygonFill::kEvenOdd},
+                        {"difference", PolygonFill::kDifference}});
+}
+
 // What was given for a field of the request, such as "size.fields[0].name", as errors call it:
 // "--field d", or "field d" if a manifest gave it. Empty if no option was.
 std::string option_of(std::string_view field, const RequestOptions& options);

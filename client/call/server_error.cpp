@@ -81,7 +81,9 @@ std::string locate_field(const std::string& field, const Domain& domain) {
   };
   for (const auto& [list, places] :
        {List{"domain.points", domain.point_places}, List{"domain.segments", domain.segment_places},
-        List{"domain.holes", domain.hole_places}, List{"domain.regions", domain.region_places}})
+        List{"domain.holes", domain.hole_places}, List{"domain.regions", domain.region_places},
+        List{"domain.areas", domain.area_places},
+        List{"domain.segment_areas", domain.segment_places}})
     if (const auto index = index_in(field, list)) return places.locate(*index);
   return "";
 }

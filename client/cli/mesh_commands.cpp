@@ -164,6 +164,10 @@ void add_check(CLI::App& app, Chosen& chosen) {
        "", number("D", &CheckOptions::snap)},
       options);
   add_row(check,
+          {"fill", "WEFT_FILL", "What was meshed where polygons overlap, as given to `weft mesh`",
+           "union", fill_value(&CheckOptions::fill)},
+          options);
+  add_row(check,
           {"max-unrefined", "",
            "Triangles that may miss a bound, as `weft mesh` counted them (all but those with small "
            "input angles, which are exempt)",

@@ -12,6 +12,7 @@
 #include "checker/size/size.h"
 #include "client/commands/checker_input.h"
 #include "client/formats/derived/mesh_domain.h"
+#include "client/formats/domains/to_checker.h"
 
 namespace weft::client {
 namespace {

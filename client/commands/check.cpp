@@ -11,6 +11,7 @@
 #include "client/commands/checker_input.h"
 #include "client/commands/commands.h"
 #include "client/commands/input_domain.h"
+#include "client/formats/domains/to_checker.h"
 #include "client/formats/mesh_formats.h"
 #include "client/report/check_report.h"
 
@@ -41,9 +42,9 @@ Result<ExitCode> run_check(const CheckOptions& options) {
     return fail(ExitCode::kUsage,
                 "a mesh is checked in the plane that it was made in: write it with --to-metres, "
                 "and say --to-metres here, too");
-  const auto input =
-      read_input_domain(options.domain, options.size, options.projection, options.layers);
+  auto input = read_input_domain(options.domain, options.size, options.projection, options.layers);
   if (!input) return tl::unexpected(input.error());
+  fill_polygons(input->domain, options.fill);
   const auto mesh = read_mesh(options.mesh);
   if (!mesh) return tl::unexpected(mesh.error());
   for (const auto* warnings : {&input->domain.warnings, &mesh->warnings})

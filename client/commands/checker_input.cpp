@@ -64,21 +64,6 @@ check::SizeSpec to_checker(const v1::SizeField& size) {
 
 }  // namespace
 
-check::Domain checker_domain(const Domain& domain, double snap) {
-  check::Domain out;
-  for (const Point& point : domain.points) out.points.push_back({point.x, point.y});
-  for (const Domain::Segment& segment : domain.segments) {
-    out.segments.push_back({segment.a, segment.b});
-    out.markers.push_back(segment.marker);
-  }
-  for (const Point& hole : domain.holes) out.holes.push_back({hole.x, hole.y});
-  for (const Domain::Region& region : domain.regions)
-    out.regions.push_back({{region.at.x, region.at.y}, region.id, region.max_area});
-  out.fill = domain.fill == Domain::Fill::kEvenOdd ? check::Fill::kEvenOdd : check::Fill::kSeeds;
-  out.snap = snap;
-  return out;
-}
-
 Result<check::SizeSpec> checker_size(const RequestOptions& options, const Domain& domain,
                                      const DomainProjection* projection) {
   const auto read = with_size(options, domain, projection);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Domains and sizes of the client, as the checker takes them.
+// Sizes of the client, as the checker takes them.
 #pragma once
 
-#include "checker/domain.h"
 #include "checker/size/size.h"
 #include "client/base/error.h"
 #include "client/call/mesh_request.h"
@@ -10,8 +9,6 @@
 #include "client/geo/domain_projection.h"
 
 namespace weft::client {
-
-check::Domain checker_domain(const Domain& domain, double snap);
 
 // The size that the options ask for; a projection is that of the domain. Errors: those of
 // with_size; kUsage for a constant that no triangle can fail.

@@ -68,6 +68,7 @@ struct CheckOptions {
   RequestOptions size;  // how large triangles may be; the rest is not looked at
   double min_angle_deg = 20;
   std::optional<double> snap;
+  PolygonFill fill = PolygonFill::kUnion;
   std::uint64_t max_unrefined = 0;
   ProjectionOptions projection;  // of the domain; the mesh is in metres
   bool json = false;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `weft convert`: a mesh into another format, or a domain into a .poly file.
+// `weft convert`: a mesh into another format, or a domain into a .poly file or the message that a
+// request carries.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "client/base/text.h"
+#include "client/call/mesh_request.h"
 #include "client/commands/commands.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/domains/seeded.h"
@@ -17,6 +19,8 @@
 
 namespace weft::client {
 namespace {
+
+constexpr const char* kMessage = ".pb";  // weft.v1.Domain
 
 bool is_mesh_input(const std::filesystem::path& path) {
   return is_domain_path(path) && !is_plain_domain_path(path);
@@ -123,36 +127,43 @@ Result<ExitCode> convert_domain(const ConvertOptions& options, std::stop_token s
   files.push_back(std::move(*file));
   auto read = read_domain(options.input, options.layers);
   if (!read) return tl::unexpected(read.error());
-  const auto domain = seeded(std::move(*read));
+  const bool is_message = lower_extension(options.output) == kMessage;
+  auto domain = is_message ? std::move(read) : seeded(std::move(*read));
   if (!domain)
     return fail(domain.error().exit, options.input.string() + ": " + domain.error().message);
-  write_triangle_poly(*domain, files[0]);
+  if (is_message)
+    files[0].put(make_request(*domain, {}).domain().SerializeAsString());
+  else
+    write_triangle_poly(*domain, files[0]);
   if (auto done = commit(files); !done) return tl::unexpected(done.error());
   if (options.quiet) return ExitCode::kOk;
   return print(with_separators(domain->points.size()) + " points, " +
                with_separators(domain->segments.size()) + " segments, " +
                with_separators(domain->holes.size()) + " holes, " +
-               with_separators(domain->regions.size()) + " regions\nwrote " +
-               options.output.string() + "\n" + warnings_text(domain->warnings));
+               with_separators(domain->regions.size()) + " regions" +
+               (is_message ? ", " + with_separators(domain->areas.size()) + " areas" : "") +
+               "\nwrote " + options.output.string() + "\n" + warnings_text(domain->warnings));
 }
 
 }  // namespace
 
 Result<ExitCode> run_convert(const ConvertOptions& options, std::stop_token stop) {
-  const bool to_domain = lower_extension(options.output) == ".poly";
+  const std::string extension = lower_extension(options.output);
+  const bool to_domain = extension == ".poly" || extension == kMessage;
   if (!is_domain_path(options.input)) return unknown_domain_format(options.input);
   if (to_domain) return convert_domain(options, std::move(stop));
   if (!is_mesh_output(options.output))
-    return fail(ExitCode::kUsage, options.output.string() + ": the extension " +
-                                      in_quotes(options.output.extension().string()) +
-                                      " is not that of a domain that is written: .poly; nor of a "
-                                      "mesh that is written: " +
-                                      written_mesh_extensions());
+    return fail(ExitCode::kUsage,
+                options.output.string() + ": the extension " +
+                    in_quotes(options.output.extension().string()) +
+                    " is not that of a domain that is written: .poly, .pb; nor of a "
+                    "mesh that is written: " +
+                    written_mesh_extensions());
   if (!is_mesh_input(options.input))
     return fail(ExitCode::kUsage, options.input.string() +
                                       ": is a domain; to mesh it: `weft mesh " +
                                       options.input.string() + " -o " + options.output.string() +
-                                      "`; to convert it, write a .poly file");
+                                      "`; to convert it, write a .poly file or a .pb file");
   if (options.layers.wanted())
     return fail(ExitCode::kUsage,
                 "--layer and --where are for domains, " + options.input.string() + " is a mesh");

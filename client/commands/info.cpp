@@ -93,13 +93,18 @@ std::string describe(const Domain& domain) {
   for (const auto& segment : domain.segments) markers.push_back(segment.marker);
   std::vector<std::int32_t> regions;
   for (const auto& region : domain.regions) regions.push_back(region.id);
+  for (const auto& area : domain.areas)
+    if (area.region) regions.push_back(*area.region);
   return row("points", with_separators(domain.points.size())) +
          row("segments", with_separators(domain.segments.size())) +
-         row("holes", with_separators(domain.holes.size())) +
+         (domain.areas.empty() ? row("holes", with_separators(domain.holes.size()))
+                               : row("polygons", with_separators(domain.areas.size()))) +
          row("regions", tally(count_values(regions), domain.names.regions)) +
          (domain.region_values.empty() ? "" : row("attributes", list(domain.region_values))) +
          row("markers", tally(count_values(markers), domain.names.markers)) +
-         row("filling", domain.fill == Domain::Fill::kEvenOdd ? "even-odd" : "seeds") +
+         row("filling", domain.fill == Domain::Fill::kSeeds     ? "seeds"
+                        : domain.fill == Domain::Fill::kEvenOdd ? "even-odd"
+                                                                : "union") +
          (domain.system ? row("system", domain.system->name) : "") + row("box", box.text());
 }
 

@@ -24,6 +24,7 @@ Result<InputDomain> read_input_domain(const std::filesystem::path& path,
   if (!domain) return tl::unexpected(domain.error());
   if (auto named = set_names(wanted.names, domain->names); !named)
     return tl::unexpected(named.error());
+  fill_polygons(*domain, wanted.fill);
   InputDomain input{std::move(*domain), nullptr};
   if (!options.wanted()) return input;
   if (const auto& system = input.domain.system; system && !system->geographic)

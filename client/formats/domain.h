@@ -61,7 +61,16 @@ struct Domain {
     std::uint32_t a = 0;  // index into points
     std::uint32_t b = 0;
     std::int32_t marker = 0;
+    std::uint32_t area = 0;  // 1 + index into areas if it is part of the border of one
     friend bool operator==(const Segment&, const Segment&) = default;
+  };
+  // A polygon: what an odd number of its rings encloses.
+  struct Area {
+    std::optional<std::int32_t>
+        region;  // of the triangles in it; of the smallest area if several overlap
+    std::optional<double> max_area;  // > 0
+    bool is_hole = false;            // carves what it covers away
+    friend bool operator==(const Area&, const Area&) = default;
   };
   struct Region {
     Point at;
@@ -69,15 +78,16 @@ struct Domain {
     std::optional<double> max_area;  // > 0
     friend bool operator==(const Region&, const Region&) = default;
   };
-  // Which faces are meshed: all bounded ones less the holes, or those inside an odd number of
-  // rings.
-  enum class Fill { kSeeds, kEvenOdd };
+  // Which faces are meshed: all bounded ones less the holes; those inside an odd number of rings,
+  // or of areas if there are any; those that an area covers.
+  enum class Fill { kSeeds, kEvenOdd, kUnion };
 
   std::vector<Point> points;
   std::vector<std::int32_t> point_markers;  // one per point, or empty: all 0
   std::vector<Segment> segments;
   std::vector<Point> holes;
   std::vector<Region> regions;
+  std::vector<Area> areas;
   std::vector<RegionValue> region_values;  // of ids that stand for another number in the file
   Fill fill = Fill::kSeeds;
   std::optional<CoordinateSystem> system;  // if the file names one
@@ -88,6 +98,14 @@ struct Domain {
   Provenance segment_places;
   Provenance hole_places;
   Provenance region_places;
+  Provenance area_places;
 };
+
+// What is meshed where polygons overlap: all that any of them covers; what an odd number of them
+// covers; the first less the others.
+enum class PolygonFill { kUnion, kEvenOdd, kDifference };
+
+// A domain without areas stays as it is.
+void fill_polygons(Domain& domain, PolygonFill fill);
 
 }  // namespace weft::client

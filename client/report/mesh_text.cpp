@@ -74,6 +74,10 @@ Json summary_json(const v1::Summary& summary) {
                {"streamed", summary.streamed()},
                {"unrefined", unrefined_json(summary.unrefined())},
                {"merging", merging_json(summary.merging())},
+               {"overlap",
+                {{"areas", summary.overlap().areas()},
+                 {"area", summary.overlap().area()},
+                 {"united", summary.overlap().united()}}},
                {"digest", hex(summary.sha256())},
                {"engine_version", summary.engine_version()},
                {"threads", summary.threads()},
@@ -138,7 +142,8 @@ std::string summary_text(const v1::Summary& summary) {
   missed(unrefined.small_input_angle(), "a small angle of the input forces it");
   missed(unrefined.edge_floor(), "edges would become too short");
   missed(unrefined.budget(), "--max-triangles was reached");
-  return text + unrefined_warning(unrefined) + merging_text(summary.merging());
+  return text + unrefined_warning(unrefined) + merging_text(summary.merging()) +
+         overlap_text(summary);
 }
 
 std::string size_warnings_text(const v1::Summary& summary) {
@@ -162,6 +167,17 @@ std::string unrefined_warning(const v1::Unrefined& unrefined) {
   if (unrefined.streaming() > 0) why += "the mesh around had been sent already";
   return "WARNING: " + counted(count, "triangle") + " without exemption, " + which + ", because " +
          why + "; the first is at " + coordinates(unrefined.x(), unrefined.y()) + "\n";
+}
+
+std::string overlap_text(const v1::Summary& summary) {
+  // What rounding makes where polygons share a border is not worth a line.
+  constexpr double kLeast = 1e-9;
+  const v1::Overlap& overlap = summary.overlap();
+  if (overlap.areas() == 0 || overlap.area() <= kLeast * summary.area()) return "";
+  return with_separators(overlap.areas()) + " polygons overlap on an area of " +
+         rounded(overlap.area()) +
+         (overlap.united() ? ", which is meshed once\n"
+                           : ", not meshed where an even number of them does\n");
 }
 
 std::string merging_text(const v1::Merging& merging) {

@@ -34,6 +34,8 @@ std::string unrefined_warning(const v1::Unrefined& unrefined);
 // "merged within 0.001: 12 points moved, 3 segments bent, by 0.0007 at most, at (1, 2)\n2 faces of
 // the input vanished, one at (1, 2)\n"; empty if nothing was merged.
 std::string merging_text(const v1::Merging& merging);
+// How many polygons overlap on how large an area; empty if it is no more than rounding makes.
+std::string overlap_text(const v1::Summary& summary);
 
 // "region 1 = 0.35\n", one line per region.
 std::string region_values_text(std::span<const RegionValue> values);

@@ -2,7 +2,6 @@
 import { readFileSync } from "node:fs";
 import { expect, test } from "vitest";
 import { examples } from "../src/domain/examples";
-import { interiorPoint } from "../src/domain/interior-point";
 import { boxOf, segmentEnds, toMessage } from "../src/domain/planar-domain";
 import { readDomain } from "../src/domain/read-domain";
 
@@ -31,7 +30,7 @@ test("Triangle's .poly: points, segments with markers, holes, comments", () => {
   expect([...domain.segments]).toEqual([0, 1, 1, 2, 2, 3, 3, 0]);
   expect([...domain.markers]).toEqual([7, -1, 0, 0]);
   expect([...domain.holes]).toEqual([0.5, 0.25]);
-  expect(domain.evenOdd).toBe(false);
+  expect(domain.areas).toEqual([]);
 });
 
 test("regions of a .poly: a lone value is id and area, others than integers get free ids", () => {
@@ -80,16 +79,17 @@ test("GeoJSON: rings are closed chains, properties reach segments and regions", 
   expect(domain.points.length).toBe(2 * 7);
   expect([...domain.segments]).toEqual([0, 1, 1, 2, 2, 3, 3, 0, 4, 5, 5, 6, 6, 4]);
   expect(new Set(domain.markers)).toEqual(new Set([3]));
-  expect(domain).toMatchObject({ evenOdd: true, regions: [{ id: 8, maxArea: 0.5 }] });
+  expect(domain).toMatchObject({ areas: [{ region: 8, maxArea: 0.5 }], regions: [] });
+  expect([...domain.borders]).toEqual(Array(7).fill(1));
 });
 
-test("lines beside a polygon come twice, so that they do not change what is filled", () => {
+test("lines beside a polygon border no area", () => {
   const line = { type: "LineString", coordinates: [[1, 3], [3, 3], [3, 3], [3, 3.5]] };
   const both = { type: "GeometryCollection", geometries: [line, { type: "Polygon", coordinates: [ring] }] };
   const domain = readDomain("a.json", JSON.stringify(both));
-  expect([...domain.segments].slice(-4)).toEqual([0, 1, 1, 2]);
-  expect(domain.segments.length).toBe(2 * (2 + 4 + 2));
-  expect(readDomain("b.json", JSON.stringify(line))).toMatchObject({ evenOdd: false });
+  expect(domain.segments.length).toBe(2 * (2 + 4));
+  expect([...domain.borders]).toEqual([0, 0, 1, 1, 1, 1]);
+  expect(readDomain("b.json", JSON.stringify(line)).areas).toEqual([]);
 });
 
 test("a fault in GeoJSON is named by its path", () => {
@@ -115,9 +115,9 @@ test("well-known text: several geometries, heights, SRID, EMPTY", () => {
      MultiPoint Z ((9 9 1), (8 8 1)) POINT EMPTY
      GEOMETRYCOLLECTION(LINESTRING(1 3, 3 3), MULTILINESTRING((5 5,6 6)))`,
   );
-  expect(domain.evenOdd).toBe(true);
+  expect(domain.areas.length).toBe(1);
   expect(domain.points.length).toBe(2 * (7 + 2 + 4));
-  expect(domain.markers.length).toBe(7 + 2 * 2);
+  expect(domain.markers.length).toBe(7 + 2);
 });
 
 test("a fault in well-known text is named by line and column", () => {
@@ -150,9 +150,9 @@ test("names of GeoJSON are texts, or stand beside numbers", () => {
   }));
   expect([...domain.markerNames]).toEqual([[1, "gauge"], [2, "wall"]]);
   expect([...domain.regionNames]).toEqual([[4, "solid"], [1, "fluid"]]);
-  expect([...domain.markers]).toEqual([2, 2, 2, 2, 1, 2, 0, 0, 0, 0, 1, /* once more */ 1, 2, 1]);
-  expect(domain.regions.map(({ id }) => id)).toEqual([1, 4]);
-  expect(domain.regions[0]!.maxArea).toBeCloseTo(0.433);
+  expect([...domain.markers]).toEqual([2, 2, 2, 2, 1, 2, 0, 0, 0, 0, 1]);
+  expect(domain.areas.map(({ region }) => region)).toEqual([1, 4]);
+  expect(domain.areas[0]!.maxArea).toBeCloseTo(0.433);
   expect(domain.warnings).toEqual(["a name of marker 1 is left out: the first is “gauge”"]);
   const message = toMessage(domain, 0);
   expect(message.markerNames.map(({ id, name }) => [id, name])).toEqual([[1, "gauge"], [2, "wall"]]);
@@ -191,12 +191,4 @@ test("each example is a domain with a size", () => {
     expect(segmentEnds(domain).every(Number.isFinite)).toBe(true);
     expect(form.size).toBeTruthy();
   }
-});
-
-test("a point inside a polygon is not in its hole", () => {
-  const outer: [number, number][] = [[0, 0], [10, 0], [10, 10], [0, 10], [0, 0]];
-  const hole: [number, number][] = [[1, 0.1], [9.5, 0.1], [9.5, 9.9], [1, 9.9], [1, 0.1]];
-  const [x, y] = interiorPoint([outer, hole])!;
-  expect(x > 0 && x < 1 && y > 0 && y < 10).toBe(true);
-  expect(interiorPoint([[[0, 0], [1, 1], [2, 2]]])).toBeUndefined();
 });

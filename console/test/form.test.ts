@@ -42,7 +42,7 @@ test("the rest of the form reaches the request; what is empty is not set", () =>
     size: { gradation: 0.2, cellsAcross: 3 },
     quality: { minAngleDeg: 0, placement: Placement.CIRCUMCENTRE },
     budget: { maxTriangles: 5000n },
-    domain: { snap: 1e-6, fill: Fill.EVEN_ODD, segments: [0, 1, 1, 2, 2, 0], segmentMarkers: [] },
+    domain: { snap: 1e-6, fill: Fill.UNION, segments: [0, 1, 1, 2, 2, 0], segmentMarkers: [] },
     wantQuadtree: true,
   });
   const sparse = request({ size: "1", minAngle: "" });

@@ -4,100 +4,23 @@
 #include <algorithm>
 #include <cstddef>
 #include <deque>
+#include <map>
 #include <sstream>
 #include <string>
 #include <utility>
 
+#include "engine/domain/cover.h"
+#include "engine/domain/faces.h"
 #include "engine/domain/triangulation/hilbert.h"
 #include "engine/domain/triangulation/locate.h"
 
 namespace weft {
 namespace {
 
-// The faces of the arrangement, numbered from 0; kUnbounded is face 0.
-struct Faces {
-  static constexpr std::uint32_t kUnbounded = 0;
-  std::vector<std::uint32_t> of_triangle;
-  std::uint32_t count = 1;
-};
-
-// Floods from `start` across edges without a constraint. Whether a neighbour is new is hard to
-// predict, so each is stored without a branch (the compiler would turn a choice of what to store
-// into one). The queue is first in, first out, so that a triangle is known long before its turn.
-// `queue` has room for all triangles and three more; of_triangle has one more, which stands for
-// what is beyond the hull.
-void flood(const Arrangement& a, std::uint32_t start, std::uint32_t face, Faces& faces,
-           std::vector<std::uint32_t>& queue, StopPoller& poller) {
-  std::uint32_t* const of = faces.of_triangle.data();
-  const auto beyond = static_cast<std::uint32_t>(a.triangles.size());
-  of[start] = face;
-  std::uint32_t* first = queue.data();
-  std::uint32_t* last = first;
-  *last++ = start;
-  while (first != last) {
-    poller.step();
-    const Arrangement::Triangle& t = a.triangles[*first++];
-    for (int i = 0; i < 3; ++i) {
-      const std::uint32_t n = std::min(t.neighbor[i], beyond);
-      const std::uint32_t known = of[n];
-      const std::uint32_t is_new = (t.constraint[i] & known) == kNone;
-      *last = n;
-      last += is_new;
-      of[n] = known ^ ((known ^ face) & (0 - is_new));
-    }
-  }
-}
-
-Faces find_faces(const Arrangement& a, StopPoller& poller) {
-  Faces faces;
-  faces.of_triangle.assign(a.triangles.size() + 1, kNone);
-  faces.of_triangle.back() = Faces::kUnbounded;
-  std::vector<std::uint32_t> queue(a.triangles.size() + 3);
-  const auto open_to_the_outside = [](const Arrangement::Triangle& t) {
-    for (int i = 0; i < 3; ++i)
-      if (t.neighbor[i] == kNone && t.constraint[i] == kNone) return true;
-    return false;
-  };
-  for (std::uint32_t t = 0; t < a.triangles.size(); ++t)
-    if (faces.of_triangle[t] == kNone && open_to_the_outside(a.triangles[t]))
-      flood(a, t, Faces::kUnbounded, faces, queue, poller);
-  for (std::uint32_t t = 0; t < a.triangles.size(); ++t)
-    if (faces.of_triangle[t] == kNone) flood(a, t, faces.count++, faces, queue, poller);
-  return faces;
-}
-
 // Per face: whether the fewest segments between it and infinity are an odd number. A step across
 // coincident segments costs the number of them modulo 2, so an even stack costs nothing.
-std::vector<bool> find_odd_faces(const Arrangement& a, const Faces& faces, StopPoller& poller) {
-  struct Step {
-    std::uint32_t from, to;
-    bool odd;
-  };
-  // The dual graph in compressed rows: steps from face f lie at first[f] .. first[f + 1].
-  std::vector<Step> steps;
-  const auto for_each_step = [&](auto&& visit) {
-    for (std::size_t t = 0; t < a.triangles.size(); ++t) {
-      poller.step();
-      for (int i = 0; i < 3; ++i) {
-        const std::uint32_t c = a.triangles[t].constraint[i];
-        if (c == kNone) continue;
-        const std::uint32_t n = a.triangles[t].neighbor[i];
-        const std::uint32_t from = faces.of_triangle[t];
-        const std::uint32_t to = n == kNone ? Faces::kUnbounded : faces.of_triangle[n];
-        if (from == to) continue;
-        visit(Step{from, to, a.constraints[c].odd});
-        // The unbounded face has no triangle behind the hull to visit this edge from.
-        if (n == kNone) visit(Step{to, from, a.constraints[c].odd});
-      }
-    }
-  };
-  std::vector<std::size_t> first(faces.count + 1, 0);
-  for_each_step([&](const Step& s) { ++first[s.from + 1]; });
-  for (std::size_t f = 0; f < faces.count; ++f) first[f + 1] += first[f];
-  steps.resize(first.back());
-  std::vector<std::size_t> next(first.begin(), first.end() - 1);
-  for_each_step([&](const Step& s) { steps[next[s.from]++] = s; });
-
+std::vector<bool> find_odd_faces(const Arrangement& a, const Faces& faces, const FaceGraph& graph,
+                                 StopPoller& poller) {
   // Breadth first; a step of length 0 goes to the front of the queue.
   std::vector<std::uint32_t> depth(faces.count, kNone);
   std::vector<bool> done(faces.count, false);
@@ -109,12 +32,12 @@ std::vector<bool> find_odd_faces(const Arrangement& a, const Faces& faces, StopP
     queue.pop_front();
     if (done[f]) continue;
     done[f] = true;
-    for (std::size_t k = first[f]; k < first[f + 1]; ++k) {
-      const Step& s = steps[k];
-      const std::uint32_t d = depth[f] + (s.odd ? 1 : 0);
+    for (const FaceGraph::Step& s : graph.from(f)) {
+      const bool is_odd = a.constraints[s.constraint].odd;
+      const std::uint32_t d = depth[f] + (is_odd ? 1 : 0);
       if (d >= depth[s.to]) continue;
       depth[s.to] = d;
-      s.odd ? queue.push_back(s.to) : queue.push_front(s.to);
+      is_odd ? queue.push_back(s.to) : queue.push_front(s.to);
     }
   }
   std::vector<bool> odd(faces.count);
@@ -183,6 +106,35 @@ class SeedLocator {
   std::vector<bool> is_near_;  // to a segment or vertex
 };
 
+bool is_inside(const Cover& cover, Fill fill) {
+  if (cover.is_hole) return false;
+  switch (fill) {
+    case Fill::kSeeds:
+      return true;
+    case Fill::kEvenOdd:
+      return cover.areas % 2 == 1;
+    case Fill::kUnion:
+      return cover.areas > 0;
+  }
+  return false;
+}
+
+// Per face an index into `regions`, to which those of the areas are added, each once.
+std::vector<std::uint32_t> regions_of_areas(const std::vector<Cover>& covers,
+                                            std::vector<Region>& regions) {
+  std::map<std::pair<std::int32_t, double>, std::uint32_t> known{{{0, Region{}.max_area}, 0}};
+  std::vector<std::uint32_t> result;
+  result.reserve(covers.size());
+  for (const Cover& cover : covers) {
+    const Region region{cover.region.value_or(0), cover.max_area.value_or(Region{}.max_area)};
+    const auto [at, is_new] =
+        known.try_emplace({region.id, region.max_area}, static_cast<std::uint32_t>(regions.size()));
+    if (is_new) regions.push_back(region);
+    result.push_back(at->second);
+  }
+  return result;
+}
+
 Error empty_domain(const Pslg& pslg, const Merging& merging, const Faces& faces) {
   if (faces.count == 1 && merging.vanished_faces > 0) return closed_by_merging(merging);
   if (faces.count == 1)
@@ -190,6 +142,12 @@ Error empty_domain(const Pslg& pslg, const Merging& merging, const Faces& faces)
             "no face is enclosed by segments (" + std::to_string(pslg.segments.size()) +
                 " given), so there is nothing to mesh"};
   if (pslg.holes.empty() && merging.vanished_faces > 0) return closed_by_merging(merging);
+  if (!pslg.areas.empty())
+    return {ErrorCode::kEmptyDomain, "domain.areas",
+            "the fill and the holes leave nothing of the areas (" +
+                std::to_string(pslg.areas.size()) + " given)"};
+  if (pslg.holes.empty() && pslg.fill == Fill::kUnion)
+    return {ErrorCode::kEmptyDomain, "domain.areas", "there are no areas to unite"};
   if (pslg.holes.empty())
     return {ErrorCode::kEmptyDomain, "domain.segments",
             "by the even-odd rule nothing is inside: every face is enclosed an even number of "
@@ -203,7 +161,17 @@ Error empty_domain(const Pslg& pslg, const Merging& merging, const Faces& faces)
 Result<Carving> carve(const Arrangement& arrangement, const Pslg& pslg, StopPoller& poller) {
   const Faces faces = find_faces(arrangement, poller);
   std::vector<bool> inside(faces.count, true);
-  if (pslg.fill == Fill::kEvenOdd) inside = find_odd_faces(arrangement, faces, poller);
+  Covers covered;
+  if (!pslg.areas.empty() || pslg.fill != Fill::kSeeds) {
+    const FaceGraph graph(arrangement, faces, poller);
+    if (pslg.areas.empty() && pslg.fill == Fill::kEvenOdd)
+      inside = find_odd_faces(arrangement, faces, graph, poller);
+    else
+      covered = cover_faces(arrangement, faces, graph, pslg.areas, poller);
+    covered.overlap.united = pslg.fill != Fill::kEvenOdd;
+  }
+  const std::vector<Cover>& covers = covered.of_face;
+  for (std::uint32_t f = 0; f < covers.size(); ++f) inside[f] = is_inside(covers[f], pslg.fill);
   inside[Faces::kUnbounded] = false;
 
   const SeedLocator locator(arrangement, faces, pslg, poller);
@@ -215,8 +183,9 @@ Result<Carving> carve(const Arrangement& arrangement, const Pslg& pslg, StopPoll
   if (std::find(inside.begin(), inside.end(), true) == inside.end())
     return tl::unexpected(empty_domain(pslg, arrangement.merging, faces));
 
-  Carving carving{.region = {}, .regions = {Region{}}};
-  std::vector<std::uint32_t> region_of_face(faces.count, 0);
+  Carving carving{.region = {}, .regions = {Region{}}, .overlap = covered.overlap};
+  std::vector<std::uint32_t> region_of_face = regions_of_areas(covers, carving.regions);
+  region_of_face.resize(faces.count, 0);
   for (std::size_t i = 0; i < pslg.regions.size(); ++i) {
     const RegionSeed& seed = pslg.regions[i];
     const auto field = [i] { return "domain.regions[" + std::to_string(i) + "]"; };
@@ -225,8 +194,10 @@ Result<Carving> carve(const Arrangement& arrangement, const Pslg& pslg, StopPoll
     if (!inside[*face])
       return fail(ErrorCode::kSeedOutsideDomain, field(),
                   "the seed " + coordinates(seed.at) + " lies in a hole");
+    double bound = seed.max_area.value_or(Region{}.max_area);
+    if (!covers.empty()) bound = std::min(bound, covers[*face].max_area.value_or(bound));
     region_of_face[*face] = static_cast<std::uint32_t>(carving.regions.size());
-    carving.regions.push_back({seed.id, seed.max_area.value_or(Region{}.max_area)});
+    carving.regions.push_back({seed.id, bound});
   }
 
   for (std::uint32_t face = 0; face < faces.count; ++face)

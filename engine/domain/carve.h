@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which faces of an arrangement belong to the domain, and to which region.
-//
-// A face is a maximal set of triangles connected across edges without a constraint. The outside of
-// the convex hull belongs to the unbounded face.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +17,7 @@ struct Carving {
   // Per triangle of the arrangement: an index into `regions`, or kNone if it is carved away.
   std::vector<std::uint32_t> region;
   std::vector<Region> regions;  // regions[0] is the default
+  Overlap overlap;
 };
 
 // Errors: kSeedOutsideDomain, kSeedOnSegment, kEmptyDomain. Throws Stopped.

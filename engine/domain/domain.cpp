@@ -106,6 +106,7 @@ Domain extract(const Arrangement& a, Carving&& carving, StopPoller& poller) {
   }
   domain.regions = std::move(carving.regions);
   domain.merging = a.merging;
+  domain.overlap = carving.overlap;
   return domain;
 }
 

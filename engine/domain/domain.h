@@ -31,6 +31,7 @@
 #include "engine/base/error.h"
 #include "engine/base/geometry.h"
 #include "engine/domain/arrangement/merging.h"
+#include "engine/domain/overlap.h"
 #include "engine/domain/pslg.h"
 
 namespace weft {
@@ -40,10 +41,11 @@ struct Subsegment {
   std::uint32_t a = 0;  // index into Domain::vertices
   std::uint32_t b = 0;
   std::uint32_t segment = 0;  // index into Pslg::segments; the lowest if several overlap
-  std::int32_t marker = 0;    // that segment's marker; the first that is not 0 if several overlap
+  std::int32_t marker = 0;  // the first that is not 0 of those that overlap, borders of areas last
 };
 
-// A face of the arrangement that a region seed flooded. Region 0 is the rest: id 0, no bound.
+// Faces of the arrangement that a region seed flooded, or that areas give this id and this bound.
+// Region 0 is the rest: id 0, no bound.
 struct Region {
   std::int32_t id = 0;
   double max_area = std::numeric_limits<double>::infinity();
@@ -64,6 +66,7 @@ struct Domain {
   std::vector<Subsegment> subsegments;
   std::vector<Region> regions;  // regions[0] is the default region
   Merging merging;
+  Overlap overlap;
 
   std::uint64_t bytes() const {
     return vertices.capacity() * sizeof(Point) + input_point.capacity() * sizeof(std::uint32_t) +
@@ -73,17 +76,18 @@ struct Domain {
 
 // Validates the PSLG and triangulates it. A segment whose ends are the same point is that point, as
 // rounding leaves many. If several seeds flood a face, the last one wins.
-// regions[i + 1] is the face of pslg.regions[i].
 //
 // Errors, each naming the first offender:
 //   kBadCoordinate      domain.points[i].x or .y, the same of domain.holes[i], domain.regions[i]
-//   kIndexOutOfRange    domain.segments[i].a or .b
-//   kBadOption          domain.regions[i].max_area: not finite or not above 0; domain.snap: not
+//   kIndexOutOfRange    domain.segments[i].a or .b, domain.segment_areas[i]
+//   kBadOption          domain.regions[i].max_area, domain.areas[i].max_area: not finite or not
+//   above
+//                       0; domain.areas[i]: its segments do not close to rings; domain.snap: not
 //                       finite or below 0
 //   kTooFewPoints, kCollinearPoints                domain.points
 //   kSeedOutsideDomain, kSeedOnSegment             domain.holes[i], domain.regions[i]
 //   kEmptyDomain        domain.segments if no face is enclosed, domain.holes if they carve
-//                       everything away
+//                       everything away, domain.areas if they leave nothing
 //   kLimitExceeded      domain.points, domain.segments: more than can be numbered, or more than
 //                       2^25 crossings, overlaps and touchings (arrangement.h)
 //   kBudgetExceeded     240 bytes a vertex and 40 a subsegment, about the peak, are over

@@ -10,8 +10,13 @@
 //     (GeoJSON polygons, whose holes are rings). Coincident segments count once each, so two
 //     copies cancel. If segments do not close to rings, the ray that crosses the fewest decides.
 //     Hole seeds carve as above, on top.
-// Points outside the meshed faces are dropped; a point inside that no segment names becomes a
-// vertex.
+//   - Fill::kUnion: the faces that an area covers, less those that a hole seed floods.
+// An area is what its segments enclose: the points whose rays to infinity cross them an odd number
+// of times. Areas may overlap, nest and touch in any way. If there are areas, Fill::kEvenOdd means
+// the faces that an odd number of them covers. Whatever the fill, a face that an area with
+// `is_hole` covers is carved away, and the areas that cover a face decide its region and bound;
+// seeds come after areas. Points outside the meshed faces are dropped; a point inside that no
+// segment names becomes a vertex.
 #pragma once
 
 #include <cstdint>
@@ -25,23 +30,36 @@ namespace weft {
 struct Segment {
   std::uint32_t a = 0;  // index into Pslg::points
   std::uint32_t b = 0;
-  std::int32_t marker = 0;  // carried by every mesh edge of this segment
+  std::int32_t marker = 0;     // carried by every mesh edge of this segment
+  std::uint32_t area = kNone;  // index into Pslg::areas if it is part of the border of one
 };
 
-// Floods the face that `at` lies in, up to the segments.
+// REQUIRES: its segments close to rings: an even number of their ends is at every point.
+struct Area {
+  // Of all areas that cover a face and have a region, the one with the highest priority gives the
+  // face its region; of several, the smallest; of several of one size, the first.
+  std::optional<std::int32_t> region;
+  std::int32_t priority = 0;
+  std::optional<double> max_area;  // > 0; the least of all areas that cover a face holds there
+  bool is_hole = false;            // carves what it covers away, and has no other effect
+};
+
+// Floods the face that `at` lies in, up to the segments. Its id takes the place of the areas'; the
+// smaller bound holds.
 struct RegionSeed {
   Point at;
   std::int32_t id = 0;             // carried by every triangle of the face; 0 elsewhere
   std::optional<double> max_area;  // > 0, in squared units; combined with the size field by min
 };
 
-enum class Fill : std::uint8_t { kSeeds, kEvenOdd };
+enum class Fill : std::uint8_t { kSeeds, kEvenOdd, kUnion };
 
 struct Pslg {
   std::vector<Point> points;
   std::vector<Segment> segments;
   std::vector<Point> holes;
   std::vector<RegionSeed> regions;
+  std::vector<Area> areas;
   Fill fill = Fill::kSeeds;
   // Features nearer than this are merged first: points, points and segments, crossings (see
   // arrangement.h). In the units of the coordinates, 0 or more. 0: only what double precision

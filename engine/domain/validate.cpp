@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/domain/validate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <sstream>
@@ -54,6 +55,51 @@ std::optional<Error> check_segment(const Pslg& pslg, std::size_t i) {
   };
   if (s.a >= n) return out_of_range("a", s.a);
   if (s.b >= n) return out_of_range("b", s.b);
+  if (s.area != kNone && s.area >= pslg.areas.size())
+    return Error{ErrorCode::kIndexOutOfRange, element("segment_areas", i),
+                 text("segment ", i, " is part of the border of area ", s.area, ", but there are ",
+                      pslg.areas.size(), " areas")};
+  return {};
+}
+
+std::optional<Error> check_area(const Area& area, std::size_t i) {
+  if (!area.max_area || (std::isfinite(*area.max_area) && *area.max_area > 0)) return {};
+  return Error{ErrorCode::kBadOption, element("areas", i) + ".max_area",
+               text("the maximum area is ", *area.max_area, "; it must be finite and above 0")};
+}
+
+// Whether the segments of each area close to rings.
+std::optional<Error> check_rings(const Pslg& pslg, StopPoller& poller) {
+  std::vector<std::size_t> first(pslg.areas.size() + 1, 0);
+  for (const Segment& s : pslg.segments)
+    if (s.area != kNone) ++first[s.area + 1];
+  for (std::size_t i = 0; i < pslg.areas.size(); ++i) first[i + 1] += first[i];
+  std::vector<std::uint32_t> by_area(first.back());
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
+  for (std::uint32_t i = 0; i < pslg.segments.size(); ++i)
+    if (const std::uint32_t area = pslg.segments[i].area; area != kNone) by_area[next[area]++] = i;
+
+  std::vector<bool> is_odd(pslg.points.size(), false);  // whether an odd number of ends is there
+  std::size_t odd = 0;
+  const auto toggle = [&](std::uint32_t point) {
+    is_odd[point] = !is_odd[point];
+    odd += is_odd[point] ? 1 : -std::size_t{1};
+  };
+  for (std::size_t area = 0; area < pslg.areas.size(); ++area) {
+    for (std::size_t k = first[area]; k < first[area + 1]; ++k) {
+      poller.step();
+      toggle(pslg.segments[by_area[k]].a);
+      toggle(pslg.segments[by_area[k]].b);
+    }
+    if (odd == 0) continue;
+    const std::size_t point =
+        static_cast<std::size_t>(std::find(is_odd.begin(), is_odd.end(), true) - is_odd.begin());
+    return Error{ErrorCode::kBadOption, element("areas", area),
+                 text("the segments of area ", area,
+                      " do not close to rings: an odd number of them "
+                      "ends at point ",
+                      point, ", (", pslg.points[point].x, ", ", pslg.points[point].y, ")")};
+  }
   return {};
 }
 
@@ -121,6 +167,11 @@ std::optional<Error> validate(const Pslg& pslg, StopPoller& poller) {
     poller.step();
     if (auto error = check_region(pslg.regions[i], i)) return error;
   }
+  for (std::size_t i = 0; i < pslg.areas.size(); ++i) {
+    poller.step();
+    if (auto error = check_area(pslg.areas[i], i)) return error;
+  }
+  if (auto error = check_rings(pslg, poller)) return error;
   if (auto error = check_snap(pslg.snap)) return error;
   return check_span(pslg.points, poller);
 }

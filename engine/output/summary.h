@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/domain/arrangement/merging.h"
+#include "engine/domain/overlap.h"
 #include "engine/output/chunk.h"
 #include "engine/output/size_warnings.h"
 
@@ -76,6 +77,7 @@ struct Summary {
   // exemption; meaningless if there is none.
   Point unrefined_at;
   Merging merging;  // of the input, before refinement
+  Overlap overlap;  // of the input's areas
 
   // Seconds of wall time, one stage after the other.
   double triangulate_seconds = 0;

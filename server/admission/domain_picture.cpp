@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 #include "server/wire/translate.h"
 
@@ -46,6 +47,13 @@ void for_neighbors(std::size_t cell, F&& f) {
 
 }  // namespace
 
+// Of each cell's middle.
+struct DomainPicture::Covered {
+  std::vector<std::uint32_t> areas = std::vector<std::uint32_t>(kAll, 0);  // holes not counted
+  std::vector<char> is_hole = std::vector<char>(kAll, 0);
+  std::vector<double> max_area = std::vector<double>(kAll, kInfinity);
+};
+
 DomainPicture DomainPicture::of(const v1::Domain& domain) {
   DomainPicture picture;
   const auto& points = domain.points();
@@ -68,22 +76,35 @@ DomainPicture DomainPicture::of(const v1::Domain& domain) {
   }
   for (std::size_t cell = 1; cell < kAll; ++cell)
     if (cell % kCells != 0) odd[cell] ^= odd[cell - 1];
+  const Covered covered = picture.cover(domain);
   const Face last = find_faces(faces);
 
   std::vector<char> outside(last + 1, 0);
   for (int i = 0; i < kCells; ++i)
     for (const std::size_t cell : {at(i, 0), at(i, kCells - 1), at(0, i), at(kCells - 1, i)})
       outside[faces[cell]] = 1;
-  if (domain.fill() == v1::FILL_EVEN_ODD)
-    for (std::size_t cell = 0; cell < kAll; ++cell) outside[faces[cell]] = !odd[cell];
+  for (std::size_t cell = 0; cell < kAll; ++cell) {
+    char& is_outside = outside[faces[cell]];
+    if (domain.fill() == v1::FILL_UNION)
+      is_outside = covered.areas[cell] == 0;
+    else if (domain.fill() == v1::FILL_EVEN_ODD)
+      is_outside = (domain.areas().empty() ? odd[cell] : covered.areas[cell]) % 2 == 0;
+    if (covered.is_hole[cell]) is_outside = 1;
+  }
   const auto face_at = [&](double x, double y) { return faces[picture.cell_at(x, y)]; };
   for (int i = 0; i + 1 < domain.holes_size(); i += 2)
     outside[face_at(domain.holes(i), domain.holes(i + 1))] = 1;
   outside[kBorder] = 0;
 
   std::vector<double> bounds(last + 1, kInfinity);
+  for (std::size_t cell = 0; cell < kAll; ++cell)
+    if (faces[cell] != kBorder)
+      bounds[faces[cell]] = std::min(bounds[faces[cell]], covered.max_area[cell]);
   for (const v1::Region& region : domain.regions())
-    if (const auto area = max_area_of(region)) bounds[face_at(region.x(), region.y())] = *area;
+    if (const auto area = max_area_of(region)) {
+      double& bound = bounds[face_at(region.x(), region.y())];
+      bound = std::min(bound, *area);
+    }
 
   for (std::size_t cell = 0; cell < kAll; ++cell) {
     const Face face = faces[cell];
@@ -146,6 +167,61 @@ void DomainPicture::cross(Point a, Point b, std::array<char, kAll>& odd) const {
     const double column = std::ceil((x - box_.min_x) / width_ - 0.5);
     if (column < kCells) odd[at(clamp_cell(column), row)] ^= 1;
   }
+}
+
+// Takes time in proportion to the segments and to the cells of the areas' boxes.
+DomainPicture::Covered DomainPicture::cover(const v1::Domain& domain) const {
+  Covered covered;
+  const auto areas = static_cast<std::uint32_t>(domain.areas_size());
+  const auto points = static_cast<std::uint32_t>(domain.points_size() / 2);
+  std::vector<std::vector<std::pair<Point, Point>>> borders(areas);
+  for (int i = 0; i < domain.segment_areas_size() && 2 * i + 1 < domain.segments_size(); ++i) {
+    const std::uint32_t area = domain.segment_areas(i);
+    const std::uint32_t a = domain.segments(2 * i), b = domain.segments(2 * i + 1);
+    if (area == 0 || area > areas || a >= points || b >= points) continue;
+    const auto at = [&](std::uint32_t p) {
+      return Point{domain.points(static_cast<int>(2 * p)),
+                   domain.points(static_cast<int>(2 * p + 1))};
+    };
+    if (std::isfinite(at(a).x + at(a).y + at(b).x + at(b).y))
+      borders[area - 1].emplace_back(at(a), at(b));
+  }
+  std::array<char, kAll> odd{};
+  for (std::uint32_t area = 0; area < areas; ++area) {
+    if (borders[area].empty()) continue;
+    std::size_t least = kAll, most = 0;  // the cells of the corners of the area's box, row by row
+    int first_column = kCells - 1, last_column = 0;
+    for (const auto& [a, b] : borders[area]) {
+      cross(a, b, odd);
+      for (const Point p : {a, b}) {
+        const std::size_t cell = cell_at(p.x, p.y);
+        least = std::min(least, cell / kCells * kCells);
+        most = std::max(most, cell / kCells * kCells);
+        const int column = static_cast<int>(cell % kCells);
+        first_column = std::min(first_column, column);
+        last_column = std::max(last_column, column);
+      }
+    }
+    const v1::Area& given = domain.areas(static_cast<int>(area));
+    const double bound = max_area_of(given).value_or(kInfinity);
+    for (std::size_t row = least; row <= most; row += kCells) {
+      char is_odd = 0;
+      // A border that ends between two columns' middles counts from the next column on.
+      for (int column = first_column; column <= std::min(last_column + 1, kCells - 1); ++column) {
+        const std::size_t cell = row + static_cast<std::size_t>(column);
+        is_odd ^= odd[cell];
+        odd[cell] = 0;
+        if (!is_odd) continue;
+        if (given.hole()) {
+          covered.is_hole[cell] = 1;
+        } else {
+          ++covered.areas[cell];
+          covered.max_area[cell] = std::min(covered.max_area[cell], bound);
+        }
+      }
+    }
+  }
+  return covered;
 }
 
 // Numbers the faces from 1 on; returns the last number.

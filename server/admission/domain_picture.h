@@ -8,9 +8,9 @@
 //   picture.max_area(column, row)                    // of the regions; infinity for none
 //
 // A cell that a segment crosses belongs to the border; the others make up faces. A face is left out
-// if a hole's seed is in it, if it reaches the picture's rim, or if even-odd filling leaves it out.
-// Faces that are smaller than a cell are not seen: so the picture rather shows too much than too
-// little.
+// if a hole's seed is in it, if it reaches the picture's rim, or if the fill or an area that is a
+// hole leaves it out. Faces that are smaller than a cell are not seen: so the picture rather shows
+// too much than too little.
 //
 // Coordinates that are no numbers, and indices that are out of range, are left out: the picture is
 // made before the engine judges them.
@@ -50,6 +50,8 @@ class DomainPicture {
   std::size_t cell_at(double x, double y) const;
   void draw(Point a, Point b, std::array<Face, kAll>& faces) const;
   void cross(Point a, Point b, std::array<char, kAll>& odd) const;
+  struct Covered;
+  Covered cover(const v1::Domain& domain) const;
   static Face find_faces(std::array<Face, kAll>& faces);
 
   Box box_;

@@ -23,6 +23,7 @@ struct Amounts {
   std::uint64_t points = 0;
   std::uint64_t segments = 0;
   std::uint64_t markers = 0;
+  std::uint64_t borders = 0;  // segments' areas
   std::uint64_t seeds = 0;
   std::uint64_t names = 0;
   std::uint64_t expression_bytes = 0;
@@ -42,9 +43,12 @@ std::optional<Failure> check(const Amounts& amounts, const Limits& limits) {
   if (auto f = over("domain.segments", "segments", amounts.segments, limits.max_segments)) return f;
   if (auto f = over("domain.segment_markers", "markers", amounts.markers, limits.max_segments))
     return f;
+  if (auto f = over("domain.segment_areas", "areas", amounts.borders, limits.max_segments))
+    return f;
   if (amounts.seeds > limits.max_seeds)
     return Failure{Reason::kLimitExceeded, "domain.regions",
-                   fmt::format("the domain has {} hole and region seeds; this server's limit is {}",
+                   fmt::format("the domain has {} hole and region seeds and areas; this server's "
+                               "limit is {}",
                                amounts.seeds, limits.max_seeds)};
   if (auto f =
           over("domain.marker_names", "names of markers and regions", amounts.names, kMaxNames))
@@ -76,8 +80,10 @@ std::optional<Failure> check_limits(const WireScan& scan, const Limits& limits) 
       .points = of_domain(v1::Domain::kPointsFieldNumber) / 2,
       .segments = of_domain(v1::Domain::kSegmentsFieldNumber) / 2,
       .markers = of_domain(v1::Domain::kSegmentMarkersFieldNumber),
-      .seeds =
-          of_domain(v1::Domain::kHolesFieldNumber) / 2 + of_domain(v1::Domain::kRegionsFieldNumber),
+      .borders = of_domain(v1::Domain::kSegmentAreasFieldNumber),
+      .seeds = of_domain(v1::Domain::kHolesFieldNumber) / 2 +
+               of_domain(v1::Domain::kRegionsFieldNumber) +
+               of_domain(v1::Domain::kAreasFieldNumber),
       .names = of_domain(v1::Domain::kMarkerNamesFieldNumber) +
                of_domain(v1::Domain::kRegionNamesFieldNumber),
       .expression_bytes =
@@ -106,7 +112,9 @@ std::optional<Failure> check_limits(const v1::GenerateMeshRequest& request, cons
       .points = count(domain.points_size(), 2),
       .segments = count(domain.segments_size(), 2),
       .markers = count(domain.segment_markers_size(), 1),
-      .seeds = count(domain.holes_size(), 2) + count(domain.regions_size(), 1),
+      .borders = count(domain.segment_areas_size(), 1),
+      .seeds = count(domain.holes_size(), 2) + count(domain.regions_size(), 1) +
+               count(domain.areas_size(), 1),
       .names = count(domain.marker_names_size(), 1) + count(domain.region_names_size(), 1),
       .expression_bytes = request.size().expression().size(),
       .raster_values = count(request.size().raster().values_size(), 1),

@@ -21,7 +21,7 @@ inline constexpr std::uint64_t kMostTriangles = 4'294'967'295;
 struct Limits {
   std::uint64_t max_points = 5'000'000;
   std::uint64_t max_segments = 5'000'000;
-  std::uint64_t max_seeds = 100'000;  // holes and regions together
+  std::uint64_t max_seeds = 100'000;  // holes, regions and areas together
   std::uint64_t max_expression_bytes = Expression::kMaxLength;
   std::uint64_t max_raster_values = std::uint64_t{1} << 24;
   std::uint64_t max_triangles = kMostTriangles;
@@ -41,7 +41,8 @@ struct CountLimit {
 inline constexpr std::array kCountLimits = {
     CountLimit{"max_points", &Limits::max_points, "Maximum points per request"},
     CountLimit{"max_segments", &Limits::max_segments, "Maximum segments per request"},
-    CountLimit{"max_seeds", &Limits::max_seeds, "Maximum seeds of holes and regions per request"},
+    CountLimit{"max_seeds", &Limits::max_seeds,
+               "Maximum seeds of holes and regions, and areas, per request"},
     CountLimit{"max_raster_values", &Limits::max_raster_values, "Maximum values of a size raster"},
 };
 

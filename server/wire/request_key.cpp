@@ -55,6 +55,9 @@ void make_canonical(v1::GenerateMeshRequest& request) {
   const auto& markers = domain.segment_markers();
   if (std::all_of(markers.begin(), markers.end(), [](int marker) { return marker == 0; }))
     domain.clear_segment_markers();
+  const auto& borders = domain.segment_areas();
+  if (std::all_of(borders.begin(), borders.end(), [](std::uint32_t area) { return area == 0; }))
+    domain.clear_segment_areas();
   sort_by_id(*domain.mutable_marker_names());
   sort_by_id(*domain.mutable_region_names());
 }

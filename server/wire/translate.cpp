@@ -44,6 +44,42 @@ bool not_negative(double value) {
   return std::isfinite(value) && value >= 0;
 }
 
+// Of a region or an area.
+template <class Bounded>
+std::optional<Failure> check_bounds(const std::string& field, const Bounded& bounded) {
+  if (bounded.has_max_area() && !(std::isfinite(bounded.max_area()) && bounded.max_area() > 0))
+    return bad_option(field + ".max_area",
+                      fmt::format("{}.max_area is {}; it must be positive and finite", field,
+                                  bounded.max_area()));
+  const double area = SizeFunction::area_of_edge(bounded.max_edge());
+  if (bounded.has_max_edge() && !(std::isfinite(area) && area > 0))
+    return bad_option(field + ".max_edge",
+                      fmt::format("{}.max_edge is {}; it must be positive and finite, and so must "
+                                  "its square",
+                                  field, bounded.max_edge()));
+  return std::nullopt;
+}
+
+template <class Bounded>
+std::optional<double> bound_of(const Bounded& bounded) {
+  std::optional<double> area;
+  if (bounded.has_max_area()) area = bounded.max_area();
+  if (!bounded.has_max_edge()) return area;
+  const double by_edge = SizeFunction::area_of_edge(bounded.max_edge());
+  return area ? std::min(*area, by_edge) : by_edge;
+}
+
+Fill to_engine(v1::Fill fill) {
+  switch (fill) {
+    case v1::FILL_EVEN_ODD:
+      return Fill::kEvenOdd;
+    case v1::FILL_UNION:
+      return Fill::kUnion;
+    default:
+      return Fill::kSeeds;
+  }
+}
+
 std::optional<Failure> check_domain(const v1::Domain& domain) {
   if (auto f = check_pairs("domain.points", domain.points_size(), "coordinates")) return f;
   if (auto f = check_pairs("domain.segments", domain.segments_size(), "point indices")) return f;
@@ -55,20 +91,16 @@ std::optional<Failure> check_domain(const v1::Domain& domain) {
                    fmt::format("domain.segment_markers holds {} markers for {} segments; give one "
                                "per segment, or none",
                                markers, segments)};
-  for (int i = 0; i < domain.regions_size(); ++i) {
-    const v1::Region& region = domain.regions(i);
-    if (region.has_max_area() && !(std::isfinite(region.max_area()) && region.max_area() > 0))
-      return bad_option(fmt::format("domain.regions[{}].max_area", i),
-                        fmt::format("domain.regions[{}].max_area is {}; it must be positive and "
-                                    "finite",
-                                    i, region.max_area()));
-    const double area = SizeFunction::area_of_edge(region.max_edge());
-    if (region.has_max_edge() && !(std::isfinite(area) && area > 0))
-      return bad_option(fmt::format("domain.regions[{}].max_edge", i),
-                        fmt::format("domain.regions[{}].max_edge is {}; it must be positive and "
-                                    "finite, and so must its square",
-                                    i, region.max_edge()));
-  }
+  const int areas = domain.segment_areas_size();
+  if (areas != 0 && areas != segments)
+    return Failure{Reason::kBadArray, "domain.segment_areas",
+                   fmt::format("domain.segment_areas holds {} areas for {} segments; give one per "
+                               "segment, or none",
+                               areas, segments)};
+  for (int i = 0; i < domain.regions_size(); ++i)
+    if (auto f = check_bounds(fmt::format("domain.regions[{}]", i), domain.regions(i))) return f;
+  for (int i = 0; i < domain.areas_size(); ++i)
+    if (auto f = check_bounds(fmt::format("domain.areas[{}]", i), domain.areas(i))) return f;
   if (!v1::Fill_IsValid(domain.fill()))
     return bad_option("domain.fill", fmt::format("domain.fill is {}, which is not a Fill",
                                                  static_cast<int>(domain.fill())));
@@ -166,11 +198,11 @@ std::optional<Failure> check_coordinates(const v1::Domain& domain) {
 }
 
 std::optional<double> max_area_of(const v1::Region& region) {
-  std::optional<double> area;
-  if (region.has_max_area()) area = region.max_area();
-  if (!region.has_max_edge()) return area;
-  const double by_edge = SizeFunction::area_of_edge(region.max_edge());
-  return area ? std::min(*area, by_edge) : by_edge;
+  return bound_of(region);
+}
+
+std::optional<double> max_area_of(const v1::Area& area) {
+  return bound_of(area);
 }
 
 Pslg to_engine(const v1::Domain& domain) {
@@ -179,14 +211,23 @@ Pslg to_engine(const v1::Domain& domain) {
   out.holes = to_points(domain.holes());
   out.segments.resize(static_cast<std::size_t>(domain.segments_size() / 2));
   const bool marked = domain.segment_markers_size() != 0;
+  const bool bordering = domain.segment_areas_size() != 0;
   for (std::size_t i = 0; i < out.segments.size(); ++i) {
     const std::uint32_t* ends = domain.segments().data() + 2 * i;
-    out.segments[i] = {ends[0], ends[1], marked ? domain.segment_markers().data()[i] : 0};
+    // 0, for none, becomes kNone.
+    const std::uint32_t area = bordering ? domain.segment_areas().data()[i] - 1 : kNone;
+    out.segments[i] = {ends[0], ends[1], marked ? domain.segment_markers().data()[i] : 0, area};
   }
   out.regions.reserve(static_cast<std::size_t>(domain.regions_size()));
   for (const v1::Region& region : domain.regions())
     out.regions.push_back({{region.x(), region.y()}, region.id(), max_area_of(region)});
-  out.fill = domain.fill() == v1::FILL_EVEN_ODD ? Fill::kEvenOdd : Fill::kSeeds;
+  out.areas.reserve(static_cast<std::size_t>(domain.areas_size()));
+  for (const v1::Area& area : domain.areas())
+    out.areas.push_back({.region = area.has_region() ? std::optional(area.region()) : std::nullopt,
+                         .priority = area.priority(),
+                         .max_area = max_area_of(area),
+                         .is_hole = area.hole()});
+  out.fill = to_engine(domain.fill());
   out.snap = domain.snap();
   return out;
 }
@@ -274,6 +315,12 @@ v1::Summary to_wire(const Summary& summary, std::uint32_t threads) {
   assign(*message.mutable_size_histogram(), summary.size_histogram);
   write_unrefined(summary, *message.mutable_unrefined());
   write_merging(summary.merging, *message.mutable_merging());
+  if (summary.overlap.areas > 0) {
+    v1::Overlap& overlap = *message.mutable_overlap();
+    overlap.set_areas(summary.overlap.areas);
+    overlap.set_area(summary.overlap.area);
+    overlap.set_united(summary.overlap.united);
+  }
   for (const SizeWarning& warning : summary.size_warnings) {
     v1::SizeWarning& warned = *message.add_size_warnings();
     warned.set_kind(to_wire(warning.kind));

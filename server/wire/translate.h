@@ -40,8 +40,9 @@ std::optional<Failure> check_coordinates(const v1::Domain& domain);
 // REQUIRES: as check_values.
 MeshRequest to_engine(const v1::GenerateMeshRequest& request);
 Pslg to_engine(const v1::Domain& domain);
-// The bound on areas that a region's max_area and max_edge make together.
+// The bound on the areas of triangles that max_area and max_edge make together.
 std::optional<double> max_area_of(const v1::Region& region);
+std::optional<double> max_area_of(const v1::Area& area);
 Budget to_budget(const v1::Budget& budget, const Limits& limits);
 double to_seconds(const v1::Budget& budget, const Limits& limits);
 

@@ -50,7 +50,9 @@ std::string miscounted(const MeshRequest& request, const check::Mesh& mesh,
   Recount sizes({0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9});
   const bool bounded_by_regions =
       std::any_of(request.pslg.regions.begin(), request.pslg.regions.end(),
-                  [](const RegionSeed& r) { return r.max_area.has_value(); });
+                  [](const RegionSeed& r) { return r.max_area.has_value(); }) ||
+      std::any_of(request.pslg.areas.begin(), request.pslg.areas.end(),
+                  [](const Area& a) { return a.max_area.has_value(); });
   // Sizes at markers, with a gradation, lower the size beside them; so do edges across.
   const bool varies =
       request.size.cells_across > 0 || (request.size.gradation > 0 && !request.size.at.empty());
@@ -171,12 +173,17 @@ check::Domain domain_of(const Pslg& pslg) {
   for (const Segment& s : pslg.segments) {
     domain.segments.push_back({s.a, s.b});
     domain.markers.push_back(s.marker);
+    domain.segment_areas.push_back(s.area == kNone ? 0 : s.area + 1);
   }
   for (Point p : pslg.holes) domain.holes.push_back({p.x, p.y});
   for (const RegionSeed& r : pslg.regions) {
     domain.regions.push_back({{r.at.x, r.at.y}, r.id, r.max_area});
   }
-  domain.fill = pslg.fill == Fill::kEvenOdd ? check::Fill::kEvenOdd : check::Fill::kSeeds;
+  for (const Area& area : pslg.areas)
+    domain.areas.push_back({area.region, area.priority, area.max_area, area.is_hole});
+  domain.fill = pslg.fill == Fill::kSeeds     ? check::Fill::kSeeds
+                : pslg.fill == Fill::kEvenOdd ? check::Fill::kEvenOdd
+                                              : check::Fill::kUnion;
   domain.snap = pslg.snap;
   return domain;
 }
@@ -272,9 +279,10 @@ double share_rounding(const check::SizeSpec& spec, const check::Domain& domain,
 double region_rounding(const MeshRequest& request, const check::Domain& domain,
                        const check::Mesh& mesh) {
   const auto is_bounded = [&](std::int32_t region) {
-    return std::any_of(
-        request.pslg.regions.begin(), request.pslg.regions.end(),
-        [&](const RegionSeed& seed) { return seed.id == region && seed.max_area.has_value(); });
+    return std::any_of(request.pslg.areas.begin(), request.pslg.areas.end(),
+                       [](const Area& area) { return area.max_area.has_value(); }) ||
+           std::any_of(request.pslg.regions.begin(), request.pslg.regions.end(),
+                       [&](const RegionSeed& seed) { return seed.id == region && seed.max_area; });
   };
   const double flat = check::kMaxBend * check::merging_distance(domain);
   double bounded = 0;

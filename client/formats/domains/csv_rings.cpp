@@ -42,6 +42,7 @@ class Reader {
       : scanner_(name, text, {.blanks = " \t\r\f\v,;"}), builder_(name) {}
 
   Result<Domain> read() {
+    builder_.begin_polygon();  // all rings are one: those inside others are holes
     bool first = true;
     while (scanner_.skip_line()) {
       Result<void> done;
@@ -57,6 +58,7 @@ class Reader {
       if (!done) return tl::unexpected(done.error());
     }
     if (auto done = end_ring(); !done) return tl::unexpected(done.error());
+    builder_.end_polygon("the rings", {});
     return builder_.finish();
   }
 
@@ -133,9 +135,7 @@ class Reader {
   Result<void> end_ring() {
     if (corners_.empty()) return {};
     const std::string path = "the ring from line " + std::to_string(first_line_);
-    builder_.begin_polygon();
     auto added = builder_.ring(corners_, path, {}, markers_, false);
-    builder_.end_polygon(path, {});
     corners_.clear();
     markers_.clear();
     return added;

@@ -110,10 +110,7 @@ Result<void> GeometryBuilder::line(std::span<const Point> positions, const std::
   const auto line = chain(positions, path, properties, markers);
   if (!line) return tl::unexpected(line.error());
   if (line->points.size() < 2) return bad(path, "is a line with fewer than 2 distinct points");
-  const std::size_t first = domain_.segments.size();
-  if (auto added = add(*line, false, path); !added) return added;
-  lines_.push_back({first, domain_.segments.size(), path});
-  return {};
+  return add(*line, false, path);
 }
 
 std::uint32_t GeometryBuilder::label_of(Labels& labels, NameKind kind, std::int32_t number,
@@ -157,29 +154,23 @@ Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::
 }
 
 void GeometryBuilder::end_polygon(const std::string& path, const GeometryProperties& properties) {
-  domain_.fill = Domain::Fill::kEvenOdd;
-  if (!properties.region && properties.region_name.empty() && !properties.max_area &&
-      !properties.max_edge)
-    return;
-  const std::uint32_t label =
-      label_of(regions_, NameKind::kRegion, properties.region.value_or(0), properties.region_name);
-  region_polygons_.push_back(
-      {{polygon_start_, domain_.segments.size()}, label, area_bound(properties), path});
+  if (polygon_start_ == domain_.segments.size()) return;
+  domain_.fill = Domain::Fill::kUnion;
+  domain_.area_places.add(domain_.areas.size(), file_ + ": " + path + ", area ", 0, "");
+  Domain::Area& area = domain_.areas.emplace_back();
+  area.max_area = area_bound(properties);
+  if (properties.region || !properties.region_name.empty())
+    area.region = static_cast<std::int32_t>(label_of(
+        regions_, NameKind::kRegion, properties.region.value_or(0), properties.region_name));
+  for (std::size_t s = polygon_start_; s < domain_.segments.size(); ++s)
+    domain_.segments[s].area = static_cast<std::uint32_t>(domain_.areas.size());
 }
 
 Result<Domain> GeometryBuilder::finish() {
   if (domain_.points.empty()) return bad("", "holds no geometry");
-  std::vector<PolygonRange> ranges;
-  for (const RegionPolygon& polygon : region_polygons_) ranges.push_back(polygon.range);
-  const auto seeds = interior_points(domain_, ranges);
-  if (!seeds) return bad("", seeds.error().message);
   const std::vector<std::int32_t> region_numbers = regions_.numbers();
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
-    const RegionPolygon& polygon = region_polygons_[i];
-    if (!(*seeds)[i]) return bad(polygon.path, "is a polygon with a region but without area");
-    domain_.region_places.add(i, file_ + ": the region of " + polygon.path + ", seed ", 0, "");
-    domain_.regions.push_back({*(*seeds)[i], region_numbers[polygon.label], polygon.max_area});
-  }
+  for (Domain::Area& area : domain_.areas)
+    if (area.region) area.region = region_numbers[static_cast<std::size_t>(*area.region)];
   const std::vector<std::int32_t> markers = markers_.numbers();
   for (Domain::Segment& segment : domain_.segments)
     segment.marker = markers[static_cast<std::size_t>(segment.marker)];
@@ -190,14 +181,6 @@ Result<Domain> GeometryBuilder::finish() {
                                " more rings cross themselves");
   for (std::string& warning : names_.warnings()) domain_.warnings.push_back(std::move(warning));
   domain_.names = names_.take();
-  if (domain_.fill == Domain::Fill::kEvenOdd) {
-    for (const Line& line : lines_) {
-      domain_.segment_places.add(domain_.segments.size(),
-                                 file_ + ": " + line.path + ", edge number ", 0, "");
-      for (std::size_t s = line.first_segment; s < line.end_segment; ++s)
-        domain_.segments.push_back(Domain::Segment(domain_.segments[s]));
-    }
-  }
   return std::move(domain_);
 }
 

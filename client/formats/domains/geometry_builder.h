@@ -2,14 +2,14 @@
 // Makes a domain of points, lines and polygons, as GeoJSON, WKT and shapefiles have them.
 //
 // What is meshed:
-//   - With polygons: the points inside an odd number of rings (Fill::kEvenOdd), so rings of holes
-//     are holes, and polygons that share an edge are both filled.
-//   - Lines beside polygons become edges inside the domain. Each is sent twice, because two
-//     coincident segments do not change the parity of even-odd filling.
+//   - With polygons: what any of them covers (Fill::kUnion). Each is an area of its own: the points
+//   inside
+//     an odd number of its rings. So rings of holes are holes, and polygons may overlap, nest and
+//     touch.
+//   - Lines beside polygons become edges inside the domain.
 //   - Lines only: every bounded face (Fill::kSeeds).
 //   - Points become vertices.
-// Positions that repeat their predecessor are dropped. A region floods from a point inside its
-// polygon up to the nearest segments.
+// Positions that repeat their predecessor are dropped.
 //
 // `path` names a part in its file ("features[3].geometry.coordinates[0]"); its position i is then
 // path[i]. Errors (kUnreadableInput) name the file and the path: magnitudes beyond 1e50, a ring
@@ -34,7 +34,6 @@
 
 #include "client/base/error.h"
 #include "client/formats/domain.h"
-#include "client/formats/domains/interior_point.h"
 #include "client/formats/names.h"
 
 namespace weft::client {
@@ -85,17 +84,6 @@ class GeometryBuilder {
   tl::unexpected<Error> bad(const std::string& path, const std::string& what) const;
 
  private:
-  struct Line {
-    std::size_t first_segment;
-    std::size_t end_segment;
-    std::string path;
-  };
-  struct RegionPolygon {
-    PolygonRange range;
-    std::uint32_t label;
-    std::optional<double> max_area;
-    std::string path;
-  };
   // Positions without repetitions: each with its number in the file, and its marker.
   struct Chain {
     std::vector<Point> points;
@@ -117,10 +105,8 @@ class GeometryBuilder {
   Labels markers_;
   Labels regions_;
   std::size_t crossings_ = 0;  // rings that cross themselves
-  Domain domain_;              // the markers of its segments are labels
+  Domain domain_;  // the markers of its segments and the regions of its areas are labels
   std::size_t polygon_start_ = 0;
-  std::vector<Line> lines_;
-  std::vector<RegionPolygon> region_polygons_;
 };
 
 }  // namespace weft::client

@@ -68,11 +68,7 @@ struct Candidate {
   Point at;
 };
 
-// Which pieces of a line are looked for.
-enum class Pieces { kInside, kHoles };
-
-void consider(const ScanLine& line, Pieces pieces, std::vector<Crossing>& crossings,
-              Candidate& best) {
+void consider(const ScanLine& line, std::vector<Crossing>& crossings, Candidate& best) {
   std::sort(crossings.begin(), crossings.end(),
             [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
   bool inside = false;
@@ -80,17 +76,15 @@ void consider(const ScanLine& line, Pieces pieces, std::vector<Crossing>& crossi
     if (crossings[i].own) inside = !inside;
     const double width = crossings[i + 1].x - crossings[i].x;
     const double clearance = std::min(width, line.gap);
-    const bool filled = i % 2 == 0;
-    const bool touches = crossings[i].own || crossings[i + 1].own;
-    if (inside && (pieces == Pieces::kInside || (touches && !filled)) && clearance > best.clearance)
+    if (inside && clearance > best.clearance)
       best = {clearance, {crossings[i].x + width / 2, line.y}};
   }
 }
 
-// The sweep over the segments.
-Result<std::vector<std::optional<Point>>> points_in(const Domain& domain,
-                                                    std::span<const PolygonRange> polygons,
-                                                    Pieces pieces) {
+}  // namespace
+
+Result<std::vector<std::optional<Point>>> interior_points(const Domain& domain,
+                                                          std::span<const PolygonRange> polygons) {
   const std::vector<double> all_ys = ordinates(domain, 0, domain.segments.size());
   std::vector<ScanLine> lines;
   for (std::size_t p = 0; p < polygons.size(); ++p)
@@ -133,25 +127,13 @@ Result<std::vector<std::optional<Point>>> points_in(const Domain& domain,
       crossings.push_back({x, s >= own.first_segment && s < own.end_segment});
       return false;
     });
-    consider(line, pieces, crossings, best[line.polygon]);
+    consider(line, crossings, best[line.polygon]);
   }
 
   std::vector<std::optional<Point>> points(polygons.size());
   for (std::size_t p = 0; p < polygons.size(); ++p)
     if (best[p].clearance > 0) points[p] = best[p].at;
   return points;
-}
-
-}  // namespace
-
-Result<std::vector<std::optional<Point>>> interior_points(const Domain& domain,
-                                                          std::span<const PolygonRange> polygons) {
-  return points_in(domain, polygons, Pieces::kInside);
-}
-
-Result<std::vector<std::optional<Point>>> hole_points(const Domain& domain,
-                                                      std::span<const PolygonRange> rings) {
-  return points_in(domain, rings, Pieces::kHoles);
 }
 
 }  // namespace weft::client

@@ -28,10 +28,4 @@ struct PolygonRange {
 Result<std::vector<std::optional<Point>>> interior_points(const Domain& domain,
                                                           std::span<const PolygonRange> polygons);
 
-// One point per ring of an even-odd domain, in the face that touches the ring from its inside: a
-// seed for a hole if an even number of rings is around that face, nullopt if it is filled.
-// Segments inside the domain must be in it twice. Fails as above.
-Result<std::vector<std::optional<Point>>> hole_points(const Domain& domain,
-                                                      std::span<const PolygonRange> rings);
-
 }  // namespace weft::client

@@ -1,143 +1,121 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/formats/domains/seeded.h"
 
-#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "checker/domain/bent_domain.h"
+#include "checker/domain/domain_rules.h"
+#include "checker/geometry/arrangement.h"
+#include "checker/geometry/contacts.h"
+#include "checker/geometry/fill.h"
+#include "checker/report.h"
 #include "client/formats/domains/interior_point.h"
+#include "client/formats/domains/to_checker.h"
 
 namespace weft::client {
 namespace {
 
-using Segment = Domain::Segment;
+constexpr std::size_t kMostContacts = 2'000'000;
 
-// Merges points that coincide. The first one keeps its marker.
-void join_points(Domain& domain) {
-  std::vector<std::uint32_t> order(domain.points.size());
-  std::iota(order.begin(), order.end(), std::uint32_t{0});
-  std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-    const Point a = domain.points[i];
-    const Point b = domain.points[j];
-    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : i < j;
-  });
-  std::vector<std::uint32_t> first(order.size());  // of those that coincide
-  for (std::size_t k = 0; k < order.size(); ++k)
-    first[order[k]] = k > 0 && domain.points[order[k]] == domain.points[order[k - 1]]
-                          ? first[order[k - 1]]
-                          : order[k];
-  std::vector<std::uint32_t> kept(order.size());
-  std::vector<Point> points;
-  std::vector<std::int32_t> markers;
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    if (first[i] != i) continue;
-    kept[i] = static_cast<std::uint32_t>(points.size());
-    points.push_back(domain.points[i]);
-    if (!domain.point_markers.empty()) markers.push_back(domain.point_markers[i]);
-  }
-  for (Segment& segment : domain.segments) {
-    segment.a = kept[first[segment.a]];
-    segment.b = kept[first[segment.b]];
-  }
-  domain.points = std::move(points);
-  domain.point_markers = std::move(markers);
+// The first marker that is not 0 of the segments on an edge; lines come before borders of areas.
+std::int32_t marker_on(const Domain& domain, const check::BentDomain& bent,
+                       std::span<const std::uint32_t> covers) {
+  for (const bool of_area : {false, true})
+    for (const std::uint32_t piece : covers) {
+      const Domain::Segment& segment = domain.segments[bent.origin[piece]];
+      if (segment.marker != 0 && (segment.area != 0) == of_area) return segment.marker;
+    }
+  return 0;
 }
 
-// Segments as pairs of ends. Those that occur an odd number of times bound what is filled.
-struct Parity {
-  std::vector<Segment> bounding;
-  std::vector<Segment> inside;
-};
-
-Parity by_parity(std::vector<Segment> segments) {
-  const auto ends = [](const Segment& s) { return std::minmax(s.a, s.b); };
-  std::stable_sort(segments.begin(), segments.end(),
-                   [&ends](const Segment& s, const Segment& t) { return ends(s) < ends(t); });
-  Parity out;
-  for (std::size_t i = 0; i < segments.size();) {
-    std::size_t end = i;
-    std::int32_t marker = 0;  // the first that is not 0
-    for (; end < segments.size() && ends(segments[end]) == ends(segments[i]); ++end)
-      if (marker == 0) marker = segments[end].marker;
-    (((end - i) % 2 == 1) ? out.bounding : out.inside)
-        .push_back({segments[i].a, segments[i].b, marker});
-    i = end;
+// The edges, and then, for the search for seeds, those around each face, which `ranges` gets.
+Domain edges_of(const Domain& domain, const check::BentDomain& bent,
+                const check::Arrangement& arrangement, std::vector<PolygonRange>& ranges) {
+  Domain out;
+  for (std::uint32_t v = 0; v < arrangement.vertices().size(); ++v) {
+    const check::Vec2 at = arrangement.vertices().at(v);
+    out.points.push_back({at.x, at.y});
+  }
+  std::vector<std::vector<std::uint32_t>> around(arrangement.faces().size());
+  for (std::uint32_t e = 0; e < arrangement.edges().size(); ++e) {
+    const check::Arrangement::Edge& edge = arrangement.edges()[e];
+    out.segments.push_back({edge.u, edge.v, marker_on(domain, bent, arrangement.covers(e))});
+    const std::uint32_t left = arrangement.face(2 * e), right = arrangement.face(2 * e + 1);
+    if (left == right) continue;
+    around[left].push_back(e);
+    around[right].push_back(e);
+  }
+  for (const std::vector<std::uint32_t>& edges : around) {
+    ranges.push_back({out.segments.size(), out.segments.size() + edges.size()});
+    for (const std::uint32_t e : edges) out.segments.push_back(Domain::Segment(out.segments[e]));
   }
   return out;
 }
 
-// Orders segments ring by ring, so that no ring visits a point twice. REQUIRES: an even number of
-// them meets at each point.
-std::vector<PolygonRange> order_by_ring(std::size_t points, std::vector<Segment>& segments) {
-  std::vector<std::uint32_t> starts(points + 1, 0);
-  for (const Segment& s : segments) ++starts[s.a + 1], ++starts[s.b + 1];
-  std::partial_sum(starts.begin(), starts.end(), starts.begin());
-  std::vector<std::uint32_t> at_point(2 * segments.size());
-  std::vector<std::uint32_t> next(starts.begin(), starts.end() - 1);
-  for (std::uint32_t i = 0; i < segments.size(); ++i)
-    for (const std::uint32_t p : {segments[i].a, segments[i].b}) at_point[next[p]++] = i;
-  std::copy(starts.begin(), starts.end() - 1, next.begin());
-
-  std::vector<PolygonRange> rings;
-  std::vector<Segment> ordered;
-  std::vector<bool> used(segments.size(), false);
-  constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> place(points, kNowhere);         // of a point on the path
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> path;  // point, segment that leaves it
-  for (std::uint32_t start = 0; start < points; ++start) {
-    std::uint32_t at = start;
-    for (;;) {
-      if (place[at] != kNowhere) {  // the path has come back to one of its points
-        const std::size_t first = ordered.size();
-        const std::size_t ring = place[at];
-        for (std::size_t k = ring; k < path.size(); ++k) {
-          ordered.push_back(segments[path[k].second]);
-          place[path[k].first] = kNowhere;
-        }
-        rings.push_back({first, ordered.size()});
-        path.resize(ring);
-      }
-      while (next[at] < starts[at + 1] && used[at_point[next[at]]]) ++next[at];
-      if (next[at] == starts[at + 1]) break;
-      const std::uint32_t segment = at_point[next[at]];
-      used[segment] = true;
-      place[at] = static_cast<std::uint32_t>(path.size());
-      path.emplace_back(at, segment);
-      at = segments[segment].a == at ? segments[segment].b : segments[segment].a;
-    }
-    for (const auto& [point, segment] : path) {
-      ordered.push_back(segments[segment]);
-      place[point] = kNowhere;
-    }
-    path.clear();
-  }
-  segments = std::move(ordered);
-  return rings;
+// Those that no segment ends at.
+void add_lone_points(const Domain& domain, Domain& out) {
+  std::vector<bool> is_end(domain.points.size(), false);
+  for (const Domain::Segment& segment : domain.segments)
+    is_end[segment.a] = is_end[segment.b] = true;
+  for (std::size_t i = 0; i < is_end.size(); ++i)
+    if (!is_end[i]) out.points.push_back(domain.points[i]);
 }
 
 }  // namespace
 
 Result<Domain> seeded(Domain domain) {
-  if (domain.fill == Domain::Fill::kSeeds) return domain;
-  join_points(domain);
-  Parity parity = by_parity(std::move(domain.segments));
-  const std::vector<PolygonRange> rings = order_by_ring(domain.points.size(), parity.bounding);
+  if (domain.fill == Domain::Fill::kSeeds && domain.areas.empty()) return domain;
+  std::erase_if(domain.segments, [&](const Domain::Segment& segment) {
+    return domain.points[segment.a] == domain.points[segment.b];
+  });
+  check::Domain given = checker_domain(domain, 0);
+  check::Findings findings(0);
+  if (!check::judge_domain(given, findings))
+    return fail(ExitCode::kUnreadableInput, "the domain has numbers that are no coordinates");
+  const check::BentDomain bent = check::unbent(given);
+  const check::Contacts contacts =
+      check::find_contacts(bent.domain.points, bent.domain.segments, kMostContacts);
+  if (!contacts.complete)
+    return fail(ExitCode::kUnreadableInput,
+                "the segments meet more than 2,000,000 times, too often to be written with seeds");
+  const check::Arrangement arrangement(bent.domain.points, bent.domain.segments, contacts);
+  const std::vector<check::FaceRole> roles = check::fill_faces(bent, arrangement, findings);
 
-  domain.segments = parity.bounding;
-  for (int time = 0; time < 2; ++time)
-    domain.segments.insert(domain.segments.end(), parity.inside.begin(), parity.inside.end());
-  const auto holes = hole_points(domain, rings);
-  if (!holes) return tl::unexpected(holes.error());
-  for (const auto& hole : *holes)
-    if (hole) domain.holes.push_back(*hole);
-  domain.segments.resize(parity.bounding.size() + parity.inside.size());
-  domain.fill = Domain::Fill::kSeeds;
-  domain.point_places = {};
-  domain.segment_places = {};
-  return domain;
+  std::vector<PolygonRange> ranges;
+  Domain out = edges_of(domain, bent, arrangement, ranges);
+  std::vector<PolygonRange> wanted;
+  std::vector<std::size_t> faces;
+  for (std::size_t f = 1; f < roles.size(); ++f) {
+    if (roles[f].kept && roles[f].region == 0 && std::isinf(roles[f].max_area)) continue;
+    wanted.push_back(ranges[f]);
+    faces.push_back(f);
+  }
+  const auto seeds = interior_points(out, wanted);
+  if (!seeds) return tl::unexpected(seeds.error());
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const check::FaceRole& role = roles[faces[i]];
+    const auto& seed = (*seeds)[i];
+    if (!seed) continue;  // no number lies inside
+    if (!role.kept)
+      out.holes.push_back(*seed);
+    else
+      out.regions.push_back(
+          {*seed, role.region,
+           std::isinf(role.max_area) ? std::nullopt : std::optional(role.max_area)});
+  }
+  out.segments.resize(arrangement.edges().size());
+  add_lone_points(domain, out);
+  out.region_values = std::move(domain.region_values);
+  out.system = std::move(domain.system);
+  out.names = std::move(domain.names);
+  out.warnings = std::move(domain.warnings);
+  return out;
 }
 
 }  // namespace weft::client

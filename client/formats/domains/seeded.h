@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts a domain to Triangle's rule (Fill::kSeeds), for formats that have no other: points that
-// coincide become one, segments that repeat become one, and every hole gets a seed.
+// Converts a domain to Triangle's rule (Fill::kSeeds), for formats that have no other: its points
+// and segments become those of the arrangement, which the checker makes, and the faces that are not
+// meshed, or that have a region or a bound, get a seed each.
 //
-// Errors (kUnreadableInput): a domain of so many tall rings that the search for seeds would not end
-// in reasonable time. If rings cross each other between their points, the faces between them may
-// lack a seed; valid GeoJSON has no such rings.
+// Errors (kUnreadableInput): what the checker refuses, such as over 2,000,000 contacts of segments;
+// a domain with so many tall faces that the search for seeds would not end in reasonable time.
 #pragma once
 
 #include "client/base/error.h"

@@ -12,6 +12,12 @@ export interface RegionSeed {
   maxArea: number | undefined;
 }
 
+// A polygon: what an odd number of its rings encloses.
+export interface Area {
+  region: number | undefined;
+  maxArea: number | undefined;
+}
+
 export interface PlanarDomain {
   name: string; // of the file that it could be in, such as "coast.geojson"
   points: Float64Array; // x0, y0, x1, y1, ...
@@ -19,7 +25,8 @@ export interface PlanarDomain {
   markers: Int32Array; // one for each segment
   holes: Float64Array; // x0, y0, x1, y1, ...
   regions: RegionSeed[];
-  evenOdd: boolean; // whether rings within rings are holes
+  areas: Area[]; // if there are any, what they cover is meshed; otherwise every bounded face
+  borders: Uint32Array; // for each segment 0, or 1 + the area whose border it is part of
   markerNames: Names;
   regionNames: Names;
   warnings: string[]; // what of the file was left out
@@ -50,7 +57,7 @@ export function segmentEnds({ points, segments }: PlanarDomain): Float64Array {
   return ends;
 }
 
-const named = (names: Names) => [...names].map(([id, name]) => ({ id, name }));
+const named = (names: Names) => [...names].sort(([a], [b]) => a - b).map(([id, name]) => ({ id, name }));
 
 // `snap` as in weft.v1.Domain.
 export function toMessage(domain: PlanarDomain, snap: number): Domain {
@@ -60,7 +67,9 @@ export function toMessage(domain: PlanarDomain, snap: number): Domain {
     segmentMarkers: domain.markers.some((marker) => marker !== 0) ? Array.from(domain.markers) : [],
     holes: Array.from(domain.holes),
     regions: domain.regions.map(({ x, y, id, maxArea }) => ({ x, y, id, maxArea })),
-    fill: domain.evenOdd ? Fill.EVEN_ODD : Fill.SEEDS,
+    fill: domain.areas.length > 0 ? Fill.UNION : Fill.SEEDS,
+    areas: domain.areas.map(({ region, maxArea }) => ({ region, maxArea })),
+    segmentAreas: domain.areas.length > 0 ? Array.from(domain.borders) : [],
     snap,
     markerNames: named(domain.markerNames),
     regionNames: named(domain.regionNames),

@@ -114,7 +114,7 @@ export function readPoly(name: string, text: string): PlanarDomain {
   for (const [, kind, id, called] of text.matchAll(/^# (marker|region)=(-?\d+):([^\n]*?)\r?$/gm))
     if (Number(id) === (Number(id) | 0)) names[kind as keyof typeof names].add(Number(id), called!);
   return {
-    name, points, segments, markers, holes, regions, evenOdd: false,
+    name, points, segments, markers, holes, regions, areas: [], borders: new Uint32Array(),
     markerNames: names.marker.names,
     regionNames: names.region.names,
     warnings: [...names.marker.warnings, ...names.region.warnings],

@@ -56,17 +56,20 @@ export function heatMapOf(form: FormText, domain: PlanarDomain, box: Box | undef
   return { box, pixels, low, high };
 }
 
-// Of a horizontal line, what is in the domain, as far as parity tells; all between the first and the
-// last crossing if holes are seeds.
-function stretches({ points, segments, evenOdd }: PlanarDomain, y: number): [number, number][] {
-  const found: number[] = [];
+// Of a horizontal line, what is in the domain: of each area, as parity tells; without areas, all between
+// the first and the last crossing.
+function stretches({ points, segments, areas, borders }: PlanarDomain, y: number): [number, number][] {
+  const found: number[][] = Array.from({ length: areas.length + 1 }, () => []); // of lines, then of areas
   for (let i = 0; i < segments.length; i += 2) {
     const [a, b] = [2 * segments[i], 2 * segments[i + 1]];
     if (points[a + 1] <= y === points[b + 1] <= y) continue;
-    found.push(points[a] + ((y - points[a + 1]) / (points[b + 1] - points[a + 1])) * (points[b] - points[a]));
+    const x = points[a] + ((y - points[a + 1]) / (points[b + 1] - points[a + 1])) * (points[b] - points[a]);
+    found[borders[i / 2] ?? 0].push(x);
   }
-  found.sort((a, b) => a - b);
-  if (found.length < 2) return [];
-  if (!evenOdd) return [[found[0], found[found.length - 1]]];
-  return Array.from({ length: found.length >> 1 }, (_, i) => [found[2 * i], found[2 * i + 1]]);
+  for (const xs of found) xs.sort((a, b) => a - b);
+  const lines = found[0];
+  if (areas.length === 0) return lines.length < 2 ? [] : [[lines[0], lines[lines.length - 1]]];
+  return found.slice(1).flatMap((xs) =>
+    Array.from({ length: xs.length >> 1 }, (_, i): [number, number] => [xs[2 * i], xs[2 * i + 1]]),
+  );
 }

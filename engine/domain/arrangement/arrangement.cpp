@@ -56,6 +56,7 @@ Arrangement extract(const std::vector<Point>& points, const Triangulation& t,
     }
   }
   result.constraints = segments.take_constraints();
+  result.area_joins = segments.take_area_joins();
   return result;
 }
 

@@ -48,9 +48,20 @@ struct Arrangement {
   // What lies on a constrained edge.
   struct Constraint {
     std::uint32_t segment = kNone;  // the lowest input segment
-    std::int32_t marker = 0;        // the first marker that is not 0, in the order of segments
+    // The first marker that is not 0: of the segments that border no area, then of those that do,
+    // in their order.
+    std::int32_t marker = 0;
     std::uint32_t marker_segment = kNone;  // the segment of that marker
     bool odd = false;                      // whether an odd number of segments lies here
+    std::uint32_t areas = kNone;           // whose border lies here, see AreaJoin
+  };
+
+  // A list of areas is the index of an area, kNone if it is empty, or else, from Pslg::areas.size()
+  // on, that of a pair of lists in area_joins. So pieces share their lists, however often they are
+  // divided.
+  struct AreaJoin {
+    std::uint32_t first;
+    std::uint32_t second;
   };
 
   struct Triangle {
@@ -63,6 +74,7 @@ struct Arrangement {
   std::vector<std::uint32_t> input_point;  // per vertex, kNone for crossings
   std::vector<Triangle> triangles;         // in no particular order
   std::vector<Constraint> constraints;
+  std::vector<AreaJoin> area_joins;
   Merging merging;
 };
 

@@ -19,15 +19,6 @@ bool properly_cross(Point a, Point b, Point c, Point d) {
          orientation_exact(c, d, a) * orientation_exact(c, d, b) < 0;
 }
 
-void merge(Arrangement::Constraint& into, const Arrangement::Constraint& other) {
-  into.segment = std::min(into.segment, other.segment);
-  if (other.marker_segment < into.marker_segment) {
-    into.marker_segment = other.marker_segment;
-    into.marker = other.marker;
-  }
-  into.odd = into.odd != other.odd;
-}
-
 }  // namespace
 
 SegmentInserter::SegmentInserter(const Pslg& pslg, const std::vector<Point>& points,
@@ -49,8 +40,9 @@ SegmentInserter::SegmentInserter(const Pslg& pslg, const std::vector<Point>& poi
 void SegmentInserter::insert_all() {
   for (std::uint32_t i = 0; i < pslg_.segments.size(); ++i) {
     const Segment& s = pslg_.segments[i];
-    const Piece whole{
-        t_.vertex_of(s.a), t_.vertex_of(s.b), {i, s.marker, s.marker != 0 ? i : kNone, true}};
+    const Piece whole{t_.vertex_of(s.a),
+                      t_.vertex_of(s.b),
+                      {i, s.marker, s.marker != 0 ? i : kNone, true, s.area}};
     if (whole.u == whole.v) {
       if (pslg_.points[s.a] != pslg_.points[s.b]) shrunk_.emplace_back(s.a, s.b);
       continue;
@@ -60,6 +52,32 @@ void SegmentInserter::insert_all() {
   }
   separate();
   count_faces();
+}
+
+void SegmentInserter::merge(Constraint& into, const Constraint& other) {
+  into.segment = std::min(into.segment, other.segment);
+  if (gives_marker_before(other.marker_segment, into.marker_segment)) {
+    into.marker_segment = other.marker_segment;
+    into.marker = other.marker;
+  }
+  into.odd = into.odd != other.odd;
+  into.areas = joined(into.areas, other.areas);
+}
+
+// Lines come before borders of areas, because they are there for their marker. kNone comes last.
+bool SegmentInserter::gives_marker_before(std::uint32_t s, std::uint32_t t) const {
+  if (s == kNone || t == kNone) return s < t;
+  const bool is_line = pslg_.segments[s].area == kNone;
+  return is_line == (pslg_.segments[t].area == kNone) ? s < t : is_line;
+}
+
+// The areas of both lists; two borders of one area cancel.
+std::uint32_t SegmentInserter::joined(std::uint32_t first, std::uint32_t second) {
+  if (first == kNone) return second;
+  if (second == kNone) return first;
+  if (first == second) return kNone;
+  area_joins_.push_back({first, second});
+  return static_cast<std::uint32_t>(pslg_.areas.size() + area_joins_.size() - 1);
 }
 
 void SegmentInserter::insert_pieces() {
@@ -245,7 +263,8 @@ void SegmentInserter::meet_in_new_vertex(Point p, Edge edge, const Piece& piece)
     vertices_->insert(w, p);
   }
   push_through(w, piece);
-  poller_.require(estimated_bytes(pslg_.points.size() + crossings_, constraints_.size()));
+  poller_.require(estimated_bytes(pslg_.points.size() + crossings_,
+                                  constraints_.size() + area_joins_.size() / 4));
 }
 
 // Inserts p, or finds the vertex that is there already.

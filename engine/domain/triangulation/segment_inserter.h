@@ -31,6 +31,7 @@ class SegmentInserter {
 
   // The constraints, indexed as in the triangulation; some are no longer in use.
   std::vector<Arrangement::Constraint> take_constraints() { return std::move(constraints_); }
+  std::vector<Arrangement::AreaJoin> take_area_joins() { return std::move(area_joins_); }
   std::uint32_t crossings() const { return crossings_; }  // vertices made where segments cross
 
  private:
@@ -54,6 +55,9 @@ class SegmentInserter {
   void meet_in_new_vertex(Point p, Edge edge, const Piece& piece);
   void count_faces();
 
+  void merge(Constraint& into, const Constraint& other);
+  bool gives_marker_before(std::uint32_t s, std::uint32_t t) const;
+  std::uint32_t joined(std::uint32_t first, std::uint32_t second);
   void push(Vertex u, Vertex v, const Constraint& constraint);
   void push_through(Vertex w, const Piece& piece);
   void merge_through(Vertex w, const Piece& piece);
@@ -93,6 +97,7 @@ class SegmentInserter {
   const double tolerance2_;
   double rounding_ = 0;  // what a vertex on a segment may be off it
   std::vector<Constraint> constraints_;
+  std::vector<Arrangement::AreaJoin> area_joins_;
   std::vector<Piece> pieces_;          // still to insert, last one first
   std::optional<PointGrid> vertices_;  // all of them, from the first crossing on
   std::vector<bool> is_moved_;         // per segment, from the first one on

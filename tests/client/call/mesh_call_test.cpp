@@ -176,7 +176,9 @@ TEST(MeshRequest, CarriesTheDomainAndTheWishes) {
   Domain domain = square_domain(2);
   domain.holes = {{1, 1.5}};
   domain.regions = {{{0.5, 0.25}, -3, 0.125}, {{1, 1}, 4, std::nullopt}};
-  domain.fill = Domain::Fill::kEvenOdd;
+  domain.fill = Domain::Fill::kUnion;
+  domain.segments[2].area = 1;
+  domain.areas = {{5, 0.5}, {std::nullopt, std::nullopt, true}};
   const auto request = make_request(domain, {.size = "x + 1",
                                              .min_angle_deg = 0,
                                              .min_edge = 0.5,
@@ -195,7 +197,13 @@ TEST(MeshRequest, CarriesTheDomainAndTheWishes) {
   EXPECT_EQ(request.domain().regions(0).id(), -3);
   EXPECT_EQ(request.domain().regions(0).max_area(), 0.125);
   EXPECT_FALSE(request.domain().regions(1).has_max_area());
-  EXPECT_EQ(request.domain().fill(), v1::FILL_EVEN_ODD);
+  EXPECT_EQ(request.domain().fill(), v1::FILL_UNION);
+  EXPECT_EQ(request.domain().areas(0).region(), 5);
+  EXPECT_EQ(request.domain().areas(0).max_area(), 0.5);
+  EXPECT_FALSE(request.domain().areas(1).has_region());
+  EXPECT_TRUE(request.domain().areas(1).hole());
+  EXPECT_EQ(request.domain().segment_areas_size(), 4);
+  EXPECT_EQ(request.domain().segment_areas(2), 1u);
   EXPECT_EQ(request.size().expression(), "x + 1");
   EXPECT_TRUE(request.quality().has_min_angle_deg());
   EXPECT_EQ(request.quality().min_edge(), 0.5);

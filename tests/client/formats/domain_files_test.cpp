@@ -2,6 +2,8 @@
 // Domains from well-known text, shapefiles, tables of rings and meshes, and back to .poly.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "client/formats/derived/mesh_domain.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/domains/seeded.h"
@@ -42,9 +44,9 @@ TEST_F(DomainFile, WktHoldsGeometriesOfEveryKind) {
                              "multipoint(3 3, (4 4)) LineString EMPTY\n"
                              "GEOMETRYCOLLECTION(LINESTRINGM(5 5 1, 6 6 1), MULTIPOLYGON(EMPTY,"
                              "((20 0, 21 0, 20 1, 20 0))), POINT EMPTY)");
-  EXPECT_EQ(domain.fill, Domain::Fill::kEvenOdd);
+  EXPECT_EQ(domain.fill, Domain::Fill::kUnion);
   EXPECT_EQ(domain.points.size(), 4u + 3 + 2 + 2 + 3);
-  EXPECT_EQ(domain.segments.size(), 4u + 3 + 2 * 1 + 3);
+  EXPECT_EQ(domain.segments.size(), 4u + 3 + 1 + 3);
   EXPECT_TRUE(domain.point_places.locate(5).ends_with("d.wkt: line 2, geometry 0, ring 1[1]"))
       << domain.point_places.locate(5);
 }
@@ -72,7 +74,7 @@ TEST_F(DomainFile, CsvRingsEndAtBlankLinesAndAtANewNumber) {
   const Domain plain = read("d.csv", "0,0\n4,0\n4,4\n0,4\n0,0\n\n# a hole\n1;1\n2;1\n2;2\n");
   EXPECT_EQ(plain.points.size(), 7u);
   EXPECT_EQ(plain.segments.size(), 7u);
-  EXPECT_EQ(plain.fill, Domain::Fill::kEvenOdd);
+  EXPECT_EQ(plain.fill, Domain::Fill::kUnion);
   const Domain named = read(
       "d.csv", "Ring,LAT,lon,marker\n1,0,10,5\n1,0,14,6\n1,4,14,7\n2,1,11,8\n2,1,12,8\n2,2,12,8\n");
   EXPECT_EQ(named.points[1], (Point{14, 0}));
@@ -97,11 +99,11 @@ TEST_F(DomainFile, ShapefilesBringTheirAttributes) {
   write_sample_shapefile(folder_ / "d");
   const auto domain = read_domain(folder_ / "d.shp");
   ASSERT_TRUE(domain) << domain.error().message;
-  EXPECT_EQ(domain->fill, Domain::Fill::kEvenOdd);
+  EXPECT_EQ(domain->fill, Domain::Fill::kUnion);
   EXPECT_EQ(markers(*domain), (std::vector<std::int32_t>{3, 3, 3, 3, 3, 3, 3, 4, 4, 4}));
-  ASSERT_EQ(domain->regions.size(), 1u);
-  EXPECT_EQ(domain->regions[0].id, 7);
-  EXPECT_EQ(domain->regions[0].max_area, 0.5);
+  ASSERT_EQ(domain->areas.size(), 1u);
+  EXPECT_EQ(domain->areas[0].region, 7);
+  EXPECT_EQ(domain->areas[0].max_area, 0.5);
   EXPECT_TRUE(domain->point_places.locate(5).ends_with("d.shp: record 0, ring 1[1]"));
   std::filesystem::remove(folder_ / "d.dbf");
   EXPECT_EQ(markers(read_domain(folder_ / "d.shp").value()), std::vector<std::int32_t>(10, 0));
@@ -156,11 +158,11 @@ TEST_F(DomainFile, AMeshOfLinesIsFilledBetweenThem) {
 
 TEST_F(DomainFile, HolesGetSeedsAndWhatIsSharedIsWrittenOnce) {
   // A ring in a ring in a ring, a second polygon that shares a side with the first, a line.
-  const Domain even_odd = read("d.wkt",
+  const Domain polygons = read("d.wkt",
                                "POLYGON((0 0, 9 0, 9 9, 0 9, 0 0), (1 1, 8 1, 8 8, 1 8, 1 1))\n"
                                "POLYGON((2 2, 7 2, 7 7, 2 7, 2 2), (3 3, 6 3, 6 6, 3 6, 3 3))\n"
                                "POLYGON((9 0, 12 0, 12 9, 9 9, 9 0)) LINESTRING(9.5 1, 11 2)");
-  const auto domain = seeded(even_odd);
+  const auto domain = seeded(polygons);
   ASSERT_TRUE(domain) << domain.error().message;
   EXPECT_EQ(domain->fill, Domain::Fill::kSeeds);
   EXPECT_EQ(domain->points.size(), 16u + 2 + 2);
@@ -186,6 +188,28 @@ TEST_F(DomainFile, HolesThatShareACornerGetASeedEach) {
   ASSERT_TRUE(domain) << domain.error().message;
   EXPECT_EQ(domain->points.size(), 11u);
   EXPECT_EQ(domain->holes.size(), 2u);
+}
+
+TEST_F(DomainFile, PolygonsThatOverlapGetSeedsForEachFace) {
+  const Domain polygons = read("d.geojson", R"({"type": "FeatureCollection", "features": [
+      {"type": "Feature", "properties": {"region": 1, "marker": 8}, "geometry": {"type": "Polygon",
+        "coordinates": [[[0, 0], [6, 0], [6, 6], [0, 6], [0, 0]]]}},
+      {"type": "Feature", "properties": {"region": 2, "max_area": 0.5}, "geometry": {"type":
+        "Polygon", "coordinates": [[[4, 2], [9, 2], [9, 4], [4, 4], [4, 2]]]}},
+      {"type": "Feature", "properties": {"marker": 5}, "geometry": {"type": "LineString",
+        "coordinates": [[0, 0], [3, 0]]}},
+      {"type": "Feature", "geometry": {"type": "Point", "coordinates": [1, 5]}}]})");
+  const auto domain = seeded(polygons);
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->points.size(), 4u + 4 + 2 + 1 + 1);  // two crossings, one point of the line
+  EXPECT_TRUE(domain->holes.empty());
+  EXPECT_TRUE(domain->areas.empty());
+  std::multiset<std::int32_t> regions;
+  for (const Domain::Region& region : domain->regions) regions.insert(region.id);
+  EXPECT_EQ(regions, (std::multiset<std::int32_t>{1, 2, 2}));
+  std::multiset<std::int32_t> markers;
+  for (const Domain::Segment& segment : domain->segments) markers.insert(segment.marker);
+  EXPECT_EQ(markers, (std::multiset<std::int32_t>{5, 8, 8, 8, 8, 8, 8, 0, 0, 0, 0, 0, 0}));
 }
 
 }  // namespace

@@ -422,10 +422,10 @@ TEST(NamesInDomains, OfGeojsonAreTextsOrBesideNumbers) {
   EXPECT_EQ(domain->names.regions, (NameTable{{1, "fluid"}, {4, "solid"}}));
   std::multiset<std::int32_t> markers;
   for (const auto& segment : domain->segments) markers.insert(segment.marker);
-  EXPECT_EQ(markers, (std::multiset<std::int32_t>{2, 2, 2, 2, 1, 1, 2, 2, 0, 0, 0}));
-  ASSERT_EQ(domain->regions.size(), 2u);
-  EXPECT_EQ(domain->regions[0].id, 1);
-  EXPECT_EQ(domain->regions[1].id, 4);
+  EXPECT_EQ(markers, (std::multiset<std::int32_t>{2, 2, 2, 2, 1, 2, 0, 0, 0}));
+  ASSERT_EQ(domain->areas.size(), 2u);
+  EXPECT_EQ(domain->areas[0].region, 1);
+  EXPECT_EQ(domain->areas[1].region, 4);
   EXPECT_THAT(domain->warnings, IsEmpty());
 }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "engine/domain/domain.h"
 #include "tests/engine/domain/laws.h"
 #include "tests/engine/domain/shapes.h"
@@ -34,7 +36,7 @@ void expect_error(const Pslg& pslg, ErrorCode code, const std::string& field,
 // The region that the triangle around p names; p must lie in the interior of one.
 Region region_at(const Domain& domain, Point p) {
   for (const Domain::Triangle& t : domain.triangles) {
-    const Domain one{domain.vertices, {}, {t}, {}, {}, {}};
+    const Domain one{domain.vertices, {}, {t}, {}, {}, {}, {}};
     if (cover(one, p) == 1) return domain.regions[t.region];
   }
   ADD_FAILURE() << "no triangle at (" << p.x << ", " << p.y << ")";
@@ -168,6 +170,143 @@ TEST(EmptyDomain, WhereThereAreNoSegments) {
   pslg.segments.clear();
   expect_error(pslg, ErrorCode::kEmptyDomain, "domain.segments",
                "no face is enclosed by segments (0 given), so there is nothing to mesh");
+}
+
+Pslg united() {
+  Pslg pslg;
+  pslg.fill = Fill::kUnion;
+  return pslg;
+}
+
+TEST(Areas, ThatOverlapAreUnited) {
+  Pslg pslg = united();
+  add_area_box(pslg, {0, 0}, {4, 3});
+  add_area_box(pslg, {3, 1}, {7, 3});
+  EXPECT_EQ(area(triangulated(pslg)), 12 + 8 - 2);
+  pslg.fill = Fill::kEvenOdd;
+  EXPECT_EQ(area(triangulated(pslg)), 12 + 8 - 4);
+}
+
+TEST(Areas, GivenTwiceAreMeshedOnce) {
+  Pslg pslg = united();
+  add_area_box(pslg, {0, 0}, {4, 3}, {.region = 1});
+  add_area_box(pslg, {0, 0}, {4, 3}, {.region = 2});
+  const Domain domain = triangulated(pslg);
+  EXPECT_EQ(area(domain), 12);
+  EXPECT_EQ(region_at(domain, {1, 2}).id, 1);
+  pslg.fill = Fill::kEvenOdd;
+  expect_error(pslg, ErrorCode::kEmptyDomain, "domain.areas",
+               "the fill and the holes leave nothing of the areas (2 given)");
+}
+
+TEST(Areas, GiveTheRegionOfTheSmallestAndTheLeastBound) {
+  Pslg pslg = united();
+  add_area_box(pslg, {0, 0}, {10, 10}, {.region = 1, .max_area = 0.5});
+  add_area_box(pslg, {2, 2}, {4, 4}, {.region = 2, .max_area = 3});
+  add_area_box(pslg, {1, 1}, {8, 8}, {.max_area = 0.25});  // has no region to give
+  const Domain domain = triangulated(pslg);
+  EXPECT_EQ(area(domain), 100);
+  EXPECT_EQ(region_at(domain, {3, 3.1}).id, 2);
+  EXPECT_EQ(region_at(domain, {3, 3.1}).max_area, 0.25);
+  EXPECT_EQ(region_at(domain, {6, 6.1}).id, 1);
+  EXPECT_EQ(region_at(domain, {6, 6.1}).max_area, 0.25);
+  EXPECT_EQ(region_at(domain, {9, 9.1}).max_area, 0.5);
+}
+
+TEST(Areas, OfAHigherPriorityComeFirst) {
+  Pslg pslg = united();
+  add_area_box(pslg, {0, 0}, {10, 10}, {.region = 1, .priority = 1});
+  add_area_box(pslg, {2, 2}, {4, 4}, {.region = 2});
+  EXPECT_EQ(region_at(triangulated(pslg), {3, 3.1}).id, 1);
+}
+
+TEST(Areas, AreCarvedByAreasThatAreHoles) {
+  Pslg pslg = united();
+  add_area_box(pslg, {0, 0}, {10, 10});
+  add_area_box(pslg, {1, 1}, {3, 3}, {.is_hole = true});
+  add_area_box(pslg, {2, 2}, {4, 4}, {.is_hole = true});
+  add_area_box(pslg, {2.5, 2.5}, {6, 6}, {.region = 3});
+  const Domain domain = triangulated(pslg);
+  EXPECT_EQ(area(domain), 100 - 7);
+  EXPECT_EQ(region_at(domain, {5, 5.1}).id, 3);
+}
+
+TEST(Areas, HaveHolesOfTheirOwn) {
+  Pslg pslg = united();
+  add_box(pslg, {0, 0}, {10, 10});
+  add_box(pslg, {2, 2}, {8, 8});
+  add_area(pslg, 0, {.region = 1});
+  add_area_box(pslg, {3, 3}, {5, 5}, {.region = 2});
+  const Domain domain = triangulated(pslg);
+  EXPECT_EQ(area(domain), 100 - 36 + 4);
+  EXPECT_EQ(region_at(domain, {4, 4.1}).id, 2);
+}
+
+TEST(Areas, ThatALineCutsKeepTheirRegionOnBothSides) {
+  Pslg pslg = united();
+  add_area_box(pslg, {0, 0}, {10, 6}, {.region = 7, .max_area = 0.05});
+  add_segment(pslg, {-1, 2}, {11, 3});
+  const Domain domain = triangulated(pslg);
+  EXPECT_EQ(area(domain), 60);
+  for (const Point p : {Point{5, 1}, Point{5, 5}}) {
+    EXPECT_EQ(region_at(domain, p).id, 7);
+    EXPECT_EQ(region_at(domain, p).max_area, 0.05);
+  }
+}
+
+TEST(Areas, GiveWayToTheMarkersOfLines) {
+  Pslg pslg = united();
+  add_box(pslg, {0, 0}, {2, 2}, 1);
+  add_area(pslg, 0, {});
+  add_segment(pslg, {0, 0}, {1, 0}, 5);
+  std::set<std::int32_t> below;
+  for (const Subsegment& s : triangulated(pslg).subsegments) below.insert(s.marker);
+  EXPECT_EQ(below, (std::set<std::int32_t>{1, 5}));
+}
+
+TEST(Areas, GiveRegionsToAllFacesOfSegments) {
+  Pslg pslg;
+  add_box(pslg, {0, 0}, {2, 2});
+  add_area_box(pslg, {1, 0}, {3, 2}, {.region = 4});
+  const Domain domain = triangulated(pslg);
+  EXPECT_EQ(area(domain), 6);
+  EXPECT_EQ(region_at(domain, {0.5, 0.6}).id, 0);
+  EXPECT_EQ(region_at(domain, {1.5, 1.6}).id, 4);
+}
+
+TEST(Areas, GiveWayToSeeds) {
+  Pslg pslg = united();
+  add_area_box(pslg, {0, 0}, {2, 2}, {.region = 1, .max_area = 0.5});
+  add_area_box(pslg, {1, 0}, {3, 2}, {.region = 2});
+  pslg.regions = {{{0.5, 0.5}, 9, {}}};
+  pslg.holes = {{2.5, 1.1}};
+  const Domain domain = triangulated(pslg);
+  EXPECT_EQ(area(domain), 4);
+  EXPECT_EQ(region_at(domain, {0.5, 0.6}).id, 9);
+  EXPECT_EQ(region_at(domain, {0.5, 0.6}).max_area, 0.5);
+}
+
+TEST(Areas, AreRefusedUnlessTheyClose) {
+  Pslg pslg = united();
+  add_area_box(pslg, {0, 0}, {2, 2});
+  pslg.segments.pop_back();
+  expect_error(pslg, ErrorCode::kBadOption, "domain.areas[0]",
+               "the segments of area 0 do not close to rings: an odd number of them ends at point "
+               "0, (0, 0)");
+  pslg = united();
+  add_area_box(pslg, {0, 0}, {2, 2}, {.max_area = -1});
+  expect_error(pslg, ErrorCode::kBadOption, "domain.areas[0].max_area",
+               "the maximum area is -1; it must be finite and above 0");
+  pslg.areas.clear();
+  expect_error(pslg, ErrorCode::kIndexOutOfRange, "domain.segment_areas[0]",
+               "segment 0 is part of the border of area 0, but there are 0 areas");
+  expect_error(
+      [] {
+        Pslg none = square();
+        none.fill = Fill::kUnion;
+        return none;
+      }(),
+      ErrorCode::kEmptyDomain, "domain.areas", "there are no areas to unite");
 }
 
 TEST(EmptyDomain, WhereSegmentsEncloseNothing) {

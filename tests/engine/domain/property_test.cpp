@@ -237,5 +237,72 @@ TEST(EvenOdd, AgreesWithRaysOnRandomPolygons) {
   }
 }
 
+// Whether an odd number of the area's segments lies between the point and infinity.
+bool is_covered(const Pslg& pslg, std::uint32_t area, Point p) {
+  Pslg border;
+  border.points = pslg.points;
+  for (const Segment& s : pslg.segments)
+    if (s.area == area) border.segments.push_back(s);
+  return odd(border, p);
+}
+
+TEST(Areas, AgreeWithRaysOnRandomPolygons) {
+  for (std::uint32_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE(seed);
+    Generator random(7000 + seed);
+    const int grid = 3 + random.below(6);
+    Pslg pslg;
+    pslg.fill = random.below(3) == 0 ? Fill::kEvenOdd : Fill::kUnion;
+    for (int n = 1 + random.below(6); n > 0; --n) {
+      const std::size_t first = pslg.segments.size();
+      for (int r = 1 + random.below(2); r > 0; --r) {
+        std::vector<Point> ring;
+        for (int i = 3 + random.below(4); i > 0; --i)
+          ring.push_back({double(random.below(grid)), double(random.below(grid))});
+        add_ring(pslg, ring);
+      }
+      Area area{.region = static_cast<std::int32_t>(pslg.areas.size() + 1),
+                .priority = random.below(8),  // mostly one area has the highest
+                .is_hole = random.below(5) == 0};
+      if (random.below(2) == 0) area.max_area = 1 + random.below(5);
+      add_area(pslg, first, area);
+    }
+    const ExecutionContext context;
+    const Result<Domain> domain = triangulate(pslg, context);
+    if (domain) {
+      EXPECT_EQ(broken_law(pslg, *domain), std::nullopt);
+    }
+    for (int i = 0; i < 40; ++i) {
+      const Point p{random.unit() * grid - 0.5, random.unit() * grid - 0.5};
+      std::uint32_t covering = 0;
+      std::int32_t highest = -1;
+      bool is_hole = false;
+      double bound = Region{}.max_area;
+      std::vector<std::int32_t> regions;  // of the highest priority
+      for (std::uint32_t a = 0; a < pslg.areas.size(); ++a) {
+        const Area& area = pslg.areas[a];
+        if (!is_covered(pslg, a, p)) continue;
+        is_hole = is_hole || area.is_hole;
+        if (area.is_hole) continue;
+        ++covering;
+        bound = std::min(bound, area.max_area.value_or(bound));
+        if (area.priority > highest) regions.clear();
+        highest = std::max(highest, area.priority);
+        if (area.priority == highest) regions.push_back(*area.region);
+      }
+      const bool inside =
+          !is_hole && (pslg.fill == Fill::kUnion ? covering > 0 : covering % 2 == 1);
+      ASSERT_EQ(domain ? cover(*domain, p) : 0, inside ? 1 : 0) << p.x << " " << p.y;
+      if (!inside) continue;
+      for (const Domain::Triangle& t : domain->triangles) {
+        if (cover(Domain{domain->vertices, {}, {t}, {}, {}, {}, {}}, p) != 1) continue;
+        const Region& region = domain->regions[t.region];
+        EXPECT_EQ(region.max_area, bound);
+        EXPECT_NE(std::find(regions.begin(), regions.end(), region.id), regions.end());
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace weft

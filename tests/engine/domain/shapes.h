@@ -2,6 +2,7 @@
 // Small PSLGs put together by hand.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -25,6 +26,19 @@ inline void add_ring(Pslg& pslg, const std::vector<Point>& ring, std::int32_t ma
 
 inline void add_box(Pslg& pslg, Point low, Point high, std::int32_t marker = 0) {
   add_ring(pslg, {low, {high.x, low.y}, high, {low.x, high.y}}, marker);
+}
+
+// Makes the segments from number `first` on the border of a new area.
+inline void add_area(Pslg& pslg, std::size_t first, const Area& area) {
+  for (std::size_t i = first; i < pslg.segments.size(); ++i)
+    pslg.segments[i].area = static_cast<std::uint32_t>(pslg.areas.size());
+  pslg.areas.push_back(area);
+}
+
+inline void add_area_box(Pslg& pslg, Point low, Point high, const Area& area = {}) {
+  const std::size_t first = pslg.segments.size();
+  add_box(pslg, low, high);
+  add_area(pslg, first, area);
 }
 
 inline Pslg square(double side = 1) {

@@ -103,6 +103,37 @@ Pslg islands(Random& random) {
   return pslg;
 }
 
+// Polygons that overlap, nest and touch, on a coarse grid, some as holes.
+Pslg overlapping_areas(Random& random) {
+  Pslg pslg;
+  pslg.fill = random.below(4) == 0 ? Fill::kEvenOdd : Fill::kUnion;
+  for (std::uint32_t n = 1 + random.below(7); n > 0; --n) {
+    const std::size_t first = pslg.segments.size();
+    const double x = random.below(7), y = random.below(7);
+    if (random.below(2))
+      add_box(pslg, {x, y}, {x + 1 + random.below(4), y + 1 + random.below(4)});
+    else
+      add_ring(pslg, {{x, y}, {x + 3, y + random.below(3)}, {x + random.below(3), y + 4}});
+    Area area{.priority = static_cast<std::int32_t>(random.below(2)),
+              .is_hole = random.below(6) == 0};
+    if (random.below(3)) area.region = static_cast<std::int32_t>(random.below(4));
+    if (random.below(3) == 0) area.max_area = 0.05 + random.unit();
+    add_area(pslg, first, area);
+  }
+  if (random.below(2)) add_segment(pslg, random.in_box(8), random.in_box(8), 5);
+  return pslg;
+}
+
+// The same, turned: borders that met exactly meet within rounding only.
+Pslg turned_areas(Random& random) {
+  Pslg pslg = overlapping_areas(random);
+  const double angle = random.unit();
+  const double cosine = std::cos(angle);
+  const double sine = std::sin(angle);
+  for (Point& p : pslg.points) p = {cosine * p.x - sine * p.y, sine * p.x + cosine * p.y};
+  return pslg;
+}
+
 constexpr Kind kKinds[] = {{"DirtyGrid", dirty_grid},
                            {"TurnedGrid", turned_grid},
                            {"Star", star},
@@ -110,7 +141,9 @@ constexpr Kind kKinds[] = {{"DirtyGrid", dirty_grid},
                            {"TouchingHoles", touching_holes},
                            {"Clusters", clusters},
                            {"TangledRing", tangled_ring},
-                           {"Islands", islands}};
+                           {"Islands", islands},
+                           {"OverlappingAreas", overlapping_areas},
+                           {"TurnedAreas", turned_areas}};
 
 }  // namespace
 

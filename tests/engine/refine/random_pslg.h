@@ -31,7 +31,7 @@ struct Kind {
 };
 void PrintTo(const Kind& kind, std::ostream* out);
 
-// All of them: dirty grids, stars, wedges, holes that touch, clusters, tangles, islands.
+// All of them: dirty grids, stars, wedges, holes that touch, clusters, tangles, islands, areas.
 std::span<const Kind> kinds();
 
 }  // namespace weft

@@ -20,7 +20,7 @@ from ._target import TLS
 from ._version import __version__
 from ._wire import Chunk
 from .client import Client, MeshStream
-from .domain import Domain, DomainLike, Region
+from .domain import Area, Domain, DomainLike, Region
 from .errors import (AlreadyExists, BoundsNotMet, Cancelled, DamagedStream, DeadlineExceeded,
                      DomainError, FailedPrecondition, FieldViolation, InvalidRequest, LimitExceeded,
                      LocalServerError, MeshFileError, MissingPackage, NotFound, ServerError,
@@ -34,8 +34,8 @@ from .results import (Accepted, Job, JobState, Merging, Progress, ServerInfo, Se
 from .size import Raster, Size
 
 __all__ = [
-    "Accepted", "AlreadyExists", "BoundsNotMet", "Cancelled", "Chunk", "Client", "DamagedStream",
-    "DeadlineExceeded", "Domain", "DomainError", "DomainLike", "FailedPrecondition", "Field",
+    "Accepted", "AlreadyExists", "Area", "BoundsNotMet", "Cancelled", "Chunk", "Client",
+    "DamagedStream", "DeadlineExceeded", "Domain", "DomainError", "DomainLike", "FailedPrecondition", "Field",
     "FieldViolation", "InvalidRequest", "Job", "JobState", "LimitExceeded", "LocalServer",
     "LocalServerError", "Merging", "Mesh", "MeshFileError", "MeshOptions", "MeshStream",
     "MissingPackage", "NotFound", "Progress", "Quality", "Raster", "Region", "ServerError",

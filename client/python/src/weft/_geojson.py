@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A domain from a GeoJSON object, by the rules of client/formats/domains/geojson.h: the same file
 gives the same request, and so the same mesh, as on the command line. A ring that crosses itself is
-taken as it is, inside by the even-odd rule.
+taken as it is, inside by the even-odd rule of its polygon.
 """
 
 from __future__ import annotations
@@ -28,10 +28,9 @@ class _Reader:
         self.points: list[Points] = []
         self.segments: list[npt.NDArray[np.int64]] = []
         self.markers: list[Label] = []  # of each of `segments`
-        self.lines: list[int] = []  # of `segments`, those that are no rings
-        # Those that ask for a region: their segments, its label, their properties, their path.
-        self.polygons: list[tuple[slice, Label, dict[str, Any], str]] = []
-        self.even_odd = False
+        self.borders: list[int] = []  # of each of `segments`, 0 or 1 + its polygon
+        # Of each polygon its region's label, if it asks for one, and its properties.
+        self.polygons: list[tuple[Label | None, dict[str, Any]]] = []
         self.count = 0
 
     def read(self, json: Any, path: str, properties: dict[str, Any]) -> None:
@@ -75,11 +74,9 @@ class _Reader:
         points = _positions(positions, path)
         if len(points) < 2:
             raise DomainError(f"{path} is a line with fewer than 2 distinct points")
-        self.lines.append(len(self.segments))
-        self.chain(points, False, properties)
+        self.chain(points, 0, properties)
 
     def polygon(self, rings: Any, path: str, properties: dict[str, Any]) -> None:
-        first = len(self.segments)
         for i, ring in enumerate(rings):
             points = _positions(ring, f"{path}[{i}]")
             if len(ring) < 4:
@@ -89,56 +86,54 @@ class _Reader:
                                   f"{tuple(points[0])} and ends at {tuple(points[-1])}")
             if len(points) < 4:
                 raise DomainError(f"{path}[{i}] is a ring with fewer than 3 distinct points")
-            self.chain(points[:-1], True, properties)
-        self.even_odd = True
-        if {"region", "region_name", "max_area", "max_edge"} & properties.keys():
-            self.polygons.append((slice(first, len(self.segments)), self.region_labels.of(properties),
-                                  properties, path))
+            self.chain(points[:-1], len(self.polygons) + 1, properties)
+        if len(rings):
+            asks = {"region", "region_name"} & properties.keys()
+            self.polygons.append((self.region_labels.of(properties) if asks else None, properties))
 
-    def chain(self, points: Points, closed: bool, properties: dict[str, Any]) -> None:
+    def chain(self, points: Points, area: int, properties: dict[str, Any]) -> None:
+        """A ring of the polygon that 1 less than `area` numbers, or a line if it is 0."""
         numbers = np.arange(self.count, self.count + len(points))
         segments = np.column_stack([numbers, np.roll(numbers, -1)])
         self.points.append(points)
         self.count += len(points)
-        self.segments.append(segments if closed else segments[:-1])
+        self.segments.append(segments if area else segments[:-1])
+        self.borders.append(area)
         self.markers.append(self.marker_labels.of(properties))
 
-    def domain(self, region: Callable[..., Any]) -> dict[str, Any]:
+    def domain(self, area: Callable[..., Any]) -> dict[str, Any]:
         """What Domain is made of."""
         if not self.points:
             raise DomainError("it holds no geometry")
-        points = np.concatenate(self.points)
-        every = np.concatenate([*self.segments, np.zeros((0, 2), np.int64)])
         marker_of, marker_names = self.marker_labels.numbers()
         region_of, region_names = self.region_labels.numbers()
-        regions = []
-        for polygon, label, properties, path in self.polygons:
-            seed = _interior_point(points, np.concatenate(self.segments[polygon]), every)
-            if seed is None:
-                raise DomainError(f"{path} is a polygon with a region but without area")
-            regions.append(region(*seed, region_of[label], properties.get("max_area"),
-                                  properties.get("max_edge")))
-        # Two coincident segments leave the parity of even-odd filling alone.
-        twice = self.lines if self.even_odd else []
+        lengths = [len(segments) for segments in self.segments]
         return {
-            "points": points,
-            "segments": np.concatenate([every, *(self.segments[i] for i in twice)]),
-            "markers": np.concatenate([np.zeros(0, np.int32), *(
-                np.full(len(self.segments[i]), marker_of[self.markers[i]], np.int32)
-                for i in (*range(len(self.segments)), *twice))]),
-            "regions": regions,
+            "points": np.concatenate(self.points),
+            "segments": np.concatenate([*self.segments, np.zeros((0, 2), np.int64)]),
+            "markers": np.repeat([marker_of[label] for label in self.markers], lengths).astype(np.int32),
+            "areas": [area(None if label is None else region_of[label], _bound(properties))
+                      for label, properties in self.polygons],
+            "segment_areas": np.repeat(self.borders, lengths).astype(np.uint32),
             "marker_names": marker_names,
             "region_names": region_names,
-            "fill": "even-odd" if self.even_odd else "seeds",
+            "fill": "union" if self.polygons else "seeds",
         }
 
 
-def read(json: Any, region: Callable[..., Any], file: str = "") -> dict[str, Any]:
-    """The arguments of Domain; `region` makes a Region of x, y, id, max_area and
-    max_edge; `file`: what warnings name."""
+def read(json: Any, area: Callable[..., Any], file: str = "") -> dict[str, Any]:
+    """The arguments of Domain; `area` makes an Area of a region and a bound; `file`: what warnings name."""
     reader = _Reader(file)
     reader.read(json, "", {})
-    return reader.domain(region)
+    return reader.domain(area)
+
+
+def _bound(properties: dict[str, Any]) -> float | None:
+    """That max_area and max_edge make together."""
+    bounds = [properties["max_area"]] if "max_area" in properties else []
+    if "max_edge" in properties:
+        bounds.append(0.4330127018922193 * properties["max_edge"] * properties["max_edge"])
+    return min(bounds, default=None)
 
 
 def _properties(properties: Any, path: str) -> dict[str, Any]:
@@ -188,36 +183,3 @@ def _positions(positions: Any, path: str) -> Points:
     new = np.concatenate([[True], (points[1:] != points[:-1]).any(axis=1)])
     distinct: Points = points[new]
     return distinct
-
-
-def _interior_point(points: Points, own: npt.NDArray[np.int64],
-                    every: npt.NDArray[np.int64]) -> tuple[float, float] | None:
-    """A point inside the polygon of the segments `own`, away from all segments: on a line through
-    the widest gap between ordinates, the middle of the widest piece inside."""
-    ordinates = np.unique(points[own, 1])
-    if len(ordinates) < 2:
-        return None
-    gap = int(np.argmax(np.diff(ordinates)))
-    low, high = ordinates[gap], ordinates[gap + 1]
-    # Vertices of others may lie in the gap: take the widest of what they leave.
-    between = points[every, 1]
-    stops = np.unique(np.concatenate([[low, high], between[(between > low) & (between < high)]]))
-    gap = int(np.argmax(np.diff(stops)))
-    y = stops[gap] / 2 + stops[gap + 1] / 2
-
-    def crossings(segments: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
-        a, b = points[segments[:, 0]], points[segments[:, 1]]
-        met = (a[:, 1] > y) != (b[:, 1] > y)
-        a, b = a[met], b[met]
-        crossed: npt.NDArray[np.float64] = np.sort(
-            a[:, 0] + (y - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0]))
-        return crossed
-
-    xs = crossings(every)
-    left, right = xs[:-1], xs[1:]
-    inside = np.searchsorted(crossings(own), left, side="right") % 2 == 1
-    widths = np.where(inside, right - left, 0)
-    if not len(widths) or widths.max() <= 0:
-        return None
-    widest = int(np.argmax(widths))
-    return float(left[widest] / 2 + right[widest] / 2), float(y)

@@ -17,7 +17,7 @@ from ._projection import Projection
 from ._raster_window import MOST_VALUES
 from ._receiver import MeshReceiver
 from ._warning import keeping_warnings, warn
-from .domain import Domain, DomainLike, as_domain
+from .domain import _FILLS, Domain, DomainLike, as_domain
 from .errors import DomainError
 from .fields import Field, FileField, RasterField, check_is_field
 from .size import Raster, Size
@@ -86,7 +86,7 @@ class MeshOptions(TypedDict, total=False):
 _Request = _protocol.message("weft.v1.GenerateMeshRequest")
 _PLACEMENTS = {"lattice": 1, "circumcentre": 2}
 _EDGE = 2
-_FILLS = {"seeds": 1, "even-odd": 2}
+_FILL_NUMBERS = {name: number for number, name in _FILLS.items()}
 
 
 def projection(domain: Domain, options: MeshOptions) -> Projection | None:
@@ -179,9 +179,14 @@ def _fill_domain(domain: Domain, message: Any) -> None:
                             max_edge=region.max_edge)
     for table, names in ((message.marker_names, domain.marker_names),
                          (message.region_names, domain.region_names)):
-        for number, name in names.items():
+        for number, name in sorted(names.items()):
             table.add(id=number, name=name)
-    message.fill = _FILLS[domain.fill]
+    message.fill = _FILL_NUMBERS[domain.fill]
+    for area in domain.areas:
+        message.areas.add(region=area.region, max_area=area.max_area, max_edge=area.max_edge,
+                          priority=area.priority, hole=area.hole)
+    if domain.segment_areas.any():
+        message.segment_areas.extend(domain.segment_areas.tolist())
 
 
 def _fill_fields(fields: Mapping[str, Field], domain: Domain, projected: Projection | None,

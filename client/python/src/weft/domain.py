@@ -18,11 +18,12 @@ from typing import Any, Literal, Union
 import numpy as np
 import numpy.typing as npt
 
-from . import _convert, _geojson, _names, _poly
+from . import _convert, _geojson, _names, _poly, _protocol
 from ._warning import warn
 from .errors import DomainError
 
-Fill = Literal["seeds", "even-odd"]
+Fill = Literal["seeds", "even-odd", "union"]
+_FILLS: dict[int, Fill] = {1: "seeds", 2: "even-odd", 3: "union"}  # of weft.v1.Fill
 
 
 @dataclasses.dataclass(frozen=True)
@@ -42,6 +43,24 @@ class Region:
     max_edge: float | None = None
 
 
+@dataclasses.dataclass(frozen=True)
+class Area:
+    """A polygon with holes, drawn by the segments that name it in `Domain.segment_areas`; areas may overlap,
+    nest and touch.
+
+    `region`: carried by the triangles that it decides: of the areas that cover a triangle and have a
+    region, the one of the highest `priority`; of several, the smallest. `max_area`: bound on the area of
+    the triangles that it covers, in squared units, on top of the size and of other areas; `max_edge`: the
+    same by the length of their edges; None: no bound. `hole`: it carves away what it covers, nothing else.
+    """
+
+    region: int | None = None
+    max_area: float | None = None
+    max_edge: float | None = None
+    priority: int = 0
+    hole: bool = False
+
+
 @dataclasses.dataclass(frozen=True, eq=False)
 class Domain:
     """A planar straight-line graph.
@@ -52,7 +71,9 @@ class Domain:
     `holes`: (h, 2) float64, seeds: the face around each is carved away.
     `regions`: seeds of faces with an id and an area bound of their own.
     `fill`: "seeds" meshes every bounded face that no hole floods; "even-odd" the points inside an
-    odd number of rings, as polygons mean it.
+    odd number of rings, or of areas if there are any; "union" what an area covers.
+    `areas`: polygons; `segment_areas`: (k,) uint32, for each segment 0, or 1 + the index of the area whose
+    border it is part of; the segments of an area close to rings. Default: none.
     `marker_names`, `region_names`: what markers and regions are called, by number:
     `{2: "inlet"}`; each name once, UTF-8 of 1 to 255 bytes without control characters. The mesh
     comes back with them.
@@ -75,6 +96,8 @@ class Domain:
     region_values: Mapping[int, float] = dataclasses.field(default_factory=dict)
     marker_names: Mapping[int, str] = dataclasses.field(default_factory=dict)
     region_names: Mapping[int, str] = dataclasses.field(default_factory=dict)
+    areas: Sequence[Area] = ()
+    segment_areas: npt.NDArray[np.uint32] = dataclasses.field(default_factory=lambda: np.zeros(0, np.uint32))
 
     def __post_init__(self) -> None:
         points = _floats("points", self.points)
@@ -87,10 +110,19 @@ class Domain:
         if len(segments) and not (0 <= segments.min() and segments.max() < len(points)):
             bad = np.argwhere((segments < 0) | (segments >= len(points)))[0]
             raise DomainError(f"segments[{bad[0]}] names point {segments[tuple(bad)]} of {len(points)}")
-        if self.fill not in ("seeds", "even-odd"):
-            raise DomainError(f"fill is {self.fill!r}; there are 'seeds' and 'even-odd'")
+        borders = _integers("segment_areas", self.segment_areas, np.uint32).reshape(-1)
+        if not len(borders):
+            borders = np.zeros(len(segments), np.uint32)
+        if len(borders) != len(segments):
+            raise DomainError(f"segment_areas: {len(borders)} for {len(segments)} segments")
+        if len(borders) and borders.max() > len(self.areas):
+            bad = int(np.argmax(borders))
+            raise DomainError(f"segment_areas[{bad}] is {borders[bad]}, there are {len(self.areas)} areas")
+        if self.fill not in ("seeds", "even-odd", "union"):
+            raise DomainError(f"fill is {self.fill!r}; there are 'seeds', 'even-odd' and 'union'")
         for name, value in (("points", points), ("segments", segments), ("markers", markers),
                             ("holes", _floats("holes", self.holes)), ("regions", tuple(self.regions)),
+                            ("areas", tuple(self.areas)), ("segment_areas", borders),
                             ("marker_names", _names.checked("marker_names", self.marker_names)),
                             ("region_names", _names.checked("region_names", self.region_names))):
             object.__setattr__(self, name, value)
@@ -104,7 +136,7 @@ class Domain:
 
     @staticmethod
     def rings(*rings: npt.ArrayLike) -> Domain:
-        """A polygon from arrays (n, 2): what lies inside an odd number of the rings.
+        """A polygon from arrays (n, 2): an area, what lies inside an odd number of the rings.
 
         A ring's last point leads to its first, and may repeat it.
         """
@@ -115,12 +147,12 @@ class Domain:
     def geojson(json: dict[str, Any]) -> Domain:
         """From a GeoJSON object (RFC 7946), as `json.load` gives it.
 
-        With polygons, the points inside an odd number of rings are meshed, and lines become edges;
-        of lines alone, every bounded face. Points become vertices. The members `marker` and `region`
+        With polygons, what any of them covers is meshed, each an area, and lines become edges; of lines
+        alone, every bounded face. Points become vertices. The members `marker` and `region`
         of a feature's properties are read, integers or names, `marker_name` and `region_name`
         beside integers, `max_area` and `max_edge`.
         """
-        return Domain(**_geojson.read(json, Region))
+        return Domain(**_geojson.read(json, Area))
 
     @staticmethod
     def read(path: str | os.PathLike[str]) -> Domain:
@@ -138,18 +170,18 @@ class Domain:
             if suffix == ".poly":
                 return Domain(**_poly.read(path, Region))
             if suffix in (".geojson", ".json"):
-                return Domain(**_geojson.read(json.loads(path.read_text()), Region, str(path)))
+                return Domain(**_geojson.read(json.loads(path.read_text()), Area, str(path)))
         except ValueError as error:
             raise DomainError(f"{path}: {error}") from None
         with tempfile.TemporaryDirectory(prefix="weft-") as folder:
-            poly = pathlib.Path(folder) / "domain.poly"
+            message = pathlib.Path(folder) / "domain.pb"
             try:
-                warned = _convert.convert(path, poly, error=DomainError)
+                warned = _convert.convert(path, message, error=DomainError)
             except _convert.Refused as refused:
                 raise DomainError(str(refused)) from None
             for sentence in warned:
                 warn(sentence)
-            return Domain(**_poly.read(poly, Region))
+            return _of_message(message.read_bytes())
 
 
 DomainLike = Union[Domain, str, "os.PathLike[str]", dict[str, Any], npt.NDArray[Any],
@@ -176,6 +208,26 @@ def as_domain(domain: DomainLike) -> Domain:
     raise DomainError(f"a {type(domain).__name__} is no domain; see weft.DomainLike")
 
 
+def _of_message(message: bytes) -> Domain:
+    """From a weft.v1.Domain."""
+    sent = _protocol.message("weft.v1.Domain").FromString(message)
+    return Domain(
+        np.array(sent.points, np.float64).reshape(-1, 2), np.array(sent.segments, np.int64).reshape(-1, 2),
+        markers=np.array(sent.segment_markers, np.int32),
+        holes=np.array(sent.holes, np.float64).reshape(-1, 2),
+        regions=[Region(r.x, r.y, r.id, _given(r, "max_area"), _given(r, "max_edge")) for r in sent.regions],
+        areas=[Area(_given(a, "region"), _given(a, "max_area"), _given(a, "max_edge"), a.priority, a.hole)
+               for a in sent.areas],
+        segment_areas=np.array(sent.segment_areas, np.uint32),
+        fill=_FILLS[sent.fill],
+        marker_names={name.id: name.name for name in sent.marker_names},
+        region_names={name.id: name.name for name in sent.region_names})
+
+
+def _given(message: Any, field: str) -> Any:
+    return getattr(message, field) if message.HasField(field) else None
+
+
 def _closed(index: int, ring: npt.ArrayLike) -> npt.NDArray[np.float64]:
     points = _floats(f"ring {index}", ring)
     if len(points) and (points[0] != points[-1]).any():
@@ -199,7 +251,7 @@ def _floats(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
     return array
 
 
-def _integers(name: str, values: npt.ArrayLike, dtype: type[np.int32]) -> npt.NDArray[np.int32]:
+def _integers(name: str, values: npt.ArrayLike, dtype: type[Any]) -> npt.NDArray[Any]:
     array = np.asarray(values)
     converted = array.astype(dtype) if array.dtype != object else None
     if converted is None or (array.size and not np.array_equal(converted, array)):

@@ -26,16 +26,21 @@ class GeoJson : public ::testing::Test {
   TempFolder folder_;
 };
 
-TEST_F(GeoJson, ReadsAPolygonWithAHoleAsEvenOddRings) {
+TEST_F(GeoJson, ReadsAPolygonWithAHoleAsAnArea) {
   const auto domain = read(R"({"type": "Polygon", "coordinates": [
       [[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]], [[1, 1], [1, 2], [2, 2, 99], [1, 1]]]})");
   ASSERT_TRUE(domain) << domain.error().message;
   EXPECT_EQ(domain->points.size(), 7u);
   EXPECT_EQ(domain->points[6], (Point{2, 2}));
-  EXPECT_EQ(domain->segments,
-            (std::vector<Domain::Segment>{
-                {0, 1, 0}, {1, 2, 0}, {2, 3, 0}, {3, 0, 0}, {4, 5, 0}, {5, 6, 0}, {6, 4, 0}}));
-  EXPECT_EQ(domain->fill, Domain::Fill::kEvenOdd);
+  EXPECT_EQ(domain->segments, (std::vector<Domain::Segment>{{0, 1, 0, 1},
+                                                            {1, 2, 0, 1},
+                                                            {2, 3, 0, 1},
+                                                            {3, 0, 0, 1},
+                                                            {4, 5, 0, 1},
+                                                            {5, 6, 0, 1},
+                                                            {6, 4, 0, 1}}));
+  EXPECT_EQ(domain->fill, Domain::Fill::kUnion);
+  EXPECT_EQ(domain->areas, std::vector<Domain::Area>(1));
   EXPECT_TRUE(domain->holes.empty());
 }
 
@@ -54,37 +59,34 @@ TEST_F(GeoJson, MarksTheSegmentsOfAFeature) {
   EXPECT_TRUE(domain->regions.empty());
 }
 
-TEST_F(GeoJson, SendsLinesBesidePolygonsTwiceSoThatParityStays) {
+TEST_F(GeoJson, KeepsLinesBesidePolygonsOutOfTheirBorders) {
   const auto domain = read(R"({"type": "GeometryCollection", "geometries": [
       {"type": "LineString", "coordinates": [[1, 1], [3, 3]]},
       {"type": "Polygon", "coordinates": [[[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]]]},
       {"type": "MultiPoint", "coordinates": [[2, 1], [3, 1]]}]})");
   ASSERT_TRUE(domain) << domain.error().message;
-  ASSERT_EQ(domain->segments.size(), 6u);
-  EXPECT_EQ(domain->segments[0], domain->segments[5]);
-  EXPECT_EQ(domain->fill, Domain::Fill::kEvenOdd);
+  ASSERT_EQ(domain->segments.size(), 5u);
+  EXPECT_EQ(domain->segments[0].area, 0u);
+  EXPECT_EQ(domain->segments[4].area, 1u);
+  EXPECT_EQ(domain->fill, Domain::Fill::kUnion);
   EXPECT_EQ(domain->points.size(), 8u);
 }
 
-TEST_F(GeoJson, SeedsTheRegionOfEachPolygonInsideOfIt) {
-  // A U, so that neither the mean of its points nor the middle of its box is inside; a line passes
-  // through the middle of its base.
+TEST_F(GeoJson, MakesAnAreaOfEachPolygon) {
   const auto domain = read(R"({"type": "FeatureCollection", "features": [
       {"type": "Feature", "properties": {"region": 3, "max_area": 0.5}, "geometry": {"type":
         "MultiPolygon", "coordinates": [
           [[[0, 0], [9, 0], [9, 9], [8, 9], [8, 1], [1, 1], [1, 9], [0, 9], [0, 0]]],
           [[[20, 0], [30, 0], [25, 8], [20, 0]]]]}},
-      {"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coordinates":
-        [[0.5, 5], [0.5, 0.5], [8.5, 0.5]]}}]})");
+      {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": []}},
+      {"type": "Feature", "properties": {"max_area": 2}, "geometry": {"type": "Polygon",
+        "coordinates": [[[0, 0], [9, 0], [9, 9], [0, 0]]]}}]})");
   ASSERT_TRUE(domain) << domain.error().message;
-  ASSERT_EQ(domain->regions.size(), 2u);
-  const Point u = domain->regions[0].at;
-  EXPECT_TRUE((u.x > 0 && u.x < 1) || (u.x > 8 && u.x < 9) || (u.y > 0 && u.y < 1));
-  EXPECT_FALSE(u.x == 0.5 && u.y <= 5);
-  EXPECT_NE(u.y, 0.5);
-  EXPECT_GT(domain->regions[1].at.x, 20);
-  EXPECT_EQ(domain->regions[1].id, 3);
-  EXPECT_EQ(domain->regions[1].max_area, 0.5);
+  EXPECT_TRUE(domain->regions.empty());
+  EXPECT_EQ(domain->areas, (std::vector<Domain::Area>{{3, 0.5}, {3, 0.5}, {std::nullopt, 2}}));
+  EXPECT_EQ(domain->segments.back().area, 3u);
+  EXPECT_TRUE(
+      domain->area_places.locate(1).ends_with("features[0].geometry.coordinates[1], area 0"));
 }
 
 TEST_F(GeoJson, BoundsTheAreasOfARegionByALengthOfEdgesToo) {
@@ -92,7 +94,7 @@ TEST_F(GeoJson, BoundsTheAreasOfARegionByALengthOfEdgesToo) {
     const auto domain = read(R"({"type": "Feature", "properties": )" + properties +
                              R"(, "geometry": {"type": "Polygon",
                              "coordinates": [[[0, 0], [9, 0], [9, 9], [0, 0]]]}})");
-    return domain && !domain->regions.empty() ? domain->regions[0].max_area : std::nullopt;
+    return domain && !domain->areas.empty() ? domain->areas[0].max_area : std::nullopt;
   };
   EXPECT_NEAR(bound(R"({"max_edge": 2})").value(), std::sqrt(3), 1e-12);
   EXPECT_NEAR(bound(R"({"max_edge": 2, "max_area": 9})").value(), std::sqrt(3), 1e-12);
@@ -128,7 +130,7 @@ TEST_F(GeoJson, WarnsOfARingThatCrossesItselfAndNamesTheEdges) {
       {"type": "Polygon", "coordinates": [[[0, 0], [4, 4], [4, 0], [0, 4], [0, 0]]]}})");
   ASSERT_TRUE(domain) << domain.error().message;
   EXPECT_EQ(domain->segments.size(), 4u);
-  EXPECT_EQ(domain->regions.size(), 1u);
+  EXPECT_EQ(domain->areas.size(), 1u);
   ASSERT_EQ(domain->warnings.size(), 1u);
   EXPECT_TRUE(domain->warnings[0].ends_with(
       "map.geojson: geometry.coordinates[0] is a ring that crosses itself: edge 0 from (0, 0) to "

@@ -100,12 +100,12 @@ TEST_F(OgrFile, BringsPolygonsLinesPointsAndTheirAttributes) {
                              {"MULTIPOLYGON(EMPTY)"}}}});
   const auto domain = read_domain(path);
   ASSERT_TRUE(domain) << domain.error().message;
-  EXPECT_EQ(domain->fill, Domain::Fill::kEvenOdd);
+  EXPECT_EQ(domain->fill, Domain::Fill::kUnion);
   EXPECT_EQ(domain->points.size(), 4u + 3 + 2 + 3);
   EXPECT_EQ(markers(domain), (std::vector<std::int32_t>{3, 3, 3, 3, 3, 3, 3, 4, 4}));
-  ASSERT_EQ(domain->regions.size(), 1u);
-  EXPECT_EQ(domain->regions[0].id, 7);
-  EXPECT_EQ(domain->regions[0].max_area, 2);
+  ASSERT_EQ(domain->areas.size(), 1u);
+  EXPECT_EQ(domain->areas[0].region, 7);
+  EXPECT_EQ(domain->areas[0].max_area, 2);
   EXPECT_EQ(domain->system->name, "WGS 84 / UTM zone 18N");
   EXPECT_FALSE(domain->system->geographic);
   EXPECT_TRUE(domain->system->definition.starts_with("PROJCRS["));
