@@ -159,7 +159,7 @@ bool is_raster_path(const std::filesystem::path& path) {
 }
 
 Result<Raster> read_raster(const std::filesystem::path& path, RasterValues wanted) {
-  const auto file = read_file(path, kMaxFileBytes);
+  const auto file = read_text_file(path, kMaxFileBytes);
   if (!file) return tl::unexpected(file.error());
   return Reader(path.string(), file->text(), wanted).read();
 }
