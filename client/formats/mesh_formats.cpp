@@ -81,6 +81,7 @@ constexpr MeshFormat kFormats[] = {
     {".neigh", kFirstOrder, one_file<write_triangle_neighbours>, nullptr},
     {".14", kFirstOrder, write_adcirc_mesh, read_adcirc, read_adcirc_values, CarriesValues::kBed},
     {".grd", kFirstOrder, write_adcirc_mesh, read_adcirc, read_adcirc_values, CarriesValues::kBed},
+    {".gr3", kFirstOrder, write_adcirc_mesh, read_adcirc, read_adcirc_values, CarriesValues::kBed},
     {".2dm", kFirstOrder, one_file<write_2dm>, read_2dm, nullptr, CarriesValues::kBed, kNoParts,
      quotable_name, quotable_name, kBoundaryOnly},
     {".nc", kFirstOrder, one_file<write_ugrid>, read_ugrid, nullptr, CarriesValues::kAll, kParts,
