@@ -6,6 +6,7 @@
 //   - With lines alone every bounded face is meshed.
 import { FileError } from "./file-error";
 import { interiorPoint } from "./interior-point";
+import { LeftOut } from "./left-out";
 import { Labels } from "./names";
 import type { PlanarDomain, Point, RegionSeed } from "./planar-domain";
 
@@ -21,6 +22,15 @@ export const noProperties: Properties = {
   marker: 0, region: undefined, maxArea: undefined, markerName: "", regionName: "",
 };
 
+const same = (a: Point, b: Point) => a[0] === b[0] && a[1] === b[1];
+
+// Whether all positions are on one line.
+function isFlat(ring: readonly Point[]): boolean {
+  const [x, y] = ring[0] ?? [0, 0];
+  const [otherX, otherY] = ring.find((position) => !same(position, ring[0])) ?? [x, y];
+  return ring.every((at) => (otherX - x) * (at[1] - y) === (otherY - y) * (at[0] - x));
+}
+
 export class GeometryBuilder {
   private readonly points: number[] = [];
   private readonly segments: number[] = [];
@@ -30,37 +40,47 @@ export class GeometryBuilder {
   private readonly lines: { from: number; to: number }[] = []; // of segments
   private readonly regions: RegionSeed[] = []; // their ids are labels
   private filled = false;
+  readonly leftOut = new LeftOut();
 
   point(at: Point): void {
     this.points.push(...at);
   }
 
-  line(positions: readonly Point[], properties: Properties): void {
+  line(positions: readonly Point[], place: string, properties: Properties): void {
+    if (positions.every((position) => same(position, positions[0]))) {
+      this.markerLabels.of(properties.marker, properties.markerName); // as the command line numbers names
+      return this.leftOut.add("line", place);
+    }
     const from = this.markers.length;
     this.chain(positions, false, properties);
     this.lines.push({ from, to: this.markers.length });
   }
 
-  // Each ring ends in its first position.
+  // Each ring ends in its first position. The holes of a ring that is left out are left out, too.
   polygon(rings: readonly (readonly Point[])[], place: string, properties: Properties): void {
-    rings.forEach((ring, i) => {
-      const last = ring.at(-1);
-      if (!last || last[0] !== ring[0][0] || last[1] !== ring[0][1])
-        throw new FileError(`${place}[${i}]`, "is a ring that is not closed");
-      if (new Set(ring.map(([x, y]) => `${x} ${y}`)).size < 3)
-        throw new FileError(`${place}[${i}]`, "is a ring of fewer than 3 points");
+    const kept: (readonly Point[])[] = [];
+    for (const [i, ring] of rings.entries()) {
+      if (isFlat(ring)) {
+        this.markerLabels.of(properties.marker, properties.markerName);
+        this.leftOut.add("ring", `${place}[${i}]`);
+        if (i === 0) return;
+        continue;
+      }
+      if (!same(ring[0], ring[ring.length - 1])) throw new FileError(`${place}[${i}]`, "is a ring that is not closed");
       this.chain(ring.slice(0, -1), true, properties);
-    });
-    if (rings.length > 0) this.filled = true;
+      kept.push(ring);
+    }
+    if (kept.length > 0) this.filled = true;
     const { region, regionName, maxArea } = properties;
-    if (rings.length === 0 || (region === undefined && !regionName && maxArea === undefined)) return;
-    const seed = interiorPoint(rings);
-    if (!seed) throw new FileError(place, "is a polygon with a region but without area");
+    if (kept.length === 0 || (region === undefined && !regionName && maxArea === undefined)) return;
+    const seed = interiorPoint(kept);
+    if (!seed) return this.leftOut.add("region", place);
     this.regions.push({ x: seed[0], y: seed[1], id: this.regionLabels.of(region ?? 0, regionName), maxArea });
   }
 
   finish(name: string): PlanarDomain {
-    if (this.points.length === 0) throw new FileError("", "the file holds no geometry");
+    const leftOut = this.leftOut.sentence();
+    if (this.points.length === 0) throw new FileError("", `the file holds no geometry${leftOut && `: ${leftOut}`}`);
     if (this.filled)
       for (const { from, to } of this.lines)
         for (let i = from; i < to; ++i) this.segment(this.segments[2 * i], this.segments[2 * i + 1], this.markers[i]);
@@ -77,7 +97,7 @@ export class GeometryBuilder {
       evenOdd: this.filled,
       markerNames: ofMarkers.names,
       regionNames: ofRegions.names,
-      warnings: [...ofMarkers.warnings, ...ofRegions.warnings],
+      warnings: [...(leftOut ? [leftOut] : []), ...ofMarkers.warnings, ...ofRegions.warnings],
     };
   }
 
