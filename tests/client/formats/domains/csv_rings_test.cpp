@@ -191,7 +191,7 @@ TEST_F(CsvRings, MayBeGeometriesInAColumnOfTheirOwn) {
            ",geometry,marker,region,max_area,note\n0,\"" + polygon + "\",3.0,7,5D-1,\"a\nb\"\n",
        }) {
     const Domain domain = read(text);
-    EXPECT_EQ(domain.points, kRectangle) << text;
+    ASSERT_EQ(domain.points, kRectangle) << text;
     EXPECT_EQ(domain.segments[0].marker, 3) << text;
     ASSERT_EQ(domain.regions.size(), 1u) << text;
     EXPECT_EQ(domain.regions[0].id, 7) << text;

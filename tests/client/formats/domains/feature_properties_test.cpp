@@ -53,7 +53,10 @@ TEST(FeatureProperties, OfTextAreNothingIfTheyAreBlank) {
 }
 
 TEST(FeatureProperties, AreRefusedIfTheyCannotBeMeant) {
-  const auto refusal = [](const Texts& texts) { return of_texts(texts).error().message; };
+  const auto refusal = [](const Texts& texts) {
+    const auto properties = of_texts(texts);
+    return properties ? "they were read" : properties.error().message;
+  };
   EXPECT_EQ(refusal({{"marker", "1.5"}}), "d: field marker is 1.5, not an integer of 32 bits");
   EXPECT_EQ(refusal({{"region", "4294967296"}}),
             "d: field region is 4294967296, not an integer of 32 bits");
