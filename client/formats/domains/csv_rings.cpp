@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "client/base/text.h"
+#include "client/base/words.h"
 #include "client/formats/domains/feature_properties.h"
 #include "client/formats/domains/geometry_builder.h"
 #include "client/formats/domains/ring_breaks.h"
@@ -26,49 +27,36 @@ using Record = DelimitedText::Record;
 using Field = DelimitedText::Field;
 using Separator = DelimitedText::Separator;
 
-enum class Column { kX, kY, kRing, kMarker, kGeometry, kOther };
+// Of columns of geometries in well-known text.
+constexpr std::string_view kGeometryNames[] = {"wkt", "wkt_geom", "geom", "geometry", "the_geom"};
 
-std::string lower(std::string_view word) {
-  std::string text(word);
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return text;
-}
+enum class Column { kX, kY, kRing, kMarker, kGeometry, kOther };
 
 Column column_of(std::string_view name) {
   struct Name {
     std::string_view text;
     Column column;
   };
-  static constexpr Name kNames[] = {{"x", Column::kX},
-                                    {"lon", Column::kX},
-                                    {"long", Column::kX},
-                                    {"longitude", Column::kX},
-                                    {"easting", Column::kX},
-                                    {"point_x", Column::kX},
-                                    {"y", Column::kY},
-                                    {"lat", Column::kY},
-                                    {"latitude", Column::kY},
-                                    {"northing", Column::kY},
-                                    {"point_y", Column::kY},
-                                    {"ring", Column::kRing},
-                                    {"marker", Column::kMarker},
-                                    {"wkt", Column::kGeometry},
-                                    {"wkt_geom", Column::kGeometry},
-                                    {"geom", Column::kGeometry},
-                                    {"geometry", Column::kGeometry},
-                                    {"the_geom", Column::kGeometry}};
+  static constexpr Name kNames[] = {
+      {"x", Column::kX},          {"lon", Column::kX},     {"long", Column::kX},
+      {"longitude", Column::kX},  {"easting", Column::kX}, {"point_x", Column::kX},
+      {"y", Column::kY},          {"lat", Column::kY},     {"latitude", Column::kY},
+      {"northing", Column::kY},   {"point_y", Column::kY}, {"ring", Column::kRing},
+      {"marker", Column::kMarker}};
   // Of "Easting [m]", the unit says nothing.
-  const std::string known = lower(trimmed(name.substr(0, name.find_first_of("[("))));
+  const std::string known = lower_case(trimmed(name.substr(0, name.find_first_of("[("))));
   for (const Name& entry : kNames)
     if (entry.text == known) return entry.column;
+  if (std::find(std::begin(kGeometryNames), std::end(kGeometryNames), known) !=
+      std::end(kGeometryNames))
+    return Column::kGeometry;
   return Column::kOther;
 }
 
 bool is_property(std::string_view name) {
   static constexpr std::string_view kNames[] = {"marker",      "region",   "marker_name",
                                                 "region_name", "max_area", "max_edge"};
-  return std::find(std::begin(kNames), std::end(kNames), lower(name)) != std::end(kNames);
+  return std::find(std::begin(kNames), std::end(kNames), lower_case(name)) != std::end(kNames);
 }
 
 class Reader {
@@ -77,7 +65,7 @@ class Reader {
       : name_(name), table_(name, text), builder_(name) {}
 
   Result<Domain> read() {
-    if (auto begun = table_.begin(); !begun) return tl::unexpected(begun.error());
+    if (auto begun = table_.begin(kGeometryNames); !begun) return tl::unexpected(begun.error());
     if (auto named = take_names(); !named) return tl::unexpected(named.error());
     for (;;) {
       const auto record = table_.next();
@@ -170,7 +158,7 @@ class Reader {
     if (record.kind != Record::Kind::kFields) return {};
     const auto property = [&](const char* name) -> PropertyValue {
       for (std::size_t i = 0; i < columns_.size() && i < record.fields.size(); ++i) {
-        if (lower(trimmed(table_.names()[i])) != name) continue;
+        if (lower_case(trimmed(table_.names()[i])) != name) continue;
         const auto number = table_.real(record.fields[i]);
         return number ? PropertyValue{number, "", ""}
                       : PropertyValue{std::nullopt, record.fields[i].value(), ""};
@@ -203,13 +191,15 @@ class Reader {
     return corner(record);
   }
 
-  // NaN, NaN, in the two columns.
+  // Nothing or NaN in both of the two columns.
   bool stands_for_none(const Record& record) const {
-    const auto is_nan = [&](Column column) {
+    const auto is_none = [&](Column column) {
       const std::size_t place = place_of(column);
-      return place < record.fields.size() && is_nan_text(record.fields[place].text);
+      if (place >= record.fields.size()) return false;
+      const std::string_view text = record.fields[place].text;
+      return text.empty() || is_nan_text(text);
     };
-    return is_nan(Column::kX) && is_nan(Column::kY);
+    return is_none(Column::kX) && is_none(Column::kY);
   }
 
   // Whether the fields are those of the columns.
@@ -281,6 +271,7 @@ class Reader {
     if (place >= record.fields.size()) return missing(record, what);
     const Field& field = record.fields[place];
     const auto value = table_.real(field);
+    if (field.text.empty()) return error(record, place, what + " is missing");
     if (!value) {
       const bool is_nan = is_nan_text(field.text);
       return error(record, place,

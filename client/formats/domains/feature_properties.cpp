@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "client/base/text.h"
+#include "client/base/words.h"
 #include "client/formats/files/number_text.h"
 
 namespace weft::client {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "client/base/text.h"
+#include "client/base/words.h"
 #include "client/formats/files/number_text.h"
 
 namespace weft::client {
@@ -13,13 +15,6 @@ using Separator = DelimitedText::Separator;
 
 bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
-}
-
-std::string lower(std::string_view word) {
-  std::string text(word);
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return text;
 }
 
 // Past the quotation mark that closes the one at `open`; npos if none does.
@@ -87,7 +82,7 @@ std::optional<Separator> separator_of_names(std::string_view unquoted) {
 
 bool is_nan_text(std::string_view text) {
   if (text.starts_with('+') || text.starts_with('-')) text.remove_prefix(1);
-  const std::string word = lower(text.substr(0, 16));
+  const std::string word = lower_case(text.substr(0, 16));
   constexpr std::string_view kNames[] = {"nan",      "na",        "nan(ind)", "nan(snan)",
                                          "1.#qnan",  "1.#ind",    "1.#nan",   "1.#qnan0",
                                          "1.#ind00", "1.#qnan00", "nan0"};
@@ -149,9 +144,9 @@ Result<std::optional<DelimitedText::Line>> DelimitedText::next_line() {
   return line;
 }
 
-Result<void> DelimitedText::begin() {
+Result<void> DelimitedText::begin(std::span<const std::string_view> texts) {
   const std::string_view whole = rest_;
-  if (auto decided = decide(); !decided) return decided;
+  if (auto decided = decide(texts); !decided) return decided;
   rest_ = whole;
   line_ = 0;
   while (line_ < line_of_names_)
@@ -160,7 +155,7 @@ Result<void> DelimitedText::begin() {
 }
 
 // Reads all lines once.
-Result<void> DelimitedText::decide() {
+Result<void> DelimitedText::decide(std::span<const std::string_view> texts) {
   bool any_comma = false;
   bool any_semicolon = false;
   bool any_tab = false;
@@ -179,7 +174,7 @@ Result<void> DelimitedText::decide() {
       all_decimal = all_decimal && !any_comma;
     }
     if (nothing || text.starts_with('>')) continue;
-    if (first && text.size() == 5 && lower(text.substr(0, 4)) == "sep=") {
+    if (first && text.size() == 5 && lower_case(text.substr(0, 4)) == "sep=") {
       told_ = separator_of_names(text.substr(4));
       line_of_names_ = line_;
       continue;
@@ -212,12 +207,10 @@ Result<void> DelimitedText::decide() {
     separator_ = all_decimal ? Separator::kBlanks : Separator::kComma;
   const Separator between_names = told_ ? *told_ : of_names.value_or(Separator::kBlanks);
   for (const Field& field : split(names, between_names)) names_.push_back(field.value());
-  const bool is_geometry = std::any_of(names_.begin(), names_.end(), [](const std::string& name) {
-    const std::string_view known[] = {"wkt", "wkt_geom", "geometry", "geom", "the_geom"};
-    return std::find(std::begin(known), std::end(known), lower(name)) != std::end(known);
+  const bool has_text = std::any_of(names_.begin(), names_.end(), [&](const std::string& name) {
+    return std::find(texts.begin(), texts.end(), lower_case(trimmed(name))) != texts.end();
   });
-  // A geometry has commas and blanks of its own.
-  if (is_geometry) separator_ = names_.size() == 1 ? Separator::kNone : between_names;
+  if (has_text) separator_ = names_.size() == 1 ? Separator::kNone : between_names;
   return {};
 }
 

@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,7 +51,9 @@ class DelimitedText {
   // `text` must outlive the table.
   DelimitedText(std::string name, std::string_view text) : name_(std::move(name)), rest_(text) {}
 
-  Result<void> begin();
+  // If there is a column of one of these names, in lower case, its fields have commas and blanks of
+  // their own: what separates the names separates fields.
+  Result<void> begin(std::span<const std::string_view> texts = {});
   // Of the first record, if that is no record of numbers; otherwise empty.
   const std::vector<std::string>& names() const { return names_; }
   std::uint64_t line_of_names() const { return line_of_names_; }
@@ -73,7 +76,7 @@ class DelimitedText {
   };
 
   Result<std::optional<Line>> next_line();
-  Result<void> decide();
+  Result<void> decide(std::span<const std::string_view> texts);
   std::vector<Field> split(std::string_view line, Separator separator) const;
 
   std::string name_;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "client/base/text.h"
+#include "client/base/words.h"
 #include "client/formats/files/number_text.h"
 
 namespace weft::client {

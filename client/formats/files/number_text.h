@@ -20,7 +20,4 @@ std::optional<double> real_with_comma_of(std::string_view text);
 // A whole number of 64 bits, "+3" among them.
 std::optional<std::int64_t> integer_of(std::string_view text);
 
-// Without the blanks around it.
-std::string_view trimmed(std::string_view text);
-
 }  // namespace weft::client

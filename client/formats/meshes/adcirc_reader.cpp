@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "client/base/words.h"
 #include "client/formats/files/file_contents.h"
 #include "client/formats/files/line_scanner.h"
 #include "client/formats/files/node_numbers.h"
-#include "client/formats/files/number_text.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/meshes/adcirc.h"
 #include "client/formats/triangle/triangle_points.h"

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "client/base/text.h"
+#include "client/base/words.h"
 #include "client/formats/files/file_contents.h"
 #include "client/formats/files/number_text.h"
 #include "client/formats/mesh_formats.h"

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "client/base/words.h"
 #include "client/formats/files/file_contents.h"
 #include "client/formats/files/number_text.h"
 

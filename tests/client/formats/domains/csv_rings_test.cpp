@@ -136,6 +136,8 @@ TEST_F(CsvRings, EndAtEverythingThatPartsThem) {
             (std::vector<std::size_t>{4, 3}));
   EXPECT_EQ(rings("x y marker\n0 0 1\n10 0 1\n10 10 1\n0 10 1\nNaN NaN\n4 4 1\n6 4 1\n6 6 1\n"),
             (std::vector<std::size_t>{4, 3}));
+  EXPECT_EQ(rings("id,x,y\n1,0,0\n2,10,0\n3,10,10\n4,0,10\n5,,\n6,4,4\n7,6,4\n8,6,6\n"),
+            (std::vector<std::size_t>{4, 3}));
   EXPECT_EQ(rings("ring,x,y\na,0,0\na,10,0\na,10,10\na,0,10\nb,4,4\nb,6,4\nb,6,6\n"),
             (std::vector<std::size_t>{4, 3}));
 }
@@ -159,6 +161,7 @@ TEST_F(CsvRings, LeaveOutThoseWithoutAnArea) {
 TEST_F(CsvRings, RefuseHalfANumber) {
   EXPECT_EQ(refusal("0 0\n4 NaN\n4 3\n"),
             "d.csv:2:3: expected the y coordinate, a finite number, found 'NaN'");
+  EXPECT_EQ(refusal("x,y\n0,0\n4,\n4,3\n"), "d.csv:3:3: the y coordinate is missing");
   EXPECT_EQ(refusal("0 0\n4.0X+00 1\n"), "d.csv:2:1: expected the x coordinate, found '4.0X+00'");
   EXPECT_EQ(refusal("x;y\n0;0\n4,0\n"),
             "d.csv:3:1: the line ends where the y coordinate should follow; semicolons separate "
