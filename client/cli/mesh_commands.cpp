@@ -15,7 +15,7 @@ namespace {
 
 constexpr char kMeshExamples[] =
     R"(.node writes Triangle's .node, .ele and .poly, .14 and .grd ADCIRC's grid,
-.nc UGRID, .slf TELEMAC's SELAFIN, .xdmf its arrays in .xdmf.bin, .foam OpenFOAM's
+.gr3 SCHISM's, .nc UGRID, .slf TELEMAC's SELAFIN, .xdmf its arrays in .xdmf.bin, .foam OpenFOAM's
 constant/polyMesh beside it, .exo Exodus, .disv the grid of MODFLOW 6.
 
 Examples:

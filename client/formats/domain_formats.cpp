@@ -89,7 +89,7 @@ Result<Domain> read_domain(const std::filesystem::path& path, const LayerOptions
     const auto mesh = read_mesh(path);
     if (!mesh) return tl::unexpected(mesh.error());
     Domain domain = domain_of_mesh(path.string(), mesh->view());
-    domain.warnings = mesh->warnings;
+    domain.warnings.insert(domain.warnings.begin(), mesh->warnings.begin(), mesh->warnings.end());
     return domain;
   } catch (const std::bad_alloc&) {
   } catch (const std::length_error&) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/formats/mesh_formats.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <new>
@@ -10,6 +9,7 @@
 #include <system_error>
 
 #include "client/base/text.h"
+#include "client/base/words.h"
 #include "client/formats/bed.h"
 #include "client/formats/derived/mesh_edges.h"
 #include "client/formats/derived/second_order.h"
@@ -81,6 +81,7 @@ constexpr MeshFormat kFormats[] = {
     {".neigh", kFirstOrder, one_file<write_triangle_neighbours>, nullptr},
     {".14", kFirstOrder, write_adcirc_mesh, read_adcirc, read_adcirc_values, CarriesValues::kBed},
     {".grd", kFirstOrder, write_adcirc_mesh, read_adcirc, read_adcirc_values, CarriesValues::kBed},
+    {".gr3", kFirstOrder, write_adcirc_mesh, read_adcirc, read_adcirc_values, CarriesValues::kBed},
     {".2dm", kFirstOrder, one_file<write_2dm>, read_2dm, nullptr, CarriesValues::kBed, kNoParts,
      quotable_name, quotable_name, kBoundaryOnly},
     {".nc", kFirstOrder, one_file<write_ugrid>, read_ugrid, nullptr, CarriesValues::kAll, kParts,
@@ -143,10 +144,7 @@ Result<T> with_memory(const std::filesystem::path& path, const Read& read) {
 }  // namespace
 
 std::string lower_extension(const std::filesystem::path& path) {
-  std::string out = path.extension().string();
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return out;
+  return lower_case(path.extension().string());
 }
 
 const MeshFormat* mesh_format(const std::filesystem::path& path) {

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "client/base/text.h"
+#include "client/base/words.h"
 #include "client/formats/bed.h"
 
 namespace weft::client {
@@ -31,12 +32,6 @@ bool is_name(const std::string& text) {
   return !text.empty() && text.size() <= kMostLetters && is_letter(text[0]) &&
          std::all_of(text.begin(), text.end(),
                      [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return text;
 }
 
 std::optional<double> number_of(const std::string& text) {

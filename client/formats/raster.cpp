@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/formats/raster.h"
 
-#include <algorithm>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "client/base/text.h"
+#include "client/base/words.h"
 #include "client/formats/files/file_contents.h"
 #include "client/formats/files/line_scanner.h"
 #include "client/formats/mesh_formats.h"
@@ -23,13 +23,6 @@ struct Header {
   std::optional<std::int64_t> columns, rows;
   std::optional<double> corner_x, corner_y, centre_x, centre_y, size, dx, dy, no_data;
 };
-
-std::string lower(std::string_view word) {
-  std::string text(word);
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return text;
-}
 
 class Reader {
  public:
@@ -57,7 +50,7 @@ class Reader {
   Result<void> read_field() {
     const auto word = scanner_.word("a word of the header");
     if (!word) return tl::unexpected(word.error());
-    const std::string name = lower(*word);
+    const std::string name = lower_case(*word);
     struct Count {
       std::string_view name;
       std::optional<std::int64_t> Header::*field;
@@ -159,7 +152,7 @@ bool is_raster_path(const std::filesystem::path& path) {
 }
 
 Result<Raster> read_raster(const std::filesystem::path& path, RasterValues wanted) {
-  const auto file = read_file(path, kMaxFileBytes);
+  const auto file = read_text_file(path, kMaxFileBytes);
   if (!file) return tl::unexpected(file.error());
   return Reader(path.string(), file->text(), wanted).read();
 }

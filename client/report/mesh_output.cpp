@@ -48,8 +48,9 @@ Result<void> check_names(const MeshOutputOptions& options,
     });
   };
   if (!(options.writing.open_boundaries.empty() && options.writing.open_boundary_names.empty()) &&
-      !writes({".14", ".grd"}))
-    return fail(ExitCode::kUsage, "--open-boundary is for ADCIRC: give an output .14 or .grd");
+      !writes({".14", ".grd", ".gr3"}))
+    return fail(ExitCode::kUsage,
+                "--open-boundary is for ADCIRC and SCHISM: give an output .14, .grd or .gr3");
   if (options.writing.msh_version != MshVersion::k41 && !writes({".msh"}))
     return fail(ExitCode::kUsage, "--msh-version is for Gmsh: give an output .msh");
   if (auto ok = check_nodal(options); !ok) return ok;

@@ -84,14 +84,14 @@ const OptionRows<MeshWriteOptions>& writing_rows() {
        "Version of .msh files: 4.1, binary, or 2.2, text, for older programs", "4.1",
        one_of(&Writing::msh_version, {{"2.2", MshVersion::k22}, {"4.1", MshVersion::k41}})},
       {"open-boundary", "",
-       "Marker of segments that ADCIRC's .14 and .grd files have as open boundary, by number or by "
-       "name; the others are land. May be repeated",
+       "Marker of segments that the .14, .grd and .gr3 files of ADCIRC and SCHISM have as open "
+       "boundary, by number or by name; the others are land. May be repeated",
        "", open_boundaries()},
       {"nodal", "",
        "Values at the vertices: NAME=FILE of a raster, NAME=FILE:BAND, or NAME=NUMBER. They are "
        "written to .vtu, .msh, .npz, .nc, .slf, .xdmf and .exo; the bed, which is depth, positive "
-       "down, or elevation, positive up, to .14, .grd, .2dm and .disv, too. May be repeated: of "
-       "several sources of a name, the first that has a value at a vertex counts there",
+       "down, or elevation, positive up, to .14, .grd, .gr3, .2dm and .disv, too. May be repeated: "
+       "of several sources of a name, the first that has a value at a vertex counts there",
        "", nodal()},
       {"renumber", "",
        "Order of the vertices in files: rcm is reverse Cuthill-McKee, which brings the vertices of "

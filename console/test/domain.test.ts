@@ -4,6 +4,7 @@ import { expect, test } from "vitest";
 import { examples } from "../src/domain/examples";
 import { boxOf, segmentEnds, toMessage } from "../src/domain/planar-domain";
 import { readDomain } from "../src/domain/read-domain";
+import { decodeText, numberOf } from "../src/domain/text";
 
 const model = (name: string) => readDomain(name, readFileSync(`../tests/models/${name}`, "utf8"));
 
@@ -50,7 +51,9 @@ test("a fault in a .poly is named by its line", () => {
     ["1 2 0 0\n1 0 0\n1 0\n1 1 9\n0\n", "line 4: there is no point 9"],
     ["1 3 0 0\n", "line 1: the dimension is 3"],
     ["9999999999 2 0 0\n", "line 1: the point count is 9999999999"],
-    ["2 2 0 0\n1 0 0\n3 0 0\n", "line 3: the point number is 3, expected 2"],
+    ["2 2 0 0\n1 0 0\n1 0 0\n", "line 3: the point number is 1, as that of another one before it"],
+    ["1 2 0 0\n1 4.0Dx 0\n", "line 2: the x coordinate is “4.0Dx”, not a number"],
+    ["1 2 0 0\n1 0x10 0\n", "line 2: the x coordinate is “0x10”, not a number"],
     ["1 2 0 0\n1 0 0\n", "the file ends before the segment count"],
     ["0 2 0 0\n", "put them into the .poly file"],
     ["1 2 0 0\n1 0 0\n0 0\n0\n0\n5\n", "line 6: the file goes on"],
@@ -95,7 +98,9 @@ test("lines beside a polygon border no area", () => {
 test("a fault in GeoJSON is named by its path", () => {
   const at = (geometry: unknown) => () => readDomain("f.json", JSON.stringify({ type: "Feature", geometry }));
   expect(at({ type: "Polygon", coordinates: [ring, ring.slice(0, 4)] })).toThrow("geometry.coordinates[1]: is a ring that is not closed");
-  expect(at({ type: "Polygon", coordinates: [[[0, 0], [1, 1], [0, 0]]] })).toThrow("fewer than 3 points");
+  expect(at({ type: "Polygon", coordinates: [[[0, 0], [1, 1], [0, 0]]] })).toThrow(
+    "the file holds no geometry: 1 ring without an area is left out: geometry.coordinates[0]",
+  );
   expect(at({ type: "LineString", coordinates: [[0, 0], [1, "a"]] })).toThrow("geometry.coordinates[1]: is not a position");
   expect(at({ type: "Curve", coordinates: [] })).toThrow("“Curve”");
   expect(at({ type: "toString", coordinates: [] })).toThrow("“toString”");
@@ -191,4 +196,80 @@ test("each example is a domain with a size", () => {
     expect(segmentEnds(domain).every(Number.isFinite)).toBe(true);
     expect(form.size).toBeTruthy();
   }
+});
+
+test("a file is the same whatever program saved it", () => {
+  const samples: [string, string][] = [
+    ["a.poly", "3 2 0 0\n1 0 0\n2 1 0\n3 0 1\n3 1\n1 1 2 5\n2 2 3 5\n3 3 1 5\n0\n# marker=5:inlet\n"],
+    ["a.geojson", '{"type": "Polygon",\n "coordinates": [[[0, 0], [1, 0], [0, 1], [0, 0]]]}\n'],
+    ["a.wkt", "POLYGON ((0 0, 1 0,\n 0 1, 0 0))\n"],
+  ];
+  const utf16 = (text: string, big: boolean) => {
+    const bytes = new DataView(new ArrayBuffer(2 * text.length));
+    [...text].forEach((character, i) => bytes.setUint16(2 * i, character.charCodeAt(0), !big));
+    return bytes.buffer;
+  };
+  const utf8 = (text: string) => new TextEncoder().encode(text).buffer;
+  for (const [name, text] of samples) {
+    const expected = readDomain(name, text);
+    const files = [
+      utf8(`\ufeff${text}`),
+      utf8(text.replaceAll("\n", "\r\n")),
+      utf8(text.replaceAll("\n", "\r")),
+      utf8(text.replaceAll("\n", "\t\n")),
+      utf16(`\ufeff${text}`, false),
+      utf16(`\ufeff${text}`, true),
+    ];
+    for (const bytes of files) expect(readDomain(name, decodeText(bytes))).toEqual(expected);
+  }
+  for (const bytes of [[0xff, 0xfe, 0x20], [0xff, 0xfe, 0x00, 0xd8], [0xfe, 0xff, 0xdc, 0x00]])
+    expect(() => decodeText(new Uint8Array(bytes).buffer)).toThrow("begins as UTF-16");
+  expect(() => readDomain("a.poly", decodeText(utf8("\ufeff")))).toThrow("the file ends before the point count");
+});
+
+test("a number is one as a whole, with exponents of Fortran's too", () => {
+  expect([" 4.0D+03 ", "-1.d3", "+.5", "4.", "1.0+103", "2e-1"].map(numberOf)).toEqual([4000, -1000, 0.5, 4, 1e103, 0.2]);
+  for (const text of ["", "4x", "4.0D", "1-2", "1.0+3", "0x10", "1,5", "Infinity", "1e999"]) expect(numberOf(text)).toBeUndefined();
+  const poly = readDomain("a.poly", "2 2 0 0\n1 0.0D+00 4.0D+03\n2 1.0+103 0\n0 0\n0\n");
+  expect([...poly.points]).toEqual([0, 4000, 1e103, 0]);
+  expect([...readDomain("a.wkt", "POINT (1.5D1 2)").points]).toEqual([15, 2]);
+});
+
+test("the points of a .poly have any numbers, and its headers may end early", () => {
+  const domain = readDomain("a.poly", "3\n70 0 0\n-3 1 0\n12 0 1\n3\n1 70 -3 5\n2 -3 12\n3 12 70 6\n0\n");
+  expect([...domain.segments]).toEqual([0, 1, 1, 2, 2, 0]);
+  expect([...domain.markers]).toEqual([5, 0, 6]);
+});
+
+test("a property that is a text may be a number", () => {
+  const at = (properties: unknown) =>
+    readDomain("a.json", JSON.stringify({ type: "Feature", properties, geometry: { type: "Polygon", coordinates: [ring] } }));
+  expect(at({ marker: "3", region: " 7 ", max_area: "1D-1" })).toMatchObject({ areas: [{ region: 7, maxArea: 0.1 }], markerNames: new Map() });
+  expect(at({ marker: "3" }).markers[0]).toBe(3);
+  expect(at({ max_edge: "2" }).areas[0]!.maxArea).toBeCloseTo(Math.sqrt(3), 12);
+  expect(at({ max_edge: 2, max_area: 1 }).areas[0]!.maxArea).toBe(1);
+  expect(at({ marker: " ", region: "", max_area: "" })).toMatchObject({ areas: [{ region: undefined, maxArea: undefined }], markerNames: new Map() });
+  expect(() => at({ max_area: "small" })).toThrow('properties.max_area: is "small", not a number');
+  expect(() => at({ max_area: true })).toThrow("properties.max_area: is true, not a number");
+});
+
+test("what has no area and no length is left out, counted in one warning", () => {
+  const flat = [[1, 1], [2, 2], [3, 3], [1, 1]];
+  const domain = readDomain("a.json", JSON.stringify({
+    type: "GeometryCollection",
+    geometries: [
+      { type: "Polygon", coordinates: [ring, flat, []] },
+      null,
+      { type: "Polygon", coordinates: [] },
+      { type: "MultiPolygon", coordinates: [[], [[[9, 9], [9, 9]], inner]] },
+      { type: "LineString", coordinates: [[1, 1], [1, 1]] },
+    ],
+  }));
+  expect(domain.segments.length).toBe(2 * 4);
+  expect(domain.warnings).toEqual([
+    "3 rings without an area, 1 line without a length and 3 empty geometries are left out, the first is geometries[0].coordinates[1]",
+  ]);
+  expect(readDomain("a.wkt", "POLYGON ((0 0, 4 0, 4 4, 0 0), EMPTY) POINT EMPTY").warnings).toEqual([
+    "1 ring without an area and 1 empty geometry are left out, the first is geometry 0, ring [1]",
+  ]);
 });

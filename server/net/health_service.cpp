@@ -21,9 +21,9 @@ constexpr std::size_t kMostWatches = 1024;
 constexpr std::uint32_t kServiceTag =
     WireFormatLite::MakeTag(1, WireFormatLite::WIRETYPE_LENGTH_DELIMITED);
 constexpr char kStatusTag = 0x08;
-constexpr char kServing = 1;
-constexpr char kNotServing = 2;
-constexpr char kServiceUnknown = 3;
+constexpr char kStatusServing = 1;
+constexpr char kStatusNotServing = 2;
+constexpr char kStatusServiceUnknown = 3;
 
 // The service that is asked for; nullopt if the bytes are malformed.
 std::optional<std::string> service_in(grpc::ByteBuffer bytes) {
@@ -48,8 +48,8 @@ grpc::ByteBuffer response(char status) {
 
 char status_of(const std::map<std::string, bool>& serving, const std::string& service) {
   const auto found = serving.find(service);
-  if (found == serving.end()) return kServiceUnknown;
-  return found->second ? kServing : kNotServing;
+  if (found == serving.end()) return kStatusServiceUnknown;
+  return found->second ? kStatusServing : kStatusNotServing;
 }
 
 }  // namespace
@@ -98,7 +98,7 @@ void HealthService::set(const std::string& service, bool serving) {
     for (const auto& watch : watches_.all())
       if (watch->service() == service) told.push_back(watch);
   }
-  for (const auto& watch : told) watch->tell(serving ? kServing : kNotServing);
+  for (const auto& watch : told) watch->tell(serving ? kStatusServing : kStatusNotServing);
 }
 
 void HealthService::set_all(bool serving) {
@@ -116,7 +116,8 @@ void HealthService::check(const AdmittedCall& call, const std::string& service) 
     std::lock_guard lock(mutex_);
     status = status_of(serving_, service);
   }
-  if (status == kServiceUnknown) return call.call->finish({grpc::NOT_FOUND, "unknown service"});
+  if (status == kStatusServiceUnknown)
+    return call.call->finish({grpc::NOT_FOUND, "unknown service"});
   call.call->answer(response(status));
 }
 

@@ -81,6 +81,9 @@ struct Failure {
 };
 
 Failure failure_of(const Error& error);
+inline Failure bad_option(std::string field, std::string message) {
+  return {Reason::kBadOption, std::move(field), std::move(message)};
+}
 
 // A status whose details are a google.rpc.Status: an ErrorInfo, a BadRequest if a field is at
 // fault, a RetryInfo if a retry makes sense. The metadata of the ErrorInfo have the job's id as

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/wire/size_field.h"
+#include "server/wire/points.h"
 
 #include <fmt/format.h>
 
@@ -14,10 +15,6 @@
 
 namespace weft::server {
 namespace {
-
-Failure bad_option(std::string field, std::string message) {
-  return {Reason::kBadOption, std::move(field), std::move(message)};
-}
 
 Failure bad_array(std::string field, std::string message) {
   return {Reason::kBadArray, std::move(field), std::move(message)};
@@ -97,13 +94,6 @@ double mean_size(const v1::Raster& raster, Measure measure) {
   for (int i = 0; i < raster.values_size(); i += step, ++count)
     sum += raster.values(i) > 0 ? std::pow(raster.values(i), power) : 0;
   return std::pow(sum / count, 1 / power);
-}
-
-std::vector<Point> to_points(const google::protobuf::RepeatedField<double>& pairs) {
-  std::vector<Point> points(static_cast<std::size_t>(pairs.size() / 2));
-  for (std::size_t i = 0; i < points.size(); ++i)
-    points[i] = {pairs.data()[2 * i], pairs.data()[2 * i + 1]};
-  return points;
 }
 
 // Rows of N.

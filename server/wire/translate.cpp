@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "server/wire/names.h"
+#include "server/wire/points.h"
 #include "server/wire/size_field.h"
 
 namespace weft::server {
@@ -28,10 +29,6 @@ v1::SizeWarningKind to_wire(SizeWarning::Kind kind) {
       return v1::SIZE_WARNING_KIND_GRADATION_WITHIN_ALONE;
   }
   return v1::SIZE_WARNING_KIND_UNSPECIFIED;
-}
-
-Failure bad_option(std::string field, std::string message) {
-  return {Reason::kBadOption, std::move(field), std::move(message)};
 }
 
 std::optional<Failure> check_pairs(std::string_view field, int size, std::string_view what) {
@@ -105,15 +102,6 @@ std::optional<Failure> check_domain(const v1::Domain& domain) {
     return bad_option("domain.fill", fmt::format("domain.fill is {}, which is not a Fill",
                                                  static_cast<int>(domain.fill())));
   return check_names(domain);
-}
-
-std::vector<Point> to_points(const google::protobuf::RepeatedField<double>& pairs) {
-  std::vector<Point> points(static_cast<std::size_t>(pairs.size() / 2));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double* pair = pairs.data() + 2 * i;
-    points[i] = {pair[0], pair[1]};
-  }
-  return points;
 }
 
 // All of a request but its domain and its size.

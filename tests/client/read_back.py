@@ -91,6 +91,7 @@ CHECKS = [  # file, flags of weft convert, reader, check
     ("fort.14", ["--open-boundary", "2"], NUMPY, numpy_adcirc),
     ("bed.14", ["--open-boundary", "2", *BED], NUMPY, numpy_adcirc_bed),
     ("plate.grd", ["--open-boundary", "2"], NUMPY, numpy_adcirc),
+    ("plate.gr3", ["--open-boundary", "2"], NUMPY, numpy_adcirc),
     ("bed.2dm", BED, QGIS, qgis_2dm),
     ("bed.2dm", BED, NUMPY, numpy_2dm),
     ("names.2dm", BED, QGIS, qgis_2dm),

@@ -81,7 +81,7 @@ def test_holes_and_regions_of_seeds_are_kept(client):
 
 @pytest.mark.parametrize("name", ["max_area", "max_edge"])
 @pytest.mark.parametrize("bound, fault", [
-    (-1, "-1, not positive"), ("abc", '"abc", not a number'), ("0.05", '"0.05", not a number'),
+    (-1, "-1, not positive"), ("abc", '"abc", not a number'), ("0,05", '"0,05", not a number'),
     (True, "true, not a number"), ([1], r"\[1\], not a number"), (-10**400, "-inf, not positive"),
     (10**400, "larger than .*"), pytest.param(10**5000, "larger than .*", id="5001 digits"),
     (np.inf, "larger than .*"), (np.nan, "nan, not positive")])
@@ -141,6 +141,96 @@ def test_a_poly_counts_from_0_or_1_and_finds_its_points_beside_it(client, tmp_pa
     assert set(meshes[0].edge_markers) == {7, 8, 9}
 
 
+POLY = ("4 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n4 1\n1 1 2 7\n2 2 3 7\n3 3 4 8\n4 4 1 8\n0\n"
+        "1\n1 1 1 5 0.5\n# marker=7:inlet\n")
+GEOJSON = json.dumps({"type": "Feature", "properties": {"marker": "wall", "region": 5},
+                      "geometry": {"type": "Polygon", "coordinates": [SQUARE]}}, indent=1)
+
+
+@pytest.mark.parametrize("name, text", [("d.poly", POLY), ("d.geojson", GEOJSON)])
+@pytest.mark.parametrize("encode", [
+    lambda text: b"\xef\xbb\xbf" + text.encode(),
+    lambda text: b"\xff\xfe" + text.encode("utf-16-le"),
+    lambda text: b"\xfe\xff" + text.encode("utf-16-be"),
+    lambda text: text.replace("\n", "\r\n").encode(),
+    lambda text: text.replace("\n", "\r").encode(),
+    lambda text: text.replace("\n", "\t\n").encode(),
+], ids=["utf-8 mark", "utf-16 little", "utf-16 big", "CR LF", "CR", "tabs"])
+def test_a_file_is_the_same_whatever_program_saved_it(tmp_path, name, text, encode):
+    path = tmp_path / name
+    path.write_text(text)
+    expected = weft.Domain.read(path)
+    path.write_bytes(encode(text))
+    domain = weft.Domain.read(path)
+    assert np.array_equal(domain.points, expected.points)
+    assert np.array_equal(domain.segments, expected.segments)
+    assert np.array_equal(domain.markers, expected.markers)
+    assert domain.regions == expected.regions
+    assert domain.marker_names == expected.marker_names
+
+
+@pytest.mark.parametrize("name", ["d.poly", "d.geojson"])
+@pytest.mark.parametrize("raw", [b"\xef\xbb\xbf", b"\xff\xfe", b"\xff\xfe0", b"\xff\xfe\x00\xd8"])
+def test_a_file_of_no_text_is_refused_by_its_name(tmp_path, name, raw):
+    (tmp_path / name).write_bytes(raw)
+    with pytest.raises(weft.DomainError, match=name):
+        weft.Domain.read(tmp_path / name)
+
+
+def test_a_poly_has_exponents_of_fortran_any_numbers_and_headers_that_end_early(client, digest_of, tmp_path):
+    path = tmp_path / "fortran.poly"
+    path.write_text("4\n70 0.0D+00 0.d0\n-3 4.0D+00 0\n12 0.4D+01 3.0d0\n5 0 3.0+000\n"
+                    "4\n1 70 -3 5\n2 -3 12\n3 12 5 6\n4 5 70\n0\n")
+    domain = weft.Domain.read(path)
+    assert domain.points.tolist() == [[0, 0], [4, 0], [4, 3], [0, 3]]
+    assert domain.segments.tolist() == [[0, 1], [1, 2], [2, 3], [3, 0]]
+    assert domain.markers.tolist() == [5, 0, 6, 0]
+    assert client.mesh(path).digest == digest_of(path)
+
+
+def test_a_property_that_is_a_text_may_be_a_number():
+    def read(**properties):
+        return weft.Domain.geojson({"type": "Feature", "properties": properties,
+                                    "geometry": {"type": "Polygon", "coordinates": [SQUARE]}})
+    domain = read(marker="3", region=" 7 ", max_area="1.0D-1", max_edge="2")
+    assert set(domain.markers) == {3}
+    assert domain.regions[0].id == 7
+    assert (domain.regions[0].max_area, domain.regions[0].max_edge) == (0.1, 2)
+    assert (domain.marker_names, domain.region_names) == ({}, {})
+    assert read(marker="", region=" ", max_area="").regions == ()
+    assert read(marker="7a").marker_names == {1: "7a"}
+    with pytest.raises(weft.DomainError, match='properties.max_area is "small", not a number'):
+        read(max_area="small")
+    with pytest.raises(weft.DomainError, match="properties.marker is 1.5, not an integer"):
+        read(marker="1.5")
+
+
+def test_what_has_no_area_and_no_length_is_left_out_with_one_warning(client, digest_of, tmp_path):
+    flat = [[1, 1], [2, 2], [3, 3], [1, 1]]
+    path = tmp_path / "left.geojson"
+    path.write_text(json.dumps({"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": {"marker": "a"},
+         "geometry": {"type": "Polygon", "coordinates": [[[9, 9], [9, 9]], HOLE]}},
+        {"type": "Feature", "properties": {"marker": "b"},
+         "geometry": {"type": "Polygon", "coordinates": [SQUARE, flat, []]}},
+        {"type": "Feature", "properties": {"region": 4}, "geometry": {
+            "type": "Polygon", "coordinates": [[[9, 0], [10, 0], [10, 1], [10, 0], [9, 0]]]}},
+        {"type": "Feature", "properties": {}, "geometry": {
+            "type": "GeometryCollection", "geometries": [None, {"type": "Polygon", "coordinates": []}]}},
+        {"type": "Feature", "properties": {"marker": "c"},
+         "geometry": {"type": "LineString", "coordinates": [[1, 1], [1, 1]]}}]}))
+    with pytest.warns(weft.WeftWarning) as warned:
+        domain = weft.Domain.read(path)
+    assert [str(warning.message) for warning in warned] == [
+        f"{path}: 3 rings without an area, 1 line without a length, 2 empty geometries and 1 region "
+        "without an area are left out, the first is features[0].geometry.coordinates[0]"]
+    assert len(domain.segments) == 4 + 4
+    with pytest.warns(weft.WeftWarning):
+        assert client.mesh(path).digest == digest_of(path)
+    with pytest.raises(weft.DomainError, match="holds no geometry: 1 ring without an area is left out: "):
+        weft.Domain.geojson({"type": "Polygon", "coordinates": [flat]})
+
+
 @pytest.mark.parametrize("domain, words", [
     (np.zeros((3, 3)), r"\(3, 3\)"),
     (np.array([[0, 0], [1, np.nan], [1, 1]]), r"ring 0\[1\]"),
@@ -172,7 +262,9 @@ def test_what_is_no_graph_is_refused_by_name(arguments, words):
 @pytest.mark.parametrize("text, words", [
     ("3 2 0 0\n1 0 0\n2 1 0\n", "ends after 2 of 3 points"),
     ("1 2 0 0\n1 0 x\n", "points: "),
-    ("2 2 0 0\n5 0 0\n6 1 1\n0 0\n0\n", "not numbered"),
+    ("1 2 0 0\n1 0 4.0Dx\n", "points: "),
+    ("2 2 0 0\n5 0 0\n5 1 1\n0 0\n0\n", "not numbered"),
+    ("2 2 0 0\n5 0 0\n9 1 1\n1 0\n1 5 6\n0\n", "names the point 6; the numbers are from 5 to 9"),
 ])
 def test_a_poly_that_is_wrong_is_refused_by_file_and_part(tmp_path, text, words):
     path = tmp_path / "bad.poly"

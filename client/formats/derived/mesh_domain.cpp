@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/formats/derived/mesh_domain.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
+#include "client/base/text.h"
 #include "client/formats/derived/mesh_edges.h"
 
 namespace weft::client {
@@ -73,9 +76,25 @@ void add_regions(const std::string& name, const MeshView& mesh, const MeshEdges&
   }
 }
 
-}  // namespace
+// The numbers of triangles that have the corners of one before them, ascending.
+std::vector<std::uint32_t> repeated_triangles(const MeshView& mesh) {
+  std::vector<std::array<std::uint32_t, 4>> by_corners(mesh.triangle_count());
+  for (std::size_t t = 0; t < by_corners.size(); ++t) {
+    std::array<std::uint32_t, 4>& entry = by_corners[t];
+    std::copy_n(&mesh.triangles[3 * t], 3, entry.begin());
+    std::sort(entry.begin(), entry.begin() + 3);
+    entry[3] = static_cast<std::uint32_t>(t);
+  }
+  std::sort(by_corners.begin(), by_corners.end());
+  std::vector<std::uint32_t> repeated;
+  for (std::size_t i = 1; i < by_corners.size(); ++i)
+    if (std::equal(by_corners[i].begin(), by_corners[i].begin() + 3, by_corners[i - 1].begin()))
+      repeated.push_back(by_corners[i][3]);
+  std::sort(repeated.begin(), repeated.end());
+  return repeated;
+}
 
-Domain domain_of_mesh(const std::string& name, const MeshView& mesh) {
+Domain domain_of_single_triangles(const std::string& name, const MeshView& mesh) {
   const MeshEdges edges(mesh);
   const ScratchArray<std::int32_t> markers = edge_markers(mesh, edges);
   const std::vector<std::uint32_t> at_edge = triangles_at_edges(mesh, edges);
@@ -110,6 +129,31 @@ Domain domain_of_mesh(const std::string& name, const MeshView& mesh) {
     }
   }
   add_regions(name, mesh, edges, at_edge, is_segment, domain);
+  return domain;
+}
+
+}  // namespace
+
+Domain domain_of_mesh(const std::string& name, const MeshView& mesh) {
+  const std::vector<std::uint32_t> repeated = repeated_triangles(mesh);
+  if (repeated.empty()) return domain_of_single_triangles(name, mesh);
+  std::vector<std::uint32_t> triangles;
+  std::vector<std::int32_t> regions;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    if (std::binary_search(repeated.begin(), repeated.end(), t)) continue;
+    triangles.insert(triangles.end(), &mesh.triangles[3 * t], &mesh.triangles[3 * t] + 3);
+    regions.push_back(mesh.regions[t]);
+  }
+  MeshView single = mesh;
+  single.triangles = triangles;
+  single.regions = regions;
+  Domain domain = domain_of_single_triangles(name, single);
+  const bool one = repeated.size() == 1;
+  domain.warnings.push_back(
+      name + ": " + with_separators(repeated.size()) +
+      (one ? " triangle that repeats another is left out, triangle "
+           : " triangles that repeat others are left out, the first is triangle ") +
+      std::to_string(repeated[0]));
   return domain;
 }
 

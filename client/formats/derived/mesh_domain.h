@@ -6,6 +6,9 @@
 // of segments. If there are triangles, the area that they cover is filled (Fill::kEvenOdd; segments
 // inside are listed twice, which does not change the parity), and each part between segments whose
 // region is not 0 gets a seed. Without triangles every bounded face is filled (Fill::kSeeds).
+//
+// A triangle that has the corners of one before it, in any order, is left out with a warning:
+// MSH 2.2 has an element of two physical groups twice.
 #pragma once
 
 #include <string>

@@ -9,16 +9,22 @@
 //
 //   1,1,5
 //
-// The first line may name the columns, in any order and case: x and y (or lon and lat, or longitude
-// and latitude), and optionally ring and marker. Without it, the columns are x and y. Columns are
-// separated by commas, semicolons, tabs or blanks; '#' starts a comment.
+// Separators, decimal commas, quotation marks and comments: see files/delimited_text.h. The first
+// line may name the columns, in any order and case: x and y (or lon and lat, longitude and
+// latitude, easting and northing), and optionally ring and marker. Others are ignored with a
+// warning. Without it, the first two columns are x and y.
 //
-// A line without a corner ends a ring. If there is a column `ring`, an integer, a ring also ends
-// where it changes. A ring is closed automatically; its first corner may be repeated. `marker`, an
-// integer or a name of one word, is that of the segment from this corner to the next. The points
-// inside an odd number of rings are meshed, so a ring in a ring is a hole.
+// A ring ends at a line without a corner, that is with nothing or NaN in both columns, at a line
+// that begins with GMT's '>', at a row of -999 -999 or the like (ring_breaks.h), with a warning,
+// and where the column `ring` changes. A ring is closed automatically; its first corner may be
+// repeated. `marker`, an integer or a name, is that of the segment from this corner to the next.
+// The points inside an odd number of rings are meshed, so a ring in a ring is a hole.
+//
+// If a column is called WKT (or geometry, geom), each line is a feature with a geometry in
+// well-known text, and the other columns are its properties (feature_properties.h).
 //
 // Errors (kUnreadableInput) carry file:line:column, or name the ring by the line where it starts.
+// If commas may be decimal marks as well as separators, the error shows both readings.
 #pragma once
 
 #include <filesystem>

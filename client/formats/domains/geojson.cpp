@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "client/base/text.h"
+#include "client/formats/domains/feature_properties.h"
 #include "client/formats/domains/geometry_builder.h"
 #include "client/formats/files/file_contents.h"
 #include "client/formats/files/json_text.h"
@@ -24,8 +24,6 @@ using Json = nlohmann::json;
 // Parsed JSON takes up to twenty times the memory of its text.
 constexpr std::uint64_t kMaxJsonBytes = std::uint64_t{512} << 20;
 constexpr int kMaxJsonDepth = 64;
-
-using Properties = GeometryProperties;
 
 class Reader {
  public:
@@ -49,17 +47,23 @@ class Reader {
 
   // Reads the objects of the array that is the member `name` of `parent`.
   Result<void> objects(const Json& parent, const char* name, const std::string& path,
-                       const Properties& properties) {
+                       const GeometryProperties& properties) {
     const auto found = parent.find(name);
     if (found == parent.end() || !found->is_array())
       return bad(path, std::string("has no array \"") + name + "\"");
-    for (std::size_t i = 0; i < found->size(); ++i)
-      if (auto read = object((*found)[i], element(member(path, name), i), properties); !read)
+    for (std::size_t i = 0; i < found->size(); ++i) {
+      const std::string where = element(member(path, name), i);
+      if ((*found)[i].is_null()) {
+        builder_.leave_out(LeftOut::kGeometry, where);
+      } else if (auto read = object((*found)[i], where, properties); !read) {
         return read;
+      }
+    }
     return {};
   }
 
-  Result<void> object(const Json& json, const std::string& path, const Properties& properties) {
+  Result<void> object(const Json& json, const std::string& path,
+                      const GeometryProperties& properties) {
     if (!json.is_object()) return bad(path, "is not a GeoJSON object");
     const auto type = json.find("type");
     if (type == json.end() || !type->is_string()) return bad(path, "has no string \"type\"");
@@ -77,53 +81,26 @@ class Reader {
     return geometry(json, name, path, properties);
   }
 
-  Result<Properties> feature_properties(const Json& feature, const std::string& path) const {
-    Properties out;
+  Result<GeometryProperties> feature_properties(const Json& feature,
+                                                const std::string& path) const {
     const auto found = feature.find("properties");
-    if (found == feature.end() || !found->is_object()) return out;
-    const std::string where = member(path, "properties");
-    const auto integer = [&](const char* name) -> Result<std::optional<std::int32_t>> {
-      const auto value = found->find(name);
-      if (value == found->end() || !value->is_number()) return std::nullopt;
-      const double number = value->get<double>();
-      constexpr double kMax = std::numeric_limits<std::int32_t>::max();
-      if (!(number >= -kMax - 1 && number <= kMax) ||
-          number != static_cast<double>(static_cast<std::int32_t>(number)))
-        return bad(member(where, name), "is " + shortest(number) + ", not an integer of 32 bits");
-      return static_cast<std::int32_t>(number);
-    };
-    const auto marker = integer("marker");
-    if (!marker) return tl::unexpected(marker.error());
-    out.marker = marker->value_or(0);
-    const auto region = integer("region");
-    if (!region) return tl::unexpected(region.error());
-    out.region = *region;
-    out.marker_name = text(*found, "marker");
-    out.region_name = text(*found, "region");
-    if (out.marker_name.empty()) out.marker_name = text(*found, "marker_name");
-    if (out.region_name.empty()) out.region_name = text(*found, "region_name");
-    for (const auto& [name, bound] :
-         {std::pair{"max_area", &out.max_area}, {"max_edge", &out.max_edge}}) {
-      const auto value = found->find(name);
-      if (value == found->end() || value->is_null()) continue;  // null: a table without the column
-      if (!value->is_number())
-        return bad(member(where, name), "is " + value->dump() + ", not a number");
-      *bound = value->get<double>();
-      if (!(**bound > 0))
-        return bad(member(where, name), "is " + shortest(**bound) + ", not positive");
-    }
-    return out;
-  }
-
-  // Empty if the member is not a text.
-  static std::string text(const Json& properties, const char* name) {
-    const auto value = properties.find(name);
-    return value != properties.end() && value->is_string() ? value->get<std::string>() : "";
+    if (found == feature.end() || !found->is_object()) return GeometryProperties{};
+    return client::feature_properties(builder_, member(path, "properties") + ".",
+                                      [&found](const char* name) -> PropertyValue {
+                                        const auto value = found->find(name);
+                                        if (value == found->end() || value->is_null()) return {};
+                                        if (value->is_number())
+                                          return {value->get<double>(), "", ""};
+                                        if (value->is_string())
+                                          return {std::nullopt, value->get<std::string>(), ""};
+                                        return {std::nullopt, "", value->dump()};
+                                      });
   }
 
   Result<void> geometry(const Json& json, const std::string& type, const std::string& path,
-                        const Properties& properties) {
-    using Part = Result<void> (Reader::*)(const Json&, const std::string&, const Properties&);
+                        const GeometryProperties& properties) {
+    using Part =
+        Result<void> (Reader::*)(const Json&, const std::string&, const GeometryProperties&);
     struct Kind {
       std::string_view name;
       Part part;
@@ -142,11 +119,18 @@ class Reader {
     if (coordinates == json.end() || !coordinates->is_array())
       return bad(path, "has no array \"coordinates\"");
     const std::string where = member(path, "coordinates");
-    if (coordinates->empty()) return {};  // RFC 7946 allows an empty array: no geometry
+    if (coordinates->empty()) {  // RFC 7946 allows it
+      builder_.leave_out(LeftOut::kGeometry, path.empty() ? "the geometry" : path);
+      return {};
+    }
     if (!kind->many) return (this->*kind->part)(*coordinates, where, properties);
-    for (std::size_t i = 0; i < coordinates->size(); ++i)
-      if (auto read = (this->*kind->part)((*coordinates)[i], element(where, i), properties); !read)
+    for (std::size_t i = 0; i < coordinates->size(); ++i) {
+      const Json& part = (*coordinates)[i];
+      if (part.is_array() && part.empty())
+        builder_.leave_out(LeftOut::kGeometry, element(where, i));
+      else if (auto read = (this->*kind->part)(part, element(where, i), properties); !read)
         return read;
+    }
     return {};
   }
 
@@ -168,19 +152,21 @@ class Reader {
     return points;
   }
 
-  Result<void> point(const Json& json, const std::string& path, const Properties&) {
+  Result<void> point(const Json& json, const std::string& path, const GeometryProperties&) {
     const auto at = position(json, path);
     if (!at) return tl::unexpected(at.error());
     return builder_.point(*at, path);
   }
 
-  Result<void> line(const Json& json, const std::string& path, const Properties& properties) {
+  Result<void> line(const Json& json, const std::string& path,
+                    const GeometryProperties& properties) {
     const auto points = positions(json, path);
     if (!points) return tl::unexpected(points.error());
     return builder_.line(*points, path, properties);
   }
 
-  Result<void> polygon(const Json& json, const std::string& path, const Properties& properties) {
+  Result<void> polygon(const Json& json, const std::string& path,
+                       const GeometryProperties& properties) {
     if (!json.is_array()) return bad(path, "is not an array of rings");
     builder_.begin_polygon();
     for (std::size_t i = 0; i < json.size(); ++i) {
@@ -198,7 +184,7 @@ class Reader {
 }  // namespace
 
 Result<Domain> read_geojson(const std::filesystem::path& path) {
-  const auto contents = read_file(path, kMaxJsonBytes);
+  const auto contents = read_text_file(path, kMaxJsonBytes);
   if (!contents) return tl::unexpected(contents.error());
   try {
     const auto json = parse_json(path.string(), contents->text(), kMaxJsonDepth);

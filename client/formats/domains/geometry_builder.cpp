@@ -21,20 +21,20 @@ std::optional<double> area_bound(const GeometryProperties& properties) {
   return std::min(of_edge, properties.max_area.value_or(of_edge));
 }
 
+// Whether all points are on one line.
+bool is_flat(std::span<const Point> points) {
+  const auto other = std::find_if(points.begin(), points.end(),
+                                  [&](const Point& p) { return p != points.front(); });
+  return std::none_of(other, points.end(), [&](const Point& p) {
+    const Point& a = points.front();
+    return (other->x - a.x) * (p.y - a.y) != (other->y - a.y) * (p.x - a.x);
+  });
+}
+
 }  // namespace
 
 tl::unexpected<Error> GeometryBuilder::bad(const std::string& path, const std::string& what) const {
   return fail(ExitCode::kUnreadableInput, file_ + ": " + (path.empty() ? "" : path + " ") + what);
-}
-
-Result<std::optional<std::int32_t>> GeometryBuilder::integer(const std::string& path,
-                                                             const char* field,
-                                                             std::optional<double> value) const {
-  if (!value) return std::nullopt;
-  constexpr double kMost = std::numeric_limits<std::int32_t>::max();
-  if (!(std::abs(*value) <= kMost) || *value != std::nearbyint(*value))
-    return bad(path + ", field " + field, "is " + shortest(*value) + ", not an integer of 32 bits");
-  return static_cast<std::int32_t>(*value);
 }
 
 bool GeometryBuilder::is_usable(Point at) {
@@ -109,7 +109,10 @@ Result<void> GeometryBuilder::line(std::span<const Point> positions, const std::
                                    std::span<const std::uint32_t> markers) {
   const auto line = chain(positions, path, properties, markers);
   if (!line) return tl::unexpected(line.error());
-  if (line->points.size() < 2) return bad(path, "is a line with fewer than 2 distinct points");
+  if (line->points.size() < 2) {
+    leave_out(LeftOut::kLine, path);
+    return {};
+  }
   return add(*line, false, path);
 }
 
@@ -139,8 +142,13 @@ Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::
                                    std::span<const std::uint32_t> markers, bool must_close) {
   auto ring = chain(positions, path, properties, markers);
   if (!ring) return tl::unexpected(ring.error());
-  if (must_close && positions.size() < 4)
-    return bad(path, "is a ring of " + std::to_string(positions.size()) + " positions, it needs 4");
+  if (lacks_outer_ring_) return {};
+  if (is_flat(ring->points)) {
+    lacks_outer_ring_ =
+        polygon_rings_ == Rings::kOuterFirst && domain_.segments.size() == polygon_start_;
+    leave_out(LeftOut::kRing, path);
+    return {};
+  }
   std::vector<Point>& points = ring->points;
   const bool closed = points.size() > 1 && points.front() == points.back();
   if (must_close && points.front() != points.back())
@@ -148,9 +156,14 @@ Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::
                          coordinates(points.front().x, points.front().y) + " and ends at " +
                          coordinates(points.back().x, points.back().y));
   if (closed) points.pop_back();
-  if (points.size() < 3) return bad(path, "is a ring with fewer than 3 distinct points");
   check_crossing(*ring, path);
   return add(*ring, true, path);
+}
+
+void GeometryBuilder::begin_polygon(Rings rings) {
+  polygon_start_ = domain_.segments.size();
+  polygon_rings_ = rings;
+  lacks_outer_ring_ = false;
 }
 
 void GeometryBuilder::end_polygon(const std::string& path, const GeometryProperties& properties) {
@@ -167,7 +180,10 @@ void GeometryBuilder::end_polygon(const std::string& path, const GeometryPropert
 }
 
 Result<Domain> GeometryBuilder::finish() {
-  if (domain_.points.empty()) return bad("", "holds no geometry");
+  const std::string left_out = left_out_.sentence();
+  if (domain_.points.empty())
+    return bad("", "holds no geometry" + (left_out.empty() ? "" : ": " + left_out));
+  if (!left_out.empty()) domain_.warnings.push_back(file_ + ": " + left_out);
   const std::vector<std::int32_t> region_numbers = regions_.numbers();
   for (Domain::Area& area : domain_.areas)
     if (area.region) area.region = region_numbers[static_cast<std::size_t>(*area.region)];

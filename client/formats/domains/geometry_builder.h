@@ -13,8 +13,9 @@
 //
 // `path` names a part in its file ("features[3].geometry.coordinates[0]"); its position i is then
 // path[i]. Errors (kUnreadableInput) name the file and the path: magnitudes beyond 1e50, a ring
-// that is not closed or has fewer than 3 distinct points. A ring that crosses itself is a warning:
-// what is inside it is decided by the parity.
+// that is not closed. A ring that crosses itself is a warning: what is inside it is decided by the
+// parity. Rings without an area (all points on one line), with the holes of such a ring, and lines
+// without a length are left out, which one warning tells of (left_out.h).
 //
 //   GeometryBuilder builder("coast.wkt");
 //   builder.begin_polygon();
@@ -34,6 +35,7 @@
 
 #include "client/base/error.h"
 #include "client/formats/domain.h"
+#include "client/formats/domains/left_out.h"
 #include "client/formats/names.h"
 
 namespace weft::client {
@@ -65,8 +67,15 @@ class GeometryBuilder {
                     const GeometryProperties& properties,
                     std::span<const std::uint32_t> markers = {});
 
+  // Tells of something that a reader leaves out.
+  void leave_out(LeftOut::Kind kind, const std::string& path) { left_out_.add(kind, path); }
+  // `sentence` follows the name of the file.
+  void warn(const std::string& sentence) { domain_.warnings.push_back(file_ + sentence); }
+
+  // Whether a polygon's holes follow the ring around them, and there is only one such ring.
+  enum class Rings { kOuterFirst, kAnyOrder };
   // A polygon is the rings between these two calls.
-  void begin_polygon() { polygon_start_ = domain_.segments.size(); }
+  void begin_polygon(Rings rings = Rings::kOuterFirst);
   // The last position repeats the first; if `must_close` is false it may be left out.
   Result<void> ring(std::span<const Point> positions, const std::string& path,
                     const GeometryProperties& properties,
@@ -75,10 +84,6 @@ class GeometryBuilder {
 
   // Returns an error if nothing was added. The builder must not be used afterwards.
   Result<Domain> finish();
-
-  // The number of a feature's field, if it has one, as a marker or a region. Error: it is none.
-  Result<std::optional<std::int32_t>> integer(const std::string& path, const char* field,
-                                              std::optional<double> value) const;
 
   // "coast.wkt: polygon 1 is ...".
   tl::unexpected<Error> bad(const std::string& path, const std::string& what) const;
@@ -104,9 +109,12 @@ class GeometryBuilder {
   NameReader names_;
   Labels markers_;
   Labels regions_;
+  LeftOut left_out_;
   std::size_t crossings_ = 0;  // rings that cross themselves
   Domain domain_;  // the markers of its segments and the regions of its areas are labels
   std::size_t polygon_start_ = 0;
+  Rings polygon_rings_ = Rings::kOuterFirst;
+  bool lacks_outer_ring_ = false;  // the polygon's was left out
 };
 
 }  // namespace weft::client

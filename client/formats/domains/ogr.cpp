@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "client/base/option_row.h"
 #include "client/base/text.h"
+#include "client/formats/domains/feature_properties.h"
 #include "client/formats/domains/geometry_builder.h"
 #include "client/formats/domains/ogr_formats.h"
 #include "client/formats/files/gdal_library.h"
@@ -154,46 +154,20 @@ class Reader {
     return add_geometry(linear.get(), path, *properties, 0);
   }
 
-  std::optional<double> number(OGRFeatureH feature, const char* field) const {
+  PropertyValue value(OGRFeatureH feature, const char* field) const {
     const int index = gdal_.OGR_F_GetFieldIndex(feature, field);
-    if (index < 0 || gdal_.OGR_F_IsFieldSetAndNotNull(feature, index) == 0) return std::nullopt;
-    std::optional<double> value;
+    if (index < 0 || gdal_.OGR_F_IsFieldSetAndNotNull(feature, index) == 0) return {};
     const auto type = gdal_.OGR_Fld_GetType(gdal_.OGR_F_GetFieldDefnRef(feature, index));
-    if (type == OFTInteger || type == OFTInteger64 || type == OFTReal)
-      value = gdal_.OGR_F_GetFieldAsDouble(feature, index);
-    else if (type == OFTString)
-      value = value_of<double>(gdal_.OGR_F_GetFieldAsString(feature, index));
-    return value && std::isfinite(*value) ? value : std::nullopt;
-  }
-
-  // The text of a field; empty if it is a number or there is none.
-  std::string text(OGRFeatureH feature, const char* field) const {
-    const int index = gdal_.OGR_F_GetFieldIndex(feature, field);
-    if (index < 0 || gdal_.OGR_F_IsFieldSetAndNotNull(feature, index) == 0) return "";
-    if (gdal_.OGR_Fld_GetType(gdal_.OGR_F_GetFieldDefnRef(feature, index)) != OFTString) return "";
-    const std::string value = gdal_.OGR_F_GetFieldAsString(feature, index);
-    return value_of<double>(value) ? "" : value;
+    if (type == OFTString) return {std::nullopt, gdal_.OGR_F_GetFieldAsString(feature, index), ""};
+    if (type != OFTInteger && type != OFTInteger64 && type != OFTReal) return {};
+    const double number = gdal_.OGR_F_GetFieldAsDouble(feature, index);
+    if (!std::isfinite(number)) return {};
+    return {number, "", ""};
   }
 
   Result<GeometryProperties> read_properties(OGRFeatureH feature, const std::string& path) const {
-    GeometryProperties out;
-    const auto marker = builder_.integer(path, "marker", number(feature, "marker"));
-    if (!marker) return tl::unexpected(marker.error());
-    out.marker = marker->value_or(0);
-    const auto region = builder_.integer(path, "region", number(feature, "region"));
-    if (!region) return tl::unexpected(region.error());
-    out.region = *region;
-    out.marker_name = text(feature, "marker");
-    out.region_name = text(feature, "region");
-    if (out.marker_name.empty()) out.marker_name = text(feature, "marker_name");
-    if (out.region_name.empty()) out.region_name = text(feature, "region_name");
-    for (const auto& [name, bound] :
-         {std::pair{"max_area", &out.max_area}, {"max_edge", &out.max_edge}}) {
-      *bound = number(feature, name);
-      if (*bound && !(**bound > 0))
-        return builder_.bad(path + ", field " + name, "is " + shortest(**bound) + ", not positive");
-    }
-    return out;
+    return feature_properties(builder_, path + ", field ",
+                              [&](const char* name) { return value(feature, name); });
   }
 
   std::vector<Point> points_of(OGRGeometryH line) const {
@@ -209,7 +183,10 @@ class Reader {
                             const GeometryProperties& properties, int depth) {
     if (depth > kMaxDepth)
       return builder_.bad(path, "is nested deeper than " + std::to_string(kMaxDepth) + " levels");
-    if (gdal_.OGR_G_IsEmpty(geometry) != 0) return {};
+    if (gdal_.OGR_G_IsEmpty(geometry) != 0) {
+      builder_.leave_out(LeftOut::kGeometry, path);
+      return {};
+    }
     const int parts = gdal_.OGR_G_GetGeometryCount(geometry);
     switch (gdal_.OGR_GT_Flatten(gdal_.OGR_G_GetGeometryType(geometry))) {
       case wkbPoint:

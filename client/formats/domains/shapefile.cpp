@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "client/base/text.h"
+#include "client/formats/domains/feature_properties.h"
 #include "client/formats/domains/geometry_builder.h"
 #include "client/formats/files/file_contents.h"
 
@@ -51,23 +52,16 @@ class Table {
     return {};
   }
 
-  std::optional<double> number(int record, const char* field) const {
-    if (!table_ || record >= ::DBFGetRecordCount(table_.get())) return std::nullopt;
-    const int index = ::DBFGetFieldIndex(table_.get(), field);
-    if (index < 0 || ::DBFIsAttributeNULL(table_.get(), record, index) != 0) return std::nullopt;
+  PropertyValue value(int record, const std::string& field) const {
+    if (!table_ || record >= ::DBFGetRecordCount(table_.get())) return {};
+    const int index = ::DBFGetFieldIndex(table_.get(), field.c_str());
+    if (index < 0 || ::DBFIsAttributeNULL(table_.get(), record, index) != 0) return {};
     const DBFFieldType type = ::DBFGetFieldInfo(table_.get(), index, nullptr, nullptr, nullptr);
-    if (type != FTInteger && type != FTDouble) return std::nullopt;
-    return ::DBFReadDoubleAttribute(table_.get(), record, index);
-  }
-
-  // Empty if the field is not a text.
-  std::string text(int record, const char* field) const {
-    if (!table_ || record >= ::DBFGetRecordCount(table_.get())) return "";
-    const int index = ::DBFGetFieldIndex(table_.get(), field);
-    if (index < 0 || ::DBFIsAttributeNULL(table_.get(), record, index) != 0) return "";
-    if (::DBFGetFieldInfo(table_.get(), index, nullptr, nullptr, nullptr) != FTString) return "";
-    const char* const value = ::DBFReadStringAttribute(table_.get(), record, index);
-    return value != nullptr ? value : "";
+    if (type == FTInteger || type == FTDouble)
+      return {::DBFReadDoubleAttribute(table_.get(), record, index), "", ""};
+    if (type != FTString) return {};
+    const char* const text = ::DBFReadStringAttribute(table_.get(), record, index);
+    return {std::nullopt, text != nullptr ? text : "", ""};
   }
 
  private:
@@ -102,25 +96,10 @@ class Reader {
 
  private:
   Result<GeometryProperties> read_properties(int record, const std::string& path) const {
-    GeometryProperties out;
-    const auto marker = builder_.integer(path, "marker", table_.number(record, "marker"));
-    if (!marker) return tl::unexpected(marker.error());
-    out.marker = marker->value_or(0);
-    const auto region = builder_.integer(path, "region", table_.number(record, "region"));
-    if (!region) return tl::unexpected(region.error());
-    out.region = *region;
-    // Names of fields are cut to ten letters in the format.
-    out.marker_name = table_.text(record, "marker");
-    out.region_name = table_.text(record, "region");
-    if (out.marker_name.empty()) out.marker_name = table_.text(record, "marker_nam");
-    if (out.region_name.empty()) out.region_name = table_.text(record, "region_nam");
-    for (const auto& [name, bound] :
-         {std::pair{"max_area", &out.max_area}, {"max_edge", &out.max_edge}}) {
-      *bound = table_.number(record, name);
-      if (*bound && !(**bound > 0))
-        return builder_.bad(path + ", field " + name, "is " + shortest(**bound) + ", not positive");
-    }
-    return out;
+    constexpr std::size_t kLongestName = 10;  // of a field, in the format
+    return feature_properties(builder_, path + ", field ", [&](const char* name) {
+      return table_.value(record, std::string(name).substr(0, kLongestName));
+    });
   }
 
   // The points of a part; empty for one that the record does not hold.
@@ -162,7 +141,7 @@ class Reader {
       case SHPT_POLYGON:
       case SHPT_POLYGONZ:
       case SHPT_POLYGONM:
-        builder_.begin_polygon();
+        builder_.begin_polygon(GeometryBuilder::Rings::kAnyOrder);
         for (int i = 0; i < shape.nParts; ++i)
           if (auto added =
                   builder_.ring(part(shape, i), path + ", ring " + std::to_string(i), properties);
@@ -189,7 +168,7 @@ std::optional<CoordinateSystem> system_beside(const std::filesystem::path& path)
   for (const char* extension : {".prj", ".PRJ"}) {
     const auto name = std::filesystem::path(path).replace_extension(extension);
     if (!std::filesystem::is_regular_file(name, ignored)) continue;
-    const auto contents = read_file(name, kMostBytes);
+    const auto contents = read_text_file(name, kMostBytes);
     if (!contents) continue;
     const std::string text(contents->text());
     const std::size_t from = text.find('"');

@@ -2,8 +2,6 @@
 #include "client/formats/domains/wkt.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -13,6 +11,7 @@
 #include "client/base/text.h"
 #include "client/formats/domains/geometry_builder.h"
 #include "client/formats/files/file_contents.h"
+#include "client/formats/files/number_text.h"
 #include "client/formats/triangle/triangle_points.h"
 
 namespace weft::client {
@@ -28,17 +27,23 @@ struct Malformed {
 
 class Reader {
  public:
-  Reader(const std::string& name, std::string_view text)
-      : name_(name), whole_(text), rest_(text), builder_(name) {}
+  Reader(const std::string& name, std::string_view text, TextPlace place,
+         const GeometryProperties& properties, GeometryBuilder& builder)
+      : name_(name),
+        whole_(text),
+        rest_(text),
+        place_(place),
+        properties_(properties),
+        builder_(builder) {}
 
-  Result<Domain> read() {
+  Result<void> read() {
     try {
       for (std::size_t i = 0; !at_end(); ++i) {
         geometry("geometry " + std::to_string(i), 0);
         while (take(';')) {
         }
       }
-      return builder_.finish();
+      return {};
     } catch (const Malformed& malformed) {
       return tl::unexpected(malformed.error);
     }
@@ -48,21 +53,22 @@ class Reader {
   [[noreturn]] void fail_here(const std::string& what) const {
     const std::string_view before = whole_.substr(0, whole_.size() - rest_.size());
     const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 is 0
+    const std::size_t indent = line_start == 0 ? place_.column : 1;
     throw Malformed{{ExitCode::kUnreadableInput,
                      name_ + ":" + std::to_string(line()) + ":" +
-                         std::to_string(before.size() - line_start + 1) + ": " + what}};
+                         std::to_string(before.size() - line_start + indent) + ": " + what}};
   }
   static void must(const Result<void>& done) {
     if (!done) throw Malformed{done.error()};
   }
   // The number of lines up to here; counts on from the place of the last call.
-  std::size_t line() const {
+  std::uint64_t line() const {
     const std::size_t here = whole_.size() - rest_.size();
     lines_ += static_cast<std::size_t>(
         std::count(whole_.begin() + static_cast<std::ptrdiff_t>(counted_),
                    whole_.begin() + static_cast<std::ptrdiff_t>(here), '\n'));
     counted_ = here;
-    return lines_ + 1;
+    return lines_ + place_.line;
   }
 
   void skip_blanks() {
@@ -107,15 +113,11 @@ class Reader {
 
   double number() {
     skip_blanks();
-    std::string_view digits = rest_;
-    if (digits.starts_with('+')) digits.remove_prefix(1);
-    double value = 0;
-    const auto [end, problem] =
-        std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (problem != std::errc() || !std::isfinite(value))
-      fail_here("expected a finite number, found " + found());
-    rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
-    return value;
+    const std::string_view word = rest_.substr(0, rest_.find_first_of("(),; \t\r\n\f\v"));
+    const auto value = real_of(word);
+    if (!value) fail_here("expected a finite number, found " + found());
+    rest_.remove_prefix(word.size());
+    return *value;
   }
 
   // Reads two numbers, and up to two more that are dropped.
@@ -156,21 +158,25 @@ class Reader {
   void line_string(const std::string& path) {
     skip_blanks();
     const std::string place = at_line(path);
-    must(builder_.line(positions(), place, {}));
+    must(builder_.line(positions(), place, properties_));
   }
 
   void polygon(const std::string& path) {
+    skip_blanks();
+    const std::string whole = at_line(path);
     builder_.begin_polygon();
     expect('(');
     std::size_t ring = 0;
     do {
       skip_blanks();
       const std::string place = at_line(path + ", ring " + std::to_string(ring++));
-      must(builder_.ring(positions(), place, {}));
+      must(builder_.ring(take_empty() ? std::vector<Point>() : positions(), place, properties_));
     } while (take(','));
     expect(')');
-    builder_.end_polygon(path, {});
+    builder_.end_polygon(whole, properties_);
   }
+
+  void leave_out(const std::string& path) { builder_.leave_out(LeftOut::kGeometry, at_line(path)); }
 
   void geometry(const std::string& path, int depth) {
     std::string kind = word();
@@ -208,7 +214,7 @@ class Reader {
     const std::string_view before = rest_;
     const std::string tag = word();
     if (tag != "Z" && tag != "M" && tag != "ZM") rest_ = before;
-    if (take_empty()) return;
+    if (take_empty()) return leave_out(path);
     if (known->parts == nullptr) return (this->*known->part)(path);
     if (depth == kMaxDepth) fail_here("is nested deeper than 64 levels");
     expect('(');
@@ -217,7 +223,9 @@ class Reader {
       const std::string part = path + known->parts + std::to_string(i++);
       if (known->part == nullptr) {
         geometry(part, depth + 1);
-      } else if (!take_empty()) {
+      } else if (take_empty()) {
+        leave_out(part);
+      } else {
         (this->*known->part)(part);
       }
     } while (take(','));
@@ -229,15 +237,25 @@ class Reader {
   std::string_view rest_;
   mutable std::size_t counted_ = 0;  // bytes whose lines are counted in lines_
   mutable std::size_t lines_ = 0;
-  GeometryBuilder builder_;
+  const TextPlace place_;
+  const GeometryProperties& properties_;
+  GeometryBuilder& builder_;
 };
 
 }  // namespace
 
 Result<Domain> read_wkt(const std::filesystem::path& path) {
-  const auto contents = read_file(path, kMaxTextBytes);
+  const auto contents = read_text_file(path, kMaxTextBytes);
   if (!contents) return tl::unexpected(contents.error());
-  return Reader(path.string(), contents->text()).read();
+  GeometryBuilder builder(path.string());
+  if (auto added = add_wkt(path.string(), contents->text(), {}, {}, builder); !added)
+    return tl::unexpected(added.error());
+  return builder.finish();
+}
+
+Result<void> add_wkt(const std::string& name, std::string_view text, TextPlace place,
+                     const GeometryProperties& properties, GeometryBuilder& builder) {
+  return Reader(name, text, place, properties, builder).read();
 }
 
 }  // namespace weft::client

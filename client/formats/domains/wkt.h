@@ -8,13 +8,28 @@
 // the part ("line 3, geometry 2, ring 1").
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "client/base/error.h"
 #include "client/formats/domain.h"
+#include "client/formats/domains/geometry_builder.h"
 
 namespace weft::client {
 
 Result<Domain> read_wkt(const std::filesystem::path& path);
+
+// Where a text of a file begins: both from 1.
+struct TextPlace {
+  std::uint64_t line = 1;
+  std::size_t column = 1;
+};
+
+// Adds the geometries of a text to those of the builder, all with the same properties. `name` is
+// that of the file, `place` where the text is in it.
+Result<void> add_wkt(const std::string& name, std::string_view text, TextPlace place,
+                     const GeometryProperties& properties, GeometryBuilder& builder);
 
 }  // namespace weft::client

@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <limits>
 
 #include "client/base/text.h"
+#include "client/base/words.h"
+#include "client/formats/files/number_text.h"
 
 namespace weft::client {
 
@@ -81,15 +82,11 @@ std::string_view LineScanner::rest_of_line() const {
 }
 
 Result<std::int64_t> LineScanner::integer(std::string_view what) {
-  std::string_view digits = field_;
-  if (digits.starts_with('+')) digits.remove_prefix(1);
-  std::int64_t value = 0;
-  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (digits.empty() || problem != std::errc() || end != digits.data() + digits.size())
-    return unexpected_field(what);
+  const auto value = integer_of(field_);
+  if (!value) return unexpected_field(what);
   column_ = static_cast<std::size_t>(field_.data() - line_start_) + 1;
   advance();
-  return value;
+  return *value;
 }
 
 Result<std::int32_t> LineScanner::marker(std::string_view what) {
@@ -102,19 +99,45 @@ Result<std::int32_t> LineScanner::marker(std::string_view what) {
 }
 
 Result<double> LineScanner::real(std::string_view what) {
-  std::string_view digits = field_;
-  if (digits.starts_with('+')) digits.remove_prefix(1);
-  double value = 0;
-  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  const bool whole = !digits.empty() && end == digits.data() + digits.size();
-  // from_chars reports an underflow like an overflow; an underflow is read as 0.
-  const bool tiny = whole && problem == std::errc::result_out_of_range &&
-                    digits.find("e-") != std::string_view::npos;
-  if (!whole || (problem != std::errc() && !tiny)) return unexpected_field(what);
-  if (!std::isfinite(value)) return unexpected_field(std::string(what) + ", a finite number");
+  const auto value = real_of(field_);
+  if (!value)
+    return unexpected_field(std::string(what) + (is_number_like() ? ", a finite number" : ""));
+  if (auto ok = check_comma(what); !ok) return tl::unexpected(ok.error());
   column_ = static_cast<std::size_t>(field_.data() - line_start_) + 1;
   advance();
-  return tiny ? 0.0 : value;
+  return *value;
+}
+
+// Whether the field would be a number, were it finite.
+bool LineScanner::is_number_like() const {
+  double value = 0;
+  const auto [end, problem] = std::from_chars(field_.data(), field_.data() + field_.size(), value);
+  return !field_.empty() && problem != std::errc::invalid_argument &&
+         end == field_.data() + field_.size();
+}
+
+// Where commas are blanks, "1 0,5 0,5" would be five numbers, but its author means three: a comma
+// between whole numbers is refused if it has no blank beside it and the line has others.
+Result<void> LineScanner::check_comma(std::string_view what) {
+  constexpr auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (content_.size() < 2 || content_[0] != ',' || !is_digit(content_[1])) return {};
+  const std::string_view next =
+      content_.substr(1, std::min(content_.find_first_of(" \t\r,", 1), content_.size()) - 1);
+  constexpr std::string_view kNotWhole = ".eEdD";
+  if (field_.find_first_of(kNotWhole) != std::string_view::npos ||
+      next.find_first_of(kNotWhole) != std::string_view::npos)
+    return {};
+  const std::string_view before(line_start_, static_cast<std::size_t>(field_.data() - line_start_));
+  const std::string_view after = content_.substr(1 + next.size());
+  const bool after_a_blank =
+      !trimmed(before).empty() && before.find_last_of(" \t") + 1 == before.size();
+  const bool before_a_blank = !trimmed(after).empty() && after[0] != ',';
+  if (!after_a_blank && !before_a_blank) return {};
+  column_ = static_cast<std::size_t>(field_.data() - line_start_) + 1;
+  return error(std::string(what) + " may be " +
+               in_quotes(std::string(field_) + "," + std::string(next)) +
+               " with a decimal comma, or " + in_quotes(field_) +
+               " before another number: write a decimal point, or blanks alone between numbers");
 }
 
 Result<std::uint64_t> LineScanner::count(std::string_view what) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads text files that are lines of numbers and words between blanks, such as Triangle's: `#`
-// starts a comment, blank lines are ignored. Errors (kUnreadableInput) read "file:line:column:
-// expected the x coordinate, found 'abc'".
+// starts a comment, blank lines are ignored. Numbers are those of number_text.h; if commas are
+// blanks, a number that may have a decimal comma is an error. Errors (kUnreadableInput) read
+// "file:line:column: expected the x coordinate, found 'abc'".
 //
 //   LineScanner scanner("box.poly", text);
 //   if (auto line = scanner.next_line("the point count"); !line) return line.error();
@@ -56,6 +57,8 @@ class LineScanner {
  private:
   void advance();
   tl::unexpected<Error> unexpected_field(std::string_view what);
+  bool is_number_like() const;
+  Result<void> check_comma(std::string_view what);
 
   std::string name_;
   std::string_view rest_;  // after the current line

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // ADCIRC's grid file, fort.14 (https://adcirc.org/home/documentation, "ADCIRC Grid and Boundary
-// Information File"): nodes with depths, triangles, open boundaries, land boundaries.
+// Information File"): nodes with depths, triangles, open boundaries, land boundaries. SCHISM's .gr3
+// (https://schism-dev.github.io/schism/master/input-output/hgrid.html) has the same lists.
 //
 // The boundary is cut into rings, and each ring where its marker changes. A piece is open if its
 // marker is one of `open_boundaries`, otherwise it is mainland (IBTYPE 0); a ring around a hole

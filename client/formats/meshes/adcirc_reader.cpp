@@ -5,8 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "client/base/words.h"
 #include "client/formats/files/file_contents.h"
 #include "client/formats/files/line_scanner.h"
+#include "client/formats/files/node_numbers.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/meshes/adcirc.h"
 #include "client/formats/triangle/triangle_points.h"
@@ -20,24 +22,22 @@ constexpr std::int32_t kIslandMarker = 3;
 
 // The number that follows the word "marker".
 std::int32_t marker_of(std::string_view comment, std::int32_t otherwise) {
-  constexpr std::string_view kWord = "marker ";
+  constexpr std::string_view kWord = "marker";
   const std::size_t at = comment.rfind(kWord);
   if (at == std::string_view::npos) return otherwise;
-  comment.remove_prefix(at + kWord.size());
+  comment = trimmed(comment.substr(at + kWord.size()));
   std::int32_t marker = otherwise;
   std::from_chars(comment.data(), comment.data() + comment.size(), marker);
   return marker;
 }
 
 // Depths are stored if there is a place for them.
-Result<void> read_nodes(LineScanner& scanner, std::uint64_t count, Mesh& mesh,
+Result<void> read_nodes(LineScanner& scanner, std::uint64_t count, NodeNumbers& numbers, Mesh& mesh,
                         std::vector<double>* depths) {
   mesh.coordinates.reserve(2 * count);
   for (std::uint64_t i = 0; i < count; ++i) {
     if (auto line = scanner.next_line("a node"); !line) return line;
-    if (auto number = expect_number(scanner, "the node number", static_cast<std::int64_t>(i + 1));
-        !number)
-      return number;
+    if (auto number = numbers.add(scanner, "the node number"); !number) return number;
     for (const char* what : {"the x coordinate", "the y coordinate"}) {
       const auto value = scanner.real(what);
       if (!value) return tl::unexpected(value.error());
@@ -51,8 +51,8 @@ Result<void> read_nodes(LineScanner& scanner, std::uint64_t count, Mesh& mesh,
   return {};
 }
 
-Result<void> read_elements(LineScanner& scanner, std::uint64_t count, Mesh& mesh) {
-  const std::size_t vertices = mesh.coordinates.size() / 2;
+Result<void> read_elements(LineScanner& scanner, std::uint64_t count, const NodeNumbers& numbers,
+                           Mesh& mesh) {
   mesh.triangles.reserve(3 * count);
   for (std::uint64_t i = 0; i < count; ++i) {
     if (auto line = scanner.next_line("an element"); !line) return line;
@@ -64,7 +64,7 @@ Result<void> read_elements(LineScanner& scanner, std::uint64_t count, Mesh& mesh
       return scanner.error("the nodes per element are " + std::to_string(*corners) +
                            ", only 3 are read");
     for (int k = 0; k < 3; ++k) {
-      const auto v = read_index(scanner, "a corner", 1, vertices);
+      const auto v = numbers.read(scanner, "a corner");
       if (!v) return tl::unexpected(v.error());
       mesh.triangles.push_back(*v);
     }
@@ -72,12 +72,12 @@ Result<void> read_elements(LineScanner& scanner, std::uint64_t count, Mesh& mesh
   return {};
 }
 
-Result<void> read_boundaries(LineScanner& scanner, bool open, Mesh& mesh) {
+Result<void> read_boundaries(LineScanner& scanner, bool open, const NodeNumbers& numbers,
+                             Mesh& mesh) {
   if (!scanner.try_next_line()) return {};  // a grid may end before this
   const auto count = scanner.count("the boundary count");
   if (!count) return tl::unexpected(count.error());
   if (auto line = scanner.next_line("the boundary node count"); !line) return line;
-  const std::size_t vertices = mesh.coordinates.size() / 2;
   for (std::uint64_t i = 0; i < *count; ++i) {
     if (auto line = scanner.next_line("the nodes of a boundary"); !line) return line;
     const auto nodes = scanner.integer("the nodes of a boundary");
@@ -100,7 +100,7 @@ Result<void> read_boundaries(LineScanner& scanner, bool open, Mesh& mesh) {
     };
     for (std::int64_t k = 0; k < *nodes; ++k) {
       if (auto line = scanner.next_line("a boundary node"); !line) return line;
-      const auto v = read_index(scanner, "a boundary node", 1, vertices);
+      const auto v = numbers.read(scanner, "a boundary node");
       if (!v) return tl::unexpected(v.error());
       if (k == 0) first = *v;
       if (k > 0) add_edge(last, *v);
@@ -112,7 +112,7 @@ Result<void> read_boundaries(LineScanner& scanner, bool open, Mesh& mesh) {
 }
 
 Result<Mesh> read_grid(const std::filesystem::path& path, std::vector<double>* depths) {
-  const auto contents = read_file(path, kMaxTextBytes);
+  const auto contents = read_text_file(path, kMaxTextBytes);
   if (!contents) return tl::unexpected(contents.error());
   LineScanner scanner(path.string(), contents->text(), {.comment = '!'});
   scanner.skip_line();  // the title
@@ -123,12 +123,13 @@ Result<Mesh> read_grid(const std::filesystem::path& path, std::vector<double>* d
   const auto nodes = scanner.count("the node count");
   if (!nodes) return tl::unexpected(nodes.error());
   Mesh mesh;
-  if (auto read = read_nodes(scanner, *nodes, mesh, depths); !read)
+  NodeNumbers numbers;
+  if (auto read = read_nodes(scanner, *nodes, numbers, mesh, depths); !read)
     return tl::unexpected(read.error());
-  if (auto read = read_elements(scanner, *elements, mesh); !read)
+  if (auto read = read_elements(scanner, *elements, numbers, mesh); !read)
     return tl::unexpected(read.error());
   for (const bool open : {true, false})
-    if (auto read = read_boundaries(scanner, open, mesh); !read)
+    if (auto read = read_boundaries(scanner, open, numbers, mesh); !read)
       return tl::unexpected(read.error());
   return validated(path, std::move(mesh));
 }

@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "client/base/text.h"
+#include "client/base/words.h"
 #include "client/formats/files/file_contents.h"
+#include "client/formats/files/number_text.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/meshes/msh.h"
 
@@ -114,10 +116,9 @@ class Reader {
   // The next line that is not blank; empty at the end.
   std::string_view next_line() {
     rest_.remove_prefix(std::min(rest_.find_first_not_of(kBlanks), rest_.size()));
-    std::string_view line = rest_.substr(0, rest_.find('\n'));
+    const std::string_view line = rest_.substr(0, rest_.find_first_of("\r\n"));
     rest_.remove_prefix(line.size());
-    while (line.ends_with('\r') || line.ends_with(' ')) line.remove_suffix(1);
-    return line;
+    return trimmed(line);
   }
 
   void expect(const std::string& marker) {
@@ -134,12 +135,19 @@ class Reader {
   template <class T>
   T text_number() {
     rest_.remove_prefix(std::min(rest_.find_first_not_of(kBlanks), rest_.size()));
+    const auto is_blank = [](char c) { return kBlanks.find(c) != std::string_view::npos; };
+    const std::string_view word(rest_.begin(), std::find_if(rest_.begin(), rest_.end(), is_blank));
     T value{};
-    const auto [end, problem] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
-    if (problem != std::errc())
-      throw Malformed{"expected a number, found " +
-                      in_quotes(rest_.substr(0, rest_.find_first_of(kBlanks)))};
-    rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
+    const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
+    bool whole = problem == std::errc() && end == word.data() + word.size();
+    if constexpr (std::is_same_v<T, double>) {
+      if (const auto real = whole ? std::nullopt : real_of(word)) {
+        value = *real;
+        whole = true;
+      }
+    }
+    if (!whole) throw Malformed{"expected a number, found " + in_quotes(word)};
+    rest_.remove_prefix(word.size());
     return value;
   }
 
@@ -442,14 +450,14 @@ class Reader {
 }  // namespace
 
 Result<Mesh> read_msh(const std::filesystem::path& path) {
-  const auto contents = read_file(path, kMaxFileBytes);
+  const auto contents = read_text_file(path, kMaxFileBytes, LineEnds::kAsTheyAre);
   if (!contents) return tl::unexpected(contents.error());
   return Reader(path, contents->text()).read();
 }
 
 Result<MeshWithArrays> read_msh_values(const std::filesystem::path& path,
                                        const std::optional<std::string>& wanted) {
-  const auto contents = read_file(path, kMaxFileBytes);
+  const auto contents = read_text_file(path, kMaxFileBytes, LineEnds::kAsTheyAre);
   if (!contents) return tl::unexpected(contents.error());
   return Reader(path, contents->text()).read_values(wanted);
 }

@@ -167,7 +167,7 @@ class Reader {
 }  // namespace
 
 Result<Mesh> read_2dm(const std::filesystem::path& path) {
-  const auto contents = read_file(path, kMaxTextBytes);
+  const auto contents = read_text_file(path, kMaxTextBytes);
   if (!contents) return tl::unexpected(contents.error());
   return Reader(path, contents->text()).read();
 }

@@ -175,7 +175,7 @@ void write_su2(const MeshView& mesh, OutputFile& file) {
 }
 
 Result<Mesh> read_su2(const std::filesystem::path& path) {
-  const auto contents = read_file(path, kMaxTextBytes);
+  const auto contents = read_text_file(path, kMaxTextBytes);
   if (!contents) return tl::unexpected(contents.error());
   return Reader(path, contents->text()).read(path);
 }

@@ -123,7 +123,7 @@ class ObjReader {
 }  // namespace
 
 Result<Mesh> read_obj(const std::filesystem::path& path) {
-  const auto contents = read_file(path, kMaxTextBytes);
+  const auto contents = read_text_file(path, kMaxTextBytes);
   if (!contents) return tl::unexpected(contents.error());
   auto mesh = ObjReader(LineScanner(path.string(), contents->text())).read();
   if (!mesh) return mesh;
@@ -131,7 +131,7 @@ Result<Mesh> read_obj(const std::filesystem::path& path) {
 }
 
 Result<Mesh> read_off(const std::filesystem::path& path) {
-  const auto contents = read_file(path, kMaxTextBytes);
+  const auto contents = read_text_file(path, kMaxTextBytes);
   if (!contents) return tl::unexpected(contents.error());
   LineScanner scanner(path.string(), contents->text());
   if (auto line = scanner.next_line("the word OFF"); !line) return tl::unexpected(line.error());

@@ -373,14 +373,14 @@ class Reader {
 }  // namespace
 
 Result<Mesh> read_vtu(const std::filesystem::path& path) {
-  const auto contents = read_file(path, kMaxFileBytes);
+  const auto contents = read_text_file(path, kMaxFileBytes, LineEnds::kAsTheyAre);
   if (!contents) return tl::unexpected(contents.error());
   return Reader(path, contents->text()).read();
 }
 
 Result<MeshWithArrays> read_vtu_values(const std::filesystem::path& path,
                                        const std::optional<std::string>& wanted) {
-  const auto contents = read_file(path, kMaxFileBytes);
+  const auto contents = read_text_file(path, kMaxFileBytes, LineEnds::kAsTheyAre);
   if (!contents) return tl::unexpected(contents.error());
   return Reader(path, contents->text()).read_values(wanted);
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "client/formats/mesh_formats.h"
 #include "client/formats/triangle/triangle_names.h"
 #include "client/formats/triangle/triangle_points.h"
+#include "client/formats/triangle/triangle_segments.h"
 
 namespace weft::client {
 namespace {
@@ -35,15 +37,15 @@ ScratchArray<std::int32_t> vertex_markers(const MeshView& mesh) {
   return markers;
 }
 
-Result<void> read_triangles(const std::filesystem::path& path, std::int64_t base, Mesh& mesh,
-                            NameReader& names) {
-  const auto contents = read_file(path, kMaxTextBytes);
+Result<void> read_triangles(const std::filesystem::path& path, const NodeNumbers& numbers,
+                            Mesh& mesh, NameReader& names) {
+  const auto contents = read_text_file(path, kMaxTextBytes);
   if (!contents) return tl::unexpected(contents.error());
   LineScanner scanner(path.string(), contents->text());
   if (auto line = scanner.next_line("the triangle count"); !line) return line;
   const auto count = scanner.count("the triangle count");
   if (!count) return tl::unexpected(count.error());
-  std::int64_t attributes = 0;
+  std::optional<std::int64_t> attributes;
   if (!scanner.at_line_end()) {
     const auto corners = scanner.integer("the corners per triangle");
     if (!corners) return tl::unexpected(corners.error());
@@ -56,7 +58,6 @@ Result<void> read_triangles(const std::filesystem::path& path, std::int64_t base
       attributes = *value;
     }
   }
-  const std::size_t vertices = mesh.coordinates.size() / 2;
   mesh.triangles.reserve(*count * 3);
   mesh.regions.reserve(*count);
   std::vector<double> regions;
@@ -66,12 +67,12 @@ Result<void> read_triangles(const std::filesystem::path& path, std::int64_t base
     if (auto number = scanner.integer("the triangle number"); !number)
       return tl::unexpected(number.error());
     for (int corner = 0; corner < 3; ++corner) {
-      const auto v = read_index(scanner, "a corner", base, vertices);
+      const auto v = numbers.read(scanner, "a corner");
       if (!v) return tl::unexpected(v.error());
       mesh.triangles.push_back(*v);
     }
     double attribute = 0;
-    if (attributes > 0) {
+    if (attributes ? *attributes > 0 : !scanner.at_line_end()) {
       const auto value = scanner.real("the triangle's attribute");
       if (!value) return tl::unexpected(value.error());
       attribute = *value;
@@ -85,39 +86,18 @@ Result<void> read_triangles(const std::filesystem::path& path, std::int64_t base
   return {};
 }
 
-Result<void> read_edges(const std::filesystem::path& path, std::int64_t base, Mesh& mesh,
+Result<void> read_edges(const std::filesystem::path& path, const NodeNumbers& numbers, Mesh& mesh,
                         NameReader& names) {
-  const auto contents = read_file(path, kMaxTextBytes);
+  const auto contents = read_text_file(path, kMaxTextBytes);
   if (!contents) return tl::unexpected(contents.error());
   LineScanner scanner(path.string(), contents->text());
   if (auto points = read_triangle_points(scanner); !points) return tl::unexpected(points.error());
-  if (auto line = scanner.next_line("the segment count"); !line) return line;
-  const auto count = scanner.count("the segment count");
-  if (!count) return tl::unexpected(count.error());
-  bool has_markers = false;
-  if (!scanner.at_line_end()) {
-    const auto markers = scanner.integer("the marker count");
-    if (!markers) return tl::unexpected(markers.error());
-    has_markers = *markers == 1;
-  }
-  const std::size_t vertices = mesh.coordinates.size() / 2;
-  for (std::uint64_t i = 0; i < *count; ++i) {
-    if (auto line = scanner.next_line("a segment"); !line) return line;
-    if (auto number = scanner.integer("the segment number"); !number)
-      return tl::unexpected(number.error());
-    for (int end = 0; end < 2; ++end) {
-      const auto v = read_index(scanner, "the segment's end", base, vertices);
-      if (!v) return tl::unexpected(v.error());
-      mesh.edges.push_back(*v);
-    }
-    std::int32_t marker = 0;
-    if (has_markers) {
-      const auto value = scanner.marker("the segment marker");
-      if (!value) return tl::unexpected(value.error());
-      marker = *value;
-    }
-    mesh.edge_markers.push_back(marker);
-  }
+  const auto segments = read_triangle_segments(
+      scanner, numbers, [&mesh](std::uint32_t a, std::uint32_t b, std::int32_t marker) {
+        mesh.edges.insert(mesh.edges.end(), {a, b});
+        mesh.edge_markers.push_back(marker);
+      });
+  if (!segments) return segments;
   read_names(contents->text(), names);
   return {};
 }
@@ -164,11 +144,12 @@ Result<Mesh> read_triangle_mesh(const std::filesystem::path& path) {
     mesh.coordinates.push_back(point.y);
   }
   NameReader names(path.string());
-  if (auto read = read_triangles(base.replace_extension(".ele"), points->base, mesh, names); !read)
+  if (auto read = read_triangles(base.replace_extension(".ele"), points->numbers, mesh, names);
+      !read)
     return tl::unexpected(read.error());
   std::error_code ignored;
   if (std::filesystem::exists(base.replace_extension(".poly"), ignored))
-    if (auto read = read_edges(base, points->base, mesh, names); !read)
+    if (auto read = read_edges(base, points->numbers, mesh, names); !read)
       return tl::unexpected(read.error());
   mesh.warnings = names.warnings();
   mesh.names = names.take();

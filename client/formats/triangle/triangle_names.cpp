@@ -39,7 +39,8 @@ void read_names(std::string_view text, NameReader& names) {
     const bool opens_line = at == 0 || text[at - 1] == '\n';
     std::string_view line = text.substr(at, text.find('\n', at) - at);
     at += line.size();
-    if (line.ends_with('\r')) line.remove_suffix(1);
+    // A name may end in blanks, not in control characters.
+    while (line.ends_with('\r') || line.ends_with('\t')) line.remove_suffix(1);
     if (opens_line) read_name(line, names);
   }
 }

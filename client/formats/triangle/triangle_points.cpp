@@ -2,9 +2,13 @@
 #include "client/formats/triangle/triangle_points.h"
 
 #include <limits>
+#include <optional>
 #include <string>
+#include <string_view>
 
+#include "client/base/words.h"
 #include "client/formats/files/file_contents.h"
+#include "client/formats/files/number_text.h"
 
 namespace weft::client {
 
@@ -19,23 +23,22 @@ Result<std::uint32_t> read_index(LineScanner& scanner, std::string_view what, st
   return static_cast<std::uint32_t>(*number - base);
 }
 
-Result<void> expect_number(LineScanner& scanner, std::string_view what, std::int64_t number) {
-  const auto found = scanner.integer(what);
-  if (!found) return tl::unexpected(found.error());
-  if (*found != number)
-    return scanner.error(std::string(what) + " is " + std::to_string(*found) + ", it should be " +
-                         std::to_string(number));
-  return {};
+namespace {
+
+// What is left of a line if only a marker is: no attribute, which may be any number.
+bool is_lone_integer(std::string_view rest) {
+  const std::string_view word = trimmed(rest);
+  return word.find_first_of(" \t,") == std::string_view::npos && integer_of(word).has_value();
 }
 
-Result<TrianglePoints> read_triangle_points(LineScanner& scanner) {
-  if (auto line = scanner.next_line("the point count"); !line) return tl::unexpected(line.error());
-  const auto count = scanner.count("the point count");
-  if (!count) return tl::unexpected(count.error());
-  if (*count > std::numeric_limits<std::uint32_t>::max())
-    return scanner.error("the point count is " + std::to_string(*count) +
-                         ", the limit is 4294967295");
-  std::int64_t header[] = {2, 0, 0};  // dimension, attributes, markers
+// The dimension, and the counts of attributes and markers; nothing for those that are missing.
+struct PointHeader {
+  std::int64_t attributes = 0;
+  std::optional<std::int64_t> markers;
+};
+
+Result<PointHeader> read_point_header(LineScanner& scanner) {
+  PointHeader header;
   constexpr const char* kNames[] = {"the dimension", "the attribute count", "the marker count"};
   for (int i = 0; i < 3 && !scanner.at_line_end(); ++i) {
     const auto value = scanner.integer(kNames[i]);
@@ -46,46 +49,53 @@ Result<TrianglePoints> read_triangle_points(LineScanner& scanner) {
                            (i == 0   ? ", it must be 2"
                             : i == 1 ? ", it must not be negative"
                                      : ", it must be 0 or 1"));
-    header[i] = *value;
+    if (i == 1) header.attributes = *value;
+    if (i == 2) header.markers = *value;
   }
+  return header;
+}
+
+}  // namespace
+
+Result<TrianglePoints> read_triangle_points(LineScanner& scanner) {
+  if (auto line = scanner.next_line("the point count"); !line) return tl::unexpected(line.error());
+  const auto count = scanner.count("the point count");
+  if (!count) return tl::unexpected(count.error());
+  if (*count > std::numeric_limits<std::uint32_t>::max())
+    return scanner.error("the point count is " + std::to_string(*count) +
+                         ", the limit is 4294967295");
+  const auto header = read_point_header(scanner);
+  if (!header) return tl::unexpected(header.error());
 
   TrianglePoints section;
   section.points.reserve(*count);
-  if (header[2] == 1) section.markers.reserve(*count);
+  bool marked = header->markers != 0;
+  if (marked) section.markers.reserve(*count);
   for (std::uint64_t i = 0; i < *count; ++i) {
     if (auto line = scanner.next_line("a point"); !line) return tl::unexpected(line.error());
-    if (i == 0) {
-      const auto first = scanner.integer("the point number");
-      if (!first) return tl::unexpected(first.error());
-      if (*first != 0 && *first != 1)
-        return scanner.error("the first point number is " + std::to_string(*first) +
-                             ", it must be 0 or 1");
-      section.base = *first;
-    } else if (auto number = expect_number(scanner, "the point number",
-                                           section.base + static_cast<std::int64_t>(i));
-               !number) {
+    if (auto number = section.numbers.add(scanner, "the point number"); !number)
       return tl::unexpected(number.error());
-    }
     const auto x = scanner.real("the x coordinate");
     if (!x) return tl::unexpected(x.error());
     const auto y = scanner.real("the y coordinate");
     if (!y) return tl::unexpected(y.error());
     section.places.extend(i, scanner.name() + ":", scanner.line());
     section.points.push_back({*x, *y});
-    for (std::int64_t k = 0; k < header[1]; ++k)
+    for (std::int64_t k = 0; k < header->attributes; ++k)
       if (auto attribute = scanner.real("an attribute"); !attribute)
         return tl::unexpected(attribute.error());
-    if (header[2] == 1) {
-      const auto marker = scanner.marker("the point marker");
-      if (!marker) return tl::unexpected(marker.error());
-      section.markers.push_back(*marker);
-    }
+    if (!header->markers) marked = marked && is_lone_integer(scanner.rest_of_line());
+    if (!marked) continue;
+    const auto marker = scanner.marker("the point marker");
+    if (!marker) return tl::unexpected(marker.error());
+    section.markers.push_back(*marker);
   }
+  if (!marked) section.markers.clear();
   return section;
 }
 
 Result<TrianglePoints> read_node_file(const std::filesystem::path& path) {
-  const auto contents = read_file(path, kMaxTextBytes);
+  const auto contents = read_text_file(path, kMaxTextBytes);
   if (!contents) return tl::unexpected(contents.error());
   LineScanner scanner(path.string(), contents->text());
   auto section = read_triangle_points(scanner);

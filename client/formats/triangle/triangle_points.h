@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The point section that Triangle's .node and .poly files share:
 //   <points> <dimension, 2> <attributes> <markers, 0 or 1>
-//   <number> <x> <y> [attributes] [marker]        numbers from 0 or 1, without gaps
-// Attributes are ignored.
+//   <number> <x> <y> [attributes] [marker]        any numbers, each once
+// Attributes are ignored. The header may end after any of its counts. If the count of markers is
+// missing, a lone whole number after the attributes of every point is its marker.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +13,7 @@
 #include "client/base/error.h"
 #include "client/formats/domain.h"
 #include "client/formats/files/line_scanner.h"
+#include "client/formats/files/node_numbers.h"
 
 namespace weft::client {
 
@@ -21,7 +23,7 @@ inline constexpr std::uint64_t kMaxTextBytes = std::uint64_t{16} << 30;
 struct TrianglePoints {
   std::vector<Point> points;
   std::vector<std::int32_t> markers;  // one per point; empty if the file has none
-  std::int64_t base = 1;              // number of the first point
+  NodeNumbers numbers;
   Provenance places;
 };
 
@@ -35,8 +37,5 @@ Result<TrianglePoints> read_node_file(const std::filesystem::path& path);
 // below base + count.
 Result<std::uint32_t> read_index(LineScanner& scanner, std::string_view what, std::int64_t base,
                                  std::size_t count);
-
-// Reads the number that begins a line of a list; returns an error if it is not the expected one.
-Result<void> expect_number(LineScanner& scanner, std::string_view what, std::int64_t number);
 
 }  // namespace weft::client

@@ -13,43 +13,10 @@
 #include "client/formats/files/text_writer.h"
 #include "client/formats/triangle/triangle_names.h"
 #include "client/formats/triangle/triangle_points.h"
+#include "client/formats/triangle/triangle_segments.h"
 
 namespace weft::client {
 namespace {
-
-Result<void> read_segments(LineScanner& scanner, std::int64_t base, Domain& domain) {
-  if (auto line = scanner.next_line("the segment count"); !line) return line;
-  const auto count = scanner.count("the segment count");
-  if (!count) return tl::unexpected(count.error());
-  bool has_markers = false;
-  if (!scanner.at_line_end()) {
-    const auto markers = scanner.integer("the marker count");
-    if (!markers) return tl::unexpected(markers.error());
-    if (*markers != 0 && *markers != 1)
-      return scanner.error("the marker count is " + std::to_string(*markers) +
-                           ", it must be 0 or 1");
-    has_markers = *markers == 1;
-  }
-  domain.segments.reserve(*count);
-  for (std::uint64_t i = 0; i < *count; ++i) {
-    if (auto line = scanner.next_line("a segment"); !line) return line;
-    if (auto number = scanner.integer("the segment number"); !number)
-      return tl::unexpected(number.error());
-    const auto a = read_index(scanner, "the segment's first point", base, domain.points.size());
-    if (!a) return tl::unexpected(a.error());
-    const auto b = read_index(scanner, "the segment's second point", base, domain.points.size());
-    if (!b) return tl::unexpected(b.error());
-    std::int32_t marker = 0;
-    if (has_markers) {
-      const auto value = scanner.marker("the segment marker");
-      if (!value) return tl::unexpected(value.error());
-      marker = *value;
-    }
-    domain.segment_places.extend(i, scanner.name() + ":", scanner.line());
-    domain.segments.push_back({*a, *b, marker});
-  }
-  return {};
-}
 
 Result<Point> read_seed(LineScanner& scanner) {
   if (auto number = scanner.integer("the seed number"); !number)
@@ -117,7 +84,7 @@ std::optional<double> value_of(const Domain& domain, std::int32_t id) {
 }  // namespace
 
 Result<Domain> read_triangle_poly(const std::filesystem::path& path) {
-  const auto contents = read_file(path, kMaxTextBytes);
+  const auto contents = read_text_file(path, kMaxTextBytes);
   if (!contents) return tl::unexpected(contents.error());
   LineScanner scanner(path.string(), contents->text());
 
@@ -132,8 +99,12 @@ Result<Domain> read_triangle_poly(const std::filesystem::path& path) {
   domain.point_markers = std::move(points->markers);
   domain.point_places = std::move(points->places);
 
-  if (auto read = read_segments(scanner, points->base, domain); !read)
-    return tl::unexpected(read.error());
+  const auto segments = read_triangle_segments(
+      scanner, points->numbers, [&](std::uint32_t a, std::uint32_t b, std::int32_t marker) {
+        domain.segment_places.extend(domain.segments.size(), scanner.name() + ":", scanner.line());
+        domain.segments.push_back({a, b, marker});
+      });
+  if (!segments) return tl::unexpected(segments.error());
   if (auto read = read_holes(scanner, domain); !read) return tl::unexpected(read.error());
   if (auto read = read_regions(scanner, domain); !read) return tl::unexpected(read.error());
 

@@ -5,6 +5,7 @@
 import { FileError } from "./file-error";
 import { GeometryBuilder, noProperties, type Properties } from "./geometry-builder";
 import type { PlanarDomain, Point } from "./planar-domain";
+import { numberOf } from "./text";
 
 type Json = { [name: string]: unknown };
 
@@ -31,7 +32,11 @@ function read(json: unknown, path: string, properties: Properties, builder: Geom
   const each = (list: string) => {
     const items = json[list];
     if (!Array.isArray(items)) throw new FileError(path, `has no array "${list}"`);
-    items.forEach((item, i) => read(item, `${member(path, list)}[${i}]`, properties, builder, depth + 1));
+    items.forEach((item, i) => {
+      const place = `${member(path, list)}[${i}]`;
+      if (item === null) builder.leftOut.add("geometry", place);
+      else read(item, place, properties, builder, depth + 1);
+    });
   };
   switch (json.type) {
     case "FeatureCollection":
@@ -55,7 +60,7 @@ function propertiesOf(feature: Json, path: string): Properties {
   const given = feature.properties;
   if (!isObject(given)) return noProperties;
   const number = (name: string, what: string, holds: (value: number) => boolean) => {
-    const value = given[name];
+    const value = valueOf(given[name]);
     if (typeof value !== "number") return undefined;
     if (!holds(value)) throw new FileError(`${member(path, "properties")}.${name}`, `is ${value}, not ${what}`);
     return value;
@@ -63,9 +68,15 @@ function propertiesOf(feature: Json, path: string): Properties {
   const isId = (value: number) => value === (value | 0);
   const isPositive = (value: number) => value > 0;
   // A text instead of a number, or beside it.
-  const text = (name: string) => [given[name], given[`${name}_name`]].find((value) => value && typeof value === "string");
-  const maxArea = number("max_area", "positive", isPositive);
-  const maxEdge = number("max_edge", "positive", isPositive);
+  const text = (name: string) => [valueOf(given[name]), given[`${name}_name`]].find((value) => value && typeof value === "string");
+  const bound = (name: string) => {
+    const value = valueOf(given[name]);
+    if (value !== undefined && value !== null && typeof value !== "number")
+      throw new FileError(`${member(path, "properties")}.${name}`, `is ${JSON.stringify(value)}, not a number`);
+    return number(name, "positive", isPositive);
+  };
+  const maxArea = bound("max_area");
+  const maxEdge = bound("max_edge");
   const bounds = [maxArea, maxEdge && equilateral * maxEdge * maxEdge].filter((bound) => bound !== undefined);
   return {
     marker: number("marker", "an integer of 32 bits", isId) ?? 0,
@@ -76,13 +87,19 @@ function propertiesOf(feature: Json, path: string): Properties {
   };
 }
 
+// A text that is a number is that number; one of blanks is nothing.
+function valueOf(property: unknown): unknown {
+  if (typeof property !== "string") return property;
+  return numberOf(property) ?? (property.trim() ? property : undefined);
+}
+
 function geometry(json: Json, path: string, properties: Properties, builder: GeometryBuilder): void {
   const type = String(json.type);
   const many = type.startsWith("Multi");
   const kind = many ? type.slice(5) : type;
   const takers: Record<string, (value: unknown, place: string) => void> = {
     Point: (value, place) => builder.point(position(value, place)),
-    LineString: (value, place) => builder.line(positions(value, place), properties),
+    LineString: (value, place) => builder.line(positions(value, place), place, properties),
     Polygon: (value, place) =>
       builder.polygon(
         list(value, place, "an array of rings").map((ring, i) => positions(ring, `${place}[${i}]`)),
@@ -94,8 +111,13 @@ function geometry(json: Json, path: string, properties: Properties, builder: Geo
   if (!take) throw new FileError(path, `has the type “${type}”, which is not GeoJSON's`);
   const place = member(path, "coordinates");
   const coordinates = list(json.coordinates, place, "an array");
-  if (!many && coordinates.length > 0) take(coordinates, place);
-  if (many) coordinates.forEach((part, i) => take(part, `${place}[${i}]`));
+  if (coordinates.length === 0) builder.leftOut.add("geometry", path || "the geometry");
+  else if (!many) take(coordinates, place);
+  else
+    coordinates.forEach((part, i) => {
+      if (Array.isArray(part) && part.length === 0) builder.leftOut.add("geometry", `${place}[${i}]`);
+      else take(part, `${place}[${i}]`);
+    });
 }
 
 function list(json: unknown, path: string, what: string): unknown[] {

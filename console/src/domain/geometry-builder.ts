@@ -5,6 +5,7 @@
 //   - Lines beside polygons become edges inside.
 //   - With lines alone every bounded face is meshed.
 import { FileError } from "./file-error";
+import { LeftOut } from "./left-out";
 import { Labels } from "./names";
 import type { Area, PlanarDomain, Point } from "./planar-domain";
 
@@ -20,6 +21,15 @@ export const noProperties: Properties = {
   marker: 0, region: undefined, maxArea: undefined, markerName: "", regionName: "",
 };
 
+const same = (a: Point, b: Point) => a[0] === b[0] && a[1] === b[1];
+
+// Whether all positions are on one line.
+function isFlat(ring: readonly Point[]): boolean {
+  const [x, y] = ring[0] ?? [0, 0];
+  const [otherX, otherY] = ring.find((position) => !same(position, ring[0])) ?? [x, y];
+  return ring.every((at) => (otherX - x) * (at[1] - y) === (otherY - y) * (at[0] - x));
+}
+
 export class GeometryBuilder {
   private readonly points: number[] = [];
   private readonly segments: number[] = [];
@@ -28,33 +38,43 @@ export class GeometryBuilder {
   private readonly regionLabels = new Labels("region");
   private readonly borders: number[] = []; // of segments
   private readonly areas: Area[] = []; // their regions are labels
+  readonly leftOut = new LeftOut();
 
   point(at: Point): void {
     this.points.push(...at);
   }
 
-  line(positions: readonly Point[], properties: Properties): void {
+  line(positions: readonly Point[], place: string, properties: Properties): void {
+    if (positions.every((position) => same(position, positions[0]))) {
+      this.markerLabels.of(properties.marker, properties.markerName); // as the command line numbers names
+      return this.leftOut.add("line", place);
+    }
     this.chain(positions, 0, properties);
   }
 
-  // Each ring ends in its first position.
+  // Each ring ends in its first position. The holes of a ring that is left out are left out, too.
   polygon(rings: readonly (readonly Point[])[], place: string, properties: Properties): void {
-    rings.forEach((ring, i) => {
-      const last = ring.at(-1);
-      if (!last || last[0] !== ring[0][0] || last[1] !== ring[0][1])
-        throw new FileError(`${place}[${i}]`, "is a ring that is not closed");
-      if (new Set(ring.map(([x, y]) => `${x} ${y}`)).size < 3)
-        throw new FileError(`${place}[${i}]`, "is a ring of fewer than 3 points");
+    let kept = 0;
+    for (const [i, ring] of rings.entries()) {
+      if (isFlat(ring)) {
+        this.markerLabels.of(properties.marker, properties.markerName);
+        this.leftOut.add("ring", `${place}[${i}]`);
+        if (i === 0) return;
+        continue;
+      }
+      if (!same(ring[0], ring[ring.length - 1])) throw new FileError(`${place}[${i}]`, "is a ring that is not closed");
       this.chain(ring.slice(0, -1), this.areas.length + 1, properties);
-    });
-    if (rings.length === 0) return;
+      ++kept;
+    }
+    if (kept === 0) return;
     const { region, regionName, maxArea } = properties;
     const asks = region !== undefined || regionName !== "";
     this.areas.push({ region: asks ? this.regionLabels.of(region ?? 0, regionName) : undefined, maxArea });
   }
 
   finish(name: string): PlanarDomain {
-    if (this.points.length === 0) throw new FileError("", "the file holds no geometry");
+    const leftOut = this.leftOut.sentence();
+    if (this.points.length === 0) throw new FileError("", `the file holds no geometry${leftOut && `: ${leftOut}`}`);
     const markers = this.markerLabels.numbers();
     const regions = this.regionLabels.numbers();
     const [ofMarkers, ofRegions] = [this.markerLabels.reader, this.regionLabels.reader];
@@ -69,7 +89,7 @@ export class GeometryBuilder {
       borders: Uint32Array.from(this.borders),
       markerNames: ofMarkers.names,
       regionNames: ofRegions.names,
-      warnings: [...ofMarkers.warnings, ...ofRegions.warnings],
+      warnings: [...(leftOut ? [leftOut] : []), ...ofMarkers.warnings, ...ofRegions.warnings],
     };
   }
 

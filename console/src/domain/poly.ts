@@ -4,6 +4,7 @@
 import { FileError } from "./file-error";
 import { NameReader } from "./names";
 import type { PlanarDomain, RegionSeed } from "./planar-domain";
+import { numberOf } from "./text";
 
 class Lines {
   private at = 0;
@@ -37,8 +38,8 @@ class Lines {
   real(what: string): number {
     const word = this.words.pop();
     if (word === undefined) throw this.error(`${what} is missing`);
-    const value = Number(word);
-    if (!Number.isFinite(value)) throw this.error(`${what} is “${word}”, not a number`);
+    const value = numberOf(word);
+    if (value === undefined) throw this.error(`${what} is “${word}”, not a number`);
     return value;
   }
 
@@ -75,31 +76,32 @@ export function readPoly(name: string, text: string): PlanarDomain {
   const dimension = lines.atEnd ? 2 : lines.integer("the dimension");
   if (dimension !== 2) throw lines.error(`the dimension is ${dimension}, it must be 2`);
   const points = new Float64Array(2 * count);
-  let base = 0;
+  const indices = new Map<number, number>(); // of the points, by their numbers
   for (let i = 0; i < count; ++i) {
     lines.next("a point");
     const number = lines.integer("the point number");
-    if (i === 0) base = number;
-    if (i === 0 && base !== 0 && base !== 1) throw lines.error(`the first point has the number ${base}, it must be 0 or 1`);
-    if (number !== base + i) throw lines.error(`the point number is ${number}, expected ${base + i}`);
+    if (indices.has(number)) throw lines.error(`the point number is ${number}, as that of another one before it`);
+    indices.set(number, i);
     points[2 * i] = lines.real("the x coordinate");
     points[2 * i + 1] = lines.real("the y coordinate");
   }
 
   lines.next("the segment count");
   const segmentCount = lines.count("the segment count");
-  const marked = !lines.atEnd && lines.integer("the marker count") === 1;
+  // Without it, a segment has the marker that its line ends in.
+  const marked = lines.atEnd ? undefined : lines.integer("the marker count") === 1;
   const segments = new Uint32Array(2 * segmentCount);
   const markers = new Int32Array(segmentCount);
   for (let i = 0; i < segmentCount; ++i) {
     lines.next("a segment");
     lines.integer("the segment number");
     for (const end of [0, 1]) {
-      const index = lines.integer(`the segment's ${end === 0 ? "first" : "second"} point`) - base;
-      if (index < 0 || index >= count) throw lines.error(`there is no point ${index + base}`);
+      const number = lines.integer(`the segment's ${end === 0 ? "first" : "second"} point`);
+      const index = indices.get(number);
+      if (index === undefined) throw lines.error(`there is no point ${number}`);
       segments[2 * i + end] = index;
     }
-    if (marked) markers[i] = lines.marker("the segment marker");
+    if (marked ?? !lines.atEnd) markers[i] = lines.marker("the segment marker");
   }
 
   lines.next("the hole count");
@@ -111,7 +113,7 @@ export function readPoly(name: string, text: string): PlanarDomain {
   const names = { marker: new NameReader("marker"), region: new NameReader("region") };
   const regions = readRegions(lines, names.region);
   // As client/formats/triangle/triangle_names.h has them.
-  for (const [, kind, id, called] of text.matchAll(/^# (marker|region)=(-?\d+):([^\n]*?)\r?$/gm))
+  for (const [, kind, id, called] of text.matchAll(/^# (marker|region)=(-?\d+):([^\n]*?)\t*$/gm))
     if (Number(id) === (Number(id) | 0)) names[kind as keyof typeof names].add(Number(id), called!);
   return {
     name, points, segments, markers, holes, regions, areas: [], borders: new Uint32Array(),

@@ -4,6 +4,7 @@ import { FileError } from "./file-error";
 import { readGeoJson } from "./geojson";
 import type { PlanarDomain } from "./planar-domain";
 import { readPoly } from "./poly";
+import { cleanText } from "./text";
 import { readWkt } from "./wkt";
 
 const readers = new Map([
@@ -19,5 +20,5 @@ export function readDomain(name: string, text: string): PlanarDomain {
   const reader = readers.get(/\.\w+$/.exec(name)?.[0].toLowerCase() ?? "");
   if (!reader)
     throw new FileError("", `the console reads ${extensions.join(", ")}; \`weft convert\` makes a .poly of the others`);
-  return reader(name, text);
+  return reader(name, cleanText(text));
 }

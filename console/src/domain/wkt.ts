@@ -4,6 +4,7 @@
 import { FileError } from "./file-error";
 import { GeometryBuilder, noProperties } from "./geometry-builder";
 import type { PlanarDomain, Point } from "./planar-domain";
+import { numberOf } from "./text";
 
 const deepest = 64;
 
@@ -33,7 +34,7 @@ class Reader {
     if (!word) throw this.error("a geometry is expected, such as POLYGON");
     const kind = word.toUpperCase().replace(/(.)(ZM|Z|M)$/, "$1");
     this.match(/(ZM|Z|M)\b/iy);
-    if (this.match(/EMPTY\b/iy)) return;
+    if (this.isEmpty()) return this.builder.leftOut.add("geometry", place);
     switch (kind) {
       case "POINT":
         return this.builder.point(this.inside(() => this.position()));
@@ -44,13 +45,13 @@ class Reader {
           if (inner) this.expect(")");
         });
       case "LINESTRING":
-        return this.builder.line(this.positions(), noProperties);
+        return this.builder.line(this.positions(), place, noProperties);
       case "MULTILINESTRING":
-        return this.list(() => this.builder.line(this.positions(), noProperties));
+        return this.parts(`${place}, line `, (part) => this.builder.line(this.positions(), part, noProperties));
       case "POLYGON":
         return this.polygon(place);
       case "MULTIPOLYGON":
-        return this.list((i) => this.polygon(`${place}, polygon ${i}, ring `));
+        return this.parts(`${place}, polygon `, (part) => this.polygon(part));
       case "GEOMETRYCOLLECTION":
         return this.list((i) => this.geometry(`${place}, part ${i}`, depth + 1));
       default:
@@ -60,8 +61,20 @@ class Reader {
 
   private polygon(place: string): void {
     const rings: Point[][] = [];
-    this.list(() => rings.push(this.positions()));
-    this.builder.polygon(rings, place, noProperties);
+    this.list(() => rings.push(this.isEmpty() ? [] : this.positions()));
+    this.builder.polygon(rings, `${place}, ring `, noProperties);
+  }
+
+  // Those of a collection, less the empty ones.
+  private parts(place: string, read: (place: string) => void): void {
+    this.list((i) => {
+      if (this.isEmpty()) this.builder.leftOut.add("geometry", `${place}${i}`);
+      else read(`${place}${i}`);
+    });
+  }
+
+  private isEmpty(): boolean {
+    return this.match(/EMPTY\b/iy) !== undefined;
   }
 
   private positions(): Point[] {
@@ -73,7 +86,7 @@ class Reader {
   // Heights and measures are dropped.
   private position(): Point {
     const numbers: number[] = [];
-    for (let word; (word = this.match(/[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?/iy)); ) numbers.push(Number(word));
+    for (let word; (word = this.match(/[-+.\d][^\s(),;]*/y)); ) numbers.push(numberOf(word) ?? NaN);
     if (numbers.length < 2 || numbers.length > 4 || !numbers.every(Number.isFinite))
       throw this.error("a position is expected, such as 3.5 7");
     return [numbers[0], numbers[1]];

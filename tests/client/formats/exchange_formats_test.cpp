@@ -72,7 +72,7 @@ TEST_F(ExchangeFormat, PartsThatAreNoneAreRefusedOrLeftOutOfVtu) {
 
 TEST_F(ExchangeFormat, Su2AndAdcircComeBackWithTheirBoundary) {
   const Mesh mesh = square_mesh(30);
-  for (const char* name : {"m.su2", "m.14", "m.GRD"}) {
+  for (const char* name : {"m.su2", "m.14", "m.GRD", "m.gr3"}) {
     const auto back = round_trip(mesh, name);
     ASSERT_TRUE(back) << back.error().message;
     EXPECT_EQ(back->coordinates, mesh.coordinates) << name;
@@ -159,8 +159,8 @@ TEST_F(ExchangeFormat, ObjByOthersMayCountBackwardsAndNameTextures) {
 }
 
 TEST_F(ExchangeFormat, RefusesWhatItCannotRead) {
-  EXPECT_EQ(refusal("m.14", "title\n1 3\n1 0 0 0\n2 1 0 0\n4 0 1 0\n"),
-            "m.14:5:1: the node number is 4, it should be 3");
+  EXPECT_EQ(refusal("m.14", "title\n1 3\n1 0 0 0\n2 1 0 0\n2 0 1 0\n"),
+            "m.14:5:1: the node number is 2, as that of another one before it");
   EXPECT_EQ(refusal("m.14", "title\n1 3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n1 4 1 2 3 3\n"),
             "m.14:6:3: the nodes per element are 4, only 3 are read");
   EXPECT_EQ(refusal("m.14", "title\n1 99999999\n1 0 0 0\n"),

@@ -131,6 +131,25 @@ TEST(HostileDomain, CsvIsRefusedOrRead) {
   damage(path, [&path] { return read_domain(path).has_value(); });
 }
 
+TEST(HostileDomain, CsvOfGeometriesIsRefusedOrRead) {
+  TempFolder folder;
+  const auto path =
+      folder.write("d.csv",
+                   "WKT,id,marker,max_area\n\"POLYGON((0 0,4 0,4 4,0 0),(1 1,2 1,2 2,1 "
+                   "1))\",1,\"west \"\"wall\"\"\",0.5\n\"LINESTRING(0.5 0.5,3.5 0.5)\",2,7,\n");
+  damage(path, [&path] { return read_domain(path).has_value(); });
+}
+
+TEST(HostileDomain, CsvOfUtf16IsRefusedOrRead) {
+  TempFolder folder;
+  std::string text = "\xff\xfe";
+  for (const char c : std::string_view("X;Y;Z\r\n0,5;0;1\r\n4,5;0;1\r\n4;3D0;1\r\nNaN;NaN;\r\n>\r\n"
+                                       "-999;-999;0\r\n1;1;1\r\n2;1;1\r\n2;2;1\r\n"))
+    text += {c, '\0'};
+  const auto path = folder.write("d.csv", text);
+  damage(path, [&path] { return read_domain(path).has_value(); });
+}
+
 TEST(HostileDomain, ShapefileIsRefusedOrRead) {
   TempFolder folder;
   write_sample_shapefile(folder / "d");

@@ -3,6 +3,7 @@
 
 #include <shapefil.h>
 
+#include <utility>
 #include <vector>
 
 namespace weft::client {
@@ -59,6 +60,23 @@ void write_named_shapefile(const std::filesystem::path& base) {
   ::DBFWriteStringAttribute(table, 1, 0, "island");
   ::DBFWriteNULLAttribute(table, 1, 1);
   ::DBFWriteNULLAttribute(table, 1, 2);
+  ::DBFClose(table);
+}
+
+void write_text_shapefile(const std::filesystem::path& base) {
+  SHPInfo* shapes = ::SHPCreate(base.c_str(), SHPT_POLYGON);
+  add(shapes, {{0, 0, 4, 0}, {0, 4, 0, 0}, {0}});
+  add(shapes, {{10, 10, 10, 10}, {0, 1, 0, 0}, {0}});
+  ::SHPClose(shapes);
+
+  DBFInfo* table = ::DBFCreate(base.c_str());
+  int field = 0;
+  for (const auto& [name, text] :
+       {std::pair{"marker", "3"}, {"region", "7"}, {"max_area", "0.1"}}) {
+    ::DBFAddField(table, name, FTString, 12, 0);
+    for (const int record : {0, 1}) ::DBFWriteStringAttribute(table, record, field, text);
+    ++field;
+  }
   ::DBFClose(table);
 }
 

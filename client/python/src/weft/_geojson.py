@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import numbers
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from json import dumps
 from typing import Any
 
@@ -16,10 +16,17 @@ import numpy as np
 import numpy.typing as npt
 
 from ._names import Label, Labels
-from ._text import shortest
+from ._text import number_of, shortest
+from ._warning import warn
 from .errors import DomainError
 
 Points = npt.NDArray[np.float64]
+
+
+# As client/formats/domains/left_out.h has it.
+_LEFT_OUT = {"ring without an area": "rings without an area",
+             "line without a length": "lines without a length",
+             "empty geometry": "empty geometries"}
 
 
 class _Reader:
@@ -32,6 +39,22 @@ class _Reader:
         # Of each polygon its region's label, if it asks for one, and its properties.
         self.polygons: list[tuple[Label | None, dict[str, Any]]] = []
         self.count = 0
+        self.left_out: dict[str, int] = {}
+        self.first_left_out = ""
+        self.file = file
+
+    def leave_out(self, what: str, path: str) -> None:
+        """Of which nothing can be meshed; `what` is one of _LEFT_OUT."""
+        self.first_left_out = self.first_left_out or path or "the geometry"
+        self.left_out[what] = self.left_out.get(what, 0) + 1
+
+    def left_out_sentence(self) -> str:
+        counts = [(self.left_out[one], one, many) for one, many in _LEFT_OUT.items()
+                  if one in self.left_out]
+        parts = [f"{count:,} {one if count == 1 else many}" for count, one, many in counts]
+        joined = " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
+        said = "is left out: " if sum(self.left_out.values()) == 1 else "are left out, the first is "
+        return f"{joined} {said}{self.first_left_out}"
 
     def read(self, json: Any, path: str, properties: dict[str, Any]) -> None:
         if not isinstance(json, dict) or not isinstance(json.get("type"), str):
@@ -41,7 +64,10 @@ class _Reader:
         if kind in ("FeatureCollection", "GeometryCollection"):
             name = "features" if kind == "FeatureCollection" else "geometries"
             for i, part in enumerate(json.get(name, ())):
-                self.read(part, f"{where}{name}[{i}]", properties)
+                if part is None:
+                    self.leave_out("empty geometry", f"{where}{name}[{i}]")
+                else:
+                    self.read(part, f"{where}{name}[{i}]", properties)
         elif kind == "Feature":
             if json.get("geometry") is not None:
                 self.read(json["geometry"], f"{where}geometry",
@@ -58,13 +84,17 @@ class _Reader:
             raise DomainError(f"{path} is of the type {kind!r}, which is not GeoJSON's")
         if coordinates is None:
             raise DomainError(f"{path} is missing")
-        if len(coordinates) == 0:  # RFC 7946 allows it: no geometry
+        if len(coordinates) == 0:  # RFC 7946 allows it
+            self.leave_out("empty geometry", path.removesuffix("coordinates").removesuffix("."))
             return
         if not kind.startswith("Multi"):
             read(coordinates, path, properties)
             return
         for i, part in enumerate(coordinates):
-            read(part, f"{path}[{i}]", properties)
+            if isinstance(part, Sequence) and len(part) == 0:
+                self.leave_out("empty geometry", f"{path}[{i}]")
+            else:
+                read(part, f"{path}[{i}]", properties)
 
     def point(self, position: Any, path: str, properties: dict[str, Any]) -> None:
         self.points.append(_positions([position], path))
@@ -73,19 +103,23 @@ class _Reader:
     def line(self, positions: Any, path: str, properties: dict[str, Any]) -> None:
         points = _positions(positions, path)
         if len(points) < 2:
-            raise DomainError(f"{path} is a line with fewer than 2 distinct points")
+            self.marker_labels.of(properties)  # as the command line numbers names
+            self.leave_out("line without a length", path)
+            return
         self.chain(points, 0, properties)
 
     def polygon(self, rings: Any, path: str, properties: dict[str, Any]) -> None:
         for i, ring in enumerate(rings):
             points = _positions(ring, f"{path}[{i}]")
-            if len(ring) < 4:
-                raise DomainError(f"{path}[{i}] is a ring of {len(ring)} positions, it needs 4")
+            if _is_flat(points):
+                self.marker_labels.of(properties)
+                self.leave_out("ring without an area", f"{path}[{i}]")
+                if i == 0:  # its holes have no more
+                    return
+                continue
             if (points[0] != points[-1]).any():
                 raise DomainError(f"{path}[{i}] is a ring that is not closed: it starts at "
                                   f"{tuple(points[0])} and ends at {tuple(points[-1])}")
-            if len(points) < 4:
-                raise DomainError(f"{path}[{i}] is a ring with fewer than 3 distinct points")
             self.chain(points[:-1], len(self.polygons) + 1, properties)
         if len(rings):
             asks = {"region", "region_name"} & properties.keys()
@@ -104,7 +138,10 @@ class _Reader:
     def domain(self, area: Callable[..., Any]) -> dict[str, Any]:
         """What Domain is made of."""
         if not self.points:
-            raise DomainError("it holds no geometry")
+            raise DomainError("it holds no geometry" +
+                              (f": {self.left_out_sentence()}" if self.left_out else ""))
+        if self.left_out:
+            warn((f"{self.file}: " if self.file else "") + self.left_out_sentence())
         marker_of, marker_names = self.marker_labels.numbers()
         region_of, region_names = self.region_labels.numbers()
         lengths = [len(segments) for segments in self.segments]
@@ -136,20 +173,29 @@ def _bound(properties: dict[str, Any]) -> float | None:
     return min(bounds, default=None)
 
 
+def _value(properties: Any, name: str) -> Any:
+    """A property; a text that is a number is that number, one of blanks is none."""
+    value = properties.get(name)
+    if not isinstance(value, str):
+        return value
+    number = number_of(value)
+    return (value if value.strip() else None) if number is None else number
+
+
 def _properties(properties: Any, path: str) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for name in ("marker", "region"):
-        value = properties.get(name)
+        value = _value(properties, name)
         if isinstance(value, (int, float)) and not isinstance(value, bool):
             if not -2**31 <= value < 2**31 or value != int(value):
                 raise DomainError(f"{path}.{name} is {shortest(_float(value))}, not an integer of 32 "
                                   "bits")
             found[name] = int(value)
-        texts = (properties.get(key) for key in (name, f"{name}_name"))
+        texts = (value, properties.get(f"{name}_name"))
         if text := next((text for text in texts if text and isinstance(text, str)), ""):
             found[f"{name}_name"] = text
     for name in ("max_area", "max_edge"):
-        bound = properties.get(name)
+        bound = _value(properties, name)
         if bound is None:  # as programs write features that lack a column of their table
             continue
         if isinstance(bound, bool) or not isinstance(bound, numbers.Real):
@@ -183,3 +229,10 @@ def _positions(positions: Any, path: str) -> Points:
     new = np.concatenate([[True], (points[1:] != points[:-1]).any(axis=1)])
     distinct: Points = points[new]
     return distinct
+
+
+def _is_flat(points: Points) -> bool:
+    """Whether all points are on one line."""
+    away = points - points[:1]
+    other = away[np.argmax((away != 0).any(axis=1))] if len(away) else np.zeros(2)
+    return bool((other[0] * away[:, 1] == other[1] * away[:, 0]).all())

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._names import FileNames
+from ._text import read_text, shortest, without_fortran
 from .errors import DomainError
 
 _NAME = re.compile(r"# (marker|region)=(-?[0-9]+):(.*)")  # see client/formats/triangle/triangle_names.h
@@ -23,54 +24,74 @@ class _Lines:
 
     def __init__(self, path: pathlib.Path) -> None:
         # Comments may be in any encoding; a name that is not UTF-8 is left out.
-        text = path.read_text("utf-8", "surrogateescape")
-        lines = text.split("\n")
+        lines = read_text(path, "surrogateescape").split("\n")
         stripped = (line.partition("#")[0].strip() for line in lines)
-        self._lines = [line for line in stripped if line]
+        self._lines = [without_fortran(line) for line in stripped if line]
         self._at = 0
-        named = (_NAME.fullmatch(line) for line in lines)
+        named = (_NAME.fullmatch(line.rstrip("\t")) for line in lines)
         self.names = [(found[1], int(found[2]), found[3]) for found in named if found]
 
-    def header(self, what: str, least: int) -> list[int]:
+    def header(self, what: str) -> list[int]:
+        """The counts of the line, of which all but the first may be missing."""
         if self._at >= len(self._lines):
             raise DomainError(f"it ends where the number of {what} should be")
-        numbers = self.table(what, 1, least)[0]
-        return [int(number) for number in numbers] + [0] * 4
+        return [int(number) for number in self.rows(what, 1, 1)[0]]
 
-    def table(self, what: str, rows: int, least: int) -> npt.NDArray[np.float64]:
-        """(rows, at least `least`)."""
+    def table(self, what: str, rows: int, columns: int) -> npt.NDArray[np.float64]:
+        """(rows, columns): what lines hold beyond these is ignored."""
+        lines = self._next(what, rows)
+        if rows == 0:
+            return np.zeros((0, columns))
+        try:
+            return np.loadtxt(lines, ndmin=2, usecols=range(columns))
+        except ValueError as error:
+            raise DomainError(f"{what}: {error}") from None
+
+    def rows(self, what: str, count: int, least: int) -> list[list[float]]:
+        """Rows that may differ in length, of `least` numbers or more."""
+        rows = []
+        for line in self._next(what, count):
+            try:
+                row = [float(word) for word in line.split()]
+            except ValueError as error:
+                raise DomainError(f"{what}: {error}") from None
+            if len(row) < least:
+                raise DomainError(f"{what}: {len(row)} numbers a line, expected {least}")
+            if not np.isfinite(row).all():
+                raise DomainError(f"{what}: a number is not finite")
+            rows.append(row)
+        return rows
+
+    def _next(self, what: str, rows: int) -> list[str]:
         lines = self._lines[self._at:self._at + rows]
         self._at += rows
         if len(lines) < rows:
             raise DomainError(f"it ends after {len(lines)} of {rows} {what}")
-        if rows == 0:
-            return np.zeros((0, least))
-        try:
-            table = np.loadtxt(lines, ndmin=2)
-        except ValueError as error:
-            raise DomainError(f"{what}: {error}") from None
-        if table.shape[1] < least:
-            raise DomainError(f"{what}: {table.shape[1]} numbers a line, expected {least}")
-        return table
-
-    def rows(self, what: str, count: int, least: int) -> list[list[float]]:
-        """As `table`, of rows that may differ in length."""
-        rows = [self.table(what, 1, least)[0] for _ in range(count)]
-        for row in rows:
-            if not np.isfinite(row).all():
-                raise DomainError(f"{what}: a number is not finite")
-        return [row.tolist() for row in rows]
+        return lines
 
     def ended(self) -> bool:
         return self._at >= len(self._lines)
 
 
-def _numbered(table: npt.NDArray[np.float64], what: str) -> int:
-    """The first number of rows that are numbered in order."""
-    first = int(table[0, 0]) if len(table) else 0
-    if not np.array_equal(table[:, 0], np.arange(first, first + len(table))) or first not in (0, 1):
-        raise DomainError(f"the {what} are not numbered in order from 0 or 1")
-    return first
+def _indices(numbers: npt.NDArray[np.float64], segments: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
+    """The indices of the points that segments name, whatever their numbers."""
+    order = np.argsort(numbers, kind="stable")
+    ascending = numbers[order]
+    if (ascending[1:] == ascending[:-1]).any() or not np.array_equal(numbers, np.rint(numbers)):
+        raise DomainError("the points are not numbered, each by a whole number of its own")
+    if not segments.size:
+        return np.zeros((0, 2), np.int64)
+    if not len(numbers):
+        raise DomainError("there are segments, but no points")
+    found = np.minimum(np.searchsorted(ascending, segments), len(ascending) - 1)
+    missing = np.argwhere(ascending[found] != segments)
+    if len(missing):
+        row, end = missing[0]
+        raise DomainError(f"segments: segment {row + 1} of the file names the point "
+                          f"{shortest(segments[row, end])}; the numbers are from "
+                          f"{shortest(ascending[0])} to {shortest(ascending[-1])}")
+    indices: npt.NDArray[np.int64] = order[found]
+    return indices
 
 
 def region_ids(attributes: Iterable[float]) -> dict[float, int]:
@@ -89,17 +110,19 @@ def region_ids(attributes: Iterable[float]) -> dict[float, int]:
 def read(path: pathlib.Path, region: Callable[..., Any]) -> dict[str, Any]:
     """The arguments of Domain; `region` makes a Region of x, y, id and max_area."""
     lines = _Lines(path)
-    count = lines.header("points", 1)[0]
+    count = lines.header("points")[0]
     if count:
         vertices = lines.table("points", count, 3)
     else:
         beside = _Lines(path.with_suffix(".node"))
-        vertices = beside.table("points", beside.header("points", 1)[0], 3)
-    first = _numbered(vertices, "points")
-    count, marked, *_ = lines.header("segments", 1)
-    segments = lines.table("segments", count, 4 if marked else 3)
-    holes = lines.table("holes", lines.header("holes", 1)[0], 3)
-    count = 0 if lines.ended() else lines.header("regions", 1)[0]
+        vertices = beside.table("points", beside.header("points")[0], 3)
+    count, *marked = lines.header("segments")
+    if marked:
+        segments = lines.table("segments", count, 4 if marked[0] else 3)
+    else:  # a segment has the marker that its line ends in
+        segments = np.array([[*row, 0][:4] for row in lines.rows("segments", count, 3)]).reshape(-1, 4)
+    holes = lines.table("holes", lines.header("holes")[0], 3)
+    count = 0 if lines.ended() else lines.header("regions")[0]
     rows = lines.rows("regions", count, 4)
     ids = region_ids(row[3] for row in rows)
     # A lone value is both the attribute and the maximum area, as Triangle documents it.
@@ -114,8 +137,8 @@ def read(path: pathlib.Path, region: Callable[..., Any]) -> dict[str, Any]:
             names[kind].add(number, name)
     return {
         "points": vertices[:, 1:3],
-        "segments": segments[:, 1:3] - first,
-        "markers": segments[:, 3] if marked else np.zeros(0, np.int32),
+        "segments": _indices(vertices[:, 0], segments[:, 1:3]),
+        "markers": segments[:, 3] if segments.shape[1] > 3 else np.zeros(0, np.int32),
         "holes": holes[:, 1:3],
         "regions": regions,
         "region_values": region_values,

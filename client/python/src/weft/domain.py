@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _convert, _geojson, _names, _poly, _protocol
+from ._text import read_text
 from ._warning import warn
 from .errors import DomainError
 
@@ -170,7 +171,7 @@ class Domain:
             if suffix == ".poly":
                 return Domain(**_poly.read(path, Region))
             if suffix in (".geojson", ".json"):
-                return Domain(**_geojson.read(json.loads(path.read_text()), Area, str(path)))
+                return Domain(**_geojson.read(json.loads(read_text(path)), Area, str(path)))
         except ValueError as error:
             raise DomainError(f"{path}: {error}") from None
         with tempfile.TemporaryDirectory(prefix="weft-") as folder:

@@ -169,7 +169,7 @@ class Mesh:
         `renumber`: "rcm" numbers the vertices by reverse Cuthill-McKee.
         `msh_version`: the version of .msh files.
         `open_boundary`: the marker, or markers, of segments that are open boundary in ADCIRC's .14
-        and .grd; the others are land.
+        and .grd and SCHISM's .gr3; the others are land.
 
         .npz without options is written here, and .vtu if nothing has a name or a part. The rest is
         written by the program weft, which is in the package or in the PATH. Formats that it does not

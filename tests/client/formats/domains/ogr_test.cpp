@@ -204,8 +204,22 @@ TEST_F(OgrFile, TellsWhereItIsWrong) {
   EXPECT_EQ(one({"POINT(1 1)", {{"max_area", "-1"}}}),
             "d.gpkg: layer 'd', feature 1, field max_area is -1, not positive");
   EXPECT_EQ(one({"LINESTRING(1 1, 1 1)"}),
-            "d.gpkg: layer 'd', feature 1 is a line with fewer than 2 distinct points");
+            "d.gpkg: holds no geometry: 1 line without a length is left out: layer 'd', feature 1");
   EXPECT_EQ(refusal(folder_ / "none.gpkg"), "none.gpkg: No such file or directory");
+}
+
+TEST_F(OgrFile, TakesATextThatIsANumberForThatNumberAndLeavesOutEmptyGeometries) {
+  const auto domain = read_domain(folder_.write(
+      "d.gmt",
+      "# @VGMT1.0 @GPOLYGON\n# @Nmarker|region|max_area\n# @Tstring|string|string\n# FEATURE_DATA\n"
+      ">\n# @D3|7|0.5\n# @P\n0 0\n4 0\n4 3\n0 0\n>\n# @D3|7|0.5\n# @P\n9 9\n9 9\n9 9\n9 9\n"));
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->segments.size(), 3u);
+  EXPECT_EQ(domain->segments[0].marker, 3);
+  ASSERT_EQ(domain->regions.size(), 1u);
+  EXPECT_EQ(domain->regions[0].id, 7);
+  EXPECT_EQ(domain->regions[0].max_area, 0.5);
+  ASSERT_EQ(domain->warnings.size(), 1u);
 }
 
 TEST_F(OgrFile, WarnsOfARingThatCrossesItself) {

@@ -107,7 +107,7 @@ TEST_F(TrianglePoly, RefusesCoordinatesThatAreNotFinite) {
   EXPECT_EQ(refusal("1 2 0 0\n1 0 -inf\n0\n0\n"),
             "box.poly:2:5: expected the y coordinate, a finite number, found '-inf'");
   EXPECT_EQ(refusal("1 2 0 0\n1 0 1e999\n0\n0\n"),
-            "box.poly:2:5: expected the y coordinate, found '1e999'");
+            "box.poly:2:5: expected the y coordinate, a finite number, found '1e999'");
 }
 
 TEST_F(TrianglePoly, GivesAttributesThatAreNoIntegersIdsOfTheirOwnAndKeepsTheValues) {
@@ -178,9 +178,31 @@ TEST_F(TrianglePoly, RefusesThreeDimensions) {
   EXPECT_EQ(refusal("1 3 0 0\n1 0 0 0\n"), "box.poly:1:3: the dimension is 3, it must be 2");
 }
 
-TEST_F(TrianglePoly, RefusesAGapInTheNumbers) {
-  EXPECT_EQ(refusal("2 2 0 0\n1 0 0\n3 0 1\n0\n0\n"),
-            "box.poly:3:1: the point number is 3, it should be 2");
+TEST_F(TrianglePoly, TakesAnyNumbersOfPointsInAnyOrder) {
+  const auto domain = read("3 2 0 0\n70 0 0\n-3 1 0\n12 0 1\n3 0\n1 70 -3\n2 -3 12\n3 12 70\n0\n");
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->segments, (std::vector<Domain::Segment>{{0, 1, 0}, {1, 2, 0}, {2, 0, 0}}));
+}
+
+TEST_F(TrianglePoly, RefusesANumberOfNoPointAndOneOfTwo) {
+  EXPECT_EQ(refusal("2 2 0 0\n1 0 0\n3 0 1\n1 0\n1 1 2\n0\n"),
+            "box.poly:5:5: the segment's second point is 2, which no point has; the numbers are "
+            "from 1 to 3");
+  EXPECT_EQ(refusal("2 2 0 0\n1 0 0\n1 0 1\n0\n0\n"),
+            "box.poly:3:1: the point number is 1, as that of another one before it");
+}
+
+TEST_F(TrianglePoly, TakesMarkersOfWhichTheHeadersDoNotTell) {
+  const auto domain = read("3\n1 0 0\n2 1 0\n3 0 1\n3\n1 1 2 5\n2 2 3\n3 3 1 -6\n0\n");
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->segments, (std::vector<Domain::Segment>{{0, 1, 5}, {1, 2, 0}, {2, 0, -6}}));
+  EXPECT_TRUE(domain->point_markers.empty());
+  const auto marked = read("2 2 1\n1 0 0 0.5 7\n2 1 0 0.5 8\n0\n0\n");
+  ASSERT_TRUE(marked) << marked.error().message;
+  EXPECT_EQ(marked->point_markers, (std::vector<std::int32_t>{7, 8}));
+  const auto one_without = read("2\n1 0 0 7\n2 1 0\n0\n0\n");
+  ASSERT_TRUE(one_without) << one_without.error().message;
+  EXPECT_TRUE(one_without->point_markers.empty());
 }
 
 TEST_F(TrianglePoly, ShowsGarbageAsEscapes) {

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Counts what of a file is left out because nothing can be meshed of it, and makes one sentence of
+// it, however much there is:
+//   "3 rings without an area and 1 empty geometry are left out, the first is features[4].geometry"
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+namespace weft::client {
+
+class LeftOut {
+ public:
+  enum Kind { kRing, kLine, kGeometry };
+
+  // `path`: its place in the file.
+  void add(Kind kind, const std::string& path);
+
+  // Empty if nothing was.
+  std::string sentence() const;
+
+ private:
+  std::array<std::size_t, 3> counts_{};  // by kind
+  std::string first_;
+};
+
+}  // namespace weft::client

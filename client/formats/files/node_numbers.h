@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The numbers by which a file calls its points, in the order in which it lists them: any, each
+// once.
+//
+//   NodeNumbers numbers;
+//   numbers.add(scanner, "the point number");                    // for each point
+//   Result<std::uint32_t> i = numbers.read(scanner, "a corner");  // index of a point, from 0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <unordered_map>
+
+#include "client/base/error.h"
+#include "client/formats/files/line_scanner.h"
+
+namespace weft::client {
+
+class NodeNumbers {
+ public:
+  // Reads the number of the next point. Error: it is that of another point, too. REQUIRES: fewer
+  // than 2^32 points.
+  Result<void> add(LineScanner& scanner, std::string_view what);
+
+  // Reads the number of a point, as its index. Error: no point has it.
+  Result<std::uint32_t> read(LineScanner& scanner, std::string_view what) const;
+
+ private:
+  std::int64_t first_ = 1;
+  std::int64_t count_ = 0;
+  std::int64_t least_ = 0;
+  std::int64_t most_ = 0;
+  // The index of each number; empty while they count up from the first, as they mostly do.
+  std::unordered_map<std::int64_t, std::uint32_t> index_;
+};
+
+}  // namespace weft::client
