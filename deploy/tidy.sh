@@ -6,10 +6,10 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-[[ -f build/release/compile_commands.json ]] || cmake --preset release
-# Generated headers must exist before anything that includes them can be read.
-cmake --build --preset release --target weft_proto
+# Each source by itself. Generated headers must exist before anything that includes them can be read.
+cmake --preset release -B build/tidy -DWEFT_UNITY=OFF
+cmake --build build/tidy --target weft_proto
 
 folders=("${@:-engine}")
 (($#)) || folders+=(server client checker)
-exec run-clang-tidy -quiet -p build/release "${folders[@]/#/^$PWD/}"
+exec run-clang-tidy -quiet -p build/tidy "${folders[@]/#/^$PWD/}"

@@ -18,9 +18,19 @@ preset=${2:-release}
   exit 2
 }
 
-[[ -f build/$preset/compile_commands.json ]] || cmake --preset "$preset"
-program=$(sed -n "s|.* -o tests/.*CMakeFiles/\([^/]*\)\.dir/.* -c [^ ]*/$file\",\$|\1|p" \
-  "build/$preset/compile_commands.json" | head -n 1)
+[[ -f build/$preset/CMakeCache.txt ]] || cmake --preset "$preset"
+program=$(python3 - "$file" <<'END'
+import os, pathlib, re, sys
+for lists in pathlib.Path("tests").rglob("CMakeLists.txt"):
+    for program, sources in re.findall(r"add_executable\((\w+)([^)]*)\)", lists.read_text()):
+        if any(os.path.normpath(lists.parent / source) == sys.argv[1] for source in sources.split()):
+            print(program)
+END
+)
+[[ $program ]] || {
+  echo "one.sh: no program has $file" >&2
+  exit 2
+}
 cmake --build --preset "$preset" --target "$program"
 
 # Suites with parameters have a prefix and a suffix of their own.
