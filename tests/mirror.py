@@ -10,6 +10,8 @@ Rules, on the x_test.cpp below tests/engine, tests/server, tests/client, tests/c
     tests engine/refine/cavity.h.
   - A test named after no source has a subject of the whole folder, and says in its first comment
     which.
+  - A suite is in one file, so that its name in a report leads there; but for those of fixtures in headers,
+    which several files share.
 """
 import pathlib
 import re
@@ -35,6 +37,18 @@ def fault_of(test: pathlib.PurePosixPath, text: str, folders: dict[str, set[str]
     return None
 
 
+def suites_in_several(tests: pathlib.Path) -> list[str]:
+    """Each with its files."""
+    files: dict[str, set[str]] = {}
+    for path in tests.rglob("*.cpp"):
+        for suite in re.findall(r"^ *(?:TYPED_)?TEST(?:_[FP])?\((\w+)", path.read_text(), re.M):
+            files.setdefault(suite, set()).add(path.relative_to(tests).as_posix())
+    shared = {name for path in tests.rglob("*.h")
+              for name in re.findall(r"^class (\w+)", path.read_text(), re.M)}
+    return [f"{suite} is in {', '.join(sorted(at))}"
+            for suite, at in sorted(files.items()) if len(at) > 1 and suite not in shared]
+
+
 def main() -> int:
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent)
     folders: dict[str, set[str]] = {}
@@ -49,6 +63,9 @@ def main() -> int:
         if why := fault_of(test, path.read_text(), folders):
             faults += 1
             print(f"tests/{test}: {why}")
+    for said in suites_in_several(root / "tests"):
+        faults += 1
+        print(said)
     print(f"{len(tests)} tests, {faults} out of place")
     return 1 if faults else 0
 

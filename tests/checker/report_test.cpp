@@ -46,7 +46,7 @@ TEST(Report, StatesTheFacts) {
       "exempt because of small input angles 0 (0 with the corner, 0 on its shells), unrefined 0\n");
 }
 
-TEST(Text, WritesDoublesThatReadBack) {
+TEST(ReportText, WritesDoublesThatReadBack) {
   EXPECT_EQ(say(0.1, " ", 1.0 / 3, " ", 1e300, " ", Vec2{-0.5, 2}),
             "0.1 0.3333333333333333 1e+300 (-0.5, 2)");
 }

@@ -20,7 +20,7 @@ namespace {
 using nlohmann::json;
 using Words = std::vector<std::string>;
 
-class Jobs : public ::testing::Test {
+class JobsByCommand : public ::testing::Test {
  protected:
   Outcome weft(Words words) const {
     words.insert(words.end(), {"--server", server_.address()});
@@ -52,7 +52,7 @@ class Jobs : public ::testing::Test {
   const Words large_ = {model("us-east-coast.poly"), "--size", "1e-5"};
 };
 
-TEST_F(Jobs, MadeWhileNobodyWaitsAreTheFilesThatMeshWrites) {
+TEST_F(JobsByCommand, MadeWhileNobodyWaitsAreTheFilesThatMeshWrites) {
   const Words request_options = {"--size", "0.4*hypot(x-200, y-200) + 1"};
   Words words = {pipe_};
   words.insert(words.end(), request_options.begin(), request_options.end());
@@ -70,7 +70,7 @@ TEST_F(Jobs, MadeWhileNobodyWaitsAreTheFilesThatMeshWrites) {
   }
 }
 
-TEST_F(Jobs, InLongitudeAndLatitudeAreBroughtBackByTheDomain) {
+TEST_F(JobsByCommand, InLongitudeAndLatitudeAreBroughtBackByTheDomain) {
   if (!client::Projection::available()) GTEST_SKIP() << "built without PROJ";
   const std::string coast = model("us-east-coast.geojson");
   const std::string id = submit({coast, "--lonlat", "--size", "1e9"});
@@ -85,7 +85,7 @@ TEST_F(Jobs, InLongitudeAndLatitudeAreBroughtBackByTheDomain) {
   EXPECT_EQ(client::contents_of(folder_ / "f.vtu"), client::contents_of(folder_ / "m.vtu"));
 }
 
-TEST_F(Jobs, AskedForTwiceAreMadeOnce) {
+TEST_F(JobsByCommand, AskedForTwiceAreMadeOnce) {
   const Outcome first = weft({"submit", pipe_, "--wait", "--json"});
   ASSERT_EQ(first.exit_code, 0) << first.err;
   const Outcome second = weft({"submit", pipe_, "--json"});
@@ -101,13 +101,13 @@ TEST_F(Jobs, AskedForTwiceAreMadeOnce) {
   EXPECT_EQ(json::parse(anew.out)["summary"]["digest"], made["summary"]["digest"]);
 }
 
-TEST_F(Jobs, SubmittedAgainByARequestIdAreTheSameJob) {
+TEST_F(JobsByCommand, SubmittedAgainByARequestIdAreTheSameJob) {
   const std::string id = submit({pipe_, "--request-id", "nightly"});
   EXPECT_EQ(submit({pipe_, "--request-id", "nightly"}), id);
   EXPECT_EQ(weft({"submit", pipe_, "--request-id", "nightly", "--size", "9"}).exit_code, 70);
 }
 
-TEST_F(Jobs, ThatFailSayWhyWhereverTheyAreAskedFor) {
+TEST_F(JobsByCommand, ThatFailSayWhyWhereverTheyAreAskedFor) {
   const Outcome waited = weft({"submit", pipe_, "--size", "x - 1000", "--wait"});
   EXPECT_EQ(waited.exit_code, 67) << waited.err;
   const std::string id = waited.out.substr(0, waited.out.find('\n'));
@@ -121,7 +121,7 @@ TEST_F(Jobs, ThatFailSayWhyWhereverTheyAreAskedFor) {
   EXPECT_NE(list.out.find("INVALID_ARGUMENT (BAD_SIZE_VALUE)"), std::string::npos) << list.out;
 }
 
-TEST_F(Jobs, ThatAreCancelledEndAndAreForgottenWhenDeleted) {
+TEST_F(JobsByCommand, ThatAreCancelledEndAndAreForgottenWhenDeleted) {
   const std::string id = submit(large_);
   wait_until(id, "running");
   EXPECT_EQ(weft({"delete", id}).exit_code, 73);
@@ -132,7 +132,7 @@ TEST_F(Jobs, ThatAreCancelledEndAndAreForgottenWhenDeleted) {
   EXPECT_EQ(weft({"list", "--json"}).out, "{\"jobs\":[]}\n");
 }
 
-TEST_F(Jobs, AreWatchedThroughTheDeathOfTheServer) {
+TEST_F(JobsByCommand, AreWatchedThroughTheDeathOfTheServer) {
   const std::string id = submit({model("us-east-coast.poly"), "--size", "1e-4", "--threads", "1"});
   auto watched = std::async(std::launch::async, [&] { return weft({"watch", id, "--json"}); });
   wait_until(id, "running");
@@ -147,7 +147,7 @@ TEST_F(Jobs, AreWatchedThroughTheDeathOfTheServer) {
   EXPECT_EQ(last["attempts"], 2);
 }
 
-TEST_F(Jobs, AreListedOverAllPages) {
+TEST_F(JobsByCommand, AreListedOverAllPages) {
   Words ids;
   for (int i = 0; i < 5; ++i) ids.push_back(submit({pipe_}));
   std::ranges::reverse(ids);
@@ -157,7 +157,7 @@ TEST_F(Jobs, AreListedOverAllPages) {
   EXPECT_EQ(json::parse(weft({"list", "--limit", "2", "--json"}).out)["jobs"].size(), 2u);
 }
 
-TEST_F(Jobs, ShowThemselvesAtWork) {
+TEST_F(JobsByCommand, ShowThemselvesAtWork) {
   const std::string id = submit(large_);
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
   Outcome top = weft({"top"});
@@ -171,7 +171,7 @@ TEST_F(Jobs, ShowThemselvesAtWork) {
 }
 
 // Every connection brings a chunk or two before it tears, in the middle of a message.
-TEST_F(Jobs, ArriveWholeOverAWireThatTearsAgainAndAgain) {
+TEST_F(JobsByCommand, ArriveWholeOverAWireThatTearsAgainAndAgain) {
   const std::string id = submit({model("cylinder.poly"), "--size", "0.004", "--wait"});
   const auto arrive = [&](const std::string& address) {
     auto server = client::JobServer::connect({.server = {.server = address}}, {});

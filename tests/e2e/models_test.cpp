@@ -33,7 +33,7 @@ nlohmann::json mesh_and_check(const Server& server, const std::string& input,
 
 const std::string kCylinderSize = "(x>=0 && abs(y)<5) || (x<0 && x^2+y^2<25) ? 1.2e-3 : 1e-2";
 
-TEST(Models, ThroughTheServerHoldTheirBoundsAndCounts) {
+TEST(ModelsByCommand, ThroughTheServerHoldTheirBoundsAndCounts) {
   const Server server;
   const auto triangles = [&](const std::string& name, const std::string& output,
                              const Arguments& bounds) {
@@ -48,7 +48,7 @@ TEST(Models, ThroughTheServerHoldTheirBoundsAndCounts) {
   EXPECT_LE(triangles("us-east-coast.poly", "coast.vtu", {"--size", "1e-3"}), 333'000);
 }
 
-TEST(Models, HoldTheBoundsOfARaster) {
+TEST(ModelsByCommand, HoldTheBoundsOfARaster) {
   const Server server;
   Folder folder;
   // From 0.02 in the west to 0.5 in the east of the cylinder's channel.
@@ -67,7 +67,7 @@ TEST(Models, HoldTheBoundsOfARaster) {
       3);
 }
 
-TEST(Models, GiveTheSameDigestThroughAPrivateServerAndASharedOne) {
+TEST(ModelsByCommand, GiveTheSameDigestThroughAPrivateServerAndASharedOne) {
   const Server server;
   const auto digest = [](const Arguments& where) {
     const Folder folder;
@@ -129,7 +129,7 @@ TEST(Formats, EveryMeshThatIsReadHoldsTheSameBounds) {
   }
 }
 
-TEST(Check, SaysThatItJudgesNoWidths) {
+TEST(CheckCommand, SaysThatItJudgesNoWidths) {
   const Server server;
   const Folder folder;
   const Outcome meshed = run_weft({"mesh", model("key.poly"), "-o", folder / "key.vtu", "--quiet",
@@ -158,7 +158,7 @@ TEST(Formats, AMeshIsMeshedAnewAndCoversTheSame) {
   EXPECT_NEAR(area(folder / "coast.poly", "poly.vtu"), coast, 1e-9 * coast);
 }
 
-TEST(Check, FindsAMeshThatMissesItsBounds) {
+TEST(CheckCommand, FindsAMeshThatMissesItsBounds) {
   const Folder folder;
   const std::string path = folder / "key.vtu";
   ASSERT_EQ(run_weft({"mesh", model("key.poly"), "-o", path, "--quiet"}).exit_code, 0);

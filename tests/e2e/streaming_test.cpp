@@ -62,7 +62,7 @@ Stream call(Stub& stub, const v1::GenerateMeshRequest& request) {
   return stream;
 }
 
-TEST(FirstChunk, GivesTheRestOfTheSameMeshByteForByteOnOtherThreads) {
+TEST(FirstChunkOfAStream, GivesTheRestOfTheSameMeshByteForByteOnOtherThreads) {
   const Server server({"--threads", "3"});
   const auto stub = stub_of(server);
   v1::GenerateMeshRequest request = request_for("us-east-coast.poly", {.size = "1e-3"});
@@ -134,7 +134,7 @@ TEST(Readers, ThatStallAtRandomAndComeBackInTheMiddleGetTheSameMesh) {
   }
 }
 
-TEST(Quadtree, IsSentWhereItIsWantedAndCoversTheDomain) {
+TEST(StreamedQuadtree, IsSentWhereItIsWantedAndCoversTheDomain) {
   const Server server;
   const auto stub = stub_of(server);
   const Stream without = call(*stub, request_for("us-east-coast.poly", {.size = "1e-3"}));
@@ -213,7 +213,7 @@ TEST(SmallJobs, AreDoneWhileHugeOnesAreStillAtWork) {
   EXPECT_TRUE(call(*stub, request_for("key.poly", {.size = "0.1"})).status.ok());
 }
 
-TEST(Progress, TellsFractionsThatRiseWhileChunksCome) {
+TEST(StreamedProgress, TellsFractionsThatRiseWhileChunksCome) {
   const Server server({"--threads", "2"});
   const auto stub = stub_of(server);
   grpc::ClientContext context;

@@ -474,7 +474,7 @@ TEST(Stopping, ByTheSinkEndsTheJob) {
   EXPECT_EQ(summary.error().code, ErrorCode::kCancelled);
 }
 
-TEST(Determinism, GivesTheSameDigestOnEveryRun) {
+TEST(MeshDeterminism, GivesTheSameDigestOnEveryRun) {
   const MeshRequest request{.pslg = read_poly(model("us-east-coast.poly")),
                             .size = "1e-3*(1.5+sin(x)*cos(y))"};
   const auto first = mesh_of(request);
@@ -483,7 +483,7 @@ TEST(Determinism, GivesTheSameDigestOnEveryRun) {
   EXPECT_EQ(first->digest, second->digest);
 }
 
-TEST(Determinism, GivesTheRecordedDigestOnEveryMachineAndCompiler) {
+TEST(MeshDeterminism, GivesTheRecordedDigestOnEveryMachineAndCompiler) {
   MeshRequest request{.pslg = read_poly(model("pipe.poly")),
                       .size = "0.4*sqrt((x-200)^2+(y-200)^2)+1+sin(x)^2*exp(-y)"};
   const auto summary = mesh_of(request);

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import shapely.geometry
 import weft
+from weft import _protocol, _requests
 from conftest import MODELS
 
 SQUARE = [[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]]
@@ -15,6 +16,44 @@ HOLE = [[1, 1], [2, 1], [2, 2], [1, 2], [1, 1]]
                                   "us-east-coast.geojson"])
 def test_a_file_means_what_it_means_to_the_command_line(client, digest_of, name):
     assert client.mesh(MODELS / name).digest == digest_of(MODELS / name)
+
+
+@pytest.mark.parametrize("name", ["key.poly", "us-east-coast.geojson", "site.geojson", "ways.wkt", "rings.csv"])
+def test_a_file_makes_the_very_domain_that_the_command_line_sends(run_weft, tmp_path, name):
+    files = {
+        "site.geojson": json.dumps(named_features(
+            ("Polygon", [SQUARE, HOLE], {"region": "field", "max_area": "0.5", "marker": 2}),
+            ("Polygon", [SQUARE], {"region": 3, "region_name": "pond", "max_edge": 0.2}),
+            ("LineString", [[0, 0], [1, 0]], {"marker": "quay"}))),
+        "ways.wkt": "POLYGON((0 0, 9 0, 9 9, 0 9, 0 0), (1 1, 2 1, 2 2, 1 1)) LINESTRING(3 3, 4 4)",
+        "rings.csv": "x;y;marker\n0;0;1\n9,5;0;2\n9;9;inlet\n\n1;1;0\n2;1;0\n2;2;0\n"}
+    path = tmp_path / name if name in files else MODELS / name
+    if name in files:
+        path.write_text(files[name])
+    run_weft("convert", path, tmp_path / "sent.pb")
+    message = _protocol.message("weft.v1.Domain")()
+    _requests._fill_domain(weft.Domain.read(path), message)
+    assert message.SerializeToString(deterministic=True) == (tmp_path / "sent.pb").read_bytes()
+
+
+def test_polygons_that_overlap_are_united_each_with_its_region(client):
+    mesh = client.mesh(named_features(
+        ("Polygon", [SQUARE], {"region": 1, "max_area": 0.5}),
+        ("Polygon", [[[2, 1], [6, 1], [6, 2], [2, 2], [2, 1]]], {"region": 2, "max_area": 0.05})))
+    assert mesh.summary.area == pytest.approx(18)
+    areas = mesh.quality().areas
+    assert areas[mesh.regions == 2].sum() == pytest.approx(4)
+    assert areas[mesh.regions == 2].max() <= 0.05
+    assert areas[mesh.regions == 1].sum() == pytest.approx(14)
+
+
+def test_areas_of_a_domain_must_be_there_one_for_each_segment():
+    square = [(0, 0), (1, 0), (1, 1)], [(0, 1), (1, 2), (2, 0)]
+    assert weft.Domain(*square, areas=[weft.Area(region=3)], segment_areas=[1, 1, 1], fill="union").areas[0].region == 3
+    with pytest.raises(weft.DomainError, match=r"segment_areas\[2\] is 2, there are 1 areas"):
+        weft.Domain(*square, areas=[weft.Area()], segment_areas=[1, 1, 2])
+    with pytest.raises(weft.DomainError, match="segment_areas: 2 for 3 segments"):
+        weft.Domain(*square, areas=[weft.Area()], segment_areas=[1, 1])
 
 
 def test_a_feature_collection_means_what_it_means_to_the_command_line(client, digest_of, tmp_path):

@@ -64,37 +64,37 @@ Problem open_room(double gap, Vec2 corner = {}) {
   return problem;
 }
 
-TEST(Merging, AWallMayEndBesideAnotherOneOnBothSides) {
+TEST(CheckersMerging, AWallMayEndBesideAnotherOneOnBothSides) {
   for (const double gap : {-0.009, -0.004, -1e-9, 1e-9, 0.004, 0.009}) {
     const Report report = closed_room(gap).check();
     EXPECT_TRUE(report.ok()) << gap << "\n" << to_text(report);
   }
 }
 
-TEST(Merging, KnowsTheRegionsOnBothSides) {
+TEST(CheckersMerging, KnowsTheRegionsOnBothSides) {
   Problem problem = closed_room(0.004);
   problem.mesh.regions[0] = 2;
   EXPECT_EQ(violated(problem.check()), Rules{Rule::kRegions});
 }
 
-TEST(Merging, KnowsTheMarkersOfBentSegments) {
+TEST(CheckersMerging, KnowsTheMarkersOfBentSegments) {
   Problem problem = closed_room(0.004);
   problem.mesh.edges.back().marker = 7;
   EXPECT_EQ(violated(problem.check()), Rules{Rule::kMarkers});
 }
 
-TEST(Merging, MustBeDoneBelowTheDistance) {
+TEST(CheckersMerging, MustBeDoneBelowTheDistance) {
   EXPECT_FALSE(open_room(0.005).check().ok());
   const Report report = open_room(0.05).check();
   EXPECT_TRUE(report.ok()) << to_text(report);
 }
 
-TEST(Merging, DoesNotReachFarther) {
+TEST(CheckersMerging, DoesNotReachFarther) {
   EXPECT_TRUE(violated(closed_room(0.03).check()).contains(Rule::kChains)) << "a vertex at 3 T";
   EXPECT_FALSE(closed_room(0.05).check().ok());
 }
 
-TEST(Merging, IsLimitedByDoublePrecisionWithoutSnap) {
+TEST(CheckersMerging, IsLimitedByDoublePrecisionWithoutSnap) {
   const Vec2 utm{5e5, 4.65e6};
   const double floor = 0x1p-40 * (utm.y + 4);
   for (int decimals = 2; decimals <= 9; ++decimals) {
@@ -127,7 +127,7 @@ Problem broken_wall(Vec2 other) {
   return problem;
 }
 
-TEST(Merging, APointMayMoveOntoAnother) {
+TEST(CheckersMerging, APointMayMoveOntoAnother) {
   Problem problem = broken_wall({2.004, 2.006});
   Report report = problem.check();
   EXPECT_TRUE(report.ok()) << to_text(report);
@@ -136,7 +136,7 @@ TEST(Merging, APointMayMoveOntoAnother) {
   EXPECT_TRUE(report.ok()) << to_text(report);
 }
 
-TEST(Merging, APointMayNotMoveFarther) {
+TEST(CheckersMerging, APointMayNotMoveFarther) {
   EXPECT_TRUE(violated(broken_wall({2.02, 2.02}).check()).contains(Rule::kPoints));
   // Both points within T of each other, and the vertex 3 T away.
   Problem problem = broken_wall({2.004, 2.006});
@@ -144,7 +144,7 @@ TEST(Merging, APointMayNotMoveFarther) {
   EXPECT_TRUE(violated(problem.check()).contains(Rule::kPoints)) << to_text(problem.check());
 }
 
-TEST(Merging, HoldsTheMeshToWhereItSaysPointsAre) {
+TEST(CheckersMerging, HoldsTheMeshToWhereItSaysPointsAre) {
   Problem problem = broken_wall({2.004, 2.006});
   problem.mesh.input_points[4] = {5, 4};
   EXPECT_TRUE(violated(problem.check()).contains(Rule::kPoints));
@@ -166,14 +166,14 @@ Problem double_wall(double width) {
   return problem;
 }
 
-TEST(Merging, AFaceMayVanishIfItIsThin) {
+TEST(CheckersMerging, AFaceMayVanishIfItIsThin) {
   for (const double width : {1e-9, 0.004, 0.009}) {
     const Report report = double_wall(width).check();
     EXPECT_TRUE(report.ok()) << width << "\n" << to_text(report);
   }
 }
 
-TEST(Merging, AFaceMayNotVanishIfItIsWide) {
+TEST(CheckersMerging, AFaceMayNotVanishIfItIsWide) {
   for (const double width : {0.03, 0.05, 0.1})
     EXPECT_TRUE(violated(double_wall(width).check()).contains(Rule::kPoints)) << width;
   // Its corners may be there, and the face may still be missing.
@@ -184,7 +184,7 @@ TEST(Merging, AFaceMayNotVanishIfItIsWide) {
   EXPECT_FALSE(problem.check().ok());
 }
 
-TEST(Merging, AChainBendsOnlyAtWhatPullsIt) {
+TEST(CheckersMerging, AChainBendsOnlyAtWhatPullsIt) {
   // The left end of the bottom has a point beside it, so the bottom may bend, but not here.
   Problem problem = closed_room(0.004);
   Mesh& mesh = problem.mesh;
@@ -253,14 +253,14 @@ Problem slow_leave() {
   return problem;
 }
 
-TEST(Merging, AnEdgeOnASegmentMayHaveItsMarkerBesideABentOne) {
+TEST(CheckersMerging, AnEdgeOnASegmentMayHaveItsMarkerBesideABentOne) {
   for (const Problem& problem : {corner(), passed_corner(), slow_leave()}) {
     const Report report = problem.check();
     EXPECT_TRUE(report.ok()) << to_text(report);
   }
 }
 
-TEST(Merging, KnowsTheMarkersBesideBentSegments) {
+TEST(CheckersMerging, KnowsTheMarkersBesideBentSegments) {
   Problem problem = corner();
   problem.mesh.edges[1].marker = 7;
   EXPECT_EQ(violated(problem.check()), Rules{Rule::kMarkers}) << "that of no segment";
@@ -275,7 +275,7 @@ TEST(Merging, KnowsTheMarkersBesideBentSegments) {
   EXPECT_EQ(violated(problem.check()), Rules{Rule::kMarkers}) << "that of one far away";
 }
 
-TEST(Merging, ASegmentOutsideDoesNotTakeTheEdgesOfOthers) {
+TEST(CheckersMerging, ASegmentOutsideDoesNotTakeTheEdgesOfOthers) {
   // Otherwise the last piece of the bottom would be two segments, and no border by this rule.
   Problem problem = passed_corner();
   problem.domain.fill = Fill::kEvenOdd;
@@ -306,7 +306,7 @@ Problem tip(double below, bool beyond) {
   return problem;
 }
 
-TEST(Merging, ASegmentOutsideIsLedThroughWhatItPasses) {
+TEST(CheckersMerging, ASegmentOutsideIsLedThroughWhatItPasses) {
   for (const bool beyond : {false, true}) {
     for (const double below : {-0.9, -0.4, -0.02, 0.02, 0.04, 0.4, 0.9}) {
       const Report report = tip(below, beyond).check();
@@ -332,7 +332,7 @@ Problem star_of(const std::vector<Vec2>& points, Vec2 meeting) {
   return problem;
 }
 
-TEST(Merging, RoundingMayLeadThreeSegmentsThroughOneVertex) {
+TEST(CheckersMerging, RoundingMayLeadThreeSegmentsThroughOneVertex) {
   // Through one point but for 6 units in the last place, and a vertex 12 units from it.
   const std::vector<Vec2> at_large_angles{{4, 2}, {4, 4 + 8e-15}, {2, 4},
                                           {0, 2}, {0, 0 + 8e-15}, {2, 0}};
@@ -346,7 +346,7 @@ TEST(Merging, RoundingMayLeadThreeSegmentsThroughOneVertex) {
   EXPECT_FALSE(star_of(at_a_small_angle, {2, 2 + 1e-10}).check().ok());
 }
 
-TEST(Merging, ChangesNothingWhereNothingIsNear) {
+TEST(CheckersMerging, ChangesNothingWhereNothingIsNear) {
   for (Problem problem : {block(5), block_with_hole(), block_with_regions()}) {
     problem.domain.snap = kSnap;
     EXPECT_TRUE(problem.check().ok());
@@ -357,7 +357,7 @@ TEST(Merging, ChangesNothingWhereNothingIsNear) {
   }
 }
 
-TEST(Merging, TheDistanceMustBeUsable) {
+TEST(CheckersMerging, TheDistanceMustBeUsable) {
   for (const double snap :
        {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     Problem problem = block(2);

@@ -44,7 +44,7 @@ std::vector<double> areas(const Arrangement& arrangement) {
   return result;
 }
 
-TEST(Arrangement, OfABoxHasOneFace) {
+TEST(CheckersArrangement, OfABoxHasOneFace) {
   const Arrangement box = Pslg().box(0, 2).arrange();
   EXPECT_EQ(box.vertices().size(), 4u);
   EXPECT_EQ(box.edges().size(), 4u);
@@ -53,20 +53,20 @@ TEST(Arrangement, OfABoxHasOneFace) {
   EXPECT_EQ(box.faces()[1].perimeter, 8);
 }
 
-TEST(Arrangement, OfNothingHasTheUnboundedFace) {
+TEST(CheckersArrangement, OfNothingHasTheUnboundedFace) {
   const Arrangement nothing = Pslg().arrange();
   EXPECT_EQ(nothing.faces().size(), 1u);
   EXPECT_EQ(nothing.locate({0, 0}).face, 0u);
 }
 
-TEST(Arrangement, CutsCrossingSegments) {
+TEST(CheckersArrangement, CutsCrossingSegments) {
   const Arrangement cross = Pslg().box(0, 2).line({0, 0}, {2, 2}).line({0, 2}, {2, 0}).arrange();
   EXPECT_EQ(cross.vertices().size(), 5u);
   EXPECT_EQ(cross.edges().size(), 8u);
   EXPECT_EQ(areas(cross), (std::vector<double>{1, 1, 1, 1}));
 }
 
-TEST(Arrangement, CutsAtCrossingsThatNoDoubleHolds) {
+TEST(CheckersArrangement, CutsAtCrossingsThatNoDoubleHolds) {
   // The crossing is at (1/3, 1/3).
   const Arrangement cross = Pslg()
                                 .line({0, 0}, {1, 1})
@@ -80,7 +80,7 @@ TEST(Arrangement, CutsAtCrossingsThatNoDoubleHolds) {
   EXPECT_NEAR(found[1], 1.0 / 3, 1e-15);
 }
 
-TEST(Arrangement, MakesOneVertexWhereThreeSegmentsMeet) {
+TEST(CheckersArrangement, MakesOneVertexWhereThreeSegmentsMeet) {
   // All pass through (1/3, 1/3), no end of any.
   const Arrangement star =
       Pslg().line({0, 0}, {1, 1}).line({0, 0.5}, {1, 0}).line({0.5, 0}, {0, 1}).arrange();
@@ -88,7 +88,7 @@ TEST(Arrangement, MakesOneVertexWhereThreeSegmentsMeet) {
   EXPECT_EQ(star.edges().size(), 6u);
 }
 
-TEST(Arrangement, TellsCrossingsApartThatRoundToOneDouble) {
+TEST(CheckersArrangement, TellsCrossingsApartThatRoundToOneDouble) {
   // Two steep lines 2^-60 apart, crossed by a level one: doubles cannot tell the crossings apart.
   const double tiny = 0x1p-60;
   const Arrangement lines = Pslg()
@@ -99,7 +99,7 @@ TEST(Arrangement, TellsCrossingsApartThatRoundToOneDouble) {
   EXPECT_EQ(lines.vertices().size(), 7u);
 }
 
-TEST(Arrangement, MergesSegmentsThatOverlap) {
+TEST(CheckersArrangement, MergesSegmentsThatOverlap) {
   const Arrangement overlap = Pslg().line({0, 0}, {3, 0}).line({2, 0}, {5, 0}).arrange();
   EXPECT_EQ(overlap.vertices().size(), 4u);
   ASSERT_EQ(overlap.edges().size(), 3u);
@@ -109,19 +109,19 @@ TEST(Arrangement, MergesSegmentsThatOverlap) {
   EXPECT_EQ(overlap.edges_of(1).size(), 2u);
 }
 
-TEST(Arrangement, CountsCoincidentSegments) {
+TEST(CheckersArrangement, CountsCoincidentSegments) {
   const Arrangement twice = Pslg().line({0, 0}, {1, 2}).line({1, 2}, {0, 0}).arrange();
   ASSERT_EQ(twice.edges().size(), 1u);
   EXPECT_EQ(twice.covers(0).size(), 2u);
 }
 
-TEST(Arrangement, CutsASegmentWhereAnotherEnds) {
+TEST(CheckersArrangement, CutsASegmentWhereAnotherEnds) {
   const Arrangement tee = Pslg().box(0, 2).line({1, 0}, {1, 2}).arrange();
   EXPECT_EQ(tee.edges().size(), 7u);
   EXPECT_EQ(areas(tee), (std::vector<double>{2, 2}));
 }
 
-TEST(Arrangement, KeepsTheSameFaceAroundADanglingSegment) {
+TEST(CheckersArrangement, KeepsTheSameFaceAroundADanglingSegment) {
   const Arrangement dangling = Pslg().box(0, 4).line({0, 0}, {1, 2}).line({2, 1}, {3, 1}).arrange();
   EXPECT_EQ(areas(dangling), std::vector<double>{16});
   for (std::uint32_t e = 0; e < dangling.edges().size(); ++e) {
@@ -130,18 +130,18 @@ TEST(Arrangement, KeepsTheSameFaceAroundADanglingSegment) {
   }
 }
 
-TEST(Arrangement, NestsComponents) {
+TEST(CheckersArrangement, NestsComponents) {
   const Arrangement nested = Pslg().box(0, 10).box(1, 9).box(2, 3).box(4, 8).box(5, 6).arrange();
   EXPECT_EQ(areas(nested), (std::vector<double>{1, 1, 15, 36, 47}));
 }
 
-TEST(Arrangement, PutsComponentsBesideEachOther) {
+TEST(CheckersArrangement, PutsComponentsBesideEachOther) {
   const Arrangement apart = Pslg().box(0, 1).box(2, 3).box(-5, -3).arrange();
   EXPECT_EQ(areas(apart), (std::vector<double>{1, 1, 4}));
   EXPECT_EQ(apart.faces()[0].area, -6);
 }
 
-TEST(Arrangement, LocatesPoints) {
+TEST(CheckersArrangement, LocatesPoints) {
   const Arrangement nested = Pslg().box(0, 10).box(4, 6).arrange();
   const auto area_at = [&](Vec2 p) { return nested.faces()[nested.locate(p).face].area; };
   EXPECT_EQ(area_at({5, 5}), 4);
@@ -151,7 +151,7 @@ TEST(Arrangement, LocatesPoints) {
   EXPECT_EQ(nested.locate({11, 5}).face, 0u);
 }
 
-TEST(Arrangement, LocatesPointsAtTheHeightOfVertices) {
+TEST(CheckersArrangement, LocatesPointsAtTheHeightOfVertices) {
   const Arrangement nested = Pslg().box(0, 10).box(4, 6).arrange();
   const auto area_at = [&](Vec2 p) { return nested.faces()[nested.locate(p).face].area; };
   EXPECT_EQ(area_at({7, 4}), 96);
@@ -161,7 +161,7 @@ TEST(Arrangement, LocatesPointsAtTheHeightOfVertices) {
   EXPECT_EQ(nested.locate({11, 10}).face, 0u);
 }
 
-TEST(Arrangement, TellsThatAPointLiesOnASegment) {
+TEST(CheckersArrangement, TellsThatAPointLiesOnASegment) {
   const Arrangement box = Pslg().box(0, 2).line({0, 0}, {2, 2}).arrange();
   EXPECT_TRUE(box.locate({1, 0}).edge);
   EXPECT_TRUE(box.locate({0, 0}).edge);
@@ -173,7 +173,7 @@ TEST(Arrangement, TellsThatAPointLiesOnASegment) {
   EXPECT_FALSE(box.locate({3, 0}).edge);
 }
 
-TEST(Arrangement, LocatesBetweenCrossingsThatAlmostCoincide) {
+TEST(CheckersArrangement, LocatesBetweenCrossingsThatAlmostCoincide) {
   // Two lines that cross at (1/3, 1/3); points just beside the crossing, in each of four faces.
   const Arrangement cross =
       Pslg().box(-1, 2).line({-1, -1}, {2, 2}).line({-1, 1}, {2, -0.5}).arrange();
@@ -187,7 +187,7 @@ TEST(Arrangement, LocatesBetweenCrossingsThatAlmostCoincide) {
   EXPECT_EQ(std::unique(faces.begin(), faces.end()), faces.end());
 }
 
-TEST(Arrangement, ObeysEulersFormulaOnRandomSegments) {
+TEST(CheckersArrangement, ObeysEulersFormulaOnRandomSegments) {
   std::mt19937_64 random(4);
   for (int round = 0; round < 20; ++round) {
     // A coarse grid of ends makes overlaps, touches and common crossings frequent.
@@ -225,7 +225,7 @@ TEST(Arrangement, ObeysEulersFormulaOnRandomSegments) {
   }
 }
 
-TEST(Arrangement, AgreesWithParityOnRandomPolygons) {
+TEST(CheckersArrangement, AgreesWithParityOnRandomPolygons) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> place(0, 1);
   Pslg pslg;
@@ -262,7 +262,7 @@ TEST(Contacts, StopsAtItsLimit) {
   EXPECT_EQ(all.crossings.size(), 2500u);
 }
 
-TEST(Arrangement, OfACoastlineIsThatOfItsRings) {
+TEST(CheckersArrangement, OfACoastlineIsThatOfItsRings) {
   std::ifstream file(std::string(weft::testing::kModels) + "/us-east-coast.poly");
   std::string comment;
   std::getline(file, comment);

@@ -28,20 +28,20 @@ int rational_in_circle(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
                  lift(c) * (x(a) * y(b) - x(b) * y(a)));
 }
 
-TEST(Orientation, IsPositiveCounterClockwise) {
+TEST(CheckersOrientation, IsPositiveCounterClockwise) {
   EXPECT_GT(orientation({0, 0}, {1, 0}, {0, 1}), 0);
   EXPECT_LT(orientation({0, 0}, {0, 1}, {1, 0}), 0);
   EXPECT_EQ(orientation({0, 0}, {1, 1}, {3, 3}), 0);
 }
 
-TEST(Orientation, SeesOneUnitInTheLastPlace) {
+TEST(CheckersOrientation, SeesOneUnitInTheLastPlace) {
   const Vec2 a{12, 12}, b{24, 24};
   EXPECT_EQ(orientation(a, b, {0.5, 0.5}), 0);
   EXPECT_GT(orientation(a, b, {0.5, std::nextafter(0.5, 1)}), 0);
   EXPECT_LT(orientation(a, b, {0.5, std::nextafter(0.5, 0)}), 0);
 }
 
-TEST(Orientation, AgreesWithRationalArithmeticNearALine) {
+TEST(CheckersOrientation, AgreesWithRationalArithmeticNearALine) {
   std::mt19937_64 random(1);
   std::uniform_int_distribution<int> ulps(-3, 3);
   std::uniform_real_distribution<double> real(-1, 1);
@@ -54,7 +54,7 @@ TEST(Orientation, AgreesWithRationalArithmeticNearALine) {
   }
 }
 
-TEST(Orientation, HoldsWhereProductsUnderflowOrOverflow) {
+TEST(CheckersOrientation, HoldsWhereProductsUnderflowOrOverflow) {
   for (const double scale : {1e-160, 1e-100, 1e100, 1e160, 1e300}) {
     EXPECT_GT(orientation({0, 0}, {scale, 0}, {0, scale}), 0) << scale;
     EXPECT_LT(orientation({0, 0}, {0, scale}, {scale, 0}), 0) << scale;
@@ -68,20 +68,20 @@ TEST(CrossSign, ComparesDirectionsOfSegmentsApart) {
   EXPECT_EQ(cross_sign({0, 0}, {0.1, 0.1}, {7, 7}, {8, 8}), 0);
 }
 
-TEST(InCircle, IsPositiveStrictlyInside) {
+TEST(CheckersInCircle, IsPositiveStrictlyInside) {
   const Vec2 a{1, 0}, b{0, 1}, c{-1, 0};
   EXPECT_GT(in_circle(a, b, c, {0, 0}), 0);
   EXPECT_EQ(in_circle(a, b, c, {0, -1}), 0);
   EXPECT_LT(in_circle(a, b, c, {0, -2}), 0);
 }
 
-TEST(InCircle, SeesOneUnitInTheLastPlace) {
+TEST(CheckersInCircle, SeesOneUnitInTheLastPlace) {
   const Vec2 a{1, 0}, b{0, 1}, c{-1, 0};
   EXPECT_GT(in_circle(a, b, c, {0, -std::nextafter(1.0, 0)}), 0);
   EXPECT_LT(in_circle(a, b, c, {0, -std::nextafter(1.0, 2)}), 0);
 }
 
-TEST(InCircle, AgreesWithRationalArithmeticNearACircle) {
+TEST(CheckersInCircle, AgreesWithRationalArithmeticNearACircle) {
   std::mt19937_64 random(2);
   std::uniform_int_distribution<int> ulps(-3, 3);
   std::uniform_real_distribution<double> angle(0, 1.5);
@@ -96,7 +96,7 @@ TEST(InCircle, AgreesWithRationalArithmeticNearACircle) {
   }
 }
 
-TEST(InCircle, HoldsWhereProductsUnderflowOrOverflow) {
+TEST(CheckersInCircle, HoldsWhereProductsUnderflowOrOverflow) {
   for (const double s : {1e-160, 1e-100, 1e-80, 1e80, 1e100, 1e150}) {
     const Vec2 a{s, 0}, b{0, s}, c{-s, 0};
     EXPECT_GT(in_circle(a, b, c, {0, -0.5 * s}), 0) << s;

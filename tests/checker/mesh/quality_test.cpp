@@ -104,13 +104,13 @@ TEST(Area, ConstantAndExpressionHoldTogether) {
   EXPECT_EQ(violated(problem.check()), Rules{Rule::kArea});
 }
 
-TEST(Size, AnExpressionThatDoesNotParseIsAViolation) {
+TEST(CheckersSize, AnExpressionThatDoesNotParseIsAViolation) {
   Problem problem = block(2);
   problem.requirements.size = "1 +";
   EXPECT_EQ(violated(problem.check()), Rules{Rule::kSize});
 }
 
-TEST(Size, AValueThatIsNotPositiveAndFiniteIsAViolation) {
+TEST(CheckersSize, AValueThatIsNotPositiveAndFiniteIsAViolation) {
   for (const char* source : {"0", "-1", "1/0", "sqrt(-1)", "x > 1 ? 1 : -1"}) {
     Problem problem = block(2);
     problem.requirements.size = source;

@@ -92,7 +92,7 @@ TEST(Structure, AnEmptyMeshIsAViolation) {
   EXPECT_EQ(violated(problem.check()), Rules{Rule::kStructure});
 }
 
-TEST(Orientation, AClockwiseTriangleIsAViolation) {
+TEST(OrientationRule, AClockwiseTriangleIsAViolation) {
   Problem problem = block(3);
   std::swap(problem.mesh.triangles[7][0], problem.mesh.triangles[7][1]);
   const Report report = problem.check();
@@ -100,7 +100,7 @@ TEST(Orientation, AClockwiseTriangleIsAViolation) {
   EXPECT_NE(report.violations[0].sentence.find("triangle 7 "), std::string::npos);
 }
 
-TEST(Orientation, AFlatTriangleIsAViolation) {
+TEST(OrientationRule, AFlatTriangleIsAViolation) {
   Problem problem = block(2);
   // The middle vertex, onto the line between two of its neighbours.
   problem.mesh.vertices[vertex(problem.mesh, Lattice::at({1, 1}))] = {1.5, 0.5};
@@ -112,7 +112,7 @@ TEST(Orientation, AFlatTriangleIsAViolation) {
   EXPECT_EQ(violated(problem.check()), Rules{Rule::kOrientation});
 }
 
-TEST(Orientation, AVertexMovedAcrossAnEdgeIsAViolation) {
+TEST(OrientationRule, AVertexMovedAcrossAnEdgeIsAViolation) {
   Problem problem = block(4);
   problem.mesh.vertices[vertex(problem.mesh, Lattice::at({2, 2}))] = {4.5, 2.25};
   EXPECT_EQ(violated(problem.check()), Rules{Rule::kOrientation});

@@ -27,7 +27,7 @@ std::string error_of(const DistanceField& field, const Domain& domain = {}) {
   return made ? "" : made.error();
 }
 
-TEST(DistanceField, OfACircleOfSegmentsHasItsClosedForm) {
+TEST(CheckersDistanceField, OfACircleOfSegmentsHasItsClosedForm) {
   constexpr std::uint32_t kCorners = 1000;
   const double inner = 3 * std::cos(std::numbers::pi / kCorners);
   const Distance distance = *Distance::make(circle(kCorners, 3), {});
@@ -41,7 +41,7 @@ TEST(DistanceField, OfACircleOfSegmentsHasItsClosedForm) {
   EXPECT_NEAR(distance({0, 0}), inner, 1e-15);
 }
 
-TEST(DistanceField, IsTheLeastOfAllSegments) {
+TEST(CheckersDistanceField, IsTheLeastOfAllSegments) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> place(-1, 1);
   DistanceField field;
@@ -66,7 +66,7 @@ TEST(DistanceField, IsTheLeastOfAllSegments) {
   }
 }
 
-TEST(DistanceField, KeepsItsDigitsNearALongSegmentFarAway) {
+TEST(CheckersDistanceField, KeepsItsDigitsNearALongSegmentFarAway) {
   const Distance distance =
       *Distance::make({{}, {{1e6, 2e6}, {1e6 + 4e6, 2e6 + 3e6}}, {{0, 1}}}, {});
   // Half way, and 2^-10 to the side.
@@ -76,13 +76,13 @@ TEST(DistanceField, KeepsItsDigitsNearALongSegmentFarAway) {
   EXPECT_NEAR(distance(p), static_cast<double>(exact), 1e-9 * side);
 }
 
-TEST(DistanceField, IsToThePointsIfThereAreNoSegments) {
+TEST(CheckersDistanceField, IsToThePointsIfThereAreNoSegments) {
   const Distance distance = *Distance::make({{}, {{0, 0}, {4, 0}}, {}}, {});
   EXPECT_EQ(distance({2, 0}), 2);
   EXPECT_EQ(distance({4, 3}), 3);
 }
 
-TEST(DistanceField, IsToTheMarkersOfTheDomain) {
+TEST(CheckersDistanceField, IsToTheMarkersOfTheDomain) {
   Domain domain;
   domain.points = {{0, 0}, {10, 0}, {10, 10}};
   domain.segments = {{0, 1}, {1, 2}};
@@ -95,7 +95,7 @@ TEST(DistanceField, IsToTheMarkersOfTheDomain) {
   EXPECT_EQ((*Distance::make({{0}, {}, {}}, domain))({9, 3}), 1);
 }
 
-TEST(DistanceField, OfNonsenseIsRefused) {
+TEST(CheckersDistanceField, OfNonsenseIsRefused) {
   EXPECT_EQ(error_of({}), "there is nothing to measure to");
   EXPECT_EQ(error_of({{}, {{0, 0}, {1, 1}}, {{0, 2}}}), "segment 0 joins points 0 and 2 of 2");
   EXPECT_EQ(error_of({{}, {}, {{0, 0}}}), "segment 0 joins points 0 and 0 of 0");

@@ -34,7 +34,7 @@ std::string error_of(const MeshField& field) {
   return made ? "" : made.error();
 }
 
-TEST(MeshField, IsExactForWhatIsLinear) {
+TEST(CheckersMeshField, IsExactForWhatIsLinear) {
   const MeshField field = square(7);
   const MeshValues values = *MeshValues::make(field);
   std::mt19937_64 random(4);
@@ -46,7 +46,7 @@ TEST(MeshField, IsExactForWhatIsLinear) {
   }
 }
 
-TEST(MeshField, IsOutsideThatOfTheNearestPoint) {
+TEST(CheckersMeshField, IsOutsideThatOfTheNearestPoint) {
   const MeshField field = square(7);
   const MeshValues values = *MeshValues::make(field);
   EXPECT_NEAR(values.value({0.3, -2}), 1 + 2 * 0.3, 1e-14);
@@ -55,7 +55,7 @@ TEST(MeshField, IsOutsideThatOfTheNearestPoint) {
   EXPECT_NEAR(values.slope({0.3, -2}), std::sqrt(13), 1e-13);
 }
 
-TEST(MeshField, IsUndefinedBesideAVertexThatIs) {
+TEST(CheckersMeshField, IsUndefinedBesideAVertexThatIs) {
   MeshField field = square(1);
   field.values[3] = kNan;  // at (1, 1), a corner of the second triangle
   const MeshValues values = *MeshValues::make(field);
@@ -65,7 +65,7 @@ TEST(MeshField, IsUndefinedBesideAVertexThatIs) {
   EXPECT_TRUE(std::isnan(values.value({2, 2})));
 }
 
-TEST(MeshField, OfTrianglesThatOverlapIsThatOfTheFirst) {
+TEST(CheckersMeshField, OfTrianglesThatOverlapIsThatOfTheFirst) {
   MeshField field{
       {{0, 0}, {1, 0}, {0, 1}, {0, 0}, {1, 0}, {0, 1}}, {{3, 4, 5}, {0, 1, 2}}, {1, 1, 1, 2, 2, 2}};
   EXPECT_EQ((*MeshValues::make(field)).value({0.25, 0.25}), 2);
@@ -73,13 +73,13 @@ TEST(MeshField, OfTrianglesThatOverlapIsThatOfTheFirst) {
   EXPECT_EQ((*MeshValues::make(field)).value({0.25, 0.25}), 1);
 }
 
-TEST(MeshField, LeavesFlatTrianglesOut) {
+TEST(CheckersMeshField, LeavesFlatTrianglesOut) {
   const MeshField field{
       {{0, 0}, {1, 0}, {0, 1}, {2, 0}}, {{0, 1, 3}, {0, 0, 1}, {0, 1, 2}}, {5, 5, 5, kNan}};
   EXPECT_EQ((*MeshValues::make(field)).value({2, 0}), 5);
 }
 
-TEST(MeshField, OfNonsenseIsRefused) {
+TEST(CheckersMeshField, OfNonsenseIsRefused) {
   EXPECT_EQ(error_of({}), "no triangle has an area");
   EXPECT_EQ(error_of({{{0, 0}, {1, 0}, {0, 1}}, {{0, 1, 3}}, {1, 1, 1}}),
             "triangle 0 has vertex 3 of 3");

@@ -23,7 +23,7 @@ RasterField bilinear(double a, double b, double c, double d) {
   return field;
 }
 
-TEST(RasterField, IsExactForWhatIsBilinear) {
+TEST(CheckersRasterField, IsExactForWhatIsBilinear) {
   const RasterField field = bilinear(-7, 2, 0.5, 0.25);
   for (const double x : {1.0, 1.75, 4.0, 8.5, 9.0}) {
     for (const double y : {-1.0, 0.5, 3.5, 8.0}) {
@@ -33,7 +33,7 @@ TEST(RasterField, IsExactForWhatIsBilinear) {
   }
 }
 
-TEST(RasterField, IsUndefinedMoreThanHalfACellOutsideTheGrid) {
+TEST(CheckersRasterField, IsUndefinedMoreThanHalfACellOutsideTheGrid) {
   const RasterField field = bilinear(1, 0, 0, 0);
   EXPECT_EQ(field.value({9, 8}), 1);
   EXPECT_EQ(field.value({9.4, -1 - 0.4}), 1);
@@ -43,7 +43,7 @@ TEST(RasterField, IsUndefinedMoreThanHalfACellOutsideTheGrid) {
   }
 }
 
-TEST(RasterField, IsUndefinedInACellWithANodeThatIs) {
+TEST(CheckersRasterField, IsUndefinedInACellWithANodeThatIs) {
   RasterField field = bilinear(1, 0, 0, 0);
   field.values[1 * 5 + 2] = kNan;  // at (5, 2)
   for (const Vec2 p : {Vec2{4, 1}, Vec2{6, 1}, Vec2{4, 4}, Vec2{6, 4}}) {
@@ -56,7 +56,7 @@ TEST(RasterField, IsUndefinedInACellWithANodeThatIs) {
   EXPECT_TRUE(std::isnan(field.value({2.9, 1})));
 }
 
-TEST(RasterField, OfOneColumnIsALine) {
+TEST(CheckersRasterField, OfOneColumnIsALine) {
   const RasterField line{{2, 0}, 1, 1, 1, 3, {1, 3, 7}};
   EXPECT_EQ(line.value({2, 1.5}), 5);
   EXPECT_EQ(line.slope({2, 1.5}), 4);
@@ -64,7 +64,7 @@ TEST(RasterField, OfOneColumnIsALine) {
   EXPECT_EQ((RasterField{{2, 0}, 1, 1, 1, 1, {6}}.value({2, 0})), 6);
 }
 
-TEST(RasterField, OfNonsenseHasAFault) {
+TEST(CheckersRasterField, OfNonsenseHasAFault) {
   EXPECT_FALSE((RasterField{{0, 0}, 1, 1, 1, 1, {6}}.fault()));
   EXPECT_EQ(*(RasterField{{0, 0}, 1, 1, 0, 0, {}}.fault()), "0 values on 0 x 0 nodes");
   EXPECT_EQ(*(RasterField{{0, 0}, 1, 1, 2, 2, {1, 2, 3}}.fault()), "3 values on 2 x 2 nodes");

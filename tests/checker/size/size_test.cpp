@@ -43,18 +43,18 @@ Report report_of(const SizeSpec& size) {
   return problem.check();
 }
 
-TEST(SizeSpec, OfNothingIsNoBound) {
+TEST(CheckersSizeSpec, OfNothingIsNoBound) {
   EXPECT_FALSE(*size_function({}, {}));
 }
 
-TEST(SizeSpec, OfAConstantBoundsAreas) {
+TEST(CheckersSizeSpec, OfAConstantBoundsAreas) {
   EXPECT_TRUE(report_of(0.5).ok());
   EXPECT_EQ(violated(report_of(0.499)), Rules{Rule::kArea});
   EXPECT_EQ(violated(report_of(0.0)), Rules{Rule::kSize});
   EXPECT_EQ(violated(report_of(kNan)), Rules{Rule::kSize});
 }
 
-TEST(SizeSpec, OfEdgesBoundsTheAreaOfAnEquilateralTriangle) {
+TEST(CheckersSizeSpec, OfEdgesBoundsTheAreaOfAnEquilateralTriangle) {
   SizeSpec size = std::to_string(kEdge * 1.0001);
   size.measure = Measure::kEdge;
   EXPECT_TRUE(report_of(size).ok());

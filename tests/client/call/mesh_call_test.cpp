@@ -17,7 +17,7 @@
 namespace weft::client {
 namespace {
 
-class MeshCall : public ::testing::Test {
+class ClientMeshCall : public ::testing::Test {
  protected:
   Result<MeshReport> call(Script script, const MeshCallOptions& options = {},
                           std::stop_token stop = {}) {
@@ -40,7 +40,7 @@ class MeshCall : public ::testing::Test {
   std::unique_ptr<MeshSpool> spool_;
 };
 
-TEST_F(MeshCall, BringsTheMeshAndTheReport) {
+TEST_F(ClientMeshCall, BringsTheMeshAndTheReport) {
   std::vector<std::uint64_t> progress;
   const auto report = call(
       {stream_of(square_mesh(4), 3)},
@@ -55,7 +55,7 @@ TEST_F(MeshCall, BringsTheMeshAndTheReport) {
   EXPECT_GT(report->bytes_received, 0u);
 }
 
-TEST_F(MeshCall, RefusesADamagedStream) {
+TEST_F(ClientMeshCall, RefusesADamagedStream) {
   Script script{stream_of(square_mesh(4), 3)};
   script.messages[3].mutable_chunk()->set_coordinates(0, 0.5);
   const auto report = call(std::move(script));
@@ -63,26 +63,26 @@ TEST_F(MeshCall, RefusesADamagedStream) {
   EXPECT_EQ(report.error().message, "the stream is damaged: chunk 1 does not match its SHA-256");
 }
 
-TEST_F(MeshCall, RefusesAStreamThatEndsEarly) {
+TEST_F(ClientMeshCall, RefusesAStreamThatEndsEarly) {
   Script script{stream_of(square_mesh(4), 3)};
   script.messages.pop_back();
   EXPECT_EQ(exit_of(call(std::move(script))), 79);
 }
 
-TEST_F(MeshCall, GivesTheStatusOfARefusal) {
+TEST_F(ClientMeshCall, GivesTheStatusOfARefusal) {
   const auto report = call({{}, [](grpc::ServerContext&) {
                               return grpc::Status(grpc::StatusCode::INVALID_ARGUMENT, "no");
                             }});
   EXPECT_EQ(exit_of(report), 67);
 }
 
-TEST_F(MeshCall, SaysThatTheServerIsAbsent) {
+TEST_F(ClientMeshCall, SaysThatTheServerIsAbsent) {
   const auto report = call_server({.retries = 0}, {});
   EXPECT_EQ(exit_of(report), 78);
   EXPECT_NE(report.error().message.find(address_), std::string::npos);
 }
 
-TEST_F(MeshCall, EndsAtItsDeadline) {
+TEST_F(ClientMeshCall, EndsAtItsDeadline) {
   const auto report = call({{},
                             [](grpc::ServerContext& context) {
                               while (!context.IsCancelled()) std::this_thread::yield();
@@ -92,7 +92,7 @@ TEST_F(MeshCall, EndsAtItsDeadline) {
   EXPECT_EQ(exit_of(report), 68);
 }
 
-TEST_F(MeshCall, EndsWhenAskedToStop) {
+TEST_F(ClientMeshCall, EndsWhenAskedToStop) {
   std::stop_source stop;
   const auto report = call({{},
                             [&stop](grpc::ServerContext& context) {
@@ -114,7 +114,7 @@ Script broken_script(std::size_t messages = 4) {  // accepted, progress, two chu
   return script;
 }
 
-TEST_F(MeshCall, AsksForTheChunksThatAreMissingAsOftenAsSomeCome) {
+TEST_F(ClientMeshCall, AsksForTheChunksThatAreMissingAsOftenAsSomeCome) {
   std::vector<std::string> told;
   FakeServer server(
       std::vector{broken_script(), broken_script(5), Script{stream_of(square_mesh(4), 3)}},
@@ -135,13 +135,13 @@ TEST_F(MeshCall, AsksForTheChunksThatAreMissingAsOftenAsSomeCome) {
   EXPECT_NE(told[0].find("trying again"), std::string::npos) << told[0];
 }
 
-TEST_F(MeshCall, GivesUpOnAServerThatBringsNothingNew) {
+TEST_F(ClientMeshCall, GivesUpOnAServerThatBringsNothingNew) {
   FakeServer server(broken_script(2), address_);
   EXPECT_EQ(exit_of(call_server({.retries = 2}, {})), 78);
   EXPECT_EQ(server.service().requests().size(), 3u);
 }
 
-TEST_F(MeshCall, WaitsForAServerThatIsBusy) {
+TEST_F(ClientMeshCall, WaitsForAServerThatIsBusy) {
   Script busy;
   busy.end = [](grpc::ServerContext&) {
     google::rpc::Status rich;
@@ -157,7 +157,7 @@ TEST_F(MeshCall, WaitsForAServerThatIsBusy) {
   EXPECT_TRUE(call_server({}, {}));
 }
 
-TEST_F(MeshCall, DoesNotGoOnWithAnotherEngine) {
+TEST_F(ClientMeshCall, DoesNotGoOnWithAnotherEngine) {
   Script other{stream_of(square_mesh(4), 3)};
   other.messages[0].mutable_accepted()->set_engine_version("2");
   FakeServer server(std::vector{broken_script(), std::move(other)}, address_);

@@ -207,7 +207,7 @@ TEST(NearMisses, OfPointsDrawnWithErrorsEndLawfully) {
   }
 }
 
-TEST(EvenOdd, AgreesWithRaysOnRandomPolygons) {
+TEST(RandomEvenOdd, AgreesWithRaysOnRandomPolygons) {
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
     SCOPED_TRACE(seed);
     Generator random(4000 + seed);
@@ -246,7 +246,7 @@ bool is_covered(const Pslg& pslg, std::uint32_t area, Point p) {
   return odd(border, p);
 }
 
-TEST(Areas, AgreeWithRaysOnRandomPolygons) {
+TEST(RandomAreas, AgreeWithRaysOnRandomPolygons) {
   for (std::uint32_t seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(seed);
     Generator random(7000 + seed);

@@ -59,7 +59,7 @@ ErrorCode stopped(const Pslg& pslg, const ExecutionContext& context) {
   return domain ? ErrorCode::kInternal : domain.error().code;
 }
 
-TEST(Stop, ACancelledJobDoesNoWork) {
+TEST(DomainStop, ACancelledJobDoesNoWork) {
   ExecutionContext context;
   context.cancel();
   EXPECT_EQ(stopped(square(), context), ErrorCode::kCancelled);
@@ -105,15 +105,15 @@ constexpr int kMany = 200'000;
 constexpr int kMany = 1'000'000;
 #endif
 
-TEST(Stop, TheDeadlineEndsTheInsertionOfPointsInTime) {
+TEST(DomainStop, TheDeadlineEndsTheInsertionOfPointsInTime) {
   expect_prompt_stops(random_points(kMany));
 }
 
-TEST(Stop, TheDeadlineEndsEachLaterStageInTime) {
+TEST(DomainStop, TheDeadlineEndsEachLaterStageInTime) {
   expect_prompt_stops(random_points(kMany), {5, 7, 8, 9});
 }
 
-TEST(Stop, TheDeadlineEndsTheWorkAtAHubInTime) {
+TEST(DomainStop, TheDeadlineEndsTheWorkAtAHubInTime) {
   Pslg pslg;
   add_box(pslg, {-2, -2}, {2, 2});
   pslg.points.push_back({0, 0});
@@ -124,7 +124,7 @@ TEST(Stop, TheDeadlineEndsTheWorkAtAHubInTime) {
   expect_prompt_stops(pslg, {2, 4, 6});
 }
 
-TEST(Stop, TheDeadlineEndsALongDigInTime) {
+TEST(DomainStop, TheDeadlineEndsALongDigInTime) {
   // The segment crosses as many edges as there are points.
   Pslg pslg;
   add_box(pslg, {-1, -9}, {kMany / 2.0 + 2, 9});
@@ -137,11 +137,11 @@ TEST(Stop, TheDeadlineEndsALongDigInTime) {
   expect_prompt_stops(pslg, {5, 6, 7});
 }
 
-TEST(Stop, TheDeadlineEndsTheInsertionOfSegmentsInTime) {
+TEST(DomainStop, TheDeadlineEndsTheInsertionOfSegmentsInTime) {
   expect_prompt_stops(hash(400));
 }
 
-TEST(Stop, PointsOverTheByteBudgetAreRefusedBeforeWork) {
+TEST(DomainStop, PointsOverTheByteBudgetAreRefusedBeforeWork) {
   const ExecutionContext context(Budget{.max_bytes = 1000});
   const Result<Domain> domain = triangulate(square(), context);
   ASSERT_FALSE(domain);
@@ -151,7 +151,7 @@ TEST(Stop, PointsOverTheByteBudgetAreRefusedBeforeWork) {
             "budget is 1000");
 }
 
-TEST(Stop, CrossingsOverTheByteBudgetAreRefused) {
+TEST(DomainStop, CrossingsOverTheByteBudgetAreRefused) {
   // 2,500 crossings of 104 segments.
   const ExecutionContext context(Budget{.max_bytes = 500000});
   EXPECT_EQ(stopped(hash(50), context), ErrorCode::kBudgetExceeded);

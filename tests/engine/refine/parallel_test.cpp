@@ -366,13 +366,13 @@ double fraction_at_first_triangles(const MeshRequest& request, std::size_t* leav
   return sink.fraction;
 }
 
-TEST(Streaming, OfManyLeavesBeginsLongBeforeTheEnd) {
+TEST(StreamingOfThreads, OfManyLeavesBeginsLongBeforeTheEnd) {
   std::size_t leaves = 0;
   EXPECT_LT(fraction_at_first_triangles(busy_square(60'000, 200), &leaves), 0.25);
   EXPECT_GE(leaves, 64u);
 }
 
-TEST(Streaming, OfFewLeavesBeginsAfterTheCleanUp) {
+TEST(StreamingOfThreads, OfFewLeavesBeginsAfterTheCleanUp) {
   std::size_t leaves = 0;
   EXPECT_GE(fraction_at_first_triangles(busy_square(3'000, 200), &leaves), 0.6);
   EXPECT_GT(leaves, 1u);

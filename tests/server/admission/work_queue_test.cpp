@@ -351,7 +351,7 @@ TEST(WorkQueue, LetsAnItemThatMovesGoOnOnceItIsStopped) {
 }
 
 // The main place is busy, so that only the light one is left.
-class Distrust : public testing::TestWithParam<double> {
+class DistrustInTheQueue : public testing::TestWithParam<double> {
  protected:
   Distrust() {
     Event runs;
@@ -384,9 +384,10 @@ class Distrust : public testing::TestWithParam<double> {
                     .client_share = GetParam()}};
 };
 
-INSTANTIATE_TEST_SUITE_P(OfClients, Distrust, testing::Values(0.75, 1.0));
+INSTANTIATE_TEST_SUITE_P(OfClients, DistrustInTheQueue, testing::Values(0.75, 1.0));
 
-TEST_P(Distrust, KeepsTheLightPlaceFromAClientWhoseItemTurnedOutHeavyIfClientsAreToldApart) {
+TEST_P(DistrustInTheQueue,
+       KeepsTheLightPlaceFromAClientWhoseItemTurnedOutHeavyIfClientsAreToldApart) {
   turn_out_heavy("b");
   Event of_b;
   Event of_c;

@@ -197,7 +197,7 @@ TEST(JobMetrics, CountATaskWhoseWorkersAreAllLost) {
   release.set();
 }
 
-TEST(GetServerInfo, TellsHowJobsAreQueuedAndKept) {
+TEST(GetServerInfoOfJobs, TellsHowJobsAreQueuedAndKept) {
   JobOptions jobs = quick_jobs();
   jobs.service.max_queued = 7;
   jobs.service.max_open_of_client = 3;

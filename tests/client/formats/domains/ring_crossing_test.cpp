@@ -23,7 +23,7 @@ bool crosses(const std::vector<Point>& ring) {
   return false;
 }
 
-TEST(Orientation, IsExactWhereDoublesCancel) {
+TEST(RingOrientation, IsExactWhereDoublesCancel) {
   const double tiny = std::ldexp(1, -52);
   EXPECT_EQ(orientation({0.5, 0.5}, {12, 12}, {24, 24}), 0);
   EXPECT_EQ(orientation({0.5, 0.5 + tiny / 2}, {12, 12}, {24, 24}), 1);
