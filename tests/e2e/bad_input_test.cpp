@@ -146,7 +146,7 @@ std::vector<Case> cases() {
   };
 }
 
-class BadInput : public testing::TestWithParam<Case> {
+class BadInput : public ::testing::TestWithParam<Case> {
  protected:
   static void SetUpTestSuite() { server_ = new Server; }
   static void TearDownTestSuite() {
@@ -179,7 +179,7 @@ TEST_P(BadInput, GivesItsErrorAndWritesNothing) {
   EXPECT_EQ(after.exit_code, 0) << after.err;
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, BadInput, testing::ValuesIn(cases()),
+INSTANTIATE_TEST_SUITE_P(Of, BadInput, ::testing::ValuesIn(cases()),
                          [](const auto& info) { return info.param.name; });
 
 TEST(Server, ThatIsAbsentIsNamed) {

@@ -12,7 +12,7 @@
 namespace weft::e2e {
 namespace {
 
-class Pipeline : public testing::Test {
+class Pipeline : public ::testing::Test {
  protected:
   Pipeline() { write_manifest("0.01"); }
 

@@ -42,7 +42,7 @@ void PrintTo(const Case& c, std::ostream* out) {
   *out << c.name;
 }
 
-class Hardware : public testing::TestWithParam<Case> {};
+class Hardware : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Hardware, WithoutAvx2AndFmaGivesTheSameMesh) {
   const Case& c = GetParam();
@@ -56,11 +56,11 @@ TEST_P(Hardware, WithoutAvx2AndFmaGivesTheSameMesh) {
 
 INSTANTIATE_TEST_SUITE_P(
     On, Hardware,
-    testing::Values(Case{"Cylinder", "cylinder.poly",
-                         "(x>=0 && abs(y)<5) || (x<0 && x^2+y^2<25) ? 6e-3 : 5e-2"},
-                    Case{"Pipe", "pipe.poly",
-                         "2+sin(x)^2+exp(-abs(y)/100)+0.01*(abs(x)+1)^0.7+cos(x*y)"},
-                    Case{"Coast", "us-east-coast.poly", "1e-2*(1.5+sin(x)*cos(y))"}),
+    ::testing::Values(Case{"Cylinder", "cylinder.poly",
+                           "(x>=0 && abs(y)<5) || (x<0 && x^2+y^2<25) ? 6e-3 : 5e-2"},
+                      Case{"Pipe", "pipe.poly",
+                           "2+sin(x)^2+exp(-abs(y)/100)+0.01*(abs(x)+1)^0.7+cos(x*y)"},
+                      Case{"Coast", "us-east-coast.poly", "1e-2*(1.5+sin(x)*cos(y))"}),
     [](const auto& info) { return info.param.name; });
 
 }  // namespace

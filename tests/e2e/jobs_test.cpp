@@ -20,7 +20,7 @@ namespace {
 using nlohmann::json;
 using Words = std::vector<std::string>;
 
-class Jobs : public testing::Test {
+class Jobs : public ::testing::Test {
  protected:
   Outcome weft(Words words) const {
     words.insert(words.end(), {"--server", server_.address()});

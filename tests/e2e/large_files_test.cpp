@@ -18,7 +18,7 @@ namespace {
 // About four million triangles, which the server makes once.
 const std::vector<std::string> kServer = {"--threads", "2", "--cache-bytes", "1GiB"};
 
-class LargeFiles : public testing::Test {
+class LargeFiles : public ::testing::Test {
  protected:
   LargeFiles() {
     std::filesystem::create_directory(folder_ / "out");

@@ -108,7 +108,7 @@ void expect_the_same_in_pieces(const Server& server, Open open) {
 }
 
 // Whether the work is repeated, or the mesh is still in the server's memory.
-class TornAfterEachChunk : public testing::TestWithParam<bool> {};
+class TornAfterEachChunk : public ::testing::TestWithParam<bool> {};
 
 TEST_P(TornAfterEachChunk, GenerateMeshIsResumedByteForByte) {
   const Server server;
@@ -121,7 +121,7 @@ TEST_P(TornAfterEachChunk, GenerateMeshIsResumedByteForByte) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(From, TornAfterEachChunk, testing::Values(true, false),
+INSTANTIATE_TEST_SUITE_P(From, TornAfterEachChunk, ::testing::Values(true, false),
                          [](const auto& info) { return info.param ? "TheEngine" : "Memory"; });
 
 TEST(TornWire, FetchMeshIsResumedByteForByte) {

@@ -96,7 +96,7 @@ TEST(PagedMemory, EndsALoopIfAStopIsAskedFor) {
 }
 
 // Every format, from arrays in memory and from a spool with all scratch in files: the same bytes.
-class PagedFiles : public testing::TestWithParam<const char*> {};
+class PagedFiles : public ::testing::TestWithParam<const char*> {};
 
 std::string files_of(const MeshView& mesh, const std::string& name, int order) {
   const TempFolder folder;
@@ -147,9 +147,9 @@ TEST_P(PagedFiles, SayThatTheyWereInterrupted) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, PagedFiles,
-                         testing::Values("m.vtu", "m.msh", "m.node", "m.npz", "m.edge", "m.neigh",
-                                         "m.14", "m.su2", "m.geojson", "m.obj", "m.off", "m.ply",
-                                         "m.stl"),
+                         ::testing::Values("m.vtu", "m.msh", "m.node", "m.npz", "m.edge", "m.neigh",
+                                           "m.14", "m.su2", "m.geojson", "m.obj", "m.off", "m.ply",
+                                           "m.stl"),
                          [](const auto& info) {
                            const std::string name = info.param;
                            return "To" + name.substr(2);

@@ -13,9 +13,9 @@
 namespace weft::client {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 FieldOption parsed(const std::string& text) {
   return FieldOption::parse(text, "folder").value();
@@ -117,7 +117,7 @@ TEST(FieldOption, BringsOfARasterNoMoreValuesThanItMay) {
   EXPECT_EQ(filled.raster().values_size(), 16);
 }
 
-class Sizes : public testing::Test {
+class Sizes : public ::testing::Test {
  protected:
   // The size of the request.
   v1::SizeField size(const RequestOptions& options) const {
@@ -157,7 +157,7 @@ TEST_F(Sizes, ThatCannotBeReadNameTheirFlag) {
   RequestOptions at = given({{"edge-at", {"marker=2:1", "marker=inlet:1"}}});
   EXPECT_THAT(refusal(at), HasSubstr("--edge-at marker=inlet: no marker of the domain is named"));
   at.from_manifest = true;
-  EXPECT_THAT(refusal(at), testing::StartsWith("edge-at marker=inlet: no marker"));
+  EXPECT_THAT(refusal(at), ::testing::StartsWith("edge-at marker=inlet: no marker"));
 }
 
 TEST_F(Sizes, AreNoPathsOfFiles) {

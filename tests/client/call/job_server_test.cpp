@@ -16,7 +16,7 @@ namespace {
 
 using grpc::StatusCode;
 
-class JobCalls : public testing::Test {
+class JobCalls : public ::testing::Test {
  protected:
   JobServer connect(const std::string& address, std::uint32_t retries = 8,
                     std::optional<double> timeout = std::nullopt) {

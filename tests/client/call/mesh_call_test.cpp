@@ -17,7 +17,7 @@
 namespace weft::client {
 namespace {
 
-class MeshCall : public testing::Test {
+class MeshCall : public ::testing::Test {
  protected:
   Result<MeshReport> call(Script script, const MeshCallOptions& options = {},
                           std::stop_token stop = {}) {

@@ -14,7 +14,7 @@ namespace {
 
 using Stream = std::vector<v1::GenerateMeshResponse>;
 
-class Receiver : public testing::Test {
+class Receiver : public ::testing::Test {
  protected:
   // What is said of the stream; empty when it is accepted to the end.
   std::string verdict(const Stream& stream) {

@@ -14,7 +14,7 @@
 namespace weft::client {
 namespace {
 
-class Private : public testing::Test {
+class Private : public ::testing::Test {
  protected:
   Private() { ::setenv("TMPDIR", folder_.path().c_str(), 1); }
   ~Private() override {

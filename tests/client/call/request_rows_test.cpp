@@ -156,9 +156,9 @@ TEST_F(RequestRows, OfLayersReachTheReaderAsFlagAndKey) {
     EXPECT_EQ(run({"mesh", folder_ / "in.poly", "-o", out_file("m.vtu"), "--server", address_,
                    "--" + row.name, "x"}),
               2);
-    EXPECT_THAT(err(), testing::HasSubstr(refusal));
+    EXPECT_THAT(err(), ::testing::HasSubstr(refusal));
     EXPECT_EQ(run({"batch", manifest("m.vtu", row.name, "x"), "--server", address_}), 2);
-    EXPECT_THAT(err(), testing::HasSubstr(refusal));
+    EXPECT_THAT(err(), ::testing::HasSubstr(refusal));
   }
 }
 

@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 const grpc::Status kAway(grpc::StatusCode::UNAVAILABLE, "gone");
 
 // Waits by noting for how long.
-class RetryRules : public testing::Test {
+class RetryRules : public ::testing::Test {
  protected:
   RetryOptions options(std::uint32_t attempts) {
     RetryOptions options;

@@ -64,7 +64,7 @@ TEST(QualityGate, RefusesWhatItDoesNotKnow) {
             "min-angle: '20x' is not a number");
 }
 
-class Manifest : public testing::Test {
+class Manifest : public ::testing::Test {
  protected:
   Result<std::vector<BatchMesh>> read(const std::string& text) {
     std::ofstream(path_) << text;

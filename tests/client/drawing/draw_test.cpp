@@ -16,7 +16,7 @@
 namespace weft::client {
 namespace {
 
-class DrawingTest : public testing::Test {
+class DrawingTest : public ::testing::Test {
  protected:
   struct Options {
     DrawColor color = DrawColor::kNone;

@@ -12,7 +12,7 @@
 namespace weft::client {
 namespace {
 
-class DomainFile : public testing::Test {
+class DomainFile : public ::testing::Test {
  protected:
   Domain read(const std::string& name, const std::string& text) {
     const auto domain = read_domain(folder_.write(name, text));

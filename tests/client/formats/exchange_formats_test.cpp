@@ -26,7 +26,7 @@ Edges edges_of(const Mesh& mesh) {
   return edges;
 }
 
-class ExchangeFormat : public testing::Test {
+class ExchangeFormat : public ::testing::Test {
  protected:
   std::string refusal(const std::string& name, const std::string& text) {
     const auto mesh = read_mesh(folder_.write(name, text));

@@ -225,7 +225,7 @@ TEST_F(FieldRasterFile, OfTheGlobeIsReadAcrossEverySeam) {
                              {-180, -5, -170, 5}, {170, -90, 180, -80}, {0, 0, 360, 10}};
   for (const double west : {-180.0, 0.0, -30.0})
     for (const RasterBox& box : boxes) {
-      SCOPED_TRACE(testing::Message() << west << ": " << box.min_x << " to " << box.max_x);
+      SCOPED_TRACE(::testing::Message() << west << ": " << box.min_x << " to " << box.max_x);
       const auto raster = read_field_raster(write(globe(west)), "", box);
       ASSERT_READ(raster);
       EXPECT_LT(raster->x, box.min_x);

@@ -58,7 +58,7 @@ void damage(const std::filesystem::path& path, const std::function<bool()>& read
   EXPECT_TRUE(read());
 }
 
-class HostileMesh : public testing::TestWithParam<const char*> {};
+class HostileMesh : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(HostileMesh, IsRefusedOrRead) {
   TempFolder folder;
@@ -82,8 +82,8 @@ TEST_P(HostileMesh, IsRefusedOrRead) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, HostileMesh,
-                         testing::Values("m.node", "m.ele", "m.poly", "m.vtu", "m.msh", "m.14",
-                                         "m.su2", "m.npz", "m.obj", "m.off", "m.2dm", "m.nc"));
+                         ::testing::Values("m.node", "m.ele", "m.poly", "m.vtu", "m.msh", "m.14",
+                                           "m.su2", "m.npz", "m.obj", "m.off", "m.2dm", "m.nc"));
 
 TEST(HostileMesh, OfGmsh22IsRefusedOrRead) {
   TempFolder folder;

@@ -18,8 +18,8 @@
 namespace weft::client {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using Texts = std::vector<std::string>;
 
 std::string fault_of(const Texts& texts) {
@@ -59,7 +59,7 @@ TEST(NodalOption, IsTheBedOnce) {
 
 // The raster has cells of 2 by 2 around (0, 0), (2, 0), (0, 2), ...: x + 10 y, and one without a
 // value.
-class NodalValues : public testing::Test {
+class NodalValues : public ::testing::Test {
  protected:
   Result<SampledValues> sample(std::vector<double> coordinates, const Texts& texts) {
     std::vector<NodalOption> options;

@@ -16,7 +16,7 @@ constexpr char kGrid[] =
     "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 2\nNODATA_value -9999\n"
     "4 5 6\n1 2 3\n";
 
-class RasterFile : public testing::Test {
+class RasterFile : public ::testing::Test {
  protected:
   Result<Raster> read(std::string_view text) { return read_raster(folder_.write("g.asc", text)); }
   // What is said of a text that must be refused, less the folder.

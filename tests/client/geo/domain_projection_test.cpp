@@ -11,7 +11,7 @@
 namespace weft::client {
 namespace {
 
-class DomainProjections : public testing::Test {
+class DomainProjections : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!Projection::available()) GTEST_SKIP() << "built without PROJ";

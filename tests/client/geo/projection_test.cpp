@@ -8,7 +8,7 @@
 namespace weft::client {
 namespace {
 
-class Projections : public testing::Test {
+class Projections : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!Projection::available()) GTEST_SKIP() << "built without PROJ";

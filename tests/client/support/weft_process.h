@@ -20,7 +20,7 @@ namespace weft::client {
 
 using Words = std::vector<std::string>;
 
-class WeftProcess : public testing::Test {
+class WeftProcess : public ::testing::Test {
  protected:
   WeftProcess() {
     std::filesystem::create_directory(folder_ / "tmp");

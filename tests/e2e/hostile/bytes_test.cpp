@@ -96,7 +96,7 @@ bool is_answer(const grpc::Status& status) {
          status.error_code() != grpc::DEADLINE_EXCEEDED;
 }
 
-class HostileBytes : public testing::TestWithParam<const MethodDescriptor*> {
+class HostileBytes : public ::testing::TestWithParam<const MethodDescriptor*> {
  protected:
   static std::vector<std::string> arguments(const Folder& folder) {
     return {"--data",          folder / "data", "--max-request-bytes", "1MiB",
@@ -138,7 +138,7 @@ TEST_P(HostileBytes, AreAnsweredAndHarmNobody) {
   EXPECT_TRUE(reader->Finish().ok());
 }
 
-INSTANTIATE_TEST_SUITE_P(On, HostileBytes, testing::ValuesIn(methods()),
+INSTANTIATE_TEST_SUITE_P(On, HostileBytes, ::testing::ValuesIn(methods()),
                          [](const auto& info) { return info.param->name(); });
 
 }  // namespace

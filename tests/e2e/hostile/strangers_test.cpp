@@ -51,7 +51,7 @@ std::string repeated(std::string_view part, std::size_t bytes) {
   return all;
 }
 
-class Strangers : public testing::Test {
+class Strangers : public ::testing::Test {
  protected:
   Strangers() {
     Bystander warm_up(server_.address(), kToken);

@@ -13,8 +13,8 @@
 namespace weft::client {
 namespace {
 
-using testing::ElementsAre;
-using testing::EndsWith;
+using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using testing::NanSensitiveDoubleEq;
 
 const double kNan = std::nan("");
@@ -79,7 +79,7 @@ $NodeData
 $EndNodeData
 )";
 
-class VertexValuesOf : public testing::Test {
+class VertexValuesOf : public ::testing::Test {
  protected:
   Result<MeshWithValues> read(const std::string& name, const std::string& text,
                               const std::string& array) const {

@@ -10,7 +10,7 @@
 namespace weft::client {
 namespace {
 
-class GeoJson : public testing::Test {
+class GeoJson : public ::testing::Test {
  protected:
   Result<Domain> read(std::string_view text) {
     return read_geojson(folder_.write("map.geojson", text));

@@ -26,7 +26,7 @@ struct SampleLayer {
   std::string crs = "EPSG:32618";  // or empty
 };
 
-class OgrFile : public testing::Test {
+class OgrFile : public ::testing::Test {
  protected:
   // Fields are of integers, but for "kind" and those of names, which are texts.
   std::filesystem::path write(const std::string& name, const char* driver,

@@ -52,7 +52,7 @@ $Elements
 $EndElements
 )";
 
-class Msh : public testing::Test {
+class Msh : public ::testing::Test {
  protected:
   // What is said of a file that must be refused, less its name.
   std::string refusal(std::string text) {

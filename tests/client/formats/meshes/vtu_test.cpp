@@ -20,7 +20,7 @@ constexpr char kAscii[] = R"(<?xml version="1.0"?>
 </Piece></UnstructuredGrid></VTKFile>
 )";
 
-class Vtu : public testing::Test {
+class Vtu : public ::testing::Test {
  protected:
   // What is said of a file that must be refused, less its name.
   std::string refusal(std::string text) {

@@ -20,7 +20,7 @@ inline double plane(double x, double y) {
   return 2 * x + 3 * y;
 }
 
-class FieldRasterFile : public testing::Test {
+class FieldRasterFile : public ::testing::Test {
  protected:
   std::filesystem::path write(const SampleRaster& sample, const char* name = "r.tif",
                               const char* driver = "GTiff") {

@@ -13,7 +13,7 @@
 namespace weft::client {
 namespace {
 
-class AsciiField : public testing::Test {
+class AsciiField : public ::testing::Test {
  protected:
   // A grid of so many columns and rows with corner (x, y), by rows from the northmost.
   std::filesystem::path write(int columns, int rows, double x, double y, double size,

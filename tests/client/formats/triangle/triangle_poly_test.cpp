@@ -27,7 +27,7 @@ constexpr char kSquare[] =
     "1  0.1 0.1 7 0.5\n"
     "2  0.9 0.9 -8 -1\n";
 
-class TrianglePoly : public testing::Test {
+class TrianglePoly : public ::testing::Test {
  protected:
   Result<Domain> read(std::string_view text) {
     return read_triangle_poly(folder_.write("box.poly", text));
