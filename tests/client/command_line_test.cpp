@@ -190,14 +190,17 @@ TEST_F(CommandLine, NamesAMissingOutputFolderBeforeAnyWork) {
 
 TEST_F(CommandLine, SaysThatTheServerIsAbsent) {
   Words words = mesh_to("m.vtu");
-  words.insert(words.end(), {"--server", "unix:" + (folder_ / "nobody").string()});
+  words.insert(words.end(),
+               {"--server", "unix:" + (folder_ / "nobody").string(), "--retries", "1"});
   EXPECT_EQ(run(words), 78);
   EXPECT_NE(err().find("UNAVAILABLE"), std::string::npos) << err();
   expect_nothing_left();
 }
 
 TEST_F(CommandLine, TakesTheServerFromTheEnvironment) {
-  EXPECT_EQ(run(mesh_to("m.vtu"), {"WEFT_SERVER=unix:" + (folder_ / "nobody").string()}), 78);
+  EXPECT_EQ(run(mesh_to("m.vtu"),
+                {"WEFT_SERVER=unix:" + (folder_ / "nobody").string(), "WEFT_RETRIES=1"}),
+            78);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "pid"));
 }
 
@@ -208,7 +211,7 @@ TEST_F(CommandLine, ShowsWhyThePrivateServerDidNotStart) {
 }
 
 TEST_F(CommandLine, WritesNothingWhenTheServerIsKilledMidStream) {
-  EXPECT_EQ(run(mesh_to("m.vtu"), {"FAKE_WEFTD=vanish"}), 78) << err();
+  EXPECT_EQ(run(mesh_to("m.vtu"), {"FAKE_WEFTD=vanish", "WEFT_RETRIES=1"}), 78) << err();
   expect_nothing_left();
 }
 
@@ -468,7 +471,8 @@ TEST_F(CommandLine, AsksForHealthAndServerInfo) {
   EXPECT_EQ(out(), "serving\n");
   EXPECT_EQ(run({"server-info"}), 0) << err();
   EXPECT_NE(out().find("most points            1,234,567\n"), std::string::npos) << out();
-  EXPECT_EQ(run({"health", "--server", "unix:" + (folder_ / "nobody").string()}), 78);
+  EXPECT_EQ(run({"health", "--server", "unix:" + (folder_ / "nobody").string(), "--retries", "1"}),
+            78);
 }
 
 TEST_F(CommandLine, ExplainsItself) {
