@@ -211,7 +211,7 @@ TEST_F(CommandLine, ShowsWhyThePrivateServerDidNotStart) {
 }
 
 TEST_F(CommandLine, WritesNothingWhenTheServerIsKilledMidStream) {
-  EXPECT_EQ(run(mesh_to("m.vtu"), {"FAKE_WEFTD=vanish", "WEFT_RETRIES=1"}), 78) << err();
+  EXPECT_EQ(run(mesh_to("m.vtu"), {"FAKE_WEFTD=vanish"}), 78) << err();
   expect_nothing_left();
 }
 
@@ -471,8 +471,7 @@ TEST_F(CommandLine, AsksForHealthAndServerInfo) {
   EXPECT_EQ(out(), "serving\n");
   EXPECT_EQ(run({"server-info"}), 0) << err();
   EXPECT_NE(out().find("most points            1,234,567\n"), std::string::npos) << out();
-  EXPECT_EQ(run({"health", "--server", "unix:" + (folder_ / "nobody").string(), "--retries", "1"}),
-            78);
+  EXPECT_EQ(run({"health", "--server", "unix:" + (folder_ / "nobody").string()}), 78);
 }
 
 TEST_F(CommandLine, ExplainsItself) {
