@@ -91,6 +91,8 @@ inside() {
 runs() { inside systemctl is-active --quiet weftd 2>/dev/null; }
 serves() { [[ $(inside weft health --server 127.0.0.1:7421 2>/dev/null) == serving ]]; }
 shows_the_journal() { inside journalctl --no-pager --unit weftd --lines 20; }
+# Of all that it shows: a grep that ends early would end journalctl by SIGPIPE.
+journal_says() { grep -q "$1" <<<"$(shows_the_journal)"; }
 # Runs a command in the folder $1 as if it were the whole machine.
 inside_folder() {
   # shellcheck disable=SC2016
@@ -205,14 +207,14 @@ inside sh -c 'dpkg --install /srv/packages/weftd_*.deb' >"$scratch/upgrade.log" 
 until_true serves || fail "weftd does not serve after an upgrade: $(shows_the_journal)"
 [[ $(inside systemctl show --property MainPID --value weftd) != "$pid" ]] ||
   fail "the upgrade did not restart the service"
-inside grep -q 'event=draining.*seconds=30' <(shows_the_journal) ||
+until_true journal_says 'event=draining.*seconds=30' ||
   fail "the service was not drained: $(shows_the_journal)"
 inside weft fetch "$job" -o /srv/fetched.vtu --server 127.0.0.1:7421 --quiet
 inside cmp /srv/pipe.vtu /srv/fetched.vtu || fail "the fetched mesh is another one"
 inside systemctl stop weftd
 [[ $(inside systemctl show --property Result --value weftd) == success ]] ||
   fail "the service did not stop by itself: $(shows_the_journal)"
-shows_the_journal | grep -q 'event=draining.*seconds=29' || fail "WEFT_DRAIN was not read"
+until_true journal_says 'event=draining.*seconds=29' || fail "WEFT_DRAIN was not read"
 inside systemctl start weftd
 
 say "remove, and purge"

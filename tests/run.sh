@@ -71,7 +71,7 @@ check_deployment() {
     echo "deploy/compose.cluster.yaml: starts without passwords"
     return 1
   fi
-  if ! kubectl version --client 2>/dev/null | grep -q '^Kustomize Version: v[4-9]'; then
+  if ! grep -q '^Kustomize Version: v[4-9]' <<<"$(kubectl version --client 2>/dev/null)"; then
     echo "deploy/kubernetes: not checked, for want of kubectl 1.21 or later"
     return
   fi

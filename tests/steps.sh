@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # SPDX-License-Identifier: Apache-2.0
 # What run.sh and deep.sh share: steps with their seconds, and what is said of them at the end. Sourced
 # in the root of the tree; the logs of steps go to $logs.

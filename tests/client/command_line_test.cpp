@@ -190,14 +190,17 @@ TEST_F(CommandLine, NamesAMissingOutputFolderBeforeAnyWork) {
 
 TEST_F(CommandLine, SaysThatTheServerIsAbsent) {
   Words words = mesh_to("m.vtu");
-  words.insert(words.end(), {"--server", "unix:" + (folder_ / "nobody").string()});
+  words.insert(words.end(),
+               {"--server", "unix:" + (folder_ / "nobody").string(), "--retries", "1"});
   EXPECT_EQ(run(words), 78);
   EXPECT_NE(err().find("UNAVAILABLE"), std::string::npos) << err();
   expect_nothing_left();
 }
 
 TEST_F(CommandLine, TakesTheServerFromTheEnvironment) {
-  EXPECT_EQ(run(mesh_to("m.vtu"), {"WEFT_SERVER=unix:" + (folder_ / "nobody").string()}), 78);
+  EXPECT_EQ(run(mesh_to("m.vtu"),
+                {"WEFT_SERVER=unix:" + (folder_ / "nobody").string(), "WEFT_RETRIES=1"}),
+            78);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "pid"));
 }
 

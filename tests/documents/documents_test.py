@@ -78,7 +78,7 @@ def test_a_page_can_ask_for_another_tolerance(run):
     good, found = run(page)
     assert good, found
     good, found = run(page + page.split("\n", 1)[1])
-    assert not good and "page.md:9: " in found
+    assert not good and "page.md:8: " in found
 
 
 def test_lines_left_out_may_be_any(run):

@@ -184,8 +184,9 @@ INSTANTIATE_TEST_SUITE_P(Of, BadInput, ::testing::ValuesIn(cases()),
 
 TEST(Server, ThatIsAbsentIsNamed) {
   const Folder folder;
-  const Outcome outcome = run_weft({"mesh", folder.write("square.poly", kSquare), "-o",
-                                    folder / "mesh.vtu", "--server", "unix:/nonexistent/sock"});
+  const Outcome outcome =
+      run_weft({"mesh", folder.write("square.poly", kSquare), "-o", folder / "mesh.vtu", "--server",
+                "unix:/nonexistent/sock", "--retries", "1"});
   EXPECT_EQ(outcome.exit_code, kUnavailable) << outcome.err;
   EXPECT_NE(outcome.err.find("/nonexistent/sock"), std::string::npos) << outcome.err;
   EXPECT_EQ(folder.names(), std::vector<std::string>{"square.poly"});
@@ -199,7 +200,7 @@ TEST(Server, ThatIsKilledAtWorkLeavesNoFile) {
   std::atomic<bool> ended{false};
   std::thread client([&] {
     outcome = run_weft({"mesh", folder.write("square.poly", kSquare), "-o", folder / "mesh.vtu",
-                        "--size", "2e-7", "--server", server.address()});
+                        "--size", "2e-7", "--server", server.address(), "--retries", "1"});
     ended = true;
   });
   // Refinement has begun once the mesh takes memory.

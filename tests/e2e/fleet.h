@@ -85,8 +85,8 @@ class Jobs {
   // Submits one more job, and the same one again where the answer was lost. False if no server
   // answers.
   bool submit(const std::string& address);
-  // Whether none is queued or at work, as far as a server answers.
-  bool all_ended(const std::string& address) const;
+  // How many have ended; nothing if no server answers.
+  static std::optional<int> ended(const std::string& address);
   // Waits for all jobs and fetches their meshes.
   Tally settle(const std::string& address, Reference& reference);
 

@@ -22,6 +22,9 @@ using Words = std::vector<std::string>;
 
 class JobsByCommand : public ::testing::Test {
  protected:
+  // The slowest machine renews its leases in time, so that no job begins again by itself.
+  explicit JobsByCommand(const Words& leases = {"--lease", "60"}) : server_(with_data(leases)) {}
+
   Outcome weft(Words words) const {
     words.insert(words.end(), {"--server", server_.address()});
     return run_weft(words);
@@ -46,10 +49,15 @@ class JobsByCommand : public ::testing::Test {
 
   Folder folder_;
   const std::string data_ = folder_ / "data";
-  // A worker that is killed counts as lost soon.
-  Server server_{{"--data", data_, "--lease", "2"}};
+  Server server_;
   const std::string pipe_ = model("pipe.poly");
   const Words large_ = {model("us-east-coast.poly"), "--size", "1e-5"};
+
+ private:
+  Words with_data(Words words) const {
+    words.insert(words.end(), {"--data", data_});
+    return words;
+  }
 };
 
 TEST_F(JobsByCommand, MadeWhileNobodyWaitsAreTheFilesThatMeshWrites) {
@@ -132,7 +140,13 @@ TEST_F(JobsByCommand, ThatAreCancelledEndAndAreForgottenWhenDeleted) {
   EXPECT_EQ(weft({"list", "--json"}).out, "{\"jobs\":[]}\n");
 }
 
-TEST_F(JobsByCommand, AreWatchedThroughTheDeathOfTheServer) {
+// A worker that is killed counts as lost soon.
+class JobsOfAServerThatDies : public JobsByCommand {
+ protected:
+  JobsOfAServerThatDies() : JobsByCommand({"--lease", "2", "--max-attempts", "100"}) {}
+};
+
+TEST_F(JobsOfAServerThatDies, AreWatchedThroughItsDeath) {
   const std::string id = submit({model("us-east-coast.poly"), "--size", "1e-4", "--threads", "1"});
   auto watched = std::async(std::launch::async, [&] { return weft({"watch", id, "--json"}); });
   wait_until(id, "running");
@@ -144,7 +158,7 @@ TEST_F(JobsByCommand, AreWatchedThroughTheDeathOfTheServer) {
   json last;
   for (std::string line; std::getline(lines, line);) last = json::parse(line);
   EXPECT_EQ(last["state"], "succeeded");
-  EXPECT_EQ(last["attempts"], 2);
+  EXPECT_GE(last["attempts"], 2) << "a slow machine loses leases, too";
 }
 
 TEST_F(JobsByCommand, AreListedOverAllPages) {

@@ -176,7 +176,7 @@ TEST(Soak, SlowReadersHoldLittleOfTheirMeshesInTheServersMemory) {
   const auto stub = v1::JobService::NewStub(connect(server.address()));
   v1::SubmitJobRequest submission;
   const auto domain = client::read_domain(model("cylinder.poly")).value();
-  const std::string size = "0.006 / " + std::to_string(few_or_many(1, 10));
+  const std::string size = "0.003 / " + std::to_string(few_or_many(1, 5));
   *submission.mutable_mesh() = client::make_request(domain, {.size = size});
   v1::SubmitJobResponse submitted;
   grpc::ClientContext submitting;

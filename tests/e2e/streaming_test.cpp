@@ -179,7 +179,7 @@ class HugeJob {
  private:
   void read() {
     const auto reader =
-        stub_->GenerateMesh(&context_, request_for("cylinder.poly", {.size = "4e-5"}));
+        stub_->GenerateMesh(&context_, request_for("cylinder.poly", {.size = "1e-5"}));
     v1::GenerateMeshResponse message;
     while (reader->Read(&message)) has_chunks_ = has_chunks_ || message.has_chunk();
     status_ = reader->Finish();
@@ -217,7 +217,7 @@ TEST(StreamedProgress, TellsFractionsThatRiseWhileChunksCome) {
   const Server server({"--threads", "2"});
   const auto stub = stub_of(server);
   grpc::ClientContext context;
-  const auto reader = stub->GenerateMesh(&context, request_for("cylinder.poly", {.size = "4e-5"}));
+  const auto reader = stub->GenerateMesh(&context, request_for("cylinder.poly", {.size = "1e-5"}));
   v1::GenerateMeshResponse message;
   double last = 0;
   int risen = 0;

@@ -8,10 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <chrono>
-#include <condition_variable>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,31 +16,13 @@
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/server.h"
+#include "tests/support/event.h"
 #include "weft/v1/mesh_service.grpc.pb.h"
 
 namespace weft::server::testing {
 
 using Stub = v1::MeshService::Stub;
 using Reader = std::unique_ptr<grpc::ClientReader<v1::GenerateMeshResponse>>;
-
-// Something that happens once. A wait that lasts half a minute has failed.
-class Event {
- public:
-  void set() {
-    std::lock_guard lock(mutex_);
-    happened_ = true;
-    changed_.notify_all();
-  }
-  bool wait() {
-    std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, std::chrono::seconds(30), [this] { return happened_; });
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool happened_ = false;
-};
 
 // A mesh-like chunk of about `bytes` bytes.
 Chunk make_chunk(std::uint32_t index, std::size_t bytes = 64);

@@ -121,7 +121,7 @@ v1::GenerateMeshRequest numbered_request(int number) {
 
 JobOptions quick_jobs() {
   JobOptions jobs;
-  jobs.runner.lease = std::chrono::seconds(5);
+  jobs.runner.lease = kPatience;
   jobs.runner.renewal = std::chrono::milliseconds(20);
   jobs.runner.poll = std::chrono::milliseconds(20);
   jobs.retry.first_delay = std::chrono::milliseconds(1);

@@ -55,7 +55,8 @@ class JobClient {
 // A request whose mesh no other number names.
 v1::GenerateMeshRequest numbered_request(int number);
 
-// Leases of a second and no pauses, so that what takes long elsewhere does not here.
+// No pauses, so that what takes long elsewhere does not here, and leases that the slowest machine
+// renews in time.
 JobOptions quick_jobs();
 
 class JobServer {

@@ -48,9 +48,9 @@ class Log {
   const Logger logger_ = std::make_shared<spdlog::logger>("test", sink_);
 };
 
-// Looks again and again until it is so; false after half a minute.
+// Looks again and again until it is so; false after kPatience.
 inline bool eventually(const std::function<bool()>& is_so) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  const auto end = std::chrono::steady_clock::now() + kPatience;
   while (!is_so()) {
     if (std::chrono::steady_clock::now() > end) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -96,7 +96,7 @@ inline std::shared_ptr<grpc::Channel> channel_to(
 inline grpc::Status ask(const std::shared_ptr<grpc::Channel>& channel,
                         const std::string& authorization = "") {
   grpc::ClientContext context;
-  context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(30));
+  context.set_deadline(std::chrono::system_clock::now() + kPatience);
   if (!authorization.empty()) context.AddMetadata("authorization", authorization);
   v1::GetServerInfoResponse info;
   return v1::MeshService::NewStub(channel)->GetServerInfo(&context, {}, &info);

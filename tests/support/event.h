@@ -18,6 +18,10 @@ class Event {
     happened_ = true;
     changed_.notify_all();
   }
+  bool happened() {
+    const std::lock_guard lock(mutex_);
+    return happened_;
+  }
   // False when it did not happen within kPatience.
   bool wait() {
     std::unique_lock lock(mutex_);

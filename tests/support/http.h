@@ -7,9 +7,12 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+
+#include "tests/support/event.h"
 
 namespace weft::testing {
 
@@ -34,12 +37,12 @@ class HttpConnection {
   void send(const std::string& bytes) {
     (void)!::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
   }
-  // All that comes until the server closes the connection; throws after half a minute without.
+  // All that comes until the server closes the connection; throws after kPatience without.
   std::string read_all() {
     std::string text;
     while (true) {
       pollfd ready{socket_, POLLIN, 0};
-      if (::poll(&ready, 1, 30'000) != 1)
+      if (::poll(&ready, 1, static_cast<int>(std::chrono::milliseconds(kPatience).count())) != 1)
         throw std::runtime_error("the server neither answers nor closes");
       char bytes[4096];
       const ssize_t count = ::recv(socket_, bytes, sizeof bytes, 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the programs, and the files of the tree, lie that tests use. In a file of its own, so that the
-// compiler's cache knows every other test in a clone elsewhere.
+// Where the programs, and the files of the tree, lie that tests use. In a file of its own, so that
+// the compiler's cache knows every other test in a clone elsewhere.
 #pragma once
 
 namespace weft::testing {

@@ -13,6 +13,7 @@
 #include "tests/e2e/hostile/http2_client.h"
 #include "tests/e2e/programs.h"
 #include "tests/server/raw_call.h"
+#include "tests/support/event.h"
 
 namespace weft::e2e {
 namespace {
@@ -101,7 +102,7 @@ TEST(HostileCallers, AreGivenUpWhenTheirMessageDoesNotCome) {
     streams.push_back(client->open("/weft.v1.MeshService/GenerateMesh"));
     client->send(streams.back(), message_prefix(200 * kMiB) + std::string(1000, 'x'));
   }
-  const auto end = steady_clock::now() + seconds(20);
+  const auto end = steady_clock::now() + kPatience;
   for (std::size_t i = 0; i < clients.size(); ++i) {
     while (!clients[i]->ended(streams[i]) && steady_clock::now() < end)
       clients[i]->listen(milliseconds(50));

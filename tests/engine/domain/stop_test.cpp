@@ -6,33 +6,22 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <ctime>
 #include <initializer_list>
 #include <numbers>
 #include <random>
 
 #include "engine/domain/domain.h"
 #include "tests/engine/domain/shapes.h"
+#include "tests/support/processor_time.h"
 
 namespace weft {
 namespace {
 
 #ifdef WEFT_SANITIZED
-constexpr int kPromptly = 500;  // ms; sanitizers slow the release of memory most
+constexpr double kPromptly = 2;  // s; sanitizers slow the release of memory most
 #else
-constexpr int kPromptly = 50;  // ms
+constexpr double kPromptly = 0.2;  // s
 #endif
-
-using std::chrono::duration_cast;
-using std::chrono::milliseconds;
-using std::chrono::nanoseconds;
-
-// Processor time, which a busy machine does not stretch.
-nanoseconds processor_time() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return std::chrono::seconds(t.tv_sec) + nanoseconds(t.tv_nsec);
-}
 
 Pslg random_points(int n) {
   std::mt19937 random(7);
@@ -65,37 +54,32 @@ TEST(DomainStop, ACancelledJobDoesNoWork) {
   EXPECT_EQ(stopped(square(), context), ErrorCode::kCancelled);
 }
 
-// Stops soon after the deadline, or ends before it. One of three tries must succeed, because other
-// programs slow the release of memory in processor time, too.
-ErrorCode expect_prompt_stop(const Pslg& pslg, std::int64_t ms, std::int64_t soon = kPromptly) {
-  SCOPED_TRACE(ms);
-  std::int64_t took = 0;
-  for (int i = 0; i < 3; ++i) {
-    ExecutionContext context;
-    const nanoseconds start = processor_time();
-    context.set_deadline(ExecutionContext::Clock::now() + milliseconds(ms));
-    const ErrorCode code = stopped(pslg, context);
-    took = duration_cast<milliseconds>(processor_time() - start).count();
-    if (took <= ms + soon) return code;
-  }
-  ADD_FAILURE() << "stopped after " << took << " ms";
-  return ErrorCode::kInternal;
+// Stops soon after the deadline, or ends before it.
+ErrorCode expect_prompt_stop(const Pslg& pslg, double seconds) {
+  SCOPED_TRACE(seconds);
+  ExecutionContext context;
+  const double start = processor_seconds();
+  context.set_deadline(ExecutionContext::Clock::now() +
+                       std::chrono::duration_cast<ExecutionContext::Clock::duration>(
+                           std::chrono::duration<double>(seconds)));
+  const ErrorCode code = stopped(pslg, context);
+  const double late = processor_seconds() - start - seconds;
+  EXPECT_LE(late, kPromptly);
+  return code;
 }
 
 void expect_prompt_stops(const Pslg& pslg) {
-  for (int ms = 5; ms <= 80; ms *= 2)
-    EXPECT_EQ(expect_prompt_stop(pslg, ms), ErrorCode::kDeadlineExceeded);
+  for (double seconds = 0.005; seconds < 0.1; seconds *= 2)
+    EXPECT_EQ(expect_prompt_stop(pslg, seconds), ErrorCode::kDeadlineExceeded);
 }
 
-// After so many tenths of the time that the whole takes, and by the next tenth where the machine is
-// slow.
+// After so many tenths of the time that the whole takes.
 void expect_prompt_stops(const Pslg& pslg, std::initializer_list<int> tenths) {
   const ExecutionContext context;
-  const nanoseconds start = processor_time();
+  const double start = processor_seconds();
   ASSERT_TRUE(triangulate(pslg, context));
-  const auto whole = duration_cast<milliseconds>(processor_time() - start).count();
-  const std::int64_t soon = std::max<std::int64_t>(kPromptly, whole / 10);
-  for (const int tenth : tenths) expect_prompt_stop(pslg, whole * tenth / 10, soon);
+  const double whole = processor_seconds() - start;
+  for (const int tenth : tenths) expect_prompt_stop(pslg, whole * tenth / 10);
 }
 
 // A million where nothing slows it down.

@@ -125,13 +125,15 @@ TEST(GrantedMemory, CanBeWaitedForUntilTheRunIsCancelled) {
   EXPECT_EQ(summary.error().code, ErrorCode::kCancelled);
 }
 
+struct Refuses final : MemorySource {
+  Result<std::uint64_t> grant(std::uint64_t needed, const ExecutionContext&) override {
+    if (needed > Waits::kLimit) return fail(ErrorCode::kOutOfMemory, "", "no more");
+    return needed;
+  }
+};
+
 TEST(GrantedMemory, EndsTheRunWithWhatTheSourceSays) {
-  struct Refuses final : MemorySource {
-    Result<std::uint64_t> grant(std::uint64_t needed, const ExecutionContext&) override {
-      if (needed > Waits::kLimit) return fail(ErrorCode::kOutOfMemory, "", "no more");
-      return needed;
-    }
-  } source;
+  Refuses source;
   for (const int threads : {1, 2}) {
     Arena arena(threads);
     ExecutionContext context;
@@ -165,26 +167,36 @@ TEST(GrantedMemory, IsAskedForBeforeTheDomainIsTriangulated) {
   EXPECT_GT(source.asked, 20'000 * 200);
 }
 
-// Whatever stopped it, and however far it came.
+// Before it had done anything, and in the middle.
 TEST(Context, ServesAJobThatBeginsAgain) {
   const MeshRequest request = busy_square(200'000, 4'000);
   const std::string expected = outcome(mesh_on(nullptr, request));
-  Arena arena(2);
-  ExecutionContext context;
-  context.set_deadline(ExecutionContext::Clock::now() + std::chrono::milliseconds(5));
-  ForgetfulSink sink;
-  const auto first = generate_mesh(request, sink, context);
-  ASSERT_FALSE(first);
-  EXPECT_EQ(first.error().code, ErrorCode::kDeadlineExceeded);
-  context.begin_again();
-  EXPECT_EQ(context.progress().stage, Stage::kQueued);
-  EXPECT_EQ(context.progress().triangles, 0);
-  context.set_deadline(ExecutionContext::Clock::now() + std::chrono::minutes(5));
-  context.set_arena(arena);
-  const auto again = generate_mesh(request, sink, context);
-  EXPECT_EQ(outcome(again), expected);
-  ASSERT_TRUE(again);
-  EXPECT_EQ(context.progress().triangles, again->triangles);
+  for (const ErrorCode stop : {ErrorCode::kDeadlineExceeded, ErrorCode::kOutOfMemory}) {
+    Arena arena(2);
+    ExecutionContext context;
+    Refuses poor;
+    if (stop == ErrorCode::kOutOfMemory) {
+      context.set_memory(poor, 0);
+    } else {
+      context.set_deadline(ExecutionContext::Clock::now());
+    }
+    ForgetfulSink sink;
+    const auto first = generate_mesh(request, sink, context);
+    ASSERT_FALSE(first);
+    EXPECT_EQ(first.error().code, stop);
+    EXPECT_EQ(context.progress().triangles > 0, stop == ErrorCode::kOutOfMemory);
+    context.begin_again();
+    EXPECT_EQ(context.progress().stage, Stage::kQueued);
+    EXPECT_EQ(context.progress().triangles, 0);
+    context.set_deadline(ExecutionContext::Clock::now() + std::chrono::hours(1));
+    Stingy enough;
+    context.set_memory(enough, 0);
+    context.set_arena(arena);
+    const auto again = generate_mesh(request, sink, context);
+    EXPECT_EQ(outcome(again), expected);
+    ASSERT_TRUE(again);
+    EXPECT_EQ(context.progress().triangles, again->triangles);
+  }
 }
 
 TEST(Context, ReportsNoSmallerFractionIfItsRunBeginsAgain) {

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <limits>
 #include <string>
 #include <vector>
@@ -154,10 +153,10 @@ TEST(NarrowPlaces, AreSampledWhereTheyAre) {
 TEST(NarrowPlaces, ThatCostTooMuchAreRefusedAtOnceAndNamed) {
   ExecutionContext context({.triangle_limit = 1'000'000});
   Forgetful sink;
-  const auto start = std::chrono::steady_clock::now();
   const auto result = generate_mesh({.pslg = side_by_side(2e-6, 0)}, sink, context);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
   ASSERT_FALSE(result);
+  EXPECT_LT(context.progress().stage, Stage::kRefine);
+  EXPECT_LT(context.pulse(), 1000u);
   EXPECT_EQ(result.error().code, ErrorCode::kLimitExceeded);
   EXPECT_EQ(result.error().field, "quality.min_angle_deg");
   const std::string& message = result.error().message;

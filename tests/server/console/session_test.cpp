@@ -166,15 +166,20 @@ TEST(ConnectionsOfTheConsole, EndIfAHeaderNeverEnds) {
 }
 
 TEST(ConnectionsOfTheConsole, EndIfTheyAreIdle) {
-  ServerOptions options = with_console();
-  options.console.idle_timeout = milliseconds(50);
-  ConsoleServer server(empty_mesh(), options);
-  WebConnection silent(server.address());
-  EXPECT_TRUE(silent.ends());
-  WebConnection done(server.address());
-  done.send(request("GET", "/metrics"));
-  EXPECT_EQ(done.read_response().status, 200);
-  EXPECT_TRUE(done.ends());
+  // The machine may be too slow for a request in this time: the next server gives it twice as long.
+  bool answered = false;
+  for (milliseconds idle(50); !answered && idle < kPatience / 2; idle *= 2) {
+    ServerOptions options = with_console();
+    options.console.idle_timeout = idle;
+    ConsoleServer server(empty_mesh(), options);
+    WebConnection silent(server.address());
+    EXPECT_TRUE(silent.ends());
+    WebConnection done(server.address());
+    done.send(request("GET", "/metrics"));
+    answered = done.read_response().status == 200;
+    EXPECT_TRUE(done.ends());
+  }
+  EXPECT_TRUE(answered);
 }
 
 TEST(ConnectionsOfTheConsole, EndIfAMessageNeverEnds) {

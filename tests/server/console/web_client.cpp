@@ -13,6 +13,8 @@
 #include <cerrno>
 #include <stdexcept>
 
+#include "tests/support/event.h"
+
 namespace weft::server::testing {
 namespace {
 
@@ -116,7 +118,7 @@ grpc::Status WebOutcome::status() const {
 WebConnection::WebConnection(const std::string& address, SSL_CTX* tls, int receive_buffer)
     : socket_(connect_to(address, receive_buffer)),
       tls_(tls == nullptr ? nullptr : SSL_new(tls), &SSL_free) {
-  const timeval patience{30, 0};
+  const timeval patience{kPatience.count(), 0};
   ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   ::setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
   if (tls_ == nullptr) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A browser's half of HTTP/1.1 and gRPC-Web, which can misbehave. Everything waits half a minute at
+// A browser's half of HTTP/1.1 and gRPC-Web, which can misbehave. Everything waits for kPatience at
 // most, and then throws.
 //
 //   WebConnection browser(address);

@@ -199,6 +199,7 @@ TEST(JobMetrics, CountATaskWhoseWorkersAreAllLost) {
 
 TEST(GetServerInfoOfJobs, TellsHowJobsAreQueuedAndKept) {
   JobOptions jobs = quick_jobs();
+  jobs.runner.lease = std::chrono::seconds(5);
   jobs.service.max_queued = 7;
   jobs.service.max_open_of_client = 3;
   jobs.retry.max_attempts = 5;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <ctime>
 #include <functional>
 #include <numbers>
 #include <random>
@@ -16,6 +15,7 @@
 #include "engine/size/fields/medial_axis.h"
 #include "tests/engine/domain/shapes.h"
 #include "tests/support/poly.h"
+#include "tests/support/processor_time.h"
 
 namespace weft {
 namespace {
@@ -30,12 +30,6 @@ class Random {
  private:
   std::mt19937 random_;
 };
-
-double processor_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 Domain domain_of(const Pslg& pslg) {
   const ExecutionContext context;
@@ -313,7 +307,7 @@ TEST(WidthField, OfACoastIsQuickAndWithinItsExtent) {
   const double seconds = processor_seconds() - start;
   ASSERT_TRUE(width) << width.error().message;
   RecordProperty("milliseconds", static_cast<int>(1e3 * seconds));
-  EXPECT_LT(seconds, 3);
+  EXPECT_LT(seconds, 5);
   for (const Point p : points_in(domain, 5000, 6)) {
     const double value = (*width)(p);
     EXPECT_GT(value, 0);
@@ -347,7 +341,7 @@ TEST(WidthField, OfAHundredThousandWallsTakesSeconds) {
   const double seconds = processor_seconds() - start;
   ASSERT_TRUE(width) << width.error().message;
   RecordProperty("milliseconds", static_cast<int>(1e3 * seconds));
-  EXPECT_LT(seconds, 20);  // with sanitizers
+  EXPECT_LT(seconds, 60);  // with sanitizers
 }
 
 TEST(WidthField, BoundsHoldWhatIsEvaluated) {
