@@ -115,7 +115,7 @@ class _Reader:
         first = len(self.segments)
         for i, ring in enumerate(rings):
             points = _positions(ring, f"{path}[{i}]")
-            if _is_flat(points):
+            if _is_collapsed(points):
                 self.marker_labels.of(properties)
                 self.leave_out("ring without an area", f"{path}[{i}]")
                 if i == 0:  # its holes have no more
@@ -238,11 +238,10 @@ def _positions(positions: Any, path: str) -> Points:
     return distinct
 
 
-def _is_flat(points: Points) -> bool:
-    """Whether all points are on one line."""
-    away = points - points[:1]
-    other = away[np.argmax((away != 0).any(axis=1))] if len(away) else np.zeros(2)
-    return bool((other[0] * away[:, 1] == other[1] * away[:, 0]).all())
+def _is_collapsed(points: Points) -> bool:
+    """Whether there are fewer than 3 distinct points. That all are on one line does not count: a ring
+    around a pole is, in degrees."""
+    return len(np.unique(points, axis=0)) < 3
 
 
 def _interior_point(points: Points, own: npt.NDArray[np.int64],
