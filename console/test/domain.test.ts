@@ -254,7 +254,7 @@ test("a property that is a text may be a number", () => {
 });
 
 test("what has no area and no length is left out, counted in one warning", () => {
-  const flat = [[1, 1], [2, 2], [3, 3], [1, 1]];
+  const flat = [[1, 1], [2, 2], [2, 2], [1, 1]];
   const domain = readDomain("a.json", JSON.stringify({
     type: "GeometryCollection",
     geometries: [

@@ -245,7 +245,7 @@ def test_a_property_that_is_a_text_may_be_a_number():
 
 
 def test_what_has_no_area_and_no_length_is_left_out_with_one_warning(client, digest_of, tmp_path):
-    flat = [[1, 1], [2, 2], [3, 3], [1, 1]]
+    flat = [[1, 1], [2, 2], [2, 2], [1, 1]]
     path = tmp_path / "left.geojson"
     path.write_text(json.dumps({"type": "FeatureCollection", "features": [
         {"type": "Feature", "properties": {"marker": "a"},

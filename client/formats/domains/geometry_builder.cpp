@@ -21,14 +21,13 @@ std::optional<double> area_bound(const GeometryProperties& properties) {
   return std::min(of_edge, properties.max_area.value_or(of_edge));
 }
 
-// Whether all points are on one line.
-bool is_flat(std::span<const Point> points) {
+// Whether there are fewer than 3 distinct points. That all are on one line does not count: a ring
+// around a pole is, in degrees.
+bool is_collapsed(std::span<const Point> points) {
   const auto other = std::find_if(points.begin(), points.end(),
                                   [&](const Point& p) { return p != points.front(); });
-  return std::none_of(other, points.end(), [&](const Point& p) {
-    const Point& a = points.front();
-    return (other->x - a.x) * (p.y - a.y) != (other->y - a.y) * (p.x - a.x);
-  });
+  return std::all_of(other, points.end(),
+                     [&](const Point& p) { return p == points.front() || p == *other; });
 }
 
 }  // namespace
@@ -143,7 +142,7 @@ Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::
   auto ring = chain(positions, path, properties, markers);
   if (!ring) return tl::unexpected(ring.error());
   if (lacks_outer_ring_) return {};
-  if (is_flat(ring->points)) {
+  if (is_collapsed(ring->points)) {
     lacks_outer_ring_ =
         polygon_rings_ == Rings::kOuterFirst && domain_.segments.size() == polygon_start_;
     leave_out(LeftOut::kRing, path);

@@ -14,8 +14,8 @@
 // `path` names a part in its file ("features[3].geometry.coordinates[0]"); its position i is then
 // path[i]. Errors (kUnreadableInput) name the file and the path: magnitudes beyond 1e50, a ring
 // that is not closed. A ring that crosses itself is a warning: what is inside it is decided by the
-// parity. Rings without an area (all points on one line), with the holes of such a ring, and lines
-// without a length are left out, which one warning tells of (left_out.h).
+// parity. Rings without an area (fewer than 3 distinct points), with the holes of such a ring, and
+// lines without a length are left out, which one warning tells of (left_out.h).
 //
 //   GeometryBuilder builder("coast.wkt");
 //   builder.begin_polygon();

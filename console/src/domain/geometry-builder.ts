@@ -23,12 +23,8 @@ export const noProperties: Properties = {
 
 const same = (a: Point, b: Point) => a[0] === b[0] && a[1] === b[1];
 
-// Whether all positions are on one line.
-function isFlat(ring: readonly Point[]): boolean {
-  const [x, y] = ring[0] ?? [0, 0];
-  const [otherX, otherY] = ring.find((position) => !same(position, ring[0])) ?? [x, y];
-  return ring.every((at) => (otherX - x) * (at[1] - y) === (otherY - y) * (at[0] - x));
-}
+// Whether there are fewer than 3 distinct positions.
+const isCollapsed = (ring: readonly Point[]) => new Set(ring.map(([x, y]) => `${x} ${y}`)).size < 3;
 
 export class GeometryBuilder {
   private readonly points: number[] = [];
@@ -56,7 +52,7 @@ export class GeometryBuilder {
   polygon(rings: readonly (readonly Point[])[], place: string, properties: Properties): void {
     let kept = 0;
     for (const [i, ring] of rings.entries()) {
-      if (isFlat(ring)) {
+      if (isCollapsed(ring)) {
         this.markerLabels.of(properties.marker, properties.markerName);
         this.leftOut.add("ring", `${place}[${i}]`);
         if (i === 0) return;

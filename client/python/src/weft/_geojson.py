@@ -111,7 +111,7 @@ class _Reader:
     def polygon(self, rings: Any, path: str, properties: dict[str, Any]) -> None:
         for i, ring in enumerate(rings):
             points = _positions(ring, f"{path}[{i}]")
-            if _is_flat(points):
+            if _is_collapsed(points):
                 self.marker_labels.of(properties)
                 self.leave_out("ring without an area", f"{path}[{i}]")
                 if i == 0:  # its holes have no more
@@ -231,8 +231,7 @@ def _positions(positions: Any, path: str) -> Points:
     return distinct
 
 
-def _is_flat(points: Points) -> bool:
-    """Whether all points are on one line."""
-    away = points - points[:1]
-    other = away[np.argmax((away != 0).any(axis=1))] if len(away) else np.zeros(2)
-    return bool((other[0] * away[:, 1] == other[1] * away[:, 0]).all())
+def _is_collapsed(points: Points) -> bool:
+    """Whether there are fewer than 3 distinct points. That all are on one line does not count: a ring
+    around a pole is, in degrees."""
+    return len(np.unique(points, axis=0)) < 3

@@ -151,7 +151,7 @@ TEST_F(GeoJson, CountsTheRingsThatCrossThemselves) {
 TEST_F(GeoJson, LeavesOutWhatHasNoAreaAndNoLengthAndCountsIt) {
   const auto domain = read(R"({"type": "GeometryCollection", "geometries": [
       {"type": "Polygon", "coordinates": [[[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]],
-        [[1, 1], [1, 1], [1, 1], [1, 1]], [], [[1, 1], [2, 2], [3, 3], [1, 1]]]},
+        [[1, 1], [1, 1], [1, 1], [1, 1]], [], [[1, 1], [2, 2], [2, 2], [1, 1]]]},
       null, {"type": "Polygon", "coordinates": []}, {"type": "MultiPolygon", "coordinates": [[]]},
       {"type": "LineString", "coordinates": [[1, 1], [1, 1]]}]})");
   ASSERT_TRUE(domain) << domain.error().message;
