@@ -196,9 +196,7 @@ TEST_F(CsvRings, MayBeGeometriesInAColumnOfTheirOwn) {
     const Domain domain = read(text);
     ASSERT_EQ(domain.points, kRectangle) << text;
     EXPECT_EQ(domain.segments[0].marker, 3) << text;
-    ASSERT_EQ(domain.regions.size(), 1u) << text;
-    EXPECT_EQ(domain.regions[0].id, 7) << text;
-    EXPECT_EQ(domain.regions[0].max_area, 0.5) << text;
+    EXPECT_EQ(domain.areas, (std::vector<Domain::Area>{{7, 0.5}})) << text;
   }
   EXPECT_EQ(read("WKT\n" + polygon + "\n").points, kRectangle);
   EXPECT_EQ(warnings("WKT,x,region\n\"" + polygon + "\",1,bay\nPOLYGON EMPTY,2,\n,3,\n"),
