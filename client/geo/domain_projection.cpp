@@ -119,7 +119,7 @@ Result<void> divide(Domain& domain, std::vector<Point>& lonlat, const Projecting
       const auto to = static_cast<std::uint32_t>(lonlat.size());
       domain.point_places.add_same(to, domain.segment_places, i);
       lonlat.push_back(at);
-      const Domain::Segment part{from, to, whole.marker};
+      const Domain::Segment part{from, to, whole.marker, whole.area};
       if (piece == 1) {
         domain.segments[i] = part;
       } else {
@@ -129,7 +129,7 @@ Result<void> divide(Domain& domain, std::vector<Point>& lonlat, const Projecting
       from = to;
     }
     domain.segment_places.add_same(domain.segments.size(), domain.segment_places, i);
-    domain.segments.push_back({from, whole.b, whole.marker});
+    domain.segments.push_back({from, whole.b, whole.marker, whole.area});
   }
   if (!domain.point_markers.empty()) domain.point_markers.resize(lonlat.size());
   return {};

@@ -72,6 +72,8 @@ TEST_F(DomainProjections, DivideLongSegmentsOnTheirStraightLineInDegrees) {
   const std::vector<Point> lonlat = {{-80, 30}, {-60, 30}, {-60, 30.05}, {-80, 30.05}};
   Domain domain = ring(lonlat);
   domain.point_markers = {1, 2, 3, 4};
+  domain.areas.resize(1);
+  for (Domain::Segment& segment : domain.segments) segment.area = 1;
   const auto projection = project(domain);
   const std::size_t points = domain.points.size();
   EXPECT_GT(points, 20u);
@@ -80,7 +82,8 @@ TEST_F(DomainProjections, DivideLongSegmentsOnTheirStraightLineInDegrees) {
   EXPECT_EQ(domain.segments.size(), points);  // still a ring
   std::vector<int> ends(points);
   for (std::size_t i = 0; i < domain.segments.size(); ++i) {
-    const auto& [a, b, marker] = domain.segments[i];
+    const auto& [a, b, marker, area] = domain.segments[i];
+    EXPECT_EQ(area, 1u);
     ++ends[a];
     ++ends[b];
     const std::string place = domain.segment_places.locate(i);
@@ -107,7 +110,7 @@ TEST_F(DomainProjections, DivideASegmentAlikeInBothDirections) {
   project(domain);
   std::vector<std::pair<double, double>> there;
   std::vector<std::pair<double, double>> back;
-  for (const auto& [a, b, marker] : domain.segments) {
+  for (const auto& [a, b, marker, area] : domain.segments) {
     if (marker == 1) there.emplace_back(domain.points[b].x, domain.points[b].y);
     if (marker == 9) back.emplace_back(domain.points[a].x, domain.points[a].y);
   }

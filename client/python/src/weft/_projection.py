@@ -40,12 +40,13 @@ class Projection:
         self._plane, self._transformer = _transformer(self.name)
         self._extent = extent
         self._middle = (domain.points[:, 0].min() + domain.points[:, 0].max()) / 2
-        points, segments, markers = self._divide(domain)
+        points, segments, whole = self._divide(domain)
         points[len(domain.points):] = self._as_in_file(points[len(domain.points):])
         self._lonlat = points
         self._metres = self._checked("points", points)
         self.domain = dataclasses.replace(
-            domain, points=self._metres, segments=segments, markers=markers,
+            domain, points=self._metres, segments=segments, markers=domain.markers[whole],
+            segment_areas=domain.segment_areas[whole],
             holes=self._checked("holes", domain.holes),
             regions=[dataclasses.replace(region, x=x, y=y) for region, (x, y) in zip(
                 domain.regions, self._checked("regions", np.array(
@@ -116,14 +117,15 @@ class Projection:
         return lonlat
 
     def _divide(self, domain: Domain) -> tuple[Floats, npt.NDArray[Any], npt.NDArray[Any]]:
-        """Adds points on segments that are not straight in the plane."""
+        """Adds points on segments that are not straight in the plane: all points, the segments, and of
+        each the segment of the domain that it is part of."""
         a, b = domain.points[domain.segments[:, 0]], domain.points[domain.segments[:, 1]]
         steep = np.tan(np.maximum(np.abs(a[:, 1]), np.abs(b[:, 1])) * _DEGREE)
         # Turning by this many degrees bends a segment by less than _STRAIGHT of its length.
         long = (np.abs(_step(a[:, 0], b[:, 0])) + np.abs(b[:, 1] - a[:, 1]) * np.maximum(1, steep)
                 >= 0.3)
         points, count, added = [domain.points], len(domain.points), 0
-        segments, parts, markers = domain.segments.copy(), [], []
+        segments, parts, whole = domain.segments.copy(), [], [np.arange(len(domain.segments))]
         for i in np.flatnonzero(long).tolist():
             pieces = self._pieces(a[i], b[i])
             if pieces == 1:
@@ -141,9 +143,8 @@ class Projection:
             count += pieces - 1
             segments[i] = chain[:2]
             parts.append(np.column_stack([chain[1:-1], chain[2:]]))
-            markers.append(np.full(pieces - 1, domain.markers[i], np.int32))
-        return (np.concatenate(points), np.concatenate([segments, *parts]),
-                np.concatenate([domain.markers, *markers]))
+            whole.append(np.full(pieces - 1, i))
+        return np.concatenate(points), np.concatenate([segments, *parts]), np.concatenate(whole)
 
     def _pieces(self, a: Floats, b: Floats) -> int:
         pieces = 1
