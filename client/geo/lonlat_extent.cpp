@@ -45,7 +45,7 @@ Result<void> check_domain(const Domain& domain) {
     if (auto ok = check_point(domain.region_places, i, "region", domain.regions[i].at); !ok)
       return ok;
   for (std::size_t i = 0; i < domain.segments.size(); ++i) {
-    const auto& [a, b, marker] = domain.segments[i];
+    const auto& [a, b, marker, area] = domain.segments[i];
     if (std::abs(domain.points[b].x - domain.points[a].x) >= 360)
       return refuse(domain.segment_places, i, "segment",
                     "the segment goes all around the Earth: divide it, or cut the domain");
@@ -197,7 +197,7 @@ Result<LonLatExtent> lonlat_extent(const Domain& domain) {
     extent.south = std::min(extent.south, at.y);
     extent.north = std::max(extent.north, at.y);
   }
-  for (const auto& [a, b, marker] : domain.segments) {
+  for (const auto& [a, b, marker, area] : domain.segments) {
     const double from = domain.points[a].x;
     const double to = domain.points[b].x;
     const double step = longitude_step(from, to);
