@@ -42,9 +42,10 @@ Result<ExitCode> run_check(const CheckOptions& options) {
     return fail(ExitCode::kUsage,
                 "a mesh is checked in the plane that it was made in: write it with --to-metres, "
                 "and say --to-metres here, too");
-  auto input = read_input_domain(options.domain, options.size, options.projection, options.layers);
+  RequestOptions wanted = options.size;
+  wanted.fill = options.fill;
+  const auto input = read_input_domain(options.domain, wanted, options.projection, options.layers);
   if (!input) return tl::unexpected(input.error());
-  fill_polygons(input->domain, options.fill);
   const auto mesh = read_mesh(options.mesh);
   if (!mesh) return tl::unexpected(mesh.error());
   for (const auto* warnings : {&input->domain.warnings, &mesh->warnings})
