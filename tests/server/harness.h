@@ -30,6 +30,11 @@ Chunk make_chunk(std::uint32_t index, std::size_t bytes = 64);
 // Sends `count` chunks and says so in the summary.
 Result<Summary> send_chunks(ChunkSink& sink, std::uint32_t count, std::size_t bytes = 64);
 
+// An engine that sends `count` chunks.
+inline EngineFn engine_of_chunks(std::uint32_t count, std::size_t bytes = 64) {
+  return [=](const auto&, ChunkSink& sink, auto&) { return send_chunks(sink, count, bytes); };
+}
+
 // Sends chunks of 1 MiB until the sink refuses one; `sent` counts them.
 Result<Summary> send_until_refused(ChunkSink& sink, std::atomic<std::uint32_t>& sent);
 

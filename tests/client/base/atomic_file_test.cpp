@@ -14,7 +14,7 @@
 namespace weft::client {
 namespace {
 
-using Names = std::vector<std::string>;
+using FileNames = std::vector<std::string>;
 
 std::vector<OutputFile> open_all(const std::vector<std::filesystem::path>& targets) {
   std::vector<OutputFile> files;
@@ -30,16 +30,16 @@ TEST(AtomicFile, AppearsWhenCommittedAndNotBefore) {
   files[0].number(0.1);
   files[0].put(' ');
   files[0].number(std::int64_t{-42});
-  EXPECT_EQ(folder.names(), Names{});
+  EXPECT_EQ(folder.names(), FileNames{});
   ASSERT_TRUE(commit(files));
-  EXPECT_EQ(folder.names(), Names{"a.txt"});
+  EXPECT_EQ(folder.names(), FileNames{"a.txt"});
   EXPECT_EQ(contents_of(folder / "a.txt"), "hello 0.1 -42");
 }
 
 TEST(AtomicFile, LeavesNothingWhenDropped) {
   TempFolder folder;
   { open_all({folder / "a.txt"})[0].put("half"); }
-  EXPECT_EQ(folder.names(), Names{});
+  EXPECT_EQ(folder.names(), FileNames{});
 }
 
 TEST(AtomicFile, ReplacesAnOlderFileInOneStep) {
@@ -72,7 +72,7 @@ TEST(AtomicFile, CommitsAllOrNone) {
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().exit, ExitCode::kUnwritableOutput);
   files.clear();
-  EXPECT_EQ(folder.names(), Names{"b.txt"});
+  EXPECT_EQ(folder.names(), FileNames{"b.txt"});
 }
 
 TEST(AtomicFile, WritesMoreThanItsBuffer) {
@@ -126,7 +126,7 @@ TEST(AtomicFile, ReportsAFullDiskAndLeavesNothing) {
   int status = 0;
   ::waitpid(child, &status, 0);
   EXPECT_EQ(status, 0);
-  EXPECT_EQ(folder.names(), Names{});
+  EXPECT_EQ(folder.names(), FileNames{});
 }
 
 TEST(AtomicFile, LeavesNothingWhenKilled) {
@@ -140,7 +140,7 @@ TEST(AtomicFile, LeavesNothingWhenKilled) {
   int status = 0;
   ::waitpid(child, &status, 0);
   EXPECT_TRUE(WIFSIGNALED(status));
-  EXPECT_EQ(folder.names(), Names{});
+  EXPECT_EQ(folder.names(), FileNames{});
 }
 
 }  // namespace

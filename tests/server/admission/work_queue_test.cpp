@@ -353,7 +353,7 @@ TEST(WorkQueue, LetsAnItemThatMovesGoOnOnceItIsStopped) {
 // The main place is busy, so that only the light one is left.
 class DistrustInTheQueue : public testing::TestWithParam<double> {
  protected:
-  Distrust() {
+  DistrustInTheQueue() {
     Event runs;
     EXPECT_TRUE(pushed(queue_, make_task([&] {
                          runs.set();

@@ -7,17 +7,13 @@
 #include <vector>
 
 #include "server/console/frames.h"
+#include "tests/server/console/web_client.h"
 #include "tests/server/raw_call.h"
 
 namespace weft::server::testing {
 namespace {
 
 constexpr std::uint64_t kMost = 1000;
-
-std::string framed(const std::string& message) {
-  const auto header = frame_header(0, static_cast<std::uint32_t>(message.size()));
-  return std::string(header.data(), header.size()) + message;
-}
 
 // All messages of a body that comes in pieces; each is passed on before the next.
 std::vector<std::string> messages_of(CallBody& body, const std::string& bytes, std::size_t piece) {

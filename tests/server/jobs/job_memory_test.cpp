@@ -19,10 +19,6 @@
 namespace weft::server::testing {
 namespace {
 
-EngineFn engine_of_chunks(std::uint32_t chunks) {
-  return [=](const auto&, ChunkSink& sink, auto&) { return send_chunks(sink, chunks); };
-}
-
 // No memory for the first so many calls of this name; `calls` counts them.
 JobServer::Wrap without_memory(std::string name, int times, std::atomic<int>& calls) {
   return [=, &calls](std::unique_ptr<JobStore> store) -> std::unique_ptr<JobStore> {

@@ -11,10 +11,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-EngineFn engine_of_chunks(std::uint32_t chunks, std::size_t bytes = 64) {
-  return [=](const auto&, ChunkSink& sink, auto&) { return send_chunks(sink, chunks, bytes); };
-}
-
 EngineFn endless_engine(Event& begun) {
   return [&](const auto&, ChunkSink&, ExecutionContext& context) {
     begun.set();
