@@ -14,7 +14,7 @@ check::Domain square_domain() {
   return domain;
 }
 
-check::Mesh square_mesh() {
+check::Mesh checked_mesh() {
   check::Mesh mesh;
   mesh.vertices = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -32,7 +32,7 @@ Checked checked(double min_angle_deg, const char* size, std::uint64_t allowed = 
   out.requirements.min_angle_deg = min_angle_deg;
   out.requirements.size = std::string(size);
   out.requirements.allowed_unrefined = allowed;
-  out.report = check::check(square_domain(), square_mesh(), out.requirements);
+  out.report = check::check(square_domain(), checked_mesh(), out.requirements);
   return out;
 }
 
@@ -101,7 +101,7 @@ TEST(CheckReport, SaysWhatMayMissABound) {
 }
 
 TEST(CheckReport, SaysWhatWasNotJudged) {
-  check::Mesh mesh = square_mesh();
+  check::Mesh mesh = checked_mesh();
   std::swap(mesh.triangles[0][0], mesh.triangles[0][1]);
   const check::Requirements requirements;
   const std::string text =
@@ -119,7 +119,7 @@ TEST(CheckReport, SaysOfLengthsOnlyIfTheyAreAsked) {
   check::Requirements requirements;
   requirements.size.at = {{0, 0.5}};
   const std::string text =
-      check_text(check::check(square_domain(), square_mesh(), requirements), requirements);
+      check_text(check::check(square_domain(), checked_mesh(), requirements), requirements);
   EXPECT_NE(
       text.find("\nedges are at most as long as the sizes at their markers: fails, 4 times\n"),
       std::string::npos)

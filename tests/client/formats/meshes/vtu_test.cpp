@@ -9,7 +9,7 @@
 namespace weft::client {
 namespace {
 
-constexpr char kAscii[] = R"(<?xml version="1.0"?>
+constexpr char kAsciiVtu[] = R"(<?xml version="1.0"?>
 <VTKFile type='UnstructuredGrid' version="0.1" byte_order="LittleEndian">
 <UnstructuredGrid><Piece NumberOfPoints="3" NumberOfCells="3">
 <Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0
@@ -30,7 +30,7 @@ class Vtu : public ::testing::Test {
     return mesh.error().message.substr((folder_ / "m.vtu: ").string().size());
   }
   std::string ascii_with(const std::string& from, const std::string& to) {
-    std::string text = kAscii;
+    std::string text = kAsciiVtu;
     text.replace(text.find(from), from.size(), to);
     return text;
   }
@@ -58,7 +58,7 @@ TEST_F(Vtu, ComesBackEmpty) {
 }
 
 TEST_F(Vtu, ReadsAsciiByOthersAndDropsVertexCells) {
-  const auto mesh = read_vtu(folder_.write("m.vtu", kAscii));
+  const auto mesh = read_vtu(folder_.write("m.vtu", kAsciiVtu));
   ASSERT_TRUE(mesh) << mesh.error().message;
   EXPECT_EQ(mesh->coordinates, (std::vector<double>{0, 0, 1, 0, 0, 1}));
   EXPECT_EQ(mesh->triangles, (std::vector<std::uint32_t>{0, 1, 2}));
