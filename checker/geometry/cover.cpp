@@ -12,6 +12,7 @@ namespace {
 std::vector<std::uint32_t> borders_on(const BentDomain& bent, const Arrangement& arrangement,
                                       std::uint32_t edge) {
   std::vector<std::uint32_t> all;
+  if (bent.domain.segment_areas.empty()) return all;
   for (const std::uint32_t piece : arrangement.covers(edge))
     if (const std::uint32_t area = bent.domain.segment_areas[piece]; area != 0)
       all.push_back(area - 1);

@@ -174,6 +174,12 @@ std::vector<FaceRole> fill_by_areas(const BentDomain& bent, const Arrangement& a
   std::vector<double> size(bent.domain.areas.size(), 0.0);
   for (std::size_t f = 1; f < covering.size(); ++f)
     for (const std::uint32_t a : covering[f]) size[a] += arrangement.faces()[f].area;
+  // What rounding alone tells apart is of one size.
+  for (double& each : size) {
+    int exponent = 0;
+    each = std::frexp(each, &exponent);
+    each = std::ldexp(std::nearbyint(each * 0x1p30), exponent - 30);
+  }
   std::vector<FaceRole> roles;
   for (const auto& areas : covering) roles.push_back(role_of(bent.domain, areas, size));
   return roles;

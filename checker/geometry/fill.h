@@ -16,7 +16,7 @@ struct FaceRole {
   bool kept = false;
   bool open = false;  // the mesher may choose whether the whole face is meshed
   std::int32_t region = 0;
-  bool is_region_open = false;  // which of several areas is the smallest is within rounding
+  bool is_region_open = false;  // sizes of areas differ by no more than their rounding
   double max_area = std::numeric_limits<double>::infinity();
   friend bool operator==(const FaceRole&, const FaceRole&) = default;
 };

@@ -42,7 +42,6 @@ std::string Provenance::locate(std::size_t i) const {
 }
 
 void fill_polygons(Domain& domain, PolygonFill fill) {
-  if (domain.areas.empty()) return;
   if (fill == PolygonFill::kEvenOdd) domain.fill = Domain::Fill::kEvenOdd;
   if (fill == PolygonFill::kDifference)
     for (std::size_t i = 1; i < domain.areas.size(); ++i) domain.areas[i].is_hole = true;

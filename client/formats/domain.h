@@ -105,7 +105,7 @@ struct Domain {
 // covers; the first less the others.
 enum class PolygonFill { kUnion, kEvenOdd, kDifference };
 
-// A domain without areas stays as it is.
+// Without areas, even-odd filling is by the parity of segments.
 void fill_polygons(Domain& domain, PolygonFill fill);
 
 }  // namespace weft::client

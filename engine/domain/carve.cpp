@@ -135,7 +135,9 @@ std::vector<std::uint32_t> regions_of_areas(const std::vector<Cover>& covers,
   return result;
 }
 
-Error empty_domain(const Pslg& pslg, const Merging& merging, const Faces& faces) {
+// `last_hole`: the last that carved something away.
+Error empty_domain(const Pslg& pslg, const Merging& merging, const Faces& faces,
+                   std::size_t last_hole) {
   if (faces.count == 1 && merging.vanished_faces > 0) return closed_by_merging(merging);
   if (faces.count == 1)
     return {ErrorCode::kEmptyDomain, "domain.segments",
@@ -152,8 +154,9 @@ Error empty_domain(const Pslg& pslg, const Merging& merging, const Faces& faces)
     return {ErrorCode::kEmptyDomain, "domain.segments",
             "by the even-odd rule nothing is inside: every face is enclosed an even number of "
             "times"};
-  return {ErrorCode::kEmptyDomain, "domain.holes",
-          "the holes carve everything away (" + std::to_string(pslg.holes.size()) + " given)"};
+  return {ErrorCode::kEmptyDomain, "domain.holes[" + std::to_string(last_hole) + "]",
+          "the holes carve everything away (" + std::to_string(pslg.holes.size()) +
+              " given): the seed " + coordinates(pslg.holes[last_hole]) + " floods the last face"};
 }
 
 }  // namespace
@@ -175,13 +178,15 @@ Result<Carving> carve(const Arrangement& arrangement, const Pslg& pslg, StopPoll
   inside[Faces::kUnbounded] = false;
 
   const SeedLocator locator(arrangement, faces, pslg, poller);
+  std::size_t last_hole = 0;
   for (std::size_t i = 0; i < pslg.holes.size(); ++i) {
     const auto face = locator.face(i, [i] { return "domain.holes[" + std::to_string(i) + "]"; });
     if (!face) return tl::unexpected(face.error());
+    if (inside[*face]) last_hole = i;
     inside[*face] = false;
   }
   if (std::find(inside.begin(), inside.end(), true) == inside.end())
-    return tl::unexpected(empty_domain(pslg, arrangement.merging, faces));
+    return tl::unexpected(empty_domain(pslg, arrangement.merging, faces, last_hole));
 
   Carving carving{.region = {}, .regions = {Region{}}, .overlap = covered.overlap};
   std::vector<std::uint32_t> region_of_face = regions_of_areas(covers, carving.regions);

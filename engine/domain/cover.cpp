@@ -2,6 +2,7 @@
 #include "engine/domain/cover.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <set>
@@ -75,6 +76,13 @@ std::vector<double> sizes_of_faces(const Arrangement& a, const Faces& faces, Sto
   return sizes;
 }
 
+// Sizes that only rounding tells apart are one size. To 30 bits.
+double without_rounding(double size) {
+  int exponent = 0;
+  const double mantissa = std::frexp(size, &exponent);
+  return std::ldexp(std::nearbyint(std::ldexp(mantissa, 30)), exponent - 30);
+}
+
 // Per area its place in the order of `less`.
 template <class Less>
 std::vector<std::uint32_t> ranks(std::size_t count, Less&& less) {
@@ -109,6 +117,7 @@ Covers cover_faces(const Arrangement& arrangement, const Faces& faces, const Fac
     });
     if (move.face != kNone) seen += size_of_face[move.face];
   }
+  for (double& each : size) each = without_rounding(each);
 
   const std::vector<std::uint32_t> by_region =
       ranks(areas.size(), [&](std::uint32_t a, std::uint32_t b) {

@@ -86,7 +86,7 @@ struct Domain {
 //                       finite or below 0
 //   kTooFewPoints, kCollinearPoints                domain.points
 //   kSeedOutsideDomain, kSeedOnSegment             domain.holes[i], domain.regions[i]
-//   kEmptyDomain        domain.segments if no face is enclosed, domain.holes if they carve
+//   kEmptyDomain        domain.segments if no face is enclosed, domain.holes[i] if they carve
 //                       everything away, domain.areas if they leave nothing
 //   kLimitExceeded      domain.points, domain.segments: more than can be numbered, or more than
 //                       2^25 crossings, overlaps and touchings (arrangement.h)

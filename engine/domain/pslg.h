@@ -37,7 +37,7 @@ struct Segment {
 // REQUIRES: its segments close to rings: an even number of their ends is at every point.
 struct Area {
   // Of all areas that cover a face and have a region, the one with the highest priority gives the
-  // face its region; of several, the smallest; of several of one size, the first.
+  // face its region; of several, the smallest; of several of one size, to 30 bits, the first.
   std::optional<std::int32_t> region;
   std::int32_t priority = 0;
   std::optional<double> max_area;  // > 0; the least of all areas that cover a face holds there

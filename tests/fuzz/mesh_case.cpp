@@ -29,10 +29,12 @@ class PslgMaker {
   // Returns whether nothing was rounded: whatever is near is so on the grid.
   bool make() {
     read_frame();
-    pslg_.fill = bytes_.below(4) == 1 ? Fill::kEvenOdd : Fill::kSeeds;
+    const std::size_t fill = bytes_.below(4);
+    pslg_.fill = fill == 1 ? Fill::kEvenOdd : fill == 2 ? Fill::kUnion : Fill::kSeeds;
     const std::size_t seeds = bytes_.byte();
     if (bytes_.below(4) != 3) add_box();
     while (bytes_.left() > 2 * seeds % 16 && points_.size() < kMostPoints) add_point();
+    for (std::size_t i = 0; fill == 2 && i < 1 + seeds / 16 % 4; ++i) add_area();
     for (std::size_t i = 0; i < seeds % 4; ++i) pslg_.holes.push_back(placed(seed()));
     for (std::size_t i = 0; i < seeds / 4 % 4; ++i) add_region();
     for (const Point p : points_) pslg_.points.push_back(placed(p));
@@ -91,6 +93,23 @@ class PslgMaker {
   void add_box() {
     points_ = {{-1, -1}, {grid_ + 1, -1}, {grid_ + 1, grid_ + 1}, {-1, grid_ + 1}};
     for (std::size_t i = 0; i < 4; ++i) link(i, (i + 1) % 4);
+  }
+
+  // A triangle, often near others.
+  void add_area() {
+    const std::size_t first = points_.size();
+    for (int corner = 0; corner < 3; ++corner)
+      points_.push_back(bytes_.flag() ? on_grid() : near(earlier()));
+    Area area{.priority = static_cast<std::int32_t>(bytes_.below(2)),
+              .is_hole = bytes_.below(6) == 5};
+    if (bytes_.flag()) area.region = static_cast<std::int32_t>(1 + bytes_.below(3));
+    if (bytes_.flag())
+      area.max_area = extent() * extent() / static_cast<double>(1 + bytes_.below(200));
+    for (std::size_t i = 0; i < 3; ++i) {
+      link(first + i, first + (i + 1) % 3);
+      pslg_.segments.back().area = static_cast<std::uint32_t>(pslg_.areas.size());
+    }
+    pslg_.areas.push_back(area);
   }
 
   void add_point() {

@@ -233,10 +233,9 @@ def test_a_property_that_is_a_text_may_be_a_number():
                                     "geometry": {"type": "Polygon", "coordinates": [SQUARE]}})
     domain = read(marker="3", region=" 7 ", max_area="1.0D-1", max_edge="2")
     assert set(domain.markers) == {3}
-    assert domain.regions[0].id == 7
-    assert (domain.regions[0].max_area, domain.regions[0].max_edge) == (0.1, 2)
+    assert domain.areas == (weft.Area(7, 0.1),)
     assert (domain.marker_names, domain.region_names) == ({}, {})
-    assert read(marker="", region=" ", max_area="").regions == ()
+    assert read(marker="", region=" ", max_area="").areas == (weft.Area(),)
     assert read(marker="7a").marker_names == {1: "7a"}
     with pytest.raises(weft.DomainError, match='properties.max_area is "small", not a number'):
         read(max_area="small")
@@ -261,8 +260,8 @@ def test_what_has_no_area_and_no_length_is_left_out_with_one_warning(client, dig
     with pytest.warns(weft.WeftWarning) as warned:
         domain = weft.Domain.read(path)
     assert [str(warning.message) for warning in warned] == [
-        f"{path}: 3 rings without an area, 1 line without a length, 2 empty geometries and 1 region "
-        "without an area are left out, the first is features[0].geometry.coordinates[0]"]
+        f"{path}: 3 rings without an area, 1 line without a length and 2 empty geometries are left out, "
+        "the first is features[0].geometry.coordinates[0]"]
     assert len(domain.segments) == 4 + 4
     with pytest.warns(weft.WeftWarning):
         assert client.mesh(path).digest == digest_of(path)

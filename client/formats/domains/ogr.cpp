@@ -238,7 +238,12 @@ Result<Domain> read_with_ogr(const std::filesystem::path& path, const LayerOptio
                 path.string() + ": " + (missing ? missing.message() : "is not a regular file"));
   const auto gdal = load_gdal();
   if (!gdal) return fail(gdal.error().exit, path.string() + ": " + gdal.error().message);
-  return Reader(**gdal, path).read(*ogr_format(lower_extension(path)), options);
+  const std::string extension = lower_extension(path);
+  auto domain = Reader(**gdal, path).read(*ogr_format(extension), options);
+  // MicroStation's shapes have no holes: a shape inside another one stands for a hole.
+  if (domain && !domain->areas.empty() && extension == ".dgn")
+    domain->fill = Domain::Fill::kEvenOdd;
+  return domain;
 }
 
 bool are_same(const CoordinateSystem& a, const CoordinateSystem& b) {

@@ -55,6 +55,43 @@ TEST(Fill, CarvesTheFaceOfAHoleSeedUpToItsSegments) {
   EXPECT_TRUE(nested.at({5, 5}).kept);
 }
 
+// The box is an area of its own.
+Filled& add_area(Filled& filled, double low, double high, const Area& area) {
+  filled.box(low, high);
+  filled.domain.areas.push_back(area);
+  filled.domain.segment_areas.resize(filled.domain.segments.size(),
+                                     static_cast<std::uint32_t>(filled.domain.areas.size()));
+  return filled;
+}
+
+TEST(Fill, KeepsWhatAnAreaCoversWithTheRegionOfTheSmallestAndTheLeastBound) {
+  Filled areas;
+  areas.domain.fill = Fill::kUnion;
+  add_area(areas, 0, 10, {.region = 1, .max_area = 2});
+  add_area(areas, 2, 6, {.region = 2, .max_area = 3});
+  add_area(areas, 4, 12, {.region = 3});
+  EXPECT_EQ(areas.at({1, 1}), (FaceRole{.kept = true, .region = 1, .max_area = 2}));
+  EXPECT_EQ(areas.at({5, 5}), (FaceRole{.kept = true, .region = 2, .max_area = 2}));
+  EXPECT_EQ(areas.at({8, 8}), (FaceRole{.kept = true, .region = 3, .max_area = 2}));
+  EXPECT_EQ(areas.at({11, 11}), (FaceRole{.kept = true, .region = 3}));
+  EXPECT_FALSE(areas.at({13, 13}).kept);
+  areas.domain.areas[0].priority = 1;
+  EXPECT_EQ(areas.at({5, 5}).region, 1);
+  areas.domain.areas[1].is_hole = true;
+  EXPECT_FALSE(areas.at({5, 5}).kept);
+}
+
+TEST(Fill, LeavesTheRegionOpenOfAreasOfOneSizeUpToRounding) {
+  Filled areas;
+  areas.domain.fill = Fill::kUnion;
+  add_area(areas, 0, 10, {.region = 1});
+  add_area(areas, 1, 11 + 1e-14, {.region = 2});
+  EXPECT_EQ(areas.at({5, 5}), (FaceRole{.kept = true, .region = 1}));
+  add_area(areas, 2, 12 + 1e-9, {.region = 3});
+  EXPECT_TRUE(areas.at({5, 5}).is_region_open);
+  EXPECT_FALSE(areas.at({0.5, 0.5}).is_region_open);
+}
+
 TEST(Fill, TakesOpenSegmentsForNoBoundary) {
   Filled open;
   open.line({0, 0}, {4, 0}).line({4, 0}, {4, 4}).line({4, 4}, {0, 4});

@@ -98,7 +98,7 @@ TEST_F(DomainFile, ShapefilesBringTheirAttributes) {
   ASSERT_TRUE(domain) << domain.error().message;
   EXPECT_EQ(domain->fill, Domain::Fill::kUnion);
   EXPECT_EQ(markers(*domain), (std::vector<std::int32_t>{3, 3, 3, 3, 3, 3, 3, 4, 4, 4}));
-  ASSERT_EQ(domain->areas.size(), 1u);
+  ASSERT_EQ(domain->areas.size(), 2u);
   EXPECT_EQ(domain->areas[0].region, 7);
   EXPECT_EQ(domain->areas[0].max_area, 0.5);
   EXPECT_TRUE(domain->point_places.locate(5).ends_with("d.shp: record 0, ring 1[1]"));

@@ -161,8 +161,9 @@ TEST(HoleSeed, OnAPointIsRefused) {
 TEST(HoleSeed, ThatCarvesEverythingAwayIsRefused) {
   Pslg pslg = square();
   pslg.holes = {{0.5, 0.25}};
-  expect_error(pslg, ErrorCode::kEmptyDomain, "domain.holes",
-               "the holes carve everything away (1 given)");
+  expect_error(
+      pslg, ErrorCode::kEmptyDomain, "domain.holes[0]",
+      "the holes carve everything away (1 given): the seed (0.5, 0.25) floods the last face");
 }
 
 TEST(EmptyDomain, WhereThereAreNoSegments) {

@@ -111,8 +111,9 @@ TEST(Lens, OfASegmentBehindAnotherIsNotAsked) {
         for (const SegmentEdge& s : cavity.encroached()) {
           const Point start = domain->vertices[s.a];
           const Point end = domain->vertices[s.b];
-          const bool hides = side(from, p, start) * side(from, p, end) < 0 &&
-                             side(start, end, from) * side(start, end, p) < 0;
+          constexpr double kClear = 1e-12;  // of what rounding may turn
+          const bool hides = side(from, p, start) * side(from, p, end) < -kClear &&
+                             side(start, end, from) * side(start, end, p) < -kClear;
           hidden += hides ? 1 : 0;
           if (hides) {
             EXPECT_EQ(cavity.encroached().size(), 1u) << kind.name << ' ' << seed;

@@ -134,12 +134,20 @@ INSTANTIATE_TEST_SUITE_P(
              },
              "domain.segments", "91 segments; this server's limit is 90"},
         Case{"Holes", [](Request& r) { r.mutable_domain()->mutable_holes()->Resize(162, 0); },
-             "domain.regions", "81 hole and region seeds; this server's limit is 80"},
+             "domain.regions", "81 hole and region seeds and areas; this server's limit is 80"},
         Case{"Regions",
              [](Request& r) {
                for (int i = 0; i < 81; ++i) r.mutable_domain()->add_regions();
              },
-             "domain.regions", "81 hole and region seeds; this server's limit is 80"},
+             "domain.regions", "81 hole and region seeds and areas; this server's limit is 80"},
+        Case{"Areas",
+             [](Request& r) {
+               for (int i = 0; i < 81; ++i) r.mutable_domain()->add_areas();
+             },
+             "domain.regions", "81 hole and region seeds and areas; this server's limit is 80"},
+        Case{"SegmentAreas",
+             [](Request& r) { r.mutable_domain()->mutable_segment_areas()->Resize(91, 0); },
+             "domain.segment_areas", "91 areas; this server's limit is 90"},
         Case{"Names",
              [](Request& r) {
                for (int i = 0; i < 8192; ++i) r.mutable_domain()->add_marker_names();

@@ -213,7 +213,7 @@ def _of_message(message: bytes) -> Domain:
     """From a weft.v1.Domain."""
     sent = _protocol.message("weft.v1.Domain").FromString(message)
     return Domain(
-        np.array(sent.points, np.float64).reshape(-1, 2), np.array(sent.segments, np.int64).reshape(-1, 2),
+        np.array(sent.points, np.float64).reshape(-1, 2), np.array(sent.segments, np.int32).reshape(-1, 2),
         markers=np.array(sent.segment_markers, np.int32),
         holes=np.array(sent.holes, np.float64).reshape(-1, 2),
         regions=[Region(r.x, r.y, r.id, _given(r, "max_area"), _given(r, "max_edge")) for r in sent.regions],

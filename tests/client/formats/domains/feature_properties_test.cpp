@@ -70,9 +70,7 @@ TEST(FeatureProperties, OfAShapefileMayBeTexts) {
   const auto domain = read_domain(folder / "d.shp");
   ASSERT_TRUE(domain) << domain.error().message;
   EXPECT_EQ(domain->segments[0].marker, 3);
-  ASSERT_EQ(domain->regions.size(), 1u);
-  EXPECT_EQ(domain->regions[0].id, 7);
-  EXPECT_EQ(domain->regions[0].max_area, 0.1);
+  EXPECT_EQ(domain->areas, (std::vector<Domain::Area>{{7, 0.1}}));
   EXPECT_TRUE(domain->names.empty());
 }
 
