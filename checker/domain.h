@@ -30,8 +30,8 @@ struct RegionSeed {
 
 // A polygon, as the segments that name it draw it: what an odd number of them separates from
 // infinity. Of all that cover a face and have a region, the one of the highest priority gives the
-// face its region; of several, the smallest; of several of one size, to 30 bits, the first. The least bound of
-// all holds.
+// face its region; of several, the smallest; of several of one size, to 30 bits, the first. The
+// least bound of all holds.
 struct Area {
   std::optional<std::int32_t> region;
   std::int32_t priority = 0;

@@ -110,7 +110,8 @@ TEST(SuitableProjections, AreRefusedForABeltAroundTheEquator) {
   for (int lon = -180; lon < 180; lon += 60) south.push_back({lon * 1.0, -5});
   Domain belt = ring(south);
   const Domain north = ring({{-180, 5}, {-90, 5}, {0, 5}, {90, 5}});
-  for (const auto& [a, b, marker, area] : north.segments) belt.segments.push_back({a + 6, b + 6, marker});
+  for (const auto& [a, b, marker, area] : north.segments)
+    belt.segments.push_back({a + 6, b + 6, marker});
   belt.points.insert(belt.points.end(), north.points.begin(), north.points.end());
   EXPECT_NE(projection_of(belt).find("cut the domain"), std::string::npos) << projection_of(belt);
 }
