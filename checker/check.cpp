@@ -151,15 +151,18 @@ bool is_a_point(const Domain& domain, const SegmentEnds& ends) {
 
 Domain without_segments_that_are_points(Domain domain) {
   const bool have_markers = domain.markers.size() == domain.segments.size();
+  const bool have_areas = domain.segment_areas.size() == domain.segments.size();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < domain.segments.size(); ++i) {
     if (is_a_point(domain, domain.segments[i])) continue;
     domain.segments[kept] = domain.segments[i];
     if (have_markers) domain.markers[kept] = domain.markers[i];
+    if (have_areas) domain.segment_areas[kept] = domain.segment_areas[i];
     ++kept;
   }
   domain.segments.resize(kept);
   if (have_markers) domain.markers.resize(kept);
+  if (have_areas) domain.segment_areas.resize(kept);
   return domain;
 }
 

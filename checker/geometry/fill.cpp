@@ -164,7 +164,7 @@ FaceRole role_of(const Domain& domain, std::span<const std::uint32_t> covering,
     const Area& area = domain.areas[a];
     if (area.is_hole || !area.region || area.priority != domain.areas[*first].priority) continue;
     role.is_region_open = role.is_region_open ||
-                          (size[a] != size[*first] && size[a] - size[*first] <= 1e-9 * size[a]);
+                          (size[a] != size[*first] && size[a] - size[*first] <= 4e-9 * size[a]);
   }
   return role;
 }

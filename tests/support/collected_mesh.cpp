@@ -173,7 +173,7 @@ check::Domain domain_of(const Pslg& pslg) {
   for (const Segment& s : pslg.segments) {
     domain.segments.push_back({s.a, s.b});
     domain.markers.push_back(s.marker);
-    domain.segment_areas.push_back(s.area == kNone ? 0 : s.area + 1);
+    if (!pslg.areas.empty()) domain.segment_areas.push_back(s.area == kNone ? 0 : s.area + 1);
   }
   for (Point p : pslg.holes) domain.holes.push_back({p.x, p.y});
   for (const RegionSeed& r : pslg.regions) {

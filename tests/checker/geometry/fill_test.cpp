@@ -87,7 +87,7 @@ TEST(Fill, LeavesTheRegionOpenOfAreasOfOneSizeUpToRounding) {
   add_area(areas, 0, 10, {.region = 1});
   add_area(areas, 1, 11 + 1e-14, {.region = 2});
   EXPECT_EQ(areas.at({5, 5}), (FaceRole{.kept = true, .region = 1}));
-  add_area(areas, 2, 12 + 1e-9, {.region = 3});
+  add_area(areas, 2, 12 + 1e-8, {.region = 3});
   EXPECT_TRUE(areas.at({5, 5}).is_region_open);
   EXPECT_FALSE(areas.at({0.5, 0.5}).is_region_open);
 }
