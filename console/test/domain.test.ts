@@ -246,6 +246,9 @@ test("a property that is a text may be a number", () => {
     readDomain("a.json", JSON.stringify({ type: "Feature", properties, geometry: { type: "Polygon", coordinates: [ring] } }));
   expect(at({ marker: "3", region: " 7 ", max_area: "1D-1" })).toMatchObject({ areas: [{ region: 7, maxArea: 0.1 }], markerNames: new Map() });
   expect(at({ marker: "3" }).markers[0]).toBe(3);
+  expect(at({ MARKER: 4, marker: 3, Region: "inlet", MAX_AREA: "0.5", Max_Area: 9 })).toMatchObject({
+    markers: Int32Array.of(3, 3, 3, 3), areas: [{ region: 1, maxArea: 0.5 }], regionNames: new Map([[1, "inlet"]]),
+  });
   expect(at({ max_edge: "2" }).areas[0]!.maxArea).toBeCloseTo(Math.sqrt(3), 12);
   expect(at({ max_edge: 2, max_area: 1 }).areas[0]!.maxArea).toBe(1);
   expect(at({ marker: " ", region: "", max_area: "" })).toMatchObject({ areas: [{ region: undefined, maxArea: undefined }], markerNames: new Map() });

@@ -237,6 +237,9 @@ def test_a_property_that_is_a_text_may_be_a_number():
     assert (domain.marker_names, domain.region_names) == ({}, {})
     assert read(marker="", region=" ", max_area="").areas == (weft.Area(),)
     assert read(marker="7a").marker_names == {1: "7a"}
+    capitals = read(MARKER=4, marker=3, Region="inlet", MAX_AREA="0.5", Max_Area=9)
+    assert set(capitals.markers) == {3}
+    assert (capitals.areas, capitals.region_names) == ((weft.Area(1, 0.5),), {1: "inlet"})
     with pytest.raises(weft.DomainError, match='properties.max_area is "small", not a number'):
         read(max_area="small")
     with pytest.raises(weft.DomainError, match="properties.marker is 1.5, not an integer"):

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "client/base/text.h"
+#include "client/base/words.h"
 #include "client/formats/domains/feature_properties.h"
 #include "client/formats/domains/geometry_builder.h"
 #include "client/formats/files/file_contents.h"
@@ -81,13 +82,23 @@ class Reader {
     return geometry(json, name, path, properties);
   }
 
+  // The member of this name; otherwise the first, in the order of the alphabet, that only capitals
+  // tell apart, as databases write them.
+  static Json::const_iterator find_property(const Json& properties, const char* name) {
+    auto found = properties.find(name);
+    for (auto each = properties.begin(); found == properties.end() && each != properties.end();
+         ++each)
+      if (lower_case(each.key()) == name) found = each;
+    return found;
+  }
+
   Result<GeometryProperties> feature_properties(const Json& feature,
                                                 const std::string& path) const {
     const auto found = feature.find("properties");
     if (found == feature.end() || !found->is_object()) return GeometryProperties{};
     return client::feature_properties(builder_, member(path, "properties") + ".",
                                       [&found](const char* name) -> PropertyValue {
-                                        const auto value = found->find(name);
+                                        const auto value = find_property(*found, name);
                                         if (value == found->end() || value->is_null()) return {};
                                         if (value->is_number())
                                           return {value->get<double>(), "", ""};

@@ -57,10 +57,15 @@ function isObject(json: unknown): json is Json {
 }
 
 function propertiesOf(feature: Json, path: string): Properties {
-  const given = feature.properties;
-  if (!isObject(given)) return noProperties;
+  const properties = feature.properties;
+  if (!isObject(properties)) return noProperties;
+  // The member of a name; otherwise the first, in the order of the alphabet, that only capitals tell apart, as
+  // databases write them.
+  const keys = Object.keys(properties).sort();
+  const given = (name: string) =>
+    Object.hasOwn(properties, name) ? properties[name] : properties[keys.find((key) => lowerCase(key) === name) ?? ""];
   const number = (name: string, what: string, holds: (value: number) => boolean) => {
-    const value = valueOf(given[name]);
+    const value = valueOf(given(name));
     if (typeof value !== "number") return undefined;
     if (!holds(value)) throw new FileError(`${member(path, "properties")}.${name}`, `is ${value}, not ${what}`);
     return value;
@@ -68,9 +73,9 @@ function propertiesOf(feature: Json, path: string): Properties {
   const isId = (value: number) => value === (value | 0);
   const isPositive = (value: number) => value > 0;
   // A text instead of a number, or beside it.
-  const text = (name: string) => [valueOf(given[name]), given[`${name}_name`]].find((value) => value && typeof value === "string");
+  const text = (name: string) => [valueOf(given(name)), given(`${name}_name`)].find((value) => value && typeof value === "string");
   const bound = (name: string) => {
-    const value = valueOf(given[name]);
+    const value = valueOf(given(name));
     if (value !== undefined && value !== null && typeof value !== "number")
       throw new FileError(`${member(path, "properties")}.${name}`, `is ${JSON.stringify(value)}, not a number`);
     return number(name, "positive", isPositive);
@@ -86,6 +91,8 @@ function propertiesOf(feature: Json, path: string): Properties {
     regionName: String(text("region") ?? ""),
   };
 }
+
+const lowerCase = (text: string) => text.replace(/[A-Z]/g, (letter) => letter.toLowerCase());
 
 // A text that is a number is that number; one of blanks is nothing.
 function valueOf(property: unknown): unknown {

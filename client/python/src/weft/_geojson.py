@@ -173,9 +173,19 @@ def _bound(properties: dict[str, Any]) -> float | None:
     return min(bounds, default=None)
 
 
+def _property(properties: Any, name: str) -> Any:
+    """The member of this name; otherwise the first, in the order of the alphabet, that only capitals tell
+    apart, as databases write them."""
+    if name in properties:
+        return properties[name]
+    others = (key for key in properties if isinstance(key, str) and key.isascii() and key.lower() == name)
+    key = min(others, default=None)
+    return None if key is None else properties[key]
+
+
 def _value(properties: Any, name: str) -> Any:
     """A property; a text that is a number is that number, one of blanks is none."""
-    value = properties.get(name)
+    value = _property(properties, name)
     if not isinstance(value, str):
         return value
     number = number_of(value)
@@ -191,7 +201,7 @@ def _properties(properties: Any, path: str) -> dict[str, Any]:
                 raise DomainError(f"{path}.{name} is {shortest(_float(value))}, not an integer of 32 "
                                   "bits")
             found[name] = int(value)
-        texts = (value, properties.get(f"{name}_name"))
+        texts = (value, _property(properties, f"{name}_name"))
         if text := next((text for text in texts if text and isinstance(text, str)), ""):
             found[f"{name}_name"] = text
     for name in ("max_area", "max_edge"):

@@ -189,6 +189,16 @@ TEST_F(GeoJson, TakesATextThatIsANumberForThatNumber) {
   EXPECT_TRUE(domain->names.empty());
 }
 
+TEST_F(GeoJson, TakesPropertiesInCapitalsUnlessTheyAreThereInSmallLetters) {
+  const auto domain = read(R"({"type": "Feature", "properties":
+      {"MARKER": 4, "marker": 3, "Region": "inlet", "MAX_AREA": "0.5", "Max_Area": 9}, "geometry":
+      {"type": "Polygon", "coordinates": [[[0, 0], [4, 0], [4, 3], [0, 0]]]}})");
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->segments[0].marker, 3);
+  EXPECT_EQ(domain->areas, (std::vector<Domain::Area>{{1, 0.5}}));
+  EXPECT_EQ(domain->names.regions, (NameTable{{1, "inlet"}}));
+}
+
 TEST_F(GeoJson, TakesATextOfBlanksForNothing) {
   const auto domain = read(R"({"type": "Feature", "properties":
       {"marker": "", "region": " ", "max_area": ""}, "geometry":
