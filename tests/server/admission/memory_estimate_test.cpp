@@ -114,6 +114,41 @@ TEST(Estimate, LeavesOutHolesAndWhatIsOutsideAndCountsRegions) {
   expect_near(2 * kIfItVaries * square, 0.05);
 }
 
+TEST(Estimate, OfAreasIsThatOfWhatTheyCoverByTheBoundThere) {
+  v1::GenerateMeshRequest request;
+  v1::Domain& domain = *request.mutable_domain();
+  domain.set_fill(v1::FILL_UNION);
+  const auto add_box = [&](double low, double high) -> v1::Area& {
+    const auto first = static_cast<std::uint32_t>(domain.points_size() / 2);
+    for (const double x : {low, low, high, low, high, high, low, high}) domain.add_points(x);
+    v1::Area& area = *domain.add_areas();
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      domain.add_segments(first + i);
+      domain.add_segments(first + (i + 1) % 4);
+      domain.add_segment_areas(static_cast<std::uint32_t>(domain.areas_size()));
+    }
+    return area;
+  };
+  add_box(0, 4);
+  add_box(0, 4);  // once more
+  add_box(1, 3);
+  request.mutable_size()->set_constant(1e-4);
+  const auto expect_near = [&](double triangles, double tolerance) {
+    const double estimate = static_cast<double>(expected_bytes(request, {})) - kBytesPerRun;
+    EXPECT_NEAR(estimate, of_whole(triangles), tolerance * of_whole(triangles));
+  };
+  const double square = 16 * kOnLattice * 1e4;
+  expect_near(square, 0.02);
+  domain.mutable_areas(2)->set_hole(true);
+  expect_near(0.75 * square, 0.04);
+  domain.mutable_areas(2)->set_hole(false);
+  domain.set_fill(v1::FILL_EVEN_ODD);
+  expect_near(0.25 * square, 0.2);  // so does the border of what is left out
+  domain.set_fill(v1::FILL_UNION);
+  domain.mutable_areas(2)->set_max_area(2.5e-5);
+  expect_near((0.75 + 4 * 0.25) * kIfItVaries * square, 0.2);  // cells at the border count as finer
+}
+
 TEST(Estimate, OfAnExpressionIsThatOfItsMean) {
   EXPECT_EQ(estimate_of("1e-4"), estimate_of("x < 100 ? 1e-4 : 1"));
   // Half of the square asks for a hundred times as much as the other half.

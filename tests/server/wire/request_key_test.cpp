@@ -205,6 +205,8 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"Marker", [](auto& r) { r.mutable_domain()->set_segment_markers(0, 9); }},
         Change{"Hole", [](auto& r) { r.mutable_domain()->add_holes(1); }},
         Change{"Region", [](auto& r) { r.mutable_domain()->add_regions()->set_id(1); }},
+        Change{"Area", [](auto& r) { r.mutable_domain()->add_areas()->set_hole(true); }},
+        Change{"SegmentArea", [](auto& r) { r.mutable_domain()->add_segment_areas(1); }},
         Change{"Fill", [](auto& r) { r.mutable_domain()->set_fill(v1::FILL_EVEN_ODD); }},
         Change{"Size", [](auto& r) { r.mutable_size()->set_constant(0.2); }},
         Change{"Expression", [](auto& r) { r.mutable_size()->set_expression("0.1"); }},
