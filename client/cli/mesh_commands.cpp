@@ -2,6 +2,7 @@
 // The flags of `weft mesh`, `weft draw`, `weft check`, `weft convert` and `weft info`.
 #include <memory>
 
+#include "client/call/request_rows.h"
 #include "client/cli/command_groups.h"
 #include "client/cli/connect_flags.h"
 #include "client/cli/flags.h"
