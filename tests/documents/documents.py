@@ -42,6 +42,7 @@ import pathlib
 import sys
 import tempfile
 import time
+import traceback
 
 import page as pages
 import pictures
@@ -59,7 +60,8 @@ def run_page(build: pathlib.Path, path: pathlib.Path, anew: bool) -> tuple[bool,
     line = 0  # where we are
     try:
         page = pages.read(path)
-        with tempfile.TemporaryDirectory(prefix="weft-page-") as scratch:
+        # A server that its shell has ended may still write while the folder goes.
+        with tempfile.TemporaryDirectory(prefix="weft-page-", ignore_cleanup_errors=True) as scratch:
             os.chmod(scratch, 0o755)  # PostgreSQL's user has to get through
             session = Session(build, pathlib.Path(scratch), DATABASE in path.read_text(), anew)
             try:
@@ -83,6 +85,8 @@ def run_page(build: pathlib.Path, path: pathlib.Path, anew: bool) -> tuple[bool,
         return False, f"{name}:{line}: {error}"
     except Failed as error:
         return False, f"{name}:{error.line or line}: {error}"
+    except Exception:
+        return False, f"{name}:{line}: {traceback.format_exc()}"
     run = [b for b in page.blocks if b.language in ("sh", "console", "python") and not b.not_run]
     compared = [b for b in run if b.output or b.language == "console"]
     said = (f"{name}: {len(run)} blocks run, {len(compared)} with what they print, "
@@ -106,16 +110,19 @@ def main() -> None:
         ROOT / "client/examples/README.md",
         *sorted(p for p in (ROOT / "docs").rglob("*.md") if p.name not in GENERATED)]
     start = time.monotonic()
-    failed = 0
+    failed = []
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         jobs = [pool.submit(run_page, arguments.build.resolve(), path, arguments.anew)
                 for path in paths]
         for job in jobs:
             good, said = job.result()
-            print(said, flush=True)
-            failed += not good
-    print(f"{len(paths)} pages, {failed} of them failed, {time.monotonic() - start:.1f} s")
-    sys.exit(failed != 0)
+            if good:
+                print(said, flush=True)
+            else:
+                failed.append(said)
+    print(*failed, sep="\n")
+    print(f"{len(paths)} pages, {len(failed)} of them failed, {time.monotonic() - start:.1f} s")
+    sys.exit(bool(failed))
 
 
 if __name__ == "__main__":
