@@ -15,6 +15,7 @@
 #include "engine/domain/tolerance.h"
 #include "engine/gradation_mesh.h"
 #include "engine/output/bounds_error.h"
+#include "engine/refine/acute_corners.h"
 #include "engine/refine/area_bound.h"
 #include "engine/refine/edge_limits.h"
 #include "engine/refine/mapped_area.h"
@@ -244,10 +245,14 @@ class Run {
     if (auto error = check_bytes_of_pieces(pieces)) return error;
     by_size_ = std::max(triangles_per_bound(quality_.lattice) * likely,
                         static_cast<double>(domain_.triangles.size()));
+    auto corners =
+        context_.compute([&] { return AcuteCorners::build(domain_, quality_, context_); });
+    if (!corners) return corners.error();
+    corners_.emplace(std::move(*corners));
     auto narrow = context_.compute([&] {
       return NarrowPlaces::find(
-          domain_, quality_, [&](Point p) { return map_ ? map_->likely_size(p) : bound; },
-          context_);
+          domain_, corners_->crossed_arms(), quality_,
+          [&](Point p) { return map_ ? map_->likely_size(p) : bound; }, context_);
     });
     if (!narrow) return narrow.error();
     narrow_ = std::move(*narrow);
@@ -282,6 +287,7 @@ class Run {
     MeshPlan plan{.domain = domain_,
                   .box = summary_.box,
                   .quality = quality_,
+                  .corners = *corners_,
                   .narrow = narrow_,
                   .expected_triangles = expected_,
                   .expected_by_size = by_size_,
@@ -356,6 +362,7 @@ class Run {
   std::optional<SizeMap> map_;
   QualityBounds quality_;
   EdgeLimits edge_limits_;
+  std::optional<AcuteCorners> corners_;  // of domain_
   NarrowPlaces narrow_;
   double least_ = 0;          // triangles, for certain
   double expected_ = 0;       // triangles

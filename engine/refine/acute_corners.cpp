@@ -75,8 +75,11 @@ Result<AcuteCorners> AcuteCorners::build(const Domain& domain, const QualityBoun
                                          const ExecutionContext& context) {
   AcuteCorners corners(domain);
   const bool above_30_degrees = quality.sin2 > 0.25;
-  if (auto error = corners.find_corners(domain, above_30_degrees, context))
-    return tl::unexpected(*error);
+  const auto sharp = corners.find_corners(domain, above_30_degrees, context);
+  if (!sharp) return tl::unexpected(sharp.error());
+  auto crossed = CrossedArms::find(domain, *sharp, context);
+  if (!crossed) return tl::unexpected(crossed.error());
+  corners.crossed_ = std::move(*crossed);
   if (auto error = corners.sort_by_ends(domain, context)) return tl::unexpected(*error);
   auto needles = Needles::find(domain, context);
   if (!needles) return tl::unexpected(needles.error());
@@ -86,15 +89,16 @@ Result<AcuteCorners> AcuteCorners::build(const Domain& domain, const QualityBoun
 
 // A sector between two segments is below an angle if its triangles are: turn from each edge on a
 // segment, through the triangles at its start, to the next such edge.
-std::optional<Error> AcuteCorners::find_corners(const Domain& domain, bool at_right_angles,
-                                                const ExecutionContext& context) {
+Result<std::vector<CrossedArms::Sector>> AcuteCorners::find_corners(
+    const Domain& domain, bool at_right_angles, const ExecutionContext& context) {
+  std::vector<CrossedArms::Sector> sharp;
   // Collects the corners where a sector may begin, in rounds. Which ones do is hard to predict, so
   // there is no branch on it.
   constexpr std::uint32_t kRound = 256;
   std::array<HalfEdge, 3 * kRound + 1> begins;
   for (std::uint32_t first = 0; first < domain.triangles.size(); first += kRound) {
     if (first % kPollInterval == 0) {
-      if (auto error = context.poll()) return error;
+      if (auto error = context.poll()) return tl::unexpected(*error);
     }
     const auto last =
         static_cast<std::uint32_t>(std::min<std::size_t>(first + kRound, domain.triangles.size()));
@@ -125,8 +129,13 @@ std::optional<Error> AcuteCorners::find_corners(const Domain& domain, bool at_ri
         const bool acute = below_60_degrees_apart(from, to);
         const bool counts = acute || (at_right_angles && at_most_right_angle_apart(from, to));
         if (cross(from, to) <= 0 || !counts) break;
-        if (current.subsegment[kNext[at_corner]] != kNone) {
+        const std::uint32_t other_arm = current.subsegment[kNext[at_corner]];
+        if (other_arm != kNone) {
           corners_[corner] = std::max(corners_[corner], acute ? Corner::kAcute : Corner::kShells);
+          const double tangent = cross(from, to) / dot(from, to);
+          if (acute && tangent < CrossedArms::kSharp)
+            sharp.push_back(
+                {corner, {domain.triangles[t].subsegment[kPrevious[i]], other_arm}, tangent});
           break;
         }
         triangle = current.neighbor[kNext[at_corner]];
@@ -135,7 +144,7 @@ std::optional<Error> AcuteCorners::find_corners(const Domain& domain, bool at_ri
       }
     }
   }
-  return std::nullopt;
+  return sharp;
 }
 
 // Two counting sorts, by the higher end and then by the lower: linear, so that they can be polled.
@@ -175,7 +184,8 @@ Point AcuteCorners::split_point(const Mesh& mesh, Pair ends, Pair apexes, double
   const Point from = mesh.vertices[ends[0]];
   const Point to = mesh.vertices[ends[1]];
   const std::uint32_t s = subsegment(mesh, ends[0], ends[1]);
-  if (has_shells((*subsegments_)[s].a) || has_shells((*subsegments_)[s].b)) {
+  if (has_shells((*subsegments_)[s].a) || has_shells((*subsegments_)[s].b) ||
+      !crossed_.of(s).empty()) {
     const auto matching = matching_part(mesh, s, from, to, apexes);
     part = matching ? *matching : dyadic_part(mesh, s, from, to);
   }
@@ -190,19 +200,22 @@ std::optional<double> AcuteCorners::matching_part(const Mesh& mesh, std::uint32_
   const Vector piece = to - from;
   std::optional<double> part;
   double narrowest = kNarrow * dot(piece, piece);  // distance times the piece's length
+  const auto match = [&](std::uint32_t apex, std::uint32_t corner_vertex, std::uint32_t far_end) {
+    if (apex == kNone || !on_other_arm(mesh, apex, corner_vertex, subsegment)) return;
+    const Point corner = mesh.vertices[corner_vertex];
+    const Point at = mesh.vertices[apex];
+    const Point far = mesh.vertices[far_end];
+    if (!below_60_degrees_apart(at - corner, far - corner)) return;
+    const double candidate = part_of(length(at - corner), corner, from, to);
+    const double width = std::fabs(cross(piece, at - from));
+    if (!in_middle(candidate) || width >= narrowest) return;
+    part = candidate;
+    narrowest = width;
+  };
   for (const std::uint32_t apex : apexes) {
-    for (const std::uint32_t end : {s.a, s.b}) {
-      if (apex == kNone || !has_shells(end) || !on_other_arm(mesh, apex, end, subsegment)) continue;
-      const Point corner = mesh.vertices[end];
-      const Point at = mesh.vertices[apex];
-      const Point far = mesh.vertices[end == s.a ? s.b : s.a];
-      if (!below_60_degrees_apart(at - corner, far - corner)) continue;
-      const double candidate = part_of(length(at - corner), corner, from, to);
-      const double width = std::fabs(cross(piece, at - from));
-      if (!in_middle(candidate) || width >= narrowest) continue;
-      part = candidate;
-      narrowest = width;
-    }
+    if (has_shells(s.a)) match(apex, s.a, s.b);
+    if (has_shells(s.b)) match(apex, s.b, s.a);
+    for (const CrossedArms::Arm& arm : crossed_.of(subsegment)) match(apex, arm.corner, arm.end);
   }
   return part;
 }
@@ -213,7 +226,9 @@ double AcuteCorners::dyadic_part(const Mesh& mesh, std::uint32_t subsegment, Poi
   const Point a = mesh.vertices[s.a];
   const Point b = mesh.vertices[s.b];
   const bool nearer_b = length(from - b) + length(to - b) < length(from - a) + length(to - a);
-  const Point corner = has_shells(s.a) && (!has_shells(s.b) || !nearer_b) ? a : b;
+  Point corner = has_shells(s.a) && (!has_shells(s.b) || !nearer_b) ? a : b;
+  if (!has_shells(s.a) && !has_shells(s.b))
+    corner = mesh.vertices[crossed_.of(subsegment).front().corner];
   const auto [low, high] = std::minmax({length(from - corner), length(to - corner)});
   const double part = part_of(dyadic_between(low, high), corner, from, to);
   return in_middle(part) ? part : 0.5;
@@ -221,14 +236,18 @@ double AcuteCorners::dyadic_part(const Mesh& mesh, std::uint32_t subsegment, Poi
 
 bool AcuteCorners::on_other_arm(const Mesh& mesh, std::uint32_t vertex, std::uint32_t corner,
                                 std::uint32_t subsegment) const {
-  std::uint32_t on = mesh.subsegment_of(vertex);
-  if (on != kNone) {
-    if ((*subsegments_)[on].a != corner && (*subsegments_)[on].b != corner) return false;
-  } else {
-    if (vertex >= corners_.size() || vertex == corner) return false;
-    on = subsegment_between(vertex, corner);
+  const std::uint32_t segment = (*subsegments_)[subsegment].segment;
+  const auto is_other = [&](std::uint32_t s) { return (*subsegments_)[s].segment != segment; };
+  const auto continues = [&](const CrossedArms::Arm& arm) {
+    return arm.corner == corner && is_other(arm.subsegment);
+  };
+  if (const std::uint32_t on = mesh.subsegment_of(vertex); on != kNone) {
+    if ((*subsegments_)[on].a == corner || (*subsegments_)[on].b == corner) return is_other(on);
+    return std::ranges::any_of(crossed_.of(on), continues);
   }
-  return on != kNone && on != subsegment;
+  if (vertex >= corners_.size() || vertex == corner) return false;
+  if (const std::uint32_t on = subsegment_between(vertex, corner); on != kNone) return is_other(on);
+  return std::ranges::any_of(crossed_.at(vertex), continues);
 }
 
 bool AcuteCorners::exempts(const Mesh& mesh, const Triangle& triangle) const {
@@ -253,7 +272,9 @@ bool AcuteCorners::exempts(const Mesh& mesh, const Triangle& triangle) const {
     return acute(corner) && on_other_arm(mesh, b, corner, of_a) &&
            on_shell(mesh.vertices[corner], mesh.vertices[a], mesh.vertices[b]);
   };
-  return exempt_at(s.a) || exempt_at(s.b);
+  return exempt_at(s.a) || exempt_at(s.b) ||
+         std::ranges::any_of(crossed_.of(of_a),
+                             [&](const CrossedArms::Arm& arm) { return exempt_at(arm.corner); });
 }
 
 std::uint32_t AcuteCorners::subsegment(const Mesh& mesh, std::uint32_t a, std::uint32_t b) const {

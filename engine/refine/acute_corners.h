@@ -32,6 +32,8 @@
 // precision floor at 33 degrees, 52 at 34; with shells none does. At 20 to 30 degrees none does
 // without shells either, and shells make up to 1 % more triangles.
 //
+// Arms go on beyond segments that cross them (crossed_arms.h).
+//
 // An input vertex that ends an arm counts as on a shell, but two of them do not exempt a triangle:
 // a fan of equal arms is refined toward its corner.
 #pragma once
@@ -44,6 +46,7 @@
 #include "engine/base/context.h"
 #include "engine/base/error.h"
 #include "engine/domain/domain.h"
+#include "engine/refine/crossed_arms.h"
 #include "engine/refine/needles.h"
 #include "engine/refine/quality_bounds.h"
 #include "engine/refine/storage/mesh.h"
@@ -68,6 +71,7 @@ class AcuteCorners {
   // triangle.
   Point split_point(const Mesh& mesh, Pair ends, Pair apexes, double part) const;
 
+  const CrossedArms& crossed_arms() const { return crossed_; }
   // The places where two of the domain's segments meet at a small angle outside of it.
   const Needles& needles() const { return needles_; }
 
@@ -83,7 +87,7 @@ class AcuteCorners {
 
   std::uint64_t bytes() const {
     return corners_.size() + by_ends_.size() * sizeof(Ends) +
-           first_.size() * sizeof(std::uint32_t) + needles_.bytes();
+           first_.size() * sizeof(std::uint32_t) + crossed_.bytes() + needles_.bytes();
   }
 
  private:
@@ -97,8 +101,9 @@ class AcuteCorners {
 
   explicit AcuteCorners(const Domain& domain)
       : subsegments_(&domain.subsegments), corners_(domain.vertices.size(), Corner::kPlain) {}
-  std::optional<Error> find_corners(const Domain& domain, bool at_right_angles,
-                                    const ExecutionContext& context);
+  // Returns the sectors below CrossedArms::kSharp.
+  Result<std::vector<CrossedArms::Sector>> find_corners(const Domain& domain, bool at_right_angles,
+                                                        const ExecutionContext& context);
   std::optional<Error> sort_by_ends(const Domain& domain, const ExecutionContext& context);
 
   Corner corner(std::uint32_t vertex) const {
@@ -108,7 +113,7 @@ class AcuteCorners {
   bool has_shells(std::uint32_t vertex) const { return corner(vertex) != Corner::kPlain; }
   // The subsegment between two vertices of the domain, or kNone.
   std::uint32_t subsegment_between(std::uint32_t a, std::uint32_t b) const;
-  // Whether the vertex lies on, or ends, an arm of the corner other than this subsegment.
+  // Whether the vertex lies on, or ends, an arm of the corner other than that of this subsegment.
   bool on_other_arm(const Mesh& mesh, std::uint32_t vertex, std::uint32_t corner,
                     std::uint32_t subsegment) const;
 
@@ -122,6 +127,7 @@ class AcuteCorners {
   std::vector<Corner> corners_;       // per vertex of the domain
   std::vector<Ends> by_ends_;         // by the lower end, then by the higher
   std::vector<std::uint32_t> first_;  // per vertex of the domain: its first in by_ends_
+  CrossedArms crossed_;
   Needles needles_;
 };
 

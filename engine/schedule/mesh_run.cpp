@@ -32,7 +32,7 @@ class MeshRun {
  public:
   // `cut_off`: stop at the client's number of triangles, and keep the mesh as it is then.
   MeshRun(const MeshPlan& plan, const AreaBound& area, ChunkSink& sink, ExecutionContext& context,
-          Summary& summary, Mesh& mesh, const AcuteCorners& corners, bool cut_off)
+          Summary& summary, Mesh& mesh, bool cut_off)
       : plan_(plan),
         area_(area),
         context_(context),
@@ -40,11 +40,11 @@ class MeshRun {
         mesh_(mesh),
         cut_off_(cut_off),
         refinement_{mesh,
-                    corners,
+                    plan.corners,
                     plan.domain.regions,
                     plan.edge_limits,
                     context,
-                    plan.domain.bytes() + plan.other_bytes + corners.bytes(),
+                    plan.domain.bytes() + plan.other_bytes + plan.corners.bytes(),
                     cut_off ? context.budget().triangle_limit : limit(plan, context)},
         root_(Slots::of_domain(plan.domain)),
         parts_(plan, area, refinement_, cut_off, sink, summary),
@@ -155,7 +155,6 @@ std::optional<Error> run_mesh(const MeshPlan& plan, const AreaBound& area, Chunk
   const auto attempt = [&](bool cut_off) -> std::optional<Error> {
     const auto start = Clock::now();
     std::optional<Mesh> mesh;
-    std::optional<AcuteCorners> corners;
     std::optional<MeshRun<AreaBound>> run;
     const auto prepare = [&]() -> std::optional<Error> {
       const std::uint64_t at_first = plan.domain.bytes() + plan.other_bytes +
@@ -166,10 +165,7 @@ std::optional<Error> run_mesh(const MeshPlan& plan, const AreaBound& area, Chunk
                                   plan.expected_triangles, context);
       if (!mesh_made) return mesh_made.error();
       mesh.emplace(std::move(*mesh_made));
-      auto corners_made = AcuteCorners::build(plan.domain, plan.quality, context);
-      if (!corners_made) return corners_made.error();
-      corners.emplace(std::move(*corners_made));
-      run.emplace(plan, area, sink, context, summary, *mesh, *corners, cut_off);
+      run.emplace(plan, area, sink, context, summary, *mesh, cut_off);
       return run->prepare(start);
     };
     if (auto error = context.compute(prepare)) return error;

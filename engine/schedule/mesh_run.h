@@ -13,6 +13,7 @@
 #include "engine/domain/domain.h"
 #include "engine/output/chunk.h"
 #include "engine/output/summary.h"
+#include "engine/refine/acute_corners.h"
 #include "engine/refine/edge_limits.h"
 #include "engine/refine/quality_bounds.h"
 #include "engine/schedule/narrow_places.h"
@@ -43,6 +44,7 @@ struct MeshPlan {
   const Domain& domain;
   Box box;  // of the domain
   QualityBounds quality;
+  const AcuteCorners& corners;  // of the domain
   const NarrowPlaces& narrow;
   double expected_triangles;
   double expected_by_size;   // of these, what the size alone makes

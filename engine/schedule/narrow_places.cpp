@@ -77,9 +77,10 @@ struct Grading {
 // One thread's look at some of the domain's triangles.
 class NarrowPlaces::Search {
  public:
-  Search(const Domain& domain, const QualityBounds& quality,
+  Search(const Domain& domain, const CrossedArms& crossed_arms, const QualityBounds& quality,
          const std::function<double(Point)>& likely_area)
       : domain_(domain),
+        crossed_arms_(crossed_arms),
         likely_area_(likely_area),
         area_over_bound_(area_over_bound(quality)),
         grading_(Grading::of(quality.sin2)),
@@ -205,7 +206,8 @@ class NarrowPlaces::Search {
           Side next{t.neighbor[edge], 0};
           while (domain_.triangles[next.triangle].neighbor[next.edge] != in.triangle) ++next.edge;
           stack_.push_back(next);
-        } else if (u != a && u != b && v != a && v != b) {
+        } else if (u != a && u != b && v != a && v != b &&
+                   !crossed_arms_.share_corner(base.subsegment[side.edge], t.subsegment[edge])) {
           best = {d, t.subsegment[edge]};
         }
       }
@@ -288,6 +290,7 @@ class NarrowPlaces::Search {
   static constexpr double kCertain = 0.35;
 
   const Domain& domain_;
+  const CrossedArms& crossed_arms_;
   const std::function<double(Point)>& likely_area_;
   const double area_over_bound_;
   const Grading grading_;
@@ -296,7 +299,8 @@ class NarrowPlaces::Search {
   std::vector<std::pair<double, double>> open_;
 };
 
-Result<NarrowPlaces> NarrowPlaces::find(const Domain& domain, const QualityBounds& quality,
+Result<NarrowPlaces> NarrowPlaces::find(const Domain& domain, const CrossedArms& crossed_arms,
+                                        const QualityBounds& quality,
                                         const std::function<double(Point)>& likely_area,
                                         const ExecutionContext& context) {
   constexpr std::size_t kAtATime = 1024;  // triangles
@@ -320,7 +324,7 @@ Result<NarrowPlaces> NarrowPlaces::find(const Domain& domain, const QualityBound
       stopped = true;
       return;
     }
-    Search search(domain, quality, likely_area);
+    Search search(domain, crossed_arms, quality, likely_area);
     const auto [first, last] = range(i);
     search.look_at(first, last, maybe_thin);
     found[i] = std::move(search.found);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Estimates the triangles that the bound on angles makes where the domain is narrow.
 //
-//   auto places = NarrowPlaces::find(domain, quality, likely_area, context);
+//   auto places = NarrowPlaces::find(domain, crossed_arms, quality, likely_area, context);
 //   places->likely();                              // triangles beyond those that the size makes
 //   places->add_samples(1'000, samples);           // for the quadtree
 //
@@ -11,7 +11,8 @@
 // proportion to its length over w. Only segments at the base of a thin triangle of the domain can
 // be near to others over a long way. These are measured in pieces, which are halved until the
 // nearest vertex or segment, seen through the triangles of the domain, is about equally far along
-// the whole piece. Vertices near a segment cost a logarithm, and so few pieces.
+// the whole piece. Vertices near a segment cost a logarithm, and so few pieces. So do two arms of a
+// corner, which are left out, also where others cross them (crossed_arms.h).
 //
 // The number of triangles per unit of length / w depends only on the angle, to a factor of
 // 1.5: measured on strips at 5 to 33 degrees (narrow_places.cpp).
@@ -29,6 +30,7 @@
 #include "engine/base/error.h"
 #include "engine/base/geometry.h"
 #include "engine/domain/domain.h"
+#include "engine/refine/crossed_arms.h"
 #include "engine/refine/quality_bounds.h"
 #include "engine/schedule/quadtree.h"
 
@@ -49,7 +51,8 @@ class NarrowPlaces {
 
   // `likely_area` returns the size near a point, the bound on the area of its triangles; infinity
   // for none. Several threads call it. Errors: kCancelled, kDeadlineExceeded.
-  static Result<NarrowPlaces> find(const Domain& domain, const QualityBounds& quality,
+  static Result<NarrowPlaces> find(const Domain& domain, const CrossedArms& crossed_arms,
+                                   const QualityBounds& quality,
                                    const std::function<double(Point)>& likely_area,
                                    const ExecutionContext& context);
 

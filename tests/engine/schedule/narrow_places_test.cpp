@@ -25,7 +25,8 @@ NarrowPlaces places_of(const Pslg& pslg, double min_angle_deg, double size = kIn
   const auto domain = triangulate(pslg, context);
   EXPECT_TRUE(domain);
   auto places = NarrowPlaces::find(
-      *domain, QualityBounds::from(min_angle_deg, 0, 1e-12), [&](Point) { return size; }, context);
+      *domain, {}, QualityBounds::from(min_angle_deg, 0, 1e-12), [&](Point) { return size; },
+      context);
   EXPECT_TRUE(places);
   return places ? *places : NarrowPlaces();
 }
