@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # From a fresh Debian 12 machine to what every change must pass: installs what is missing, checks
 # formatting, includes, licences, protocol, scripts and documents, builds with warnings as errors, runs
-# every test, the console in a browser, and, under AddressSanitizer and UndefinedBehaviorSanitizer, what
-# reads the bytes of strangers (the corpora of the fuzzers) and what runs in parallel; the latter under
-# ThreadSanitizer, too. Prints a table of its steps with their seconds and what the compiler's cache
+# every test (the console in a browser is one of them) and, under AddressSanitizer and
+# UndefinedBehaviorSanitizer, what reads the bytes of strangers (the corpora of the fuzzers) and what runs
+# in parallel; the latter under ThreadSanitizer, too. Prints a table of its steps with their seconds and what the compiler's cache
 # gave; fails when any step failed. tests/deep.sh has the rest: what takes an hour, or draws lots.
 #
 #   tests/run.sh [--quick]     --quick leaves the sanitizers out
@@ -48,13 +48,6 @@ check_console() (
   npm run check
 )
 
-check_console_in_browser() (
-  cd tests/console || exit
-  [[ node_modules/.package-lock.json -nt package-lock.json ]] ||
-    npm ci --ignore-scripts --no-audit --no-fund || exit
-  timeout 1800 npm test
-)
-
 check_protocol() {
   deploy/node_modules/.bin/buf lint proto
 }
@@ -93,7 +86,6 @@ needed "build" build release
 step "licences" tests/licences.sh
 step "documents" docs/generate.py build/release --check
 step "tests" run_ctest release --timeout 300
-step "console in a browser" check_console_in_browser
 if [[ $all ]]; then
   needed "build, sanitizers" build asan --target gate-tests
   step "tests, sanitizers" run_ctest asan -L gate --timeout 600

@@ -86,11 +86,11 @@ finish() {
   exit
 }
 
-# run_ctest PRESET ARGUMENT...
+# run_ctest PRESET ARGUMENT...: two tests more than cores at a time, because many wait for servers.
 run_ctest() {
   local preset=$1
   shift
-  ctest --preset "$preset" -j "$(nproc)" --no-tests=error --no-label-summary "$@"
+  ctest --preset "$preset" -j "$(($(nproc) + 2))" --no-tests=error --no-label-summary "$@"
 }
 
 # build PRESET ARGUMENT...: configures, and builds as `cmake --build` takes it
