@@ -98,6 +98,9 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
       authenticator_(tokens_.get(), console_secret_),
       metrics_(kVersion, kEngineVersion),
       gate_(gate_options(options), [this] { service_.notify(); }),
+      places_({.places = options.service.jobs,
+               .light = options.service.light_jobs,
+               .client_share = options.service.client_share}),
       admission_(admission_options(options, gate_), authenticator_, metrics_, log_),
       health_(admission_),
       reflection_(ReflectionService::Version::kV1, admission_, services(store != nullptr)),
@@ -105,7 +108,7 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
                         services(store != nullptr)),
       arena_(static_cast<int>(options.service.threads)),
       service_(with_info(options, store != nullptr), admission_, metrics_, engine, arena_, gate_,
-               log_) {
+               places_, log_) {
   metrics_.add_queue("calls", [this] {
     QueueFigures figures = service_.figures();
     const double of_jobs = jobs_ ? jobs_->figures().admitted_bytes : 0;
@@ -119,11 +122,8 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
   jobs.service.patience = options.service.patience;
   jobs.service.client_share = options.service.client_share;
   jobs.runner.worker = options.service.instance;
-  jobs.runner.slots = options.service.jobs;
-  jobs.runner.light_slots = options.service.light_jobs;
-  jobs.runner.client_share = options.service.client_share;
   jobs_.emplace(std::move(store), std::move(jobs), admission_, metrics_, engine, arena_, gate_,
-                log_);
+                places_, log_);
   metrics_.add_queue("jobs", [this] { return jobs_->figures(); });
 }
 

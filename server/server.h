@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "server/admission/admission.h"
+#include "server/admission/run_places.h"
 #include "server/console/console.h"
 #include "server/jobs/job_system.h"
 #include "server/mesh/mesh_service.h"
@@ -89,6 +90,7 @@ class Server {
   const Authenticator authenticator_;
   Metrics metrics_;
   MemoryGate gate_;
+  RunPlaces places_;
   Admission admission_;
   HealthService health_;
   ReflectionService reflection_;

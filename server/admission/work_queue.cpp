@@ -11,6 +11,7 @@
 namespace weft::server {
 namespace {
 
+constexpr RunPlaces::Kind kKind = RunPlaces::Kind::kCall;
 constexpr int kMostPasses = 64;
 // How often an item that waits for another place asks whether it is to end.
 constexpr std::chrono::milliseconds kAsk{50};
@@ -20,15 +21,21 @@ constexpr std::chrono::milliseconds kAsk{50};
 WorkQueue::WorkQueue(const Options& options)
     : options_(options),
       capacity_of_client_(share_of(options.capacity, options.client_share)),
-      distrust_(options.distrust),
-      main_{.places = options.workers,
-            .of_client = share_of(options.workers, options.client_share)},
-      light_{.places = options.workers_for_light,
-             .of_client = share_of(options.workers_for_light, options.client_share)} {
+      own_places_({.places = options.workers,
+                   .light = options.workers_for_light,
+                   .client_share = options.client_share}),
+      places_(options.places != nullptr ? *options.places : own_places_),
+      mutex_(places_.mutex),
+      distrust_(options.distrust) {
   std::lock_guard lock(mutex_);
   for (const Lane lane : {Lane::kMain, Lane::kLight}) {
-    while (workers_of(lane).threads < workers_of(lane).places) add_worker(lane);
+    while (workers_of(lane).threads < places_.places(lane)) add_worker(lane);
   }
+  places_.on_free(kKind, [this] {
+    place_for_moving_.notify_all();
+    main_.idle.notify_all();
+    light_.idle.notify_all();
+  });
 }
 
 WorkQueue::~WorkQueue() {
@@ -36,6 +43,8 @@ WorkQueue::~WorkQueue() {
   {
     std::lock_guard lock(mutex_);
     stopping_ = true;  // so that there are no more threads
+    places_.on_free(kKind, {});
+    for (const Lane lane : {Lane::kMain, Lane::kLight}) places_.set_waits(lane, kKind, false);
     turns_.clear();
     threads.swap(threads_);
   }
@@ -53,23 +62,20 @@ void WorkQueue::add_worker(Lane lane) {
 void WorkQueue::add_worker_if_short(Lane lane) {
   const Workers& workers = workers_of(lane);
   try {
-    if (workers.threads < workers.places + workers.pausing && !stopping_) add_worker(lane);
+    if (workers.threads < places_.places(lane) + workers.pausing && !stopping_) add_worker(lane);
   } catch (const std::exception&) {
     // No thread, or no memory for one: the place stays empty until the item that pauses goes on.
   }
 }
 
 void WorkQueue::begin(const Place& place) {
-  Workers& workers = workers_of(place.lane_);
-  ++workers.running;
-  ++workers.running_of[place.client_];
+  places_.begin(place.lane_, kKind, place.client_);
+  ++workers_of(place.lane_).running;
 }
 
 void WorkQueue::end(const Place& place) {
-  Workers& workers = workers_of(place.lane_);
-  --workers.running;
-  const auto of_client = workers.running_of.find(place.client_);
-  if (--of_client->second == 0) workers.running_of.erase(of_client);
+  places_.end(place.lane_, kKind, place.client_);
+  --workers_of(place.lane_).running;
 }
 
 // Items that move come first. Wakes one worker only, because the place is enough for one.
@@ -92,13 +98,6 @@ void WorkQueue::go_on(Place& place) {
   std::lock_guard lock(mutex_);
   --workers_of(place.lane_).pausing;
   begin(place);
-}
-
-bool WorkQueue::has_place(Lane lane, const std::string& client) const {
-  const Workers& workers = workers_of(lane);
-  if (workers.running >= workers.places) return false;
-  const auto of_client = workers.running_of.find(client);
-  return of_client == workers.running_of.end() || of_client->second < workers.of_client;
 }
 
 void WorkQueue::Place::leave_light_lane(const std::function<bool()>& stopped) {
@@ -134,10 +133,22 @@ void WorkQueue::leave_light_lane(Place& place, const std::function<bool()>& stop
 }
 
 // The first item that may have a main place now.
-WorkQueue::Place* WorkQueue::next_moving() const {
-  for (Place* const place : moving_)
-    if (has_place(Lane::kMain, place->client_)) return place;
+WorkQueue::Place* WorkQueue::next_moving() {
+  const auto next = first_moving_with_share();
+  if (next == moving_.end()) return nullptr;
+  if (may_begin(Lane::kMain)) return *next;
+  places_.set_waits(Lane::kMain, kKind, true);
   return nullptr;
+}
+
+std::list<WorkQueue::Place*>::const_iterator WorkQueue::first_moving_with_share() const {
+  return std::ranges::find_if(moving_, [this](const Place* place) {
+    return places_.has_share(Lane::kMain, place->client_);
+  });
+}
+
+bool WorkQueue::moving_wait_for_place() const {
+  return first_moving_with_share() != moving_.end() && !may_begin(Lane::kMain);
 }
 
 std::size_t WorkQueue::moving_of(const std::string& client) const {
@@ -149,7 +160,8 @@ std::size_t WorkQueue::moving_of(const std::string& client) const {
 WorkQueue::Pushed WorkQueue::push(std::shared_ptr<Item> item, Ticket ticket) {
   {
     std::lock_guard lock(mutex_);
-    const std::size_t idle = main_.places - std::min(main_.running, main_.places);
+    const std::size_t idle = places_.places(Lane::kMain) -
+                             std::min(places_.running(Lane::kMain), places_.places(Lane::kMain));
     auto client = std::find_if(turns_.begin(), turns_.end(),
                                [&](const Client& c) { return c.name == ticket.client; });
     const std::size_t of_client =
@@ -157,15 +169,14 @@ WorkQueue::Pushed WorkQueue::push(std::shared_ptr<Item> item, Ticket ticket) {
     const bool has_room_of_its_own = options_.client_share < 1 && of_client == 0;
     if (waiting_ + moving_.size() >= idle + options_.capacity * (has_room_of_its_own ? 2 : 1))
       return Pushed::kQueueFull;
-    if (of_client >= std::min(idle, main_.of_client) + capacity_of_client_)
+    if (of_client >= std::min(idle, places_.of_client(Lane::kMain)) + capacity_of_client_)
       return Pushed::kClientFull;
     if (client == turns_.end())
       client = turns_.insert(turns_.end(), Client{std::move(ticket.client), {}});
     client->items.push_back({std::move(item), ticket.estimate});
     ++waiting_;
-    if (main_.running < main_.places) main_.idle.notify_one();
-    if (ticket.estimate <= options_.light && light_.running < light_.places)
-      light_.idle.notify_one();
+    wake_for_one(Lane::kMain);
+    if (has_light_lane() && ticket.estimate <= options_.light) wake_for_one(Lane::kLight);
   }
   return Pushed::kYes;
 }
@@ -207,10 +218,28 @@ std::size_t WorkQueue::pausing() const {
   return main_.pausing + light_.pausing - lent_;
 }
 
+// An item came that may want a place of this lane.
+void WorkQueue::wake_for_one(Lane lane) {
+  if (may_begin(lane))
+    workers_of(lane).idle.notify_one();
+  else
+    places_.set_waits(lane, kKind, true);
+}
+
+// Gives the place an item, if there is one that may begin.
 bool WorkQueue::next(Place& place) {
-  if (place.lane_ == Lane::kMain && next_moving() != nullptr) return false;
+  if (place.lane_ == Lane::kMain && (next_moving() != nullptr || moving_wait_for_place()))
+    return false;
+  bool waits = false;
+  const bool found = find_next(place, waits);
+  places_.set_waits(place.lane_, kKind, waits);
+  return found;
+}
+
+// `waits` becomes true if nothing but a place is missing.
+bool WorkQueue::find_next(Place& place, bool& waits) {
   for (auto client = turns_.begin(); client != turns_.end(); ++client) {
-    if (!has_place(place.lane_, client->name)) continue;
+    if (!places_.has_share(place.lane_, client->name)) continue;
     std::size_t index = 0;
     if (place.lane_ == Lane::kLight) {
       if (distrust_.holds_for(client->name, Distrust::Clock::now())) continue;
@@ -219,6 +248,10 @@ bool WorkQueue::next(Place& place) {
                        [this](const Waiting& w) { return w.estimate <= options_.light; });
       if (light == client->items.end()) continue;
       index = static_cast<std::size_t>(light - client->items.begin());
+    }
+    if (!may_begin(place.lane_)) {
+      waits = true;
+      return false;
     }
     if (take(place, client, index)) return true;
     if (++client->items[index].passed_over > kMostPasses) break;
@@ -253,7 +286,7 @@ void WorkQueue::work(Lane lane) {
   while (!stopping_) {
     Place place(*this, lane);
     if (!next(place)) {
-      workers_of(lane).idle.wait(lock);
+      workers_of(lane).idle.wait_for(lock, RunPlaces::kTurn);
       continue;
     }
     begin(place);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Items wait their turn and run on threads of their own: as many at once as there are places, as
-// many waiting as the capacity says.
+// Items wait their turn and run on threads of their own: as many at once as there are places, which
+// may be shared with runs of another kind, as many waiting as the capacity says.
 //
 // Turns go round the clients that have items waiting, so none can starve another; a client's own
 // items run first come, first served. A client has at most its share of what may wait, and of the
@@ -28,7 +28,6 @@
 #include <deque>
 #include <functional>
 #include <list>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -38,12 +37,13 @@
 
 #include "server/admission/distrust.h"
 #include "server/admission/memory_gate.h"
+#include "server/admission/run_places.h"
 
 namespace weft::server {
 
 class WorkQueue {
  public:
-  enum class Lane { kMain, kLight };
+  using Lane = RunPlaces::Lane;
 
   class Place;
 
@@ -62,6 +62,8 @@ class WorkQueue {
     // Of the capacity and of the places in each lane, what one client may have: at least one of
     // each. 1: all; less leaves at least one place, where there are two, to others.
     double client_share = 1;
+    // Shared with runs of jobs; they outlive the queue. Null: places of its own, as the above says.
+    RunPlaces* places = nullptr;
     // How long a client whose item turned out heavy has no place for light ones the first time, if
     // its share is below 1.
     std::chrono::milliseconds distrust{10'000};
@@ -131,7 +133,7 @@ class WorkQueue {
   // The gate has room again.
   void notify();
 
-  bool has_light_lane() const { return options_.workers_for_light > 0; }
+  bool has_light_lane() const { return places_.places(Lane::kLight) > 0; }
   std::size_t capacity() const { return options_.capacity; }
   std::size_t capacity_of_client() const { return capacity_of_client_; }
   // At this moment. An item that pauses is not running. One that has left the light lane waits
@@ -154,12 +156,9 @@ class WorkQueue {
   // The workers of a lane. There are as many threads as places and pausing items at most, ever. An
   // item that has left the light lane runs in the main one, and its thread pauses in the light one.
   struct Workers {
-    std::size_t places;
-    std::size_t of_client;  // places
     std::size_t running = 0;
     std::size_t pausing = 0;
     std::size_t threads = 0;
-    std::map<std::string, std::size_t> running_of{};  // per client, none is 0
     std::condition_variable idle{};
   };
 
@@ -172,10 +171,14 @@ class WorkQueue {
   void begin(const Place& place);
   void end(const Place& place);
   void place_is_free(Lane lane);
-  bool has_place(Lane lane, const std::string& client) const;
   bool next(Place& place);
+  bool find_next(Place& place, bool& waits);
+  void wake_for_one(Lane lane);
   bool take(Place& place, std::list<Client>::iterator client, std::size_t index);
-  Place* next_moving() const;
+  bool may_begin(Lane lane) const { return places_.is_free(lane, RunPlaces::Kind::kCall); }
+  Place* next_moving();
+  std::list<Place*>::const_iterator first_moving_with_share() const;
+  bool moving_wait_for_place() const;
   std::size_t moving_of(const std::string& client) const;
   Workers& workers_of(Lane lane) { return lane == Lane::kMain ? main_ : light_; }
   const Workers& workers_of(Lane lane) const { return lane == Lane::kMain ? main_ : light_; }
@@ -184,8 +187,10 @@ class WorkQueue {
 
   const Options options_;
   const std::size_t capacity_of_client_;
-  mutable std::mutex mutex_;  // guards all below
-  std::list<Client> turns_;   // whose turn it is comes first
+  RunPlaces own_places_;
+  RunPlaces& places_;
+  std::mutex& mutex_;        // of the places; guards all below
+  std::list<Client> turns_;  // whose turn it is comes first
   std::size_t waiting_ = 0;
   Distrust distrust_;
   std::list<Place*> moving_;  // from the light lane to the main one, the first first

@@ -15,33 +15,11 @@
 namespace weft::server {
 namespace {
 
-// How often a run that waits for another slot asks whether it is to end.
+constexpr RunPlaces::Kind kKind = RunPlaces::Kind::kJob;
+// How often a run that waits for another place asks whether it is to end.
 constexpr std::chrono::milliseconds kAsk{50};
 
 }  // namespace
-
-void JobRunner::Slots::take(const std::string& owner) {
-  if (!owner.empty()) ++running_of[owner];  // which may find no memory
-  ++running;
-}
-
-void JobRunner::Slots::leave(const std::string& owner) {
-  --running;
-  const auto of_owner = running_of.find(owner);
-  if (of_owner != running_of.end() && --of_owner->second == 0) running_of.erase(of_owner);
-}
-
-bool JobRunner::Slots::has_place(const std::string& owner) const {
-  const auto found = running_of.find(owner);
-  return running < places && (found == running_of.end() || found->second < of_owner);
-}
-
-std::vector<std::string> JobRunner::Slots::full_owners() const {
-  std::vector<std::string> full;
-  for (const auto& [owner, count] : running_of)
-    if (count >= of_owner) full.push_back(owner);
-  return full;
-}
 
 // Lists a run among those at work while this lives.
 class JobRunner::Listed {
@@ -63,21 +41,16 @@ class JobRunner::Listed {
   const std::shared_ptr<Attempt> run_;
 };
 
-// Holds a slot of a lane for a run while this lives.
+// Holds a place of a lane for a run while this lives. REQUIRES: it has begun.
 class JobRunner::Placed {
  public:
   Placed(JobRunner& runner, Lane lane, std::string owner)
-      : runner_(runner),
-        owner_(std::move(owner)),
-        slots_(lane == Lane::kLight ? &runner.light_ : &runner.main_) {
-    std::lock_guard lock(runner_.mutex_);
-    slots_->take(owner_);
-  }
+      : runner_(runner), owner_(std::move(owner)), lane_(lane) {}
   ~Placed() {
     {
       std::lock_guard lock(runner_.mutex_);
-      if (slots_ != nullptr) slots_->leave(owner_);
-      if (lent_) {  // the slot is not this thread's to fill
+      if (lane_) runner_.places_.end(*lane_, kKind, owner_);
+      if (lent_) {  // the place is not this thread's to fill
         --runner_.lent_;
         ++runner_.wakes_;
       }
@@ -88,12 +61,13 @@ class JobRunner::Placed {
   Placed(const Placed&) = delete;
   Placed& operator=(const Placed&) = delete;
 
-  // Waits for a slot in the main lane, or until the run is to end.
+  // Waits for a place in the main lane, or until the run is to end.
   void leave_light_lane(const ExecutionContext& run) {
     std::unique_lock lock(runner_.mutex_);
-    if (slots_ != &runner_.light_) return;
+    if (lane_ != Lane::kLight) return;
     const auto self = runner_.moving_.insert(runner_.moving_.end(), this);
-    std::exchange(slots_, nullptr)->leave(owner_);
+    lane_.reset();
+    runner_.places_.end(Lane::kLight, kKind, owner_);
     ++runner_.lent_;
     ++runner_.wakes_;
     lent_ = true;
@@ -107,9 +81,9 @@ class JobRunner::Placed {
       if (stopped) break;
     }
     runner_.moving_.erase(self);
-    runner_.main_.take(owner_);
-    slots_ = &runner_.main_;
-    ++runner_.wakes_;  // another slot may be free, which nobody looked at because of this one
+    runner_.places_.begin(Lane::kMain, kKind, owner_);
+    lane_ = Lane::kMain;
+    ++runner_.wakes_;  // another place may be free, which nobody looked at because of this one
     runner_.changed_.notify_all();
   }
 
@@ -118,22 +92,27 @@ class JobRunner::Placed {
  private:
   JobRunner& runner_;
   const std::string owner_;
-  Slots* slots_;  // null: in none yet
+  std::optional<Lane> lane_;  // none yet
   bool lent_ = false;
 };
 
-JobRunner::JobRunner(const RunEnvironment& environment, MemoryGate& gate, RunnerOptions options)
+JobRunner::JobRunner(const RunEnvironment& environment, MemoryGate& gate, RunPlaces& places,
+                     RunnerOptions options)
     : environment_(environment),
       gate_(gate),
       options_(std::move(options)),
-      main_{.places = options_.slots, .of_owner = share_of(options_.slots, options_.client_share)},
-      light_{.places = options_.light_slots,
-             .of_owner = share_of(options_.light_slots, options_.client_share)} {
+      places_(places),
+      mutex_(places.mutex) {
   std::lock_guard lock(mutex_);
-  for (std::uint32_t i = 0; i < options_.slots; ++i) add_worker(Lane::kMain);
-  for (std::uint32_t i = 0; i < options_.light_slots; ++i) add_worker(Lane::kLight);
+  for (const Lane lane : {Lane::kMain, Lane::kLight})
+    for (std::size_t i = 0; i < places_.places(lane); ++i) add_worker(lane);
   threads_.emplace_back([this] { renew_and_reap(); });
   threads_.emplace_back([this] { collect(); });
+  places_.on_free(kKind, [this] {
+    if (!waits_[0] && !waits_[1]) return;
+    ++wakes_;
+    changed_.notify_all();
+  });
 }
 
 JobRunner::~JobRunner() {
@@ -153,6 +132,8 @@ void JobRunner::stop() {
   {
     std::lock_guard lock(mutex_);
     stopping_ = true;  // so that there are no more threads
+    places_.on_free(kKind, {});
+    for (const Lane lane : {Lane::kMain, Lane::kLight}) places_.set_waits(lane, kKind, false);
     threads.swap(threads_);
     for (const auto& run : runs_) run->stop();
   }
@@ -160,12 +141,18 @@ void JobRunner::stop() {
   for (std::thread& thread : threads) thread.join();
 }
 
-const JobRunner::Placed* JobRunner::next_moving() const {
-  if (main_.running >= main_.places) return nullptr;
-  const auto next = std::find_if(moving_.begin(), moving_.end(), [this](const Placed* placed) {
-    return main_.has_place(placed->owner());
+bool JobRunner::may_begin(Lane lane) {
+  if (places_.is_free(lane, kKind)) return true;
+  places_.set_waits(lane, kKind, true);
+  waits_[static_cast<std::size_t>(lane)] = true;
+  return false;
+}
+
+const JobRunner::Placed* JobRunner::next_moving() {
+  const auto next = std::ranges::find_if(moving_, [this](const Placed* placed) {
+    return places_.has_share(Lane::kMain, placed->owner());
   });
-  return next == moving_.end() ? nullptr : *next;
+  return next != moving_.end() && may_begin(Lane::kMain) ? *next : nullptr;
 }
 
 // REQUIRES: mutex_ is held.
@@ -177,7 +164,8 @@ void JobRunner::add_worker(Lane lane) {
 // REQUIRES: mutex_ is held.
 void JobRunner::add_light_worker_if_short() {
   try {
-    if (light_threads_ < light_.places + lent_ && !stopping_) add_worker(Lane::kLight);
+    if (light_threads_ < places_.places(Lane::kLight) + lent_ && !stopping_)
+      add_worker(Lane::kLight);
   } catch (const std::exception&) {
     // No thread or no memory for one: the slot stays empty until a run ends.
   }
@@ -209,16 +197,22 @@ void JobRunner::work(Lane lane) {
   } while (wait_for_wake(seen));
 }
 
+bool JobRunner::take_place(Lane lane, const std::string& owner) {
+  std::lock_guard lock(mutex_);
+  if (!places_.has_place(lane)) return may_begin(lane);
+  places_.begin(lane, kKind, owner);
+  return true;
+}
+
 // True if there may be more to do.
 bool JobRunner::work_once(Lane lane) {
   std::unique_lock claiming(claiming_);
   std::vector<std::string> full;
   {
     std::lock_guard lock(mutex_);
-    const Slots& slots = lane == Lane::kLight ? light_ : main_;
-    if (stopping_ || slots.running >= slots.places) return false;
-    if (lane == Lane::kMain && next_moving() != nullptr) return false;
-    full = slots.full_owners();
+    if (stopping_ || (lane == Lane::kMain && next_moving() != nullptr) || !may_begin(lane))
+      return false;
+    full = places_.full_clients(lane);
   }
   const std::uint64_t room = lane == Lane::kLight
                                  ? std::min(gate_.room(true), most_light(environment_.limits))
@@ -226,19 +220,25 @@ bool JobRunner::work_once(Lane lane) {
   auto claim = environment_.store.claim(options_.worker, options_.lease, room, full);
   if (!claim) {
     environment_.log->warn("event=claim_failed message={}", log_value(claim.error().message));
+  }
+  if (!claim || !*claim) {
+    std::lock_guard lock(mutex_);
+    waits_[static_cast<std::size_t>(lane)] = !full.empty();
+    places_.set_waits(lane, kKind, false);
     return false;
   }
-  if (!*claim) return false;
   const bool light =
-      options_.light_slots > 0 && (*claim)->estimate <= most_light(environment_.limits);
+      places_.places(Lane::kLight) > 0 && (*claim)->estimate <= most_light(environment_.limits);
   auto share =
       gate_.take({.estimate = (*claim)->estimate, .client = (*claim)->owner, .light = light});
-  Placed placed(*this, lane, (*claim)->owner);
+  const bool has_place = share && take_place(lane, (*claim)->owner);
   claiming.unlock();
-  if (!share) {  // calls took the room meanwhile
-    (void)environment_.store.release((*claim)->ref, options_.poll, false);
+  if (!has_place) {  // calls took the room or the place meanwhile
+    const auto delay = share ? std::chrono::milliseconds(0) : options_.poll;
+    (void)environment_.store.release((*claim)->ref, delay, false);
     return false;
   }
+  Placed placed(*this, lane, (*claim)->owner);
   const Claim name{.ref = (*claim)->ref, .job_id = (*claim)->job_id, .tries = (*claim)->tries};
   try {
     Attempt::LeaveLightLane leave;

@@ -3,18 +3,18 @@
 // and renews their leases. It also maintains the store: it queues tasks again whose workers were
 // lost, and collects expired jobs and meshes. Every server of a store does all of this.
 //
-//   JobRunner runner(environment, gate, {.worker = "weftd-1", .slots = 4});
+//   JobRunner runner(environment, gate, places, {.worker = "weftd-1"});
 //   store.on_change([&] { runner.wake(); });
 //   ... runner.stop();
 //
 // Thread-safety: `wake`, `stop` and `figures` may be called from any thread.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <list>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -23,19 +23,13 @@
 #include <vector>
 
 #include "server/admission/memory_gate.h"
+#include "server/admission/run_places.h"
 #include "server/jobs/attempt.h"
 
 namespace weft::server {
 
 struct RunnerOptions {
-  std::string worker{};     // its name in its tasks' records; unique among the servers of a store
-  std::uint32_t slots = 1;  // tasks at once. REQUIRES: >= 1
-  // Additional tasks at once that are light (memory_estimate.h). A task that turns out to be heavy
-  // leaves its light slot, and goes on when one of `slots` is free.
-  std::uint32_t light_slots = 0;
-  // Of the slots of each kind, what one owner's tasks may take: at least one. Tasks without an
-  // owner are nobody's share, because their clients are not told apart.
-  double client_share = 1;
+  std::string worker{};  // its name in its tasks' records; unique among the servers of a store
   std::chrono::milliseconds lease{30'000};
   // The time between two renewals, which carry the progress.
   std::chrono::milliseconds renewal{1'000};
@@ -47,7 +41,11 @@ struct RunnerOptions {
 
 class JobRunner {
  public:
-  JobRunner(const RunEnvironment& environment, MemoryGate& gate, RunnerOptions options);
+  // Tasks share the places with calls; tasks without an owner are nobody's share of them, because
+  // their clients are not told apart. A task that turns out to be heavy leaves the light lane, and
+  // goes on when there is a main place.
+  JobRunner(const RunEnvironment& environment, MemoryGate& gate, RunPlaces& places,
+            RunnerOptions options);
   // Stops.
   ~JobRunner();
   JobRunner(const JobRunner&) = delete;
@@ -63,20 +61,9 @@ class JobRunner {
   QueueFigures figures() const;
 
  private:
-  enum class Lane { kMain, kLight };
+  using Lane = RunPlaces::Lane;
   class Listed;
   class Placed;
-  struct Slots {
-    std::size_t places;
-    std::size_t of_owner;  // places
-    std::size_t running = 0;
-    std::map<std::string, std::size_t> running_of{};  // per owner, none is 0
-
-    void take(const std::string& owner);
-    void leave(const std::string& owner);
-    bool has_place(const std::string& owner) const;
-    std::vector<std::string> full_owners() const;
-  };
 
   // The threads' loops; each step returns false if there was nothing to do, or if it failed.
   void work(Lane lane);
@@ -91,8 +78,13 @@ class JobRunner {
   bool guarded(F&& step);
   void add_worker(Lane lane);
   void add_light_worker_if_short();
-  // The first run that may have a main slot now; null: none. REQUIRES: mutex_ is held.
-  const Placed* next_moving() const;
+  // Whether a task may begin in this lane now, for all that is known here. If not, it waits.
+  // REQUIRES: mutex_ is held.
+  bool may_begin(Lane lane);
+  // Begins in a place that another kind of run has not taken since.
+  bool take_place(Lane lane, const std::string& owner);
+  // The first run that may have a main place now; null: none. REQUIRES: mutex_ is held.
+  const Placed* next_moving();
   // Ends a claim whose run has thrown.
   void give_up(const Claim& claim, const Failure& failure);
   // Waits for a `wake` that the caller has not seen; `seen` is the number of those seen. Returns
@@ -105,9 +97,10 @@ class JobRunner {
   MemoryGate& gate_;
   const RunnerOptions options_;
 
-  mutable std::mutex mutex_;  // guards all below but claiming_
-  Slots main_;
-  Slots light_;
+  RunPlaces& places_;
+  std::mutex& mutex_;  // of the places; guards all below but claiming_
+  // Per lane, whether a task may wait for a place, or for its owner's share of them.
+  std::array<bool, 2> waits_{};
   std::list<const Placed*> moving_;  // from the light lane to the main one, the first first
   std::size_t lent_ = 0;  // threads of the light lane that run in the main one, or are about to
   std::set<std::shared_ptr<Attempt>> runs_;

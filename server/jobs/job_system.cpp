@@ -19,14 +19,14 @@ std::string lost_workers(const RetryPolicy& policy) {
 
 JobSystem::JobSystem(std::unique_ptr<JobStore> store, JobOptions options, Admission& admission,
                      Metrics& metrics, const EngineFn& engine, Arena& arena, MemoryGate& gate,
-                     const Logger& log)
+                     RunPlaces& places, const Logger& log)
     : store_(std::move(store)) {
   options.retry.error = lost_workers(options.retry);
   const RunEnvironment environment{engine,        arena,   *store_, options.service.limits,
                                    options.retry, metrics, log};
   store_->on_change([this] { tell_of_change(); });
   if (options.serves) service_.emplace(options.service, admission, metrics, gate, *store_, log);
-  if (options.works) runner_.emplace(environment, gate, options.runner);
+  if (options.works) runner_.emplace(environment, gate, places, options.runner);
   std::lock_guard lock(mutex_);
   listening_ = true;
 }

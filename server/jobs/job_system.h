@@ -32,7 +32,7 @@ class JobSystem {
  public:
   JobSystem(std::unique_ptr<JobStore> store, JobOptions options, Admission& admission,
             Metrics& metrics, const EngineFn& engine, Arena& arena, MemoryGate& gate,
-            const Logger& log);
+            RunPlaces& places, const Logger& log);
   ~JobSystem();
 
   // Null if this server does not serve.

@@ -21,7 +21,8 @@ constexpr std::size_t kMostKeyedBytes = std::size_t{1} << 20;
 }  // namespace
 
 MeshService::MeshService(const ServiceOptions& options, Admission& admission, Metrics& metrics,
-                         EngineFn engine, Arena& arena, MemoryGate& gate, Logger log)
+                         EngineFn engine, Arena& arena, MemoryGate& gate, RunPlaces& places,
+                         Logger log)
     : RawService("/weft.v1.MeshService/", admission),
       options_(options),
       metrics_(metrics),
@@ -37,12 +38,11 @@ MeshService::MeshService(const ServiceOptions& options, Admission& admission, Me
                    cache_,
                    [this](MessageStream& stream) { calls_.forget(stream); },
                    [&admission] { return admission.may_log_failure(); }},
-      queue_({.workers = options.jobs,
-              .workers_for_light = options.light_jobs,
-              .capacity = options.queue,
+      queue_({.capacity = options.queue,
               .light = most_light(options.limits),
               .gate = &gate,
-              .client_share = options.client_share}),
+              .client_share = options.client_share,
+              .places = &places}),
       ticker_([this] { tick_until_stopped(); }) {
   add({"GenerateMesh", options.limits.max_request_bytes,
        [this](const auto& call) { generate_mesh(*call); }});

@@ -59,7 +59,7 @@ class MeshService final : public RawService {
  public:
   // The admission, the metrics, the arena and the gate outlive the service.
   MeshService(const ServiceOptions& options, Admission& admission, Metrics& metrics,
-              EngineFn engine, Arena& arena, MemoryGate& gate, Logger log);
+              EngineFn engine, Arena& arena, MemoryGate& gate, RunPlaces& places, Logger log);
   // REQUIRES: no call is open.
   ~MeshService() override;
 
