@@ -301,6 +301,7 @@ class Run {
     if (auto error = run_mesh(plan, area, sink_, context_, summary_)) return tl::unexpected(*error);
     summary_.engine_seconds += summary_.triangulate_seconds + summary_.size_seconds;
     summary_.size_warnings = size_warnings(request_.size, summary_.box, summary_.least_bound);
+    summary_.narrow = costly_place();
     if (!request_.allow_unrefined) {
       if (auto error = bounds_error(summary_, request_.min_angle_deg))
         return tl::unexpected(*error);
@@ -341,6 +342,20 @@ class Run {
                 std::to_string(worst.other) + ", " + text(worst.width) + " apart at (" +
                 text(worst.at.x) + ", " + text(worst.at.y) + ")",
             worst.at};
+  }
+
+  std::optional<NarrowPlace> costly_place() const {
+    constexpr std::uint64_t kMany = 1000;
+    constexpr double kLargePart = 0.2;
+    const auto& worst = narrow_.costliest();
+    const auto triangles = static_cast<double>(summary_.triangles);
+    if (!worst || summary_.triangles < kMany || worst->least < kLargePart * triangles)
+      return std::nullopt;
+    return NarrowPlace{.segment = worst->segment,
+                       .other = worst->other,
+                       .at = worst->at,
+                       .width = worst->width,
+                       .triangles = std::min(worst->least, triangles)};
   }
 
   bool may_stream() const { return request_.min_angle_deg <= kMaxStreamingAngleDeg; }

@@ -2,6 +2,7 @@
 #include "client/report/mesh_text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "client/base/text.h"
@@ -44,6 +45,16 @@ Json merging_json(const v1::Merging& merging) {
   return json;
 }
 
+// Null if the domain has no costly place.
+Json narrow_json(const v1::Summary& summary) {
+  if (!summary.has_narrow()) return nullptr;
+  const v1::NarrowPlace& narrow = summary.narrow();
+  return {{"segments", {narrow.segment(), narrow.other()}},
+          {"at", {narrow.x(), narrow.y()}},
+          {"width", narrow.width()},
+          {"triangles", narrow.triangles()}};
+}
+
 // Three digits of a distance are enough for people.
 std::string rounded(double distance) {
   char text[32];
@@ -78,6 +89,7 @@ Json summary_json(const v1::Summary& summary) {
                 {{"areas", summary.overlap().areas()},
                  {"area", summary.overlap().area()},
                  {"united", summary.overlap().united()}}},
+               {"narrow", narrow_json(summary)},
                {"digest", hex(summary.sha256())},
                {"engine_version", summary.engine_version()},
                {"threads", summary.threads()},
@@ -143,7 +155,7 @@ std::string summary_text(const v1::Summary& summary) {
   missed(unrefined.edge_floor(), "edges would become too short");
   missed(unrefined.budget(), "--max-triangles was reached");
   return text + unrefined_warning(unrefined) + merging_text(summary.merging()) +
-         overlap_text(summary);
+         overlap_text(summary) + narrow_text(summary);
 }
 
 std::string size_warnings_text(const v1::Summary& summary) {
@@ -178,6 +190,18 @@ std::string overlap_text(const v1::Summary& summary) {
          rounded(overlap.area()) +
          (overlap.united() ? ", which is meshed once\n"
                            : ", not meshed where an even number of them does\n");
+}
+
+std::string narrow_text(const v1::Summary& summary) {
+  if (!summary.has_narrow()) return "";
+  const v1::NarrowPlace& narrow = summary.narrow();
+  char tolerance[32];  // one that merges them: two digits, rounded up
+  const double unit = std::pow(10, std::floor(std::log10(narrow.width())) - 1);
+  std::snprintf(tolerance, sizeof tolerance, "%g", unit * (std::floor(narrow.width() / unit) + 1));
+  return "at least " + with_separators(narrow.triangles()) + " triangles lie between segments " +
+         std::to_string(narrow.segment()) + " and " + std::to_string(narrow.other()) + ", " +
+         rounded(narrow.width()) + " apart at " + coordinates(narrow.x(), narrow.y()) +
+         ": if they should be one, --snap " + tolerance + " merges them\n";
 }
 
 std::string merging_text(const v1::Merging& merging) {

@@ -36,6 +36,8 @@ std::string unrefined_warning(const v1::Unrefined& unrefined);
 std::string merging_text(const v1::Merging& merging);
 // How many polygons overlap on how large an area; empty if it is no more than rounding makes.
 std::string overlap_text(const v1::Summary& summary);
+// Which two segments cost many triangles, and what merges them; empty if none do.
+std::string narrow_text(const v1::Summary& summary);
 
 // "region 1 = 0.35\n", one line per region.
 std::string region_values_text(std::span<const RegionValue> values);

@@ -29,6 +29,12 @@ void bring_places_back(const DomainProjection& projection, v1::Summary& summary)
     unrefined.set_x(at.x);
     unrefined.set_y(at.y);
   }
+  if (summary.has_narrow()) {
+    v1::NarrowPlace& narrow = *summary.mutable_narrow();
+    const Point at = projection.to_lonlat({narrow.x(), narrow.y()});
+    narrow.set_x(at.x);
+    narrow.set_y(at.y);
+  }
   v1::Merging& merging = *summary.mutable_merging();
   if (merging.farthest() > 0) {
     const Point at = projection.to_lonlat({merging.farthest_x(), merging.farthest_y()});

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/domain/arrangement/merging.h"
@@ -38,6 +39,15 @@ struct Unrefined {
   }
   // Triangles that neither the input nor the request exempts.
   std::uint64_t without_exemption() const { return precision + streaming; }
+};
+
+// Two segments so near to each other that the bound on angles makes many triangles between them.
+struct NarrowPlace {
+  std::uint32_t segment = 0;  // indices into Pslg::segments
+  std::uint32_t other = 0;
+  Point at;              // on the first, where they make the most triangles
+  double width = 0;      // between them there
+  double triangles = 0;  // between them and around, at least
 };
 
 struct Summary {
@@ -78,6 +88,8 @@ struct Summary {
   Point unrefined_at;
   Merging merging;  // of the input, before refinement
   Overlap overlap;  // of the input's areas
+  // The costliest one, if it has at least a fifth of a mesh of a thousand triangles or more.
+  std::optional<NarrowPlace> narrow;
 
   // Seconds of wall time, one stage after the other.
   double triangulate_seconds = 0;

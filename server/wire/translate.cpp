@@ -309,6 +309,15 @@ v1::Summary to_wire(const Summary& summary, std::uint32_t threads) {
     overlap.set_area(summary.overlap.area);
     overlap.set_united(summary.overlap.united);
   }
+  if (summary.narrow) {
+    v1::NarrowPlace& narrow = *message.mutable_narrow();
+    narrow.set_segment(summary.narrow->segment);
+    narrow.set_other(summary.narrow->other);
+    narrow.set_x(summary.narrow->at.x);
+    narrow.set_y(summary.narrow->at.y);
+    narrow.set_width(summary.narrow->width);
+    narrow.set_triangles(static_cast<std::uint64_t>(summary.narrow->triangles));
+  }
   for (const SizeWarning& warning : summary.size_warnings) {
     v1::SizeWarning& warned = *message.add_size_warnings();
     warned.set_kind(to_wire(warning.kind));

@@ -108,6 +108,17 @@ def test_a_mesh_that_misses_its_bounds_is_an_error_unless_it_is_allowed(client):
     assert summary.unrefined.x == pytest.approx(1e6)
 
 
+def test_two_segments_that_cost_many_triangles_are_told(client):
+    box = [(0, 0), (10, 0), (10, 10), (0, 10)]
+    domain = weft.Domain(points=[*box, (1, 5), (9, 5), (1, 5.002), (9, 5.002)],
+                         segments=[(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (6, 7)])
+    narrow = client.mesh(domain).summary.narrow
+    assert {narrow.segment, narrow.other} == {4, 5}
+    assert narrow.width == pytest.approx(0.002)
+    assert narrow.y == pytest.approx(5, abs=0.01)
+    assert client.mesh(domain, snap=0.01).summary.narrow is None
+
+
 def test_a_snap_reaches_the_server_which_refuses_what_is_no_distance(client):
     assert client.mesh(KEY, snap=1e-9).summary.merging.points == 0
     with pytest.raises(weft.InvalidRequest) as caught:

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace weft::client {
@@ -84,6 +86,29 @@ TEST(MeshReport, GivesProgramsThePlacesIfThereAreAny) {
   EXPECT_EQ(json["merging"]["vanished_at"], Json::parse("[4.0, 5.0]"));
   EXPECT_FALSE(summary_json({})["unrefined"].contains("at"));
   EXPECT_FALSE(summary_json({})["merging"].contains("farthest_at"));
+}
+
+TEST(MeshReport, TellsWhichSegmentsCostManyTrianglesAndWhatMergesThem) {
+  v1::Summary summary;
+  EXPECT_EQ(narrow_text(summary), "");
+  EXPECT_TRUE(summary_json(summary)["narrow"].is_null());
+  v1::NarrowPlace& narrow = *summary.mutable_narrow();
+  narrow.set_segment(2);
+  narrow.set_other(5);
+  narrow.set_x(0);
+  narrow.set_y(4);
+  narrow.set_width(1.23e-5);
+  narrow.set_triangles(95'000);
+  EXPECT_EQ(narrow_text(summary),
+            "at least 95,000 triangles lie between segments 2 and 5, 1.23e-05 apart at (0, 4): if "
+            "they should be one, --snap 1.3e-05 merges them\n");
+  EXPECT_EQ(summary_json(summary)["narrow"],
+            Json::parse(R"({"segments": [2, 5], "at": [0.0, 4.0], "width": 1.23e-5,
+                            "triangles": 95000})"));
+  for (const auto& [width, snap] : {std::pair{0.003, "0.0031 "}, {1.0, "1.1 "}, {99.5, "100 "}}) {
+    narrow.set_width(width);
+    EXPECT_NE(narrow_text(summary).find(std::string("--snap ") + snap), std::string::npos) << width;
+  }
 }
 
 TEST(MeshReport, TellsTheAttributesThatIdsStandFor) {

@@ -138,6 +138,25 @@ TEST(NarrowPlaces, KnowWhatIsCostliest) {
   EXPECT_LT(c.at.x, 9);
 }
 
+TEST(NarrowPlaces, AreToldOfAMeshIfOneMakesAFifthOfIt) {
+  ExecutionContext context;
+  Forgetful sink;
+  const auto narrow = generate_mesh({.pslg = side_by_side(0.003, 0)}, sink, context);
+  ASSERT_TRUE(narrow);
+  ASSERT_TRUE(narrow->narrow);
+  EXPECT_EQ(std::min(narrow->narrow->segment, narrow->narrow->other), 4u);
+  EXPECT_EQ(std::max(narrow->narrow->segment, narrow->narrow->other), 5u);
+  EXPECT_NEAR(narrow->narrow->width, 0.003, 1e-9);
+  EXPECT_NEAR(narrow->narrow->at.y, 5, 0.01);
+  const auto triangles = static_cast<double>(narrow->triangles);
+  EXPECT_GE(narrow->narrow->triangles, 0.2 * triangles);
+  EXPECT_LE(narrow->narrow->triangles, triangles);
+
+  const auto wide = generate_mesh({.pslg = side_by_side(0.5, 0), .size = 1e-3}, sink, context);
+  ASSERT_TRUE(wide);
+  EXPECT_FALSE(wide->narrow);
+}
+
 TEST(NarrowPlaces, AreSampledWhereTheyAre) {
   const NarrowPlaces places = places_of(side_by_side(0.003, 0), 20);
   std::vector<Quadtree::Sample> samples;

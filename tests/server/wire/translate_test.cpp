@@ -82,6 +82,7 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   summary.size_histogram[9] = 10;
   summary.unrefined = {11, 12, 13, 27, 28, 29};
   summary.unrefined_at = {30, 31};
+  summary.narrow = NarrowPlace{51, 52, {53, 54}, 55, 56};
   summary.merging = {32, 33, 34, 35, {36, 37}, 38, {39, 40}};
   summary.triangulate_seconds = 14;
   summary.size_seconds = 15;
@@ -134,6 +135,12 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   EXPECT_EQ(message.unrefined().too_large(), 29u);
   EXPECT_EQ(message.unrefined().x(), 30);
   EXPECT_EQ(message.unrefined().y(), 31);
+  EXPECT_EQ(message.narrow().segment(), 51u);
+  EXPECT_EQ(message.narrow().other(), 52u);
+  EXPECT_EQ(message.narrow().x(), 53);
+  EXPECT_EQ(message.narrow().y(), 54);
+  EXPECT_EQ(message.narrow().width(), 55);
+  EXPECT_EQ(message.narrow().triangles(), 56u);
   EXPECT_EQ(message.merging().tolerance(), 32);
   EXPECT_EQ(message.merging().points(), 33u);
   EXPECT_EQ(message.merging().segments(), 34u);

@@ -29,8 +29,8 @@ from .fields import Field, distance, on_mesh, raster, width
 from .local import LocalServer, local
 from .mesh import Mesh
 from .quality import Quality
-from .results import (Accepted, Job, JobState, Merging, Progress, ServerInfo, ServerLimits,
-                      SizeWarning, Summary, Timings, Unrefined)
+from .results import (Accepted, Job, JobState, Merging, NarrowPlace, Progress, ServerInfo,
+                      ServerLimits, SizeWarning, Summary, Timings, Unrefined)
 from .size import Raster, Size
 
 __all__ = [
@@ -38,7 +38,7 @@ __all__ = [
     "DamagedStream", "DeadlineExceeded", "Domain", "DomainError", "DomainLike", "FailedPrecondition", "Field",
     "FieldViolation", "InvalidRequest", "Job", "JobState", "LimitExceeded", "LocalServer",
     "LocalServerError", "Merging", "Mesh", "MeshFileError", "MeshOptions", "MeshStream",
-    "MissingPackage", "NotFound", "Progress", "Quality", "Raster", "Region", "ServerError",
+    "MissingPackage", "NarrowPlace", "NotFound", "Progress", "Quality", "Raster", "Region", "ServerError",
     "ServerInfo", "ServerLimits", "Size", "SizeWarning", "Summary", "TLS", "Timings",
     "Unauthenticated", "Unavailable", "Unrefined", "WeftError", "WeftWarning", "__version__", "aio",
     "distance", "local", "on_mesh", "raster", "width",

@@ -100,6 +100,25 @@ class Merging:
 
 
 @dataclasses.dataclass(frozen=True)
+class NarrowPlace:
+    """Two segments so near to each other that the bound on angles makes many triangles between them. A
+    `snap` a little above `width` merges them."""
+
+    segment: int
+    """Index of a segment of the domain."""
+    other: int
+    """Index of the other."""
+    x: float
+    """Of a place on the first, where they make the most triangles."""
+    y: float
+    """See x."""
+    width: float
+    """How far they are apart there."""
+    triangles: int
+    """Between them and around, at least."""
+
+
+@dataclasses.dataclass(frozen=True)
 class SizeWarning:
     """A size that is probably not what the client wants; the client warns of it with `message`, too."""
 
@@ -158,6 +177,8 @@ class Summary:
     """(10,): triangles per area over its bound, bins of 0.1, the last open."""
     unrefined: Unrefined
     merging: Merging
+    narrow: NarrowPlace | None
+    """The costliest one, if it has at least a fifth of a mesh of a thousand triangles or more."""
     timings: Timings
     peak_engine_bytes: int
     insertions: int
@@ -268,6 +289,7 @@ def summary(message: Any) -> Summary:
     return _take(Summary, message, **counts,
                  unrefined=_take(Unrefined, message.unrefined),
                  merging=_take(Merging, message.merging),
+                 narrow=_take(NarrowPlace, message.narrow) if message.HasField("narrow") else None,
                  timings=_take(Timings, message.timings),
                  leaf_boxes=np.array(message.leaf_boxes, np.float64).reshape(-1, 4),
                  digest=message.sha256.hex(),
