@@ -41,7 +41,7 @@ std::vector<HandedOn> triangles_handed_on(const Mesh& mesh, const Slots& slots) 
       const std::uint32_t owner = std::max({mesh.block_of_vertex(triangle.vertex[0]).owner,
                                             mesh.block_of_vertex(triangle.vertex[1]).owner,
                                             mesh.block_of_vertex(triangle.vertex[2]).owner});
-      if (owner != slots.owner()) result.emplace_back(owner, t, triangle);
+      if (owner > slots.owner()) result.emplace_back(owner, t, triangle);
     }
   });
   return result;

@@ -4,9 +4,10 @@
 // Vertices are numbered by owner and then in the order in which the owner made them
 // (Slots::number_vertices). A triangle goes with the last of its vertices: the part of the owner
 // whose number is the highest among them. So a chunk refers only to its own vertices and to those
-// of earlier chunks, no two parts have to agree on anything, and there is no table of numbers. A
-// slot only ever holds triangles with a vertex of the slot's owner, so most triangles stay in their
-// part; 2 % are handed on to a neighbour (`handed_on`).
+// of earlier chunks, no two parts have to agree on anything, and there is no table of numbers. An
+// insertion makes only triangles with a vertex of the slot's owner, so most triangles stay in their
+// part; 2 % are handed on to a neighbour (`handed_on`). A triangle of a row (lattice_rows.h) may
+// have vertices of earlier owners alone: it stays in the slot's part, too, because that is later.
 #pragma once
 
 #include <array>
@@ -53,7 +54,7 @@ struct HandedOn {
   Copy copy;
 };
 
-// Returns an owner's triangles that go with other parts, in the order of its slots. REQUIRES: they
+// Returns an owner's triangles that go with later parts, in the order of its slots. REQUIRES: they
 // are final.
 std::vector<HandedOn> triangles_handed_on(const Mesh& mesh, const Slots& slots);
 

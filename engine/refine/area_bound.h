@@ -55,6 +55,9 @@ class ConstantArea {
     return lattice_.nearest(c, std::min(bound_, region_bound), shape);
   }
 
+  // The bound if it is one value in all of the box.
+  std::optional<double> uniform_bound(const Box&) const { return bound_; }
+
   // Whether there is a lattice at p. `bound` is the bound there, that of the region included.
   bool on_lattice(Point, double bound, double) const {
     return bound < std::numeric_limits<double>::infinity();

@@ -67,6 +67,9 @@ class MappedArea {
     return lattice_.nearest(c, std::min(bound, region_bound), shape);
   }
 
+  // The bound if it is one value in all of the box, as far as the map tells.
+  std::optional<double> uniform_bound(const Box& box) const { return map_.uniform_size(box); }
+
   // Whether there is a lattice at p. `bound` is the bound there, that of the region included.
   bool on_lattice(Point p, double bound, double region_bound) {
     find_grain(p);

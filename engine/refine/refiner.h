@@ -111,6 +111,32 @@ class Refiner {
     return stopped_;
   }
 
+  enum class Placing {
+    kPlaced,
+    kAgain,  // not yet: segments were split for it, so t may not exist any more
+    kRefused,
+  };
+  // Makes a point a vertex, if it keeps `clearance2`, squared, from all that it is joined to.
+  // REQUIRES: it lies in triangle t, which this task owns, and is not a vertex.
+  Placing place(std::uint32_t t, Point p, double clearance2) {
+    tick();
+    const Outcome outcome = insert_in_triangle(t, p, clearance2);
+    if (outcome == Outcome::kInserted) return Placing::kPlaced;
+    if (outcome != Outcome::kEncroaches) return Placing::kRefused;
+    queue_encroached();
+    return split_queued_segments() ? Placing::kAgain : Placing::kRefused;
+  }
+  // A triangle of the star of the point that was placed last, which is its first vertex.
+  std::uint32_t placed() const { return star_.cavity().triangles()[0]; }
+
+  // Counts what somebody else has inserted in this task's slots.
+  void count(std::uint64_t vertices, std::int64_t triangles) {
+    insertions_ += vertices;
+    added_ += triangles;
+  }
+
+  bool stopped() const { return stopped_.has_value(); }
+
   // Refines until the queue is empty, `max_triangles` are reached, or the context stops it.
   std::optional<Error> run() {
     split_queued_segments();
@@ -234,8 +260,7 @@ class Refiner {
   // exists. If none can be split, t stays as it is.
   void split_encroached(std::uint32_t t) {
     const std::uint32_t first_vertex = mesh_.triangles[t].vertex[0];
-    segments_.insert(segments_.end(), star_.cavity().encroached().begin(),
-                     star_.cavity().encroached().end());
+    queue_encroached();
     const bool split = split_queued_segments();
     Triangle& after = mesh_.triangles[t];
     if (after.badness() == kGood || after.vertex[0] != first_vertex) return;
@@ -372,6 +397,12 @@ class Refiner {
     } else {
       handed_over_.push_back({t, vertex});
     }
+  }
+
+  // Queues the segments that the star's point encroaches upon.
+  void queue_encroached() {
+    segments_.insert(segments_.end(), star_.cavity().encroached().begin(),
+                     star_.cavity().encroached().end());
   }
 
   // Splits the queued segments. Returns whether any was split.

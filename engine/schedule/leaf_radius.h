@@ -111,6 +111,9 @@ class LeafRadius {
     return area_.nearest_of_lattice(c, region_bound, shape);
   }
 
+  // None: a coarse mesh has no rows of the final one (refine/row_filler.h).
+  std::optional<double> uniform_bound(const Box&) const { return std::nullopt; }
+
   std::uint64_t bytes() const {
     std::uint64_t bytes = busy_near_->capacity() * sizeof(Near);
     for (const Near& near : *busy_near_) bytes += near.capacity() * sizeof(near[0]);

@@ -14,6 +14,8 @@
 // insertions are handed over; 0.02 to 0.3 % wait, if a size makes the mesh or if two parallel
 // segments do. A leaf that has nothing left and is handed nothing skips the later rounds.
 //
+// The first round begins with rows of the lattice in what is clear of segments (row_filler.h).
+//
 // One task cleans up what is left after the rounds. It owns everything that has not been sent: all
 // but the leaves before `frozen` and their grown boxes.
 //
@@ -35,6 +37,7 @@
 
 #include "engine/base/held_bytes.h"
 #include "engine/refine/refiner.h"
+#include "engine/refine/row_filler.h"
 #include "engine/refine/smoothing/smoother.h"
 #include "engine/refine/storage/slots.h"
 #include "engine/schedule/leaf_graph.h"
@@ -144,15 +147,15 @@ class LeafTasks {
     const Lease worker(*this);
     auto& refiner = worker->refiner;
     const Quadtree::Leaf& place = tree_.leaves()[leaf];
-    refiner.begin(l.slots,
-                  OwnsBox{place.grown, LeafGraph::hands_over(round) ? place.box : place.grown},
-                  place.grown);
+    const OwnsBox ownership{place.grown, LeafGraph::hands_over(round) ? place.box : place.grown};
+    refiner.begin(l.slots, ownership, place.grown);
     for (const BadTriangle& t : l.left) refiner.queue(t);
     for (const SegmentEdge& s : l.segments_left) refiner.queue(s);
     for_handed_to(leaf, round, [&](const auto& what) {
       refiner.queue(what);
       return true;
     });
+    if (round == 0) worker->filler.fill(refiner, l.slots, ownership, place.box, l.left);
     auto error = refiner.run();
     l.left.clear();
     l.segments_left.clear();
@@ -242,7 +245,8 @@ class LeafTasks {
   // Bytes at the peak.
   std::uint64_t bytes() const {
     std::uint64_t bytes = leaves_.capacity() * sizeof(Leaf) + held_.peak();
-    for (const auto& w : workers_) bytes += w->refiner.bytes() + w->smoother.bytes();
+    for (const auto& w : workers_)
+      bytes += w->refiner.bytes() + w->filler.bytes() + w->smoother.bytes();
     return bytes;
   }
 
@@ -282,6 +286,7 @@ class LeafTasks {
   // The buffers of a running task, in cache lines that no other thread writes.
   struct alignas(128) Worker {
     LeafRefiner refiner;
+    RowFiller<AreaBound> filler;
     Smoother<OwnsBoxUnfrozen, AreaBound> smoother;
     std::thread::id last_user{};
   };
@@ -295,6 +300,7 @@ class LeafTasks {
       if (tasks_.idle_.empty()) {
         tasks_.workers_.push_back(std::unique_ptr<Worker>(
             new Worker{{tasks_.refinement_, tasks_.quality_, tasks_.area_.again()},
+                       {tasks_.refinement_, tasks_.quality_, tasks_.area_},
                        {tasks_.refinement_, tasks_.quality_, tasks_.area_.again()}}));
         tasks_.idle_.reserve(tasks_.workers_.size());  // so that giving back cannot fail
         tasks_.idle_.push_back(tasks_.workers_.back().get());

@@ -62,23 +62,11 @@ struct LatticePoint {
 // Beyond this the lattice's indices, and a tenth of a spacing, are no longer exact in a double.
 inline constexpr double kFarthestInLattice2 = 1e28;
 
-// The point of the hexagonal lattice of unit spacing nearest to w, with its jitter. REQUIRES:
-// norm2(w) < kFarthestInLattice2.
-inline Complex nearest_of_lattice(Complex w, double jitter) {
-  constexpr double kRise = 0.86602540378443865;  // from row to row
-  // The nearest point is in the row below or the one above; odd rows are shifted by a half.
-  const double j0 = std::floor(w.im * (1 / kRise));
-  const double shift0 = 0.5 * (j0 - 2 * std::floor(0.5 * j0));
-  const double shift1 = 0.5 - shift0;
-  const double i0 = std::floor(w.re - shift0 + 0.5);
-  const double i1 = std::floor(w.re - shift1 + 0.5);
-  const double x0 = i0 + shift0 - w.re;
-  const double x1 = i1 + shift1 - w.re;
-  const double y0 = j0 * kRise - w.im;
-  const double y1 = y0 + kRise;
-  const bool upper = x1 * x1 + y1 * y1 < x0 * x0 + y0 * y0;
-  const double i = upper ? i1 : i0;
-  const double j = upper ? j0 + 1 : j0;
+// From row to row of the hexagonal lattice of unit spacing. Odd rows are shifted by a half.
+inline constexpr double kRowRise = 0.86602540378443865;
+
+// The point in column i of row j of that lattice, whose row is shifted by `shift`, with its jitter.
+inline Complex lattice_point(double i, double j, double shift, double jitter) {
   const auto bits = [](double n) {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(n));
   };
@@ -89,8 +77,32 @@ inline Complex nearest_of_lattice(Complex w, double jitter) {
   const auto shake = [jitter](std::uint64_t bits16) {
     return jitter * (static_cast<double>(static_cast<std::int32_t>(bits16)) * 0x1p-15 - 1);
   };
-  return {i + (upper ? shift1 : shift0) + shake(hash & 0xffff),
-          j * kRise + shake(hash >> 16 & 0xffff)};
+  return {i + shift + shake(hash & 0xffff), j * kRowRise + shake(hash >> 16 & 0xffff)};
+}
+
+// The point of the lattice nearest to w. REQUIRES: norm2(w) < kFarthestInLattice2.
+inline Complex nearest_of_lattice(Complex w, double jitter) {
+  // The nearest point is in the row below or the one above.
+  const double j0 = std::floor(w.im * (1 / kRowRise));
+  const double shift0 = 0.5 * (j0 - 2 * std::floor(0.5 * j0));
+  const double shift1 = 0.5 - shift0;
+  const double i0 = std::floor(w.re - shift0 + 0.5);
+  const double i1 = std::floor(w.re - shift1 + 0.5);
+  const double x0 = i0 + shift0 - w.re;
+  const double x1 = i1 + shift1 - w.re;
+  const double y0 = j0 * kRowRise - w.im;
+  const double y1 = y0 + kRowRise;
+  const bool upper = x1 * x1 + y1 * y1 < x0 * x0 + y0 * y0;
+  const double i = upper ? i1 : i0;
+  const double j = upper ? j0 + 1 : j0;
+  return lattice_point(i, j, upper ? shift1 : shift0, jitter);
+}
+
+// The squared spacing of the lattice for a bound; 0 if this is not a size. REQUIRES: the shape
+// exists.
+inline double lattice_spacing2(double bound, const LatticeShape& shape) {
+  constexpr double kMostBound = 1e150;
+  return bound > 0 && bound < kMostBound ? shape.fill * bound / kEquilateral : 0;
 }
 
 // The lattice for one bound everywhere, through the origin. It remembers the last bound.
@@ -101,9 +113,10 @@ class UniformLattice {
   // many spacings from the origin.
   LatticePoint nearest(Point c, double bound, const LatticeShape& shape) {
     if (bound != bound_) [[unlikely]] {
-      if (!(bound > 0 && bound < kMostBound)) return {};
+      const double spacing2 = lattice_spacing2(bound, shape);
+      if (spacing2 == 0) return {};
       bound_ = bound;
-      spacing2_ = shape.fill * bound / kEquilateral;
+      spacing2_ = spacing2;
       spacing_ = std::sqrt(spacing2_);
       per_unit_ = 1 / spacing_;
     }
@@ -115,8 +128,6 @@ class UniformLattice {
   }
 
  private:
-  static constexpr double kMostBound = 1e150;
-
   double bound_ = 0;
   double spacing2_ = 0;
   double spacing_ = 0;
