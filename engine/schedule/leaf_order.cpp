@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <tuple>
 
 namespace weft {
@@ -22,15 +23,65 @@ std::vector<std::uint32_t> ranks(const std::vector<Quadtree::Leaf>& leaves, Key 
   return rank;
 }
 
+// The place of each leaf if all are sorted by when they begin, by colouring of intervals: from the
+// heaviest leaf on, each begins at the earliest time at which none of those in conflict is at work.
+std::vector<std::uint32_t> ranks_by_start(
+    const std::vector<Quadtree::Leaf>& leaves,
+    const std::vector<std::vector<std::uint32_t>>& conflicts) {
+  constexpr double kLeastWork = 0.02;  // of the mean: every task costs something
+  struct Interval {
+    double begin;
+    double end;
+  };
+  const double all =
+      std::accumulate(leaves.begin(), leaves.end(), 0.0,
+                      [](double sum, const Quadtree::Leaf& l) { return sum + l.weight; });
+  const double least = kLeastWork * all / static_cast<double>(leaves.size());
+  const auto work = [&](std::uint32_t l) { return std::max(leaves[l].weight, least); };
+
+  std::vector<std::uint32_t> heaviest_first(leaves.size());
+  std::iota(heaviest_first.begin(), heaviest_first.end(), 0u);
+  std::stable_sort(
+      heaviest_first.begin(), heaviest_first.end(),
+      [&](std::uint32_t a, std::uint32_t b) { return leaves[a].weight > leaves[b].weight; });
+  std::vector<std::optional<double>> begin(leaves.size());
+  std::vector<Interval> busy;
+  for (const std::uint32_t leaf : heaviest_first) {
+    busy.clear();
+    for (const std::uint32_t other : conflicts[leaf]) {
+      if (begin[other]) busy.push_back({*begin[other], *begin[other] + work(other)});
+    }
+    std::sort(busy.begin(), busy.end(),
+              [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
+    double at = 0;
+    for (const Interval& other : busy) {
+      if (at + work(leaf) <= other.begin) break;
+      at = std::max(at, other.end);
+    }
+    begin[leaf] = at;
+  }
+  return ranks(leaves, [&](const Quadtree::Leaf& l) {
+    return std::tuple(*begin[static_cast<std::size_t>(&l - leaves.data())]);
+  });
+}
+
+// Up to so many leaves their first round and smoothing are ordered by intervals.
+constexpr std::size_t kFewLeaves = 256;
+
 }  // namespace
 
 LeafOrder::LeafOrder(const Quadtree& tree) : conflicts_(tree.conflicts()) {
   const auto& leaves = tree.leaves();
+  rank_[kLaterRounds] =
+      ranks(leaves, [](const Quadtree::Leaf& l) { return std::tuple(l.depth, l.across & 1); });
+  if (leaves.size() <= kFewLeaves) {
+    rank_[kFirstRound] = ranks_by_start(leaves, conflicts_);
+    rank_[kSmoothing] = rank_[kFirstRound];
+    return;
+  }
   rank_[kFirstRound] = ranks(leaves, [](const Quadtree::Leaf& l) {
     return std::tuple(l.depth, l.along & 1, l.across & 1);
   });
-  rank_[kLaterRounds] =
-      ranks(leaves, [](const Quadtree::Leaf& l) { return std::tuple(l.depth, l.across & 1); });
   rank_[kSmoothing] = ranks(leaves, [](const Quadtree::Leaf& l) {
     return std::tuple(l.along << (Quadtree::kMaxDepth - l.depth), l.across & 1);
   });

@@ -2,14 +2,23 @@
 // Which leaves' tasks are in conflict because their grown boxes overlap, and which of two in
 // conflict comes first. The order depends only on the tree. It differs by phase:
 //
-//   - The first round has nearly all the work. The larger leaf comes first; of equal leaves, the
-//   one
-//     of the lower colour, of four colours in blocks of two by two. So chains of leaves that wait
-//     for one another are short, and many threads find work.
+//   - The first round has nearly all the work. If there are at most 256 leaves, each, the heaviest
+//     first, is given the earliest time at which no leaf in conflict is at work, and the
+//     earlier one comes first. So the heaviest chain of leaves that wait for one another is short.
+//     If there are more, the larger leaf comes first; of equal leaves, the one of the lower colour,
+//     of four colours in blocks of two by two. Chains matter less there, and memory more.
 //   - Later rounds take little time. Equal leaves are ordered by the parity of their row, and then
 //     along the sweep (quadtree.h), so no leaf waits for others far ahead of the sweep.
-//   - Smoothing goes along the sweep: by where a leaf begins, and equal leaves by the parity of
-//     their row. So no leaf waits for others ahead.
+//   - Smoothing goes as the first round if there are at most 256 leaves. If there are more, it goes
+//     along the sweep: by where a leaf begins, and equal leaves by the parity of their row. So no
+//     leaf waits for others ahead.
+//
+// The cylinder with 0.63 M triangles, in 97 leaves, by the times of its tasks, and its longest
+// chain in the first round and in smoothing:
+//
+//                         4 threads   8     16    64     chain, ms
+//   colours, sweep        3.5         4.5   4.8   4.8    10.3, 8.5
+//   earliest time         3.4         5.7   6.6   6.6     8.7, 3.0
 //
 // The leaves ahead of the sweep that a leaf waits for must be in memory before it can be sent
 // (leaf_graph.h). The largest share of the mesh that has begun and is not sent, in percent, in the
