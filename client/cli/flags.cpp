@@ -20,6 +20,12 @@ void add_rows(CLI::App& command, const OptionRows<Options>& rows, Options& optio
   for (const OptionRow<Options>& row : rows) add_row(command, row, options);
 }
 
+void add_drawings(CLI::App& command, std::vector<std::filesystem::path>& drawings) {
+  command.add_option("--draw", drawings, "Drawing to write, may be repeated: .png, .svg, .pdf")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+}
+
 }  // namespace
 
 void add_retries(CLI::App& command, std::uint32_t& retries) {
@@ -65,6 +71,12 @@ void add_drawing(CLI::App& command, DrawOptions& drawing) {
   add_rows(command, drawing_rows(), drawing);
 }
 
+void add_domain_drawing(CLI::App& command, std::vector<std::filesystem::path>& drawings,
+                        DrawOptions& drawing) {
+  add_drawings(command, drawings);
+  add_rows(command, drawing_rows_of_domain(), drawing);
+}
+
 void add_output(CLI::App& command, MeshOutputOptions& output) {
   command
       .add_option("-o,--output", output.files,
@@ -72,10 +84,7 @@ void add_output(CLI::App& command, MeshOutputOptions& output) {
       ->allow_extra_args(false)
       ->type_name("FILE");
   add_writing(command, output.writing);
-  command
-      .add_option("--draw", output.drawings, "Drawing to write, may be repeated: .png, .svg, .pdf")
-      ->allow_extra_args(false)
-      ->type_name("FILE");
+  add_drawings(command, output.drawings);
   add_rows(command, drawing_rows_of_new_mesh(), output.drawing);
   add_rows(command, quadtree_rows(), output);
   add_projection_flags(command, output.projection);
@@ -97,7 +106,7 @@ void refuse_idle_flags(const CLI::App& command, std::span<char* const> words) {
   for (const auto& row : writing_rows()) needs.push_back({"--" + row.name, "--output"});
   for (const auto& row : drawing_rows()) needs.push_back({"--" + row.name, "--draw"});
   for (const auto& row : size_rows()) needs.push_back({"--" + row.name, "--quality"});
-  const Pair excludes[] = {{"--interval", "--once"}};
+  const Pair excludes[] = {{"--interval", "--once"}, {"--lint", "--detach"}};
   const auto is_given = [words](const std::string& flag) {
     return std::any_of(words.begin(), words.end(), [&flag](std::string_view word) {
       return word == flag || word.starts_with(flag + "=");

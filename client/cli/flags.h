@@ -3,9 +3,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "client/base/option_row.h"
 #include "client/call/mesh_request.h"
@@ -69,6 +71,10 @@ void add_projection_flags(CLI::App& command, ProjectionOptions& projection);
 
 // What drawings of a file show.
 void add_drawing(CLI::App& command, DrawOptions& drawing);
+
+// The same of a domain, without a mesh; and the drawings.
+void add_domain_drawing(CLI::App& command, std::vector<std::filesystem::path>& drawings,
+                        DrawOptions& drawing);
 
 // Files to write, and drawings; and the flags of the projection.
 void add_output(CLI::App& command, MeshOutputOptions& output);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The flags of `weft mesh`, `weft draw`, `weft check`, `weft convert` and `weft info`.
+// The flags of `weft mesh`, `weft draw`, `weft check`, `weft convert`, `weft info` and `weft lint`.
 #include <memory>
 
 #include "client/call/request_rows.h"
@@ -10,6 +10,7 @@
 #include "client/commands/job_commands.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
+#include "client/lint/domain_lint.h"
 
 namespace weft::client {
 namespace {
@@ -73,6 +74,16 @@ Examples:
   weft info key.vtu --quality --size '0.02*abs(y-46)+0.1'
   weft info key.vtu --quality --json)";
 
+constexpr char kLintExamples[] =
+    R"(Needs no server. Ends with 0 if there are no faults, with 3 if there are. Text has at most 20 findings
+of a kind, JSON, layers and drawings 1000; all are counted.
+
+Examples:
+  weft lint coast.geojson
+  weft lint yard.poly --draw faults.png -o faults.geojson
+  weft lint yard.poly --snap 0.01 --ignore crossing --ignore junction
+  weft lint coast.shp --json)";
+
 // Submits, as `weft submit` does. Files are written later, by `weft fetch`.
 Result<ExitCode> detach(const MeshOptions& options, std::stop_token stop) {
   if (!options.output.empty() || options.output.draw_quadtree)
@@ -110,6 +121,8 @@ void add_mesh(CLI::App& app, Chosen& chosen) {
                 "Submit a job, print its id and end, as `weft submit` does; needs --server");
   add_json(mesh, options.json, "Print one JSON object on standard output");
   add_quiet(mesh, options.quiet);
+  mesh.add_flag("--lint", options.lint,
+                "First list the faults of the domain on standard error, as `weft lint` does");
   mesh.add_flag("--no-picture", options.no_picture,
                 "Show no picture of the mesh at the end, on a terminal that can show one (kitty's "
                 "protocol or sixel)")
@@ -216,6 +229,45 @@ void add_info(CLI::App& app, Chosen& chosen) {
       [kept, &chosen] { chosen.run = [kept](std::stop_token) { return run_info(*kept); }; });
 }
 
+void add_lint(CLI::App& app, Chosen& chosen) {
+  const auto kept = std::make_shared<LintOptions>();
+  LintOptions& options = *kept;
+  CLI::App& lint = *app.add_subcommand("lint", "List all faults of a domain");
+  lint.footer(kLintExamples);
+  lint.add_option("FILE", options.file,
+                  "Domain: " + domain_extensions() + "; or a mesh: " + read_mesh_extensions())
+      ->required();
+  add_layers(lint, options.layers);
+  add_row(
+      lint,
+      {"snap", "WEFT_SNAP", "Leave out what `weft mesh --snap D` merges, and look at what is left",
+       "", number("D", &LintOptions::snap)},
+      options);
+  add_row(lint,
+          {"fill", "WEFT_FILL",
+           "What is meshed where polygons overlap, as given to `weft mesh`: with even-odd an "
+           "overlap is no fault, with difference none with another polygon than the first",
+           "union", fill_value(&LintOptions::fill)},
+          options);
+  lint.add_flag(
+      "--lonlat", options.lonlat,
+      "The domain is in longitude and latitude, in degrees: --snap, here and of `weft mesh "
+      "--lonlat`, is in metres, and drawings are as on the ground");
+  lint.add_option("--ignore", options.ignored,
+                  "Kind of fault to leave out, may be repeated: " + fault_kinds() + ", warning")
+      ->allow_extra_args(false)
+      ->type_name("KIND");
+  lint.add_option("-o,--output", options.layer_files,
+                  "Layer of the findings to write, may be repeated: .geojson")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  add_domain_drawing(lint, options.drawings, options.drawing);
+  add_json(lint, options.json, "Print one JSON object on standard output");
+  lint.callback([kept, &chosen] {
+    chosen.run = [kept](std::stop_token stop) { return run_lint(*kept, std::move(stop)); };
+  });
+}
+
 }  // namespace
 
 void add_mesh_commands(CLI::App& app, Chosen& chosen) {
@@ -224,6 +276,7 @@ void add_mesh_commands(CLI::App& app, Chosen& chosen) {
   add_check(app, chosen);
   add_convert(app, chosen);
   add_info(app, chosen);
+  add_lint(app, chosen);
 }
 
 }  // namespace weft::client

@@ -28,6 +28,7 @@ struct MeshOptions {
   ConnectOptions server;
   std::optional<double> timeout_seconds;
   std::uint32_t retries = RetryOptions{}.attempts;
+  bool lint = false;  // prints the domain's faults first
   bool json = false;
   bool quiet = false;
   bool no_picture = false;  // at the end, on a terminal that shows pictures
@@ -94,6 +95,21 @@ struct InfoOptions {
 };
 // kUsage for the quality of a domain.
 Result<ExitCode> run_info(const InfoOptions& options);
+
+struct LintOptions {
+  std::filesystem::path file;
+  LayerOptions layers;
+  std::optional<double> snap;
+  PolygonFill fill = PolygonFill::kUnion;
+  bool lonlat = false;               // the domain is in longitude and latitude
+  std::vector<std::string> ignored;  // kinds of faults
+  std::vector<std::filesystem::path> layer_files;
+  std::vector<std::filesystem::path> drawings;
+  DrawOptions drawing;
+  bool json = false;
+};
+// kCheckFailed if there is a fault.
+Result<ExitCode> run_lint(const LintOptions& options, std::stop_token stop);
 
 struct ServerOptions {
   ConnectOptions server;

@@ -12,8 +12,8 @@ namespace weft::client {
 
 Result<InputDomain> read_input_domain(const std::filesystem::path& path,
                                       const RequestOptions& wanted,
-                                      const ProjectionOptions& options,
-                                      const LayerOptions& layers) {
+                                      const ProjectionOptions& options, const LayerOptions& layers,
+                                      const std::function<void(const Domain&)>& as_read) {
   const std::string& grid = wanted.edge.empty() ? wanted.size : wanted.edge;
   if (options.wanted() && options.crs.empty() && is_raster_path(grid))
     return fail(ExitCode::kUsage,
@@ -25,6 +25,7 @@ Result<InputDomain> read_input_domain(const std::filesystem::path& path,
   if (auto named = set_names(wanted.names, domain->names); !named)
     return tl::unexpected(named.error());
   fill_polygons(*domain, wanted.fill);
+  if (as_read) as_read(*domain);
   InputDomain input{std::move(*domain), nullptr};
   if (!options.wanted()) return input;
   if (const auto& system = input.domain.system; system && !system->geographic)

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -26,10 +27,12 @@ struct InputDomain {
 // `wanted` has the size and the names. Errors: those of read_domain, of DomainProjection::project
 // and of set_names; kUnreadableInput if the domain is to be projected, but its file says that it
 // lies in a plane; kUsage if the size is the path of a grid, but the projection has no name that
-// the grid could have been made for.
+// the grid could have been made for. `as_read`, if any, is called with the domain before it is
+// projected.
 Result<InputDomain> read_input_domain(const std::filesystem::path& path,
                                       const RequestOptions& wanted,
-                                      const ProjectionOptions& options, const LayerOptions& layers);
+                                      const ProjectionOptions& options, const LayerOptions& layers,
+                                      const std::function<void(const Domain&)>& as_read = {});
 
 // `options` may be null. The origin refers to both.
 RequestOrigin origin_of(const InputDomain& input, const RequestOptions* options = nullptr);

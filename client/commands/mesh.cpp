@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `weft mesh`: reads a domain, has it meshed, writes files and drawings.
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -11,6 +12,8 @@
 #include "client/drawing/draw.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
+#include "client/lint/domain_lint.h"
+#include "client/lint/lint_report.h"
 #include "client/report/mesh_text.h"
 #include "client/report/picture_terminal.h"
 #include "client/report/progress_bar.h"
@@ -40,6 +43,15 @@ class Picture {
   Drawing drawing_;
 };
 
+// What cannot be judged, the server will refuse.
+void print_faults(const Domain& domain, const MeshOptions& options) {
+  const double snap = options.request_options.snap.value_or(0);
+  const auto lint = lint_domain(domain, options.input.string(),
+                                {.snap = std::isfinite(snap) && snap > 0 ? snap : 0,
+                                 .lonlat = options.output.projection.wanted()});
+  if (lint) std::fputs(lint_text(*lint).c_str(), stderr);
+}
+
 }  // namespace
 
 Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
@@ -47,8 +59,11 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   if (!is_domain_path(options.input)) return unknown_domain_format(options.input);
   auto output = MeshOutput::open(options.output, options.input, stop);
   if (!output) return tl::unexpected(output.error());
-  const auto input = read_input_domain(options.input, options.request_options,
-                                       options.output.projection, options.layers);
+  const auto input =
+      read_input_domain(options.input, options.request_options, options.output.projection,
+                        options.layers, [&options](const Domain& read) {
+                          if (options.lint) print_faults(read, options);
+                        });
   if (!input) return tl::unexpected(input.error());
   const Domain& domain = input->domain;
   auto request_options = with_size(options.request_options, domain, input->projection.get());

@@ -39,4 +39,11 @@ Color region_color(std::int32_t id) {
   return mix(kPalette[static_cast<std::size_t>(i)], kPaper, 0.35);
 }
 
+Color mark_color(std::size_t kind) {
+  constexpr Color kColors[] = {kMarkInk,         {0, 0.45, 0.70},    {0, 0.62, 0.45},
+                               {0.84, 0.37, 0},  {0.58, 0.25, 0.60}, {0.20, 0.60, 0.85},
+                               {0.75, 0.55, 0.0}};
+  return kColors[kind % std::size(kColors)];
+}
+
 }  // namespace weft::client

@@ -23,6 +23,9 @@ inline constexpr Color kTriangleLabelInk{0.05, 0.36, 0.62};
 // The perceptually uniform map viridis (S. van der Walt and N. Smith, 2015, CC0), t from 0 to 1.
 Color viridis(double t);
 
+// The colour of the marks of a kind, one of seven of theirs (see below), which repeat.
+Color mark_color(std::size_t kind);
+
 // The colour of a region: grey for 0, otherwise one of eight that the colour-blind can tell apart
 // (M. Okabe and K. Ito, 2008), lightened.
 Color region_color(std::int32_t id);

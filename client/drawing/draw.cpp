@@ -199,6 +199,11 @@ void Drawing::add(const MeshView& piece) {
   }
 }
 
+void Drawing::mark(DrawnMarks marks) {
+  for (const Point& p : marks.at) extent_.add(std::array{p.x, p.y});
+  marks_.push_back(std::move(marks));
+}
+
 void Drawing::draw_mesh(const Page& page) const {
   cairo_t* const cairo = page.cairo;
   Vectors vectors(cairo, page.canvas, page.pixel);
@@ -233,6 +238,25 @@ void Drawing::draw_marks(const Page& page) const {
   }
 }
 
+void Drawing::draw_numbered_marks(const Page& page) const {
+  const double radius = 0.6 * page.em;
+  for (std::size_t kind = 0; kind < marks_.size(); ++kind)
+    for (const Point& p : marks_[kind].at) {
+      if (!is_in_view(p)) continue;
+      const PagePoint at = page.canvas.at(p);
+      put_mark(page.cairo, at, radius, 0.12 * page.em, mark_color(kind));
+      const std::string number = std::to_string(kind + 1);
+      const TextStyle style{.height = 0.8 * page.em, .halo = true, .color = mark_color(kind)};
+      const double width = text_width(number, style.height);
+      const bool fits_right = at.x + radius + width < page.canvas.width();
+      const bool fits_above = at.y - radius - style.height > 0;
+      put_text(page.cairo,
+               {fits_right ? at.x + 0.8 * radius : at.x - 0.8 * radius - width,
+                fits_above ? at.y - 0.8 * radius : at.y + 0.8 * (radius + style.height)},
+               number, style);
+    }
+}
+
 Legend Drawing::legend(const Page& page) const {
   Legend legend(page.em);
   if (options_.no_legend) return legend;
@@ -243,8 +267,9 @@ Legend Drawing::legend(const Page& page) const {
                          std::clamp(kOfTheWidth * page.canvas.width(), 5 * page.em, 14 * page.em),
                          options_.unit);
   }
-  legend.add_text((shown_ < added_ ? with_separators(shown_) + " of " : "") +
-                  with_separators(added_) + (added_ == 1 ? " triangle" : " triangles"));
+  if (added_ > 0 || marks_.empty())
+    legend.add_text((shown_ < added_ ? with_separators(shown_) + " of " : "") +
+                    with_separators(added_) + (added_ == 1 ? " triangle" : " triangles"));
   if (page.coloring != nullptr) legend.add_colors(*page.coloring, options_.unit, page.dense);
   if (const auto worst = worst_.sorted(); !worst.empty()) {
     const std::string least = number_text(worst.front().angle_deg) + "\u00b0";
@@ -253,6 +278,8 @@ Legend Drawing::legend(const Page& page) const {
                                        : with_separators(worst.size()) + " smallest angles, ") +
                     (least == most ? least : least + " to " + most));
   }
+  for (std::size_t kind = 0; kind < marks_.size(); ++kind)
+    legend.add_mark(std::to_string(kind + 1) + " " + marks_[kind].meaning, mark_color(kind));
   if (options_.labels && !page.dense)
     legend.add_text("numbers of vertices black, of triangles blue, markers other than 0 red");
   return legend;
@@ -306,6 +333,7 @@ auto Drawing::painted(double pixel, std::span<const double> boxes,
   draw_mesh(page);
   Vectors(cairo, page.canvas, pixel).stroke_boxes(boxes, kBoxLine);
   draw_marks(page);
+  draw_numbered_marks(page);
   cairo_restore(cairo);
   below.draw(cairo, {side, page.canvas.height()}, width - 2 * side);
   return Painted{std::move(surface), cairo_status(cairo)};

@@ -19,6 +19,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "client/base/atomic_file.h"
@@ -37,6 +38,12 @@ enum class DrawFormat { kPng, kSvg, kPdf };
 
 // The format of an extension, in upper or lower case.
 std::optional<DrawFormat> draw_format(const std::filesystem::path& path);
+
+// Places of one kind, which are marked.
+struct DrawnMarks {
+  std::string meaning;  // for the legend
+  std::vector<Point> at;
+};
 
 class DenseImage;
 class Coloring;
@@ -60,6 +67,8 @@ class Drawing {
   // zoom, all corners of the mesh should be among the vertices before triangle kMostVectors; what
   // lies outside their box is cut off.
   void add(const MeshView& piece);
+  // Puts a ring around each place, with the number of the call, which the legend explains.
+  void mark(DrawnMarks marks);
   // Those of which something is shown.
   std::size_t triangles() const { return shown_; }
   // The marked ones, the worst first. Their centroids are in view.
@@ -92,6 +101,7 @@ class Drawing {
   // The image if there are too many triangles for vectors, or they are too small.
   void draw_mesh(const Page& page) const;
   void draw_marks(const Page& page) const;
+  void draw_numbered_marks(const Page& page) const;
   Legend legend(const Page& page) const;
 
   const DrawOptions options_;
@@ -105,6 +115,7 @@ class Drawing {
   std::unique_ptr<DenseImage> image_;
   std::vector<DrawnEdge> edges_;  // on input segments
   WorstTriangles worst_;
+  std::vector<DrawnMarks> marks_;
 };
 
 }  // namespace weft::client

@@ -89,13 +89,13 @@ std::vector<Tick> size_ticks(const ValueRange& range, double unit) {
 
 }  // namespace
 
-void put_mark(cairo_t* cairo, PagePoint at, double radius, double line_width) {
+void put_mark(cairo_t* cairo, PagePoint at, double radius, double line_width, const Color& color) {
   cairo_new_sub_path(cairo);
   cairo_arc(cairo, at.x, at.y, radius, 0, 2 * std::numbers::pi);
   set_color(cairo, kPaper, 0.8);
   cairo_set_line_width(cairo, 2.4 * line_width);
   cairo_stroke_preserve(cairo);
-  set_color(cairo, kMarkInk);
+  set_color(cairo, color);
   cairo_set_line_width(cairo, line_width);
   cairo_stroke(cairo);
 }
@@ -131,11 +131,12 @@ void Legend::add_text(const std::string& text) {
                     }});
 }
 
-void Legend::add_mark(const std::string& text) {
+void Legend::add_mark(const std::string& text, const Color& color) {
   const double indent = 1.6 * em_;
   parts_.push_back(
-      {indent + text_width(text, em_), [text, indent, em = em_](cairo_t* cairo, PagePoint at) {
-         put_mark(cairo, {at.x + 0.6 * em, at.y + em * 0.75}, 0.5 * em, em * 0.1);
+      {indent + text_width(text, em_),
+       [text, color, indent, em = em_](cairo_t* cairo, PagePoint at) {
+         put_mark(cairo, {at.x + 0.6 * em, at.y + em * 0.75}, 0.5 * em, em * 0.1, color);
          put_text(cairo, {at.x + indent, at.y + em * kBaseline}, text, {.height = em});
        }});
 }

@@ -10,6 +10,7 @@
 
 #include "client/drawing/canvas.h"
 #include "client/drawing/coloring.h"
+#include "client/drawing/colors.h"
 
 // Of cairo.
 typedef struct _cairo cairo_t;
@@ -28,7 +29,7 @@ class Legend {
   // What the colours mean; `mean`: each pixel shows the mean of its triangles.
   void add_colors(const Coloring& coloring, DrawnUnit unit, bool mean);
   // A mark as put_mark puts it, and what it means.
-  void add_mark(const std::string& text);
+  void add_mark(const std::string& text, const Color& color = kMarkInk);
 
   double least_width() const;
   double height(double width) const;
@@ -51,6 +52,7 @@ class Legend {
 };
 
 // A ring of this radius.
-void put_mark(cairo_t* cairo, PagePoint at, double radius, double line_width);
+void put_mark(cairo_t* cairo, PagePoint at, double radius, double line_width,
+              const Color& color = kMarkInk);
 
 }  // namespace weft::client

@@ -153,6 +153,17 @@ const OptionRows<DrawOptions>& drawing_rows_of_new_mesh() {
   return rows;
 }
 
+const OptionRows<DrawOptions>& drawing_rows_of_domain() {
+  static const OptionRows<DrawOptions> rows = [] {
+    OptionRows<DrawOptions> some;
+    for (const OptionRow<DrawOptions>& row : drawing_rows())
+      if (row.name == "zoom" || row.name == "no-legend" || row.name == "draw-size")
+        some.push_back(row);
+    return some;
+  }();
+  return rows;
+}
+
 const OptionRows<MeshOutputOptions>& quadtree_rows() {
   using Output = MeshOutputOptions;
   static const OptionRows<Output> rows = {

@@ -14,6 +14,8 @@ const OptionRows<DrawOptions>& drawing_rows();
 // The same for drawings of a mesh that is being made: they have no bound to colour by, so help does
 // not offer that colour; MeshOutput::open tells a user who asks for it what to do instead.
 const OptionRows<DrawOptions>& drawing_rows_of_new_mesh();
+// What they show of a domain, without a mesh.
+const OptionRows<DrawOptions>& drawing_rows_of_domain();
 // What they show of a mesh that was just made.
 const OptionRows<MeshOutputOptions>& quadtree_rows();
 

@@ -12,6 +12,8 @@
 namespace weft::client {
 namespace {
 
+constexpr std::string_view kCrossesItself = " is a ring that crosses itself: ";
+constexpr std::string_view kMoreCross = " more rings cross themselves";
 constexpr std::size_t kMostTold = 5;  // rings that cross themselves and get a warning each
 
 // The bound on areas that a feature's two properties make together.
@@ -31,6 +33,10 @@ bool is_collapsed(std::span<const Point> points) {
 }
 
 }  // namespace
+
+bool tells_of_crossing(std::string_view warning) {
+  return warning.find(kCrossesItself) != warning.npos || warning.ends_with(kMoreCross);
+}
 
 tl::unexpected<Error> GeometryBuilder::bad(const std::string& path, const std::string& what) const {
   return fail(ExitCode::kUnreadableInput, file_ + ": " + (path.empty() ? "" : path + " ") + what);
@@ -132,7 +138,7 @@ void GeometryBuilder::check_crossing(const Chain& ring, const std::string& path)
     return "edge " + std::to_string(ring.numbers[i]) + " from " + coordinates(a.x, a.y) + " to " +
            coordinates(b.x, b.y);
   };
-  domain_.warnings.push_back(file_ + ": " + path + " is a ring that crosses itself: " +
+  domain_.warnings.push_back(file_ + ": " + path + std::string(kCrossesItself) +
                              edge(crossing->first) + " crosses " + edge(crossing->second));
 }
 
@@ -193,7 +199,7 @@ Result<Domain> GeometryBuilder::finish() {
   regions_.name_all(NameKind::kRegion, names_);
   if (crossings_ > kMostTold)
     domain_.warnings.push_back(file_ + ": " + std::to_string(crossings_ - kMostTold) +
-                               " more rings cross themselves");
+                               std::string(kMoreCross));
   for (std::string& warning : names_.warnings()) domain_.warnings.push_back(std::move(warning));
   domain_.names = names_.take();
   return std::move(domain_);

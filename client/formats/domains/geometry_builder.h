@@ -52,6 +52,9 @@ struct GeometryProperties {
   std::string region_name{};
 };
 
+// Whether a warning of a builder is about a ring that crosses itself, or about more of them.
+bool tells_of_crossing(std::string_view warning);
+
 class GeometryBuilder {
  public:
   explicit GeometryBuilder(std::string file) : file_(std::move(file)), names_(file_) {}

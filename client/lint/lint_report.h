@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `weft lint` prints, writes and draws.
+#pragma once
+
+#include <string>
+
+#include "client/base/atomic_file.h"
+#include "client/drawing/draw.h"
+#include "client/formats/domain.h"
+#include "client/lint/domain_lint.h"
+#include "client/report/json_line.h"
+
+namespace weft::client {
+
+// A line for each finding, at most 20 of a kind, and one that counts.
+std::string lint_text(const Lint& lint);
+
+Json lint_json(const Lint& lint);
+
+// A layer for geographic information systems: a point or a line for each finding.
+void write_lint_layer(const Lint& lint, OutputFile& file);
+
+// The domain's segments, and a ring around each finding, numbered by kind.
+void draw_lint(const Domain& domain, const Lint& lint, Drawing& drawing);
+
+}  // namespace weft::client
