@@ -91,12 +91,12 @@ class EndJudge {
     return {found, least};
   }
 
-  // Nearer than `below`, and than the end's own segment is long, so that a bend of a line is no
-  // gap.
+  // Nearer than `below`, by more than rounding, and than the end's own segment is long, so that a
+  // bend of a line is no gap.
   std::optional<std::uint32_t> nearest_segment(std::uint32_t place, double below) const {
     const std::uint32_t other = snapped_.other_end(own(place), place);
     const Vec2 p = snapped_.places[place];
-    double least = std::min(below, snapped_.length(own(place)));
+    double least = std::min(below * (1 - 0x1p-20), snapped_.length(own(place)));
     return context_.tree.least(p, 1, least, [&](std::uint32_t s) {
       return snapped_.is_end(s, place) || snapped_.is_end(s, other)
                  ? kInfinity

@@ -26,7 +26,8 @@ std::string_view fault_name(FaultKind kind) {
 
 namespace {
 
-// Places within the merging distance of the inside of segments, and what joins them.
+// What joins places within the merging distance of the inside of segments to these; and those that
+// rounding alone has put beside them.
 struct Joints {
   std::vector<Contacts::Touch> touches;
   std::vector<std::array<Vec2, 2>> links;
@@ -43,9 +44,9 @@ Joints find_joints(const SnappedDomain& snapped, const BoxTree& tree) {
       const Vec2 a = snapped.from(s), b = snapped.to(s);
       const double d = distance(p, a, b);
       if (d > snapped.merging || !is_beside(p, a, b) || orientation(a, b, p) == 0) return;
-      out.touches.push_back({s, place});
+      if (d <= snapped.rounding) out.touches.push_back({s, place});
       if (const auto q = across(p, a, b, d)) out.links.push_back({p, *q});
-      out.complete = out.touches.size() <= kMostMeetings;
+      out.complete = out.links.size() <= kMostMeetings;
     });
     if (!out.complete) break;
   }

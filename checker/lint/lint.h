@@ -4,7 +4,8 @@
 //
 // A mesher merges what is nearer than T = max(snap, 2^-40 of the largest coordinate)
 // (domain/tolerance.h), so nothing that vanishes by that is a fault: a domain is judged as if its
-// places within T were one. What lies within T of the inside of a segment counts as on it.
+// places within T were one. What lies within T of the inside of a segment counts as on it, but a
+// junction is told only if it is there without a snap.
 //
 // Polygons may share borders and nest: segments of two polygons that coincide, touch or cross are
 // no faults by themselves, and lines may run along borders, to mark them, and end inside polygons.

@@ -20,7 +20,7 @@ struct LintContext {
   bool shared_points = false;
   SnappedDomain snapped;
   BoxTree tree;  // of the snapped segments
-  // Places on the inside of segments, to within the merging distance; sorted, distinct.
+  // Places on the inside of segments, to rounding; sorted, distinct.
   std::vector<Contacts::Touch> touches{};
   std::vector<Contacts::Crossing> crossings{};  // sorted
   // Of the snapped segments, and links across what lies within the merging distance; none if the
