@@ -4,7 +4,7 @@
 //   0        all went well
 //   1        a fault of weft itself
 //   2        the command line is wrong
-//   3        `weft check` or `weft batch` ran, and a mesh fails
+//   3        `weft check` or `weft batch` ran, and a mesh fails; `weft lint` found faults
 //   4        the input is missing, unreadable or malformed
 //   5        the output cannot be written (nothing is left behind)
 //   6        the private weftd could not be found or started

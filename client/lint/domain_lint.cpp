@@ -140,8 +140,9 @@ class Wording {
       case FaultKind::kAreaOverlap:
         return "move their borders, or choose by --fill";
       case FaultKind::kSmallAngle:
+        return "triangles there have such an angle, too";
       case FaultKind::kSliver:
-        return "triangles there are thin or many; move a border onto the other";
+        return "triangles there are as small; move a border onto the other";
       case FaultKind::kDuplicatePoint:
       case FaultKind::kDuplicateSegment:
       case FaultKind::kZeroLength:
