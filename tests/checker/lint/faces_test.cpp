@@ -37,7 +37,7 @@ TEST(LintFaces, FindsAFaceThatIsThin) {
 
 TEST(LintFaces, AChannelOfManyEdgesIsNoSliver) {
   DrawnDomain drawn;
-  drawn.ring({{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 0.01}, {2, 0.01}, {1, 0.01}, {0, 0.01}});
+  drawn.ring({{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 0.002}, {2, 0.002}, {1, 0.002}, {0, 0.002}});
   EXPECT_EQ(drawn.told(), "");
 }
 

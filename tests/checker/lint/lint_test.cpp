@@ -16,14 +16,16 @@ TEST(Lint, FaultsComeByKindAndThenInTheOrderOfTheDomain) {
   DrawnDomain drawn;
   drawn.box({0, 0}, {9, 9}).line({{1, 1}, {3, 3}}).line({{1, 3}, {3, 1}});
   drawn.line({{5, 5}, {7, 7}}).line({{5, 7}, {7, 5}});
+  drawn.ring({{0, 20}, {10, 20}, {10, 20.1}});
   const Faults faults = drawn.faults();
-  ASSERT_EQ(drawn.told(), "open-end 8, crossing 2");
+  ASSERT_EQ(drawn.told(), "open-end 8, crossing 2, small-angle 1");
   for (std::size_t i = 0; i < 8; ++i) {
     EXPECT_EQ(faults.kept()[i].kind, FaultKind::kOpenEnd);
     EXPECT_EQ(faults.kept()[i].offenders.at(0).index, 4 + i / 2);
   }
   EXPECT_EQ(faults.kept().at(8).at, (Vec2{2, 2}));
   EXPECT_EQ(faults.kept().at(9).at, (Vec2{6, 6}));
+  EXPECT_EQ(faults.kept().at(10).kind, FaultKind::kSmallAngle);
 }
 
 TEST(Lint, CountsWhatItDoesNotKeep) {

@@ -23,9 +23,9 @@ TEST(SnappedDomain, MakesOnePlaceOfPointsWithinTheSnap) {
 
 TEST(SnappedDomain, TheNearestPlaceTakesAPoint) {
   Domain domain;
-  domain.points = {{0, 0}, {0.15, 0}, {0.09, 0}};
+  domain.points = {{0, 0}, {0.15, 0}, {0.09, 0}, {0.06, 0}};
   domain.snap = 0.1;
-  EXPECT_EQ(snapped(domain).place_of, (std::vector<std::uint32_t>{0, 1, 1}));
+  EXPECT_EQ(snapped(domain).place_of, (std::vector<std::uint32_t>{0, 1, 1, 0}));
 }
 
 TEST(SnappedDomain, AllPointsMayBeAtTheOrigin) {
