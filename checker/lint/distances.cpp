@@ -50,7 +50,6 @@ class EndJudge {
       } else if (!is_inside_a_polygon(open[k])) {
         faults_.add({.kind = FaultKind::kOpenEnd,
                      .at = at[k],
-                     .to = {},
                      .offenders = {context_.segment(own(open[k]))}});
       }
     }
@@ -108,7 +107,6 @@ class EndJudge {
     const Vec2 p = snapped_.places[place];
     faults_.add({.kind = FaultKind::kGap,
                  .at = p,
-                 .to = {},
                  .offenders = {context_.segment(own(place)), context_.segment(s)},
                  .measure = distance(p, snapped_.from(s), snapped_.to(s))});
   }
@@ -179,7 +177,6 @@ void judge_points_and_segments(const LintContext& context, const std::vector<cha
     if (s)
       faults.add({.kind = FaultKind::kNearSegment,
                   .at = p,
-                  .to = {},
                   .offenders = {context.point(place), context.segment(*s)},
                   .measure = least});
   }

@@ -33,11 +33,7 @@ class FaceJudge {
     for (std::size_t f = 1; f < shapes_.size(); ++f) {
       const FaceShape& shape = shapes_[f];
       if (!shape.is_sliver) continue;
-      Fault fault{.kind = FaultKind::kSliver,
-                  .at = inside(shape),
-                  .to = {},
-                  .offenders = {},
-                  .measure = shape.width};
+      Fault fault{.kind = FaultKind::kSliver, .at = inside(shape), .measure = shape.width};
       for (const std::uint32_t h : shape.longest)
         if (const auto covers = arrangement_.covers(h / 2); !covers.empty())
           fault.offenders.push_back(context_.segment(covers[0]));
@@ -62,7 +58,6 @@ class FaceJudge {
         if (!(angle < kSmallAngleDeg) || shape.vanishes || shape.is_sliver) continue;
         faults_.add({.kind = FaultKind::kSmallAngle,
                      .at = context_.snapped.places[place],
-                     .to = {},
                      .offenders = {context_.segment(arrangement_.covers(h / 2)[0]),
                                    context_.segment(arrangement_.covers(next / 2)[0])},
                      .measure = angle});
@@ -103,7 +98,6 @@ class FaceJudge {
       if (!same && (what.faces == faces[a] || what.faces == faces[b])) continue;
       faults_.add({.kind = FaultKind::kAreaOverlap,
                    .at = inside(shapes_[what.largest]),
-                   .to = {},
                    .offenders = {{Offender::What::kArea, a}, {Offender::What::kArea, b}},
                    .measure = what.area});
     }
@@ -181,15 +175,14 @@ void judge_seeds(const LintContext& context, Faults& faults) {
   const auto judge = [&](Vec2 at, Offender seed) {
     const Arrangement::Place place = context.arrangement->locate(at);
     if (place.edge) {
-      Fault fault{.kind = FaultKind::kSeedOnSegment, .at = at, .to = {}, .offenders = {seed}};
+      Fault fault{.kind = FaultKind::kSeedOnSegment, .at = at, .offenders = {seed}};
       if (const auto covers = context.arrangement->covers(*place.edge); !covers.empty())
         fault.offenders.push_back(context.segment(covers[0]));
       faults.add(std::move(fault));
     } else if (place.face == 0) {
-      faults.add({.kind = FaultKind::kSeedOutside, .at = at, .to = {}, .offenders = {seed}});
+      faults.add({.kind = FaultKind::kSeedOutside, .at = at, .offenders = {seed}});
     } else if (const auto [first, is_new] = seed_of.emplace(place.face, seed); !is_new) {
-      faults.add(
-          {.kind = FaultKind::kSeedShared, .at = at, .to = {}, .offenders = {seed, first->second}});
+      faults.add({.kind = FaultKind::kSeedShared, .at = at, .offenders = {seed, first->second}});
     }
   };
   for (std::uint32_t i = 0; i < domain.holes.size(); ++i)

@@ -49,8 +49,8 @@ struct Offender {
 struct Fault {
   FaultKind kind = FaultKind::kOpenEnd;
   Vec2 at;
-  std::optional<Vec2> to;  // the other end, if it has a length
-  std::vector<Offender> offenders;
+  std::optional<Vec2> to{};  // the other end, if it has a length
+  std::vector<Offender> offenders{};
   double measure = 0;
 };
 

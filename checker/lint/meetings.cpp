@@ -35,7 +35,6 @@ void judge_crossings(const LintContext& context, Faults& faults) {
     const bool of_one_area = snapped.areas[s] != 0 && snapped.areas[s] == snapped.areas[t];
     faults.add({.kind = of_one_area ? FaultKind::kSelfCrossing : FaultKind::kCrossing,
                 .at = at,
-                .to = {},
                 .offenders = {context.segment(s), context.segment(t)}});
   }
 }
@@ -74,7 +73,6 @@ void judge_touches(const LintContext& context, Faults& faults) {
     if (meets && !overlaps)
       faults.add({.kind = FaultKind::kJunction,
                   .at = snapped.places[place],
-                  .to = {},
                   .offenders = {context.point(place), context.segment(s)}});
   }
 }
@@ -113,7 +111,6 @@ void judge_points_themselves(const LintContext& context, Faults& faults) {
     if (domain.points[a] == domain.points[b])
       faults.add({.kind = FaultKind::kZeroLength,
                   .at = domain.points[a],
-                  .to = {},
                   .offenders = {{Offender::What::kSegment, s}}});
   }
   if (!context.shared_points) return;
@@ -134,7 +131,6 @@ void judge_points_themselves(const LintContext& context, Faults& faults) {
   for (const auto [i, j] : pairs)
     faults.add({.kind = FaultKind::kDuplicatePoint,
                 .at = at(i),
-                .to = {},
                 .offenders = {{Offender::What::kPoint, i}, {Offender::What::kPoint, j}}});
 }
 

@@ -216,7 +216,7 @@ Result<Lint> lint_domain(const Domain& domain, const std::string& file,
     return std::find(settings.ignored.begin(), settings.ignored.end(), kind) !=
            settings.ignored.end();
   };
-  Lint lint{.file = file, .findings = {}, .counts = {}, .complete = found.complete};
+  Lint lint{.file = file, .complete = found.complete};
   const Wording wording(domain, file, settings.lonlat);
   for (const Fault& fault : found.faults.kept())
     if (!is_ignored(std::string(fault_name(fault.kind))))

@@ -34,8 +34,9 @@ struct Finding {
 
 struct Lint {
   std::string file;
-  std::vector<Finding> findings;                              // by kind, at most some of each
-  std::vector<std::pair<std::string, std::uint64_t>> counts;  // of each kind that there is, of all
+  std::vector<Finding> findings{};  // by kind, at most some of each
+  std::vector<std::pair<std::string, std::uint64_t>>
+      counts{};  // of each kind that there is, of all
   std::uint64_t total = 0;
   bool complete = true;  // false: segments meet too often for all rules
 };

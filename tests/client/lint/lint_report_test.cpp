@@ -14,7 +14,7 @@ namespace weft::client {
 namespace {
 
 Lint some_lint() {
-  Lint lint{.file = "a.poly", .findings = {}, .counts = {{"gap", 25}, {"warning", 1}}, .total = 26};
+  Lint lint{.file = "a.poly", .counts = {{"gap", 25}, {"warning", 1}}, .total = 26};
   for (int i = 0; i < 25; ++i)
     lint.findings.push_back({.kind = "gap",
                              .at = Point{double(i), 0.5},
