@@ -126,7 +126,10 @@ class Wording {
       case FaultKind::kOpenEnd:
         return "join it to another segment, or leave the segment out";
       case FaultKind::kGap:
-        return snap(fault, 0.5 * length(fault.offenders[0].index), "join them");
+        return snap(
+            fault,
+            0.5 * std::min(length(fault.offenders[0].index), length(fault.offenders[1].index)),
+            "join them");
       case FaultKind::kNearPoints:
       case FaultKind::kNearSegment:
         return snap(fault, fault.measure * 1e3, "");

@@ -102,12 +102,13 @@ TEST_F(DomainLint, SnapsInMetresForADomainInDegrees) {
   EXPECT_EQ(lint("a.poly", kCoast, {.snap = 12, .lonlat = true}).total, 0U);
 }
 
-// To merge over 0.04 would merge the short segments, too.
+// The end's own segment is 0.04 long.
 TEST_F(DomainLint, OffersNoSnapThatMergesSegments) {
   const Lint found = lint("a.poly",
                           "6 2 0 0\n1 0 0\n2 50 0\n3 50 50\n4 0 50\n5 0 0.06\n6 0 0.04\n"
                           "5 0\n1 1 2\n2 2 3\n3 3 4\n4 4 5\n5 1 6\n0\n");
   EXPECT_EQ(only(found, "gap").text.substr(0, 13), "a gap of 0.02");
+  EXPECT_EQ(only(found, "gap").remedy, "join them");
   EXPECT_EQ(found.total, 1U);
 }
 
