@@ -99,6 +99,7 @@ TEST_F(DomainLint, SnapsInMetresForADomainInDegrees) {
       "3 3 4\n4 4 5\n0\n";
   EXPECT_EQ(only(lint("a.poly", kCoast), "gap").remedy, "--snap 0.00011 closes it");
   EXPECT_EQ(only(lint("a.poly", kCoast, {.lonlat = true}), "gap").remedy, "--snap 12 closes it");
+  EXPECT_EQ(lint("a.poly", kCoast, {.snap = 8, .lonlat = true}).total, 1U);
   EXPECT_EQ(lint("a.poly", kCoast, {.snap = 12, .lonlat = true}).total, 0U);
 }
 
