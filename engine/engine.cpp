@@ -349,13 +349,13 @@ class Run {
     constexpr double kLargePart = 0.2;
     const auto& worst = narrow_.costliest();
     const auto triangles = static_cast<double>(summary_.triangles);
-    if (!worst || summary_.triangles < kMany || worst->least < kLargePart * triangles)
-      return std::nullopt;
+    const double least = worst ? 2 * worst->least : 0;  // the other segment has as many
+    if (summary_.triangles < kMany || least < kLargePart * triangles) return std::nullopt;
     return NarrowPlace{.segment = worst->segment,
                        .other = worst->other,
                        .at = worst->at,
                        .width = worst->width,
-                       .triangles = std::min(worst->least, triangles)};
+                       .triangles = std::min(least, triangles)};
   }
 
   bool may_stream() const { return request_.min_angle_deg <= kMaxStreamingAngleDeg; }

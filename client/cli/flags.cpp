@@ -2,7 +2,11 @@
 #include "client/cli/flags.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <set>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "client/call/request_rows.h"
 #include "client/formats/domain_formats.h"
@@ -45,6 +49,19 @@ void add_domain_and_request_options(CLI::App& command, std::filesystem::path& in
       ->required();
   add_layers(command, layers);
   add_rows(command, request_rows(), request_options);
+}
+
+void warn_of_variables(const CLI::App& command, RequestOptions& request_options) {
+  static const std::set<std::string> harmless_ones = {"allow-unrefined", "max-seconds", "threads",
+                                                      "no-cache"};
+  for (const auto& row : request_rows()) {
+    const char* const value = row.variable.empty() ? nullptr : std::getenv(row.variable.c_str());
+    const CLI::Option* const option = command.get_option_no_throw("--" + row.name);
+    if (value == nullptr || option == nullptr || harmless_ones.contains(row.name)) continue;
+    if (option->results() == std::vector<std::string>{value})
+      request_options.warnings.push_back("the environment sets --" + row.name + ": " +
+                                         row.variable + "=" + harmless(value));
+  }
 }
 
 void add_size(CLI::App& command, RequestOptions& request_options) {

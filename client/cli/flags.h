@@ -57,6 +57,10 @@ void add_domain_and_request_options(CLI::App& command, std::filesystem::path& in
 // What of the domain's file is read.
 void add_layers(CLI::App& command, LayerOptions& layers);
 
+// Adds a warning for each variable of the environment that changes the mesh, so that nobody wonders
+// why another machine makes another. Call when the command line has been read.
+void warn_of_variables(const CLI::App& command, RequestOptions& request_options);
+
 // How large triangles may be.
 void add_size(CLI::App& command, RequestOptions& request_options);
 

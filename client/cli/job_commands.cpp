@@ -70,11 +70,18 @@ void add_calls(CLI::App& command, JobServerOptions& calls,
   add_retries(command, calls.retries);
 }
 
+void look_at_variables(const CLI::App& command, SubmitOptions& options) {
+  warn_of_variables(command, options.request_options);
+}
+// Other commands make no mesh.
+void look_at_variables(const CLI::App&, const auto&) {}
+
 // Makes `run` the action of the command, called with its options.
 template <class Options>
 void bind(CLI::App& command, Result<ExitCode> (*run)(const Options&, std::stop_token),
           const std::shared_ptr<Options>& options, const char* when_interrupted, Chosen& chosen) {
-  command.callback([=, &chosen] {
+  command.callback([=, &command, &chosen] {
+    look_at_variables(command, *options);
     chosen = {[=](std::stop_token stop) { return run(*options, std::move(stop)); },
               when_interrupted};
   });

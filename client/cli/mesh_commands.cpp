@@ -20,6 +20,14 @@ constexpr char kMeshExamples[] =
 .gr3 SCHISM's, .nc UGRID, .slf TELEMAC's SELAFIN, .xdmf its arrays in .xdmf.bin, .foam OpenFOAM's
 constant/polyMesh beside it, .exo Exodus, .disv the grid of MODFLOW 6.
 
+Exit codes (all of them: weft --help):
+  0        every triangle is within its bounds, or exempt, and the files are written
+  2        the command line is wrong
+  4        the input is missing, unreadable or malformed
+  5        the output cannot be written; nothing is left behind
+  64 + n   gRPC status n: 67 the request is wrong, 68 a deadline passed, 72 a limit was
+           exceeded, 73 the mesh misses its bounds, 78 the server is absent
+
 Examples:
   weft mesh coast.geojson -o coast.vtu --size 0.001
   weft mesh pipe.poly -o pipe.msh --size '0.4*hypot(x-200, y-200) + 1' --min-angle 30
@@ -127,7 +135,8 @@ void add_mesh(CLI::App& app, Chosen& chosen) {
                 "Show no picture of the mesh at the end, on a terminal that can show one (kitty's "
                 "protocol or sixel)")
       ->envname("WEFT_NO_PICTURE");
-  mesh.callback([kept, &chosen] {
+  mesh.callback([kept, &mesh, &chosen] {
+    warn_of_variables(mesh, kept->options.request_options);
     chosen.run = [kept](std::stop_token stop) {
       return kept->detach ? detach(kept->options, std::move(stop))
                           : run_mesh(kept->options, std::move(stop));

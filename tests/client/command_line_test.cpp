@@ -133,6 +133,17 @@ TEST_F(CommandLine, LetsTheEnvironmentNameWhatACommandHasNoUseFor) {
   EXPECT_EQ(run(mesh_to("m.vtu"), {"WEFT_COLOR=angle", "WEFT_TOKEN_FILE=/nowhere"}), 0) << err();
 }
 
+TEST_F(CommandLine, WarnsOfVariablesThatChangeTheMesh) {
+  const std::string warning = "WARNING: the environment sets --min-angle: WEFT_MIN_ANGLE=25\n";
+  EXPECT_EQ(run(mesh_to("m.vtu"), {"WEFT_MIN_ANGLE=25", "WEFT_CLIENT_THREADS=1"}), 0) << err();
+  EXPECT_NE(out().find(warning), std::string::npos) << out();
+  EXPECT_EQ(out().find("WEFT_CLIENT_THREADS"), std::string::npos) << out();
+  Words given = mesh_to("m.vtu");
+  given.insert(given.end(), {"--min-angle", "20"});
+  EXPECT_EQ(run(given, {"WEFT_MIN_ANGLE=25"}), 0) << err();
+  EXPECT_EQ(out().find("WARNING"), std::string::npos) << out();
+}
+
 TEST_F(CommandLine, IsNotEndedByWhatAVariableMeansToAnotherCommand) {
   const std::string wrong = "WEFT_MIN_ANGLE=61";
   EXPECT_EQ(run({"convert", (folder_ / "in.poly").string(), (folder_ / "out" / "d.poly").string()},

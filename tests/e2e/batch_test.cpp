@@ -57,11 +57,12 @@ TEST_F(Pipeline, LeavesMeshesReportPageAndLockFile) {
   EXPECT_NE(client::contents_of(folder_ / "meshes.lock").find("\"pipe\""), std::string::npos);
 }
 
-TEST_F(Pipeline, HoldsLockedMeshesToTheirDigestsWhateverServerMakesThem) {
+TEST_F(Pipeline, HoldsLockedMeshesToTheirDigestsWhateverServerMakesThemAndVariablesSay) {
   ASSERT_EQ(mesh().exit_code, 0);
   const std::string lock = client::contents_of(folder_ / "meshes.lock");
   const Server server;
-  const Outcome outcome = mesh("--locked", "WEFT_SERVER=" + server.address());
+  const Outcome outcome =
+      mesh("--locked", "WEFT_MIN_ANGLE=30 WEFT_SNAP=1 WEFT_SERVER=" + server.address());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err << outcome.out;
   EXPECT_EQ(client::contents_of(folder_ / "meshes.lock"), lock);
 }
