@@ -45,7 +45,7 @@ struct MeshRequest {
   // No edge shorter than this is made, in units. 0: only the floor of double precision.
   double min_edge = 0;
   Placement placement = Placement::kLattice;
-  // Sweeps of smoothing (refine/smoother.h), at most kMaxSweeps. Unset: two if the size makes
+  // Sweeps of smoothing (smoother.h), at most kMaxSweeps. Unset: two if the size makes
   // nearly all triangles, on a lattice that has few faults or in a mesh below 100,000 triangles;
   // otherwise none.
   std::optional<std::uint32_t> sweeps = std::nullopt;

@@ -78,6 +78,7 @@ step "formatting" check_format
 step "shell scripts" check_shell
 step "includes" tests/includes.py
 step "places of tests" tests/mirror.py
+step "files that comments name" tests/paths.py
 needed "install linters" install_linters
 step "protocol" check_protocol
 step "console" check_console

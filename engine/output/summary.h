@@ -71,7 +71,7 @@ struct Summary {
   // the centroids of the mesh. Regions without a bound count for neither; 0 if there is no bound.
   double ideal_ratio = 0;
   // Share of the area where Steiner points came from a lattice, 0 to 1: on grains of
-  // size/grain_map.h, or under one bound everywhere. The rest has circumcentres, or lies at steps.
+  // grain_map.h, or under one bound everywhere. The rest has circumcentres, or lies at steps.
   double lattice_share = 0;
   std::array<std::uint64_t, 18> angle_histogram{};  // all angles, 10 degrees per bin
   // Aspect ratio = longest edge / (2 sqrt(3) inradius), 1 for equilateral; bins end at

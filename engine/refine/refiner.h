@@ -8,7 +8,7 @@
 //   refiner.queue_all();                              // the bad triangles
 //   std::optional<Error> stopped = refiner.run();     // nullopt: all is refined or refused
 //
-// What makes it fast, each with its cost measured at 1 M triangles: no point location (a bad
+// What makes it fast: no point location (a bad
 // triangle belongs to the cavity of its own Steiner point); the cavity's slots are reused; queue
 // entries have a few bytes, and show whether their triangle still exists (two thirds are stale);
 // the worst comes first, last in first out among equals (bad_triangles.h).

@@ -5,7 +5,7 @@
 // nearer to the shortest edge (A. Üngör, "Off-centers", 2004). For a skinny triangle this is only
 // the first of the places that are tried (petal.h), the nearest to the edge's bisector.
 //
-// If it is too large: to the point of the lattice (size/lattice.h) nearest to its circumcentre,
+// If it is too large: to the point of the lattice (lattice.h) nearest to its circumcentre,
 // provided that this point
 //   - lies in the circumdisk, at most sqrt(kInside) of the radius from the centre, so that the
 //     insertion removes the triangle;

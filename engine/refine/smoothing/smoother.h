@@ -6,7 +6,7 @@
 //   smoother.begin(OwnsAll{}, box, domain.vertices.size(), 0);
 //   std::optional<Error> stopped = smoother.run(slots, 2);   // two sweeps
 //
-// A lattice (size/lattice.h) makes nearly equilateral triangles, except in the rows where it meets
+// A lattice (lattice.h) makes nearly equilateral triangles, except in the rows where it meets
 // a segment or another lattice. Nearly all angles below 45 degrees are in these rows, so that only
 // a few vertices in a hundred have to move.
 //
