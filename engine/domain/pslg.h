@@ -38,18 +38,20 @@ struct Segment {
 struct Area {
   // Of all areas that cover a face and have a region, the one with the highest priority gives the
   // face its region; of several, the smallest; of several of one size, to 30 bits, the first.
-  std::optional<std::int32_t> region;
+  std::optional<std::int32_t> region = std::nullopt;
   std::int32_t priority = 0;
-  std::optional<double> max_area;  // > 0; the least of all areas that cover a face holds there
-  bool is_hole = false;            // carves what it covers away, and has no other effect
+  // > 0. The least of all areas that cover a face holds there.
+  std::optional<double> max_area = std::nullopt;
+  bool is_hole = false;  // carves what it covers away, and has no other effect
 };
 
 // Floods the face that `at` lies in, up to the segments. Its id takes the place of the areas'; the
 // smaller bound holds.
 struct RegionSeed {
   Point at;
-  std::int32_t id = 0;             // carried by every triangle of the face; 0 elsewhere
-  std::optional<double> max_area;  // > 0, in squared units; combined with the size field by min
+  std::int32_t id = 0;  // carried by every triangle of the face; 0 elsewhere
+  // > 0, in squared units; combined with the size field by min.
+  std::optional<double> max_area = std::nullopt;
 };
 
 enum class Fill : std::uint8_t { kSeeds, kEvenOdd, kUnion };
