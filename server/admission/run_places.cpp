@@ -27,7 +27,7 @@ bool RunPlaces::has_share(Lane lane, const std::string& client) const {
 std::vector<std::string> RunPlaces::full_clients(Lane lane) const {
   std::vector<std::string> full;
   for (const auto& [client, count] : at(lane).running_of)
-    if (count >= at(lane).of_client) full.push_back(client);
+    if (!client.empty() && count >= at(lane).of_client) full.push_back(client);
   return full;
 }
 
@@ -40,13 +40,14 @@ void RunPlaces::begin(Lane lane, Kind kind, const std::string& client) {
 
 void RunPlaces::end(Lane lane, Kind kind, const std::string& client) {
   Places& in = at(lane);
-  --in.running;
+  bool frees = in.running-- >= in.places;
   in.offered = Clock::now();
   const auto found = in.running_of.find(client);
-  if (found != in.running_of.end() && (kind == Kind::kCall || !client.empty()) &&
-      --found->second == 0)
-    in.running_of.erase(found);
-  tell(other(kind));
+  if (found != in.running_of.end() && (kind == Kind::kCall || !client.empty())) {
+    frees |= found->second >= in.of_client;
+    if (--found->second == 0) in.running_of.erase(found);
+  }
+  if (frees) tell(other(kind));
 }
 
 void RunPlaces::set_waits(Lane lane, Kind kind, bool waits) {

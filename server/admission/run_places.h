@@ -56,6 +56,7 @@ class RunPlaces {
   // Whether the client has less than its share of the places. A job without an owner, "", is
   // nobody's.
   bool has_share(Lane lane, const std::string& client) const;
+  // Those without a share of the places left; "" is never one of them.
   std::vector<std::string> full_clients(Lane lane) const;
 
   void begin(Lane lane, Kind kind, const std::string& client);
@@ -63,8 +64,9 @@ class RunPlaces {
 
   // Whether runs of this kind wait for nothing but a place of this lane.
   void set_waits(Lane lane, Kind kind, bool waits);
-  // `told` is called, with the mutex held, when the other kind has left a place or its turn; it
-  // must not call back. Empty: nobody is told any more.
+  // `told` is called, with the mutex held, when the other kind has left its turn, the last place of
+  // a lane, or the last one of a client's share; it must not call back. Empty: nobody is told any
+  // more.
   void on_free(Kind kind, std::function<void()> told);
 
  private:

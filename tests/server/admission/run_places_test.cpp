@@ -44,6 +44,31 @@ TEST(RunPlaces, CountNoJobsOfNobody) {
   EXPECT_EQ(places.running(Lane::kMain), 0u);
 }
 
+TEST(RunPlaces, KeepNoJobsOfNobodyFromCallsOfNobody) {
+  RunPlaces places({.places = 4, .client_share = 0.5});
+  for (int i = 0; i < 2; ++i) places.begin(Lane::kMain, Kind::kCall, "");
+  EXPECT_TRUE(places.full_clients(Lane::kMain).empty());
+}
+
+TEST(RunPlaces, AreToldOfOnlyIfARunThatCouldNotBeginNowCan) {
+  int told = 0;
+  RunPlaces places({.places = 3});
+  places.on_free(Kind::kJob, [&] { ++told; });
+  for (const char* client : {"a", "b", "c"}) places.begin(Lane::kMain, Kind::kCall, client);
+  places.end(Lane::kMain, Kind::kCall, "a");
+  EXPECT_EQ(told, 1);  // the last place
+  places.end(Lane::kMain, Kind::kCall, "b");
+  EXPECT_EQ(told, 1);
+
+  RunPlaces shared({.places = 4, .client_share = 0.5});
+  shared.on_free(Kind::kJob, [&] { ++told; });
+  for (int i = 0; i < 2; ++i) shared.begin(Lane::kMain, Kind::kCall, "a");
+  shared.end(Lane::kMain, Kind::kCall, "a");
+  EXPECT_EQ(told, 2);  // the last of a share
+  shared.end(Lane::kMain, Kind::kCall, "a");
+  EXPECT_EQ(told, 2);
+}
+
 TEST(RunPlaces, GoToTheKindsInTurnsIfBothWait) {
   RunPlaces places({.places = 1});
   places.begin(Lane::kMain, Kind::kCall, "a");
