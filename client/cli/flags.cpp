@@ -112,17 +112,16 @@ void refuse_idle_flags(const CLI::App& command, std::span<char* const> words) {
     std::string flag;
     std::string other;
   };
-  std::vector<Pair> needs = {{"--tls", "--server"},
-                             {"--tls-ca", "--server"},
-                             {"--tls-cert", "--server"},
-                             {"--tls-key", "--server"},
-                             {"--tls-server-name", "--server"},
-                             {"--token-file", "--server"},
-                             {"--insecure", "--server"},
-                             {"--json", "--quality"}};
+  std::vector<Pair> needs = {
+      {"--tls", "--server"},      {"--tls-ca", "--server"},          {"--tls-cert", "--server"},
+      {"--tls-key", "--server"},  {"--tls-server-name", "--server"}, {"--token-file", "--server"},
+      {"--insecure", "--server"}, {"--json", "--quality"},           {"--layer", "--domain"},
+      {"--where", "--domain"},    {"--min-angle", "--domain"},       {"--snap", "--domain"},
+      {"--fill", "--domain"},     {"--max-unrefined", "--domain"},   {"--open-boundary", "--for"}};
   for (const auto& row : writing_rows()) needs.push_back({"--" + row.name, "--output"});
   for (const auto& row : drawing_rows()) needs.push_back({"--" + row.name, "--draw"});
-  for (const auto& row : size_rows()) needs.push_back({"--" + row.name, "--quality"});
+  for (const auto& row : size_rows())
+    for (const char* other : {"--quality", "--domain"}) needs.push_back({"--" + row.name, other});
   const Pair excludes[] = {{"--interval", "--once"}, {"--lint", "--detach"}};
   const auto is_given = [words](const std::string& flag) {
     return std::any_of(words.begin(), words.end(), [&flag](std::string_view word) {

@@ -11,6 +11,8 @@
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
 #include "client/lint/domain_lint.h"
+#include "client/report/model_report.h"
+#include "client/report/output_rows.h"
 
 namespace weft::client {
 namespace {
@@ -52,13 +54,15 @@ Examples:
   weft draw coast.14 -o harbour.svg --lonlat --zoom=-74.3,40.4,0.5,0.4 --labels)";
 
 constexpr char kCheckExamples[] =
-    R"(Give the bounds that the mesh was made with. A mesh of a domain in longitude and latitude
+    R"(Give the bounds that the mesh was made with. With --for, faults are what the model refuses,
+and the exit code is 3; advice does not change it. A mesh of a domain in longitude and latitude
 is checked in metres: write it with --to-metres, too.
 
 Examples:
   weft check pipe.msh --domain pipe.poly --size '0.4*hypot(x-200, y-200) + 1' --min-angle 30
   weft check coast.msh --domain coast.geojson --to-metres --size 1e8
-  weft check key.vtu --domain key.poly --json)";
+  weft check key.vtu --domain key.poly --json
+  weft check fort.14 --for adcirc --open-boundary 1 --lonlat)";
 
 constexpr char kConvertExamples[] =
     R"(A mesh is written as it is, vertex by vertex; what the new format does not carry is lost.
@@ -172,8 +176,9 @@ void add_check(CLI::App& app, Chosen& chosen) {
   CLI::App& check = *app.add_subcommand("check", "Check a mesh with the independent checker");
   check.footer(kCheckExamples);
   check.add_option("MESH", options.mesh, "Mesh: " + read_mesh_extensions())->required();
-  check.add_option("--domain", options.domain, "Domain that was meshed: " + domain_extensions())
-      ->required()
+  check
+      .add_option("--domain", options.domain,
+                  "Domain that was meshed: " + domain_extensions() + ". Required without --for")
       ->type_name("INPUT");
   add_layers(check, options.layers);
   add_size(check, options.size);
@@ -196,6 +201,19 @@ void add_check(CLI::App& app, Chosen& chosen) {
            "input angles, which are exempt)",
            "0", number("N", &CheckOptions::max_unrefined)},
           options);
+  add_row(
+      check,
+      {"for", "",
+       "Judge what this model asks of a mesh, too: boundaries, channels, triangles at a vertex, "
+       "links between cells, the time step. With depths in MESH, in metres",
+       "", one_of(&CheckOptions::model, models())},
+      options);
+  add_row(check,
+          {"open-boundary", "",
+           "Marker of the segments that are open boundary, by number or by name, for --for. May be "
+           "repeated",
+           "", open_boundaries()},
+          options.writing);
   add_projection_flags(check, options.projection);
   add_json(check, options.json, "Print one JSON object, with exact figures, on standard output");
   check.callback(

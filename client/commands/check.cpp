@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `weft check`: the independent checker judges a mesh file.
+// `weft check`: the independent checker judges a mesh file, by its domain, for a model, or both.
 #include "checker/check.h"
 
 #include <cmath>
@@ -11,9 +11,13 @@
 #include "client/commands/checker_input.h"
 #include "client/commands/commands.h"
 #include "client/commands/input_domain.h"
+#include "client/formats/bed.h"
+#include "client/formats/derived/vertex_values.h"
 #include "client/formats/domains/to_checker.h"
 #include "client/formats/mesh_formats.h"
 #include "client/report/check_report.h"
+#include "client/report/marker_warnings.h"
+#include "client/report/model_report.h"
 
 namespace weft::client {
 namespace {
@@ -32,40 +36,105 @@ check::Mesh to_checker(const Mesh& mesh) {
   return out;
 }
 
-}  // namespace
+// The depths of a mesh that has them, or elevations turned; empty: none.
+std::vector<double> depths_of(MeshWithArrays& read) {
+  for (NamedArray& array : read.arrays) {
+    if (!Bed::is_bed(array.name) || !array.values) continue;
+    std::vector<double> depths = std::move(*array.values);
+    if (array.name != "depth")
+      for (double& depth : depths) depth = -depth;
+    return depths;
+  }
+  return {};
+}
 
-Result<ExitCode> run_check(const CheckOptions& options) {
-  if (options.snap && !(std::isfinite(*options.snap) && *options.snap >= 0))
-    return fail(ExitCode::kUsage,
-                "--snap is " + shortest(*options.snap) + "; it must be finite and 0 or more");
-  if (options.projection.wanted() && !options.projection.to_metres)
-    return fail(ExitCode::kUsage,
-                "a mesh is checked in the plane that it was made in: write it with --to-metres, "
-                "and say --to-metres here, too");
-  RequestOptions wanted = options.size;
-  wanted.fill = options.fill;
-  const auto input = read_input_domain(options.domain, wanted, options.projection, options.layers);
-  if (!input) return tl::unexpected(input.error());
-  const auto mesh = read_mesh(options.mesh);
-  if (!mesh) return tl::unexpected(mesh.error());
-  for (const auto* warnings : {&input->domain.warnings, &mesh->warnings})
-    for (const std::string& warning : *warnings)
-      std::fprintf(stderr, "weft: WARNING: %s\n", warning.c_str());
-  if (options.size.cells_across)
-    std::fprintf(stderr,
-                 "weft: WARNING: --cells-across is not judged: the checker knows no widths\n");
+Result<check::Requirements> requirements_of(const CheckOptions& options, const InputDomain& input) {
   check::Requirements requirements;
   requirements.min_angle_deg = options.min_angle_deg;
   requirements.allowed_unrefined = options.max_unrefined;
-  auto size = checker_size(options.size, input->domain, input->projection.get());
+  auto size = checker_size(options.size, input.domain, input.projection.get());
   if (!size) return tl::unexpected(size.error());
   requirements.size = std::move(*size);
-  const check::Report report = check::check(checker_domain(input->domain, options.snap.value_or(0)),
-                                            to_checker(*mesh), requirements);
-  const auto printed = print(options.json ? json_line(check_json(report, requirements))
-                                          : check_text(report, requirements));
+  return requirements;
+}
+
+// Whether all coordinates may be longitudes and latitudes.
+bool fits_the_globe(const Mesh& mesh) {
+  for (std::size_t i = 0; i < mesh.coordinates.size(); i += 2)
+    if (std::abs(mesh.coordinates[i]) > 360 || std::abs(mesh.coordinates[i + 1]) > 90) return false;
+  return true;
+}
+
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings)
+    std::fprintf(stderr, "weft: WARNING: %s\n", warning.c_str());
+}
+
+}  // namespace
+
+Result<ExitCode> run_check(const CheckOptions& options) {
+  const bool has_domain = !options.domain.empty();
+  if (!has_domain && !options.model)
+    return fail(ExitCode::kUsage, "--domain is required, unless --for names a model");
+  if (options.snap && !(std::isfinite(*options.snap) && *options.snap >= 0))
+    return fail(ExitCode::kUsage,
+                "--snap is " + shortest(*options.snap) + "; it must be finite and 0 or more");
+  if (has_domain && options.projection.wanted() && !options.projection.to_metres)
+    return fail(ExitCode::kUsage,
+                "a mesh is checked in the plane that it was made in: write it with --to-metres, "
+                "and say --to-metres here, too");
+  std::optional<InputDomain> input;
+  if (has_domain) {
+    RequestOptions wanted = options.size;
+    wanted.fill = options.fill;
+    auto read = read_input_domain(options.domain, wanted, options.projection, options.layers);
+    if (!read) return tl::unexpected(read.error());
+    input = std::move(*read);
+    print_warnings(input->domain.warnings);
+  }
+  auto read = read_mesh_with_arrays(options.mesh);
+  if (!read) return tl::unexpected(read.error());
+  print_warnings(read->mesh.warnings);
+  const check::Mesh mesh = to_checker(read->mesh);
+
+  std::string text;
+  Json json = Json::object();
+  bool holds = true;
+  if (has_domain) {
+    if (options.size.cells_across)
+      print_warnings({"--cells-across is not judged: the checker knows no widths"});
+    const auto requirements = requirements_of(options, *input);
+    if (!requirements) return tl::unexpected(requirements.error());
+    const check::Report report =
+        check::check(checker_domain(input->domain, options.snap.value_or(0)), mesh, *requirements);
+    text = check_text(report, *requirements);
+    json = check_json(report, *requirements);
+    holds = report.ok();
+  }
+  if (options.model) {
+    MeshWriteOptions boundaries = options.writing;
+    if (auto found = find_open_boundaries(boundaries, read->mesh.names.markers); !found)
+      return tl::unexpected(found.error());
+    print_warnings(
+        open_boundary_warnings(markers_of(read->mesh.view()), boundaries.open_boundaries));
+    const std::vector<double> depths = depths_of(*read);
+    const check::ModelReport report = check::judge_for_models(
+        {.mesh = mesh,
+         .open_markers = boundaries.open_boundaries,
+         .depths = depths,
+         .lonlat = options.projection.wanted() && !options.projection.to_metres});
+    if (!depths.empty() && !options.projection.wanted() && fits_the_globe(read->mesh))
+      print_warnings({"coordinates are taken for metres; if they are degrees, add --lonlat"});
+    const ModelView view{*options.model, report, !boundaries.open_boundaries.empty(),
+                         !depths.empty()};
+    text += model_text(view);
+    json["for"] = model_json(view);
+    holds &= view.holds();
+    json["holds"] = holds;
+  }
+  const auto printed = print(options.json ? json_line(json) : text);
   if (!printed) return printed;
-  return report.ok() ? ExitCode::kOk : ExitCode::kCheckFailed;
+  return holds ? ExitCode::kOk : ExitCode::kCheckFailed;
 }
 
 }  // namespace weft::client

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "checker/models/model_rules.h"
 #include "client/base/error.h"
 #include "client/batch/quality_gate.h"
 #include "client/call/connect_options.h"
@@ -64,16 +65,19 @@ Result<ExitCode> run_draw(const DrawMeshOptions& options, std::stop_token stop);
 
 struct CheckOptions {
   std::filesystem::path mesh;
-  std::filesystem::path domain;
+  std::filesystem::path domain;  // empty: the mesh is judged for a model alone
   LayerOptions layers;
   RequestOptions size;  // how large triangles may be; the rest is not looked at
   double min_angle_deg = 20;
   std::optional<double> snap;
   PolygonFill fill = PolygonFill::kUnion;
   std::uint64_t max_unrefined = 0;
-  ProjectionOptions projection;  // of the domain; the mesh is in metres
+  ProjectionOptions projection;  // of the domain, whose mesh is in metres, or of the mesh
+  std::optional<check::Model> model;
+  MeshWriteOptions writing;  // of it, the open boundaries
   bool json = false;
 };
+// kUsage with neither a domain nor a model, kCheckFailed if a rule is violated.
 Result<ExitCode> run_check(const CheckOptions& options);
 
 struct ConvertOptions {

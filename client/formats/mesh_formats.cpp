@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "client/base/text.h"
 #include "client/base/words.h"
@@ -145,6 +146,15 @@ Result<T> with_memory(const std::filesystem::path& path, const Read& read) {
 
 std::string lower_extension(const std::filesystem::path& path) {
   return lower_case(path.extension().string());
+}
+
+Result<void> find_open_boundaries(MeshWriteOptions& options, const NameTable& markers) {
+  for (const std::string& name : std::exchange(options.open_boundary_names, {})) {
+    const auto marker = find_marker(name, markers);
+    if (!marker) return tl::unexpected(marker.error());
+    options.open_boundaries.push_back(*marker);
+  }
+  return {};
 }
 
 const MeshFormat* mesh_format(const std::filesystem::path& path) {

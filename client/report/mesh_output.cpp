@@ -146,12 +146,7 @@ Result<std::unique_ptr<MeshSpool>> MeshOutput::make_spool() {
 }
 
 Result<void> MeshOutput::find_markers(const NameTable& markers) {
-  for (const std::string& name : std::exchange(options_.writing.open_boundary_names, {})) {
-    const auto marker = find_marker(name, markers);
-    if (!marker) return tl::unexpected(marker.error());
-    options_.writing.open_boundaries.push_back(*marker);
-  }
-  return {};
+  return find_open_boundaries(options_.writing, markers);
 }
 
 Result<void> MeshOutput::write(const MeshView& arrived, const v1::Summary& summary) {

@@ -54,6 +54,8 @@ OptionValue<MeshWriteOptions> nodal() {
           }};
 }
 
+}  // namespace
+
 OptionValue<MeshWriteOptions> open_boundaries() {
   return {"MARKER", "", Arity::kList,
           [](const auto& texts, const auto&, MeshWriteOptions& options) -> std::string {
@@ -70,8 +72,6 @@ OptionValue<MeshWriteOptions> open_boundaries() {
             return "";
           }};
 }
-
-}  // namespace
 
 const OptionRows<MeshWriteOptions>& writing_rows() {
   using Writing = MeshWriteOptions;

@@ -9,6 +9,8 @@
 namespace weft::client {
 
 const OptionRows<MeshWriteOptions>& writing_rows();
+// The value of the row "open-boundary".
+OptionValue<MeshWriteOptions> open_boundaries();
 // What drawings show, of any mesh, by `weft draw`.
 const OptionRows<DrawOptions>& drawing_rows();
 // The same for drawings of a mesh that is being made: they have no bound to colour by, so help does

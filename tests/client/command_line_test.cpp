@@ -282,6 +282,34 @@ TEST_F(CommandLine, ChecksAMesh) {
   EXPECT_NE(out().find("angle"), std::string::npos) << out();
 }
 
+TEST_F(CommandLine, ChecksAMeshForAModelWithoutItsDomain) {
+  ASSERT_EQ(run(mesh_to("m.vtu")), 0);
+  const Words check = {"check", folder_ / "out" / "m.vtu", "--for", "adcirc"};
+  EXPECT_EQ(run(check, {"WEFT_MIN_ANGLE=30"}), 0) << err();
+  EXPECT_TRUE(out().ends_with("the mesh holds for ADCIRC\n")) << out();
+  for (const char* flag : {"--size=1", "--min-angle=20", "--snap=0"}) {
+    Words words = check;
+    words.push_back(flag);
+    EXPECT_EQ(run(words), 2) << flag;
+    EXPECT_NE(err().find("requires --domain"), std::string::npos) << err();
+  }
+  EXPECT_EQ(run({"check", folder_ / "out" / "m.vtu", "--for", "mike"}), 2);
+  EXPECT_NE(err().find("is not adcirc, schism, telemac or delft3d"), std::string::npos) << err();
+  EXPECT_EQ(run({"check", folder_ / "out" / "m.vtu"}), 2);
+  EXPECT_NE(err().find("--domain is required"), std::string::npos) << err();
+}
+
+TEST_F(CommandLine, FailsAMeshThatItsModelRefuses) {
+  std::ofstream(folder_ / "pinched.off")
+      << "OFF\n5 2 0\n0 0 0\n1 0 0\n1 1 0\n2 1 0\n2 2 0\n3 0 1 2\n3 2 3 4\n";
+  const Words check = {"check", folder_ / "pinched.off", "--for", "adcirc"};
+  EXPECT_EQ(run(check), 3);
+  EXPECT_NE(out().find("the boundary passes each vertex once: fails, 1 time\n  at (1, 1)\n"),
+            std::string::npos)
+      << out();
+  EXPECT_EQ(run({"check", folder_ / "pinched.off", "--for", "delft3d"}), 0) << out();
+}
+
 TEST_F(CommandLine, ChecksNoMeshAgainstASizeThatNothingExceeds) {
   ASSERT_EQ(run(mesh_to("m.vtu")), 0);
   for (const char* size : {"nan", "-nan", "inf", "-1", "0", "1e999"}) {
