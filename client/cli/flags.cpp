@@ -112,12 +112,22 @@ void refuse_idle_flags(const CLI::App& command, std::span<char* const> words) {
     std::string flag;
     std::string other;
   };
-  std::vector<Pair> needs = {
-      {"--tls", "--server"},      {"--tls-ca", "--server"},          {"--tls-cert", "--server"},
-      {"--tls-key", "--server"},  {"--tls-server-name", "--server"}, {"--token-file", "--server"},
-      {"--insecure", "--server"}, {"--json", "--quality"},           {"--layer", "--domain"},
-      {"--where", "--domain"},    {"--min-angle", "--domain"},       {"--snap", "--domain"},
-      {"--fill", "--domain"},     {"--max-unrefined", "--domain"},   {"--open-boundary", "--for"}};
+  std::vector<Pair> needs = {{"--tls", "--server"},
+                             {"--tls-ca", "--server"},
+                             {"--tls-cert", "--server"},
+                             {"--tls-key", "--server"},
+                             {"--tls-server-name", "--server"},
+                             {"--token-file", "--server"},
+                             {"--insecure", "--server"},
+                             {"--json", "--quality"},
+                             {"--layer", "--domain"},
+                             {"--where", "--domain"},
+                             {"--strict", "--domain"},
+                             {"--min-angle", "--domain"},
+                             {"--snap", "--domain"},
+                             {"--fill", "--domain"},
+                             {"--max-unrefined", "--domain"},
+                             {"--open-boundary", "--for"}};
   for (const auto& row : writing_rows()) needs.push_back({"--" + row.name, "--output"});
   for (const auto& row : drawing_rows()) needs.push_back({"--" + row.name, "--draw"});
   for (const auto& row : size_rows())

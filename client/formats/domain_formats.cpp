@@ -75,7 +75,9 @@ tl::unexpected<Error> unknown_domain_format(const std::filesystem::path& path) {
                   "; nor of a mesh that is read as one: " + read_mesh_extensions());
 }
 
-Result<Domain> read_domain(const std::filesystem::path& path, const LayerOptions& layers) {
+namespace {
+
+Result<Domain> read_any(const std::filesystem::path& path, const LayerOptions& layers) {
   if (!is_domain_path(path)) return unknown_domain_format(path);
   const OgrFormat* ogr = ogr_format(lower_extension(path));
   if (layers.wanted() && ogr == nullptr)
@@ -95,6 +97,16 @@ Result<Domain> read_domain(const std::filesystem::path& path, const LayerOptions
   } catch (const std::length_error&) {
   }
   return fail(ExitCode::kUnreadableInput, path.string() + ": not enough memory to read it");
+}
+
+}  // namespace
+
+Result<Domain> read_domain(const std::filesystem::path& path, const LayerOptions& layers) {
+  auto domain = read_any(path, layers);
+  if (!domain || !layers.strict || domain->warnings.empty()) return domain;
+  std::string message = path.string() + ": refused, because of --strict";
+  for (const std::string& warning : domain->warnings) message += "\n  " + warning;
+  return fail(ExitCode::kUnreadableInput, message);
 }
 
 }  // namespace weft::client

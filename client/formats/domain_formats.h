@@ -13,7 +13,8 @@
 namespace weft::client {
 
 // Reads a domain. Errors: kUsage for an unknown extension, and for one of a format without layers
-// and attributes if `layers` wants some; kUnreadableInput for the rest.
+// and attributes if `layers` wants some; kUnreadableInput for the rest, and for a domain with
+// warnings if it is to be strict.
 Result<Domain> read_domain(const std::filesystem::path& path, const LayerOptions& layers = {});
 
 // Whether the extension is that of a domain, or of a mesh that can be read as one.

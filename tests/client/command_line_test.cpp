@@ -270,6 +270,26 @@ TEST_F(CommandLine, LeavesNothingWhenTheDiskIsFull) {
   expect_nothing_left();
 }
 
+TEST_F(CommandLine, RefusesAFileThatItWouldRepairIfThatIsWanted) {
+  const std::string file = (folder_ / "two.csv").string();
+  std::ofstream(file) << "0,0\n1,0\n1,1\n0,1\n\n3,3\n4,4\n3,3\n";
+  const Words mesh = {"mesh", file, "-o", out_file("m.vtu")};
+  EXPECT_EQ(run(mesh), 0) << err();
+  const std::string warning = file + ": 1 ring without an area is left out: the ring from line 6";
+  EXPECT_NE(out().find("WARNING: " + warning), std::string::npos) << out();
+  std::filesystem::remove(out_file("m.vtu"));
+  Words strict = mesh;
+  strict.push_back("--strict");
+  for (const auto& [words, variables] : {std::pair<Words, Words>{strict, {}},
+                                         {mesh, {"WEFT_STRICT=1"}},
+                                         {{"convert", file, out_file("d.poly"), "--strict"}, {}}}) {
+    EXPECT_EQ(run(words, variables), 4) << out();
+    EXPECT_NE(err().find(file + ": refused, because of --strict\n  " + warning), std::string::npos)
+        << err();
+  }
+  expect_nothing_left();
+}
+
 TEST_F(CommandLine, ChecksAMesh) {
   ASSERT_EQ(run(mesh_to("m.vtu")), 0);
   const Words check = {"check", folder_ / "out" / "m.vtu", "--domain", folder_ / "in.poly"};

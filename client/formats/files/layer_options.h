@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a file with layers and attributes is the domain.
+// How the file of a domain is read: what of it is the domain, if it has layers and attributes, and
+// whether it must be without faults.
 #pragma once
 
 #include <string>
@@ -11,6 +12,9 @@ struct LayerOptions {
   std::vector<std::string> layers{};  // names; empty: the only one that holds anything
   std::string where{};                // an SQL expression of attributes; empty: all features
 
+  bool strict = false;  // refuse a file of which something is left out or repaired
+
+  // Whether a part of the file is wanted.
   bool wanted() const { return !layers.empty() || !where.empty(); }
 };
 

@@ -24,6 +24,9 @@ const OptionRows<LayerOptions>& layer_rows() {
           options.where = texts.front();
           return "";
         }}},
+      {"strict", "WEFT_STRICT",
+       "Refuse a domain of whose file something would be left out or repaired with a warning", "",
+       on_or_off(&LayerOptions::strict)},
   };
   return rows;
 }

@@ -153,6 +153,7 @@ TEST_F(RequestRows, AskForTheSameAsFlagVariableAndKey) {
 TEST_F(RequestRows, OfLayersReachTheReaderAsFlagAndKey) {
   const std::string refusal = "in.poly: --layer and --where are for files with layers";
   for (const auto& row : layer_rows()) {
+    if (row.name == "strict") continue;  // for all files
     SCOPED_TRACE(row.name);
     EXPECT_EQ(run({"mesh", folder_ / "in.poly", "-o", out_file("m.vtu"), "--server", address_,
                    "--" + row.name, "x"}),
