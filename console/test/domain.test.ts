@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 import { readFileSync } from "node:fs";
+import { fromJson, toBinary, type JsonValue } from "@bufbuild/protobuf";
 import { expect, test } from "vitest";
 import { examples } from "../src/domain/examples";
+import { FileError } from "../src/domain/file-error";
 import { boxOf, segmentEnds, toMessage } from "../src/domain/planar-domain";
 import { readDomain } from "../src/domain/read-domain";
 import { decodeText, numberOf } from "../src/domain/text";
+import { DomainSchema } from "../src/gen/weft/v1/mesh_service_pb";
 
 const model = (name: string) => readDomain(name, readFileSync(`../tests/models/${name}`, "utf8"));
 
@@ -275,4 +278,15 @@ test("what has no area and no length is left out, counted in one warning", () =>
   expect(readDomain("a.wkt", "POLYGON ((0 0, 4 0, 4 4, 0 0), EMPTY) POINT EMPTY").warnings).toEqual([
     "1 ring without an area and 1 empty geometry are left out, the first is geometry 0, ring [1]",
   ]);
+});
+
+const files = "../tests/domain_files";
+const expected = JSON.parse(readFileSync(`${files}/expect.json`, "utf8")) as Record<string, JsonValue>;
+
+test.each(Object.keys(expected))("%s is read as by the command line and Python", (name) => {
+  const bytes = readFileSync(`${files}/${name}`);
+  const read = () => readDomain(name, decodeText(Uint8Array.from(bytes).buffer));
+  if (expected[name] === null) return expect(read).toThrow(FileError);
+  const wanted = fromJson(DomainSchema, expected[name]);
+  expect([...toBinary(DomainSchema, toMessage(read(), 0))]).toEqual([...toBinary(DomainSchema, wanted)]);
 });

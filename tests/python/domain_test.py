@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import shapely.geometry
 import weft
+from google.protobuf import json_format
 from weft import _protocol, _requests
 from conftest import MODELS
 
@@ -18,22 +19,35 @@ def test_a_file_means_what_it_means_to_the_command_line(client, digest_of, name)
     assert client.mesh(MODELS / name).digest == digest_of(MODELS / name)
 
 
-@pytest.mark.parametrize("name", ["key.poly", "us-east-coast.geojson", "site.geojson", "ways.wkt", "rings.csv"])
+@pytest.mark.parametrize("name", ["key.poly", "us-east-coast.geojson", "rings.csv"])
 def test_a_file_makes_the_very_domain_that_the_command_line_sends(run_weft, tmp_path, name):
-    files = {
-        "site.geojson": json.dumps(named_features(
-            ("Polygon", [SQUARE, HOLE], {"region": "field", "max_area": "0.5", "marker": 2}),
-            ("Polygon", [SQUARE], {"region": 3, "region_name": "pond", "max_edge": 0.2}),
-            ("LineString", [[0, 0], [1, 0]], {"marker": "quay"}))),
-        "ways.wkt": "POLYGON((0 0, 9 0, 9 9, 0 9, 0 0), (1 1, 2 1, 2 2, 1 1)) LINESTRING(3 3, 4 4)",
-        "rings.csv": "x;y;marker\n0;0;1\n9,5;0;2\n9;9;inlet\n\n1;1;0\n2;1;0\n2;2;0\n"}
-    path = tmp_path / name if name in files else MODELS / name
-    if name in files:
-        path.write_text(files[name])
+    path = MODELS / name
+    if name == "rings.csv":
+        path = tmp_path / name
+        path.write_text("x;y;marker\n0;0;1\n9,5;0;2\n9;9;inlet\n\n1;1;0\n2;1;0\n2;2;0\n")
     run_weft("convert", path, tmp_path / "sent.pb")
+    assert sent_bytes(path) == (tmp_path / "sent.pb").read_bytes()
+
+
+def sent_bytes(path):
     message = _protocol.message("weft.v1.Domain")()
     _requests._fill_domain(weft.Domain.read(path), message)
-    assert message.SerializeToString(deterministic=True) == (tmp_path / "sent.pb").read_bytes()
+    return message.SerializeToString(deterministic=True)
+
+
+FILES = MODELS.parent / "domain_files"
+EXPECTED = json.loads((FILES / "expect.json").read_text())
+
+
+@pytest.mark.filterwarnings("ignore::weft.WeftWarning")
+@pytest.mark.parametrize("name", EXPECTED)
+def test_a_file_is_read_as_by_the_command_line_and_the_console(name):
+    if EXPECTED[name] is None:
+        with pytest.raises(weft.DomainError):
+            weft.Domain.read(FILES / name)
+        return
+    message = json_format.ParseDict(EXPECTED[name], _protocol.message("weft.v1.Domain")())
+    assert sent_bytes(FILES / name) == message.SerializeToString(deterministic=True)
 
 
 def test_polygons_that_overlap_are_united_each_with_its_region(client):
