@@ -137,7 +137,7 @@ def variables(text):
 def flags(build):
     weft, weftd = build / "weft", build / "weftd"
     commands = [row.names[0] for row in program_help.commands_of(weft)]
-    lines = ["# Flags", "", "As the programs tell them; made by `docs/generate.py`.", ""]
+    lines = ["# Flags", "", "Printed by the programs; made by `docs/generate.py`.", ""]
     of_server = program_help.help_of(weftd)
     for title, text in [("weftd", of_server)] + [
             (f"weft {command}", program_help.help_of(weft, command)) for command in commands]:

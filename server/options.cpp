@@ -223,7 +223,7 @@ void add_work(Flags& flags, Options& options, Given& given) {
   flags.begin_group("Work");
   flags
       .value("--threads", service.threads, "N",
-             "Threads that compute. Range: 1 to 4096. Default: what the machine grants")
+             "Compute threads. Range: 1 to 4096. Default: the processors that the process may use")
       ->check(silent(CLI::Range(1u, 4096u)));
   flags
       .value("--jobs", given.jobs, "N",
@@ -284,12 +284,12 @@ void add_store(Flags& flags, Options& options, Given& given) {
       .value("--max-attempts", jobs.retry.max_attempts, "N",
              "Maximum attempts at a job whose workers are lost. Range: 1 to 100")
       ->check(silent(CLI::Range(1u, 100u)));
-  flags.seconds("--lease", given.lease, "Silence after which a worker is considered lost");
+  flags.seconds("--lease", given.lease,
+                "Time without a renewal after which a worker is considered lost");
   flags.seconds("--keep", given.keep,
                 "Time to keep jobs that ended, and meshes that nobody asks for");
-  flags.bytes(
-      "--keep-bytes", jobs.runner.keep.bytes,
-      "Maximum size of all meshes that are kept; those asked for longest ago are deleted first");
+  flags.bytes("--keep-bytes", jobs.runner.keep.bytes,
+              "Maximum size of all stored meshes; the least recently used are deleted first");
   flags.count("--keep-jobs", jobs.runner.keep.jobs_of_owner,
               "Maximum ended jobs that are kept per client; the oldest are deleted first");
 }

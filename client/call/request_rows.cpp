@@ -108,8 +108,9 @@ const OptionRows<Request>& other_rows() {
       {"min-angle", "WEFT_MIN_ANGLE", "Minimum angle of every triangle, in degrees. Range: 0 to 36",
        "20", number("DEG", &Request::min_angle_deg), "quality.min_angle_deg"},
       {"min-edge", "WEFT_MIN_EDGE",
-       "Shortest edge that refinement may make; angle and area give way to it", "",
-       number("LEN", &Request::min_edge), "quality.min_edge"},
+       "Shortest edge that refinement may make; it takes precedence over the bounds on angle and "
+       "area",
+       "", number("LEN", &Request::min_edge), "quality.min_edge"},
       {"placement", "WEFT_PLACEMENT",
        "Where new points go in triangles that are too large: lattice follows the size and makes a "
        "third fewer triangles, circumcentre gives the mesh no preferred direction",

@@ -14,7 +14,7 @@ namespace weft::client {
 
 struct Chosen {
   std::function<Result<ExitCode>(std::stop_token)> run;
-  // What to tell whoever interrupts it; empty: nothing.
+  // The message on SIGINT; empty: none.
   std::string when_interrupted = "interrupted, nothing was written";
 };
 

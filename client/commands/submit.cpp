@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `weft submit`, and `weft mesh --detach`: has a server make a mesh while nobody waits. Prints the
+// `weft submit`, and `weft mesh --detach`: submits a job that makes a mesh. Prints the
 // job's id alone, so that a script can take it.
 #include <cstdio>
 #include <optional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of options of domains in longitude and latitude, as call/request_rows.h is of what is
-// asked of a mesh.
+// The table of options of domains in longitude and latitude, beside that of requests,
+// call/request_rows.h.
 #pragma once
 
 #include "client/base/option_row.h"

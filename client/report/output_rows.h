@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables of how meshes are written and drawn, as call/request_rows.h is of what is asked of a
-// mesh. The files themselves are no rows: a manifest judges their names where it reads them.
+// The tables of options for writing and drawing meshes; call/request_rows.h has those of requests.
+// The output files are not among the rows: a manifest checks their names where it reads them.
 #pragma once
 
 #include "client/base/option_row.h"

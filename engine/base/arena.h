@@ -45,8 +45,8 @@ class Arena {
   // is in the arena already. Throws what f throws.
   //
   // A caller from outside only waits. If its thread took the slot, there would be one thread more
-  // than processors, and the system made two of them share one for up to 4 ms after the caller
-  // went back to sleep: 2 % of the time of two threads at 1 M triangles.
+  // than processors, and two of them would share a processor for up to 4 ms after the caller's
+  // thread went to sleep.
   template <class F>
   auto run(F&& f) {
     if (inside_ == this) return f();

@@ -36,7 +36,7 @@ class Delivery {
       digest_.add(chunk.digest.data(), chunk.digest.size());
       if (sink_.accept(std::move(chunk))) continue;
       if (auto error = context_.poll()) return error;
-      return Error{ErrorCode::kCancelled, "", "nobody takes the mesh any more"};
+      return Error{ErrorCode::kCancelled, "", "the receiver of the mesh has gone"};
     }
     return std::nullopt;
   }

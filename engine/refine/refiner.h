@@ -8,10 +8,9 @@
 //   refiner.queue_all();                              // the bad triangles
 //   std::optional<Error> stopped = refiner.run();     // nullopt: all is refined or refused
 //
-// What makes it fast: no point location (a bad
-// triangle belongs to the cavity of its own Steiner point); the cavity's slots are reused; queue
-// entries have a few bytes, and show whether their triangle still exists (two thirds are stale);
-// the worst comes first, last in first out among equals (bad_triangles.h).
+// It needs no point location: a bad triangle belongs to the cavity of its own Steiner point. The
+// cavity's slots are reused. Queue entries have a few bytes, and show whether their triangle still
+// exists; the worst comes first, last in first out among equals (bad_triangles.h).
 //
 // Ownership is a compile-time parameter (ownership.h). If an insertion meets a triangle that the
 // task does not own, the task leaves the mesh as it was and keeps the bad triangle in `deferred()`.

@@ -7,8 +7,8 @@
 //   LeafGraph::add_parts(order, graph, true);
 //   graph.set_needs(LeafGraph::needs(order, true));
 //
-// How far ahead of the next leaf to be sent other leaves must begin determines the memory of a
-// mesh. Each of these tasks waits for the leaves in conflict, one step further ahead:
+// The memory of a mesh depends on how many leaves must have begun before the next one can be sent.
+// Each of these tasks waits for the leaves in conflict, one step further ahead:
 //   - the part, until they are smoothed, because that moves vertices of this leaf, too;
 //   - the settling, until their rounds are done;
 //   - each round, until their previous round is done.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How every call of every service comes in: its headers are there, the caller is identified, the
-// drain gate passed, and only then is its message taken in, within a time and a size. Whatever
-// fails on the way is refused, counted and logged here, and nowhere else.
+// The entry of every call of every service: identify the caller by the call's headers, pass the
+// drain gate, then read the message, within a time and a size. Refusals on this way are counted and
+// logged here alone.
 //
 //   class EchoService : public RawService {
 //    public:

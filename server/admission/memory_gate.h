@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// The memory that runs, and requests that wait for one, share: nobody takes any beyond it.
+// The memory budget that runs, and requests that wait for one, share.
 //
 //   MemoryGate gate({.capacity = 8 << 30}, [&] { queue.notify(); });
 //   if (auto share = gate.take({.estimate = 9 << 20})) {     // before the run begins
 //     share->grow_to(40 << 20, poll);                        // as it turns out to need more; waits
 //   }                                                        // the share goes back with its end
 //
-// A run begins if its estimate is free, and takes what it needs beyond that as it grows. If none
-// is free, it waits until others give some back. If every run waits, none would give any back: then
-// the run that is farthest beyond its estimate is told to end, or the youngest of several such. So
-// a request that was wrongly judged light ends before those that were judged rightly.
+// A run begins if its estimate is free, and takes more as it grows; if no more is free, it waits
+// until other runs give memory back. If all runs wait, the one that exceeds its estimate most is
+// cancelled, of several such the youngest. So a request with too low an estimate ends before those
+// whose estimate was right.
 //
 // A part (`for_light`) is kept for runs that begin as light ones: heavy ones can neither begin nor
 // grow in it. A client that holds `of_client` or more cannot begin another run.
 //
 // Law: what all hold together never passes the capacity. Law: a run begins if there is no other,
-// however high its estimate: its share is then what there is.
+// however high its estimate: it then gets all of the capacity.
 // Thread-safety: every function may be called from any thread; one thread at a time takes, moves or
 // ends a Share, several may grow it. A gate outlives its shares.
 #pragma once
@@ -104,7 +104,7 @@ class MemoryGate {
   MemoryGate(const Options& options, std::function<void()> on_room)
       : options_(options), on_room_(std::move(on_room)) {}
 
-  // Nothing if less than that is left.
+  // nullopt if `ask.estimate` bytes are not free.
   std::optional<Share> take(const Ask& ask);
 
   // The highest estimate of a heavy run that may begin now, whoever asks.

@@ -32,7 +32,7 @@ class RunPlaces {
   struct Options {
     std::size_t places = 1;
     std::size_t light = 0;  // on top of the others
-    // Of the places in each lane, what one client may have: at least one. 1: all.
+    // The fraction of the places in each lane that one client may have; at least one place.
     double client_share = 1;
   };
 

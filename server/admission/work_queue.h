@@ -59,8 +59,8 @@ class WorkQueue {
     std::size_t capacity = 0;
     std::uint64_t light = 0;     // memory estimate, in bytes, up to which an item is light
     MemoryGate* gate = nullptr;  // outlives the queue; null: memory is not looked at
-    // Of the capacity and of the places in each lane, what one client may have: at least one of
-    // each. 1: all; less leaves at least one place, where there are two, to others.
+    // The fraction of the capacity, and of the places in each lane, that one client may have; at
+    // least one of each. Below 1, others have at least one place where there are two.
     double client_share = 1;
     // Shared with runs of jobs; they outlive the queue. Null: places of its own, as the above says.
     RunPlaces* places = nullptr;

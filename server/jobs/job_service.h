@@ -36,7 +36,8 @@ struct JobServiceOptions {
   // Maximum waiting tasks of all clients, and jobs of one client that have not ended.
   std::uint64_t max_queued = 10'000;
   std::uint64_t max_open_of_client = 1'000;
-  // Of the calls that wait for the store, and of the threads that use it, what one client may have.
+  // The fraction of the calls that wait for the store, and of the threads that use it, that one
+  // client may have.
   double client_share = 1;
   // Clients that read more slowly are cut off.
   ReaderPatience patience{};

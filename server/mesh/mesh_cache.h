@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Meshes that GenerateMesh calls have finished, in memory: a request with the same mesh_key is
-// answered with the same messages, without the engine. The mesh that was asked for longest ago goes
+// answered with the same messages, without the engine. The least recently used mesh goes
 // first when there is no more room. One that is being read stays: it would take its memory until
 // its last reader is done, whether the cache knows of it or not.
 //

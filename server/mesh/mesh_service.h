@@ -39,7 +39,7 @@ struct ServiceOptions {
   // Runs on top of these that are light (memory_estimate.h), so that they do not wait for the
   // others. Each computes on a thread of its own.
   std::uint32_t light_jobs = 0;
-  // Of the queue, the places and the memory, what one client may have (work_queue.h). 1: all.
+  // The fraction of the queue, the places and the memory that one client may have (work_queue.h).
   double client_share = 1;
   Limits limits{};
   // Finished meshes that are kept in memory to answer the same request again (mesh_cache.h).

@@ -79,9 +79,8 @@ std::optional<Failure> check_field(const v1::NamedField& field, const std::strin
     case v1::NamedField::KIND_NOT_SET:
       break;
   }
-  return bad_option(path, path +
-                              " is of no kind; it must be a distance, a raster, a mesh or a "
-                              "width");
+  return bad_option(path,
+                    path + " has no kind; it must be a distance, a raster, a mesh or a width");
 }
 
 // The size whose triangles have the mean number of those at up to kSamples nodes.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Between the wire and the engine: the only place that knows both.
 //
-// What an array's length tells is checked here, and the engine judges the options and the size,
-// both before a request is admitted. The engine judges coordinates and indices when it works, but
-// those of a job before it is kept. Errors carry the path of the field as the wire spells it.
+// Lengths of arrays are checked here, options and the size by the engine, both before a request is
+// admitted. The engine checks coordinates and indices when it runs, those of a job before the job
+// is stored. Errors carry the path of the field as the wire spells it.
 #pragma once
 
 #include <grpcpp/support/byte_buffer.h>

@@ -30,9 +30,9 @@
 namespace weft::server {
 
 struct WireScan {
-  // Of a repeated field the elements, of a text the bytes of the longest, of any other how often it
-  // comes; in all messages of the field's type together. An upper bound on what parsing keeps:
-  // what a later member of a oneof replaces is counted, too.
+  // For a repeated field its number of elements, for a string the bytes of the longest, for any
+  // other field its number of occurrences; in all messages of the field's type together. An upper
+  // bound on what parsing keeps: members of a oneof that a later one replaces are counted, too.
   std::uint64_t count(const google::protobuf::FieldDescriptor& field) const;
   std::uint64_t count(const google::protobuf::Descriptor& type, int field_number) const;
 

@@ -134,10 +134,10 @@ class Client:
     def submit(self, domain: DomainLike, size: Size = None, min_angle: float = 20, *,
                request_id: str | None = None, timeout: float | None = None,
                **options: Unpack[MeshOptions]) -> Job:
-        """Has the mesh made while nobody waits; the server must keep jobs.
+        """Submits a job that makes the mesh; the server must keep jobs.
 
-        `request_id`: a submission that is repeated with the same one finds the same job; default:
-        one by chance. The rest is as in `mesh`; of a domain in longitude and latitude the mesh is
+        `request_id`: a submission that is repeated with the same one finds the same job; default: a
+        random one. The rest is as in `mesh`; of a domain in longitude and latitude the mesh is
         fetched in metres, so `to_metres` must be set.
         """
         mesh = job_request(domain, size, min_angle, options)
