@@ -42,6 +42,7 @@ NEWEST = {"CXXABI": (1, 3, 13), "GCC": (12, 0, 0), "GLIBC": (2, 36), "GLIBCXX": 
 SCRIPTS = """[console_scripts]
 weft = weft.__main__:main
 weftd = weft.__main__:server
+triangle-weft = weft.triangle:main
 """
 
 

@@ -49,6 +49,8 @@ def test_a_wheel_is_built_from_a_clone_without_a_network(checkout, tmp_path):
     wheel = build_wheel(tmp_path, checkout)
     with zipfile.ZipFile(wheel) as archive:
         names = archive.namelist()
+        scripts = archive.read(next(name for name in names if name.endswith("/entry_points.txt"))).decode()
+    assert "triangle-weft = weft.triangle:main" in scripts
     assert {"weft/py.typed", "weft/protocol.binpb", f"weft-{VERSION}.dist-info/LICENSE",
             f"weft-{VERSION}.dist-info/NOTICE"} <= set(names)
     assert str(wheel) in import_from(wheel, tmp_path)

@@ -17,6 +17,7 @@ beside the modules that these share, whose names begin with an underscore.
 from . import aio
 from ._requests import MeshOptions
 from ._target import TLS
+from ._triangulate import triangulate
 from ._version import __version__
 from ._wire import Chunk
 from .client import Client, MeshStream
@@ -24,7 +25,7 @@ from .domain import Area, Domain, DomainLike, Region
 from .errors import (AlreadyExists, BoundsNotMet, Cancelled, DamagedStream, DeadlineExceeded,
                      DomainError, FailedPrecondition, FieldViolation, InvalidRequest, LimitExceeded,
                      LocalServerError, MeshFileError, MissingPackage, NotFound, ServerError,
-                     Unauthenticated, Unavailable, WeftError, WeftWarning)
+                     SwitchError, Unauthenticated, Unavailable, WeftError, WeftWarning)
 from .fields import Field, distance, on_mesh, raster, width
 from .local import LocalServer, local
 from .mesh import Mesh
@@ -39,7 +40,7 @@ __all__ = [
     "FieldViolation", "InvalidRequest", "Job", "JobState", "LimitExceeded", "LocalServer",
     "LocalServerError", "Merging", "Mesh", "MeshFileError", "MeshOptions", "MeshStream",
     "MissingPackage", "NarrowPlace", "NotFound", "Progress", "Quality", "Raster", "Region", "ServerError",
-    "ServerInfo", "ServerLimits", "Size", "SizeWarning", "Summary", "TLS", "Timings",
+    "ServerInfo", "ServerLimits", "Size", "SizeWarning", "Summary", "SwitchError", "TLS", "Timings",
     "Unauthenticated", "Unavailable", "Unrefined", "WeftError", "WeftWarning", "__version__", "aio",
-    "distance", "local", "on_mesh", "raster", "width",
+    "distance", "local", "on_mesh", "raster", "triangulate", "width",
 ]

@@ -19,7 +19,7 @@ from .errors import DomainError
 _NAME = re.compile(r"# (marker|region)=(-?[0-9]+):(.*)")  # see client/formats/triangle/triangle_names.h
 
 
-class _Lines:
+class Lines:
     """The lines of a file that say something, one after the other."""
 
     def __init__(self, path: pathlib.Path) -> None:
@@ -73,25 +73,42 @@ class _Lines:
         return self._at >= len(self._lines)
 
 
-def _indices(numbers: npt.NDArray[np.float64], segments: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
-    """The indices of the points that segments name, whatever their numbers."""
+def indices(numbers: npt.NDArray[np.float64], named: npt.NDArray[np.float64],
+            what: str = "segment") -> npt.NDArray[np.int64]:
+    """The indices of the points that segments, or triangles, name, whatever their numbers."""
     order = np.argsort(numbers, kind="stable")
     ascending = numbers[order]
     if (ascending[1:] == ascending[:-1]).any() or not np.array_equal(numbers, np.rint(numbers)):
         raise DomainError("the points are not numbered, each by a whole number of its own")
-    if not segments.size:
-        return np.zeros((0, 2), np.int64)
+    if not named.size:
+        return np.zeros(named.shape, np.int64)
     if not len(numbers):
-        raise DomainError("there are segments, but no points")
-    found = np.minimum(np.searchsorted(ascending, segments), len(ascending) - 1)
-    missing = np.argwhere(ascending[found] != segments)
+        raise DomainError(f"there are {what}s, but no points")
+    found = np.minimum(np.searchsorted(ascending, named), len(ascending) - 1)
+    missing = np.argwhere(ascending[found] != named)
     if len(missing):
         row, end = missing[0]
-        raise DomainError(f"segments: segment {row + 1} of the file names the point "
-                          f"{shortest(segments[row, end])}; the numbers are from "
+        raise DomainError(f"{what}s: {what} {row + 1} of the file names the point "
+                          f"{shortest(named[row, end])}; the numbers are from "
                           f"{shortest(ascending[0])} to {shortest(ascending[-1])}")
-    indices: npt.NDArray[np.int64] = order[found]
-    return indices
+    result: npt.NDArray[np.int64] = order[found]
+    return result
+
+
+def segment_table(lines: Lines) -> npt.NDArray[np.float64]:
+    """(k, 3) or (k, 4): number, points and, if the file has it, marker of each segment."""
+    count, *marked = lines.header("segments")
+    if marked:
+        return lines.table("segments", count, 4 if marked[0] else 3)
+    # A segment has the marker that its line ends in.
+    return np.array([[*row, 0][:4] for row in lines.rows("segments", count, 3)]).reshape(-1, 4)
+
+
+def region_rows(lines: Lines) -> list[list[float]]:
+    """x, y, attribute and maximum area of each region; 0 or less is no maximum. A lone value is both, as
+    Triangle documents it."""
+    count = 0 if lines.ended() else lines.header("regions")[0]
+    return [[*row[1:4], row[3:5][-1]] for row in lines.rows("regions", count, 4)]
 
 
 def region_ids(attributes: Iterable[float]) -> dict[float, int]:
@@ -109,25 +126,18 @@ def region_ids(attributes: Iterable[float]) -> dict[float, int]:
 
 def read(path: pathlib.Path, region: Callable[..., Any]) -> dict[str, Any]:
     """The arguments of Domain; `region` makes a Region of x, y, id and max_area."""
-    lines = _Lines(path)
+    lines = Lines(path)
     count = lines.header("points")[0]
     if count:
         vertices = lines.table("points", count, 3)
     else:
-        beside = _Lines(path.with_suffix(".node"))
+        beside = Lines(path.with_suffix(".node"))
         vertices = beside.table("points", beside.header("points")[0], 3)
-    count, *marked = lines.header("segments")
-    if marked:
-        segments = lines.table("segments", count, 4 if marked[0] else 3)
-    else:  # a segment has the marker that its line ends in
-        segments = np.array([[*row, 0][:4] for row in lines.rows("segments", count, 3)]).reshape(-1, 4)
+    segments = segment_table(lines)
     holes = lines.table("holes", lines.header("holes")[0], 3)
-    count = 0 if lines.ended() else lines.header("regions")[0]
-    rows = lines.rows("regions", count, 4)
-    ids = region_ids(row[3] for row in rows)
-    # A lone value is both the attribute and the maximum area, as Triangle documents it.
-    regions = [region(row[1], row[2], ids[row[3]], area if (area := row[3:5][-1]) > 0 else None)
-               for row in rows]
+    rows = region_rows(lines)
+    ids = region_ids(attribute for _, _, attribute, _ in rows)
+    regions = [region(x, y, ids[attribute], area if area > 0 else None) for x, y, attribute, area in rows]
     region_values = {number: value for value, number in ids.items() if number != value}
     names = {kind: FileNames(kind, str(path)) for kind in ("marker", "region")}
     for number, value in region_values.items():
@@ -137,7 +147,7 @@ def read(path: pathlib.Path, region: Callable[..., Any]) -> dict[str, Any]:
             names[kind].add(number, name)
     return {
         "points": vertices[:, 1:3],
-        "segments": _indices(vertices[:, 0], segments[:, 1:3]),
+        "segments": indices(vertices[:, 0], segments[:, 1:3]),
         "markers": segments[:, 3] if segments.shape[1] > 3 else np.zeros(0, np.int32),
         "holes": holes[:, 1:3],
         "regions": regions,

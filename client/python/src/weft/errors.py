@@ -33,6 +33,15 @@ class MeshFileError(WeftError, ValueError):
     """A file is not a mesh, or its format can be neither read nor written."""
 
 
+class SwitchError(WeftError, ValueError):
+    """A switch of weft.triangulate is unknown or malformed, or asks for what weft cannot do."""
+
+    def __init__(self, switch: str, why: str) -> None:
+        super().__init__(f"the switch {switch!r}: {why}")
+        self.switch = switch
+        """The letter, with the number that follows it."""
+
+
 class WeftWarning(UserWarning):
     """The result is not quite what was asked for, or what was asked for is hardly meant: a file does
     not hold all of the mesh, a size was sampled too coarsely, bounds nothing or names no field."""

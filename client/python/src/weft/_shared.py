@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Meshes for functions that take no client: from one private server per process, which starts at the
+first call, serves all threads and ends with the process."""
+
+from __future__ import annotations
+
+import os
+import threading
+from typing import Unpack
+
+from ._requests import MeshOptions
+from .client import Client
+from .domain import Domain
+from .local import LocalServer
+from .mesh import Mesh
+from .size import Size
+
+_lock = threading.Lock()
+# By process, because after a fork the parent's are here, too.
+_started: dict[int, tuple[LocalServer, Client]] = {}
+
+
+def mesh(domain: Domain, size: Size, min_angle: float, **options: Unpack[MeshOptions]) -> Mesh:
+    """As Client.mesh. Thread-safe. Raises LocalServerError if no server starts."""
+    with _lock:
+        if os.getpid() not in _started:
+            server = LocalServer()
+            _started[os.getpid()] = server, Client(server.target, token="", retries=0)
+        _, client = _started[os.getpid()]
+    return client.mesh(domain, size, min_angle, **options)
