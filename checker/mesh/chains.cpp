@@ -98,6 +98,7 @@ class ChainJudge {
   }
 
   SegmentsOfVertices take_segments() {
+    for (auto& [vertex, segment] : segments_) segment = bent_.origin[segment];
     std::sort(segments_.begin(), segments_.end());
     segments_.erase(std::unique(segments_.begin(), segments_.end()), segments_.end());
     return std::move(segments_);

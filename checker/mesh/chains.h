@@ -28,7 +28,8 @@
 
 namespace weft::check {
 
-// Which segments of the input the mesh vertices lie on: (vertex, segment), sorted, distinct.
+// Which segments of the input, as it was before the mesh bent it, the mesh vertices lie on:
+// (vertex, segment), sorted, distinct.
 using SegmentsOfVertices = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 // Whether the mesh must have a face: not if it is not kept; if it is a sliver, the mesh may choose

@@ -15,10 +15,9 @@ from floor_plans import floor_plan
 from weft import _hull, _triangulate
 
 SQUARE = {"vertices": [(0, 0), (4, 0), (4, 4), (0, 4)], "segments": [(0, 1), (1, 2), (2, 3), (3, 0)]}
-PLANS = 60
-"""Of 500 that were tried, with q20 and with q30, 497 hold. In 178, 297 and 378 walls meet at 0.1 degrees and
-less, and the engine exempts triangles there that the checker does not; `weft mesh` and `weft check` agree
-with that."""
+PLANS = [*range(60), 178, 297, 378]
+"""All of 500 hold, with q20 and with q30. In the last three, walls that meet at 0.1 degrees and less are bent,
+because faces between others vanish."""
 
 
 @pytest.fixture
@@ -346,7 +345,7 @@ def test_a_seed_outside_is_named():
         weft.triangulate({**SQUARE, "holes": [(9, 9)]}, "p")
 
 
-@pytest.mark.parametrize("seed", range(PLANS))
+@pytest.mark.parametrize("seed", PLANS)
 def test_floor_plans_hold(judge, seed):
     plan = floor_plan(seed)
     angle = (20, 30)[seed % 2]
