@@ -9,6 +9,7 @@
 #     weftd    runs weftd
 #     weft     runs a weft that was compiled with geo; its own weftd needs weftd, too
 #     test     what tests/run.sh needs beyond build and geo
+#     solvers  FEniCSx and FreeFem++, 128 packages, for tests/deep.sh solvers
 #     all      build, console, geo and test, the default
 set -euo pipefail
 
@@ -62,6 +63,8 @@ console=()
 command -v npm >/dev/null || console=(nodejs npm)
 test+=("${console[@]}") # the linters
 
+solvers=(python3-dolfinx freefem++)
+
 wanted=()
 for group in "${@:-all}"; do
   case $group in
@@ -71,9 +74,10 @@ for group in "${@:-all}"; do
     weftd) wanted+=("${weftd[@]}") ;;
     weft) wanted+=("${weft[@]}") ;;
     test) wanted+=("${test[@]}") ;;
+    solvers) wanted+=("${solvers[@]}") ;;
     all) wanted+=("${build[@]}" "${console[@]}" "${geo[@]}" "${test[@]}") ;;
     *)
-      echo "install-deps.sh: unknown group '$group'; there are build, console, geo, weftd, weft, test, all" >&2
+      echo "install-deps.sh: unknown group '$group'; there are build, console, geo, weftd, weft, test, solvers, all" >&2
       exit 2
       ;;
   esac

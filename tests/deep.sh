@@ -2,15 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 # What tests/run.sh leaves out: every test under AddressSanitizer with UndefinedBehaviorSanitizer, and
 # every test of threads under ThreadSanitizer; everything compiled by g++, too, with warnings as errors;
-# fuzzing; the container; the packages; the documents as they run on other processors; servers under load and
-# under attack for longer. Prints each step with its seconds and fails when any failed.
+# fuzzing; the container; the packages; solvers that take meshes; the documents as they run on other processors;
+# servers under load and under attack for longer. Prints each step with its seconds and fails when any failed.
 #
-#   tests/deep.sh [STEP...]     STEP: asan tsan gcc fuzz container packages processors soak; default: all
+#   tests/deep.sh [STEP...]     STEP: asan tsan gcc fuzz container packages solvers processors soak;
+#                               default: all
 #
 # WEFT_FUZZ_MINUTES (1 if not set) is how long, about, each target is fuzzed.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
-known=(asan tsan gcc fuzz container packages processors soak)
+known=(asan tsan gcc fuzz container packages solvers processors soak)
 for name in "$@"; do
   [[ " ${known[*]} " == *" $name "* ]] || {
     echo "deep.sh: unknown step '$name'; there are ${known[*]}" >&2
@@ -55,6 +56,12 @@ deep_packages() {
   fi
   step "build, portable" build portable &&
     step "packages" tests/package.sh build/release build/portable
+}
+
+deep_solvers() {
+  step "install solvers" deploy/install-deps.sh solvers &&
+    step "solvers" env PYTHONPATH=build/release/python WEFT_WEFTD=build/release/weftd PATH="$PWD/build/release:$PATH" \
+      /usr/bin/python3 -B tests/python/solve.py
 }
 
 deep_processors() {

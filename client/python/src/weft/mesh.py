@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, Literal, Union
 import numpy as np
 import numpy.typing as npt
 
-from . import _carried, _convert, _npz, _pixels, _vtu
+from . import _carried, _convert, _npz, _pixels, _solvers, _vtu
+from ._groups import Groups
 from ._optional import need
 from ._warning import warn
 from .errors import MeshFileError, MissingPackage
@@ -140,10 +141,56 @@ class Mesh:
         alone: Ints = sides[np.sort(first[count == 1])]
         return alone
 
+    @property
+    def boundaries(self) -> Groups:
+        """By marker, its name or its number: (k, 2) int32, the edges on segments that carry it, inside
+        the domain, too.
+
+            mesh.points[np.unique(mesh.boundaries["inlet"])]
+        """
+        return Groups("marker", self.edge_markers, self.edges, self.marker_names)
+
+    @property
+    def subdomains(self) -> Groups:
+        """By region, its name or its number: (k,) int32, the numbers of its triangles."""
+        return Groups("region", self.regions, np.arange(len(self.triangles), dtype=np.int32),
+                      self.region_names)
+
+    def second_order(self) -> tuple[Floats, Ints]:
+        """The points (n + e, 2), with the middles of all edges after the vertices, and the triangles (m, 6):
+        behind the corners the middles between 1 and 2, 2 and 3, 3 and 1. As `write(order=2)` has them."""
+        return _solvers.second_order(self)
+
+    def to_skfem(self) -> Any:
+        """A skfem.MeshTri of scikit-fem. Its boundaries and subdomains have the names of markers and regions, or
+        `marker 2` and `region 2` for what has none; 0 is none of them. Raises MissingPackage."""
+        return _solvers.to_skfem(self)
+
+    def to_dolfinx(self, comm: Any = None) -> tuple[Any, Any, Any]:
+        """A mesh of FEniCSx (dolfinx 0.5), the tags of its cells, which are the regions, and those of its
+        facets on segments, which are the markers.
+
+        `comm`: the MPI communicator, over which the mesh is divided; every process must have the same
+        mesh. Default: COMM_WORLD. Raises MissingPackage.
+
+            domain, cells, facets = mesh.to_dolfinx()
+            facets.find(mesh.boundaries.number("inlet"))
+        """
+        return _solvers.to_dolfinx(self, comm)
+
     def to_meshio(self) -> Any:
         """A meshio.Mesh: cells `triangle` and `line` (those of `edges`), cell data `region` (0 on
-        lines) and `marker` (0 on triangles). Raises MissingPackage without meshio."""
-        return self._meshio(self.points)
+        lines) and `marker` (0 on triangles), field data as meshio has them: of each name its number and
+        the dimension, 1 for a marker and 2 for a region. A WeftWarning says that a name of a marker is left
+        out because a region has it, too. Raises MissingPackage without meshio."""
+        mesh = self._meshio(self.points)
+        for dimension, names in ((1, self.marker_names), (2, self.region_names)):
+            for number, name in names.items():
+                if name in mesh.field_data:
+                    warn(f"to_meshio: the marker {mesh.field_data[name][0]} has no name: {name!r} is that of "
+                         "a region, too")
+                mesh.field_data[name] = np.array([number, dimension])
+        return mesh
 
     def _meshio(self, points: Floats) -> Any:
         zeros = [np.zeros(len(cells), np.int32) for cells in (self.triangles, self.edges)]
@@ -266,6 +313,9 @@ class Mesh:
             form = "gmsh22"
             groups = [self.regions, self.edge_markers]
             mesh.cell_data = {"gmsh:physical": groups, "gmsh:geometrical": groups}
+        elif path.suffix == ".mesh":  # Medit, of two dimensions, as FreeFem++ reads it
+            mesh.points = self.points
+            mesh.cell_data = {"medit:ref": [self.regions, self.edge_markers]}
         try:
             mesh.write(part, file_format=form)
         except (meshio.ReadError, meshio.WriteError, KeyError) as error:

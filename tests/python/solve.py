@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs the examples of docs/solvers.md with FEniCSx and FreeFem++, and FEniCSx on two processes, too; for
+tests/deep.sh, which installs them.
+
+    solve.py [PART]     PART: fenicsx or freefem; default: all of it
+"""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import warnings
+
+PAGE = (pathlib.Path(__file__).parents[2] / "docs/solvers.md").read_text()
+
+
+def block(heading, language):
+    """The first block of the language under the heading; of the page if it is empty."""
+    part = PAGE[PAGE.index(f"\n## {heading}\n"):] if heading else PAGE
+    return re.search(rf"```{language}\n(.*?)```", part, re.S)[1]
+
+
+def channel():
+    names = {}
+    exec(block("", "python"), names)
+    return names["mesh"]
+
+
+def check(ok, what):
+    print(("holds: " if ok else "FAILS: ") + what)
+    if not ok:
+        sys.exit(1)
+
+
+def fenicsx():
+    import numpy as np
+    import ufl
+    import weft
+    from dolfinx import fem
+
+    mesh = channel()
+    names = {"mesh": mesh}
+    exec(block("FEniCSx", "python"), names)
+    domain, markers, solution = (names[key] for key in ("domain", "markers", "solution"))
+    x = ufl.SpatialCoordinate(domain)
+
+    def total(form):
+        return domain.comm.allreduce(fem.assemble_scalar(fem.form(form)))
+
+    error = np.sqrt(total((solution - 1 + x[0] / 2)**2 * ufl.dx))
+    check(error < 1e-4, f"FEniCSx on {domain.comm.size}: u is 1 - x/2, off by {error:.1e}")
+    one = fem.Constant(domain, 1.0)
+    ds = ufl.Measure("ds", domain=domain, subdomain_data=markers)
+    for name, length in (("inlet", 1), ("wall", 4), ("outlet", 1)):
+        found = total(one * ds(mesh.boundaries.number(name)))
+        check(abs(found - length) < 1e-12, f"the {name} is {found:g} long")
+    two = weft.Domain([(0, 0), (1, 0), (2, 0), (2, 1), (1, 1), (0, 1)],
+                      [(0, 1), (1, 2), (2, 3), (3, 4), (4, 5), (5, 0), (1, 4)],
+                      regions=[weft.Region(0.5, 0.5, id=4), weft.Region(1.5, 0.5, id=9)])
+    with weft.local() as client:
+        domain, regions, _ = client.mesh(two, edge=0.1).to_dolfinx()
+    dx = ufl.Measure("dx", domain=domain, subdomain_data=regions)
+    for region, moment in ((4, 0.5), (9, 1.5)):
+        found = total(ufl.SpatialCoordinate(domain)[0] * dx(region))
+        check(abs(found - moment) < 1e-12, f"the region {region} has the moment {found:g}")
+
+
+def freefem():
+    with tempfile.TemporaryDirectory() as folder:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # the names, which Medit's files do not have
+            channel().write(pathlib.Path(folder) / "channel.mesh")
+        (pathlib.Path(folder) / "laplace.edp").write_text(block("FreeFem++", "freefem"))
+        said = subprocess.run(["FreeFem++-nw", "-v", "0", "laplace.edp"], cwd=folder, capture_output=True,
+                              text=True, check=True).stdout
+    error, walls = map(float, re.search(r"error (\S+) walls (\S+)", said).groups())
+    check(error < 1e-6, f"FreeFem++: u is 1 - x/2, off by {error:.1e}")
+    check(abs(walls - 4) < 1e-5, f"the walls are {walls:g} long")
+
+
+def run_all():
+    """Each in a process of its own: mpirun does not start from one that has MPI."""
+    part = [sys.executable, "-B", __file__]
+    mpirun = ["mpirun", *(["--allow-run-as-root"] if os.geteuid() == 0 else []), "--oversubscribe", "-n", "2"]
+    for command in ([*part, "fenicsx"], [*mpirun, *part, "fenicsx"], [*part, "freefem"]):
+        subprocess.run(command, check=True)
+
+
+if __name__ == "__main__":
+    {"fenicsx": fenicsx, "freefem": freefem, "": run_all}["".join(sys.argv[1:])]()
