@@ -159,7 +159,7 @@ in_other "${as_nobody[@]}" python3 -m weft mesh "${mesh[@]}" -o /tmp/module.vtu 
 in_other cmp /srv/bare.vtu /tmp/module.vtu
 [[ $(in_other weftd --version) == $(in_other weft --version | sed 's/^weft /weftd /') ]] ||
   fail "the wheel's programs have two versions"
-in_other sh -c 'pip uninstall --quiet --yes --break-system-packages --root-user-action ignore weft'
+in_other sh -c 'pip uninstall --quiet --yes --break-system-packages --root-user-action ignore weftmesh'
 left=$(files_but_caches | LC_ALL=C comm -13 "$scratch/before" -)
 [[ -z $left ]] || fail "left after pip uninstall: $left"
 rm -rf --one-file-system "$other"

@@ -111,7 +111,7 @@ def bill(build):
     for name in ("weft", "weftd"):
         add(*program(build, name, version))
     project = tomllib.loads((ROOT / "client/python/pyproject.toml").read_text())["project"]
-    add({"type": "library", "bom-ref": "python3-weft", "name": "weft for Python", "version": version,
+    add({"type": "library", "bom-ref": "python3-weft", "name": project["name"], "version": version,
          "licenses": [{"license": {"id": "Apache-2.0"}}]}, list(map(of_python, project["dependencies"])))
     whole = ["python3-weft", "weft", "weftd"]
     npm = npm_components()

@@ -5,9 +5,9 @@
     deploy/package/wheels.py BUILD OUT
 
 BUILD is a folder in which weft and weftd were built, by the preset `portable`. OUT gets
-    weft-VERSION.tar.gz                                      the sources
-    weft-VERSION-py3-none-any.whl                            the package, which needs a server
-    weft-VERSION-py3-none-manylinux_2_36_x86_64.whl          with weft and weftd, and what they load
+    weftmesh-VERSION.tar.gz                                  the sources
+    weftmesh-VERSION-py3-none-any.whl                        the package, which needs a server
+    weftmesh-VERSION-py3-none-manylinux_2_36_x86_64.whl      with weft and weftd, and what they load
 
 The last one has no projections and no rasters but .asc: PROJ loads a library under the GPL (libjbig),
 GDAL hundreds of megabytes. It runs on every x86-64 Linux with glibc 2.36: every file in it is checked
@@ -149,7 +149,7 @@ def add_licences(folder, files):
 def build_platform(pure, build, scratch, out):
     """The wheel with programs, from that without."""
     python("-m", "wheel", "unpack", pure, "-d", scratch, cwd=scratch)
-    wheel = only(scratch, "weft-*")
+    wheel = only(scratch, "weftmesh-*")
     carried = wheel / "weft/carried"
     files = carry(build, carried)
     if found := list(faults(carried)):

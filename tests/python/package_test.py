@@ -51,8 +51,8 @@ def test_a_wheel_is_built_from_a_clone_without_a_network(checkout, tmp_path):
         names = archive.namelist()
         scripts = archive.read(next(name for name in names if name.endswith("/entry_points.txt"))).decode()
     assert "triangle-weft = weft.triangle:main" in scripts
-    assert {"weft/py.typed", "weft/protocol.binpb", f"weft-{VERSION}.dist-info/LICENSE",
-            f"weft-{VERSION}.dist-info/NOTICE"} <= set(names)
+    assert {"weft/py.typed", "weft/protocol.binpb", f"weftmesh-{VERSION}.dist-info/LICENSE",
+            f"weftmesh-{VERSION}.dist-info/NOTICE"} <= set(names)
     assert str(wheel) in import_from(wheel, tmp_path)
 
 
@@ -60,7 +60,7 @@ def test_its_version_is_that_of_the_clone(checkout, tmp_path):
     root = checkout.parents[1] / "CMakeLists.txt"
     root.write_text(root.read_text().replace(f"weft VERSION {VERSION}", "weft VERSION 7.8.9"))
     wheel = build_wheel(tmp_path, checkout)
-    assert wheel.name == "weft-7.8.9-py3-none-any.whl"
+    assert wheel.name == "weftmesh-7.8.9-py3-none-any.whl"
     printed = run(sys.executable, "-c", "import weft; print(weft.__version__)", cwd=tmp_path,
                   PYTHONPATH=str(wheel))
     assert printed.strip() == "7.8.9"
@@ -73,7 +73,7 @@ def test_the_package_and_the_programs_have_one_version():
 
 def test_a_source_distribution_needs_nothing_beside_it(checkout, tmp_path):
     run(sys.executable, "setup.py", "-q", "sdist", "-d", tmp_path, cwd=checkout)
-    assert (tmp_path / f"weft-{VERSION}.tar.gz").is_file()
+    assert (tmp_path / f"weftmesh-{VERSION}.tar.gz").is_file()
     shutil.rmtree(checkout.parents[1])
     assert import_from(build_wheel(tmp_path, next(tmp_path.glob("*.tar.gz"))), tmp_path)
 
