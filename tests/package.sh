@@ -131,6 +131,12 @@ in_other() { inside_folder "$other" "$@"; }
 in_other /opt/weft/carried/bin/weft mesh "${mesh[@]}" -o /srv/bare.vtu --draw /srv/bare.png --quiet
 in_other /opt/weft/carried/bin/weft check /srv/bare.vtu --domain "${mesh[@]}" >/dev/null
 rm -rf "$other"/opt/*
+printf 'meshes:\n  - {name: pipe, input: pipe.poly, size: 4, output: pipe.vtu}\n' >"$other/srv/meshes.yaml"
+(
+  cd "$other/srv"
+  PATH=/usr/bin:/bin WEFT_WHEEL=$(echo "$scratch"/wheels/*manylinux*.whl) "$OLDPWD/deploy/ci/mesh.sh" meshes.yaml
+) >"$scratch/mesh.log" 2>&1 || fail "no pipeline meshes with the wheel: $(tail "$scratch/mesh.log")"
+[[ -s $other/srv/pipe.vtu && -s $other/srv/weft-reports/weft-junit.xml ]] || fail "the pipeline left no mesh"
 
 say "pip install"
 # The packages of Python that it needs are Debian's: pip needs no index here.

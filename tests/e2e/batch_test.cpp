@@ -57,6 +57,13 @@ TEST_F(Pipeline, LeavesMeshesReportPageAndLockFile) {
   EXPECT_NE(client::contents_of(folder_ / "meshes.lock").find("\"pipe\""), std::string::npos);
 }
 
+TEST_F(Pipeline, SaysWhatIsMissingIfWeftIsNotInstalled) {
+  const Outcome outcome = mesh("", "PATH=/usr/bin:/bin");
+  EXPECT_EQ(outcome.exit_code, 127);
+  EXPECT_NE(outcome.err.find("neither WEFT_WHEEL nor WEFT_IMAGE is set"), std::string::npos)
+      << outcome.err;
+}
+
 TEST_F(Pipeline, HoldsLockedMeshesToTheirDigestsWhateverServerMakesThemAndVariablesSay) {
   ASSERT_EQ(mesh().exit_code, 0);
   const std::string lock = client::contents_of(folder_ / "meshes.lock");
