@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "engine/domain/pslg.h"
+#include "weft/pslg.h"
 
 namespace weft::bench {
 

@@ -92,19 +92,19 @@ struct Figures {
   Summary summary;
 };
 
-// On `threads` threads of an arena; 0 is the kernel by itself.
+// On `threads` threads of a pool; 0 is the kernel by itself.
 std::optional<Figures> measure(const Row& row, const Pslg& pslg, int threads, int runs) {
   MeshRequest request{.pslg = pslg, .size = row.size, .min_angle_deg = row.min_angle_deg};
   if (threads == 0) request.leaf_triangles = std::numeric_limits<double>::infinity();
-  Arena arena(std::max(1, threads));
+  ThreadPool pool(std::max(1, threads));
   Figures figures;
   std::vector<double> refine;
   std::vector<double> engine;
   for (int run = 0; run <= runs; ++run) {
     Discard sink;
-    ExecutionContext context;
-    context.set_arena(arena);
-    const auto result = generate_mesh(request, sink, context);
+    Run mesh_run;
+    mesh_run.set_threads(pool);
+    const auto result = stream(request, sink, mesh_run);
     if (!result) {
       std::fprintf(stderr, "%s: %s\n", row.name, result.error().message.c_str());
       return std::nullopt;

@@ -11,7 +11,7 @@
 #include "bench/placement_bench.h"
 #include "bench/scaling_bench.h"
 #include "bench/stream_bench.h"
-#include "engine/engine.h"
+#include "weft/weft.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/engine.h"
+#include "weft/weft.h"
 
 namespace weft::bench {
 

@@ -72,11 +72,11 @@ struct Figures {
   Summary summary;
 };
 
-bool run(const MeshRequest& request, Arena& arena, bool counts, Figures& figures) {
+bool run(const MeshRequest& request, ThreadPool& pool, bool counts, Figures& figures) {
   Discard sink;
-  ExecutionContext context;
-  context.set_arena(arena);
-  const auto result = generate_mesh(request, sink, context);
+  Run mesh_run;
+  mesh_run.set_threads(pool);
+  const auto result = stream(request, sink, mesh_run);
   if (!result) {
     std::fprintf(stderr, "%s\n", result.error().message.c_str());
     return false;
@@ -97,13 +97,13 @@ int run_placement_bench(const PlacementBenchOptions& options) {
   for (Row& row : rows(options.models)) {
     if (row.name.find(options.only) == std::string::npos) continue;
     for (const int threads : options.threads) {
-      Arena arena(threads);
+      ThreadPool pool(threads);
       std::array<Figures, 2> of;
       std::vector<double> ratios;
       for (int i = 0; i <= options.runs; ++i) {
         for (const Placement placement : {Placement::kLattice, Placement::kCircumcentre}) {
           row.request.placement = placement;
-          if (!run(row.request, arena, i > 0, of[placement == Placement::kLattice ? 0 : 1]))
+          if (!run(row.request, pool, i > 0, of[placement == Placement::kLattice ? 0 : 1]))
             return 1;
         }
         if (i > 0) ratios.push_back(of[0].seconds.back() / of[1].seconds.back());

@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "engine/domain/pslg.h"
+#include "weft/pslg.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::bench {

@@ -15,6 +15,7 @@
 
 #include "bench/list_schedule.h"
 #include "bench/models.h"
+#include "engine/engine.h"
 #include "tests/support/poly.h"
 
 namespace weft::bench {

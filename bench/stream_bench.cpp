@@ -79,14 +79,14 @@ std::optional<Received> receive(const std::string& address, const v1::GenerateMe
 
 // The same request in this process, without a reader.
 double engine_seconds_alone(const Pslg& pslg, const std::string& size, int threads, int runs) {
-  Arena arena(threads);
+  ThreadPool pool(threads);
   std::vector<double> seconds;
   for (int run = 0; run <= runs; ++run) {
     Discard sink;
-    ExecutionContext context;
-    context.set_arena(arena);
+    Run mesh_run;
+    mesh_run.set_threads(pool);
     const auto start = Clock::now();
-    const auto summary = generate_mesh({.pslg = pslg, .size = size}, sink, context);
+    const auto summary = stream({.pslg = pslg, .size = size}, sink, mesh_run);
     if (summary && run > 0)
       seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
   }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/engine.h"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -15,18 +13,19 @@
 #include "engine/domain/tolerance.h"
 #include "engine/gradation_mesh.h"
 #include "engine/output/bounds_error.h"
+#include "engine/output/size_warnings.h"
 #include "engine/refine/acute_corners.h"
 #include "engine/refine/area_bound.h"
 #include "engine/refine/edge_limits.h"
 #include "engine/refine/mapped_area.h"
-#include "engine/refine/storage/mesh.h"
-#include "engine/refine/storage/reserved_memory.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "engine/schedule/mesh_run.h"
 #include "engine/schedule/narrow_places.h"
 #include "engine/size/gradation/scaled_size.h"
 #include "engine/size/gradation/within_size.h"
 #include "engine/size/lattice/grain_map.h"
 #include "engine/size/size_map.h"
+#include "engine/size/size_spec.h"
 #include "engine/size/vanishing_size.h"
 
 namespace weft {
@@ -45,7 +44,7 @@ class StageClock {
 };
 
 // From this extent on the sixth powers of edges, which the angle test multiplies, are normal
-// numbers; kMaxMagnitude (domain/validate.h) keeps them finite.
+// numbers; kMaxMagnitude keeps them finite.
 std::optional<Error> check_extent(const Box& box) {
   constexpr double kSmallestExtent = 1e-40;
   const double extent = std::max(box.width(), box.height());
@@ -79,9 +78,10 @@ std::string count_text(double count) {
   return text(std::min(std::ceil(count), 1e300));  // which need not be counted any more
 }
 
-class Run {
+// The stages of a run, in order.
+class Pipeline {
  public:
-  Run(const MeshRequest& request, ChunkSink& sink, ExecutionContext& context)
+  Pipeline(const MeshRequest& request, ChunkSink& sink, ExecutionContext& context)
       : request_(request), sink_(sink), context_(context) {}
 
   Result<Summary> run() {
@@ -138,7 +138,7 @@ class Run {
     budget.max_triangles = std::min(budget.max_triangles, budget.triangle_limit);
     ExecutionContext context(context_, budget);
     GradationMesh mesh(request_);
-    Run run(request, mesh, context);
+    Pipeline run(request, mesh, context);
     run.size_.emplace(std::make_unique<ScaledSize>(across, share * share));
     run.domain_ = std::move(domain_);
     run.summary_.box = summary_.box;
@@ -218,7 +218,6 @@ class Run {
       return Error{ErrorCode::kLimitExceeded, field, std::move(message)};
     };
     const double by_bounds = triangles_asked(domain_, bound);
-    constexpr double kPerPiece = 4;  // triangles around an edge on a segment, roughly
     const double pieces = edge_limits_.pieces(domain_);
     const double by_pieces = EdgeLimits::least_triangles(pieces, domain_);
     const double least = std::max({map_ ? map_->least_triangles() : 0, by_bounds, by_pieces});
@@ -235,11 +234,11 @@ class Run {
                                       " triangles, more than the limit of " +
                                       std::to_string(budget.triangle_limit));
     }
-    if (!wants_cap() && !may_stream() && least > static_cast<double>(Mesh::kMaxTriangles)) {
+    if (!wants_cap() && !may_stream() && least > static_cast<double>(MeshStore::kMaxTriangles)) {
       return over_limit(asked_by, "the size asks for at least " + count_text(least) +
                                       " triangles; a mesh with a minimum angle above " +
                                       text(kMaxStreamingAngleDeg) + " degrees has at most " +
-                                      std::to_string(Mesh::kMaxTriangles) +
+                                      std::to_string(MeshStore::kMaxTriangles) +
                                       ", because all of it is in memory at the same time");
     }
     if (auto error = check_bytes_of_pieces(pieces)) return error;
@@ -261,7 +260,8 @@ class Run {
     least_ = std::max(least, narrow_.least());
     const double elsewhere =
         NarrowPlaces::elsewhere(quality_) * static_cast<double>(domain_.triangles.size());
-    expected_ = std::max({by_size_, elsewhere, kPerPiece * pieces}) + narrow_.likely();
+    expected_ =
+        std::max({by_size_, elsewhere, EdgeLimits::kTrianglesPerPiece * pieces}) + narrow_.likely();
     const double most = static_cast<double>(wants_cap() ? budget.max_triangles : kUncountable);
     context_.report_expected(static_cast<std::uint64_t>(std::min(expected_, most)));
     context_.end_stage("size map");
@@ -388,19 +388,10 @@ class Run {
 
 }  // namespace
 
-void keep_memory_at_most(std::uint64_t bytes) {
-  constexpr std::uint64_t kShare = 128;
-  constexpr std::uint64_t kMostOfHeap = std::uint64_t{16} << 20;
-  constexpr std::uint64_t kMostInHeap = std::uint64_t{4} << 20;  // larger vectors are mapped alone
-  ReservedMemory::keep_at_most(bytes);
-  mallopt(M_TRIM_THRESHOLD, static_cast<int>(std::min(bytes / kShare, kMostOfHeap)));
-  mallopt(M_MMAP_THRESHOLD, static_cast<int>(std::min(bytes / kShare, kMostInHeap)));
-}
-
 Result<Summary> generate_mesh(const MeshRequest& request, ChunkSink& sink,
                               ExecutionContext& context) {
   try {
-    return Run(request, sink, context).run();
+    return Pipeline(request, sink, context).run();
   } catch (const Failure& failure) {
     return tl::unexpected(failure.error());
   } catch (const std::bad_alloc&) {

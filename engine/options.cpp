@@ -2,9 +2,11 @@
 #include <cmath>
 #include <string>
 
+#include "engine/base/context.h"
 #include "engine/base/text.h"
+#include "engine/domain/stop_poller.h"
 #include "engine/domain/validate.h"
-#include "engine/engine.h"
+#include "weft/weft.h"
 
 namespace weft {
 
@@ -29,6 +31,15 @@ std::optional<Error> check_pslg(const Pslg& pslg) {
   const ExecutionContext unbounded;
   StopPoller poller(unbounded);
   return validate(pslg, poller);
+}
+
+std::optional<Error> validate(const MeshRequest& request) {
+  if (auto error = check_options(request)) return error;
+  if (auto error = check_size(request.size)) return error;
+  if (const auto* const raster = std::get_if<Raster>(&request.size.value)) {
+    if (auto error = check_raster_values(raster->values, raster->columns)) return error;
+  }
+  return check_pslg(request.pslg);
 }
 
 }  // namespace weft

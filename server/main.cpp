@@ -16,7 +16,6 @@
 #include <random>
 #include <thread>
 
-#include "engine/engine.h"
 #include "server/console/assets.h"
 #include "server/memory_plan.h"
 #include "server/net/health_check.h"
@@ -28,6 +27,7 @@
 #include "server/store/postgres/postgres_store.h"
 #include "server/store/sqlite/sqlite_store.h"
 #include "server/version.h"
+#include "weft/weft.h"
 
 namespace weft::server {
 namespace {
@@ -113,7 +113,7 @@ int serve(Options options) {
     log->error("event=cannot_open_store message={}", log_value(store.error().message));
     return kExitNoStore;
   }
-  auto started = Server::start(options.server, generate_mesh, log, std::move(*store));
+  auto started = Server::start(options.server, stream, log, std::move(*store));
   if (!started) {
     log->error("event=cannot_listen message={}", log_value(started.error()));
     return kExitCannotListen;

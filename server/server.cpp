@@ -106,8 +106,8 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
       reflection_(ReflectionService::Version::kV1, admission_, services(store != nullptr)),
       reflection_alpha_(ReflectionService::Version::kV1Alpha, admission_,
                         services(store != nullptr)),
-      arena_(static_cast<int>(options.service.threads)),
-      service_(with_info(options, store != nullptr), admission_, metrics_, engine, arena_, gate_,
+      pool_(static_cast<int>(options.service.threads)),
+      service_(with_info(options, store != nullptr), admission_, metrics_, engine, pool_, gate_,
                places_, log_) {
   metrics_.add_queue("calls", [this] {
     QueueFigures figures = service_.figures();
@@ -122,7 +122,7 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
   jobs.service.patience = options.service.patience;
   jobs.service.client_share = options.service.client_share;
   jobs.runner.worker = options.service.instance;
-  jobs_.emplace(std::move(store), std::move(jobs), admission_, metrics_, engine, arena_, gate_,
+  jobs_.emplace(std::move(store), std::move(jobs), admission_, metrics_, engine, pool_, gate_,
                 places_, log_);
   metrics_.add_queue("jobs", [this] { return jobs_->figures(); });
 }

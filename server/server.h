@@ -2,7 +2,7 @@
 // The whole server but the process around it: MeshService, grpc.health.v1 and reflection on their
 // addresses.
 //
-//   auto server = Server::start({.listen = {"127.0.0.1:0"}}, generate_mesh, make_logger("info"));
+//   auto server = Server::start({.listen = {"127.0.0.1:0"}}, stream, make_logger("info"));
 //   if (!server) return complain(server.error());
 //   ... (*server)->addresses() ...
 //   (*server)->drain(std::chrono::seconds(30));
@@ -95,7 +95,7 @@ class Server {
   HealthService health_;
   ReflectionService reflection_;
   ReflectionService reflection_alpha_;
-  Arena arena_;
+  ThreadPool pool_;
   MeshService service_;
   std::optional<JobSystem> jobs_;
   std::unique_ptr<grpc::Server> server_;

@@ -20,34 +20,12 @@
 #include <utility>
 
 #include "engine/base/arena.h"
-#include "engine/base/error.h"
 #include "engine/base/held_bytes.h"
-#include "engine/base/memory_source.h"
 #include "engine/base/trace.h"
+#include "weft/error.h"
+#include "weft/run.h"
 
 namespace weft {
-
-enum class Stage : std::uint8_t { kQueued, kTriangulate, kSize, kRefine, kDone };
-
-// A snapshot for observers. `expected_triangles` is an estimate from the size field.
-struct Progress {
-  Stage stage = Stage::kQueued;
-  std::uint64_t triangles = 0;
-  std::uint64_t expected_triangles = 0;
-  double fraction = 0;  // of the work that is done, 0 to 1; never falls
-};
-
-// What a run may use. DEFAULT: unbounded.
-struct Budget {
-  // Triangles of the mesh. Refinement stops there and returns the mesh that it has; triangles that
-  // still miss a bound are counted as `budget` in the summary.
-  std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();
-  // A run whose estimate is over this is refused before refinement, and one that grows past it
-  // stops with kLimitExceeded. The operator sets this cap, the client sets max_triangles.
-  std::uint64_t triangle_limit = std::numeric_limits<std::uint64_t>::max();
-  // Bytes of engine memory. Over it the run stops with kBudgetExceeded.
-  std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
-};
 
 class ExecutionContext {
  public:
@@ -117,7 +95,7 @@ class ExecutionContext {
     if (outer_ != nullptr) return outer_->need_bytes(bytes, what);
     if (memory_ == nullptr || bytes <= granted_.load(std::memory_order_relaxed))
       return std::nullopt;
-    const auto ask = [&] { return memory_->grant(bytes, *this); };
+    const auto ask = [&] { return memory_->grant(bytes, [this] { return poll(); }); };
     const Result<std::uint64_t> now = arena_ ? arena_->rest(ask) : ask();
     if (!now) return now.error();
     std::uint64_t before = granted_.load(std::memory_order_relaxed);

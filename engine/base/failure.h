@@ -6,7 +6,7 @@
 #include <exception>
 #include <utility>
 
-#include "engine/base/error.h"
+#include "weft/error.h"
 
 namespace weft {
 

@@ -12,14 +12,6 @@
 
 #include <utility>
 
-#if defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define WEFT_THREAD_SANITIZER
-#endif
-#elif defined(__SANITIZE_THREAD__)
-#define WEFT_THREAD_SANITIZER
-#endif
-
 #ifdef WEFT_THREAD_SANITIZER
 
 #include <sanitizer/tsan_interface.h>

@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/base/error.h"
 #include "engine/domain/arrangement/arrangement.h"
 #include "engine/domain/domain.h"
-#include "engine/domain/pslg.h"
 #include "engine/domain/stop_poller.h"
+#include "weft/error.h"
+#include "weft/pslg.h"
 
 namespace weft {
 

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "engine/domain/faces.h"
-#include "engine/domain/overlap.h"
-#include "engine/domain/pslg.h"
 #include "engine/domain/stop_poller.h"
+#include "weft/mesh.h"
+#include "weft/pslg.h"
 
 namespace weft {
 

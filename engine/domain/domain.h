@@ -28,11 +28,11 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/base/geometry.h"
 #include "engine/domain/arrangement/merging.h"
-#include "engine/domain/overlap.h"
-#include "engine/domain/pslg.h"
+#include "weft/error.h"
+#include "weft/mesh.h"
+#include "weft/pslg.h"
 
 namespace weft {
 

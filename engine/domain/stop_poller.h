@@ -10,7 +10,7 @@
 #include <string>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
+#include "weft/error.h"
 
 namespace weft {
 

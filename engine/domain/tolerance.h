@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "engine/base/geometry.h"
-#include "engine/domain/pslg.h"
+#include "weft/pslg.h"
 
 namespace weft {
 

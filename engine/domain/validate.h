@@ -7,20 +7,12 @@
 #include <optional>
 #include <vector>
 
-#include "engine/base/error.h"
 #include "engine/base/geometry.h"
-#include "engine/domain/pslg.h"
 #include "engine/domain/stop_poller.h"
+#include "weft/error.h"
+#include "weft/pslg.h"
 
 namespace weft {
-
-// Magnitudes of coordinates other than 0, so that products of four of them stay in range.
-inline constexpr double kMinMagnitude = 1e-100;
-inline constexpr double kMaxMagnitude = 1e50;
-
-// Points of one PSLG, so that vertices and triangles can be numbered in 32 bits.
-inline constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 28;
-inline constexpr std::uint64_t kMaxSegments = std::uint64_t{1} << 30;
 
 // Returns the error of the first offender, in the order: points, segments, holes, regions, snap,
 // then the points as a whole; nullopt if the PSLG is valid. Throws Stopped.

@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "engine/base/error.h"
-#include "engine/output/summary.h"
+#include "weft/error.h"
+#include "weft/mesh.h"
 
 namespace weft {
 

@@ -7,14 +7,23 @@
 #include <utility>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
-#include "engine/output/chunk.h"
 #include "engine/output/digest.h"
 #include "engine/output/emit.h"
 #include "engine/output/quality_statistics.h"
-#include "engine/output/summary.h"
+#include "weft/error.h"
+#include "weft/mesh.h"
 
 namespace weft {
+
+inline Unrefined& operator+=(Unrefined& sum, const Unrefined& other) {
+  sum.small_input_angle += other.small_input_angle;
+  sum.edge_floor += other.edge_floor;
+  sum.budget += other.budget;
+  sum.precision += other.precision;
+  sum.streaming += other.streaming;
+  sum.too_large += other.too_large;
+  return sum;
+}
 
 class Delivery {
  public:

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <memory>
 
-#include "engine/output/chunk.h"
+#include "weft/mesh.h"
 
 namespace weft {
 

@@ -32,7 +32,7 @@ std::uint64_t Part::bytes() const {
   return bytes;
 }
 
-std::vector<HandedOn> triangles_handed_on(const Mesh& mesh, const Slots& slots) {
+std::vector<HandedOn> triangles_handed_on(const MeshStore& mesh, const Slots& slots) {
   std::vector<HandedOn> result;
   slots.for_triangles([&](std::uint32_t first, std::uint32_t last) {
     for (std::uint32_t t = first; t < last; ++t) {
@@ -48,7 +48,7 @@ std::vector<HandedOn> triangles_handed_on(const Mesh& mesh, const Slots& slots) 
 }
 
 template <class AreaBound>
-PartBuilder<AreaBound>::PartBuilder(const Mesh& mesh, const Domain& domain,
+PartBuilder<AreaBound>::PartBuilder(const MeshStore& mesh, const Domain& domain,
                                     const AcuteCorners& corners, AreaBound area, bool lattice,
                                     bool cut_off, const ExecutionContext& context)
     : mesh_(mesh),

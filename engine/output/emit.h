@@ -18,14 +18,13 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/domain/domain.h"
-#include "engine/output/chunk.h"
 #include "engine/output/quality_statistics.h"
-#include "engine/output/summary.h"
 #include "engine/refine/acute_corners.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "engine/refine/storage/slots.h"
+#include "weft/error.h"
+#include "weft/mesh.h"
 
 namespace weft {
 
@@ -56,7 +55,7 @@ struct HandedOn {
 
 // Returns an owner's triangles that go with later parts, in the order of its slots. REQUIRES: they
 // are final.
-std::vector<HandedOn> triangles_handed_on(const Mesh& mesh, const Slots& slots);
+std::vector<HandedOn> triangles_handed_on(const MeshStore& mesh, const Slots& slots);
 
 // Builds one part. `AreaBound` gives the bounds for the size histogram: it has bounds_at, as
 // ConstantArea and MappedArea do. REQUIRES: all added slots are final, and all vertices of
@@ -66,8 +65,8 @@ std::vector<HandedOn> triangles_handed_on(const Mesh& mesh, const Slots& slots);
 template <class AreaBound>
 class PartBuilder {
  public:
-  PartBuilder(const Mesh& mesh, const Domain& domain, const AcuteCorners& corners, AreaBound area,
-              bool lattice, bool cut_off, const ExecutionContext& context);
+  PartBuilder(const MeshStore& mesh, const Domain& domain, const AcuteCorners& corners,
+              AreaBound area, bool lattice, bool cut_off, const ExecutionContext& context);
 
   // Reserves room for about so many: without it, vectors take up to twice what they need.
   void expect(std::size_t vertices, std::size_t triangles);
@@ -86,7 +85,7 @@ class PartBuilder {
   void close_chunk();
   void add_block();
 
-  const Mesh& mesh_;
+  const MeshStore& mesh_;
   const Domain& domain_;
   const AcuteCorners& corners_;
   const bool has_regions_;

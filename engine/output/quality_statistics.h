@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/base/geometry.h"
-#include "engine/output/summary.h"
+#include "weft/mesh.h"
 
 namespace weft {
 

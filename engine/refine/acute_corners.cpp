@@ -180,7 +180,7 @@ std::optional<Error> AcuteCorners::sort_by_ends(const Domain& domain,
   return std::nullopt;
 }
 
-Point AcuteCorners::split_point(const Mesh& mesh, Pair ends, Pair apexes, double part) const {
+Point AcuteCorners::split_point(const MeshStore& mesh, Pair ends, Pair apexes, double part) const {
   const Point from = mesh.vertices[ends[0]];
   const Point to = mesh.vertices[ends[1]];
   const std::uint32_t s = subsegment(mesh, ends[0], ends[1]);
@@ -194,7 +194,7 @@ Point AcuteCorners::split_point(const Mesh& mesh, Pair ends, Pair apexes, double
   return {from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)};
 }
 
-std::optional<double> AcuteCorners::matching_part(const Mesh& mesh, std::uint32_t subsegment,
+std::optional<double> AcuteCorners::matching_part(const MeshStore& mesh, std::uint32_t subsegment,
                                                   Point from, Point to, Pair apexes) const {
   const Subsegment& s = (*subsegments_)[subsegment];
   const Vector piece = to - from;
@@ -220,7 +220,7 @@ std::optional<double> AcuteCorners::matching_part(const Mesh& mesh, std::uint32_
   return part;
 }
 
-double AcuteCorners::dyadic_part(const Mesh& mesh, std::uint32_t subsegment, Point from,
+double AcuteCorners::dyadic_part(const MeshStore& mesh, std::uint32_t subsegment, Point from,
                                  Point to) const {
   const Subsegment& s = (*subsegments_)[subsegment];
   const Point a = mesh.vertices[s.a];
@@ -234,7 +234,7 @@ double AcuteCorners::dyadic_part(const Mesh& mesh, std::uint32_t subsegment, Poi
   return in_middle(part) ? part : 0.5;
 }
 
-bool AcuteCorners::on_other_arm(const Mesh& mesh, std::uint32_t vertex, std::uint32_t corner,
+bool AcuteCorners::on_other_arm(const MeshStore& mesh, std::uint32_t vertex, std::uint32_t corner,
                                 std::uint32_t subsegment) const {
   const std::uint32_t segment = (*subsegments_)[subsegment].segment;
   const auto is_other = [&](std::uint32_t s) { return (*subsegments_)[s].segment != segment; };
@@ -250,7 +250,7 @@ bool AcuteCorners::on_other_arm(const Mesh& mesh, std::uint32_t vertex, std::uin
   return std::ranges::any_of(crossed_.at(vertex), continues);
 }
 
-bool AcuteCorners::exempts(const Mesh& mesh, const Triangle& triangle) const {
+bool AcuteCorners::exempts(const MeshStore& mesh, const Triangle& triangle) const {
   double shortest2 = 0;
   std::uint32_t edge = 0;
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -277,7 +277,8 @@ bool AcuteCorners::exempts(const Mesh& mesh, const Triangle& triangle) const {
                              [&](const CrossedArms::Arm& arm) { return exempt_at(arm.corner); });
 }
 
-std::uint32_t AcuteCorners::subsegment(const Mesh& mesh, std::uint32_t a, std::uint32_t b) const {
+std::uint32_t AcuteCorners::subsegment(const MeshStore& mesh, std::uint32_t a,
+                                       std::uint32_t b) const {
   if (const std::uint32_t s = mesh.subsegment_of(a); s != kNone) return s;
   if (const std::uint32_t s = mesh.subsegment_of(b); s != kNone) return s;
   return subsegment_between(a, b);

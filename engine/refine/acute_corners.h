@@ -44,12 +44,12 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/domain/domain.h"
 #include "engine/refine/crossed_arms.h"
 #include "engine/refine/needles.h"
 #include "engine/refine/quality_bounds.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
+#include "weft/error.h"
 
 namespace weft {
 
@@ -69,19 +69,19 @@ class AcuteCorners {
   // Where to split the piece of a segment between two vertices: as above on an arm, otherwise
   // after `part` of the way. `apexes` face the piece from its two sides; kNone if a side has no
   // triangle.
-  Point split_point(const Mesh& mesh, Pair ends, Pair apexes, double part) const;
+  Point split_point(const MeshStore& mesh, Pair ends, Pair apexes, double part) const;
 
   const CrossedArms& crossed_arms() const { return crossed_; }
   // The places where two of the domain's segments meet at a small angle outside of it.
   const Needles& needles() const { return needles_; }
 
   // Whether a skinny triangle stays because of a small input angle.
-  bool exempts(const Mesh& mesh, const Triangle& triangle) const;
+  bool exempts(const MeshStore& mesh, const Triangle& triangle) const;
 
   // Index into Domain::subsegments of the edge a-b, which must lie on a segment.
-  std::uint32_t subsegment(const Mesh& mesh, std::uint32_t a, std::uint32_t b) const;
+  std::uint32_t subsegment(const MeshStore& mesh, std::uint32_t a, std::uint32_t b) const;
   // Of the segment that the edge a-b lies on.
-  std::int32_t marker(const Mesh& mesh, std::uint32_t a, std::uint32_t b) const {
+  std::int32_t marker(const MeshStore& mesh, std::uint32_t a, std::uint32_t b) const {
     return (*subsegments_)[subsegment(mesh, a, b)].marker;
   }
 
@@ -114,14 +114,14 @@ class AcuteCorners {
   // The subsegment between two vertices of the domain, or kNone.
   std::uint32_t subsegment_between(std::uint32_t a, std::uint32_t b) const;
   // Whether the vertex lies on, or ends, an arm of the corner other than that of this subsegment.
-  bool on_other_arm(const Mesh& mesh, std::uint32_t vertex, std::uint32_t corner,
+  bool on_other_arm(const MeshStore& mesh, std::uint32_t vertex, std::uint32_t corner,
                     std::uint32_t subsegment) const;
 
   // These return the place of a split as a fraction of the way from one end of a piece to the
   // other.
-  std::optional<double> matching_part(const Mesh& mesh, std::uint32_t subsegment, Point from,
+  std::optional<double> matching_part(const MeshStore& mesh, std::uint32_t subsegment, Point from,
                                       Point to, Pair apexes) const;
-  double dyadic_part(const Mesh& mesh, std::uint32_t subsegment, Point from, Point to) const;
+  double dyadic_part(const MeshStore& mesh, std::uint32_t subsegment, Point from, Point to) const;
 
   const std::vector<Subsegment>* subsegments_;
   std::vector<Corner> corners_;       // per vertex of the domain

@@ -10,12 +10,12 @@
 #include <optional>
 #include <string>
 
-#include "engine/base/error.h"
 #include "engine/base/geometry.h"
 #include "engine/refine/cavity.h"
 #include "engine/refine/quality_bounds.h"
 #include "engine/size/lattice/lattice.h"
 #include "engine/size/size_function.h"
+#include "weft/error.h"
 
 namespace weft {
 

@@ -35,13 +35,13 @@
 #include <limits>
 #include <vector>
 
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 
 namespace weft {
 
 class BadTriangles {
  public:
-  explicit BadTriangles(const Mesh& mesh) : mesh_(mesh), heads_(64 * kSkinnyWords) {}
+  explicit BadTriangles(const MeshStore& mesh) : mesh_(mesh), heads_(64 * kSkinnyWords) {}
 
   // REQUIRES: the triangle has this badness.
   void push(std::uint32_t t, Badness badness) {
@@ -147,7 +147,7 @@ class BadTriangles {
     return std::sqrt(shortest2 * std::sqrt(shortest2 * longest2));
   }
 
-  const Mesh& mesh_;
+  const MeshStore& mesh_;
   std::array<std::vector<std::uint32_t>, kWorst + 1> levels_;  // by badness
   std::array<std::uint64_t, (kWorst + 64) / 64> in_use_{};     // a bit per level
   std::vector<Skinny> skinny_;

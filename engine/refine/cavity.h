@@ -38,7 +38,7 @@
 #include "engine/domain/triangulation/predicates.h"
 #include "engine/refine/lens.h"
 #include "engine/refine/ownership.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 
 namespace weft {
 
@@ -79,7 +79,7 @@ class Cavity {
     kOverflow,    // out of room: call `enlarge` and try again
   };
 
-  explicit Cavity(const Mesh& mesh)
+  explicit Cavity(const MeshStore& mesh)
       : triangles_(mesh.triangles.data()),
         vertices_(mesh.vertices.data()),
         owners_(mesh.triangle_owner.data()),
@@ -208,7 +208,8 @@ class Cavity {
 
   // 0 for a triangle in a slot of the task.
   std::uint32_t foreign(std::uint32_t triangle) const {
-    if constexpr (Ownership::kRestricted) return owners_[triangle >> Mesh::kTriangleShift] ^ owner_;
+    if constexpr (Ownership::kRestricted)
+      return owners_[triangle >> MeshStore::kTriangleShift] ^ owner_;
     return 0;
   }
 

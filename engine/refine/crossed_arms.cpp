@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "engine/refine/storage/vector.h"
 
 namespace weft {

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/domain/domain.h"
+#include "weft/error.h"
 
 namespace weft {
 

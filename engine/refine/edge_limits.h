@@ -17,7 +17,7 @@
 
 #include "engine/base/geometry.h"
 #include "engine/domain/domain.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "engine/refine/storage/vector.h"
 #include "engine/size/size_spec.h"
 
@@ -33,6 +33,10 @@ class EdgeLimits {
   }
 
   bool empty() const { return at_.empty(); }
+
+  // Around an edge on a segment whose length is limited, roughly: 3.9 as measured, if the bound on
+  // angles alone makes triangles grow from there.
+  static constexpr double kTrianglesPerPiece = 4;
 
   // The least number of equal parts of the edge from a to b that keep to the limit of its marker.
   double pieces(std::int32_t marker, Point a, Point b) const {

@@ -36,7 +36,7 @@
 
 #include "engine/base/geometry.h"
 #include "engine/refine/ownership.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "engine/refine/storage/slots.h"
 #include "engine/size/lattice/lattice.h"
 
@@ -77,7 +77,7 @@ struct LatticeRectangle {
 
 class LatticeRows {
  public:
-  explicit LatticeRows(Mesh& mesh) : mesh_(mesh) {}
+  explicit LatticeRows(MeshStore& mesh) : mesh_(mesh) {}
 
   // Begins a task: new triangles and vertices go to `slots`.
   void begin(Slots& slots, const OwnsBox& ownership) {
@@ -124,7 +124,7 @@ class LatticeRows {
   void write_rows();
   void link(std::uint32_t triangle, std::uint32_t edge, HalfEdge outside);
 
-  Mesh& mesh_;
+  MeshStore& mesh_;
   Slots* slots_ = nullptr;
   OwnsBox ownership_{};
   LatticeRectangle rectangle_;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/domain/tolerance.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "engine/refine/storage/vector.h"
 
 namespace weft {

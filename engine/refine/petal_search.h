@@ -18,7 +18,7 @@
 #include "engine/refine/petal.h"
 #include "engine/refine/quality_bounds.h"
 #include "engine/refine/star.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "engine/refine/triangle_judge.h"
 
 namespace weft {
@@ -31,7 +31,7 @@ class PetalSearch {
     RingVerdict verdict;  // of the star there
   };
 
-  explicit PetalSearch(const Mesh& mesh) : mesh_(mesh), other_(mesh) {}
+  explicit PetalSearch(const MeshStore& mesh) : mesh_(mesh), other_(mesh) {}
 
   // See Star::begin.
   void begin(const Ownership& ownership, std::uint32_t owner) { other_.begin(ownership, owner); }
@@ -101,7 +101,7 @@ class PetalSearch {
                        [&](Point q) { return distance2(p, q) < least2; });
   }
 
-  const Mesh& mesh_;
+  const MeshStore& mesh_;
   Star<Ownership> other_;    // of the place being tried
   std::vector<Point> ring_;  // of the standard place
 };

@@ -18,7 +18,7 @@
 
 #include "engine/refine/cavity.h"
 #include "engine/refine/lens.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "engine/size/lattice/lattice.h"
 
 namespace weft {

@@ -13,13 +13,13 @@
 #include "engine/refine/acute_corners.h"
 #include "engine/refine/edge_limits.h"
 #include "engine/refine/quality_bounds.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 
 namespace weft {
 
 // Shared by all tasks of a run.
 struct RefinementContext {
-  Mesh& mesh;
+  MeshStore& mesh;
   const AcuteCorners& corners;
   const std::vector<Region>& regions;
   const EdgeLimits& edge_limits;

@@ -46,7 +46,7 @@
 #include "engine/refine/star.h"
 #include "engine/refine/star_check.h"
 #include "engine/refine/steiner_point.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "engine/refine/storage/slots.h"
 #include "engine/refine/triangle_judge.h"
 
@@ -522,7 +522,7 @@ class Refiner {
     return context_.poll();
   }
 
-  Mesh& mesh_;
+  MeshStore& mesh_;
   const AcuteCorners& corners_;
   const std::vector<Region>& regions_;
   const EdgeLimits& edge_limits_;

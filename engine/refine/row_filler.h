@@ -35,7 +35,7 @@
 #include "engine/refine/refinement_context.h"
 #include "engine/refine/refiner.h"
 #include "engine/refine/steiner_point.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "engine/refine/storage/slots.h"
 #include "engine/size/lattice/lattice.h"
 
@@ -217,7 +217,7 @@ class RowFiller {
     }
   }
 
-  Mesh& mesh_;
+  MeshStore& mesh_;
   const std::vector<Region>& regions_;
   const QualityBounds quality_;
   const AreaBound& area_;

@@ -16,7 +16,7 @@
 
 #include "engine/base/geometry.h"
 #include "engine/refine/cavity.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "engine/refine/storage/slots.h"
 
 namespace weft {
@@ -26,7 +26,7 @@ class Star {
  public:
   using Growth = typename Cavity<Ownership>::Growth;
 
-  explicit Star(const Mesh& mesh) : cavity_(mesh), judged_(kInitialRing) {}
+  explicit Star(const MeshStore& mesh) : cavity_(mesh), judged_(kInitialRing) {}
 
   // Begins a task that owns the slots of `owner`.
   void begin(const Ownership& ownership, std::uint32_t owner) { cavity_.begin(ownership, owner); }
@@ -57,7 +57,7 @@ class Star {
   // Uses one loop, and the slots of the cavity stay in place, because processors mispredict the end
   // of each loop over a ring. That saved an eighth of the mispredictions in a simulated predictor.
   template <class Queue>
-  std::int64_t make(Mesh& mesh, Slots& slots, std::uint32_t vertex, bool closed, Queue queue) {
+  std::int64_t make(MeshStore& mesh, Slots& slots, std::uint32_t vertex, bool closed, Queue queue) {
     Triangle* const triangles = mesh.triangles.data();
     const std::uint32_t n = ring().size;
     const std::uint32_t region = triangles[cavity_.triangles()[0]].region;
@@ -94,8 +94,8 @@ class Star {
 
   // Marks the two pieces of a segment, after a star was made around a point on it; each side keeps
   // its region. The ring's first `near_side` edges are on one side.
-  void mark_segment(Mesh& mesh, std::uint32_t near_side, bool closed, std::uint32_t near_region,
-                    std::uint32_t far_region) {
+  void mark_segment(MeshStore& mesh, std::uint32_t near_side, bool closed,
+                    std::uint32_t near_region, std::uint32_t far_region) {
     Triangle* const triangles = mesh.triangles.data();
     const std::uint32_t* const star = cavity_.triangles();
     const std::uint32_t n = ring().size;
@@ -122,7 +122,7 @@ class Star {
 
   // The slots for the star: those of the cavity that are this task's, then new ones. The first is
   // repeated after the last.
-  const std::uint32_t* take_slots(Mesh& mesh, Slots& slots) {
+  const std::uint32_t* take_slots(MeshStore& mesh, Slots& slots) {
     const std::uint32_t n = ring().size;
     std::uint32_t* const star = cavity_.triangles();
     const std::uint32_t taken =
@@ -134,7 +134,7 @@ class Star {
 
   // Moves the cavity's slots of this task to the front, and returns their number. The triangles in
   // the others die.
-  [[gnu::noinline]] std::uint32_t drop_foreign_slots(Mesh& mesh, std::uint32_t owner) {
+  [[gnu::noinline]] std::uint32_t drop_foreign_slots(MeshStore& mesh, std::uint32_t owner) {
     std::uint32_t* const first = cavity_.triangles();
     std::uint32_t* const own = std::remove_if(first, first + cavity_.size(), [&](std::uint32_t t) {
       const bool foreign = mesh.owner_of_triangle(t) != owner;

@@ -21,13 +21,13 @@
 
 #include "engine/domain/triangulation/predicates.h"
 #include "engine/refine/cavity.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 
 namespace weft {
 
 // Whether the star of p over the ring's edges first <= i < last is Delaunay. REQUIRES: its
 // triangles turn left.
-inline bool star_is_delaunay(const Mesh& mesh, const Ring& ring, std::uint32_t first,
+inline bool star_is_delaunay(const MeshStore& mesh, const Ring& ring, std::uint32_t first,
                              std::uint32_t last, Point p) {
   for (std::uint32_t i = first + 1; i < last; ++i) {
     const RingPoint& a = ring.points[i - 1];
@@ -48,7 +48,7 @@ inline bool star_is_delaunay(const Mesh& mesh, const Ring& ring, std::uint32_t f
 }
 
 // Whether all triangles of the star of p turn left, exactly.
-inline bool star_turns_left(const Mesh& mesh, const Ring& ring, Point p) {
+inline bool star_turns_left(const MeshStore& mesh, const Ring& ring, Point p) {
   for (std::uint32_t i = 0; i < ring.size; ++i) {
     if (orientation_exact(p, mesh.vertices[ring.points[i].vertex],
                           mesh.vertices[ring.points[i + 1].vertex]) <= 0) {
@@ -62,7 +62,7 @@ inline bool star_turns_left(const Mesh& mesh, const Ring& ring, Point p) {
 // `precision2`: two segments that almost coincide would split each other down to the floor. A
 // vertex beyond the edge's ends does not count: if a split was rounded, the next piece of the
 // same segment is on its line except for a unit in the last place.
-inline bool too_thin(const Mesh& mesh, HalfEdge h, double precision2) {
+inline bool too_thin(const MeshStore& mesh, HalfEdge h, double precision2) {
   const Triangle& triangle = mesh.triangles[triangle_of(h)];
   const Point apex = mesh.vertices[triangle.vertex[edge_of(h)]];
   const Point a = mesh.vertices[triangle.vertex[kNext[edge_of(h)]]];

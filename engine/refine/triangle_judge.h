@@ -9,7 +9,7 @@
 
 #include "engine/refine/cavity.h"
 #include "engine/refine/quality_bounds.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 
 namespace weft {
 
@@ -17,7 +17,7 @@ namespace weft {
 class TriangleJudge {
  public:
   template <class AreaBound>
-  Badness operator()(const Mesh& mesh, std::uint32_t t, double region_bound,
+  Badness operator()(const MeshStore& mesh, std::uint32_t t, double region_bound,
                      const QualityBounds& quality, AreaBound& area) {
     const auto& v = mesh.triangles[t].vertex;
     return (*this)(mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]], region_bound,

@@ -16,11 +16,11 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/base/task_graph.h"
 #include "engine/schedule/leaf_graph.h"
 #include "engine/schedule/leaf_order.h"
 #include "engine/schedule/quadtree.h"
+#include "weft/error.h"
 
 namespace weft {
 

@@ -222,7 +222,7 @@ class CoarseBlocks {
 
   // Distributes owner 0's triangles to the blocks.
   void spread(const Slots& slots) {
-    const Mesh& mesh = refinement_.mesh;
+    const MeshStore& mesh = refinement_.mesh;
     LeafRadius<AreaBound> radius = radius_.again();
     TriangleJudge judge;
     std::vector<BadTriangle> bad;
@@ -243,7 +243,7 @@ class CoarseBlocks {
 
   void judge_triangle(std::uint32_t t, TriangleJudge& judge, AreaBound& area,
                       std::vector<Judged>& judged) {
-    const Mesh& mesh = refinement_.mesh;
+    const MeshStore& mesh = refinement_.mesh;
     Triangle& triangle = mesh.triangles[t];
     const Badness badness = judge(mesh, t, region_bound(t), quality_, area);
     triangle.set_badness(badness);

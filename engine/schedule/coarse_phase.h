@@ -161,7 +161,7 @@ class CoarsePhase {
   };
 
   std::vector<Quadtree::Sample> samples(const Run& run) const {
-    const Mesh& mesh = refinement_.mesh;
+    const MeshStore& mesh = refinement_.mesh;
     std::vector<Quadtree::Sample> result;
     Block block;
     AreaBound area = area_.again();
@@ -260,7 +260,7 @@ class CoarsePhase {
   }
 
   Found judge(const Run& run, const Quadtree& tree, const Box& box) const {
-    const Mesh& mesh = refinement_.mesh;
+    const MeshStore& mesh = refinement_.mesh;
     Found found;
     AreaBound area = area_.again();
     area.begin(box);

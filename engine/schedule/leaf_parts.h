@@ -19,7 +19,7 @@
 
 #include "engine/base/held_bytes.h"
 #include "engine/output/emit.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "engine/refine/storage/slots.h"
 #include "engine/schedule/leaf_order.h"
 #include "engine/schedule/leaf_release.h"
@@ -39,7 +39,7 @@ class LeafParts {
  public:
   // Numbers the leaves' vertices from `first_number` on. `earlier_owners` are in the order of their
   // leaves.
-  LeafParts(Mesh& mesh, const LeafOrder& order, LeafTasks<AreaBound>& leaves,
+  LeafParts(MeshStore& mesh, const LeafOrder& order, LeafTasks<AreaBound>& leaves,
             std::uint32_t first_number, std::vector<EarlierOwner> earlier_owners)
       : mesh_(mesh),
         order_(order),
@@ -128,7 +128,7 @@ class LeafParts {
     f(leaves_.slots(leaf));
   }
 
-  Mesh& mesh_;
+  MeshStore& mesh_;
   const LeafOrder& order_;
   LeafTasks<AreaBound>& leaves_;
   std::vector<EarlierOwner> earlier_owners_;  // by the leaf

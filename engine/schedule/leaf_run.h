@@ -213,7 +213,7 @@ class LeafRun {
 
   const MeshPlan& plan_;
   ExecutionContext& context_;
-  Mesh& mesh_;
+  MeshStore& mesh_;
   LeafStage<AreaBound>& stage_;
   const LeafOrder& order_;
   LeafTasks<AreaBound>& leaves_;

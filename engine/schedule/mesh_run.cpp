@@ -32,7 +32,7 @@ class MeshRun {
  public:
   // `cut_off`: stop at the client's number of triangles, and keep the mesh as it is then.
   MeshRun(const MeshPlan& plan, const AreaBound& area, ChunkSink& sink, ExecutionContext& context,
-          Summary& summary, Mesh& mesh, bool cut_off)
+          Summary& summary, MeshStore& mesh, bool cut_off)
       : plan_(plan),
         area_(area),
         context_(context),
@@ -137,7 +137,7 @@ class MeshRun {
   const AreaBound& area_;
   ExecutionContext& context_;
   Summary& summary_;
-  Mesh& mesh_;
+  MeshStore& mesh_;
   const bool cut_off_;
   const RefinementContext refinement_;
   Slots root_;
@@ -154,15 +154,15 @@ std::optional<Error> run_mesh(const MeshPlan& plan, const AreaBound& area, Chunk
                               ExecutionContext& context, Summary& summary) {
   const auto attempt = [&](bool cut_off) -> std::optional<Error> {
     const auto start = Clock::now();
-    std::optional<Mesh> mesh;
+    std::optional<MeshStore> mesh;
     std::optional<MeshRun<AreaBound>> run;
     const auto prepare = [&]() -> std::optional<Error> {
       const std::uint64_t at_first = plan.domain.bytes() + plan.other_bytes +
                                      plan.domain.triangles.size() * sizeof(Triangle) +
                                      plan.domain.vertices.size() * sizeof(Point);
       if (auto error = context.need_bytes(at_first, "the mesh")) return error;
-      auto mesh_made = Mesh::from(plan.domain, context.budget().triangle_limit,
-                                  plan.expected_triangles, context);
+      auto mesh_made = MeshStore::from(plan.domain, context.budget().triangle_limit,
+                                       plan.expected_triangles, context);
       if (!mesh_made) return mesh_made.error();
       mesh.emplace(std::move(*mesh_made));
       run.emplace(plan, area, sink, context, summary, *mesh, cut_off);

@@ -9,14 +9,13 @@
 #include <optional>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/domain/domain.h"
-#include "engine/output/chunk.h"
-#include "engine/output/summary.h"
 #include "engine/refine/acute_corners.h"
 #include "engine/refine/edge_limits.h"
 #include "engine/refine/quality_bounds.h"
 #include "engine/schedule/narrow_places.h"
+#include "weft/error.h"
+#include "weft/mesh.h"
 
 namespace weft {
 

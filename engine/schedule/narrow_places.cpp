@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 
 namespace weft {
 namespace {

@@ -27,12 +27,12 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/base/geometry.h"
 #include "engine/domain/domain.h"
 #include "engine/refine/crossed_arms.h"
 #include "engine/refine/quality_bounds.h"
 #include "engine/schedule/quadtree.h"
+#include "weft/error.h"
 
 namespace weft {
 

@@ -22,12 +22,12 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/base/held_bytes.h"
 #include "engine/base/task_graph.h"
 #include "engine/base/trace.h"
 #include "engine/output/delivery.h"
 #include "engine/output/emit.h"
+#include "weft/error.h"
 
 namespace weft {
 

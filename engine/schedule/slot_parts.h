@@ -26,14 +26,13 @@
 #include "engine/base/task_graph.h"
 #include "engine/base/trace.h"
 #include "engine/base/work_time.h"
-#include "engine/output/chunk.h"
 #include "engine/output/delivery.h"
 #include "engine/output/emit.h"
-#include "engine/output/summary.h"
 #include "engine/refine/refinement_context.h"
 #include "engine/refine/storage/slots.h"
 #include "engine/schedule/mesh_run.h"
 #include "engine/schedule/part_run.h"
+#include "weft/mesh.h"
 
 namespace weft {
 

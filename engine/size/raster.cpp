@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/size/raster.h"
+#include "weft/weft.h"
 
 #include <cmath>
 #include <string>

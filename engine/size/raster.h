@@ -14,24 +14,12 @@
 #include <span>
 #include <vector>
 
-#include "engine/base/error.h"
 #include "engine/size/fields/bilinear_grid.h"
 #include "engine/size/size_function.h"
+#include "weft/error.h"
+#include "weft/size.h"
 
 namespace weft {
-
-struct Raster {
-  Point origin;  // of the first node
-  double dx = 0;
-  double dy = 0;
-  std::uint32_t columns = 0;
-  std::uint32_t rows = 0;
-  std::vector<double> values;  // by rows from the lowest: that of node (i, j) is [j * columns + i]
-};
-
-// kBadSizeValue with the field "size.raster.values[i]" for the first value that is not positive and
-// finite.
-std::optional<Error> check_raster_values(std::span<const double> values, std::uint32_t columns);
 
 class RasterSize final : public SizeFunction {
  public:

@@ -11,15 +11,13 @@
 #include <vector>
 
 #include "engine/size/field.h"
+#include "weft/size.h"
 
 namespace weft {
 
 class SizeFunction : public Field {
  public:
-  // The area of an equilateral triangle with an edge of this length; negative for a negative one,
-  // so that it is found to be no size. Never falls as the edge grows, because products of numbers
-  // that are not negative do not.
-  static double area_of_edge(double edge) { return 0.4330127018922193 * edge * std::fabs(edge); }
+  // The inverse of area_of_edge.
   static double edge_of_area(double area) { return std::sqrt(area / 0.4330127018922193); }
 
   // A size that varies must be finite, also in a part of the domain that no limit reaches: there

@@ -12,14 +12,19 @@
 #include "engine/domain/validate.h"
 #include "engine/size/constant_size.h"
 #include "engine/size/edge_size.h"
+#include "engine/size/expression/expression.h"
 #include "engine/size/fields/distance_field.h"
+#include "engine/size/fields/mesh_field.h"
+#include "engine/size/fields/raster_field.h"
 #include "engine/size/fields/width_field.h"
 #include "engine/size/gradation/border_graded_size.h"
 #include "engine/size/gradation/graded_size.h"
 #include "engine/size/gradation/region_borders.h"
 #include "engine/size/least_size.h"
 #include "engine/size/line_size.h"
+#include "engine/size/raster.h"
 #include "engine/size/width_size.h"
+#include "weft/weft.h"
 
 namespace weft {
 namespace {
@@ -370,10 +375,10 @@ std::optional<Error> check_size(const SizeSpec& spec) {
     if (!(value >= 0 && std::isfinite(value)))
       return Error{ErrorCode::kBadOption, field,
                    std::string(field) + " is " + text(value) + "; it must be finite and 0 or more"};
-  if (spec.fields.size() > Expression::kMaxFields)
+  if (spec.fields.size() > kMaxSizeFields)
     return Error{ErrorCode::kLimitExceeded, "size.fields",
                  "size.fields: " + std::to_string(spec.fields.size()) + " fields; the limit is " +
-                     std::to_string(Expression::kMaxFields)};
+                     std::to_string(kMaxSizeFields)};
   const std::vector<std::string> names = names_of(spec.fields);
   if (auto error = Expression::check_names(names)) return error;
   if (auto error = check_widths(spec.fields)) return error;

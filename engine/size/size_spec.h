@@ -1,86 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// The size as a request gives it, and the one place that knows its kinds and those of the fields
-// that it may name. What reads a request, plans, refines or estimates sees a SizeFunction; a new
-// kind is a type here, a file pair beside this one, and a case in size_spec.cpp.
+// Makes a SizeFunction of the size that a request gives: the one place that knows its kinds and
+// those of the fields that it may name. What plans, refines or estimates sees a SizeFunction; a new
+// kind is a type in weft/size.h, a file pair beside this one, and a case in size_spec.cpp.
 //
 //   Result<Size> size = make_size("0.01 + x^2", pslg, domain, context);
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/domain/domain.h"
-#include "engine/domain/pslg.h"
-#include "engine/size/expression/expression.h"
-#include "engine/size/fields/mesh_field.h"
-#include "engine/size/fields/raster_field.h"
-#include "engine/size/raster.h"
+#include "engine/size/field.h"
 #include "engine/size/size_function.h"
+#include "weft/error.h"
+#include "weft/pslg.h"
+#include "weft/size.h"
 
 namespace weft {
-
-// The distance to the nearest of: the points, or the segments between them; if there are none, the
-// segments of the PSLG that have one of the markers; without markers, all of its segments.
-struct DistanceSpec {
-  std::vector<std::int32_t> markers{};
-  std::vector<Point> points{};
-  std::vector<std::array<std::uint32_t, 2>> segments{};  // indices of `points`
-};
-
-// The local width of the domain.
-struct WidthSpec {};
-
-// A field that an expression may name.
-struct FieldSpec {
-  std::string name;
-  std::variant<DistanceSpec, FieldRaster, FieldMesh, WidthSpec> kind;
-};
-
-// How long edges may be on segments with a marker.
-struct SizeAt {
-  std::int32_t marker = 0;
-  double max_edge = 0;  // > 0, in the unit of the points
-};
-
-// What the value of a size bounds: a triangle's area, or the length of edges h, which bounds the
-// area by that of an equilateral triangle, sqrt(3)/4 h^2.
-enum class Measure : std::uint8_t { kArea, kEdge };
-
-// The grading function: how large a triangle may be, at its centroid.
-struct SizeSpec {
-  using Value = std::variant<std::monostate,  // no bound
-                             double,          // the same everywhere, > 0 (constant_size.h)
-                             std::string,     // of x, y and fields (expression/expression.h)
-                             Raster>;         // values on a grid (raster.h)
-
-  SizeSpec() = default;
-  // NOLINTNEXTLINE(google-explicit-constructor): a value alone is a size.
-  template <class T>
-  requires std::is_constructible_v<Value, T> SizeSpec(T&& of) : value(std::forward<T>(of)) {}
-
-  Value value;
-  Measure measure = Measure::kArea;
-  std::vector<FieldSpec> fields;  // at most Expression::kMaxFields
-  // How much the wanted length of edges grows at most per unit of length (gradation/), from regions
-  // with a bound of their own, too; finite. 0: no limit.
-  double gradation = 0;
-  // Whether distances for the gradation are measured within the domain, along the shortest paths
-  // in it, instead of across land. `make_size` leaves that to engine.cpp, which meshes first.
-  bool gradation_within = false;
-  // How many edges fit across the domain at least (width_size.h); finite. 0: any number.
-  double cells_across = 0;
-  // On segments with these markers, edges are at most so long (refine/edge_limits.h). With a
-  // gradation the wanted length grows from there by it, at most (line_size.h).
-  std::vector<SizeAt> at;  // one per marker, at most kMaxSizesAt
-};
-inline constexpr std::size_t kMaxSizesAt = 32;
 
 // A size that can be evaluated, with all that it is made of.
 class Size {
@@ -108,13 +48,6 @@ class Size {
   std::vector<std::unique_ptr<const SizeFunction>> layers_;
   const SizeFunction* limited_ = nullptr;
 };
-
-// Judges what needs neither the domain nor the values of arrays: kBadSizeValue for a constant that
-// is not positive and finite, kBadOption for names of fields, a second width, the gradation,
-// cells_across and the sizes at markers, and the errors of Expression::check. The field is
-// "size.constant", "size.expression", "size.gradation", "size.cells_across", "size.fields[i].name",
-// "size.at[i].marker" or "size.at[i].max_edge".
-std::optional<Error> check_size(const SizeSpec& spec);
 
 // Computes in the context's arena. REQUIRES: a raster satisfies its own requirements (raster.h),
 // and `spec` outlives the result. Errors: those of check_size, those of the kinds for what is wrong

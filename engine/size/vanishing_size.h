@@ -8,10 +8,10 @@
 #include <optional>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/base/geometry.h"
 #include "engine/domain/domain.h"
 #include "engine/size/size_function.h"
+#include "weft/error.h"
 
 namespace weft {
 

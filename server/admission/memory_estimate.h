@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much memory a run is expected to take, for whoever orders runs: a guess within a millisecond,
-// from a coarse picture of the domain, its regions, and the size in each cell. What a run takes
-// beyond it, it gets from the MemoryGate as it grows, or not.
-//
-// Law: never below what the engine takes for the benchmarks' meshes if their reader stalls, and at
-// most twice that and 2 MB (tests/server/admission/estimate_law_test.cpp).
+// How much memory a run is expected to take, for whoever orders runs: weft::estimate, and what the
+// server holds besides. What a run takes beyond it, it gets from the MemoryGate as it grows, or
+// not.
 #pragma once
 
 #include <chrono>
@@ -35,8 +32,8 @@ inline std::uint64_t bytes_of_request(const v1::GenerateMeshRequest& request) {
   return 2 * request.SpaceUsedLong();
 }
 
-// Bytes, at most what the request's budget allows. REQUIRES: check_shape and check_limits found
-// nothing.
+// Bytes, at most what the request's budget allows; takes linear time, and memory for the engine's
+// form of the request meanwhile. REQUIRES: check_shape and check_limits found nothing.
 std::uint64_t expected_bytes(const v1::GenerateMeshRequest& request, const Limits& limits);
 
 }  // namespace weft::server

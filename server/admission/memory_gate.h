@@ -31,7 +31,7 @@
 #include <string>
 #include <utility>
 
-#include "engine/base/error.h"
+#include "weft/error.h"
 
 namespace weft::server {
 

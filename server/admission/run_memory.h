@@ -3,7 +3,7 @@
 // one share of the MemoryGate.
 //
 //   RunMemory memory(place.memory(), bytes_of_request);
-//   context.set_memory(memory, memory.granted());
+//   run.set_memory(memory, memory.granted());
 //
 // Thread-safety: `grant` may be called by several threads, the rest while the engine does not run.
 #pragma once
@@ -12,9 +12,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "engine/base/context.h"
-#include "engine/base/memory_source.h"
 #include "server/admission/memory_gate.h"
+#include "weft/run.h"
 
 namespace weft::server {
 
@@ -40,14 +39,13 @@ class RunMemory final : public MemorySource {
     share_.shrink_to(besides_);
   }
 
-  Result<std::uint64_t> grant(std::uint64_t needed, const ExecutionContext& run) override {
+  Result<std::uint64_t> grant(std::uint64_t needed, const Poll& poll) override {
     if (needed > limit_) {
       limit_was_reached_ = true;
       return fail(ErrorCode::kOutOfMemory, "", "the run needs more memory than a light one");
     }
     if (!share_) return limit_;
-    if (auto error = share_.grow_to(besides_ + needed, [&run] { return run.poll(); }))
-      return tl::unexpected(*error);
+    if (auto error = share_.grow_to(besides_ + needed, poll)) return tl::unexpected(*error);
     return granted();
   }
 

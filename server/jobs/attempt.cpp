@@ -56,8 +56,8 @@ Attempt::Attempt(const RunEnvironment& environment, Claim claim, MemoryGate::Sha
       memory_(share_, bytes_of_request(shown(request_)) + bytes_besides(environment.limits)),
       leave_light_lane_(std::move(leave_light_lane)),
       max_seconds_(to_seconds(shown(request_).budget(), environment.limits)),
-      threads_(to_threads(shown(request_).threads(), environment.arena.threads())),
-      context_(to_budget(shown(request_).budget(), environment.limits)) {
+      threads_(to_threads(shown(request_).threads(), environment.pool.threads())),
+      run_(to_budget(shown(request_).budget(), environment.limits)) {
   claim_.request = {};
 }
 
@@ -74,12 +74,12 @@ void Attempt::run() {
 tl::expected<void, Failure> Attempt::make_mesh() {
   if (!request_) return tl::unexpected(request_.error());
   v1::GenerateMeshRequest options = options_of(**request_);
-  EngineRun run{.context = context_,
+  EngineRun run{.run = run_,
                 .memory = memory_,
                 .deadline = seconds_from_now(max_seconds_),
-                .arena = environment_.arena,
+                .pool = environment_.pool,
                 .threads = threads_};
-  if (leave_light_lane_) run.leave_light_lane = [this] { leave_light_lane_(share_, context_); };
+  if (leave_light_lane_) run.leave_light_lane = [this] { leave_light_lane_(share_, run_); };
   auto summary = call_engine(environment_.engine, std::move(*request_), *this, run);
   if (store_error_) return tl::unexpected(failure_of(*store_error_));
   if (!summary && summary.error().reason == Reason::kDeadlineExceeded)
@@ -143,7 +143,7 @@ void Attempt::stop() {
     stopping_ = true;
   }
   ended_.notify_all();
-  context_.cancel();
+  run_.cancel();
 }
 
 void Attempt::lose() {
@@ -152,19 +152,19 @@ void Attempt::lose() {
     if (std::exchange(lost_, true)) return;
   }
   ended_.notify_all();
-  context_.cancel();
+  run_.cancel();
 }
 
 void Attempt::renew(milliseconds lease) {
   const Clock::time_point now = Clock::now();
-  const std::uint64_t pulse = context_.pulse() + chunks_stored_;
-  // A job that waits for a thread of the arena is not stuck.
-  if (pulse != last_pulse_ || context_.progress().stage == Stage::kQueued) {
+  const std::uint64_t pulse = run_.pulse() + chunks_stored_;
+  // A job that waits for a thread of the pool is not stuck.
+  if (pulse != last_pulse_ || run_.progress().stage == Stage::kQueued) {
     last_pulse_ = pulse;
     last_moved_ = now;
   }
   if (now - last_moved_ > lease) return;
-  tell_progress(context_.progress(), Seconds(now - began_).count(), told_);
+  tell_progress(run_.progress(), Seconds(now - began_).count(), told_);
   const auto held = environment_.store.renew(claim_.ref, lease, told_.SerializeAsString());
   if (held && *held == Held::kLost) lose();
 }
@@ -190,7 +190,7 @@ bool Attempt::pause(milliseconds at_most) {
 void Attempt::log_end(std::string_view outcome, std::string_view reason) const {
   environment_.log->info(
       "event=attempt_ended {} outcome={} reason={} triangles={} chunks={} bytes={} seconds={:.3f}",
-      label_, outcome, reason, context_.progress().triangles, chunks_stored_.load(), bytes_,
+      label_, outcome, reason, run_.progress().triangles, chunks_stored_.load(), bytes_,
       Seconds(Clock::now() - began_).count());
 }
 

@@ -18,7 +18,6 @@
 #include <string_view>
 #include <type_traits>
 
-#include "engine/base/arena.h"
 #include "server/admission/memory_gate.h"
 #include "server/admission/run_memory.h"
 #include "server/mesh/engine_call.h"
@@ -26,6 +25,7 @@
 #include "server/observe/metrics.h"
 #include "server/store/job_store.h"
 #include "server/wire/limits.h"
+#include "weft/run.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::server {
@@ -33,7 +33,7 @@ namespace weft::server {
 // Shared by all runs of a server; must outlive them.
 struct RunEnvironment {
   EngineFn engine;
-  Arena& arena;  // where they compute
+  ThreadPool& pool;  // where they compute
   JobStore& store;
   Limits limits;
   RetryPolicy retry;
@@ -46,7 +46,7 @@ class Attempt final : private ChunkSink {
   // A claim whose request was not stored by a server fails with kStoreBroken. `share` is the memory
   // with which the claim was admitted; it is given back when the run ends. `leave_light_lane` is
   // called if a run that is judged light is not (engine_call.h). Null: the run is heavy.
-  using LeaveLightLane = std::function<void(MemoryGate::Share&, const ExecutionContext&)>;
+  using LeaveLightLane = std::function<void(MemoryGate::Share&, const Run&)>;
   Attempt(const RunEnvironment& environment, Claim claim, MemoryGate::Share share,
           LeaveLightLane leave_light_lane);
 
@@ -64,7 +64,7 @@ class Attempt final : private ChunkSink {
   void renew(std::chrono::milliseconds lease);
 
  private:
-  using Clock = ExecutionContext::Clock;
+  using Clock = Run::Clock;
 
   tl::expected<void, Failure> make_mesh();
   bool accept(Chunk&& chunk) override;
@@ -87,7 +87,7 @@ class Attempt final : private ChunkSink {
   const Clock::time_point began_ = Clock::now();
   const double max_seconds_;  // of work
   const std::uint32_t threads_;
-  ExecutionContext context_;
+  Run run_;
   std::atomic<std::uint64_t> chunks_stored_{0};
 
   // Used only by the running thread.

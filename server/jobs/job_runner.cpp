@@ -62,7 +62,7 @@ class JobRunner::Placed {
   Placed& operator=(const Placed&) = delete;
 
   // Waits for a place in the main lane, or until the run is to end.
-  void leave_light_lane(const ExecutionContext& run) {
+  void leave_light_lane(const Run& run) {
     std::unique_lock lock(runner_.mutex_);
     if (lane_ != Lane::kLight) return;
     const auto self = runner_.moving_.insert(runner_.moving_.end(), this);
@@ -243,7 +243,7 @@ bool JobRunner::work_once(Lane lane) {
   try {
     Attempt::LeaveLightLane leave;
     if (light)
-      leave = [&placed](MemoryGate::Share& share, const ExecutionContext& run) {
+      leave = [&placed](MemoryGate::Share& share, const Run& run) {
         share.turn_heavy();
         share.set_parked(true);  // those in the slots may wait for the memory of this one
         placed.leave_light_lane(run);

@@ -18,11 +18,11 @@ std::string lost_workers(const RetryPolicy& policy) {
 }  // namespace
 
 JobSystem::JobSystem(std::unique_ptr<JobStore> store, JobOptions options, Admission& admission,
-                     Metrics& metrics, const EngineFn& engine, Arena& arena, MemoryGate& gate,
+                     Metrics& metrics, const EngineFn& engine, ThreadPool& pool, MemoryGate& gate,
                      RunPlaces& places, const Logger& log)
     : store_(std::move(store)) {
   options.retry.error = lost_workers(options.retry);
-  const RunEnvironment environment{engine,        arena,   *store_, options.service.limits,
+  const RunEnvironment environment{engine,        pool,    *store_, options.service.limits,
                                    options.retry, metrics, log};
   store_->on_change([this] { tell_of_change(); });
   if (options.serves) service_.emplace(options.service, admission, metrics, gate, *store_, log);

@@ -10,13 +10,13 @@
 #include <mutex>
 #include <optional>
 
-#include "engine/base/arena.h"
 #include "server/admission/memory_gate.h"
 #include "server/jobs/job_runner.h"
 #include "server/jobs/job_service.h"
 #include "server/mesh/engine_call.h"
 #include "server/observe/log.h"
 #include "server/store/job_store.h"
+#include "weft/run.h"
 
 namespace weft::server {
 
@@ -31,7 +31,7 @@ struct JobOptions {
 class JobSystem {
  public:
   JobSystem(std::unique_ptr<JobStore> store, JobOptions options, Admission& admission,
-            Metrics& metrics, const EngineFn& engine, Arena& arena, MemoryGate& gate,
+            Metrics& metrics, const EngineFn& engine, ThreadPool& pool, MemoryGate& gate,
             RunPlaces& places, const Logger& log);
   ~JobSystem();
 

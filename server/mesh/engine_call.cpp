@@ -16,7 +16,7 @@
 namespace weft::server {
 namespace {
 
-using Clock = ExecutionContext::Clock;
+using Clock = Run::Clock;
 
 // What a run sends that begins again reaches the sink once.
 class SinkOfBoth final : public ChunkSink {
@@ -36,42 +36,42 @@ class SinkOfBoth final : public ChunkSink {
 
 // On this thread. Returns nullopt if the run is not light.
 std::optional<Result<Summary>> try_as_light(const EngineFn& engine, const MeshRequest& request,
-                                            ChunkSink& sink, const EngineRun& run) {
-  const Clock::time_point end = std::min(run.deadline, Clock::now() + kLightTime);
-  run.context.set_deadline(end);
-  run.memory.limit_to(kLightBytes);
-  run.context.set_memory(run.memory, run.memory.granted());
-  Result<Summary> summary = engine(request, sink, run.context);
+                                            ChunkSink& sink, const EngineRun& call) {
+  const Clock::time_point end = std::min(call.deadline, Clock::now() + kLightTime);
+  call.run.set_deadline(end);
+  call.memory.limit_to(kLightBytes);
+  call.run.set_memory(call.memory, call.memory.granted());
+  Result<Summary> summary = engine(request, sink, call.run);
   const bool took_long =
-      !summary && summary.error().code == ErrorCode::kDeadlineExceeded && end < run.deadline;
-  if (took_long || run.memory.limit_was_reached()) return std::nullopt;
+      !summary && summary.error().code == ErrorCode::kDeadlineExceeded && end < call.deadline;
+  if (took_long || call.memory.limit_was_reached()) return std::nullopt;
   return summary;
 }
 
 Result<Summary> run_engine(const EngineFn& engine, const MeshRequest& request, ChunkSink& sink,
-                           const EngineRun& run) {
+                           const EngineRun& call) {
   SinkOfBoth sink_of_both(sink);
-  if (run.leave_light_lane) {
-    if (auto summary = try_as_light(engine, request, sink_of_both, run)) return *summary;
-    run.context.begin_again();
-    run.memory.begin_again();
+  if (call.leave_light_lane) {
+    if (auto summary = try_as_light(engine, request, sink_of_both, call)) return *summary;
+    call.run.begin_again();
+    call.memory.begin_again();
   }
-  run.context.set_deadline(run.deadline);
-  if (run.leave_light_lane) run.leave_light_lane();
-  run.context.set_arena(run.arena, static_cast<int>(run.threads));
-  run.context.set_memory(run.memory, run.memory.granted());
-  return engine(request, sink_of_both, run.context);
+  call.run.set_deadline(call.deadline);
+  if (call.leave_light_lane) call.leave_light_lane();
+  call.run.set_threads(call.pool, static_cast<int>(call.threads));
+  call.run.set_memory(call.memory, call.memory.granted());
+  return engine(request, sink_of_both, call.run);
 }
 
 }  // namespace
 
 tl::expected<Summary, Failure> call_engine(const EngineFn& engine,
                                            std::unique_ptr<v1::GenerateMeshRequest> request,
-                                           ChunkSink& sink, const EngineRun& run) noexcept {
+                                           ChunkSink& sink, const EngineRun& call) noexcept {
   try {
     const MeshRequest converted = to_engine(*request);
     request.reset();
-    const Result<Summary> summary = run_engine(engine, converted, sink, run);
+    const Result<Summary> summary = run_engine(engine, converted, sink, call);
     if (!summary) return tl::unexpected(failure_of(summary.error()));
     return *summary;
   } catch (const std::bad_alloc&) {
@@ -84,7 +84,7 @@ tl::expected<Summary, Failure> call_engine(const EngineFn& engine,
   }
 }
 
-ExecutionContext::Clock::time_point seconds_from_now(double seconds) {
+Run::Clock::time_point seconds_from_now(double seconds) {
   constexpr double kDecades = 1e9;
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(
                             std::chrono::duration<double>(std::min(seconds, kDecades)));

@@ -2,11 +2,11 @@
 // The engine as the server calls it: where it computes, for how long, with which memory; and no
 // exception comes out.
 //
-// A run that is judged light would wait in the arena for the turns of heavy ones, longer than it
+// A run that is judged light would wait in the pool for the turns of heavy ones, longer than it
 // takes itself. So it computes on the caller's thread, for kLightTime and with kLightBytes at most.
-// If that is not enough, it leaves its place and begins again, in the arena. The same request gives
+// If that is not enough, it leaves its place and begins again, in the pool. The same request gives
 // the same chunks, so the sink gets only those that it does not have yet. Thus beside the threads
-// of the arena only light runs compute, each for a moment.
+// of the pool only light runs compute, each for a moment.
 #pragma once
 
 #include <cstdint>
@@ -14,23 +14,23 @@
 #include <memory>
 #include <tl/expected.hpp>
 
-#include "engine/base/arena.h"
-#include "engine/engine.h"
 #include "server/admission/run_memory.h"
 #include "server/wire/errors.h"
+#include "weft/run.h"
 #include "weft/v1/mesh_service.pb.h"
+#include "weft/weft.h"
 
 namespace weft::server {
 
-// `generate_mesh`, or what a test puts in its place. Called on worker threads, several at once.
-using EngineFn = std::function<Result<Summary>(const MeshRequest&, ChunkSink&, ExecutionContext&)>;
+// weft::stream, or what a test puts in its place. Called on worker threads, several at once.
+using EngineFn = std::function<Result<Summary>(const MeshRequest&, ChunkSink&, Run&)>;
 
 struct EngineRun {
-  ExecutionContext& context;
+  Run& run;
   RunMemory& memory;
-  ExecutionContext::Clock::time_point deadline;
-  Arena& arena;
-  std::uint32_t threads;  // of the arena
+  Run::Clock::time_point deadline;
+  ThreadPool& pool;
+  std::uint32_t threads;  // of the pool
   // Null: the run is heavy. Otherwise it is judged light, and this is called if it is not, before
   // it begins again; may wait.
   std::function<void()> leave_light_lane{};
@@ -41,9 +41,9 @@ struct EngineRun {
 // REQUIRES: check_shape and check_limits returned nullopt for the request.
 tl::expected<Summary, Failure> call_engine(const EngineFn& engine,
                                            std::unique_ptr<v1::GenerateMeshRequest> request,
-                                           ChunkSink& sink, const EngineRun& run) noexcept;
+                                           ChunkSink& sink, const EngineRun& call) noexcept;
 
 // The point in time that many seconds from now; far ones are brought near enough for the clock.
-ExecutionContext::Clock::time_point seconds_from_now(double seconds);
+Run::Clock::time_point seconds_from_now(double seconds);
 
 }  // namespace weft::server

@@ -25,7 +25,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/output/summary.h"
+#include "weft/mesh.h"
 
 namespace weft::server {
 

@@ -39,7 +39,7 @@ MeshCall::MeshCall(const CallEnvironment& environment, AdmittedCall& call, std::
                    std::unique_ptr<v1::GenerateMeshRequest> request, Origin origin)
     : MessageStream(
           call.call,
-          accepted_message(id, to_threads(request->threads(), environment.arena.threads())),
+          accepted_message(id, to_threads(request->threads(), environment.pool.threads())),
           origin.at_hand ? kNoBounds
                          : ChunkQueue::Bounds::of_bytes(environment.limits.stream_buffer)),
       environment_(environment),
@@ -48,12 +48,12 @@ MeshCall::MeshCall(const CallEnvironment& environment, AdmittedCall& call, std::
       client_(call.caller.client()),
       call_deadline_(call.call->context()->deadline()),
       max_seconds_(to_seconds(request->budget(), environment.limits)),
-      threads_(to_threads(request->threads(), environment.arena.threads())),
+      threads_(to_threads(request->threads(), environment.pool.threads())),
       first_chunk_(request->first_chunk()),
       wants_quadtree_(request->want_quadtree()),
       origin_(std::move(origin)),
       pass_(std::exchange(call.pass, std::nullopt)),
-      context_(to_budget(request->budget(), environment.limits)),
+      run_(to_budget(request->budget(), environment.limits)),
       request_share_(std::move(call.share)),
       request_(std::move(request)) {}
 
@@ -86,7 +86,6 @@ void MeshCall::send_what_is_at_hand() {
   const FinishedMesh& mesh = *origin_.at_hand;
   request_.reset();
   if (auto failure = check_first_chunk(mesh.summary)) return fail(*failure);
-  context_.add_triangles(static_cast<std::int64_t>(mesh.summary.triangles));
   for (std::size_t i = first_chunk_; i < mesh.chunks.size(); ++i) {
     if (!send(mesh.chunks[i])) return;
     sent(mesh.chunks[i].Length());
@@ -96,7 +95,7 @@ void MeshCall::send_what_is_at_hand() {
 
 void MeshCall::stop(StopCause cause) {
   fail(failure_of_cause(cause));  // before the engine notices it and reports a cancellation
-  context_.cancel();
+  run_.cancel();
   environment_.queue.remove(*this);
   if (cause == StopCause::kReaderStalled) kill();
 }
@@ -120,7 +119,7 @@ void MeshCall::tick(Clock::time_point now) {
 // Without memory for an error, the client sees that the call was cancelled.
 void MeshCall::run(WorkQueue::Place& place) noexcept try {
   log_queued();
-  if (context_.poll()) return;  // stopped in the meantime, which ended the call
+  if (run_.poll()) return;  // stopped in the meantime, which ended the call
   const tl::expected<Summary, Failure> outcome = work(place);
   if (outcome) {
     succeed(*outcome);
@@ -161,14 +160,14 @@ tl::expected<Summary, Failure> MeshCall::work(WorkQueue::Place& place) {
   const Clock::time_point deadline =
       seconds_from_now(std::min(max_seconds_, until_call_deadline.count()));
   RunMemory memory(place.memory(), bytes_besides(environment_.limits));
-  EngineRun run{.context = context_,
+  EngineRun run{.run = run_,
                 .memory = memory,
                 .deadline = deadline,
-                .arena = environment_.arena,
+                .pool = environment_.pool,
                 .threads = threads_};
   if (environment_.queue.has_light_lane() && estimate_ <= most_light(environment_.limits))
     run.leave_light_lane = [&] {
-      place.leave_light_lane([this] { return context_.poll().has_value(); });
+      place.leave_light_lane([this] { return run_.poll().has_value(); });
     };
   {
     std::lock_guard lock(mutex_);
@@ -260,7 +259,7 @@ grpc::ByteBuffer MeshCall::progress_message(Clock::time_point now) {
     std::lock_guard lock(mutex_);
     if (work_deadline_) told_.set_stage(std::max(told_.stage(), v1::STAGE_TRIANGULATE));
   }
-  tell_progress(context_.progress(), Seconds(now - admitted_).count(), told_);
+  tell_progress(run_.progress(), Seconds(now - admitted_).count(), told_);
   v1::GenerateMeshResponse message;
   *message.mutable_progress() = told_;
   return serialize(message);
@@ -268,13 +267,15 @@ grpc::ByteBuffer MeshCall::progress_message(Clock::time_point now) {
 
 void MeshCall::tell_end(grpc::StatusCode code, std::string_view reason) const {
   const double seconds = Seconds(Clock::now() - admitted_).count();
+  const std::uint64_t triangles =
+      origin_.at_hand ? origin_.at_hand->summary.triangles : run_.progress().triangles;
   environment_.metrics.call_ended("GenerateMesh", code, seconds);
   if (code != grpc::StatusCode::OK && !environment_.may_log_failure()) return;
   environment_.log->info(
       "event=call_ended call={} {} method=GenerateMesh status={} reason={} cached={} "
       "triangles={} chunks={} bytes={} seconds={:.3f}",
-      id_, caller_, code_name(code), reason, origin_.at_hand ? "yes" : "no",
-      context_.progress().triangles, chunks_.load(), bytes_.load(), seconds);
+      id_, caller_, code_name(code), reason, origin_.at_hand ? "yes" : "no", triangles,
+      chunks_.load(), bytes_.load(), seconds);
 }
 
 }  // namespace weft::server

@@ -19,7 +19,6 @@
 #include <string>
 #include <string_view>
 
-#include "engine/base/arena.h"
 #include "server/admission/admission.h"
 #include "server/admission/run_memory.h"
 #include "server/admission/work_queue.h"
@@ -31,6 +30,7 @@
 #include "server/observe/metrics.h"
 #include "server/wire/errors.h"
 #include "server/wire/limits.h"
+#include "weft/run.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::server {
@@ -45,7 +45,7 @@ enum class StopCause {
 // What all calls share; outlives them.
 struct CallEnvironment {
   EngineFn engine;
-  Arena& arena;  // where they compute
+  ThreadPool& pool;  // where they compute
   Limits limits;
   ReaderPatience patience;
   Logger log;
@@ -119,7 +119,7 @@ class MeshCall final : public MessageStream,
   WorkQueue::Place* place_ = nullptr;  // the worker's own
   const Clock::time_point admitted_ = Clock::now();
   const std::optional<DrainGate::Pass> pass_;
-  ExecutionContext context_;
+  Run run_;
   std::atomic<std::uint64_t> chunks_{0};  // handed to the stream
   std::atomic<std::uint64_t> bytes_{0};
 

@@ -21,7 +21,7 @@ constexpr std::size_t kMostKeyedBytes = std::size_t{1} << 20;
 }  // namespace
 
 MeshService::MeshService(const ServiceOptions& options, Admission& admission, Metrics& metrics,
-                         EngineFn engine, Arena& arena, MemoryGate& gate, RunPlaces& places,
+                         EngineFn engine, ThreadPool& pool, MemoryGate& gate, RunPlaces& places,
                          Logger log)
     : RawService("/weft.v1.MeshService/", admission),
       options_(options),
@@ -29,7 +29,7 @@ MeshService::MeshService(const ServiceOptions& options, Admission& admission, Me
       log_(std::move(log)),
       cache_(options.cache_bytes),
       environment_{std::move(engine),
-                   arena,
+                   pool,
                    options.limits,
                    options.patience,
                    log_,

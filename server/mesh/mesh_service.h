@@ -17,7 +17,6 @@
 #include <string>
 #include <thread>
 
-#include "engine/base/arena.h"
 #include "server/admission/admission.h"
 #include "server/admission/memory_gate.h"
 #include "server/admission/work_queue.h"
@@ -26,12 +25,13 @@
 #include "server/net/open_streams.h"
 #include "server/observe/log.h"
 #include "server/wire/limits.h"
+#include "weft/run.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::server {
 
 struct ServiceOptions {
-  // Threads that compute, in one arena for all runs. REQUIRES: >= 1.
+  // Threads that compute, in one pool for all runs. REQUIRES: >= 1.
   std::uint32_t threads = 1;
   // Runs at the same time, and calls that wait for their turn. REQUIRES: jobs >= 1.
   std::uint32_t jobs = 1;
@@ -57,9 +57,9 @@ struct ServiceOptions {
 
 class MeshService final : public RawService {
  public:
-  // The admission, the metrics, the arena and the gate outlive the service.
+  // The admission, the metrics, the pool and the gate outlive the service.
   MeshService(const ServiceOptions& options, Admission& admission, Metrics& metrics,
-              EngineFn engine, Arena& arena, MemoryGate& gate, RunPlaces& places, Logger log);
+              EngineFn engine, ThreadPool& pool, MemoryGate& gate, RunPlaces& places, Logger log);
   // REQUIRES: no call is open.
   ~MeshService() override;
 

@@ -11,7 +11,9 @@
 //   void OnWriteDone(bool) override { take_from_grpc(this); ... }
 #pragma once
 
-#include "engine/base/tsan_hints.h"
+#ifdef WEFT_THREAD_SANITIZER
+#include <sanitizer/tsan_interface.h>
+#endif
 
 namespace weft::server {
 

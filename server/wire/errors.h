@@ -16,7 +16,7 @@
 #include <string_view>
 #include <utility>
 
-#include "engine/base/error.h"
+#include "weft/error.h"
 
 namespace weft::server {
 

@@ -63,7 +63,7 @@ std::optional<Failure> check(const Amounts& amounts, const Limits& limits) {
   const auto of_fields = [](std::string_view unit, std::uint64_t value, std::uint64_t limit) {
     return over("size.fields", unit, value, limit);
   };
-  if (auto f = of_fields("fields", amounts.fields, Expression::kMaxFields)) return f;
+  if (auto f = of_fields("fields", amounts.fields, kMaxSizeFields)) return f;
   if (auto f = of_fields("points", amounts.field_points, limits.max_points)) return f;
   if (auto f = of_fields("segments", amounts.field_segments, limits.max_segments)) return f;
   if (auto f = of_fields("markers", amounts.field_markers, limits.max_segments)) return f;

@@ -8,10 +8,10 @@
 #include <optional>
 #include <string_view>
 
-#include "engine/engine.h"
 #include "server/wire/errors.h"
 #include "server/wire/wire_scan.h"
 #include "weft/v1/mesh_service.pb.h"
+#include "weft/weft.h"
 
 namespace weft::server {
 
@@ -22,7 +22,7 @@ struct Limits {
   std::uint64_t max_points = 5'000'000;
   std::uint64_t max_segments = 5'000'000;
   std::uint64_t max_seeds = 100'000;  // holes, regions and areas together
-  std::uint64_t max_expression_bytes = Expression::kMaxLength;
+  std::uint64_t max_expression_bytes = kMaxExpressionBytes;
   std::uint64_t max_raster_values = std::uint64_t{1} << 24;
   std::uint64_t max_triangles = kMostTriangles;
   std::uint64_t max_bytes = std::uint64_t{4} << 30;      // of engine memory per run

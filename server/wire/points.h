@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "engine/base/geometry.h"
+#include "weft/geometry.h"
 
 namespace weft::server {
 

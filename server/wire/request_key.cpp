@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "engine/engine.h"
+#include "weft/weft.h"
 
 namespace weft::server {
 namespace {

@@ -83,18 +83,6 @@ std::optional<Failure> check_field(const v1::NamedField& field, const std::strin
                     path + " has no kind; it must be a distance, a raster, a mesh or a width");
 }
 
-// The size whose triangles have the mean number of those at up to kSamples nodes.
-double mean_size(const v1::Raster& raster, Measure measure) {
-  constexpr int kSamples = 1024;
-  const int step = 1 + raster.values_size() / kSamples;
-  const double power = measure == Measure::kEdge ? -2 : -1;
-  double sum = 0;
-  int count = 0;
-  for (int i = 0; i < raster.values_size(); i += step, ++count)
-    sum += raster.values(i) > 0 ? std::pow(raster.values(i), power) : 0;
-  return std::pow(sum / count, 1 / power);
-}
-
 // Rows of N.
 template <std::size_t N>
 std::vector<std::array<std::uint32_t, N>> to_rows(
@@ -190,28 +178,6 @@ SizeSpec to_engine(const v1::SizeField& size) {
   for (int i = 0; i < size.fields_size(); ++i)
     spec.fields[static_cast<std::size_t>(i)] = to_engine(size.fields(i));
   return spec;
-}
-
-Size size_to_estimate_by(const v1::SizeField& size) {
-  const Measure measure = size.measure() == v1::MEASURE_EDGE ? Measure::kEdge : Measure::kArea;
-  const SizeSpec::Value value =
-      size.has_raster() ? mean_size(size.raster(), measure) : value_of(size);
-  auto made = make_size(value, measure);
-  if (!made) made = make_size(SizeSpec::Value(), Measure::kArea);
-  return std::move(*made);
-}
-
-double bytes_to_expect(const v1::SizeField& size) {
-  // Rough bytes per line, value and triangle of a field; a run asks for what it really takes.
-  constexpr double kPerLine = 200;
-  constexpr double kPerValue = 8;
-  constexpr double kPerTriangle = 100;
-  double bytes = static_cast<double>(RasterSize::kBytesPerValue) * size.raster().values_size();
-  for (const v1::NamedField& field : size.fields())
-    bytes += kPerLine * (field.distance().points_size() / 2) +
-             kPerValue * field.raster().values_size() +
-             kPerTriangle * (field.mesh().triangles_size() / 3);
-  return bytes;
 }
 
 }  // namespace weft::server

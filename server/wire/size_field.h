@@ -5,9 +5,9 @@
 
 #include <optional>
 
-#include "engine/engine.h"
 #include "server/wire/errors.h"
 #include "weft/v1/mesh_service.pb.h"
+#include "weft/weft.h"
 
 namespace weft::server {
 
@@ -21,13 +21,5 @@ std::optional<Failure> check_values(const v1::SizeField& size);
 
 // REQUIRES: check_shape(size) returned nullopt.
 SizeSpec to_engine(const v1::SizeField& size);
-
-// A size that asks for about as many triangles, without a copy of an array; no bound if `size` is
-// none, or names fields: what these ask for is known once they are made. REQUIRES:
-// check_shape(size) returned nullopt.
-Size size_to_estimate_by(const v1::SizeField& size);
-
-// Bytes of memory that the engine takes for arrays of `size`.
-double bytes_to_expect(const v1::SizeField& size);
 
 }  // namespace weft::server

@@ -48,7 +48,7 @@ std::optional<Failure> check_bounds(const std::string& field, const Bounded& bou
     return bad_option(field + ".max_area",
                       fmt::format("{}.max_area is {}; it must be positive and finite", field,
                                   bounded.max_area()));
-  const double area = SizeFunction::area_of_edge(bounded.max_edge());
+  const double area = area_of_edge(bounded.max_edge());
   if (bounded.has_max_edge() && !(std::isfinite(area) && area > 0))
     return bad_option(field + ".max_edge",
                       fmt::format("{}.max_edge is {}; it must be positive and finite, and so must "
@@ -62,7 +62,7 @@ std::optional<double> bound_of(const Bounded& bounded) {
   std::optional<double> area;
   if (bounded.has_max_area()) area = bounded.max_area();
   if (!bounded.has_max_edge()) return area;
-  const double by_edge = SizeFunction::area_of_edge(bounded.max_edge());
+  const double by_edge = area_of_edge(bounded.max_edge());
   return area ? std::min(*area, by_edge) : by_edge;
 }
 

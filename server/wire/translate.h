@@ -10,10 +10,10 @@
 
 #include <optional>
 
-#include "engine/engine.h"
 #include "server/wire/errors.h"
 #include "server/wire/limits.h"
 #include "weft/v1/mesh_service.pb.h"
+#include "weft/weft.h"
 
 namespace weft::server {
 

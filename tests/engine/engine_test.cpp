@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The engine's promises other than the mesh's quality: errors, budgets, stopping, determinism.
-#include "engine/engine.h"
+#include "weft/weft.h"
 
 #include <gtest/gtest.h>
 
@@ -20,8 +20,8 @@ namespace {
 
 Result<Summary> mesh_of(const MeshRequest& request, const Budget& budget = {}) {
   CollectedMesh mesh;
-  ExecutionContext context(budget);
-  auto summary = generate_mesh(request, mesh, context);
+  weft::Run run(budget);
+  auto summary = stream(request, mesh, run);
   if (summary) {
     EXPECT_EQ(verdict(request, mesh, *summary), "");
   }
@@ -30,8 +30,8 @@ Result<Summary> mesh_of(const MeshRequest& request, const Budget& budget = {}) {
 
 Error error_of(const MeshRequest& request, const Budget& budget = {}) {
   CollectedMesh mesh;
-  ExecutionContext context(budget);
-  const auto summary = generate_mesh(request, mesh, context);
+  weft::Run run(budget);
+  const auto summary = stream(request, mesh, run);
   EXPECT_FALSE(summary);
   // What refinement meets may show only after chunks have left.
   if (!summary && summary.error().code != ErrorCode::kBudgetExceeded) {
@@ -138,8 +138,8 @@ MeshRequest with_sizes_at(std::vector<SizeAt> at) {
 TEST(SizeAt, LimitsEdgesOnSegmentsWithItsMarkerAlone) {
   const MeshRequest request = with_sizes_at({{2, 0.1}});
   CollectedMesh mesh;
-  ExecutionContext context;
-  const auto summary = generate_mesh(request, mesh, context);
+  weft::Run run;
+  const auto summary = stream(request, mesh, run);
   ASSERT_TRUE(summary) << summary.error().message;
   EXPECT_EQ(verdict(request, mesh, *summary), "");
   double sum = 0;
@@ -175,8 +175,8 @@ TEST(SizeAt, DividesASegmentIntoEqualParts) {
   for (const auto& [max_edge, count] : {std::pair{0.7, 15}, {0.5, 20}, {10.0 / 3, 3}, {10.0, 1}}) {
     request.size.at = {{1, max_edge}};
     CollectedMesh mesh;
-    ExecutionContext context;
-    ASSERT_TRUE(generate_mesh(request, mesh, context));
+    weft::Run run;
+    ASSERT_TRUE(stream(request, mesh, run));
     EXPECT_EQ(std::count_if(mesh.mesh.edges.begin(), mesh.mesh.edges.end(),
                             [](const check::Mesh::Edge& edge) { return edge.marker == 1; }),
               count);
@@ -414,8 +414,8 @@ TEST(Budget, OfBytesIsNamedWhenItRunsOut) {
 TEST(Budget, OfTheShortestEdgeIsKeptAndCounted) {
   MeshRequest request{.pslg = square(), .size = 1e-4, .min_edge = 0.1};
   CollectedMesh mesh;
-  ExecutionContext context;
-  const auto summary = generate_mesh(request, mesh, context);
+  weft::Run run;
+  const auto summary = stream(request, mesh, run);
   ASSERT_TRUE(summary);
   EXPECT_EQ(verdict(request, mesh, *summary), "");
   EXPECT_GT(summary->unrefined.edge_floor, 0u);
@@ -430,10 +430,10 @@ TEST(Budget, OfTheShortestEdgeIsKeptAndCounted) {
 
 TEST(Stopping, ByTheDeadlineEndsTheJobWithinFiftyMilliseconds) {
   CollectedMesh mesh;
-  ExecutionContext context;
+  weft::Run run;
   const double start = processor_seconds();
-  context.set_deadline(ExecutionContext::Clock::now() + std::chrono::milliseconds(30));
-  const auto summary = generate_mesh({.pslg = square(), .size = 1e-8}, mesh, context);
+  run.set_deadline(weft::Run::Clock::now() + std::chrono::milliseconds(30));
+  const auto summary = stream({.pslg = square(), .size = 1e-8}, mesh, run);
   const double seconds = processor_seconds() - start;
   ASSERT_FALSE(summary);
   EXPECT_EQ(summary.error().code, ErrorCode::kDeadlineExceeded);
@@ -442,10 +442,10 @@ TEST(Stopping, ByTheDeadlineEndsTheJobWithinFiftyMilliseconds) {
 
 TEST(Stopping, ByCancellationWinsOverTheDeadline) {
   CollectedMesh mesh;
-  ExecutionContext context;
-  context.set_deadline(ExecutionContext::Clock::now());
-  context.cancel();
-  const auto summary = generate_mesh({.pslg = square()}, mesh, context);
+  weft::Run run;
+  run.set_deadline(weft::Run::Clock::now());
+  run.cancel();
+  const auto summary = stream({.pslg = square()}, mesh, run);
   ASSERT_FALSE(summary);
   EXPECT_EQ(summary.error().code, ErrorCode::kCancelled);
 }
@@ -453,12 +453,12 @@ TEST(Stopping, ByCancellationWinsOverTheDeadline) {
 TEST(Stopping, FromAnotherThreadReachesEachStage) {
   for (const Stage stage : {Stage::kTriangulate, Stage::kRefine}) {
     CollectedMesh mesh;
-    ExecutionContext context;
+    weft::Run run;
     std::thread canceller([&] {
-      while (context.progress().stage < stage) std::this_thread::yield();
-      context.cancel();
+      while (run.progress().stage < stage) std::this_thread::yield();
+      run.cancel();
     });
-    const auto summary = generate_mesh({.pslg = square(), .size = 1e-8}, mesh, context);
+    const auto summary = stream({.pslg = square(), .size = 1e-8}, mesh, run);
     canceller.join();
     ASSERT_FALSE(summary);
     EXPECT_EQ(summary.error().code, ErrorCode::kCancelled);
@@ -469,8 +469,8 @@ TEST(Stopping, ByTheSinkEndsTheJob) {
   struct Refuses : ChunkSink {
     bool accept(Chunk&&) override { return false; }
   } sink;
-  ExecutionContext context;
-  const auto summary = generate_mesh({.pslg = square()}, sink, context);
+  weft::Run run;
+  const auto summary = stream({.pslg = square()}, sink, run);
   ASSERT_FALSE(summary);
   EXPECT_EQ(summary.error().code, ErrorCode::kCancelled);
 }

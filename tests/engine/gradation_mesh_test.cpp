@@ -18,8 +18,10 @@
 #include <vector>
 
 #include "engine/base/arena.h"
+#include "engine/engine.h"
 #include "engine/size/box_overlap.h"
 #include "engine/size/gradation/within_size.h"
+#include "engine/size/size_spec.h"
 #include "tests/engine/domain/shapes.h"
 #include "tests/engine/refine/sound.h"
 #include "tests/engine/size/fields/field_laws.h"
@@ -283,7 +285,7 @@ TEST(GradationMesh, GrowsFromSegmentsWithASizeOfTheirOwn) {
 TEST(GradationMesh, GrowsFromRegionsWithABoundOfTheirOwn) {
   Pslg pslg = u_with_parts();
   add_segment(pslg, {0, 7}, {3, 7});
-  pslg.regions.push_back({{1, 7.5}, 5, SizeFunction::area_of_edge(0.1)});
+  pslg.regions.push_back({{1, 7.5}, 5, area_of_edge(0.1)});
   const Within within(graded("20", 0.2), pslg);
   expect_near(within, [&](Point p) {
     if (p.y > 7 && p.x < 3) return within(p);  // where the region itself bounds areas

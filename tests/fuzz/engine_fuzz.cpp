@@ -19,6 +19,7 @@
 #include <string>
 #include <variant>
 
+#include "engine/engine.h"
 #include "tests/fuzz/features.h"
 #include "tests/fuzz/law.h"
 #include "tests/fuzz/mesh_case.h"

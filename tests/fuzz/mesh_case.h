@@ -12,8 +12,8 @@
 
 #include <string>
 
-#include "engine/engine.h"
 #include "tests/fuzz/byte_source.h"
+#include "weft/weft.h"
 
 namespace weft::fuzz {
 

@@ -160,9 +160,9 @@ void judge(const std::uint8_t* data, std::size_t size) {
   must(expected_bytes(request, kLimits) <= kLimits.max_bytes, "budget", "it weighs more");
   must(to_threads(request.threads(), 4) <= 4, "budget", "threads");
 
-  ExecutionContext context(budget);
+  weft::Run run(budget);
   CollectedMesh mesh;
-  const auto summary = generate_mesh(to_engine(request), mesh, context);
+  const auto summary = stream(to_engine(request), mesh, run);
   if (!summary) {
     must(summary.error().code != ErrorCode::kInternal, "internal", summary.error().message);
     return refuse(failure_of(summary.error()));

@@ -31,9 +31,9 @@ Result<Summary> send_until_refused(ChunkSink& sink, std::atomic<std::uint32_t>& 
   return fail(ErrorCode::kCancelled, "", "refused");
 }
 
-Result<Summary> work_until_stopped(const ExecutionContext& context) {
+Result<Summary> work_until_stopped(const weft::Run& run) {
   while (true) {
-    if (auto error = context.poll()) return tl::unexpected(*error);
+    if (auto error = run.poll()) return tl::unexpected(*error);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));  // as if it worked
   }
 }

@@ -39,7 +39,7 @@ inline EngineFn engine_of_chunks(std::uint32_t count, std::size_t bytes = 64) {
 Result<Summary> send_until_refused(ChunkSink& sink, std::atomic<std::uint32_t>& sent);
 
 // Works until the context says stop, and returns what it says.
-Result<Summary> work_until_stopped(const ExecutionContext& context);
+Result<Summary> work_until_stopped(const weft::Run& run);
 
 // A square with a hole, all arrays of the right shape.
 v1::GenerateMeshRequest valid_request();

@@ -23,9 +23,9 @@ struct StoppableEngine {
   std::optional<Error> why;
 
   EngineFn function() {
-    return [this](const MeshRequest&, ChunkSink&, ExecutionContext& context) {
+    return [this](const MeshRequest&, ChunkSink&, weft::Run& run) {
       started.set();
-      Result<Summary> result = work_until_stopped(context);
+      Result<Summary> result = work_until_stopped(run);
       why = result.error();
       stopped.set();
       return result;

@@ -2,15 +2,15 @@
 // A mesh as its chunks bring it, in the checker's terms, and the checker's verdict on it.
 //
 //   CollectedMesh mesh;
-//   Result<Summary> summary = generate_mesh(request, mesh, context);
+//   Result<Summary> summary = stream(request, mesh, run);
 //   EXPECT_EQ(verdict(request, mesh, *summary), "");
 #pragma once
 
 #include <string>
 
 #include "checker/check.h"
-#include "engine/engine.h"
-#include "engine/output/chunk.h"
+#include "weft/mesh.h"
+#include "weft/weft.h"
 
 namespace weft {
 

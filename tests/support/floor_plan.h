@@ -11,7 +11,7 @@
 
 #include <cstdint>
 
-#include "engine/domain/pslg.h"
+#include "weft/pslg.h"
 
 namespace weft {
 

@@ -33,11 +33,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/base/error.h"
 #include "engine/base/geometry.h"
 #include "engine/domain/arrangement/merging.h"
-#include "engine/domain/pslg.h"
 #include "engine/domain/stop_poller.h"
+#include "weft/error.h"
+#include "weft/pslg.h"
 
 namespace weft {
 

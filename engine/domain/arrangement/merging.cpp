@@ -23,7 +23,7 @@ std::vector<Point> merge_points(const std::vector<Point>& points, Merging& mergi
     merged[i] = points[near];
     if (points[i] == points[near]) continue;
     ++merging.points;
-    merging.add_move(distance(points[i], points[near]), points[near]);
+    add_move(merging, distance(points[i], points[near]), points[near]);
   }
   return merged;
 }

@@ -303,7 +303,7 @@ void SegmentInserter::push_through(Vertex w, const Piece& piece) {
 void SegmentInserter::merge_through(Vertex w, const Piece& piece) {
   const auto [a, b] = input_segment(piece.constraint);
   if (const double off = distance_to_segment(at(w), a, b); off > rounding_) {
-    merging_.add_move(off, at(w));
+    add_move(merging_, off, at(w));
     is_moved_.resize(pslg_.segments.size());
     if (!is_moved_[piece.constraint.segment]) ++merging_.segments;
     is_moved_[piece.constraint.segment] = true;

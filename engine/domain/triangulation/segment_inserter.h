@@ -12,9 +12,9 @@
 #include "engine/domain/arrangement/line_probe.h"
 #include "engine/domain/arrangement/merging.h"
 #include "engine/domain/arrangement/point_grid.h"
-#include "engine/domain/pslg.h"
 #include "engine/domain/stop_poller.h"
 #include "engine/domain/triangulation/triangulation.h"
+#include "weft/pslg.h"
 
 namespace weft {
 

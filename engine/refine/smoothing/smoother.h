@@ -49,7 +49,6 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/base/geometry.h"
 #include "engine/domain/triangulation/predicates.h"
 #include "engine/refine/area_bound.h"
@@ -58,10 +57,11 @@
 #include "engine/refine/refinement_context.h"
 #include "engine/refine/smoothing/star_search.h"
 #include "engine/refine/star_check.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "engine/refine/storage/slots.h"
 #include "engine/refine/storage/vertex_set.h"
 #include "engine/size/size_function.h"
+#include "weft/error.h"
 
 namespace weft {
 
@@ -135,7 +135,7 @@ class Smoother {
   }
 
   bool may_move(std::uint32_t vertex) const {
-    const Mesh::VertexBlock& block = mesh_.block_of_vertex(vertex);
+    const MeshStore::VertexBlock& block = mesh_.block_of_vertex(vertex);
     return vertex >= first_free_ && !block.on_segment && block.owner >= first_owner_;
   }
 
@@ -283,7 +283,7 @@ class Smoother {
     return star_is_delaunay(mesh_, ring_, size_ - 2, size_, p);
   }
 
-  Mesh& mesh_;
+  MeshStore& mesh_;
   const std::vector<Region>& regions_;
   ExecutionContext& context_;
   const QualityBounds quality_;

@@ -15,7 +15,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "engine/base/error.h"
+#include "weft/error.h"
 
 namespace weft {
 

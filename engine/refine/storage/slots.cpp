@@ -10,15 +10,16 @@ Slots Slots::of_domain(const Domain& domain) {
     free = {static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(firsts.size()) * block};
   };
   Slots slots(0);
-  blocks(domain.triangles.size(), Mesh::kTriangleBlock, slots.triangle_blocks_, slots.triangles_);
-  blocks(domain.vertices.size(), Mesh::kVertexBlock, slots.vertex_blocks_, slots.vertices_);
+  blocks(domain.triangles.size(), MeshStore::kTriangleBlock, slots.triangle_blocks_,
+         slots.triangles_);
+  blocks(domain.vertices.size(), MeshStore::kVertexBlock, slots.vertex_blocks_, slots.vertices_);
   return slots;
 }
 
-void Slots::take_vertices(Mesh& mesh, Free& free, bool on_segment) {
+void Slots::take_vertices(MeshStore& mesh, Free& free, bool on_segment) {
   const std::uint32_t first = mesh.take_vertex_block(owner_, on_segment);
   vertex_blocks_.push_back(first);
-  free = {first, first + Mesh::kVertexBlock};
+  free = {first, first + MeshStore::kVertexBlock};
 }
 
 std::uint32_t Slots::vertex_count() const {
@@ -33,10 +34,10 @@ std::uint32_t Slots::triangle_slots() const {
   return count;
 }
 
-std::uint32_t Slots::number_vertices(Mesh& mesh, std::uint32_t first_number) const {
+std::uint32_t Slots::number_vertices(MeshStore& mesh, std::uint32_t first_number) const {
   std::uint32_t number = first_number;
   for_vertices([&](std::uint32_t first, std::uint32_t last) {
-    mesh.vertex_blocks[first >> Mesh::kVertexShift].number = number;
+    mesh.vertex_blocks[first >> MeshStore::kVertexShift].number = number;
     number += last - first;
   });
   return number;

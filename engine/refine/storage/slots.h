@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 
 namespace weft {
 
@@ -20,21 +20,21 @@ class Slots {
  public:
   Slots() = default;
   explicit Slots(std::uint32_t owner) : owner_(owner) {}
-  // Owner 0 with the triangles and vertices of Mesh::from.
+  // Owner 0 with the triangles and vertices of MeshStore::from.
   static Slots of_domain(const Domain& domain);
 
   std::uint32_t owner() const { return owner_; }
 
-  std::uint32_t add_triangle(Mesh& mesh) {
+  std::uint32_t add_triangle(MeshStore& mesh) {
     if (triangles_.next == triangles_.end) [[unlikely]] {
       const std::uint32_t first = mesh.take_triangle_block(owner_);
       triangle_blocks_.push_back(first);
-      triangles_ = {first, first + Mesh::kTriangleBlock};
+      triangles_ = {first, first + MeshStore::kTriangleBlock};
     }
     return triangles_.next++;
   }
   // Takes slots for `count` triangles.
-  void add_triangles(Mesh& mesh, std::uint32_t count, std::uint32_t* slots) {
+  void add_triangles(MeshStore& mesh, std::uint32_t count, std::uint32_t* slots) {
     if (count == 2 && triangles_.end - triangles_.next >= 2) [[likely]] {
       slots[0] = triangles_.next++;
       slots[1] = triangles_.next++;
@@ -42,13 +42,13 @@ class Slots {
     }
     for (std::uint32_t i = 0; i < count; ++i) slots[i] = add_triangle(mesh);
   }
-  std::uint32_t add_vertex(Mesh& mesh, Point p) {
+  std::uint32_t add_vertex(MeshStore& mesh, Point p) {
     if (vertices_.next == vertices_.end) [[unlikely]]
       take_vertices(mesh, vertices_, false);
     store(mesh, vertices_.next, p);
     return vertices_.next++;
   }
-  std::uint32_t add_segment_vertex(Mesh& mesh, Point p, std::uint32_t subsegment) {
+  std::uint32_t add_segment_vertex(MeshStore& mesh, Point p, std::uint32_t subsegment) {
     if (on_segments_.next == on_segments_.end) take_vertices(mesh, on_segments_, true);
     store(mesh, on_segments_.next, p);
     mesh.subsegments[on_segments_.next] = subsegment;
@@ -59,13 +59,13 @@ class Slots {
   template <class F>
   void for_triangles(F&& f) const {
     for (const std::uint32_t first : triangle_blocks_)
-      f(first, used(first, Mesh::kTriangleBlock, triangles_));
+      f(first, used(first, MeshStore::kTriangleBlock, triangles_));
   }
   template <class F>
   void for_vertices(F&& f) const {
     for (const std::uint32_t first : vertex_blocks_) {
-      const std::uint32_t last = used(first, Mesh::kVertexBlock, vertices_);
-      f(first, std::min(last, used(first, Mesh::kVertexBlock, on_segments_)));
+      const std::uint32_t last = used(first, MeshStore::kVertexBlock, vertices_);
+      f(first, std::min(last, used(first, MeshStore::kVertexBlock, on_segments_)));
     }
   }
 
@@ -73,11 +73,11 @@ class Slots {
   // The number of slots in use; some are dead.
   std::uint32_t triangle_slots() const;
   // Numbers the vertices in their order, from `first` on; returns the number after the last.
-  std::uint32_t number_vertices(Mesh& mesh, std::uint32_t first) const;
+  std::uint32_t number_vertices(MeshStore& mesh, std::uint32_t first) const;
 
   // Gives back the triangles' blocks. REQUIRES: they have been sent, and nothing reads them any
   // more.
-  void give_back_triangles(Mesh& mesh) {
+  void give_back_triangles(MeshStore& mesh) {
     mesh.give_back_triangles(triangle_blocks_);
     triangle_blocks_ = std::vector<std::uint32_t>();  // `= {}` would keep the memory
     triangles_ = {};
@@ -85,7 +85,7 @@ class Slots {
 
   // Gives back the vertices' blocks. REQUIRES: they have been sent, and nothing reads them or their
   // numbers any more.
-  void give_back_vertices(Mesh& mesh) {
+  void give_back_vertices(MeshStore& mesh) {
     mesh.give_back_vertices(vertex_blocks_);
     vertex_blocks_ = std::vector<std::uint32_t>();
     vertices_ = {};
@@ -107,10 +107,10 @@ class Slots {
     return first + block == free.end ? free.next : first + block;
   }
   // Stores both coordinates at once, because the cavity reads them back at once.
-  static void store(Mesh& mesh, std::uint32_t vertex, Point p) {
+  static void store(MeshStore& mesh, std::uint32_t vertex, Point p) {
     _mm_storeu_pd(&mesh.vertices[vertex].x, _mm_set_pd(p.y, p.x));
   }
-  void take_vertices(Mesh& mesh, Free& free, bool on_segment);
+  void take_vertices(MeshStore& mesh, Free& free, bool on_segment);
 
   std::uint32_t owner_ = 0;
   std::vector<std::uint32_t> triangle_blocks_;  // first slot of each, in the order taken

@@ -13,8 +13,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "engine/base/error.h"
 #include "engine/refine/storage/reserved_memory.h"
+#include "weft/error.h"
 
 namespace weft {
 

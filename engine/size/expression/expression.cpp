@@ -27,10 +27,10 @@ struct Compiled {
 };
 
 Result<Compiled> compiled(std::string_view source, std::span<const std::string> names) {
-  if (source.size() > Expression::kMaxLength) {
+  if (source.size() > kMaxExpressionBytes) {
     return fail(ErrorCode::kExpressionTooComplex, kField,
                 "the size expression has " + std::to_string(source.size()) +
-                    " bytes; the limit is " + std::to_string(Expression::kMaxLength));
+                    " bytes; the limit is " + std::to_string(kMaxExpressionBytes));
   }
   Result<expr::Parsed> parsed = expr::parse(source, names, Expression::kMaxDepth);
   if (!parsed) return tl::unexpected(parsed.error());
@@ -49,7 +49,7 @@ bool is_name(std::string_view text) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
   };
   const auto rest = [&](char c) { return letter(c) || (c >= '0' && c <= '9'); };
-  return !text.empty() && text.size() <= Expression::kMaxNameLength && letter(text.front()) &&
+  return !text.empty() && text.size() <= kMaxFieldNameBytes && letter(text.front()) &&
          std::all_of(text.begin(), text.end(), rest);
 }
 
@@ -147,7 +147,7 @@ std::optional<Error> Expression::check_names(std::span<const std::string> names)
     if (!is_name(names[i])) {
       return bad(
           "a name is made of letters, digits and _, begins with no digit, and has from 1 to " +
-          std::to_string(kMaxNameLength) + " bytes");
+          std::to_string(kMaxFieldNameBytes) + " bytes");
     }
     if (expr::is_taken(names[i])) return bad("that name means something else in an expression");
     for (std::size_t j = 0; j < i; ++j) {

@@ -44,10 +44,11 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/base/error.h"
 #include "engine/base/geometry.h"
 #include "engine/size/interval.h"
 #include "engine/size/size_function.h"
+#include "weft/error.h"
+#include "weft/size.h"
 
 namespace weft {
 
@@ -59,12 +60,9 @@ struct NamedField {
 
 class Expression final : public SizeFunction {
  public:
-  static constexpr std::size_t kMaxLength = 65536;  // bytes of source
   // Nesting of parentheses, arguments, unary operators, exponents, and the operand between ? and :.
   // Sums, products and chains a ? b : c ? d : ... do not nest.
   static constexpr std::size_t kMaxDepth = 256;
-  static constexpr std::size_t kMaxNameLength = 64;
-  static constexpr std::size_t kMaxFields = 32;
   static constexpr std::size_t kMaxOperations = 4096;  // after folding; equal ones count once
   static constexpr std::size_t kMaxRegisters =
       256;  // values alive at once, x, y and fields included
@@ -86,9 +84,9 @@ class Expression final : public SizeFunction {
   // The arguments, if all of the source is min(a, b, ...); otherwise none. REQUIRES: it parses.
   static std::vector<std::string> arguments_of_min(std::string_view source);
 
-  // Judges the names of fields: letters, digits and _, a letter or _ first, at most kMaxNameLength
-  // bytes, none twice, none that means something else already. The error (kBadOption) names
-  // "size.fields[i].name".
+  // Judges the names of fields: letters, digits and _, a letter or _ first, at most
+  // kMaxFieldNameBytes, none twice, none that means something else already. The error (kBadOption)
+  // names "size.fields[i].name".
   static std::optional<Error> check_names(std::span<const std::string> names);
 
   Expression(Expression&&) noexcept;

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/base/error.h"
 #include "engine/size/expression/graph.h"
+#include "weft/error.h"
 
 namespace weft::expr {
 

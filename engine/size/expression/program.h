@@ -14,9 +14,9 @@
 #include <optional>
 #include <vector>
 
-#include "engine/base/error.h"
 #include "engine/size/expression/graph.h"
 #include "engine/size/expression/operation.h"
+#include "weft/error.h"
 
 namespace weft::expr {
 

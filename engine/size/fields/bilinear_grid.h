@@ -22,10 +22,10 @@
 #include <span>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/base/geometry.h"
 #include "engine/size/fields/block_pyramid.h"
 #include "engine/size/interval.h"
+#include "weft/error.h"
 
 namespace weft {
 

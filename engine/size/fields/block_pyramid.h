@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/size/fields/polled_loop.h"
 #include "engine/size/interval.h"
+#include "weft/error.h"
 
 namespace weft {
 

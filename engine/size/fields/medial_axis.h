@@ -32,9 +32,9 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/domain/domain.h"
 #include "engine/size/fields/distance_field.h"
+#include "weft/error.h"
 
 namespace weft {
 

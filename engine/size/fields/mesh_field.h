@@ -27,18 +27,13 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/size/field.h"
 #include "engine/size/fields/triangle_cells.h"
 #include "engine/size/fields/triangle_tree.h"
+#include "weft/error.h"
+#include "weft/size.h"
 
 namespace weft {
-
-struct FieldMesh {
-  std::vector<Point> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<double> values;  // one for each vertex, may be NaN
-};
 
 class MeshField final : public Field {
  public:

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
+#include "weft/error.h"
 
 namespace weft {
 

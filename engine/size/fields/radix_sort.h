@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
+#include "weft/error.h"
 
 namespace weft {
 

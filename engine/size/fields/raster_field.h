@@ -18,20 +18,12 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/size/field.h"
 #include "engine/size/fields/bilinear_grid.h"
+#include "weft/error.h"
+#include "weft/size.h"
 
 namespace weft {
-
-struct FieldRaster {
-  Point origin;  // of the first node
-  double dx = 0;
-  double dy = 0;
-  std::uint32_t columns = 0;
-  std::uint32_t rows = 0;
-  std::vector<float> values;  // by rows from the lowest: that of node (i, j) is [j * columns + i]
-};
 
 class RasterField final : public Field {
   using Grid = BilinearGrid<float, Outside::kUndefined>;

@@ -19,9 +19,9 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/base/geometry.h"
 #include "engine/size/fields/triangle_tree.h"
+#include "weft/error.h"
 
 namespace weft {
 

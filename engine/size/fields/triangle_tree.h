@@ -21,8 +21,8 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/base/geometry.h"
+#include "weft/error.h"
 
 namespace weft {
 

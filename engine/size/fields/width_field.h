@@ -37,11 +37,11 @@
 #include <utility>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/base/geometry.h"
 #include "engine/domain/domain.h"
 #include "engine/size/field.h"
 #include "engine/size/fields/distance_field.h"
+#include "weft/error.h"
 
 namespace weft {
 

@@ -17,7 +17,7 @@ constexpr double kSlack = 1e-12;
 
 // NaN if the size is NaN.
 double least(double size, double edge) {
-  const double area = SizeFunction::area_of_edge(edge);
+  const double area = area_of_edge(edge);
   return area < size ? area : size;
 }
 

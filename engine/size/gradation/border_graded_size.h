@@ -25,8 +25,8 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/size/size_function.h"
+#include "weft/error.h"
 
 namespace weft {
 

@@ -21,10 +21,10 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/domain/domain.h"
 #include "engine/size/gradation/limit_tree.h"
 #include "engine/size/size_function.h"
+#include "weft/error.h"
 
 namespace weft {
 

@@ -17,12 +17,12 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/base/geometry.h"
 #include "engine/domain/domain.h"
 #include "engine/size/gradation/source_tree.h"
 #include "engine/size/interval.h"
 #include "engine/size/size_function.h"
+#include "weft/error.h"
 
 namespace weft {
 

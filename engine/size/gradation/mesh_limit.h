@@ -16,9 +16,9 @@
 #include <optional>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/size/fields/mesh_field.h"
 #include "engine/size/size_function.h"
+#include "weft/error.h"
 
 namespace weft {
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/size/fields/mesh_field.h"
+#include "weft/error.h"
 
 namespace weft {
 

@@ -47,12 +47,12 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/base/geometry.h"
 #include "engine/size/lattice/conformal_map.h"
 #include "engine/size/lattice/lattice.h"
 #include "engine/size/size_function.h"
 #include "engine/size/size_map.h"
+#include "weft/error.h"
 
 namespace weft {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "engine/domain/domain.h"
-#include "engine/domain/pslg.h"
+#include "weft/pslg.h"
 
 namespace weft {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/domain/pslg.h"
+#include "weft/pslg.h"
 
 namespace weft {
 

@@ -9,9 +9,10 @@
 
 #include "engine/base/arena.h"
 #include "engine/domain/domain.h"
+#include "engine/engine.h"
 #include "engine/output/emit.h"
 #include "engine/refine/area_bound.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "engine/refine/storage/slots.h"
 #include "tests/engine/domain/shapes.h"
 #include "tests/support/collected_mesh.h"
@@ -113,7 +114,7 @@ TEST(BoundsError, EndsAStreamAfterItsChunksAndIsTheSameOnAnyNumberOfThreads) {
 Part part_with_a_bad_triangle(Badness badness, bool cut_off) {
   const ExecutionContext context;
   const Domain domain = *triangulate(square(), context);
-  Mesh mesh = *Mesh::from(domain, 1000, 2, context);
+  MeshStore mesh = *MeshStore::from(domain, 1000, 2, context);
   const AcuteCorners corners = *AcuteCorners::build(domain, QualityBounds{}, context);
   Slots::of_domain(domain).number_vertices(mesh, 0);
   mesh.triangles[1].set_badness(badness);

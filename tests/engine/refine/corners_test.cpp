@@ -14,7 +14,7 @@
 #include "engine/refine/lens.h"
 #include "engine/refine/quality_bounds.h"
 #include "engine/refine/steiner_point.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "tests/engine/domain/shapes.h"
 #include "tests/engine/refine/random_pslg.h"
 #include "tests/support/collected_mesh.h"
@@ -95,7 +95,7 @@ TEST(Lens, OfASegmentBehindAnotherIsNotAsked) {
       ExecutionContext context;
       const auto domain = triangulate(kind.generate(random), context);
       if (!domain) continue;  // a tangle that encloses nothing
-      const Mesh mesh = *Mesh::from(*domain, 1'000'000, 0, context);
+      const MeshStore mesh = *MeshStore::from(*domain, 1'000'000, 0, context);
       Cavity<OwnsAll> cavity(mesh);
       cavity.begin(OwnsAll{}, 0);
       for (std::uint32_t t = 0; t < domain->triangles.size(); ++t) {

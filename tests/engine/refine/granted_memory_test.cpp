@@ -18,7 +18,7 @@ namespace {
 // Grants what is asked for and no more; now and then late.
 class Stingy final : public MemorySource {
  public:
-  Result<std::uint64_t> grant(std::uint64_t needed, const ExecutionContext&) override {
+  Result<std::uint64_t> grant(std::uint64_t needed, const Poll&) override {
     std::uint64_t most = most_.load();
     while (most < needed && !most_.compare_exchange_weak(most, needed)) {
     }
@@ -70,11 +70,11 @@ TEST(GrantedMemory, IsNearlyAllThatTheSummaryTellsOf) {
 // Grants nothing beyond a limit until it is told to go on.
 class Waits final : public MemorySource {
  public:
-  Result<std::uint64_t> grant(std::uint64_t needed, const ExecutionContext& run) override {
+  Result<std::uint64_t> grant(std::uint64_t needed, const Poll& poll) override {
     if (needed <= kLimit) return needed;
     waits.set();
     while (!go_on) {
-      if (auto error = run.poll()) return tl::unexpected(*error);
+      if (auto error = poll()) return tl::unexpected(*error);
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     return needed;
@@ -126,7 +126,7 @@ TEST(GrantedMemory, CanBeWaitedForUntilTheRunIsCancelled) {
 }
 
 struct Refuses final : MemorySource {
-  Result<std::uint64_t> grant(std::uint64_t needed, const ExecutionContext&) override {
+  Result<std::uint64_t> grant(std::uint64_t needed, const Poll&) override {
     if (needed > Waits::kLimit) return fail(ErrorCode::kOutOfMemory, "", "no more");
     return needed;
   }
@@ -154,7 +154,7 @@ TEST(GrantedMemory, IsAskedForBeforeTheDomainIsTriangulated) {
     pslg.points.push_back(
         {0.1 + 0.8 * (random() / 4294967296.0), 0.1 + 0.8 * (random() / 4294967296.0)});
   struct First final : MemorySource {
-    Result<std::uint64_t> grant(std::uint64_t needed, const ExecutionContext&) override {
+    Result<std::uint64_t> grant(std::uint64_t needed, const Poll&) override {
       if (asked == 0) asked = needed;
       return needed;
     }

@@ -12,8 +12,9 @@
 #include <vector>
 
 #include "engine/base/failure.h"
+#include "engine/engine.h"
 #include "engine/refine/storage/block_pool.h"
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "engine/refine/storage/reserved_memory.h"
 #include "tests/engine/domain/shapes.h"
 #include "tests/support/collected_mesh.h"
@@ -201,7 +202,7 @@ TEST(ReservedMemory, ThatAnotherJobLeftChangesNoMesh) {
 // The slots of a mesh with this limit end long before the memory does.
 TEST(MeshSlots, EndWithALimitAndNotForWantOfMemory) {
   Domain domain;
-  auto mesh = Mesh::from(domain, 1, 1, ExecutionContext());
+  auto mesh = MeshStore::from(domain, 1, 1, ExecutionContext());
   ASSERT_TRUE(mesh);
   try {
     for (;;) mesh->take_triangle_block(1);

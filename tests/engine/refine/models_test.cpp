@@ -2,9 +2,9 @@
 // The models of tests/models with their grading functions, each judged by the independent checker.
 #include <gtest/gtest.h>
 
-#include "engine/engine.h"
 #include "tests/support/collected_mesh.h"
 #include "tests/support/poly.h"
+#include "weft/weft.h"
 
 namespace weft {
 namespace {
@@ -32,8 +32,8 @@ TEST_P(Models, AreMeshedWithinBounds) {
   MeshRequest request{
       .pslg = read_poly(model(c.model)), .size = c.size, .min_angle_deg = c.min_angle_deg};
   CollectedMesh mesh;
-  ExecutionContext context;
-  const auto summary = generate_mesh(request, mesh, context);
+  weft::Run run;
+  const auto summary = stream(request, mesh, run);
   ASSERT_TRUE(summary) << summary.error().message;
   EXPECT_EQ(verdict(request, mesh, *summary), "");
   EXPECT_LE(summary->triangles, c.most_triangles);

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "engine/engine.h"
 #include "tests/engine/domain/shapes.h"
 #include "tests/support/collected_mesh.h"
 #include "tests/support/floor_plan.h"
+#include "weft/weft.h"
 
 namespace weft {
 namespace {
@@ -21,8 +21,8 @@ namespace {
 // input angle to exempt one.
 Summary within_bounds(const MeshRequest& request) {
   CollectedMesh collected;
-  ExecutionContext context;
-  const auto summary = generate_mesh(request, collected, context);
+  weft::Run run;
+  const auto summary = stream(request, collected, run);
   if (!summary) {
     ADD_FAILURE() << summary.error().message;
     return {};
@@ -71,8 +71,8 @@ TEST(Merged, SegmentsAreFoundBesideOthers) {
   request.pslg.holes = {{0.38240671608883281, 0.2073900116217513}};
   request.pslg.snap = 0.01;
   CollectedMesh collected;
-  ExecutionContext context;
-  const auto summary = generate_mesh(request, collected, context);
+  weft::Run run;
+  const auto summary = stream(request, collected, run);
   ASSERT_TRUE(summary) << summary.error().message;
   EXPECT_EQ(verdict(request, collected, *summary), "");
 }
@@ -119,9 +119,8 @@ TEST(FloorPlans, TakeAFewMoreTrianglesThanUnroundedIfASizeIsAsked) {
     exact.decimals = kUnrounded;
     const auto triangles = [](const FloorPlan& drawn) {
       CollectedMesh collected;
-      ExecutionContext context;
-      const auto summary =
-          generate_mesh({.pslg = floor_plan(drawn), .size = 0.05}, collected, context);
+      weft::Run run;
+      const auto summary = stream({.pslg = floor_plan(drawn), .size = 0.05}, collected, run);
       return summary ? static_cast<double>(summary->triangles) : std::nan("");
     };
     const double mesh = triangles(plan), reference = triangles(exact);

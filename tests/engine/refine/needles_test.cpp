@@ -2,9 +2,9 @@
 // Segments that meet at such small angles that rounding could turn them over each other.
 #include <gtest/gtest.h>
 
-#include "engine/engine.h"
 #include "tests/engine/domain/shapes.h"
 #include "tests/support/collected_mesh.h"
+#include "weft/weft.h"
 
 namespace weft {
 namespace {
@@ -13,8 +13,8 @@ namespace {
 Summary sound(MeshRequest request) {
   request.allow_unrefined = true;
   CollectedMesh collected;
-  ExecutionContext context;
-  const auto summary = generate_mesh(request, collected, context);
+  weft::Run run;
+  const auto summary = stream(request, collected, run);
   if (!summary) {
     ADD_FAILURE() << summary.error().message;
     return {};

@@ -142,16 +142,18 @@ Memory memory() {
 // its canceller gets a turn.
 class HoldsAt final : public MemorySource {
  public:
-  explicit HoldsAt(std::uint64_t triangles) : triangles_(triangles) {}
-  Result<std::uint64_t> grant(std::uint64_t needed, const ExecutionContext& run) override {
-    while (run.progress().triangles >= triangles_) {
-      if (auto error = run.poll()) return tl::unexpected(*error);
+  HoldsAt(const ExecutionContext& run, std::uint64_t triangles)
+      : run_(run), triangles_(triangles) {}
+  Result<std::uint64_t> grant(std::uint64_t needed, const Poll& poll) override {
+    while (run_.progress().triangles >= triangles_) {
+      if (auto error = poll()) return tl::unexpected(*error);
       std::this_thread::yield();
     }
     return needed;
   }
 
  private:
+  const ExecutionContext& run_;
   const std::uint64_t triangles_;
 };
 
@@ -168,7 +170,7 @@ TEST(ParallelStop, AThousandCancelledJobsLeaveNothingBehind) {
     ExecutionContext context;
     context.set_arena(arena);
     const std::uint64_t moment = random() % (whole->triangles * 9 / 10);
-    HoldsAt source(moment);
+    HoldsAt source(context, moment);
     context.set_memory(source, 0);
     std::atomic<bool> over{false};
     std::thread canceller([&] {

@@ -10,7 +10,7 @@
 #include <random>
 #include <span>
 
-#include "engine/domain/pslg.h"
+#include "weft/pslg.h"
 
 namespace weft {
 

@@ -3,9 +3,9 @@
 // Every domain comes from a seed that its failure names.
 #include <gtest/gtest.h>
 
-#include "engine/engine.h"
 #include "tests/engine/refine/random_pslg.h"
 #include "tests/support/collected_mesh.h"
+#include "weft/weft.h"
 
 namespace weft {
 namespace {
@@ -37,8 +37,8 @@ TEST_P(RandomPslg, IsMeshedWithinBounds) {
     // Up to 30 degrees the bound is met everywhere, small input angles aside.
     request.allow_unrefined = request.min_angle_deg > 30;
     CollectedMesh mesh;
-    ExecutionContext context({.triangle_limit = 2'000'000});
-    const auto summary = generate_mesh(request, mesh, context);
+    weft::Run run({.triangle_limit = 2'000'000});
+    const auto summary = stream(request, mesh, run);
     if (!summary) {
       // A tangle of rings may enclose nothing; all else must be meshed.
       ASSERT_EQ(summary.error().code, ErrorCode::kEmptyDomain)

@@ -24,7 +24,7 @@ struct RefinedSquare {
   explicit RefinedSquare(double area)
       : domain(*triangulate(square(), context)),
         corners(*AcuteCorners::build(domain, kQuality, context)),
-        mesh(*Mesh::from(domain, 1'000'000, 0, context)),
+        mesh(*MeshStore::from(domain, 1'000'000, 0, context)),
         slots({Slots::of_domain(domain)}) {
     Refiner<OwnsAll, ConstantArea> refiner(refinement(), kQuality, ConstantArea(area));
     refiner.begin(slots[0], OwnsAll{}, kEverywhere);
@@ -91,7 +91,7 @@ struct RefinedSquare {
   EdgeLimits limits;
   Domain domain;
   AcuteCorners corners;
-  Mesh mesh;
+  MeshStore mesh;
   std::vector<Slots> slots;  // by owner
 };
 

@@ -29,7 +29,7 @@ struct RowGround {
       : domain(*triangulate(pslg, context)),
         quality(quality_for(min_angle_deg, min_edge)),
         corners(*AcuteCorners::build(domain, quality, context)),
-        mesh(*Mesh::from(domain, 1'000'000, 0, context)),
+        mesh(*MeshStore::from(domain, 1'000'000, 0, context)),
         earlier(Slots::of_domain(domain)),
         refiner(refinement(), quality, area) {
     constexpr double kCoarseness = 40;
@@ -135,7 +135,7 @@ struct RowGround {
   Domain domain;
   QualityBounds quality;
   AcuteCorners corners;
-  Mesh mesh;
+  MeshStore mesh;
   Slots earlier;
   Slots slots{1};
   ConstantArea area{kBound};

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "weft/weft.h"
+
 namespace weft {
 namespace {
 
@@ -193,7 +195,7 @@ TEST(SizeSpec, GrowsByTheGradationFromARegionWithABoundOfItsOwn) {
   Pslg pslg = square();  // with a region of edges of length 0.1 below y = 1
   pslg.points.insert(pslg.points.end(), {{0, 1}, {4, 1}});
   pslg.segments.push_back({6, 7});
-  pslg.regions.push_back({{2, 0.5}, 1, SizeFunction::area_of_edge(0.1)});
+  pslg.regions.push_back({{2, 0.5}, 1, area_of_edge(0.1)});
   const ExecutionContext context;
   const Domain domain = *triangulate(pslg, context);
   for (const SizeSpec::Value& value :
@@ -265,7 +267,7 @@ TEST(SizeSpec, NamesTheFieldThatIsWrong) {
             "size.fields[0].distance.segments[0].b");
   EXPECT_EQ(error({.segments = {{3, 1}}}).field, "size.fields[0].distance.segments[0].a");
   SizeSpec many = "x + 1";
-  for (std::size_t i = 0; i <= Expression::kMaxFields; ++i)
+  for (std::size_t i = 0; i <= kMaxSizeFields; ++i)
     many.fields.push_back({"f" + std::to_string(i), DistanceSpec{}});
   EXPECT_EQ(check_size(many)->field, "size.fields");
   EXPECT_EQ(check_size(with_field("g", WidthSpec{}))->field, "size.expression");
@@ -276,7 +278,7 @@ TEST(SizeSpec, NamesTheFieldThatIsWrong) {
 
 TEST(SizeSpec, OfManyFieldsAsksForTheMemoryOfAll) {
   struct Source final : MemorySource {
-    Result<std::uint64_t> grant(std::uint64_t needed, const ExecutionContext&) override {
+    Result<std::uint64_t> grant(std::uint64_t needed, const Poll&) override {
       most = std::max(most, needed);
       return needed;
     }
@@ -302,7 +304,7 @@ TEST(SizeSpec, OfManyFieldsAsksForTheMemoryOfAll) {
 
 TEST(SizeSpec, OfEveryKindKeepsToTheBudget) {
   struct Source final : MemorySource {
-    Result<std::uint64_t> grant(std::uint64_t needed, const ExecutionContext&) override {
+    Result<std::uint64_t> grant(std::uint64_t needed, const Poll&) override {
       most = std::max(most, needed);
       return needed;
     }

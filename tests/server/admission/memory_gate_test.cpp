@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "engine/base/context.h"
 #include "server/admission/run_memory.h"
 
 namespace weft::server {
@@ -248,8 +249,7 @@ TEST(RunMemory, GrantsWhatIsNotHeldBesides) {
   auto share = gate.take({.estimate = 100});
   RunMemory memory(*share, 30);
   EXPECT_EQ(memory.granted(), 70);
-  const ExecutionContext run;
-  EXPECT_EQ(*memory.grant(71, run), 70 + kStep);
+  EXPECT_EQ(*memory.grant(71, [] { return std::nullopt; }), 70 + kStep);
 }
 
 TEST(RunMemory, EndsARunAtItsLimitUntilThatBeginsAgain) {
@@ -257,17 +257,17 @@ TEST(RunMemory, EndsARunAtItsLimitUntilThatBeginsAgain) {
   auto share = gate.take({.estimate = 100});
   RunMemory memory(*share, 30);
   memory.limit_to(50);
-  ExecutionContext run;
+  weft::Run run;
   run.set_memory(memory, memory.granted());
-  EXPECT_EQ(run.need_bytes(50, "the run"), std::nullopt);
+  EXPECT_EQ(run.context().need_bytes(50, "the run"), std::nullopt);
   EXPECT_FALSE(memory.limit_was_reached());
-  EXPECT_TRUE(run.need_bytes(51, "the run"));
+  EXPECT_TRUE(run.context().need_bytes(51, "the run"));
   EXPECT_TRUE(memory.limit_was_reached());
   memory.begin_again();
   EXPECT_EQ(gate.taken(), 30) << "what is besides";
   run.begin_again();
   run.set_memory(memory, memory.granted());
-  EXPECT_EQ(run.need_bytes(5 * kStep, "the run"), std::nullopt);
+  EXPECT_EQ(run.context().need_bytes(5 * kStep, "the run"), std::nullopt);
   EXPECT_EQ(gate.taken(), 30 + 5 * kStep);
 }
 

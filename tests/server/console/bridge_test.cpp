@@ -246,9 +246,9 @@ TEST(Bridge, TakesABodyInChunksAndOneThatIsAskedFor) {
 TEST(Bridge, KeepsTheDeadlineOfACall) {
   Event begun;
   Event stopped;
-  ConsoleServer server([&](const auto&, auto&, const ExecutionContext& context) {
+  ConsoleServer server([&](const auto&, auto&, const weft::Run& run) {
     begun.set();
-    auto result = work_until_stopped(context);
+    auto result = work_until_stopped(run);
     stopped.set();
     return result;
   });
@@ -270,9 +270,9 @@ TEST(Bridge, CancelsTheCallOfABrowserThatGoesAway) {
   ServerOptions options = with_console();
   options.service.tick = std::chrono::hours(1);  // no progress, whose writing would fail
   ConsoleServer server(
-      [&](const auto&, auto&, const ExecutionContext& context) {
+      [&](const auto&, auto&, const weft::Run& run) {
         started.set();
-        auto result = work_until_stopped(context);
+        auto result = work_until_stopped(run);
         stopped.set();
         return result;
       },
@@ -360,9 +360,9 @@ TEST(Bridge, ServesTwoHundredTabsAtOnce) {
 
 TEST(Bridge, EndsOpenStreamsWithAReasonWhenTheServerStops) {
   Event started;
-  ConsoleServer server([&](const auto&, auto&, const ExecutionContext& context) {
+  ConsoleServer server([&](const auto&, auto&, const weft::Run& run) {
     started.set();
-    return work_until_stopped(context);
+    return work_until_stopped(run);
   });
   WebConnection idle(server.address());
   WebConnection browser(server.address());

@@ -120,9 +120,9 @@ TEST(WantOfMemory, WhileAJobIsWatchedEndsTheWatchAlone) {
   Event begun;
   std::atomic<bool> short_of_memory{false};
   JobServer server(
-      [&](const auto&, ChunkSink&, ExecutionContext& context) {
+      [&](const auto&, ChunkSink&, weft::Run& run) {
         begun.set();
-        return work_until_stopped(context);
+        return work_until_stopped(run);
       },
       quick_jobs(),
       [&](std::unique_ptr<JobStore> store) -> std::unique_ptr<JobStore> {

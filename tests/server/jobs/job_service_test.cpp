@@ -7,6 +7,7 @@
 #include <random>
 #include <thread>
 
+#include "engine/base/context.h"
 #include "tests/server/job_harness.h"
 #include "tests/server/jobs/counted_engines.h"
 #include "tests/server/raw_call.h"
@@ -15,9 +16,9 @@ namespace weft::server::testing {
 namespace {
 
 EngineFn endless_engine(Event& begun, Event& stopped) {
-  return [&](const auto&, ChunkSink&, ExecutionContext& context) {
+  return [&](const auto&, ChunkSink&, weft::Run& run) {
     begun.set();
-    auto result = work_until_stopped(context);
+    auto result = work_until_stopped(run);
     stopped.set();
     return result;
   };
@@ -238,9 +239,9 @@ TEST(JobServiceIds, AreRefusedByTheirFieldIfTheyCanNameNoJob) {
 TEST(JobService, TellsThoseWhoWatchHowFarTheWorkIs) {
   Event begun;
   Event release;
-  JobServer server([&](const auto&, ChunkSink& sink, ExecutionContext& context) {
-    context.enter(Stage::kRefine);
-    context.add_triangles(12'345);
+  JobServer server([&](const auto&, ChunkSink& sink, weft::Run& run) {
+    run.context().enter(Stage::kRefine);
+    run.context().add_triangles(12'345);
     begun.set();
     release.wait();
     return send_chunks(sink, 1);

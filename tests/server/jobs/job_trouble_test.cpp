@@ -3,6 +3,7 @@
 #include <atomic>
 #include <thread>
 
+#include "engine/base/context.h"
 #include "tests/server/faulty_store.h"
 #include "tests/server/job_harness.h"
 
@@ -12,9 +13,9 @@ namespace {
 using std::chrono::milliseconds;
 
 EngineFn endless_engine(Event& begun) {
-  return [&](const auto&, ChunkSink&, ExecutionContext& context) {
+  return [&](const auto&, ChunkSink&, weft::Run& run) {
     begun.set();
-    return work_until_stopped(context);
+    return work_until_stopped(run);
   };
 }
 
@@ -117,8 +118,8 @@ TEST(JobTrouble, AJobWhoseWorkersAreAllLostFails) {
   JobOptions jobs = quick_jobs();
   jobs.runner.lease = milliseconds(50);
   JobServer server(
-      [&](const auto&, ChunkSink& sink, ExecutionContext& context) {
-        context.enter(Stage::kRefine);
+      [&](const auto&, ChunkSink& sink, weft::Run& run) {
+        run.context().enter(Stage::kRefine);
         release.wait();
         return send_chunks(sink, 1);
       },
@@ -140,9 +141,9 @@ TEST(JobTrouble, AnEngineThatHangsLosesItsLease) {
   jobs.runner.lease = milliseconds(200);
   jobs.retry.max_attempts = 1000;  // a slow machine may lose leases, too
   JobServer server(
-      [&](const auto&, ChunkSink& sink, ExecutionContext& context) {
+      [&](const auto&, ChunkSink& sink, weft::Run& run) {
         if (runs++ == 0) {
-          context.enter(Stage::kRefine);
+          run.context().enter(Stage::kRefine);
           release.wait();
         }
         return send_chunks(sink, 1);
@@ -162,11 +163,11 @@ TEST(JobTrouble, JobsThatEndOrAreCancelledLoseNoLease) {
   jobs.runner.renewal = milliseconds(1);
   Event begun;
   JobServer server(
-      [&](const MeshRequest& request, ChunkSink& sink, ExecutionContext& context) {
+      [&](const MeshRequest& request, ChunkSink& sink, weft::Run& run) {
         if (std::get<double>(request.size.value) != 1) return send_chunks(sink, 1);
-        context.enter(Stage::kRefine);
+        run.context().enter(Stage::kRefine);
         begun.set();
-        return work_until_stopped(context);
+        return work_until_stopped(run);
       },
       jobs, {}, {.jobs = 4});
   JobClient client = server.client();
@@ -197,10 +198,10 @@ TEST(JobTrouble, AServerThatStopsPutsItsJobsBack) {
 
 TEST(JobTrouble, AServerThatStopsEndsWatchesAndSendsMeshesToTheirEnd) {
   Event begun;
-  JobServer server([&](const MeshRequest& request, ChunkSink& sink, ExecutionContext& context) {
+  JobServer server([&](const MeshRequest& request, ChunkSink& sink, weft::Run& run) {
     if (std::get<double>(request.size.value) == 1) return send_chunks(sink, 16, kMaxChunkBytes);
     begun.set();
-    return work_until_stopped(context);
+    return work_until_stopped(run);
   });
   JobClient client = server.client();
   const std::string done = client.submit(numbered_request(0));

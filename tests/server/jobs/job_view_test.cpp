@@ -4,6 +4,7 @@
 #include <sstream>
 #include <string>
 
+#include "engine/base/context.h"
 #include "server/memory_plan.h"
 #include "tests/server/job_harness.h"
 
@@ -168,9 +169,9 @@ TEST(JobMetrics, CountTheTrianglesThatJobsMakeAndFetchingThemNoMore) {
 
 TEST(JobMetrics, CountACancelledJobOnce) {
   Event begun;
-  JobServer server([&](const auto&, ChunkSink&, ExecutionContext& context) {
+  JobServer server([&](const auto&, ChunkSink&, weft::Run& run) {
     begun.set();
-    return work_until_stopped(context);
+    return work_until_stopped(run);
   });
   JobClient client = server.client();
   const std::string id = client.submit(valid_request());
@@ -185,8 +186,8 @@ TEST(JobMetrics, CountATaskWhoseWorkersAreAllLost) {
   JobOptions jobs = quick_jobs();
   jobs.runner.lease = std::chrono::milliseconds(50);
   JobServer server(
-      [&](const auto&, ChunkSink& sink, ExecutionContext& context) {
-        context.enter(Stage::kRefine);
+      [&](const auto&, ChunkSink& sink, weft::Run& run) {
+        run.context().enter(Stage::kRefine);
         release.wait();
         return send_chunks(sink, 1);
       },

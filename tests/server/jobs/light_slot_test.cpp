@@ -4,6 +4,7 @@
 #include <chrono>
 #include <thread>
 
+#include "engine/base/context.h"
 #include "tests/server/job_harness.h"
 
 namespace weft::server::testing {
@@ -30,21 +31,20 @@ TEST(LightSlot, IsLeftByAJobThatTurnsOutHeavy) {
   service.jobs = 1;
   service.light_jobs = 1;
   JobServer server(
-      [&](const MeshRequest& request, ChunkSink& sink,
-          ExecutionContext& context) -> Result<Summary> {
+      [&](const MeshRequest& request, ChunkSink& sink, weft::Run& run) -> Result<Summary> {
         if (std::get<double>(request.size.value) == kHeavySize) {
           heavy_runs.set();
           EXPECT_TRUE(heavy_may_end.wait());
           return send_chunks(sink, 1);
         }
-        const bool in_arena = context.arena() != nullptr;
+        const bool in_arena = run.context().arena() != nullptr;
         if (request.min_angle_deg != kImpostorAngle) {
           light_in_arena = in_arena;
         } else {
           impostor_runs.set();
           runs_in_arena += in_arena;
           while (!in_arena) {
-            if (auto error = context.poll()) return tl::unexpected(*error);
+            if (auto error = run.poll()) return tl::unexpected(*error);
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
           }
         }

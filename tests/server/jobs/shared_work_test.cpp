@@ -63,10 +63,10 @@ TEST(SharedWork, LetsJobsOfTheSameMeshShareTheWork) {
 TEST(SharedWork, FailsNoJobByTheSmallerBudgetOfAnother) {
   std::atomic<int> runs{0};
   Event begun;
-  JobServer server([&](const auto&, ChunkSink& sink, ExecutionContext& context) {
+  JobServer server([&](const auto&, ChunkSink& sink, weft::Run& run) {
     if (runs++ > 0) return send_chunks(sink, 1);
     begun.set();
-    return work_until_stopped(context);
+    return work_until_stopped(run);
   });
   JobClient client = server.client();
   v1::GenerateMeshRequest hasty = valid_request();

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/context.h"
 #include "server/store/job_store.h"
 #include "tests/server/faulty_store.h"
 #include "tests/server/job_harness.h"
@@ -25,9 +26,9 @@ class SlotShare : public ::testing::Test {
  protected:
   void serve(const ServiceOptions& service) {
     server_.emplace(
-        [this](const auto&, ChunkSink& sink, ExecutionContext& context) -> Result<Summary> {
-          while (context.arena() == nullptr) {  // in a light slot
-            if (auto error = context.poll()) return tl::unexpected(*error);
+        [this](const auto&, ChunkSink& sink, weft::Run& run) -> Result<Summary> {
+          while (run.context().arena() == nullptr) {  // in a light slot
+            if (auto error = run.poll()) return tl::unexpected(*error);
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
           }
           ++runs_;

@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "engine/base/context.h"
 #include "server/admission/memory_estimate.h"
 #include "tests/server/harness.h"
 
@@ -25,32 +26,32 @@ class IndexSink final : public ChunkSink {
 // Runs this engine as a light one.
 struct LightRun {
   explicit LightRun(std::chrono::steady_clock::duration time = std::chrono::minutes(1))
-      : run{.context = context,
-            .memory = memory,
-            .deadline = std::chrono::steady_clock::now() + time,
-            .arena = arena,
-            .threads = 2,
-            .leave_light_lane = [this] { ++left; }} {}
+      : call_of_run{.run = run,
+                    .memory = memory,
+                    .deadline = std::chrono::steady_clock::now() + time,
+                    .pool = pool,
+                    .threads = 2,
+                    .leave_light_lane = [this] { ++left; }} {}
 
   tl::expected<Summary, Failure> call(const EngineFn& engine) {
     return call_engine(engine, std::make_unique<v1::GenerateMeshRequest>(valid_request()), sink,
-                       run);
+                       call_of_run);
   }
 
-  Arena arena{2};
-  ExecutionContext context;
+  ThreadPool pool{2};
+  weft::Run run;
   MemoryGate::Share share;
   RunMemory memory{share, 0};
   IndexSink sink;
   int left = 0;
-  EngineRun run;
+  EngineRun call_of_run;
 };
 
 TEST(EngineCall, RunsWhatIsLightOnTheCallersThread) {
   LightRun light;
-  const auto summary = light.call([&](const auto&, ChunkSink& sink, ExecutionContext& context) {
-    EXPECT_EQ(context.arena(), nullptr);
-    EXPECT_FALSE(context.need_bytes(kLightBytes, "the run"));
+  const auto summary = light.call([&](const auto&, ChunkSink& sink, weft::Run& run) {
+    EXPECT_EQ(run.context().arena(), nullptr);
+    EXPECT_FALSE(run.context().need_bytes(kLightBytes, "the run"));
     return send_chunks(sink, 2);
   });
   EXPECT_TRUE(summary);
@@ -60,13 +61,13 @@ TEST(EngineCall, RunsWhatIsLightOnTheCallersThread) {
 TEST(EngineCall, SendsTheChunksOfARunThatBeginsAgainOnce) {
   LightRun light;
   const auto summary =
-      light.call([&](const auto&, ChunkSink& sink, ExecutionContext& context) -> Result<Summary> {
-        if (context.arena() != nullptr) {
+      light.call([&](const auto&, ChunkSink& sink, weft::Run& run) -> Result<Summary> {
+        if (run.context().arena() != nullptr) {
           EXPECT_EQ(light.left, 1);
           return send_chunks(sink, 5);
         }
         EXPECT_TRUE(send_chunks(sink, 3));
-        if (auto error = context.need_bytes(kLightBytes + 1, "the run"))
+        if (auto error = run.context().need_bytes(kLightBytes + 1, "the run"))
           return tl::unexpected(*error);
         return send_chunks(sink, 5);
       });
@@ -77,9 +78,8 @@ TEST(EngineCall, SendsTheChunksOfARunThatBeginsAgainOnce) {
 // Its own deadline, which comes first, is no reason to begin again.
 TEST(EngineCall, EndsALightRunAtItsDeadline) {
   LightRun light(std::chrono::milliseconds(5));
-  const auto summary = light.call([](const auto&, ChunkSink&, ExecutionContext& context) {
-    return work_until_stopped(context);
-  });
+  const auto summary =
+      light.call([](const auto&, ChunkSink&, weft::Run& run) { return work_until_stopped(run); });
   ASSERT_FALSE(summary);
   EXPECT_EQ(summary.error().reason, Reason::kDeadlineExceeded);
   EXPECT_EQ(light.left, 0);
@@ -87,9 +87,9 @@ TEST(EngineCall, EndsALightRunAtItsDeadline) {
 
 TEST(EngineCall, EndsALightRunThatIsCancelled) {
   LightRun light;
-  const auto summary = light.call([&](const auto&, ChunkSink&, ExecutionContext& context) {
-    context.cancel();
-    return work_until_stopped(context);
+  const auto summary = light.call([&](const auto&, ChunkSink&, weft::Run& run) {
+    run.cancel();
+    return work_until_stopped(run);
   });
   ASSERT_FALSE(summary);
   EXPECT_EQ(summary.error().reason, Reason::kCancelled);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <thread>
 
+#include "engine/base/context.h"
 #include "server/admission/memory_estimate.h"
 #include "tests/server/harness.h"
 
@@ -24,20 +25,20 @@ struct Scripted {
   std::atomic<int> runs_of_impostor{0};
   std::atomic<int> threads_of_impostor{0};
 
-  Result<Summary> operator()(const MeshRequest& request, ChunkSink& sink,
-                             ExecutionContext& context) {
+  Result<Summary> operator()(const MeshRequest& request, ChunkSink& sink, weft::Run& run) {
     if (std::get<double>(request.size.value) == kHeavySize) {
       heavy_runs.set();
       EXPECT_TRUE(heavy_may_end.wait());
     }
     if (request.min_angle_deg == kImpostorAngle) {
       ++runs_of_impostor;
-      threads_of_impostor = context.threads();
+      threads_of_impostor = run.context().threads();
       impostor_runs.set();
       if (grows)
-        if (auto error = context.need_bytes(kMuchMemory, "the run")) return tl::unexpected(*error);
-      while (context.arena() == nullptr) {
-        if (auto error = context.poll()) return tl::unexpected(*error);
+        if (auto error = run.context().need_bytes(kMuchMemory, "the run"))
+          return tl::unexpected(*error);
+      while (run.context().arena() == nullptr) {
+        if (auto error = run.poll()) return tl::unexpected(*error);
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
     }
@@ -54,7 +55,7 @@ TEST_P(LightLane, IsLeftByARunThatTurnsOutHeavy) {
   options.threads = 3;
   options.light_jobs = 1;
   TestServer server([&](const MeshRequest& request, ChunkSink& sink,
-                        ExecutionContext& context) { return engine(request, sink, context); },
+                        weft::Run& run) { return engine(request, sink, run); },
                     options);
   const auto request = [](double size, double angle) {
     v1::GenerateMeshRequest request = valid_request();
@@ -87,7 +88,7 @@ TEST_P(LightLane, OfARunThatIsCancelledWhileItMovesIsLeftForGood) {
   ServiceOptions options;
   options.light_jobs = 1;
   TestServer server([&](const MeshRequest& request, ChunkSink& sink,
-                        ExecutionContext& context) { return engine(request, sink, context); },
+                        weft::Run& run) { return engine(request, sink, run); },
                     options);
   v1::GenerateMeshRequest heavy = valid_request();
   heavy.mutable_size()->set_constant(kHeavySize);

@@ -88,7 +88,7 @@ class CachingServer {
     return options;
   }
   EngineFn engine() {
-    return [this](const MeshRequest&, ChunkSink& sink, ExecutionContext&) -> Result<Summary> {
+    return [this](const MeshRequest&, ChunkSink& sink, weft::Run&) -> Result<Summary> {
       if (++runs_ == failing_) return fail(ErrorCode::kInternal, "", "broken");
       auto summary = send_chunks(sink, 20);
       if (summary) summary->leaves.resize(3);

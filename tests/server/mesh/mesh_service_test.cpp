@@ -6,6 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "engine/base/context.h"
 #include "tests/server/harness.h"
 
 namespace weft::server::testing {
@@ -53,13 +54,13 @@ TEST(GenerateMesh, TellsProgressThatNeverGoesBack) {
   ServiceOptions options;
   options.tick = std::chrono::milliseconds(5);
   TestServer server(
-      [&](const auto&, ChunkSink& sink, ExecutionContext& context) {
-        context.enter(Stage::kRefine);
-        context.report_expected(1000);
-        context.add_triangles(500);
+      [&](const auto&, ChunkSink& sink, weft::Run& run) {
+        run.context().enter(Stage::kRefine);
+        run.context().report_expected(1000);
+        run.context().add_triangles(500);
         EXPECT_TRUE(seen.wait());
-        context.enter(Stage::kTriangulate);  // an engine that errs
-        context.add_triangles(-490);
+        run.context().enter(Stage::kTriangulate);  // an engine that errs
+        run.context().add_triangles(-490);
         EXPECT_TRUE(seen_after.wait());
         return send_chunks(sink, 50);
       },
@@ -280,7 +281,7 @@ TEST(GenerateMesh, HandsTheWholeRequestToTheEngine) {
   request.mutable_budget()->set_max_triangles(1000);
   request.mutable_budget()->set_max_bytes(1 << 20);
   Event called;
-  TestServer server([&](const MeshRequest& got, ChunkSink& sink, ExecutionContext& context) {
+  TestServer server([&](const MeshRequest& got, ChunkSink& sink, weft::Run& run) {
     EXPECT_EQ(got.pslg.points, (std::vector<Point>{{0, 0}, {4, 0}, {4, 4}, {0, 4}}));
     EXPECT_EQ(got.pslg.segments.size(), 4u);
     EXPECT_EQ(got.pslg.segments[3].a, 3u);
@@ -298,9 +299,9 @@ TEST(GenerateMesh, HandsTheWholeRequestToTheEngine) {
     EXPECT_EQ(got.sweeps, 5u);
     EXPECT_EQ(got.pslg.snap, 0.125);
     EXPECT_TRUE(got.allow_unrefined);
-    EXPECT_EQ(context.budget().max_triangles, 1000u);
-    EXPECT_EQ(context.budget().max_bytes, 1u << 20);
-    EXPECT_EQ(context.budget().triangle_limit, Limits{}.max_triangles);
+    EXPECT_EQ(run.context().budget().max_triangles, 1000u);
+    EXPECT_EQ(run.context().budget().max_bytes, 1u << 20);
+    EXPECT_EQ(run.context().budget().triangle_limit, Limits{}.max_triangles);
     called.set();
     return send_chunks(sink, 1);
   });

@@ -3,6 +3,7 @@
 
 #include <thread>
 
+#include "engine/base/context.h"
 #include "tests/server/harness.h"
 
 namespace weft::server::testing {
@@ -26,8 +27,8 @@ Threads threads_where_asked_for(std::uint32_t wanted) {
   ServiceOptions options;
   options.threads = 3;
   TestServer server(
-      [&](const auto&, ChunkSink& sink, ExecutionContext& context) {
-        threads.context = context.threads();
+      [&](const auto&, ChunkSink& sink, weft::Run& run) {
+        threads.context = run.context().threads();
         return send_chunks(sink, 1);
       },
       options);
@@ -58,8 +59,8 @@ TEST(Threads, AreOneArenaForAllJobs) {
   options.threads = 3;
   std::atomic<int> threads{0};
   TestServer server(
-      [&](const auto&, ChunkSink& sink, ExecutionContext& context) {
-        threads = context.arena()->threads();
+      [&](const auto&, ChunkSink& sink, weft::Run& run) {
+        threads = run.context().arena()->threads();
         return send_chunks(sink, 1);
       },
       options);
@@ -73,11 +74,11 @@ TEST(Progress, TellsAFractionThatNeverFalls) {
   ServiceOptions options;
   options.tick = std::chrono::milliseconds(5);
   TestServer server(
-      [&](const auto&, ChunkSink& sink, ExecutionContext& context) {
-        context.enter(Stage::kRefine);
-        context.add_fraction(0.5);
+      [&](const auto&, ChunkSink& sink, weft::Run& run) {
+        run.context().enter(Stage::kRefine);
+        run.context().add_fraction(0.5);
         EXPECT_TRUE(seen.wait());
-        context.add_fraction(-0.25);  // an engine that errs
+        run.context().add_fraction(-0.25);  // an engine that errs
         EXPECT_TRUE(fell.wait());
         return send_chunks(sink, 1);
       },
@@ -103,18 +104,18 @@ TEST(Progress, TellsAFractionThatNeverFalls) {
 TEST(Progress, GoesBeforeTheChunksThatWaitForASlowReader) {
   std::atomic<bool> first{true};
   std::atomic<std::uint32_t> sent{0};
-  std::atomic<ExecutionContext*> job{nullptr};
+  std::atomic<weft::Run*> job{nullptr};
   Event release;
   ServiceOptions options;
   options.jobs = 2;
   options.tick = std::chrono::milliseconds(50);
   TestServer server(
-      [&](const auto&, ChunkSink& sink, ExecutionContext& context) -> Result<Summary> {
+      [&](const auto&, ChunkSink& sink, weft::Run& run) -> Result<Summary> {
         if (!first.exchange(false)) {
           release.wait();
           return send_chunks(sink, 1);
         }
-        job = &context;
+        job = &run;
         return send_until_refused(sink, sent);
       },
       options);
@@ -127,7 +128,7 @@ TEST(Progress, GoesBeforeTheChunksThatWaitForASlowReader) {
   while (sent < 10) std::this_thread::yield();  // more than the hand-over holds
 
   constexpr std::uint64_t kMark = 777;
-  job.load()->add_triangles(kMark);
+  job.load()->context().add_triangles(kMark);
   auto other_stub = server.stub();
   grpc::ClientContext other_context;
   auto other = other_stub->GenerateMesh(&other_context, valid_request());

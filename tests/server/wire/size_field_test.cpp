@@ -139,24 +139,5 @@ TEST(SizeField, WithAFaultIsRefusedByItsName) {
   EXPECT_EQ(refused(size), "size.raster.y");
 }
 
-TEST(SizeField, IsEstimatedByASizeThatMakesAsManyTriangles) {
-  const auto at = [](const v1::SizeField& size) {
-    return size_to_estimate_by(size).function()({1, 2});
-  };
-  EXPECT_TRUE(std::isinf(at(v1::SizeField())));
-  EXPECT_EQ(at(constant(0.25)), 0.25);
-  EXPECT_EQ(at(expression("x + y")), 3);
-  EXPECT_DOUBLE_EQ(at(raster()), 1 / 3.0);  // half of it makes 2 and half 4 on a unit
-  v1::SizeField edge = constant(2);
-  edge.set_measure(v1::MEASURE_EDGE);
-  EXPECT_DOUBLE_EQ(at(edge), std::sqrt(3));
-  v1::SizeField edges = raster();
-  edges.set_measure(v1::MEASURE_EDGE);
-  EXPECT_DOUBLE_EQ(at(edges), std::sqrt(3) / 4 * 0.1);  // of 1/4 and 1/16, by 1 / area
-  EXPECT_TRUE(std::isinf(at(expression("1 +")))) << "what is refused later asks for nothing";
-  EXPECT_EQ(bytes_to_expect(raster()), 4 * 16);
-  EXPECT_EQ(bytes_to_expect(expression("x")), 0);
-}
-
 }  // namespace
 }  // namespace weft::server

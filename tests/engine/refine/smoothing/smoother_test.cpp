@@ -10,12 +10,12 @@
 #include <set>
 #include <vector>
 
-#include "engine/engine.h"
 #include "engine/refine/storage/vertex_set.h"
 #include "tests/engine/domain/shapes.h"
 #include "tests/engine/refine/sound.h"
 #include "tests/support/floor_plan.h"
 #include "tests/support/poly.h"
+#include "weft/weft.h"
 
 namespace weft {
 namespace {
@@ -73,8 +73,8 @@ TEST(Smoothing, IsLeftOutUnlessAskedForWhereManyLatticesMeet) {
   const auto digest = [](const char* size, std::optional<std::uint32_t> sweeps) {
     const MeshRequest request{.pslg = square(100), .size = size, .sweeps = sweeps};
     CollectedMesh mesh;
-    ExecutionContext context;
-    const Result<Summary> summary = generate_mesh(request, mesh, context);
+    weft::Run run;
+    const Result<Summary> summary = stream(request, mesh, run);
     EXPECT_GT(summary.value().triangles, 100'000u);
     return summary.value().digest;
   };

@@ -138,7 +138,7 @@ TEST(ParseErrors, AnEndlessNameIsQuotedInPart) {
 TEST(ParseLimits, TheLengthIsBounded) {
   const std::string text = limit(repeated("1+", 50000) + "1");
   EXPECT_EQ(text, "the size expression has 100001 bytes; the limit is 65536");
-  EXPECT_TRUE(Expression::parse(std::string(Expression::kMaxLength - 1, ' ') + "1"));
+  EXPECT_TRUE(Expression::parse(std::string(kMaxExpressionBytes - 1, ' ') + "1"));
 }
 
 TEST(ParseLimits, NestingIsBoundedWhateverNests) {
@@ -202,13 +202,13 @@ TEST(ParseLimits, LongChainsWithinTheLimitsAreAccepted) {
 TEST(ParseLimits, TheWorstSourceIsRefusedQuickly) {
   const auto start = std::chrono::steady_clock::now();
   std::string distinct;
-  for (int i = 0; distinct.size() < Expression::kMaxLength - 16; ++i) {
+  for (int i = 0; distinct.size() < kMaxExpressionBytes - 16; ++i) {
     distinct += "+x^" + std::to_string(i) + "." + std::to_string(i % 7 + 1);
   }
   (void)error_of("1" + distinct);
-  (void)error_of(repeated("(", Expression::kMaxLength));
-  (void)error_of(std::string(Expression::kMaxLength, 'a'));
-  (void)error_of(std::string(Expression::kMaxLength, '1'));
+  (void)error_of(repeated("(", kMaxExpressionBytes));
+  (void)error_of(std::string(kMaxExpressionBytes, 'a'));
+  (void)error_of(std::string(kMaxExpressionBytes, '1'));
   // 20 ms in a release build; the bound is for sanitizers on a busy machine.
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
 }

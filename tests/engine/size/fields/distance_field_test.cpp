@@ -470,7 +470,7 @@ TEST(DistanceField, PollsOftenInOneLongPass) {
 
 TEST(DistanceField, AnnouncesItsMemory) {
   struct Source : MemorySource {
-    Result<std::uint64_t> grant(std::uint64_t needed, const ExecutionContext&) override {
+    Result<std::uint64_t> grant(std::uint64_t needed, const Poll&) override {
       asked = needed;
       if (refuses) return fail(ErrorCode::kOutOfMemory, "", "none left");
       return needed;

@@ -430,7 +430,7 @@ TEST(WidthField, StopsSoonAfterTheDeadline) {
 class Source final : public MemorySource {
  public:
   explicit Source(std::uint64_t limit) : limit_(limit) {}
-  Result<std::uint64_t> grant(std::uint64_t needed, const ExecutionContext&) override {
+  Result<std::uint64_t> grant(std::uint64_t needed, const Poll&) override {
     most_ = std::max(most_, needed);
     if (needed > limit_) return fail(ErrorCode::kOutOfMemory, "", "no more");
     return needed;

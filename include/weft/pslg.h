@@ -2,8 +2,7 @@
 // A planar straight-line graph: what a client asks to be meshed.
 //
 // Points and segments bound the domain. Input may be dirty: segments may cross, overlap or repeat,
-// points may coincide; `triangulate` (domain.h beside this file) resolves all of it. What is
-// meshed:
+// points may coincide; the mesh resolves all of it. What is meshed:
 //   - Fill::kSeeds: every bounded face of the segments, less the faces that a hole seed floods
 //     (flooding stops at segments). This is Triangle's rule.
 //   - Fill::kEvenOdd: the points whose rays to infinity cross the segments an odd number of times
@@ -23,9 +22,16 @@
 #include <optional>
 #include <vector>
 
-#include "engine/base/geometry.h"
+#include "weft/geometry.h"
 
 namespace weft {
+
+// Magnitudes of coordinates other than 0, so that products of four of them stay in range.
+inline constexpr double kMinMagnitude = 1e-100;
+inline constexpr double kMaxMagnitude = 1e50;
+// So that vertices and triangles can be numbered in 32 bits.
+inline constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 28;
+inline constexpr std::uint64_t kMaxSegments = std::uint64_t{1} << 30;
 
 struct Segment {
   std::uint32_t a = 0;  // index into Pslg::points
@@ -40,8 +46,7 @@ struct Area {
   // face its region; of several, the smallest; of several of one size, to 30 bits, the first.
   std::optional<std::int32_t> region = std::nullopt;
   std::int32_t priority = 0;
-  // > 0. The least of all areas that cover a face holds there.
-  std::optional<double> max_area = std::nullopt;
+  std::optional<double> max_area = std::nullopt;  // > 0; the least of all that cover a face holds
   bool is_hole = false;  // carves what it covers away, and has no other effect
 };
 
@@ -50,8 +55,7 @@ struct Area {
 struct RegionSeed {
   Point at;
   std::int32_t id = 0;  // carried by every triangle of the face; 0 elsewhere
-  // > 0, in squared units; combined with the size field by min.
-  std::optional<double> max_area = std::nullopt;
+  std::optional<double> max_area = std::nullopt;  // > 0, in squared units
 };
 
 enum class Fill : std::uint8_t { kSeeds, kEvenOdd, kUnion };
@@ -63,9 +67,8 @@ struct Pslg {
   std::vector<RegionSeed> regions;
   std::vector<Area> areas;
   Fill fill = Fill::kSeeds;
-  // Features nearer than this are merged first: points, points and segments, crossings (see
-  // arrangement.h). In the units of the coordinates, 0 or more. 0: only what double precision
-  // cannot keep apart.
+  // Features nearer than this are merged first: points, points and segments, crossings. In the
+  // units of the coordinates, 0 or more. 0: only what double precision cannot keep apart.
   double snap = 0;
 };
 

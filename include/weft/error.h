@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine's errors and their codes.
+// Errors and their codes.
 //
-// No exception leaves the engine: every public function that can fail returns a Result<T>. An
-// Error names the offender twice: `field` is a path in the request as the wire spells it
-// ("domain.segments[17].b", empty if no field is at fault), `message` is a sentence with the
-// value, the index and the limit. `at` is the point of the plane that the message names, if it is
-// not one of the request's own.
+// No exception leaves the library: every function that can fail returns a Result<T>. An Error names
+// the offender twice: `field` is a path in the request ("domain.segments[17].b", empty if no field
+// is at fault), `message` is a sentence with the value, the index and the limit. `at` is the point
+// of the plane that the message names, if it is not one of the request's own.
 //
-//   Result<Domain> domain = triangulate(pslg, context);
-//   if (!domain) return tl::unexpected(domain.error());
+//   Result<Mesh> made = mesh(request);
+//   if (!made) return tl::unexpected(made.error());
 #pragma once
 
 #include <optional>
@@ -16,7 +15,7 @@
 #include <tl/expected.hpp>
 #include <utility>
 
-#include "engine/base/geometry.h"
+#include "weft/geometry.h"
 
 namespace weft {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/admission/domain_picture.h"
+#include "engine/domain/domain_picture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "server/wire/translate.h"
-
-namespace weft::server {
+namespace weft {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -17,15 +15,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPartOfBorder = 0.6;
 constexpr std::uint16_t kUnknown = std::numeric_limits<std::uint16_t>::max();
 
-Box box_of(const google::protobuf::RepeatedField<double>& points) {
-  Box box{kInfinity, kInfinity, -kInfinity, -kInfinity};
-  for (int i = 0; i + 1 < points.size(); i += 2) {
-    if (!std::isfinite(points[i]) || !std::isfinite(points[i + 1])) continue;
-    box.min_x = std::min(box.min_x, points[i]);
-    box.max_x = std::max(box.max_x, points[i]);
-    box.min_y = std::min(box.min_y, points[i + 1]);
-    box.max_y = std::max(box.max_y, points[i + 1]);
-  }
+Box box_of(const std::vector<Point>& points) {
+  Box box;
+  for (const Point p : points)
+    if (std::isfinite(p.x) && std::isfinite(p.y)) box.add(p);
   return box.min_x <= box.max_x ? box : Box{0, 0, 0, 0};
 }
 
@@ -54,10 +47,9 @@ struct DomainPicture::Covered {
   std::vector<double> max_area = std::vector<double>(kAll, kInfinity);
 };
 
-DomainPicture DomainPicture::of(const v1::Domain& domain) {
+DomainPicture DomainPicture::of(const Pslg& pslg) {
   DomainPicture picture;
-  const auto& points = domain.points();
-  picture.box_ = box_of(points);
+  picture.box_ = box_of(pslg.points);
   picture.width_ = picture.box_.width() / kCells;
   picture.height_ = picture.box_.height() / kCells;
   picture.max_area_.assign(kAll, kInfinity);
@@ -65,18 +57,14 @@ DomainPicture DomainPicture::of(const v1::Domain& domain) {
   std::array<Face, kAll> faces;
   faces.fill(kUnknown);
   std::array<char, kAll> odd{};  // whether the way to the left crosses an odd number of segments
-  const auto point = [&](std::uint32_t i) { return Point{points[2 * i], points[2 * i + 1]}; };
-  const auto count = static_cast<std::uint32_t>(points.size() / 2);
-  for (int i = 0; i + 1 < domain.segments_size(); i += 2) {
-    const std::uint32_t a = domain.segments(i);
-    const std::uint32_t b = domain.segments(i + 1);
-    if (a >= count || b >= count) continue;
-    picture.draw(point(a), point(b), faces);
-    if (domain.fill() == v1::FILL_EVEN_ODD) picture.cross(point(a), point(b), odd);
+  for (const Segment& s : pslg.segments) {
+    if (s.a >= pslg.points.size() || s.b >= pslg.points.size()) continue;
+    picture.draw(pslg.points[s.a], pslg.points[s.b], faces);
+    if (pslg.fill == Fill::kEvenOdd) picture.cross(pslg.points[s.a], pslg.points[s.b], odd);
   }
   for (std::size_t cell = 1; cell < kAll; ++cell)
     if (cell % kCells != 0) odd[cell] ^= odd[cell - 1];
-  const Covered covered = picture.cover(domain);
+  const Covered covered = picture.cover(pslg);
   const Face last = find_faces(faces);
 
   std::vector<char> outside(last + 1, 0);
@@ -85,25 +73,24 @@ DomainPicture DomainPicture::of(const v1::Domain& domain) {
       outside[faces[cell]] = 1;
   for (std::size_t cell = 0; cell < kAll; ++cell) {
     char& is_outside = outside[faces[cell]];
-    if (domain.fill() == v1::FILL_UNION)
+    if (pslg.fill == Fill::kUnion)
       is_outside = covered.areas[cell] == 0;
-    else if (domain.fill() == v1::FILL_EVEN_ODD)
-      is_outside = (domain.areas().empty() ? odd[cell] : covered.areas[cell]) % 2 == 0;
+    else if (pslg.fill == Fill::kEvenOdd)
+      is_outside = (pslg.areas.empty() ? odd[cell] : covered.areas[cell]) % 2 == 0;
     if (covered.is_hole[cell]) is_outside = 1;
   }
   const auto face_at = [&](double x, double y) { return faces[picture.cell_at(x, y)]; };
-  for (int i = 0; i + 1 < domain.holes_size(); i += 2)
-    outside[face_at(domain.holes(i), domain.holes(i + 1))] = 1;
+  for (const Point hole : pslg.holes) outside[face_at(hole.x, hole.y)] = 1;
   outside[kBorder] = 0;
 
   std::vector<double> bounds(last + 1, kInfinity);
   for (std::size_t cell = 0; cell < kAll; ++cell)
     if (faces[cell] != kBorder)
       bounds[faces[cell]] = std::min(bounds[faces[cell]], covered.max_area[cell]);
-  for (const v1::Region& region : domain.regions())
-    if (const auto area = max_area_of(region)) {
-      double& bound = bounds[face_at(region.x(), region.y())];
-      bound = std::min(bound, *area);
+  for (const RegionSeed& region : pslg.regions)
+    if (region.max_area) {
+      double& bound = bounds[face_at(region.at.x, region.at.y)];
+      bound = std::min(bound, *region.max_area);
     }
 
   for (std::size_t cell = 0; cell < kAll; ++cell) {
@@ -170,24 +157,17 @@ void DomainPicture::cross(Point a, Point b, std::array<char, kAll>& odd) const {
 }
 
 // Takes time in proportion to the segments and to the cells of the areas' boxes.
-DomainPicture::Covered DomainPicture::cover(const v1::Domain& domain) const {
+DomainPicture::Covered DomainPicture::cover(const Pslg& pslg) const {
   Covered covered;
-  const auto areas = static_cast<std::uint32_t>(domain.areas_size());
-  const auto points = static_cast<std::uint32_t>(domain.points_size() / 2);
-  std::vector<std::vector<std::pair<Point, Point>>> borders(areas);
-  for (int i = 0; i < domain.segment_areas_size() && 2 * i + 1 < domain.segments_size(); ++i) {
-    const std::uint32_t area = domain.segment_areas(i);
-    const std::uint32_t a = domain.segments(2 * i), b = domain.segments(2 * i + 1);
-    if (area == 0 || area > areas || a >= points || b >= points) continue;
-    const auto at = [&](std::uint32_t p) {
-      return Point{domain.points(static_cast<int>(2 * p)),
-                   domain.points(static_cast<int>(2 * p + 1))};
-    };
-    if (std::isfinite(at(a).x + at(a).y + at(b).x + at(b).y))
-      borders[area - 1].emplace_back(at(a), at(b));
+  const auto& points = pslg.points;
+  std::vector<std::vector<std::pair<Point, Point>>> borders(pslg.areas.size());
+  for (const Segment& s : pslg.segments) {
+    if (s.area >= borders.size() || s.a >= points.size() || s.b >= points.size()) continue;
+    const Point a = points[s.a], b = points[s.b];
+    if (std::isfinite(a.x + a.y + b.x + b.y)) borders[s.area].emplace_back(a, b);
   }
   std::array<char, kAll> odd{};
-  for (std::uint32_t area = 0; area < areas; ++area) {
+  for (std::size_t area = 0; area < borders.size(); ++area) {
     if (borders[area].empty()) continue;
     std::size_t least = kAll, most = 0;  // the cells of the corners of the area's box, row by row
     int first_column = kCells - 1, last_column = 0;
@@ -202,8 +182,8 @@ DomainPicture::Covered DomainPicture::cover(const v1::Domain& domain) const {
         last_column = std::max(last_column, column);
       }
     }
-    const v1::Area& given = domain.areas(static_cast<int>(area));
-    const double bound = max_area_of(given).value_or(kInfinity);
+    const Area& given = pslg.areas[area];
+    const double bound = given.max_area.value_or(kInfinity);
     for (std::size_t row = least; row <= most; row += kCells) {
       char is_odd = 0;
       // A border that ends between two columns' middles counts from the next column on.
@@ -212,7 +192,7 @@ DomainPicture::Covered DomainPicture::cover(const v1::Domain& domain) const {
         is_odd ^= odd[cell];
         odd[cell] = 0;
         if (!is_odd) continue;
-        if (given.hole()) {
+        if (given.is_hole) {
           covered.is_hole[cell] = 1;
         } else {
           ++covered.areas[cell];
@@ -245,4 +225,4 @@ DomainPicture::Face DomainPicture::find_faces(std::array<Face, kAll>& faces) {
   return last;
 }
 
-}  // namespace weft::server
+}  // namespace weft

@@ -3,7 +3,7 @@
 // in which region. Takes time in proportion to the points, the segments, and the cells that these
 // cross.
 //
-//   const DomainPicture picture = DomainPicture::of(request.domain());
+//   const DomainPicture picture = DomainPicture::of(pslg);
 //   picture.area()                                   // at most a cell's width too large, or small
 //   picture.max_area(column, row)                    // of the regions; infinity for none
 //
@@ -20,16 +20,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/base/geometry.h"
-#include "weft/v1/mesh_service.pb.h"
+#include "weft/geometry.h"
+#include "weft/pslg.h"
 
-namespace weft::server {
+namespace weft {
 
 class DomainPicture {
  public:
   static constexpr int kCells = 64;  // each way
 
-  static DomainPicture of(const v1::Domain& domain);
+  static DomainPicture of(const Pslg& pslg);
 
   // How much of a cell is in the domain: 0, 1, or a bit over half where the domain ends.
   double part_inside(int column, int row) const { return part_[at(column, row)]; }
@@ -51,7 +51,7 @@ class DomainPicture {
   void draw(Point a, Point b, std::array<Face, kAll>& faces) const;
   void cross(Point a, Point b, std::array<char, kAll>& odd) const;
   struct Covered;
-  Covered cover(const v1::Domain& domain) const;
+  Covered cover(const Pslg& pslg) const;
   static Face find_faces(std::array<Face, kAll>& faces);
 
   Box box_;
@@ -61,4 +61,4 @@ class DomainPicture {
   std::vector<double> max_area_;
 };
 
-}  // namespace weft::server
+}  // namespace weft

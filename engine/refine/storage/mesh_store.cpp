@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/refine/storage/mesh.h"
+#include "engine/refine/storage/mesh_store.h"
 
 #include <algorithm>
 #include <cstring>
@@ -55,8 +55,8 @@ Triangle linked(const Domain& domain, const Domain::Triangle& from) {
 
 }  // namespace
 
-Result<Mesh> Mesh::from(const Domain& domain, std::uint64_t max_triangles,
-                        double expected_triangles, const ExecutionContext& context) {
+Result<MeshStore> MeshStore::from(const Domain& domain, std::uint64_t max_triangles,
+                                  double expected_triangles, const ExecutionContext& context) {
   constexpr double kWorthHugePages = 100'000;
   constexpr std::uint32_t kPollInterval = 1 << 16;
   constexpr std::uint64_t kSlack = 1 << 22;  // slots that tasks leave unused, at least
@@ -70,7 +70,7 @@ Result<Mesh> Mesh::from(const Domain& domain, std::uint64_t max_triangles,
   const std::uint64_t slots = std::min<std::uint64_t>(
       kMaxTriangles, 2 * std::clamp<std::uint64_t>(max_triangles, initial, kMaxTriangles) + kSlack);
   const Pages pages = expected_triangles > kWorthHugePages ? Pages::kHuge : Pages::kAny;
-  Mesh mesh;
+  MeshStore mesh;
   const auto triangle_blocks = static_cast<std::uint32_t>(slots >> kTriangleShift);
   // Each insertion adds one vertex and one or two triangles (one only on the outer boundary).
   const auto vertex_blocks = static_cast<std::uint32_t>(slots >> kVertexShift) +
@@ -107,7 +107,7 @@ Result<Mesh> Mesh::from(const Domain& domain, std::uint64_t max_triangles,
   return mesh;
 }
 
-std::uint32_t Mesh::take_triangle_block(std::uint32_t owner) {
+std::uint32_t MeshStore::take_triangle_block(std::uint32_t owner) {
   const std::optional<std::uint32_t> block = triangle_pool->take();
   if (!block) throw_used_up(triangle_pool->capacity() << kTriangleShift);
   triangle_owner[*block] = owner;
@@ -115,7 +115,7 @@ std::uint32_t Mesh::take_triangle_block(std::uint32_t owner) {
   return *block << kTriangleShift;
 }
 
-std::uint32_t Mesh::take_vertex_block(std::uint32_t owner, bool on_segment) {
+std::uint32_t MeshStore::take_vertex_block(std::uint32_t owner, bool on_segment) {
   const std::optional<std::uint32_t> block = vertex_pool->take();
   if (!block) throw_used_up(triangle_pool->capacity() << kTriangleShift);
   vertex_blocks[*block] = {owner, 0, on_segment};
@@ -123,7 +123,7 @@ std::uint32_t Mesh::take_vertex_block(std::uint32_t owner, bool on_segment) {
   return *block << kVertexShift;
 }
 
-void Mesh::give_back_triangles(const std::vector<std::uint32_t>& first_slots) {
+void MeshStore::give_back_triangles(const std::vector<std::uint32_t>& first_slots) {
   for (const std::uint32_t first : first_slots) {
     if (kSpoilsReturned)
       std::memset(static_cast<void*>(&triangles[first]), kGarbage,
@@ -132,7 +132,7 @@ void Mesh::give_back_triangles(const std::vector<std::uint32_t>& first_slots) {
   }
 }
 
-void Mesh::give_back_vertices(const std::vector<std::uint32_t>& first_slots) {
+void MeshStore::give_back_vertices(const std::vector<std::uint32_t>& first_slots) {
   for (const std::uint32_t first : first_slots) {
     if (kSpoilsReturned) {
       std::memset(static_cast<void*>(&vertices[first]), kGarbage, kVertexBlock * sizeof(Point));
@@ -145,7 +145,7 @@ void Mesh::give_back_vertices(const std::vector<std::uint32_t>& first_slots) {
   }
 }
 
-std::uint64_t Mesh::bytes() const {
+std::uint64_t MeshStore::bytes() const {
   constexpr std::uint64_t kTriangles = kTriangleBlock * sizeof(Triangle) + sizeof(std::uint32_t);
   constexpr std::uint64_t kVertices = kVertexBlock * sizeof(Point) + sizeof(VertexBlock);
   return triangle_pool->peak() * kTriangles + vertex_pool->peak() * kVertices;

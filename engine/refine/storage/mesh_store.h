@@ -19,11 +19,11 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "engine/base/error.h"
 #include "engine/base/geometry.h"
 #include "engine/domain/domain.h"
 #include "engine/refine/storage/block_pool.h"
 #include "engine/refine/storage/virtual_array.h"
+#include "weft/error.h"
 
 namespace weft {
 
@@ -88,7 +88,7 @@ struct alignas(32) Triangle {
 };
 static_assert(sizeof(Triangle) == 32);
 
-struct Mesh {
+struct MeshStore {
   static constexpr std::uint32_t kMaxTriangles = (1u << 30) - 1;  // half-edges have 32 bits
   static constexpr std::uint32_t kTriangleShift = 8;              // 256 triangles per block
   static constexpr std::uint32_t kVertexShift = 7;                // 128 vertices per block
@@ -113,8 +113,8 @@ struct Mesh {
   // `max_triangles` in all, and for the slots that tasks leave dead or unused. `expected_triangles`
   // decides whether huge pages are worth it. Errors: kOutOfMemory, kLimitExceeded, kCancelled,
   // kDeadlineExceeded.
-  static Result<Mesh> from(const Domain& domain, std::uint64_t max_triangles,
-                           double expected_triangles, const ExecutionContext& context);
+  static Result<MeshStore> from(const Domain& domain, std::uint64_t max_triangles,
+                                double expected_triangles, const ExecutionContext& context);
 
   std::uint32_t owner_of_triangle(std::uint32_t t) const {
     return triangle_owner[t >> kTriangleShift];

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run is expected to make and to take: a guess within a millisecond for a domain of usual
+// size, from a coarse picture of the domain, its regions, and the size in each cell.
+//
+// Law: the bytes are never below what the engine takes for the benchmarks' meshes if their reader
+// stalls, and at most twice that and 2 MB (tests/engine/estimate_law_test.cpp).
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "engine/base/trace.h"
+#include "engine/domain/domain_picture.h"
+#include "engine/refine/edge_limits.h"
+#include "engine/refine/quality_bounds.h"
+#include "engine/schedule/mesh_run.h"
+#include "engine/size/lattice/lattice.h"
+#include "engine/size/size_spec.h"
+#include "weft/weft.h"
+
+namespace weft {
+namespace {
+
+// As measured: 48 bytes a triangle of a mesh that is held as a whole, and 300 bytes a point for the
+// constrained triangulation.
+constexpr double kBytesPerTriangle = 48;
+constexpr double kBytesPerPoint = 300;
+// Any run takes this for tables and buffers.
+constexpr double kBytesPerRun = 1e6;
+// Over triangles_per_bound, which is what comes out if the size is the same everywhere: where it
+// changes within a few triangles there are up to half more.
+constexpr double kMoreOnLattice = 1.48;
+constexpr double kMoreAtCircumcentres = 1.16;
+constexpr double kIfItVaries = 1.1;  // on the lattice, unless the size is the same everywhere
+// Angles alone ask for about so many.
+constexpr double kTrianglesPerPoint = 4;
+
+// Of a mesh that leaves while it is refined (schedule/mesh_run.h): a strip of leaves is held, and
+// what each leaf has all the time. Measured with 10 M to 1,000 M triangles: 370 for a size that
+// grows with the distance from something, up to half more for one that is the same everywhere.
+constexpr double kBytesOfStrip = 420;  // times the root of triangles of the mesh and of a leaf
+constexpr double kBytesPerLeaf = 2700;
+// Full ones. With fewer, nearly all leaves may have begun before much is sent, if a thread stands
+// still for a while.
+constexpr double kFewestLeaves = 128;
+// Of parts that are built and wait for their reader, per triangle. If the reader stalls, so many
+// full leaves wait: parts_ahead, each of which is about .6 of the largest.
+constexpr double kBytesOfWaiting = 22;
+constexpr int kThreads = 2;
+double full_leaves_waiting() {
+  return 0.6 * parts_ahead(kThreads);
+}
+
+double inverse(double bound) {
+  return bound > 0 ? 1 / bound : 0;  // a run refuses what is no bound
+}
+
+// The size whose triangles have the mean number of those at up to kSamples nodes.
+double mean_size(const Raster& raster, Measure measure) {
+  constexpr std::size_t kSamples = 1024;
+  const std::size_t step = 1 + raster.values.size() / kSamples;
+  const double power = measure == Measure::kEdge ? -2 : -1;
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < raster.values.size(); i += step, ++count)
+    sum += raster.values[i] > 0 ? std::pow(raster.values[i], power) : 0;
+  return std::pow(sum / count, 1 / power);
+}
+
+// A size that asks for about as many triangles; no bound if `spec` is none, or names fields: what
+// these ask for is known once they are made.
+Size size_to_estimate_by(const SizeSpec& spec) {
+  const auto* const raster = std::get_if<Raster>(&spec.value);
+  auto made = raster != nullptr ? make_size(mean_size(*raster, spec.measure), spec.measure)
+                                : make_size(spec.value, spec.measure);
+  if (!made) made = make_size(SizeSpec::Value(), Measure::kArea);
+  return std::move(*made);
+}
+
+// The integral of 1 / bound over the domain, for the size and the bounds of its regions, and
+// whether it is the same everywhere.
+struct Integral {
+  double sum = 0;
+  bool is_even = true;
+};
+
+Integral integral(const DomainPicture& picture, const SizeFunction& size) {
+  constexpr int kCells = DomainPicture::kCells;
+  double sum = 0;
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0;
+  for (int row = 0; row < kCells; ++row) {
+    alignas(64) double xs[kCells];
+    alignas(64) double ys[kCells];
+    alignas(64) double bounds[kCells];
+    for (int column = 0; column < kCells; ++column) {
+      const Point middle = picture.middle(column, row);
+      xs[column] = middle.x;
+      ys[column] = middle.y;
+    }
+    size.evaluate(kCells, xs, ys, bounds);
+    for (int column = 0; column < kCells; ++column) {
+      const double inside = picture.part_inside(column, row);
+      if (inside == 0) continue;
+      const double per_area =
+          std::max(inverse(bounds[column]), inverse(picture.max_area(column, row)));
+      sum += inside * per_area;
+      least = std::min(least, per_area);
+      most = std::max(most, per_area);
+    }
+  }
+  return {sum * picture.area_of_cell(), !(most > least)};
+}
+
+// What the size and the regions ask for.
+double triangles_by_size(const MeshRequest& request) {
+  const DomainPicture picture = DomainPicture::of(request.pslg);
+  const Integral over_bound = integral(picture, size_to_estimate_by(request.size).function());
+  LatticeShape lattice;
+  if (request.placement == Placement::kLattice)
+    lattice = LatticeShape::for_angle(request.min_angle_deg);
+  const double triangles = triangles_per_bound(lattice) * over_bound.sum;
+  if (!lattice.exists()) return kMoreAtCircumcentres * triangles;
+  return kMoreOnLattice * triangles * (over_bound.is_even ? 1 : kIfItVaries);
+}
+
+// What the lengths at markers ask for.
+double triangles_by_pieces(const MeshRequest& request) {
+  std::vector<SizeAt> at;
+  for (const SizeAt& length : request.size.at)
+    if (length.max_edge > 0) at.push_back(length);
+  if (at.empty()) return 0;
+  const EdgeLimits limits(std::move(at));
+  const auto& points = request.pslg.points;
+  double pieces = 0;
+  for (const Segment& s : request.pslg.segments) {
+    if (s.a >= points.size() || s.b >= points.size()) continue;
+    const double of_segment = limits.pieces(s.marker, points[s.a], points[s.b]);
+    if (of_segment > 1) pieces += of_segment;
+  }
+  const double gradation = request.size.gradation;
+  return EdgeLimits::kTrianglesPerPiece * pieces / (gradation > 0 ? std::min(gradation, 1.0) : 1.0);
+}
+
+// Bytes of a mesh that is held as a whole, or, if it may stream, of the strip that is held; and of
+// its parts that wait for their reader.
+double bytes_of_mesh(double triangles, double of_leaf, bool may_stream) {
+  const double whole = kBytesPerTriangle * triangles;
+  const double waiting = kBytesOfWaiting * std::min(triangles, full_leaves_waiting() * of_leaf);
+  const double leaves = triangles / of_leaf;
+  if (!may_stream || leaves < kFewestLeaves) return whole + waiting;
+  const double strip = kBytesOfStrip * std::sqrt(triangles * of_leaf) + kBytesPerLeaf * leaves;
+  return std::min(whole, strip) + waiting;
+}
+
+// Numbers that are not finite become `most`.
+std::uint64_t at_most(std::uint64_t most, double value) {
+  return value < static_cast<double>(most) ? static_cast<std::uint64_t>(value) : most;
+}
+
+}  // namespace
+
+Estimate estimate(const MeshRequest& request, const Budget& budget) {
+  const auto points = static_cast<double>(request.pslg.points.size());
+  const std::uint64_t most = std::min(budget.max_triangles, budget.triangle_limit);
+  const double triangles = std::min(
+      triangles_by_size(request) + triangles_by_pieces(request) + kTrianglesPerPoint * points,
+      static_cast<double>(most));
+  const bool may_stream = budget.max_triangles == Budget{}.max_triangles &&
+                          request.min_angle_deg <= kMaxStreamingAngleDeg;
+  const double bytes =
+      kBytesPerRun + kBytesPerPoint * points +
+      static_cast<double>(bytes_to_make(request.size, request.pslg)) +
+      bytes_of_mesh(triangles, request.leaf_triangles.value_or(leaf_triangles_for(triangles)),
+                    may_stream);
+  return {at_most(most, triangles), at_most(budget.max_bytes, bytes)};
+}
+
+}  // namespace weft

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// weft, the library: a planar straight-line graph and a size go in, a guaranteed-quality Delaunay
+// mesh comes out. A. N. Chernikov and N. P. Chrisochoides, "Parallel 2D Graded Guaranteed Quality
+// Delaunay Mesh Refinement", 2006.
+//
+//   weft::MeshRequest request{.pslg = square, .size = "0.01 + x^2", .min_angle_deg = 25};
+//   weft::Result<weft::Mesh> made = weft::mesh(request);
+//
+// Law: the same request gives the same mesh, byte for byte, on any number of threads and on every
+// x86-64-v2 machine. No function throws.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "weft/error.h"
+#include "weft/mesh.h"
+#include "weft/pslg.h"
+#include "weft/run.h"
+#include "weft/size.h"
+
+namespace weft {
+
+// Changes whenever the same request may give other bytes.
+inline constexpr std::string_view kEngineVersion = "7";
+
+inline constexpr double kMaxMinAngleDeg = 36;
+inline constexpr std::uint32_t kMaxSweeps = 16;
+
+// Where the Steiner points of triangles that are too large go.
+enum class Placement : std::uint8_t {
+  // To a hexagonal lattice that follows the size: a third fewer triangles, nearly all of them
+  // equilateral, along three directions. Above 31.5 degrees as kCircumcentre.
+  kLattice,
+  // To circumcentres: no direction in the mesh, and half as many triangles more.
+  kCircumcentre,
+};
+
+struct MeshRequest {
+  Pslg pslg = {};
+  SizeSpec size = {};
+  // Lower bound on every angle. REQUIRES: 0 <= min_angle_deg <= kMaxMinAngleDeg.
+  double min_angle_deg = 20;
+  // No edge shorter than this is made, in units. 0: only the floor of double precision.
+  double min_edge = 0;
+  Placement placement = Placement::kLattice;
+  // Sweeps of smoothing, at most kMaxSweeps. Unset: two if the size makes nearly all triangles, on
+  // a lattice that has few faults or in a mesh below 100,000 triangles; otherwise none.
+  std::optional<std::uint32_t> sweeps = std::nullopt;
+  // Whether a mesh with triangles that miss a bound without exemption
+  // (Unrefined::without_exemption) is a result. If not, it ends with kBoundsNotMet, after its
+  // chunks.
+  bool allow_unrefined = false;
+  // Triangles of the final mesh that a leaf of the quadtree holds at most. Another number gives
+  // another mesh. For tests and measurements. Unset: by the size of the mesh.
+  std::optional<double> leaf_triangles = std::nullopt;
+};
+
+// All that can be refused before work: what the four functions below refuse.
+std::optional<Error> validate(const MeshRequest& request);
+
+// Judges the ranges of the options. Does not read `pslg` and `size`.
+std::optional<Error> check_options(const MeshRequest& request);
+
+// Judges what needs neither the domain nor the values of arrays: a constant, an expression, names
+// of fields, the gradation, cells_across and the sizes at markers.
+std::optional<Error> check_size(const SizeSpec& size);
+
+// kBadSizeValue with the field "size.raster.values[i]" for the first value that is not positive and
+// finite. REQUIRES: columns > 0.
+std::optional<Error> check_raster_values(std::span<const double> values, std::uint32_t columns);
+
+// Judges what a run refuses of a PSLG before it triangulates: counts, coordinates, indices,
+// segments without length, region bounds, points on one line. Linear time.
+std::optional<Error> check_pslg(const Pslg& pslg);
+
+struct Estimate {
+  std::uint64_t triangles = 0;  // on the high side, up to twice as many as are made; see `estimate`
+  std::uint64_t bytes = 0;      // of engine memory at the peak
+};
+
+// What a run is expected to make and to take, at most what the budget allows: a guess, in linear
+// time, without a triangulation. What fields of an expression ask for is not in it. Any request is
+// safe, one that `validate` refuses, too.
+Estimate estimate(const MeshRequest& request, const Budget& budget = {});
+
+// Makes the mesh and sends it to the sink, chunk by chunk, most of a large mesh while it is
+// refined. Computes where the run says; calls the sink on the calling thread. What the sink took
+// before an error is no mesh.
+Result<Summary> stream(const MeshRequest& request, ChunkSink& sink, Run& run);
+
+// Makes the mesh all at once. Without a run: unbounded, on the calling thread.
+Result<Mesh> mesh(const MeshRequest& request, Run& run);
+Result<Mesh> mesh(const MeshRequest& request);
+
+// Bounds the memory that ended runs leave for later ones, in all of the process: 1 GiB unless this
+// sets another bound; and in proportion, at most 16 MiB, what each heap of malloc keeps at its end.
+// Runs that have ended already keep theirs. Thread-safe.
+void keep_memory_at_most(std::uint64_t bytes);
+
+}  // namespace weft
