@@ -79,6 +79,7 @@ step "shell scripts" check_shell
 step "includes" tests/includes.py
 step "places of tests" tests/mirror.py
 step "files that comments name" tests/paths.py
+step "limits that texts name" tests/limits.py
 needed "install linters" install_linters
 step "protocol" check_protocol
 step "console" check_console
