@@ -14,7 +14,7 @@ import pytest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ["WEFT_BUILD"])
 KEY = ROOT / "tests/models/key.poly"
-COMPONENTS = ["weft", "weftd", "python3-weft", "protocol"]
+COMPONENTS = ["weft", "weftd", "python3-weft", "protocol", "library"]
 sys.path.insert(0, str(ROOT / "deploy/package"))
 import program_help  # noqa: E402
 
@@ -80,7 +80,7 @@ def test_the_installed_package_for_python_meshes(prefix):
 
 
 def test_licences_are_beside_each_component(prefix):
-    for name in ("weft", "weftd", "python3-weft", "weft-protocol-dev"):
+    for name in ("weft", "weftd", "python3-weft", "weft-protocol-dev", "libweft-dev"):
         folder = prefix / "share/doc" / name
         for licence in ROOT.glob("LICENSES/*.txt"):
             assert (folder / "LICENSES" / licence.name).read_bytes() == licence.read_bytes()
