@@ -156,7 +156,9 @@ in_other sh -c 'pip install --quiet --no-index --break-system-packages --root-us
 cat >"$other/srv/mesh.py" <<'END'
 import weft
 with weft.local() as client:
-    client.mesh("/srv/pipe.poly", size="0.4*hypot(x-200, y-200) + 1").write("/tmp/python.vtu")
+    mesh = client.mesh("/srv/pipe.poly", size="0.4*hypot(x-200, y-200) + 1")
+mesh.write("/tmp/python.vtu")
+assert weft.mesh("/srv/pipe.poly", size="0.4*hypot(x-200, y-200) + 1").digest == mesh.digest
 END
 as_nobody=(setpriv --reuid 65534 --regid 65534 --clear-groups)
 in_other "${as_nobody[@]}" python3 /srv/mesh.py

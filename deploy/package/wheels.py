@@ -4,10 +4,10 @@
 
     deploy/package/wheels.py BUILD OUT
 
-BUILD is a folder in which weft and weftd were built, by the preset `portable`. OUT gets
+BUILD is a folder in which weft, weftd and libweft.so were built, by the preset `portable`. OUT gets
     weftmesh-VERSION.tar.gz                                  the sources
     weftmesh-VERSION-py3-none-any.whl                        the package, which needs a server
-    weftmesh-VERSION-py3-none-manylinux_2_36_x86_64.whl      with weft and weftd, and what they load
+    weftmesh-VERSION-py3-none-manylinux_2_36_x86_64.whl      with weft, weftd and libweft.so, and what they load
 
 The last one has no projections and no rasters but .asc: PROJ loads a library under the GPL (libjbig),
 GDAL hundreds of megabytes. It runs on every x86-64 Linux with glibc 2.36: every file in it is checked
@@ -39,6 +39,7 @@ OF_THE_SYSTEM = {"ld-linux-x86-64.so.2", "libanl.so.1", "libc.so.6", "libdl.so.2
                  "libstdc++.so.6", "libutil.so.1"}
 UNDER_THE_GPL = {"libjbig.so.0", "libreadline.so.8"}  # without an exception for what links them
 NEWEST = {"CXXABI": (1, 3, 13), "GCC": (12, 0, 0), "GLIBC": (2, 36), "GLIBCXX": (3, 4, 30)}
+LIBRARY = "libweft.so.0"
 SCRIPTS = """[console_scripts]
 weft = weft.__main__:main
 weftd = weft.__main__:server
@@ -115,7 +116,8 @@ def faults(folder):
 
 
 def carry(build, folder):
-    """Puts the programs into folder/bin, what they load into folder/lib. Returns what was copied."""
+    """Puts the programs into folder/bin, the library and what they load into folder/lib. Returns what
+    was copied of the system."""
     for name in ("bin", "lib"):
         (folder / name).mkdir(parents=True)
     copied = {}
@@ -123,8 +125,12 @@ def carry(build, folder):
         shutil.copy(build / program, folder / "bin" / program)
         copied |= {name: path for name, path in components.loaded_by(build / program).items()
                    if name not in OF_THE_SYSTEM}
+    library = build / LIBRARY
+    copied |= {name: path for name, path in components.loaded_by(library).items()
+               if name not in OF_THE_SYSTEM}
     for name, path in copied.items():
         shutil.copy(path, folder / "lib" / name)
+    shutil.copy(library, folder / "lib" / LIBRARY)
     for path in [*(folder / "bin").iterdir(), *(folder / "lib").iterdir()]:
         path.chmod(0o755)
         subprocess.run(["strip", "--strip-unneeded", path], check=True)

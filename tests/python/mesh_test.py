@@ -177,7 +177,7 @@ def test_sizes_have_a_logarithmic_scale(mesh):
 
 def test_a_notebook_gets_a_picture(mesh, monkeypatch):
     assert mesh._repr_png_().startswith(b"\x89PNG")
-    monkeypatch.setattr(weft.mesh, "need", lambda *_: (_ for _ in ()).throw(weft.MissingPackage("no")))
+    monkeypatch.setattr(weft._mesh, "need", lambda *_: (_ for _ in ()).throw(weft.MissingPackage("no")))
     assert mesh._repr_png_() is None
 
 

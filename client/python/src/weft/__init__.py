@@ -5,6 +5,7 @@
 
     with weft.local() as client:                  # or weft.Client("mesh.example.org:7421", tls=True)
         mesh = client.mesh("coast.geojson", size="1e-3 + 1e-2*hypot(x+74, y-40.5)^2", min_angle=30)
+    mesh = weft.mesh("coast.geojson", size=1e-3)  # the same, in this process: by libweft.so
     mesh.points, mesh.triangles                   # (n, 2) float64, (m, 3) int32
     mesh.write("coast.vtu")
 
@@ -15,6 +16,8 @@ beside the modules that these share, whose names begin with an underscore.
 """
 
 from . import aio
+from ._in_process import mesh
+from ._mesh import Mesh
 from ._requests import MeshOptions
 from ._target import TLS
 from ._triangulate import triangulate
@@ -28,7 +31,6 @@ from .errors import (AlreadyExists, BoundsNotMet, Cancelled, DamagedStream, Dead
                      SwitchError, Unauthenticated, Unavailable, WeftError, WeftWarning)
 from .fields import Field, distance, on_mesh, raster, width
 from .local import LocalServer, local
-from .mesh import Mesh
 from .quality import Quality
 from .results import (Accepted, Job, JobState, Merging, NarrowPlace, Progress, ServerInfo,
                       ServerLimits, SizeWarning, Summary, Timings, Unrefined)
@@ -42,5 +44,5 @@ __all__ = [
     "MissingPackage", "NarrowPlace", "NotFound", "Progress", "Quality", "Raster", "Region", "ServerError",
     "ServerInfo", "ServerLimits", "Size", "SizeWarning", "Summary", "SwitchError", "TLS", "Timings",
     "Unauthenticated", "Unavailable", "Unrefined", "WeftError", "WeftWarning", "__version__", "aio",
-    "distance", "local", "on_mesh", "raster", "triangulate", "width",
+    "distance", "local", "mesh", "on_mesh", "raster", "triangulate", "width",
 ]

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .domain import Domain
-from .mesh import Mesh
+from ._mesh import Mesh
 
 Floats = npt.NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from ._projection import Projection
 from ._warning import warn
 from ._wire import Chunk
 from .errors import DamagedStream
-from .mesh import Mesh
+from ._mesh import Mesh
 
 _Accepted = _protocol.message("weft.v1.Accepted")
 _Progress = _protocol.message("weft.v1.Progress")
@@ -40,6 +40,13 @@ def _digest(chunk: Chunk) -> bytes:
     for array in (chunk.points, chunk.triangles, chunk.regions, edges, chunk.input_points):
         sha256.update(np.ascontiguousarray(array).data)
     return sha256.digest()
+
+
+def warn_of_sizes(summary: results.Summary, sampled: bool) -> None:
+    """`sampled`: the size's raster was sampled from a function, of which the sampling has warned."""
+    for warning in summary.size_warnings:
+        if not (sampled and warning.kind == "coarse_raster"):
+            warn(warning.message)
 
 
 class MeshReceiver:
@@ -148,9 +155,7 @@ class MeshReceiver:
         if self._sha256.hexdigest() != summary.digest:
             raise _damaged("the mesh does not match the SHA-256 of the summary")
         self.summary = summary
-        for warning in summary.size_warnings:
-            if not (self._sampled and warning.kind == "coarse_raster"):
-                warn(warning.message)
+        warn_of_sizes(summary, self._sampled)
 
     def mesh(self) -> Mesh:
         """The mesh, once the summary is there; gives up the chunks."""

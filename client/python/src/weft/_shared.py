@@ -12,7 +12,7 @@ from ._requests import MeshOptions
 from .client import Client
 from .domain import Domain
 from .local import LocalServer
-from .mesh import Mesh
+from ._mesh import Mesh
 from .size import Size
 
 _lock = threading.Lock()

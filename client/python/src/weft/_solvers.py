@@ -11,7 +11,7 @@ from ._optional import need
 from ._topology import topology as topology_of
 
 if TYPE_CHECKING:
-    from .mesh import Mesh
+    from ._mesh import Mesh
 
 
 def to_skfem(mesh: Mesh) -> Any:

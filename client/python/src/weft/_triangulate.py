@@ -21,7 +21,7 @@ from ._triangle_input import Arrays, Floats, Ints, Problem, column, graph_proble
 from ._triangle_refined import mesh_problem
 from ._warning import warn
 from .domain import Domain
-from .mesh import Mesh
+from ._mesh import Mesh
 
 _MOST_TRIES = 8  # to come near the number of Steiner points
 

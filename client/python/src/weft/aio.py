@@ -30,7 +30,7 @@ from ._warning import in_thread
 from ._wire import Chunk
 from .domain import DomainLike
 from .local import LocalServer
-from .mesh import Mesh
+from ._mesh import Mesh
 from .results import Job, JobState, Progress, ServerInfo
 from .size import Size
 

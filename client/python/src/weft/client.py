@@ -16,7 +16,7 @@ from ._requests import MeshOptions, job_request, stream_request
 from ._retry import Retry
 from ._wire import Chunk
 from .domain import DomainLike
-from .mesh import Mesh
+from ._mesh import Mesh
 from .results import Job, JobState, Progress, ServerInfo
 from .size import Size
 

@@ -25,7 +25,7 @@ from .errors import DomainError
 
 if TYPE_CHECKING:
     from .domain import Domain
-    from .mesh import Mesh
+    from ._mesh import Mesh
 
 Field = Union["Distance", "RasterField", "FileField", "MeshField", "Width"]
 """A number at every point: see distance, raster, on_mesh and width."""
