@@ -175,10 +175,8 @@ class Bender {
     for (const Step& step : steps_)
       if (near_.is_bent(step.segment)) is_beside[step.edge] = 1;
     for (const Step& step : steps_)
-      if (is_beside[step.edge]) result_.beside.emplace_back(step.edge, marker(step.segment));
-    std::sort(result_.beside.begin(), result_.beside.end());
-    result_.beside.erase(std::unique(result_.beside.begin(), result_.beside.end()),
-                         result_.beside.end());
+      if (is_beside[step.edge])
+        result_.beside.push_back({step.edge, step.segment, marker(step.segment)});
   }
 
   void link_points() {

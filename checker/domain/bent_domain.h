@@ -40,10 +40,15 @@ struct BentDomain {
   std::vector<std::array<Vec2, 2>> links;  // bound faces, but are not in the mesh
   double link_slack = 0;                   // the slack of the links
   double rounding = 0;                     // of every place: on_segment_tolerance
-  // Listed edges beside bent segments, each with the markers of all segments that it is beside, or
-  // on; sorted, distinct. If several chains are beside each other, it is undefined which edge
-  // belongs to which segment.
-  std::vector<std::pair<std::uint32_t, std::int32_t>> beside;
+  // A listed edge beside a bent segment, and a segment of the input that it is beside, or on.
+  struct Beside {
+    std::uint32_t edge;
+    std::uint32_t segment;
+    std::int32_t marker;  // of the segment
+  };
+  // If several chains are beside each other, it is undefined which edge belongs to which segment:
+  // each has an entry for all of them.
+  std::vector<Beside> beside;
 
   // The uncertainty of the place of an edge of the arrangement. `covers`: the pieces that it is
   // part of; empty for a link.

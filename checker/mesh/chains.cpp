@@ -75,7 +75,7 @@ class ChainJudge {
           marker == marker_of(edge_at(step, track_of(domain_, step.segment))))
         expected_marker_[step.edge] = marker;
     }
-    for (const auto& [edge, marker] : bent_.beside) {
+    for (const auto& [edge, segment, marker] : bent_.beside) {
       if (state_[edge] == State::kOnNoSegment) state_[edge] = State::kUnclear;
       if (state_[edge] == State::kOnSegment && mesh_.edges[edge].marker == marker)
         expected_marker_[edge] = marker;
@@ -99,6 +99,10 @@ class ChainJudge {
 
   SegmentsOfVertices take_segments() {
     for (auto& [vertex, segment] : segments_) segment = bent_.origin[segment];
+    for (const BentDomain::Beside& beside : bent_.beside) {
+      segments_.emplace_back(mesh_.edges[beside.edge].a, beside.segment);
+      segments_.emplace_back(mesh_.edges[beside.edge].b, beside.segment);
+    }
     std::sort(segments_.begin(), segments_.end());
     segments_.erase(std::unique(segments_.begin(), segments_.end()), segments_.end());
     return std::move(segments_);
