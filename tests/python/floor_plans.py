@@ -50,3 +50,16 @@ def floor_plan(seed):
     seeds[:, :2] = seeds[:, :2] @ turn
     return {"vertices": np.round(np.array(points) @ turn, 2), "segments": np.array(segments),
             "segment_markers": np.array(markers), "regions": seeds}
+
+
+def write_poly(path, given):
+    """By Triangle's documentation of the format."""
+    points, segments = given["vertices"], given["segments"]
+    markers = np.ravel(given.get("segment_markers", np.zeros(len(segments), int)))
+    holes, regions = given.get("holes", ()), given.get("regions", ())
+    tables = [(f"{len(points)} 2 0 0", np.array(points, float).tolist()),
+              (f"{len(segments)} 1", [(*ends, marker) for ends, marker in zip(segments, markers)]),
+              (len(holes), holes), (len(regions), [(x, y, int(a), area) for x, y, a, area in regions])]
+    lines = [line for header, rows in tables
+             for line in (header, *(" ".join(map(str, (i, *row))) for i, row in enumerate(rows)))]
+    path.write_text("\n".join(map(str, lines)) + "\n")

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import shapely.geometry
 import weft
-from floor_plans import floor_plan
+from floor_plans import floor_plan, write_poly
 from weft import _hull, _triangulate
 
 SQUARE = {"vertices": [(0, 0), (4, 0), (4, 4), (0, 4)], "segments": [(0, 1), (1, 2), (2, 3), (3, 0)]}
@@ -38,19 +38,6 @@ def judge(run_weft, tmp_path):
                         "--min-angle", min_angle, *bounds)
         assert "the mesh holds" in said
     return check
-
-
-def write_poly(path, given):
-    """By Triangle's documentation of the format."""
-    points, segments = given["vertices"], given["segments"]
-    markers = np.ravel(given.get("segment_markers", np.zeros(len(segments), int)))
-    holes, regions = given.get("holes", ()), given.get("regions", ())
-    tables = [(f"{len(points)} 2 0 0", np.array(points, float).tolist()),
-              (f"{len(segments)} 1", [(*ends, marker) for ends, marker in zip(segments, markers)]),
-              (len(holes), holes), (len(regions), [(x, y, int(a), area) for x, y, a, area in regions])]
-    lines = [line for header, rows in tables
-             for line in (header, *(" ".join(map(str, (i, *row))) for i, row in enumerate(rows)))]
-    path.write_text("\n".join(map(str, lines)) + "\n")
 
 
 def marked(given):
