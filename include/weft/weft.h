@@ -77,7 +77,7 @@ std::optional<Error> check_raster_values(std::span<const double> values, std::ui
 std::optional<Error> check_pslg(const Pslg& pslg);
 
 struct Estimate {
-  std::uint64_t triangles = 0;  // on the high side, up to twice as many as are made; see `estimate`
+  std::uint64_t triangles = 0;  // on the high side, up to 2.5 times as many as are made
   std::uint64_t bytes = 0;      // of engine memory at the peak
 };
 
