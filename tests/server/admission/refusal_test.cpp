@@ -313,7 +313,7 @@ INSTANTIATE_TEST_SUITE_P(
              "size.at[1].marker", "as that of size.at[0]"},
         Case{"Gradation", [](Request& r) { r.mutable_size()->set_gradation(-1); }, "size.gradation",
              "is -1"},
-        Case{"FieldOfNoKind", [](Request& r) { add_field(r); }, "size.fields[0]", "of no kind"},
+        Case{"FieldOfNoKind", [](Request& r) { add_field(r); }, "size.fields[0]", "has no kind"},
         Case{"FieldName",
              [](Request& r) {
                add_field(r).mutable_width();
