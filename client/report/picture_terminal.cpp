@@ -14,6 +14,7 @@
 #include <cstdlib>
 
 #include "client/base/atomic_file.h"
+#include "client/base/option_row.h"
 
 namespace weft::client {
 namespace {
@@ -22,7 +23,6 @@ constexpr char kEscape = '\033';
 // Asks for a picture of one pixel in kitty's protocol, which is checked but not shown; then for the
 // attributes of the device (DA1), in which 4 stands for sixel.
 constexpr std::string_view kQuestion = "\033_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\033\\\033[c";
-constexpr std::chrono::milliseconds kPatience{200};
 constexpr std::size_t kLongestAnswer = 256;
 
 // While it lives, keys are read at once and are not echoed.
@@ -70,13 +70,23 @@ bool is_something_typed() {
   return ::ioctl(STDIN_FILENO, FIONREAD, &bytes) != 0 || bytes > 0;
 }
 
+// WEFT_TERMINAL_WAIT, in seconds, if it is a number up to a minute.
+std::chrono::duration<double> patience() {
+  constexpr double kDefault = 0.2;
+  constexpr double kMost = 60;
+  const char* const text = std::getenv("WEFT_TERMINAL_WAIT");
+  const auto seconds = text == nullptr ? std::nullopt : value_of<double>(text);
+  return std::chrono::duration<double>(seconds && *seconds >= 0 && *seconds <= kMost ? *seconds
+                                                                                     : kDefault);
+}
+
 std::optional<PictureProtocol> ask() {
   using Clock = std::chrono::steady_clock;
   const RawKeys raw;
   if (!raw || is_something_typed()) return std::nullopt;
   if (!write_all(STDOUT_FILENO, kQuestion.data(), kQuestion.size())) return std::nullopt;
   PictureAnswers answers;
-  const auto end = Clock::now() + kPatience;
+  const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(patience());
   while (!answers.complete()) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count();
     pollfd keys{STDIN_FILENO, POLLIN, 0};

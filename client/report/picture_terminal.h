@@ -40,11 +40,11 @@ class PictureAnswers {
   bool sixel_ = false;
 };
 
-// Asks the terminal, and waits 0.2 s at most for the answer. Returns nullopt if it shows no
-// pictures or does not answer; without asking if standard input, output and error are not one
-// terminal, of which this process has the foreground, if TERM says that it would not pass the
-// question on (screen, tmux) or not understand it, or if something is typed already, which stays to
-// be read. What is typed while the answer is awaited is lost. Not thread-safe.
+// Asks the terminal, and waits 0.2 s at most for the answer, or WEFT_TERMINAL_WAIT seconds. Returns
+// nullopt if it shows no pictures or does not answer; without asking if standard input, output and
+// error are not one terminal, of which this process has the foreground, if TERM says that it would
+// not pass the question on (screen, tmux) or not understand it, or if something is typed already,
+// which stays to be read. What is typed while the answer is awaited is lost. Not thread-safe.
 std::optional<PictureTerminal> find_picture_terminal();
 
 }  // namespace weft::client

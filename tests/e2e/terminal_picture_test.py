@@ -57,9 +57,13 @@ class Terminal:
         def take_terminal() -> None:
             fcntl.ioctl(1, termios.TIOCSCTTY, 0)
 
+        # A busy machine may answer late; what is no whole answer is not waited for.
+        patience = {"WEFT_TERMINAL_WAIT": "60"} if re.search(rb"\x1b\[\?[\d;]*c", answer) else {}
+
         weft = subprocess.Popen([WEFT, *map(str, words)], stdin=self.slave if stdin is None else stdin,
                                 stdout=self.slave, stderr=self.slave, start_new_session=True,
-                                preexec_fn=take_terminal, env={**os.environ, "TERM": term})
+                                preexec_fn=take_terminal,
+                                env={**os.environ, "TERM": term, **patience})
         end = time.monotonic() + PATIENCE
         while True:
             ended = weft.poll() is not None
