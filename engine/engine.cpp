@@ -10,6 +10,7 @@
 #include "engine/base/failure.h"
 #include "engine/base/text.h"
 #include "engine/domain/domain.h"
+#include "engine/domain/simplify/simplify.h"
 #include "engine/domain/tolerance.h"
 #include "engine/gradation_mesh.h"
 #include "engine/output/bounds_error.h"
@@ -94,6 +95,10 @@ class Pipeline {
     if (request_.size.gradation_within && size_->limited_across_land() != nullptr) {
       if (auto error = limit_within()) return tl::unexpected(*error);
     }
+    if (request_.simplify > 0) {
+      if (auto error = context_.compute([this] { return simplify_domain(); }))
+        return tl::unexpected(*error);
+    }
     return refine();
   }
 
@@ -171,7 +176,46 @@ class Pipeline {
     auto made = make_size(request_.size, request_.pslg, domain_, context_);
     if (!made) return made.error();
     size_.emplace(std::move(*made));
+    if (request_.simplify > 0) return std::nullopt;  // the map is that of the simplified domain
     return map_size();
+  }
+
+  // Makes the domain no finer than a share of its size. The size stays that of the domain as it
+  // was.
+  std::optional<Error> simplify_domain() {
+    if (size().constant() == std::numeric_limits<double>::infinity() && !has_bounds())
+      return Error{ErrorCode::kBadOption, "simplify",
+                   "simplify is " + text(request_.simplify) +
+                       ", a share of the size, and the request has no size"};
+    Finest finest{.share = request_.simplify,
+                  .edge =
+                      [this](Point p) {
+                        const double area = size()(p);
+                        return SizeFunction::bounds_area(area)
+                                   ? SizeFunction::edge_of_area(area)
+                                   : std::numeric_limits<double>::infinity();
+                      },
+                  .region_edge = {}};
+    for (const Region& region : domain_.regions)
+      finest.region_edge.push_back(SizeFunction::edge_of_area(region.max_area));
+    for (const SizeAt& at : request_.size.at)
+      finest.marker_edge.emplace_back(at.marker, at.max_edge);
+    auto made = simplify(domain_, finest, context_);
+    if (!made) return made.error();
+    domain_ = std::move(made->domain);
+    summary_.simplified = made->changes;
+    summary_.box = {};
+    for (const Point p : domain_.vertices) summary_.box.add(p);
+    context_.end_stage("simplification");
+    return map_size();
+  }
+
+  // Whether regions or markers have a bound of their own.
+  bool has_bounds() const {
+    return !request_.size.at.empty() ||
+           std::any_of(domain_.regions.begin(), domain_.regions.end(), [](const Region& region) {
+             return region.max_area < std::numeric_limits<double>::infinity();
+           });
   }
 
   std::optional<Error> map_size() {

@@ -24,6 +24,8 @@ std::optional<Error> check_options(const MeshRequest& request) {
     const std::string range = "from 0 to " + std::to_string(kMaxSweeps) + " sweeps";
     return bad("quality.optimise", std::to_string(*request.sweeps), range.c_str());
   }
+  if (!(request.simplify >= 0 && std::isfinite(request.simplify)))
+    return bad("simplify", text(request.simplify), "0 or more, and finite");
   return std::nullopt;
 }
 

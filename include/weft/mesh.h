@@ -82,6 +82,16 @@ struct Overlap {
   bool united = false;      // or else, by even-odd filling, not meshed where an even number overlap
 };
 
+// What MeshRequest::simplify did to the domain.
+struct Simplification {
+  std::uint64_t points = 0;    // vertices of the domain that are gone
+  std::uint64_t islands = 0;   // land, or holes, that are meshed now
+  std::uint64_t waters = 0;    // parts that are no longer meshed
+  std::uint64_t channels = 0;  // that were cut
+  double area = 0;             // of the new domain less that of the old one
+  double farthest = 0;         // of a new line from the old ones, at most
+};
+
 // A warning about a size that is probably not what is wanted.
 struct SizeWarning {
   enum class Kind : std::uint8_t {
@@ -154,8 +164,9 @@ struct Summary {
   // The centroid of the first triangle, in the order of the chunks, that misses a bound without
   // exemption; meaningless if there is none.
   Point unrefined_at;
-  Merging merging;  // of the input, before refinement
-  Overlap overlap;  // of the input's areas
+  Merging merging;                           // of the input, before refinement
+  Overlap overlap;                           // of the input's areas
+  std::optional<Simplification> simplified;  // unless MeshRequest::simplify is 0
   // The costliest one, if it has at least a fifth of a mesh of a thousand triangles or more.
   std::optional<NarrowPlace> narrow;
 

@@ -49,6 +49,10 @@ struct MeshRequest {
   // Sweeps of smoothing, at most kMaxSweeps. Unset: two if the size makes nearly all triangles, on
   // a lattice that has few faults or in a mesh below 100,000 triangles; otherwise none.
   std::optional<std::uint32_t> sweeps = std::nullopt;
+  // The domain is made no finer than this share of the length of edges that the size, regions and
+  // sizes at markers ask for at each place, that of an equilateral triangle of the largest area.
+  // The size is that of the domain as it was. 0: as it is. REQUIRES: finite, 0 or more.
+  double simplify = 0;
   // Whether a mesh with triangles that miss a bound without exemption
   // (Unrefined::without_exemption) is a result. If not, it ends with kBoundsNotMet, after its
   // chunks.

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Closes water that is narrower than the finest length, and opens such land. "Water" is what is
+// meshed, "land" is what is not; regions and lines inside the domain stay as they are, and so does
+// all that touches them.
+//
+// A triangle of the constrained Delaunay triangulation of the lines is narrow if a circle around
+// its corners has a diameter below the finest length there, and no angle is above 150 degrees: if
+// points are dense along the lines, that is a place where no disk of this diameter fits. Points are
+// made dense where a corner is nearer to a line than 4/5 of that length, and where lines meet at
+// less than 45 degrees. Then:
+//   1. inlets: a narrow triangle of water with two sides on the border becomes land, and so on from
+//      the head of an inlet to its mouth;
+//   2. channels: a narrow triangle of water with one side on the border becomes land, the narrowest
+//      first, which cuts the channel; then both stumps go as by 1;
+//   3. spits and islands: as by 1, with water and land exchanged. Land is never cut.
+// New lines have the marker of a line of the triangle that they replace. Every triangle that
+// changes is nearer to its corners than half the finest length, so no point that changes is farther
+// from the lines; and a new line is farther from them by half its length than its ends at most.
+//
+// Places that end in a held point, where a marker ends or lines meet, are left: 1 stops there, and
+// 2 does not cut them off.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/domain/simplify/decimation.h"
+#include "engine/domain/simplify/line_graph.h"
+#include "engine/domain/simplify/near_lines.h"
+#include "engine/domain/stop_poller.h"
+
+namespace weft {
+
+struct Narrowed {
+  std::uint64_t changed = 0;   // triangles
+  std::uint64_t channels = 0;  // that were cut
+  Dropped dropped;             // by 1 and 3, to the last triangle
+};
+
+// Throws Stopped.
+Narrowed close_narrow_places(LineGraph& graph, const NearLines& original, StopPoller& poller);
+
+}  // namespace weft

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/domain/simplify/near_lines.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/domain/arrangement/snapping.h"
+#include "engine/domain/triangulation/hilbert.h"
+
+namespace weft {
+namespace {
+
+constexpr double kPrecision = 1.0 / 16;  // of a distance
+// Of the parts of a triangle: what takes more is far larger than what narrow places hold.
+constexpr int kMostLooks = 4096;
+
+Point middle(Point a, Point b) {
+  return {(a.x + b.x) / 2, (a.y + b.y) / 2};
+}
+
+// The square of the distance to a box.
+double distance2(Point p, const Box& box) {
+  const double dx = std::max({box.min_x - p.x, p.x - box.max_x, 0.0});
+  const double dy = std::max({box.min_y - p.y, p.y - box.max_y, 0.0});
+  return dx * dx + dy * dy;
+}
+
+}  // namespace
+
+NearLines::NearLines(const LineGraph& graph, StopPoller& poller) {
+  std::vector<Point> middles;
+  middles.reserve(graph.lines.size());
+  for (const Line& line : graph.lines)
+    middles.push_back(middle(graph.points[line.a], graph.points[line.b]));
+  for (const std::uint32_t l : hilbert_order(middles, poller))
+    lines_.emplace_back(graph.points[graph.lines[l].a], graph.points[graph.lines[l].b]);
+  while (leaves_ * kLeaf < lines_.size()) leaves_ *= 2;
+  box_.resize(2 * leaves_);
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    box_[leaves_ + i / kLeaf].add(lines_[i].first);
+    box_[leaves_ + i / kLeaf].add(lines_[i].second);
+  }
+  for (std::size_t node = leaves_ - 1; node > 0; --node)
+    for (const std::size_t child : {2 * node, 2 * node + 1})
+      if (box_[child].min_x <= box_[child].max_x) box_[node].merge(box_[child]);
+}
+
+double NearLines::distance(Point p, double within) const {
+  double least = within;
+  std::array<std::size_t, 128> stack;
+  std::size_t depth = 0;
+  stack[depth++] = 1;
+  while (depth > 0) {
+    const std::size_t node = stack[--depth];
+    if (!(distance2(p, box_[node]) < least * least)) continue;
+    if (node < leaves_) {
+      const bool left_is_nearer = distance2(p, box_[2 * node]) < distance2(p, box_[2 * node + 1]);
+      stack[depth++] = left_is_nearer ? 2 * node + 1 : 2 * node;
+      stack[depth++] = left_is_nearer ? 2 * node : 2 * node + 1;
+      continue;
+    }
+    const std::size_t first = (node - leaves_) * kLeaf;
+    for (std::size_t i = first; i < first + kLeaf && i < lines_.size(); ++i)
+      least = std::min(least, distance_to_segment(p, lines_[i].first, lines_[i].second));
+  }
+  return least;
+}
+
+bool NearLines::holds_near(const std::array<Point, 3>& triangle, double within) const {
+  int looks = 0;
+  const auto look = [&](auto&& self, Point a, Point b, Point c) -> bool {
+    const Point centre = centroid(a, b, c);
+    const double radius = std::sqrt(std::max(
+        {weft::distance2(centre, a), weft::distance2(centre, b), weft::distance2(centre, c)}));
+    const double off = distance(centre, within);
+    if (off + radius <= within) return true;
+    if (off >= within || radius < kPrecision * within || ++looks > kMostLooks) return false;
+    const Point ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    return self(self, ab, bc, ca) && self(self, a, ab, ca) && self(self, ab, b, bc) &&
+           self(self, ca, bc, c);
+  };
+  return look(look, triangle[0], triangle[1], triangle[2]);
+}
+
+double NearLines::farthest(Point a, Point b, double within) const {
+  if (!(within > 0)) return 0;
+  const double most = (1 + kPrecision) * within;
+  double found = 0;
+  double bound = 0;
+  const auto look = [&](auto&& self, Point p, Point q) -> void {
+    const Point m = middle(p, q);
+    const double half = weft::distance(p, q) / 2;
+    const double off = distance(m, most);
+    found = std::max(found, off);
+    if (off + half <= found) return;
+    if (half < kPrecision * within) {
+      bound = std::max(bound, off + half);
+      return;
+    }
+    self(self, p, m);
+    self(self, m, q);
+  };
+  look(look, a, b);
+  return std::min(within, std::max(found, bound));
+}
+
+}  // namespace weft

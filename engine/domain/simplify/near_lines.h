@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Distances to the lines of the original domain: a tree of boxes over the lines along a Hilbert
+// curve.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "engine/base/geometry.h"
+#include "engine/domain/simplify/line_graph.h"
+#include "engine/domain/stop_poller.h"
+
+namespace weft {
+
+class NearLines {
+ public:
+  // Throws Stopped.
+  NearLines(const LineGraph& graph, StopPoller& poller);
+
+  // The distance of p to the nearest line; `within` if none is nearer than that.
+  double distance(Point p, double within) const;
+
+  // Whether every point of the triangle is within a distance of the lines. May say no if one is
+  // farther than 15/16 of it, or if the triangle is far larger. It may be flat.
+  bool holds_near(const std::array<Point, 3>& triangle, double within) const;
+
+  // A bound on the distance of the farthest point between a and b: at most a 16th of `within` more.
+  // REQUIRES: none is farther than `within`.
+  double farthest(Point a, Point b, double within) const;
+
+ private:
+  static constexpr std::size_t kLeaf = 4;  // lines
+
+  std::vector<std::pair<Point, Point>> lines_;  // in the order of the leaves
+  std::size_t leaves_ = 1;                      // as in PointTree
+  std::vector<Box> box_;
+};
+
+}  // namespace weft
