@@ -11,6 +11,7 @@
 #include "checker/domain/domain_rules.h"
 #include "checker/domain/joined_faces.h"
 #include "checker/domain/near_features.h"
+#include "checker/domain/simplified_domain.h"
 #include "checker/geometry/arrangement.h"
 #include "checker/geometry/contacts.h"
 #include "checker/geometry/fill.h"
@@ -21,6 +22,7 @@
 #include "checker/mesh/half_edges.h"
 #include "checker/mesh/listed_edges.h"
 #include "checker/mesh/overlap.h"
+#include "checker/mesh/simplification.h"
 #include "checker/mesh/skipped_edges.h"
 #include "checker/mesh/structure.h"
 #include "checker/text.h"
@@ -217,14 +219,46 @@ Report judge(const Domain& domain, const Domain& given, const Mesh& mesh,
   return report;
 }
 
+// A mesh of a simplified domain: judged against the segments that it has itself, and these against
+// the domain. If the mesh is not sound, that is all that is said of it.
+Report judge_simplified(const Domain& domain, const Domain& given, const Mesh& mesh,
+                        const Requirements& requirements) {
+  Findings findings(requirements.listed_violations);
+  const bool sound = judge_domain(domain, findings) && judge_structure(mesh, findings) &&
+                     judge_orientation(mesh, findings);
+  std::optional<HalfEdges> half_edges;
+  if (sound) half_edges.emplace(mesh);
+  if (!sound || !half_edges->judge_conformity(findings)) {
+    Report report = judge(domain, given, mesh, requirements);
+    report.not_judged.push_back(Rule::kSimplified);
+    return report;
+  }
+  const SimplifiedDomain simple = simplified_domain(domain, mesh, *half_edges);
+  half_edges.reset();
+  Report report = judge(simple.domain, given, simple.mesh, requirements);
+  const BentDomain original = unbent(domain), own = unbent(simple.domain);
+  const auto filled = arrange(original, findings);
+  const auto own_filled = arrange(own, findings);
+  if (!filled || !own_filled || !report.ok()) {
+    report.not_judged.push_back(Rule::kSimplified);
+  } else {
+    judge_simplification({domain, filled->arrangement, filled->roles},
+                         {simple.domain, own_filled->arrangement, own_filled->roles}, mesh,
+                         requirements, report.facts, findings);
+  }
+  findings.add_to(report);
+  return report;
+}
+
 }  // namespace
 
 Report check(const Domain& domain, const Mesh& mesh, const Requirements& requirements) {
   const bool has_points =
       std::any_of(domain.segments.begin(), domain.segments.end(),
                   [&](const SegmentEnds& ends) { return is_a_point(domain, ends); });
-  return has_points ? judge(without_segments_that_are_points(domain), domain, mesh, requirements)
-                    : judge(domain, domain, mesh, requirements);
+  const auto judge_as = requirements.simplify > 0 ? judge_simplified : judge;
+  return has_points ? judge_as(without_segments_that_are_points(domain), domain, mesh, requirements)
+                    : judge_as(domain, domain, mesh, requirements);
 }
 
 }  // namespace weft::check

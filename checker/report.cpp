@@ -9,8 +9,9 @@ namespace weft::check {
 namespace {
 
 constexpr std::array<std::string_view, kRules> kRuleNames = {
-    "domain", "size",    "structure", "orientation", "conformity", "overlap", "edges", "chains",
-    "points", "markers", "coverage",  "regions",     "delaunay",   "angle",   "area",  "lengths"};
+    "domain",   "size",   "structure", "orientation", "conformity", "overlap",
+    "edges",    "chains", "points",    "markers",     "coverage",   "regions",
+    "delaunay", "angle",  "area",      "lengths",     "simplified"};
 
 std::size_t index(Rule rule) {
   return static_cast<std::size_t>(rule);
@@ -38,6 +39,13 @@ void Findings::write_to(Report& report) const {
   std::stable_sort(report.violations.begin(), report.violations.end(),
                    [](const Violation& a, const Violation& b) { return a.rule < b.rule; });
   report.totals = totals_;
+}
+
+void Findings::add_to(Report& report) const {
+  report.violations.insert(report.violations.end(), violations_.begin(), violations_.end());
+  std::stable_sort(report.violations.begin(), report.violations.end(),
+                   [](const Violation& a, const Violation& b) { return a.rule < b.rule; });
+  for (std::size_t r = 0; r < kRules; ++r) report.totals[r] += totals_[r];
 }
 
 std::string to_text(const Report& report) {

@@ -32,8 +32,9 @@ enum class Rule : std::uint8_t {
   kAngle,     // no angle is below the bound, except those that small input angles exempt
   kArea,      // no triangle is larger than the size field, or its region, allows
   kLengths,   // no listed edge is longer than the size at its marker
+  kSimplified,  // a simplified domain is nowhere farther from the original than was asked for
 };
-inline constexpr std::size_t kRules = 16;
+inline constexpr std::size_t kRules = 17;
 
 std::string_view rule_name(Rule rule);  // "coverage"
 
@@ -56,6 +57,8 @@ struct Facts {
   double min_angle_deg = 0;
   double max_angle_deg = 0;
   double area = 0;
+  // Of a simplified domain, less that of the original; nullopt if it was not judged.
+  std::optional<double> area_change;
   double mean_quality = 0;      // of 4 sqrt(3) area / (sum of the squared edges)
   double min_angle_p1_deg = 0;  // 1 % of the triangles have a smaller smallest angle
   // The number of triangles with a bound on their area, over the sum of their areas over their
@@ -110,6 +113,8 @@ class Findings {
   // Adds what the other found, within the same limits.
   void merge(const Findings& other);
   void write_to(Report& report) const;
+  // The same, for a report that has others' findings already.
+  void add_to(Report& report) const;
 
  private:
   std::uint64_t listed_;

@@ -29,6 +29,10 @@ struct Requirements {
   SizeSpec size;
   // Lower bound on every angle, degrees. Default: none.
   std::optional<double> min_angle_deg;
+  // The domain that the mesh has may be simplified to this share of the length of edges that the
+  // size allows (simplification.h): then the mesh is judged against its own segments, and these
+  // against the domain. 0: it may not.
+  double simplify = 0;
   // Whether small input angles exempt (exemption.h).
   bool allow_small_input_angles = true;
   // Maximum triangles that may miss the angle or the area bound without exemption: those that the

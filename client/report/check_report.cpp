@@ -30,7 +30,8 @@ constexpr std::array<const char*, check::kRules> kProperties = {
     "the triangulation is Delaunay, but for the edges on segments",
     "",
     "",
-    "edges are at most as long as the sizes at their markers"};
+    "edges are at most as long as the sizes at their markers",
+    "the domain is simplified no farther than asked"};
 
 std::string digits(double value, int count) {
   char text[40];
@@ -69,6 +70,8 @@ bool is_asked(Rule rule, const check::Report& report, const check::Requirements&
       return !is_judged(report, rule) || report.facts.worst_area_ratio.has_value();
     case Rule::kLengths:  // it is not judged if triangles may miss their bounds
       return !requirements.size.at.empty() && requirements.allowed_unrefined == 0;
+    case Rule::kSimplified:
+      return requirements.simplify > 0;
     default:
       return true;
   }

@@ -307,6 +307,7 @@ std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
   check::Requirements requirements;
   requirements.size = to_checker(request.size);
   requirements.min_angle_deg = request.min_angle_deg;
+  requirements.simplify = request.simplify;
   // What the engine declares it could not refine may miss its bounds, no more.
   requirements.allowed_unrefined = summary.unrefined.edge_floor + summary.unrefined.budget +
                                    summary.unrefined.without_exemption();
@@ -327,6 +328,11 @@ std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
       !is_right(1e-6 + share_rounding(requirements.size, domain, collected.mesh) +
                 region_rounding(request, domain, collected.mesh)))
     return "the summary mistakes the least number of triangles";
+  if (request.simplify > 0) {
+    if (!summary.simplified) return "the summary does not tell what was simplified";
+    if (!near(summary.simplified->area, *report.facts.area_change, 1e-9 * report.facts.area))
+      return "the summary mistakes the change of the area";
+  }
   if (summary.triangles != report.facts.triangles) return "the summary miscounts triangles";
   if (summary.vertices != report.facts.vertices) return "the summary miscounts vertices";
   if (summary.edges != report.facts.edges) return "the summary miscounts edges";

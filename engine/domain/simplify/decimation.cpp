@@ -56,7 +56,8 @@ class Decimation {
         is_twin_(find_twins(graph, used_)),
         tree_(graph.points, used_, poller),
         chains_(chains_of(graph, poller)),
-        version_(chains_.nodes.size(), 0) {
+        version_(chains_.nodes.size(), 0),
+        is_mixed_(chains_.nodes.size(), false) {
     error_.reserve(chains_.nodes.size());
     for (const Node& node : chains_.nodes) error_.push_back(node.error);
   }
@@ -177,13 +178,13 @@ class Decimation {
 
   void take_out(std::uint32_t v) {
     const std::uint32_t u = chains_.nodes[v].before, w = chains_.nodes[v].after;
-    Node& from = chains_.nodes[u];
-    const Node& gone = chains_.nodes[v];
-    if (gone.marker != from.marker && distance(at(v), at(w)) > distance(at(u), at(v))) {
-      from.marker = gone.marker;
-      from.segment = gone.segment;
-    }
-    error_[u] = std::min(error_of(u, w), share_ * least_finest(u, w));
+    const double allowed = share_ * least_finest(u, w);
+    const std::uint32_t like = marked_like(u, v, w, allowed);
+    is_mixed_[u] =
+        is_mixed_[u] || is_mixed_[v] || chains_.nodes[u].marker != chains_.nodes[v].marker;
+    error_[u] = is_mixed_[u] ? allowed : std::min(error_of(u, w), allowed);
+    chains_.nodes[u].segment = chains_.nodes[like].segment;
+    chains_.nodes[u].marker = chains_.nodes[like].marker;
     tree_.remove(chains_.nodes[v].point);
     chains_.remove(v);
     version_[v] = kGone;
@@ -248,7 +249,19 @@ class Decimation {
     if (!keeps_angles(u, v, w, chain) || !is_free(u, v, w, chain)) return std::nullopt;
     if (error > allowed && !original_.holds_near({at(u), at(v), at(w)}, allowed))
       return std::nullopt;
+    if (marked_like(u, v, w, allowed) == kNone) return std::nullopt;
     return error / allowed;
+  }
+
+  // The node, u or v, whose line has the marker that a line uw has; kNone if it may have neither.
+  std::uint32_t marked_like(std::uint32_t u, std::uint32_t v, std::uint32_t w, double allowed) {
+    const bool is_pure =
+        !is_mixed_[u] && !is_mixed_[v] && chains_.nodes[u].marker == chains_.nodes[v].marker;
+    if (is_pure && error_of(u, w) <= allowed) return u;
+    const bool u_is_longer = distance(at(u), at(v)) >= distance(at(v), at(w));
+    for (const std::uint32_t n : {u_is_longer ? u : v, u_is_longer ? v : u})
+      if (original_.holds_near({at(u), at(w), at(w)}, allowed, chains_.nodes[n].marker)) return n;
+    return kNone;
   }
 
   // Whether a line between u and w might be there already.
@@ -339,7 +352,8 @@ class Decimation {
   Chains chains_;
   std::vector<double> error_;           // per node: of the line after it
   std::vector<std::uint32_t> version_;  // per node: changes with its neighbours
-  std::vector<bool> mark_;              // per point
+  std::vector<bool> is_mixed_;  // per node: whether the line after it replaces several markers
+  std::vector<bool> mark_;      // per point
   std::priority_queue<Candidate> queue_;
   double least_turn_ = 0;
   Dropped dropped_;

@@ -5,12 +5,15 @@
 //   - no other point lies in the triangle uvw, on its border, or nearer than the domain's tolerance
 //     to uw. So no line crosses another, all stays on its side of the chain, and so does the order
 //     of what meets in a point (decided exactly);
-//   - every point of uw is within the error allowed there of the original lines, and every point of
-//     the chain that it replaces within the same distance of uw; or, if the chain bounds the
-//     domain, every point of the triangle is within that error of the original lines;
+//   - every point of uw is within the error allowed there of the original lines with its marker,
+//   and
+//     every point of the chain that it replaces within the same distance of uw; or, if the chain
+//     bounds the domain, every point of the triangle is within that error of the original lines,
+//     and every point of uw of those with its marker;
 //   - it makes no angle inside the domain that is below a bound and below what was there.
-// A node is tried if one of its lines is shorter than the finest length at its ends, or if it was
-// no corner of the original. The order is that of the errors, relative to what is allowed.
+// The new line has the marker of the two; of two markers, that of the longer line if it may have
+// it. A node is tried if one of its lines is shorter than the finest length at its ends, or if it
+// was no corner of the original. The order is that of the errors, relative to what is allowed.
 //
 // Why the error bounds both ways. Let d be the largest distance of a node of the chain from u to w
 // to the line uw: as distances to a line are convex, no point of the chain is farther from it. A

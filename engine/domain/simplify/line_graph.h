@@ -26,7 +26,7 @@ struct Line {
   std::uint32_t right = kNone;
   std::int32_t marker = 0;
   std::uint32_t segment = 0;  // of the PSLG
-  // No point of the line is farther than this from the lines of the original domain.
+  // No point of the line is farther than this from the original lines with its marker.
   double error = 0;
 
   bool bounds_domain() const { return (left == kNone) != (right == kNone); }

@@ -34,7 +34,8 @@ double diameter(Point a, Point b, Point c) {
 }
 
 // Divides the lines that `parts` has several parts for.
-void divide(LineGraph& graph, const std::vector<std::uint32_t>& parts) {
+void divide(LineGraph& graph, const std::vector<std::uint32_t>& parts,
+            const std::function<double(Point)>& finest_at) {
   const std::size_t count = graph.lines.size();
   for (std::size_t l = 0; l < count; ++l) {
     if (parts[l] < 2) continue;
@@ -44,10 +45,11 @@ void divide(LineGraph& graph, const std::vector<std::uint32_t>& parts) {
     std::uint32_t from = line.a;
     for (std::uint32_t i = 1; i <= parts[l]; ++i) {
       const double t = static_cast<double>(i) / parts[l];
-      const std::uint32_t to = i == parts[l]
-                                   ? line.b
-                                   : graph.add_point({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)},
-                                                     kNone, line.error, std::min(fine_a, fine_b));
+      const Point p{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
+      const std::uint32_t to =
+          i == parts[l]
+              ? line.b
+              : graph.add_point(p, kNone, line.error, std::min({fine_a, fine_b, finest_at(p)}));
       Line part = line;
       part.a = from;
       part.b = to;
@@ -59,8 +61,9 @@ void divide(LineGraph& graph, const std::vector<std::uint32_t>& parts) {
 
 class Narrowing {
  public:
-  Narrowing(LineGraph& graph, const NearLines& original, StopPoller& poller)
-      : graph_(graph), original_(original), poller_(poller) {}
+  Narrowing(LineGraph& graph, const NearLines& original,
+            const std::function<double(Point)>& finest_at, StopPoller& poller)
+      : graph_(graph), original_(original), finest_at_(finest_at), poller_(poller) {}
 
   Narrowed run() {
     find_plain_points();
@@ -87,8 +90,11 @@ class Narrowing {
     std::vector<std::uint32_t> count(graph_.points.size(), 0);
     std::vector<std::uint32_t> region(graph_.points.size(), kNone);
     is_plain_.assign(graph_.points.size(), true);
-    for (const Line& line : graph_.lines) {
+    line_at_.assign(graph_.points.size(), kNone);
+    for (std::uint32_t l = 0; l < graph_.lines.size(); ++l) {
+      const Line& line = graph_.lines[l];
       for (const std::uint32_t v : {line.a, line.b}) {
+        line_at_[v] = l;
         const std::uint32_t here = std::min(line.left, line.right);
         if (!line.bounds_domain() || (count[v]++ > 0 && region[v] != here)) is_plain_[v] = false;
         region[v] = here;
@@ -128,7 +134,7 @@ class Narrowing {
         any = any || parts[l] > 1;
       }
     }
-    if (any) divide(graph_, parts);
+    if (any) divide(graph_, parts, finest_at_);
     return any;
   }
 
@@ -171,32 +177,43 @@ class Narrowing {
     return int{is_border(t, 0)} + int{is_border(t, 1)} + int{is_border(t, 2)};
   }
 
-  // An error of a side of a triangle that changes, as a line of its own.
-  double error_of_side(std::uint32_t t, int i) const {
+  // A line whose marker a side may have that becomes a line; kNone if there is none.
+  std::uint32_t line_for_side(std::uint32_t t, int i) const {
     const std::uint32_t p = point(t, ccw(i)), q = point(t, cw(i));
-    return std::min(std::max(graph_.error[p], graph_.error[q]) +
-                        distance(graph_.points[p], graph_.points[q]) / 2,
-                    finest(t));
+    std::array<std::uint32_t, 5> lines{kNone, kNone, kNone, line_at_[p], line_at_[q]};
+    for (int k = 0; k < 3; ++k)
+      if (is_border(t, k)) lines[k] = source_[t][k];
+    for (const std::uint32_t line : lines)
+      if (line != kNone &&
+          original_.holds_near({graph_.points[p], graph_.points[q], graph_.points[q]}, finest(t),
+                               graph_.lines[line].marker))
+        return line;
+    return kNone;
   }
 
   bool may_change(std::uint32_t t) const {
-    return !changed_[t] && is_plain(t) && is_narrow(t) &&
-           original_.holds_near({at(t, 0), at(t, 1), at(t, 2)}, finest(t));
+    if (changed_[t] || !is_plain(t) || !is_narrow(t) ||
+        !original_.holds_near({at(t, 0), at(t, 1), at(t, 2)}, finest(t)))
+      return false;
+    for (int i = 0; i < 3; ++i)
+      if (!is_border(t, i) && line_for_side(t, i) == kNone) return false;
+    return true;
   }
 
-  // Exchanges water and land in a triangle. REQUIRES: it has a side on the border.
+  // Exchanges water and land in a triangle. REQUIRES: it may change, and has a side on the border.
   void change(std::uint32_t t) {
     int side = 0;
     while (!is_border(t, side)) ++side;
-    const std::uint32_t line = source_[t][side];
+    std::array<std::uint32_t, 3> line{};
+    for (int i = 0; i < 3; ++i) line[i] = is_border(t, i) ? kNone : line_for_side(t, i);
     for (int i = 0; i < 3; ++i) {
-      if (is_border(t, i)) continue;
+      if (line[i] == kNone) continue;
       const std::uint32_t n = a_.triangles[t].neighbor[i];
-      source_[t][i] = line;
+      source_[t][i] = line[i];
       int back = 0;
       while (a_.triangles[n].neighbor[back] != t) ++back;
-      source_[n][back] = line;
-      own_error_.push_back({t, n, error_of_side(t, i)});
+      source_[n][back] = line[i];
+      own_error_.push_back({t, n, finest(t)});
     }
     const std::uint32_t beyond = a_.triangles[t].neighbor[side];
     region_[t] = is_water(t) ? kNone : region_[beyond];
@@ -377,11 +394,13 @@ class Narrowing {
 
   LineGraph& graph_;
   const NearLines& original_;
+  const std::function<double(Point)>& finest_at_;
   StopPoller& poller_;
   Arrangement a_;
-  std::vector<std::uint32_t> region_;  // per triangle
-  std::vector<bool> is_plain_;         // per point
-  std::vector<bool> changed_;          // per triangle
+  std::vector<std::uint32_t> region_;   // per triangle
+  std::vector<bool> is_plain_;          // per point
+  std::vector<std::uint32_t> line_at_;  // per point: a line that ends there
+  std::vector<bool> changed_;           // per triangle
   // Per side of a triangle: the line that it is on, or whose marker it takes.
   std::vector<std::array<std::uint32_t, 3>> source_;
   std::vector<SideError> own_error_;  // of sides that were no lines
@@ -393,8 +412,9 @@ class Narrowing {
 
 }  // namespace
 
-Narrowed close_narrow_places(LineGraph& graph, const NearLines& original, StopPoller& poller) {
-  return Narrowing(graph, original, poller).run();
+Narrowed close_narrow_places(LineGraph& graph, const NearLines& original,
+                             const std::function<double(Point)>& finest_at, StopPoller& poller) {
+  return Narrowing(graph, original, finest_at, poller).run();
 }
 
 }  // namespace weft

@@ -13,15 +13,16 @@
 //   2. channels: a narrow triangle of water with one side on the border becomes land, the narrowest
 //      first, which cuts the channel; then both stumps go as by 1;
 //   3. spits and islands: as by 1, with water and land exchanged. Land is never cut.
-// New lines have the marker of a line of the triangle that they replace. Every triangle that
-// changes is nearer to its corners than half the finest length, so no point that changes is farther
-// from the lines; and a new line is farther from them by half its length than its ends at most.
+// A new line has the marker of a line that the triangle replaces, or of one at its ends, if all of
+// it is within the finest length of the original lines with that marker. No triangle changes that
+// has a point farther than that from all original lines, or a side without such a marker.
 //
 // Places that end in a held point, where a marker ends or lines meet, are left: 1 stops there, and
 // 2 does not cut them off.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "engine/domain/simplify/decimation.h"
 #include "engine/domain/simplify/line_graph.h"
@@ -36,7 +37,9 @@ struct Narrowed {
   Dropped dropped;             // by 1 and 3, to the last triangle
 };
 
-// Throws Stopped.
-Narrowed close_narrow_places(LineGraph& graph, const NearLines& original, StopPoller& poller);
+// `finest_at` is asked at new points, where the least of it and of what the ends of their line have
+// counts. Throws Stopped.
+Narrowed close_narrow_places(LineGraph& graph, const NearLines& original,
+                             const std::function<double(Point)>& finest_at, StopPoller& poller);
 
 }  // namespace weft

@@ -33,19 +33,20 @@ NearLines::NearLines(const LineGraph& graph, StopPoller& poller) {
   for (const Line& line : graph.lines)
     middles.push_back(middle(graph.points[line.a], graph.points[line.b]));
   for (const std::uint32_t l : hilbert_order(middles, poller))
-    lines_.emplace_back(graph.points[graph.lines[l].a], graph.points[graph.lines[l].b]);
+    lines_.push_back(
+        {graph.points[graph.lines[l].a], graph.points[graph.lines[l].b], graph.lines[l].marker});
   while (leaves_ * kLeaf < lines_.size()) leaves_ *= 2;
   box_.resize(2 * leaves_);
   for (std::size_t i = 0; i < lines_.size(); ++i) {
-    box_[leaves_ + i / kLeaf].add(lines_[i].first);
-    box_[leaves_ + i / kLeaf].add(lines_[i].second);
+    box_[leaves_ + i / kLeaf].add(lines_[i].a);
+    box_[leaves_ + i / kLeaf].add(lines_[i].b);
   }
   for (std::size_t node = leaves_ - 1; node > 0; --node)
     for (const std::size_t child : {2 * node, 2 * node + 1})
       if (box_[child].min_x <= box_[child].max_x) box_[node].merge(box_[child]);
 }
 
-double NearLines::distance(Point p, double within) const {
+double NearLines::distance(Point p, double within, Marker marker) const {
   double least = within;
   std::array<std::size_t, 128> stack;
   std::size_t depth = 0;
@@ -61,18 +62,20 @@ double NearLines::distance(Point p, double within) const {
     }
     const std::size_t first = (node - leaves_) * kLeaf;
     for (std::size_t i = first; i < first + kLeaf && i < lines_.size(); ++i)
-      least = std::min(least, distance_to_segment(p, lines_[i].first, lines_[i].second));
+      if (!marker || *marker == lines_[i].marker)
+        least = std::min(least, distance_to_segment(p, lines_[i].a, lines_[i].b));
   }
   return least;
 }
 
-bool NearLines::holds_near(const std::array<Point, 3>& triangle, double within) const {
+bool NearLines::holds_near(const std::array<Point, 3>& triangle, double within,
+                           Marker marker) const {
   int looks = 0;
   const auto look = [&](auto&& self, Point a, Point b, Point c) -> bool {
     const Point centre = centroid(a, b, c);
     const double radius = std::sqrt(std::max(
         {weft::distance2(centre, a), weft::distance2(centre, b), weft::distance2(centre, c)}));
-    const double off = distance(centre, within);
+    const double off = distance(centre, within, marker);
     if (off + radius <= within) return true;
     if (off >= within || radius < kPrecision * within || ++looks > kMostLooks) return false;
     const Point ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);

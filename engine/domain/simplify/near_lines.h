@@ -6,7 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
+#include <optional>
 #include <vector>
 
 #include "engine/base/geometry.h"
@@ -20,12 +20,16 @@ class NearLines {
   // Throws Stopped.
   NearLines(const LineGraph& graph, StopPoller& poller);
 
+  // Which lines count: those with this marker, or all.
+  using Marker = std::optional<std::int32_t>;
+
   // The distance of p to the nearest line; `within` if none is nearer than that.
-  double distance(Point p, double within) const;
+  double distance(Point p, double within, Marker marker = std::nullopt) const;
 
   // Whether every point of the triangle is within a distance of the lines. May say no if one is
   // farther than 15/16 of it, or if the triangle is far larger. It may be flat.
-  bool holds_near(const std::array<Point, 3>& triangle, double within) const;
+  bool holds_near(const std::array<Point, 3>& triangle, double within,
+                  Marker marker = std::nullopt) const;
 
   // A bound on the distance of the farthest point between a and b: at most a 16th of `within` more.
   // REQUIRES: none is farther than `within`.
@@ -34,8 +38,13 @@ class NearLines {
  private:
   static constexpr std::size_t kLeaf = 4;  // lines
 
-  std::vector<std::pair<Point, Point>> lines_;  // in the order of the leaves
-  std::size_t leaves_ = 1;                      // as in PointTree
+  struct Marked {
+    Point a, b;
+    std::int32_t marker;
+  };
+
+  std::vector<Marked> lines_;  // in the order of the leaves
+  std::size_t leaves_ = 1;     // as in PointTree
   std::vector<Box> box_;
 };
 

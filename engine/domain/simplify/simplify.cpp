@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <exception>
+#include <limits>
 #include <new>
 #include <numeric>
 #include <string>
@@ -35,6 +36,12 @@ double area_of(const Domain& domain) {
   return doubled / 2;
 }
 
+// 0 if there is no length, or none above 0.
+double finest_at(const Finest& finest, Point p, double bound) {
+  const double asked = std::min(bound, finest.edge(p));
+  return std::isfinite(asked) && asked > 0 ? finest.share * asked : 0;
+}
+
 // Sets the finest lengths of the points that lines name.
 void set_finest(const Finest& finest, LineGraph& graph, StopPoller& poller) {
   std::vector<double> edge(graph.points.size(), std::numeric_limits<double>::infinity());
@@ -53,8 +60,7 @@ void set_finest(const Finest& finest, LineGraph& graph, StopPoller& poller) {
   for (std::size_t v = 0; v < edge.size(); ++v) {
     if (!is_named[v]) continue;
     poller.step();
-    const double asked = std::min(edge[v], finest.edge(graph.points[v]));
-    graph.finest[v] = std::isfinite(asked) && asked > 0 ? finest.share * asked : 0;
+    graph.finest[v] = finest_at(finest, graph.points[v], edge[v]);
   }
 }
 
@@ -106,7 +112,13 @@ Simplified run(const Domain& domain, const Finest& finest, StopPoller& poller) {
   require_some_left(graph);
   for (int round = 0; round < kRounds; ++round) {
     LineGraph narrowed = graph;
-    const Narrowed result = close_narrow_places(narrowed, original, poller);
+    const Narrowed result = close_narrow_places(
+        narrowed, original,
+        [&](Point p) {
+          const double asked = finest.edge(p);
+          return asked > 0 ? finest.share * asked : 0;
+        },
+        poller);
     if (result.changed > 0) {
       graph = std::move(narrowed);
       changes.channels += result.channels;
