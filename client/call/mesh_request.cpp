@@ -212,6 +212,7 @@ v1::GenerateMeshRequest make_request(const Domain& domain, const RequestOptions&
     request.mutable_budget()->set_max_seconds(*request_options.max_seconds);
   if (request_options.threads) request.set_threads(*request_options.threads);
   if (request_options.snap) request.mutable_domain()->set_snap(*request_options.snap);
+  if (request_options.simplify) request.set_simplify(*request_options.simplify);
   request.set_allow_unrefined(request_options.allow_unrefined);
   request.set_want_quadtree(request_options.quadtree);
   request.set_no_cache(request_options.no_cache);

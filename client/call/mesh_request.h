@@ -44,7 +44,8 @@ struct RequestOptions {
   std::optional<std::uint64_t> max_triangles{};
   std::optional<double> max_seconds{};
   std::optional<std::uint32_t> threads{};
-  std::optional<double> snap{};  // features nearer together are merged first
+  std::optional<double> snap{};      // features nearer together are merged first
+  std::optional<double> simplify{};  // the domain is no finer than this share of the size
   PolygonFill fill = PolygonFill::kUnion;
   bool allow_unrefined = false;  // accept a mesh that misses its bounds without exemption
   bool quadtree = false;         // ask for the quadtree, to draw it

@@ -127,6 +127,11 @@ const OptionRows<Request>& other_rows() {
       {"snap", "WEFT_SNAP",
        "First merge points and segments of the domain that are nearer together than this",
        "only what double precision cannot keep apart", number("D", &Request::snap), "domain.snap"},
+      {"simplify", "WEFT_SIMPLIFY",
+       "Make the domain no finer than this share of the length of edges that the size asks for at "
+       "each place: smaller islands are dropped, narrower inlets, channels and spits closed or "
+       "opened, corners taken out, nothing moves farther than that",
+       "every segment is meshed as it is", number("F", &Request::simplify), "simplify"},
       {"fill", "WEFT_FILL",
        "What is meshed where polygons overlap: union all that any of them covers, even-odd what an "
        "odd "

@@ -36,6 +36,7 @@ Examples:
   weft mesh coast.geojson -o coast.vtu --size sizes.asc
   weft mesh coast.geojson -o coast.vtu --edge 'min(0.02 + 0.15*shore, 1)' --field shore=distance
   weft mesh coast.geojson -o coast.vtu --lonlat --size 1e8
+  weft mesh coast.geojson -o coast.14 --lonlat --edge 2000 --simplify 0.5
   weft mesh key.poly -o key.vtu -o key.node --draw key.png --color angle
   weft mesh coast.geojson -o fort.14 --open-boundary 1 --nodal depth=depth.tif --lonlat
   weft mesh cylinder.poly --size 1e-2 --draw cylinder.png --draw-quadtree
@@ -191,6 +192,11 @@ void add_check(CLI::App& app, Chosen& chosen) {
       {"snap", "WEFT_SNAP", "Distance within which features were merged, as given to `weft mesh`",
        "", number("D", &CheckOptions::snap)},
       options);
+  add_row(check,
+          {"simplify", "WEFT_SIMPLIFY",
+           "Share of the size to which the domain was simplified, as given to `weft mesh`", "",
+           number("F", &CheckOptions::simplify)},
+          options);
   add_row(check,
           {"fill", "WEFT_FILL", "What was meshed where polygons overlap, as given to `weft mesh`",
            "union", fill_value(&CheckOptions::fill)},

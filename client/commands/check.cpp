@@ -52,6 +52,7 @@ Result<check::Requirements> requirements_of(const CheckOptions& options, const I
   check::Requirements requirements;
   requirements.min_angle_deg = options.min_angle_deg;
   requirements.allowed_unrefined = options.max_unrefined;
+  requirements.simplify = options.simplify.value_or(0);
   auto size = checker_size(options.size, input.domain, input.projection.get());
   if (!size) return tl::unexpected(size.error());
   requirements.size = std::move(*size);
@@ -79,6 +80,9 @@ Result<ExitCode> run_check(const CheckOptions& options) {
   if (options.snap && !(std::isfinite(*options.snap) && *options.snap >= 0))
     return fail(ExitCode::kUsage,
                 "--snap is " + shortest(*options.snap) + "; it must be finite and 0 or more");
+  if (options.simplify && !(std::isfinite(*options.simplify) && *options.simplify >= 0))
+    return fail(ExitCode::kUsage, "--simplify is " + shortest(*options.simplify) +
+                                      "; it must be finite and 0 or more");
   if (has_domain && options.projection.wanted() && !options.projection.to_metres)
     return fail(ExitCode::kUsage,
                 "a mesh is checked in the plane that it was made in: write it with --to-metres, "

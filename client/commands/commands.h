@@ -70,6 +70,7 @@ struct CheckOptions {
   RequestOptions size;  // how large triangles may be; the rest is not looked at
   double min_angle_deg = 20;
   std::optional<double> snap;
+  std::optional<double> simplify;
   PolygonFill fill = PolygonFill::kUnion;
   std::uint64_t max_unrefined = 0;
   ProjectionOptions projection;  // of the domain, whose mesh is in metres, or of the mesh

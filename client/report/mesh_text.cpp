@@ -62,6 +62,14 @@ std::string rounded(double distance) {
   return text;
 }
 
+Json simplification_json(const v1::Summary& summary) {
+  if (!summary.has_simplification()) return nullptr;
+  const v1::Simplification& made = summary.simplification();
+  return {{"points", made.points()}, {"islands", made.islands()},
+          {"waters", made.waters()}, {"channels", made.channels()},
+          {"area", made.area()},     {"farthest", made.farthest()}};
+}
+
 // "1 point", "1,200 points".
 std::string counted(std::uint64_t count, const std::string& what) {
   return with_separators(count) + " " + what + (count == 1 ? "" : "s");
@@ -90,6 +98,7 @@ Json summary_json(const v1::Summary& summary) {
                  {"area", summary.overlap().area()},
                  {"united", summary.overlap().united()}}},
                {"narrow", narrow_json(summary)},
+               {"simplification", simplification_json(summary)},
                {"digest", hex(summary.sha256())},
                {"engine_version", summary.engine_version()},
                {"threads", summary.threads()},
@@ -155,7 +164,7 @@ std::string summary_text(const v1::Summary& summary) {
   missed(unrefined.edge_floor(), "edges would become too short");
   missed(unrefined.budget(), "--max-triangles was reached");
   return text + unrefined_warning(unrefined) + merging_text(summary.merging()) +
-         overlap_text(summary) + narrow_text(summary);
+         simplification_text(summary) + overlap_text(summary) + narrow_text(summary);
 }
 
 std::string size_warnings_text(const v1::Summary& summary) {
@@ -190,6 +199,18 @@ std::string overlap_text(const v1::Summary& summary) {
          rounded(overlap.area()) +
          (overlap.united() ? ", which is meshed once\n"
                            : ", not meshed where an even number of them does\n");
+}
+
+std::string simplification_text(const v1::Summary& summary) {
+  if (!summary.has_simplification()) return "";
+  const v1::Simplification& made = summary.simplification();
+  if (made.farthest() == 0 && made.points() + made.islands() + made.waters() == 0)
+    return "simplified: nothing was finer\n";
+  return "simplified: " + counted(made.points(), "point") + ", " +
+         counted(made.islands(), "island") + " and " + counted(made.waters(), "water") +
+         " dropped, " + counted(made.channels(), "channel") + " cut, area " +
+         (made.area() > 0 ? "+" : "") + rounded(made.area()) + ", no line moved by more than " +
+         rounded(made.farthest()) + "\n";
 }
 
 std::string narrow_text(const v1::Summary& summary) {

@@ -252,6 +252,15 @@ void weft_mesh_summary(const weft_mesh* mesh, weft_summary* summary) {
   to.deferred = from.deferred;
   to.exact_predicates = from.exact_predicates;
   to.warning_count = from.size_warnings.size();
+  to.has_simplification = from.simplified.has_value();
+  if (from.simplified) {
+    to.simplified_points = from.simplified->points;
+    to.dropped_islands = from.simplified->islands;
+    to.dropped_waters = from.simplified->waters;
+    to.cut_channels = from.simplified->channels;
+    to.simplified_area = from.simplified->area;
+    to.simplified_farthest = from.simplified->farthest;
+  }
   weft::give(to, summary);
 }
 

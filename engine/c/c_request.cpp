@@ -188,6 +188,7 @@ Result<MeshRequest> to_engine(const weft_request& request) try {
   out.placement = enumerator(request.placement, Placement::kCircumcentre, "quality.placement");
   if (request.sweeps >= 0) out.sweeps = static_cast<std::uint32_t>(request.sweeps);
   out.allow_unrefined = request.allow_unrefined != 0;
+  out.simplify = request.simplify;
   return out;
 } catch (const Failure& failure) {
   return tl::unexpected(failure.error());

@@ -109,6 +109,7 @@ typedef struct weft_request {
   int32_t placement;
   int32_t sweeps; /* -1: as many as pay */
   int32_t allow_unrefined;
+  double simplify; /* share of the size */
 } weft_request;
 #define WEFT_REQUEST \
   { .struct_size = sizeof(weft_request), .min_angle_deg = 20, .sweeps = -1 }
@@ -185,6 +186,10 @@ typedef struct weft_summary {
   double engine_seconds;
   uint64_t peak_bytes, insertions, deferred, exact_predicates;
   size_t warning_count;
+  /* what simplify did: 0 without */
+  int32_t has_simplification;
+  uint64_t simplified_points, dropped_islands, dropped_waters, cut_channels;
+  double simplified_area, simplified_farthest;
 } weft_summary;
 #define WEFT_SUMMARY \
   { .struct_size = sizeof(weft_summary) }

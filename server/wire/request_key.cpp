@@ -34,6 +34,7 @@ void sort_by_id(google::protobuf::RepeatedPtrField<v1::Name>& names) {
 void make_canonical(v1::GenerateMeshRequest& request) {
   request.DiscardUnknownFields();
   for (const std::string_view path : kNotInMeshKey) clear(request, path);
+  if (request.simplify() == 0) request.clear_simplify();  // -0 is 0
   v1::Quality& quality = *request.mutable_quality();
   if (!quality.has_min_angle_deg()) quality.set_min_angle_deg(MeshRequest{}.min_angle_deg);
   if (quality.placement() == v1::PLACEMENT_UNSPECIFIED)

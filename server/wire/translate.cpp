@@ -112,6 +112,7 @@ MeshRequest options_of(const v1::GenerateMeshRequest& request) {
   if (request.quality().placement() == v1::PLACEMENT_CIRCUMCENTRE)
     out.placement = Placement::kCircumcentre;
   if (request.quality().has_optimise()) out.sweeps = request.quality().optimise();
+  out.simplify = request.simplify();
   out.allow_unrefined = request.allow_unrefined();
   return out;
 }
@@ -308,6 +309,15 @@ v1::Summary to_wire(const Summary& summary, std::uint32_t threads) {
     overlap.set_areas(summary.overlap.areas);
     overlap.set_area(summary.overlap.area);
     overlap.set_united(summary.overlap.united);
+  }
+  if (summary.simplified) {
+    v1::Simplification& simplification = *message.mutable_simplification();
+    simplification.set_points(summary.simplified->points);
+    simplification.set_islands(summary.simplified->islands);
+    simplification.set_waters(summary.simplified->waters);
+    simplification.set_channels(summary.simplified->channels);
+    simplification.set_area(summary.simplified->area);
+    simplification.set_farthest(summary.simplified->farthest);
   }
   if (summary.narrow) {
     v1::NarrowPlace& narrow = *message.mutable_narrow();

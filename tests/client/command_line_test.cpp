@@ -353,7 +353,9 @@ TEST_F(CommandLine, RefusesNumbersThatAreNone) {
   for (const char* value : {"nan", "-nan", "much"}) {
     refuses(check, "--min-angle", value, "a number");
     refuses(check, "--snap", value, "a number");
-    for (const char* name : {"--timeout", "--min-angle", "--min-edge", "--snap", "--max-seconds"})
+    refuses(check, "--simplify", value, "a number");
+    for (const char* name :
+         {"--timeout", "--min-angle", "--min-edge", "--snap", "--simplify", "--max-seconds"})
       refuses(mesh_to("n.vtu"), name, value, "a number");
     for (const char* command : {"batch", "get", "watch", "health", "list"})
       refuses({command, command == std::string("list") ? "--json" : "a"}, "--timeout", value,

@@ -119,6 +119,19 @@ def test_two_segments_that_cost_many_triangles_are_told(client):
     assert client.mesh(domain, snap=0.01).summary.narrow is None
 
 
+def test_a_domain_is_simplified_to_a_share_of_its_size(client):
+    saw = [(i / 10, 0.02 * (i % 2)) for i in range(101)]
+    points = [*saw, (10, 10), (0, 10)]
+    domain = weft.Domain(points=points, segments=[(i, (i + 1) % len(points)) for i in range(len(points))])
+    mesh = client.mesh(domain, edge=2, simplify=0.5)
+    made = mesh.summary.simplification
+    assert made.points > 80 and 0 < made.farthest <= 1
+    assert client.mesh(domain, edge=2).summary.simplification is None
+    with pytest.raises(weft.InvalidRequest, match="simplify") as caught:
+        client.mesh(domain, simplify=0.5)
+    assert caught.value.violations[0].field == "simplify"
+
+
 def test_a_snap_reaches_the_server_which_refuses_what_is_no_distance(client):
     assert client.mesh(KEY, snap=1e-9).summary.merging.points == 0
     with pytest.raises(weft.InvalidRequest) as caught:

@@ -56,6 +56,12 @@ def expect_same(client, *arguments, **options):
     return mesh
 
 
+def test_a_simplified_domain_has_the_mesh_that_a_server_makes(client):
+    made = expect_same(client, KEY, edge=12, simplify=0.5, min_angle=15).summary.simplification
+    assert made.points > 0 and made.farthest > 0
+    assert weft.mesh(KEY, edge=12, min_angle=15).summary.simplification is None
+
+
 @pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.name)
 def test_samples_have_the_mesh_that_a_server_makes(client, path):
     box = weft.Domain.read(path).box()

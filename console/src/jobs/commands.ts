@@ -7,13 +7,14 @@ import { Measure, Placement, type GenerateMeshRequest, type NamedField } from ".
 type Value = string | number | boolean;
 
 // In the order of the flags of `weft mesh`; the names are those of Python's options.
-function optionsOf({ domain, quality, size, budget, allowUnrefined }: GenerateMeshRequest): [string, Value][] {
+function optionsOf({ domain, quality, size, simplify, budget, allowUnrefined }: GenerateMeshRequest): [string, Value][] {
   const options: [string, Value | undefined][] = [
     ["min_angle", quality?.minAngleDeg],
     ["min_edge", quality?.minEdge || undefined],
     ["placement", quality?.placement === Placement.CIRCUMCENTRE ? "circumcentre" : undefined],
     ["optimise", quality?.optimise],
     ["snap", domain?.snap || undefined],
+    ["simplify", simplify || undefined],
     ["gradation", size?.gradation || undefined],
     ["gradation_within", size?.gradationWithin || undefined],
     ["cells_across", size?.cellsAcross || undefined],

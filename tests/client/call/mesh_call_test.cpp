@@ -188,6 +188,7 @@ TEST(MeshRequest, CarriesTheDomainAndTheWishes) {
                                              .max_seconds = 2,
                                              .threads = 3,
                                              .snap = 0.25,
+                                             .simplify = 0.75,
                                              .allow_unrefined = true});
   EXPECT_EQ(request.domain().points_size(), 8);
   EXPECT_EQ(request.domain().points(4), 2);
@@ -214,6 +215,7 @@ TEST(MeshRequest, CarriesTheDomainAndTheWishes) {
   EXPECT_EQ(request.budget().max_seconds(), 2);
   EXPECT_EQ(request.threads(), 3u);
   EXPECT_EQ(request.domain().snap(), 0.25);
+  EXPECT_EQ(request.simplify(), 0.75);
   EXPECT_TRUE(request.allow_unrefined());
   EXPECT_FALSE(make_request(domain, {}).allow_unrefined());
 }

@@ -64,6 +64,7 @@ const std::map<std::string, Sample>& samples() {
                                                     {"placement", {"circumcentre"}},
                                                     {"optimise", {"3"}},
                                                     {"snap", {"0.0014385"}},
+                                                    {"simplify", {"0.625"}},
                                                     {"fill", {"even-odd"}},
                                                     {"allow-unrefined", {"true"}},
                                                     {"max-triangles", {"9"}},

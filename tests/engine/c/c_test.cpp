@@ -152,6 +152,21 @@ TEST(CInterface, TakesFieldsOfAllKinds) {
   given.expect_same();
 }
 
+TEST(CInterface, Simplifies) {
+  Given given;
+  given.request.simplify = given.same.simplify = 6;  // of the region's edges of 0.3
+  given.expect_same();
+  weft_mesh* const made = weft_make(&given.request, nullptr, nullptr);
+  ASSERT_NE(made, nullptr);
+  weft_summary told WEFT_SUMMARY;
+  weft_mesh_summary(made, &told);
+  EXPECT_EQ(told.has_simplification, 1);
+  EXPECT_EQ(told.simplified_points, 4u);
+  EXPECT_EQ(told.dropped_islands, 1u);
+  EXPECT_EQ(told.simplified_area, 1);
+  weft_mesh_free(made);
+}
+
 TEST(CInterface, TakesAreas) {
   Given given;
   const std::array<std::uint32_t, 8> areas{0, 0, 0, 0, 1, 1, 1, 1};

@@ -277,6 +277,7 @@ TEST(GenerateMesh, HandsTheWholeRequestToTheEngine) {
   request.mutable_quality()->set_placement(v1::PLACEMENT_CIRCUMCENTRE);
   request.mutable_quality()->set_optimise(5);
   request.mutable_domain()->set_snap(0.125);
+  request.set_simplify(0.375);
   request.set_allow_unrefined(true);
   request.mutable_budget()->set_max_triangles(1000);
   request.mutable_budget()->set_max_bytes(1 << 20);
@@ -298,6 +299,7 @@ TEST(GenerateMesh, HandsTheWholeRequestToTheEngine) {
     EXPECT_EQ(got.placement, Placement::kCircumcentre);
     EXPECT_EQ(got.sweeps, 5u);
     EXPECT_EQ(got.pslg.snap, 0.125);
+    EXPECT_EQ(got.simplify, 0.375);
     EXPECT_TRUE(got.allow_unrefined);
     EXPECT_EQ(run.context().budget().max_triangles, 1000u);
     EXPECT_EQ(run.context().budget().max_bytes, 1u << 20);

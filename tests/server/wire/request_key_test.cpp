@@ -141,6 +141,7 @@ TEST(MeshKey, IsTheSameForADefaultThatIsWrittenOut) {
   request.mutable_quality()->set_placement(v1::PLACEMENT_LATTICE);
   request.mutable_domain()->set_fill(v1::FILL_SEEDS);
   request.mutable_domain()->set_snap(-0.0);
+  request.set_simplify(-0.0);
   request.mutable_size()->set_measure(v1::MEASURE_AREA);
   request.mutable_size()->set_gradation(-0.0);
   request.mutable_size()->set_cells_across(-0.0);
@@ -223,6 +224,7 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"CellsAcross", [](auto& r) { r.mutable_size()->set_cells_across(3); }},
         Change{"Field", [](auto& r) { r.mutable_size()->add_fields()->mutable_width(); }},
         Change{"Angle", [](auto& r) { r.mutable_quality()->set_min_angle_deg(21); }},
+        Change{"Simplify", [](auto& r) { r.set_simplify(0.5); }},
         Change{"Snap", [](auto& r) { r.mutable_domain()->set_snap(1e-3); }},
         Change{"AllowUnrefined", [](auto& r) { r.set_allow_unrefined(true); }},
         Change{"Edge", [](auto& r) { r.mutable_quality()->set_min_edge(1); }},

@@ -33,7 +33,7 @@ from .fields import Field, distance, on_mesh, raster, width
 from .local import LocalServer, local
 from .quality import Quality
 from .results import (Accepted, Job, JobState, Merging, NarrowPlace, Progress, ServerInfo,
-                      ServerLimits, SizeWarning, Summary, Timings, Unrefined)
+                      ServerLimits, Simplification, SizeWarning, Summary, Timings, Unrefined)
 from .size import Raster, Size
 
 __all__ = [
@@ -42,7 +42,8 @@ __all__ = [
     "FieldViolation", "InvalidRequest", "Job", "JobState", "LimitExceeded", "LocalServer",
     "LocalServerError", "Merging", "Mesh", "MeshFileError", "MeshOptions", "MeshStream",
     "MissingPackage", "NarrowPlace", "NotFound", "Progress", "Quality", "Raster", "Region", "ServerError",
-    "ServerInfo", "ServerLimits", "Size", "SizeWarning", "Summary", "SwitchError", "TLS", "Timings",
+    "ServerInfo", "ServerLimits", "Simplification", "Size", "SizeWarning", "Summary", "SwitchError", "TLS",
+    "Timings",
     "Unauthenticated", "Unavailable", "Unrefined", "WeftError", "WeftWarning", "__version__", "aio",
     "distance", "local", "mesh", "on_mesh", "raster", "triangulate", "width",
 ]

@@ -12,6 +12,7 @@ _ARGUMENTS = {
     "size.gradation": "gradation", "size.cells_across": "cells_across", "size.fields": "fields",
     "size.at": "edge_at", "quality.min_angle_deg": "min_angle", "quality.min_edge": "min_edge",
     "quality.placement": "placement", "quality.optimise": "optimise", "domain.snap": "snap",
+    "simplify": "simplify",
     "budget.max_triangles": "max_triangles", "budget.max_seconds": "max_seconds",
 }
 _ELEMENT = re.compile(r"size\.(fields|at)\[(\d+)\]")

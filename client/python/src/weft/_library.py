@@ -76,7 +76,7 @@ class Request(ctypes.Structure):
                 ("gradation", c_double), ("gradation_within", c_int32), ("cells_across", c_double),
                 ("sizes_at", c_void_p), ("size_at_count", c_size_t),
                 ("min_angle_deg", c_double), ("min_edge", c_double), ("placement", c_int32),
-                ("sweeps", c_int32), ("allow_unrefined", c_int32)]
+                ("sweeps", c_int32), ("allow_unrefined", c_int32), ("simplify", c_double)]
 
 
 class Told(ctypes.Structure):
@@ -127,7 +127,10 @@ class Summary(ctypes.Structure):
                     "emit_seconds", "engine_seconds")),
                 *((name, c_uint64) for name in (
                     "peak_bytes", "insertions", "deferred", "exact_predicates")),
-                ("warning_count", c_size_t)]
+                ("warning_count", c_size_t), ("has_simplification", c_int32),
+                *((name, c_uint64) for name in (
+                    "simplified_points", "dropped_islands", "dropped_waters", "cut_channels")),
+                ("simplified_area", c_double), ("simplified_farthest", c_double)]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -217,7 +220,7 @@ class _Writer:
             min_angle_deg=quality.min_angle_deg, min_edge=quality.min_edge,
             placement=max(quality.placement - 1, 0),
             sweeps=min(quality.optimise, 2**31 - 1) if quality.HasField("optimise") else -1,
-            allow_unrefined=message.allow_unrefined)
+            allow_unrefined=message.allow_unrefined, simplify=message.simplify)
         if request.size_kind == _SIZES["expression"]:
             request.size_expression = size.expression.encode()
         elif request.size_kind == _SIZES["raster"]:
@@ -341,6 +344,9 @@ def _summary(library: Any, mesh: Any, arrays: Arrays, with_leaves: bool) -> resu
     leaves = arrays.leaf_count if with_leaves and arrays.leaf_count <= _MOST_LEAVES else 0
     narrow = results.NarrowPlace(told.narrow_segment, told.narrow_other, told.narrow_x, told.narrow_y,
                                  told.narrow_width, int(told.narrow_triangles))
+    simplification = results.Simplification(
+        told.simplified_points, told.dropped_islands, told.dropped_waters, told.cut_channels,
+        told.simplified_area, told.simplified_farthest)
     return results.Summary(
         vertices=arrays.vertex_count, triangles=arrays.triangle_count, edges=arrays.edge_count,
         **taken("chunks", "area", "min_angle_deg", "max_angle_deg", "min_angle_p1_deg",
@@ -358,6 +364,7 @@ def _summary(library: Any, mesh: Any, arrays: Arrays, with_leaves: bool) -> resu
             **taken("farthest", "farthest_x", "farthest_y", "vanished_faces", "vanished_x",
                     "vanished_y")),
         narrow=narrow if told.has_narrow else None,
+        simplification=simplification if told.has_simplification else None,
         timings=results.Timings(
             prelude_seconds=told.coarse_seconds,
             **taken("triangulate_seconds", "size_seconds", "refine_seconds", "emit_seconds",

@@ -68,6 +68,11 @@ class MeshOptions(TypedDict, total=False):
     snap: float
     """Merge everything of the domain that lies nearer together than this first, in the unit of the
     points; `summary.merging` tells what moved."""
+    simplify: float
+    """Make the domain no finer than this share of the length of edges that the size asks for at each
+    place: smaller islands are dropped, narrower inlets, channels and spits closed or opened, corners
+    taken out; `summary.simplification` tells what was done. Default: 0, every segment is meshed as it
+    is."""
     allow_unrefined: bool
     """Take a mesh with triangles that miss a bound although nothing exempts them, instead of
     BoundsNotMet."""
@@ -135,6 +140,7 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
     if "optimise" in options:
         request.quality.optimise = options["optimise"]
     request.domain.snap = options.get("snap", 0)
+    request.simplify = options.get("simplify", 0)
     request.allow_unrefined = options.get("allow_unrefined", False)
     if "max_triangles" in options:
         request.budget.max_triangles = options["max_triangles"]

@@ -87,6 +87,7 @@ class Client:
         `crs`: name of the projection, implies `lonlat`; default: the one that distorts least.
         `to_metres`: leave the mesh in metres of the projection, implies `lonlat`; default: False.
         `snap`: merge what lies nearer together than this, units of the domain, from 0; default: 0.
+        `simplify`: make the domain no finer than this share of the size there, from 0; default: 0.
 
         Triangles:
         `placement`: "lattice" or "circumcentre", where points go; default: "lattice".

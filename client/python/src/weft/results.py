@@ -119,6 +119,24 @@ class NarrowPlace:
 
 
 @dataclasses.dataclass(frozen=True)
+class Simplification:
+    """What `simplify` did to the domain."""
+
+    points: int
+    """Of the domain, that are no vertices of the mesh."""
+    islands: int
+    """And other holes, that are meshed now."""
+    waters: int
+    """Parts of the domain that are no longer meshed."""
+    channels: int
+    """That were cut."""
+    area: float
+    """Of the new domain less that of the old one."""
+    farthest: float
+    """No point of a new line is farther than this from the segments of the domain."""
+
+
+@dataclasses.dataclass(frozen=True)
 class SizeWarning:
     """A size that is probably not what the client wants; the client warns of it with `message`, too."""
 
@@ -179,6 +197,8 @@ class Summary:
     merging: Merging
     narrow: NarrowPlace | None
     """The costliest one, if it has at least a fifth of a mesh of a thousand triangles or more."""
+    simplification: Simplification | None
+    """Only with `simplify`."""
     timings: Timings
     peak_engine_bytes: int
     insertions: int
@@ -290,6 +310,8 @@ def summary(message: Any) -> Summary:
                  unrefined=_take(Unrefined, message.unrefined),
                  merging=_take(Merging, message.merging),
                  narrow=_take(NarrowPlace, message.narrow) if message.HasField("narrow") else None,
+                 simplification=(_take(Simplification, message.simplification)
+                                 if message.HasField("simplification") else None),
                  timings=_take(Timings, message.timings),
                  leaf_boxes=np.array(message.leaf_boxes, np.float64).reshape(-1, 4),
                  digest=message.sha256.hex(),
