@@ -23,6 +23,9 @@ std::string coordinates(double x, double y);
 // 1234567 as "1,234,567".
 std::string with_separators(std::uint64_t value);
 
+// With so many significant digits, such as "1.23e+06" with 3.
+std::string digits(double value, int count);
+
 // Seconds as "0.083 s", bytes as "39.7 MB".
 std::string seconds_text(double seconds);
 std::string bytes_text(std::uint64_t bytes);

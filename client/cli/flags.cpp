@@ -123,6 +123,7 @@ void refuse_idle_flags(const CLI::App& command, std::span<char* const> words) {
                              {"--layer", "--domain"},
                              {"--where", "--domain"},
                              {"--strict", "--domain"},
+                             {"--simplify", "--domain"},
                              {"--min-angle", "--domain"},
                              {"--snap", "--domain"},
                              {"--fill", "--domain"},

@@ -37,10 +37,10 @@ check::Mesh to_checker(const Mesh& mesh) {
 }
 
 // The depths of a mesh that has them, or elevations turned; empty: none.
-std::vector<double> depths_of(MeshWithArrays& read) {
-  for (NamedArray& array : read.arrays) {
+std::vector<double> depths_of(const MeshWithArrays& read) {
+  for (const NamedArray& array : read.arrays) {
     if (!Bed::is_bed(array.name) || !array.values) continue;
-    std::vector<double> depths = std::move(*array.values);
+    std::vector<double> depths = *array.values;
     if (array.name != "depth")
       for (double& depth : depths) depth = -depth;
     return depths;
@@ -71,6 +71,53 @@ void print_warnings(const std::vector<std::string>& warnings) {
     std::fprintf(stderr, "weft: WARNING: %s\n", warning.c_str());
 }
 
+// What is printed of a mesh.
+struct Verdict {
+  std::string text;
+  Json json = Json::object();
+  bool holds = true;
+};
+
+Result<void> judge_by_domain(const CheckOptions& options, const check::Mesh& mesh,
+                             Verdict& verdict) {
+  RequestOptions wanted = options.size;
+  wanted.fill = options.fill;
+  const auto input = read_input_domain(options.domain, wanted, options.projection, options.layers);
+  if (!input) return tl::unexpected(input.error());
+  print_warnings(input->domain.warnings);
+  if (options.size.cells_across)
+    print_warnings({"--cells-across is not judged: the checker knows no widths"});
+  const auto requirements = requirements_of(options, *input);
+  if (!requirements) return tl::unexpected(requirements.error());
+  const check::Report report =
+      check::check(checker_domain(input->domain, options.snap.value_or(0)), mesh, *requirements);
+  verdict = {check_text(report, *requirements), check_json(report, *requirements), report.ok()};
+  return {};
+}
+
+// Adds to the verdict. REQUIRES: options.model.
+Result<void> judge_for_model(const CheckOptions& options, const MeshWithArrays& read,
+                             const check::Mesh& mesh, Verdict& verdict) {
+  MeshWriteOptions boundaries = options.writing;
+  if (auto found = find_open_boundaries(boundaries, read.mesh.names.markers); !found) return found;
+  print_warnings(open_boundary_warnings(markers_of(read.mesh.view()), boundaries.open_boundaries));
+  const std::vector<double> depths = depths_of(read);
+  if (!depths.empty() && !options.projection.wanted() && fits_the_globe(read.mesh))
+    print_warnings({"coordinates are taken for metres; if they are degrees, add --lonlat"});
+  const check::ModelReport report = check::judge_for_models(
+      {.mesh = mesh,
+       .open_markers = boundaries.open_boundaries,
+       .depths = depths,
+       .lonlat = options.projection.wanted() && !options.projection.to_metres});
+  const ModelView view{*options.model, report, !boundaries.open_boundaries.empty(),
+                       !depths.empty()};
+  verdict.text += model_text(view);
+  verdict.holds &= view.holds();
+  verdict.json["for"] = model_json(view);
+  verdict.json["holds"] = verdict.holds;
+  return {};
+}
+
 }  // namespace
 
 Result<ExitCode> run_check(const CheckOptions& options) {
@@ -87,58 +134,20 @@ Result<ExitCode> run_check(const CheckOptions& options) {
     return fail(ExitCode::kUsage,
                 "a mesh is checked in the plane that it was made in: write it with --to-metres, "
                 "and say --to-metres here, too");
-  std::optional<InputDomain> input;
-  if (has_domain) {
-    RequestOptions wanted = options.size;
-    wanted.fill = options.fill;
-    auto read = read_input_domain(options.domain, wanted, options.projection, options.layers);
-    if (!read) return tl::unexpected(read.error());
-    input = std::move(*read);
-    print_warnings(input->domain.warnings);
-  }
-  auto read = read_mesh_with_arrays(options.mesh);
+  const auto read = read_mesh_with_arrays(options.mesh);
   if (!read) return tl::unexpected(read.error());
   print_warnings(read->mesh.warnings);
   const check::Mesh mesh = to_checker(read->mesh);
-
-  std::string text;
-  Json json = Json::object();
-  bool holds = true;
-  if (has_domain) {
-    if (options.size.cells_across)
-      print_warnings({"--cells-across is not judged: the checker knows no widths"});
-    const auto requirements = requirements_of(options, *input);
-    if (!requirements) return tl::unexpected(requirements.error());
-    const check::Report report =
-        check::check(checker_domain(input->domain, options.snap.value_or(0)), mesh, *requirements);
-    text = check_text(report, *requirements);
-    json = check_json(report, *requirements);
-    holds = report.ok();
-  }
-  if (options.model) {
-    MeshWriteOptions boundaries = options.writing;
-    if (auto found = find_open_boundaries(boundaries, read->mesh.names.markers); !found)
-      return tl::unexpected(found.error());
-    print_warnings(
-        open_boundary_warnings(markers_of(read->mesh.view()), boundaries.open_boundaries));
-    const std::vector<double> depths = depths_of(*read);
-    const check::ModelReport report = check::judge_for_models(
-        {.mesh = mesh,
-         .open_markers = boundaries.open_boundaries,
-         .depths = depths,
-         .lonlat = options.projection.wanted() && !options.projection.to_metres});
-    if (!depths.empty() && !options.projection.wanted() && fits_the_globe(read->mesh))
-      print_warnings({"coordinates are taken for metres; if they are degrees, add --lonlat"});
-    const ModelView view{*options.model, report, !boundaries.open_boundaries.empty(),
-                         !depths.empty()};
-    text += model_text(view);
-    json["for"] = model_json(view);
-    holds &= view.holds();
-    json["holds"] = holds;
-  }
-  const auto printed = print(options.json ? json_line(json) : text);
+  Verdict verdict;
+  if (has_domain)
+    if (auto judged = judge_by_domain(options, mesh, verdict); !judged)
+      return tl::unexpected(judged.error());
+  if (options.model)
+    if (auto judged = judge_for_model(options, *read, mesh, verdict); !judged)
+      return tl::unexpected(judged.error());
+  const auto printed = print(options.json ? json_line(verdict.json) : verdict.text);
   if (!printed) return printed;
-  return holds ? ExitCode::kOk : ExitCode::kCheckFailed;
+  return verdict.holds ? ExitCode::kOk : ExitCode::kCheckFailed;
 }
 
 }  // namespace weft::client

@@ -24,9 +24,7 @@ constexpr double kMetresPerDegree = 111'320;  // of latitude, at most
 constexpr char kWarning[] = "warning";
 
 std::string rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+  return digits(value, 3);
 }
 
 class Wording {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/lint/lint_report.h"
 
-#include <cstdio>
 #include <vector>
 
 #include "client/base/text.h"
@@ -14,9 +13,7 @@ constexpr char kTooMany[] =
 
 // In 12 digits: crossings are computed.
 std::string place_text(Point p) {
-  char text[64];
-  std::snprintf(text, sizeof text, "(%.12g, %.12g)", p.x, p.y);
-  return text;
+  return "(" + digits(p.x, 12) + ", " + digits(p.y, 12) + ")";
 }
 
 std::string count_text(const Lint& lint) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 #include "client/base/text.h"
 #include "client/report/mesh_figures.h"
@@ -32,12 +31,6 @@ constexpr std::array<const char*, check::kRules> kProperties = {
     "",
     "edges are at most as long as the sizes at their markers",
     "the domain is simplified no farther than asked"};
-
-std::string digits(double value, int count) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*g", count, value);
-  return text;
-}
 
 // `value` with 4 digits, or as many more as tell it from `bound`, if it is not the bound.
 std::string rounded_beside(double value, double bound) {

@@ -57,9 +57,7 @@ Json narrow_json(const v1::Summary& summary) {
 
 // Three digits of a distance are enough for people.
 std::string rounded(double distance) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", distance);
-  return text;
+  return digits(distance, 3);
 }
 
 Json simplification_json(const v1::Summary& summary) {

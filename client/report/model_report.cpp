@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 #include "client/base/text.h"
 
@@ -23,14 +22,10 @@ constexpr std::array<ModelNames, 4> kModels = {{{"adcirc", "ADCIRC"},
                                                 {"delft3d", "Delft3D-FM"}}};
 
 std::string four_digits(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
+  return digits(value, 4);
 }
 std::string place_text(check::Vec2 p) {
-  char text[80];
-  std::snprintf(text, sizeof text, "(%.9g, %.9g)", p.x, p.y);
-  return text;
+  return "(" + digits(p.x, 9) + ", " + digits(p.y, 9) + ")";
 }
 
 bool is_about_open(ModelRule rule) {

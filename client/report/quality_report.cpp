@@ -15,12 +15,6 @@ namespace {
 
 constexpr std::size_t kBarWidth = 40;  // columns
 
-std::string digits(double value, int count) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*g", count, value);
-  return text;
-}
-
 // A bar of `share` of the full width, padded with blanks to that width. It is empty only if `share`
 // is 0.
 std::string bar(double share, bool unicode) {
