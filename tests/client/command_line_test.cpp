@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -18,9 +19,6 @@ namespace {
 
 class CommandLine : public WeftProcess {
  protected:
-  Words mesh_to(const std::string& name) const {
-    return {"mesh", (folder_ / "in.poly").string(), "-o", (folder_ / "out" / name).string()};
-  }
   // No output, no temporary folder, no server.
   void expect_nothing_left() const {
     EXPECT_EQ(left_in("out"), Words{});
@@ -290,57 +288,6 @@ TEST_F(CommandLine, RefusesAFileThatItWouldRepairIfThatIsWanted) {
   expect_nothing_left();
 }
 
-TEST_F(CommandLine, ChecksAMesh) {
-  ASSERT_EQ(run(mesh_to("m.vtu")), 0);
-  const Words check = {"check", folder_ / "out" / "m.vtu", "--domain", folder_ / "in.poly"};
-  // The right half claims a region that the domain does not have.
-  EXPECT_EQ(run(check), 3);
-  EXPECT_NE(out().find("regions"), std::string::npos) << out();
-  Words strict = check;
-  strict.insert(strict.end(), {"--min-angle", "50"});
-  EXPECT_EQ(run(strict), 3);
-  EXPECT_NE(out().find("angle"), std::string::npos) << out();
-}
-
-TEST_F(CommandLine, ChecksAMeshForAModelWithoutItsDomain) {
-  ASSERT_EQ(run(mesh_to("m.vtu")), 0);
-  const Words check = {"check", folder_ / "out" / "m.vtu", "--for", "adcirc"};
-  EXPECT_EQ(run(check, {"WEFT_MIN_ANGLE=30"}), 0) << err();
-  EXPECT_TRUE(out().ends_with("the mesh holds for ADCIRC\n")) << out();
-  for (const char* flag : {"--size=1", "--min-angle=20", "--snap=0"}) {
-    Words words = check;
-    words.push_back(flag);
-    EXPECT_EQ(run(words), 2) << flag;
-    EXPECT_NE(err().find("requires --domain"), std::string::npos) << err();
-  }
-  EXPECT_EQ(run({"check", folder_ / "out" / "m.vtu", "--for", "mike"}), 2);
-  EXPECT_NE(err().find("is not adcirc, schism, telemac or delft3d"), std::string::npos) << err();
-  EXPECT_EQ(run({"check", folder_ / "out" / "m.vtu"}), 2);
-  EXPECT_NE(err().find("--domain is required"), std::string::npos) << err();
-}
-
-TEST_F(CommandLine, FailsAMeshThatItsModelRefuses) {
-  std::ofstream(folder_ / "pinched.off")
-      << "OFF\n5 2 0\n0 0 0\n1 0 0\n1 1 0\n2 1 0\n2 2 0\n3 0 1 2\n3 2 3 4\n";
-  const Words check = {"check", folder_ / "pinched.off", "--for", "adcirc"};
-  EXPECT_EQ(run(check), 3);
-  EXPECT_NE(out().find("the boundary passes each vertex once: fails, 1 time\n  at (1, 1)\n"),
-            std::string::npos)
-      << out();
-  EXPECT_EQ(run({"check", folder_ / "pinched.off", "--for", "delft3d"}), 0) << out();
-}
-
-TEST_F(CommandLine, ChecksNoMeshAgainstASizeThatNothingExceeds) {
-  ASSERT_EQ(run(mesh_to("m.vtu")), 0);
-  for (const char* size : {"nan", "-nan", "inf", "-1", "0", "1e999"}) {
-    EXPECT_EQ(run({"check", folder_ / "out" / "m.vtu", "--domain", folder_ / "in.poly",
-                   std::string("--size=") + size}),
-              2)
-        << size;
-    EXPECT_NE(err().find("must be positive and finite"), std::string::npos) << err();
-  }
-}
-
 TEST_F(CommandLine, RefusesNumbersThatAreNone) {
   ASSERT_EQ(run(mesh_to("m.vtu")), 0);
   const auto refuses = [this](Words words, const std::string& name, const std::string& value,
@@ -422,20 +369,6 @@ TEST_F(CommandLine, TellsTheQualityOfMeshes) {
   EXPECT_NE(err().find("the size: "), std::string::npos) << err();
   EXPECT_EQ(run({"info", folder_ / "in.poly", "--quality"}), 2);
   EXPECT_EQ(run({"info", out_file("m.vtu"), "--size", "1"}), 2);
-}
-
-TEST_F(CommandLine, ChecksInSentencesAndInJson) {
-  ASSERT_EQ(run(mesh_to("m.vtu")), 0);
-  const Words check = {"check", out_file("m.vtu"), "--domain", folder_ / "in.poly", "--size",
-                       "0.4"};
-  EXPECT_EQ(run(check), 3);
-  EXPECT_NE(out().find("area at most 1.25 of its bound: fails, 32 times; the worst is triangle 0"),
-            std::string::npos)
-      << out();
-  Words json = check;
-  json.push_back("--json");
-  EXPECT_EQ(run(json), 3);
-  EXPECT_EQ(nlohmann::json::parse(out())["rules"]["area"]["violations"], 32);
 }
 
 TEST_F(CommandLine, FindsTheMarkersOfAMeshThatIsOnlyDrawn) {

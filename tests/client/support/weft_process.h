@@ -31,6 +31,10 @@ class WeftProcess : public ::testing::Test {
                   "4 1\n1 1 2 1\n2 2 3 2\n3 3 4 3\n4 4 1 4\n0\n");
   }
 
+  Words mesh_to(const std::string& name) const {
+    return {"mesh", (folder_ / "in.poly").string(), "-o", (folder_ / "out" / name).string()};
+  }
+
   // `terminal` is stdin and stdout of the process, where there is one.
   pid_t start(const Words& words, const Words& variables = {}, int terminal = -1) {
     Words arguments = {weft::testing::kWeft};
