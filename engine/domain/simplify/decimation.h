@@ -6,10 +6,9 @@
 //     to uw. So no line crosses another, all stays on its side of the chain, and so does the order
 //     of what meets in a point (decided exactly);
 //   - every point of uw is within the error allowed there of the original lines with its marker,
-//   and
-//     every point of the chain that it replaces within the same distance of uw; or, if the chain
-//     bounds the domain, every point of the triangle is within that error of the original lines,
-//     and every point of uw of those with its marker;
+//     and every point of the chain that it replaces within the same distance of uw. If the chain
+//     bounds the domain, it is enough that every point of the triangle is within that error of the
+//     original lines, and every point of uw of those with its marker;
 //   - it makes no angle inside the domain that is below a bound and below what was there.
 // The new line has the marker of the two; of two markers, that of the longer line if it may have
 // it. A node is tried if one of its lines is shorter than the finest length at its ends, or if it

@@ -13,9 +13,8 @@
 // closed between two of them.
 //
 // Laws that the result obeys (checked by tests):
-//   - no point of a line is farther from the original's lines than Simplification::farthest, which
-//   is at
-//     most the finest length there;
+//   - no point of a line is farther from the original's lines than Simplification::farthest, nor
+//     than the finest length there;
 //   - what is farther from the original's lines than the finest length is meshed, with the same
 //     region, if and only if it was;
 //   - lines meet where they met: junctions, ends of markers and of lines, and points that no line
