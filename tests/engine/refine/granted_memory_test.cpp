@@ -48,10 +48,11 @@ TEST(GrantedMemory, ChangesNothingInTheMesh) {
   }
 }
 
-// Peaks of parts are added up in the summary, so that it may say a little more.
+// Peaks of parts are added up in the summary, so that it may say a little more. On several threads,
+// how many are at work at once decides by how much.
 TEST(GrantedMemory, IsNearlyAllThatTheSummaryTellsOf) {
   for (const double triangles : {100'000.0, 2'000'000.0}) {
-    Arena arena(2);
+    Arena arena(1);
     ExecutionContext context;
     context.set_arena(arena);
     Stingy source;
