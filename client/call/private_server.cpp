@@ -201,20 +201,9 @@ std::string PrivateServer::last_log_lines() const {
   return out;
 }
 
-bool PrivateServer::wait_for_end(std::chrono::milliseconds at_most) {
-  const auto deadline = Clock::now() + at_most;
-  for (;;) {
-    pollfd ended{process_.get(), POLLIN, 0};
-    const int count = ::poll(&ended, 1, milliseconds_until(deadline));
-    if (count < 0 && errno == EINTR) continue;
-    return count > 0;
-  }
-}
-
 PrivateServer::~PrivateServer() {
   if (pid_ != 0) {
-    ::kill(pid_, SIGTERM);
-    if (!wait_for_end(options_.stop_timeout)) ::kill(pid_, SIGKILL);
+    ::kill(pid_, SIGKILL);
     while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
     }
   }

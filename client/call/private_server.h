@@ -2,9 +2,9 @@
 // A weftd that only this process uses, on a unix socket in a new folder that only this user may
 // enter.
 //
-// It never outlives this process: the destructor stops it (SIGTERM, then SIGKILL after a time-out)
-// and removes the folder; if this process is killed, the pipe to its standard input closes, and
-// `--exit-with-stdin` ends it.
+// It never outlives this process: the destructor kills it, because it keeps nothing that could be
+// lost, and removes the folder; if this process is killed, the pipe to its standard input closes,
+// and `--exit-with-stdin` ends it.
 //
 //   auto server = PrivateServer::start({}, stop);
 //   if (!server) return tl::unexpected(server.error());
@@ -34,7 +34,6 @@ struct PrivateServerOptions {
   // Runs at the same time, each of which may take that part of the memory. DEFAULT: weftd's own.
   std::optional<int> jobs = std::nullopt;
   std::chrono::milliseconds start_timeout{30'000};
-  std::chrono::milliseconds stop_timeout{5'000};
 };
 
 class PrivateServer {
@@ -56,8 +55,6 @@ class PrivateServer {
   Result<void> make_folder();
   Result<void> spawn(const std::filesystem::path& weftd);
   Result<void> wait_until_ready(const std::filesystem::path& weftd, std::stop_token stop);
-  // Whether it ended within the time.
-  bool wait_for_end(std::chrono::milliseconds at_most);
 
   PrivateServerOptions options_;
   std::filesystem::path folder_;

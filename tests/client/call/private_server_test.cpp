@@ -64,11 +64,9 @@ TEST_F(Private, InheritsNothingThatConfiguresOtherServers) {
 }
 
 TEST_F(Private, KillsAServerThatWillNotEnd) {
-  auto options = fake("stubborn");
-  options.stop_timeout = std::chrono::milliseconds(50);
   pid_t pid = 0;
   {
-    const auto server = PrivateServer::start(options, {});
+    const auto server = PrivateServer::start(fake("stubborn"), {});
     ASSERT_TRUE(server) << server.error().message;
     pid = (*server)->pid();
   }
