@@ -173,6 +173,13 @@ Result<std::vector<Line>> lines_at(const SizeAt& at, std::size_t i, const Pslg& 
                   ", which is the marker of no segment of the domain");
 }
 
+Result<DistanceField> distance_to(std::vector<Line> lines, const Domain& domain,
+                                  const ExecutionContext& context) {
+  const Result<DomainCover> cover = DomainCover::make(domain, context);
+  if (!cover) return tl::unexpected(cover.error());
+  return DistanceField::make(std::move(lines), *cover, context);
+}
+
 // Makes a field, which errors call `path`.
 struct FieldMaker {
   const Pslg& pslg;
@@ -184,7 +191,7 @@ struct FieldMaker {
     const std::string field = path + ".distance";
     auto lines = Lines(pslg, field).of(spec);
     if (!lines) return tl::unexpected(std::move(lines).error());
-    return on_heap(DistanceField::make(std::move(*lines), box_of(domain), context));
+    return on_heap(distance_to(std::move(*lines), domain, context));
   }
   AnyField operator()(const FieldRaster& raster) const {
     return on_heap(RasterField::make(raster, path + ".raster", context));
@@ -428,7 +435,7 @@ Result<Size> make_size(const SizeSpec& spec, const Pslg& pslg, const Domain& dom
     if (auto error = context.need_bytes(
             domain.bytes() + size->bytes() + DistanceField::bytes_to_make(lines.size()), what))
       return error;
-    auto distance = DistanceField::make(std::move(lines), box_of(domain), context);
+    auto distance = distance_to(std::move(lines), domain, context);
     if (!distance) return std::move(distance).error();
     size->limit(unlimited, std::make_unique<LineSize>(size->function(), std::move(*distance),
                                                       max_edge, spec.gradation));

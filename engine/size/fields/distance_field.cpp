@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -63,18 +64,15 @@ class ListBuilder {
   };
 
   // Nodes at `last_level` that are to be split stay in `later`.
-  ListBuilder(const DistanceField& field, const Box& wanted, int last_level,
+  ListBuilder(const DistanceField& field, const DomainCover& cover, int last_level,
               const ExecutionContext& context)
-      : field_(field), wanted_(wanted), last_level_(last_level), context_(context) {}
+      : field_(field), cover_(cover), last_level_(last_level), context_(context) {}
 
   std::optional<Error> build(Pending&& root) {
     nodes.assign(1, {});
     root.node = 0;
     return split(std::move(root));
   }
-
-  // Sets `pending.lines` to those of `from` that may be nearest in the box.
-  std::optional<Error> filter(const std::vector<std::uint32_t>& from, Pending& pending);
 
   std::vector<Node> nodes;
   std::vector<std::uint32_t> lists;
@@ -83,86 +81,143 @@ class ListBuilder {
   std::size_t leaves = 0;
 
  private:
-  struct Corners {
-    double square[4];
+  // Points of a box that is divided: the corners of its four parts, row by row, then their middles.
+  static constexpr std::size_t kCorners = 9;
+  static constexpr std::size_t kSamples = kCorners + 4;
+  static constexpr int kPairs = (kSamples + 1) / 2;
+  struct Squares {
+    alignas(16) double of[2 * kPairs];  // the last one is of no sample
+  };
+  struct Samples {
+    Squares x;
+    Squares y;
+    Squares least;  // square of the distance to any of the lines
+    std::uint32_t nearest[kSamples] = {};
   };
 
   std::optional<Error> split(Pending&& pending);
+  std::optional<Error> share_out(const Pending& pending, Pending (&parts)[4]);
+  std::optional<Error> take(const std::vector<std::uint32_t>& lines, Samples& samples);
+  std::optional<Error> filter(const std::vector<std::uint32_t>& lines, const Samples& samples,
+                              unsigned part, std::vector<std::uint32_t>& kept);
   void add_leaf(const Pending& pending);
   Box box_of(const Pending& pending) const;
+  Point middle_of(const Pending& pending) const;
 
   const DistanceField& field_;
-  const Box& wanted_;
+  const DomainCover& cover_;
   const int last_level_;
   const ExecutionContext& context_;
-  std::vector<Corners> corners_;  // scratch memory of `filter`
+  std::vector<Squares> squares_;  // scratch memory of `share_out`, for each line
 };
 
 Box ListBuilder::box_of(const Pending& pending) const {
   const double side = std::ldexp(2 * field_.root_, -pending.depth);
-  const double grown = 0x1p-40;  // because rounding may put a point into the neighbouring box
   const double x = pending.ix * side - field_.root_;
   const double y = pending.iy * side - field_.root_;
-  return {x - grown, y - grown, x + side + grown, y + side + grown};
+  return {x, y, x + side, y + side};
 }
 
-std::optional<Error> ListBuilder::filter(const std::vector<std::uint32_t>& from, Pending& pending) {
-  constexpr std::size_t kAtATime = 1 << 14;  // lines; takes about 200 us
-  constexpr int kSamples = 5;                // the corners and the middle
-  const std::vector<StraightLine>& lines = field_.tree_.lines();
+Point ListBuilder::middle_of(const Pending& pending) const {
   const Box box = box_of(pending);
-  const double mx = 0.5 * (box.min_x + box.max_x);
-  const double my = 0.5 * (box.min_y + box.max_y);
-  alignas(16) const double px[6] = {box.min_x, box.max_x, box.min_x, box.max_x, mx, mx};
-  alignas(16) const double py[6] = {box.min_y, box.min_y, box.max_y, box.max_y, my, my};
-  __m128d x[3];
-  __m128d y[3];
-  for (int i = 0; i < 3; ++i) {
-    x[i] = _mm_load_pd(px + 2 * i);
-    y[i] = _mm_load_pd(py + 2 * i);
+  return {0.5 * (box.min_x + box.max_x), 0.5 * (box.min_y + box.max_y)};
+}
+
+// Sets the lines of the parts that the cover meets to those that may be nearest in them, and their
+// distances.
+std::optional<Error> ListBuilder::share_out(const Pending& pending, Pending (&parts)[4]) {
+  const Box box = box_of(pending);
+  const Point middle = middle_of(pending);
+  const double x[3] = {box.min_x, middle.x, box.max_x};
+  const double y[3] = {box.min_y, middle.y, box.max_y};
+  Samples samples;
+  for (std::size_t i = 0; i < kCorners; ++i) {
+    samples.x.of[i] = x[i % 3];
+    samples.y.of[i] = y[i / 3];
   }
-  corners_.resize(from.size());
-  double least[kSamples];
-  std::uint32_t nearest[kSamples] = {};
-  std::fill_n(least, kSamples, kInfinity);
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    if (i % kAtATime == kAtATime - 1) {
+  for (std::size_t i = kCorners; i < 2 * kPairs; ++i) {
+    const Point at = middle_of(parts[(i - kCorners) % 4]);
+    samples.x.of[i] = at.x;
+    samples.y.of[i] = at.y;
+  }
+  if (auto error = take(pending.lines, samples)) return error;
+  for (unsigned part = 0; part < 4; ++part) {
+    if (!cover_.meets(field_.outside(box_of(parts[part])))) continue;
+    parts[part].distance = std::sqrt(samples.least.of[kCorners + part]);
+    if (auto error = filter(pending.lines, samples, part, parts[part].lines)) return error;
+  }
+  return std::nullopt;
+}
+
+// Sets the squares of the distances between the samples and each line, and the least of each.
+std::optional<Error> ListBuilder::take(const std::vector<std::uint32_t>& lines, Samples& samples) {
+  constexpr std::size_t kAtATime = 1 << 13;  // lines; takes about 200 us
+  __m128d x[kPairs];
+  __m128d y[kPairs];
+  __m128d least[kPairs];
+  for (int i = 0; i < kPairs; ++i) {
+    x[i] = _mm_load_pd(samples.x.of + 2 * i);
+    y[i] = _mm_load_pd(samples.y.of + 2 * i);
+    least[i] = _mm_set1_pd(kInfinity);
+  }
+  squares_.resize(lines.size());
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    if (k % kAtATime == kAtATime - 1) {
       if (auto error = context_.poll()) return error;
     }
-    __m128d square[3];
-    std::fill_n(square, 3, _mm_set1_pd(kInfinity));
-    take_nearer<3>(lines[from[i]], x, y, square);
-    alignas(16) double of[6];
-    for (int k = 0; k < 3; ++k) _mm_store_pd(of + 2 * k, square[k]);
-    std::copy_n(of, 4, corners_[i].square);
-    for (int k = 0; k < kSamples; ++k) {
-      if (of[k] < least[k]) {
-        least[k] = of[k];
-        nearest[k] = from[i];
-      }
+    __m128d square[kPairs];
+    std::fill_n(square, kPairs, _mm_set1_pd(kInfinity));
+    take_nearer<kPairs>(field_.tree_.lines()[lines[k]], x, y, square);
+    unsigned nearer = 0;
+    for (int i = 0; i < kPairs; ++i) {
+      _mm_store_pd(squares_[k].of + 2 * i, square[i]);
+      nearer |= static_cast<unsigned>(_mm_movemask_pd(_mm_cmplt_pd(square[i], least[i])))
+                << (2 * i);
+      least[i] = _mm_min_pd(least[i], square[i]);
     }
+    for (nearer &= (1u << kSamples) - 1; nearer != 0; nearer &= nearer - 1)
+      samples.nearest[__builtin_ctz(nearer)] = lines[k];
   }
-  double limit[kSamples][4];
-  for (int k = 0; k < kSamples; ++k) {
-    const Point q = lines[nearest[k]].nearest({px[k], py[k]});
+  for (int i = 0; i < kPairs; ++i) _mm_store_pd(samples.least.of + 2 * i, least[i]);
+  return std::nullopt;
+}
+
+// Appends the lines that may be nearest in a part to `kept`.
+std::optional<Error> ListBuilder::filter(const std::vector<std::uint32_t>& lines,
+                                         const Samples& samples, unsigned part,
+                                         std::vector<std::uint32_t>& kept) {
+  constexpr std::size_t kAtATime = 1 << 14;
+  constexpr int kPoints = 5;
+  // Covers points of neighbouring boxes that rounding puts into this one.
+  constexpr double kGrown = 0x1p-38;
+  const std::size_t low = 3 * (part >> 1) + (part & 1);  // its lower left corner
+  const std::size_t at[kPoints] = {kCorners + part, low, low + 1, low + 3, low + 4};
+  __m128d limit[kPoints][2];
+  for (int k = 0; k < kPoints; ++k) {
+    const Point q = field_.tree_.lines()[samples.nearest[at[k]]].nearest(
+        {samples.x.of[at[k]], samples.y.of[at[k]]});
+    double safe[4];
     for (int c = 0; c < 4; ++c) {
-      const double d = std::sqrt((px[c] - q.x) * (px[c] - q.x) + (py[c] - q.y) * (py[c] - q.y));
-      const double safe = d + kRounding * (d + field_.longest_ + 4);
-      limit[k][c] = safe * safe;
+      const double dx = samples.x.of[at[c + 1]] - q.x, dy = samples.y.of[at[c + 1]] - q.y;
+      const double d = std::sqrt(dx * dx + dy * dy);
+      safe[c] = d + kRounding * (d + field_.longest_ + 4) + kGrown;
+      safe[c] *= safe[c];
     }
+    limit[k][0] = _mm_loadu_pd(safe);
+    limit[k][1] = _mm_loadu_pd(safe + 2);
   }
-  for (std::size_t i = 0; i < from.size(); ++i) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
     if (i % kAtATime == kAtATime - 1) {
       if (auto error = context_.poll()) return error;
     }
-    const double* const of = corners_[i].square;
+    const __m128d below = _mm_loadu_pd(squares_[i].of + low);
+    const __m128d above = _mm_loadu_pd(squares_[i].of + low + 3);
     bool dropped = false;
-    for (int k = 0; k < kSamples && !dropped; ++k)
-      dropped =
-          of[0] > limit[k][0] && of[1] > limit[k][1] && of[2] > limit[k][2] && of[3] > limit[k][3];
-    if (!dropped) pending.lines.push_back(from[i]);
+    for (int k = 0; k < kPoints && !dropped; ++k)
+      dropped = _mm_movemask_pd(_mm_and_pd(_mm_cmpgt_pd(below, limit[k][0]),
+                                           _mm_cmpgt_pd(above, limit[k][1]))) == 3;
+    if (!dropped) kept.push_back(lines[i]);
   }
-  pending.distance = std::sqrt(least[4]);
   return std::nullopt;
 }
 
@@ -172,9 +227,7 @@ void ListBuilder::add_leaf(const Pending& pending) {
   Node& node = nodes[pending.node];
   node = {static_cast<std::uint32_t>(lists.size()), count};
   if (count > kShort) {
-    const Box box = box_of(pending);
-    const Point middle{0.5 * (box.min_x + box.max_x), 0.5 * (box.min_y + box.max_y)};
-    const LineTree::Nearest found = field_.tree_.nearest(middle, pending.lines[0]);
+    const LineTree::Nearest found = field_.tree_.nearest(middle_of(pending), pending.lines[0]);
     if (kLinesPerLook * found.looks < count) {
       node = {found.line, DistanceField::kByTree};
       cost = kLinesPerLook * found.looks;
@@ -199,19 +252,14 @@ std::optional<Error> ListBuilder::split(Pending&& pending) {
   }
   if (auto error = context_.poll()) return error;
   Pending children[4];
-  std::uint64_t cost = 0;
   for (std::uint32_t c = 0; c < 4; ++c) {
-    Pending& child = children[c];
-    child.depth = pending.depth + 1;
-    child.ix = 2 * pending.ix + (c & 1);
-    child.iy = 2 * pending.iy + (c >> 1);
-    const Box box = box_of(child);
-    if (box.min_x <= wanted_.max_x && box.max_x >= wanted_.min_x && box.min_y <= wanted_.max_y &&
-        box.max_y >= wanted_.min_y) {
-      if (auto error = filter(pending.lines, child)) return error;
-    }
-    cost += child.lines.size() + kNodeCost;
+    children[c].depth = pending.depth + 1;
+    children[c].ix = 2 * pending.ix + (c & 1);
+    children[c].iy = 2 * pending.iy + (c >> 1);
   }
+  if (auto error = share_out(pending, children)) return error;
+  std::uint64_t cost = 0;
+  for (const Pending& child : children) cost += child.lines.size() + kNodeCost;
   if (cost > pending.allowed) {
     add_leaf(pending);
     return std::nullopt;
@@ -242,7 +290,7 @@ DistanceField::DistanceField(const Box& box)
   cells_ = std::ldexp(1.0, kMaxDepth - 1) / root_;
 }
 
-Result<DistanceField> DistanceField::make(std::vector<Line> lines, const Box& box,
+Result<DistanceField> DistanceField::make(std::vector<Line> lines, const DomainCover& cover,
                                           const ExecutionContext& context) {
   if (lines.size() > kMostLines) {
     return fail(ErrorCode::kLimitExceeded, "",
@@ -254,7 +302,7 @@ Result<DistanceField> DistanceField::make(std::vector<Line> lines, const Box& bo
           context.need_bytes(bytes, "a distance to " + std::to_string(lines.size()) + " lines"))
     return tl::unexpected(*error);
 
-  DistanceField field(box);
+  DistanceField field(cover.box());
   std::vector<StraightLine> straight;
   straight.reserve(lines.size());
   for (const Line& line : lines) {
@@ -269,31 +317,26 @@ Result<DistanceField> DistanceField::make(std::vector<Line> lines, const Box& bo
   auto tree = LineTree::make(std::move(straight), context);
   if (!tree) return tl::unexpected(tree.error());
   field.tree_ = std::move(*tree);
-  if (auto error = field.add_quadtree(box, context)) return tl::unexpected(*error);
+  if (auto error = field.add_quadtree(cover, context)) return tl::unexpected(*error);
   return field;
 }
 
-std::optional<Error> DistanceField::add_quadtree(const Box& box, const ExecutionContext& context) {
-  const Point low = inside({box.min_x, box.min_y});
-  const Point high = inside({box.max_x, box.max_y});
-  const Box wanted{low.x, low.y, high.x, high.y};
+std::optional<Error> DistanceField::add_quadtree(const DomainCover& cover,
+                                                 const ExecutionContext& context) {
   const std::size_t n = tree_.lines().size();
 
   // Builds the first levels, then each subtree below them on one thread.
-  ListBuilder top(*this, wanted, kSubtreeLevel, context);
+  ListBuilder top(*this, cover, kSubtreeLevel, context);
   ListBuilder::Pending root;
   root.allowed =
       kListedPerLine * n + std::min(kListedBesides + kMoreListedPerLine * n, kMostListedBesides);
-  {
-    std::vector<std::uint32_t> all(n);
-    for (std::uint32_t i = 0; i < n; ++i) all[i] = i;
-    if (auto error = top.filter(all, root)) return error;
-  }
+  root.lines.resize(n);
+  std::iota(root.lines.begin(), root.lines.end(), 0u);
   if (auto error = top.build(std::move(root))) return error;
   std::vector<ListBuilder> parts;
   parts.reserve(top.later.size());
   for (std::size_t i = 0; i < top.later.size(); ++i)
-    parts.emplace_back(*this, wanted, kMaxDepth, context);
+    parts.emplace_back(*this, cover, kMaxDepth, context);
   std::vector<std::uint32_t> places;
   for (const auto& pending : top.later) places.push_back(pending.node);
   if (auto error = polled_loop(context, parts.size(), [&](std::size_t i) {
@@ -512,13 +555,10 @@ DistanceField::Near DistanceField::near(const LineTree::Numbers& numbers,
 }
 
 std::vector<Line> DistanceField::lines() const {
-  const auto outside = [&](Point p) {
-    return Point{p.x * unit_ + centre_.x, p.y * unit_ + centre_.y};
-  };
   std::vector<Line> lines;
   lines.reserve(tree_.lines().size());
   for (const StraightLine& line : tree_.lines())
-    lines.push_back({outside({line.ax, line.ay}), outside(line.end())});
+    lines.push_back({outside(Point{line.ax, line.ay}), outside(line.end())});
   return lines;
 }
 

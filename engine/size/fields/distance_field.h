@@ -9,13 +9,13 @@
 // the box's side, or of their distance from its centre if that is larger, may count as one.
 //
 // How: a quadtree over the box, whose leaves list every line that is nearest to some point of the
-// leaf, and few others. A line s is dropped from a box if one point q of another line is nearer
-// than all of s from the box's four corners: the points nearer to q than to s, by a margin or none,
-// are an intersection of convex sets, so they hold the box if they hold its corners. Where lists
-// stay long (pieces of one straight line, lines that cross at one point, a circle around its
-// centre), and outside the box, a tree of turned boxes (line_tree.h) finds the nearest. A subtree
-// lists no more than its share of kListedPerLine entries for each line, so the memory and time to
-// build are bounded for any lines.
+// leaf, and few others, if the domain meets it. A line s is dropped from a box if one point q of
+// another line is nearer than all of s from the box's four corners: the points nearer to q than to
+// s, by a margin or none, are an intersection of convex sets, so they hold the box if they hold its
+// corners. Where lists stay long (pieces of one straight line, lines that cross at one point, a
+// circle around its centre), and outside the box, a tree of turned boxes (line_tree.h) finds the
+// nearest. A subtree lists no more than its share of kListedPerLine entries for each line, so the
+// memory and time to build are bounded for any lines.
 //
 // Infinity if the square of the distance overflows: 1e150 sides of the box away. NaN at NaN.
 //
@@ -32,6 +32,7 @@
 #include <vector>
 
 #include "engine/base/context.h"
+#include "engine/size/domain_cover.h"
 #include "engine/size/field.h"
 #include "engine/size/fields/line_tree.h"
 
@@ -51,12 +52,12 @@ class DistanceField final : public Field {
   }
   static constexpr std::size_t kMostLines = std::size_t{1} << 27;
 
-  // `box` is where the field is asked for most: the domain's.
+  // `cover` is where the field is asked for most: the domain's; elsewhere a value takes longer.
   // REQUIRES: one line at least; finite coordinates of magnitude up to 1e50; a box that is not
   // empty. The same field on any number of threads.
   // Errors: kLimitExceeded for more than kMostLines; kBudgetExceeded; kCancelled,
   // kDeadlineExceeded.
-  static Result<DistanceField> make(std::vector<Line> lines, const Box& box,
+  static Result<DistanceField> make(std::vector<Line> lines, const DomainCover& cover,
                                     const ExecutionContext& context);
 
   void evaluate(std::size_t n, const double* x, const double* y,
@@ -105,7 +106,13 @@ class DistanceField final : public Field {
   // All that follows is in the coordinates (x - centre) * scale, which are about 1 in the box.
   explicit DistanceField(const Box& box);
   Point inside(Point p) const { return {(p.x - centre_.x) * scale_, (p.y - centre_.y) * scale_}; }
-  std::optional<Error> add_quadtree(const Box& box, const ExecutionContext& context);
+  Point outside(Point p) const { return {p.x * unit_ + centre_.x, p.y * unit_ + centre_.y}; }
+  Box outside(const Box& box) const {
+    const Point low = outside(Point{box.min_x, box.min_y});
+    const Point high = outside(Point{box.max_x, box.max_y});
+    return {low.x, low.y, high.x, high.y};
+  }
+  std::optional<Error> add_quadtree(const DomainCover& cover, const ExecutionContext& context);
   void fill_table(std::uint32_t node, int depth, std::uint32_t ix, std::uint32_t iy);
   std::uint32_t leaf(int ix, int iy) const noexcept;
   void eight(const Lanes& at, __m128d* out) const noexcept;

@@ -35,6 +35,7 @@
 
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 #include "engine/base/context.h"
 #include "engine/base/geometry.h"
@@ -68,7 +69,9 @@ class WidthField final : public Field {
   }
 
  private:
-  WidthField(DistanceField to_walls, DistanceField to_axis, const Box& box);
+  // `radii`: for each line of the axis, how near its points come to the walls at most.
+  WidthField(DistanceField to_walls, DistanceField to_axis, std::vector<double> radii,
+             const Box& box);
 
   // Increases with both, rounded as well: so bounds of the two give bounds of the value.
   double width(double to_walls, double to_axis) const {

@@ -357,7 +357,8 @@ std::optional<Error> Builder::measure_distance() {
           domain_.bytes() + size_.bytes() + held_ + DistanceField::bytes_to_make(borders.size()),
           "the gradation"))
     return error;
-  auto made = DistanceField::make(std::move(borders), around_, context_);
+  // It is asked for outside of the domain, and too seldom for lists to pay.
+  auto made = DistanceField::make(std::move(borders), DomainCover::nothing_of(around_), context_);
   if (!made) return std::move(made).error();
   far_.emplace(std::move(*made));
   return std::nullopt;
