@@ -23,7 +23,6 @@ build=(
   libcli11-dev nlohmann-json3-dev libcairo2-dev fonts-dejavu-core        # the command line
   libyaml-cpp-dev libpugixml-dev                                         # its batches
   zlib1g-dev libshp-dev                                                  # .npz, shapefiles
-  libmuparser-dev                                                        # the checker
   libgtest-dev libgmock-dev librapidcheck-dev                            # tests
 )
 geo=(libgdal-dev libproj-dev libmetis-dev)
@@ -32,7 +31,7 @@ weftd=(
   libfmt9 libatomic1 libssl3 libsqlite3-0 libpq5 libprometheus-cpp-core1.0 zlib1g
 )
 weft=(
-  libprotobuf32 libatomic1 libssl3 libcairo2 fonts-dejavu-core zlib1g libshp2 libmuparser2v5
+  libprotobuf32 libatomic1 libssl3 libcairo2 fonts-dejavu-core zlib1g libshp2
   libyaml-cpp0.7 libpugixml1v5 libgdal32 libproj25 libmetis5
 )
 test=(

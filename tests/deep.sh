@@ -77,6 +77,7 @@ deep_soak() {
 }
 
 needed "install packages" deploy/install-deps.sh
+needed "install linters" install_linters
 needed "build" build release
 (($#)) || set -- "${known[@]}"
 for name in "$@"; do

@@ -35,12 +35,6 @@ check_shell() {
   ours '*.sh' .ci/run | xargs shellcheck --severity=warning
 }
 
-install_linters() (
-  cd deploy || exit
-  [[ node_modules/.package-lock.json -nt package-lock.json ]] ||
-    npm ci --ignore-scripts --no-audit --no-fund
-)
-
 check_console() (
   cd console || exit
   [[ node_modules/.package-lock.json -nt package-lock.json ]] ||

@@ -51,6 +51,13 @@ needed() {
   step "$@" || finish
 }
 
+# buf, and what judges manifests; pages of the documents run them.
+install_linters() (
+  cd deploy || exit
+  [[ node_modules/.package-lock.json -nt package-lock.json ]] ||
+    npm ci --ignore-scripts --no-audit --no-fund
+)
+
 # failed_tests LOG: of each test that failed, ctest's line and the last 30 that the test printed.
 failed_tests() {
   awk '/^ *(Start +[0-9]+:|[0-9]+\/[0-9]+ Test +#)/ || /% tests passed/ {

@@ -1,24 +1,100 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "checker/size/size_expression.h"
 
-#include <muParserBase.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <deque>
-#include <functional>
 #include <limits>
 #include <numbers>
 #include <set>
 #include <utility>
-#include <vector>
 
 #include "checker/text.h"
 
 namespace weft::check {
 namespace {
+
+using Values = const double*;
+using Operation = double (*)(Values, std::size_t);
+
+constexpr std::size_t kMaxNameLength = 64;
+constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+bool any_nan(Values v, std::size_t n) {
+  return std::any_of(v, v + n, [](double of) { return std::isnan(of); });
+}
+
+struct Binary {
+  std::string_view symbol;
+  int level;  // how tight it binds
+  Operation function;
+};
+
+// Longer symbols before those that they start with.
+constexpr int kComparison = 3;
+constexpr std::array<Binary, 12> kBinary = {{
+    {"||", 1, [](Values v, std::size_t) { return v[0] != 0 || v[1] != 0 ? 1.0 : 0.0; }},
+    {"&&", 2, [](Values v, std::size_t) { return v[0] != 0 && v[1] != 0 ? 1.0 : 0.0; }},
+    {"<=", kComparison, [](Values v, std::size_t) { return v[0] <= v[1] ? 1.0 : 0.0; }},
+    {">=", kComparison, [](Values v, std::size_t) { return v[0] >= v[1] ? 1.0 : 0.0; }},
+    {"==", kComparison, [](Values v, std::size_t) { return v[0] == v[1] ? 1.0 : 0.0; }},
+    {"!=", kComparison, [](Values v, std::size_t) { return v[0] != v[1] ? 1.0 : 0.0; }},
+    {"<", kComparison, [](Values v, std::size_t) { return v[0] < v[1] ? 1.0 : 0.0; }},
+    {">", kComparison, [](Values v, std::size_t) { return v[0] > v[1] ? 1.0 : 0.0; }},
+    {"+", 4, [](Values v, std::size_t) { return v[0] + v[1]; }},
+    {"-", 4, [](Values v, std::size_t) { return v[0] - v[1]; }},
+    {"*", 5, [](Values v, std::size_t) { return v[0] * v[1]; }},
+    {"/", 5, [](Values v, std::size_t) { return v[0] / v[1]; }},
+}};
+constexpr Operation kPower = [](Values v, std::size_t) { return std::pow(v[0], v[1]); };
+constexpr Operation kMinus = [](Values v, std::size_t) { return -v[0]; };
+constexpr Operation kNot = [](Values v, std::size_t) { return v[0] == 0 ? 1.0 : 0.0; };
+constexpr Operation kChoose = [](Values v, std::size_t) { return v[0] != 0 ? v[1] : v[2]; };
+
+struct Named {
+  std::string_view name;
+  std::size_t fewest;  // arguments
+  std::size_t most;
+  Operation function;
+};
+
+constexpr std::array<Named, 17> kFunctions = {{
+    {"sqrt", 1, 1, [](Values v, std::size_t) { return std::sqrt(v[0]); }},
+    {"abs", 1, 1, [](Values v, std::size_t) { return std::fabs(v[0]); }},
+    {"exp", 1, 1, [](Values v, std::size_t) { return std::exp(v[0]); }},
+    {"log", 1, 1, [](Values v, std::size_t) { return std::log(v[0]); }},
+    {"sin", 1, 1, [](Values v, std::size_t) { return std::sin(v[0]); }},
+    {"cos", 1, 1, [](Values v, std::size_t) { return std::cos(v[0]); }},
+    {"tan", 1, 1, [](Values v, std::size_t) { return std::tan(v[0]); }},
+    {"floor", 1, 1, [](Values v, std::size_t) { return std::floor(v[0]); }},
+    {"ceil", 1, 1, [](Values v, std::size_t) { return std::ceil(v[0]); }},
+    {"defined", 1, 1, [](Values v, std::size_t) { return std::isnan(v[0]) ? 0.0 : 1.0; }},
+    {"pow", 2, 2, kPower},
+    {"atan2", 2, 2, [](Values v, std::size_t) { return std::atan2(v[0], v[1]); }},
+    {"hypot", 2, 2, [](Values v, std::size_t) { return std::hypot(v[0], v[1]); }},
+    {"clamp", 3, 3,
+     [](Values v, std::size_t n) {
+       return any_nan(v, n) ? kNan : std::min(std::max(v[0], v[1]), v[2]);
+     }},
+    {"min", 2, kAny,
+     [](Values v, std::size_t n) { return any_nan(v, n) ? kNan : *std::min_element(v, v + n); }},
+    {"max", 2, kAny,
+     [](Values v, std::size_t n) { return any_nan(v, n) ? kNan : *std::max_element(v, v + n); }},
+    {"coalesce", 2, kAny,
+     [](Values v, std::size_t n) {
+       const auto* const found = std::find_if(v, v + n, [](double of) { return !std::isnan(of); });
+       return found == v + n ? kNan : *found;
+     }},
+}};
+constexpr std::array<std::string_view, 5> kOtherNames = {"x", "y", "pi", "e", "slope"};
+
+const Named* function_named(std::string_view name) {
+  const auto* const found = std::find_if(kFunctions.begin(), kFunctions.end(),
+                                         [&](const Named& f) { return f.name == name; });
+  return found == kFunctions.end() ? nullptr : found;
+}
 
 // The character classes of the grammar, whatever the locale.
 bool is_digit(char c) {
@@ -28,46 +104,6 @@ bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-// Bytes of the number that `text` starts with: digits, fraction, exponent; 0 if there is none.
-std::size_t number_length(std::string_view text) {
-  std::size_t i = 0;
-  std::size_t digits = 0;
-  while (i < text.size() && is_digit(text[i])) ++i, ++digits;
-  if (i < text.size() && text[i] == '.') {
-    ++i;
-    while (i < text.size() && is_digit(text[i])) ++i, ++digits;
-  }
-  if (digits == 0) return 0;
-  if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
-    std::size_t j = i + 1;
-    if (j < text.size() && (text[j] == '+' || text[j] == '-')) ++j;
-    if (j < text.size() && is_digit(text[j])) {
-      while (j < text.size() && is_digit(text[j])) ++j;
-      i = j;
-    }
-  }
-  return i;
-}
-
-// The hook of muParser that reads a number at the start of the text.
-int read_number(const char* text, int* position, double* value) {
-  const std::size_t length = number_length(text);
-  if (length == 0) return 0;
-  std::from_chars(text, text + length, *value);
-  *position += static_cast<int>(length);
-  return 1;
-}
-
-constexpr std::size_t kMaxNameLength = 64;
-constexpr std::array<std::string_view, 22> kNames = {
-    "x",     "y",   "pi",    "e",     "sqrt",    "abs",     "exp",  "log",
-    "sin",   "cos", "tan",   "min",   "max",     "floor",   "ceil", "atan2",
-    "hypot", "pow", "clamp", "slope", "defined", "coalesce"};
-
-bool is_known(std::string_view name) {
-  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
-}
-
 // Bytes of the name that `text` starts with; 0 if there is none.
 std::size_t name_length(std::string_view text) {
   if (text.empty() || !is_letter(text[0])) return 0;
@@ -75,259 +111,6 @@ std::size_t name_length(std::string_view text) {
   while (length < text.size() && (is_letter(text[length]) || is_digit(text[length]))) ++length;
   return length;
 }
-
-std::size_t blank_length(std::string_view text) {
-  return std::min(text.find_first_not_of(" \t\n\r"), text.size());
-}
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-// In muParser, the slope of a field is a variable with a name that no field can have.
-constexpr char kSlope = '$';
-constexpr std::array<std::string_view, 19> kSymbols = {"<=", ">=", "==", "!=", "&&", "||", "+",
-                                                       "-",  "*",  "/",  "^",  "<",  ">",  "!",
-                                                       "?",  ":",  "(",  ")",  ","};
-
-// A run of unary operators amounts to at most one -, and at most two !.
-class UnaryRun {
- public:
-  void add(char operation) { operations_ += operation; }
-  bool empty() const { return operations_.empty(); }
-  void clear() { operations_.clear(); }
-  std::string folded() const {
-    bool minus = false;
-    std::size_t nots = 0;
-    for (auto c = operations_.rbegin(); c != operations_.rend(); ++c) {
-      if (*c == '-') minus = !minus;
-      if (*c == '!') {
-        minus = false;  // a number is 0 or not, whatever its sign
-        nots = nots == 2 ? 1 : nots + 1;
-      }
-    }
-    std::string result;
-    if (minus) result += '-';
-    return result.append(nots, '!');
-  }
-
- private:
-  std::string operations_;
-};
-
-// Translates a source into what muParser reads as the grammar means it. What the grammar lacks is
-// refused, because muParser would accept more, such as a < b < c. Runs of unary operators, which it
-// does not accept, are folded. White space becomes blanks, but a function moves next to its
-// parenthesis. All other tokens keep their columns.
-class Translator {
- public:
-  Translator(std::string_view source, std::span<const Field> fields)
-      : source_(source), text_(source.size(), ' ') {
-    for (const Field& field : fields) fields_.insert(field.name);
-  }
-
-  // The variables other than x and y in the last translation, sorted.
-  const std::set<std::string>& used() const { return used_; }
-
-  tl::expected<std::string, std::string> translate() {
-    UnaryRun run;
-    bool operand_next = true;  // so that + - ! are unary
-    std::string_view name;     // the last token, if it is a name
-    std::size_t i = 0;
-    while (i < source_.size()) {
-      if (const std::size_t blanks = blank_length(source_.substr(i)); blanks > 0) {
-        i += blanks;
-        continue;
-      }
-      if (const auto slope = slope_at(i)) {
-        if (slope->name.empty())
-          return tl::unexpected(say("slope takes the name of a field, at column ", i + 1));
-        operand(i, kSlope + slope->name, run);
-        used_.insert(kSlope + slope->name);
-        operand_next = false;
-        name = {};
-        i += slope->length;
-        continue;
-      }
-      const auto length = token_length(i);
-      if (!length) return tl::unexpected(length.error());
-      const std::string_view token = source_.substr(i, *length);
-      if (fields_.contains(token)) used_.emplace(token);
-      if (chains(token)) return tl::unexpected(say("comparisons do not chain, at column ", i + 1));
-      if (token == "(" && !name.empty()) {
-        text_.replace(static_cast<std::size_t>(name.data() - source_.data()), name.size(),
-                      name.size(), ' ');
-        text_.replace(i - name.size(), name.size(), name);
-      }
-      name = is_letter(token[0]) ? token : std::string_view();
-      if (operand_next && (token == "+" || token == "-" || token == "!")) {
-        run.add(token[0]);
-      } else {
-        operand(i, token, run);
-        const char last = token.back();
-        operand_next = !is_digit(last) && !is_letter(last) && last != '.' && last != ')';
-      }
-      i += *length;
-    }
-    if (!run.empty()) return tl::unexpected(std::string("it ends with an operator"));
-    return std::move(text_);
-  }
-
- private:
-  struct Slope {
-    std::string name;  // of the field; empty if it is none
-    std::size_t length;
-  };
-
-  // Whether the slope of a field begins at i.
-  std::optional<Slope> slope_at(std::size_t i) const {
-    std::string_view rest = source_.substr(i);
-    if (rest.substr(0, name_length(rest)) != "slope") return std::nullopt;
-    const auto skip = [&](std::size_t bytes) {
-      rest.remove_prefix(bytes);
-      rest.remove_prefix(blank_length(rest));
-    };
-    skip(name_length(rest));
-    if (!rest.starts_with('(')) return Slope{"", 0};
-    skip(1);
-    const std::string_view name = rest.substr(0, name_length(rest));
-    skip(name.size());
-    if (!fields_.contains(name) || !rest.starts_with(')')) return Slope{"", 0};
-    return Slope{std::string(name), source_.size() - i - rest.size() + 1};
-  }
-
-  // Writes what a run of unary operators, and the token at i after it, amount to.
-  void operand(std::size_t i, std::string_view token, UnaryRun& run) {
-    const std::string unary = run.folded();
-    text_.replace(i - unary.size(), unary.size(), unary);
-    text_.replace(i, token.size(), token);
-    run.clear();
-  }
-
-  // Whether the token would compare the result of a comparison without parentheses between.
-  bool chains(std::string_view token) {
-    if (token == "(") compared_.push_back(false);
-    if (token == ")" && compared_.size() > 1) compared_.pop_back();
-    if (token == "&&" || token == "||" || token == "?" || token == ":" || token == ",")
-      compared_.back() = false;
-    if (token != "<" && token != "<=" && token != ">" && token != ">=" && token != "==" &&
-        token != "!=")
-      return false;
-    const bool twice = compared_.back();
-    compared_.back() = true;
-    return twice;
-  }
-
-  tl::expected<std::size_t, std::string> token_length(std::size_t i) const {
-    const auto refuse = [i](const auto&... parts) {
-      return tl::unexpected(say(parts..., " at column ", i + 1));
-    };
-    const std::string_view rest = source_.substr(i);
-    if (const std::size_t length = number_length(rest); length > 0) {
-      double value = 0;
-      if (std::from_chars(rest.data(), rest.data() + length, value).ec != std::errc())
-        return refuse("a number that no double holds");
-      if (length < rest.size() && (is_letter(rest[length]) || rest[length] == '.'))
-        return refuse("a number that does not end");
-      return length;
-    }
-    if (const std::size_t length = name_length(rest); length > 0) {
-      const std::string_view name = rest.substr(0, length);
-      if (!is_known(name) && !fields_.contains(name)) return refuse("unknown name '", name, "'");
-      return length;
-    }
-    const auto symbol =
-        std::find_if(kSymbols.begin(), kSymbols.end(),
-                     [&](std::string_view candidate) { return rest.starts_with(candidate); });
-    if (symbol == kSymbols.end()) return refuse("unexpected '", rest.substr(0, 1), "'");
-    return symbol->size();
-  }
-
-  std::string_view source_;
-  std::string text_;
-  std::set<std::string_view> fields_;  // names
-  std::set<std::string> used_;
-  std::vector<bool> compared_{false};  // per open parenthesis: whether its operand is a comparison
-};
-
-// muParser with nothing but the grammar's functions, constants and unary operators. The binary
-// operators are its built-in ones, whose precedence and association are the grammar's.
-class GrammarParser : public mu::ParserBase {
- public:
-  GrammarParser() {
-    InitCharSets();
-    InitFun();
-    InitConst();
-    InitOprt();
-    AddValIdent(read_number);
-    EnableOptimizer(false);  // because it reorders arithmetic
-  }
-
- protected:
-  void InitCharSets() override {
-    DefineNameChars("$0123456789_abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
-    DefineOprtChars("+-*^/?<>=!&|");
-    DefineInfixOprtChars("-!");
-  }
-  void InitFun() override {
-    using Unary = double (*)(double);
-    using Binary = double (*)(double, double);
-    using Variadic = double (*)(const double*, int);
-    DefineFun("sqrt", static_cast<Unary>(std::sqrt));
-    DefineFun("abs", static_cast<Unary>(std::fabs));
-    DefineFun("exp", static_cast<Unary>(std::exp));
-    DefineFun("log", static_cast<Unary>(std::log));
-    DefineFun("sin", static_cast<Unary>(std::sin));
-    DefineFun("cos", static_cast<Unary>(std::cos));
-    DefineFun("tan", static_cast<Unary>(std::tan));
-    DefineFun("floor", static_cast<Unary>(std::floor));
-    DefineFun("ceil", static_cast<Unary>(std::ceil));
-    DefineFun("pow", static_cast<Binary>(std::pow));
-    DefineFun("atan2", static_cast<Binary>(std::atan2));
-    DefineFun("hypot", static_cast<Binary>(std::hypot));
-    DefineFun("min", static_cast<Variadic>(minimum));
-    DefineFun("max", static_cast<Variadic>(maximum));
-    DefineFun("defined", static_cast<Unary>([](double v) { return std::isnan(v) ? 0.0 : 1.0; }));
-    DefineFun("coalesce", static_cast<Variadic>(coalesce));
-    DefineFun("clamp", static_cast<double (*)(double, double, double)>(clamp));
-  }
-  void InitConst() override {
-    DefineConst("pi", std::numbers::pi);
-    DefineConst("e", std::numbers::e);
-  }
-  void InitOprt() override {
-    DefineInfixOprt("-", [](double v) { return -v; });
-    DefineInfixOprt("!", [](double v) { return v == 0 ? 1.0 : 0.0; });
-    DefineInfixOprt("!!", [](double v) { return v == 0 ? 0.0 : 1.0; });
-    DefineInfixOprt("-!", [](double v) { return v == 0 ? -1.0 : 0.0; });
-    DefineInfixOprt("-!!", [](double v) { return v == 0 ? 0.0 : -1.0; });
-  }
-
- private:
-  // One argument is refused: the grammar wants two or more.
-  static void require_two(int count) {
-    if (count < 2) throw mu::ParserError("min, max and coalesce take two arguments or more");
-  }
-  static bool any_nan(const double* values, int count) {
-    return std::any_of(values, values + count, [](double v) { return std::isnan(v); });
-  }
-  static double minimum(const double* values, int count) {
-    require_two(count);
-    return any_nan(values, count) ? kNan : *std::min_element(values, values + count);
-  }
-  static double maximum(const double* values, int count) {
-    require_two(count);
-    return any_nan(values, count) ? kNan : *std::max_element(values, values + count);
-  }
-  static double coalesce(const double* values, int count) {
-    require_two(count);
-    const double* const end = values + count;
-    const double* const found = std::find_if(values, end, [](double v) { return !std::isnan(v); });
-    return found == end ? kNan : *found;
-  }
-  static double clamp(double value, double low, double high) {
-    if (std::isnan(value) || std::isnan(low) || std::isnan(high)) return kNan;
-    return std::min(std::max(value, low), high);
-  }
-};
 
 }  // namespace
 
@@ -340,79 +123,204 @@ std::optional<std::string> fault_of_names(std::span<const Field> fields) {
                  kMaxNameLength);
     if (name.empty() || name_length(name) != name.size())
       return say("the name of field ", i, " is '", name, "', which is no name");
-    if (is_known(name))
+    if (function_named(name) != nullptr ||
+        std::find(kOtherNames.begin(), kOtherNames.end(), name) != kOtherNames.end())
       return say("the name of field ", i, " is '", name, "', which means something else");
     if (!seen.insert(name).second) return say("two fields have the name '", name, "'");
   }
   return std::nullopt;
 }
 
-struct SizeExpression::Evaluator {
-  struct Input {
-    std::function<double(Vec2)> field;
-    double value = 0;
+// Reads an expression from the left: an operand, then operators that bind tight enough, each with
+// the operand to its right (V. Pratt, "Top down operator precedence", 1973). A step is added for
+// each once its operands' steps are there. Throws Fault.
+class ExpressionReader {
+ public:
+  struct Fault {
+    std::string what;
   };
 
-  GrammarParser parser;
-  double x = 0;
-  double y = 0;
-  std::deque<Input> inputs;  // stay where they are
-
-  // Returns the name of a field without a value, if there is one.
-  std::optional<std::string> define(const std::set<std::string>& used,
-                                    std::span<const Field> fields) {
-    parser.DefineVar("x", &x);
-    parser.DefineVar("y", &y);
-    for (const Field& field : fields) {
-      for (const bool slope : {false, true}) {
-        const std::string name = slope ? kSlope + field.name : field.name;
-        if (!used.contains(name)) continue;
-        inputs.push_back({slope ? field.slope : field.value});
-        if (!inputs.back().field) return field.name;
-        parser.DefineVar(name, &inputs.back().value);
-      }
-    }
-    return std::nullopt;
+  ExpressionReader(std::string_view source, std::span<const Field> fields)
+      : source_(source), fields_(fields) {
+    made_.inputs_ = {[](Vec2 p) { return p.x; }, [](Vec2 p) { return p.y; }};
   }
-};
 
-SizeExpression::SizeExpression(std::unique_ptr<Evaluator> evaluator)
-    : evaluator_(std::move(evaluator)) {}
-SizeExpression::SizeExpression(SizeExpression&&) noexcept = default;
-SizeExpression& SizeExpression::operator=(SizeExpression&&) noexcept = default;
-SizeExpression::~SizeExpression() = default;
+  SizeExpression read() {
+    choice(0);
+    if (at_ < source_.size()) refuse("unexpected ", found());
+    return std::move(made_);
+  }
+
+ private:
+  template <class... Parts>
+  [[noreturn]] void refuse_at(std::size_t at, const Parts&... parts) const {
+    throw Fault{say("the size expression does not parse: ", parts..., " at column ", at + 1)};
+  }
+  template <class... Parts>
+  [[noreturn]] void refuse(const Parts&... parts) const {
+    refuse_at(at_, parts...);
+  }
+  std::string found() const {
+    return at_ < source_.size() ? say("'", source_.substr(at_, 1), "'") : "end";
+  }
+  std::string_view rest() {
+    at_ = std::min(source_.find_first_not_of(" \t\n\r", at_), source_.size());
+    return source_.substr(at_);
+  }
+  bool accept(std::string_view symbol) {
+    if (!rest().starts_with(symbol)) return false;
+    at_ += symbol.size();
+    return true;
+  }
+  void expect(std::string_view symbol) {
+    if (!accept(symbol)) refuse("expected '", symbol, "' instead of ", found());
+  }
+  void add(Operation function, std::size_t operands) {
+    made_.steps_.push_back({.function = function, .operands = operands});
+  }
+  void push(double number) { made_.steps_.push_back({.number = number}); }
+
+  void choice(std::size_t depth) {
+    std::size_t choices = 0;
+    for (operators(1, depth); accept("?"); operators(1, depth), ++choices) {
+      choice(depth + 1);
+      expect(":");
+    }
+    for (; choices > 0; --choices) add(kChoose, 3);
+  }
+
+  const Binary* operator_here() {
+    const std::string_view text = rest();
+    const auto* const found = std::find_if(kBinary.begin(), kBinary.end(), [&](const Binary& b) {
+      return text.starts_with(b.symbol);
+    });
+    return found == kBinary.end() ? nullptr : found;
+  }
+
+  void operators(int loosest, std::size_t depth) {
+    operand(depth);
+    bool compared = false;
+    for (const Binary* next = operator_here(); next != nullptr && next->level >= loosest;
+         next = operator_here()) {
+      if (compared && next->level == kComparison) refuse("comparisons do not chain,");
+      compared = next->level == kComparison;
+      at_ += next->symbol.size();
+      operators(next->level + 1, depth);
+      add(next->function, 2);
+    }
+  }
+
+  // With its unary operators and its exponent.
+  void operand(std::size_t depth) {
+    if (depth > SizeExpression::kMaxDepth) refuse("too many parentheses and signs");
+    if (accept("+")) return operand(depth + 1);
+    for (const auto& [sign, function] : {std::pair("-", kMinus), std::pair("!", kNot)}) {
+      if (!accept(sign)) continue;
+      operand(depth + 1);
+      return add(function, 1);
+    }
+    if (accept("(")) {
+      choice(depth + 1);
+      expect(")");
+    } else if (const std::size_t length = name_length(rest()); length > 0) {
+      named(source_.substr(at_, length), depth);
+    } else {
+      number();
+    }
+    if (!accept("^")) return;
+    operand(depth + 1);
+    add(kPower, 2);
+  }
+
+  void number() {
+    const std::string_view text = rest();
+    double value = 0;
+    const bool begins = !text.empty() && (is_digit(text[0]) || text[0] == '.');
+    const auto [end, error] =
+        begins ? std::from_chars(text.data(), text.data() + text.size(), value)
+               : std::from_chars_result{text.data(), std::errc::invalid_argument};
+    if (error == std::errc::result_out_of_range) refuse("a number that no double holds");
+    if (error != std::errc()) refuse("unexpected ", found());
+    const auto length = static_cast<std::size_t>(end - text.data());
+    if (length < text.size() && (is_letter(text[length]) || text[length] == '.'))
+      refuse("a number that does not end");
+    at_ += length;
+    push(value);
+  }
+
+  void named(std::string_view name, std::size_t depth) {
+    const auto field = std::find_if(fields_.begin(), fields_.end(),
+                                    [&](const Field& f) { return f.name == name; });
+    const Named* const function = function_named(name);
+    if (field == fields_.end() && function == nullptr &&
+        std::find(kOtherNames.begin(), kOtherNames.end(), name) == kOtherNames.end())
+      refuse("unknown name '", name, "'");
+    at_ += name.size();
+    if (field != fields_.end()) return input(*field, field->value);
+    if (function != nullptr) return call(*function, depth, at_ - name.size());
+    if (name == "slope") return slope(at_ - name.size());
+    if (name == "pi" || name == "e") return push(name == "pi" ? std::numbers::pi : std::numbers::e);
+    made_.steps_.push_back({.input = name == "x" ? 0 : 1});
+  }
+
+  void call(const Named& function, std::size_t depth, std::size_t start) {
+    expect("(");
+    std::size_t arguments = 0;
+    do {
+      choice(depth + 1);
+      ++arguments;
+    } while (accept(","));
+    expect(")");
+    if (arguments < function.fewest || arguments > function.most)
+      refuse_at(start, function.name, " does not take ", arguments, " arguments,");
+    add(function.function, arguments);
+  }
+
+  void slope(std::size_t start) {
+    expect("(");
+    const std::string_view name = rest().substr(0, name_length(rest()));
+    const auto field = std::find_if(fields_.begin(), fields_.end(),
+                                    [&](const Field& f) { return f.name == name; });
+    if (field == fields_.end()) refuse_at(start, "slope takes the name of a field,");
+    at_ += name.size();
+    expect(")");
+    input(*field, field->slope);
+  }
+
+  void input(const Field& field, const std::function<double(Vec2)>& of) {
+    if (!of) throw Fault{say("the checker cannot judge sizes that use the field ", field.name)};
+    made_.steps_.push_back({.input = made_.inputs_.size()});
+    made_.inputs_.push_back(of);
+  }
+
+  std::string_view source_;
+  std::span<const Field> fields_;
+  std::size_t at_ = 0;
+  SizeExpression made_;
+};
 
 tl::expected<SizeExpression, std::string> SizeExpression::parse(std::string_view source,
                                                                 std::span<const Field> fields) {
-  if (source.size() > kMaxLength)
-    return tl::unexpected(say("the size expression has ", source.size(),
-                              " bytes, the checker reads at most ", kMaxLength));
-  Translator translator(source, fields);
-  const auto text = translator.translate();
-  if (!text) return tl::unexpected(say("the size expression does not parse: ", text.error()));
   try {
-    auto evaluator = std::make_unique<Evaluator>();
-    if (const auto name = evaluator->define(translator.used(), fields))
-      return tl::unexpected(say("the checker cannot judge sizes that use the field ", *name));
-    evaluator->parser.SetExpr(*text);
-    int results = 0;
-    evaluator->parser.Eval(results);
-    if (results != 1) return tl::unexpected(say("the size expression has ", results, " values"));
-    return SizeExpression(std::move(evaluator));
-  } catch (const mu::ParserError& error) {
-    return tl::unexpected(say("the size expression does not parse: ", error.GetMsg()));
+    return ExpressionReader(source, fields).read();
+  } catch (ExpressionReader::Fault& fault) {
+    return tl::unexpected(std::move(fault.what));
   }
 }
 
 double SizeExpression::operator()(Vec2 p) const noexcept {
-  evaluator_->x = p.x;
-  evaluator_->y = p.y;
-  for (Evaluator::Input& input : evaluator_->inputs) input.value = input.field(p);
-  try {
-    return evaluator_->parser.Eval();
-  } catch (const mu::ParserError&) {
-    return kNan;
+  stack_.clear();
+  for (const Step& step : steps_) {
+    if (step.function == nullptr) {
+      stack_.push_back(step.input ? inputs_[*step.input](p) : step.number);
+      continue;
+    }
+    const std::size_t first = stack_.size() - step.operands;
+    const double value = step.function(stack_.data() + first, step.operands);
+    stack_.resize(first);
+    stack_.push_back(value);
   }
+  return stack_.back();
 }
 
 }  // namespace weft::check

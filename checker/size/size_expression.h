@@ -1,28 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grading function, evaluated by muParser: independent of the engine's evaluator.
+// The grading function, evaluated by operator precedence on a stack: independent of the engine's
+// compiler.
 //
 // The grammar is the service's: cond ? a : b, ||, &&, comparisons, + -, * /, unary - + !, ^ (to the
 // right), from loose to tight, so that -x^2 is -(x^2) and 2^-1 is 0.5; numbers, x, y, pi, e, names
 // of fields; sqrt abs exp log (natural) sin cos tan floor ceil, pow atan2 hypot, min max (two or
 // more), clamp(v, lo, hi); slope(f) of a field, defined(v), which is 0 if v is NaN, and coalesce(v,
-// w, ...), the first that is not NaN. min, max and clamp of a NaN are NaN. Other features of
-// muParser (assignment, strings, lists, its own names) are refused.
+// w, ...), the first that is not NaN. min, max and clamp of a NaN are NaN. Comparisons do not
+// chain.
 //
 //   auto size = SizeExpression::parse("0.01 + x^2");
 //   if (!size) return size.error();
 //   double bound = (*size)({1, 2});
 //
-// muParser's own limit holds: expressions below 20000 bytes. Values agree with the engine's to
-// rounding. Not thread-safe: one object per thread. Does not throw.
+// Values agree with the engine's to rounding. Not thread-safe: one object per thread. Does not
+// throw.
 #pragma once
 
 #include <cstddef>
-#include <memory>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "checker/domain.h"
 #include "checker/size/field.h"
@@ -35,23 +37,31 @@ std::optional<std::string> fault_of_names(std::span<const Field> fields);
 
 class SizeExpression {
  public:
-  static constexpr std::size_t kMaxLength = 19999;
+  static constexpr std::size_t kMaxDepth = 1000;  // of parentheses, operands and exponents
 
   // Errors: a sentence that says what is wrong, and where. REQUIRES: the names have no fault.
   static tl::expected<SizeExpression, std::string> parse(std::string_view source,
                                                          std::span<const Field> fields = {});
 
-  SizeExpression(SizeExpression&&) noexcept;
-  SizeExpression& operator=(SizeExpression&&) noexcept;
-  ~SizeExpression();
-
-  // NaN if muParser refuses to evaluate.
   double operator()(Vec2 p) const noexcept;
 
  private:
-  struct Evaluator;
-  explicit SizeExpression(std::unique_ptr<Evaluator> evaluator);
-  std::unique_ptr<Evaluator> evaluator_;
+  friend class ExpressionReader;
+
+  // Replaces the last `operands` values of the stack by one of them.
+  struct Step {
+    using Operation = double (*)(const double* values, std::size_t count);
+    Operation function = nullptr;
+    std::size_t operands = 0;
+    double number = 0;                 // pushed if there is no function and no input
+    std::optional<std::size_t> input;  // pushed: x, y, then those of fields
+  };
+
+  SizeExpression() = default;
+
+  std::vector<Step> steps_;
+  std::vector<std::function<double(Vec2)>> inputs_;
+  mutable std::vector<double> stack_;
 };
 
 }  // namespace weft::check

@@ -171,17 +171,23 @@ TEST(SizeExpression, NamesTheOffenderOfASyntaxError) {
             "the size expression does not parse: unknown name 'rint' at column 5");
 }
 
-TEST(SizeExpression, RefusesWhatIsTooLong) {
-  const std::string source = "x" + std::string(SizeExpression::kMaxLength, ' ');
-  EXPECT_EQ(SizeExpression::parse(source).error(),
-            "the size expression has 20000 bytes, the checker reads at most 19999");
-}
-
-TEST(SizeExpression, SurvivesDeepNesting) {
-  const std::string source = std::string(9000, '(') + "x" + std::string(9000, ')');
+TEST(SizeExpression, ReadsDeepNestingUpToItsLimit) {
+  const std::string source = std::string(900, '(') + "x" + std::string(900, ')');
   EXPECT_EQ(value(source), 3);
-  EXPECT_FALSE(SizeExpression::parse(std::string(19000, '(')));
-  EXPECT_EQ(value(std::string(18000, '-') + "x"), 3);
+  EXPECT_EQ(value(std::string(900, '-') + "x"), 3);
+  EXPECT_EQ(value("0" + std::string(100'000, ' ') + "+x"), 3);
+  for (const char sign : {'(', '-', '!'})
+    EXPECT_EQ(SizeExpression::parse(std::string(100'000, sign)).error(),
+              "the size expression does not parse: too many parentheses and signs at column 1002");
+  std::string powers = "1", choices = "1", sums = "1";
+  for (int i = 0; i < 20'000; ++i) {
+    powers += "^1";
+    choices += "?1:1";
+    sums += "+1";
+  }
+  EXPECT_FALSE(SizeExpression::parse(powers));
+  EXPECT_EQ(value(choices), 1);
+  EXPECT_EQ(value(sums), 20'001);
 }
 
 }  // namespace
