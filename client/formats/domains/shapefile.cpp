@@ -12,6 +12,7 @@
 #include "client/base/text.h"
 #include "client/formats/domains/feature_properties.h"
 #include "client/formats/domains/geometry_builder.h"
+#include "client/formats/files/code_page.h"
 #include "client/formats/files/file_contents.h"
 
 namespace weft::client {
@@ -59,9 +60,11 @@ class Table {
     const DBFFieldType type = ::DBFGetFieldInfo(table_.get(), index, nullptr, nullptr, nullptr);
     if (type == FTInteger || type == FTDouble)
       return {::DBFReadDoubleAttribute(table_.get(), record, index), "", ""};
-    if (type != FTString) return {};
-    const char* const text = ::DBFReadStringAttribute(table_.get(), record, index);
-    return {std::nullopt, text != nullptr ? text : "", ""};
+    const char* const read = ::DBFReadStringAttribute(table_.get(), record, index);
+    const char* const page = ::DBFGetCodePage(table_.get());
+    const std::string text = to_utf8(read != nullptr ? read : "", page != nullptr ? page : "");
+    if (type != FTString) return {std::nullopt, "", in_quotes(text)};
+    return {std::nullopt, text, ""};
   }
 
  private:
