@@ -311,7 +311,7 @@ class Reader {
     warn_of(breaks.ends, "the end of a ring", "ends of rings");
     warn_of(breaks.doubtful, "a corner", "corners");
     // All rings are one polygon: those inside others are holes.
-    builder_.begin_polygon(GeometryBuilder::Rings::kAnyOrder);
+    builder_.begin_polygon(RingRoles::kByPlace);
     std::size_t start = 0;
     auto end_row = breaks.ends.begin();
     for (std::size_t i = 0; i <= corners_.size(); ++i) {

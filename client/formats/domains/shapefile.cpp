@@ -98,7 +98,7 @@ class Reader {
   }
 
  private:
-  Result<GeometryProperties> read_properties(int record, const std::string& path) const {
+  Result<GeometryProperties> read_properties(int record, const std::string& path) {
     constexpr std::size_t kLongestName = 10;  // of a field, in the format
     return feature_properties(builder_, path + ", field ", [&](const char* name) {
       return table_.value(record, std::string(name).substr(0, kLongestName));
@@ -144,7 +144,7 @@ class Reader {
       case SHPT_POLYGON:
       case SHPT_POLYGONZ:
       case SHPT_POLYGONM:
-        builder_.begin_polygon(GeometryBuilder::Rings::kAnyOrder);
+        builder_.begin_polygon(RingRoles::kByDirection);
         for (int i = 0; i < shape.nParts; ++i)
           if (auto added =
                   builder_.ring(part(shape, i), path + ", ring " + std::to_string(i), properties);

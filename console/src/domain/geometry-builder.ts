@@ -21,6 +21,8 @@ export const noProperties: Properties = {
   marker: 0, region: undefined, maxArea: undefined, markerName: "", regionName: "",
 };
 
+const mostTold = 5; // properties that are left out
+
 const same = (a: Point, b: Point) => a[0] === b[0] && a[1] === b[1];
 
 // Whether there are fewer than 3 distinct positions.
@@ -35,6 +37,12 @@ export class GeometryBuilder {
   private readonly borders: number[] = []; // of segments
   private readonly areas: Area[] = []; // their regions are labels
   readonly leftOut = new LeftOut();
+  private readonly oddProperties: string[] = []; // sentences
+
+  // A property that counts for nothing, with what it is.
+  leaveOutProperty(path: string, what: string): void {
+    this.oddProperties.push(`${path} is left out: it is ${what}`);
+  }
 
   point(at: Point): void {
     this.points.push(...at);
@@ -73,6 +81,9 @@ export class GeometryBuilder {
     if (this.points.length === 0) throw new FileError("", `the file holds no geometry${leftOut && `: ${leftOut}`}`);
     const markers = this.markerLabels.numbers();
     const regions = this.regionLabels.numbers();
+    const odd = this.oddProperties.slice(0, mostTold);
+    const more = this.oddProperties.length - odd.length;
+    if (more > 0) odd.push(`${more} more properties are left out`);
     const [ofMarkers, ofRegions] = [this.markerLabels.reader, this.regionLabels.reader];
     return {
       name,
@@ -85,7 +96,7 @@ export class GeometryBuilder {
       borders: Uint32Array.from(this.borders),
       markerNames: ofMarkers.names,
       regionNames: ofRegions.names,
-      warnings: [...(leftOut ? [leftOut] : []), ...ofMarkers.warnings, ...ofRegions.warnings],
+      warnings: [...(leftOut ? [leftOut] : []), ...odd, ...ofMarkers.warnings, ...ofRegions.warnings],
     };
   }
 
