@@ -3,8 +3,11 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 
+#include "checker/geometry/box_tree.h"
 #include "client/base/text.h"
+#include "client/formats/derived/orientation.h"
 
 namespace weft::client {
 namespace {
@@ -23,6 +26,37 @@ std::optional<std::string> absent(const std::set<std::int32_t>& wanted,
   if (markers.size() > kMostNamed)
     text += " and " + with_separators(markers.size() - kMostNamed) + " more";
   return text;
+}
+
+bool before(Point a, Point b) {
+  return a.x < b.x || (a.x == b.x && a.y < b.y);
+}
+
+// Whether the two have more than a point in common.
+bool overlap(const Domain& domain, const Domain::Segment& s, const Domain::Segment& t) {
+  const auto ends = [&domain](const Domain::Segment& segment) {
+    const Point a = domain.points[segment.a];
+    const Point b = domain.points[segment.b];
+    return before(a, b) ? std::pair{a, b} : std::pair{b, a};
+  };
+  const auto [s_low, s_high] = ends(s);
+  const auto [t_low, t_high] = ends(t);
+  return orientation(s_low, s_high, t_low) == 0 && orientation(s_low, s_high, t_high) == 0 &&
+         before(before(s_low, t_low) ? t_low : s_low, before(s_high, t_high) ? s_high : t_high);
+}
+
+// Those that have a marker and a length.
+std::vector<std::size_t> marked_segments(const Domain& domain) {
+  std::vector<std::size_t> marked;
+  std::set<std::int32_t> markers;
+  for (std::size_t s = 0; s < domain.segments.size(); ++s) {
+    const Domain::Segment& segment = domain.segments[s];
+    if (segment.marker == 0 || domain.points[segment.a] == domain.points[segment.b]) continue;
+    marked.push_back(s);
+    markers.insert(segment.marker);
+  }
+  if (markers.size() < 2) marked.clear();  // they agree
+  return marked;
 }
 
 }  // namespace
@@ -53,11 +87,49 @@ std::vector<std::string> hidden_marker_warnings(const std::set<std::int32_t>& in
           " of the input: other segments lie on theirs, or they are not part of what is meshed"};
 }
 
+std::vector<std::string> contradicting_marker_warnings(const Domain& domain) {
+  const std::vector<std::size_t> marked = marked_segments(domain);
+  std::vector<check::Box> boxes;
+  for (const std::size_t s : marked) {
+    const Point a = domain.points[domain.segments[s].a];
+    const Point b = domain.points[domain.segments[s].b];
+    boxes.push_back(check::box_of({a.x, a.y}, {b.x, b.y}));
+  }
+  const check::BoxTree tree(boxes);
+  constexpr std::size_t kMostPairs = 50'000'000;  // of boxes that meet
+  std::size_t looked_at = 0;
+  std::size_t found = 0;
+  std::pair<std::size_t, std::size_t> first;
+  for (std::size_t i = 0; i < marked.size() && looked_at < kMostPairs; ++i)
+    tree.visit(boxes[i], [&](std::uint32_t j) {
+      ++looked_at;
+      const Domain::Segment& s = domain.segments[marked[j]];
+      const Domain::Segment& t = domain.segments[marked[i]];
+      if (j >= i || s.marker == t.marker || (s.area == 0) != (t.area == 0) ||
+          !overlap(domain, s, t))
+        return;
+      const std::pair pair{marked[i], marked[j]};
+      if (found++ == 0 || pair < first) first = pair;
+    });
+  if (found == 0) return {};
+  const auto named = [&domain](std::size_t s) {
+    const std::string place = domain.segment_places.locate(s);
+    return std::to_string(domain.segments[s].marker) + " of the segment " +
+           (place.empty() ? std::to_string(s) : "at " + place);
+  };
+  return {
+      "segments that lie on each other have different markers, of which edges carry the first: " +
+      named(first.second) + ", " + named(first.first) +
+      (found > 1 ? ", and " + with_separators(found - 1) + " more" : "")};
+}
+
 void add_marker_warnings(const MeshView& mesh, std::span<const std::int32_t> open_boundaries,
                          const Domain* domain, MeshReport& report) {
   report.markers = markers_of(mesh);
   add_warnings(open_boundary_warnings(report.markers, open_boundaries), report);
-  if (domain != nullptr) add_warnings(hidden_marker_warnings(report.markers, *domain), report);
+  if (domain == nullptr) return;
+  add_warnings(hidden_marker_warnings(report.markers, *domain), report);
+  add_warnings(contradicting_marker_warnings(*domain), report);
 }
 
 }  // namespace weft::client

@@ -37,5 +37,22 @@ TEST(MarkerWarnings, NameMarkersThatOtherSegmentsHide) {
       << many[0];
 }
 
+TEST(MarkerWarnings, NameTheFirstSegmentsThatContradictEachOther) {
+  Domain domain;
+  domain.points = {{0, 0}, {4, 0}, {1, 0}, {9, 0}, {4, 1}};
+  const auto warnings = [&domain](std::vector<Domain::Segment> segments) {
+    domain.segments = std::move(segments);
+    return contradicting_marker_warnings(domain);
+  };
+  const std::string said =
+      "segments that lie on each other have different markers, of which edges carry the first: ";
+  EXPECT_EQ(warnings({{0, 1, 5}, {1, 0, 6}}),
+            Texts{said + "5 of the segment 0, 6 of the segment 1"});
+  EXPECT_EQ(warnings({{0, 4, 1}, {0, 1, 5, 1}, {3, 2, 6, 2}, {0, 1, 7, 2}}),
+            Texts{said + "5 of the segment 1, 6 of the segment 2, and 2 more"});
+  EXPECT_EQ(warnings({{0, 1, 5}, {1, 3, 6}, {2, 4, 7}, {0, 1, 5}, {1, 2, 0}, {1, 1, 8}}), Texts());
+  EXPECT_EQ(warnings({{0, 1, 5, 1}, {0, 1, 6}}), Texts());  // a line on a border
+}
+
 }  // namespace
 }  // namespace weft::client
