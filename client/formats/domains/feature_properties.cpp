@@ -59,6 +59,11 @@ Result<std::optional<double>> bound_of(const GeometryBuilder& builder, const std
 
 }  // namespace
 
+PropertyValue number_of_table(const std::string& name, double number) {
+  const bool is_null = number == 0 && (name == "max_area" || name == "max_edge");
+  return is_null ? PropertyValue{} : PropertyValue{number, "", ""};
+}
+
 Result<GeometryProperties> feature_properties(GeometryBuilder& builder, const std::string& place,
                                               const Properties& properties) {
   GeometryProperties out;

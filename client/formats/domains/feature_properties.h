@@ -25,6 +25,9 @@ struct PropertyValue {
   std::string other;  // as errors show it: "true"
 };
 
+// Of a table: those of many formats have no nulls, but 0. So a bound of 0 is none.
+PropertyValue number_of_table(const std::string& name, double number);
+
 using Properties = std::function<PropertyValue(const char* name)>;
 
 // Errors (kUnreadableInput) name the property: `place` and its name. A value of another kind is an

@@ -162,7 +162,7 @@ class Reader {
     if (type == OFTString) return {std::nullopt, text, ""};
     const bool is_number = type == OFTInteger || type == OFTInteger64 || type == OFTReal;
     const double number = is_number ? gdal_.OGR_F_GetFieldAsDouble(feature, index) : 0;
-    if (is_number && std::isfinite(number)) return {number, "", ""};
+    if (is_number && std::isfinite(number)) return number_of_table(field, number);
     return {std::nullopt, "", in_quotes(text)};
   }
 

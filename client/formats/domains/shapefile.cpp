@@ -82,7 +82,7 @@ class Table {
     if (index < 0 || ::DBFIsAttributeNULL(table_.get(), record, index) != 0) return {};
     const DBFFieldType type = ::DBFGetFieldInfo(table_.get(), index, nullptr, nullptr, nullptr);
     if (type == FTInteger || type == FTDouble)
-      return {::DBFReadDoubleAttribute(table_.get(), record, index), "", ""};
+      return number_of_table(field, ::DBFReadDoubleAttribute(table_.get(), record, index));
     const char* const read = ::DBFReadStringAttribute(table_.get(), record, index);
     const char* const page = ::DBFGetCodePage(table_.get());
     const std::string text = to_utf8(read != nullptr ? read : "", page != nullptr ? page : "");

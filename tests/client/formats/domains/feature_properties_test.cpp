@@ -2,8 +2,10 @@
 #include "client/formats/domains/feature_properties.h"
 
 #include <gtest/gtest.h>
+#include <shapefil.h>
 
 #include <map>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
@@ -174,6 +176,22 @@ TEST(FeatureProperties, LoseNoNameInSilence) {
   }
   EXPECT_GT(lost, 100);
   EXPECT_GT(kept, 40);
+}
+
+TEST(FeatureProperties, OfTablesHaveNoBoundIfItIs0) {
+  EXPECT_EQ(number_of_table("max_area", 0).number, std::nullopt);
+  EXPECT_EQ(number_of_table("max_edge", 0).number, std::nullopt);
+  EXPECT_EQ(number_of_table("max_area", -1).number, -1);
+  EXPECT_EQ(number_of_table("marker", 0).number, 0);
+  TempFolder folder;
+  write_sample_shapefile(folder / "d");
+  std::unique_ptr<DBFInfo, decltype(&::DBFClose)> table(::DBFOpen((folder / "d").c_str(), "rb+"),
+                                                        ::DBFClose);
+  ASSERT_TRUE(::DBFWriteDoubleAttribute(table.get(), 0, 2, 0.0));
+  table.reset();
+  const auto domain = read_domain(folder / "d.shp");
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->areas[0].max_area, std::nullopt);
 }
 
 TEST(FeatureProperties, OfAShapefileMayBeTexts) {
