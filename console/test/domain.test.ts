@@ -115,6 +115,20 @@ test("a property that is no marker, no region and no name is left out with a war
   expect([...domain.markerNames]).toEqual([[1, "a"]]);
 });
 
+test("rings that parity does not take for holes are a warning, as on the command line", () => {
+  const warnings = (...holes: number[][][]) =>
+    readDomain("a.json", JSON.stringify({ type: "Polygon", coordinates: [ring, ...holes] })).warnings;
+  const apart = "is a hole that is outside of its polygon or in another hole, at";
+  const end = "; what an odd number of the rings encloses is meshed";
+  expect(warnings([[9, 1], [8, 1], [8, 2], [9, 1]])).toEqual([`coordinates[1] ${apart} (8, 1)${end}`]);
+  expect(warnings(inner, [...inner].reverse())).toEqual([`coordinates[2] ${apart} (1, 1)${end}`]);
+  expect(warnings(inner, [[1.5, 1.1], [1.6, 1.1], [1.6, 1.2], [1.5, 1.1]])).toEqual([`coordinates[2] ${apart} (1.5, 1.1)${end}`]);
+  expect(warnings([[3, 1], [5, 1], [5, 2], [3, 1]])).toEqual([
+    `coordinates[1] is a ring that crosses another of its polygon: coordinates[0], near (3, 1)${end}`,
+  ]);
+  expect(warnings(inner, [[2, 1], [3, 1], [3, 2], [2, 2], [2, 1]], [[0, 3], [1, 3], [1, 4], [0, 4], [0, 3]])).toEqual([]);
+});
+
 test("markers that the header of a .poly denies are a warning", () => {
   const text = (count: number) => `3 2 0 0\n1 0 0\n2 1 0\n3 1 1\n3 ${count}\n1 1 2 7\n2 2 3 8\n3 3 1 9\n0\n`;
   expect(readDomain("a.poly", text(1)).warnings).toEqual([]);
