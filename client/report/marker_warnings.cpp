@@ -13,19 +13,27 @@ namespace weft::client {
 namespace {
 
 // "marker 7", "markers 7, 8 and 12 more"; nullopt if `wanted` are all in the mesh.
-std::optional<std::string> absent(const std::set<std::int32_t>& wanted,
+std::optional<std::string> absent(NameKind kind, const std::set<std::int32_t>& wanted,
                                   const std::set<std::int32_t>& in_mesh) {
   constexpr std::size_t kMostNamed = 5;
-  std::vector<std::int32_t> markers;
-  for (const std::int32_t marker : wanted)
-    if (!in_mesh.contains(marker)) markers.push_back(marker);
-  if (markers.empty()) return std::nullopt;
-  std::string text = markers.size() == 1 ? "marker " : "markers ";
-  for (std::size_t i = 0; i < markers.size() && i < kMostNamed; ++i)
-    text += (i == 0 ? "" : ", ") + std::to_string(markers[i]);
-  if (markers.size() > kMostNamed)
-    text += " and " + with_separators(markers.size() - kMostNamed) + " more";
+  std::vector<std::int32_t> missing;
+  for (const std::int32_t number : wanted)
+    if (!in_mesh.contains(number)) missing.push_back(number);
+  if (missing.empty()) return std::nullopt;
+  std::string text = std::string(word_of(kind)) + (missing.size() == 1 ? " " : "s ");
+  for (std::size_t i = 0; i < missing.size() && i < kMostNamed; ++i)
+    text += (i == 0 ? "" : ", ") + std::to_string(missing[i]);
+  if (missing.size() > kMostNamed)
+    text += " and " + with_separators(missing.size() - kMostNamed) + " more";
   return text;
+}
+
+// The distinct numbers of a list in which equal ones mostly follow each other.
+std::set<std::int32_t> runs_of(std::span<const std::int32_t> numbers) {
+  std::set<std::int32_t> distinct;
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (i == 0 || numbers[i] != numbers[i - 1]) distinct.insert(numbers[i]);
+  return distinct;
 }
 
 bool before(Point a, Point b) {
@@ -62,16 +70,13 @@ std::vector<std::size_t> marked_segments(const Domain& domain) {
 }  // namespace
 
 std::set<std::int32_t> markers_of(const MeshView& mesh) {
-  std::set<std::int32_t> markers;
-  for (std::size_t e = 0; e < mesh.edge_markers.size(); ++e)
-    if (e == 0 || mesh.edge_markers[e] != mesh.edge_markers[e - 1])
-      markers.insert(mesh.edge_markers[e]);
-  return markers;
+  return runs_of(mesh.edge_markers);
 }
 
 std::vector<std::string> open_boundary_warnings(const std::set<std::int32_t>& in_mesh,
                                                 std::span<const std::int32_t> open_boundaries) {
-  const auto markers = absent({open_boundaries.begin(), open_boundaries.end()}, in_mesh);
+  const auto markers =
+      absent(NameKind::kMarker, {open_boundaries.begin(), open_boundaries.end()}, in_mesh);
   if (!markers) return {};
   return {"no edge of the mesh carries " + *markers + " of --open-boundary"};
 }
@@ -81,10 +86,24 @@ std::vector<std::string> hidden_marker_warnings(const std::set<std::int32_t>& in
   std::set<std::int32_t> given;
   for (const Domain::Segment& segment : domain.segments)
     if (segment.marker != 0) given.insert(segment.marker);
-  const auto markers = absent(given, in_mesh);
+  const auto markers = absent(NameKind::kMarker, given, in_mesh);
   if (!markers) return {};
   return {"no edge of the mesh carries " + *markers +
           " of the input: other segments lie on theirs, or they are not part of what is meshed"};
+}
+
+std::vector<std::string> hidden_region_warnings(const MeshView& mesh, const Domain& domain) {
+  std::set<std::int32_t> given;
+  for (const Domain::Region& region : domain.regions) given.insert(region.id);
+  for (const Domain::Area& area : domain.areas)
+    if (area.region && !area.is_hole) given.insert(*area.region);
+  given.erase(0);
+  if (given.empty()) return {};
+  const auto regions = absent(NameKind::kRegion, given, runs_of(mesh.regions));
+  if (!regions) return {};
+  return {"no triangle of the mesh carries " + *regions +
+          " of the input: another seed or a smaller polygon decides where it is, or it is not part "
+          "of what is meshed"};
 }
 
 std::vector<std::string> contradicting_marker_warnings(const Domain& domain) {
@@ -130,6 +149,7 @@ void add_marker_warnings(const MeshView& mesh, std::span<const std::int32_t> ope
   if (domain == nullptr) return;
   add_warnings(hidden_marker_warnings(report.markers, *domain), report);
   add_warnings(contradicting_marker_warnings(*domain), report);
+  add_warnings(hidden_region_warnings(mesh, *domain), report);
 }
 
 }  // namespace weft::client

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Warnings about markers that the user asked for, or that the input has, but that edges of the mesh
-// do not carry.
+// do not carry; and about regions of the input that triangles do not.
 #pragma once
 
 #include <cstdint>
@@ -27,6 +27,10 @@ std::vector<std::string> open_boundary_warnings(const std::set<std::int32_t>& in
 // segments overlap, the mesh's edges carry the marker of one of them.
 std::vector<std::string> hidden_marker_warnings(const std::set<std::int32_t>& in_mesh,
                                                 const Domain& domain);
+
+// "no triangle of the mesh carries region 8 of the input: ...", at most one line; 0 is not a
+// region. Of seeds in one face, and of polygons that overlap, one decides.
+std::vector<std::string> hidden_region_warnings(const MeshView& mesh, const Domain& domain);
 
 // "segments that lie on each other have different markers ...", at most one line, which names the
 // first two segments. Lines have their markers before borders of polygons, so a line on a border is

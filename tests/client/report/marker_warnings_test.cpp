@@ -37,6 +37,19 @@ TEST(MarkerWarnings, NameMarkersThatOtherSegmentsHide) {
       << many[0];
 }
 
+TEST(MarkerWarnings, NameRegionsThatOthersHide) {
+  Domain domain;
+  domain.regions = {{{1, 1}, 7, {}}, {{2, 2}, 8, {}}, {{3, 3}, 0, {}}};
+  domain.areas = {{9, {}}, {{}, {}}, {10, {}, true}};
+  Mesh mesh;
+  mesh.regions = {7, 8, 9, 7};
+  EXPECT_EQ(hidden_region_warnings(mesh.view(), domain), Texts());
+  mesh.regions = {7, 0};
+  EXPECT_EQ(hidden_region_warnings(mesh.view(), domain),
+            Texts{"no triangle of the mesh carries regions 8, 9 of the input: another seed or a "
+                  "smaller polygon decides where it is, or it is not part of what is meshed"});
+}
+
 TEST(MarkerWarnings, NameTheFirstSegmentsThatContradictEachOther) {
   Domain domain;
   domain.points = {{0, 0}, {4, 0}, {1, 0}, {9, 0}, {4, 1}};
