@@ -27,8 +27,8 @@ class _Ring:
 
     def edges(self, bottom: float, top: float) -> Points:
         """(k, 2, 2): the ends of all edges between two heights, and of others."""
-        first = np.searchsorted(self._bottoms, bottom - self._tallest * (1 + 1e-9))
-        found: Points = self._edges[first:np.searchsorted(self._bottoms, top, "right")]
+        first = int(np.searchsorted(self._bottoms, bottom - self._tallest * (1 + 1e-9)))
+        found: Points = self._edges[first:int(np.searchsorted(self._bottoms, top, "right"))]
         return found
 
 
