@@ -6,9 +6,23 @@
 #include "client/base/text.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/raster.h"
+#include "client/geo/lonlat_extent.h"
 #include "client/report/projection_report.h"
 
 namespace weft::client {
+
+Result<void> check_lonlat(const std::filesystem::path& path, const Domain& domain) {
+  if (const auto& system = domain.system; system && !system->geographic)
+    return fail(ExitCode::kUnreadableInput,
+                path.string() + ": its coordinate system, " + in_quotes(system->name) +
+                    ", is a plane: leave out --lonlat, --crs and --to-metres, or bring it into "
+                    "longitude and latitude with ogr2ogr -t_srs EPSG:4326");
+  const auto extent = lonlat_extent(domain);
+  if (extent) return {};
+  const std::string& message = extent.error().message;
+  const std::string file = path.string() + ": ";
+  return fail(extent.error().exit, (message.starts_with(file) ? "" : file) + message);
+}
 
 Result<InputDomain> read_input_domain(const std::filesystem::path& path,
                                       const RequestOptions& wanted,
@@ -28,11 +42,7 @@ Result<InputDomain> read_input_domain(const std::filesystem::path& path,
   if (as_read) as_read(*domain);
   InputDomain input{std::move(*domain), nullptr};
   if (!options.wanted()) return input;
-  if (const auto& system = input.domain.system; system && !system->geographic)
-    return fail(ExitCode::kUnreadableInput,
-                path.string() + ": its coordinate system, " + in_quotes(system->name) +
-                    ", is a plane: leave out --lonlat, --crs and --to-metres, or bring it into "
-                    "longitude and latitude with ogr2ogr -t_srs EPSG:4326");
+  if (auto ok = check_lonlat(path, input.domain); !ok) return tl::unexpected(ok.error());
   auto projection = DomainProjection::project(input.domain, options);
   if (!projection)
     return fail(projection.error().exit, path.string() + ": " + projection.error().message);

@@ -34,6 +34,10 @@ Result<InputDomain> read_input_domain(const std::filesystem::path& path,
                                       const ProjectionOptions& options, const LayerOptions& layers,
                                       const std::function<void(const Domain&)>& as_read = {});
 
+// Error (kUnreadableInput): the domain, read from `path`, cannot be in longitude and latitude: its
+// file says that it lies in a plane, or those of lonlat_extent.
+Result<void> check_lonlat(const std::filesystem::path& path, const Domain& domain);
+
 // `options` may be null. The origin refers to both.
 RequestOrigin origin_of(const InputDomain& input, const RequestOptions* options = nullptr);
 

@@ -6,6 +6,7 @@
 
 #include "client/base/text.h"
 #include "client/commands/commands.h"
+#include "client/commands/input_domain.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/mesh_formats.h"
 #include "client/lint/domain_lint.h"
@@ -72,6 +73,8 @@ Result<ExitCode> run_lint(const LintOptions& options, std::stop_token stop) {
   if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
   auto domain = read_domain(options.file, options.layers);
   if (!domain) return tl::unexpected(domain.error());
+  if (options.lonlat)
+    if (auto ok = check_lonlat(options.file, *domain); !ok) return tl::unexpected(ok.error());
   fill_polygons(*domain, options.fill);
   const auto lint = lint_domain(
       *domain, options.file.string(),

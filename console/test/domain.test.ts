@@ -89,6 +89,52 @@ test("GeoJSON: rings are closed chains, properties reach segments and regions", 
   expect([...domain.borders]).toEqual(Array(7).fill(1));
 });
 
+test("a property that is no marker, no region and no name is left out with a warning", () => {
+  const rows = [
+    { marker: true, region: ["bay"] },
+    { marker_name: 5, region_name: {} },
+    { marker: "a", marker_name: "b" },
+    { marker: "a", marker_name: "a" },
+    { marker: false },
+    { region: [0] },
+  ];
+  const features = rows.map((properties) => ({
+    type: "Feature",
+    properties,
+    geometry: { type: "Polygon", coordinates: [ring] },
+  }));
+  const domain = readDomain("a.geojson", JSON.stringify({ type: "FeatureCollection", features }));
+  expect(domain.warnings).toEqual([
+    "features[0].properties.marker is left out: it is true, neither a number nor a text",
+    'features[0].properties.region is left out: it is ["bay"], neither a number nor a text',
+    "features[1].properties.marker_name is left out: it is 5, not a text",
+    "features[1].properties.region_name is left out: it is {}, not a text",
+    "features[2].properties.marker_name is left out: it is “b” beside the name “a”",
+    "2 more properties are left out",
+  ]);
+  expect([...domain.markerNames]).toEqual([[1, "a"]]);
+});
+
+test("rings that parity does not take for holes are a warning, as on the command line", () => {
+  const warnings = (...holes: number[][][]) =>
+    readDomain("a.json", JSON.stringify({ type: "Polygon", coordinates: [ring, ...holes] })).warnings;
+  const apart = "is a hole that is outside of its polygon or in another hole, at";
+  const end = "; what an odd number of the rings encloses is meshed";
+  expect(warnings([[9, 1], [8, 1], [8, 2], [9, 1]])).toEqual([`coordinates[1] ${apart} (8, 1)${end}`]);
+  expect(warnings(inner, [...inner].reverse())).toEqual([`coordinates[2] ${apart} (1, 1)${end}`]);
+  expect(warnings(inner, [[1.5, 1.1], [1.6, 1.1], [1.6, 1.2], [1.5, 1.1]])).toEqual([`coordinates[2] ${apart} (1.5, 1.1)${end}`]);
+  expect(warnings([[3, 1], [5, 1], [5, 2], [3, 1]])).toEqual([
+    `coordinates[1] is a ring that crosses another of its polygon: coordinates[0], near (3, 1)${end}`,
+  ]);
+  expect(warnings(inner, [[2, 1], [3, 1], [3, 2], [2, 2], [2, 1]], [[0, 3], [1, 3], [1, 4], [0, 4], [0, 3]])).toEqual([]);
+});
+
+test("markers that the header of a .poly denies are a warning", () => {
+  const text = (count: number) => `3 2 0 0\n1 0 0\n2 1 0\n3 1 1\n3 ${count}\n1 1 2 7\n2 2 3 8\n3 3 1 9\n0\n`;
+  expect(readDomain("a.poly", text(1)).warnings).toEqual([]);
+  expect(readDomain("a.poly", text(0)).warnings[0]).toMatch(/^line 6: what follows the points of segments is ignored/);
+});
+
 test("lines beside a polygon border no area", () => {
   const line = { type: "LineString", coordinates: [[1, 3], [3, 3], [3, 3], [3, 3.5]] };
   const both = { type: "GeometryCollection", geometries: [line, { type: "Polygon", coordinates: [ring] }] };

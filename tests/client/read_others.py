@@ -159,6 +159,7 @@ CASES = [  # file, kind, writer, what writes, what is expected
     ("d.tab", "", GDAL, ogr_file("MapInfo File"), {**OF_FIELDS, "digits": 2}),  # in integers
     ("d.mif", "", GDAL, ogr_file("MapInfo File", ["FORMAT=MIF"]), OF_FIELDS),
     ("d.gmt", "", GDAL, ogr_file("OGR_GMT"), OF_FIELDS),
+    ("d.geojsonl", "", GDAL, ogr_file("GeoJSONSeq"), OF_FIELDS),
 ]
 
 

@@ -53,6 +53,15 @@ def weft(folder: pathlib.Path, *words: object) -> subprocess.CompletedProcess[st
     return subprocess.run([WEFT, *map(str, words)], capture_output=True, text=True, cwd=folder)
 
 
+def test_degrees_that_cannot_be_are_refused(tmp_path):
+    (tmp_path / "far.wkt").write_text("POLYGON((500000 4000000, 500100 4000000, 500100 4000100, 500000 4000000))")
+    refused = weft(tmp_path, "lint", "far.wkt", "--lonlat")
+    assert refused.returncode == 4
+    assert refused.stderr == ("weft: far.wkt: line 1, geometry 0, ring 0[0]: the latitude 4e+06 is not between -90 "
+                              "and 90 degrees\n")
+    assert weft(tmp_path, "lint", "far.wkt").returncode == 0
+
+
 @pytest.fixture
 def yard(tmp_path: pathlib.Path) -> pathlib.Path:
     (tmp_path / "yard.poly").write_text(YARD)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
+import warnings
 
 import numpy as np
 import pytest
@@ -258,6 +259,60 @@ def test_a_property_that_is_a_text_may_be_a_number():
         read(max_area="small")
     with pytest.raises(weft.DomainError, match="properties.marker is 1.5, not an integer"):
         read(marker="1.5")
+
+
+def test_a_property_that_is_no_marker_no_region_and_no_name_is_left_out_with_a_warning(tmp_path):
+    path = tmp_path / "odd.geojson"
+    rows = [{"marker": True, "region": ["bay"]}, {"marker_name": 5, "region_name": {}},
+            {"marker": "a", "marker_name": "b"}, {"marker": "a", "marker_name": "a"},
+            {"marker": False}, {"region": [0]}]
+    path.write_text(json.dumps({"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": row, "geometry": {"type": "Polygon", "coordinates": [SQUARE]}}
+        for row in rows]}))
+    with pytest.warns(weft.WeftWarning) as warned:
+        domain = weft.Domain.read(path)
+    places = [str(warning.message).removeprefix(f"{path}: ") for warning in warned]
+    assert places == [
+        "features[0].properties.marker is left out: it is true, neither a number nor a text",
+        'features[0].properties.region is left out: it is ["bay"], neither a number nor a text',
+        "features[1].properties.marker_name is left out: it is 5, not a text",
+        "features[1].properties.region_name is left out: it is {}, not a text",
+        "features[2].properties.marker_name is left out: it is 'b' beside the name 'a'",
+        "2 more properties are left out"]
+    assert domain.marker_names == {1: "a"}
+
+
+@pytest.mark.parametrize("holes, fault", [
+    ([[[20, 1], [21, 1], [21, 2], [20, 1]]],
+     "coordinates[1] is a hole that is outside of its polygon or in another hole, at (20, 1)"),
+    ([HOLE, HOLE[::-1]], "coordinates[2] is a hole that is outside of its polygon or in another hole, at (1, 1)"),
+    ([HOLE, [[1.2, 1.2], [1.4, 1.2], [1.4, 1.4], [1.2, 1.2]]],
+     "coordinates[2] is a hole that is outside of its polygon or in another hole, at (1.2, 1.2)"),
+    ([HOLE, [[1.5, 0.5], [3, 0.5], [3, 3], [1.5, 0.5]]],
+     "coordinates[2] is a ring that crosses another of its polygon: coordinates[1]"),
+    ([[[3, 1], [5, 1], [5, 2], [3, 1]]],
+     "coordinates[1] is a ring that crosses another of its polygon: coordinates[0]"),
+    ([HOLE, [[2, 1], [3, 1], [3, 2], [2, 2], [2, 1]], [[0, 0], [1, 1], [0, 1], [0, 0]]], None),
+])
+def test_rings_that_parity_does_not_take_for_holes_are_a_warning_as_on_the_command_line(
+        run_weft, tmp_path, holes, fault):
+    path = tmp_path / "holes.geojson"
+    path.write_text(json.dumps({"type": "Polygon", "coordinates": [SQUARE, *holes]}))
+    with warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always")
+        weft.Domain.read(path)
+    said = [str(warning.message) for warning in warned]
+    printed = json.loads(run_weft("mesh", path, "--json", "-o", tmp_path / "mesh.npz")).get("warnings", [])
+    for texts in (said, printed):  # which crossing is found first may differ
+        assert [text.partition(", near")[0].partition("; what")[0] for text in texts] == \
+            ([] if fault is None else [f"{path}: {fault}"])
+
+
+def test_markers_that_the_header_of_a_poly_denies_are_a_warning(tmp_path):
+    path = tmp_path / "denied.poly"
+    path.write_text("3 2 0 0\n1 0 0\n2 1 0\n3 1 1\n3 0\n1 1 2 7\n2 2 3\n3 3 1\n0\n")
+    with pytest.warns(weft.WeftWarning, match="denied.poly: what follows the points of segments is ignored"):
+        assert weft.Domain.read(path).markers.tolist() == [0, 0, 0]
 
 
 def test_what_has_no_area_and_no_length_is_left_out_with_one_warning(client, digest_of, tmp_path):

@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "client/base/text.h"
@@ -38,11 +40,11 @@ Column column_of(std::string_view name) {
     Column column;
   };
   static constexpr Name kNames[] = {
-      {"x", Column::kX},          {"lon", Column::kX},     {"long", Column::kX},
-      {"longitude", Column::kX},  {"easting", Column::kX}, {"point_x", Column::kX},
-      {"y", Column::kY},          {"lat", Column::kY},     {"latitude", Column::kY},
-      {"northing", Column::kY},   {"point_y", Column::kY}, {"ring", Column::kRing},
-      {"marker", Column::kMarker}};
+      {"x", Column::kX},        {"lon", Column::kX},        {"long", Column::kX},
+      {"lng", Column::kX},      {"longitude", Column::kX},  {"easting", Column::kX},
+      {"point_x", Column::kX},  {"y", Column::kY},          {"lat", Column::kY},
+      {"latitude", Column::kY}, {"northing", Column::kY},   {"point_y", Column::kY},
+      {"ring", Column::kRing},  {"marker", Column::kMarker}};
   // Of "Easting [m]", the unit says nothing.
   const std::string known = lower_case(trimmed(name.substr(0, name.find_first_of("[("))));
   for (const Name& entry : kNames)
@@ -74,7 +76,19 @@ class Reader {
       auto taken = geometry_ ? feature(**record) : row(**record);
       if (!taken) return tl::unexpected(taken.error());
     }
+    if (!grouped_.empty() && !has_fractions_)
+      return table_.error(grouped_place_.first, grouped_place_.second,
+                          "the commas of " + grouped_ +
+                              " and all the others may be decimal marks, or group the digits of "
+                              "thousands: write no commas in numbers, or separate columns by "
+                              "semicolons");
     warn_of_columns();
+    if (comment_line_ > 0)
+      builder_.warn(":" + std::to_string(comment_line_) +
+                    ": a line with nothing but a comment ends the ring before it");
+    if (returned_line_ > 0)
+      builder_.warn(":" + std::to_string(returned_line_) +
+                    ": a ring that ended before comes again; it is taken for another ring");
     if (auto added = add_rings(); !added) return tl::unexpected(added.error());
     return builder_.finish();
   }
@@ -184,9 +198,13 @@ class Reader {
                           return f.text.empty() || is_nan_text(f.text);
                         });
     if (is_end || stands_for_none(record)) {
+      // Only a comment's line may not be meant to end a ring.
+      open_comment_ = record.is_comment && (!starts_ring_ || open_comment_ > 0) ? record.line : 0;
       starts_ring_ = true;
       return {};
     }
+    if (open_comment_ > 0 && comment_line_ == 0) comment_line_ = open_comment_;
+    open_comment_ = 0;
     if (auto fits = check_count(record); !fits) return fits;
     return corner(record);
   }
@@ -256,7 +274,10 @@ class Reader {
     if (const std::size_t place = place_of(Column::kRing); place != kAbsent) {
       if (place >= record.fields.size()) return missing(record, "the ring");
       const std::string_view ring = record.fields[place].text;
-      starts_ring_ = starts_ring_ || ring != ring_;
+      if (corners_.empty() || ring != ring_) {
+        starts_ring_ = true;
+        if (!rings_.insert(ring).second && returned_line_ == 0) returned_line_ = record.line;
+      }
       ring_ = ring;
     }
     corner.starts_ring = starts_ring_ || corners_.empty();
@@ -278,6 +299,12 @@ class Reader {
                    "expected " + what + (is_nan ? ", a finite number" : "") + ", found " +
                        in_quotes(field.text));
     }
+    if (groups_digits(field)) {
+      if (grouped_.empty())
+        grouped_ = in_quotes(field.text), grouped_place_ = {record.line, field.column};
+    } else if (field.text.find(',') != std::string_view::npos) {
+      has_fractions_ = true;
+    }
     // Two decimal marks in one file mean that one of them groups digits.
     for (const auto& [mark, seen] : {std::pair{'.', &point_}, {',', &comma_}})
       if (seen->empty() && field.text.find(mark) != std::string_view::npos)
@@ -286,6 +313,16 @@ class Reader {
       return error(record, place,
                    "numbers have decimal points, " + point_ + ", and decimal commas, " + comma_);
     return *value;
+  }
+
+  // Whether a quoted field between commas may be as Excel writes it in English, "4,000", or may
+  // have a decimal comma.
+  bool groups_digits(const Field& field) const {
+    if (!field.quoted || table_.separator() != Separator::kComma) return false;
+    std::string_view digits = trimmed(field.text);
+    if (digits.starts_with('-') || digits.starts_with('+')) digits.remove_prefix(1);
+    const std::size_t comma = digits.find(',');
+    return comma >= 1 && comma <= 3 && digits[0] != '0' && digits.size() == comma + 4;
   }
 
   // An integer, or a name; none if the field is empty.
@@ -311,7 +348,7 @@ class Reader {
     warn_of(breaks.ends, "the end of a ring", "ends of rings");
     warn_of(breaks.doubtful, "a corner", "corners");
     // All rings are one polygon: those inside others are holes.
-    builder_.begin_polygon(GeometryBuilder::Rings::kAnyOrder);
+    builder_.begin_polygon(RingRoles::kByPlace);
     std::size_t start = 0;
     auto end_row = breaks.ends.begin();
     for (std::size_t i = 0; i <= corners_.size(); ++i) {
@@ -353,9 +390,16 @@ class Reader {
   std::vector<std::uint32_t> markers_;  // labels, of the corners
   std::vector<std::uint64_t> lines_;    // of the corners
   bool starts_ring_ = true;             // the next corner
+  std::uint64_t open_comment_ = 0;      // the line of a comment that alone parts the next corner
+  std::uint64_t comment_line_ = 0;      // the first that did
   std::string_view ring_;               // of the last corner
   std::string point_;                   // where a decimal point was seen first, and a comma
   std::string comma_;
+  bool has_fractions_ = false;  // some comma can only be a decimal mark
+  std::string grouped_;         // the first number whose comma may be none
+  std::pair<std::uint64_t, std::size_t> grouped_place_;
+  std::set<std::string_view> rings_;
+  std::uint64_t returned_line_ = 0;  // the first where a ring comes again
 };
 
 }  // namespace

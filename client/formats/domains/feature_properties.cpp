@@ -22,6 +22,22 @@ PropertyValue value_of_property(const Properties& properties, const char* name) 
   return value;
 }
 
+// What names a marker or region beside its number, or instead of it: `named` is the text of the
+// property without "_name".
+std::string name_of(GeometryBuilder& builder, const std::string& path, const std::string& named,
+                    const PropertyValue& value) {
+  const bool is_blank = trimmed(value.text).empty();
+  if (value.number)
+    builder.leave_out_property(path, shortest(*value.number) + ", not a text");
+  else if (!value.other.empty())
+    builder.leave_out_property(path, value.other + ", not a text");
+  else if (!named.empty() && !is_blank && value.text != named)
+    builder.leave_out_property(path,
+                               in_quotes(value.text) + " beside the name " + in_quotes(named));
+  if (!named.empty()) return named;
+  return is_blank ? "" : value.text;
+}
+
 Result<std::optional<std::int32_t>> id_of(const GeometryBuilder& builder, const std::string& path,
                                           std::optional<double> value) {
   if (!value) return std::nullopt;
@@ -43,20 +59,29 @@ Result<std::optional<double>> bound_of(const GeometryBuilder& builder, const std
 
 }  // namespace
 
-Result<GeometryProperties> feature_properties(const GeometryBuilder& builder,
-                                              const std::string& place,
+PropertyValue number_of_table(const std::string& name, double number) {
+  const bool is_null = number == 0 && (name == "max_area" || name == "max_edge");
+  return is_null ? PropertyValue{} : PropertyValue{number, "", ""};
+}
+
+Result<GeometryProperties> feature_properties(GeometryBuilder& builder, const std::string& place,
                                               const Properties& properties) {
   GeometryProperties out;
-  const PropertyValue marker = value_of_property(properties, "marker");
-  const auto marker_id = id_of(builder, place + "marker", marker.number);
-  if (!marker_id) return tl::unexpected(marker_id.error());
-  out.marker = marker_id->value_or(0);
-  out.marker_name = marker.text.empty() ? properties("marker_name").text : marker.text;
-  const PropertyValue region = value_of_property(properties, "region");
-  const auto region_id = id_of(builder, place + "region", region.number);
-  if (!region_id) return tl::unexpected(region_id.error());
-  out.region = *region_id;
-  out.region_name = region.text.empty() ? properties("region_name").text : region.text;
+  const auto read_id = [&](const std::string& kind,
+                           std::string& name) -> Result<std::optional<std::int32_t>> {
+    const PropertyValue value = value_of_property(properties, kind.c_str());
+    if (!value.other.empty())
+      builder.leave_out_property(place + kind, value.other + ", neither a number nor a text");
+    const std::string name_property = kind + "_name";
+    name = name_of(builder, place + name_property, value.text, properties(name_property.c_str()));
+    return id_of(builder, place + kind, value.number);
+  };
+  const auto marker = read_id("marker", out.marker_name);
+  if (!marker) return tl::unexpected(marker.error());
+  out.marker = marker->value_or(0);
+  const auto region = read_id("region", out.region_name);
+  if (!region) return tl::unexpected(region.error());
+  out.region = *region;
   for (const auto& [name, bound] :
        {std::pair{"max_area", &out.max_area}, {"max_edge", &out.max_edge}}) {
     const auto value = bound_of(builder, place + name, value_of_property(properties, name));

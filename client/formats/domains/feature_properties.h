@@ -4,7 +4,7 @@
 //   marker_name, region_name  the name of that number
 //   max_area, max_edge        a positive number
 // A text that is a number is that number, as programs write columns without a type; a text of
-// blanks is no value.
+// blanks is no value. What is none of these, and a second name, is left out with a warning.
 //
 //   const auto properties = feature_properties(builder, "record 3, field ", property);
 #pragma once
@@ -25,12 +25,14 @@ struct PropertyValue {
   std::string other;  // as errors show it: "true"
 };
 
+// Of a table: those of many formats have no nulls, but 0. So a bound of 0 is none.
+PropertyValue number_of_table(const std::string& name, double number);
+
 using Properties = std::function<PropertyValue(const char* name)>;
 
 // Errors (kUnreadableInput) name the property: `place` and its name. A value of another kind is an
-// error for bounds, and none for markers and regions.
-Result<GeometryProperties> feature_properties(const GeometryBuilder& builder,
-                                              const std::string& place,
+// error for bounds, and a warning for markers, regions and their names.
+Result<GeometryProperties> feature_properties(GeometryBuilder& builder, const std::string& place,
                                               const Properties& properties);
 
 }  // namespace weft::client

@@ -82,6 +82,13 @@ class Reader {
     return geometry(json, name, path, properties);
   }
 
+  // For messages.
+  static std::string shown(const Json& value) {
+    constexpr std::size_t kMost = 40;
+    std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+    return text.size() > kMost ? text.substr(0, kMost) + "..." : text;
+  }
+
   // The member of this name; otherwise the first, in the order of the alphabet, that only capitals
   // tell apart, as databases write them.
   static Json::const_iterator find_property(const Json& properties, const char* name) {
@@ -92,8 +99,7 @@ class Reader {
     return found;
   }
 
-  Result<GeometryProperties> feature_properties(const Json& feature,
-                                                const std::string& path) const {
+  Result<GeometryProperties> feature_properties(const Json& feature, const std::string& path) {
     const auto found = feature.find("properties");
     if (found == feature.end() || !found->is_object()) return GeometryProperties{};
     return client::feature_properties(builder_, member(path, "properties") + ".",
@@ -104,7 +110,7 @@ class Reader {
                                           return {value->get<double>(), "", ""};
                                         if (value->is_string())
                                           return {std::nullopt, value->get<std::string>(), ""};
-                                        return {std::nullopt, "", value->dump()};
+                                        return {std::nullopt, "", shown(*value)};
                                       });
   }
 

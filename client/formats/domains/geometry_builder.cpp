@@ -7,14 +7,14 @@
 #include <utility>
 
 #include "client/base/text.h"
-#include "client/formats/domains/ring_crossing.h"
 
 namespace weft::client {
 namespace {
 
 constexpr std::string_view kCrossesItself = " is a ring that crosses itself: ";
 constexpr std::string_view kMoreCross = " more rings cross themselves";
-constexpr std::size_t kMostTold = 5;  // rings that cross themselves and get a warning each
+constexpr std::string_view kCrossesAnother = " is a ring that crosses another of its polygon: ";
+constexpr std::size_t kMostTold = 5;  // of each kind
 
 // The bound on areas that a feature's two properties make together.
 std::optional<double> area_bound(const GeometryProperties& properties) {
@@ -35,7 +35,8 @@ bool is_collapsed(std::span<const Point> points) {
 }  // namespace
 
 bool tells_of_crossing(std::string_view warning) {
-  return warning.find(kCrossesItself) != warning.npos || warning.ends_with(kMoreCross);
+  return warning.find(kCrossesItself) != warning.npos || warning.ends_with(kMoreCross) ||
+         warning.find(kCrossesAnother) != warning.npos;
 }
 
 tl::unexpected<Error> GeometryBuilder::bad(const std::string& path, const std::string& what) const {
@@ -131,6 +132,7 @@ std::uint32_t GeometryBuilder::label_of(Labels& labels, NameKind kind, std::int3
 
 void GeometryBuilder::check_crossing(const Chain& ring, const std::string& path) {
   const auto crossing = find_crossing(ring.points);
+  polygon_crosses_ = polygon_crosses_ || crossing;
   if (!crossing || ++crossings_ > kMostTold) return;
   const auto edge = [&ring](std::uint32_t i) {
     const Point a = ring.points[i];
@@ -150,7 +152,7 @@ Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::
   if (lacks_outer_ring_) return {};
   if (is_collapsed(ring->points)) {
     lacks_outer_ring_ =
-        polygon_rings_ == Rings::kOuterFirst && domain_.segments.size() == polygon_start_;
+        ring_roles_ == RingRoles::kOuterFirst && domain_.segments.size() == polygon_start_;
     leave_out(LeftOut::kRing, path);
     return {};
   }
@@ -162,17 +164,42 @@ Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::
                          coordinates(points.back().x, points.back().y));
   if (closed) points.pop_back();
   check_crossing(*ring, path);
+  polygon_rings_.push_back({domain_.points.size(), points.size(), path});
   return add(*ring, true, path);
 }
 
-void GeometryBuilder::begin_polygon(Rings rings) {
+void GeometryBuilder::check_overlap() {
+  if (polygon_rings_.size() < 2 || polygon_crosses_) return;
+  std::vector<std::span<const Point>> rings;
+  for (const Ring& ring : polygon_rings_)
+    rings.push_back(std::span(domain_.points).subspan(ring.first_point, ring.size));
+  const auto found = find_overlap(rings, ring_roles_);
+  if (!found || ++overlaps_ > kMostTold) return;
+  const std::string at = coordinates(found->at.x, found->at.y);
+  std::string fault = " is a hole that is outside of its polygon or in another hole, at " + at;
+  if (found->crossed)
+    fault = std::string(kCrossesAnother) + polygon_rings_[*found->crossed].path + ", near " + at;
+  else if (ring_roles_ == RingRoles::kByDirection)
+    fault = " overlaps another ring of its polygon, going by their directions, at " + at;
+  warn(": " + polygon_rings_[found->ring].path + fault +
+       "; what an odd number of the rings encloses is meshed");
+}
+
+void GeometryBuilder::leave_out_property(const std::string& path, const std::string& what) {
+  if (++odd_properties_ <= kMostTold) warn(": " + path + " is left out: it is " + what);
+}
+
+void GeometryBuilder::begin_polygon(RingRoles roles) {
   polygon_start_ = domain_.segments.size();
-  polygon_rings_ = rings;
+  ring_roles_ = roles;
+  polygon_rings_.clear();
+  polygon_crosses_ = false;
   lacks_outer_ring_ = false;
 }
 
 void GeometryBuilder::end_polygon(const std::string& path, const GeometryProperties& properties) {
   if (polygon_start_ == domain_.segments.size()) return;
+  check_overlap();
   domain_.fill = Domain::Fill::kUnion;
   domain_.area_places.add(domain_.areas.size(), file_ + ": " + path + ", area ", 0, "");
   Domain::Area& area = domain_.areas.emplace_back();
@@ -200,6 +227,11 @@ Result<Domain> GeometryBuilder::finish() {
   if (crossings_ > kMostTold)
     domain_.warnings.push_back(file_ + ": " + std::to_string(crossings_ - kMostTold) +
                                std::string(kMoreCross));
+  if (odd_properties_ > kMostTold)
+    warn(": " + std::to_string(odd_properties_ - kMostTold) + " more properties are left out");
+  if (overlaps_ > kMostTold)
+    domain_.warnings.push_back(file_ + ": " + std::to_string(overlaps_ - kMostTold) +
+                               " more polygons have rings that overlap");
   for (std::string& warning : names_.warnings()) domain_.warnings.push_back(std::move(warning));
   domain_.names = names_.take();
   return std::move(domain_);

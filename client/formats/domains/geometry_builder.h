@@ -13,9 +13,10 @@
 //
 // `path` names a part in its file ("features[3].geometry.coordinates[0]"); its position i is then
 // path[i]. Errors (kUnreadableInput) name the file and the path: magnitudes beyond 1e50, a ring
-// that is not closed. A ring that crosses itself is a warning: what is inside it is decided by the
-// parity. Rings without an area (fewer than 3 distinct points), with the holes of such a ring, and
-// lines without a length are left out, which one warning tells of (left_out.h).
+// that is not closed. A ring that crosses itself or another of its polygon is a warning, as is one
+// whose role is not what parity makes of it (ring_crossing.h): parity decides what is inside. Rings
+// without an area (fewer than 3 distinct points), with the holes of such a ring, and lines without
+// a length are left out, which one warning tells of (left_out.h).
 //
 //   GeometryBuilder builder("coast.wkt");
 //   builder.begin_polygon();
@@ -36,6 +37,7 @@
 #include "client/base/error.h"
 #include "client/formats/domain.h"
 #include "client/formats/domains/left_out.h"
+#include "client/formats/domains/ring_crossing.h"
 #include "client/formats/names.h"
 
 namespace weft::client {
@@ -52,7 +54,7 @@ struct GeometryProperties {
   std::string region_name{};
 };
 
-// Whether a warning of a builder is about a ring that crosses itself, or about more of them.
+// Whether a warning of a builder is about rings that cross themselves or others.
 bool tells_of_crossing(std::string_view warning);
 
 class GeometryBuilder {
@@ -72,13 +74,13 @@ class GeometryBuilder {
 
   // Tells of something that a reader leaves out.
   void leave_out(LeftOut::Kind kind, const std::string& path) { left_out_.add(kind, path); }
+  // The same of a property at `path`, with what it is: "true, not a text".
+  void leave_out_property(const std::string& path, const std::string& what);
   // `sentence` follows the name of the file.
   void warn(const std::string& sentence) { domain_.warnings.push_back(file_ + sentence); }
 
-  // Whether a polygon's holes follow the ring around them, and there is only one such ring.
-  enum class Rings { kOuterFirst, kAnyOrder };
   // A polygon is the rings between these two calls.
-  void begin_polygon(Rings rings = Rings::kOuterFirst);
+  void begin_polygon(RingRoles roles = RingRoles::kOuterFirst);
   // The last position repeats the first; if `must_close` is false it may be left out.
   Result<void> ring(std::span<const Point> positions, const std::string& path,
                     const GeometryProperties& properties,
@@ -99,6 +101,13 @@ class GeometryBuilder {
     std::vector<std::uint32_t> markers;  // labels
   };
 
+  // A ring of the polygon, in the points of the domain.
+  struct Ring {
+    std::size_t first_point = 0;
+    std::size_t size = 0;
+    std::string path;
+  };
+
   Result<Chain> chain(std::span<const Point> positions, const std::string& path,
                       const GeometryProperties& properties, std::span<const std::uint32_t> markers);
   static bool is_usable(Point at);
@@ -106,6 +115,7 @@ class GeometryBuilder {
   std::uint32_t label_of(Labels& labels, NameKind kind, std::int32_t number,
                          const std::string& name);
   void check_crossing(const Chain& ring, const std::string& path);
+  void check_overlap();  // of the rings of the polygon
   Result<void> add(const Chain& chain, bool closed, const std::string& path);
 
   std::string file_;
@@ -114,10 +124,14 @@ class GeometryBuilder {
   Labels regions_;
   LeftOut left_out_;
   std::size_t crossings_ = 0;  // rings that cross themselves
+  std::size_t overlaps_ = 0;   // polygons of rings that overlap
+  std::size_t odd_properties_ = 0;
   Domain domain_;  // the markers of its segments and the regions of its areas are labels
   std::size_t polygon_start_ = 0;
-  Rings polygon_rings_ = Rings::kOuterFirst;
-  bool lacks_outer_ring_ = false;  // the polygon's was left out
+  RingRoles ring_roles_ = RingRoles::kOuterFirst;
+  std::vector<Ring> polygon_rings_;  // those that are there
+  bool polygon_crosses_ = false;     // one of them crosses itself
+  bool lacks_outer_ring_ = false;    // the polygon's was left out
 };
 
 }  // namespace weft::client

@@ -158,14 +158,15 @@ class Reader {
     const int index = gdal_.OGR_F_GetFieldIndex(feature, field);
     if (index < 0 || gdal_.OGR_F_IsFieldSetAndNotNull(feature, index) == 0) return {};
     const auto type = gdal_.OGR_Fld_GetType(gdal_.OGR_F_GetFieldDefnRef(feature, index));
-    if (type == OFTString) return {std::nullopt, gdal_.OGR_F_GetFieldAsString(feature, index), ""};
-    if (type != OFTInteger && type != OFTInteger64 && type != OFTReal) return {};
-    const double number = gdal_.OGR_F_GetFieldAsDouble(feature, index);
-    if (!std::isfinite(number)) return {};
-    return {number, "", ""};
+    const std::string text = gdal_.OGR_F_GetFieldAsString(feature, index);
+    if (type == OFTString) return {std::nullopt, text, ""};
+    const bool is_number = type == OFTInteger || type == OFTInteger64 || type == OFTReal;
+    const double number = is_number ? gdal_.OGR_F_GetFieldAsDouble(feature, index) : 0;
+    if (is_number && std::isfinite(number)) return number_of_table(field, number);
+    return {std::nullopt, "", in_quotes(text)};
   }
 
-  Result<GeometryProperties> read_properties(OGRFeatureH feature, const std::string& path) const {
+  Result<GeometryProperties> read_properties(OGRFeatureH feature, const std::string& path) {
     return feature_properties(builder_, path + ", field ",
                               [&](const char* name) { return value(feature, name); });
   }

@@ -10,6 +10,7 @@ constexpr const char* kDgn[] = {"DGN", nullptr};
 constexpr const char* kDxf[] = {"DXF", nullptr};
 constexpr const char* kFlatGeobuf[] = {"FlatGeobuf", nullptr};
 constexpr const char* kGeoJson[] = {"GeoJSON", nullptr};
+constexpr const char* kGeoJsonSequence[] = {"GeoJSONSeq", "GeoJSON", nullptr};  // of one line
 constexpr const char* kGeoPackage[] = {"GPKG", nullptr};
 constexpr const char* kGml[] = {"GML", nullptr};
 constexpr const char* kGmt[] = {"OGR_GMT", nullptr};
@@ -31,6 +32,7 @@ constexpr OgrFormat kFormats[] = {
     {".tab", kMapInfo},
     {".mif", kMapInfo},
     {".gmt", kGmt},
+    {".geojsonl", kGeoJsonSequence},
     {".shp", kShapefile, nullptr, true},
     {".geojson", kGeoJson, nullptr, true},
     {".json", kGeoJson, nullptr, true},

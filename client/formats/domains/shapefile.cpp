@@ -4,6 +4,8 @@
 #include <shapefil.h>
 
 #include <cstdint>
+#include <cstdio>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,7 +14,10 @@
 #include "client/base/text.h"
 #include "client/formats/domains/feature_properties.h"
 #include "client/formats/domains/geometry_builder.h"
+#include "client/formats/files/code_page.h"
 #include "client/formats/files/file_contents.h"
+#include "client/formats/files/shapefile_index.h"
+#include "client/formats/mesh_formats.h"
 
 namespace weft::client {
 namespace {
@@ -27,10 +32,29 @@ struct DestroyShape {
   void operator()(SHPObject* shape) const { ::SHPDestroyObject(shape); }
 };
 
+// Opens a file; instead of an .shx file that is not there, one in memory.
+SAFile open_or_make(const char* name, const char* access) {
+  std::FILE* file = std::fopen(name, access);
+  const std::filesystem::path path(name);
+  if (file != nullptr || lower_extension(path) != ".shx") return reinterpret_cast<SAFile>(file);
+  for (const char* extension : {".shp", ".SHP"}) {
+    const auto shapes = read_file(std::filesystem::path(path).replace_extension(extension),
+                                  std::numeric_limits<std::uint32_t>::max());
+    const std::string index = shapes ? index_of_shapes(shapes->text()) : "";
+    if (index.empty()) continue;
+    file = ::fmemopen(nullptr, index.size() + 1, "w+b");  // a null byte follows
+    if (file != nullptr) std::fwrite(index.data(), 1, index.size(), file);
+    if (file != nullptr) std::rewind(file);
+    break;
+  }
+  return reinterpret_cast<SAFile>(file);
+}
+
 // Opens files without Shapelib's own messages on stderr: the caller reports the error.
 SAHooks quiet_hooks() {
   SAHooks hooks;
   ::SASetupDefaultHooks(&hooks);
+  hooks.FOpen = open_or_make;
   hooks.Error = [](const char*) {};
   return hooks;
 }
@@ -58,10 +82,12 @@ class Table {
     if (index < 0 || ::DBFIsAttributeNULL(table_.get(), record, index) != 0) return {};
     const DBFFieldType type = ::DBFGetFieldInfo(table_.get(), index, nullptr, nullptr, nullptr);
     if (type == FTInteger || type == FTDouble)
-      return {::DBFReadDoubleAttribute(table_.get(), record, index), "", ""};
-    if (type != FTString) return {};
-    const char* const text = ::DBFReadStringAttribute(table_.get(), record, index);
-    return {std::nullopt, text != nullptr ? text : "", ""};
+      return number_of_table(field, ::DBFReadDoubleAttribute(table_.get(), record, index));
+    const char* const read = ::DBFReadStringAttribute(table_.get(), record, index);
+    const char* const page = ::DBFGetCodePage(table_.get());
+    const std::string text = to_utf8(read != nullptr ? read : "", page != nullptr ? page : "");
+    if (type != FTString) return {std::nullopt, "", in_quotes(text)};
+    return {std::nullopt, text, ""};
   }
 
  private:
@@ -77,8 +103,7 @@ class Reader {
     const std::unique_ptr<SHPInfo, CloseShapes> shapes(
         ::SHPOpenLL(path_.c_str(), "rb", const_cast<SAHooks*>(&hooks_)));
     if (!shapes)
-      return builder_.bad("",
-                          "is not a shapefile, or it is damaged, or there is no .shx beside it");
+      return builder_.bad("", "is not a shapefile, or it or the .shx beside it is damaged");
     if (auto opened = table_.open(path_, hooks_); !opened) return tl::unexpected(opened.error());
     int count = 0;
     int kind = 0;
@@ -95,7 +120,7 @@ class Reader {
   }
 
  private:
-  Result<GeometryProperties> read_properties(int record, const std::string& path) const {
+  Result<GeometryProperties> read_properties(int record, const std::string& path) {
     constexpr std::size_t kLongestName = 10;  // of a field, in the format
     return feature_properties(builder_, path + ", field ", [&](const char* name) {
       return table_.value(record, std::string(name).substr(0, kLongestName));
@@ -141,7 +166,7 @@ class Reader {
       case SHPT_POLYGON:
       case SHPT_POLYGONZ:
       case SHPT_POLYGONM:
-        builder_.begin_polygon(GeometryBuilder::Rings::kAnyOrder);
+        builder_.begin_polygon(RingRoles::kByDirection);
         for (int i = 0; i < shape.nParts; ++i)
           if (auto added =
                   builder_.ring(part(shape, i), path + ", ring " + std::to_string(i), properties);

@@ -112,7 +112,7 @@ std::optional<double> DelimitedText::real(const Field& field) const {
 // The next line, and those after it that its quotation marks reach into.
 Result<std::optional<DelimitedText::Line>> DelimitedText::next_line() {
   if (rest_.empty()) return std::nullopt;
-  Line line{{}, line_ + 1};
+  Line line{{}, line_ + 1, false};
   bool at_start = true;
   std::size_t at = 0;
   std::size_t end = std::string_view::npos;  // where the comment begins
@@ -120,6 +120,7 @@ Result<std::optional<DelimitedText::Line>> DelimitedText::next_line() {
     const char c = rest_[at];
     if (c == '#' && at_start) {
       end = at;
+      line.has_comment = true;
       at = std::min(rest_.find('\n', at), rest_.size());
       break;
     }
@@ -251,7 +252,7 @@ Result<std::optional<DelimitedText::Record>> DelimitedText::next() {
   const auto line = next_line();
   if (!line) return tl::unexpected(line.error());
   if (!*line) return std::nullopt;
-  Record record{Record::Kind::kBlank, {}, (*line)->number, trimmed((*line)->text)};
+  Record record{Record::Kind::kBlank, {}, (*line)->number, trimmed((*line)->text), false};
   if (record.text.starts_with('>')) {
     record.kind = Record::Kind::kMark;
     return record;
@@ -260,6 +261,7 @@ Result<std::optional<DelimitedText::Record>> DelimitedText::next() {
   const bool blank = std::all_of(record.fields.begin(), record.fields.end(),
                                  [](const Field& field) { return trimmed(field.text).empty(); });
   if (!blank) record.kind = Record::Kind::kFields;
+  record.is_comment = blank && (*line)->has_comment;
   return record;
 }
 

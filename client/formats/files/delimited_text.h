@@ -46,6 +46,7 @@ class DelimitedText {
     std::vector<Field> fields{};
     std::uint64_t line = 0;
     std::string_view text{};  // all of it
+    bool is_comment = false;  // it is blank but for a comment
   };
 
   // `text` must outlive the table.
@@ -73,6 +74,7 @@ class DelimitedText {
   struct Line {
     std::string_view text;  // without its comment
     std::uint64_t number = 0;
+    bool has_comment = false;
   };
 
   Result<std::optional<Line>> next_line();

@@ -82,7 +82,7 @@ std::string_view LineScanner::rest_of_line() const {
 }
 
 Result<std::int64_t> LineScanner::integer(std::string_view what) {
-  const auto value = integer_of(field_);
+  const auto value = whole_of(field_);
   if (!value) return unexpected_field(what);
   column_ = static_cast<std::size_t>(field_.data() - line_start_) + 1;
   advance();

@@ -66,6 +66,15 @@ std::optional<double> real_with_comma_of(std::string_view text) {
   return real_of(changed);
 }
 
+std::optional<std::int64_t> whole_of(std::string_view text) {
+  if (const auto value = integer_of(text)) return value;
+  constexpr double kLargest = 9007199254740992;  // up to it, all whole numbers are doubles
+  const auto value = real_of(text);
+  if (!value || std::abs(*value) > kLargest || *value != std::nearbyint(*value))
+    return std::nullopt;
+  return static_cast<std::int64_t>(*value);
+}
+
 std::optional<std::int64_t> integer_of(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   std::int64_t value = 0;

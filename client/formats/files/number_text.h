@@ -20,4 +20,7 @@ std::optional<double> real_with_comma_of(std::string_view text);
 // A whole number of 64 bits, "+3" among them.
 std::optional<std::int64_t> integer_of(std::string_view text);
 
+// The same, also as programs write it that write all numbers as reals: "3.0", "3.000e+00".
+std::optional<std::int64_t> whole_of(std::string_view text);
+
 }  // namespace weft::client

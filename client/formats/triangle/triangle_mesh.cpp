@@ -97,7 +97,8 @@ Result<void> read_edges(const std::filesystem::path& path, const NodeNumbers& nu
         mesh.edges.insert(mesh.edges.end(), {a, b});
         mesh.edge_markers.push_back(marker);
       });
-  if (!segments) return segments;
+  if (!segments) return tl::unexpected(segments.error());
+  if (!segments->empty()) mesh.warnings.push_back(*segments);
   read_names(contents->text(), names);
   return {};
 }

@@ -6,10 +6,11 @@
 
 namespace weft::client {
 
-Result<void> read_triangle_segments(
+Result<std::string> read_triangle_segments(
     LineScanner& scanner, const NodeNumbers& numbers,
     const std::function<void(std::uint32_t, std::uint32_t, std::int32_t)>& take) {
-  if (auto line = scanner.next_line("the segment count"); !line) return line;
+  if (auto line = scanner.next_line("the segment count"); !line)
+    return tl::unexpected(line.error());
   const auto count = scanner.count("the segment count");
   if (!count) return tl::unexpected(count.error());
   std::optional<bool> marked;
@@ -21,8 +22,9 @@ Result<void> read_triangle_segments(
                            ", it must be 0 or 1");
     marked = *markers == 1;
   }
+  std::string warning;
   for (std::uint64_t i = 0; i < *count; ++i) {
-    if (auto line = scanner.next_line("a segment"); !line) return line;
+    if (auto line = scanner.next_line("a segment"); !line) return tl::unexpected(line.error());
     if (auto number = scanner.integer("the segment number"); !number)
       return tl::unexpected(number.error());
     const auto a = numbers.read(scanner, "the segment's first point");
@@ -34,10 +36,14 @@ Result<void> read_triangle_segments(
       const auto value = scanner.marker("the segment marker");
       if (!value) return tl::unexpected(value.error());
       marker = *value;
+    } else if (!scanner.at_line_end() && warning.empty()) {
+      warning = scanner.name() + ":" + std::to_string(scanner.line()) +
+                ": what follows the points of segments is ignored, because their header says that "
+                "they have 0 markers";
     }
     take(*a, *b, marker);
   }
-  return {};
+  return warning;
 }
 
 }  // namespace weft::client

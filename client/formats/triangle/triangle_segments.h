@@ -2,11 +2,13 @@
 // The segment section of Triangle's .poly files:
 //   <segments> <markers, 0 or 1>
 //   <number> <point> <point> [marker]
-// If the count of markers is missing, a segment has the marker that its line ends in, or 0.
+// If the count of markers is missing, a segment has the marker that its line ends in, or 0. If it
+// is 0, what else a line has is ignored, as Triangle does, with a warning.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <string>
 
 #include "client/base/error.h"
 #include "client/formats/files/line_scanner.h"
@@ -15,8 +17,9 @@
 namespace weft::client {
 
 // Reads the section that starts at the scanner's next line, and hands over the indices of the ends
-// and the marker of each segment, while the scanner is at its line.
-Result<void> read_triangle_segments(
+// and the marker of each segment, while the scanner is at its line. Returns a sentence for the
+// user, or an empty text.
+Result<std::string> read_triangle_segments(
     LineScanner& scanner, const NodeNumbers& numbers,
     const std::function<void(std::uint32_t a, std::uint32_t b, std::int32_t marker)>& take);
 

@@ -46,7 +46,7 @@ function read(json: unknown, path: string, properties: Properties, builder: Geom
     case "Feature":
       if (json.geometry === undefined) throw new FileError(path, 'has no "geometry"');
       if (json.geometry === null) return;
-      return read(json.geometry, member(path, "geometry"), propertiesOf(json, path), builder, depth + 1);
+      return read(json.geometry, member(path, "geometry"), propertiesOf(json, path, builder), builder, depth + 1);
     default:
       return geometry(json, path, properties, builder);
   }
@@ -56,7 +56,7 @@ function isObject(json: unknown): json is Json {
   return typeof json === "object" && json !== null && !Array.isArray(json);
 }
 
-function propertiesOf(feature: Json, path: string): Properties {
+function propertiesOf(feature: Json, path: string, builder: GeometryBuilder): Properties {
   const properties = feature.properties;
   if (!isObject(properties)) return noProperties;
   // The member of a name; otherwise the first, in the order of the alphabet, that only capitals tell apart, as
@@ -72,8 +72,19 @@ function propertiesOf(feature: Json, path: string): Properties {
   };
   const isId = (value: number) => value === (value | 0);
   const isPositive = (value: number) => value > 0;
-  // A text instead of a number, or beside it.
-  const text = (name: string) => [valueOf(given(name)), given(`${name}_name`)].find((value) => value && typeof value === "string");
+  // A text instead of a number, or beside it. What is neither, and a second name, is left out.
+  const text = (name: string): string => {
+    const value = valueOf(given(name));
+    const beside = given(`${name}_name`) ?? "";
+    const leaveOut = (property: string, what: string) => builder.leaveOutProperty(`${member(path, "properties")}.${property}`, what);
+    if (value !== undefined && value !== null && typeof value !== "string" && typeof value !== "number")
+      leaveOut(name, `${shown(value)}, neither a number nor a text`);
+    if (typeof beside !== "string") leaveOut(`${name}_name`, `${shown(beside)}, not a text`);
+    const called = typeof beside === "string" && beside.trim() ? beside : "";
+    if (typeof value !== "string") return called;
+    if (called && called !== value) leaveOut(`${name}_name`, `“${called}” beside the name “${value}”`);
+    return value;
+  };
   const bound = (name: string) => {
     const value = valueOf(given(name));
     if (value !== undefined && value !== null && typeof value !== "number")
@@ -87,10 +98,15 @@ function propertiesOf(feature: Json, path: string): Properties {
     marker: number("marker", "an integer of 32 bits", isId) ?? 0,
     region: number("region", "an integer of 32 bits", isId),
     maxArea: bounds.length > 0 ? Math.min(...bounds) : undefined,
-    markerName: String(text("marker") ?? ""),
-    regionName: String(text("region") ?? ""),
+    markerName: text("marker"),
+    regionName: text("region"),
   };
 }
+
+const shown = (value: unknown) => {
+  const text = JSON.stringify(value);
+  return text.length > 40 ? `${text.slice(0, 40)}...` : text;
+};
 
 const lowerCase = (text: string) => text.replace(/[A-Z]/g, (letter) => letter.toLowerCase());
 

@@ -8,6 +8,7 @@ import { FileError } from "./file-error";
 import { LeftOut } from "./left-out";
 import { Labels } from "./names";
 import type { Area, PlanarDomain, Point } from "./planar-domain";
+import { findOverlap } from "./ring-overlap";
 
 export interface Properties {
   marker: number; // of segments
@@ -20,6 +21,8 @@ export interface Properties {
 export const noProperties: Properties = {
   marker: 0, region: undefined, maxArea: undefined, markerName: "", regionName: "",
 };
+
+const mostTold = 5; // of each kind
 
 const same = (a: Point, b: Point) => a[0] === b[0] && a[1] === b[1];
 
@@ -35,6 +38,13 @@ export class GeometryBuilder {
   private readonly borders: number[] = []; // of segments
   private readonly areas: Area[] = []; // their regions are labels
   readonly leftOut = new LeftOut();
+  private readonly oddProperties: string[] = []; // sentences
+  private readonly overlaps: string[] = []; // sentences
+
+  // A property that counts for nothing, with what it is.
+  leaveOutProperty(path: string, what: string): void {
+    this.oddProperties.push(`${path} is left out: it is ${what}`);
+  }
 
   point(at: Point): void {
     this.points.push(...at);
@@ -50,7 +60,7 @@ export class GeometryBuilder {
 
   // Each ring ends in its first position. The holes of a ring that is left out are left out, too.
   polygon(rings: readonly (readonly Point[])[], place: string, properties: Properties): void {
-    let kept = 0;
+    const kept: { path: string; ring: Point[] }[] = [];
     for (const [i, ring] of rings.entries()) {
       if (isCollapsed(ring)) {
         this.markerLabels.of(properties.marker, properties.markerName);
@@ -60,12 +70,25 @@ export class GeometryBuilder {
       }
       if (!same(ring[0], ring[ring.length - 1])) throw new FileError(`${place}[${i}]`, "is a ring that is not closed");
       this.chain(ring.slice(0, -1), this.areas.length + 1, properties);
-      ++kept;
+      kept.push({ path: `${place}[${i}]`, ring: ring.slice(0, -1) });
     }
-    if (kept === 0) return;
+    if (kept.length === 0) return;
+    this.checkOverlap(kept);
     const { region, regionName, maxArea } = properties;
     const asks = region !== undefined || regionName !== "";
     this.areas.push({ region: asks ? this.regionLabels.of(region ?? 0, regionName) : undefined, maxArea });
+  }
+
+  // Tells of rings that parity does not treat as holes of the first.
+  private checkOverlap(kept: readonly { path: string; ring: Point[] }[]): void {
+    const found = findOverlap(kept.map(({ ring }) => ring));
+    if (!found) return;
+    const at = `(${found.at.join(", ")})`;
+    const fault =
+      found.crossed === undefined
+        ? `is a hole that is outside of its polygon or in another hole, at ${at}`
+        : `is a ring that crosses another of its polygon: ${kept[found.crossed].path}, near ${at}`;
+    this.overlaps.push(`${kept[found.ring].path} ${fault}; what an odd number of the rings encloses is meshed`);
   }
 
   finish(name: string): PlanarDomain {
@@ -73,6 +96,12 @@ export class GeometryBuilder {
     if (this.points.length === 0) throw new FileError("", `the file holds no geometry${leftOut && `: ${leftOut}`}`);
     const markers = this.markerLabels.numbers();
     const regions = this.regionLabels.numbers();
+    const told = (sentences: string[], others: string) => {
+      const more = sentences.length - mostTold;
+      return more > 0 ? [...sentences.slice(0, mostTold), `${more} ${others}`] : sentences;
+    };
+    const odd = told(this.oddProperties, "more properties are left out");
+    const overlaps = told(this.overlaps, "more polygons have rings that overlap");
     const [ofMarkers, ofRegions] = [this.markerLabels.reader, this.regionLabels.reader];
     return {
       name,
@@ -85,7 +114,7 @@ export class GeometryBuilder {
       borders: Uint32Array.from(this.borders),
       markerNames: ofMarkers.names,
       regionNames: ofRegions.names,
-      warnings: [...(leftOut ? [leftOut] : []), ...ofMarkers.warnings, ...ofRegions.warnings],
+      warnings: [...(leftOut ? [leftOut] : []), ...overlaps, ...odd, ...ofMarkers.warnings, ...ofRegions.warnings],
     };
   }
 

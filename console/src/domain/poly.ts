@@ -21,7 +21,10 @@ class Lines {
       const line = this.text.slice(this.at, end);
       this.at = end + 1;
       ++this.line;
-      this.words = line.split("#", 1)[0].split(/\s+/).filter(Boolean).reverse();
+      const said = line.split("#", 1)[0].trim();
+      if (/\d,\d/.test(said) && /\s/.test(said))
+        throw this.error(`the commas of “${said}” may be decimal marks, or separate numbers`);
+      this.words = said.split(/[\s,]+/).filter(Boolean).reverse();
       if (this.words.length > 0) return true;
     }
     return false;
@@ -63,8 +66,12 @@ class Lines {
     return value;
   }
 
+  get place(): string {
+    return `line ${this.line}`;
+  }
+
   error(what: string): FileError {
-    return new FileError(`line ${this.line}`, what);
+    return new FileError(this.place, what);
   }
 }
 
@@ -90,6 +97,7 @@ export function readPoly(name: string, text: string): PlanarDomain {
   const segmentCount = lines.count("the segment count");
   // Without it, a segment has the marker that its line ends in.
   const marked = lines.atEnd ? undefined : lines.integer("the marker count") === 1;
+  const warnings: string[] = [];
   const segments = new Uint32Array(2 * segmentCount);
   const markers = new Int32Array(segmentCount);
   for (let i = 0; i < segmentCount; ++i) {
@@ -102,6 +110,8 @@ export function readPoly(name: string, text: string): PlanarDomain {
       segments[2 * i + end] = index;
     }
     if (marked ?? !lines.atEnd) markers[i] = lines.marker("the segment marker");
+    else if (!lines.atEnd && warnings.length === 0)
+      warnings.push(`${lines.place}: what follows the points of segments is ignored, because their header says that they have 0 markers`);
   }
 
   lines.next("the hole count");
@@ -119,7 +129,7 @@ export function readPoly(name: string, text: string): PlanarDomain {
     name, points, segments, markers, holes, regions, areas: [], borders: new Uint32Array(),
     markerNames: names.marker.names,
     regionNames: names.region.names,
-    warnings: [...names.marker.warnings, ...names.region.warnings],
+    warnings: [...warnings, ...names.marker.warnings, ...names.region.warnings],
   };
 }
 

@@ -121,11 +121,21 @@ TEST_F(DomainFile, ShapefilesHaveTheCoordinateSystemBesideThem) {
   EXPECT_EQ(read_domain(folder_ / "d.shp")->system, std::nullopt);
 }
 
-TEST_F(DomainFile, ShapefilesTellWhatIsMissing) {
+TEST_F(DomainFile, ShapefilesNeedNoIndex) {
   write_sample_shapefile(folder_ / "d");
+  const auto with_index = read_domain(folder_ / "d.shp");
   std::filesystem::remove(folder_ / "d.shx");
-  EXPECT_EQ(refusal_of(read_domain(folder_ / "d.shp").error()),
-            "d.shp: is not a shapefile, or it is damaged, or there is no .shx beside it");
+  const auto domain = read_domain(folder_ / "d.shp");
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->points, with_index->points);
+  EXPECT_EQ(domain->segments, with_index->segments);
+  EXPECT_EQ(domain->areas, with_index->areas);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "d.shx"));
+}
+
+TEST_F(DomainFile, ShapefilesTellWhatIsWrong) {
+  EXPECT_EQ(refusal_of(read_domain(folder_.write("d.shp", "no shapes")).error()),
+            "d.shp: is not a shapefile, or it or the .shx beside it is damaged");
   EXPECT_EQ(refusal_of(read_domain(folder_ / "none.shp").error()),
             "none.shp: No such file or directory");
 }

@@ -155,6 +155,8 @@ TEST(HostileDomain, ShapefileIsRefusedOrRead) {
   write_sample_shapefile(folder / "d");
   for (const char* part : {"d.shp", "d.shx", "d.dbf"})
     damage(folder / part, [&folder] { return read_domain(folder / "d.shp").has_value(); });
+  std::filesystem::remove(folder / "d.shx");
+  damage(folder / "d.shp", [&folder] { return read_domain(folder / "d.shp").has_value(); });
 }
 
 TEST(HostileDomain, MeshIsRefusedOrRead) {

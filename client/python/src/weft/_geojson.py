@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A domain from a GeoJSON object, by the rules of client/formats/domains/geojson.h: the same file
 gives the same request, and so the same mesh, as on the command line. A ring that crosses itself is
-taken as it is, inside by the even-odd rule of its polygon.
+taken as it is, inside by the even-odd rule of its polygon; unlike there, without a warning.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ._names import Label, Labels
-from ._text import number_of, shortest
+from ._rings import find_overlap
+from ._text import coordinates, number_of, shortest
 from ._warning import warn
 from .errors import DomainError
 
@@ -27,6 +28,7 @@ Points = npt.NDArray[np.float64]
 _LEFT_OUT = {"ring without an area": "rings without an area",
              "line without a length": "lines without a length",
              "empty geometry": "empty geometries"}
+_MOST_TOLD = 5  # of each kind
 
 
 class _Reader:
@@ -42,6 +44,8 @@ class _Reader:
         self.left_out: dict[str, int] = {}
         self.first_left_out = ""
         self.file = file
+        self.odd_properties = 0
+        self.overlaps = 0
 
     def leave_out(self, what: str, path: str) -> None:
         """Of which nothing can be meshed; `what` is one of _LEFT_OUT."""
@@ -69,9 +73,11 @@ class _Reader:
                 else:
                     self.read(part, f"{where}{name}[{i}]", properties)
         elif kind == "Feature":
-            if json.get("geometry") is not None:
+            if "geometry" not in json:
+                raise DomainError(f"{path or 'the root'} has no \"geometry\"")
+            if json["geometry"] is not None:
                 self.read(json["geometry"], f"{where}geometry",
-                          _properties(json.get("properties") or {}, f"{where}properties"))
+                          self.properties(json.get("properties") or {}, f"{where}properties"))
         else:
             self.geometry(kind, json.get("coordinates"), f"{where}coordinates", properties)
 
@@ -96,6 +102,39 @@ class _Reader:
             else:
                 read(part, f"{path}[{i}]", properties)
 
+    def leave_out_property(self, path: str, what: str) -> None:
+        self.odd_properties += 1
+        if self.odd_properties <= _MOST_TOLD:
+            self.warn(f"{path} is left out: it is {what}")
+
+    def warn(self, text: str) -> None:
+        warn(f"{self.file}: {text}" if self.file else text)
+
+    def properties(self, properties: Any, path: str) -> dict[str, Any]:
+        """Those that count: whole numbers, names and bounds."""
+        found: dict[str, Any] = {}
+        for kind in ("marker", "region"):
+            value = _value(properties, kind)
+            is_number = isinstance(value, numbers.Real) and not isinstance(value, bool)
+            if is_number:
+                if not -2**31 <= value < 2**31 or value != int(value):
+                    raise DomainError(f"{path}.{kind} is {shortest(_float(value))}, not an integer of 32 "
+                                      "bits")
+                found[kind] = int(value)
+            elif value is not None and not isinstance(value, str):
+                self.leave_out_property(f"{path}.{kind}", f"{_shown(value)}, neither a number nor a text")
+            name = _property(properties, f"{kind}_name")
+            if name is not None and not isinstance(name, str):
+                self.leave_out_property(f"{path}.{kind}_name", f"{_shown(name)}, not a text")
+            elif isinstance(value, str):
+                if name and name.strip() and name != value:
+                    self.leave_out_property(f"{path}.{kind}_name", f"{name!r} beside the name {value!r}")
+            elif name and name.strip():
+                found[f"{kind}_name"] = name
+            if isinstance(value, str):
+                found[f"{kind}_name"] = value
+        return found | _bounds(properties, path)
+
     def point(self, position: Any, path: str, properties: dict[str, Any]) -> None:
         self.points.append(_positions([position], path))
         self.count += 1
@@ -109,6 +148,7 @@ class _Reader:
         self.chain(points, 0, properties)
 
     def polygon(self, rings: Any, path: str, properties: dict[str, Any]) -> None:
+        kept: dict[str, Points] = {}  # by their paths
         for i, ring in enumerate(rings):
             points = _positions(ring, f"{path}[{i}]")
             if _is_collapsed(points):
@@ -120,10 +160,27 @@ class _Reader:
             if (points[0] != points[-1]).any():
                 raise DomainError(f"{path}[{i}] is a ring that is not closed: it starts at "
                                   f"{tuple(points[0])} and ends at {tuple(points[-1])}")
+            kept[f"{path}[{i}]"] = points[:-1]
             self.chain(points[:-1], len(self.polygons) + 1, properties)
+        self.check_overlap(kept)
         if len(rings):
             asks = {"region", "region_name"} & properties.keys()
             self.polygons.append((self.region_labels.of(properties) if asks else None, properties))
+
+    def check_overlap(self, rings: dict[str, Points]) -> None:
+        """Tells of rings that parity does not treat as holes of the first."""
+        found = find_overlap(list(rings.values()))
+        if found is None:
+            return
+        self.overlaps += 1
+        if self.overlaps > _MOST_TOLD:
+            return
+        ring, crossed, at = found
+        paths = list(rings)
+        place = coordinates(*at.tolist())
+        fault = ("is a hole that is outside of its polygon or in another hole, at " if crossed is None else
+                 f"is a ring that crosses another of its polygon: {paths[crossed]}, near ")
+        self.warn(f"{paths[ring]} {fault}{place}; what an odd number of the rings encloses is meshed")
 
     def chain(self, points: Points, area: int, properties: dict[str, Any]) -> None:
         """A ring of the polygon that 1 less than `area` numbers, or a line if it is 0."""
@@ -141,7 +198,11 @@ class _Reader:
             raise DomainError("it holds no geometry" +
                               (f": {self.left_out_sentence()}" if self.left_out else ""))
         if self.left_out:
-            warn((f"{self.file}: " if self.file else "") + self.left_out_sentence())
+            self.warn(self.left_out_sentence())
+        if self.odd_properties > _MOST_TOLD:
+            self.warn(f"{self.odd_properties - _MOST_TOLD} more properties are left out")
+        if self.overlaps > _MOST_TOLD:
+            self.warn(f"{self.overlaps - _MOST_TOLD} more polygons have rings that overlap")
         marker_of, marker_names = self.marker_labels.numbers()
         region_of, region_names = self.region_labels.numbers()
         lengths = [len(segments) for segments in self.segments]
@@ -192,24 +253,14 @@ def _value(properties: Any, name: str) -> Any:
     return (value if value.strip() else None) if number is None else number
 
 
-def _properties(properties: Any, path: str) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for name in ("marker", "region"):
-        value = _value(properties, name)
-        if isinstance(value, (int, float)) and not isinstance(value, bool):
-            if not -2**31 <= value < 2**31 or value != int(value):
-                raise DomainError(f"{path}.{name} is {shortest(_float(value))}, not an integer of 32 "
-                                  "bits")
-            found[name] = int(value)
-        texts = (value, _property(properties, f"{name}_name"))
-        if text := next((text for text in texts if text and isinstance(text, str)), ""):
-            found[f"{name}_name"] = text
+def _bounds(properties: Any, path: str) -> dict[str, float]:
+    found: dict[str, float] = {}
     for name in ("max_area", "max_edge"):
         bound = _value(properties, name)
         if bound is None:  # as programs write features that lack a column of their table
             continue
         if isinstance(bound, bool) or not isinstance(bound, numbers.Real):
-            raise DomainError(f"{path}.{name} is {dumps(bound, default=repr)}, not a number")
+            raise DomainError(f"{path}.{name} is {_shown(bound)}, not a number")
         number = _float(bound)
         if not number > 0:
             raise DomainError(f"{path}.{name} is {shortest(number)}, not positive")
@@ -218,6 +269,12 @@ def _properties(properties: Any, path: str) -> dict[str, Any]:
                               "1.8e308")
         found[name] = number
     return found
+
+
+def _shown(value: Any) -> str:
+    """For messages."""
+    text = dumps(value, default=repr)
+    return f"{text[:40]}..." if len(text) > 40 else text
 
 
 def _float(value: Any) -> float:
@@ -231,7 +288,10 @@ def _float(value: Any) -> float:
 def _positions(positions: Any, path: str) -> Points:
     """(n, 2), less those that repeat their predecessor."""
     try:
-        points = np.array([position[:2] for position in positions], np.float64).reshape(-1, 2)
+        given = np.array([position[:2] for position in positions])
+        if given.dtype.kind in "bUS":  # numpy would read numbers out of texts
+            raise TypeError
+        points = given.astype(np.float64).reshape(-1, 2)
     except (TypeError, ValueError, IndexError, OverflowError):
         raise DomainError(f"{path} does not hold positions [x, y]") from None
     if len(points) == 0:

@@ -14,22 +14,36 @@ import numpy.typing as npt
 
 from ._names import FileNames
 from ._text import read_text, shortest, without_fortran
+from ._warning import warn
 from .errors import DomainError
 
 _NAME = re.compile(r"# (marker|region)=(-?[0-9]+):(.*)")  # see client/formats/triangle/triangle_names.h
+_DOUBTFUL = re.compile(r"[0-9],[0-9]")
 
 
 class Lines:
     """The lines of a file that say something, one after the other."""
 
     def __init__(self, path: pathlib.Path) -> None:
+        self.file = str(path)
         # Comments may be in any encoding; a name that is not UTF-8 is left out.
         lines = read_text(path, "surrogateescape").split("\n")
-        stripped = (line.partition("#")[0].strip() for line in lines)
+        stripped = (self._blanks_alone(line.partition("#")[0]) for line in lines)
         self._lines = [without_fortran(line) for line in stripped if line]
         self._at = 0
         named = (_NAME.fullmatch(line.rstrip("\t")) for line in lines)
         self.names = [(found[1], int(found[2]), found[3]) for found in named if found]
+
+    @staticmethod
+    def _blanks_alone(line: str) -> str:
+        """The line, whose fields commas may separate."""
+        line = line.strip()
+        if "," not in line:
+            return line
+        if _DOUBTFUL.search(line) and re.search(r"\s", line):
+            raise DomainError(f"the commas of {line!r} may be decimal marks, or separate numbers: write decimal "
+                              "points, or blanks alone between numbers")
+        return line.replace(",", " ")
 
     def header(self, what: str) -> list[int]:
         """The counts of the line, of which all but the first may be missing."""
@@ -61,6 +75,10 @@ class Lines:
                 raise DomainError(f"{what}: a number is not finite")
             rows.append(row)
         return rows
+
+    def are_longer(self, rows: int, columns: int) -> bool:
+        """Whether one of the next lines has more fields."""
+        return any(len(line.split()) > columns for line in self._lines[self._at:self._at + rows])
 
     def _next(self, what: str, rows: int) -> list[str]:
         lines = self._lines[self._at:self._at + rows]
@@ -95,10 +113,21 @@ def indices(numbers: npt.NDArray[np.float64], named: npt.NDArray[np.float64],
     return result
 
 
+def point_table(lines: Lines) -> npt.NDArray[np.float64]:
+    """(n, 3): number and coordinates."""
+    count, *more = lines.header("points")
+    if more and more[0] != 2:
+        raise DomainError(f"the dimension is {more[0]}, it must be 2")
+    return lines.table("points", count, 3)
+
+
 def segment_table(lines: Lines) -> npt.NDArray[np.float64]:
     """(k, 3) or (k, 4): number, points and, if the file has it, marker of each segment."""
     count, *marked = lines.header("segments")
     if marked:
+        if not marked[0] and lines.are_longer(count, 3):
+            warn(f"{lines.file}: what follows the points of segments is ignored, because their header says that "
+                 "they have 0 markers")
         return lines.table("segments", count, 4 if marked[0] else 3)
     # A segment has the marker that its line ends in.
     return np.array([[*row, 0][:4] for row in lines.rows("segments", count, 3)]).reshape(-1, 4)
@@ -127,12 +156,9 @@ def region_ids(attributes: Iterable[float]) -> dict[float, int]:
 def read(path: pathlib.Path, region: Callable[..., Any]) -> dict[str, Any]:
     """The arguments of Domain; `region` makes a Region of x, y, id and max_area."""
     lines = Lines(path)
-    count = lines.header("points")[0]
-    if count:
-        vertices = lines.table("points", count, 3)
-    else:
-        beside = Lines(path.with_suffix(".node"))
-        vertices = beside.table("points", beside.header("points")[0], 3)
+    vertices = point_table(lines)
+    if not len(vertices):
+        vertices = point_table(Lines(path.with_suffix(".node")))
     segments = segment_table(lines)
     holes = lines.table("holes", lines.header("holes")[0], 3)
     rows = region_rows(lines)

@@ -44,6 +44,38 @@ class CsvRings : public ::testing::Test {
   TempFolder folder_;
 };
 
+TEST_F(CsvRings, AreRefusedIfAllCommasOfNumbersMayGroupTheirDigits) {
+  EXPECT_EQ(
+      refusal("x,y\n0,0\n\"4,000\",0\n\"4,000\",\"3,000\"\n"),
+      "d.csv:3:1: the commas of '4,000' and all the others may be decimal marks, or group the "
+      "digits of thousands: write no commas in numbers, or separate columns by semicolons");
+  // One that can only be a decimal mark decides.
+  for (const char* clear : {"\"0,250\"", "\"4000,250\"", "\"4,25\""})
+    EXPECT_EQ(rings(std::string("x,y\n0,0\n\"4,000\",0\n\"4,000\",") + clear + "\n").size(), 1U)
+        << clear;
+  EXPECT_EQ(read("x;y\n0;0\n4,000;0\n4,000;3,000\n").points[2], (Point{4, 3}));
+}
+
+TEST_F(CsvRings, ThatComeAgainAreOthersWithAWarning) {
+  EXPECT_EQ(warnings("ring,x,y\n1,0,0\n1,9,0\n1,9,9\n2,1,0\n2,2,0\n2,2,1\n1,5,1\n1,6,1\n1,6,2\n"),
+            std::vector<std::string>{
+                "d.csv:8: a ring that ended before comes again; it is taken for another ring"});
+  EXPECT_TRUE(warnings("ring,x,y\n1,0,0\n1,9,0\n1,9,9\n2,1,0\n2,2,0\n2,2,1\n").empty());
+}
+
+TEST_F(CsvRings, ThatACommentEndsAreAWarning) {
+  const std::string ring = "0 0\n4 0\n4 4\n";
+  EXPECT_EQ(warnings("# top\n" + ring + "# next\n# more\n7 0\n8 0\n8 1\n# end\n"),
+            std::vector<std::string>{
+                "d.csv:6: a line with nothing but a comment ends the ring before it"});
+  EXPECT_TRUE(warnings(ring + "# next\n\n7 0 # here\n8 0\n8 1\n").empty());
+}
+
+TEST_F(CsvRings, ThatCrossEachOtherAreAWarning) {
+  EXPECT_EQ(warnings("0 0\n4 0\n4 4\n0 4\n\n2 1\n6 1\n6 2\n2 2\n").size(), 1U);
+  EXPECT_TRUE(warnings("0 0\n4 0\n4 4\n0 4\n\n4 1\n6 1\n6 2\n4 2\n").empty());
+}
+
 TEST_F(CsvRings, SeparateColumnsAsProgramsDo) {
   for (const char* text : {
            "0,0\n4,0\n4,3\n0,3\n",

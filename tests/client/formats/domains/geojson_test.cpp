@@ -138,6 +138,38 @@ TEST_F(GeoJson, WarnsOfARingThatCrossesItselfAndNamesTheEdges) {
       << domain->warnings[0];
 }
 
+TEST_F(GeoJson, WarnsOfHolesThatParityDoesNotTakeForHoles) {
+  const auto warnings = [this](const std::string& holes) {
+    const auto domain = read(R"({"type": "Polygon", "coordinates": [[[0, 0], [9, 0], [9, 9], [0, 9],
+        [0, 0]], [[1, 1], [3, 1], [3, 3], [1, 1]])" +
+                             holes + "]}");
+    EXPECT_TRUE(domain) << domain.error().message;
+    std::string text;
+    for (const std::string& warning : domain->warnings)
+      text += warning.substr(warning.find("map.geojson"));
+    return text;
+  };
+  EXPECT_EQ(warnings(",[[3, 3], [4, 3], [4, 4], [3, 3]]"), "");
+  EXPECT_EQ(warnings(",[[20, 1], [21, 1], [21, 2], [20, 1]]"),
+            "map.geojson: coordinates[2] is a hole that is outside of its polygon or in another "
+            "hole, at (20, 1); what an odd number of the rings encloses is meshed");
+  EXPECT_EQ(warnings(",[[2, 1], [5, 1], [2, 4], [2, 1]]"),
+            "map.geojson: coordinates[2] is a ring that crosses another of its polygon: "
+            "coordinates[1], near (2, 1); what an odd number of the rings encloses is meshed");
+}
+
+TEST_F(GeoJson, CountsThePolygonsOfRingsThatOverlap) {
+  std::string polygons;
+  for (int i = 0; i < 8; ++i)
+    polygons += std::string(i == 0 ? "" : ",") +
+                "[[[0, 0], [4, 4], [4, 0], [0, 0]], [[9, 9], [8, 8], [9, 8], [9, 9]]]";
+  const auto domain = read(R"({"type": "MultiPolygon", "coordinates": [)" + polygons + "]}");
+  ASSERT_TRUE(domain) << domain.error().message;
+  ASSERT_EQ(domain->warnings.size(), 6u);
+  EXPECT_TRUE(
+      domain->warnings[5].ends_with("map.geojson: 3 more polygons have rings that overlap"));
+}
+
 TEST_F(GeoJson, CountsTheRingsThatCrossThemselves) {
   std::string rings;
   for (int i = 0; i < 8; ++i)

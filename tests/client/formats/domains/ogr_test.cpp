@@ -159,7 +159,7 @@ TEST_F(OgrFile, OfAFormatThatWeftReadsItselfIsReadInPart) {
   EXPECT_EQ(markers(read_domain(path, {.where = "marker = 4"})), std::vector<std::int32_t>{4});
   EXPECT_EQ(refusal(folder_.write("d.poly", ""), {.where = "marker = 4"}, ExitCode::kUsage),
             "d.poly: --layer and --where are for files with layers and attributes: .gpkg, .fgb, "
-            ".kml, .gml, .dxf, .dgn, .tab, .mif, .gmt, .shp, .geojson, .json");
+            ".kml, .gml, .dxf, .dgn, .tab, .mif, .gmt, .geojsonl, .shp, .geojson, .json");
 }
 
 TEST_F(OgrFile, HasLayersOfOneCoordinateSystem) {

@@ -43,6 +43,29 @@ class TrianglePoly : public ::testing::Test {
   TempFolder folder_;
 };
 
+TEST_F(TrianglePoly, TellsOfMarkersThatTheHeaderOfSegmentsDenies) {
+  const std::string text = kSquare;
+  const std::size_t header = text.find("\n4 1\n") + 3;
+  const auto domain = read(text.substr(0, header) + "0" + text.substr(header + 1));
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->segments[0].marker, 0);
+  ASSERT_EQ(domain->warnings.size(), 1u);
+  EXPECT_TRUE(domain->warnings[0].ends_with(
+      "box.poly:9: what follows the points of segments is ignored, because their header says that "
+      "they have 0 markers"))
+      << domain->warnings[0];
+  EXPECT_TRUE(read(kSquare)->warnings.empty());
+}
+
+TEST_F(TrianglePoly, HasWholeNumbersThatAreWrittenAsReals) {
+  const auto domain = read(
+      "3.0 2.0 0 0\n1.0 0 0\n2.0e+00 1 0\n3 1 1\n3 1\n"
+      "1 1.0 2 5.0\n2 2 3 5\n3 3 1 5\n0\n");
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->segments[0], (Domain::Segment{0, 1, 5, 0}));
+  EXPECT_NE(refusal("3 2 0 0\n1.5 0 0\n2 1 0\n3 1 1\n0\n0\n"), "it was read");
+}
+
 TEST_F(TrianglePoly, ReadsPointsSegmentsHolesAndRegions) {
   const auto domain = read(kSquare);
   ASSERT_TRUE(domain) << domain.error().message;
