@@ -17,8 +17,9 @@
 namespace weft {
 namespace {
 
-// Lines are divided where a triangle beside them is less high than this share of the finest length.
-constexpr double kLow = 0.8;
+// Of the finest length: the diameter of a circle around the corners of a narrow triangle at most.
+// Between shores that are this length apart, with points at half of it, it is sqrt(5) / 2 at most.
+constexpr double kNarrow = 1.118;
 
 // The diameter of the smallest circle around the corners; infinite if they are nearly on a line,
 // with an angle above 150 degrees.
@@ -143,7 +144,7 @@ class Narrowing {
   bool is_low(std::uint32_t t) const {
     for (int i = 0; i < 3; ++i) {
       if (source_[t][i] == kNone) continue;
-      if (distance_to_line(at(t, i), at(t, ccw(i)), at(t, cw(i))) < kLow * finest(t)) return true;
+      if (distance_to_line(at(t, i), at(t, ccw(i)), at(t, cw(i))) < finest(t)) return true;
       if (source_[t][ccw(i)] != kNone &&
           turn_between(at(t, i), at(t, cw(i)), at(t, ccw(i))) < kTurn45)
         return true;
@@ -168,7 +169,7 @@ class Narrowing {
         {graph_.finest[point(t, 0)], graph_.finest[point(t, 1)], graph_.finest[point(t, 2)]});
   }
   bool is_narrow(std::uint32_t t) const {
-    return diameter(at(t, 0), at(t, 1), at(t, 2)) < finest(t);
+    return diameter(at(t, 0), at(t, 1), at(t, 2)) < kNarrow * finest(t);
   }
 
   bool is_border(std::uint32_t t, int i) const {
@@ -278,7 +279,7 @@ class Narrowing {
         least = std::min(least, graph_.finest[point(t, i)]);
     if (std::isinf(least)) return least;
     const Point a = at(t, 0), b = at(t, 1), c = at(t, 2);
-    if (diameter(a, b, c) < least) return 0;
+    if (diameter(a, b, c) < kNarrow * least) return 0;
     const double doubled = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     return doubled / (2 * kFinestTriangle * least * least);
   }

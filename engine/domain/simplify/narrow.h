@@ -4,10 +4,10 @@
 // all that touches them.
 //
 // A triangle of the constrained Delaunay triangulation of the lines is narrow if a circle around
-// its corners has a diameter below the finest length there, and no angle is above 150 degrees: if
-// points are dense along the lines, that is a place where no disk of this diameter fits. Points are
-// made dense where a corner is nearer to a line than 4/5 of that length, and where lines meet at
-// less than 45 degrees. Then:
+// its corners has a diameter below 1.118 of the finest length there, and no angle is above 150
+// degrees: if points are dense along the lines, that is a place where no disk of this diameter
+// fits. Points are made dense where a corner is nearer to a line than the finest length, and where
+// lines meet at less than 45 degrees. Then:
 //   1. inlets: a narrow triangle of water with two sides on the border becomes land, and so on from
 //      the head of an inlet to its mouth;
 //   2. channels: a narrow triangle of water with one side on the border becomes land, the narrowest

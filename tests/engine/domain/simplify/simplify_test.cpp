@@ -193,6 +193,11 @@ TEST(Simplify, CutsAChannelThatIsNarrowerAndDropsTheSmallWaterBehindIt) {
   EXPECT_EQ(cover(made.domain, {5.1, 5.2}), 1);
 }
 
+TEST(Simplify, CutsAChannelThatIsHardlyNarrower) {
+  EXPECT_EQ(simplified(two_basins(0.98, 3), 1).changes.cut_off, 1u);
+  EXPECT_EQ(simplified(two_basins(1.1, 3), 1).changes.channels, 0u);
+}
+
 TEST(Simplify, KeepsAStraitToALargeWater) {
   const Made made = simplified(two_basins(0.7), 1);
   EXPECT_EQ(made.changes.channels, 0u);
