@@ -142,6 +142,16 @@ TEST(Simplification, PartsThatWereConnectedAreFound) {
   EXPECT_EQ(report.total(Rule::kSimplified), 1u);
 }
 
+TEST(Simplification, PartsThatWereConnectedAcrossALineAreFound) {
+  Domain domain = two_waters(10);
+  domain.points.push_back({11, 4.9});
+  domain.points.push_back({11, 5.1});
+  domain.segments.push_back({12, 13});
+  const std::string report = to_text(judged(domain, squares_mesh({{0, 0}, {12, 0}}), 0.1));
+  EXPECT_NE(report.find("are not connected, though the domain is there"), std::string::npos)
+      << report;
+}
+
 TEST(Simplification, PartsThatWereApartHold) {
   Domain domain = two_waters(10);
   domain.points[2].x = domain.points[9].x = 9;  // the channel begins inside the square, as a notch

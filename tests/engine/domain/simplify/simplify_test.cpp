@@ -193,6 +193,30 @@ TEST(Simplify, CutsAChannelThatIsNarrowerAndDropsTheSmallWaterBehindIt) {
   EXPECT_EQ(cover(made.domain, {5.1, 5.2}), 1);
 }
 
+TEST(Simplify, DropsTheSmallWaterWhicheverComesFirst) {
+  for (const double x : {1, -1}) {
+    for (const double y : {1, -1}) {
+      Pslg pslg = two_basins(0.7, 3);
+      for (Point& p : pslg.points) p = {x * p.x, y * p.y};
+      const Made made = simplified(pslg, 1);
+      EXPECT_EQ(made.changes.cut_off, 1u);
+      EXPECT_EQ(made.changes.straits, 0u);
+      EXPECT_NEAR(area(made.domain), 100, 0.5);
+    }
+  }
+}
+
+// A basin of 80 by 10 and a moat that is narrower, from its one end to the other.
+TEST(Simplify, ClosesAMoatHoweverLong) {
+  Pslg pslg;
+  add_box(pslg, {0, 0}, {80, 40});
+  add_box(pslg, {0.7, 0.7}, {79.3, 30});
+  pslg.holes = {{20, 15}};
+  const Made made = simplified(pslg, 1);
+  EXPECT_EQ(made.changes.straits, 0u);
+  EXPECT_NEAR(area(made.domain), 800, 25);  // its own shores move, too
+}
+
 TEST(Simplify, CutsAChannelThatIsHardlyNarrower) {
   EXPECT_EQ(simplified(two_basins(0.98, 3), 1).changes.cut_off, 1u);
   EXPECT_EQ(simplified(two_basins(1.1, 3), 1).changes.channels, 0u);
@@ -267,11 +291,13 @@ TEST(Simplify, LeavesNoPinch) {
 
 TEST(Simplify, LeavesAPinchOfTheInput) {
   Pslg pslg;
-  add_box(pslg, {0, 0}, {20, 20});
+  add_box(pslg, {0, 0}, {40, 20});
   add_ring(pslg, {{10, 15}, {5, 10}, {10, 5}});
-  add_ring(pslg, {{10, 15}, {10, 19}, {16, 17}});
-  pslg.holes = {{9, 10}, {12, 17}};
+  add_ring(pslg, {{10, 15}, {10, 18}, {16, 17}});
+  add_ring(pslg, {{30, 19.5}, {25, 10}, {35, 10}});  // a cut channel beside it
+  pslg.holes = {{9, 10}, {12, 17}, {30, 11}};
   const Made made = simplified(pslg, 1);
+  EXPECT_EQ(made.changes.channels, 1u);
   EXPECT_EQ(pinches(made.domain), 1);
   EXPECT_TRUE(has_vertex(made.domain, {10, 15}));
 }
