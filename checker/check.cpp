@@ -23,6 +23,7 @@
 #include "checker/mesh/listed_edges.h"
 #include "checker/mesh/overlap.h"
 #include "checker/mesh/simplification.h"
+#include "checker/mesh/simplified_parts.h"
 #include "checker/mesh/skipped_edges.h"
 #include "checker/mesh/structure.h"
 #include "checker/text.h"
@@ -234,7 +235,6 @@ Report judge_simplified(const Domain& domain, const Domain& given, const Mesh& m
     return report;
   }
   const SimplifiedDomain simple = simplified_domain(domain, mesh, *half_edges);
-  half_edges.reset();
   Report report = judge(simple.domain, given, simple.mesh, requirements);
   const BentDomain original = unbent(domain), own = unbent(simple.domain);
   const auto filled = arrange(original, findings);
@@ -242,8 +242,9 @@ Report judge_simplified(const Domain& domain, const Domain& given, const Mesh& m
   if (!filled || !own_filled || !report.ok()) {
     report.not_judged.push_back(Rule::kSimplified);
   } else {
-    judge_simplification({domain, filled->arrangement, filled->roles},
-                         {simple.domain, own_filled->arrangement, own_filled->roles}, mesh,
+    const FacedDomain faced{domain, filled->arrangement, filled->roles};
+    judge_parts(faced, mesh, *half_edges, findings);
+    judge_simplification(faced, {simple.domain, own_filled->arrangement, own_filled->roles}, mesh,
                          requirements, report.facts, findings);
   }
   findings.add_to(report);

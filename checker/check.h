@@ -19,9 +19,6 @@
 
 namespace weft::check {
 
-// Maximum points where segments meet other than at their ends; a domain with more is not judged.
-inline constexpr std::size_t kMaxContacts = 2'000'000;
-
 Report check(const Domain& domain, const Mesh& mesh, const Requirements& requirements = {});
 
 }  // namespace weft::check

@@ -15,6 +15,9 @@ namespace weft::check {
 
 using SegmentEnds = std::array<std::uint32_t, 2>;  // indices into a list of points
 
+// Maximum points where segments meet other than at their ends; a domain with more is not judged.
+inline constexpr std::size_t kMaxContacts = 2'000'000;
+
 struct Contacts {
   // A point, an end of some other segment, lies strictly inside the segment.
   struct Touch {

@@ -11,6 +11,7 @@
 
 #include "checker/domain/tolerance.h"
 #include "checker/geometry/box_tree.h"
+#include "checker/geometry/contacts.h"
 #include "checker/geometry/sum.h"
 #include "checker/size/size.h"
 #include "checker/text.h"
@@ -153,10 +154,12 @@ class Judge {
     const double most = std::max({limit, finest(near.at), finest(original_.domain.points[a]),
                                   finest(original_.domain.points[b])});
     if (near.distance <= most * (1 + kRounding)) return;
-    const FaceRole was = original_.roles[original_.arrangement.locate(p).face];
+    const std::uint32_t face = original_.arrangement.locate(p).face;
+    const FaceRole was = original_.roles[face];
     const FaceRole is = simple_.roles[simple_.arrangement.locate(p).face];
     if (was.open || (was.kept && was.is_region_open)) return;
     if (was.kept == is.kept && (!was.kept || was.region == is.region)) return;
+    if (was.kept && !is.kept && may_be_cut_off(p, original_.arrangement.faces()[face].area)) return;
     findings_.add(Rule::kSimplified, [&] {
       const auto name = [](const FaceRole& role) {
         return role.kept ? say("in region ", role.region) : std::string("not meshed");
@@ -164,6 +167,33 @@ class Judge {
       return say("the point ", p, ", ", near.distance, " from all segments, was ", name(was),
                  " and is ", name(is));
     });
+  }
+
+  // Whether the face of both domains' segments together that p lies in is a small water, and part
+  // of a face of this area that has others.
+  bool may_be_cut_off(Vec2 p, double area) {
+    if (!overlay_) {
+      std::vector<Vec2> points = original_.domain.points;
+      std::vector<SegmentEnds> segments = original_.domain.segments;
+      const auto first = static_cast<std::uint32_t>(points.size());
+      points.insert(points.end(), simple_.domain.points.begin(), simple_.domain.points.end());
+      for (const auto& [a, b] : simple_.domain.segments) segments.push_back({first + a, first + b});
+      const Contacts contacts = find_contacts(points, segments, kMaxContacts);
+      if (!contacts.complete) return true;  // cannot be told
+      overlay_.emplace(points, segments, contacts);
+      largest_finest_.assign(overlay_->faces().size(), 0);
+      for (std::uint32_t h = 0; h < 2 * overlay_->edges().size(); ++h) {
+        double& largest = largest_finest_[overlay_->face(h)];
+        largest = std::max(largest, finest(overlay_->vertices().at(overlay_->edges()[h / 2].u)));
+      }
+    }
+    const std::uint32_t f = overlay_->locate(p).face;
+    const Arrangement::Face& face = overlay_->faces()[f];
+    const double length = largest_finest_[f];
+    constexpr double kAlone = 1.01;
+    return f != 0 && area > kAlone * face.area &&
+           face.area - face.perimeter * length / 2 <
+               kMostCutOff * std::sqrt(3.0) / 4 * length * length;
   }
 
   // Points that no segment names, and those where segments meet or end, stay.
@@ -215,9 +245,11 @@ class Judge {
   const Mesh& mesh_;
   const Requirements& requirements_;
   Findings& findings_;
-  BoxTree tree_;                        // of the original's segments
-  std::function<double(Vec2)> size_{};  // empty if there is none
-  double largest_bound_ = 0;            // of the original's kept faces
+  BoxTree tree_;                          // of the original's segments
+  std::function<double(Vec2)> size_{};    // empty if there is none
+  double largest_bound_ = 0;              // of the original's kept faces
+  std::optional<Arrangement> overlay_{};  // of both domains' segments, once it is needed
+  std::vector<double> largest_finest_{};  // per face of it
 };
 
 double kept_area(const FacedDomain& domain) {

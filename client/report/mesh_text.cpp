@@ -63,9 +63,9 @@ std::string rounded(double distance) {
 Json simplification_json(const v1::Summary& summary) {
   if (!summary.has_simplification()) return nullptr;
   const v1::Simplification& made = summary.simplification();
-  return {{"points", made.points()}, {"islands", made.islands()},
-          {"waters", made.waters()}, {"channels", made.channels()},
-          {"area", made.area()},     {"farthest", made.farthest()}};
+  return {{"points", made.points()},     {"islands", made.islands()},  {"waters", made.waters()},
+          {"channels", made.channels()}, {"cut_off", made.cut_off()},  {"straits", made.straits()},
+          {"area", made.area()},         {"farthest", made.farthest()}};
 }
 
 // "1 point", "1,200 points".
@@ -206,9 +206,10 @@ std::string simplification_text(const v1::Summary& summary) {
     return "simplified: nothing was finer\n";
   return "simplified: " + counted(made.points(), "point") + ", " +
          counted(made.islands(), "island") + " and " + counted(made.waters(), "water") +
-         " dropped, " + counted(made.channels(), "channel") + " cut, area " +
-         (made.area() > 0 ? "+" : "") + rounded(made.area()) + ", no line moved by more than " +
-         rounded(made.farthest()) + "\n";
+         " dropped, " + counted(made.channels(), "channel") + " cut, " +
+         counted(made.cut_off(), "water") + " behind them dropped, " +
+         counted(made.straits(), "strait") + " kept, area " + (made.area() > 0 ? "+" : "") +
+         rounded(made.area()) + ", no line moved by more than " + rounded(made.farthest()) + "\n";
 }
 
 std::string narrow_text(const v1::Summary& summary) {

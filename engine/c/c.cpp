@@ -258,6 +258,8 @@ void weft_mesh_summary(const weft_mesh* mesh, weft_summary* summary) {
     to.dropped_islands = from.simplified->islands;
     to.dropped_waters = from.simplified->waters;
     to.cut_channels = from.simplified->channels;
+    to.cut_off_waters = from.simplified->cut_off;
+    to.straits = from.simplified->straits;
     to.simplified_area = from.simplified->area;
     to.simplified_farthest = from.simplified->farthest;
   }

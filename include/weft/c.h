@@ -190,6 +190,7 @@ typedef struct weft_summary {
   int32_t has_simplification;
   uint64_t simplified_points, dropped_islands, dropped_waters, cut_channels;
   double simplified_area, simplified_farthest;
+  uint64_t cut_off_waters, straits;
 } weft_summary;
 #define WEFT_SUMMARY \
   { .struct_size = sizeof(weft_summary) }

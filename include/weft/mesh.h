@@ -88,6 +88,8 @@ struct Simplification {
   std::uint64_t islands = 0;   // land, or holes, that are meshed now
   std::uint64_t waters = 0;    // parts that are no longer meshed
   std::uint64_t channels = 0;  // that were cut
+  std::uint64_t cut_off = 0;   // waters behind these, which are no longer meshed
+  std::uint64_t straits = 0;   // channels that stay: the widest way to a large water
   double area = 0;             // of the new domain less that of the old one
   double farthest = 0;         // of a new line from the old ones, at most
 };

@@ -316,6 +316,8 @@ v1::Summary to_wire(const Summary& summary, std::uint32_t threads) {
     simplification.set_islands(summary.simplified->islands);
     simplification.set_waters(summary.simplified->waters);
     simplification.set_channels(summary.simplified->channels);
+    simplification.set_cut_off(summary.simplified->cut_off);
+    simplification.set_straits(summary.simplified->straits);
     simplification.set_area(summary.simplified->area);
     simplification.set_farthest(summary.simplified->farthest);
   }

@@ -18,31 +18,6 @@
 namespace weft {
 namespace {
 
-// An equilateral triangle with edges of 1.
-constexpr double kTriangle = 0.4330127018922193;
-
-std::vector<bool> used_points(const LineGraph& graph) {
-  std::vector<bool> used(graph.points.size(), false);
-  for (const Line& line : graph.lines) used[line.a] = used[line.b] = true;
-  for (const std::uint32_t v : graph.loose) used[v] = true;
-  return used;
-}
-
-// Points that share their place with another one.
-std::vector<bool> find_twins(const LineGraph& graph, const std::vector<bool>& used) {
-  std::vector<std::uint32_t> order;
-  for (std::uint32_t v = 0; v < used.size(); ++v)
-    if (used[v]) order.push_back(v);
-  const auto& at = graph.points;
-  std::sort(order.begin(), order.end(), [&](std::uint32_t v, std::uint32_t w) {
-    return at[v].x != at[w].x ? at[v].x < at[w].x : at[v].y < at[w].y;
-  });
-  std::vector<bool> is_twin(graph.points.size(), false);
-  for (std::size_t i = 1; i < order.size(); ++i)
-    if (at[order[i - 1]] == at[order[i]]) is_twin[order[i - 1]] = is_twin[order[i]] = true;
-  return is_twin;
-}
-
 class Decimation {
  public:
   Decimation(LineGraph& graph, const NearLines& original, double share, double tolerance,
@@ -119,7 +94,7 @@ class Decimation {
       least = std::min(least, finest(n));
       box.add(p);
     });
-    if (!(std::fabs(doubled) < 2 * kTriangle * least * least)) return false;
+    if (!(std::fabs(doubled) < 2 * kFinestTriangle * least * least)) return false;
     std::vector<bool>& is_own = mark_;
     is_own.resize(graph_.points.size(), false);
     for_each_node(ring, [&](std::uint32_t n) { is_own[chains_.nodes[n].point] = true; });

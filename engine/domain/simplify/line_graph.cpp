@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/domain/simplify/line_graph.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -11,17 +12,21 @@
 namespace weft {
 namespace {
 
-// The graph as a PSLG: segments are its lines, in their order. `point` gets the graph's point of
+// The graph as a PSLG: points in the order of the original, then new ones; segments are its lines,
+// in their order. `point` gets the graph's point of
 // each of the PSLG's.
 Pslg pslg_of(const LineGraph& graph, std::vector<std::uint32_t>& point) {
   std::vector<std::uint32_t> number(graph.points.size(), kNone);
   for (const Line& line : graph.lines) number[line.a] = number[line.b] = 0;
   for (const std::uint32_t v : graph.loose) number[v] = 0;
   Pslg pslg;
-  for (std::uint32_t v = 0; v < number.size(); ++v) {
-    if (number[v] == kNone) continue;
-    number[v] = static_cast<std::uint32_t>(point.size());
-    point.push_back(v);
+  for (std::uint32_t v = 0; v < number.size(); ++v)
+    if (number[v] != kNone) point.push_back(v);
+  std::stable_sort(point.begin(), point.end(), [&](std::uint32_t v, std::uint32_t w) {
+    return graph.original[v] < graph.original[w];
+  });
+  for (const std::uint32_t v : point) {
+    number[v] = static_cast<std::uint32_t>(pslg.points.size());
     pslg.points.push_back(graph.points[v]);
   }
   pslg.segments.reserve(graph.lines.size());
@@ -74,6 +79,27 @@ std::vector<std::uint32_t> regions_of_faces(const LineGraph& graph, const Arrang
 }
 
 }  // namespace
+
+std::vector<bool> used_points(const LineGraph& graph) {
+  std::vector<bool> used(graph.points.size(), false);
+  for (const Line& line : graph.lines) used[line.a] = used[line.b] = true;
+  for (const std::uint32_t v : graph.loose) used[v] = true;
+  return used;
+}
+
+std::vector<bool> find_twins(const LineGraph& graph, const std::vector<bool>& used) {
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t v = 0; v < used.size(); ++v)
+    if (used[v]) order.push_back(v);
+  const auto& at = graph.points;
+  std::sort(order.begin(), order.end(), [&](std::uint32_t v, std::uint32_t w) {
+    return at[v].x != at[w].x ? at[v].x < at[w].x : at[v].y < at[w].y;
+  });
+  std::vector<bool> is_twin(graph.points.size(), false);
+  for (std::size_t i = 1; i < order.size(); ++i)
+    if (at[order[i - 1]] == at[order[i]]) is_twin[order[i - 1]] = is_twin[order[i]] = true;
+  return is_twin;
+}
 
 std::uint32_t LineGraph::add_point(Point at, std::uint32_t vertex, double off, double fine) {
   points.push_back(at);

@@ -19,6 +19,9 @@
 
 namespace weft {
 
+// The area of an equilateral triangle with edges of 1.
+inline constexpr double kFinestTriangle = 0.4330127018922193;
+
 struct Line {
   std::uint32_t a = 0;  // index into LineGraph::points
   std::uint32_t b = 0;
@@ -44,6 +47,12 @@ struct LineGraph {
   // The index of a new point that is `error` from the original lines at most.
   std::uint32_t add_point(Point at, std::uint32_t vertex, double error, double finest);
 };
+
+// Per point: whether lines name it, or it is loose.
+std::vector<bool> used_points(const LineGraph& graph);
+
+// Per point: whether it shares its place with another one of those used.
+std::vector<bool> find_twins(const LineGraph& graph, const std::vector<bool>& used);
 
 // Leaves `finest` 0. Throws Stopped.
 LineGraph line_graph_of(const Domain& domain, StopPoller& poller);

@@ -11,13 +11,15 @@
 
 #include "engine/domain/arrangement/snapping.h"
 #include "engine/domain/face.h"
+#include "engine/domain/simplify/straits.h"
 #include "engine/domain/simplify/turns.h"
 
 namespace weft {
 namespace {
 
-// Lines are divided where a triangle beside them is less high than this share of the finest length.
-constexpr double kLow = 0.8;
+// Of the finest length: the diameter of a circle around the corners of a narrow triangle at most.
+// Between shores that are this length apart, with points at half of it, it is sqrt(5) / 2 at most.
+constexpr double kNarrow = 1.118;
 
 // The diameter of the smallest circle around the corners; infinite if they are nearly on a line,
 // with an angle above 150 degrees.
@@ -142,7 +144,7 @@ class Narrowing {
   bool is_low(std::uint32_t t) const {
     for (int i = 0; i < 3; ++i) {
       if (source_[t][i] == kNone) continue;
-      if (distance_to_line(at(t, i), at(t, ccw(i)), at(t, cw(i))) < kLow * finest(t)) return true;
+      if (distance_to_line(at(t, i), at(t, ccw(i)), at(t, cw(i))) < finest(t)) return true;
       if (source_[t][ccw(i)] != kNone &&
           turn_between(at(t, i), at(t, cw(i)), at(t, ccw(i))) < kTurn45)
         return true;
@@ -167,7 +169,7 @@ class Narrowing {
         {graph_.finest[point(t, 0)], graph_.finest[point(t, 1)], graph_.finest[point(t, 2)]});
   }
   bool is_narrow(std::uint32_t t) const {
-    return diameter(at(t, 0), at(t, 1), at(t, 2)) < finest(t);
+    return diameter(at(t, 0), at(t, 1), at(t, 2)) < kNarrow * finest(t);
   }
 
   bool is_border(std::uint32_t t, int i) const {
@@ -268,44 +270,71 @@ class Narrowing {
     return true;
   }
 
-  // Triangles from which narrow water leads to a held point.
-  std::vector<bool> find_kept_water() {
-    std::vector<bool> kept(region_.size(), false);
-    std::vector<std::uint32_t> stack;
-    for (std::uint32_t t = 0; t < region_.size(); ++t) {
-      if (!is_water(t) || is_plain(t)) continue;
-      kept[t] = true;
-      stack.push_back(t);
-    }
-    while (!stack.empty()) {
-      poller_.step();
-      const std::uint32_t t = stack.back();
-      stack.pop_back();
-      for (int i = 0; i < 3; ++i) {
-        const std::uint32_t n = a_.triangles[t].neighbor[i];
-        if (!is_water(n) || kept[n] || !is_plain(n) || !is_narrow(n)) continue;
-        kept[n] = true;
-        stack.push_back(n);
-      }
-    }
-    return kept;
+  // How many of the finest triangles one of water is worth (straits.h). Corners without a finest
+  // length do not count.
+  double weight(std::uint32_t t) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 3; ++i)
+      if (point(t, i) != kNone && graph_.finest[point(t, i)] > 0)
+        least = std::min(least, graph_.finest[point(t, i)]);
+    if (std::isinf(least)) return least;
+    const Point a = at(t, 0), b = at(t, 1), c = at(t, 2);
+    if (diameter(a, b, c) < kNarrow * least) return 0;
+    const double doubled = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    return doubled / (2 * kFinestTriangle * least * least);
   }
 
   void cut_channels() {
-    const std::vector<bool> kept = find_kept_water();
-    std::vector<std::pair<double, std::uint32_t>> narrow;
-    for (std::uint32_t t = 0; t < region_.size(); ++t) {
+    const std::size_t count = region_.size();
+    std::vector<double> width(count, std::numeric_limits<double>::infinity());
+    weight_.assign(count, 0);
+    std::vector<bool> was_water(count, false), must_stay(count, false);
+    for (std::uint32_t t = 0; t < count; ++t) {
       poller_.step();
-      if (is_water(t) && !kept[t] && may_change(t))
-        narrow.emplace_back(diameter(at(t, 0), at(t, 1), at(t, 2)), t);
+      if (!is_water(t)) continue;
+      was_water[t] = true;
+      weight_[t] = weight(t);
+      must_stay[t] = !is_plain(t);
+      if (may_change(t)) width[t] = diameter(at(t, 0), at(t, 1), at(t, 2));
     }
+    const std::vector<bool> in_strait =
+        find_straits({a_, region_, width, weight_, must_stay}, poller_);
+    std::vector<std::uint32_t> set;
+    result_.straits = number_sets(a_, in_strait, set, poller_);
+    std::vector<std::pair<double, std::uint32_t>> narrow;
+    for (std::uint32_t t = 0; t < count; ++t)
+      if (std::isfinite(width[t]) && !in_strait[t]) narrow.emplace_back(width[t], t);
     std::sort(narrow.begin(), narrow.end());
-    for (const auto& [width, t] : narrow) {
+    for (const auto& [_, t] : narrow) {
       if (!is_water(t) || borders(t) != 1 || !may_change(t)) continue;
       change(t);
       ++result_.channels;
       peel(true);
     }
+    drop_what_is_cut_off(was_water);
+  }
+
+  // Of each water before the cuts, only the heaviest of what is left stays.
+  void drop_what_is_cut_off(const std::vector<bool>& was_water) {
+    std::vector<bool> still(region_.size());
+    for (std::uint32_t t = 0; t < still.size(); ++t) still[t] = is_water(t);
+    std::vector<std::uint32_t> before, now;
+    const std::uint32_t before_count = number_sets(a_, was_water, before, poller_);
+    const std::uint32_t now_count = number_sets(a_, still, now, poller_);
+    std::vector<double> sum(now_count, 0);
+    std::vector<std::uint32_t> origin(now_count);
+    for (std::uint32_t t = 0; t < still.size(); ++t)
+      if (still[t]) sum[now[t]] += weight_[t], origin[now[t]] = before[t];
+    std::vector<std::uint32_t> heaviest(before_count, kNone);
+    for (std::uint32_t n = 0; n < now_count; ++n)
+      if (std::uint32_t& most = heaviest[origin[n]]; most == kNone || sum[n] > sum[most]) most = n;
+    for (std::uint32_t t = 0; t < still.size(); ++t) {
+      if (!still[t] || heaviest[before[t]] == now[t]) continue;
+      region_[t] = kNone;
+      ++result_.changed;
+    }
+    for (std::uint32_t n = 0; n < now_count; ++n)
+      if (heaviest[origin[n]] != n) ++result_.cut_off;
   }
 
   // The border as lines, and the lines inside as they were. A point where several shores meet
@@ -401,6 +430,7 @@ class Narrowing {
   std::vector<bool> is_plain_;          // per point
   std::vector<std::uint32_t> line_at_;  // per point: a line that ends there
   std::vector<bool> changed_;           // per triangle
+  std::vector<double> weight_;          // per triangle: of water, before channels are cut
   // Per side of a triangle: the line that it is on, or whose marker it takes.
   std::vector<std::array<std::uint32_t, 3>> source_;
   std::vector<SideError> own_error_;  // of sides that were no lines

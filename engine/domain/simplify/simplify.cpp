@@ -14,6 +14,7 @@
 #include "engine/domain/simplify/line_graph.h"
 #include "engine/domain/simplify/narrow.h"
 #include "engine/domain/simplify/near_lines.h"
+#include "engine/domain/simplify/pinches.h"
 #include "engine/domain/stop_poller.h"
 #include "engine/domain/tolerance.h"
 
@@ -122,13 +123,16 @@ Simplified run(const Domain& domain, const Finest& finest, StopPoller& poller) {
     if (result.changed > 0) {
       graph = std::move(narrowed);
       changes.channels += result.channels;
+      changes.cut_off += result.cut_off;
       count(result.dropped);
     }
+    changes.straits = result.straits;
     require_some_left(graph);
     count(decimate(graph, original, 1, tolerance, poller));
     require_some_left(graph);
     if (result.changed == 0) break;
   }
+  open_pinches(graph, original, poller);
   changes.farthest = farthest_of(graph, original, tolerance, poller);
   Simplified made{domain_of_lines(graph, domain, poller), changes};
   made.changes.area = area_of(made.domain) - area_of(domain);

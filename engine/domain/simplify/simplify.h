@@ -8,15 +8,19 @@
 // Steps, until nothing is narrow any more, five times at most:
 //   1. rings that enclose less than the finest triangle are dropped (decimation.h);
 //   2. nodes of lines are taken out where lines are shorter than the finest length (decimation.h);
-//   3. inlets, channels and spits that are narrower are closed or opened (narrow.h).
-// Corners do not move: those that stay are points of the original, but where a narrow place was
-// closed between two of them.
+//   3. inlets, channels and spits that are narrower are closed or opened, and small waters behind
+//      closed channels dropped (narrow.h).
+// Then pinches are opened (pinches.h). Other corners do not move: those that stay are points of the
+// original, but where a narrow place was closed between two of them.
 //
 // Laws that the result obeys (checked by tests):
 //   - no point of a line is farther from the original's lines than Simplification::farthest, nor
 //     than the finest length there;
 //   - what is farther from the original's lines than the finest length is meshed, with the same
-//     region, if and only if it was;
+//     region, if and only if it was, but for waters behind closed channels: each of them encloses
+//     less than kLarge of the finest triangles (straits.h), and holds nothing that stays;
+//   - what is left of what was connected is connected: a strait to a large water stays narrow;
+//   - the border passes no point twice, unless lines of the original met there;
 //   - lines meet where they met: junctions, ends of markers and of lines, and points that no line
 //     names stay;
 //   - the result depends on the domain and the wish alone: the same bits on every run and machine.

@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
 #include "checker/check.h"
 
 namespace weft::check::testing {
@@ -89,6 +94,87 @@ TEST(Simplification, ALargePartThatIsGoneIsFound) {
     domain.markers.push_back(3);
   }
   expect_broken(judged(domain, square_mesh(), 0.1), "was in region 0 and is not meshed");
+}
+
+// The square [0, 10] x [0, 10], a channel of 0.2 by 2, and a water of `width` by 10.
+Domain two_waters(double width) {
+  Domain domain;
+  domain.points = {{0, 0},           {10, 0},  {10, 4.9}, {12, 4.9}, {12, 0},  {12 + width, 0},
+                   {12 + width, 10}, {12, 10}, {12, 5.1}, {10, 5.1}, {10, 10}, {0, 10}};
+  for (std::uint32_t i = 0; i < 12; ++i) domain.segments.push_back({i, (i + 1) % 12});
+  return domain;
+}
+
+// Squares of 10 around their middles, from their lower left corners; corners that coincide are one.
+Mesh squares_mesh(const std::vector<Vec2>& corners) {
+  Mesh mesh;
+  const auto vertex = [&](Vec2 p) {
+    const auto found = std::find(mesh.vertices.begin(), mesh.vertices.end(), p);
+    const auto index = static_cast<std::uint32_t>(found - mesh.vertices.begin());
+    if (found == mesh.vertices.end()) mesh.vertices.push_back(p);
+    return index;
+  };
+  for (const auto& [x, y] : corners) {
+    const std::uint32_t a = vertex({x, y}), b = vertex({x + 10, y}), c = vertex({x + 10, y + 10}),
+                        d = vertex({x, y + 10}), middle = vertex({x + 5, y + 5});
+    for (const auto& [p, q] :
+         {std::array{a, b}, std::array{b, c}, std::array{c, d}, std::array{d, a}}) {
+      mesh.triangles.push_back({p, q, middle});
+      mesh.edges.push_back({p, q, 0});
+    }
+  }
+  return mesh;
+}
+
+TEST(Simplification, ASmallWaterBehindAClosedChannelMayGo) {
+  const Report report = judged(two_waters(10), squares_mesh({{0, 0}}), 0.1);
+  EXPECT_TRUE(report.ok()) << to_text(report);
+}
+
+TEST(Simplification, ALargeWaterBehindAClosedChannelThatIsGoneIsFound) {
+  expect_broken(judged(two_waters(60), squares_mesh({{0, 0}}), 0.1),
+                "was in region 0 and is not meshed");
+}
+
+TEST(Simplification, PartsThatWereConnectedAreFound) {
+  const Report report = judged(two_waters(10), squares_mesh({{0, 0}, {12, 0}}), 0.1);
+  expect_broken(report, "are not connected, though the domain is there");
+  EXPECT_EQ(report.total(Rule::kSimplified), 1u);
+}
+
+TEST(Simplification, PartsThatWereConnectedAcrossALineAreFound) {
+  Domain domain = two_waters(10);
+  domain.points.push_back({11, 4.9});
+  domain.points.push_back({11, 5.1});
+  domain.segments.push_back({12, 13});
+  const std::string report = to_text(judged(domain, squares_mesh({{0, 0}, {12, 0}}), 0.1));
+  EXPECT_NE(report.find("are not connected, though the domain is there"), std::string::npos)
+      << report;
+}
+
+TEST(Simplification, PartsThatWereApartHold) {
+  Domain domain = two_waters(10);
+  domain.points[2].x = domain.points[9].x = 9;  // the channel begins inside the square, as a notch
+  domain.segments[2] = {2, 9};
+  domain.segments[8] = {3, 8};
+  EXPECT_TRUE(judged(domain, squares_mesh({{0, 0}, {12, 0}}), 0.1).ok());
+}
+
+TEST(Simplification, APinchIsFoundUnlessTheDomainHasIt) {
+  Domain domain;
+  domain.points = {{0, 0},   {10, 0},  {10, 9.5},  {10.5, 10}, {20, 10},
+                   {20, 20}, {10, 20}, {10, 10.5}, {9.5, 10},  {0, 10}};
+  for (std::uint32_t i = 0; i < 10; ++i) domain.segments.push_back({i, (i + 1) % 10});
+  const Mesh mesh = squares_mesh({{0, 0}, {10, 10}});
+  const Report report = judged(domain, mesh, 0.1);
+  expect_broken(report, "are not connected");
+  ASSERT_EQ(report.violations.size(), 2u);
+  EXPECT_NE(report.violations[1].sentence.find("at (10, 10) 2 times"), std::string::npos)
+      << to_text(report);
+  domain = {};
+  domain.points = {{0, 0}, {10, 0}, {10, 10}, {0, 10}, {20, 10}, {20, 20}, {10, 20}};
+  domain.segments = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {2, 4}, {4, 5}, {5, 6}, {6, 2}};
+  EXPECT_TRUE(judged(domain, mesh, 0.1).ok()) << to_text(judged(domain, mesh, 0.1));
 }
 
 TEST(Simplification, AnotherRegionIsFound) {

@@ -121,17 +121,19 @@ TEST(MeshReport, TellsWhatWasSimplified) {
   made.set_islands(1);
   made.set_waters(9);
   made.set_channels(38);
+  made.set_cut_off(7);
+  made.set_straits(1);
   made.set_area(3.73e8);
   made.set_farthest(998);
   EXPECT_EQ(simplification_text(summary),
-            "simplified: 2,710 points, 1 island and 9 waters dropped, 38 channels cut, area "
-            "+3.73e+08, no line moved by more than 998\n");
+            "simplified: 2,710 points, 1 island and 9 waters dropped, 38 channels cut, 7 waters "
+            "behind them dropped, 1 strait kept, area +3.73e+08, no line moved by more than 998\n");
   EXPECT_TRUE(summary_text(summary).ends_with(simplification_text(summary)));
   made.set_area(-2);
   EXPECT_NE(simplification_text(summary).find("area -2,"), std::string::npos);
   EXPECT_EQ(summary_json(summary)["simplification"],
             Json::parse(R"({"points": 2710, "islands": 1, "waters": 9, "channels": 38,
-                            "area": -2.0, "farthest": 998.0})"));
+                            "cut_off": 7, "straits": 1, "area": -2.0, "farthest": 998.0})"));
 }
 
 TEST(MeshReport, TellsTheAttributesThatIdsStandFor) {

@@ -83,7 +83,7 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   summary.unrefined = {11, 12, 13, 27, 28, 29};
   summary.unrefined_at = {30, 31};
   summary.narrow = NarrowPlace{51, 52, {53, 54}, 55, 56};
-  summary.simplified = Simplification{57, 58, 59, 60, 61, 62};
+  summary.simplified = Simplification{57, 58, 59, 60, 63, 64, 61, 62};
   summary.merging = {32, 33, 34, 35, {36, 37}, 38, {39, 40}};
   summary.triangulate_seconds = 14;
   summary.size_seconds = 15;
@@ -146,6 +146,8 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   EXPECT_EQ(message.simplification().islands(), 58u);
   EXPECT_EQ(message.simplification().waters(), 59u);
   EXPECT_EQ(message.simplification().channels(), 60u);
+  EXPECT_EQ(message.simplification().cut_off(), 63u);
+  EXPECT_EQ(message.simplification().straits(), 64u);
   EXPECT_EQ(message.simplification().area(), 61);
   EXPECT_EQ(message.simplification().farthest(), 62);
   EXPECT_EQ(message.merging().tolerance(), 32);

@@ -130,7 +130,8 @@ class Summary(ctypes.Structure):
                 ("warning_count", c_size_t), ("has_simplification", c_int32),
                 *((name, c_uint64) for name in (
                     "simplified_points", "dropped_islands", "dropped_waters", "cut_channels")),
-                ("simplified_area", c_double), ("simplified_farthest", c_double)]
+                ("simplified_area", c_double), ("simplified_farthest", c_double),
+                ("cut_off_waters", c_uint64), ("straits", c_uint64)]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -346,7 +347,7 @@ def _summary(library: Any, mesh: Any, arrays: Arrays, with_leaves: bool) -> resu
                                  told.narrow_width, int(told.narrow_triangles))
     simplification = results.Simplification(
         told.simplified_points, told.dropped_islands, told.dropped_waters, told.cut_channels,
-        told.simplified_area, told.simplified_farthest)
+        told.cut_off_waters, told.straits, told.simplified_area, told.simplified_farthest)
     return results.Summary(
         vertices=arrays.vertex_count, triangles=arrays.triangle_count, edges=arrays.edge_count,
         **taken("chunks", "area", "min_angle_deg", "max_angle_deg", "min_angle_p1_deg",

@@ -130,6 +130,10 @@ class Simplification:
     """Parts of the domain that are no longer meshed."""
     channels: int
     """That were cut."""
+    cut_off: int
+    """Waters behind these, that are no longer meshed."""
+    straits: int
+    """Channels that stay although they are narrower: the widest way to a large water."""
     area: float
     """Of the new domain less that of the old one."""
     farthest: float

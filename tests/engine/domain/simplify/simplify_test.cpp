@@ -130,8 +130,42 @@ TEST(Simplify, DropsAWaterThatIsSmaller) {
   EXPECT_NEAR(area(made.domain), 400, 1e-9);
 }
 
-// Two basins of 10 by 10, with a channel of this width and a length of 5 between them.
-Pslg two_basins(double width) {
+// Triangles that are connected across edges.
+int parts(const Domain& domain) {
+  int count = 0;
+  std::vector<bool> seen(domain.triangles.size(), false);
+  std::vector<std::uint32_t> stack;
+  for (std::uint32_t first = 0; first < seen.size(); ++first) {
+    if (seen[first]) continue;
+    ++count;
+    seen[first] = true;
+    stack.push_back(first);
+    while (!stack.empty()) {
+      const std::uint32_t t = stack.back();
+      stack.pop_back();
+      for (const std::uint32_t n : domain.triangles[t].neighbor) {
+        if (n == kNone || seen[n]) continue;
+        seen[n] = true;
+        stack.push_back(n);
+      }
+    }
+  }
+  return count;
+}
+
+// Vertices that the border passes more than once.
+int pinches(const Domain& domain) {
+  std::vector<int> borders(domain.vertices.size(), 0);
+  for (const Domain::Triangle& t : domain.triangles)
+    for (int i = 0; i < 3; ++i)
+      if (t.neighbor[i] == kNone) ++borders[t.vertex[(i + 1) % 3]];
+  return static_cast<int>(
+      std::count_if(borders.begin(), borders.end(), [](int count) { return count > 1; }));
+}
+
+// A basin of 10 by 10 and one of `second` by 10, with a channel of this width and a length of 5
+// between them.
+Pslg two_basins(double width, double second = 10) {
   const double low = 5 - width / 2, high = 5 + width / 2;
   Pslg pslg;
   add_ring(pslg, {{0, 0},
@@ -139,8 +173,8 @@ Pslg two_basins(double width) {
                   {10, low},
                   {15, low},
                   {15, 0},
-                  {25, 0},
-                  {25, 10},
+                  {15 + second, 0},
+                  {15 + second, 10},
                   {15, 10},
                   {15, high},
                   {10, high},
@@ -149,12 +183,123 @@ Pslg two_basins(double width) {
   return pslg;
 }
 
-TEST(Simplify, CutsAChannelThatIsNarrowerAndKeepsWhatItJoined) {
-  const Made made = simplified(two_basins(0.7), 1);
+TEST(Simplify, CutsAChannelThatIsNarrowerAndDropsTheSmallWaterBehindIt) {
+  const Made made = simplified(two_basins(0.7, 3), 1);
   EXPECT_EQ(made.changes.channels, 1u);
-  EXPECT_EQ(cover(made.domain, {12.5, 5.01}), 0);
+  EXPECT_EQ(made.changes.cut_off, 1u);
+  EXPECT_EQ(made.changes.waters, 0u);
+  EXPECT_EQ(made.changes.straits, 0u);
+  EXPECT_NEAR(area(made.domain), 100, 0.5);
   EXPECT_EQ(cover(made.domain, {5.1, 5.2}), 1);
-  EXPECT_EQ(cover(made.domain, {20.1, 5.2}), 1);
+}
+
+TEST(Simplify, DropsTheSmallWaterWhicheverComesFirst) {
+  for (const double x : {1, -1}) {
+    for (const double y : {1, -1}) {
+      Pslg pslg = two_basins(0.7, 3);
+      for (Point& p : pslg.points) p = {x * p.x, y * p.y};
+      const Made made = simplified(pslg, 1);
+      EXPECT_EQ(made.changes.cut_off, 1u);
+      EXPECT_EQ(made.changes.straits, 0u);
+      EXPECT_NEAR(area(made.domain), 100, 0.5);
+    }
+  }
+}
+
+// A basin of 80 by 10 and a moat that is narrower, from its one end to the other.
+TEST(Simplify, ClosesAMoatHoweverLong) {
+  Pslg pslg;
+  add_box(pslg, {0, 0}, {80, 40});
+  add_box(pslg, {0.7, 0.7}, {79.3, 30});
+  pslg.holes = {{20, 15}};
+  const Made made = simplified(pslg, 1);
+  EXPECT_EQ(made.changes.straits, 0u);
+  EXPECT_NEAR(area(made.domain), 800, 25);  // its own shores move, too
+}
+
+TEST(Simplify, CutsAChannelThatIsHardlyNarrower) {
+  EXPECT_EQ(simplified(two_basins(0.98, 3), 1).changes.cut_off, 1u);
+  EXPECT_EQ(simplified(two_basins(1.1, 3), 1).changes.channels, 0u);
+}
+
+TEST(Simplify, KeepsAStraitToALargeWater) {
+  const Made made = simplified(two_basins(0.7), 1);
+  EXPECT_EQ(made.changes.channels, 0u);
+  EXPECT_EQ(made.changes.cut_off, 0u);
+  EXPECT_EQ(made.changes.straits, 1u);
+  EXPECT_EQ(cover(made.domain, {12.5, 5.01}), 1);
+  EXPECT_EQ(parts(made.domain), 1);
+}
+
+TEST(Simplify, KeepsTheWayToAPointInASmallWater) {
+  Pslg pslg = two_basins(0.7, 3);
+  pslg.points.push_back({16.6, 5.3});
+  const Made made = simplified(pslg, 1);
+  EXPECT_EQ(made.changes.straits, 1u);
+  EXPECT_TRUE(has_vertex(made.domain, {16.6, 5.3}));
+  EXPECT_EQ(parts(made.domain), 1);
+}
+
+TEST(Simplify, DropsNoWaterForAPointInAnInlet) {
+  Pslg pslg;
+  add_ring(pslg,
+           {{0, 0}, {5, 0}, {5, 2}, {7, 2}, {9, 2}, {9, 2.6}, {7, 2.6}, {5, 2.6}, {5, 5}, {0, 5}});
+  pslg.points.push_back({8.8, 2.3});
+  const Made made = simplified(pslg, 1);
+  EXPECT_EQ(made.changes.straits, 1u);
+  EXPECT_TRUE(has_vertex(made.domain, {8.8, 2.3}));
+  EXPECT_EQ(cover(made.domain, {2.13, 1.37}), 1);
+  EXPECT_EQ(parts(made.domain), 1);
+}
+
+// A large basin and one more, with a channel of 0.5 and one of 0.7 between them.
+TEST(Simplify, KeepsTheWidestOfTwoWays) {
+  Pslg pslg;
+  add_box(pslg, {0, 0}, {25, 10});
+  add_ring(pslg, {{10, 0.5}, {15, 0.5}, {15, 9.3}, {10, 9.3}});
+  pslg.holes = {{12, 5.1}};
+  const Made made = simplified(pslg, 1);
+  EXPECT_EQ(made.changes.channels, 1u);
+  EXPECT_EQ(made.changes.straits, 1u);
+  EXPECT_EQ(made.changes.cut_off, 0u);
+  EXPECT_EQ(cover(made.domain, {12.51, 0.26}), 0);
+  EXPECT_EQ(cover(made.domain, {12.51, 9.66}), 1);
+  EXPECT_EQ(parts(made.domain), 1);
+}
+
+TEST(Simplify, KeepsWatersThatWereApart) {
+  Pslg pslg;
+  add_box(pslg, {0, 0}, {20, 20});
+  add_box(pslg, {30, 0}, {34, 4});
+  const Made made = simplified(pslg, 1);
+  EXPECT_EQ(parts(made.domain), 2);
+  EXPECT_EQ(made.changes.cut_off, 0u);
+}
+
+// The channel between an island's corner and the shore is cut there, which leaves water on both
+// sides of the corner.
+TEST(Simplify, LeavesNoPinch) {
+  Pslg pslg;
+  add_box(pslg, {0, 0}, {20, 20});
+  add_ring(pslg, {{10, 19.5}, {5, 10}, {15, 10}});
+  pslg.holes = {{10, 11}};
+  const Made made = simplified(pslg, 1);
+  EXPECT_EQ(made.changes.channels, 1u);
+  EXPECT_EQ(pinches(made.domain), 0);
+  EXPECT_LE(made.changes.farthest, 1);
+}
+
+TEST(Simplify, LeavesAPinchOfTheInput) {
+  Pslg pslg;
+  add_box(pslg, {0, 0}, {40, 20});
+  add_ring(pslg, {{10, 15}, {5, 10}, {10, 5}});
+  add_ring(pslg, {{10, 15}, {10, 18}, {16, 17}});
+  add_ring(pslg, {{30, 19.5}, {25, 10}, {35, 10}});  // a cut channel beside it
+  pslg.holes = {{9, 10}, {12, 17}, {30, 11}};
+  const Made made = simplified(pslg, 1);
+  EXPECT_EQ(made.changes.channels, 1u);
+  EXPECT_EQ(pinches(made.domain), 1);
+  EXPECT_TRUE(has_vertex(made.domain, {10, 15}));
 }
 
 TEST(Simplify, KeepsAChannelThatIsWider) {
