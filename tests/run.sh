@@ -50,7 +50,13 @@ check_protocol() {
 # whoever calls it, today's beside the file. Debian 12 has no kustomize that knows resources in other
 # folders; what kubectl has since 1.21 does.
 check_deployment() {
-  local overlay
+  local overlay folder
+  # The image is built from what .dockerignore lets in.
+  for folder in $(sed -n 's/^ *add_subdirectory(\([a-z]*\).*/\1/p' CMakeLists.txt); do
+    [[ $folder == tests ]] || grep -qxE "!$folder(/.*)?" .dockerignore && continue
+    echo ".dockerignore: leaves out $folder/, which CMakeLists.txt adds"
+    return 1
+  done
   (cd deploy && docker-compose -f compose.yaml config --quiet) || return
   (cd deploy && POSTGRES_PASSWORD=x GRAFANA_PASSWORD=y \
     docker-compose -f compose.cluster.yaml config --quiet) || return
