@@ -22,6 +22,7 @@
 #include <future>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <utility>
 
 #include "engine/base/tsan_hints.h"
@@ -40,6 +41,13 @@ class Arena {
   }
 
   int threads() const { return threads_; }
+
+  // Ends the threads of the process's arenas, if none is left: new arenas get new ones. A child of
+  // fork has no threads, but TBB would go on to count on those that its parent had.
+  static void end_threads() noexcept {
+    tbb::task_scheduler_handle handle{tbb::attach{}};
+    tbb::finalize(handle, std::nothrow);
+  }
 
   // Runs f in the arena once a slot is free, and returns when it is done; at once if the caller
   // is in the arena already. Throws what f throws.

@@ -2,6 +2,7 @@
 // The C interface: what libweft.so shows. No exception leaves it.
 #include "weft/c.h"
 
+#include <pthread.h>
 #include <sched.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <new>
 #include <thread>
 
+#include "engine/base/arena.h"
 #include "engine/c/c_request.h"
 #include "engine/c/error_names.h"
 #include "weft/weft.h"
@@ -117,6 +119,8 @@ Result<weft_mesh*> make(const weft_request& given, const weft_control& control) 
   run.set_deadline(deadline);
   const std::uint32_t threads = control.threads != 0 ? control.threads : processors();
   std::optional<ThreadPool> pool;
+  [[maybe_unused]] static const int for_children =
+      ::pthread_atfork([] { Arena::end_threads(); }, nullptr, nullptr);
   if (threads > 1) run.set_threads(pool.emplace(static_cast<int>(threads)));
   const auto work = [&] { return mesh(*request, run); };
   return finish(control.on_progress != nullptr ? watched(run, control, work) : work(), threads);

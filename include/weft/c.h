@@ -11,7 +11,8 @@
  *
  * Structures that begin with `struct_size` may grow at their end: their initializers set it to what
  * the caller was compiled with, and what he does not know has its default. Nothing that a request
- * points to is kept. Thread-safe: any number of threads may call at the same time. */
+ * points to is kept. Thread-safe: any number of threads may call at the same time. A process that
+ * fork makes may call, too, unless a call was at work at that time. */
 #ifndef WEFT_C_H
 #define WEFT_C_H
 

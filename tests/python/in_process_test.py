@@ -212,3 +212,23 @@ def test_structures_are_those_of_the_header(tmp_path):
                    check=True)
     printed = subprocess.run([tmp_path / "offsets"], check=True, capture_output=True, text=True).stdout
     assert printed.splitlines() == expected
+
+
+FORK = """
+import multiprocessing, weft
+
+def triangles(size):
+    square = weft.Domain(points=[(0, 0), (1, 0), (1, 1), (0, 1)], segments=[(0, 1), (1, 2), (2, 3), (3, 0)])
+    return len(weft.mesh(square, size=size, threads=2).triangles)
+
+if __name__ == "__main__":
+    alone = triangles(5e-6)
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        found = pool.map_async(triangles, [5e-6] * 4).get(250)
+    print(alone > 100_000 and found == [alone] * 4)
+"""
+
+
+def test_processes_that_fork_makes_mesh_too():
+    done = subprocess.run([sys.executable, "-c", FORK], capture_output=True, text=True, timeout=280)
+    assert done.stdout == "True\n", done.stderr

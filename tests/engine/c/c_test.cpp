@@ -3,6 +3,8 @@
 #include "weft/c.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
@@ -199,6 +201,32 @@ TEST(CInterface, NamesWhatItCannotTake) {
   given.request.size_kind = 0;
   given.segments[3] = 8;
   EXPECT_EQ(given.reason_and_field(), "INDEX_OUT_OF_RANGE domain.segments[1].b");
+}
+
+// TBB's threads do not go over to a child, which would wait for them.
+TEST(CInterface, ServesAChildOfForkToo) {
+  Given given;
+  given.request.size_kind = WEFT_SIZE_CONSTANT;
+  given.request.size_constant = 1e-5;
+  weft_control control = WEFT_CONTROL;
+  control.threads = 2;
+  const auto make = [&] {
+    weft_mesh* const mesh = weft_make(&given.request, &control, nullptr);
+    weft_summary told WEFT_SUMMARY;
+    if (mesh != nullptr) weft_mesh_summary(mesh, &told);
+    weft_mesh_free(mesh);
+    return told.threads == 2;
+  };
+  EXPECT_TRUE(make());
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(300);
+    ::_exit(make() ? 0 : 1);
+  }
+  int status = -1;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+  EXPECT_TRUE(make());
 }
 
 }  // namespace
