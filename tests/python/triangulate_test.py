@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """weft.triangulate: what Triangle's documentation says of each switch, and of the dict that comes back."""
 
+import concurrent.futures
 import pathlib
 import subprocess
 import sys
@@ -12,7 +13,7 @@ import pytest
 import shapely.geometry
 import weft
 from floor_plans import floor_plan, write_poly
-from weft import _hull, _triangulate
+from weft import _hull, _shared, _triangulate
 
 SQUARE = {"vertices": [(0, 0), (4, 0), (4, 4), (0, 4)], "segments": [(0, 1), (1, 2), (2, 3), (3, 0)]}
 PLANS = [*range(60), 178, 297, 378]
@@ -341,10 +342,19 @@ def test_floor_plans_hold(judge, seed):
     assert set(found["segment_markers"][:, 0]) == {1, 2}
 
 
+def test_calls_of_many_threads_need_no_server_if_there_is_the_library(monkeypatch):
+    monkeypatch.setattr(_shared, "LocalServer", None)
+    with concurrent.futures.ThreadPoolExecutor(8) as threads:
+        meshes = list(threads.map(lambda _: weft.triangulate(SQUARE, "pqa0.01"), range(24)))
+    for mesh in meshes:
+        assert all((mesh[key] == meshes[0][key]).all() for key in mesh)
+
+
 def test_one_server_serves_all_calls_and_ends_with_the_process(tmp_path):
     program = textwrap.dedent("""
         import threading, weft
-        from weft import _shared
+        from weft import _library, _shared
+        _library._NAME = "no library"
         square = {"vertices": [(0, 0), (1, 0), (1, 1), (0, 1)]}
         many = [threading.Thread(target=weft.triangulate, args=(square, "qa0.01")) for _ in range(8)]
         weft.triangulate(square, "q")

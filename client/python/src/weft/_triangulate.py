@@ -41,8 +41,8 @@ def triangulate(tri: Mapping[str, npt.ArrayLike], opts: str = "") -> Arrays:
     cross.
 
     Raises SwitchError, DomainError, and the ServerErrors of Client.mesh: the fields that they name are
-    those of the dict, and `domain.points` its vertices. The meshes are made by one private server,
-    which starts at the first call and ends with this process.
+    those of the dict, and `domain.points` its vertices. The meshes are made in this process, as by weft.mesh, or,
+    without its library, by one private server, which starts at the first call and ends with this process.
 
         square = {"vertices": [(0, 0), (1, 0), (1, 1), (0, 1)], "segments": [(0, 1), (1, 2), (2, 3), (3, 0)]}
         weft.triangulate(square, "pq30a0.01")["triangles"]
