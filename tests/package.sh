@@ -192,14 +192,16 @@ for line in "Uid: $user $user $user $user" "NoNewPrivs: 1" "Seccomp: 2" "CapBnd:
   grep -qxF "$line" <<<"$confined" || fail "the service is not confined: no '$line'"
 done
 
-say "meshes through the service, of its own server, and from Python"
+say "meshes through the service, of its own server, and from Python, also by the library"
 inside weft mesh "${mesh[@]}" -o /srv/pipe.vtu --draw /srv/pipe.png --server 127.0.0.1:7421 --quiet
 inside weft check /srv/pipe.vtu --domain "${mesh[@]}"
 inside weft mesh "${mesh[@]}" -o /srv/own.vtu --quiet
 inside cmp /srv/pipe.vtu /srv/own.vtu
 inside python3 -c "import weft
 with weft.Client('127.0.0.1:7421') as client:
-    print(client.mesh('/srv/pipe.poly', size='0.4*hypot(x-200, y-200) + 1').quality())"
+    mesh = client.mesh('/srv/pipe.poly', size='0.4*hypot(x-200, y-200) + 1')
+print(mesh.quality())
+assert weft.mesh('/srv/pipe.poly', size='0.4*hypot(x-200, y-200) + 1').digest == mesh.digest"
 protocol=$(PKG_CONFIG_LIBDIR=$root/usr/share/pkgconfig pkg-config --variable=protodir weft-protocol)
 protoc -I "$protocol" -o /dev/null weft/v1/mesh_service.proto weft/v1/job_service.proto
 job=$(inside weft submit "${mesh[@]}" --wait --server 127.0.0.1:7421 --quiet)
@@ -226,7 +228,8 @@ until_true journal_says 'event=draining.*seconds=29' || fail "WEFT_DRAIN was not
 inside systemctl start weftd
 
 say "remove, and purge"
-inside apt-get remove -y -qq weft weftd python3-weft weft-protocol-dev >"$scratch/remove.log" 2>&1 ||
+inside apt-get remove -y -qq weft weftd python3-weft libweft0 libweft-dev weft-protocol-dev \
+  >"$scratch/remove.log" 2>&1 ||
   fail "removing fails: $(<"$scratch/remove.log")"
 ! runs || fail "the service of a removed package runs"
 inside test -d /var/lib/weftd -a -f /etc/default/weftd || fail "removing deletes what is kept"

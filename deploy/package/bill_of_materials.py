@@ -91,11 +91,11 @@ def npm_components():
     return found
 
 
-def program(build, name, version):
-    """The component of a program, and those of the packages that it is made of."""
-    parts = components.packages_of({*components.loaded_by(build / name).values(),
-                                    *components.compiled_into(build, name)})
-    return {"type": "application", "bom-ref": name, "name": name, "version": version,
+def linked(build, kind, name, file, version):
+    """The component of a program or library, and those of the packages that it is made of."""
+    parts = components.packages_of({*components.loaded_by(build / file).values(),
+                                    *components.compiled_into(build, file)})
+    return {"type": kind, "bom-ref": name, "name": name, "version": version,
             "licenses": [{"license": {"id": "Apache-2.0"}}]}, [of_debian(part) for part in sorted(parts)]
 
 
@@ -109,11 +109,12 @@ def bill(build):
         dependencies[owner["bom-ref"]] = sorted(part["bom-ref"] for part in parts)
 
     for name in ("weft", "weftd"):
-        add(*program(build, name, version))
+        add(*linked(build, "application", name, name, version))
+    add(*linked(build, "library", "libweft0", "libweft.so.0", version))
     project = tomllib.loads((ROOT / "client/python/pyproject.toml").read_text())["project"]
     add({"type": "library", "bom-ref": "python3-weft", "name": project["name"], "version": version,
          "licenses": [{"license": {"id": "Apache-2.0"}}]}, list(map(of_python, project["dependencies"])))
-    whole = ["python3-weft", "weft", "weftd"]
+    whole = ["libweft0", "python3-weft", "weft", "weftd"]
     npm = npm_components()
     all_components.update(npm)
     whole += [ref for ref, each in npm.items() if each["scope"] == "required"]

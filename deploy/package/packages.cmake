@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# Packages for Debian: `cpack` in the build folder makes weft, weftd, python3-weft and
-# weft-protocol-dev.
+# Packages for Debian: `cpack` in the build folder makes weft, weftd, python3-weft, libweft0, libweft-dev
+# and weft-protocol-dev.
 set(CPACK_GENERATOR DEB)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_COMPONENTS_ALL weft weftd python3-weft protocol)
+set(CPACK_COMPONENTS_ALL weft weftd python3-weft libweft0 library protocol)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 # Absolute folders, such as /etc, need DESTDIR.
 set(CPACK_SET_DESTDIR ON)
@@ -19,6 +19,9 @@ set(CPACK_PACKAGE_CONTACT "${WEFT_MAINTAINER}")
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+# Which package programs need that are linked with libweft.so.0.
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 
 set(CPACK_DEBIAN_WEFT_PACKAGE_NAME weft)
 set(CPACK_DEBIAN_WEFT_DESCRIPTION "Meshes of planar domains, with guaranteed angles: command line
@@ -42,15 +45,31 @@ set(CPACK_DEBIAN_WEFTD_PACKAGE_CONTROL_EXTRA
 
 set(CPACK_DEBIAN_PYTHON3-WEFT_PACKAGE_NAME python3-weft)
 set(CPACK_DEBIAN_PYTHON3-WEFT_DESCRIPTION "Meshes of planar domains, with guaranteed angles: Python
-Meshes as numpy arrays, from a server, or from one that it starts itself if weftd is
-installed.")
+Meshes as numpy arrays, from a server, from one that it starts itself if weftd is
+installed, or made in the process itself if libweft0 is.")
 set(CPACK_DEBIAN_PYTHON3-WEFT_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON3-WEFT_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_PYTHON3-WEFT_PACKAGE_DEPENDS
   "python3 (>= 3.11), python3-grpcio, python3-numpy, python3-protobuf")
-set(CPACK_DEBIAN_PYTHON3-WEFT_PACKAGE_RECOMMENDS weftd)
+# The library goes on serving what was made for an earlier one: weft/c.h.
+set(CPACK_DEBIAN_PYTHON3-WEFT_PACKAGE_RECOMMENDS "weftd, libweft0 (>= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_PYTHON3-WEFT_PACKAGE_CONTROL_EXTRA
   ${scripts}/python3-weft/postinst ${scripts}/python3-weft/prerm)
+
+set(CPACK_DEBIAN_LIBWEFT0_PACKAGE_NAME libweft0)
+set(CPACK_DEBIAN_LIBWEFT0_DESCRIPTION "Meshes of planar domains, with guaranteed angles: library
+The engine of weftd as a shared library with an interface for C, which python3-weft
+loads to make meshes without a server.")
+set(CPACK_DEBIAN_LIBWEFT0_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_LIBWEFT0_PACKAGE_SHLIBDEPS ON)
+
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libweft-dev)
+set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "Meshes of planar domains, with guaranteed angles: development files
+Headers for C and C++, the static library for C++, and where they are, for CMake and
+pkg-config.")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libweft0 (= ${PROJECT_VERSION}), libexpected-dev, \
+libtbb-dev, libsleef-dev, libssl-dev, libmpfr-dev, libgmp-dev")
 
 set(CPACK_DEBIAN_PROTOCOL_PACKAGE_NAME weft-protocol-dev)
 set(CPACK_DEBIAN_PROTOCOL_DESCRIPTION "Meshes of planar domains, with guaranteed angles: protocol

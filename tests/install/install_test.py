@@ -14,7 +14,7 @@ import pytest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ["WEFT_BUILD"])
 KEY = ROOT / "tests/models/key.poly"
-COMPONENTS = ["weft", "weftd", "python3-weft", "protocol", "library"]
+COMPONENTS = ["weft", "weftd", "python3-weft", "protocol", "library", "libweft0"]
 sys.path.insert(0, str(ROOT / "deploy/package"))
 import program_help  # noqa: E402
 
@@ -34,7 +34,8 @@ def install(prefix, *arguments):
 
 
 def files_below(folder):
-    return {path.relative_to(folder) for path in folder.rglob("*") if path.is_file()}
+    return {path.relative_to(folder) for path in folder.rglob("*")
+            if path.is_file() or path.is_symlink()}
 
 
 @pytest.fixture(scope="session")
@@ -79,8 +80,19 @@ def test_the_installed_package_for_python_meshes(prefix):
     assert int(printed) > 100
 
 
+def test_the_package_for_python_loads_the_library(prefix, tmp_path):
+    library = install(tmp_path, "--component", "libweft0") / "lib/libweft.so.0"
+    assert {path.name for path in library.parent.iterdir()} == {
+        "libweft.so.0", f"libweft.so.{program_help.version_of(prefix / 'bin/weft')}"}
+    folder, = prefix.glob("lib/python3*/dist-packages")
+    printed = run("/usr/bin/python3", "-B", "-c",
+                  "import sys, weft; print(len(weft.mesh(sys.argv[1]).triangles))", KEY,
+                  env=CLEAN | {"PYTHONPATH": str(folder), "LD_LIBRARY_PATH": str(library.parent)})
+    assert int(printed) > 100
+
+
 def test_licences_are_beside_each_component(prefix):
-    for name in ("weft", "weftd", "python3-weft", "weft-protocol-dev", "libweft-dev"):
+    for name in ("weft", "weftd", "python3-weft", "weft-protocol-dev", "libweft-dev", "libweft0"):
         folder = prefix / "share/doc" / name
         for licence in ROOT.glob("LICENSES/*.txt"):
             assert (folder / "LICENSES" / licence.name).read_bytes() == licence.read_bytes()

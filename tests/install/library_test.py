@@ -30,7 +30,8 @@ def cached(name):
 @pytest.fixture(scope="module")
 def prefix(tmp_path_factory):
     folder = tmp_path_factory.mktemp("library")
-    run(CMAKE, "--install", BUILD, "--prefix", folder, "--component", "library")
+    for component in ("library", "libweft0"):
+        run(CMAKE, "--install", BUILD, "--prefix", folder, "--component", component)
     return folder
 
 

@@ -77,6 +77,13 @@ def test_the_bill_has_what_the_programs_are_made_of(bill, program):
     assert {package.name for package in loaded} <= names
 
 
+def test_the_bill_has_what_the_library_is_made_of(bill):
+    on = {each["ref"]: each["dependsOn"] for each in bill["dependencies"]}
+    names = {reference.split("/")[-1].split("@")[0] for reference in on["libweft0"]}
+    assert {"libc6", "libtbb12", "libcgal-dev"} <= names and "libprotobuf32" not in names
+    assert "libweft0" in on["release"]
+
+
 def test_the_bill_tells_tools_from_what_is_released(bill):
     scopes = {each["name"]: each.get("scope") for each in bill["components"]}
     assert scopes["@bufbuild/buf"] == scopes["@grpc/grpc-js"] == "excluded"

@@ -154,8 +154,8 @@ def _library() -> Any:
     try:
         library = ctypes.CDLL(str(carried) if carried.is_file() else _NAME)
     except OSError as error:
-        raise MissingPackage(f"no library of weft: {error}; install it, see docs/library.md, or mesh "
-                             "with a server: weft.local() or weft.Client") from None
+        raise MissingPackage(f"no library of weft: {error}; install libweft0, see docs/install.md, or "
+                             "mesh with a server: weft.local() or weft.Client") from None
     library.weft_make.argtypes = [POINTER(Request), POINTER(Control), POINTER(c_void_p)]
     library.weft_make.restype = c_void_p
     for name in ("mesh_free", "error_free"):
