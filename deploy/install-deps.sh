@@ -40,7 +40,7 @@ test=(
   clang-format clang-tidy shellcheck
   # what reads the files that weft writes, and writes those that it reads
   gmsh python3-gmsh python3-meshio python3-numpy python3-pyshp python3-shapely python3-vtk9 libxdmf3 openfoam
-  gdal-bin python3-gdal python3-netcdf4 python3-xarray python3-qgis qgis-providers
+  gdal-bin python3-gdal python3-netcdf4 python3-netgen python3-xarray python3-qgis qgis-providers
   python3-protobuf         # docs/generate.py
   poppler-utils            # drawings
   python3-pyproj           # lengths and angles on the ellipsoid; weft for Python, lonlat=

@@ -100,7 +100,7 @@ std::string flag_meaning(std::string_view name) {
   return ascii_word(name, "_-.+@");
 }
 
-std::string obj_group(std::string_view name) {
+std::string group_word(std::string_view name) {
   const std::string word = replaced(name, " ,#", '_');
   return (is_number_of(word, '_') || word == "default" ? "_" : "") + word;
 }

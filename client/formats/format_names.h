@@ -15,7 +15,7 @@ struct MeshFormat;
 
 // As it is.
 std::string any_name(std::string_view name);
-// In double quotes, of which it has none itself: .2dm.
+// In double quotes, of which it has none itself: .2dm, .mfem.
 std::string quotable_name(std::string_view name);
 // The same, and nothing that reads as "marker 7" or "region 7", which Gmsh's files have for numbers
 // without a name.
@@ -24,8 +24,8 @@ std::string gmsh_name(std::string_view name);
 std::string su2_tag(std::string_view name);
 // A word of the letters, digits and _-.+@ that CF's flag_meanings may have.
 std::string flag_meaning(std::string_view name);
-// One word, and nothing that reads as "region_7" or "marker_7".
-std::string obj_group(std::string_view name);
+// One word, and nothing that reads as "region_7", "marker_7" or "default": .obj, .vol.
+std::string group_word(std::string_view name);
 // Nothing that reads as "marker 7" or "region 7".
 std::string exodus_name(std::string_view name);
 // A word of letters, digits and _-. that does not begin with a digit, - or ., and nothing that

@@ -18,8 +18,11 @@
 #include "client/formats/meshes/adcirc.h"
 #include "client/formats/meshes/exodus.h"
 #include "client/formats/meshes/geojson_mesh.h"
+#include "client/formats/meshes/medit.h"
+#include "client/formats/meshes/mfem.h"
 #include "client/formats/meshes/modflow.h"
 #include "client/formats/meshes/msh.h"
+#include "client/formats/meshes/netgen.h"
 #include "client/formats/meshes/npz.h"
 #include "client/formats/meshes/openfoam.h"
 #include "client/formats/meshes/selafin.h"
@@ -99,12 +102,17 @@ constexpr MeshFormat kFormats[] = {
      foam_word, foam_word, kBoundaryOnly},
     {".su2", kFirstOrder, one_file<write_su2>, read_su2, nullptr, CarriesValues::kNone, kNoParts,
      su2_tag, nullptr, kBoundaryOnly},
+    {".mesh", kFirstOrder, one_file<write_medit>, read_medit},
+    {".vol", kFirstOrder, one_file<write_netgen>, nullptr, nullptr, CarriesValues::kNone, kNoParts,
+     group_word, group_word},
+    {".mfem", kFirstOrder, one_file<write_mfem>, nullptr, nullptr, CarriesValues::kNone, kNoParts,
+     quotable_name, quotable_name},
     {".npz", kFirstOrder, one_file<write_npz>, read_npz, read_npz_values, CarriesValues::kAll,
      kParts, any_name, any_name},
     {".geojson", kFirstOrder, one_file<write_geojson_mesh>, nullptr, nullptr, CarriesValues::kNone,
      kNoParts, any_name, any_name},
     {".obj", kFirstOrder, one_file<write_obj>, read_obj, nullptr, CarriesValues::kNone, kNoParts,
-     obj_group, obj_group},
+     group_word, group_word},
     {".off", kFirstOrder, one_file<write_off>, read_off},
     {".ply", kFirstOrder, one_file<write_ply>, nullptr},
     {".stl", kFirstOrder, one_file<write_stl>, nullptr},

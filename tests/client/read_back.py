@@ -11,8 +11,8 @@ region 7 right of it; the sides are marked 1 to 4 from the bottom counter-clockw
 the line between the regions 9. Files of names have "inlet" for marker 2, "outer wall" for 4 and
 "fluid" for region 3. The raster bed.asc has the elevation x + 2 y - 100, metres.
 
-Needs Debian's libxdmf3, openfoam, python3-gmsh, python3-meshio, python3-netcdf4, python3-numpy, python3-qgis with
-qgis-providers, python3-shapely, python3-vtk9 and python3-xarray.
+Needs Debian's libxdmf3, openfoam, python3-gmsh, python3-meshio, python3-netcdf4, python3-netgen, python3-numpy,
+python3-qgis with qgis-providers, python3-shapely, python3-vtk9 and python3-xarray.
 """
 
 import os
@@ -31,14 +31,16 @@ from qgis.core import Qgis, QgsApplication
 
 import format_table
 from readers.by_gmsh import gmsh_bed, gmsh_msh, gmsh_msh_2, gmsh_names
-from readers.by_meshio import (meshio_2, meshio_bed, meshio_exodus, meshio_exodus_2, meshio_msh,
+from readers.by_meshio import (meshio_2, meshio_bed, meshio_exodus, meshio_exodus_2, meshio_medit, meshio_msh,
                                meshio_names, meshio_stl, meshio_su2, meshio_su2_names,
                                meshio_surface, meshio_vtu)
 from readers.by_netcdf import (netcdf4_exodus, netcdf4_names, netcdf4_parts, netcdf4_ugrid,
                                xarray_ugrid)
+from readers.by_netgen import netgen_names, netgen_vol
 from readers.by_numpy import (numpy_2dm, numpy_2dm_names, numpy_adcirc, numpy_adcirc_bed,
-                              numpy_edge, numpy_neigh, numpy_node, numpy_node_2, numpy_node_names,
-                              numpy_npz, numpy_npz_names, numpy_parts, numpy_rcm, numpy_selafin)
+                              numpy_edge, numpy_mfem, numpy_mfem_names, numpy_neigh, numpy_node,
+                              numpy_node_2, numpy_node_names, numpy_npz, numpy_npz_names,
+                              numpy_parts, numpy_rcm, numpy_selafin)
 from readers.by_openfoam import check_mesh_openfoam, vtk_openfoam, vtk_openfoam_names
 from readers.by_qgis import qgis_2dm, qgis_selafin, qgis_ugrid
 from readers.by_shapely import check_models, shapely_disv, shapely_geojson, shapely_names
@@ -49,6 +51,7 @@ from readers.plate import bed_file, equal, names_of_source, plate
 
 GMSH = f"Gmsh {gmsh.__version__}"
 MESHIO = f"meshio {meshio.__version__}"
+NETGEN = "Netgen 6.2.1905"
 NETCDF4 = f"netCDF4 {netCDF4.__version__}"
 NUMPY = f"numpy {numpy.__version__}"
 SHAPELY = f"shapely {shapely.__version__}"
@@ -122,6 +125,11 @@ CHECKS = [  # file, flags of weft convert, reader, check
     ("bed.disv", BED, SHAPELY, shapely_disv),
     ("plate.su2", [], MESHIO, meshio_su2),
     ("names.su2", [], MESHIO, meshio_su2_names),
+    ("plate.mesh", [], MESHIO, meshio_medit),
+    ("plate.vol", [], NETGEN, netgen_vol),
+    ("names.vol", [], NETGEN, netgen_names),
+    ("plate.mfem", [], NUMPY, numpy_mfem),
+    ("names.mfem", [], NUMPY, numpy_mfem_names),
     ("plate.npz", [], NUMPY, numpy_npz),
     ("rcm.npz", ["--renumber", "rcm"], NUMPY, numpy_rcm),
     ("parts.npz", ["--parts", "4"], NUMPY, numpy_parts),

@@ -119,7 +119,7 @@ TEST(Formats, EveryMeshThatIsReadHoldsTheSameBounds) {
   const Folder folder;
   Arguments mesh{"mesh", domain, "--size", "0.01", "--quiet", "--server", server.address()};
   const std::vector<std::string> names = {"m.vtu",   "m.msh", "m.node", "m.npz",
-                                          "fort.14", "m.su2", "m.obj"};
+                                          "fort.14", "m.su2", "m.obj",  "m.mesh"};
   for (const std::string& name : names) mesh = mesh + Arguments{"-o", folder / name};
   const Outcome meshed = run_weft(mesh);
   ASSERT_EQ(meshed.exit_code, 0) << meshed.err;

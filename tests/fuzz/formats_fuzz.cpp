@@ -54,6 +54,7 @@ const std::vector<Format>& formats() {
       {Kind::kGrid, {".asc"}},
       {Kind::kMesh, {".2dm"}},
       {Kind::kMesh, {".nc"}},
+      {Kind::kMesh, {".mesh"}},
   };
   return all;
 }

@@ -34,6 +34,26 @@ def check(ok, what):
         sys.exit(1)
 
 
+def two_rooms():
+    """Squares side by side, regions 4 and 9, with marker 5 between them; 2 is above and below the left one
+    and to its left, 3 above and below the right one, -7 to its right."""
+    import weft
+
+    two = weft.Domain([(0, 0), (1, 0), (2, 0), (2, 1), (1, 1), (0, 1)],
+                      [(0, 1), (1, 2), (2, 3), (3, 4), (4, 5), (5, 0), (1, 4)], markers=[2, 3, -7, 3, 2, 2, 5],
+                      regions=[weft.Region(0.5, 0.5, id=4), weft.Region(1.5, 0.5, id=9)])
+    with weft.local() as client:
+        return client.mesh(two, edge=0.1)
+
+
+# The moments of regions 4 and 9 about x = 0, the lengths of markers 2, 3, -7 and 5.
+ROOMS = """
+mesh Th = readmesh("rooms.mesh");
+cout << int2d(Th, 4)(x) << " " << int2d(Th, 9)(x) << " " << int1d(Th, 2)(1.) << " " << int1d(Th, 3)(1.) << " "
+     << int1d(Th, -7)(1.) << " " << int1d(Th, 5)(1.) << endl;
+"""
+
+
 def fenicsx():
     import numpy as np
     import ufl
@@ -56,11 +76,7 @@ def fenicsx():
     for name, length in (("inlet", 1), ("wall", 4), ("outlet", 1)):
         found = total(one * ds(mesh.boundaries.number(name)))
         check(abs(found - length) < 1e-12, f"the {name} is {found:g} long")
-    two = weft.Domain([(0, 0), (1, 0), (2, 0), (2, 1), (1, 1), (0, 1)],
-                      [(0, 1), (1, 2), (2, 3), (3, 4), (4, 5), (5, 0), (1, 4)],
-                      regions=[weft.Region(0.5, 0.5, id=4), weft.Region(1.5, 0.5, id=9)])
-    with weft.local() as client:
-        domain, regions, _ = client.mesh(two, edge=0.1).to_dolfinx()
+    domain, regions, _ = two_rooms().to_dolfinx()
     dx = ufl.Measure("dx", domain=domain, subdomain_data=regions)
     for region, moment in ((4, 0.5), (9, 1.5)):
         found = total(ufl.SpatialCoordinate(domain)[0] * dx(region))
@@ -71,10 +87,16 @@ def freefem():
     with tempfile.TemporaryDirectory() as folder:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the names, which Medit's files do not have
+            two_rooms().write(pathlib.Path(folder) / "rooms.mesh")
             channel().write(pathlib.Path(folder) / "channel.mesh")
         (pathlib.Path(folder) / "laplace.edp").write_text(block("FreeFem++", "freefem"))
         said = subprocess.run(["FreeFem++-nw", "-v", "0", "laplace.edp"], cwd=folder, capture_output=True,
                               text=True, check=True).stdout
+        (pathlib.Path(folder) / "rooms.edp").write_text(ROOMS)
+        rooms = subprocess.run(["FreeFem++-nw", "-v", "0", "rooms.edp"], cwd=folder, capture_output=True,
+                               text=True, check=True).stdout
+    found = [round(float(word), 9) for word in rooms.split()[-6:]]
+    check(found == [0.5, 1.5, 3, 2, 1, 1], f"FreeFem++: moments of regions 4 and 9, lengths of markers: {found}")
     error, walls = map(float, re.search(r"error (\S+) walls (\S+)", said).groups())
     check(error < 1e-6, f"FreeFem++: u is 1 - x/2, off by {error:.1e}")
     check(abs(walls - 4) < 1e-5, f"the walls are {walls:g} long")

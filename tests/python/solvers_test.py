@@ -4,6 +4,7 @@ with FEniCSx and FreeFem++."""
 
 import sys
 import types
+import warnings
 
 import numpy as np
 import pytest
@@ -73,8 +74,12 @@ def test_a_name_that_a_marker_and_a_region_share_is_the_regions(client):
         assert client.mesh(square).to_meshio().field_data["rock"].tolist() == [5, 2]
 
 
-def test_medit_files_are_plane_and_have_markers_and_regions_as_references(mesh, tmp_path):
-    with pytest.warns(weft.WeftWarning, match="names of markers and regions are not written"):
+@pytest.mark.parametrize("by, told", [("weft", "the format does not carry these names: marker -1 'inlet'"),
+                                      ("meshio", "names of markers and regions are not written")])
+def test_medit_files_are_plane_and_have_markers_and_regions_as_references(mesh, tmp_path, monkeypatch, by, told):
+    if by == "meshio":
+        monkeypatch.setenv("PATH", "")
+    with pytest.warns(weft.WeftWarning, match=told):
         mesh.write(tmp_path / "mesh.mesh")
     words = (tmp_path / "mesh.mesh").read_text().split()
     assert words[words.index("Dimension") + 1] == "2"
@@ -84,6 +89,18 @@ def test_medit_files_are_plane_and_have_markers_and_regions_as_references(mesh, 
         count, width = int(words[first]), cells.shape[1] + 1
         rows = np.array(words[first + 1:first + 1 + count * width], int).reshape(count, width)
         assert np.array_equal(rows, np.column_stack([cells + 1, references]))
+
+
+def test_netgen_and_mfem_have_names(mesh, tmp_path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for suffix in (".vol", ".mfem"):
+            mesh.write(tmp_path / f"mesh{suffix}")
+    netgen = (tmp_path / "mesh.vol").read_text()
+    assert "bcnames\n5\n1 inlet\n2 marker_0\n3 wall\n4 marker_3\n5 spare\n" in netgen
+    assert "materials\n2\n1 fluid\n2 region_7\n" in netgen
+    sets = (tmp_path / "mesh.mfem").read_text().split("bdr_attribute_sets\n")[1]
+    assert sets.startswith('2\n"inlet"\n1\n1\n"wall"\n1\n2\n')
 
 
 class MeshTri:

@@ -13,7 +13,7 @@ namespace {
 // Elements have a number, a type, two tags (physical group, entity) and their nodes.
 void put_elements(OutputFile& file, const MeshView& mesh, std::span<const std::uint32_t> nodes,
                   std::size_t per_element, std::span<const std::int32_t> values,
-                  const PhysicalGroups& groups, std::int32_t type, std::int64_t& number) {
+                  const LabelTags& groups, std::int32_t type, std::int64_t& number) {
   std::string middle;  // all but the number and the nodes
   for (const std::size_t i : mesh.up_to(values.size())) {
     if (i == 0 || values[i] != values[i - 1]) {
@@ -34,8 +34,8 @@ void put_elements(OutputFile& file, const MeshView& mesh, std::span<const std::u
 }  // namespace
 
 void write_msh22(const MeshView& mesh, OutputFile& file) {
-  const PhysicalGroups markers(mesh.pages, mesh.edge_markers, mesh.names->markers);
-  const PhysicalGroups regions(mesh.pages, mesh.regions, mesh.names->regions);
+  const LabelTags markers(mesh.pages, mesh.edge_markers, mesh.names->markers);
+  const LabelTags regions(mesh.pages, mesh.regions, mesh.names->regions);
   file.put("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
   put_physical_names(file, markers, regions);
   file.put("$Nodes\n");

@@ -8,46 +8,14 @@
 
 namespace weft::client {
 
-PhysicalGroups::PhysicalGroups(PagedMemory* pages, std::span<const std::int32_t> values,
-                               const NameTable& table)
-    : names(table) {
-  const auto make_unique = [this] {
-    std::sort(ids.begin(), ids.end());
-    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  };
-  std::size_t room = 1 << 16;
-  for (const std::size_t i : numbers(pages, values.size())) {
-    if (i > 0 && values[i] == values[i - 1]) continue;  // runs are long
-    ids.push_back(values[i]);
-    if (ids.size() < room) continue;
-    make_unique();
-    room = std::max(room, 2 * ids.size());
-  }
-  make_unique();
-
-  std::int32_t free = 0;
-  const auto next_free = [this, &free] {
-    do ++free;
-    while (std::binary_search(ids.begin(), ids.end(), free) || names.contains(free));
-    return free;
-  };
-  for (const std::int32_t id : ids) tags.push_back(id > 0 ? id : next_free());
-}
-
-std::size_t PhysicalGroups::find(std::int32_t value) const {
-  return static_cast<std::size_t>(std::lower_bound(ids.begin(), ids.end(), value) - ids.begin());
-}
-
-void put_physical_names(OutputFile& file, const PhysicalGroups& markers,
-                        const PhysicalGroups& regions) {
+void put_physical_names(OutputFile& file, const LabelTags& markers, const LabelTags& regions) {
   std::string text;
   std::size_t count = 0;
   const auto put = [&](const char* dimension, std::int32_t tag, const std::string& name) {
     text += dimension + std::to_string(tag) + " \"" + name + "\"\n";
     ++count;
   };
-  const auto add = [&put](const char* dimension, const std::string& word,
-                          const PhysicalGroups& groups) {
+  const auto add = [&put](const char* dimension, const std::string& word, const LabelTags& groups) {
     for (std::size_t e = 0; e < groups.ids.size(); ++e) {
       const std::string* const name = name_of(groups.names, groups.ids[e]);
       put(dimension, groups.tags[e], name ? *name : word + std::to_string(groups.ids[e]));

@@ -47,7 +47,7 @@ class ByEntity {
 // The entity of each value. Equal values come in long runs, so the last one is remembered.
 class EntityOf {
  public:
-  EntityOf(const PhysicalGroups& groups, std::span<const std::int32_t> values)
+  EntityOf(const LabelTags& groups, std::span<const std::int32_t> values)
       : groups_(groups), values_(values) {}
   std::size_t operator()(std::size_t i) {
     if (!is_found_ || values_[i] != value_) {
@@ -59,7 +59,7 @@ class EntityOf {
   }
 
  private:
-  const PhysicalGroups& groups_;
+  const LabelTags& groups_;
   std::span<const std::int32_t> values_;
   bool is_found_ = false;
   std::int32_t value_ = 0;
@@ -67,9 +67,9 @@ class EntityOf {
 };
 
 // The elements of one dimension. Entity e has the tag e + 1 and is the one of its physical group.
-struct Groups : PhysicalGroups {
+struct Groups : LabelTags {
   Groups(const MeshView& mesh, std::span<const std::int32_t> of_elements, const NameTable& table)
-      : PhysicalGroups(mesh.pages, of_elements, table),
+      : LabelTags(mesh.pages, of_elements, table),
         values(of_elements),
         elements(mesh, ids.size(), values.size(), EntityOf(*this, values)) {}
   EntityOf entity_of() const { return {*this, values}; }

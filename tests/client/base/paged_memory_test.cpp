@@ -148,8 +148,8 @@ TEST_P(PagedFiles, SayThatTheyWereInterrupted) {
 
 INSTANTIATE_TEST_SUITE_P(All, PagedFiles,
                          ::testing::Values("m.vtu", "m.msh", "m.node", "m.npz", "m.edge", "m.neigh",
-                                           "m.14", "m.su2", "m.geojson", "m.obj", "m.off", "m.ply",
-                                           "m.stl"),
+                                           "m.14", "m.su2", "m.mesh", "m.vol", "m.mfem",
+                                           "m.geojson", "m.obj", "m.off", "m.ply", "m.stl"),
                          [](const auto& info) {
                            const std::string name = info.param;
                            return "To" + name.substr(2);

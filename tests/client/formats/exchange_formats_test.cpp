@@ -91,12 +91,13 @@ TEST_F(ExchangeFormat, OffComesBackWithItsTriangles) {
 
 TEST_F(ExchangeFormat, EveryFormatTakesAMeshThatIsEmpty) {
   std::filesystem::create_directories(folder_ / "constant/polyMesh");  // of .foam
-  for (const char* name : {"m.vtu", "m.msh", "m.node", "m.edge", "m.neigh",   "m.14",  "m.su2",
-                           "m.2dm", "m.nc",  "m.slf",  "m.npz",  "m.geojson", "m.obj", "m.off",
-                           "m.ply", "m.stl", "m.xdmf", "m.exo",  "m.disv",    "m.foam"})
+  for (const char* name :
+       {"m.vtu",  "m.msh", "m.node", "m.edge",    "m.neigh", "m.14",  "m.su2", "m.2dm",
+        "m.nc",   "m.slf", "m.npz",  "m.geojson", "m.obj",   "m.off", "m.ply", "m.stl",
+        "m.xdmf", "m.exo", "m.disv", "m.foam",    "m.mesh",  "m.vol", "m.mfem"})
     EXPECT_TRUE(write_files(MeshView{}, folder_ / name)) << name;
   for (const char* name :
-       {"m.vtu", "m.msh", "m.node", "m.14", "m.su2", "m.npz", "m.obj", "m.off"}) {
+       {"m.vtu", "m.msh", "m.node", "m.14", "m.su2", "m.mesh", "m.npz", "m.obj", "m.off"}) {
     const auto back = read_mesh(folder_ / name);
     ASSERT_TRUE(back) << back.error().message;
     EXPECT_EQ(*back, Mesh{}) << name;

@@ -87,3 +87,11 @@ def meshio_su2_names(path):
     tags = re.findall(r"MARKER_TAG= (.*)", open(path).read())
     equal("tags", sorted(tags), sorted(["1", "inlet", "3", "outer_wall", "5"]))
     check_mesh(*(lambda m: (m.points, m.cells_dict["triangle"]))(meshio.read(path)))
+
+
+def meshio_medit(path):
+    mesh = meshio.read(path)
+    check_mesh(mesh.points, mesh.cells_dict["triangle"])
+    equal("dimension", mesh.points.shape[1], 2)
+    equal("regions", blocks(mesh, "triangle", "medit:ref"), REGIONS)
+    equal("markers", blocks(mesh, "line", "medit:ref"), MARKERS)

@@ -178,3 +178,49 @@ def numpy_npz_names(path):
         for kind, table in (("marker", NAMES[1]), ("region", NAMES[2])):
             equal("names", dict(zip(file[f"{kind}_ids"].tolist(), file[f"{kind}_names"].tolist())),
                   table)
+
+
+def mfem_file(path):
+    """A mesh by MFEM's definition of its formats: the version, the vertices, the elements and the boundary
+    as rows of numbers, and the sets of attributes of both by name. MFEM itself passes over what stands
+    behind a name on its line."""
+    lines = (line.strip() for line in open(path))
+    lines = iter([line for line in lines if line and not line.startswith("#")])
+    version = re.fullmatch(r"MFEM mesh v(1\.[03])", next(lines))[1]
+
+    def section(name, read):
+        equal("section", next(lines), name)
+        return [read() for _ in range(int(next(lines)))]
+
+    def numbers(kind=int):
+        return [kind(word) for word in next(lines).split()]
+
+    def attribute_set():
+        name = re.fullmatch('"(.*)"', next(lines))[1]
+        return name, [int(next(lines)) for _ in range(int(next(lines)))]
+
+    has_sets = version == "1.3"
+    equal("dimension", (next(lines), next(lines)), ("dimension", "2"))
+    elements = section("elements", numbers)
+    sets = section("attribute_sets", attribute_set) if has_sets else []
+    boundary = section("boundary", numbers)
+    boundary_sets = section("bdr_attribute_sets", attribute_set) if has_sets else []
+    equal("section", next(lines), "vertices")
+    count = int(next(lines))
+    equal("space dimension", next(lines), "2")
+    points = [numbers(float) for _ in range(count)]
+    equal("the end", list(lines), ["mfem_mesh_end"] if has_sets else [])
+    return points, numpy.array(elements), numpy.array(boundary), dict(boundary_sets), dict(sets)
+
+
+def numpy_mfem(path, names=({}, {})):
+    points, elements, boundary, *sets = mfem_file(path)
+    equal("kinds", (set(elements[:, 1]), set(boundary[:, 1])), ({2}, {1}))  # triangles, segments
+    check_mesh(points, elements[:, 2:])
+    equal("attributes", tally(elements[:, 0]), REGIONS)
+    equal("boundary attributes", tally(boundary[:, 0]), MARKERS)
+    equal("sets", sets, [{name: [number] for number, name in table.items()} for table in names])
+
+
+def numpy_mfem_names(path):
+    numpy_mfem(path, (NAMES[1], NAMES[2]))

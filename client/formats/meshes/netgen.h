@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Netgen's mesh, .vol, of two dimensions, which NGSolve reads. Netgen numbers domains and boundary
+// conditions from 1 without a gap and finds them by name, so regions and markers have their place
+// among all that are there, ascending, and their name, or else "region_<id>" and "marker_<value>".
+//
+// Triangles have their domain; edges have their boundary condition and the domains on their left
+// and on their right, 0 for none. Edges inside the domain are there, too, and those of the boundary
+// without a marker count as marker 0. Coordinates have z = 0.
+#pragma once
+
+#include "client/base/atomic_file.h"
+#include "client/formats/mesh.h"
+
+namespace weft::client {
+
+void write_netgen(const MeshView& mesh, OutputFile& file);
+
+}  // namespace weft::client
