@@ -38,7 +38,7 @@ Examples:
   weft mesh coast.geojson -o coast.vtu --lonlat --size 1e8
   weft mesh coast.geojson -o coast.14 --lonlat --edge 2000 --simplify 0.5
   weft mesh key.poly -o key.vtu -o key.node --draw key.png --color angle
-  weft mesh coast.geojson -o fort.14 --open-boundary 1 --nodal depth=depth.tif --lonlat
+  weft mesh coast.shp -o fort.14 --open-boundary deeper:50 --nodal depth=depth.tif --lonlat
   weft mesh cylinder.poly --size 1e-2 --draw cylinder.png --draw-quadtree
   weft mesh key.poly -o key.vtu --server mesh.example.org:7421 --json
   weft mesh coast.geojson --size 1e-6 --server mesh.example.org:7421 --detach)";
@@ -216,8 +216,9 @@ void add_check(CLI::App& app, Chosen& chosen) {
       options);
   add_row(check,
           {"open-boundary", "",
-           "Marker of the segments that are open boundary, by number or by name, for --for. May be "
-           "repeated",
+           "Marker of the segments that are open boundary, by number or by name, or "
+           "deeper:METRES: where the bed along the outer boundary is deeper than that, for --for. "
+           "May be repeated",
            "", open_boundaries()},
           options.writing);
   add_projection_flags(check, options.projection);

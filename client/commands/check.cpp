@@ -12,6 +12,7 @@
 #include "client/commands/commands.h"
 #include "client/commands/input_domain.h"
 #include "client/formats/bed.h"
+#include "client/formats/derived/deep_boundary.h"
 #include "client/formats/derived/vertex_values.h"
 #include "client/formats/domains/to_checker.h"
 #include "client/formats/mesh_formats.h"
@@ -22,6 +23,15 @@
 namespace weft::client {
 namespace {
 
+std::vector<check::Mesh::Edge> edges_of(const std::vector<std::uint32_t>& ends,
+                                        const std::vector<std::int32_t>& markers) {
+  std::vector<check::Mesh::Edge> edges;
+  edges.reserve(markers.size());
+  for (std::size_t e = 0; e < markers.size(); ++e)
+    edges.push_back({ends[2 * e], ends[2 * e + 1], markers[e]});
+  return edges;
+}
+
 check::Mesh to_checker(const Mesh& mesh) {
   check::Mesh out;
   out.vertices.reserve(mesh.coordinates.size() / 2);
@@ -31,8 +41,7 @@ check::Mesh to_checker(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 3)
     out.triangles.push_back({mesh.triangles[i], mesh.triangles[i + 1], mesh.triangles[i + 2]});
   out.regions = mesh.regions;
-  for (std::size_t e = 0; e < mesh.edge_markers.size(); ++e)
-    out.edges.push_back({mesh.edges[2 * e], mesh.edges[2 * e + 1], mesh.edge_markers[e]});
+  out.edges = edges_of(mesh.edges, mesh.edge_markers);
   return out;
 }
 
@@ -97,13 +106,26 @@ Result<void> judge_by_domain(const CheckOptions& options, const check::Mesh& mes
 
 // Adds to the verdict. REQUIRES: options.model.
 Result<void> judge_for_model(const CheckOptions& options, const MeshWithArrays& read,
-                             const check::Mesh& mesh, Verdict& verdict) {
+                             check::Mesh mesh, Verdict& verdict) {
   MeshWriteOptions boundaries = options.writing;
   if (auto found = find_open_boundaries(boundaries, read.mesh.names.markers); !found) return found;
   print_warnings(open_boundary_warnings(markers_of(read.mesh.view()), boundaries.open_boundaries));
   const std::vector<double> depths = depths_of(read);
   if (!depths.empty() && !options.projection.wanted() && fits_the_globe(read.mesh))
     print_warnings({"coordinates are taken for metres; if they are degrees, add --lonlat"});
+  if (boundaries.open_deeper) {
+    if (depths.empty())
+      return fail(ExitCode::kUsage, "--open-boundary deeper:" + shortest(*boundaries.open_deeper) +
+                                        " needs depths: " + options.mesh.string() + " has none");
+    MeshView view = read.mesh.view();
+    const VertexValues bed{"depth", depths};
+    view.vertex_values = {&bed, 1};
+    const DeepBoundary deep =
+        deep_boundary(view, *boundaries.open_deeper, boundaries.open_boundaries);
+    print_warnings(deep_boundary_warnings(deep, *boundaries.open_deeper));
+    mesh.edges = edges_of(deep.edges, deep.markers);
+    boundaries.open_boundaries.push_back(deep.marker);
+  }
   const check::ModelReport report = check::judge_for_models(
       {.mesh = mesh,
        .open_markers = boundaries.open_boundaries,
@@ -137,13 +159,13 @@ Result<ExitCode> run_check(const CheckOptions& options) {
   const auto read = read_mesh_with_arrays(options.mesh);
   if (!read) return tl::unexpected(read.error());
   print_warnings(read->mesh.warnings);
-  const check::Mesh mesh = to_checker(read->mesh);
+  check::Mesh mesh = to_checker(read->mesh);
   Verdict verdict;
   if (has_domain)
     if (auto judged = judge_by_domain(options, mesh, verdict); !judged)
       return tl::unexpected(judged.error());
   if (options.model)
-    if (auto judged = judge_for_model(options, *read, mesh, verdict); !judged)
+    if (auto judged = judge_for_model(options, *read, std::move(mesh), verdict); !judged)
       return tl::unexpected(judged.error());
   const auto printed = print(options.json ? json_line(verdict.json) : verdict.text);
   if (!printed) return printed;

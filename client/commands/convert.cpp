@@ -86,8 +86,9 @@ CarriedValues carried(const std::vector<NamedArray>& arrays, std::vector<NodalOp
 }
 
 Result<ExitCode> convert_mesh(const ConvertOptions& options, const std::stop_token& stop) {
-  auto output = MeshOutput::open({.files = {options.output}, .writing = options.writing},
-                                 options.input, stop);
+  auto output =
+      MeshOutput::open({.files = {options.output}, .writing = options.writing, .has_values = true},
+                       options.input, stop);
   if (!output) return tl::unexpected(output.error());
   auto read = read_mesh_with_arrays(options.input);
   if (!read) return tl::unexpected(read.error());

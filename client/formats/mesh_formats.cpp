@@ -73,6 +73,15 @@ constexpr bool kParts = true;
 constexpr bool kNoParts = false;
 constexpr bool kBoundaryOnly = true;
 
+constexpr MeshFormat adcirc_format(std::string_view extension) {
+  MeshFormat format{
+      extension,   kFirstOrder,        write_adcirc_mesh,
+      read_adcirc, read_adcirc_values, CarriesValues::kBed,
+  };
+  format.open_boundaries = true;
+  return format;
+}
+
 constexpr MeshFormat kFormats[] = {
     {".vtu", kSecondOrder, one_file<write_vtu>, read_vtu, read_vtu_values, CarriesValues::kAll,
      kParts, any_name, any_name},
@@ -83,9 +92,9 @@ constexpr MeshFormat kFormats[] = {
     {".ele", kFirstOrder, nullptr, read_triangle_mesh},
     {".edge", kFirstOrder, one_file<write_triangle_edges>, nullptr},
     {".neigh", kFirstOrder, one_file<write_triangle_neighbours>, nullptr},
-    {".14", kFirstOrder, write_adcirc_mesh, read_adcirc, read_adcirc_values, CarriesValues::kBed},
-    {".grd", kFirstOrder, write_adcirc_mesh, read_adcirc, read_adcirc_values, CarriesValues::kBed},
-    {".gr3", kFirstOrder, write_adcirc_mesh, read_adcirc, read_adcirc_values, CarriesValues::kBed},
+    adcirc_format(".14"),
+    adcirc_format(".grd"),
+    adcirc_format(".gr3"),
     {".2dm", kFirstOrder, one_file<write_2dm>, read_2dm, nullptr, CarriesValues::kBed, kNoParts,
      quotable_name, quotable_name, kBoundaryOnly},
     {".nc", kFirstOrder, one_file<write_ugrid>, read_ugrid, nullptr, CarriesValues::kAll, kParts,

@@ -33,10 +33,14 @@ struct MeshWriteOptions {
   MshVersion msh_version = MshVersion::k41;
   std::vector<std::int32_t> open_boundaries{};     // markers, for ADCIRC
   std::vector<std::string> open_boundary_names{};  // more of them, by name; writers ignore these
-  std::vector<NodalOption> nodal{};                // values at the vertices
-  Renumbering renumbering = Renumbering::kNone;    // of the vertices
-  std::optional<std::uint32_t> parts{};            // to divide the triangles into
+  std::optional<double> open_deeper{};  // what is deeper is open, too (deep_boundary.h); the same
+  std::vector<NodalOption> nodal{};     // values at the vertices
+  Renumbering renumbering = Renumbering::kNone;  // of the vertices
+  std::optional<std::uint32_t> parts{};          // to divide the triangles into
 
+  bool opens_boundaries() const {
+    return !open_boundaries.empty() || !open_boundary_names.empty() || open_deeper;
+  }
   bool operator==(const MeshWriteOptions&) const = default;
 };
 
@@ -61,7 +65,8 @@ struct MeshFormat {
   // How it writes the names of markers and regions; null if it does not carry them.
   Spelling marker_names = nullptr;
   Spelling region_names = nullptr;
-  bool boundary_only = false;  // whether it has the edges of the boundary alone
+  bool boundary_only = false;    // whether it has the edges of the boundary alone
+  bool open_boundaries = false;  // whether it tells open boundaries from land
 };
 
 // The format of an extension, in upper or lower case; null if there is none.

@@ -81,6 +81,14 @@ std::vector<std::string> open_boundary_warnings(const std::set<std::int32_t>& in
   return {"no edge of the mesh carries " + *markers + " of --open-boundary"};
 }
 
+std::vector<std::string> deep_boundary_warnings(const DeepBoundary& deep, double deeper) {
+  if (deep.opened > 0) return {};
+  const std::string metres = shortest(deeper);
+  return {"--open-boundary deeper:" + metres +
+          " opens nothing: nowhere are two edges in a row of the outer boundary deeper than " +
+          metres + " m"};
+}
+
 std::vector<std::string> hidden_marker_warnings(const std::set<std::int32_t>& in_mesh,
                                                 const Domain& domain) {
   std::set<std::int32_t> given;

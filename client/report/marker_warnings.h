@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "client/call/mesh_report.h"
+#include "client/formats/derived/deep_boundary.h"
 #include "client/formats/domain.h"
 #include "client/formats/mesh.h"
 
@@ -22,6 +23,9 @@ std::set<std::int32_t> markers_of(const MeshView& mesh);
 // there.
 std::vector<std::string> open_boundary_warnings(const std::set<std::int32_t>& in_mesh,
                                                 std::span<const std::int32_t> open_boundaries);
+
+// Of what `deep_boundary(mesh, deeper, ...)` opened: a line if it is nothing.
+std::vector<std::string> deep_boundary_warnings(const DeepBoundary& deep, double deeper);
 
 // "no edge of the mesh carries marker 7 of the input: ...", at most one line; 0 is not a marker. If
 // segments overlap, the mesh's edges carry the marker of one of them.

@@ -13,9 +13,11 @@
 #include <utility>
 
 #include "client/base/text.h"
+#include "client/formats/bed.h"
 #include "client/formats/derived/mesh_parts.h"
 #include "client/formats/derived/renumbered_mesh.h"
 #include "client/formats/mesh_formats.h"
+#include "client/report/marker_warnings.h"
 
 namespace weft::client {
 namespace {
@@ -27,6 +29,15 @@ Result<void> check_nodal(const MeshOutputOptions& options) {
       if (const auto* raster = std::get_if<RasterPath>(&source))
         if (auto found = must_be_raster_file(raster->file); !found) return found;
   return {};
+}
+
+bool has_open_boundaries(const std::filesystem::path& file) {
+  return mesh_format(file)->open_boundaries;
+}
+
+tl::unexpected<Error> no_depths(const MeshWriteOptions& writing) {
+  return fail(ExitCode::kUsage, "--open-boundary deeper:" + shortest(*writing.open_deeper) +
+                                    " needs the depths at the vertices: give --nodal depth=FILE");
 }
 
 // Refuses unknown extensions, names given twice, and outputs that would replace the input.
@@ -47,10 +58,15 @@ Result<void> check_names(const MeshOutputOptions& options,
              extensions.end();
     });
   };
-  if (!(options.writing.open_boundaries.empty() && options.writing.open_boundary_names.empty()) &&
-      !writes({".14", ".grd", ".gr3"}))
+  if (options.writing.opens_boundaries() &&
+      std::none_of(options.files.begin(), options.files.end(), has_open_boundaries))
     return fail(ExitCode::kUsage,
                 "--open-boundary is for ADCIRC and SCHISM: give an output .14, .grd or .gr3");
+  const auto& nodal = options.writing.nodal;
+  if (options.writing.open_deeper && !options.has_values &&
+      std::none_of(nodal.begin(), nodal.end(),
+                   [](const NodalOption& option) { return Bed::is_bed(option.name); }))
+    return no_depths(options.writing);
   if (options.writing.msh_version != MshVersion::k41 && !writes({".msh"}))
     return fail(ExitCode::kUsage, "--msh-version is for Gmsh: give an output .msh");
   if (auto ok = check_nodal(options); !ok) return ok;
@@ -165,6 +181,19 @@ Result<void> MeshOutput::write(const MeshView& arrived, const v1::Summary& summa
   return commit(files_);
 }
 
+Result<MeshView> MeshOutput::opened(const MeshView& mesh, std::optional<DeepBoundary>& deep) {
+  const MeshWriteOptions& writing = options_.writing;
+  if (!writing.open_deeper) return mesh;
+  if (!Bed(mesh).is_known()) return no_depths(writing);
+  deep = deep_boundary(mesh, *writing.open_deeper, writing.open_boundaries);
+  for (std::string& warning : deep_boundary_warnings(*deep, *writing.open_deeper))
+    warnings_.push_back(std::move(warning));
+  MeshView view = mesh;
+  view.edges = deep->edges;
+  view.edge_markers = deep->markers;
+  return view;
+}
+
 Result<void> MeshOutput::write_files(const MeshView& arrived) try {
   MeshView plane = arrived;  // as the values are sampled
   std::optional<RenumberedMesh> renumbered;
@@ -203,10 +232,16 @@ Result<void> MeshOutput::write_files(const MeshView& arrived) try {
     sampled.push_back(std::move(*values));
   }
   mesh.vertex_values = vertex_values;
+  std::optional<DeepBoundary> deep;
+  const auto opened_mesh = opened(mesh, deep);
+  if (!opened_mesh) return tl::unexpected(opened_mesh.error());
+  MeshWriteOptions writing = options_.writing;
+  if (deep) writing.open_boundaries.push_back(deep->marker);
   std::span<OutputFile> rest = files_;
   for (const auto& name : options_.files) {
     const std::size_t count = mesh_files(name).size();
-    write_mesh(*mesh_format(name), mesh, rest.first(count), options_.writing);
+    write_mesh(*mesh_format(name), has_open_boundaries(name) ? *opened_mesh : mesh,
+               rest.first(count), writing);
     rest = rest.subspan(count);
     const auto lost = not_carried(name, mesh);
     warnings_.insert(warnings_.end(), lost.begin(), lost.end());

@@ -24,6 +24,7 @@
 #include "client/base/error.h"
 #include "client/call/mesh_spool.h"
 #include "client/drawing/draw.h"
+#include "client/formats/derived/deep_boundary.h"
 #include "client/formats/mesh.h"
 #include "client/formats/mesh_formats.h"
 #include "client/geo/domain_projection.h"
@@ -39,6 +40,7 @@ struct MeshOutputOptions {
   AreaBound area_bound{};          // that the drawings colour by
   bool draw_quadtree = false;      // over the drawings
   ProjectionOptions projection{};  // of the domain; the caller projects it
+  bool has_values = false;         // whether the mesh may come with values at its vertices
 
   bool empty() const { return files.empty() && drawings.empty(); }
 };
@@ -68,7 +70,8 @@ class MeshOutput {
   // REQUIRES: find_markers was called if the options give markers by name.
   // `mesh` is the spool's view; any view if nothing is drawn. Values at the vertices are sampled in
   // the plane in which it arrives, and written after those that it has, which REQUIRES other names
-  // than theirs. Errors: those of sample_nodal, too.
+  // than theirs. Errors: those of sample_nodal, too; kUsage if boundaries are to be opened by depth
+  // and there is none.
   Result<void> write(const MeshView& mesh, const v1::Summary& summary);
   // "wrote key.vtu, 1.2 MB\n" for each file, after lines on bandwidth and parts, on the quadtree if
   // it was drawn, and on each triangle that was marked as one of the worst. REQUIRES: written.
@@ -80,6 +83,8 @@ class MeshOutput {
  private:
   MeshOutput(MeshOutputOptions options, std::vector<OutputFile> files, std::stop_token stop);
 
+  // The mesh with its deep boundary opened, in `deep`, as the options want it.
+  Result<MeshView> opened(const MeshView& mesh, std::optional<DeepBoundary>& deep);
   // All but the drawings, without moving them into place.
   Result<void> write_files(const MeshView& arrived);
 

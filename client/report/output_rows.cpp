@@ -4,12 +4,15 @@
 #include <array>
 #include <cmath>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "client/formats/derived/mesh_parts.h"
 
 namespace weft::client {
 namespace {
+
+constexpr std::string_view kDeeper = "deeper:";
 
 std::string not_a_box(const std::string& text) {
   return in_quotes(text) +
@@ -57,17 +60,24 @@ OptionValue<MeshWriteOptions> nodal() {
 }  // namespace
 
 OptionValue<MeshWriteOptions> open_boundaries() {
-  return {"MARKER", "", Arity::kList,
+  return {"MARKER|deeper:METRES", "", Arity::kList,
           [](const auto& texts, const auto&, MeshWriteOptions& options) -> std::string {
             options.open_boundaries.clear();
             options.open_boundary_names.clear();
+            options.open_deeper.reset();
             for (const std::string& text : texts) {
-              if (const auto marker = value_of<std::int32_t>(text))
+              if (text.starts_with(kDeeper)) {
+                const auto depth = value_of<double>(text.substr(kDeeper.size()));
+                if (!depth || !std::isfinite(*depth))
+                  return in_quotes(text) + " is not deeper:METRES, such as deeper:50";
+                if (std::exchange(options.open_deeper, depth))
+                  return "two depths are given; one says what is deep";
+              } else if (const auto marker = value_of<std::int32_t>(text))
                 options.open_boundaries.push_back(*marker);
               else if (name_fault(text).empty())
                 options.open_boundary_names.push_back(text);
               else
-                return in_quotes(text) + " is neither an integer nor a name";
+                return in_quotes(text) + " is neither an integer nor a name nor deeper:METRES";
             }
             return "";
           }};
@@ -85,7 +95,8 @@ const OptionRows<MeshWriteOptions>& writing_rows() {
        one_of(&Writing::msh_version, {{"2.2", MshVersion::k22}, {"4.1", MshVersion::k41}})},
       {"open-boundary", "",
        "Marker of segments that the .14, .grd and .gr3 files of ADCIRC and SCHISM have as open "
-       "boundary, by number or by name; the others are land. May be repeated",
+       "boundary, by number or by name, or deeper:METRES: where the bed along the outer boundary "
+       "is deeper than that; the others are land. May be repeated",
        "", open_boundaries()},
       {"nodal", "",
        "Values at the vertices: NAME=FILE of a raster, NAME=FILE:BAND, or NAME=NUMBER. They are "

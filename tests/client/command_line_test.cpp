@@ -449,6 +449,55 @@ TEST_F(CommandLine, ConvertRefusesWhatMakesNoSense) {
   EXPECT_EQ(left_in("out"), Words{});
 }
 
+TEST_F(CommandLine, OpensABoundaryByItsDepth) {
+  Words words = mesh_to("m.14");
+  words.insert(words.end(), {"--nodal", "depth=7", "--open-boundary", "deeper:6.5"});
+  ASSERT_EQ(run(words), 0) << err();
+  EXPECT_EQ(out().find("opens nothing"), std::string::npos) << out();
+  const std::string whole_ring = "\n1 = Number of open boundaries\n";
+  EXPECT_NE(contents_of(out_file("m.14")).find(whole_ring), std::string::npos);
+
+  // The depths of a file count, too, and only files of models are opened.
+  ASSERT_EQ(run({"convert", out_file("m.14"), out_file("n.gr3"), "--open-boundary", "deeper:6.5"}),
+            0)
+      << err();
+  EXPECT_NE(contents_of(out_file("n.gr3")).find(whole_ring), std::string::npos);
+  words.insert(words.end(), {"-o", out_file("m.vtu")});
+  ASSERT_EQ(run(words), 0) << err();
+  ASSERT_EQ(run(mesh_to("plain.vtu")), 0) << err();
+  EXPECT_EQ(read_mesh(out_file("m.vtu")).value(), read_mesh(out_file("plain.vtu")).value());
+
+  words.back() = out_file("m.14");
+  words.insert(words.end(), {"--open-boundary", "deeper:7"});
+  EXPECT_EQ(run(words), 2);
+  EXPECT_NE(err().find("two depths are given"), std::string::npos) << err();
+  EXPECT_EQ(run({"convert", out_file("m.14"), out_file("o.14"), "--open-boundary", "deeper:7"}), 0);
+  EXPECT_NE(out().find("WARNING: --open-boundary deeper:7 opens nothing: nowhere are two edges in "
+                       "a row of the outer boundary deeper than 7 m\n"),
+            std::string::npos)
+      << out();
+}
+
+TEST_F(CommandLine, OpensNoBoundaryByADepthThatIsNotGiven) {
+  const std::string needs =
+      "--open-boundary deeper:50 needs the depths at the vertices: give --nodal depth=FILE";
+  Words words = mesh_to("m.14");
+  words.insert(words.end(), {"--nodal", "speed=7", "--open-boundary", "deeper:50"});
+  EXPECT_EQ(run(words), 2);
+  EXPECT_NE(err().find(needs), std::string::npos) << err();
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "pid"));
+  ASSERT_EQ(run(mesh_to("m.vtu")), 0) << err();
+  EXPECT_EQ(run({"convert", out_file("m.vtu"), out_file("m.14"), "--open-boundary", "deeper:50"}),
+            2);
+  EXPECT_NE(err().find(needs), std::string::npos) << err();
+  EXPECT_FALSE(std::filesystem::exists(out_file("m.14")));
+  for (const char* no_depth : {"deeper:", "deeper:fifty", "deeper:nan", "deeper:inf"}) {
+    words.back() = no_depth;
+    EXPECT_EQ(run(words), 2) << no_depth;
+    EXPECT_NE(err().find("is not deeper:METRES, such as deeper:50"), std::string::npos) << err();
+  }
+}
+
 TEST_F(CommandLine, RefusesFlagsOfFormatsThatAreNotWritten) {
   for (const Words& flags : {Words{"--order", "2", "-o", out_file("n.stl")}, Words{"--order", "3"},
                              Words{"--open-boundary", "1"}, Words{"--msh-version", "2.2"},

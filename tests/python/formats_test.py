@@ -232,6 +232,13 @@ def test_an_open_boundary_is_a_number_of_any_type(mesh, tmp_path):
     assert (tmp_path / "one.14").read_text() == (tmp_path / "two.14").read_text()
 
 
+def test_an_open_boundary_is_what_is_deep(mesh, tmp_path):
+    mesh.write(tmp_path / "all.14", nodal={"depth": 60}, open_boundary="deeper:50")
+    assert "\n1 = Number of open boundaries\n" in (tmp_path / "all.14").read_text()
+    with pytest.raises(weft.MeshFileError, match="needs the depths at the vertices"):
+        mesh.write(tmp_path / "none.14", open_boundary=["deeper:50"])
+
+
 def test_what_a_format_does_not_carry_is_warned_of_at_the_line_of_the_user(mesh, tmp_path):
     with pytest.warns(weft.WeftWarning, match="mesh.obj: .*not carry these values.*depth") as caught:
         mesh.write(tmp_path / "mesh.obj", nodal={"depth": depth_of(mesh)})

@@ -54,6 +54,29 @@ TEST_F(WeftCheck, FailsAMeshThatItsModelRefuses) {
   EXPECT_EQ(run({"check", folder_ / "pinched.off", "--for", "delft3d"}), 0) << out();
 }
 
+TEST_F(WeftCheck, JudgesBoundariesThatAreOpenByTheirDepth) {
+  // Two squares, the right one deep but for its upper left corner.
+  std::ofstream file(folder_ / "hgrid.gr3");
+  file << "strip\n4 6\n1 0 0 5\n2 1 0 60\n3 2 0 60\n4 0 1 5\n5 1 1 5\n6 2 1 60\n"
+       << "1 3 1 2 5\n2 3 1 5 4\n3 3 2 3 6\n4 3 2 6 5\n";
+  file.close();
+  Words check = {"check", folder_ / "hgrid.gr3", "--for", "schism", "--open-boundary", "deeper:50"};
+  EXPECT_EQ(run(check), 0) << out();
+  EXPECT_EQ(err().find("opens nothing"), std::string::npos) << err();
+  EXPECT_NE(out().find("open boundaries have two edges at least: holds\n"), std::string::npos);
+  check.back() = "deeper:4";
+  EXPECT_EQ(run(check), 3) << out();
+  EXPECT_NE(out().find("no open boundary is a whole ring: fails, 1 time\n"), std::string::npos)
+      << out();
+  check.back() = "deeper:60";
+  EXPECT_EQ(run(check), 0) << out();
+  EXPECT_NE(err().find("deeper:60 opens nothing"), std::string::npos) << err();
+  ASSERT_EQ(run(mesh_to("m.vtu")), 0);
+  check[1] = out_file("m.vtu");
+  EXPECT_EQ(run(check), 2);
+  EXPECT_NE(err().find("m.vtu has none"), std::string::npos) << err();
+}
+
 // Off Cape Hatteras, a hundredth of a degree wide: 910 m.
 TEST_F(WeftCheck, MeasuresDegreesInMetresIfItIsTold) {
   std::ofstream(folder_ / "fort.14")

@@ -202,7 +202,7 @@ class Mesh:
               nodal: Mapping[str, NodalSource] | None = None, parts: int | None = None,
               renumber: Literal["none", "rcm"] = "none",
               msh_version: Literal["2.2", "4.1"] = "4.1",
-              open_boundary: int | Iterable[int] = ()) -> None:
+              open_boundary: int | str | Iterable[int | str] = ()) -> None:
         """Writes a file in the format of its suffix, as the command line does: .vtu, .msh, .node, .14,
         .nc and all others of docs/formats.md; or else one of meshio's.
 
@@ -216,7 +216,8 @@ class Mesh:
         `renumber`: "rcm" numbers the vertices by reverse Cuthill-McKee.
         `msh_version`: the version of .msh files.
         `open_boundary`: the marker, or markers, of segments that are open boundary in ADCIRC's .14
-        and .grd and SCHISM's .gr3; the others are land.
+        and .grd and SCHISM's .gr3, by number or by name, or "deeper:50" for what of the outer
+        boundary is deeper than 50 m by `depth` or `elevation`; the others are land.
 
         .npz without options is written here, and .vtu if nothing has a name or a part. The rest is
         written by the program weft, which is in the package or in the PATH. Formats that it does not
@@ -227,11 +228,12 @@ class Mesh:
         such option, or the program is needed and missing; ValueError unless values are one finite
         number per vertex; OSError if it cannot be written.
 
-            mesh.write("fort.14", nodal={"depth": depth}, open_boundary=1)
+            mesh.write("fort.14", nodal={"depth": depth}, open_boundary="deeper:50")
         """
         path = pathlib.Path(path)
         values, options = self._nodal(nodal or {})
-        markers = list(open_boundary) if isinstance(open_boundary, Iterable) else [open_boundary]
+        is_one = isinstance(open_boundary, str) or not isinstance(open_boundary, Iterable)
+        markers = [open_boundary] if is_one else list(open_boundary)
         options += [f"--open-boundary={marker}" for marker in markers]
         for flag, value, default in (("order", order, 1), ("parts", parts, None),
                                      ("renumber", renumber, "none"),
