@@ -232,8 +232,8 @@ class Mesh:
         """
         path = pathlib.Path(path)
         values, options = self._nodal(nodal or {})
-        is_one = isinstance(open_boundary, str) or not isinstance(open_boundary, Iterable)
-        markers = [open_boundary] if is_one else list(open_boundary)
+        markers = ([open_boundary] if isinstance(open_boundary, (int, str))
+                   or not isinstance(open_boundary, Iterable) else list(open_boundary))
         options += [f"--open-boundary={marker}" for marker in markers]
         for flag, value, default in (("order", order, 1), ("parts", parts, None),
                                      ("renumber", renumber, "none"),
