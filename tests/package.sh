@@ -233,7 +233,7 @@ inside apt-get remove -y -qq weft weftd python3-weft libweft0 libweft-dev weft-p
   fail "removing fails: $(<"$scratch/remove.log")"
 ! runs || fail "the service of a removed package runs"
 inside test -d /var/lib/weftd -a -f /etc/default/weftd || fail "removing deletes what is kept"
-inside apt-get purge -y -qq weftd >"$scratch/purge.log" 2>&1 ||
+inside apt-get purge -y -qq weftd libweft0 >"$scratch/purge.log" 2>&1 ||
   fail "purging fails: $(<"$scratch/purge.log")"
 left=$(inside find / -xdev -path /srv -prune -o -iname '*weft*' -print)
 [[ -z $left ]] || fail "left after purging: $left"
