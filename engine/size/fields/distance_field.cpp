@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/size/constant_size.h"
+#include "engine/size/fields/list_builder.h"
 #include "engine/size/fields/polled_loop.h"
 
 namespace weft {
@@ -16,25 +17,14 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 0x1p500;  // of a coordinate whose square is finite
-constexpr double kRounding = 0x1p-46;  // of the lengths; more than all roundings together
 
-// The allowance of a subtree per line, in entries of lists; a node counts as kNodeCost of them.
+// The allowance of a subtree per line, in entries of lists.
 constexpr std::uint64_t kListedPerLine = 24;
 constexpr std::uint64_t kListedBesides = std::uint64_t{1} << 16;
 // Far from the lines, lists are long where boxes are not small: of some ten thousand lines, on
 // which most domains have their distance, more may be listed.
 constexpr std::uint64_t kMoreListedPerLine = 32;
 constexpr std::uint64_t kMostListedBesides = std::uint64_t{1} << 18;
-constexpr std::uint64_t kNodeCost = 2;
-// A leaf lists at most so many lines, or so many per side of the leaf that they are away, because a
-// straight line of n pieces has n parallel cells. It never lists more than kMostInLeaf if they can
-// be told apart.
-constexpr double kInLeaf = 8;
-constexpr double kInLeafPerSide = 2;
-constexpr double kMostInLeaf = 64;
-constexpr std::uint32_t kShort = 16;  // a list that is hardly slower than the tree
-// A look of the tree costs as much as so many lines of a list, which eight points share.
-constexpr std::uint32_t kLinesPerLook = 4;
 constexpr int kSubtreeLevel = 4;  // the level whose subtrees are built on many threads
 
 double largest(const Box& box) {
@@ -47,237 +37,6 @@ __m128d select(__m128d mask, __m128d a, __m128d b) {
 }
 
 }  // namespace
-
-// Builds a part of the quadtree: its nodes, the root first, and the lists of its leaves.
-class ListBuilder {
- public:
-  using Node = DistanceField::Node;
-  // A node that is still to be built: its box, and the lines that may be nearest in it.
-  struct Pending {
-    std::uint32_t node = 0;
-    int depth = 0;
-    std::uint32_t ix = 0;
-    std::uint32_t iy = 0;
-    double distance = 0;        // at the middle of the box
-    std::uint64_t allowed = 0;  // for its subtree
-    std::vector<std::uint32_t> lines;
-  };
-
-  // Nodes at `last_level` that are to be split stay in `later`.
-  ListBuilder(const DistanceField& field, const DomainCover& cover, int last_level,
-              const ExecutionContext& context)
-      : field_(field), cover_(cover), last_level_(last_level), context_(context) {}
-
-  std::optional<Error> build(Pending&& root) {
-    nodes.assign(1, {});
-    root.node = 0;
-    return split(std::move(root));
-  }
-
-  std::vector<Node> nodes;
-  std::vector<std::uint32_t> lists;
-  std::vector<Pending> later;
-  double looks = 0;  // boxes of the tree and lines that a search visits, summed over the leaves
-  std::size_t leaves = 0;
-
- private:
-  // Points of a box that is divided: the corners of its four parts, row by row, then their middles.
-  static constexpr std::size_t kCorners = 9;
-  static constexpr std::size_t kSamples = kCorners + 4;
-  static constexpr int kPairs = (kSamples + 1) / 2;
-  struct Squares {
-    alignas(16) double of[2 * kPairs];  // the last one is of no sample
-  };
-  struct Samples {
-    Squares x;
-    Squares y;
-    Squares least;  // square of the distance to any of the lines
-    std::uint32_t nearest[kSamples] = {};
-  };
-
-  std::optional<Error> split(Pending&& pending);
-  std::optional<Error> share_out(const Pending& pending, Pending (&parts)[4]);
-  std::optional<Error> take(const std::vector<std::uint32_t>& lines, Samples& samples);
-  std::optional<Error> filter(const std::vector<std::uint32_t>& lines, const Samples& samples,
-                              unsigned part, std::vector<std::uint32_t>& kept);
-  void add_leaf(const Pending& pending);
-  Box box_of(const Pending& pending) const;
-  Point middle_of(const Pending& pending) const;
-
-  const DistanceField& field_;
-  const DomainCover& cover_;
-  const int last_level_;
-  const ExecutionContext& context_;
-  std::vector<Squares> squares_;  // scratch memory of `share_out`, for each line
-};
-
-Box ListBuilder::box_of(const Pending& pending) const {
-  const double side = std::ldexp(2 * field_.root_, -pending.depth);
-  const double x = pending.ix * side - field_.root_;
-  const double y = pending.iy * side - field_.root_;
-  return {x, y, x + side, y + side};
-}
-
-Point ListBuilder::middle_of(const Pending& pending) const {
-  const Box box = box_of(pending);
-  return {0.5 * (box.min_x + box.max_x), 0.5 * (box.min_y + box.max_y)};
-}
-
-// Sets the lines of the parts that the cover meets to those that may be nearest in them, and their
-// distances.
-std::optional<Error> ListBuilder::share_out(const Pending& pending, Pending (&parts)[4]) {
-  const Box box = box_of(pending);
-  const Point middle = middle_of(pending);
-  const double x[3] = {box.min_x, middle.x, box.max_x};
-  const double y[3] = {box.min_y, middle.y, box.max_y};
-  Samples samples;
-  for (std::size_t i = 0; i < kCorners; ++i) {
-    samples.x.of[i] = x[i % 3];
-    samples.y.of[i] = y[i / 3];
-  }
-  for (std::size_t i = kCorners; i < 2 * kPairs; ++i) {
-    const Point at = middle_of(parts[(i - kCorners) % 4]);
-    samples.x.of[i] = at.x;
-    samples.y.of[i] = at.y;
-  }
-  if (auto error = take(pending.lines, samples)) return error;
-  for (unsigned part = 0; part < 4; ++part) {
-    if (!cover_.meets(field_.outside(box_of(parts[part])))) continue;
-    parts[part].distance = std::sqrt(samples.least.of[kCorners + part]);
-    if (auto error = filter(pending.lines, samples, part, parts[part].lines)) return error;
-  }
-  return std::nullopt;
-}
-
-// Sets the squares of the distances between the samples and each line, and the least of each.
-std::optional<Error> ListBuilder::take(const std::vector<std::uint32_t>& lines, Samples& samples) {
-  constexpr std::size_t kAtATime = 1 << 13;  // lines; takes about 200 us
-  __m128d x[kPairs];
-  __m128d y[kPairs];
-  __m128d least[kPairs];
-  for (int i = 0; i < kPairs; ++i) {
-    x[i] = _mm_load_pd(samples.x.of + 2 * i);
-    y[i] = _mm_load_pd(samples.y.of + 2 * i);
-    least[i] = _mm_set1_pd(kInfinity);
-  }
-  squares_.resize(lines.size());
-  for (std::size_t k = 0; k < lines.size(); ++k) {
-    if (k % kAtATime == kAtATime - 1) {
-      if (auto error = context_.poll()) return error;
-    }
-    __m128d square[kPairs];
-    std::fill_n(square, kPairs, _mm_set1_pd(kInfinity));
-    take_nearer<kPairs>(field_.tree_.lines()[lines[k]], x, y, square);
-    unsigned nearer = 0;
-    for (int i = 0; i < kPairs; ++i) {
-      _mm_store_pd(squares_[k].of + 2 * i, square[i]);
-      nearer |= static_cast<unsigned>(_mm_movemask_pd(_mm_cmplt_pd(square[i], least[i])))
-                << (2 * i);
-      least[i] = _mm_min_pd(least[i], square[i]);
-    }
-    for (nearer &= (1u << kSamples) - 1; nearer != 0; nearer &= nearer - 1)
-      samples.nearest[__builtin_ctz(nearer)] = lines[k];
-  }
-  for (int i = 0; i < kPairs; ++i) _mm_store_pd(samples.least.of + 2 * i, least[i]);
-  return std::nullopt;
-}
-
-// Appends the lines that may be nearest in a part to `kept`.
-std::optional<Error> ListBuilder::filter(const std::vector<std::uint32_t>& lines,
-                                         const Samples& samples, unsigned part,
-                                         std::vector<std::uint32_t>& kept) {
-  constexpr std::size_t kAtATime = 1 << 14;
-  constexpr int kPoints = 5;
-  // Covers points of neighbouring boxes that rounding puts into this one.
-  constexpr double kGrown = 0x1p-38;
-  const std::size_t low = 3 * (part >> 1) + (part & 1);  // its lower left corner
-  const std::size_t at[kPoints] = {kCorners + part, low, low + 1, low + 3, low + 4};
-  __m128d limit[kPoints][2];
-  for (int k = 0; k < kPoints; ++k) {
-    const Point q = field_.tree_.lines()[samples.nearest[at[k]]].nearest(
-        {samples.x.of[at[k]], samples.y.of[at[k]]});
-    double safe[4];
-    for (int c = 0; c < 4; ++c) {
-      const double dx = samples.x.of[at[c + 1]] - q.x, dy = samples.y.of[at[c + 1]] - q.y;
-      const double d = std::sqrt(dx * dx + dy * dy);
-      safe[c] = d + kRounding * (d + field_.longest_ + 4) + kGrown;
-      safe[c] *= safe[c];
-    }
-    limit[k][0] = _mm_loadu_pd(safe);
-    limit[k][1] = _mm_loadu_pd(safe + 2);
-  }
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (i % kAtATime == kAtATime - 1) {
-      if (auto error = context_.poll()) return error;
-    }
-    const __m128d below = _mm_loadu_pd(squares_[i].of + low);
-    const __m128d above = _mm_loadu_pd(squares_[i].of + low + 3);
-    bool dropped = false;
-    for (int k = 0; k < kPoints && !dropped; ++k)
-      dropped = _mm_movemask_pd(_mm_and_pd(_mm_cmpgt_pd(below, limit[k][0]),
-                                           _mm_cmpgt_pd(above, limit[k][1]))) == 3;
-    if (!dropped) kept.push_back(lines[i]);
-  }
-  return std::nullopt;
-}
-
-void ListBuilder::add_leaf(const Pending& pending) {
-  const auto count = static_cast<std::uint32_t>(pending.lines.size());
-  std::size_t cost = count;
-  Node& node = nodes[pending.node];
-  node = {static_cast<std::uint32_t>(lists.size()), count};
-  if (count > kShort) {
-    const LineTree::Nearest found = field_.tree_.nearest(middle_of(pending), pending.lines[0]);
-    if (kLinesPerLook * found.looks < count) {
-      node = {found.line, DistanceField::kByTree};
-      cost = kLinesPerLook * found.looks;
-    }
-  }
-  if (node.count == count) lists.insert(lists.end(), pending.lines.begin(), pending.lines.end());
-  looks += static_cast<double>(cost);
-  ++leaves;
-}
-
-std::optional<Error> ListBuilder::split(Pending&& pending) {
-  const double side = std::ldexp(2 * field_.root_, -pending.depth);
-  const double in_leaf = std::clamp(kInLeafPerSide * pending.distance / side, kInLeaf, kMostInLeaf);
-  if (static_cast<double>(pending.lines.size()) <= in_leaf ||
-      pending.depth == DistanceField::kMaxDepth) {
-    add_leaf(pending);
-    return std::nullopt;
-  }
-  if (pending.depth == last_level_) {
-    later.push_back(std::move(pending));
-    return std::nullopt;
-  }
-  if (auto error = context_.poll()) return error;
-  Pending children[4];
-  for (std::uint32_t c = 0; c < 4; ++c) {
-    children[c].depth = pending.depth + 1;
-    children[c].ix = 2 * pending.ix + (c & 1);
-    children[c].iy = 2 * pending.iy + (c >> 1);
-  }
-  if (auto error = share_out(pending, children)) return error;
-  std::uint64_t cost = 0;
-  for (const Pending& child : children) cost += child.lines.size() + kNodeCost;
-  if (cost > pending.allowed) {
-    add_leaf(pending);
-    return std::nullopt;
-  }
-  const auto first = static_cast<std::uint32_t>(nodes.size());
-  nodes.resize(first + 4, {0, DistanceField::kByTree});
-  nodes[pending.node] = {first, DistanceField::kInner};
-  pending.lines = {};
-  for (std::uint32_t c = 0; c < 4; ++c) {
-    Pending& child = children[c];
-    if (child.lines.empty()) continue;  // outside
-    child.node = first + c;
-    child.allowed = pending.allowed * (child.lines.size() + kNodeCost) / cost;
-    if (auto error = split(std::move(child))) return error;
-    child.lines = {};
-  }
-  return std::nullopt;
-}
 
 DistanceField::DistanceField(const Box& box)
     : centre_{0.5 * box.min_x + 0.5 * box.max_x, 0.5 * box.min_y + 0.5 * box.max_y} {

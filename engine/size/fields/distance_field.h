@@ -89,7 +89,8 @@ class DistanceField final : public Field {
  private:
   friend class ListBuilder;
 
-  static constexpr int kMaxDepth = 22;  // of the quadtree
+  static constexpr double kRounding = 0x1p-46;  // of lengths; more than all roundings together
+  static constexpr int kMaxDepth = 22;          // of the quadtree
   static constexpr int kMaxTopLevels = 8;
   static constexpr std::uint32_t kInner = 0xffffffffu;
   static constexpr std::uint32_t kByTree = 0xfffffffeu;  // a leaf without a list
