@@ -5,27 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "engine/engine.h"
 #include "tests/engine/domain/shapes.h"
 #include "tests/support/collected_mesh.h"
+#include "tests/support/generator.h"
 #include "tests/support/poly.h"
 
 namespace weft {
 namespace {
-
-class Generator {
- public:
-  explicit Generator(std::uint32_t seed) : engine_(seed) {}
-  int below(int n) { return static_cast<int>(engine_() % static_cast<unsigned>(n)); }
-  double unit() { return engine_() / 4294967296.0; }
-
- private:
-  std::mt19937 engine_;
-};
 
 // The midpoints of a path are moved aside by up to `roughness` of its length, again and again.
 void add_fractal(std::vector<Point>& path, Point a, Point b, int depth, double roughness,

@@ -6,26 +6,15 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "engine/domain/arrangement/snapping.h"
 #include "engine/domain/domain.h"
 #include "tests/engine/domain/laws.h"
 #include "tests/engine/domain/shapes.h"
+#include "tests/support/generator.h"
 
 namespace weft {
 namespace {
-
-class Generator {
- public:
-  explicit Generator(std::uint32_t seed) : engine_(seed) {}
-  // Not std::uniform_int_distribution: its values differ between standard libraries.
-  int below(int n) { return static_cast<int>(engine_() % static_cast<unsigned>(n)); }
-  double unit() { return engine_() / 4294967296.0; }
-
- private:
-  std::mt19937 engine_;
-};
 
 // A box with segments of any kind inside.
 Pslg dirty(Generator& random, int grid, double scale, double shift) {
