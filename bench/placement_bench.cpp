@@ -50,6 +50,15 @@ std::vector<Row> rows(const std::string& models) {
     rows.push_back({"coast, 1e-3", sized(of_model("us-east-coast.poly"), "1e-3", angle)});
     rows.push_back({"coast, 1e-4", sized(of_model("us-east-coast.poly"), "1e-4", angle)});
   }
+  // Edges in degrees, the model's unit: 1 km and 4 km at the shore, 20 km far away.
+  for (const auto& [name, edge] :
+       {std::pair<const char*, std::string>{"coast, graded from 0.01", "min(0.01+0.15*shore, 0.2)"},
+        {"coast, graded from 0.04", "min(0.04+0.15*shore, 0.2)"}}) {
+    SizeSpec size{edge};
+    size.measure = Measure::kEdge;
+    size.fields.push_back({"shore", DistanceSpec{}});
+    rows.push_back({name, {.pslg = of_model("us-east-coast.poly"), .size = size}});
+  }
   rows.push_back({"key", sized(of_model("key.poly"), "0.02*abs(y-46)+0.1", 20)});
   rows.push_back(
       {"cylinder, stepped, 10 M", sized(of_model("cylinder.poly"), cylinder_size(1e7), 20)});

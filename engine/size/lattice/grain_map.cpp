@@ -26,17 +26,10 @@ struct Look {
   bool split = false;
 };
 
-// The values of the size at a square's samples.
-struct alignas(64) Sampled {
-  double x[HarmonicFitter::kSamples];
-  double y[HarmonicFitter::kSamples];
-  double size[HarmonicFitter::kSamples];
-};
-static_assert(HarmonicFitter::kSamples % SizeFunction::kLanes == 0);
-
-// Whether a quarter of the samples have the same bits as those to the right and above.
+// Whether a quarter of a grid's samples have the same bits as those to the right and above.
+template <class Fitter>
 bool mostly_equal(const double* size) {
-  constexpr std::size_t kGrid = HarmonicFitter::kGrid;
+  constexpr std::size_t kGrid = Fitter::kGrid;
   std::size_t equal = 0;
   for (std::size_t j = 0; j + 1 < kGrid; ++j) {
     for (std::size_t i = 0; i + 1 < kGrid; ++i) {
@@ -69,49 +62,26 @@ class Surveyor {
       grain.size = *uniform;
       return look;
     }
-    Sampled at;
-    for (std::size_t s = 0; s < HarmonicFitter::kSamples; ++s) {
-      const Point p = fitter_.sample(s, centre, half);
-      at.x[s] = p.x;
-      at.y[s] = p.y;
-    }
-    size_.evaluate(HarmonicFitter::kSamples, at.x, at.y, at.size);
-    HarmonicFitter::Samples edges;
-    double lo = kMostSize;
-    double hi = kLeastSize;
-    bool sizes = true;
-    for (std::size_t s = 0; s < HarmonicFitter::kSamples; ++s) {
-      const double size = at.size[s];
-      if (!(size > kLeastSize && size < kMostSize)) {
-        sizes = false;
-        continue;
+    Sampled<CoarseFitter> few;
+    sample(few, coarse_, square);
+    if (few.any()) {
+      const double rows = rows_of(few, square);
+      if (rows < GrainMap::kCoarseRows) {
+        fit(look, few, coarse_, square);
+        return look;
       }
-      lo = std::min(lo, size);
-      hi = std::max(hi, size);
-      edges[s] = std::sqrt(size / kEquilateral);
+      if (hopeless(few, rows)) {
+        look.split = true;
+        return look;
+      }
     }
-    const double rows = 2 * half / std::sqrt(hi / kEquilateral);
-    const bool small = rows < GrainMap::kSmallRows;
-    const bool none = lo > hi;
-    look.split = none ? !place.node->leaf() : rows >= GrainMap::kFewRows;
-    if (mostly_equal(at.size)) {
-      grain.kind = Kind::kStepped;
-      return look;
+    Sampled<FineFitter> many;
+    sample(many, fine_, square);
+    if (!many.any()) {
+      look.split = !place.node->leaf();
+    } else {
+      fit(look, many, fine_, square);
     }
-    // The indices of the lattice are exact far beyond kMostRows, and no mesh has so many rows.
-    if (!sizes || hi > kMostRatio * lo || !(rows < kMostRows)) return look;
-    if (!small && missed(size_.bounds(grain.box), lo, hi)) return look;
-
-    HarmonicFit fit = fitter_.fit(edges);
-    const double bend = fit.bend();
-    const double most_bend = small ? ConformalMap::kMostBend : GrainMap::kFewBends;
-    const double most =
-        small ? GrainMap::kAnyFit : std::max(GrainMap::kGoodFit, GrainMap::kGoodFitRows / rows);
-    if (!(bend < most_bend && fit.deviation() <= most)) return look;
-    look.split = false;
-    fit.u[0].re -= fit.above;
-    grain.kind = Kind::kFit;
-    grain.map = ConformalMap(centre, half * 1.4142135623730951, fit.u, scale_);
     return look;
   }
 
@@ -121,6 +91,83 @@ class Surveyor {
   static constexpr double kMostSize = 1e150;
   static constexpr double kMostRatio = 20;  // of the samples: no polynomial of degree 5 follows
   static constexpr double kMostRows = 1e9;
+  static constexpr double kRootTwo = 1.4142135623730951;
+
+  // A square's samples of the size: all of them, and the wanted edges where they are sizes.
+  template <class Fitter>
+  struct alignas(64) Sampled {
+    static_assert(Fitter::kSamples % SizeFunction::kLanes == 0);
+    double x[Fitter::kSamples];
+    double y[Fitter::kSamples];
+    double size[Fitter::kSamples];
+    typename Fitter::Samples edges;
+    double lo = kMostSize;
+    double hi = kLeastSize;
+    bool all = true;  // are sizes
+    bool any() const { return lo <= hi; }
+  };
+
+  template <class Fitter>
+  void sample(Sampled<Fitter>& at, const Fitter& fitter, const Pending& square) const {
+    for (std::size_t s = 0; s < Fitter::kSamples; ++s) {
+      const Point p = fitter.sample(s, square.centre, square.half);
+      at.x[s] = p.x;
+      at.y[s] = p.y;
+    }
+    size_.evaluate(Fitter::kSamples, at.x, at.y, at.size);
+    for (std::size_t s = 0; s < Fitter::kSamples; ++s) {
+      const double size = at.size[s];
+      if (!(size > kLeastSize && size < kMostSize)) {
+        at.all = false;
+        continue;
+      }
+      at.lo = std::min(at.lo, size);
+      at.hi = std::max(at.hi, size);
+      at.edges[s] = std::sqrt(size / kEquilateral);
+    }
+  }
+
+  // The rows of the largest triangles that the square has room for.
+  template <class Fitter>
+  static double rows_of(const Sampled<Fitter>& at, const Pending& square) {
+    return 2 * square.half / std::sqrt(at.hi / kEquilateral);
+  }
+
+  // Whether a few samples show that no polynomial will be accepted: the fit of a lower degree is
+  // off by kHopeless times as much as may be.
+  bool hopeless(const Sampled<CoarseFitter>& few, double rows) const {
+    constexpr double kHopeless = 2;
+    const double most = rows < GrainMap::kSmallRows ? GrainMap::kAnyFit : GrainMap::kGoodFit;
+    return few.all && coarse_.fit(few.edges).deviation() > kHopeless * most;
+  }
+
+  // Decides on a square by its samples, some of which are sizes.
+  template <class Fitter>
+  void fit(Look& look, const Sampled<Fitter>& at, const Fitter& fitter,
+           const Pending& square) const {
+    Grain& grain = look.grain;
+    const double rows = rows_of(at, square);
+    const bool small = rows < GrainMap::kSmallRows;
+    look.split = rows >= GrainMap::kFewRows;
+    if (mostly_equal<Fitter>(at.size)) {
+      grain.kind = Kind::kStepped;
+      return;
+    }
+    // The indices of the lattice are exact far beyond kMostRows, and no mesh has so many rows.
+    if (!at.all || at.hi > kMostRatio * at.lo || !(rows < kMostRows)) return;
+    if (!small && missed(size_.bounds(grain.box), at.lo, at.hi)) return;
+
+    HarmonicFit fit = fitter.fit(at.edges);
+    const double bend = fit.bend();
+    const double most_bend = small ? ConformalMap::kMostBend : GrainMap::kFewBends;
+    const double most =
+        small ? GrainMap::kAnyFit : std::max(GrainMap::kGoodFit, GrainMap::kGoodFitRows / rows);
+    if (!(bend < most_bend && fit.deviation() <= most)) return;
+    look.split = false;
+    fit.u[0].re -= fit.above;
+    grain.kind = Kind::kFit;
+    grain.map = ConformalMap(square.centre, square.half * kRootTwo, fit.u, scale_);
+  }
 
   static bool missed(const Interval& bounds, double lo, double hi) {
     return bounds.may_be_nan || !(bounds.hi <= GrainMap::kMissed * hi) ||
@@ -130,7 +177,8 @@ class Surveyor {
   const SizeFunction& size_;
   const SizeMap& map_;
   const double scale_;  // of the lattice's edges, by its fill
-  const HarmonicFitter fitter_;
+  const FineFitter fine_;
+  const CoarseFitter coarse_;
 };
 
 }  // namespace

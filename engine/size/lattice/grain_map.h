@@ -21,14 +21,19 @@
 //   - the size function's bounds in the square are within kMissed of the samples, so these missed
 //     nothing.
 // In a square of fewer than kSmallRows rows of the lattice, a deviation of kAnyFit is good, because
-// smaller squares have more faults. A square without a fit is split down to kFewRows rows. Values
-// that are not positive and finite have no fit; no lattice point depends on a square that has them.
+// smaller squares have more faults. A square without a fit is split down to kFewRows rows; one of
+// fewer than kCoarseRows is judged by few samples and a polynomial of low degree, and so are larger
+// ones whose fit is hopeless. Values that are not positive and finite have no fit; no lattice point
+// depends on a square that has them.
 //
-//   triangles over the least number, kFewRows     16     12     8      6      4     no lattice
-//   10 min(r1, r2) + 1, about two points          1.087  1.076  1.072  1.068  1.067  1.528
-//   2 + 10 |r - 30|, a fine ring                  1.351  1.304  1.261  1.242  1.214  1.529
-//   1.2 + sin(3x) sin(3y), 20 rows per period     1.539  1.539  1.539  1.423  1.373  1.539
-// The last takes 1.5 times as long with 6 as without a lattice, and 1.13 times with 8.
+//   triangles over the least number, kFewRows     8      4      2      no lattice
+//   10 min(r1, r2) + 1, about two points          1.067  1.067  1.066  1.527
+//   2 + 10 |r - 30|, a fine ring                  1.252  1.219  1.205  1.530
+//   1 km + 0.15 times the distance to a coast     1.512  1.354  1.330  1.540
+//   4 km + 0.15 times, its lines simplified       1.412  1.291  1.268  1.537
+//   1.2 + sin(3x) sin(3y), 20 rows per period     1.540  1.427  1.394  1.540
+// On the coast the engine takes 1.09 times as long with 4 as with 8, and 1.18 times with 2. In the
+// short waves, where most squares are looked at in vain, 1.5 times with either.
 //
 // If log h is harmonic (a constant, a power of the distance from a point, an exponential of x),
 // one lattice goes through many grains without a fault, because the grains are aligned: each is
@@ -37,8 +42,9 @@
 // grain of each part that was not reached.
 //
 // All threads of the run examine squares and their neighbours; the order of the grains
-// does not depend on them. A square that is split holds at least 140 triangles, so their number is
-// in proportion to the mesh: 48 on the pipe model, in 0.2 ms. Thread-safety: immutable once built.
+// does not depend on them. A square that is split holds some ten triangles at least, so their
+// number is in proportion to the mesh, up to kMaxGrains: 48 on the pipe model, in 0.2 ms; 30,000 on
+// a coast of 308,000 triangles that grow from the shore. Thread-safety: immutable once built.
 #pragma once
 
 #include <cstddef>
@@ -71,7 +77,8 @@ class GrainMap {
   static constexpr double kGoodFitRows = 0.1;
   static constexpr double kAnyFit = 0.2;
   static constexpr double kSmallRows = 16;
-  static constexpr double kFewRows = 8;
+  static constexpr double kCoarseRows = 4;
+  static constexpr double kFewRows = 2;
   static constexpr double kMissed = 1.3;
   static constexpr double kFewBends = 0.6;
   static constexpr int kMaxDepth = 24;

@@ -13,7 +13,8 @@ double HarmonicFit::bend() const {
   return sum;
 }
 
-HarmonicFitter::HarmonicFitter() {
+template <std::size_t Grid, std::size_t Harmonics>
+HarmonicFitter<Grid, Harmonics>::HarmonicFitter() {
   constexpr double kPi = 3.14159265358979323846;
   constexpr double kRootHalf = 0.70710678118654752;
   for (std::size_t i = 0; i < kGrid; ++i)
@@ -22,7 +23,7 @@ HarmonicFitter::HarmonicFitter() {
     const Complex zeta{kRootHalf * at_[s % kGrid], kRootHalf * at_[s / kGrid]};
     Complex power{1, 0};
     basis_[s][0] = 1;
-    for (std::size_t k = 1; k <= ConformalMap::kHarmonics; ++k) {
+    for (std::size_t k = 1; k <= Harmonics; ++k) {
       power = power * zeta;
       basis_[s][2 * k - 1] = power.re;
       basis_[s][2 * k] = -power.im;
@@ -50,7 +51,8 @@ HarmonicFitter::HarmonicFitter() {
   }
 }
 
-HarmonicFit HarmonicFitter::fit(const Samples& edges) const {
+template <std::size_t Grid, std::size_t Harmonics>
+HarmonicFit HarmonicFitter<Grid, Harmonics>::fit(const Samples& edges) const {
   Samples wanted;
   for (std::size_t s = 0; s < kSamples; ++s) wanted[s] = Sleef_cinz_logd1_u10purec(edges[s]);
   std::array<double, kUnknowns> solution{};
@@ -65,9 +67,11 @@ HarmonicFit HarmonicFitter::fit(const Samples& edges) const {
     fit.below = std::min(fit.below, off);
   }
   fit.u[0].re = solution[0];
-  for (std::size_t k = 1; k <= ConformalMap::kHarmonics; ++k)
-    fit.u[k] = {solution[2 * k - 1], solution[2 * k]};
+  for (std::size_t k = 1; k <= Harmonics; ++k) fit.u[k] = {solution[2 * k - 1], solution[2 * k]};
   return fit;
 }
+
+template class HarmonicFitter<8, ConformalMap::kHarmonics>;
+template class HarmonicFitter<4, 3>;
 
 }  // namespace weft

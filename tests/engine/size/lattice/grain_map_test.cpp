@@ -93,8 +93,22 @@ TEST(GrainMap, KnowsConstantPiecesAndTheStepBetweenThem) {
 }
 
 TEST(GrainMap, HasNoLatticeWhereTheSizeWavesWithinAFewRows) {
-  const LaidOut l("1e-2*(1.2+sin(9*x)*sin(9*y))");
+  const LaidOut l("1e-2*(1.2+sin(40*x)*sin(40*y))");
   EXPECT_EQ(l.grains.locate({4.1, 3.9}).kind, Kind::kMixed);
+}
+
+TEST(GrainMap, FollowsAConeInSquaresOfAFewRows) {
+  // Edges of 0.02 that grow by 0.2 per unit around a point. Near it their logarithm is harmonic
+  // within a few rows only.
+  const LaidOut l("sqrt(3)/4*(0.02+0.2*hypot(x-4,y-4))^2");
+  std::mt19937_64 random(5);
+  constexpr int kPoints = 10'000;
+  int on_lattice = 0;
+  for (int i = 0; i < kPoints; ++i) {
+    const Point p = l.random_point(random);
+    on_lattice += l.grains.locate({3.8 + 0.05 * p.x, 3.8 + 0.05 * p.y}).kind == Kind::kFit ? 1 : 0;
+  }
+  EXPECT_GT(on_lattice, 0.9 * kPoints);
 }
 
 TEST(GrainMap, LeavesOutWhatIsOutsideOfTheDomain) {

@@ -139,10 +139,11 @@ TEST(ConformalMap, HasNoPointOutsideOfItsDisk) {
   EXPECT_EQ(bent.map.nearest({std::nan(""), 7}, 0).spacing2, 0);
 }
 
+template <class Fitter = FineFitter>
 HarmonicFit fit_of(double (*edge)(double, double), Point centre, double half) {
-  const HarmonicFitter fitter;
-  HarmonicFitter::Samples edges;
-  for (std::size_t s = 0; s < HarmonicFitter::kSamples; ++s) {
+  const Fitter fitter;
+  typename Fitter::Samples edges;
+  for (std::size_t s = 0; s < Fitter::kSamples; ++s) {
     const Point p = fitter.sample(s, centre, half);
     edges[s] = edge(p.x, p.y);
   }
@@ -158,6 +159,19 @@ TEST(HarmonicFit, OfALogarithmThatIsHarmonicIsExact) {
   const HarmonicFit by_distance =
       fit_of([](double x, double y) { return 0.1 * std::hypot(x, y); }, {3, 4}, 1);
   EXPECT_LT(by_distance.deviation(), 1e-4);
+}
+
+TEST(HarmonicFit, OfFewSamplesIsExactUpToItsDegree) {
+  const auto cubic = [](double x, double y) {
+    return std::exp(0.1 * x - 0.2 * y + 0.03 * (x * x - y * y) +
+                    0.02 * (x * x * x - 3 * x * y * y));
+  };
+  EXPECT_LT(fit_of<CoarseFitter>(cubic, {3, 4}, 1).deviation(), 1e-12);
+  const auto quartic = [](double x, double y) {
+    return std::exp(0.1 * (x * x * x * x - 6 * x * x * y * y + y * y * y * y));
+  };
+  EXPECT_GT(fit_of<CoarseFitter>(quartic, {0, 0}, 1).deviation(), 0.01);
+  EXPECT_LT(fit_of(quartic, {0, 0}, 1).deviation(), 1e-12);
 }
 
 TEST(HarmonicFit, OfALogarithmThatIsNotHarmonicTellsItsDeviation) {
