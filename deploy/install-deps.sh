@@ -27,11 +27,11 @@ build=(
 )
 geo=(libgdal-dev libproj-dev libmetis-dev)
 weftd=(
-  libprotobuf32 libgmp10 libgmpxx4ldbl libmpfr6 libtbb12 libsleef3 libspdlog1.10
+  libgmp10 libgmpxx4ldbl libmpfr6 libtbb12 libsleef3 libspdlog1.10
   libfmt9 libatomic1 libssl3 libsqlite3-0 libpq5 libprometheus-cpp-core1.0 zlib1g
 )
 weft=(
-  libprotobuf32 libatomic1 libssl3 libcairo2 fonts-dejavu-core zlib1g libshp2
+  libatomic1 libssl3 libcairo2 fonts-dejavu-core zlib1g libshp2
   libyaml-cpp0.7 libpugixml1v5 libgdal32 libproj25 libmetis5
 )
 test=(
