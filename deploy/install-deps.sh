@@ -50,6 +50,7 @@ test=(
   python3-grpcio python3-matplotlib python3-scipy                         # weft for Python
   python3-pytest python3-pip python3-setuptools python3-wheel mypy openssl # its tests
   python3-venv python3-pil curl                                           # the documents
+  python3-jinja2 python3-yaml # the recipe for conda, the Helm chart
   man-db mandoc zsh fish systemd dpkg-dev file iproute2 procps # what is installed, its packages
   patchelf                 # the wheel
   chromium                 # the console
