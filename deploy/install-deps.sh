@@ -27,11 +27,11 @@ build=(
 )
 geo=(libgdal-dev libproj-dev libmetis-dev)
 weftd=(
-  libprotobuf32 libgmp10 libgmpxx4ldbl libmpfr6 libtbb12 libsleef3 libspdlog1.10
+  libgmp10 libgmpxx4ldbl libmpfr6 libtbb12 libsleef3 libspdlog1.10
   libfmt9 libatomic1 libssl3 libsqlite3-0 libpq5 libprometheus-cpp-core1.0 zlib1g
 )
 weft=(
-  libprotobuf32 libatomic1 libssl3 libcairo2 fonts-dejavu-core zlib1g libshp2
+  libatomic1 libssl3 libcairo2 fonts-dejavu-core zlib1g libshp2
   libyaml-cpp0.7 libpugixml1v5 libgdal32 libproj25 libmetis5
 )
 test=(
@@ -50,6 +50,7 @@ test=(
   python3-grpcio python3-matplotlib python3-scipy                         # weft for Python
   python3-pytest python3-pip python3-setuptools python3-wheel mypy openssl # its tests
   python3-venv python3-pil curl                                           # the documents
+  python3-jinja2 python3-yaml # the recipe for conda, the Helm chart
   man-db mandoc zsh fish systemd dpkg-dev file iproute2 procps # what is installed, its packages
   patchelf                 # the wheel
   chromium                 # the console

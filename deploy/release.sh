@@ -5,10 +5,10 @@
 #   deploy/release.sh OUT      OUT is a folder, which is made and must be empty
 #
 # packages for Debian, the package for Python with and without programs and as sources, the images as
-# OCI archives, a software bill of materials (CycloneDX), and SHA256SUMS of them. The version is that of
-# CMakeLists.txt; the maintainer of the packages for Debian is WEFT_MAINTAINER, if that is set. Needs what
-# deploy/install-deps.sh installs, and root for the images: without root, or buildah or debootstrap, it
-# says that they are left out.
+# OCI archives, the Helm chart, a software bill of materials (CycloneDX), the changelog, and SHA256SUMS of
+# them. The version is that of CMakeLists.txt; the maintainer of the packages for Debian is
+# WEFT_MAINTAINER, if that is set. Needs what deploy/install-deps.sh installs, and root for the images:
+# without root, or buildah or debootstrap, it says that they are left out.
 #
 # Fails if the tree has changes that are not committed, because the clone would not have them. The same
 # commit on a machine with the same packages gives the same bytes, except for the images, into which apt
@@ -67,6 +67,13 @@ say "bill of materials"
 /usr/bin/python3 -B deploy/package/bill_of_materials.py build/release "$out/weft-$version.cdx.json"
 (cd deploy && npm ci --silent --ignore-scripts --no-audit --no-fund)
 node deploy/check-bill.mjs "$out/weft-$version.cdx.json"
+
+say "chart"
+tar --create --sort=name --mtime="@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --numeric-owner --mode=u=rwX,go=rX \
+  --directory deploy/helm weft | gzip --no-name >"$out/weft-$version.tgz"
+/usr/bin/python3 -B -m pytest -q -p no:cacheprovider tests/install/helm_test.py
+
+cp CHANGELOG.md "$out"
 
 if ((EUID == 0)) && command -v buildah >/dev/null && command -v debootstrap >/dev/null; then
   say "images"

@@ -13,6 +13,7 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <random>
 #include <thread>
 
@@ -36,15 +37,24 @@ constexpr int kExitFailed = 1;
 constexpr int kExitCannotListen = 3;
 constexpr int kExitNoStore = 4;
 
-// Writes another file and renames it, so that nobody reads half of it.
+void write_addresses(std::ostream& out, const Server& server) {
+  for (const std::string& address : server.addresses()) out << address << '\n';
+  if (!server.metrics_address().empty()) out << "metrics=" << server.metrics_address() << '\n';
+  if (!server.console_address().empty()) out << "console=" << server.console_address() << '\n';
+  out.flush();
+}
+
+// Writes another file and renames it, so that nobody reads half of it; "-" is the standard output.
 bool write_port_file(const std::filesystem::path& path, const Server& server) {
+  if (path == "-") {
+    write_addresses(std::cout, server);
+    return std::cout.good();
+  }
   const std::filesystem::path draft = path.string() + ".tmp";
   {
     std::ofstream out(draft);
-    for (const std::string& address : server.addresses()) out << address << '\n';
-    if (!server.metrics_address().empty()) out << "metrics=" << server.metrics_address() << '\n';
-    if (!server.console_address().empty()) out << "console=" << server.console_address() << '\n';
-    if (!out.flush()) return false;
+    write_addresses(out, server);
+    if (!out) return false;
   }
   std::error_code error;
   std::filesystem::rename(draft, path, error);

@@ -214,7 +214,8 @@ void add_listening(Flags& flags, Options& options) {
       ->allow_extra_args(false)
       ->check(is_an_origin());
   flags.value("--port-file", options.port_file, "FILE",
-              "Write the bound addresses to this file, one per line, that of --metrics as "
+              "Write the bound addresses to this file, - for the standard output, once the server "
+              "listens: one per line, that of --metrics as "
               "metrics=HOST:PORT, and that of --console as console=HOST:PORT");
 }
 

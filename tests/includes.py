@@ -12,6 +12,7 @@ Rules, on the quoted includes of all .h and .cpp files outside `tests`, `bench` 
   - server/ includes nothing of engine/: it sees the library's face alone.
   - client/ includes nothing of server/, engine/ or the face; of checker/ only what it judges files with.
   - checker/ includes nothing of the four.
+  - loader/ includes nothing of the others; server/ and client/ include it.
 """
 import pathlib
 import re
@@ -28,7 +29,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 def includes_of(root: pathlib.Path) -> dict[str, list[str]]:
     """The quoted includes of each source, by its path from the root, or from include/."""
     found = {}
-    for top in ("include", "engine", "server", "client", "checker"):
+    for top in ("include", "engine", "server", "client", "checker", "loader"):
         base = root / top if top == "include" else root
         for path in sorted((root / top).rglob("*")):
             if path.suffix in (".h", ".cpp"):
@@ -47,10 +48,11 @@ def forbidden(source: str, target: str) -> str | None:
         return None if target in FACE else "the library's face includes nothing else"
     if target in FACE:
         return None if top in ("engine", "server") else f"{top}/ includes nothing of the library"
-    if target_top not in ("engine", "server", "client", "checker"):
+    if target_top not in ("engine", "server", "client", "checker", "loader"):
         return None
-    allowed = {"engine": {"engine"}, "server": {"server"},
-               "client": {"client", "checker"}, "checker": {"checker"}}[top]
+    allowed = {"engine": {"engine"}, "server": {"server", "loader"},
+               "client": {"client", "checker", "loader"}, "checker": {"checker"},
+               "loader": {"loader"}}[top]
     if target_top not in allowed:
         return f"{top}/ includes nothing of {target_top}/"
     layers = LAYERS.get(top, [])

@@ -148,11 +148,14 @@ Result<Connection> connect(const ConnectOptions& options, std::stop_token stop) 
   }
   PrivateServerOptions private_options;
   if (options.one_mesh) private_options.jobs = 1;
-  auto server = PrivateServer::start(private_options, std::move(stop));
+  // gRPC starts while the server does.
+  auto server = PrivateServer::start(
+      private_options, std::move(stop), [&connection](const std::string& address) {
+        connection.address = address;
+        connection.channel = grpc::CreateChannel(address, grpc::InsecureChannelCredentials());
+      });
   if (!server) return tl::unexpected(server.error());
   connection.server = std::move(*server);
-  connection.address = connection.server->address();
-  connection.channel = grpc::CreateChannel(connection.address, grpc::InsecureChannelCredentials());
   return connection;
 }
 

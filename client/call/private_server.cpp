@@ -5,7 +5,6 @@
 #include <poll.h>
 #include <spawn.h>
 #include <sys/eventfd.h>
-#include <sys/inotify.h>
 #include <sys/syscall.h>
 #include <sys/un.h>
 #include <sys/wait.h>
@@ -29,8 +28,6 @@ extern char** environ;
 
 namespace weft::client {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 tl::unexpected<Error> not_started(const std::string& why) {
   return fail(ExitCode::kServerNotStarted, "no private weftd: " + why);
@@ -71,20 +68,25 @@ std::vector<char*> its_environment() {
 }
 
 // Milliseconds until then, as poll takes them.
-int milliseconds_until(Clock::time_point then) {
-  const auto left = std::chrono::ceil<std::chrono::milliseconds>(then - Clock::now()).count();
+int milliseconds_until(std::chrono::steady_clock::time_point then) {
+  const auto left =
+      std::chrono::ceil<std::chrono::milliseconds>(then - std::chrono::steady_clock::now()).count();
   return static_cast<int>(std::clamp<std::int64_t>(left, 0, 1'000'000));
 }
 
 }  // namespace
 
-Result<std::unique_ptr<PrivateServer>> PrivateServer::start(const PrivateServerOptions& options,
-                                                            std::stop_token stop) {
+Result<std::unique_ptr<PrivateServer>> PrivateServer::start(
+    const PrivateServerOptions& options, std::stop_token stop,
+    const std::function<void(const std::string& address)>& meanwhile) {
   const auto weftd = find_weftd(options);
   if (!weftd) return tl::unexpected(weftd.error());
   std::unique_ptr<PrivateServer> server(new PrivateServer(options));
   if (auto made = server->make_folder(); !made) return tl::unexpected(made.error());
-  if (auto ready = server->wait_until_ready(*weftd, std::move(stop)); !ready)
+  const auto deadline = Clock::now() + options.start_timeout;
+  if (auto spawned = server->spawn(*weftd); !spawned) return tl::unexpected(spawned.error());
+  if (meanwhile) meanwhile(server->address());
+  if (auto ready = server->wait_until_ready(*weftd, deadline, std::move(stop)); !ready)
     return tl::unexpected(ready.error());
   return server;
 }
@@ -103,18 +105,22 @@ Result<void> PrivateServer::make_folder() {
 }
 
 Result<void> PrivateServer::spawn(const std::filesystem::path& weftd) {
-  int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) return not_started(std::strerror(errno));
-  FileDescriptor its_input(ends[0]);
-  input_ = FileDescriptor(ends[1]);
+  int input[2];
+  if (::pipe2(input, O_CLOEXEC) != 0) return not_started(std::strerror(errno));
+  FileDescriptor its_input(input[0]);
+  input_ = FileDescriptor(input[1]);
+  int output[2];
+  if (::pipe2(output, O_CLOEXEC) != 0) return not_started(std::strerror(errno));
+  FileDescriptor its_output(output[1]);
+  output_ = FileDescriptor(output[0]);
 
   const std::string log = folder_ / "log";
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, its_input.get(), STDIN_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
+  posix_spawn_file_actions_adddup2(&actions, its_output.get(), STDOUT_FILENO);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log.c_str(),
                                    O_WRONLY | O_CREAT | O_APPEND, 0600);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
   // A process group of its own, so that Ctrl-C reaches this process alone, and no signals that are
   // blocked or ignored.
   posix_spawnattr_t attributes;
@@ -129,9 +135,9 @@ Result<void> PrivateServer::spawn(const std::filesystem::path& weftd) {
   sigaddset(&signals, SIGXFSZ);
   posix_spawnattr_setsigdefault(&attributes, &signals);
 
-  std::vector<std::string> arguments{
-      weftd.string(),    "--listen",          address(), "--port-file",
-      folder_ / "ready", "--exit-with-stdin", "--drain", "1"};
+  // It writes the address to its standard output when it listens.
+  std::vector<std::string> arguments{weftd.string(),      "--listen", address(), "--port-file", "-",
+                                     "--exit-with-stdin", "--drain",  "1"};
   if (options_.jobs) arguments.insert(arguments.end(), {"--jobs", std::to_string(*options_.jobs)});
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -149,26 +155,19 @@ Result<void> PrivateServer::spawn(const std::filesystem::path& weftd) {
 }
 
 Result<void> PrivateServer::wait_until_ready(const std::filesystem::path& weftd,
-                                             std::stop_token stop) {
-  // The server renames the port file into place when it listens. The watch exists before it starts.
-  FileDescriptor watch(::inotify_init1(IN_CLOEXEC | IN_NONBLOCK));
-  if (::inotify_add_watch(watch.get(), folder_.c_str(), IN_MOVED_TO) < 0)
-    return not_started(std::string("inotify: ") + std::strerror(errno));
+                                             Clock::time_point deadline, std::stop_token stop) {
   FileDescriptor interrupt(::eventfd(0, EFD_CLOEXEC));
   const std::stop_callback wake(stop, [&interrupt] {
     const std::uint64_t one = 1;
     (void)write_all(interrupt.get(), &one, sizeof one);
   });
-  if (auto spawned = spawn(weftd); !spawned) return spawned;
-
-  const auto deadline = Clock::now() + options_.start_timeout;
+  pollfd fds[] = {
+      {output_.get(), POLLIN, 0}, {process_.get(), POLLIN, 0}, {interrupt.get(), POLLIN, 0}};
   for (;;) {
-    std::error_code ignored;
-    if (std::filesystem::exists(folder_ / "ready", ignored)) return {};
-    pollfd fds[] = {
-        {watch.get(), POLLIN, 0}, {process_.get(), POLLIN, 0}, {interrupt.get(), POLLIN, 0}};
     const int count = ::poll(fds, 3, milliseconds_until(deadline));
     if (count < 0 && errno == EINTR) continue;
+    if ((fds[0].revents & POLLIN) != 0) return {};
+    if (fds[0].revents != 0) fds[0].fd = -1;  // closed: the process is about to end
     if (fds[2].revents != 0) return not_started("interrupted");
     if (fds[1].revents != 0)
       return not_started(weftd.string() + " ended at start; it said:\n" + last_log_lines());
@@ -176,8 +175,6 @@ Result<void> PrivateServer::wait_until_ready(const std::filesystem::path& weftd,
       return not_started(weftd.string() + " is not ready after " +
                          std::to_string(options_.start_timeout.count()) + " ms; it said:\n" +
                          last_log_lines());
-    char events[4096];
-    (void)!::read(watch.get(), events, sizeof events);
   }
 }
 

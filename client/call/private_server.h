@@ -18,6 +18,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -38,8 +39,11 @@ struct PrivateServerOptions {
 
 class PrivateServer {
  public:
-  static Result<std::unique_ptr<PrivateServer>> start(const PrivateServerOptions& options,
-                                                      std::stop_token stop);
+  // Returns when the server listens. `meanwhile` is called while it starts, and may connect to the
+  // address, but not call yet.
+  static Result<std::unique_ptr<PrivateServer>> start(
+      const PrivateServerOptions& options, std::stop_token stop,
+      const std::function<void(const std::string& address)>& meanwhile = {});
   ~PrivateServer();
   PrivateServer(const PrivateServer&) = delete;
   PrivateServer& operator=(const PrivateServer&) = delete;
@@ -51,14 +55,18 @@ class PrivateServer {
   std::string last_log_lines() const;
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   explicit PrivateServer(const PrivateServerOptions& options) : options_(options) {}
   Result<void> make_folder();
   Result<void> spawn(const std::filesystem::path& weftd);
-  Result<void> wait_until_ready(const std::filesystem::path& weftd, std::stop_token stop);
+  Result<void> wait_until_ready(const std::filesystem::path& weftd, Clock::time_point deadline,
+                                std::stop_token stop);
 
   PrivateServerOptions options_;
   std::filesystem::path folder_;
   FileDescriptor input_;    // this process's end of its standard input
+  FileDescriptor output_;   // and of its standard output
   FileDescriptor process_;  // a pidfd: readable when it has ended
   pid_t pid_ = 0;
 };

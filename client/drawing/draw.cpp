@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/drawing/draw.h"
 
-#include <cairo-pdf.h>
-#include <cairo-svg.h>
-#include <cairo.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +8,7 @@
 #include <utility>
 
 #include "client/base/text.h"
+#include "client/drawing/cairo_library.h"
 #include "client/drawing/clip.h"
 #include "client/drawing/coloring.h"
 #include "client/drawing/colors.h"
@@ -24,10 +21,10 @@ namespace weft::client {
 namespace {
 
 struct DestroySurface {
-  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+  void operator()(cairo_surface_t* surface) const { loaded_cairo().cairo_surface_destroy(surface); }
 };
 struct DestroyContext {
-  void operator()(cairo_t* context) const { cairo_destroy(context); }
+  void operator()(cairo_t* context) const { loaded_cairo().cairo_destroy(context); }
 };
 using Surface = std::unique_ptr<cairo_surface_t, DestroySurface>;
 using Context = std::unique_ptr<cairo_t, DestroyContext>;
@@ -49,8 +46,8 @@ cairo_status_t write_to_file(void* file, const unsigned char* bytes, unsigned si
 }
 
 Surface make_image(double width, double height) {
-  return Surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width),
-                                            static_cast<int>(height)));
+  return Surface(loaded_cairo().cairo_image_surface_create(
+      CAIRO_FORMAT_RGB24, static_cast<int>(width), static_cast<int>(height)));
 }
 
 Surface make_surface(DrawFormat format, double width, double height, OutputFile& file) {
@@ -58,25 +55,27 @@ Surface make_surface(DrawFormat format, double width, double height, OutputFile&
     case DrawFormat::kPng:
       return make_image(width, height);
     case DrawFormat::kSvg:
-      return Surface(cairo_svg_surface_create_for_stream(write_to_file, &file, width, height));
+      return Surface(
+          loaded_cairo().cairo_svg_surface_create_for_stream(write_to_file, &file, width, height));
     case DrawFormat::kPdf:
       break;
   }
-  return Surface(cairo_pdf_surface_create_for_stream(write_to_file, &file, width, height));
+  return Surface(
+      loaded_cairo().cairo_pdf_surface_create_for_stream(write_to_file, &file, width, height));
 }
 
 void draw_image(cairo_t* cairo, Image image, const Canvas& canvas) {
-  const Surface surface(cairo_image_surface_create_for_data(
+  const Surface surface(loaded_cairo().cairo_image_surface_create_for_data(
       reinterpret_cast<unsigned char*>(image.pixels.data()), CAIRO_FORMAT_RGB24,
       static_cast<int>(image.width), static_cast<int>(image.height),
       static_cast<int>(image.width * sizeof(std::uint32_t))));
-  cairo_save(cairo);
-  cairo_scale(cairo, canvas.width() / static_cast<double>(image.width),
-              canvas.height() / static_cast<double>(image.height));
-  cairo_set_source_surface(cairo, surface.get(), 0, 0);
-  cairo_paint(cairo);
-  cairo_restore(cairo);
-  cairo_surface_flush(cairo_get_target(cairo));
+  loaded_cairo().cairo_save(cairo);
+  loaded_cairo().cairo_scale(cairo, canvas.width() / static_cast<double>(image.width),
+                             canvas.height() / static_cast<double>(image.height));
+  loaded_cairo().cairo_set_source_surface(cairo, surface.get(), 0, 0);
+  loaded_cairo().cairo_paint(cairo);
+  loaded_cairo().cairo_restore(cairo);
+  loaded_cairo().cairo_surface_flush(loaded_cairo().cairo_get_target(cairo));
 }
 
 // Counter-clockwise, whatever the order in the piece.
@@ -320,57 +319,61 @@ auto Drawing::painted(double pixel, std::span<const double> boxes,
   const double width = std::max(page.canvas.width(), std::ceil(below.least_width() + 2 * side));
   const double height = page.canvas.height() + std::ceil(below.height(width - 2 * side));
   Surface surface = make_surface(width, height);
-  const Context context(cairo_create(surface.get()));
+  const Context context(loaded_cairo().cairo_create(surface.get()));
   cairo_t* const cairo = page.cairo = context.get();
   set_color(cairo, kPaper);
-  cairo_paint(cairo);
-  cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
+  loaded_cairo().cairo_paint(cairo);
+  loaded_cairo().cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
 
-  cairo_save(cairo);
-  cairo_translate(cairo, std::floor((width - page.canvas.width()) / 2), 0);
-  cairo_rectangle(cairo, 0, 0, page.canvas.width(), page.canvas.height());
-  cairo_clip(cairo);
+  loaded_cairo().cairo_save(cairo);
+  loaded_cairo().cairo_translate(cairo, std::floor((width - page.canvas.width()) / 2), 0);
+  loaded_cairo().cairo_rectangle(cairo, 0, 0, page.canvas.width(), page.canvas.height());
+  loaded_cairo().cairo_clip(cairo);
   draw_mesh(page);
   Vectors(cairo, page.canvas, pixel).stroke_boxes(boxes, kBoxLine);
   draw_marks(page);
   draw_numbered_marks(page);
-  cairo_restore(cairo);
+  loaded_cairo().cairo_restore(cairo);
   below.draw(cairo, {side, page.canvas.height()}, width - 2 * side);
-  return Painted{std::move(surface), cairo_status(cairo)};
+  return Painted{std::move(surface), loaded_cairo().cairo_status(cairo)};
 }
 
 Result<void> Drawing::draw(DrawFormat format, std::span<const double> boxes,
                            OutputFile& file) const {
   if (auto drawable = check_coordinates(); !drawable) return drawable;
+  if (auto loaded = load_cairo(); !loaded) return loaded;
   const auto [surface, painting] = painted(
       format == DrawFormat::kPng ? 1 : 0.5, boxes,
       [&](double width, double height) { return make_surface(format, width, height, file); });
   cairo_status_t status = painting;
   if (status == CAIRO_STATUS_SUCCESS && format == DrawFormat::kPng)
-    status = cairo_surface_write_to_png_stream(surface.get(), write_to_file, &file);
-  cairo_surface_finish(surface.get());
-  if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface.get());
+    status = loaded_cairo().cairo_surface_write_to_png_stream(surface.get(), write_to_file, &file);
+  loaded_cairo().cairo_surface_finish(surface.get());
+  if (status == CAIRO_STATUS_SUCCESS) status = loaded_cairo().cairo_surface_status(surface.get());
   if (status != CAIRO_STATUS_SUCCESS)
-    return fail(ExitCode::kInternal,
-                file.target().string() + ": cannot be drawn: " + cairo_status_to_string(status));
+    return fail(ExitCode::kInternal, file.target().string() + ": cannot be drawn: " +
+                                         loaded_cairo().cairo_status_to_string(status));
   return {};
 }
 
 Result<Image> Drawing::image() const {
   if (auto drawable = check_coordinates(); !drawable) return tl::unexpected(drawable.error());
+  if (auto loaded = load_cairo(); !loaded) return tl::unexpected(loaded.error());
   const auto [surface, status] = painted(1, {}, make_image);
-  cairo_surface_flush(surface.get());
+  loaded_cairo().cairo_surface_flush(surface.get());
   if (status != CAIRO_STATUS_SUCCESS)
-    return fail(ExitCode::kInternal,
-                std::string("the mesh cannot be drawn: ") + cairo_status_to_string(status));
+    return fail(ExitCode::kInternal, std::string("the mesh cannot be drawn: ") +
+                                         loaded_cairo().cairo_status_to_string(status));
   Image image;
-  image.width = static_cast<std::size_t>(cairo_image_surface_get_width(surface.get()));
-  image.height = static_cast<std::size_t>(cairo_image_surface_get_height(surface.get()));
-  const unsigned char* row = cairo_image_surface_get_data(surface.get());
+  image.width =
+      static_cast<std::size_t>(loaded_cairo().cairo_image_surface_get_width(surface.get()));
+  image.height =
+      static_cast<std::size_t>(loaded_cairo().cairo_image_surface_get_height(surface.get()));
+  const unsigned char* row = loaded_cairo().cairo_image_surface_get_data(surface.get());
   for (std::size_t y = 0; y < image.height; ++y) {
     const auto* const pixels = reinterpret_cast<const std::uint32_t*>(row);
     image.pixels.insert(image.pixels.end(), pixels, pixels + image.width);
-    row += cairo_image_surface_get_stride(surface.get());
+    row += loaded_cairo().cairo_image_surface_get_stride(surface.get());
   }
   return image;
 }

@@ -76,7 +76,8 @@ class Drawing {
 
   // Draws what was added. `boxes` are min x, min y, max x, max y of each, in the unit of the mesh;
   // parts outside the page are cut off. Failures to write stay in the file; other errors:
-  // kUnreadableInput for a coordinate beyond kMostCoordinate, kInternal is cairo's.
+  // kUnreadableInput for a coordinate beyond kMostCoordinate; kInternal is cairo's, or there is
+  // none.
   Result<void> draw(DrawFormat format, std::span<const double> boxes, OutputFile& file) const;
   // The pixels of a PNG, without boxes. Errors: those of draw.
   Result<Image> image() const;

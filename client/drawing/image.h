@@ -18,7 +18,7 @@ struct Image {
   std::vector<std::uint32_t> pixels;
 };
 
-// The bytes of a PNG file. Errors: kInternal is cairo's.
+// The bytes of a PNG file. Errors: kInternal is cairo's, or there is none.
 Result<std::string> png_of(const Image& image);
 
 }  // namespace weft::client

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/drawing/legend.h"
 
-#include <cairo.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "client/drawing/cairo_library.h"
 #include "client/drawing/page_text.h"
 
 namespace weft::client {
@@ -90,14 +89,14 @@ std::vector<Tick> size_ticks(const ValueRange& range, double unit) {
 }  // namespace
 
 void put_mark(cairo_t* cairo, PagePoint at, double radius, double line_width, const Color& color) {
-  cairo_new_sub_path(cairo);
-  cairo_arc(cairo, at.x, at.y, radius, 0, 2 * std::numbers::pi);
+  loaded_cairo().cairo_new_sub_path(cairo);
+  loaded_cairo().cairo_arc(cairo, at.x, at.y, radius, 0, 2 * std::numbers::pi);
   set_color(cairo, kPaper, 0.8);
-  cairo_set_line_width(cairo, 2.4 * line_width);
-  cairo_stroke_preserve(cairo);
+  loaded_cairo().cairo_set_line_width(cairo, 2.4 * line_width);
+  loaded_cairo().cairo_stroke_preserve(cairo);
   set_color(cairo, color);
-  cairo_set_line_width(cairo, line_width);
-  cairo_stroke(cairo);
+  loaded_cairo().cairo_set_line_width(cairo, line_width);
+  loaded_cairo().cairo_stroke(cairo);
 }
 
 void Legend::add_scale_bar(double scale, double most, DrawnUnit unit) {
@@ -113,13 +112,13 @@ void Legend::add_scale_bar(double scale, double most, DrawnUnit unit) {
                       const double left = at.x + (width - bar) / 2;
                       const double bottom = at.y + em * (kBarTop + kBarHeight);
                       const double tooth = em * 0.35;
-                      cairo_move_to(cairo, left, bottom - tooth);
-                      cairo_line_to(cairo, left, bottom);
-                      cairo_line_to(cairo, left + bar, bottom);
-                      cairo_line_to(cairo, left + bar, bottom - tooth);
+                      loaded_cairo().cairo_move_to(cairo, left, bottom - tooth);
+                      loaded_cairo().cairo_line_to(cairo, left, bottom);
+                      loaded_cairo().cairo_line_to(cairo, left + bar, bottom);
+                      loaded_cairo().cairo_line_to(cairo, left + bar, bottom - tooth);
                       set_color(cairo, kBoundaryInk);
-                      cairo_set_line_width(cairo, em * 0.1);
-                      cairo_stroke(cairo);
+                      loaded_cairo().cairo_set_line_width(cairo, em * 0.1);
+                      loaded_cairo().cairo_stroke(cairo);
                       put_text(cairo, {left + bar / 2, at.y + em * kBelow}, text,
                                {.height = em * kSmall, .align = Align::kCentre});
                     }});
@@ -161,35 +160,35 @@ void Legend::add_value_bar(const Coloring& coloring, DrawnUnit unit, bool mean) 
   const double indent = text_width(title, em_) + em_;
   const double width = kValueBarWidth * em_;
   const double overhang = 2 * em_;  // of the last number
-  parts_.push_back({indent + width + overhang, [=, em = em_](cairo_t* cairo, PagePoint at) {
-                      const double left = at.x + indent;
-                      const double top = at.y + em * kBarTop;
-                      put_text(cairo, {at.x, at.y + em * kBaseline}, title, {.height = em});
-                      cairo_pattern_t* const colors =
-                          cairo_pattern_create_linear(left, 0, left + width, 0);
-                      constexpr int kStops = 32;
-                      for (int i = 0; i <= kStops; ++i) {
-                        const double t = static_cast<double>(i) / kStops;
-                        const Color c = viridis(t);
-                        cairo_pattern_add_color_stop_rgb(colors, t, c.red, c.green, c.blue);
-                      }
-                      cairo_rectangle(cairo, left, top, width, em * kBarHeight);
-                      cairo_set_source(cairo, colors);
-                      cairo_fill(cairo);
-                      cairo_pattern_destroy(colors);
-                      const double bottom = top + em * kBarHeight;
-                      for (const Tick& tick : ticks) {
-                        const double x =
-                            left + (tick.value - range.low) / (range.high - range.low) * width;
-                        cairo_move_to(cairo, x, bottom);
-                        cairo_line_to(cairo, x, bottom + em * 0.25);
-                        set_color(cairo, kBoundaryInk);
-                        cairo_set_line_width(cairo, em * 0.08);
-                        cairo_stroke(cairo);
-                        put_text(cairo, {x, at.y + em * kBelow}, tick.text,
-                                 {.height = em * kSmall, .align = Align::kCentre});
-                      }
-                    }});
+  parts_.push_back(
+      {indent + width + overhang, [=, em = em_](cairo_t* cairo, PagePoint at) {
+         const double left = at.x + indent;
+         const double top = at.y + em * kBarTop;
+         put_text(cairo, {at.x, at.y + em * kBaseline}, title, {.height = em});
+         cairo_pattern_t* const colors =
+             loaded_cairo().cairo_pattern_create_linear(left, 0, left + width, 0);
+         constexpr int kStops = 32;
+         for (int i = 0; i <= kStops; ++i) {
+           const double t = static_cast<double>(i) / kStops;
+           const Color c = viridis(t);
+           loaded_cairo().cairo_pattern_add_color_stop_rgb(colors, t, c.red, c.green, c.blue);
+         }
+         loaded_cairo().cairo_rectangle(cairo, left, top, width, em * kBarHeight);
+         loaded_cairo().cairo_set_source(cairo, colors);
+         loaded_cairo().cairo_fill(cairo);
+         loaded_cairo().cairo_pattern_destroy(colors);
+         const double bottom = top + em * kBarHeight;
+         for (const Tick& tick : ticks) {
+           const double x = left + (tick.value - range.low) / (range.high - range.low) * width;
+           loaded_cairo().cairo_move_to(cairo, x, bottom);
+           loaded_cairo().cairo_line_to(cairo, x, bottom + em * 0.25);
+           set_color(cairo, kBoundaryInk);
+           loaded_cairo().cairo_set_line_width(cairo, em * 0.08);
+           loaded_cairo().cairo_stroke(cairo);
+           put_text(cairo, {x, at.y + em * kBelow}, tick.text,
+                    {.height = em * kSmall, .align = Align::kCentre});
+         }
+       }});
 }
 
 void Legend::add_regions(const Coloring& coloring) {
@@ -210,10 +209,10 @@ void Legend::add_regions(const Coloring& coloring) {
                       put_text(cairo, {at.x, baseline}, title, {.height = em});
                       double x = at.x + text_width(title, em) + em;
                       for (const auto& [text, color] : swatches) {
-                        cairo_rectangle(cairo, x, at.y + em * kBarTop, em * kBarHeight,
-                                        em * kBarHeight);
+                        loaded_cairo().cairo_rectangle(cairo, x, at.y + em * kBarTop,
+                                                       em * kBarHeight, em * kBarHeight);
                         set_color(cairo, color);
-                        cairo_fill(cairo);
+                        loaded_cairo().cairo_fill(cairo);
                         put_text(cairo, {x + 1.3 * em, baseline}, text, {.height = em});
                         x += swatch_width(text);
                       }

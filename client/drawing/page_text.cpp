@@ -1,41 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/drawing/page_text.h"
 
-#include <cairo.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 
 #include "client/base/text.h"
+#include "client/drawing/cairo_library.h"
 
 namespace weft::client {
 
 void set_color(cairo_t* cairo, const Color& color, double alpha) {
-  cairo_set_source_rgba(cairo, color.red, color.green, color.blue, alpha);
+  loaded_cairo().cairo_set_source_rgba(cairo, color.red, color.green, color.blue, alpha);
 }
 
 void put_text(cairo_t* cairo, PagePoint at, const std::string& text, const TextStyle& style) {
-  cairo_select_font_face(cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-  cairo_set_font_size(cairo, style.height);
+  loaded_cairo().cairo_select_font_face(cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
+                                        CAIRO_FONT_WEIGHT_NORMAL);
+  loaded_cairo().cairo_set_font_size(cairo, style.height);
   double x = at.x;
   if (style.align == Align::kCentre) {
     cairo_text_extents_t extents;
-    cairo_text_extents(cairo, text.c_str(), &extents);
+    loaded_cairo().cairo_text_extents(cairo, text.c_str(), &extents);
     x -= extents.x_bearing + extents.width / 2;
   }
-  cairo_move_to(cairo, x, at.y);
+  loaded_cairo().cairo_move_to(cairo, x, at.y);
   if (style.halo) {
-    cairo_text_path(cairo, text.c_str());
+    loaded_cairo().cairo_text_path(cairo, text.c_str());
     set_color(cairo, kPaper, 0.85);
-    cairo_set_line_width(cairo, style.height / 4);
-    cairo_stroke(cairo);
-    cairo_move_to(cairo, x, at.y);
+    loaded_cairo().cairo_set_line_width(cairo, style.height / 4);
+    loaded_cairo().cairo_stroke(cairo);
+    loaded_cairo().cairo_move_to(cairo, x, at.y);
   }
   set_color(cairo, style.color);
-  cairo_show_text(cairo, text.c_str());
-  cairo_new_path(cairo);
+  loaded_cairo().cairo_show_text(cairo, text.c_str());
+  loaded_cairo().cairo_new_path(cairo);
 }
 
 double text_width(const std::string& text, double height) {

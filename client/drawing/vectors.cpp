@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/drawing/vectors.h"
 
-#include <cairo.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "client/drawing/cairo_library.h"
 #include "client/drawing/page_text.h"
 
 namespace weft::client {
@@ -41,16 +40,16 @@ Vectors::Vectors(cairo_t* cairo, const Canvas& canvas, double pixel)
 
 void Vectors::stroke(std::span<const Line> lines, const Color& color, double alpha, double width) {
   set_color(cairo_, color, alpha);
-  cairo_set_line_width(cairo_, width);
+  loaded_cairo().cairo_set_line_width(cairo_, width);
   std::size_t count = 0;
   for (const Line& line : lines) {
     const auto seen = clipped(box_, line.a, line.b);
     if (!seen) continue;
-    cairo_move_to(cairo_, seen->first.x, seen->first.y);
-    cairo_line_to(cairo_, seen->second.x, seen->second.y);
-    if (++count % kMostOfAPath == 0) cairo_stroke(cairo_);
+    loaded_cairo().cairo_move_to(cairo_, seen->first.x, seen->first.y);
+    loaded_cairo().cairo_line_to(cairo_, seen->second.x, seen->second.y);
+    if (++count % kMostOfAPath == 0) loaded_cairo().cairo_stroke(cairo_);
   }
-  cairo_stroke(cairo_);
+  loaded_cairo().cairo_stroke(cairo_);
 }
 
 void Vectors::stroke_inner_edges(std::span<const DrawnTriangle> triangles, bool over_colors) {
@@ -112,12 +111,12 @@ void Vectors::fill_one_color(std::span<const DrawnTriangle> triangles,
   for (const std::uint32_t t : some) {
     const ClippedTriangle seen(box_, on_page(triangles[t], canvas_));
     if (seen.corners().size() < 3) continue;
-    cairo_new_sub_path(cairo_);
-    for (const PagePoint& p : seen.corners()) cairo_line_to(cairo_, p.x, p.y);
-    cairo_close_path(cairo_);
-    if (++count % kMostOfAPath == 0) cairo_fill(cairo_);
+    loaded_cairo().cairo_new_sub_path(cairo_);
+    for (const PagePoint& p : seen.corners()) loaded_cairo().cairo_line_to(cairo_, p.x, p.y);
+    loaded_cairo().cairo_close_path(cairo_);
+    if (++count % kMostOfAPath == 0) loaded_cairo().cairo_fill(cairo_);
   }
-  cairo_fill(cairo_);
+  loaded_cairo().cairo_fill(cairo_);
 }
 
 void Vectors::fill(std::span<const DrawnTriangle> triangles, const Coloring& coloring) {
@@ -144,9 +143,9 @@ void Vectors::fill(std::span<const DrawnTriangle> triangles, const Coloring& col
       one.triangles.push_back(t);
     }
   }
-  cairo_set_antialias(cairo_, CAIRO_ANTIALIAS_NONE);  // no seams between neighbours
+  loaded_cairo().cairo_set_antialias(cairo_, CAIRO_ANTIALIAS_NONE);  // no seams between neighbours
   for (const auto& [key, one] : colors) fill_one_color(triangles, one.triangles, one.color);
-  cairo_set_antialias(cairo_, CAIRO_ANTIALIAS_DEFAULT);
+  loaded_cairo().cairo_set_antialias(cairo_, CAIRO_ANTIALIAS_DEFAULT);
 }
 
 double mean_inner_edge(std::span<const DrawnTriangle> triangles, const Canvas& canvas) {

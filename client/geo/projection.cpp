@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/geo/projection.h"
 
-#include <proj.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "client/base/text.h"
+#include "client/geo/proj_library.h"
 
 namespace weft::client {
 namespace {
 
 struct Destroy {
-  void operator()(PJ_CONTEXT* context) const { proj_context_destroy(context); }
-  void operator()(PJ* pj) const { proj_destroy(pj); }
+  void operator()(PJ_CONTEXT* context) const { loaded_proj().proj_context_destroy(context); }
+  void operator()(PJ* pj) const { loaded_proj().proj_destroy(pj); }
 };
 using Context = std::unique_ptr<PJ_CONTEXT, Destroy>;
 using Pj = std::unique_ptr<PJ, Destroy>;
@@ -24,13 +23,13 @@ constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 // What is wrong with the units of the system's axes; empty if both are metres.
 std::string fault_of_unit(PJ_CONTEXT* context, const PJ* crs) {
-  const Pj system(proj_crs_get_coordinate_system(context, crs));
+  const Pj system(loaded_proj().proj_crs_get_coordinate_system(context, crs));
   if (!system) return "has no axes";
   for (int axis = 0; axis < 2; ++axis) {
     double factor = 0;
     const char* unit = nullptr;
-    if (!proj_cs_get_axis_info(context, system.get(), axis, nullptr, nullptr, nullptr, &factor,
-                               &unit, nullptr, nullptr))
+    if (!loaded_proj().proj_cs_get_axis_info(context, system.get(), axis, nullptr, nullptr, nullptr,
+                                             &factor, &unit, nullptr, nullptr))
       return "has no axes";
     if (factor != 1)
       return std::string("is in units of the ") + unit +
@@ -57,31 +56,35 @@ Result<Projection> Projection::make(const std::string& name) {
   const auto refuse = [&name](const std::string& why) {
     return fail(ExitCode::kUsage, in_quotes(name) + " " + why);
   };
+  if (auto loaded = load_proj(); !loaded) return tl::unexpected(loaded.error());
   auto proj = std::make_unique<Proj>();
   proj->name = name;
-  proj->context.reset(proj_context_create());
+  proj->context.reset(loaded_proj().proj_context_create());
   PJ_CONTEXT* const context = proj->context.get();
-  proj_log_level(context, PJ_LOG_NONE);
+  loaded_proj().proj_log_level(context, PJ_LOG_NONE);
   const bool parameters = name.find("+proj") != std::string::npos;
   const bool typed = name.find("+type=crs") != std::string::npos;
-  const Pj crs(proj_create(context, (parameters && !typed ? name + " +type=crs" : name).c_str()));
+  const Pj crs(loaded_proj().proj_create(
+      context, (parameters && !typed ? name + " +type=crs" : name).c_str()));
   if (!crs) return refuse("is not a projection that PROJ knows");
-  if (proj_get_type(crs.get()) != PJ_TYPE_PROJECTED_CRS)
+  if (loaded_proj().proj_get_type(crs.get()) != PJ_TYPE_PROJECTED_CRS)
     return refuse("is not a projected coordinate reference system, such as EPSG:32618");
   if (const std::string fault = fault_of_unit(context, crs.get()); !fault.empty())
     return refuse(fault);
-  const Pj ground(proj_crs_get_geodetic_crs(context, crs.get()));
-  const Pj ellipsoid(proj_get_ellipsoid(context, crs.get()));
+  const Pj ground(loaded_proj().proj_crs_get_geodetic_crs(context, crs.get()));
+  const Pj ellipsoid(loaded_proj().proj_get_ellipsoid(context, crs.get()));
   double semi_minor = 0;
-  if (!ellipsoid || !proj_ellipsoid_get_parameters(context, ellipsoid.get(), &proj->semi_major,
-                                                   &semi_minor, nullptr, nullptr))
+  if (!ellipsoid || !loaded_proj().proj_ellipsoid_get_parameters(
+                        context, ellipsoid.get(), &proj->semi_major, &semi_minor, nullptr, nullptr))
     return refuse("has no ellipsoid");
   const double ratio = semi_minor / proj->semi_major;
   proj->eccentricity2 = 1 - ratio * ratio;
-  const Pj as_named(
-      ground ? proj_create_crs_to_crs_from_pj(context, ground.get(), crs.get(), nullptr, nullptr)
-             : nullptr);
-  if (as_named) proj->from_degrees.reset(proj_normalize_for_visualization(context, as_named.get()));
+  const Pj as_named(ground ? loaded_proj().proj_create_crs_to_crs_from_pj(
+                                 context, ground.get(), crs.get(), nullptr, nullptr)
+                           : nullptr);
+  if (as_named)
+    proj->from_degrees.reset(
+        loaded_proj().proj_normalize_for_visualization(context, as_named.get()));
   if (!proj->from_degrees) return refuse("is not a projection that PROJ can apply");
   return Projection(std::move(proj));
 }
@@ -96,14 +99,14 @@ const std::string& Projection::name() const {
 }
 
 Point Projection::forward(Point lonlat) const {
-  const PJ_COORD out =
-      proj_trans(proj_->from_degrees.get(), PJ_FWD, proj_coord(lonlat.x, lonlat.y, 0, HUGE_VAL));
+  const PJ_COORD out = loaded_proj().proj_trans(
+      proj_->from_degrees.get(), PJ_FWD, loaded_proj().proj_coord(lonlat.x, lonlat.y, 0, HUGE_VAL));
   return {out.xy.x, out.xy.y};
 }
 
 Point Projection::inverse(Point metres) const {
-  const PJ_COORD out =
-      proj_trans(proj_->from_degrees.get(), PJ_INV, proj_coord(metres.x, metres.y, 0, HUGE_VAL));
+  const PJ_COORD out = loaded_proj().proj_trans(
+      proj_->from_degrees.get(), PJ_INV, loaded_proj().proj_coord(metres.x, metres.y, 0, HUGE_VAL));
   return {out.xy.x, out.xy.y};
 }
 

@@ -25,8 +25,8 @@ class Projection {
 
   // `name` is what PROJ takes for a projected coordinate reference system, such as EPSG:32618, or
   // parameters such as "+proj=lcc +lat_1=35 +lat_0=35 +lon_0=-72". Errors (kUsage): PROJ does not
-  // know it, it is not a projected system, its unit is not the metre. The message begins with the
-  // name in quotes.
+  // know it, it is not a projected system, its unit is not the metre; the message begins with the
+  // name in quotes. kInternal: PROJ cannot be loaded.
   static Result<Projection> make(const std::string& name);
 
   Projection(Projection&&) noexcept;

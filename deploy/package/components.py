@@ -15,14 +15,28 @@ def output_of(*command):
                           text=True).stdout
 
 
-def loaded_by(program):
-    """The shared libraries that a program loads, directly or not: name to path."""
+def linked_with(file):
+    """The shared libraries that the loader brings along with a program or library: name to path."""
     found = {}
-    for line in output_of("ldd", program).splitlines():
+    for line in output_of("ldd", file).splitlines():
         if words := re.match(r"\s*(\S+) => (\S+)", line):
             if words[2] == "not":
-                raise FileNotFoundError(f"{program} needs {words[1]}, which is nowhere")
+                raise FileNotFoundError(f"{file} needs {words[1]}, which is nowhere")
             found[words[1]] = pathlib.Path(words[2])
+    return found
+
+
+def loaded_by(program):
+    """The shared libraries that a program of a build loads, directly or not, at its start or when it
+    needs them: name to path. Which it loads later the build has noted: loader/CMakeLists.txt. GDAL is
+    not among these, because packages only suggest it."""
+    found = linked_with(program)
+    noted = program.parent / "loaded_later" / program.name
+    for name in noted.read_text().split() if noted.exists() else []:
+        known = re.search(rf"^\s*{re.escape(name)} .* => (\S+)$", output_of("/sbin/ldconfig", "-p"), re.M)
+        if not known:
+            raise FileNotFoundError(f"{program} loads {name}, which is nowhere")
+        found |= {name: pathlib.Path(known[1])} | linked_with(known[1])
     return found
 
 

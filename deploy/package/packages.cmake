@@ -28,7 +28,11 @@ set(CPACK_DEBIAN_WEFT_DESCRIPTION "Meshes of planar domains, with guaranteed ang
 Makes triangle meshes for simulation, by a server, or one that it starts itself if
 weftd is installed. Reads and writes the usual formats of domains and meshes.")
 set(CPACK_DEBIAN_WEFT_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_WEFT_PACKAGE_DEPENDS fonts-dejavu-core) # of drawings
+# Fonts of drawings, and libraries that dpkg-shlibdeps does not see, because they are loaded when they are
+# needed.
+get_property(loaded_later GLOBAL PROPERTY weft_packages_of_weft)
+list(JOIN loaded_later ", " loaded_later)
+set(CPACK_DEBIAN_WEFT_PACKAGE_DEPENDS "fonts-dejavu-core, ${loaded_later}")
 set(CPACK_DEBIAN_WEFT_PACKAGE_RECOMMENDS weftd)
 set(CPACK_DEBIAN_WEFT_PACKAGE_SUGGESTS libgdal32) # of rasters and vectors; 160 MB with what it needs
 
@@ -37,7 +41,10 @@ set(CPACK_DEBIAN_WEFTD_DESCRIPTION "Meshes of planar domains, with guaranteed an
 Refines on all cores, streams meshes over gRPC while it does, and keeps jobs. Comes
 with a service for systemd, which listens on 127.0.0.1:7421.")
 set(CPACK_DEBIAN_WEFTD_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_WEFTD_PACKAGE_DEPENDS "systemd | systemd-standalone-sysusers | systemd-sysusers")
+get_property(loaded_later GLOBAL PROPERTY weft_packages_of_weftd)
+list(JOIN loaded_later ", " loaded_later)
+set(CPACK_DEBIAN_WEFTD_PACKAGE_DEPENDS
+  "systemd | systemd-standalone-sysusers | systemd-sysusers, ${loaded_later}")
 set(CPACK_DEBIAN_WEFTD_PACKAGE_SUGGESTS weft)
 set(scripts ${CMAKE_CURRENT_SOURCE_DIR}/debian)
 set(CPACK_DEBIAN_WEFTD_PACKAGE_CONTROL_EXTRA

@@ -10,7 +10,7 @@ namespace weft::server {
 enum class StoreErrorKind {
   kUnavailable,  // no connection, a time-out, a restart: the same call may succeed later
   kFull,         // the disk is full
-  kBroken,       // the data is damaged, or of another version
+  kBroken,  // the data is damaged or of another version, or there is no library to read it with
 };
 
 struct StoreError {

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "client/formats/mesh_formats.h"
+#include "client/geo/projection.h"
 #include "tests/client/support/sample_mesh.h"
 #include "tests/client/support/temp_folder.h"
 #include "tests/client/support/weft_process.h"
@@ -217,6 +218,28 @@ TEST_F(CommandLine, ShowsWhyThePrivateServerDidNotStart) {
   EXPECT_EQ(run(mesh_to("m.vtu"), {"FAKE_WEFTD=die"}), 6);
   EXPECT_NE(err().find("no luck today"), std::string::npos);
   expect_nothing_left();
+}
+
+// A file that is no library stands in for one that is missing: the loader looks there first.
+TEST_F(CommandLine, NamesThePackageOfALibraryThatItCannotLoad) {
+  std::ofstream(folder_ / "libcairo.so.2") << "no library";
+  const std::string path = "LD_LIBRARY_PATH=" + folder_.path().string();
+  EXPECT_EQ(run(mesh_to("m.vtu"), {path}), 0) << err();
+  Words words = mesh_to("n.vtu");
+  words.insert(words.end(), {"--draw", (folder_ / "out" / "d.png").string()});
+  EXPECT_EQ(run(words, {path}), 1) << err();
+  EXPECT_NE(err().find(" (Debian's package libcairo2); weft draws with cairo\n"), std::string::npos)
+      << err();
+  EXPECT_EQ(left_in("out"), Words{"m.vtu"});
+  if (!Projection::available()) return;
+  std::ofstream(folder_ / "libproj.so.25") << "no library";
+  words = mesh_to("n.vtu");
+  words.push_back("--lonlat");
+  EXPECT_EQ(run(words, {path}), 1) << err();
+  EXPECT_NE(
+      err().find(" (Debian's package libproj25); weft projects longitude and latitude with PROJ\n"),
+      std::string::npos)
+      << err();
 }
 
 TEST_F(CommandLine, WritesNothingWhenTheServerIsKilledMidStream) {

@@ -10,7 +10,8 @@ seed of a hole, are the domain.
 
 Rasters become values at the vertices of a mesh.
 
-Needs Debian's python3-gdal, python3-gmsh, python3-numpy, python3-pyshp and python3-shapely.
+Needs Debian's python3-gdal, python3-gmsh, python3-netgen, python3-numpy, python3-pyshp and
+python3-shapely.
 """
 
 import os
@@ -24,6 +25,8 @@ import numpy
 import shapefile
 import shapely
 import shapely.wkt
+from netgen import meshing
+from netgen.geom2d import SplineGeometry
 from osgeo import gdal, ogr
 from shapely.geometry import LineString, MultiLineString, MultiPolygon, Point, Polygon
 from shapely.ops import polygonize, unary_union
@@ -119,6 +122,19 @@ def gmsh_model(triangles, version, binary=0):
     return write
 
 
+def netgen_mesh(path):
+    """Boundary conditions by name, one for each loop, and two domains, of which one has a name."""
+    geometry = SplineGeometry()
+    for points, domain, name in ((OUTER, 1, "outer wall"), (HOLE, 1, "hole"), (BESIDE, 2, "beside")):
+        corners = [geometry.AppendPoint(*point) for point in points]
+        for a, b in zip(corners, corners[1:] + corners[:1]):
+            geometry.Append(["line", a, b], leftdomain=domain, rightdomain=0, bc=name)
+    geometry.SetMaterial(1, "plate")
+    meshing.SetMessageImportance(0)
+    geometry.GenerateMesh(maxh=2.5).Save(path)
+
+
+NETGEN = "Netgen 6.2.1905"
 GMSH = f"Gmsh {gmsh.__version__}"
 GDAL = f"GDAL {gdal.__version__}"
 REGIONS = {7: PLATE.area, 8: 8.0}
@@ -153,6 +169,7 @@ CASES = [  # file, kind, writer, what writes, what is expected
     # References are the numbers of curves and surfaces. The hole's curves are in no group: not there.
     ("d.mesh", "", GMSH, gmsh_model(True, 4.1), {"markers": {0, 1, 2, 3, 4, 9, 10, 11},
                                                  "regions": {1: PLATE.area, 2: 8.0}}),
+    ("d.vol", "", NETGEN, netgen_mesh, {"markers": {1, 2, 3}, "regions": {1: PLATE.area, 2: 8.0}}),
     ("d.gpkg", "", GDAL, ogr_file("GPKG"), OF_FIELDS),
     ("d.fgb", "", GDAL, ogr_file("FlatGeobuf"), OF_FIELDS),
     ("d.kml", "", GDAL, ogr_file("LIBKML"), OF_FIELDS),

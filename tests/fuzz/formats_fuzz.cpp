@@ -55,6 +55,8 @@ const std::vector<Format>& formats() {
       {Kind::kMesh, {".2dm"}},
       {Kind::kMesh, {".nc"}},
       {Kind::kMesh, {".mesh"}},
+      {Kind::kMesh, {".vol"}},
+      {Kind::kMesh, {".mfem"}},
   };
   return all;
 }

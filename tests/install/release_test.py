@@ -3,11 +3,14 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
 
+import jinja2
 import pytest
+import yaml
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ["WEFT_BUILD"])
@@ -46,6 +49,25 @@ def test_nothing_is_released_into_a_folder_with_something_else(tree, tmp_path):
     assert (done.returncode, done.stderr) == (1, f"release.sh: {tmp_path} is not empty\n")
 
 
+def test_the_changelog_begins_with_the_version_that_is_released():
+    version, = re.findall(r"^project\(weft VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(), re.M)
+    headings = re.findall(r"^## (\S+)", (ROOT / "CHANGELOG.md").read_text(), re.M)
+    assert headings[0] == version
+
+
+def test_the_recipe_for_conda_is_of_this_version_and_brings_what_is_loaded_later():
+    version, = re.findall(r"^project\(weft VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(), re.M)
+    text = (ROOT / "deploy/conda/meta.yaml").read_text()
+    strict = jinja2.Environment(undefined=jinja2.StrictUndefined)
+    recipe = yaml.safe_load(strict.from_string(text).render(compiler=lambda language: language))
+    assert recipe["package"] == {"name": "weft", "version": version}
+    assert (ROOT / recipe["about"]["license_file"]).is_file()
+    needs = recipe["requirements"]
+    assert set(needs["run"]) - {"fonts-conda-forge"} <= set(needs["host"])
+    later = "".join((BUILD / "loaded_later" / program).read_text() for program in ("weft", "weftd"))
+    assert {re.sub(r"^lib(?!pq)|[.]so.*", "", name) for name in later.split()} <= set(needs["run"])
+
+
 @pytest.fixture(scope="module")
 def bill():
     return bill_of_materials.bill(BUILD)
@@ -70,9 +92,10 @@ def test_the_bill_has_what_the_programs_are_made_of(bill, program):
     on, = (each["dependsOn"] for each in bill["dependencies"] if each["ref"] == program)
     by_reference = {each["bom-ref"]: each for each in bill["components"]}
     names = {by_reference[reference]["name"] for reference in on}
-    assert {"libc6", "libprotobuf32", "libgrpc-dev"} <= names
+    assert {"libc6", "libprotobuf-dev", "libgrpc-dev"} <= names
     assert ("libcgal-dev" in names) == (program == "weftd")
-    assert ("libcairo2" in names) == (program == "weft")
+    assert ("libcairo2" in names) == ("libproj25" in names) == (program == "weft")
+    assert ("libpq5" in names) == (program == "weftd")  # loaded when it is needed, as are those two
     loaded = components.packages_of(components.loaded_by(BUILD / program).values())
     assert {package.name for package in loaded} <= names
 

@@ -315,6 +315,15 @@ def test_markers_that_the_header_of_a_poly_denies_are_a_warning(tmp_path):
         assert weft.Domain.read(path).markers.tolist() == [0, 0, 0]
 
 
+@pytest.mark.parametrize("name, told", [("urn:ogc:def:crs:EPSG::32618", True), ("EPSG:4326", False),
+                                        ("urn:ogc:def:crs:OGC:1.3:CRS84", False)])
+def test_a_coordinate_system_that_is_not_wgs_84_is_a_warning(recwarn, name, told):
+    weft.Domain.geojson({"type": "Polygon", "coordinates": [SQUARE],
+                         "crs": {"type": "name", "properties": {"name": name}}})
+    assert [str(warning.message) for warning in recwarn] == [
+        f"its crs is '{name}', not WGS 84 as GeoJSON's is; coordinates are taken as they are"][:told]
+
+
 def test_what_has_no_area_and_no_length_is_left_out_with_one_warning(client, digest_of, tmp_path):
     flat = [[1, 1], [2, 2], [2, 2], [1, 1]]
     path = tmp_path / "left.geojson"

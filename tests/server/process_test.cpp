@@ -224,6 +224,27 @@ TEST_F(TemporaryFolder, WritesTheBoundAddressesToThePortFile) {
   EXPECT_EQ(second, socket);
 }
 
+// Both streams are one pipe here, so that the lines' order says when it was written.
+TEST(Process, WritesTheBoundAddressesToTheStandardOutputOnceItListens) {
+  Weftd weftd({"--listen", "127.0.0.1:0", "--port-file", "-"});
+  const std::string address = weftd.address();
+  EXPECT_EQ(weftd.read_until(""), address + "\n");
+}
+
+// A file that is no library stands in for one that is missing: the loader looks there first.
+TEST_F(TemporaryFolder, NamesThePackageOfALibraryThatItCannotLoad) {
+  std::ofstream(folder_ / "libpq.so.5") << "no library";
+  const Environment environment{{"LD_LIBRARY_PATH", folder_.path().string()}};
+  Weftd without(kAnyPort, environment);
+  EXPECT_FALSE(without.address().empty());
+  Weftd weftd({"--listen", "127.0.0.1:0", "--store", "postgresql:///nowhere"}, environment);
+  const std::string line = weftd.read_until("event=cannot_open_store");
+  EXPECT_NE(line.find(" (Debian's package libpq5); weftd needs it for PostgreSQL"),
+            std::string::npos)
+      << line;
+  EXPECT_EQ(weftd.wait(), 4);
+}
+
 TEST_F(TemporaryFolder, WritesTheConsolesAddressToThePortFile) {
   const fs::path file = folder_ / "ports";
   Weftd weftd({"--listen", "127.0.0.1:0", "--port-file", file.string()},

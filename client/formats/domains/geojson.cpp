@@ -28,14 +28,28 @@ constexpr int kMaxJsonDepth = 64;
 
 class Reader {
  public:
-  explicit Reader(const std::string& name) : builder_(name) {}
+  explicit Reader(const std::string& name) : name_(name), builder_(name) {}
 
   Result<Domain> read(const Json& root) {
     if (auto read = object(root, "", {}); !read) return tl::unexpected(read.error());
-    return builder_.finish();
+    auto domain = builder_.finish();
+    if (const std::string system = other_system(root); domain && !system.empty())
+      domain->warnings.push_back(name_ + ": its crs is " + in_quotes(system) +
+                                 ", not WGS 84 as GeoJSON's is; coordinates are taken as they are");
+    return domain;
   }
 
  private:
+  // What the member `crs` names, unless that is WGS 84 or nothing.
+  static std::string other_system(const Json& root) {
+    const auto crs = root.find("crs");
+    if (crs == root.end() || crs->is_null()) return "";
+    static const Json::json_pointer kName("/properties/name");
+    if (!crs->contains(kName) || !crs->at(kName).is_string()) return shown(*crs);
+    const auto& text = crs->at(kName).get_ref<const std::string&>();
+    const std::string lower = lower_case(text);
+    return lower.ends_with("crs84") || lower.ends_with(":4326") ? "" : text;
+  }
   tl::unexpected<Error> bad(const std::string& path, const std::string& what) const {
     return builder_.bad(path, what);
   }
@@ -195,6 +209,7 @@ class Reader {
     return {};
   }
 
+  const std::string name_;
   GeometryBuilder builder_;
 };
 

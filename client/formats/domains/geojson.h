@@ -4,6 +4,8 @@
 //
 // What is meshed: see geometry_builder.h.
 //
+// A member `crs`, of GeoJSON before RFC 7946, that names another system than WGS 84 is a warning.
+//
 // Members of a Feature's `properties` that are used:
 //   marker       integer or text: marks the segments of the feature, or names their marker
 //   region       integer or text: id of the triangles inside the feature's polygons, or its name

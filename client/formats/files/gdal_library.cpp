@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/formats/files/gdal_library.h"
 
-#include <dlfcn.h>
-
 #include "client/base/text.h"
 
 namespace weft::client {
@@ -12,19 +10,10 @@ namespace {
 constexpr GIntBig kCacheBytes = GIntBig{128} << 20;
 
 Result<Gdal> load() {
-  const auto problem = [](const std::string& why) {
-    return fail(ExitCode::kUnreadableInput,
-                why + "; weft reads it with GDAL (Debian's package libgdal32)");
-  };
-  // Never closed, because GDAL's libraries have destructors that run at the end of the process.
-  void* library = ::dlopen(WEFT_GDAL_SONAME, RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) return problem(::dlerror());
-  Gdal gdal;
-#define WEFT_GDAL_LOAD(name)                                                  \
-  gdal.name = reinterpret_cast<decltype(gdal.name)>(::dlsym(library, #name)); \
-  if (gdal.name == nullptr) return problem(WEFT_GDAL_SONAME " has no function " #name);
-  WEFT_GDAL_FUNCTIONS(WEFT_GDAL_LOAD)
-#undef WEFT_GDAL_LOAD
+  auto loaded = load_functions<Gdal>(WEFT_GDAL_SONAME);
+  if (!loaded)
+    return fail(ExitCode::kUnreadableInput, loaded.error() + "; weft reads it with GDAL");
+  Gdal& gdal = *loaded;
   gdal.GDALAllRegister();
   if (gdal.CPLGetConfigOption("GDAL_CACHEMAX", nullptr) == nullptr)
     gdal.GDALSetCacheMax64(kCacheBytes);

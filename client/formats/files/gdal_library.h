@@ -14,6 +14,7 @@
 #include <string>
 
 #include "client/base/error.h"
+#include "loader/function_table.h"
 
 #define WEFT_GDAL_FUNCTIONS(EACH)           \
   EACH(CPLGetConfigOption)                  \
@@ -92,11 +93,7 @@
 
 namespace weft::client {
 
-struct Gdal {
-#define WEFT_GDAL_MEMBER(name) decltype(&::name) name = nullptr;
-  WEFT_GDAL_FUNCTIONS(WEFT_GDAL_MEMBER)
-#undef WEFT_GDAL_MEMBER
-};
+WEFT_FUNCTION_TABLE(Gdal, WEFT_GDAL_FUNCTIONS);
 
 // Errors (kUnreadableInput) name the library and why it is not loaded.
 Result<const Gdal*> load_gdal();

@@ -7,11 +7,18 @@
 // MFEM 4.7 and later read: each name is a set of one attribute.
 #pragma once
 
+#include <filesystem>
+
 #include "client/base/atomic_file.h"
+#include "client/base/error.h"
 #include "client/formats/mesh.h"
 
 namespace weft::client {
 
 void write_mfem(const MeshView& mesh, OutputFile& file);
+
+// An attribute is the region or the marker; a set names its attributes. Elements that are no
+// triangles, and curved or refined meshes, are an error.
+Result<Mesh> read_mfem(const std::filesystem::path& path);
 
 }  // namespace weft::client

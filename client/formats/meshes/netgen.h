@@ -8,11 +8,19 @@
 // without a marker count as marker 0. Coordinates have z = 0.
 #pragma once
 
+#include <filesystem>
+
 #include "client/base/atomic_file.h"
+#include "client/base/error.h"
 #include "client/formats/mesh.h"
 
 namespace weft::client {
 
 void write_netgen(const MeshView& mesh, OutputFile& file);
+
+// Names and numbers are those of bcnames and materials: "marker_7" is 7, another name gets the
+// smallest positive number that is free; what has no name is its number in the file. Sections of
+// other things are passed over; elements that are no triangles of three points are an error.
+Result<Mesh> read_netgen(const std::filesystem::path& path);
 
 }  // namespace weft::client

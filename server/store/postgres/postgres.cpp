@@ -61,6 +61,7 @@ Value Value::null_like(Value value) {
 }
 
 StoreResult<std::unique_ptr<Connection>> Connection::open(const Options& options) {
+  if (auto loaded = load_libpq(); !loaded) return tl::unexpected(loaded.error());
   const std::string timeout = std::to_string(options.connect_timeout.count());
   // Notices within half a minute that the server has vanished, even if nothing is sent.
   const std::array keywords{"dbname",
@@ -79,14 +80,15 @@ StoreResult<std::unique_ptr<Connection>> Connection::open(const Options& options
                           "4",
                           "30000",
                           static_cast<const char*>(nullptr)};
-  PGconn* const raw = PQconnectdbParams(keywords.data(), values.data(), 1);
+  PGconn* const raw = libpq().PQconnectdbParams(keywords.data(), values.data(), 1);
   std::unique_ptr<Connection> connection(new Connection(raw, options.statement_timeout));
-  if (PQstatus(raw) != CONNECTION_OK) {
-    return tl::unexpected(StoreError{StoreErrorKind::kUnavailable, one_line(PQerrorMessage(raw))});
+  if (libpq().PQstatus(raw) != CONNECTION_OK) {
+    return tl::unexpected(
+        StoreError{StoreErrorKind::kUnavailable, one_line(libpq().PQerrorMessage(raw))});
   }
-  PQsetnonblocking(raw, 1);
+  libpq().PQsetnonblocking(raw, 1);
   // libpq would print the server's notices to stderr.
-  PQsetNoticeProcessor(
+  libpq().PQsetNoticeProcessor(
       raw, [](void*, const char*) {}, nullptr);
   // A server that stops in the middle of a transaction must not hold its locks for ever.
   const std::string ms = std::to_string(options.statement_timeout.count());
@@ -102,16 +104,16 @@ StoreResult<std::unique_ptr<Connection>> Connection::open(const Options& options
 
 StoreError Connection::error(const PGresult* result) {
   const char* const state =
-      result == nullptr ? nullptr : PQresultErrorField(result, PG_DIAG_SQLSTATE);
+      result == nullptr ? nullptr : libpq().PQresultErrorField(result, PG_DIAG_SQLSTATE);
   if (state == nullptr) {
-    return {StoreErrorKind::kUnavailable, one_line(PQerrorMessage(connection_.get()))};
+    return {StoreErrorKind::kUnavailable, one_line(libpq().PQerrorMessage(connection_.get()))};
   }
   state_ = state;
-  return {kind_of(state), one_line(PQresultErrorMessage(result)) + " (" + state + ")"};
+  return {kind_of(state), one_line(libpq().PQresultErrorMessage(result)) + " (" + state + ")"};
 }
 
 StoreResult<void> Connection::execute(const char* sql) {
-  const auto result = answer(PQsendQuery(connection_.get(), sql) == 1, patience_);
+  const auto result = answer(libpq().PQsendQuery(connection_.get(), sql) == 1, patience_);
   if (!result) return tl::unexpected(result.error());
   return {};
 }
@@ -119,7 +121,7 @@ StoreResult<void> Connection::execute(const char* sql) {
 StoreResult<void> Connection::execute_patiently(const char* sql) {
   const std::string patiently = std::string("SET LOCAL statement_timeout = 0;") + sql;
   const auto result =
-      answer(PQsendQuery(connection_.get(), patiently.c_str()) == 1, std::chrono::hours(1));
+      answer(libpq().PQsendQuery(connection_.get(), patiently.c_str()) == 1, std::chrono::hours(1));
   if (!result) return tl::unexpected(result.error());
   return {};
 }
@@ -137,8 +139,9 @@ StoreResult<Result> Connection::run(const char* sql, std::initializer_list<Value
     bytes.push_back(value.null_ ? nullptr : copied ? value.number_ : there);
     sizes.push_back(value.size_);
   }
-  const int sent = PQsendQueryParams(connection_.get(), sql, static_cast<int>(values.size()),
-                                     types.data(), bytes.data(), sizes.data(), binary.data(), 1);
+  const int sent =
+      libpq().PQsendQueryParams(connection_.get(), sql, static_cast<int>(values.size()),
+                                types.data(), bytes.data(), sizes.data(), binary.data(), 1);
   return answer(sent == 1, patience_);
 }
 
@@ -151,17 +154,17 @@ StoreResult<Result> Connection::answer(bool sent, std::chrono::milliseconds pati
     return tl::unexpected(StoreError{StoreErrorKind::kUnavailable, std::move(message)});
   };
   state_.clear();
-  if (!sent) return give_up(one_line(PQerrorMessage(connection_.get())));
+  if (!sent) return give_up(one_line(libpq().PQerrorMessage(connection_.get())));
   Result last;
   while (true) {
-    const int unsent = PQflush(connection_.get());
-    if (unsent < 0) return give_up(one_line(PQerrorMessage(connection_.get())));
-    if (unsent == 0 && PQisBusy(connection_.get()) == 0) {
-      Result next(PQgetResult(connection_.get()));
+    const int unsent = libpq().PQflush(connection_.get());
+    if (unsent < 0) return give_up(one_line(libpq().PQerrorMessage(connection_.get())));
+    if (unsent == 0 && libpq().PQisBusy(connection_.get()) == 0) {
+      Result next(libpq().PQgetResult(connection_.get()));
       if (!next) break;
-      const bool was_error = last && PQresultStatus(last.get()) == PGRES_FATAL_ERROR;
+      const bool was_error = last && libpq().PQresultStatus(last.get()) == PGRES_FATAL_ERROR;
       if (!was_error) last = std::move(next);
-      if (PQstatus(connection_.get()) != CONNECTION_OK) break;
+      if (libpq().PQstatus(connection_.get()) != CONNECTION_OK) break;
       continue;
     }
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now());
@@ -169,11 +172,12 @@ StoreResult<Result> Connection::answer(bool sent, std::chrono::milliseconds pati
     pollfd wait{socket(), static_cast<short>(POLLIN | (unsent == 1 ? POLLOUT : 0)), 0};
     const int ready = poll(&wait, 1, static_cast<int>(left.count()));
     if (ready < 0 && errno != EINTR) return give_up(std::strerror(errno));
-    if (ready > 0 && (wait.revents & ~POLLOUT) != 0 && PQconsumeInput(connection_.get()) == 0) {
-      return give_up(one_line(PQerrorMessage(connection_.get())));
+    if (ready > 0 && (wait.revents & ~POLLOUT) != 0 &&
+        libpq().PQconsumeInput(connection_.get()) == 0) {
+      return give_up(one_line(libpq().PQerrorMessage(connection_.get())));
     }
   }
-  const ExecStatusType status = PQresultStatus(last.get());
+  const ExecStatusType status = libpq().PQresultStatus(last.get());
   if (status != PGRES_COMMAND_OK && status != PGRES_TUPLES_OK) {
     return tl::unexpected(error(last.get()));
   }
@@ -181,34 +185,34 @@ StoreResult<Result> Connection::answer(bool sent, std::chrono::milliseconds pati
 }
 
 std::optional<std::string> Connection::next_notification() {
-  if (PQconsumeInput(connection_.get()) == 0) broken_ = true;
-  PGnotify* const notification = PQnotifies(connection_.get());
+  if (libpq().PQconsumeInput(connection_.get()) == 0) broken_ = true;
+  PGnotify* const notification = libpq().PQnotifies(connection_.get());
   if (notification == nullptr) return std::nullopt;
   std::string payload = notification->extra;
-  PQfreemem(notification);
+  libpq().PQfreemem(notification);
   return payload;
 }
 
 bool Rows::next() {
-  return result_ && ++row_ < PQntuples(result_.get());
+  return result_ && ++row_ < libpq().PQntuples(result_.get());
 }
 
 bool Rows::null(int column) const {
-  return PQgetisnull(result_.get(), row_, column) == 1;
+  return libpq().PQgetisnull(result_.get(), row_, column) == 1;
 }
 
 std::int64_t Rows::integer(int column) const {
   const auto* const bytes =
-      reinterpret_cast<const unsigned char*>(PQgetvalue(result_.get(), row_, column));
+      reinterpret_cast<const unsigned char*>(libpq().PQgetvalue(result_.get(), row_, column));
   std::uint64_t number = 0;
-  for (int i = 0; i < PQgetlength(result_.get(), row_, column); ++i)
+  for (int i = 0; i < libpq().PQgetlength(result_.get(), row_, column); ++i)
     number = number << 8 | bytes[i];
   return static_cast<std::int64_t>(number);
 }
 
 std::string Rows::bytes(int column) const {
-  return {PQgetvalue(result_.get(), row_, column),
-          static_cast<std::size_t>(PQgetlength(result_.get(), row_, column))};
+  return {libpq().PQgetvalue(result_.get(), row_, column),
+          static_cast<std::size_t>(libpq().PQgetlength(result_.get(), row_, column))};
 }
 
 Transaction::Transaction(Connection& connection, Begin begin)
@@ -239,7 +243,7 @@ Result Transaction::take(const char* sql, std::initializer_list<Value> values) {
 
 std::int64_t Transaction::count(const Result& result) {
   if (!result) return 0;
-  const std::string_view digits = PQcmdTuples(result.get());
+  const std::string_view digits = libpq().PQcmdTuples(result.get());
   std::int64_t rows = 0;
   std::from_chars(digits.data(), digits.data() + digits.size(), rows);
   return rows;

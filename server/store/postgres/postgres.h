@@ -18,8 +18,6 @@
 //   return transaction.commit();
 #pragma once
 
-#include <libpq-fe.h>
-
 #include <chrono>
 #include <cstdint>
 #include <initializer_list>
@@ -28,6 +26,7 @@
 #include <string>
 #include <string_view>
 
+#include "server/store/postgres/libpq.h"
 #include "server/store/store_error.h"
 
 namespace weft::server::postgres {
@@ -62,10 +61,10 @@ class Value {
 };
 
 struct ClearResult {
-  void operator()(PGresult* result) const { PQclear(result); }
+  void operator()(PGresult* result) const { libpq().PQclear(result); }
 };
 struct FinishConnection {
-  void operator()(PGconn* connection) const { PQfinish(connection); }
+  void operator()(PGconn* connection) const { libpq().PQfinish(connection); }
 };
 using Result = std::unique_ptr<PGresult, ClearResult>;
 
@@ -83,10 +82,10 @@ class Connection {
   // The same without a time limit, for statements that run once.
   StoreResult<void> execute_patiently(const char* sql);
 
-  bool broken() const { return broken_ || PQstatus(connection_.get()) != CONNECTION_OK; }
+  bool broken() const { return broken_ || libpq().PQstatus(connection_.get()) != CONNECTION_OK; }
 
   // For notifications: the descriptor to wait for, and the payload of the next one that arrived.
-  int socket() const { return PQsocket(connection_.get()); }
+  int socket() const { return libpq().PQsocket(connection_.get()); }
   std::optional<std::string> next_notification();
 
  private:

@@ -39,7 +39,8 @@ class PostgresStore {
     std::chrono::milliseconds statement_timeout{30'000};
   };
 
-  // kUnavailable if the database does not respond, kBroken if it has a newer version.
+  // kUnavailable if the database does not respond, kBroken if it has a newer version or
+  // libpq cannot be loaded.
   static StoreResult<std::unique_ptr<JobStore>> open(Options options);
 };
 

@@ -96,8 +96,8 @@ TEST_F(ExchangeFormat, EveryFormatTakesAMeshThatIsEmpty) {
         "m.nc",   "m.slf", "m.npz",  "m.geojson", "m.obj",   "m.off", "m.ply", "m.stl",
         "m.xdmf", "m.exo", "m.disv", "m.foam",    "m.mesh",  "m.vol", "m.mfem"})
     EXPECT_TRUE(write_files(MeshView{}, folder_ / name)) << name;
-  for (const char* name :
-       {"m.vtu", "m.msh", "m.node", "m.14", "m.su2", "m.mesh", "m.npz", "m.obj", "m.off"}) {
+  for (const char* name : {"m.vtu", "m.msh", "m.node", "m.14", "m.su2", "m.mesh", "m.npz", "m.obj",
+                           "m.off", "m.vol", "m.mfem"}) {
     const auto back = read_mesh(folder_ / name);
     ASSERT_TRUE(back) << back.error().message;
     EXPECT_EQ(*back, Mesh{}) << name;

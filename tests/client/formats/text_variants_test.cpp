@@ -128,18 +128,18 @@ TEST_P(TextVariant, IsTheSameDomain) {
   EXPECT_EQ(domain->warnings, expected->warnings);
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, TextVariant,
-                         ::testing::Combine(::testing::Values("d.poly", "d.geojson", "d.json",
-                                                              "d.wkt", "d.csv", "features.csv",
-                                                              "m.node", "m.ele", "m.14", "m.grd",
-                                                              "m.gr3", "m.2dm", "m.su2", "m.mesh",
-                                                              "m.msh", "m.obj", "m.off"),
-                                            ::testing::Range(std::size_t{0}, std::size(kVariants))),
-                         [](const auto& info) {
-                           std::string name = std::get<0>(info.param);
-                           std::replace(name.begin(), name.end(), '.', '_');
-                           return name + "_" + kVariants[std::get<1>(info.param)].name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Formats, TextVariant,
+    ::testing::Combine(::testing::Values("d.poly", "d.geojson", "d.json", "d.wkt", "d.csv",
+                                         "features.csv", "m.node", "m.ele", "m.14", "m.grd",
+                                         "m.gr3", "m.2dm", "m.su2", "m.mesh", "m.msh", "m.obj",
+                                         "m.off", "m.vol", "m.mfem"),
+                       ::testing::Range(std::size_t{0}, std::size(kVariants))),
+    [](const auto& info) {
+      std::string name = std::get<0>(info.param);
+      std::replace(name.begin(), name.end(), '.', '_');
+      return name + "_" + kVariants[std::get<1>(info.param)].name;
+    });
 
 TEST(TextVariant, OfARasterIsTheSameRaster) {
   TempFolder folder;
@@ -159,7 +159,7 @@ TEST(TextVariant, WithoutTextIsRefusedAndSaysSo) {
   using namespace std::string_literals;
   TempFolder folder;
   for (const char* name : {"d.poly", "d.geojson", "d.wkt", "d.csv", "m.14", "m.2dm", "m.su2",
-                           "m.mesh", "m.msh", "m.obj", "m.off"}) {
+                           "m.mesh", "m.msh", "m.obj", "m.off", "m.vol", "m.mfem"}) {
     for (const std::string& bytes : {""s, "\xef\xbb\xbf"s, "\xff\xfe"s, "\xfe\xff"s, "\xff\xfe\n"s,
                                      "\xff\xfe\x00\xd8"s, "\xfe\xff\xdc\x00\xdc\x00"s}) {
       const auto path = folder.write(name, bytes);

@@ -18,7 +18,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -81,9 +80,8 @@ int main(int argc, char** argv) {
   const FakeServer server(script_for(behaviour), flag(argc, argv, "--listen"));
   if (!server.listens()) return 3;
   if (behaviour != "never-ready") {
-    const std::string ready = flag(argc, argv, "--port-file");
-    std::ofstream(ready + ".tmp") << "ready\n";
-    std::filesystem::rename(ready + ".tmp", ready);
+    std::puts(flag(argc, argv, "--listen").c_str());
+    std::fflush(stdout);
   }
   // Until standard input ends; SIGTERM does what it does by default.
   char dropped;

@@ -223,7 +223,22 @@ def read(json: Any, area: Callable[..., Any], file: str = "") -> dict[str, Any]:
     """The arguments of Domain; `area` makes an Area of a region and a bound; `file`: what warnings name."""
     reader = _Reader(file)
     reader.read(json, "", {})
-    return reader.domain(area)
+    domain = reader.domain(area)
+    if system := _other_system(json):
+        reader.warn(f"its crs is '{system}', not WGS 84 as GeoJSON's is; coordinates are taken as they are")
+    return domain
+
+
+def _other_system(json: dict[str, Any]) -> str:
+    """What the member `crs`, of GeoJSON before RFC 7946, names, unless that is WGS 84 or nothing."""
+    crs = json.get("crs")
+    if crs is None:
+        return ""
+    properties = crs.get("properties") if isinstance(crs, dict) else None
+    name = properties.get("name") if isinstance(properties, dict) else None
+    if not isinstance(name, str):
+        return dumps(crs)
+    return "" if name.lower().endswith(("crs84", ":4326")) else name
 
 
 def _bound(properties: dict[str, Any]) -> float | None:

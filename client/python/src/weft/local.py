@@ -6,9 +6,9 @@ from __future__ import annotations
 import contextlib
 import os
 import pathlib
+import select
 import subprocess
 import tempfile
-import time
 from collections.abc import Iterator, Sequence
 from types import TracebackType
 from typing import Self
@@ -72,22 +72,22 @@ class LocalServer:
             try:
                 # A group of its own, so that Ctrl-C reaches us alone.
                 return subprocess.Popen(
-                    [program, "--listen", self.target, "--port-file", str(self.folder / "ready"),
-                     "--exit-with-stdin", "--drain", "1", *arguments],
-                    stdin=subprocess.PIPE, stdout=log, stderr=log, env=environment, process_group=0)
+                    [program, "--listen", self.target, "--port-file", "-", "--exit-with-stdin",
+                     "--drain", "1", *arguments], bufsize=0,
+                    stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log, env=environment,
+                    process_group=0)
             except OSError as error:
                 raise LocalServerError(f"no private weftd: {program}: {error.strerror}") from None
 
     def _wait_until_ready(self, program: str) -> None:
-        deadline = time.monotonic() + _START_SECONDS
-        while not (self.folder / "ready").exists():
-            ended = self._process.poll() is not None
-            if ended or time.monotonic() > deadline:
-                said = (self.folder / "log").read_text(errors="replace").splitlines()[-10:]
-                what = "ended at start" if ended else f"is not ready after {_START_SECONDS:g} s"
-                raise LocalServerError(
-                    "\n  ".join([f"no private weftd: {program} {what}; it said:", *said]))
-            time.sleep(0.005)
+        assert self._process.stdout
+        # It writes its address when it listens, and nothing before.
+        heard, _, _ = select.select([self._process.stdout], [], [], _START_SECONDS)
+        if heard and self._process.stdout.readline():
+            return
+        said = (self.folder / "log").read_text(errors="replace").splitlines()[-10:]
+        what = "ended at start" if heard else f"is not ready after {_START_SECONDS:g} s"
+        raise LocalServerError("\n  ".join([f"no private weftd: {program} {what}; it said:", *said]))
 
     def _end(self) -> None:
         self._process.terminate()
@@ -96,8 +96,9 @@ class LocalServer:
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
-        assert self._process.stdin
+        assert self._process.stdin and self._process.stdout
         self._process.stdin.close()
+        self._process.stdout.close()
 
 
 def _folder() -> tempfile.TemporaryDirectory[str]:

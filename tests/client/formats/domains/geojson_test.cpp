@@ -158,6 +158,32 @@ TEST_F(GeoJson, WarnsOfHolesThatParityDoesNotTakeForHoles) {
             "coordinates[1], near (2, 1); what an odd number of the rings encloses is meshed");
 }
 
+TEST_F(GeoJson, TellsOfACoordinateSystemThatIsNotWgs84) {
+  const auto told = [this](const std::string& crs) {
+    const auto domain = read(R"({"type": "Polygon", "crs": )" + crs +
+                             R"(, "coordinates": [[[0, 0], [4, 0], [4, 4], [0, 0]]]})");
+    EXPECT_TRUE(domain) << domain.error().message;
+    EXPECT_LE(domain->warnings.size(), 1u);
+    return domain->warnings.empty() ? ""
+                                    : domain->warnings[0].substr(domain->warnings[0].find("map."));
+  };
+  const auto named = [&told](const std::string& name) {
+    return told(R"({"type": "name", "properties": {"name": ")" + name + R"("}})");
+  };
+  EXPECT_EQ(named("urn:ogc:def:crs:EPSG::32618"),
+            "map.geojson: its crs is 'urn:ogc:def:crs:EPSG::32618', not WGS 84 as GeoJSON's is; "
+            "coordinates are taken as they are");
+  EXPECT_TRUE(told(R"({"type": "link", "properties": {"href": "http://x"}})")
+                  .starts_with(R"(map.geojson: its crs is '{"properties":{"href":"http://x")"));
+  EXPECT_EQ(told("7"),
+            "map.geojson: its crs is '7', not WGS 84 as GeoJSON's is; coordinates are "
+            "taken as they are");
+  for (const char* name : {"urn:ogc:def:crs:OGC:1.3:CRS84", "urn:ogc:def:crs:OGC::CRS84",
+                           "EPSG:4326", "urn:ogc:def:crs:EPSG::4326"})
+    EXPECT_EQ(named(name), "") << name;
+  EXPECT_EQ(told("null"), "");
+}
+
 TEST_F(GeoJson, CountsThePolygonsOfRingsThatOverlap) {
   std::string polygons;
   for (int i = 0; i < 8; ++i)
