@@ -12,11 +12,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "server/admission/memory_estimate.h"
 #include "server/memory_plan.h"
 #include "server/mesh/server_info.h"
 #include "server/net/connections.h"
 #include "server/net/listen.h"
+#include "server/run/memory_estimate.h"
 #include "server/version.h"
 
 namespace weft::server {
@@ -97,18 +97,21 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
       console_secret_(random_secret()),
       authenticator_(tokens_.get(), console_secret_),
       metrics_(kVersion, kEngineVersion),
-      gate_(gate_options(options), [this] { service_.notify(); }),
-      places_({.places = options.service.jobs,
-               .light = options.service.light_jobs,
-               .client_share = options.service.client_share}),
+      gate_(gate_options(options), [this] { queue_.notify(); }),
       admission_(admission_options(options, gate_), authenticator_, metrics_, log_),
       health_(admission_),
       reflection_(ReflectionService::Version::kV1, admission_, services(store != nullptr)),
       reflection_alpha_(ReflectionService::Version::kV1Alpha, admission_,
                         services(store != nullptr)),
       pool_(static_cast<int>(options.service.threads)),
-      service_(with_info(options, store != nullptr), admission_, metrics_, engine, pool_, gate_,
-               places_, log_) {
+      queue_({.slots = options.service.jobs,
+              .light_slots = options.service.light_jobs,
+              .capacity = options.service.queue,
+              .light = most_light(options.service.limits),
+              .gate = &gate_,
+              .client_share = options.service.client_share}),
+      service_(with_info(options, store != nullptr), admission_, metrics_, engine, pool_, queue_,
+               log_) {
   metrics_.add_queue("calls", [this] {
     QueueFigures figures = service_.figures();
     const double of_jobs = jobs_ ? jobs_->figures().admitted_bytes : 0;
@@ -123,7 +126,7 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
   jobs.service.client_share = options.service.client_share;
   jobs.runner.worker = options.service.instance;
   jobs_.emplace(std::move(store), std::move(jobs), admission_, metrics_, engine, pool_, gate_,
-                places_, log_);
+                queue_, log_);
   metrics_.add_queue("jobs", [this] { return jobs_->figures(); });
 }
 
@@ -245,6 +248,8 @@ void Server::remove_socket_files() {
 
 Server::~Server() {
   if (server_ != nullptr) drain(seconds(0));
+  if (jobs_) jobs_->close();
+  queue_.stop();  // its runs use all that is destroyed now
 }
 
 }  // namespace weft::server

@@ -19,7 +19,6 @@
 #include <vector>
 
 #include "server/admission/admission.h"
-#include "server/admission/run_places.h"
 #include "server/console/console.h"
 #include "server/jobs/job_system.h"
 #include "server/mesh/mesh_service.h"
@@ -30,6 +29,8 @@
 #include "server/net/tokens.h"
 #include "server/observe/metrics.h"
 #include "server/observe/metrics_endpoint.h"
+#include "server/run/memory_gate.h"
+#include "server/run/run_queue.h"
 
 namespace weft::server {
 
@@ -90,12 +91,12 @@ class Server {
   const Authenticator authenticator_;
   Metrics metrics_;
   MemoryGate gate_;
-  RunPlaces places_;
   Admission admission_;
   HealthService health_;
   ReflectionService reflection_;
   ReflectionService reflection_alpha_;
   ThreadPool pool_;
+  RunQueue queue_;
   MeshService service_;
   std::optional<JobSystem> jobs_;
   std::unique_ptr<grpc::Server> server_;

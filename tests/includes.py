@@ -21,7 +21,7 @@ import sys
 LAYERS = {"engine": ["engine/base", "engine/domain", "engine/size", "engine/refine", "engine/output",
                      "engine/schedule"],
           "client": ["client/base", "client/formats", "client/geo", "client/call"],
-          "server": ["server/store"]}
+          "server": ["server/store", "server/wire", "server/run"]}
 FACE = {f"weft/{name}.h" for name in ("c", "error", "geometry", "mesh", "pslg", "run", "size", "weft")}
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 

@@ -36,7 +36,7 @@
 #include <string>
 #include <thread>
 
-#include "server/admission/memory_gate.h"
+#include "server/run/memory_gate.h"
 #include "server/admission/refusal_log.h"
 #include "server/net/caller.h"
 #include "server/net/drain_gate.h"

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/admission/memory_estimate.h"
 #include "server/net/caller.h"
+#include "server/run/memory_estimate.h"
 #include "server/wire/job_wire.h"
 #include "server/wire/request_key.h"
 #include "server/wire/request_options.h"
@@ -46,15 +46,13 @@ bool is_of_the_machine(Reason reason) {
 
 }  // namespace
 
-Attempt::Attempt(const RunEnvironment& environment, Claim claim, MemoryGate::Share share,
-                 LeaveLightLane leave_light_lane)
+Attempt::Attempt(const RunEnvironment& environment, Claim claim, RunQueue::Slot& slot)
     : environment_(environment),
       claim_(std::move(claim)),
       label_(label_of(claim_)),
       request_(read_request(claim_)),
-      share_(std::move(share)),
-      memory_(share_, bytes_of_request(shown(request_)) + bytes_besides(environment.limits)),
-      leave_light_lane_(std::move(leave_light_lane)),
+      slot_(slot),
+      besides_(bytes_of_request(shown(request_)) + bytes_besides(environment.limits)),
       max_seconds_(to_seconds(shown(request_).budget(), environment.limits)),
       threads_(to_threads(shown(request_).threads(), environment.pool.threads())),
       run_(to_budget(shown(request_).budget(), environment.limits)) {
@@ -74,13 +72,13 @@ void Attempt::run() {
 tl::expected<void, Failure> Attempt::make_mesh() {
   if (!request_) return tl::unexpected(request_.error());
   v1::GenerateMeshRequest options = options_of(**request_);
-  EngineRun run{.run = run_,
-                .memory = memory_,
-                .deadline = seconds_from_now(max_seconds_),
-                .pool = environment_.pool,
-                .threads = threads_};
-  if (leave_light_lane_) run.leave_light_lane = [this] { leave_light_lane_(share_, run_); };
-  auto summary = call_engine(environment_.engine, std::move(*request_), *this, run);
+  auto summary = call_engine(environment_.engine, std::move(*request_), *this,
+                             {.run = run_,
+                              .slot = slot_,
+                              .besides = besides_,
+                              .deadline = seconds_from_now(max_seconds_),
+                              .pool = environment_.pool,
+                              .threads = threads_});
   if (store_error_) return tl::unexpected(failure_of(*store_error_));
   if (!summary && summary.error().reason == Reason::kDeadlineExceeded)
     summary.error().message =
@@ -115,7 +113,7 @@ bool Attempt::accept(Chunk&& chunk) {
 void Attempt::settle(const Failure& failure) {
   bool stopping = false;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (lost_) return log_end("lost", "-");
     stopping = stopping_;
   }
@@ -139,7 +137,7 @@ void Attempt::settle(const Failure& failure) {
 
 void Attempt::stop() {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     stopping_ = true;
   }
   ended_.notify_all();
@@ -148,7 +146,7 @@ void Attempt::stop() {
 
 void Attempt::lose() {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (std::exchange(lost_, true)) return;
   }
   ended_.notify_all();
@@ -183,8 +181,11 @@ std::invoke_result_t<F> Attempt::insist(F&& call) {
 
 // Returns false if the run is to end.
 bool Attempt::pause(milliseconds at_most) {
-  std::unique_lock lock(mutex_);
-  return !ended_.wait_for(lock, at_most, [this] { return lost_ || stopping_; });
+  const Clock::time_point end = Clock::now() + at_most;
+  MutexLock lock(mutex_);
+  while (!lost_ && !stopping_)
+    if (ended_.wait_until(lock.native(), end) == std::cv_status::timeout) return true;
+  return false;
 }
 
 void Attempt::log_end(std::string_view outcome, std::string_view reason) const {

@@ -10,19 +10,17 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
 
-#include "server/admission/memory_gate.h"
-#include "server/admission/run_memory.h"
-#include "server/mesh/engine_call.h"
 #include "server/observe/log.h"
 #include "server/observe/metrics.h"
+#include "server/run/engine_call.h"
+#include "server/run/mutex.h"
+#include "server/run/run_queue.h"
 #include "server/store/job_store.h"
 #include "server/wire/limits.h"
 #include "weft/run.h"
@@ -43,18 +41,15 @@ struct RunEnvironment {
 
 class Attempt final : private ChunkSink {
  public:
-  // A claim whose request was not stored by a server fails with kStoreBroken. `share` is the memory
-  // with which the claim was admitted; it is given back when the run ends. `leave_light_lane` is
-  // called if a run that is judged light is not (engine_call.h). Null: the run is heavy.
-  using LeaveLightLane = std::function<void(MemoryGate::Share&, const Run&)>;
-  Attempt(const RunEnvironment& environment, Claim claim, MemoryGate::Share share,
-          LeaveLightLane leave_light_lane);
+  // A claim whose request was not stored by a server fails with kStoreBroken. The slot, where it
+  // works, has admitted it, and outlives it.
+  Attempt(const RunEnvironment& environment, Claim claim, RunQueue::Slot& slot);
 
   // Returns once the claim has ended.
   void run();
 
   // Bytes that the run may take now.
-  std::uint64_t share_bytes() const { return share_.bytes(); }
+  std::uint64_t share_bytes() const { return slot_.memory().bytes(); }
 
   // Stops because the server stops: the task goes back into the queue, as if it had not begun.
   void stop();
@@ -81,9 +76,8 @@ class Attempt final : private ChunkSink {
   Claim claim_;              // its request is parsed, and empty, once this is made
   const std::string label_;  // of its lines in the log
   tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure> request_;
-  MemoryGate::Share share_;
-  RunMemory memory_;
-  const LeaveLightLane leave_light_lane_;
+  RunQueue::Slot& slot_;
+  const std::uint64_t besides_;  // bytes of memory, beside the engine's
   const Clock::time_point began_ = Clock::now();
   const double max_seconds_;  // of work
   const std::uint32_t threads_;
@@ -101,9 +95,9 @@ class Attempt final : private ChunkSink {
   Clock::time_point last_moved_ = began_;
   v1::Progress told_;
 
-  std::mutex mutex_;  // guards the two below
-  bool lost_ = false;
-  bool stopping_ = false;
+  Mutex mutex_;
+  bool lost_ ABSL_GUARDED_BY(mutex_) = false;
+  bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
   std::condition_variable ended_;
 };
 

@@ -7,8 +7,7 @@
 #include <new>
 #include <utility>
 
-#include "server/admission/memory_estimate.h"
-#include "server/admission/queued_function.h"
+#include "server/run/memory_estimate.h"
 #include "server/store/job_id.h"
 #include "server/wire/job_wire.h"
 #include "server/wire/request_key.h"
@@ -80,7 +79,7 @@ JobService::JobService(JobServiceOptions options, Admission& admission, Metrics&
                    [this](MessageStream& stream) { streams_.forget(stream); },
                    [&admission] { return admission.may_log_failure(); }},
       threads_(
-          {.workers = kThreads, .capacity = kWaitingCalls, .client_share = options_.client_share}),
+          {.slots = kThreads, .capacity = kWaitingCalls, .client_share = options_.client_share}),
       ticker_([this] { tick_until_stopped(); }) {
   add({"SubmitJob", options_.limits.max_request_bytes,
        [this](const auto& call) { submit_job(call); }});
@@ -94,7 +93,7 @@ JobService::JobService(JobServiceOptions options, Admission& admission, Metrics&
 
 JobService::~JobService() {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     stopping_ = true;
   }
   changed_.notify_all();
@@ -103,7 +102,7 @@ JobService::~JobService() {
 
 void JobService::wake() {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     woken_ = true;
   }
   changed_.notify_all();
@@ -146,7 +145,7 @@ void JobService::add_stream(const char* method) {
          else
            stream = std::make_shared<Stream>(environment_, *call, request.id());
          {
-           std::lock_guard lock(mutex_);
+           MutexLock lock(mutex_);
            streams_.add(stream);
          }
          changed_.notify_all();
@@ -171,7 +170,7 @@ void JobService::answer_soon(std::shared_ptr<AdmittedCall> call,
       admission().refuse(*call, {Reason::kInternal, "", error.what()});
     }
   };
-  if (auto refusal = push(threads_, call->caller.client(), work))
+  if (auto refusal = threads_.push(call->caller.client(), work))
     admission().refuse(*call, *refusal);
 }
 
@@ -295,13 +294,15 @@ JobService::Answer<v1::ListJobsResponse> JobService::list(const Caller& caller,
 }
 
 void JobService::tick_until_stopped() {
-  std::unique_lock lock(mutex_);
+  constexpr auto kNotified = std::cv_status::no_timeout;
+  MutexLock lock(mutex_);
   while (!stopping_) {
     if (streams_.empty()) {
-      changed_.wait(lock, [this] { return stopping_ || !streams_.empty(); });
+      changed_.wait(lock.native());
       continue;
     }
-    changed_.wait_for(lock, options_.tick, [this] { return stopping_ || woken_; });
+    const auto next = MessageStream::Clock::now() + options_.tick;
+    while (!stopping_ && !woken_ && changed_.wait_until(lock.native(), next) == kNotified) continue;
     woken_ = false;
     lock.unlock();
     const auto now = MessageStream::Clock::now();
@@ -311,7 +312,8 @@ void JobService::tick_until_stopped() {
       // The next tick does it.
     }
     lock.lock();
-    changed_.wait_for(lock, kBetweenRounds, [this] { return stopping_; });
+    const auto rest = MessageStream::Clock::now() + kBetweenRounds;
+    while (!stopping_ && changed_.wait_until(lock.native(), rest) == kNotified) continue;
   }
 }
 

@@ -13,16 +13,16 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 
 #include "server/admission/admission.h"
-#include "server/admission/work_queue.h"
 #include "server/jobs/job_stream.h"
 #include "server/net/open_streams.h"
 #include "server/observe/log.h"
+#include "server/run/mutex.h"
+#include "server/run/run_queue.h"
 #include "server/store/job_store.h"
 #include "server/wire/limits.h"
 #include "weft/v1/job_service.pb.h"
@@ -93,12 +93,12 @@ class JobService final : public RawService {
   JobStore& store_;
   const Logger log_;
   const StreamEnvironment environment_;
-  WorkQueue threads_;  // destroyed early: it waits for handlers, which use all of the above
+  RunQueue threads_;  // destroyed early: it waits for handlers, which use all of the above
 
   OpenStreams<JobStream> streams_;
-  std::mutex mutex_;  // guards the two below
-  bool woken_ = false;
-  bool stopping_ = false;
+  Mutex mutex_;
+  bool woken_ ABSL_GUARDED_BY(mutex_) = false;
+  bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
   std::condition_variable changed_;
   std::thread ticker_;
 };

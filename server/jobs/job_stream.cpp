@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/admission/queued_function.h"
 #include "server/wire/job_wire.h"
 #include "server/wire/translate.h"
 
@@ -53,7 +52,7 @@ void JobStream::soon(std::function<void()> function) {
   const auto work = [self = std::move(self), function = std::move(function)] {
     self->guarded(function);
   };
-  if (auto refusal = push(environment_.threads, job_.caller.client(), work)) fail(*refusal);
+  if (auto refusal = environment_.threads.push(job_.caller.client(), work)) fail(*refusal);
 }
 
 template <class F>
@@ -156,7 +155,7 @@ void FetchStream::hold_memory() {
                                        .client = job_.caller.client(),
                                        .reader = true});
   if (!share) return;
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   if (!over_) std::swap(read_ahead_, *share);
 }
 
@@ -164,7 +163,7 @@ void FetchStream::hold_memory() {
 void FetchStream::ended_for_good() {
   {
     MemoryGate::Share share;
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     over_ = true;
     std::swap(share, read_ahead_);
   }
@@ -173,7 +172,7 @@ void FetchStream::ended_for_good() {
 
 // Without memory to read ahead, only if nothing waits.
 bool FetchStream::may_read_ahead() {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   const bool has_memory = static_cast<bool>(read_ahead_);
   lock.unlock();
   return has_room(has_memory ? kChunkBytes : kReadAhead.bytes);

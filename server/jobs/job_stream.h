@@ -12,17 +12,17 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 
 #include "server/admission/admission.h"
-#include "server/admission/memory_gate.h"
-#include "server/admission/work_queue.h"
 #include "server/net/caller.h"
 #include "server/net/message_stream.h"
 #include "server/observe/log.h"
 #include "server/observe/metrics.h"
+#include "server/run/memory_gate.h"
+#include "server/run/mutex.h"
+#include "server/run/run_queue.h"
 #include "server/store/job_store.h"
 #include "server/wire/errors.h"
 
@@ -31,8 +31,8 @@ namespace weft::server {
 // Shared by all streams; must outlive them.
 struct StreamEnvironment {
   JobStore& store;
-  WorkQueue& threads;  // may wait for the store
-  MemoryGate& gate;    // has the memory of what is read ahead
+  RunQueue& threads;  // may wait for the store
+  MemoryGate& gate;   // has the memory of what is read ahead
   ReaderPatience patience;
   Metrics& metrics;
   Logger log;
@@ -124,9 +124,9 @@ class FetchStream final : public JobStream {
   std::size_t next_;
   std::atomic<bool> busy_{true};  // `begin` is the first
 
-  std::mutex mutex_;              // guards the two below
-  MemoryGate::Share read_ahead_;  // of nothing if the gate had none
-  bool over_ = false;             // the call has ended for good
+  Mutex mutex_;
+  MemoryGate::Share read_ahead_ ABSL_GUARDED_BY(mutex_);  // of nothing if the gate had none
+  bool over_ ABSL_GUARDED_BY(mutex_) = false;             // the call has ended for good
 };
 
 }  // namespace weft::server

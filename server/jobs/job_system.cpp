@@ -19,26 +19,26 @@ std::string lost_workers(const RetryPolicy& policy) {
 
 JobSystem::JobSystem(std::unique_ptr<JobStore> store, JobOptions options, Admission& admission,
                      Metrics& metrics, const EngineFn& engine, ThreadPool& pool, MemoryGate& gate,
-                     RunPlaces& places, const Logger& log)
+                     RunQueue& queue, const Logger& log)
     : store_(std::move(store)) {
   options.retry.error = lost_workers(options.retry);
   const RunEnvironment environment{engine,        pool,    *store_, options.service.limits,
                                    options.retry, metrics, log};
   store_->on_change([this] { tell_of_change(); });
   if (options.serves) service_.emplace(options.service, admission, metrics, gate, *store_, log);
-  if (options.works) runner_.emplace(environment, gate, places, options.runner);
-  std::lock_guard lock(mutex_);
+  if (options.works) runner_.emplace(environment, queue, options.runner);
+  MutexLock lock(mutex_);
   listening_ = true;
 }
 
 // The store, and threads of its own, live longer than those that listen to it.
 JobSystem::~JobSystem() {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   listening_ = false;
 }
 
 void JobSystem::tell_of_change() {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   if (!listening_) return;
   if (service_) service_->wake();
   if (runner_) runner_->wake();

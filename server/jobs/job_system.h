@@ -7,14 +7,13 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <optional>
 
-#include "server/admission/memory_gate.h"
 #include "server/jobs/job_runner.h"
 #include "server/jobs/job_service.h"
-#include "server/mesh/engine_call.h"
 #include "server/observe/log.h"
+#include "server/run/engine_call.h"
+#include "server/run/memory_gate.h"
 #include "server/store/job_store.h"
 #include "weft/run.h"
 
@@ -32,7 +31,7 @@ class JobSystem {
  public:
   JobSystem(std::unique_ptr<JobStore> store, JobOptions options, Admission& admission,
             Metrics& metrics, const EngineFn& engine, ThreadPool& pool, MemoryGate& gate,
-            RunPlaces& places, const Logger& log);
+            RunQueue& queue, const Logger& log);
   ~JobSystem();
 
   // Null if this server does not serve.
@@ -50,8 +49,8 @@ class JobSystem {
   std::unique_ptr<JobStore> store_;
   std::optional<JobService> service_;
   std::optional<JobRunner> runner_;
-  std::mutex mutex_;        // guards the one below
-  bool listening_ = false;  // whether the two above exist
+  Mutex mutex_;
+  bool listening_ ABSL_GUARDED_BY(mutex_) = false;  // whether the two above exist
 };
 
 }  // namespace weft::server

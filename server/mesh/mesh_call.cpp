@@ -8,8 +8,7 @@
 #include <new>
 #include <utility>
 
-#include "server/admission/memory_estimate.h"
-#include "server/admission/queued_function.h"
+#include "server/run/memory_estimate.h"
 #include "server/wire/translate.h"
 
 namespace weft::server {
@@ -68,10 +67,10 @@ void MeshCall::start() noexcept try {
     send_what_is_at_hand();
     return;
   }
-  WorkQueue& queue = environment_.queue;
-  estimate_ = expected_bytes(*request_, environment_.limits) + bytes_besides(environment_.limits);
-  const auto pushed = queue.push(shared_from_this(), {.client = client_, .estimate = estimate_});
-  if (auto refusal = refusal_of(pushed, queue)) return fail(*refusal);
+  const std::uint64_t estimate =
+      expected_bytes(*request_, environment_.limits) + bytes_besides(environment_.limits);
+  if (auto refusal = environment_.queue.push(shared_from_this(), {client_, estimate}))
+    return fail(*refusal);
   log_queued();
   pump();
 } catch (const std::bad_alloc&) {
@@ -117,10 +116,10 @@ void MeshCall::tick(Clock::time_point now) {
 }
 
 // Without memory for an error, the client sees that the call was cancelled.
-void MeshCall::run(WorkQueue::Place& place) noexcept try {
+void MeshCall::run(RunQueue::Slot& slot) noexcept try {
   log_queued();
   if (run_.poll()) return;  // stopped in the meantime, which ended the call
-  const tl::expected<Summary, Failure> outcome = work(place);
+  const tl::expected<Summary, Failure> outcome = work(slot);
   if (outcome) {
     succeed(*outcome);
   } else if (outcome.error().reason == Reason::kDeadlineExceeded) {
@@ -128,14 +127,14 @@ void MeshCall::run(WorkQueue::Place& place) noexcept try {
   } else {
     fail(outcome.error());
   }
-  keep_what_waits(place);
+  keep_what_waits(slot);
 } catch (const std::bad_alloc&) {
   kill();
 }
 
 // A mesh that is made may wait for its reader for as long as that reads at all.
-void MeshCall::keep_what_waits(WorkQueue::Place& place) {
-  MemoryGate::Share& share = place.memory();
+void MeshCall::keep_what_waits(RunQueue::Slot& slot) {
+  MemoryGate::Share& share = slot.memory();
   share.shrink_to(std::min<std::uint64_t>(bytes_, bytes_besides(environment_.limits)));
   share.turn_reader();
   std::lock_guard lock(mutex_);
@@ -154,21 +153,11 @@ void MeshCall::ended_for_good() {
   environment_.forget(*this);  // which may destroy this
 }
 
-tl::expected<Summary, Failure> MeshCall::work(WorkQueue::Place& place) {
-  place_ = &place;
+tl::expected<Summary, Failure> MeshCall::work(RunQueue::Slot& slot) {
+  slot_ = &slot;
   const Seconds until_call_deadline = call_deadline_ - std::chrono::system_clock::now();
   const Clock::time_point deadline =
       seconds_from_now(std::min(max_seconds_, until_call_deadline.count()));
-  RunMemory memory(place.memory(), bytes_besides(environment_.limits));
-  EngineRun run{.run = run_,
-                .memory = memory,
-                .deadline = deadline,
-                .pool = environment_.pool,
-                .threads = threads_};
-  if (environment_.queue.has_light_lane() && estimate_ <= most_light(environment_.limits))
-    run.leave_light_lane = [&] {
-      place.leave_light_lane([this] { return run_.poll().has_value(); });
-    };
   {
     std::lock_guard lock(mutex_);
     work_deadline_ = deadline;
@@ -178,7 +167,13 @@ tl::expected<Summary, Failure> MeshCall::work(WorkQueue::Place& place) {
   environment_.log->info("event=call_started call={} {} waited_seconds={:.3f}", id_, caller_,
                          waited);
   if (!origin_.key.empty() && first_chunk_ == 0) recording_.emplace(environment_.cache.largest());
-  auto summary = call_engine(environment_.engine, std::move(request_), *this, run);
+  auto summary = call_engine(environment_.engine, std::move(request_), *this,
+                             {.run = run_,
+                              .slot = slot,
+                              .besides = bytes_besides(environment_.limits),
+                              .deadline = deadline,
+                              .pool = environment_.pool,
+                              .threads = threads_});
   request_share_ = {};
   if (!summary) return summary;
   if (recording_) environment_.cache.keep(origin_.key, std::move(*recording_).finish(*summary));
@@ -228,11 +223,11 @@ Failure MeshCall::failure_of_cause(StopCause cause) const {
 }
 
 // Calls `send`, which waits for room for a message of so many bytes. A run that waits for its
-// reader leaves its place to another one.
+// reader leaves its slot to another one.
 template <class Send>
 bool MeshCall::when_there_is_room(std::size_t bytes, Send&& send) {
   if (has_room_within(kPatience, bytes)) return send();
-  const WorkQueue::Pause pause(*place_);
+  const RunQueue::Pause pause(*slot_);
   return send();
 }
 

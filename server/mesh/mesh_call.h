@@ -20,14 +20,13 @@
 #include <string_view>
 
 #include "server/admission/admission.h"
-#include "server/admission/run_memory.h"
-#include "server/admission/work_queue.h"
-#include "server/mesh/engine_call.h"
 #include "server/mesh/mesh_cache.h"
 #include "server/net/caller.h"
 #include "server/net/message_stream.h"
 #include "server/observe/log.h"
 #include "server/observe/metrics.h"
+#include "server/run/engine_call.h"
+#include "server/run/run_queue.h"
 #include "server/wire/errors.h"
 #include "server/wire/limits.h"
 #include "weft/run.h"
@@ -49,7 +48,7 @@ struct CallEnvironment {
   Limits limits;
   ReaderPatience patience;
   Logger log;
-  WorkQueue& queue;
+  RunQueue& queue;
   Metrics& metrics;
   MeshCache& cache;
   std::function<void(MessageStream&)> forget;  // drops the owner's pointer to the call
@@ -63,7 +62,7 @@ struct Origin {
 };
 
 class MeshCall final : public MessageStream,
-                       public WorkQueue::Item,
+                       public RunQueue::Item,
                        public std::enable_shared_from_this<MeshCall>,
                        private ChunkSink {
  public:
@@ -81,11 +80,11 @@ class MeshCall final : public MessageStream,
   void tick(Clock::time_point now);
 
  private:
-  void run(WorkQueue::Place& place) noexcept override;
+  void run(RunQueue::Slot& slot) noexcept override;
   // Once, as soon as the call is in the queue: whoever put it there may be late.
   void log_queued();
   void send_what_is_at_hand();
-  tl::expected<Summary, Failure> work(WorkQueue::Place& place);
+  tl::expected<Summary, Failure> work(RunQueue::Slot& slot);
   std::optional<Failure> check_first_chunk(const Summary& summary) const;
   // Counts a chunk whose message was taken by the stream.
   void sent(std::size_t bytes);
@@ -102,7 +101,7 @@ class MeshCall final : public MessageStream,
   bool accept(Chunk&& chunk) override;
   void client_gone() override { stop(StopCause::kClientGone); }
   void ended_for_good() override;
-  void keep_what_waits(WorkQueue::Place& place);
+  void keep_what_waits(RunQueue::Slot& slot);
 
   const CallEnvironment& environment_;
   const std::string id_;
@@ -116,7 +115,7 @@ class MeshCall final : public MessageStream,
   const Origin origin_;
   std::string queued_line_;  // of the log
   std::once_flag queued_;
-  WorkQueue::Place* place_ = nullptr;  // the worker's own
+  RunQueue::Slot* slot_ = nullptr;  // the worker's own
   const Clock::time_point admitted_ = Clock::now();
   const std::optional<DrainGate::Pass> pass_;
   Run run_;
@@ -127,7 +126,6 @@ class MeshCall final : public MessageStream,
   RequestShare request_share_;
 
   // The worker's own.
-  std::uint64_t estimate_ = 0;  // of memory
   std::unique_ptr<v1::GenerateMeshRequest> request_;
   v1::GenerateMeshResponse chunk_message_;  // kept for the memory of its arrays
   std::optional<MeshRecording> recording_;

@@ -6,7 +6,6 @@
 #include <new>
 #include <utility>
 
-#include "server/admission/memory_estimate.h"
 #include "server/wire/request_key.h"
 #include "server/wire/request_reader.h"
 #include "server/wire/translate.h"
@@ -21,8 +20,7 @@ constexpr std::size_t kMostKeyedBytes = std::size_t{1} << 20;
 }  // namespace
 
 MeshService::MeshService(const ServiceOptions& options, Admission& admission, Metrics& metrics,
-                         EngineFn engine, ThreadPool& pool, MemoryGate& gate, RunPlaces& places,
-                         Logger log)
+                         EngineFn engine, ThreadPool& pool, RunQueue& queue, Logger log)
     : RawService("/weft.v1.MeshService/", admission),
       options_(options),
       metrics_(metrics),
@@ -33,16 +31,12 @@ MeshService::MeshService(const ServiceOptions& options, Admission& admission, Me
                    options.limits,
                    options.patience,
                    log_,
-                   queue_,
+                   queue,
                    metrics_,
                    cache_,
                    [this](MessageStream& stream) { calls_.forget(stream); },
                    [&admission] { return admission.may_log_failure(); }},
-      queue_({.capacity = options.queue,
-              .light = most_light(options.limits),
-              .gate = &gate,
-              .client_share = options.client_share,
-              .places = &places}),
+      queue_(queue),
       ticker_([this] { tick_until_stopped(); }) {
   add({"GenerateMesh", options.limits.max_request_bytes,
        [this](const auto& call) { generate_mesh(*call); }});
@@ -63,9 +57,10 @@ void MeshService::stop_all() {
 }
 
 QueueFigures MeshService::figures() const {
-  return {.waiting = static_cast<double>(queue_.waiting()),
-          .running = static_cast<double>(queue_.running()),
-          .pausing = static_cast<double>(queue_.pausing())};
+  const RunQueue::Figures figures = queue_.figures();
+  return {.waiting = static_cast<double>(figures.waiting),
+          .running = static_cast<double>(figures.running),
+          .pausing = static_cast<double>(figures.pausing)};
 }
 
 void MeshService::generate_mesh(AdmittedCall& call) {

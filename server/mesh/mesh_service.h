@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // weft.v1.MeshService on gRPC's callback API. A call is parsed, checked against the limits and
-// admitted on gRPC's thread; all the rest happens on workers (work_queue.h). One more thread ticks
+// admitted on gRPC's thread; all the rest happens on workers (run_queue.h). One more thread ticks
 // the calls a few times a second, for progress, deadlines and stalled clients.
 //
 // Both methods come in through the Admission: messages are made and unmade with our checks, and
@@ -18,12 +18,11 @@
 #include <thread>
 
 #include "server/admission/admission.h"
-#include "server/admission/memory_gate.h"
-#include "server/admission/work_queue.h"
 #include "server/mesh/mesh_cache.h"
 #include "server/mesh/mesh_call.h"
 #include "server/net/open_streams.h"
 #include "server/observe/log.h"
+#include "server/run/run_queue.h"
 #include "server/wire/limits.h"
 #include "weft/run.h"
 #include "weft/v1/mesh_service.pb.h"
@@ -39,7 +38,7 @@ struct ServiceOptions {
   // Runs on top of these that are light (memory_estimate.h), so that they do not wait for the
   // others. Each computes on a thread of its own.
   std::uint32_t light_jobs = 0;
-  // The fraction of the queue, the places and the memory that one client may have (work_queue.h).
+  // The fraction of the queue, the slots and the memory that one client may have (run_queue.h).
   double client_share = 1;
   Limits limits{};
   // Finished meshes that are kept in memory to answer the same request again (mesh_cache.h).
@@ -57,14 +56,11 @@ struct ServiceOptions {
 
 class MeshService final : public RawService {
  public:
-  // The admission, the metrics, the pool and the gate outlive the service.
+  // The admission, the metrics, the pool and the queue outlive the service.
   MeshService(const ServiceOptions& options, Admission& admission, Metrics& metrics,
-              EngineFn engine, ThreadPool& pool, MemoryGate& gate, RunPlaces& places, Logger log);
-  // REQUIRES: no call is open.
+              EngineFn engine, ThreadPool& pool, RunQueue& queue, Logger log);
+  // REQUIRES: no call is open, and the queue has stopped.
   ~MeshService() override;
-
-  // The gate has room again.
-  void notify() { queue_.notify(); }
 
   // Ends every open call with UNAVAILABLE.
   void stop_all();
@@ -82,7 +78,7 @@ class MeshService final : public RawService {
   const Logger log_;
   MeshCache cache_;
   const CallEnvironment environment_;
-  WorkQueue queue_;  // destroyed first: it waits for the workers, who use all of the above
+  RunQueue& queue_;
 
   OpenStreams<MeshCall> calls_;
   std::mutex mutex_;  // guards the two below

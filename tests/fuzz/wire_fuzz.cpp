@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/admission/memory_estimate.h"
+#include "server/run/memory_estimate.h"
 #include "server/wire/limits.h"
 #include "server/wire/request_key.h"
 #include "server/wire/request_reader.h"

@@ -123,7 +123,6 @@ JobOptions quick_jobs() {
   JobOptions jobs;
   jobs.runner.lease = kPatience;
   jobs.runner.renewal = std::chrono::milliseconds(20);
-  jobs.runner.poll = std::chrono::milliseconds(20);
   jobs.retry.first_delay = std::chrono::milliseconds(1);
   jobs.service.tick = std::chrono::milliseconds(20);
   return jobs;

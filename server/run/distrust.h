@@ -12,6 +12,7 @@
 #include <chrono>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace weft::server {
 
@@ -35,6 +36,14 @@ class Distrust {
   bool holds_for(const std::string& client, Clock::time_point now) const {
     const auto found = spans_.find(client);
     return found != spans_.end() && now < found->second.until;
+  }
+
+  // All of whom it holds.
+  std::vector<std::string> clients(Clock::time_point now) const {
+    std::vector<std::string> clients;
+    for (const auto& [client, span] : spans_)
+      if (now < span.until) clients.push_back(client);
+    return clients;
   }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/mesh/engine_call.h"
+#include "server/run/engine_call.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,8 @@
 #include <optional>
 #include <utility>
 
-#include "server/admission/memory_estimate.h"
+#include "server/run/memory_estimate.h"
+#include "server/run/run_memory.h"
 #include "server/wire/translate.h"
 
 namespace weft::server {
@@ -36,30 +37,32 @@ class SinkOfBoth final : public ChunkSink {
 
 // On this thread. Returns nullopt if the run is not light.
 std::optional<Result<Summary>> try_as_light(const EngineFn& engine, const MeshRequest& request,
-                                            ChunkSink& sink, const EngineRun& call) {
+                                            ChunkSink& sink, const EngineRun& call,
+                                            RunMemory& memory) {
   const Clock::time_point end = std::min(call.deadline, Clock::now() + kLightTime);
   call.run.set_deadline(end);
-  call.memory.limit_to(kLightBytes);
-  call.run.set_memory(call.memory, call.memory.granted());
+  memory.limit_to(kLightBytes);
+  call.run.set_memory(memory, memory.granted());
   Result<Summary> summary = engine(request, sink, call.run);
   const bool took_long =
       !summary && summary.error().code == ErrorCode::kDeadlineExceeded && end < call.deadline;
-  if (took_long || call.memory.limit_was_reached()) return std::nullopt;
+  if (took_long || memory.limit_was_reached()) return std::nullopt;
   return summary;
 }
 
 Result<Summary> run_engine(const EngineFn& engine, const MeshRequest& request, ChunkSink& sink,
                            const EngineRun& call) {
   SinkOfBoth sink_of_both(sink);
-  if (call.leave_light_lane) {
-    if (auto summary = try_as_light(engine, request, sink_of_both, call)) return *summary;
+  RunMemory memory(call.slot.memory(), call.besides);
+  if (call.slot.is_light()) {
+    if (auto summary = try_as_light(engine, request, sink_of_both, call, memory)) return *summary;
     call.run.begin_again();
-    call.memory.begin_again();
+    memory.begin_again();
   }
   call.run.set_deadline(call.deadline);
-  if (call.leave_light_lane) call.leave_light_lane();
+  call.slot.promote([&call] { return call.run.poll().has_value(); });
   call.run.set_threads(call.pool, static_cast<int>(call.threads));
-  call.run.set_memory(call.memory, call.memory.granted());
+  call.run.set_memory(memory, memory.granted());
   return engine(request, sink_of_both, call.run);
 }
 

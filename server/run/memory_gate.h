@@ -26,11 +26,11 @@
 #include <limits>
 #include <list>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "server/run/mutex.h"
 #include "weft/error.h"
 
 namespace weft::server {
@@ -125,13 +125,12 @@ class MemoryGate {
     bool parked = false;
   };
 
-  // Each with the lock held.
-  std::uint64_t free_for(bool light) const;
-  std::uint64_t room_for(bool light) const;
-  void add(Entry& entry, std::uint64_t bytes);
-  void remove(Entry& entry, std::uint64_t bytes);
-  bool try_grow(Entry& entry, std::uint64_t bytes);
-  void end_one_if_all_wait();
+  std::uint64_t free_for(bool light) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  std::uint64_t room_for(bool light) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void add(Entry& entry, std::uint64_t bytes) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void remove(Entry& entry, std::uint64_t bytes) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool try_grow(Entry& entry, std::uint64_t bytes) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void end_one_if_all_wait() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   std::optional<Error> grow(Entry& entry, std::uint64_t bytes,
                             const std::function<std::optional<Error>()>& poll);
@@ -140,13 +139,13 @@ class MemoryGate {
 
   const Options options_;
   const std::function<void()> on_room_;
-  mutable std::mutex mutex_;  // guards all below
   std::condition_variable changed_;
-  std::list<Entry> entries_;  // the oldest first
-  std::map<std::string, std::uint64_t> of_clients_;
-  std::uint64_t taken_ = 0;
-  std::uint64_t taken_by_light_ = 0;
-  std::size_t runs_ = 0;
+  mutable Mutex mutex_;
+  std::list<Entry> entries_ ABSL_GUARDED_BY(mutex_);  // the oldest first
+  std::map<std::string, std::uint64_t> of_clients_ ABSL_GUARDED_BY(mutex_);
+  std::uint64_t taken_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::uint64_t taken_by_light_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::size_t runs_ ABSL_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace weft::server

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/admission/memory_gate.h"
+#include "server/run/memory_gate.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "engine/base/context.h"
-#include "server/admission/run_memory.h"
+#include "server/run/run_memory.h"
 
 namespace weft::server {
 namespace {

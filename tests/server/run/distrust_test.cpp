@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/admission/distrust.h"
+#include "server/run/distrust.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/admission/memory_estimate.h"
+#include "server/run/memory_estimate.h"
 
 #include "server/wire/translate.h"
 #include "weft/weft.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs that were judged to be light, and are not.
+// Calls whose runs were judged to be light, and are not, on a real server.
 #include <atomic>
 #include <chrono>
 #include <thread>
 
 #include "engine/base/context.h"
-#include "server/admission/memory_estimate.h"
+#include "server/run/memory_estimate.h"
 #include "tests/server/harness.h"
 
 namespace weft::server::testing {
@@ -46,9 +46,9 @@ struct Scripted {
   }
 };
 
-class LightLane : public ::testing::TestWithParam<bool> {};
+class LightSlot : public ::testing::TestWithParam<bool> {};
 
-TEST_P(LightLane, IsLeftByARunThatTurnsOutHeavy) {
+TEST_P(LightSlot, IsLeftByARunThatTurnsOutHeavy) {
   Scripted engine;
   engine.grows = GetParam();
   ServiceOptions options;
@@ -65,10 +65,10 @@ TEST_P(LightLane, IsLeftByARunThatTurnsOutHeavy) {
   };
   Outcome heavy;
   std::thread first([&] { heavy = call(*server.stub(), request(kHeavySize, 35)); });
-  ASSERT_TRUE(engine.heavy_runs.wait());  // it has the only place in the main lane
+  ASSERT_TRUE(engine.heavy_runs.wait());  // it has the only heavy slot
   Outcome impostor;
   std::thread second([&] { impostor = call(*server.stub(), request(1, kImpostorAngle)); });
-  ASSERT_TRUE(engine.impostor_runs.wait());  // and this one that in the light lane
+  ASSERT_TRUE(engine.impostor_runs.wait());  // and this one the light slot
   const Outcome light = call(*server.stub(), request(1, 20));
   EXPECT_TRUE(light.status.ok()) << light.status.error_message();
   EXPECT_EQ(engine.runs_of_impostor, 1);
@@ -82,7 +82,7 @@ TEST_P(LightLane, IsLeftByARunThatTurnsOutHeavy) {
   EXPECT_EQ(engine.threads_of_impostor, 3) << "in the arena, where turns are taken";
 }
 
-TEST_P(LightLane, OfARunThatIsCancelledWhileItMovesIsLeftForGood) {
+TEST_P(LightSlot, OfARunThatIsCancelledWhileItMovesIsLeftForGood) {
   Scripted engine;
   engine.grows = GetParam();
   ServiceOptions options;
@@ -109,7 +109,7 @@ TEST_P(LightLane, OfARunThatIsCancelledWhileItMovesIsLeftForGood) {
   first.join();
 }
 
-INSTANTIATE_TEST_SUITE_P(By, LightLane, ::testing::Values(false, true), [](const auto& info) {
+INSTANTIATE_TEST_SUITE_P(By, LightSlot, ::testing::Values(false, true), [](const auto& info) {
   return std::string(info.param ? "Memory" : "Time");
 });
 

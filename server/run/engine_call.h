@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine as the server calls it: where it computes, for how long, with which memory; and no
-// exception comes out.
+// The engine as the server calls it, for calls and for jobs: where it computes, for how long, with
+// which memory; and no exception comes out.
 //
 // A run that is judged light would wait in the pool for the turns of heavy ones, longer than it
 // takes itself. So it computes on the caller's thread, for kLightTime and with kLightBytes at most.
-// If that is not enough, it leaves its place and begins again, in the pool. The same request gives
-// the same chunks, so the sink gets only those that it does not have yet. Thus beside the threads
-// of the pool only light runs compute, each for a moment.
+// If that is not enough, it is promoted to a heavy slot and begins again, in the pool. The same
+// request gives the same chunks, so the sink gets only those that it does not have yet. Thus beside
+// the threads of the pool only light runs compute, each for a moment.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 #include <memory>
 #include <tl/expected.hpp>
 
-#include "server/admission/run_memory.h"
+#include "server/run/run_queue.h"
 #include "server/wire/errors.h"
 #include "weft/run.h"
 #include "weft/v1/mesh_service.pb.h"
@@ -27,13 +27,11 @@ using EngineFn = std::function<Result<Summary>(const MeshRequest&, ChunkSink&, R
 
 struct EngineRun {
   Run& run;
-  RunMemory& memory;
+  RunQueue::Slot& slot;
+  std::uint64_t besides;  // bytes that the server holds: of the request, of chunks that wait
   Run::Clock::time_point deadline;
   ThreadPool& pool;
   std::uint32_t threads;  // of the pool
-  // Null: the run is heavy. Otherwise it is judged light, and this is called if it is not, before
-  // it begins again; may wait.
-  std::function<void()> leave_light_lane{};
 };
 
 // Frees the request as soon as the engine's own form of it is made. What is thrown becomes a

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The engine as the server calls it.
-#include "server/mesh/engine_call.h"
+#include "server/run/engine_call.h"
 
 #include <gtest/gtest.h>
 
-#include <thread>
+#include <functional>
+#include <memory>
 #include <vector>
 
 #include "engine/base/context.h"
-#include "server/admission/memory_estimate.h"
+#include "server/run/memory_estimate.h"
 #include "tests/server/harness.h"
 
 namespace weft::server::testing {
@@ -23,28 +24,42 @@ class IndexSink final : public ChunkSink {
   std::vector<std::uint32_t> indices;
 };
 
-// Runs this engine as a light one.
+// Runs an engine in a light slot of a queue, with a heavy one free.
 struct LightRun {
   explicit LightRun(std::chrono::steady_clock::duration time = std::chrono::minutes(1))
-      : call_of_run{.run = run,
-                    .memory = memory,
-                    .deadline = std::chrono::steady_clock::now() + time,
-                    .pool = pool,
-                    .threads = 2,
-                    .leave_light_lane = [this] { ++left; }} {}
+      : deadline(std::chrono::steady_clock::now() + time) {}
 
   tl::expected<Summary, Failure> call(const EngineFn& engine) {
-    return call_engine(engine, std::make_unique<v1::GenerateMeshRequest>(valid_request()), sink,
-                       call_of_run);
+    struct Item final : RunQueue::Item {
+      explicit Item(std::function<void(RunQueue::Slot&)> work) : work(std::move(work)) {}
+      void run(RunQueue::Slot& slot) noexcept override { work(slot); }
+      std::function<void(RunQueue::Slot&)> work;
+    };
+    tl::expected<Summary, Failure> outcome;
+    RunQueue queue({.light_slots = 1, .capacity = 1, .light = 1});
+    Event ended;
+    queue.push(std::make_shared<Item>([&](RunQueue::Slot& slot) {
+                 outcome = call_engine(
+                     engine, std::make_unique<v1::GenerateMeshRequest>(valid_request()), sink,
+                     {.run = run,
+                      .slot = slot,
+                      .besides = 0,
+                      .deadline = deadline,
+                      .pool = pool,
+                      .threads = 2});
+                 was_promoted = slot.priority() == RunQueue::Priority::kHeavy;
+                 ended.set();
+               }),
+               {});
+    EXPECT_TRUE(ended.wait());
+    return outcome;
   }
 
+  std::chrono::steady_clock::time_point deadline;
   ThreadPool pool{2};
   weft::Run run;
-  MemoryGate::Share share;
-  RunMemory memory{share, 0};
   IndexSink sink;
-  int left = 0;
-  EngineRun call_of_run;
+  bool was_promoted = false;
 };
 
 TEST(EngineCall, RunsWhatIsLightOnTheCallersThread) {
@@ -55,23 +70,21 @@ TEST(EngineCall, RunsWhatIsLightOnTheCallersThread) {
     return send_chunks(sink, 2);
   });
   EXPECT_TRUE(summary);
-  EXPECT_EQ(light.left, 0);
+  EXPECT_FALSE(light.was_promoted);
 }
 
 TEST(EngineCall, SendsTheChunksOfARunThatBeginsAgainOnce) {
   LightRun light;
   const auto summary =
       light.call([&](const auto&, ChunkSink& sink, weft::Run& run) -> Result<Summary> {
-        if (run.context().arena() != nullptr) {
-          EXPECT_EQ(light.left, 1);
-          return send_chunks(sink, 5);
-        }
+        if (run.context().arena() != nullptr) return send_chunks(sink, 5);
         EXPECT_TRUE(send_chunks(sink, 3));
         if (auto error = run.context().need_bytes(kLightBytes + 1, "the run"))
           return tl::unexpected(*error);
         return send_chunks(sink, 5);
       });
   EXPECT_TRUE(summary);
+  EXPECT_TRUE(light.was_promoted);
   EXPECT_EQ(light.sink.indices, (std::vector<std::uint32_t>{0, 1, 2, 3, 4}));
 }
 
@@ -82,7 +95,7 @@ TEST(EngineCall, EndsALightRunAtItsDeadline) {
       light.call([](const auto&, ChunkSink&, weft::Run& run) { return work_until_stopped(run); });
   ASSERT_FALSE(summary);
   EXPECT_EQ(summary.error().reason, Reason::kDeadlineExceeded);
-  EXPECT_EQ(light.left, 0);
+  EXPECT_FALSE(light.was_promoted);
 }
 
 TEST(EngineCall, EndsALightRunThatIsCancelled) {
@@ -93,7 +106,7 @@ TEST(EngineCall, EndsALightRunThatIsCancelled) {
   });
   ASSERT_FALSE(summary);
   EXPECT_EQ(summary.error().reason, Reason::kCancelled);
-  EXPECT_EQ(light.left, 0);
+  EXPECT_FALSE(light.was_promoted);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/admission/memory_gate.h"
+#include "server/run/memory_gate.h"
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ std::uint64_t excess(std::uint64_t wanted, std::uint64_t estimate) {
 }  // namespace
 
 std::optional<MemoryGate::Share> MemoryGate::take(const Ask& ask) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const bool fits = ask.request ? entries_.empty() || ask.estimate <= free_for(false)
                                 : ask.estimate <= room_for(ask.light);
   if (!fits) return std::nullopt;
@@ -37,17 +37,17 @@ std::uint64_t MemoryGate::room() const {
 }
 
 std::uint64_t MemoryGate::room(bool light) const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return room_for(light);
 }
 
 std::uint64_t MemoryGate::taken() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return taken_;
 }
 
 std::size_t MemoryGate::waiting() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return static_cast<std::size_t>(std::count_if(
       entries_.begin(), entries_.end(), [](const Entry& entry) { return entry.waiting > 0; }));
 }
@@ -108,7 +108,7 @@ void MemoryGate::end_one_if_all_wait() {
 
 std::optional<Error> MemoryGate::grow(Entry& entry, std::uint64_t bytes,
                                       const std::function<std::optional<Error>()>& poll) {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   if (try_grow(entry, bytes)) return std::nullopt;
   if (bytes > options_.capacity - std::min(options_.for_light, options_.capacity))
     return Error{ErrorCode::kLimitExceeded, "",
@@ -128,7 +128,7 @@ std::optional<Error> MemoryGate::grow(Entry& entry, std::uint64_t bytes,
                                 bytes, options_.capacity, entry.ask.estimate)};
       break;
     }
-    changed_.wait_for(lock, kPoll);
+    changed_.wait_for(lock.native(), kPoll);
     lock.unlock();
     error = poll();
     lock.lock();
@@ -139,7 +139,7 @@ std::optional<Error> MemoryGate::grow(Entry& entry, std::uint64_t bytes,
 
 void MemoryGate::shrink(Entry& entry, std::uint64_t bytes) {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (entry.bytes <= bytes) return;
     remove(entry, entry.bytes - bytes);
   }
@@ -149,7 +149,7 @@ void MemoryGate::shrink(Entry& entry, std::uint64_t bytes) {
 
 void MemoryGate::give_back(std::list<Entry>::iterator entry) {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     remove(*entry, entry->bytes);
     if (entry->ask.is_run()) --runs_;
     entries_.erase(entry);
@@ -160,7 +160,7 @@ void MemoryGate::give_back(std::list<Entry>::iterator entry) {
 
 std::uint64_t MemoryGate::Share::bytes() const {
   if (gate_ == nullptr) return 0;
-  std::lock_guard lock(gate_->mutex_);
+  MutexLock lock(gate_->mutex_);
   return entry_->bytes;
 }
 
@@ -175,7 +175,7 @@ void MemoryGate::Share::shrink_to(std::uint64_t bytes) {
 
 void MemoryGate::Share::turn_heavy() {
   if (gate_ == nullptr) return;
-  std::lock_guard lock(gate_->mutex_);
+  MutexLock lock(gate_->mutex_);
   if (!std::exchange(entry_->ask.light, false)) return;
   gate_->taken_by_light_ -= entry_->bytes;
 }
@@ -184,7 +184,7 @@ void MemoryGate::Share::turn_reader() {
   if (gate_ == nullptr) return;
   turn_heavy();
   {
-    std::lock_guard lock(gate_->mutex_);
+    MutexLock lock(gate_->mutex_);
     if (entry_->ask.is_run()) --gate_->runs_;
     entry_->ask.reader = true;
   }
@@ -194,7 +194,7 @@ void MemoryGate::Share::turn_reader() {
 
 void MemoryGate::Share::set_parked(bool parked) {
   if (gate_ == nullptr) return;
-  std::lock_guard lock(gate_->mutex_);
+  MutexLock lock(gate_->mutex_);
   entry_->parked = parked;
 }
 

@@ -2,7 +2,7 @@
 // The memory of one run: what the engine asks for, and what the server holds for it besides, out of
 // one share of the MemoryGate.
 //
-//   RunMemory memory(place.memory(), bytes_of_request);
+//   RunMemory memory(slot.memory(), bytes_of_request);
 //   run.set_memory(memory, memory.granted());
 //
 // Thread-safety: `grant` may be called by several threads, the rest while the engine does not run.
@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "server/admission/memory_gate.h"
+#include "server/run/memory_gate.h"
 #include "weft/run.h"
 
 namespace weft::server {

@@ -21,7 +21,7 @@ v1::GenerateMeshRequest request(double size, double angle) {
 }
 
 // One slot, and one for light jobs.
-TEST(LightSlot, IsLeftByAJobThatTurnsOutHeavy) {
+TEST(LightJob, LeavesItsSlotIfItTurnsOutHeavy) {
   Event heavy_runs;
   Event heavy_may_end;
   Event impostor_runs;
