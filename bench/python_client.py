@@ -37,8 +37,7 @@ def timed(make):
 
 def listening_on_loopback(folder):
     server = weft.LocalServer(arguments=["--listen", "127.0.0.1:0", "--data", folder])
-    addresses = (server.folder / "ready").read_text().split()
-    return server, next(address for address in addresses if address.startswith("127.0.0.1:"))
+    return server, next(address for address in server.addresses if address.startswith("127.0.0.1:"))
 
 
 async def through_aio(target, domain, size):

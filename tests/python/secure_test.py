@@ -21,8 +21,7 @@ def guarded(tmp_path_factory):
             "--listen", "127.0.0.1:0", "--tls-cert", str(folder / "cert.pem"), "--tls-key",
             str(folder / "key.pem"), "--tokens", str(folder / "tokens"), "--data",
             str(folder / "data")]) as server:
-        addresses = (server.folder / "ready").read_text().split()
-        server.tcp = next(address for address in addresses if address.startswith("127.0.0.1:"))
+        server.tcp = next(address for address in server.addresses if address.startswith("127.0.0.1:"))
         server.certificate = folder / "cert.pem"
         yield server
 

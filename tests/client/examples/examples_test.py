@@ -70,8 +70,7 @@ def guarded(tmp_path_factory):
 
 
 def tcp_address(server):
-    addresses = (server.folder / "ready").read_text().split()
-    return next(address for address in addresses if address.startswith("127.0.0.1:"))
+    return next(address for address in server.addresses if address.startswith("127.0.0.1:"))
 
 
 def run(example, *arguments, **variables):

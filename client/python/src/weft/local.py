@@ -19,6 +19,7 @@ from .errors import LocalServerError
 
 _START_SECONDS = 30.0
 _STOP_SECONDS = 5.0
+_MOST_BYTES = 65536  # of addresses, as many as a pipe holds
 
 
 class LocalServer:
@@ -43,6 +44,8 @@ class LocalServer:
             """Holds the socket and the log; is removed at the end."""
             self.target = f"unix:{self.folder}/socket"
             """What a Client takes."""
+            self.addresses: list[str] = []
+            """All at which it listens: `target`, those of --listen, metrics=HOST:PORT, console=HOST:PORT."""
             self._process = self._spawn(program, arguments)
             stack.callback(self._end)
             self._wait_until_ready(program)
@@ -81,13 +84,16 @@ class LocalServer:
 
     def _wait_until_ready(self, program: str) -> None:
         assert self._process.stdout
-        # It writes its address when it listens, and nothing before.
-        heard, _, _ = select.select([self._process.stdout], [], [], _START_SECONDS)
-        if heard and self._process.stdout.readline():
+        poll = select.poll()
+        poll.register(self._process.stdout, select.POLLIN)
+        # It writes them at once when it listens, and nothing before.
+        heard = poll.poll(1000 * _START_SECONDS)
+        if heard and (said := os.read(self._process.stdout.fileno(), _MOST_BYTES)):
+            self.addresses = said.decode().split()
             return
-        said = (self.folder / "log").read_text(errors="replace").splitlines()[-10:]
+        log = (self.folder / "log").read_text(errors="replace").splitlines()[-10:]
         what = "ended at start" if heard else f"is not ready after {_START_SECONDS:g} s"
-        raise LocalServerError("\n  ".join([f"no private weftd: {program} {what}; it said:", *said]))
+        raise LocalServerError("\n  ".join([f"no private weftd: {program} {what}; it said:", *log]))
 
     def _end(self) -> None:
         self._process.terminate()
