@@ -4,7 +4,7 @@
 
     tests/includes.py [FOLDER]     FOLDER is the root of the sources; default: the one this lies in
 
-Rules, on the quoted includes of all .h and .cpp files outside `tests`, `bench` and `examples`:
+Rules, on the quoted includes, and those of TBB, of all .h and .cpp files outside `tests`, `bench` and `examples`:
   - include/weft/, the library's face, is FACE, and includes nothing else.
   - engine/ includes nothing of server/, client/ or checker/.
   - A room of LAYERS includes of its component only itself and those before it: engine/base/ nothing
@@ -13,6 +13,7 @@ Rules, on the quoted includes of all .h and .cpp files outside `tests`, `bench` 
   - client/ includes nothing of server/, engine/ or the face; of checker/ only what it judges files with.
   - checker/ includes nothing of the four.
   - loader/ includes nothing of the others; server/ and client/ include it.
+  - TBB is included by engine/base/arena.cpp alone.
 """
 import pathlib
 import re
@@ -23,17 +24,19 @@ LAYERS = {"engine": ["engine/base", "engine/domain", "engine/size", "engine/refi
           "client": ["client/base", "client/formats", "client/geo", "client/call"],
           "server": ["server/store", "server/wire", "server/run"]}
 FACE = {f"weft/{name}.h" for name in ("c", "error", "geometry", "mesh", "pslg", "run", "size", "weft")}
-INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
+KNOWS_TBB = "engine/base/arena.cpp"
+INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(tbb/[^>]+)>)', re.MULTILINE)
 
 
 def includes_of(root: pathlib.Path) -> dict[str, list[str]]:
-    """The quoted includes of each source, by its path from the root, or from include/."""
+    """The quoted includes of each source, and those of TBB, by its path from the root, or from include/."""
     found = {}
     for top in ("include", "engine", "server", "client", "checker", "loader"):
         base = root / top if top == "include" else root
         for path in sorted((root / top).rglob("*")):
             if path.suffix in (".h", ".cpp"):
-                found[path.relative_to(base).as_posix()] = INCLUDE.findall(path.read_text())
+                found[path.relative_to(base).as_posix()] = [
+                    quoted or tbb for quoted, tbb in INCLUDE.findall(path.read_text())]
     return found
 
 
@@ -44,6 +47,8 @@ def room(path: str) -> str:
 def forbidden(source: str, target: str) -> str | None:
     """Why `source` may not include `target`; None if it may."""
     top, target_top = source.split("/")[0], target.split("/")[0]
+    if target_top == "tbb":
+        return None if source == KNOWS_TBB else f"only {KNOWS_TBB} includes TBB"
     if top == "weft":
         return None if target in FACE else "the library's face includes nothing else"
     if target in FACE:
