@@ -36,7 +36,6 @@
 #include <string>
 #include <thread>
 
-#include "server/run/memory_gate.h"
 #include "server/admission/refusal_log.h"
 #include "server/net/caller.h"
 #include "server/net/drain_gate.h"
@@ -44,6 +43,7 @@
 #include "server/net/reset_guard.h"
 #include "server/observe/log.h"
 #include "server/observe/metrics.h"
+#include "server/run/memory_gate.h"
 #include "server/wire/errors.h"
 
 namespace weft::server {
