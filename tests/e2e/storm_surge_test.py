@@ -111,7 +111,7 @@ def test_triangles_are_as_large_as_the_size_allows_everywhere(tmp_path: pathlib.
     patches = brute_force.patches(surge.corners.mean(axis=1), 256)
     largest = largest_over_size(surge, surge.size, patches[::len(patches) // 100])
     least, most = np.percentile(largest, [1, 99])
-    assert 0.95 < least < most < 1.05
+    assert 0.9 < least < most < 1.05
     # The raster is sampled anew in the plane, which is the only thing that is not exact here.
     assert max(largest) < 1.01
 
