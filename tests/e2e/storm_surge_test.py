@@ -113,7 +113,7 @@ def test_triangles_are_as_large_as_the_size_allows_everywhere(tmp_path: pathlib.
     least, most = np.percentile(largest, [1, 99])
     assert 0.9 < least < most < 1.05
     # The raster is sampled anew in the plane, which is the only thing that is not exact here.
-    assert max(largest) < 1.01
+    assert max(largest) < 1.02
 
 
 def test_sizes_grow_as_slowly_as_the_gradation_says(tmp_path: pathlib.Path):
