@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <utility>
+#include <variant>
 
 #include "engine/base/trace.h"
 #include "engine/domain/domain_picture.h"
@@ -26,6 +28,10 @@ namespace {
 // constrained triangulation.
 constexpr double kBytesPerTriangle = 48;
 constexpr double kBytesPerPoint = 300;
+// Of the lattices of a size that varies (size/lattice/grain_map.h): one for some 80 triangles where
+// they change within a few rows, and no more than about this in all.
+constexpr double kBytesOfLattices = 5;  // a triangle
+constexpr double kMostBytesOfLattices = 8e6;
 // Any run takes this for tables and buffers.
 constexpr double kBytesPerRun = 1e6;
 // Over triangles_per_bound, which is what comes out if the size is the same everywhere: where it
@@ -154,6 +160,14 @@ double bytes_of_mesh(double triangles, double of_leaf, bool may_stream) {
   return std::min(whole, strip) + waiting;
 }
 
+double bytes_of_lattices(const MeshRequest& request, double triangles) {
+  const SizeSpec::Value& size = request.size.value;
+  const bool varies = std::holds_alternative<std::string>(size) ||
+                      std::holds_alternative<Raster>(size) || request.size.gradation > 0;
+  if (!varies || request.placement != Placement::kLattice) return 0;
+  return std::min(kBytesOfLattices * triangles, kMostBytesOfLattices);
+}
+
 // Numbers that are not finite become `most`.
 std::uint64_t at_most(std::uint64_t most, double value) {
   return value < static_cast<double>(most) ? static_cast<std::uint64_t>(value) : most;
@@ -172,6 +186,7 @@ Estimate estimate(const MeshRequest& request, const Budget& budget) {
   const double bytes =
       kBytesPerRun + kBytesPerPoint * points +
       static_cast<double>(bytes_to_make(request.size, request.pslg)) +
+      bytes_of_lattices(request, triangles) +
       bytes_of_mesh(triangles, request.leaf_triangles.value_or(leaf_triangles_for(triangles)),
                     may_stream);
   return {at_most(most, triangles), at_most(budget.max_bytes, bytes)};
