@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <string>
 #include <utility>
 #include <variant>
 
@@ -120,15 +119,23 @@ Integral integral(const DomainPicture& picture, const SizeFunction& size) {
 }
 
 // What the size and the regions ask for.
-double triangles_by_size(const MeshRequest& request) {
+struct BySize {
+  double triangles = 0;
+  bool varies = false;  // on lattices that follow it
+};
+
+BySize by_size_of(const MeshRequest& request) {
   const DomainPicture picture = DomainPicture::of(request.pslg);
-  const Integral over_bound = integral(picture, size_to_estimate_by(request.size).function());
+  const Size size = size_to_estimate_by(request.size);
+  const Integral over_bound = integral(picture, size.function());
   LatticeShape lattice;
   if (request.placement == Placement::kLattice)
     lattice = LatticeShape::for_angle(request.min_angle_deg);
   const double triangles = triangles_per_bound(lattice) * over_bound.sum;
-  if (!lattice.exists()) return kMoreAtCircumcentres * triangles;
-  return kMoreOnLattice * triangles * (over_bound.is_even ? 1 : kIfItVaries);
+  if (!lattice.exists()) return {kMoreAtCircumcentres * triangles, false};
+  const bool is_raster = std::holds_alternative<Raster>(request.size.value);
+  return {kMoreOnLattice * triangles * (over_bound.is_even ? 1 : kIfItVaries),
+          is_raster || !(over_bound.is_even || size.function().constant())};
 }
 
 // What the lengths at markers ask for.
@@ -160,12 +167,8 @@ double bytes_of_mesh(double triangles, double of_leaf, bool may_stream) {
   return std::min(whole, strip) + waiting;
 }
 
-double bytes_of_lattices(const MeshRequest& request, double triangles) {
-  const SizeSpec::Value& size = request.size.value;
-  const bool varies = std::holds_alternative<std::string>(size) ||
-                      std::holds_alternative<Raster>(size) || request.size.gradation > 0;
-  if (!varies || request.placement != Placement::kLattice) return 0;
-  return std::min(kBytesOfLattices * triangles, kMostBytesOfLattices);
+double bytes_of_lattices(const BySize& by_size) {
+  return by_size.varies ? std::min(kBytesOfLattices * by_size.triangles, kMostBytesOfLattices) : 0;
 }
 
 // Numbers that are not finite become `most`.
@@ -178,15 +181,15 @@ std::uint64_t at_most(std::uint64_t most, double value) {
 Estimate estimate(const MeshRequest& request, const Budget& budget) {
   const auto points = static_cast<double>(request.pslg.points.size());
   const std::uint64_t most = std::min(budget.max_triangles, budget.triangle_limit);
-  const double triangles = std::min(
-      triangles_by_size(request) + triangles_by_pieces(request) + kTrianglesPerPoint * points,
-      static_cast<double>(most));
+  const BySize by_size = by_size_of(request);
+  const double triangles =
+      std::min(by_size.triangles + triangles_by_pieces(request) + kTrianglesPerPoint * points,
+               static_cast<double>(most));
   const bool may_stream = budget.max_triangles == Budget{}.max_triangles &&
                           request.min_angle_deg <= kMaxStreamingAngleDeg;
   const double bytes =
       kBytesPerRun + kBytesPerPoint * points +
-      static_cast<double>(bytes_to_make(request.size, request.pslg)) +
-      bytes_of_lattices(request, triangles) +
+      static_cast<double>(bytes_to_make(request.size, request.pslg)) + bytes_of_lattices(by_size) +
       bytes_of_mesh(triangles, request.leaf_triangles.value_or(leaf_triangles_for(triangles)),
                     may_stream);
   return {at_most(most, triangles), at_most(budget.max_bytes, bytes)};
