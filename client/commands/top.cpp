@@ -42,11 +42,13 @@ Result<TopSample> look(JobServer& server) {
   return sample;
 }
 
-// The server is away or slow, and may answer the next time.
+// The server is away or slow, or ends while it answers, and may answer the next time.
 bool may_pass(const Error& error) {
+  constexpr int kCancelled = 1;
   constexpr int kDeadlineExceeded = 4;
   constexpr int kUnavailable = 14;
-  return error.exit == exit_code_of_status(kDeadlineExceeded) ||
+  return error.exit == exit_code_of_status(kCancelled) ||
+         error.exit == exit_code_of_status(kDeadlineExceeded) ||
          error.exit == exit_code_of_status(kUnavailable);
 }
 

@@ -85,6 +85,19 @@ TEST_F(OnATerminal, TopGivesTheScreenBackWhenInterrupted) {
   EXPECT_EQ(err(), "");
 }
 
+TEST_F(OnATerminal, TopLivesThroughACallThatAServerCancelsAtItsEnd) {
+  const pid_t pid = start_here({"top", "--interval", "0.1"});
+  ASSERT_TRUE(shows("queued 0  running 0"));
+  Fault cancelled;
+  cancelled.status = grpc::Status(grpc::StatusCode::CANCELLED, "the server ends");
+  jobs_.fail("ListJobs", {cancelled});
+  ASSERT_TRUE(shows("answers CANCELLED"));
+  jobs_.put(sample_job("later", v1::JOB_STATE_RUNNING));
+  EXPECT_TRUE(shows("later  refining ["));
+  ::kill(pid, SIGTERM);
+  EXPECT_EQ(end_of(pid), 128 + SIGTERM);
+}
+
 TEST_F(OnATerminal, TopLivesThroughAServerThatIsAway) {
   const pid_t pid = start_here({"top", "--interval", "0.1"});
   ASSERT_TRUE(shows("queued 0  running 0"));
