@@ -365,9 +365,9 @@ class Pipeline {
   // Smoothing takes time for each triangle in the rows where two lattices meet. If `n` lattices are
   // in a mesh of N triangles, these rows hold about 3 sqrt(n / N) of the triangles:
   //
-  //                   pipe   slope  hollow  long waves  ring    short waves
-  //   sqrt(n / N)     0.010  0.009  0.018   0.033       0.057   0.049
-  //   time, 2 sweeps  1.1    1.3    1.3     1.5         2.8     4.2   times that without
+  //                   pipe   slope  hollow  long waves
+  //   sqrt(n / N)     0.010  0.009  0.018   0.033
+  //   time, 2 sweeps  1.1    1.3    1.3     1.5    times that without
   //
   // In a small mesh the angles matter more than the time.
   bool sweeps_cost_little() const {

@@ -5,7 +5,7 @@
 //   #define MY_PROJ_FUNCTIONS(EACH) EACH(proj_create) EACH(proj_destroy)
 //   WEFT_FUNCTION_TABLE(Proj, MY_PROJ_FUNCTIONS);
 //
-//   const auto proj = load_functions<Proj>("libproj.so.25");
+//   const auto& proj = loaded_functions<Proj>("libproj.so.25");
 //   if (!proj) return fail(proj.error());
 //   proj->proj_destroy(pj);
 //
@@ -60,6 +60,14 @@ tl::expected<Table, std::string> load_functions(const std::string& soname) {
   });
   if (!missing.empty()) return tl::unexpected(soname + " has no function " + missing);
   return table;
+}
+
+// The same, loaded once: whether or not that succeeds, later calls return what the first did.
+// REQUIRES: the same name in each call. Thread-safe.
+template <class Table>
+const tl::expected<Table, std::string>& loaded_functions(const char* soname) {
+  static const tl::expected<Table, std::string> loaded = load_functions<Table>(soname);
+  return loaded;
 }
 
 }  // namespace weft

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "client/base/text.h"
+#include "client/drawing/cairo_library.h"
 #include "client/formats/bed.h"
 #include "client/formats/derived/mesh_parts.h"
 #include "client/formats/derived/renumbered_mesh.h"
@@ -72,6 +73,8 @@ Result<void> check_names(const MeshOutputOptions& options,
   if (auto ok = check_nodal(options); !ok) return ok;
   if (options.writing.parts)
     if (auto ok = check_can_divide(); !ok) return ok;
+  if (!options.drawings.empty())
+    if (auto ok = load_cairo(); !ok) return ok;
   if (!options.drawings.empty() && options.drawing.color == DrawColor::kBound &&
       !options.area_bound)
     return fail(ExitCode::kUsage,

@@ -31,6 +31,10 @@ class LineScanner {
 
   // Moves to the next line that is not empty; an error at the end of the file names `what`.
   Result<void> next_line(std::string_view what);
+  // Moves to the next field, on this line or below, as next_line.
+  Result<void> to_field(std::string_view what) {
+    return at_line_end() ? next_line(what) : Result<void>{};
+  }
   // Moves to the next line that is not empty; returns false at the end of the file.
   bool try_next_line();
   // Moves to the next line, even if it is empty; returns false at the end of the file.

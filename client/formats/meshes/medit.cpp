@@ -31,7 +31,7 @@ class Reader {
       : path_(path), scanner_(path.string(), text) {}
 
   Result<Mesh> read() {
-    if (auto done = to_field(kFirstWord); !done) return tl::unexpected(done.error());
+    if (auto done = scanner_.to_field(kFirstWord); !done) return tl::unexpected(done.error());
     const auto first = scanner_.word(kFirstWord);
     if (!first) return tl::unexpected(first.error());
     if (*first != kFirstWord)
@@ -50,15 +50,12 @@ class Reader {
  private:
   // Whether there is another field, on this line or below.
   bool has_field() { return !scanner_.at_line_end() || scanner_.try_next_line(); }
-  Result<void> to_field(std::string_view what) {
-    return scanner_.at_line_end() ? scanner_.next_line(what) : Result<void>{};
-  }
   Result<std::int64_t> integer(std::string_view what) {
-    if (auto done = to_field(what); !done) return tl::unexpected(done.error());
+    if (auto done = scanner_.to_field(what); !done) return tl::unexpected(done.error());
     return scanner_.integer(what);
   }
   Result<std::uint64_t> count(std::string_view what) {
-    if (auto done = to_field(what); !done) return tl::unexpected(done.error());
+    if (auto done = scanner_.to_field(what); !done) return tl::unexpected(done.error());
     return scanner_.count(what);
   }
 
@@ -88,7 +85,7 @@ class Reader {
     mesh_.coordinates.reserve(2 * *number);
     for (std::uint64_t i = 0; i < *number; ++i) {
       for (std::int64_t axis = 0; axis < dimension_; ++axis) {
-        if (auto done = to_field("a coordinate"); !done) return done;
+        if (auto done = scanner_.to_field("a coordinate"); !done) return done;
         const auto value = scanner_.real("a coordinate");
         if (!value) return tl::unexpected(value.error());
         if (axis < 2) mesh_.coordinates.push_back(*value);
@@ -105,14 +102,14 @@ class Reader {
     if (!number) return tl::unexpected(number.error());
     for (std::uint64_t i = 0; i < *number; ++i) {
       for (int k = 0; k < corners; ++k) {
-        if (auto done = to_field("a vertex"); !done) return done;
+        if (auto done = scanner_.to_field("a vertex"); !done) return done;
         // Vertices may come later, so that their numbers are checked at the end.
         const auto v =
             read_index(scanner_, "a vertex", 1, std::numeric_limits<std::uint32_t>::max());
         if (!v) return tl::unexpected(v.error());
         nodes.push_back(*v);
       }
-      if (auto done = to_field("a reference"); !done) return done;
+      if (auto done = scanner_.to_field("a reference"); !done) return done;
       const auto reference = scanner_.marker("a reference");
       if (!reference) return tl::unexpected(reference.error());
       references.push_back(*reference);

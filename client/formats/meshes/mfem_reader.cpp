@@ -50,15 +50,12 @@ class Reader {
   }
 
  private:
-  Result<void> to_field(std::string_view what) {
-    return scanner_.at_line_end() ? scanner_.next_line(what) : Result<void>{};
-  }
   Result<std::int32_t> integer(std::string_view what) {
-    if (auto done = to_field(what); !done) return tl::unexpected(done.error());
+    if (auto done = scanner_.to_field(what); !done) return tl::unexpected(done.error());
     return scanner_.marker(what);
   }
   Result<std::uint64_t> count(std::string_view what) {
-    if (auto done = to_field(what); !done) return tl::unexpected(done.error());
+    if (auto done = scanner_.to_field(what); !done) return tl::unexpected(done.error());
     return scanner_.count(what);
   }
 
@@ -96,7 +93,7 @@ class Reader {
                               std::to_string(corners - 1) + " is read here");
       attributes.push_back(*attribute);
       for (int k = 0; k < corners; ++k) {
-        if (auto done = to_field("a vertex"); !done) return done;
+        if (auto done = scanner_.to_field("a vertex"); !done) return done;
         // Vertices come later, so that their numbers are checked at the end.
         const auto v =
             read_index(scanner_, "a vertex", 0, std::numeric_limits<std::uint32_t>::max());
@@ -118,7 +115,7 @@ class Reader {
     mesh_.coordinates.reserve(2 * *number);
     for (std::uint64_t i = 0; i < *number; ++i)
       for (int axis = 0; axis < *axes; ++axis) {
-        if (auto done = to_field("a coordinate"); !done) return done;
+        if (auto done = scanner_.to_field("a coordinate"); !done) return done;
         const auto value = scanner_.real("a coordinate");
         if (!value) return tl::unexpected(value.error());
         if (axis < 2) mesh_.coordinates.push_back(*value);

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs that a RunQueue gets from a Source, beside those that are pushed.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "server/run/memory_gate.h"
+#include "server/run/run_queue.h"
+#include "tests/server/run/runs.h"
+#include "tests/support/event.h"
+
+namespace weft::server {
+namespace {
+
+TEST(RunsOfASource, HaveTheSlotsInTurnsWithThoseThatWaitHere) {
+  std::string order;
+  Event done;
+  Busy busy;
+  MemoryGate gate({}, [] {});
+  RunQueue queue({.capacity = 100, .gate = &gate});
+  ListSource source(queue);
+  busy.occupy(queue);
+  const auto ran = [&](char what) {
+    order += what;
+    if (order.size() == 7) done.set();
+  };
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(pushed(queue, make_task([&] { ran('c'); }), i == 0 ? "a" : "b"));
+    source.add("a", 0, [&](auto&) { ran('j'); });
+  }
+  source.add("a", 0, [&](auto&) { ran('j'); });
+  busy.release.set();
+  ASSERT_TRUE(done.wait());
+  EXPECT_EQ(order, "jcjcjcj");
+}
+
+TEST(RunsOfASource, AreBoundedByTheSlotsThatAllShare) {
+  constexpr int kRuns = 20;
+  std::atomic<int> running{0};
+  std::atomic<int> left{2 * kRuns};
+  Event done;
+  MemoryGate gate({}, [] {});
+  RunQueue queue({.slots = 2, .capacity = 100, .gate = &gate});
+  ListSource source(queue);
+  const auto run = [&](auto&) {
+    EXPECT_LE(++running, 2);
+    std::this_thread::yield();
+    --running;
+    if (--left == 0) done.set();
+  };
+  for (int i = 0; i < kRuns; ++i) {
+    ASSERT_TRUE(pushed(queue, make_slotted(run), "a"));
+    source.add("b", 0, run);
+  }
+  EXPECT_TRUE(done.wait());
+}
+
+TEST(RunsOfASource, CountTowardsTheSlotsOfTheirClientWithThoseThatWaitHere) {
+  Event both_run;
+  Event third_runs;
+  Event one_may_end;
+  Event other_may_end;
+  std::atomic<int> running{0};
+  MemoryGate gate({}, [] {});
+  RunQueue queue({.slots = 4, .capacity = 100, .gate = &gate, .client_share = 0.5});
+  ListSource source(queue);
+  const auto run = [&](Event& may_end) {
+    if (++running == 2) both_run.set();
+    EXPECT_TRUE(may_end.wait());
+  };
+  ASSERT_TRUE(pushed(queue, make_task([&] { run(one_may_end); }), "a"));
+  source.add("a", 0, [&](auto&) { run(other_may_end); });
+  ASSERT_TRUE(both_run.wait());
+  source.add("a", 0, [&](auto&) { third_runs.set(); });
+  Event of_another;
+  source.add("b", 0, [&](RunQueue::Slot& slot) {
+    EXPECT_EQ(slot.full_clients(), std::vector<std::string>{"a"});
+    of_another.set();
+  });
+  EXPECT_TRUE(of_another.wait());
+  EXPECT_FALSE(third_runs.happened());
+  one_may_end.set();
+  EXPECT_TRUE(third_runs.wait()) << "the source was not asked again";
+  other_may_end.set();
+}
+
+TEST(RunsOfASource, AreNobodysShareWithoutAClient) {
+  Event all_run;
+  std::atomic<int> running{0};
+  MemoryGate gate({}, [] {});
+  RunQueue queue({.slots = 4, .gate = &gate, .client_share = 0.5});
+  ListSource source(queue);
+  for (int i = 0; i < 4; ++i)
+    source.add("", 0, [&](auto&) {
+      if (++running == 4) all_run.set();
+      EXPECT_TRUE(all_run.wait());
+    });
+  EXPECT_TRUE(all_run.wait());
+}
+
+TEST(RunsOfASource, MayHaveALightSlotOnlyIfTheyAreLight) {
+  Event ran;
+  Busy busy;
+  MemoryGate gate({}, [] {});
+  RunQueue queue({.light_slots = 1, .capacity = 10, .light = 10, .gate = &gate});
+  ListSource source(queue);
+  Event heavy_runs;
+  source.add("a", 1000, [&](RunQueue::Slot& slot) {
+    EXPECT_EQ(slot.priority(), RunQueue::Priority::kHeavy);
+    EXPECT_FALSE(slot.is_light());
+    heavy_runs.set();
+    EXPECT_TRUE(busy.release.wait());
+  });
+  ASSERT_TRUE(heavy_runs.wait());
+  Event second_ran;
+  source.add("a", 1000, [&](auto&) { second_ran.set(); });
+  source.add("a", 10, [&](RunQueue::Slot& slot) {
+    EXPECT_EQ(slot.priority(), RunQueue::Priority::kLight);
+    EXPECT_TRUE(slot.is_light());
+    ran.set();
+  });
+  EXPECT_TRUE(ran.wait());
+  EXPECT_FALSE(second_ran.happened());
+  busy.release.set();
+  EXPECT_TRUE(second_ran.wait());
+}
+
+TEST(RunsOfASource, AreNotAdmittedIfTheMemoryIsGone) {
+  MemoryGate gate({.capacity = 100}, [] {});
+  RunQueue queue({.gate = &gate});
+  struct Late final : RunQueue::Source {
+    explicit Late(MemoryGate& gate) : gate(gate) {}
+    void run_next(RunQueue::Slot& slot) noexcept override {
+      EXPECT_GE(slot.room(), 60u);
+      const auto other = gate.take({.estimate = 50});
+      EXPECT_FALSE(slot.admit({"a", 60}));
+      EXPECT_TRUE(slot.admit({"a", 50}));
+      asked.set();
+    }
+    MemoryGate& gate;
+    Event asked;
+  } source(gate);
+  queue.attach(source);
+  queue.wake();
+  EXPECT_TRUE(source.asked.wait());
+  queue.detach();
+  EXPECT_EQ(gate.taken(), 0u);
+}
+
+// Otherwise each mesh of a call would be a question to the database.
+TEST(RunsOfASource, AreAskedForOnlyIfThereMayBeOne) {
+  MemoryGate gate({}, [] {});
+  RunQueue queue({.capacity = 100, .gate = &gate});
+  ListSource source(queue);
+  Event source_ran;
+  source.add("a", 0, [&](auto&) { source_ran.set(); });
+  ASSERT_TRUE(source_ran.wait());
+  while (source.asked() < 2) std::this_thread::yield();  // there was one, so there may be another
+  std::atomic<int> left{50};
+  Event done;
+  for (int i = 0; i < 50; ++i)
+    ASSERT_TRUE(pushed(queue, make_task([&] {
+                         if (--left == 0) done.set();
+                       }),
+                       "a"));
+  ASSERT_TRUE(done.wait());
+  EXPECT_EQ(source.asked(), 2);
+}
+
+TEST(RunsOfASource, HaveEndedOnceItIsDetached) {
+  std::atomic<bool> ended{false};
+  MemoryGate gate({}, [] {});
+  RunQueue queue({.gate = &gate});
+  std::optional<ListSource> source(queue);
+  Event runs;
+  Event release;
+  source->add("a", 0, [&](auto&) {
+    runs.set();
+    EXPECT_TRUE(release.wait());
+    ended = true;
+  });
+  ASSERT_TRUE(runs.wait());
+  std::thread later([&] { release.set(); });
+  source.reset();
+  EXPECT_TRUE(ended);
+  later.join();
+}
+
+}  // namespace
+}  // namespace weft::server
