@@ -61,6 +61,7 @@ export async function openPage(test, browser, url, { dark = false, expected = []
   page.setDefaultTimeout(patience);
   atEnd(test, async () => {
     await context.close();
+    for (const fault of faults) test.diagnostic(fault);
     const unexpected = faults.filter((fault) => !expected.some((pattern) => pattern.test(fault)));
     if (unexpected.length > 0) throw new Error(`the page complained:\n${unexpected.join("\n")}`);
   });
@@ -120,8 +121,10 @@ export async function middleOf(page, view) {
   return pixelsOf(page, { x: x + width / 4, y: y + height / 4, width: width / 2, height: height / 2 });
 }
 
-// Waits until the views show the same three times in a row, and something else than `before`.
+// Waits until the views show the same three times in a row, and something else than `before`; returns
+// what each shows.
 export async function settled(page, before = Buffer.alloc(0)) {
+  const pictures = [];
   for (const view of await page.$$("main .mesh-view")) {
     const seen = [];
     await until("the picture rests", async () => {
@@ -129,7 +132,25 @@ export async function settled(page, before = Buffer.alloc(0)) {
       const [a, b, c] = seen.slice(-3);
       return c && a.equals(b) && b.equals(c) && !c.equals(before);
     });
+    pictures.push(seen.at(-1));
   }
+  return pictures;
+}
+
+// Waits until a view shows what it did before. Values may be rounded otherwise at the rims of triangles.
+export async function isBack(page, view, before) {
+  let apart = 0;
+  let now;
+  const isLike = async () => {
+    now = await middleOf(page, view);
+    apart = 0;
+    for (let i = 0; i < now.length; ++i) apart += Math.abs(now[i] - before[i]) > 8;
+    return now.length === before.length && apart < now.length / 200;
+  };
+  await until("the picture is back", isLike).catch(async ({ message }) => {
+    const pressed = await view.$$eval("[aria-pressed]", (all) => all.map((one) => `${one.innerText} ${one.ariaPressed}`));
+    throw new Error(`${message}: ${apart} of ${now.length} values differ, ${before.length} before; ${pressed.join(", ")}`);
+  });
 }
 
 // Whether the page shows `count` whole meshes, each in `least` colours or more.

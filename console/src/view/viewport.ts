@@ -241,13 +241,18 @@ export class Viewport implements RunPainter {
     const way = to.scale === from.scale ? s : (1 / this.camera.scale - 1 / from.scale) / (1 / to.scale - 1 / from.scale);
     this.camera.x = from.x + way * (to.x - from.x);
     this.camera.y = from.y + way * (to.y - from.y);
-    if (t === 1) this.flight = undefined;
+    if (t < 1) return;
+    Object.assign(this.camera, to); // the sum above is rounded
+    this.flight = undefined;
   }
 
   private resize(): void {
     this.camera.width = Math.max(1, this.canvas.clientWidth);
     this.camera.height = Math.max(1, this.canvas.clientHeight);
-    if (this.untouched && this.home) this.camera.fit(this.home);
+    if (this.untouched && this.home) {
+      this.flight = undefined; // to a place for another size
+      this.camera.fit(this.home);
+    }
     this.ask();
   }
 
