@@ -24,6 +24,13 @@ Result<void> check_lonlat(const std::filesystem::path& path, const Domain& domai
   return fail(extent.error().exit, (message.starts_with(file) ? "" : file) + message);
 }
 
+void warn_of_degrees(const std::filesystem::path& path, Domain& domain) {
+  if (!domain.system || !domain.system->geographic) return;
+  domain.warnings.push_back(
+      path.string() + ": its coordinates are longitudes and latitudes (" + domain.system->name +
+      "): lengths, areas and angles are those of degrees; --lonlat has them on the ground");
+}
+
 Result<InputDomain> read_input_domain(const std::filesystem::path& path,
                                       const RequestOptions& wanted,
                                       const ProjectionOptions& options, const LayerOptions& layers,
@@ -41,7 +48,10 @@ Result<InputDomain> read_input_domain(const std::filesystem::path& path,
   fill_polygons(*domain, wanted.fill);
   if (as_read) as_read(*domain);
   InputDomain input{std::move(*domain), nullptr};
-  if (!options.wanted()) return input;
+  if (!options.wanted()) {
+    warn_of_degrees(path, input.domain);
+    return input;
+  }
   if (auto ok = check_lonlat(path, input.domain); !ok) return tl::unexpected(ok.error());
   auto projection = DomainProjection::project(input.domain, options);
   if (!projection)

@@ -28,7 +28,7 @@ struct InputDomain {
 // and of set_names; kUnreadableInput if the domain is to be projected, but its file says that it
 // lies in a plane; kUsage if the size is the path of a grid, but the projection has no name that
 // the grid could have been made for. `as_read`, if any, is called with the domain before it is
-// projected.
+// projected. A domain of degrees that is not projected has a warning.
 Result<InputDomain> read_input_domain(const std::filesystem::path& path,
                                       const RequestOptions& wanted,
                                       const ProjectionOptions& options, const LayerOptions& layers,
@@ -37,6 +37,10 @@ Result<InputDomain> read_input_domain(const std::filesystem::path& path,
 // Error (kUnreadableInput): the domain, read from `path`, cannot be in longitude and latitude: its
 // file says that it lies in a plane, or those of lonlat_extent.
 Result<void> check_lonlat(const std::filesystem::path& path, const Domain& domain);
+
+// Adds a warning to a domain that is not projected if its file says that it is in longitude and
+// latitude.
+void warn_of_degrees(const std::filesystem::path& path, Domain& domain);
 
 // `options` may be null. The origin refers to both.
 RequestOrigin origin_of(const InputDomain& input, const RequestOptions* options = nullptr);

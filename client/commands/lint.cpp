@@ -73,8 +73,10 @@ Result<ExitCode> run_lint(const LintOptions& options, std::stop_token stop) {
   if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
   auto domain = read_domain(options.file, options.layers);
   if (!domain) return tl::unexpected(domain.error());
-  if (options.lonlat)
-    if (auto ok = check_lonlat(options.file, *domain); !ok) return tl::unexpected(ok.error());
+  if (!options.lonlat)
+    warn_of_degrees(options.file, *domain);
+  else if (auto ok = check_lonlat(options.file, *domain); !ok)
+    return tl::unexpected(ok.error());
   fill_polygons(*domain, options.fill);
   const auto lint = lint_domain(
       *domain, options.file.string(),

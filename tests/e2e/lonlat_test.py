@@ -179,3 +179,17 @@ def test_the_mesh_in_metres_is_checked(tmp_path: pathlib.Path):
                           text=True)
     assert done.returncode == 2
     assert "--to-metres" in done.stderr
+
+
+def test_degrees_that_the_file_names_are_a_warning_without_lonlat(tmp_path):
+    file = tmp_path / "triangle.csv"
+    file.write_text("lat,lon\n52.1,4.2\n52.2,4.9\n52.6,4.8\n")
+    told = [f"{file}: its coordinates are longitudes and latitudes (columns 'lon' and 'lat'): lengths, areas and "
+            "angles are those of degrees; --lonlat has them on the ground"]
+    assert Mesh(tmp_path, file, "--edge", 0.05).report["warnings"] == told
+    assert "warnings" not in Mesh(tmp_path, file, "--edge", 5000, "--lonlat").report
+    lint = subprocess.run([WEFT, "lint", file], capture_output=True, text=True)
+    assert lint.returncode == 3 and told[0].partition(": ")[2] in lint.stdout
+    assert subprocess.run([WEFT, "lint", file, "--lonlat"], capture_output=True).returncode == 0
+    file.write_text("y,x\n52.1,4.2\n52.2,4.9\n52.6,4.8\n")
+    assert "warnings" not in Mesh(tmp_path, file, "--edge", 0.05).report

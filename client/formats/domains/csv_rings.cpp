@@ -34,6 +34,16 @@ constexpr std::string_view kGeometryNames[] = {"wkt", "wkt_geom", "geom", "geome
 
 enum class Column { kX, kY, kRing, kMarker, kGeometry, kOther };
 
+// In small letters. Of "Easting [m]", the unit says nothing.
+std::string without_unit(std::string_view name) {
+  return lower_case(trimmed(name.substr(0, name.find_first_of("[("))));
+}
+
+// Whether the columns x and y may be called so where they are longitudes and latitudes alone.
+bool is_of_degrees(std::string_view x, std::string_view y) {
+  return without_unit(x).starts_with("lon") && without_unit(y).starts_with("lat");
+}
+
 Column column_of(std::string_view name) {
   struct Name {
     std::string_view text;
@@ -45,8 +55,7 @@ Column column_of(std::string_view name) {
       {"point_x", Column::kX},  {"y", Column::kY},          {"lat", Column::kY},
       {"latitude", Column::kY}, {"northing", Column::kY},   {"point_y", Column::kY},
       {"ring", Column::kRing},  {"marker", Column::kMarker}};
-  // Of "Easting [m]", the unit says nothing.
-  const std::string known = lower_case(trimmed(name.substr(0, name.find_first_of("[("))));
+  const std::string known = without_unit(name);
   for (const Name& entry : kNames)
     if (entry.text == known) return entry.column;
   if (std::find(std::begin(kGeometryNames), std::end(kGeometryNames), known) !=
@@ -90,7 +99,9 @@ class Reader {
       builder_.warn(":" + std::to_string(returned_line_) +
                     ": a ring that ended before comes again; it is taken for another ring");
     if (auto added = add_rings(); !added) return tl::unexpected(added.error());
-    return builder_.finish();
+    auto domain = builder_.finish();
+    if (domain) domain->system = system();
+    return domain;
   }
 
  private:
@@ -99,6 +110,15 @@ class Reader {
   std::size_t place_of(Column column) const {
     const auto found = std::find(columns_.begin(), columns_.end(), column);
     return found == columns_.end() ? kAbsent : static_cast<std::size_t>(found - columns_.begin());
+  }
+
+  // Degrees if the columns' names say so.
+  std::optional<CoordinateSystem> system() const {
+    const std::vector<std::string>& names = table_.names();
+    if (geometry_ || names.empty()) return std::nullopt;
+    const std::string &x = names[place_of(Column::kX)], &y = names[place_of(Column::kY)];
+    if (!is_of_degrees(x, y)) return std::nullopt;
+    return CoordinateSystem{"columns " + in_quotes(x) + " and " + in_quotes(y), true, ""};
   }
 
   Result<void> take_names() {

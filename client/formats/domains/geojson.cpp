@@ -33,22 +33,25 @@ class Reader {
   Result<Domain> read(const Json& root) {
     if (auto read = object(root, "", {}); !read) return tl::unexpected(read.error());
     auto domain = builder_.finish();
-    if (const std::string system = other_system(root); domain && !system.empty())
+    if (!domain) return domain;
+    const std::string system = system_of(root);
+    const std::string lower = lower_case(system);
+    if (lower.ends_with("crs84") || lower.ends_with(":4326"))
+      domain->system = CoordinateSystem{system, true, ""};
+    else if (!system.empty())
       domain->warnings.push_back(name_ + ": its crs is " + in_quotes(system) +
                                  ", not WGS 84 as GeoJSON's is; coordinates are taken as they are");
     return domain;
   }
 
  private:
-  // What the member `crs` names, unless that is WGS 84 or nothing.
-  static std::string other_system(const Json& root) {
+  // What the member `crs` names, if anything.
+  static std::string system_of(const Json& root) {
     const auto crs = root.find("crs");
     if (crs == root.end() || crs->is_null()) return "";
     static const Json::json_pointer kName("/properties/name");
     if (!crs->contains(kName) || !crs->at(kName).is_string()) return shown(*crs);
-    const auto& text = crs->at(kName).get_ref<const std::string&>();
-    const std::string lower = lower_case(text);
-    return lower.ends_with("crs84") || lower.ends_with(":4326") ? "" : text;
+    return crs->at(kName).get<std::string>();
   }
   tl::unexpected<Error> bad(const std::string& path, const std::string& what) const {
     return builder_.bad(path, what);

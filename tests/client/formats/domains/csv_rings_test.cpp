@@ -56,6 +56,19 @@ TEST_F(CsvRings, AreRefusedIfAllCommasOfNumbersMayGroupTheirDigits) {
   EXPECT_EQ(read("x;y\n0;0\n4,000;0\n4,000;3,000\n").points[2], (Point{4, 3}));
 }
 
+TEST_F(CsvRings, AreInDegreesIfTheirColumnsSaySo) {
+  const std::string rows = "\n4,52\n5,52\n5,53\n";
+  for (const char* names : {"lon,lat", "Longitude,Latitude", "LON [deg],LAT [deg]", "long,lat"}) {
+    const Domain domain = read(names + rows);
+    ASSERT_TRUE(domain.system) << names;
+    EXPECT_TRUE(domain.system->geographic) << names;
+  }
+  EXPECT_EQ(read("lat,lon\n52,4\n52,5\n53,5\n").system->name, "columns 'lon' and 'lat'");
+  for (const char* names : {"x,y", "easting,northing", "lon,y", "x,lat"})
+    EXPECT_FALSE(read(names + rows).system) << names;
+  EXPECT_FALSE(read(rows).system);
+}
+
 TEST_F(CsvRings, ThatComeAgainAreOthersWithAWarning) {
   EXPECT_EQ(warnings("ring,x,y\n1,0,0\n1,9,0\n1,9,9\n2,1,0\n2,2,0\n2,2,1\n1,5,1\n1,6,1\n1,6,2\n"),
             std::vector<std::string>{

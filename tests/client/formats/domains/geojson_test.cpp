@@ -159,11 +159,13 @@ TEST_F(GeoJson, WarnsOfHolesThatParityDoesNotTakeForHoles) {
 }
 
 TEST_F(GeoJson, TellsOfACoordinateSystemThatIsNotWgs84) {
-  const auto told = [this](const std::string& crs) {
+  std::optional<CoordinateSystem> system;
+  const auto told = [&](const std::string& crs) {
     const auto domain = read(R"({"type": "Polygon", "crs": )" + crs +
                              R"(, "coordinates": [[[0, 0], [4, 0], [4, 4], [0, 0]]]})");
     EXPECT_TRUE(domain) << domain.error().message;
     EXPECT_LE(domain->warnings.size(), 1u);
+    system = domain->system;
     return domain->warnings.empty() ? ""
                                     : domain->warnings[0].substr(domain->warnings[0].find("map."));
   };
@@ -173,15 +175,19 @@ TEST_F(GeoJson, TellsOfACoordinateSystemThatIsNotWgs84) {
   EXPECT_EQ(named("urn:ogc:def:crs:EPSG::32618"),
             "map.geojson: its crs is 'urn:ogc:def:crs:EPSG::32618', not WGS 84 as GeoJSON's is; "
             "coordinates are taken as they are");
+  EXPECT_FALSE(system);
   EXPECT_TRUE(told(R"({"type": "link", "properties": {"href": "http://x"}})")
                   .starts_with(R"(map.geojson: its crs is '{"properties":{"href":"http://x")"));
   EXPECT_EQ(told("7"),
             "map.geojson: its crs is '7', not WGS 84 as GeoJSON's is; coordinates are "
             "taken as they are");
   for (const char* name : {"urn:ogc:def:crs:OGC:1.3:CRS84", "urn:ogc:def:crs:OGC::CRS84",
-                           "EPSG:4326", "urn:ogc:def:crs:EPSG::4326"})
+                           "EPSG:4326", "urn:ogc:def:crs:EPSG::4326"}) {
     EXPECT_EQ(named(name), "") << name;
+    EXPECT_EQ(system, (CoordinateSystem{name, true, ""}));
+  }
   EXPECT_EQ(told("null"), "");
+  EXPECT_FALSE(system);
 }
 
 TEST_F(GeoJson, CountsThePolygonsOfRingsThatOverlap) {
