@@ -129,6 +129,24 @@ test("rings that parity does not take for holes are a warning, as on the command
   expect(warnings(inner, [[2, 1], [3, 1], [3, 2], [2, 2], [2, 1]], [[0, 3], [1, 3], [1, 4], [0, 4], [0, 3]])).toEqual([]);
 });
 
+test("a ring that crosses itself is a warning, as on the command line", () => {
+  const warnings = (coordinates: number[][][][]) =>
+    readDomain("a.json", JSON.stringify({ type: "MultiPolygon", coordinates })).warnings;
+  const bow = (x: number) => [[[x, 0], [x + 4, 4], [x + 4, 4], [x + 4, 0], [x, 4], [x, 0]]];
+  expect(warnings([bow(0)])).toEqual([
+    "coordinates[0][0] is a ring that crosses itself: edge 0 from (0, 0) to (4, 4) crosses edge 3 from (4, 0) to (0, 4)",
+  ]);
+  expect(warnings([...Array(7).keys()].map((i) => bow(9 * i))).at(-1)).toBe("2 more rings cross themselves");
+  expect(warnings([[[[1, 1], [3, 1], [3, 2], [2, 1], [2, 3], [1, 1]]]])).toEqual([]); // touches itself
+  const wave = Array.from({ length: 20_000 }, (_, i) => {
+    const [angle, radius] = [(Math.PI * i) / 10_000, 1 + 0.1 * Math.cos((Math.PI * i) / 250)];
+    return [radius * Math.cos(angle), radius * Math.sin(angle)];
+  });
+  expect(warnings([[[...wave, wave[0]]]])).toEqual([]);
+  [wave[7000], wave[7001]] = [wave[7001], wave[7000]];
+  expect(warnings([[[...wave, wave[0]]]])[0]).toMatch(/itself: edge 6999 from .* crosses edge 7001 from/);
+});
+
 test("markers that the header of a .poly denies are a warning", () => {
   const text = (count: number) => `3 2 0 0\n1 0 0\n2 1 0\n3 1 1\n3 ${count}\n1 1 2 7\n2 2 3 8\n3 3 1 9\n0\n`;
   expect(readDomain("a.poly", text(1)).warnings).toEqual([]);

@@ -8,6 +8,7 @@ import shapely.geometry
 import weft
 from google.protobuf import json_format
 from weft import _protocol, _requests
+from weft._rings import find_crossing
 from conftest import MODELS
 
 SQUARE = [[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]]
@@ -96,12 +97,13 @@ def test_arrays_shapely_and_geojson_are_the_same_domain(client):
     polygon = shapely.geometry.Polygon(SQUARE, [HOLE])
     digests = {client.mesh(domain, size=0.1).digest for domain in (
         polygon, polygon.__geo_interface__, [np.array(SQUARE), np.array(HOLE)],
-        weft.Domain.rings(SQUARE[:-1], HOLE[:-1]))}
+        weft.Domain.rings(SQUARE[:-1], HOLE[:-1]), [SQUARE, HOLE], (tuple(map(tuple, SQUARE)), HOLE[:-1]))}
     assert len(digests) == 1
 
 
-def test_one_array_is_a_ring(client):
-    assert client.mesh(np.array(SQUARE)).summary.area == pytest.approx(16)
+@pytest.mark.parametrize("kind", [np.array, list, tuple])
+def test_one_array_or_list_of_pairs_is_a_ring(client, kind):
+    assert client.mesh(kind(SQUARE)).summary.area == pytest.approx(16)
 
 
 def test_a_multipolygon_of_shapely_is_meshed_in_all_its_parts(client):
@@ -308,6 +310,41 @@ def test_rings_that_parity_does_not_take_for_holes_are_a_warning_as_on_the_comma
             ([] if fault is None else [f"{path}: {fault}"])
 
 
+BOW = [[0, 0], [4, 4], [4, 4], [4, 0], [0, 4], [0, 0]]
+
+
+@pytest.mark.parametrize("rings, faults", [
+    ([BOW], ["coordinates[0] is a ring that crosses itself: edge 0 from (0, 0) to (4, 4) crosses edge 3 from "
+             "(4, 0) to (0, 4)"]),
+    ([SQUARE, [[1, 1], [3, 3], [3, 1], [1, 3], [1, 1]]],
+     ["coordinates[1] is a ring that crosses itself: edge 0 from (1, 1) to (3, 3) crosses edge 2 from (3, 1) to "
+      "(1, 3)"]),
+    ([SQUARE, [[1, 1], [3, 1], [3, 2], [2, 1], [2, 3], [1, 1]]], []),  # touches itself
+])
+def test_a_ring_that_crosses_itself_is_a_warning_as_on_the_command_line(run_weft, recwarn, tmp_path, rings, faults):
+    path = tmp_path / "bow.geojson"
+    path.write_text(json.dumps({"type": "Polygon", "coordinates": rings}))
+    weft.Domain.read(path)
+    printed = json.loads(run_weft("mesh", path, "--json", "-o", tmp_path / "mesh.npz")).get("warnings", [])
+    wanted = [f"{path}: {fault}" for fault in faults]
+    assert [str(warning.message) for warning in recwarn] == printed == wanted
+
+
+def test_of_many_rings_that_cross_themselves_five_are_told(recwarn):
+    weft.Domain.geojson({"type": "MultiPolygon", "coordinates": [
+        [[[x + 9 * i, y] for x, y in BOW]] for i in range(7)]})
+    said = [str(warning.message) for warning in recwarn]
+    assert len(said) == 6 and said[-1] == "2 more rings cross themselves"
+
+
+def test_the_crossing_of_a_long_ring_is_found():
+    angles = np.arange(20_000) * (2 * np.pi / 20_000)
+    ring = (1 + 0.1 * np.cos(40 * angles))[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+    assert find_crossing(ring) is None
+    ring[[7000, 7001]] = ring[[7001, 7000]]
+    assert find_crossing(ring) == (6999, 7001)
+
+
 def test_markers_that_the_header_of_a_poly_denies_are_a_warning(tmp_path):
     path = tmp_path / "denied.poly"
     path.write_text("3 2 0 0\n1 0 0\n2 1 0\n3 1 1\n3 0\n1 1 2 7\n2 2 3\n3 3 1\n0\n")
@@ -322,6 +359,27 @@ def test_a_coordinate_system_that_is_not_wgs_84_is_a_warning(recwarn, name, told
                          "crs": {"type": "name", "properties": {"name": name}}})
     assert [str(warning.message) for warning in recwarn] == [
         f"its crs is '{name}', not WGS 84 as GeoJSON's is; coordinates are taken as they are"][:told]
+
+
+class _Frame:
+    """As a GeoDataFrame is, as far as it is looked at."""
+
+    def __init__(self, geographic):
+        self.crs = type("Crs", (), {"is_geographic": geographic})()
+        self.__geo_interface__ = {"type": "Polygon", "coordinates": [SQUARE]}
+
+
+@pytest.mark.parametrize("domain, degrees", [
+    (_Frame(True), True), (_Frame(False), False), ({"type": "Polygon", "coordinates": [SQUARE]}, False),
+    ({"type": "Polygon", "coordinates": [SQUARE],
+      "crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}}, True)])
+def test_degrees_that_are_not_projected_are_a_warning(recwarn, client, domain, degrees):
+    client.mesh(domain, size=1)
+    assert [str(warning.message).partition(":")[0] for warning in recwarn] == \
+        ["the coordinates are longitudes and latitudes"][:degrees]
+    recwarn.clear()
+    client.mesh(domain, size=1e10, lonlat=True)
+    assert not recwarn.list
 
 
 def test_what_has_no_area_and_no_length_is_left_out_with_one_warning(client, digest_of, tmp_path):
@@ -354,6 +412,7 @@ def test_what_has_no_area_and_no_length_is_left_out_with_one_warning(client, dig
     (np.zeros((3, 3)), r"\(3, 3\)"),
     (np.array([[0, 0], [1, np.nan], [1, 1]]), r"ring 0\[1\]"),
     (42, "int is no domain"),
+    ([1, 2, 3], "list is no domain"),
     ("no.stl", "no.stl"),
     ({"type": "Circle", "coordinates": [0, 0]}, "'Circle'"),
     ({"type": "Polygon", "coordinates": [SQUARE[:-1]]}, r"coordinates\[0\] is a ring that is not closed"),

@@ -244,11 +244,30 @@ def test_a_mesh_may_be_refined_by_what_was_found_on_an_earlier_one(client):
     mesh = client.mesh(SQUARE, edge=1)
     for _ in range(3):
         h = 0.02 + 0.3 * np.hypot(*(mesh.points - 3).T)
-        mesh = client.mesh(SQUARE, edge="h", fields={"h": weft.on_mesh(mesh, h)})
+        mesh = client.mesh(SQUARE, edge=weft.on_mesh(mesh, h))
     bound = 0.02 + 0.3 * np.hypot(*(centroids(mesh) - 3).T)
     ratio = edges_allowed(mesh) / bound
     assert np.percentile(ratio, 99) < 1.05
     assert mesh.summary.triangles > 500
+
+
+def test_a_field_alone_is_a_size(client):
+    coarse = client.mesh(SQUARE, edge=1)
+    field = weft.on_mesh(coarse, 0.2 + 0.1 * coarse.points[:, 0])
+    named = client.mesh(SQUARE, edge="h", fields={"h": field})
+    assert client.mesh(SQUARE, edge=field).digest == named.digest
+    assert client.mesh(SQUARE, field).digest == client.mesh(SQUARE, "h", fields={"h": field}).digest
+    with pytest.raises(weft.InvalidRequest) as caught:
+        client.mesh(SQUARE, edge=weft.distance(marker=77))
+    assert [violation.argument for violation in caught.value.violations] == ["edge"]
+    with pytest.raises(ValueError, match="edge is a field, and fields has another of that name"):
+        client.mesh(SQUARE, edge=field, fields={"edge": field})
+
+
+def test_a_size_of_no_kind_is_refused_in_one_line(client):
+    with pytest.raises(weft.DomainError) as caught:
+        client.mesh(SQUARE, size=[weft.distance(), np.zeros(1000)])
+    assert len(str(caught.value)) < 200
 
 
 def test_a_gradation_limits_how_edges_grow(client):

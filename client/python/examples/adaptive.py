@@ -87,7 +87,7 @@ def main():
         for n in last / 4.0 ** np.arange(ROUNDS - 1, -1, -1):
             h = wanted_edges(mesh, solution, n)
             start = time.perf_counter()
-            mesh = client.mesh(L_SHAPE, edge="h", fields={"h": weft.on_mesh(mesh, h)})
+            mesh = client.mesh(L_SHAPE, edge=weft.on_mesh(mesh, h))
             meshed = time.perf_counter()
             solution = solve(mesh)
             solved = time.perf_counter()

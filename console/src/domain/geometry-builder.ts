@@ -8,7 +8,7 @@ import { FileError } from "./file-error";
 import { LeftOut } from "./left-out";
 import { Labels } from "./names";
 import type { Area, PlanarDomain, Point } from "./planar-domain";
-import { findOverlap } from "./ring-overlap";
+import { findOverlap, findSelfCrossing } from "./ring-overlap";
 
 export interface Properties {
   marker: number; // of segments
@@ -39,6 +39,7 @@ export class GeometryBuilder {
   private readonly areas: Area[] = []; // their regions are labels
   readonly leftOut = new LeftOut();
   private readonly oddProperties: string[] = []; // sentences
+  private readonly crossings: string[] = []; // sentences
   private readonly overlaps: string[] = []; // sentences
 
   // A property that counts for nothing, with what it is.
@@ -61,6 +62,7 @@ export class GeometryBuilder {
   // Each ring ends in its first position. The holes of a ring that is left out are left out, too.
   polygon(rings: readonly (readonly Point[])[], place: string, properties: Properties): void {
     const kept: { path: string; ring: Point[] }[] = [];
+    const crossings = this.crossings.length;
     for (const [i, ring] of rings.entries()) {
       if (isCollapsed(ring)) {
         this.markerLabels.of(properties.marker, properties.markerName);
@@ -71,12 +73,20 @@ export class GeometryBuilder {
       if (!same(ring[0], ring[ring.length - 1])) throw new FileError(`${place}[${i}]`, "is a ring that is not closed");
       this.chain(ring.slice(0, -1), this.areas.length + 1, properties);
       kept.push({ path: `${place}[${i}]`, ring: ring.slice(0, -1) });
+      this.checkCrossing(ring, `${place}[${i}]`);
     }
     if (kept.length === 0) return;
-    this.checkOverlap(kept);
+    if (this.crossings.length === crossings) this.checkOverlap(kept);
     const { region, regionName, maxArea } = properties;
     const asks = region !== undefined || regionName !== "";
     this.areas.push({ region: asks ? this.regionLabels.of(region ?? 0, regionName) : undefined, maxArea });
+  }
+
+  private checkCrossing(ring: readonly Point[], path: string): void {
+    const found = findSelfCrossing(ring.slice(0, -1));
+    if (!found) return;
+    const edges = found.map((i) => `edge ${i} from (${ring[i].join(", ")}) to (${ring[i + 1].join(", ")})`);
+    this.crossings.push(`${path} is a ring that crosses itself: ${edges.join(" crosses ")}`);
   }
 
   // Tells of rings that parity does not treat as holes of the first.
@@ -101,6 +111,7 @@ export class GeometryBuilder {
       return more > 0 ? [...sentences.slice(0, mostTold), `${more} ${others}`] : sentences;
     };
     const odd = told(this.oddProperties, "more properties are left out");
+    const crossings = told(this.crossings, "more rings cross themselves");
     const overlaps = told(this.overlaps, "more polygons have rings that overlap");
     const [ofMarkers, ofRegions] = [this.markerLabels.reader, this.regionLabels.reader];
     return {
@@ -114,7 +125,7 @@ export class GeometryBuilder {
       borders: Uint32Array.from(this.borders),
       markerNames: ofMarkers.names,
       regionNames: ofRegions.names,
-      warnings: [...(leftOut ? [leftOut] : []), ...overlaps, ...odd, ...ofMarkers.warnings, ...ofRegions.warnings],
+      warnings: [...(leftOut ? [leftOut] : []), ...crossings, ...overlaps, ...odd, ...ofMarkers.warnings, ...ofRegions.warnings],
     };
   }
 

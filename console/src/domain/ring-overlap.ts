@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the rings of a polygon overlap, as client/formats/domains/ring_crossing.h finds it: for warnings alone, so
-// without exact predicates, and not to the end in polygons of very many edges near each other.
+// Where a ring crosses itself, and where the rings of a polygon overlap, as client/formats/domains/ring_crossing.h
+// finds it: for warnings alone, so without exact predicates, and not to the end in polygons of very many edges near
+// each other.
 import type { Point } from "./planar-domain";
 
 const mostWork = 50_000_000; // edges that are looked at
@@ -51,6 +52,25 @@ const bottom = ([a, b]: Edge) => Math.min(a[1], b[1]);
 // Of p to the line of the edge: positive on its left.
 const side = ([a, b]: Edge, p: Point) => (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
 
+// Whether the insides of two edges cross.
+const cross = (e: Edge, f: Edge) => side(e, f[0]) * side(e, f[1]) < 0 && side(f, e[0]) * side(f, e[1]) < 0;
+
+// Two edges of a ring whose insides cross, by their first corners, the lower first.
+export function findSelfCrossing(points: readonly Point[]): [number, number] | undefined {
+  const edges = points.map((point, i) => ({ i, edge: [point, points[(i + 1) % points.length]!] as Edge }));
+  edges.sort((a, b) => bottom(a.edge) - bottom(b.edge));
+  let left = mostWork;
+  for (const [k, { i, edge }] of edges.entries()) {
+    const top = Math.max(edge[0][1], edge[1][1]);
+    for (let n = k + 1; n < edges.length && bottom(edges[n]!.edge) <= top; ++n) {
+      if (--left < 0) return undefined;
+      const { i: j, edge: other } = edges[n]!;
+      if (cross(edge, other)) return [Math.min(i, j), Math.max(i, j)];
+    }
+  }
+  return undefined;
+}
+
 export function findOverlap(rings: readonly (readonly Point[])[]): RingOverlap | undefined {
   const all = rings.map((ring) => new Ring(ring));
   const work = { left: mostWork };
@@ -79,7 +99,7 @@ function findCrossing(ring: Ring, other: Ring, work: { left: number }): Point | 
     if (Math.max(c[0], d[0]) < ring.low[0] || Math.min(c[0], d[0]) > ring.high[0]) continue;
     for (const own of ring.at(bottom(edge), Math.max(c[1], d[1]))) {
       if (--work.left < 0) return undefined;
-      if (side(own, c) * side(own, d) < 0 && side(edge, own[0]) * side(edge, own[1]) < 0) return own[0];
+      if (cross(own, edge)) return own[0];
     }
   }
   return undefined;

@@ -33,7 +33,8 @@ def argument_of(field: str, request: Any) -> str:
         if index >= len(elements):
             return ""
         if kind == "fields":
-            return f"fields[{elements[index].name!r}]"
+            name: str = elements[index].name
+            return name if name in ("size", "edge") else f"fields[{name!r}]"
         marker = elements[index].marker
         names = {entry.id: entry.name for entry in request.domain.marker_names}
         return f"edge_at[{names.get(marker, marker)!r}]"

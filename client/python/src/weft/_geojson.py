@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A domain from a GeoJSON object, by the rules of client/formats/domains/geojson.h: the same file
-gives the same request, and so the same mesh, as on the command line. A ring that crosses itself is
-taken as it is, inside by the even-odd rule of its polygon; unlike there, without a warning.
+gives the same request, and so the same mesh, as on the command line.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._names import Label, Labels
-from ._rings import find_overlap
+from ._rings import find_crossing, find_overlap
 from ._text import coordinates, number_of, shortest
 from ._warning import warn
 from .errors import DomainError
@@ -45,6 +44,7 @@ class _Reader:
         self.first_left_out = ""
         self.file = file
         self.odd_properties = 0
+        self.crossings = 0
         self.overlaps = 0
 
     def leave_out(self, what: str, path: str) -> None:
@@ -149,6 +149,7 @@ class _Reader:
 
     def polygon(self, rings: Any, path: str, properties: dict[str, Any]) -> None:
         kept: dict[str, Points] = {}  # by their paths
+        crossings = self.crossings
         for i, ring in enumerate(rings):
             points = _positions(ring, f"{path}[{i}]")
             if _is_collapsed(points):
@@ -161,11 +162,26 @@ class _Reader:
                 raise DomainError(f"{path}[{i}] is a ring that is not closed: it starts at "
                                   f"{tuple(points[0])} and ends at {tuple(points[-1])}")
             kept[f"{path}[{i}]"] = points[:-1]
+            self.check_crossing(points[:-1], ring, f"{path}[{i}]")
             self.chain(points[:-1], len(self.polygons) + 1, properties)
-        self.check_overlap(kept)
+        if self.crossings == crossings:
+            self.check_overlap(kept)
         if len(rings):
             asks = {"region", "region_name"} & properties.keys()
             self.polygons.append((self.region_labels.of(properties) if asks else None, properties))
+
+    def check_crossing(self, ring: Points, positions: Any, path: str) -> None:
+        """Tells of a ring that crosses itself; `positions`: as it is given."""
+        found = find_crossing(ring)
+        if found is None:
+            return
+        self.crossings += 1
+        if self.crossings > _MOST_TOLD:
+            return
+        numbers = np.flatnonzero(_is_new(_all_positions(positions, path)))
+        edges = (f"edge {numbers[i]} from {coordinates(*ring[i].tolist())} to "
+                 f"{coordinates(*ring[(i + 1) % len(ring)].tolist())}" for i in found)
+        self.warn(f"{path} is a ring that crosses itself: {' crosses '.join(edges)}")
 
     def check_overlap(self, rings: dict[str, Points]) -> None:
         """Tells of rings that parity does not treat as holes of the first."""
@@ -199,6 +215,8 @@ class _Reader:
                               (f": {self.left_out_sentence()}" if self.left_out else ""))
         if self.left_out:
             self.warn(self.left_out_sentence())
+        if self.crossings > _MOST_TOLD:
+            self.warn(f"{self.crossings - _MOST_TOLD} more rings cross themselves")
         if self.odd_properties > _MOST_TOLD:
             self.warn(f"{self.odd_properties - _MOST_TOLD} more properties are left out")
         if self.overlaps > _MOST_TOLD:
@@ -224,13 +242,15 @@ def read(json: Any, area: Callable[..., Any], file: str = "") -> dict[str, Any]:
     reader = _Reader(file)
     reader.read(json, "", {})
     domain = reader.domain(area)
-    if system := _other_system(json):
+    system = _system(json)
+    domain["geographic"] = system.lower().endswith(("crs84", ":4326"))
+    if system and not domain["geographic"]:
         reader.warn(f"its crs is '{system}', not WGS 84 as GeoJSON's is; coordinates are taken as they are")
     return domain
 
 
-def _other_system(json: dict[str, Any]) -> str:
-    """What the member `crs`, of GeoJSON before RFC 7946, names, unless that is WGS 84 or nothing."""
+def _system(json: dict[str, Any]) -> str:
+    """What the member `crs`, of GeoJSON before RFC 7946, names, if anything."""
     crs = json.get("crs")
     if crs is None:
         return ""
@@ -238,7 +258,7 @@ def _other_system(json: dict[str, Any]) -> str:
     name = properties.get("name") if isinstance(properties, dict) else None
     if not isinstance(name, str):
         return dumps(crs)
-    return "" if name.lower().endswith(("crs84", ":4326")) else name
+    return name
 
 
 def _bound(properties: dict[str, Any]) -> float | None:
@@ -302,18 +322,26 @@ def _float(value: Any) -> float:
 
 def _positions(positions: Any, path: str) -> Points:
     """(n, 2), less those that repeat their predecessor."""
+    points = _all_positions(positions, path)
+    distinct: Points = points[_is_new(points)]
+    return distinct
+
+
+def _is_new(points: Points) -> npt.NDArray[np.bool_]:
+    """Of each point, whether it differs from its predecessor."""
+    new: npt.NDArray[np.bool_] = np.concatenate([[True], (points[1:] != points[:-1]).any(axis=1)])[:len(points)]
+    return new
+
+
+def _all_positions(positions: Any, path: str) -> Points:
+    """(n, 2)."""
     try:
         given = np.array([position[:2] for position in positions])
         if given.dtype.kind in "bUS":  # numpy would read numbers out of texts
             raise TypeError
-        points = given.astype(np.float64).reshape(-1, 2)
+        return given.astype(np.float64).reshape(-1, 2)
     except (TypeError, ValueError, IndexError, OverflowError):
         raise DomainError(f"{path} does not hold positions [x, y]") from None
-    if len(points) == 0:
-        return points
-    new = np.concatenate([[True], (points[1:] != points[:-1]).any(axis=1)])
-    distinct: Points = points[new]
-    return distinct
 
 
 def _is_collapsed(points: Points) -> bool:

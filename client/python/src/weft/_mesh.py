@@ -86,7 +86,7 @@ class Mesh:
         format is unknown, or the program is needed and missing; OSError if it cannot be read.
 
             old = weft.Mesh.read("fort.14")
-            mesh = client.mesh(domain, edge="h", fields={"h": weft.on_mesh(old, 0.1*old.values["depth"])})
+            mesh = client.mesh(domain, edge=weft.on_mesh(old, 0.1*old.values["depth"]))
         """
         path = pathlib.Path(path)
         if path.suffix.lower() == ".npz":

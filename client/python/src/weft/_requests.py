@@ -6,6 +6,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import numbers
+import reprlib
 from collections.abc import Mapping
 from typing import Any, Literal, TypedDict
 
@@ -19,7 +20,7 @@ from ._receiver import MeshReceiver
 from ._warning import keeping_warnings, warn
 from .domain import _FILLS, Domain, DomainLike, as_domain
 from .errors import DomainError
-from .fields import Field, FileField, RasterField, check_is_field
+from .fields import Field, FileField, RasterField, check_is_field, is_field
 from .size import Raster, Size
 
 
@@ -97,6 +98,9 @@ _FILL_NUMBERS = {name: number for number, name in _FILLS.items()}
 def projection(domain: Domain, options: MeshOptions) -> Projection | None:
     """Of a domain that the options say is in longitude and latitude."""
     if not (options.get("lonlat") or options.get("crs") or options.get("to_metres")):
+        if domain.geographic:
+            warn("the coordinates are longitudes and latitudes: lengths, areas and angles are those of degrees; "
+                 "lonlat=True has them on the ground")
         return None
     return Projection(domain, options.get("crs"), options.get("to_metres", False))
 
@@ -114,9 +118,15 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
     _fill_domain(domain, request.domain)
     if size is not None and options.get("edge") is not None:
         raise ValueError("size and edge exclude each other")
-    _fill_size(size, domain, request.size, lengths=False)
-    if options.get("edge") is not None:
-        _fill_size(options["edge"], domain, request.size, lengths=True)
+    lengths = options.get("edge") is not None
+    asked, name = (options["edge"], "edge") if lengths else (size, "size")
+    fields = dict(options.get("fields", {}))
+    if is_field(asked):
+        if name in fields:
+            raise ValueError(f"{name} is a field, and fields has another of that name")
+        fields[name], asked = asked, name
+    _fill_size(asked, domain, request.size, lengths=lengths)
+    if lengths:
         request.size.measure = _EDGE
     if "cells_across" in options:
         request.size.cells_across = options["cells_across"]
@@ -128,7 +138,7 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
         request.size.gradation_within = True
     for marker, max_edge in options.get("edge_at", {}).items():
         request.size.at.add(marker=marker_of(marker, domain.marker_names), max_edge=max_edge)
-    _fill_fields(options.get("fields", {}), domain, projected, request.size.fields)
+    _fill_fields(fields, domain, projected, request.size.fields)
     request.quality.min_angle_deg = min_angle
     if "min_edge" in options:
         request.quality.min_edge = options["min_edge"]
@@ -240,5 +250,5 @@ def _fill_size(size: Size, domain: Domain, message: Any, *, lengths: bool) -> No
     except OverflowError:
         raise DomainError(f"{name} is a number beyond double precision") from None
     if not math.isfinite(number):
-        raise DomainError(f"{name} is {size!r}; see weft.Size")
+        raise DomainError(f"{name} is {reprlib.repr(size)}; see weft.Size")
     message.constant = number

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the rings of a polygon overlap, as client/formats/domains/ring_crossing.h finds it: for warnings alone,
-so without exact predicates, and not to the end in polygons of very many edges near each other."""
+"""Where a ring crosses itself, and where the rings of a polygon overlap, as
+client/formats/domains/ring_crossing.h finds it: for warnings alone, so without exact predicates, and not to the
+end in polygons of very many edges near each other."""
 
 from __future__ import annotations
 
@@ -12,6 +13,31 @@ import numpy.typing as npt
 Points = npt.NDArray[np.float64]
 
 _MOST_WORK = 50_000_000  # edges that are looked at, about a second of work
+
+
+def find_crossing(ring: Points) -> tuple[int, int] | None:
+    """Two edges whose insides cross, by their first corners, the lower first."""
+    ends = np.stack([ring, np.roll(ring, -1, axis=0)], axis=1)
+    low, high = ends.min(axis=1), ends.max(axis=1)
+    # Along the axis on which fewer edges overlap: each with those that begin before it ends.
+    orders = [np.argsort(low[:, axis], kind="stable") for axis in (0, 1)]
+    counts = [np.searchsorted(low[order, axis], high[order, axis], "right") - np.arange(1, len(ring) + 1)
+              for axis, order in enumerate(orders)]
+    axis = int(counts[1].sum() < counts[0].sum())
+    order, after = orders[axis], counts[axis]
+    if after.sum() > _MOST_WORK:
+        return None
+    first = np.arange(len(ring))
+    for step in range(1, int(after.max(initial=0)) + 1):
+        first = first[after[first] >= step]
+        i, j = order[first], order[first + step]
+        near = ((low[i] <= high[j]) & (low[j] <= high[i])).all(axis=1)
+        i, j = i[near], j[near]
+        crossing = np.flatnonzero(_cross(ends[i, 0], ends[i, 1], ends[j, 0], ends[j, 1]))
+        if len(crossing):
+            a, b = int(i[crossing[0]]), int(j[crossing[0]])
+            return min(a, b), max(a, b)
+    return None
 
 
 class _Ring:
@@ -68,6 +94,12 @@ def _side(a: Points, b: Points, p: Points) -> Points:
     return side
 
 
+def _cross(a: Points, b: Points, c: Points, d: Points) -> npt.NDArray[np.bool_]:
+    """Whether the inside of the edge from a to b crosses that of the edge from c to d."""
+    crosses: npt.NDArray[np.bool_] = ((_side(a, b, c) * _side(a, b, d) < 0) & (_side(c, d, a) * _side(c, d, b) < 0))
+    return crosses
+
+
 def _crossing(ring: _Ring, edges: Points, low: Points, high: Points) -> Points | None:
     """The start of an edge of a ring, which lies in a box, whose inside crosses that of one of the edges."""
     close = edges[((edges.min(axis=1) <= high) & (edges.max(axis=1) >= low)).all(axis=1)]
@@ -75,8 +107,7 @@ def _crossing(ring: _Ring, edges: Points, low: Points, high: Points) -> Points |
     rows = max(1, 1_000_000 // max(1, len(close)))
     for first in range(0, len(own) if len(close) else 0, rows):
         part = own[first:first + rows, None]
-        a, b, c, d = part[..., 0, :], part[..., 1, :], close[:, 0], close[:, 1]
-        cross = (_side(a, b, c) * _side(a, b, d) < 0) & (_side(c, d, a) * _side(c, d, b) < 0)
+        cross = _cross(part[..., 0, :], part[..., 1, :], close[:, 0], close[:, 1])
         if cross.any():
             start: Points = own[first + int(np.argwhere(cross)[0][0]), 0]
             return start

@@ -78,6 +78,8 @@ class Domain:
     `marker_names`, `region_names`: what markers and regions are called, by number:
     `{2: "inlet"}`; each name once, UTF-8 of 1 to 255 bytes without control characters. The mesh
     comes back with them.
+    `geographic`: whether its file or object says that it is in longitude and latitude: a mesh of it without
+    `lonlat` has a warning.
     `region_values`: the attributes of a .poly file that are no integers, by the id that stands for
     each; no server needs them.
 
@@ -99,6 +101,7 @@ class Domain:
     region_names: Mapping[int, str] = dataclasses.field(default_factory=dict)
     areas: Sequence[Area] = ()
     segment_areas: npt.NDArray[np.uint32] = dataclasses.field(default_factory=lambda: np.zeros(0, np.uint32))
+    geographic: bool = False
 
     def __post_init__(self) -> None:
         points = _floats("points", self.points)
@@ -188,8 +191,8 @@ class Domain:
 DomainLike = Union[Domain, str, "os.PathLike[str]", dict[str, Any], npt.NDArray[Any],
                    Sequence[npt.NDArray[Any]], Any]
 """What is taken for a domain: a Domain; the path of a file, see Domain.read; a GeoJSON object; an
-object with a `__geo_interface__`, such as a shapely geometry or a GeoDataFrame; an array (n, 2),
-which is the ring of a polygon, or a sequence of them."""
+object with a `__geo_interface__`, such as a shapely geometry or a GeoDataFrame; an array (n, 2) or a list of
+n pairs, which is the ring of a polygon, or a sequence of them."""
 
 
 def as_domain(domain: DomainLike) -> Domain:
@@ -201,11 +204,15 @@ def as_domain(domain: DomainLike) -> Domain:
     if isinstance(domain, dict):
         return Domain.geojson(domain)
     if hasattr(domain, "__geo_interface__"):
-        return Domain.geojson(domain.__geo_interface__)
-    if isinstance(domain, np.ndarray) and domain.ndim == 2:
-        return Domain.rings(domain)
-    if isinstance(domain, (Sequence, np.ndarray)) and len(domain) and np.ndim(domain[0]) == 2:
-        return Domain.rings(*domain)
+        read = Domain.geojson(domain.__geo_interface__)
+        system = getattr(domain, "crs", None)  # of a GeoDataFrame, by pyproj
+        return dataclasses.replace(read, geographic=bool(getattr(system, "is_geographic", False)))
+    if isinstance(domain, (Sequence, np.ndarray)) and len(domain):
+        depth = 1 + np.ndim(domain[0])
+        if depth == 2:
+            return Domain.rings(domain)
+        if depth == 3:
+            return Domain.rings(*domain)
     raise DomainError(f"a {type(domain).__name__} is no domain; see weft.DomainLike")
 
 

@@ -13,7 +13,7 @@ import dataclasses
 import os
 from collections.abc import Iterable, Sequence
 from types import FunctionType
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any, TypeGuard, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -161,7 +161,7 @@ def on_mesh(mesh: Mesh | tuple[npt.ArrayLike, npt.ArrayLike], values: npt.ArrayL
     `mesh`: a Mesh, or its points (n, 2) and triangles (m, 3). `values`: (n,), NaN at vertices
     where the field is undefined. Raises DomainError.
 
-        mesh = client.mesh(domain, edge="h", fields={"h": weft.on_mesh(mesh, h)})
+        mesh = client.mesh(domain, edge=weft.on_mesh(mesh, h))
     """
     points, triangles = mesh if isinstance(mesh, tuple) else (mesh.points, mesh.triangles)
     vertices = _table("on_mesh: points", points, np.float64, 2)
@@ -178,9 +178,13 @@ def width() -> Width:
     return Width()
 
 
+def is_field(value: object) -> TypeGuard[Field]:
+    return isinstance(value, (Distance, RasterField, FileField, MeshField, Width))
+
+
 def check_is_field(name: str, field: object) -> None:
     """Raises DomainError, which names the field, if it is none."""
-    if isinstance(field, (Distance, RasterField, FileField, MeshField, Width)):
+    if is_field(field):
         return
     given = f"the function {field.__name__}" if isinstance(field, FunctionType) else repr(field)[:80]
     raise DomainError(f"fields[{name!r}] is {given}, not a field; fields are made by "

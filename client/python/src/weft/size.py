@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
-from typing import Union
+from typing import TYPE_CHECKING, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -13,11 +13,14 @@ import numpy.typing as npt
 from . import _sampling
 from .errors import DomainError
 
+if TYPE_CHECKING:
+    from .fields import Field
+
 Floats = npt.NDArray[np.float64]
-Size = Union[float, str, "Raster", Callable[[Floats, Floats], npt.ArrayLike], None]
+Size = Union[float, str, "Raster", "Field", Callable[[Floats, Floats], npt.ArrayLike], None]
 """Upper bound on the area of a triangle at its centroid, in squared units of the domain: a number;
-an expression in x, y and names of fields; a Raster; a function of two arrays, see Raster.adaptive,
-which samples it; or None for no bound."""
+an expression in x, y and names of fields; a Raster; a field, such as values at the vertices of an earlier
+mesh, see on_mesh; a function of two arrays, see Raster.adaptive, which samples it; or None for no bound."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
