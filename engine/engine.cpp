@@ -167,6 +167,7 @@ class Pipeline {
     domain_ = std::move(*domain);
     summary_.merging = domain_.merging;
     summary_.overlap = domain_.overlap;
+    summary_.outside = domain_.outside;
     for (Point p : domain_.vertices) summary_.box.add(p);
     if (auto error = check_extent(summary_.box)) return error;
     summary_.triangulate_seconds = clock_.lap();

@@ -47,7 +47,7 @@ Result<InputDomain> read_input_domain(const std::filesystem::path& path,
     return tl::unexpected(named.error());
   fill_polygons(*domain, wanted.fill);
   if (as_read) as_read(*domain);
-  InputDomain input{std::move(*domain), nullptr};
+  InputDomain input{std::move(*domain), nullptr, layers.strict ? path : std::filesystem::path()};
   if (!options.wanted()) {
     warn_of_degrees(path, input.domain);
     return input;

@@ -22,6 +22,7 @@ struct InputDomain {
   Domain domain;  // as it is sent
   // Null if the domain is sent as its file has it.
   std::shared_ptr<const DomainProjection> projection;
+  std::filesystem::path strict{};  // the file, if nothing of it may be left out; else empty
 };
 
 // `wanted` has the size and the names. Errors: those of read_domain, of DomainProjection::project

@@ -18,6 +18,7 @@ namespace weft::client {
 // before anything is written. The report has all warnings: about the files of the request, its
 // sizes and its budget, the projection, and the markers of what was written.
 // REQUIRES: the options come from with_size. Errors: those of call_generate_mesh and of MeshOutput;
+// kUnreadableInput if segments are outside of the mesh of a strict input;
 // if a private server went away, with the last lines of its log.
 Result<MeshReport> mesh_into(const Connection& connection, const InputDomain& input,
                              const RequestOptions& request_options, const MeshCallOptions& call,

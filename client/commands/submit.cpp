@@ -107,8 +107,7 @@ Result<ExitCode> run_submit(const SubmitOptions& options, std::stop_token stop) 
     MeshReport report{.accepted = {}, .summary = job->summary()};
     add_projection(*input, report);
     if (!options.quiet)
-      std::fputs((summary_text(report.summary) + size_warnings_text(report.summary)).c_str(),
-                 stderr);
+      std::fputs((summary_text(report.summary) + warnings_text(report.summary)).c_str(), stderr);
     return ExitCode::kOk;
   }
   const auto report = download(*server, *job, &*input, **output, progress, times);

@@ -32,7 +32,7 @@ Result<ExitCode> run_watch(const JobOptions& options, std::stop_token stop) {
   if (const auto error = job_error(*job)) return tl::unexpected(*error);
   if (options.json) return ExitCode::kOk;
   if (!job->has_summary()) return print("succeeded\n");
-  return print(summary_text(job->summary()) + size_warnings_text(job->summary()));
+  return print(summary_text(job->summary()) + warnings_text(job->summary()));
 }
 
 }  // namespace weft::client

@@ -127,6 +127,7 @@ Json job_json(const v1::Job& job) {
   if (job.has_summary()) json["summary"] = summary_json(job.summary());
   for (const v1::SizeWarning& warning : job.summary().size_warnings())
     json["warnings"].push_back(warning.message());
+  if (job.summary().has_outside()) json["warnings"].push_back(outside_warning(job.summary()));
   return json;
 }
 

@@ -45,6 +45,15 @@ Json merging_json(const v1::Merging& merging) {
   return json;
 }
 
+// Null if none is outside.
+Json outside_json(const v1::Summary& summary) {
+  if (!summary.has_outside()) return nullptr;
+  const v1::OutsideSegments& outside = summary.outside();
+  return {{"segments", outside.segments()},
+          {"first", outside.first()},
+          {"at", {outside.x(), outside.y()}}};
+}
+
 // Null if the domain has no costly place.
 Json narrow_json(const v1::Summary& summary) {
   if (!summary.has_narrow()) return nullptr;
@@ -95,6 +104,7 @@ Json summary_json(const v1::Summary& summary) {
                 {{"areas", summary.overlap().areas()},
                  {"area", summary.overlap().area()},
                  {"united", summary.overlap().united()}}},
+               {"outside", outside_json(summary)},
                {"narrow", narrow_json(summary)},
                {"simplification", simplification_json(summary)},
                {"digest", hex(summary.sha256())},
@@ -165,11 +175,20 @@ std::string summary_text(const v1::Summary& summary) {
          simplification_text(summary) + overlap_text(summary) + narrow_text(summary);
 }
 
-std::string size_warnings_text(const v1::Summary& summary) {
+std::string warnings_text(const v1::Summary& summary) {
   std::string text;
   for (const v1::SizeWarning& warning : summary.size_warnings())
     text += "WARNING: " + harmless(warning.message()) + "\n";
+  if (summary.has_outside()) text += "WARNING: " + outside_warning(summary) + "\n";
   return text;
+}
+
+std::string outside_warning(const v1::Summary& summary) {
+  if (!summary.has_outside()) return "";
+  const v1::OutsideSegments& outside = summary.outside();
+  return counted(outside.segments(), "segment") + (outside.segments() == 1 ? " lies" : " lie") +
+         " outside of what is meshed, " + (outside.segments() == 1 ? "" : "the first ") + "at " +
+         coordinates(outside.x(), outside.y()) + "; weft lint shows where lines do not close";
 }
 
 std::string unrefined_warning(const v1::Unrefined& unrefined) {

@@ -24,8 +24,12 @@ Json mesh_json(const MeshReport& report, const MeshTimes& times);
 // why triangles miss a bound, and lines on what was merged.
 std::string summary_text(const v1::Summary& summary);
 
-// A line for each, such as "WARNING: the size does not name the field 'd'\n".
-std::string size_warnings_text(const v1::Summary& summary);
+// A line for each of the warnings of a summary, such as "WARNING: the size does not name the field
+// 'd'\n".
+std::string warnings_text(const v1::Summary& summary);
+
+// "9 segments lie outside of what is meshed, the first at (1, 0); ..."; empty if none do.
+std::string outside_warning(const v1::Summary& summary);
 
 // "WARNING: 12 triangles without exemption, 9 above the bound on their area and 3 below the minimum
 // angle, because double precision ends; the first is at (1, 2)\n"; empty if there are none.

@@ -29,6 +29,12 @@ void bring_places_back(const DomainProjection& projection, v1::Summary& summary)
     unrefined.set_x(at.x);
     unrefined.set_y(at.y);
   }
+  if (summary.has_outside()) {
+    v1::OutsideSegments& outside = *summary.mutable_outside();
+    const Point at = projection.to_lonlat({outside.x(), outside.y()});
+    outside.set_x(at.x);
+    outside.set_y(at.y);
+  }
   if (summary.has_narrow()) {
     v1::NarrowPlace& narrow = *summary.mutable_narrow();
     const Point at = projection.to_lonlat({narrow.x(), narrow.y()});

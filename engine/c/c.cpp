@@ -237,6 +237,10 @@ void weft_mesh_summary(const weft_mesh* mesh, weft_summary* summary) {
   to.overlap_areas = from.overlap.areas;
   to.overlap_area = from.overlap.area;
   to.overlap_united = from.overlap.united;
+  to.outside_segments = from.outside.segments;
+  to.outside_first = from.outside.first;
+  to.outside_x = from.outside.at.x;
+  to.outside_y = from.outside.at.y;
   if (from.narrow) {
     to.narrow_segment = from.narrow->segment;
     to.narrow_other = from.narrow->other;

@@ -67,6 +67,7 @@ struct Domain {
   std::vector<Region> regions;  // regions[0] is the default region
   Merging merging;
   Overlap overlap;
+  OutsideSegments outside;
 
   std::uint64_t bytes() const {
     return vertices.capacity() * sizeof(Point) + input_point.capacity() * sizeof(std::uint32_t) +

@@ -82,6 +82,14 @@ struct Overlap {
   bool united = false;      // or else, by even-odd filling, not meshed where an even number overlap
 };
 
+// Segments of the input of which no part bounds the mesh or lies in it; of several that coincide,
+// one counts. Where lines should enclose a face and do not close, they are outside.
+struct OutsideSegments {
+  std::uint64_t segments = 0;
+  std::uint32_t first = 0;  // index into Pslg::segments
+  Point at;                 // on it
+};
+
 // What MeshRequest::simplify did to the domain.
 struct Simplification {
   std::uint64_t points = 0;    // vertices of the domain that are gone
@@ -168,6 +176,7 @@ struct Summary {
   Point unrefined_at;
   Merging merging;                           // of the input, before refinement
   Overlap overlap;                           // of the input's areas
+  OutsideSegments outside;                   // before simplification
   std::optional<Simplification> simplified;  // unless MeshRequest::simplify is 0
   // The costliest one, if it has at least a fifth of a mesh of a thousand triangles or more.
   std::optional<NarrowPlace> narrow;

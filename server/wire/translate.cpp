@@ -321,6 +321,13 @@ v1::Summary to_wire(const Summary& summary, std::uint32_t threads) {
     simplification.set_area(summary.simplified->area);
     simplification.set_farthest(summary.simplified->farthest);
   }
+  if (summary.outside.segments > 0) {
+    v1::OutsideSegments& outside = *message.mutable_outside();
+    outside.set_segments(summary.outside.segments);
+    outside.set_first(summary.outside.first);
+    outside.set_x(summary.outside.at.x);
+    outside.set_y(summary.outside.at.y);
+  }
   if (summary.narrow) {
     v1::NarrowPlace& narrow = *message.mutable_narrow();
     narrow.set_segment(summary.narrow->segment);

@@ -169,3 +169,26 @@ def test_a_large_coast_takes_a_second_or_two(tmp_path: pathlib.Path) -> None:
     assert done.returncode in (0, 3)
     assert time.monotonic() - start < 20  # about 1 s on a machine that does nothing else
     assert re.match(r'\{"file":"coast.geojson","faults":', done.stdout)
+
+
+# A square that does not close, around another.
+GAP = "9 2\n1 0 0\n2 9 0\n3 9 9\n4 0 9\n5 0 0.001\n6 3 3\n7 6 3\n8 6 6\n9 3 6\n8\n" \
+      "1 1 2\n2 2 3\n3 3 4\n4 4 5\n5 6 7\n6 7 8\n7 8 9\n8 9 6\n0\n"
+
+
+def test_lines_that_do_not_close_are_a_warning_and_with_strict_an_error(tmp_path):
+    (tmp_path / "gap.poly").write_text(GAP)
+    told = "4 segments lie outside of what is meshed, the first at (0, 0); weft lint shows where lines do not close"
+    mesh = ["mesh", "gap.poly", "--size", 1, "-o", "gap.vtu"]
+    done = weft(tmp_path, *mesh)
+    assert done.returncode == 0 and f"WARNING: {told}\n" in done.stdout
+    report = json.loads(weft(tmp_path, *mesh, "--json").stdout)
+    assert report["warnings"] == [told]
+    assert report["outside"] == {"segments": 4, "first": 0, "at": [0, 0]}
+    (tmp_path / "gap.vtu").unlink()
+    strict = weft(tmp_path, *mesh, "--strict")
+    assert strict.returncode == 4
+    assert strict.stderr.endswith(f"gap.poly: refused, because of --strict\n  {told}\n")
+    assert [path.name for path in tmp_path.iterdir()] == ["gap.poly"]
+    closed = json.loads(weft(tmp_path, *mesh, "--json", "--strict", "--snap", 0.002).stdout)
+    assert "warnings" not in closed and closed["outside"] is None and closed["area"] == pytest.approx(81, abs=0.01)

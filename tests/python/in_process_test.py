@@ -232,3 +232,15 @@ if __name__ == "__main__":
 def test_processes_that_fork_makes_mesh_too():
     done = subprocess.run([sys.executable, "-c", FORK], capture_output=True, text=True, timeout=280)
     assert done.stdout == "True\n", done.stderr
+
+
+def test_segments_outside_of_the_mesh_are_a_warning_with_a_server_and_without(client):
+    domain = weft.Domain([(0, 0), (9, 0), (9, 9), (0, 9), (0, 0.001), (3, 3), (6, 3), (6, 6), (3, 6)],
+                         [(0, 1), (1, 2), (2, 3), (3, 4), (5, 6), (6, 7), (7, 8), (8, 5)])
+    for make in (weft.mesh, client.mesh):
+        with pytest.warns(weft.WeftWarning) as warned:
+            mesh = make(domain, size=1)
+        assert [str(warning.message) for warning in warned] == [
+            "4 segments lie outside of what is meshed, the first is segments[0]"]
+        assert mesh.summary.outside == weft.OutsideSegments(4, 0, 0.0, 0.0)
+        assert make(domain, size=1, snap=0.002).summary.outside is None

@@ -3,6 +3,7 @@
 import type { Summary } from "../gen/weft/v1/mesh_service_pb";
 import { durationText } from "../live/times";
 import { countText } from "./job-parts";
+import { warningsOf } from "./summary-warnings";
 
 export const hex = (bytes: Uint8Array) => Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
 
@@ -54,7 +55,7 @@ export function factsOf(summary: Summary): Fact[] {
     { name: "Peak of memory", text: bytesText(summary.peakEngineBytes), varies: true },
     { name: "Engine version", text: summary.engineVersion },
   );
-  for (const { message } of summary.sizeWarnings) facts.push({ name: "Warning", text: message });
+  for (const text of warningsOf(summary)) facts.push({ name: "Warning", text });
   return facts;
 }
 

@@ -3,6 +3,7 @@
 import type { ConnectError } from "@connectrpc/connect";
 import { explain } from "../client";
 import { Stage } from "../gen/weft/v1/mesh_service_pb";
+import { warningsOf } from "../jobs/summary-warnings";
 import { count, figure, seconds, short } from "../text";
 import { ProblemText } from "./problem-text";
 import { useRunState, type MeshRun, type RunState } from "../view/mesh-run";
@@ -108,7 +109,7 @@ export function RunStatus({ run, told }: { run: MeshRun; told: boolean }) {
         </div>
       )}
       <Figures state={state} />
-      {summary?.sizeWarnings.map(({ message }) => <p key={message} class="problem">{message}</p>)}
+      {summary && warningsOf(summary).map((text) => <p key={text} class="problem">{text}</p>)}
     </section>
   );
 }

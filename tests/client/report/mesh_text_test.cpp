@@ -56,6 +56,25 @@ TEST(MeshReport, SaysNothingOfWhatDidNotHappen) {
   EXPECT_EQ(text.find('\n'), text.size() - 1);
 }
 
+TEST(MeshReport, WarnsOfSegmentsOutside) {
+  v1::Summary summary;
+  EXPECT_EQ(warnings_text(summary), "");
+  EXPECT_EQ(summary_json(summary)["outside"], nullptr);
+  v1::OutsideSegments& outside = *summary.mutable_outside();
+  outside.set_segments(1200);
+  outside.set_first(7);
+  outside.set_x(0.5);
+  EXPECT_EQ(warnings_text(summary),
+            "WARNING: 1,200 segments lie outside of what is meshed, the first at (0.5, 0); weft "
+            "lint shows where lines do not close\n");
+  EXPECT_EQ(summary_json(summary)["outside"],
+            (Json{{"segments", 1200}, {"first", 7}, {"at", {0.5, 0.0}}}));
+  outside.set_segments(1);
+  EXPECT_EQ(outside_warning(summary),
+            "1 segment lies outside of what is meshed, at (0.5, 0); weft lint shows where lines do "
+            "not close");
+}
+
 TEST(MeshReport, SpeaksOfOneAsOfOne) {
   v1::Summary summary;
   summary.mutable_unrefined()->set_small_input_angle(1);

@@ -83,6 +83,7 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   summary.unrefined = {11, 12, 13, 27, 28, 29};
   summary.unrefined_at = {30, 31};
   summary.narrow = NarrowPlace{51, 52, {53, 54}, 55, 56};
+  summary.outside = {65, 66, {67, 68}};
   summary.simplified = Simplification{57, 58, 59, 60, 63, 64, 61, 62};
   summary.merging = {32, 33, 34, 35, {36, 37}, 38, {39, 40}};
   summary.triangulate_seconds = 14;
@@ -142,6 +143,10 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   EXPECT_EQ(message.narrow().y(), 54);
   EXPECT_EQ(message.narrow().width(), 55);
   EXPECT_EQ(message.narrow().triangles(), 56u);
+  EXPECT_EQ(message.outside().segments(), 65u);
+  EXPECT_EQ(message.outside().first(), 66u);
+  EXPECT_EQ(message.outside().x(), 67);
+  EXPECT_EQ(message.outside().y(), 68);
   EXPECT_EQ(message.simplification().points(), 57u);
   EXPECT_EQ(message.simplification().islands(), 58u);
   EXPECT_EQ(message.simplification().waters(), 59u);

@@ -32,7 +32,7 @@ from .errors import (AlreadyExists, BoundsNotMet, Cancelled, DamagedStream, Dead
 from .fields import Field, distance, on_mesh, raster, width
 from .local import LocalServer, local
 from .quality import Quality
-from .results import (Accepted, Job, JobState, Merging, NarrowPlace, Progress, ServerInfo,
+from .results import (Accepted, Job, JobState, Merging, NarrowPlace, OutsideSegments, Progress, ServerInfo,
                       ServerLimits, Simplification, SizeWarning, Summary, Timings, Unrefined)
 from .size import Raster, Size
 
@@ -41,9 +41,8 @@ __all__ = [
     "DamagedStream", "DeadlineExceeded", "Domain", "DomainError", "DomainLike", "FailedPrecondition", "Field",
     "FieldViolation", "InvalidRequest", "Job", "JobState", "LimitExceeded", "LocalServer",
     "LocalServerError", "Merging", "Mesh", "MeshFileError", "MeshOptions", "MeshStream",
-    "MissingPackage", "NarrowPlace", "NotFound", "Progress", "Quality", "Raster", "Region", "ServerError",
-    "ServerInfo", "ServerLimits", "Simplification", "Size", "SizeWarning", "Summary", "SwitchError", "TLS",
-    "Timings",
-    "Unauthenticated", "Unavailable", "Unrefined", "WeftError", "WeftWarning", "__version__", "aio",
+    "MissingPackage", "NarrowPlace", "NotFound", "OutsideSegments", "Progress", "Quality", "Raster", "Region",
+    "ServerError", "ServerInfo", "ServerLimits", "Simplification", "Size", "SizeWarning", "Summary", "SwitchError",
+    "TLS", "Timings", "Unauthenticated", "Unavailable", "Unrefined", "WeftError", "WeftWarning", "__version__", "aio",
     "distance", "local", "mesh", "on_mesh", "raster", "triangulate", "width",
 ]

@@ -8,7 +8,7 @@ from typing import Unpack
 
 from . import _library
 from ._mesh import Mesh
-from ._receiver import warn_of_sizes
+from ._receiver import warn_of
 from ._requests import MeshOptions, mesh_request, projection
 from .domain import DomainLike, as_domain
 from .results import Progress
@@ -34,7 +34,7 @@ def mesh(domain: DomainLike, size: Size = None, min_angle: float = 20, *,
     request = mesh_request(given, size, min_angle, options, projected)
     sent = given if projected is None else projected.domain
     made = _library.make(request, on_progress)
-    warn_of_sizes(made.summary, sampled=callable(size) or callable(options.get("edge")))
+    warn_of(made.summary, sampled=callable(size) or callable(options.get("edge")))
     points = made.points
     if projected is not None:
         points = projected.to_lonlat(points, made.input_points)

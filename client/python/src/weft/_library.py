@@ -131,7 +131,8 @@ class Summary(ctypes.Structure):
                 *((name, c_uint64) for name in (
                     "simplified_points", "dropped_islands", "dropped_waters", "cut_channels")),
                 ("simplified_area", c_double), ("simplified_farthest", c_double),
-                ("cut_off_waters", c_uint64), ("straits", c_uint64)]
+                *((name, c_uint64) for name in ("cut_off_waters", "straits", "outside_segments")),
+                ("outside_x", c_double), ("outside_y", c_double), ("outside_first", c_uint32)]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -365,6 +366,8 @@ def _summary(library: Any, mesh: Any, arrays: Arrays, with_leaves: bool) -> resu
             **taken("farthest", "farthest_x", "farthest_y", "vanished_faces", "vanished_x",
                     "vanished_y")),
         narrow=narrow if told.has_narrow else None,
+        outside=(results.OutsideSegments(told.outside_segments, told.outside_first, told.outside_x, told.outside_y)
+                 if told.outside_segments else None),
         simplification=simplification if told.has_simplification else None,
         timings=results.Timings(
             prelude_seconds=told.coarse_seconds,

@@ -42,8 +42,11 @@ def _digest(chunk: Chunk) -> bytes:
     return sha256.digest()
 
 
-def warn_of_sizes(summary: results.Summary, sampled: bool) -> None:
+def warn_of(summary: results.Summary, sampled: bool) -> None:
     """`sampled`: the size's raster was sampled from a function, of which the sampling has warned."""
+    if (outside := summary.outside) is not None:
+        warn(f"segments[{outside.first}] lies outside of what is meshed" if outside.segments == 1 else
+             f"{outside.segments} segments lie outside of what is meshed, the first is segments[{outside.first}]")
     for warning in summary.size_warnings:
         if not (sampled and warning.kind == "coarse_raster"):
             warn(warning.message)
@@ -155,7 +158,7 @@ class MeshReceiver:
         if self._sha256.hexdigest() != summary.digest:
             raise _damaged("the mesh does not match the SHA-256 of the summary")
         self.summary = summary
-        warn_of_sizes(summary, self._sampled)
+        warn_of(summary, self._sampled)
 
     def mesh(self) -> Mesh:
         """The mesh, once the summary is there; gives up the chunks."""

@@ -119,6 +119,21 @@ class NarrowPlace:
 
 
 @dataclasses.dataclass(frozen=True)
+class OutsideSegments:
+    """Segments of the domain of which no part bounds the mesh or lies in it. Where lines should enclose a
+    face and do not close, they are outside."""
+
+    segments: int
+    """Number of them; of several that coincide, one counts."""
+    first: int
+    """Index of the first."""
+    x: float
+    """Of a point on the first."""
+    y: float
+    """See x."""
+
+
+@dataclasses.dataclass(frozen=True)
 class Simplification:
     """What `simplify` did to the domain."""
 
@@ -201,6 +216,8 @@ class Summary:
     merging: Merging
     narrow: NarrowPlace | None
     """The costliest one, if it has at least a fifth of a mesh of a thousand triangles or more."""
+    outside: OutsideSegments | None
+    """None if all segments bound the mesh or lie in it, in part at least."""
     simplification: Simplification | None
     """Only with `simplify`."""
     timings: Timings
@@ -314,6 +331,7 @@ def summary(message: Any) -> Summary:
                  unrefined=_take(Unrefined, message.unrefined),
                  merging=_take(Merging, message.merging),
                  narrow=_take(NarrowPlace, message.narrow) if message.HasField("narrow") else None,
+                 outside=_take(OutsideSegments, message.outside) if message.HasField("outside") else None,
                  simplification=(_take(Simplification, message.simplification)
                                  if message.HasField("simplification") else None),
                  timings=_take(Timings, message.timings),
