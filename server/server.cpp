@@ -33,10 +33,10 @@ constexpr seconds kLastWords{1};
 // Streams of other services, such as Health.Watch, do not end by themselves.
 constexpr milliseconds kOthersGrace{100};
 
-AdmissionOptions admission_options(const ServerOptions& options, MemoryGate& gate) {
+AdmissionOptions admission_options(const ServerOptions& options, MemoryBudget& budget) {
   AdmissionOptions admission = options.admission;
   admission.request_bytes = plan_memory(options).received;
-  admission.memory = &gate;
+  admission.memory = &budget;
   return admission;
 }
 
@@ -48,16 +48,17 @@ std::vector<std::string> services(bool keeps_jobs) {
   return names;
 }
 
-// A sixteenth is kept for light runs, but at most what all of their places take.
-MemoryGate::Options gate_options(const ServerOptions& options) {
+// A sixteenth is reserved for light runs, but at most what all of their slots take.
+MemoryBudget::Options budget_options(const ServerOptions& options) {
   const ServiceOptions& service = options.service;
-  const std::uint64_t light = most_light(service.limits);
+  const std::uint64_t light = max_light_bytes(service.limits);
   const std::uint64_t runs = plan_memory(options).runs;
-  MemoryGate::Options gate{.capacity = runs,
-                           .for_light = std::min(runs / 16, service.light_jobs * light)};
+  MemoryBudget::Options budget{.capacity = runs,
+                               .light_reserve = std::min(runs / 16, service.light_jobs * light)};
   if (service.client_share < 1)
-    gate.of_client = static_cast<std::uint64_t>(service.client_share * static_cast<double>(runs));
-  return gate;
+    budget.max_per_client =
+        static_cast<std::uint64_t>(service.client_share * static_cast<double>(runs));
+  return budget;
 }
 
 void configure(grpc::ServerBuilder& builder, const ServerOptions& options) {
@@ -97,8 +98,8 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
       console_secret_(random_secret()),
       authenticator_(tokens_.get(), console_secret_),
       metrics_(kVersion, kEngineVersion),
-      gate_(gate_options(options), [this] { queue_.notify(); }),
-      admission_(admission_options(options, gate_), authenticator_, metrics_, log_),
+      memory_(budget_options(options), [this] { queue_.memory_released(); }),
+      admission_(admission_options(options, memory_), authenticator_, metrics_, log_),
       health_(admission_),
       reflection_(ReflectionService::Version::kV1, admission_, services(store != nullptr)),
       reflection_alpha_(ReflectionService::Version::kV1Alpha, admission_,
@@ -107,15 +108,15 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
       queue_({.slots = options.service.jobs,
               .light_slots = options.service.light_jobs,
               .capacity = options.service.queue,
-              .light = most_light(options.service.limits),
-              .gate = &gate_,
+              .max_light_estimate = max_light_bytes(options.service.limits),
+              .memory = &memory_,
               .client_share = options.service.client_share}),
       service_(with_info(options, store != nullptr), admission_, metrics_, engine, pool_, queue_,
                log_) {
   metrics_.add_queue("calls", [this] {
     QueueFigures figures = service_.figures();
     const double of_jobs = jobs_ ? jobs_->figures().admitted_bytes : 0;
-    figures.admitted_bytes = std::max(0.0, static_cast<double>(gate_.taken()) - of_jobs);
+    figures.admitted_bytes = std::max(0.0, static_cast<double>(memory_.reserved()) - of_jobs);
     return figures;
   });
   if (!store) return;
@@ -125,7 +126,7 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
   jobs.service.patience = options.service.patience;
   jobs.service.client_share = options.service.client_share;
   jobs.runner.worker = options.service.instance;
-  jobs_.emplace(std::move(store), std::move(jobs), admission_, metrics_, engine, pool_, gate_,
+  jobs_.emplace(std::move(store), std::move(jobs), admission_, metrics_, engine, pool_, memory_,
                 queue_, log_);
   metrics_.add_queue("jobs", [this] { return jobs_->figures(); });
 }

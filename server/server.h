@@ -29,7 +29,7 @@
 #include "server/net/tokens.h"
 #include "server/observe/metrics.h"
 #include "server/observe/metrics_endpoint.h"
-#include "server/run/memory_gate.h"
+#include "server/run/memory_budget.h"
 #include "server/run/run_queue.h"
 
 namespace weft::server {
@@ -90,7 +90,7 @@ class Server {
   const std::string console_secret_;         // see caller.h
   const Authenticator authenticator_;
   Metrics metrics_;
-  MemoryGate gate_;
+  MemoryBudget memory_;
   Admission admission_;
   HealthService health_;
   ReflectionService reflection_;

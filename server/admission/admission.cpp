@@ -21,10 +21,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// How often late messages are dropped, and lines that were left out are logged.
+// How often late messages are dropped, and suppressed lines are counted in the log.
 constexpr std::chrono::milliseconds kTick{250};
-// Messages up to this size are parsed without a share of memory.
-constexpr std::size_t kMostWithoutShare = kSmallRequest;
+// Messages up to this size are parsed without a reservation.
+constexpr std::size_t kMaxUnreserved = kSmallRequest;
 // What a message takes with what is parsed from it, in message sizes: numbers of one byte become
 // four.
 constexpr std::uint64_t kTimesTheBytes = 5;
@@ -44,7 +44,7 @@ Admission::Admission(const AdmissionOptions& options, const Authenticator& authe
       refusals_(log_, "call_refused", options.refusal_lines),
       closings_(log_, "connection_closed", options.refusal_lines),
       resets_(options.max_resets),
-      gate_({.capacity = options.request_bytes}, [] {}),
+      requests_memory_({.capacity = options.request_bytes}, [] {}),
       ticker_([this] { tick_until_stopped(); }) {}
 
 Admission::~Admission() {
@@ -74,7 +74,7 @@ void Admission::admit(const std::shared_ptr<RawCall>& raw, const Method& method,
   const auto call = std::make_shared<AdmittedCall>(
       AdmittedCall{raw, method.name, authenticator_.unverified(*raw->context()), std::nullopt});
   auto caller = authenticator_.identify(*raw->context());
-  if (!caller && method.for_strangers) return received(call, method, grpc::ByteBuffer());
+  if (!caller && method.allow_unauthenticated) return received(call, method, grpc::ByteBuffer());
   if (!caller) return refuse(*call, caller.error());
   call->caller = std::move(*caller);
   if (gate != nullptr) {
@@ -82,14 +82,14 @@ void Admission::admit(const std::shared_ptr<RawCall>& raw, const Method& method,
     if (!pass) return refuse(*call, {Reason::kStopping, "", "the server is stopping"});
     call->pass.emplace(std::move(*pass));
   }
-  Place place;
+  std::list<Reading>::iterator reading;
   {
     std::lock_guard lock(mutex_);
-    place = reading_.insert(reading_.end(), {call, Clock::now() + options_.request_timeout});
+    reading = reading_.insert(reading_.end(), {call, Clock::now() + options_.request_timeout});
   }
-  const auto leave_reading = [this, place] {
+  const auto leave_reading = [this, reading] {
     std::lock_guard lock(mutex_);
-    reading_.erase(place);
+    reading_.erase(reading);
   };
   RawCall::OnRequest on_request;
   try {
@@ -122,31 +122,31 @@ void Admission::received(const std::shared_ptr<AdmittedCall>& call, const Method
 
 void Admission::handle(const std::shared_ptr<AdmittedCall>& call, const Method& method,
                        grpc::ByteBuffer bytes) {
-  if (const std::size_t length = bytes.Length(); length > kMostWithoutShare)
-    if (auto failure = hold(*call, length * kTimesTheBytes)) return refuse(*call, *failure);
+  if (const std::size_t length = bytes.Length(); length > kMaxUnreserved)
+    if (auto failure = reserve(*call, length * kTimesTheBytes)) return refuse(*call, *failure);
   call->bytes = std::move(bytes);
   method.handler(call);
 }
 
-std::optional<Failure> Admission::hold(AdmittedCall& call, std::uint64_t bytes) {
-  RequestShare& share = call.share;
-  if (bytes <= kMostWithoutShare || (share.of_requests && share.of_requests.bytes() >= bytes)) {
-    share.shrink_to(bytes);
+std::optional<Failure> Admission::reserve(AdmittedCall& call, std::uint64_t bytes) {
+  RequestMemory& memory = call.memory;
+  if (bytes <= kMaxUnreserved || (memory.of_requests && memory.of_requests.bytes() >= bytes)) {
+    memory.shrink_to(bytes);
     return std::nullopt;
   }
-  share = {};
-  const MemoryGate::Ask ask{.estimate = bytes, .request = true};
-  auto of_requests = gate_.take(ask);
+  memory = {};
+  const MemoryBudget::Request request{.estimate = bytes, .purpose = MemoryBudget::Purpose::kInput};
+  auto of_requests = requests_memory_.reserve(request);
   if (!of_requests)
     return Failure{Reason::kOutOfMemory, "",
                    "other large requests take the memory that there is for them"};
-  share.of_requests = std::move(*of_requests);
+  memory.of_requests = std::move(*of_requests);
   if (options_.memory == nullptr) return std::nullopt;
-  auto of_all = options_.memory->take(ask);
+  auto of_all = options_.memory->reserve(request);
   if (!of_all)
     return Failure{Reason::kOutOfMemory, "",
                    "runs take the memory that there is for them and for requests"};
-  share.of_all = std::move(*of_all);
+  memory.of_all = std::move(*of_all);
   return std::nullopt;
 }
 
@@ -167,7 +167,7 @@ void Admission::answer(const AdmittedCall& call, grpc::ByteBuffer message) {
 void Admission::note(const AdmittedCall& call, const Failure& failure) {
   const ErrorRow& row = row_of(failure.reason);
   metrics_.call_ended(call.method, row.code, call.caller.seconds_since());
-  if (!refusals_.take()) return;
+  if (!refusals_.allow()) return;
   log_->info("event=call_refused {} method={} status={} reason={} field={}",
              log_fields(call.caller), call.method, code_name(row.code), row.name,
              log_value(failure.field.empty() ? "-" : failure.field));
@@ -185,12 +185,12 @@ void Admission::ended(RawCall& call) {
 void Admission::close_connections(const std::string& peer, const char* cause, std::uint64_t most) {
   if (close_connections_of(peer) == 0) return;
   closed_some_ = true;
-  if (closings_.take())
+  if (closings_.allow())
     log_->warn("event=connection_closed peer={} cause={} most={}", log_value(peer), cause, most);
 }
 
-void Admission::give_up_late_ones(Clock::time_point now) {
-  std::vector<std::pair<std::shared_ptr<AdmittedCall>, Place>> late;
+void Admission::expire_pending(Clock::time_point now) {
+  std::vector<std::pair<std::shared_ptr<AdmittedCall>, std::list<Reading>::iterator>> late;
   {
     std::lock_guard lock(mutex_);
     for (auto each = reading_.begin(); each != reading_.end() && each->until <= now; ++each)
@@ -199,11 +199,11 @@ void Admission::give_up_late_ones(Clock::time_point now) {
   const Failure failure{
       Reason::kDeadlineExceeded, "",
       fmt::format("the request did not arrive within {} s", seconds_of(options_.request_timeout))};
-  for (const auto& [call, place] : late) {
+  for (const auto& [call, reading] : late) {
     if (!call->call->give_up_reading(to_status(failure, ""))) continue;  // the message came first
     note(*call, failure);
     std::lock_guard lock(mutex_);
-    reading_.erase(place);
+    reading_.erase(reading);
   }
 }
 
@@ -214,9 +214,9 @@ void Admission::tick_until_stopped() {
   while (!stopped_.wait_for(lock, tick, [this] { return stopping_; })) {
     lock.unlock();
     try {
-      give_up_late_ones(Clock::now());
-      refusals_.tell_of_rest();
-      closings_.tell_of_rest();
+      expire_pending(Clock::now());
+      refusals_.flush_suppressed();
+      closings_.flush_suppressed();
       if (closed_some_.exchange(false)) malloc_trim(0);  // thousands of calls lie scattered in it
     } catch (const std::bad_alloc&) {
       // The next tick does it.

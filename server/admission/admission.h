@@ -14,10 +14,11 @@
 // server-streaming call in, and parses it, before it asks anybody who calls. A bidirectional call
 // is handed over with its headers alone; on the wire the two are the same.
 //
-// Memory: a message of more than 64 KiB has a share of `request_bytes`, and of the memory of runs:
-// five times its bytes until it is parsed, then what came of it until its run has ended. If none is
-// left, the call is refused with OUT_OF_MEMORY and a RetryInfo. Messages on their way are
-// gRPC's, within its ResourceQuota (server.cpp).
+// Memory: a message of more than 64 KiB reserves five times its bytes until it is parsed, then the
+// bytes of the parsed request until its run has ended, in `request_bytes` and in the budget of
+// runs. If that much is not free, the call is refused with OUT_OF_MEMORY and a RetryInfo. Messages
+// on their way are gRPC's, within its ResourceQuota (server.cpp).
+//
 // Thread-safety: every function may be called from any thread.
 #pragma once
 
@@ -43,7 +44,7 @@
 #include "server/net/reset_guard.h"
 #include "server/observe/log.h"
 #include "server/observe/metrics.h"
-#include "server/run/memory_gate.h"
+#include "server/run/memory_budget.h"
 #include "server/wire/errors.h"
 
 namespace weft::server {
@@ -59,16 +60,17 @@ struct AdmissionOptions {
   std::uint64_t max_resets = 600;
   // Refusals that are logged in a second; more are counted.
   std::uint64_t refusal_lines = 20;
-  // Memory of large messages that are parsed, or wait to be, and of requests that wait for their
-  // run; and the gate that this is a part of, which outlives the admission. Null: of none.
+  // The maximum memory of large messages that are parsed, or wait to be, and of requests that wait
+  // for their run. It is also reserved in `memory`, which outlives the admission; null: in no other
+  // budget.
   std::uint64_t request_bytes = std::uint64_t{1} << 30;
-  MemoryGate* memory = nullptr;
+  MemoryBudget* memory = nullptr;
 };
 
-// Memory of a large message, and then of what is parsed of it. It goes back with this.
-struct RequestShare {
-  MemoryGate::Share of_requests{};
-  MemoryGate::Share of_all{};
+// The memory of a large message, and then of the request that is parsed from it, in both budgets.
+struct RequestMemory {
+  MemoryBudget::Reservation of_requests{};
+  MemoryBudget::Reservation of_all{};
 
   void shrink_to(std::uint64_t bytes) {
     of_requests.shrink_to(bytes);
@@ -83,7 +85,7 @@ struct AdmittedCall {
   Caller caller;
   std::optional<DrainGate::Pass> pass;  // none: the service has no gate
   grpc::ByteBuffer bytes{};             // its message
-  RequestShare share{};                 // of that, if it is large
+  RequestMemory memory{};               // of that, if it is large
 };
 
 class Admission : private RawCall::Observer {
@@ -94,7 +96,7 @@ class Admission : private RawCall::Observer {
     std::function<void(std::shared_ptr<AdmittedCall>)> handler;
     // Unidentified callers get an answer, too, as if their message were empty: it is not taken in,
     // because gRPC 1.51 cannot be told to take less of it than of any other.
-    bool for_strangers = false;
+    bool allow_unauthenticated = false;
   };
 
   // The authenticator and the metrics outlive it.
@@ -108,12 +110,12 @@ class Admission : private RawCall::Observer {
   // What gRPC's handler of the method returns. `gate` may be null; both outlive the call.
   RawCall* open(grpc::CallbackServerContext* context, const Method& method, DrainGate* gate);
 
-  // Has the call hold memory for the request that was parsed of its message, instead of what was
-  // held for the message; few bytes need none. Returns why it is refused if there is none.
-  std::optional<Failure> hold(AdmittedCall& call, std::uint64_t bytes);
+  // Reserves memory for the request that was parsed from the call's message, instead of what was
+  // reserved for the message; 64 KiB need none. Errors: OUT_OF_MEMORY if so much is not free.
+  std::optional<Failure> reserve(AdmittedCall& call, std::uint64_t bytes);
 
   // Whether a line on a call that failed may be logged now; if not, it is counted.
-  bool may_log_failure() { return refusals_.take(); }
+  bool may_log_failure() { return refusals_.allow(); }
 
   // Ends a call that was admitted with what is wrong with it.
   void refuse(const AdmittedCall& call, const Failure& failure);
@@ -125,7 +127,6 @@ class Admission : private RawCall::Observer {
     std::shared_ptr<AdmittedCall> call;
     std::chrono::steady_clock::time_point until;
   };
-  using Place = std::list<Reading>::iterator;
 
   void admit(const std::shared_ptr<RawCall>& raw, const Method& method, DrainGate* gate);
   void received(const std::shared_ptr<AdmittedCall>& call, const Method& method,
@@ -136,7 +137,7 @@ class Admission : private RawCall::Observer {
   void cancelled(RawCall& call) override;
   void ended(RawCall& call) override;
   void close_connections(const std::string& peer, const char* cause, std::uint64_t most);
-  void give_up_late_ones(std::chrono::steady_clock::time_point now);
+  void expire_pending(std::chrono::steady_clock::time_point now);
   void tick_until_stopped();
 
   const AdmissionOptions options_;
@@ -146,7 +147,7 @@ class Admission : private RawCall::Observer {
   RefusalLog refusals_;
   RefusalLog closings_;
   ResetGuard resets_;
-  MemoryGate gate_;
+  MemoryBudget requests_memory_;
   std::atomic<bool> closed_some_{false};  // connections, since the last tick
 
   std::mutex mutex_;            // guards the two below

@@ -5,15 +5,15 @@
 
 namespace weft::server {
 
-bool RefusalLog::take(Clock::time_point now) {
+bool RefusalLog::allow(Clock::time_point now) {
   std::lock_guard lock(mutex_);
   turn(now);
-  if (lines_ < most_) return ++lines_, true;
-  ++left_out_;
+  if (lines_ < max_lines_) return ++lines_, true;
+  ++suppressed_;
   return false;
 }
 
-void RefusalLog::tell_of_rest(Clock::time_point now) {
+void RefusalLog::flush_suppressed(Clock::time_point now) {
   std::lock_guard lock(mutex_);
   turn(now);
 }
@@ -22,7 +22,7 @@ void RefusalLog::turn(Clock::time_point now) {
   if (now - second_ < std::chrono::seconds(1)) return;
   second_ = now;
   lines_ = 0;
-  if (const std::uint64_t count = std::exchange(left_out_, 0); count != 0)
+  if (const std::uint64_t count = std::exchange(suppressed_, 0); count != 0)
     log_->info("event=lines_left_out count={} of={}", count, event_);
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of the log that a stranger can cause, at most so many a second: those beyond are counted,
-// and a line says how many they were.
+// Lines of the log that unauthenticated callers can cause, bounded per second: further ones are
+// suppressed, and a line says how many were.
 //
 //   RefusalLog refusals(log, "call_refused", 20);
-//   if (refusals.take()) log->info("event=call_refused ...");
-//   ... a few times a second: refusals.tell_of_rest() ...
+//   if (refusals.allow()) log->info("event=call_refused ...");
+//   ... a few times a second: refusals.flush_suppressed() ...
 //     event=lines_left_out count=41873 of=call_refused
 //
 // Thread-safety: every function may be called from any thread.
@@ -23,25 +23,25 @@ class RefusalLog {
  public:
   using Clock = std::chrono::steady_clock;
 
-  RefusalLog(Logger log, const char* event, std::uint64_t lines_a_second)
-      : log_(std::move(log)), event_(event), most_(lines_a_second) {}
+  RefusalLog(Logger log, const char* event, std::uint64_t max_lines_per_second)
+      : log_(std::move(log)), event_(event), max_lines_(max_lines_per_second) {}
 
-  // Whether the caller may write a line now; if not, it is counted.
-  bool take(Clock::time_point now = Clock::now());
+  // Returns whether the caller may write a line now; if not, counts it as suppressed.
+  bool allow(Clock::time_point now = Clock::now());
 
-  // Writes how many lines were left out in the seconds before this one, if any were.
-  void tell_of_rest(Clock::time_point now = Clock::now());
+  // Writes how many lines were suppressed in the seconds before this one, if any were.
+  void flush_suppressed(Clock::time_point now = Clock::now());
 
  private:
   void turn(Clock::time_point now);  // REQUIRES: mutex_ is held
 
   const Logger log_;
   const char* const event_;
-  const std::uint64_t most_;
+  const std::uint64_t max_lines_;
   std::mutex mutex_;  // guards all below
   Clock::time_point second_{};
-  std::uint64_t lines_ = 0;     // of this second
-  std::uint64_t left_out_ = 0;  // of this second
+  std::uint64_t lines_ = 0;       // of this second
+  std::uint64_t suppressed_ = 0;  // of this second
 };
 
 }  // namespace weft::server

@@ -22,12 +22,12 @@ using Seconds = std::chrono::duration<double>;
 // The store did not take the task back: another attempt begins once the lease has run out.
 constexpr std::string_view kStillLeased = "leased";
 // If the store is away for longer, the run is lost, because its lease has run out.
-constexpr std::chrono::seconds kPatience{60};
+constexpr std::chrono::seconds kMaxUnavailable{60};
 constexpr milliseconds kFirstPause{50};
 constexpr milliseconds kLongestPause{2000};
 
 // The request, or an empty one if there is none: the run then ends before it begins.
-const v1::GenerateMeshRequest& shown(
+const v1::GenerateMeshRequest& request_or_empty(
     const tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure>& request) {
   return request ? **request : v1::GenerateMeshRequest::default_instance();
 }
@@ -52,10 +52,10 @@ Attempt::Attempt(const RunEnvironment& environment, Claim claim, RunQueue::Slot&
       label_(label_of(claim_)),
       request_(read_request(claim_)),
       slot_(slot),
-      besides_(bytes_of_request(shown(request_)) + bytes_besides(environment.limits)),
-      max_seconds_(to_seconds(shown(request_).budget(), environment.limits)),
-      threads_(to_threads(shown(request_).threads(), environment.pool.threads())),
-      run_(to_budget(shown(request_).budget(), environment.limits)) {
+      besides_(bytes_of_request(request_or_empty(request_)) + bytes_besides(environment.limits)),
+      max_seconds_(to_seconds(request_or_empty(request_).budget(), environment.limits)),
+      threads_(to_threads(request_or_empty(request_).threads(), environment.pool.threads())),
+      run_(to_budget(request_or_empty(request_).budget(), environment.limits)) {
   claim_.request = {};
 }
 
@@ -63,7 +63,8 @@ void Attempt::run() {
   environment_.log->info("event=attempt_started {}", label_);
   environment_.metrics.job_became("running");
   if (const auto made = make_mesh(); !made) return settle(made.error());
-  const auto held = insist([&] { return environment_.store.finish(claim_.ref, mesh_); });
+  const auto held =
+      retry_while_unavailable([&] { return environment_.store.finish(claim_.ref, mesh_); });
   if (!held) return settle(failure_of(held.error()));
   if (*held == Held::kHeld) environment_.metrics.job_became("succeeded");
   log_end(*held == Held::kHeld ? "succeeded" : "lost", "-");
@@ -99,7 +100,8 @@ bool Attempt::accept(Chunk&& chunk) {
   to_wire(chunk, *chunk_message_.mutable_chunk());
   const std::string bytes = chunk_message_.SerializeAsString();
   StoredChunk stored{sha256(bytes), bytes.size()};
-  const auto put = insist([&] { return environment_.store.put_chunk(stored.sha256, bytes); });
+  const auto put =
+      retry_while_unavailable([&] { return environment_.store.put_chunk(stored.sha256, bytes); });
   if (!put) {
     store_error_ = put.error();
     return false;
@@ -123,13 +125,13 @@ void Attempt::settle(const Failure& failure) {
     return log_end(released ? "requeued" : kStillLeased, "-");
   }
   if (is_of_the_machine(failure.reason) && claim_.tries < environment_.retry.max_attempts) {
-    const auto released = insist([&] {
+    const auto released = retry_while_unavailable([&] {
       return environment_.store.release(claim_.ref, delay_after(environment_.retry, claim_.tries),
                                         true);
     });
     return log_end(released ? "requeued" : kStillLeased, reason);
   }
-  (void)insist(
+  (void)retry_while_unavailable(
       [&] { return environment_.store.fail(claim_.ref, to_status(failure, "").error_details()); });
   environment_.metrics.job_became("failed");
   log_end("failed", reason);
@@ -162,14 +164,14 @@ void Attempt::renew(milliseconds lease) {
     last_moved_ = now;
   }
   if (now - last_moved_ > lease) return;
-  tell_progress(run_.progress(), Seconds(now - began_).count(), told_);
-  const auto held = environment_.store.renew(claim_.ref, lease, told_.SerializeAsString());
+  write_progress(run_.progress(), Seconds(now - began_).count(), progress_);
+  const auto held = environment_.store.renew(claim_.ref, lease, progress_.SerializeAsString());
   if (held && *held == Held::kLost) lose();
 }
 
 template <class F>
-std::invoke_result_t<F> Attempt::insist(F&& call) {
-  const Clock::time_point end = Clock::now() + kPatience;
+std::invoke_result_t<F> Attempt::retry_while_unavailable(F&& call) {
+  const Clock::time_point end = Clock::now() + kMaxUnavailable;
   milliseconds wait = kFirstPause;
   while (true) {
     auto answer = call();

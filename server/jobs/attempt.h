@@ -49,7 +49,7 @@ class Attempt final : private ChunkSink {
   void run();
 
   // Bytes that the run may take now.
-  std::uint64_t share_bytes() const { return slot_.memory().bytes(); }
+  std::uint64_t reserved_bytes() const { return slot_.memory().bytes(); }
 
   // Stops because the server stops: the task goes back into the queue, as if it had not begun.
   void stop();
@@ -68,7 +68,7 @@ class Attempt final : private ChunkSink {
   // Repeats a call of the store while this is unavailable, until the run must end or a time limit
   // is reached.
   template <class F>
-  std::invoke_result_t<F> insist(F&& call);
+  std::invoke_result_t<F> retry_while_unavailable(F&& call);
   bool pause(std::chrono::milliseconds at_most);
   void log_end(std::string_view outcome, std::string_view reason) const;
 
@@ -93,7 +93,7 @@ class Attempt final : private ChunkSink {
   // Used only by the renewing thread.
   std::uint64_t last_pulse_ = 0;
   Clock::time_point last_moved_ = began_;
-  v1::Progress told_;
+  v1::Progress progress_;
 
   Mutex mutex_;
   bool lost_ ABSL_GUARDED_BY(mutex_) = false;

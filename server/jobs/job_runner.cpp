@@ -54,7 +54,8 @@ QueueFigures JobRunner::figures() const {
   QueueFigures figures;
   MutexLock lock(mutex_);
   figures.running = static_cast<double>(runs_.size());
-  for (const auto& run : runs_) figures.admitted_bytes += static_cast<double>(run->share_bytes());
+  for (const auto& run : runs_)
+    figures.admitted_bytes += static_cast<double>(run->reserved_bytes());
   return figures;
 }
 
@@ -68,8 +69,8 @@ void JobRunner::guarded(F&& step) const noexcept try {
 
 void JobRunner::run_next(RunQueue::Slot& slot) noexcept {
   guarded([&] {
-    auto claim =
-        environment_.store.claim(options_.worker, options_.lease, slot.room(), slot.full_clients());
+    auto claim = environment_.store.claim(options_.worker, options_.lease, slot.max_estimate(),
+                                          slot.full_clients());
     if (!claim)
       environment_.log->warn("event=claim_failed message={}", log_value(claim.error().message));
     if (!claim || !*claim) return;

@@ -64,7 +64,7 @@ tl::expected<Response, Failure> answer_with(const StoreResult<std::optional<JobR
 }  // namespace
 
 JobService::JobService(JobServiceOptions options, Admission& admission, Metrics& metrics,
-                       MemoryGate& gate, JobStore& store, Logger log)
+                       MemoryBudget& memory, JobStore& store, Logger log)
     : RawService("/weft.v1.JobService/", admission),
       options_(std::move(options)),
       metrics_(metrics),
@@ -72,7 +72,7 @@ JobService::JobService(JobServiceOptions options, Admission& admission, Metrics&
       log_(std::move(log)),
       environment_{store_,
                    threads_,
-                   gate,
+                   memory,
                    options_.patience,
                    metrics_,
                    log_,
@@ -180,7 +180,7 @@ void JobService::submit_job(const std::shared_ptr<AdmittedCall>& call) {
     const std::size_t bytes = call->bytes.Length();
     auto request = read_submission(std::exchange(call->bytes, {}), options_.limits);
     if (!request) return tl::unexpected(request.error());
-    if (auto failure = admission().hold(*call, request->SpaceUsedLong()))
+    if (auto failure = admission().reserve(*call, request->SpaceUsedLong()))
       return tl::unexpected(*failure);
     return submit(call->caller, std::move(*request), bytes);
   });

@@ -48,8 +48,8 @@ struct JobServiceOptions {
 class JobService final : public RawService {
  public:
   // All of these must outlive the service.
-  JobService(JobServiceOptions options, Admission& admission, Metrics& metrics, MemoryGate& gate,
-             JobStore& store, Logger log);
+  JobService(JobServiceOptions options, Admission& admission, Metrics& metrics,
+             MemoryBudget& memory, JobStore& store, Logger log);
   // REQUIRES: no call is open.
   ~JobService() override;
 

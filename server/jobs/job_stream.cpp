@@ -101,7 +101,7 @@ void WatchStream::tick(Clock::time_point now) {
 
 void WatchStream::look() {
   const auto record = look_up();
-  if (!record && record.error().reason == Reason::kStoreUnavailable && !told_.empty())
+  if (!record && record.error().reason == Reason::kStoreUnavailable && !sent_.empty())
     return;  // the store comes back, or the client's deadline passes
   if (!record) return fail(record.error());
   v1::WatchJobResponse message;
@@ -110,11 +110,11 @@ void WatchStream::look() {
   if (is_final(record->state)) {
     bytes_ += bytes.size();
     if (finish(to_buffer(std::move(bytes)))) log_end(grpc::OK, "-");
-  } else if (told_.empty()) {
-    told_ = bytes;
+  } else if (sent_.empty()) {
+    sent_ = bytes;
     send(to_buffer(std::move(bytes)));
-  } else if (bytes != told_) {
-    told_ = bytes;
+  } else if (bytes != sent_) {
+    sent_ = bytes;
     offer(to_buffer(std::move(bytes)));
   }
 }
@@ -143,29 +143,30 @@ void FetchStream::begin() {
   accepted.mutable_accepted()->set_engine_version(summary->engine_version());
   accepted.mutable_accepted()->set_threads(summary->threads());
   send(serialize(accepted));
-  hold_memory();
+  reserve_memory();
   send_what_fits();
 }
 
 // Kept to the end of the call, however slowly the client reads.
-void FetchStream::hold_memory() {
+void FetchStream::reserve_memory() {
   std::uint64_t bytes = 0;
   for (const StoredChunk& chunk : mesh_.chunks) bytes += chunk.bytes;
-  auto share = environment_.gate.take({.estimate = std::min<std::uint64_t>(bytes, kReadAhead.bytes),
-                                       .client = job_.caller.client(),
-                                       .reader = true});
-  if (!share) return;
+  auto reservation =
+      environment_.memory.reserve({.estimate = std::min<std::uint64_t>(bytes, kReadAhead.bytes),
+                                   .client = job_.caller.client(),
+                                   .purpose = MemoryBudget::Purpose::kOutput});
+  if (!reservation) return;
   MutexLock lock(mutex_);
-  if (!over_) std::swap(read_ahead_, *share);
+  if (!over_) std::swap(read_ahead_, *reservation);
 }
 
-// The memory goes back first: once the stream is forgotten, the server need not wait for it.
+// The memory is released first: once the stream is forgotten, the server need not wait for it.
 void FetchStream::ended_for_good() {
   {
-    MemoryGate::Share share;
+    MemoryBudget::Reservation released;
     MutexLock lock(mutex_);
     over_ = true;
-    std::swap(share, read_ahead_);
+    std::swap(released, read_ahead_);
   }
   JobStream::ended_for_good();
 }
@@ -178,7 +179,7 @@ bool FetchStream::may_read_ahead() {
   return has_room(has_memory ? kChunkBytes : kReadAhead.bytes);
 }
 
-// Whoever finds busy_ unset goes on, so no message is sent twice, and none is forgotten.
+// The thread that finds busy_ unset goes on, so no message is sent twice, and none is forgotten.
 void FetchStream::wrote() {
   if (!busy_.exchange(true)) soon([this] { send_what_fits(); });
 }

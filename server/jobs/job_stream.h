@@ -4,7 +4,8 @@
 //
 // WatchStream sends the job whenever it changes, until its state is final. FetchStream sends the
 // mesh: it reads from the store only as much as the client takes, and no thread waits for a client.
-// What it reads ahead is memory of the gate; without any, one chunk waits while another is sent.
+// It reserves the memory of what it reads ahead; without any, one chunk waits while another is
+// sent.
 #pragma once
 
 #include <atomic>
@@ -20,7 +21,7 @@
 #include "server/net/message_stream.h"
 #include "server/observe/log.h"
 #include "server/observe/metrics.h"
-#include "server/run/memory_gate.h"
+#include "server/run/memory_budget.h"
 #include "server/run/mutex.h"
 #include "server/run/run_queue.h"
 #include "server/store/job_store.h"
@@ -31,8 +32,8 @@ namespace weft::server {
 // Shared by all streams; must outlive them.
 struct StreamEnvironment {
   JobStore& store;
-  RunQueue& threads;  // may wait for the store
-  MemoryGate& gate;   // has the memory of what is read ahead
+  RunQueue& threads;     // may wait for the store
+  MemoryBudget& memory;  // of what is read ahead
   ReaderPatience patience;
   Metrics& metrics;
   Logger log;
@@ -100,7 +101,7 @@ class WatchStream final : public JobStream {
   void look();
 
   std::atomic<bool> begun_{false};
-  std::string told_;  // bytes of the last message sent
+  std::string sent_;  // bytes of the last message
 };
 
 class FetchStream final : public JobStream {
@@ -113,7 +114,7 @@ class FetchStream final : public JobStream {
   void begin() override;
   void wrote() override;
   void ended_for_good() override;
-  void hold_memory();
+  void reserve_memory();
   bool may_read_ahead();
   void send_what_fits();
   // Returns false if that has ended the call.
@@ -125,8 +126,8 @@ class FetchStream final : public JobStream {
   std::atomic<bool> busy_{true};  // `begin` is the first
 
   Mutex mutex_;
-  MemoryGate::Share read_ahead_ ABSL_GUARDED_BY(mutex_);  // of nothing if the gate had none
-  bool over_ ABSL_GUARDED_BY(mutex_) = false;             // the call has ended for good
+  MemoryBudget::Reservation read_ahead_ ABSL_GUARDED_BY(mutex_);  // empty if no memory was free
+  bool over_ ABSL_GUARDED_BY(mutex_) = false;                     // the call has ended for good
 };
 
 }  // namespace weft::server

@@ -18,14 +18,14 @@ std::string lost_workers(const RetryPolicy& policy) {
 }  // namespace
 
 JobSystem::JobSystem(std::unique_ptr<JobStore> store, JobOptions options, Admission& admission,
-                     Metrics& metrics, const EngineFn& engine, ThreadPool& pool, MemoryGate& gate,
-                     RunQueue& queue, const Logger& log)
+                     Metrics& metrics, const EngineFn& engine, ThreadPool& pool,
+                     MemoryBudget& memory, RunQueue& queue, const Logger& log)
     : store_(std::move(store)) {
   options.retry.error = lost_workers(options.retry);
   const RunEnvironment environment{engine,        pool,    *store_, options.service.limits,
                                    options.retry, metrics, log};
-  store_->on_change([this] { tell_of_change(); });
-  if (options.serves) service_.emplace(options.service, admission, metrics, gate, *store_, log);
+  store_->on_change([this] { notify(); });
+  if (options.serves) service_.emplace(options.service, admission, metrics, memory, *store_, log);
   if (options.works) runner_.emplace(environment, queue, options.runner);
   MutexLock lock(mutex_);
   listening_ = true;
@@ -37,7 +37,7 @@ JobSystem::~JobSystem() {
   listening_ = false;
 }
 
-void JobSystem::tell_of_change() {
+void JobSystem::notify() {
   MutexLock lock(mutex_);
   if (!listening_) return;
   if (service_) service_->wake();

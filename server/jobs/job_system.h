@@ -13,7 +13,7 @@
 #include "server/jobs/job_service.h"
 #include "server/observe/log.h"
 #include "server/run/engine_call.h"
-#include "server/run/memory_gate.h"
+#include "server/run/memory_budget.h"
 #include "server/store/job_store.h"
 #include "weft/run.h"
 
@@ -30,7 +30,7 @@ struct JobOptions {
 class JobSystem {
  public:
   JobSystem(std::unique_ptr<JobStore> store, JobOptions options, Admission& admission,
-            Metrics& metrics, const EngineFn& engine, ThreadPool& pool, MemoryGate& gate,
+            Metrics& metrics, const EngineFn& engine, ThreadPool& pool, MemoryBudget& memory,
             RunQueue& queue, const Logger& log);
   ~JobSystem();
 
@@ -44,7 +44,7 @@ class JobSystem {
   void close();
 
  private:
-  void tell_of_change();
+  void notify();
 
   std::unique_ptr<JobStore> store_;
   std::optional<JobService> service_;

@@ -25,22 +25,21 @@ grpc::ByteBuffer accepted_message(const std::string& id, std::uint32_t threads) 
   return serialize(message);
 }
 
-// Messages of a finished mesh share its bytes, so all of them may be queued.
+// The messages of a cached mesh share its bytes, so all of them may be queued.
 constexpr ChunkQueue::Bounds kNoBounds{std::numeric_limits<std::size_t>::max(),
                                        std::numeric_limits<std::size_t>::max()};
 
-// How long a run waits for its reader before it leaves its place.
-constexpr std::chrono::milliseconds kPatience{5};
+// How long a run waits for its reader before it leaves its slot.
+constexpr std::chrono::milliseconds kMaxWaitInSlot{5};
 
 }  // namespace
 
 MeshCall::MeshCall(const CallEnvironment& environment, AdmittedCall& call, std::string id,
-                   std::unique_ptr<v1::GenerateMeshRequest> request, Origin origin)
+                   std::unique_ptr<v1::GenerateMeshRequest> request, CacheLookup cached)
     : MessageStream(
           call.call,
           accepted_message(id, to_threads(request->threads(), environment.pool.threads())),
-          origin.at_hand ? kNoBounds
-                         : ChunkQueue::Bounds::of_bytes(environment.limits.stream_buffer)),
+          cached.hit ? kNoBounds : ChunkQueue::Bounds::of_bytes(environment.limits.stream_buffer)),
       environment_(environment),
       id_(std::move(id)),
       caller_(log_fields(call.caller)),
@@ -50,10 +49,10 @@ MeshCall::MeshCall(const CallEnvironment& environment, AdmittedCall& call, std::
       threads_(to_threads(request->threads(), environment.pool.threads())),
       first_chunk_(request->first_chunk()),
       wants_quadtree_(request->want_quadtree()),
-      origin_(std::move(origin)),
+      cached_(std::move(cached)),
       pass_(std::exchange(call.pass, std::nullopt)),
       run_(to_budget(request->budget(), environment.limits)),
-      request_share_(std::move(call.share)),
+      request_memory_(std::move(call.memory)),
       request_(std::move(request)) {}
 
 void MeshCall::start() noexcept try {
@@ -62,9 +61,9 @@ void MeshCall::start() noexcept try {
       fmt::format("event=call_queued call={} {} method=GenerateMesh points={} segments={} seeds={}",
                   id_, caller_, domain.points_size() / 2, domain.segments_size() / 2,
                   domain.holes_size() / 2 + domain.regions_size());
-  if (origin_.at_hand) {
+  if (cached_.hit) {
     log_queued();
-    send_what_is_at_hand();
+    send_cached();
     return;
   }
   const std::uint64_t estimate =
@@ -81,8 +80,8 @@ void MeshCall::log_queued() {
   std::call_once(queued_, [this] { environment_.log->info("{}", queued_line_); });
 }
 
-void MeshCall::send_what_is_at_hand() {
-  const FinishedMesh& mesh = *origin_.at_hand;
+void MeshCall::send_cached() {
+  const FinishedMesh& mesh = *cached_.hit;
   request_.reset();
   if (auto failure = check_first_chunk(mesh.summary)) return fail(*failure);
   for (std::size_t i = first_chunk_; i < mesh.chunks.size(); ++i) {
@@ -110,7 +109,7 @@ void MeshCall::tick(Clock::time_point now) {
     stop(StopCause::kReaderStalled);
   } else if (deadline && now >= *deadline) {
     stop(StopCause::kTimeUp);
-  } else if (!origin_.at_hand) {
+  } else if (!cached_.hit) {
     offer(progress_message(now));
   }
 }
@@ -127,28 +126,28 @@ void MeshCall::run(RunQueue::Slot& slot) noexcept try {
   } else {
     fail(outcome.error());
   }
-  keep_what_waits(slot);
+  keep_unread(slot);
 } catch (const std::bad_alloc&) {
   kill();
 }
 
-// A mesh that is made may wait for its reader for as long as that reads at all.
-void MeshCall::keep_what_waits(RunQueue::Slot& slot) {
-  MemoryGate::Share& share = slot.memory();
-  share.shrink_to(std::min<std::uint64_t>(bytes_, bytes_besides(environment_.limits)));
-  share.turn_reader();
+// A mesh may wait for its reader for as long as that reads at all.
+void MeshCall::keep_unread(RunQueue::Slot& slot) {
+  MemoryBudget::Reservation& memory = slot.memory();
+  memory.shrink_to(std::min<std::uint64_t>(bytes_, bytes_besides(environment_.limits)));
+  memory.reclassify_as_output();
   std::lock_guard lock(mutex_);
-  if (!over_) std::swap(kept_, share);
+  if (!over_) std::swap(unread_, memory);
 }
 
-// The memory goes back first: once the call is forgotten, the server need not wait for it, and what
-// the gate notifies may be gone.
+// The memory is released first: once the call is forgotten, the server need not wait for it, and
+// the queue that the budget notifies may be gone.
 void MeshCall::ended_for_good() {
   {
-    MemoryGate::Share kept;
+    MemoryBudget::Reservation released;
     std::lock_guard lock(mutex_);
     over_ = true;
-    std::swap(kept, kept_);
+    std::swap(released, unread_);
   }
   environment_.forget(*this);  // which may destroy this
 }
@@ -166,7 +165,7 @@ tl::expected<Summary, Failure> MeshCall::work(RunQueue::Slot& slot) {
   environment_.metrics.waited(waited);
   environment_.log->info("event=call_started call={} {} waited_seconds={:.3f}", id_, caller_,
                          waited);
-  if (!origin_.key.empty() && first_chunk_ == 0) recording_.emplace(environment_.cache.largest());
+  if (!cached_.key.empty() && first_chunk_ == 0) recording_.emplace(environment_.cache.largest());
   auto summary = call_engine(environment_.engine, std::move(request_), *this,
                              {.run = run_,
                               .slot = slot,
@@ -174,9 +173,9 @@ tl::expected<Summary, Failure> MeshCall::work(RunQueue::Slot& slot) {
                               .deadline = deadline,
                               .pool = environment_.pool,
                               .threads = threads_});
-  request_share_ = {};
+  request_memory_ = {};
   if (!summary) return summary;
-  if (recording_) environment_.cache.keep(origin_.key, std::move(*recording_).finish(*summary));
+  if (recording_) environment_.cache.keep(cached_.key, std::move(*recording_).finish(*summary));
   environment_.metrics.refined(summary->engine_seconds);
   if (auto failure = check_first_chunk(*summary)) return tl::unexpected(*failure);
   return summary;
@@ -192,16 +191,16 @@ std::optional<Failure> MeshCall::check_first_chunk(const Summary& summary) const
 void MeshCall::succeed(const Summary& summary) {
   v1::GenerateMeshResponse message;
   *message.mutable_summary() = to_wire(summary, threads_);
-  message.mutable_summary()->set_cached(origin_.at_hand != nullptr);
+  message.mutable_summary()->set_cached(cached_.hit != nullptr);
   if (wants_quadtree_) add_quadtree(summary, *message.mutable_summary());
   grpc::ByteBuffer last = serialize(message);
   if (when_there_is_room(last.Length(), [&] { return finish(std::move(last)); }))
-    tell_end(grpc::StatusCode::OK, "-");
+    log_end(grpc::StatusCode::OK, "-");
 }
 
 void MeshCall::fail(const Failure& failure) {
   const ErrorRow& row = row_of(failure.reason);
-  if (abort(to_status(failure, id_))) tell_end(row.code, row.name);
+  if (abort(to_status(failure, id_))) log_end(row.code, row.name);
 }
 
 Failure MeshCall::failure_of_cause(StopCause cause) const {
@@ -222,11 +221,11 @@ Failure MeshCall::failure_of_cause(StopCause cause) const {
   return {Reason::kDeadlineExceeded, "", "the call's deadline passed"};
 }
 
-// Calls `send`, which waits for room for a message of so many bytes. A run that waits for its
-// reader leaves its slot to another one.
+// Calls `send`, which waits until the stream has room for a message of `bytes` bytes. A run that
+// waits for its reader leaves its slot to another run.
 template <class Send>
 bool MeshCall::when_there_is_room(std::size_t bytes, Send&& send) {
-  if (has_room_within(kPatience, bytes)) return send();
+  if (has_room_within(kMaxWaitInSlot, bytes)) return send();
   const RunQueue::Pause pause(*slot_);
   return send();
 }
@@ -252,25 +251,25 @@ void MeshCall::sent(std::size_t bytes) {
 grpc::ByteBuffer MeshCall::progress_message(Clock::time_point now) {
   {
     std::lock_guard lock(mutex_);
-    if (work_deadline_) told_.set_stage(std::max(told_.stage(), v1::STAGE_TRIANGULATE));
+    if (work_deadline_) progress_.set_stage(std::max(progress_.stage(), v1::STAGE_TRIANGULATE));
   }
-  tell_progress(run_.progress(), Seconds(now - admitted_).count(), told_);
+  write_progress(run_.progress(), Seconds(now - admitted_).count(), progress_);
   v1::GenerateMeshResponse message;
-  *message.mutable_progress() = told_;
+  *message.mutable_progress() = progress_;
   return serialize(message);
 }
 
-void MeshCall::tell_end(grpc::StatusCode code, std::string_view reason) const {
+void MeshCall::log_end(grpc::StatusCode code, std::string_view reason) const {
   const double seconds = Seconds(Clock::now() - admitted_).count();
   const std::uint64_t triangles =
-      origin_.at_hand ? origin_.at_hand->summary.triangles : run_.progress().triangles;
+      cached_.hit ? cached_.hit->summary.triangles : run_.progress().triangles;
   environment_.metrics.call_ended("GenerateMesh", code, seconds);
   if (code != grpc::StatusCode::OK && !environment_.may_log_failure()) return;
   environment_.log->info(
       "event=call_ended call={} {} method=GenerateMesh status={} reason={} cached={} "
       "triangles={} chunks={} bytes={} seconds={:.3f}",
-      id_, caller_, code_name(code), reason, origin_.at_hand ? "yes" : "no", triangles,
-      chunks_.load(), bytes_.load(), seconds);
+      id_, caller_, code_name(code), reason, cached_.hit ? "yes" : "no", triangles, chunks_.load(),
+      bytes_.load(), seconds);
 }
 
 }  // namespace weft::server

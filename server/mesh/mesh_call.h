@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // One GenerateMesh call that was admitted: it waits in the queue, runs the engine on a worker
-// thread, hands the chunks to its stream, and ends exactly once, whatever stops it. One whose mesh
-// is at hand does none of that but the last.
+// thread, sends the chunks on its stream, and ends exactly once, whatever stops it. A call whose
+// mesh is cached only sends it and ends.
 //
-// What can stop it, and what its call then ends with: see StopCause. The first cause wins, and the
-// call ends at once; the engine notices within 50 ms.
+// StopCause lists what can stop a call, and with which status it then ends. The first cause wins,
+// and the call ends at once; the engine notices within 50 ms.
 //
 // Thread-safety: `stop` and `tick` may be called from any thread at any time.
 #pragma once
@@ -41,10 +41,10 @@ enum class StopCause {
   kStopping,       // UNAVAILABLE
 };
 
-// What all calls share; outlives them.
+// Shared by all calls; outlives them.
 struct CallEnvironment {
   EngineFn engine;
-  ThreadPool& pool;  // where they compute
+  ThreadPool& pool;  // of heavy runs
   Limits limits;
   ReaderPatience patience;
   Logger log;
@@ -55,10 +55,10 @@ struct CallEnvironment {
   std::function<bool()> may_log_failure;       // see Admission
 };
 
-// Where a call's mesh comes from and goes to: the cache, by its key.
-struct Origin {
-  std::string key{};                              // empty: it is not to be kept
-  std::shared_ptr<const FinishedMesh> at_hand{};  // null: it is to be made
+// What the cache of meshes has for a call.
+struct CacheLookup {
+  std::string key{};                          // empty: the mesh is not to be kept
+  std::shared_ptr<const FinishedMesh> hit{};  // null: the mesh is to be made
 };
 
 class MeshCall final : public MessageStream,
@@ -66,11 +66,11 @@ class MeshCall final : public MessageStream,
                        public std::enable_shared_from_this<MeshCall>,
                        private ChunkSink {
  public:
-  // Takes the parts of the call but its bytes.
+  // Takes all parts of the call except its bytes.
   MeshCall(const CallEnvironment& environment, AdmittedCall& call, std::string id,
-           std::unique_ptr<v1::GenerateMeshRequest> request, Origin origin);
+           std::unique_ptr<v1::GenerateMeshRequest> request, CacheLookup cached);
 
-  // Joins the queue, or ends with QUEUE_FULL; sends what is at hand. Call once.
+  // Joins the queue, or ends with QUEUE_FULL; sends the mesh if it is cached. Call once.
   void start() noexcept;
 
   void stop(StopCause cause);
@@ -81,60 +81,59 @@ class MeshCall final : public MessageStream,
 
  private:
   void run(RunQueue::Slot& slot) noexcept override;
-  // Once, as soon as the call is in the queue: whoever put it there may be late.
+  // Logs once that the call is in the queue: its run may begin before `start` returns.
   void log_queued();
-  void send_what_is_at_hand();
+  void send_cached();
   tl::expected<Summary, Failure> work(RunQueue::Slot& slot);
   std::optional<Failure> check_first_chunk(const Summary& summary) const;
-  // Counts a chunk whose message was taken by the stream.
+  // Counts a chunk whose message the stream accepted.
   void sent(std::size_t bytes);
   template <class Send>
   bool when_there_is_room(std::size_t bytes, Send&& send);
-  // Of these, the first decides how the call ends, and logs it.
+  // The first of these that is called decides how the call ends, and logs it.
   void succeed(const Summary& summary);
   void fail(const Failure& failure);
 
   Failure failure_of_cause(StopCause cause) const;
   grpc::ByteBuffer progress_message(Clock::time_point now);
-  void tell_end(grpc::StatusCode code, std::string_view reason) const;
+  void log_end(grpc::StatusCode code, std::string_view reason) const;
 
   bool accept(Chunk&& chunk) override;
   void client_gone() override { stop(StopCause::kClientGone); }
   void ended_for_good() override;
-  void keep_what_waits(RunQueue::Slot& slot);
+  void keep_unread(RunQueue::Slot& slot);
 
   const CallEnvironment& environment_;
   const std::string id_;
-  const std::string caller_;  // as a line of the log tells it
-  const std::string client_;  // has turns of its own
+  const std::string caller_;  // as in a line of the log
+  const std::string client_;  // of the queue
   const std::chrono::system_clock::time_point call_deadline_;
-  const double max_seconds_;  // of work
+  const double max_seconds_;  // of the run
   const std::uint32_t threads_;
   const std::uint32_t first_chunk_;  // those before it are not sent
   const bool wants_quadtree_;
-  const Origin origin_;
+  const CacheLookup cached_;
   std::string queued_line_;  // of the log
   std::once_flag queued_;
-  RunQueue::Slot* slot_ = nullptr;  // the worker's own
+  RunQueue::Slot* slot_ = nullptr;  // used only by the worker
   const Clock::time_point admitted_ = Clock::now();
   const std::optional<DrainGate::Pass> pass_;
   Run run_;
   std::atomic<std::uint64_t> chunks_{0};  // handed to the stream
   std::atomic<std::uint64_t> bytes_{0};
 
-  // Of the request, until the run has ended.
-  RequestShare request_share_;
+  RequestMemory request_memory_;  // until the run has ended
 
-  // The worker's own.
+  // Used only by the worker.
   std::unique_ptr<v1::GenerateMeshRequest> request_;
   v1::GenerateMeshResponse chunk_message_;  // kept for the memory of its arrays
   std::optional<MeshRecording> recording_;
 
-  // The ticking thread's own: what was last told, since progress never goes back.
-  v1::Progress told_;
+  // Used only by the ticking thread: the progress that was sent last, because it never goes back.
+  v1::Progress progress_;
 
   mutable std::mutex mutex_;                        // guards the three below
-  MemoryGate::Share kept_;                          // of messages that wait for the reader
+  MemoryBudget::Reservation unread_;                // of messages that wait for the reader
   bool over_ = false;                               // the call has ended for good
   std::optional<Clock::time_point> work_deadline_;  // set when the run begins
 };

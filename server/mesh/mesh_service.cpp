@@ -15,7 +15,7 @@ namespace {
 
 // Requests up to this size are looked up in the cache: the key of a larger one would keep gRPC's
 // thread busy for over a millisecond.
-constexpr std::size_t kMostKeyedBytes = std::size_t{1} << 20;
+constexpr std::size_t kMaxKeyedBytes = std::size_t{1} << 20;
 
 }  // namespace
 
@@ -40,7 +40,7 @@ MeshService::MeshService(const ServiceOptions& options, Admission& admission, Me
       ticker_([this] { tick_until_stopped(); }) {
   add({"GenerateMesh", options.limits.max_request_bytes,
        [this](const auto& call) { generate_mesh(*call); }});
-  add({"GetServerInfo", kSmallRequest, [this](const auto& call) { tell_server_info(*call); }});
+  add({"GetServerInfo", kSmallRequest, [this](const auto& call) { answer_server_info(*call); }});
 }
 
 MeshService::~MeshService() {
@@ -68,15 +68,15 @@ void MeshService::generate_mesh(AdmittedCall& call) {
   auto request = read_mesh_request(std::exchange(call.bytes, {}), options_.limits);
   if (!request) return admission().refuse(call, request.error());
   // Two bytes of an empty region become 80, so what is parsed may be far more than the message.
-  if (auto failure = admission().hold(call, (*request)->SpaceUsedLong()))
+  if (auto failure = admission().reserve(call, (*request)->SpaceUsedLong()))
     return admission().refuse(call, *failure);
-  Origin origin = origin_of(**request, size, call.caller);
+  CacheLookup cached = look_up(**request, size, call.caller);
   std::shared_ptr<MeshCall> mesh_call;
   {
     std::lock_guard lock(mutex_);
     mesh_call = std::make_shared<MeshCall>(environment_, call,
                                            fmt::format("{}-{}", options_.instance, ++last_number_),
-                                           std::move(*request), std::move(origin));
+                                           std::move(*request), std::move(cached));
     calls_.add(mesh_call);
   }
   changed_.notify_all();
@@ -84,22 +84,22 @@ void MeshService::generate_mesh(AdmittedCall& call) {
   mesh_call->start();
 }
 
-void MeshService::tell_server_info(AdmittedCall& call) {
+void MeshService::answer_server_info(AdmittedCall& call) {
   v1::GetServerInfoRequest request;
   if (auto failure = read_small(std::exchange(call.bytes, {}), request))
     return admission().refuse(call, *failure);
   admission().answer(call, serialize(options_.info));
 }
 
-Origin MeshService::origin_of(const v1::GenerateMeshRequest& request, std::size_t bytes,
-                              const Caller& caller) {
-  Origin origin;
-  if (request.no_cache() || bytes > kMostKeyedBytes || cache_.largest() == 0) return origin;
-  origin.key = mesh_key(request);
-  if (!options_.share_across_clients) origin.key = key_of_client(origin.key, caller.name);
-  origin.at_hand = cache_.find(origin.key);
-  origin.at_hand ? metrics_.cache_hit() : metrics_.cache_missed();
-  return origin;
+CacheLookup MeshService::look_up(const v1::GenerateMeshRequest& request, std::size_t bytes,
+                                 const Caller& caller) {
+  CacheLookup found;
+  if (request.no_cache() || bytes > kMaxKeyedBytes || cache_.largest() == 0) return found;
+  found.key = mesh_key(request);
+  if (!options_.share_across_clients) found.key = key_of_client(found.key, caller.name);
+  found.hit = cache_.find(found.key);
+  found.hit ? metrics_.cache_hit() : metrics_.cache_missed();
+  return found;
 }
 
 void MeshService::tick_until_stopped() {

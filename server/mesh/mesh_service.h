@@ -3,10 +3,10 @@
 // admitted on gRPC's thread; all the rest happens on workers (run_queue.h). One more thread ticks
 // the calls a few times a second, for progress, deadlines and stalled clients.
 //
-// Both methods come in through the Admission: messages are made and unmade with our checks, and
-// gRPC carries bytes.
+// Both methods pass the Admission: messages are checked before they are parsed.
 //
-// Outlives the gRPC server that it is registered with.
+// Outlives the gRPC server that it is registered with. Thread-safety: every function may be called
+// from any thread.
 #pragma once
 
 #include <chrono>
@@ -32,7 +32,7 @@ namespace weft::server {
 struct ServiceOptions {
   // Threads that compute, in one pool for all runs. REQUIRES: >= 1.
   std::uint32_t threads = 1;
-  // Runs at the same time, and calls that wait for their turn. REQUIRES: jobs >= 1.
+  // Maximum runs at the same time, and maximum calls that wait for a slot. REQUIRES: jobs >= 1.
   std::uint32_t jobs = 1;
   std::uint32_t queue = 64;
   // Runs on top of these that are light (memory_estimate.h), so that they do not wait for the
@@ -49,7 +49,7 @@ struct ServiceOptions {
   ReaderPatience patience{};
   // Between progress messages.
   std::chrono::steady_clock::duration tick = std::chrono::milliseconds(250);
-  // Tells this process's calls from another's: their ids are INSTANCE-NUMBER.
+  // Distinguishes this process's calls from another's: their ids are INSTANCE-NUMBER.
   std::string instance = "0";
   v1::GetServerInfoResponse info{};  // what GetServerInfo answers
 };
@@ -69,8 +69,9 @@ class MeshService final : public RawService {
 
  private:
   void generate_mesh(AdmittedCall& call);
-  void tell_server_info(AdmittedCall& call);
-  Origin origin_of(const v1::GenerateMeshRequest& request, std::size_t bytes, const Caller& caller);
+  void answer_server_info(AdmittedCall& call);
+  CacheLookup look_up(const v1::GenerateMeshRequest& request, std::size_t bytes,
+                      const Caller& caller);
   void tick_until_stopped();
 
   const ServiceOptions options_;

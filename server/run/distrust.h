@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clients that get no places for light work for a while, because work of theirs that was judged
-// light turned out heavy. The first such span is `length`. If it happens again after a span has
-// ended, but before its length has passed once more, the next span is twice as long; otherwise it
-// is `length` again. So a client that does so all the time delays others less and less often, and
-// one mistake is soon forgotten.
+// The clients that get no light slots for a while, because a run of theirs that was estimated to be
+// light turned out heavy. The first such span is `length`. If another run turns out heavy after a
+// span has ended, but before its length has passed once more, the next span is twice as long, at
+// most kMaxLength; otherwise it is `length` again. So a client whose runs always turn out heavy
+// delays others less and less often, and one wrong estimate is soon forgotten.
 //
 // Thread-safety: none.
 #pragma once
@@ -19,7 +19,7 @@ namespace weft::server {
 class Distrust {
  public:
   using Clock = std::chrono::steady_clock;
-  static constexpr Clock::duration kMost = std::chrono::minutes(10);
+  static constexpr Clock::duration kMaxLength = std::chrono::minutes(10);
 
   explicit Distrust(Clock::duration length) : length_(length) {}
 
@@ -28,8 +28,8 @@ class Distrust {
         spans_, [now](const auto& each) { return each.second.until + each.second.length <= now; });
     const auto [entry, is_first] = spans_.try_emplace(client, Span{now, length_});
     Span& span = entry->second;
-    if (now < span.until) return;  // work that was begun before
-    if (!is_first) span.length = std::min(2 * span.length, std::max(kMost, length_));
+    if (now < span.until) return;  // the run began before that span
+    if (!is_first) span.length = std::min(2 * span.length, std::max(kMaxLength, length_));
     span.until = now + span.length;
   }
 
@@ -38,7 +38,7 @@ class Distrust {
     return found != spans_.end() && now < found->second.until;
   }
 
-  // All of whom it holds.
+  // The clients for which it holds.
   std::vector<std::string> clients(Clock::time_point now) const {
     std::vector<std::string> clients;
     for (const auto& [client, span] : spans_)

@@ -19,10 +19,10 @@ namespace {
 
 using Clock = Run::Clock;
 
-// What a run sends that begins again reaches the sink once.
-class SinkOfBoth final : public ChunkSink {
+// Passes each chunk of a run that begins again on once.
+class ChunksOnce final : public ChunkSink {
  public:
-  explicit SinkOfBoth(ChunkSink& sink) : sink_(sink) {}
+  explicit ChunksOnce(ChunkSink& sink) : sink_(sink) {}
 
   bool accept(Chunk&& chunk) override {
     if (chunk.index < taken_) return true;
@@ -35,7 +35,7 @@ class SinkOfBoth final : public ChunkSink {
   std::uint32_t taken_ = 0;
 };
 
-// On this thread. Returns nullopt if the run is not light.
+// Runs on this thread. Returns nullopt if the run is not light.
 std::optional<Result<Summary>> try_as_light(const EngineFn& engine, const MeshRequest& request,
                                             ChunkSink& sink, const EngineRun& call,
                                             RunMemory& memory) {
@@ -52,10 +52,10 @@ std::optional<Result<Summary>> try_as_light(const EngineFn& engine, const MeshRe
 
 Result<Summary> run_engine(const EngineFn& engine, const MeshRequest& request, ChunkSink& sink,
                            const EngineRun& call) {
-  SinkOfBoth sink_of_both(sink);
+  ChunksOnce chunks_once(sink);
   RunMemory memory(call.slot.memory(), call.besides);
   if (call.slot.is_light()) {
-    if (auto summary = try_as_light(engine, request, sink_of_both, call, memory)) return *summary;
+    if (auto summary = try_as_light(engine, request, chunks_once, call, memory)) return *summary;
     call.run.begin_again();
     memory.begin_again();
   }
@@ -63,7 +63,7 @@ Result<Summary> run_engine(const EngineFn& engine, const MeshRequest& request, C
   call.slot.promote([&call] { return call.run.poll().has_value(); });
   call.run.set_threads(call.pool, static_cast<int>(call.threads));
   call.run.set_memory(memory, memory.granted());
-  return engine(request, sink_of_both, call.run);
+  return engine(request, chunks_once, call.run);
 }
 
 }  // namespace

@@ -13,13 +13,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kMostPasses = 64;
-// How often a run that waits for another slot asks whether it is to end.
-constexpr std::chrono::milliseconds kAsk{50};
-// How long a slot is kept for a source that does not answer.
-constexpr std::chrono::milliseconds kTurn{1'000};
+constexpr int kMaxBypasses = 64;
+// How often a run that waits for a heavy slot checks whether it was stopped.
+constexpr std::chrono::milliseconds kStopPollInterval{50};
+// How long a source that does not answer keeps its slot from other runs.
+constexpr std::chrono::milliseconds kSourceTimeout{1'000};
 
-// What one client may have of a number: rounded down, but one at least, if there is any.
+// The part of `all` that one client may have: rounded down, but at least 1 unless `all` is 0.
 std::size_t share_of(std::size_t all, double share) {
   const auto part = static_cast<std::size_t>(static_cast<double>(all) * std::min(share, 1.0));
   return std::max(part, std::min<std::size_t>(all, 1));
@@ -54,7 +54,7 @@ void RunQueue::stop() {
     MutexLock lock(mutex_);
     stopping_ = true;  // so that there are no more threads
     threads.swap(threads_);
-    dropped.swap(turns_);
+    dropped.swap(round_robin_);
   }
   idle_.notify_all();
   heavy_slot_.notify_all();
@@ -71,7 +71,7 @@ void RunQueue::add_thread_if_short() {
   try {
     if (threads_.size() < wanted && !stopping_) add_thread();
   } catch (const std::exception&) {
-    // No thread, or no memory for one: the slot stays empty until the run that waits goes on.
+    // No thread can be made: the slot stays empty until the run that left it goes on.
   }
 }
 
@@ -82,21 +82,21 @@ void RunQueue::slot_is_free() {
 
 // --- which runs may begin ---
 
-// A source that does not answer keeps a slot from nobody.
-bool RunQueue::has_slot(Priority priority) {
-  const bool lent =
-      asked_ != nullptr && asked_->priority_ == priority && Clock::now() - asked_since_ >= kTurn;
-  return of(priority).running < of(priority).count + (lent ? 1 : 0);
+// Another run may borrow the slot of a source that does not answer.
+bool RunQueue::has_slot(PriorityClass priority) {
+  const bool borrowed = asked_ != nullptr && asked_->priority_ == priority &&
+                        Clock::now() - asked_since_ >= kSourceTimeout;
+  return of(priority).running < of(priority).count + (borrowed ? 1 : 0);
 }
 
-bool RunQueue::has_share(Priority priority, const std::string& client) {
+bool RunQueue::has_share(PriorityClass priority, const std::string& client) {
   const auto found = of(priority).running_of.find(client);
   return found == of(priority).running_of.end() || found->second < of(priority).of_client;
 }
 
 void RunQueue::begin(Slot& slot) {
   Slots& slots = of(slot.priority_);
-  if (!slot.client_.empty()) ++slots.running_of[slot.client_];  // may find no memory
+  if (!slot.client_.empty()) ++slots.running_of[slot.client_];  // may throw std::bad_alloc
   ++slots.running;
   if (slot.pushed_) ++figures_.running;
 }
@@ -112,18 +112,18 @@ void RunQueue::end(const Slot& slot) {
   }
 }
 
-// The run that has the next heavy slot, before all that have not begun.
+// The promoted run that gets the next heavy slot, before all runs that have not begun.
 const RunQueue::Slot* RunQueue::next_promoted() {
   for (const Slot* slot : promoted_)
-    if (has_share(Priority::kHeavy, slot->client_)) return slot;
+    if (has_share(PriorityClass::kHeavy, slot->client_)) return slot;
   return nullptr;
 }
 
-// Gives the slot a run, or the source, if there is one that may begin.
+// Gives the slot a run that may begin, or the source; returns false if there is none.
 bool RunQueue::next(Slot& slot) {
-  for (const Priority priority : {Priority::kLight, Priority::kHeavy}) {
+  for (const PriorityClass priority : {PriorityClass::kLight, PriorityClass::kHeavy}) {
     if (!has_slot(priority)) continue;
-    if (priority == Priority::kHeavy && next_promoted() != nullptr) continue;
+    if (priority == PriorityClass::kHeavy && next_promoted() != nullptr) continue;
     slot.priority_ = priority;
     if (of(priority).last_was_pushed && ask_source(slot)) return true;
     if (next_pushed(slot) || ask_source(slot)) return true;
@@ -143,10 +143,10 @@ bool RunQueue::ask_source(Slot& slot) {
 }
 
 bool RunQueue::next_pushed(Slot& slot) {
-  for (auto client = turns_.begin(); client != turns_.end(); ++client) {
+  for (auto client = round_robin_.begin(); client != round_robin_.end(); ++client) {
     if (!has_share(slot.priority_, client->name)) continue;
     std::size_t index = 0;
-    if (slot.priority_ == Priority::kLight) {
+    if (slot.priority_ == PriorityClass::kLight) {
       if (distrust_.holds_for(client->name, Clock::now())) continue;
       const auto light = std::ranges::find_if(
           client->items, [this](const Waiting& each) { return is_light(each.estimate); });
@@ -154,18 +154,18 @@ bool RunQueue::next_pushed(Slot& slot) {
       index = static_cast<std::size_t>(light - client->items.begin());
     }
     if (take(slot, client, index)) return true;
-    if (++client->items[index].passed_over > kMostPasses) break;
+    if (++client->items[index].bypass_count > kMaxBypasses) break;
   }
   return false;
 }
 
-// Gives the slot to the client's item of this index if there is memory for it. The client's next
-// turn is then the last one.
+// Gives the slot to the client's item of this index if there is memory for it. The client then goes
+// to the end of the round.
 bool RunQueue::take(Slot& slot, Turn client, std::size_t index) {
   const Waiting& waiting = client->items[index];
-  auto share = reserve({client->name, waiting.estimate});
-  if (!share) return false;
-  slot.share_ = std::move(*share);
+  auto reservation = reserve({client->name, waiting.estimate});
+  if (!reservation) return false;
+  slot.reservation_ = std::move(*reservation);
   slot.is_light_ = is_light(waiting.estimate);
   slot.item_ = waiting.item;
   slot.pushed_ = true;
@@ -173,17 +173,17 @@ bool RunQueue::take(Slot& slot, Turn client, std::size_t index) {
   client->items.erase(client->items.begin() + static_cast<std::ptrdiff_t>(index));
   --figures_.waiting;
   if (client->items.empty())
-    turns_.erase(client);
+    round_robin_.erase(client);
   else
-    turns_.splice(turns_.end(), turns_, client);
+    round_robin_.splice(round_robin_.end(), round_robin_, client);
   of(slot.priority_).last_was_pushed = true;
   begin(slot);
   return true;
 }
 
-std::optional<MemoryGate::Share> RunQueue::reserve(const Ticket& ticket) const {
-  if (options_.gate == nullptr) return MemoryGate::Share();
-  return options_.gate->take(
+std::optional<MemoryBudget::Reservation> RunQueue::reserve(const Ticket& ticket) const {
+  if (options_.memory == nullptr) return MemoryBudget::Reservation();
+  return options_.memory->reserve(
       {.estimate = ticket.estimate, .client = ticket.client, .light = is_light(ticket.estimate)});
 }
 
@@ -192,8 +192,8 @@ std::optional<MemoryGate::Share> RunQueue::reserve(const Ticket& ticket) const {
 std::optional<Failure> RunQueue::push(std::shared_ptr<Item> item, Ticket ticket) {
   MutexLock lock(mutex_);
   const std::size_t idle = heavy_.count - std::min(heavy_.running, heavy_.count);
-  auto client = std::ranges::find(turns_, ticket.client, &Client::name);
-  std::size_t of_client = client != turns_.end() ? client->items.size() : 0;
+  auto client = std::ranges::find(round_robin_, ticket.client, &Client::name);
+  std::size_t of_client = client != round_robin_.end() ? client->items.size() : 0;
   for (const Slot* slot : promoted_) of_client += slot->pushed_ && slot->client_ == ticket.client;
   const bool has_room_of_its_own = options_.client_share < 1 && of_client == 0;
   const std::size_t all = options_.capacity;
@@ -205,11 +205,11 @@ std::optional<Failure> RunQueue::push(std::shared_ptr<Item> item, Ticket ticket)
         Reason::kQueueFull, "",
         fmt::format("{} calls of yours wait already; this server's limit for one client is {}",
                     capacity_of_client_, capacity_of_client_)};
-  if (client == turns_.end())
-    client = turns_.insert(turns_.end(), Client{std::move(ticket.client), {}});
+  if (client == round_robin_.end())
+    client = round_robin_.insert(round_robin_.end(), Client{std::move(ticket.client), {}});
   client->items.push_back({std::move(item), ticket.estimate});
   ++figures_.waiting;
-  if (has_slot(Priority::kHeavy) || has_slot(Priority::kLight)) idle_.notify_one();
+  if (has_slot(PriorityClass::kHeavy) || has_slot(PriorityClass::kLight)) idle_.notify_one();
   return std::nullopt;
 }
 
@@ -219,20 +219,20 @@ std::optional<Failure> RunQueue::push(std::string client, std::function<void()> 
 
 bool RunQueue::remove(const Item& item) {
   MutexLock lock(mutex_);
-  for (auto client = turns_.begin(); client != turns_.end(); ++client) {
+  for (auto client = round_robin_.begin(); client != round_robin_.end(); ++client) {
     const auto found = std::ranges::find_if(
         client->items, [&](const Waiting& waiting) { return waiting.item.get() == &item; });
     if (found == client->items.end()) continue;
     client->items.erase(found);
     --figures_.waiting;
-    if (client->items.empty()) turns_.erase(client);
+    if (client->items.empty()) round_robin_.erase(client);
     return true;
   }
   return false;
 }
 
-void RunQueue::notify() {
-  { MutexLock lock(mutex_); }  // no thread is between its check and its wait now
+void RunQueue::memory_released() {
+  { MutexLock lock(mutex_); }  // so that no thread is between its check and its wait
   idle_.notify_all();
 }
 
@@ -246,7 +246,7 @@ RunQueue::Figures RunQueue::figures() const {
 void RunQueue::attach(Source& source) {
   MutexLock lock(mutex_);
   source_ = &source;
-  add_thread_if_short();  // one that waits for the source holds up no other run
+  add_thread_if_short();  // so that a thread that waits for the source delays no run
 }
 
 void RunQueue::wake() {
@@ -263,16 +263,16 @@ void RunQueue::detach() {
   while (of_source_ > 0) left_by_source_.wait(lock.native());
 }
 
-std::uint64_t RunQueue::Slot::room() const {
-  const bool light = priority_ == Priority::kLight;
-  const std::uint64_t room = queue_.options_.gate->room(light);
-  return light ? std::min(room, queue_.options_.light) : room;
+std::uint64_t RunQueue::Slot::max_estimate() const {
+  const bool light = priority_ == PriorityClass::kLight;
+  const std::uint64_t estimate = queue_.options_.memory->max_estimate(light);
+  return light ? std::min(estimate, queue_.options_.max_light_estimate) : estimate;
 }
 
 std::vector<std::string> RunQueue::Slot::full_clients() {
   MutexLock lock(queue_.mutex_);
   std::vector<std::string> full;
-  if (priority_ == Priority::kLight) full = queue_.distrust_.clients(Clock::now());
+  if (priority_ == PriorityClass::kLight) full = queue_.distrust_.clients(Clock::now());
   Slots& slots = queue_.of(priority_);
   for (const auto& [client, count] : slots.running_of)
     if (count >= slots.of_client) full.push_back(client);
@@ -281,14 +281,14 @@ std::vector<std::string> RunQueue::Slot::full_clients() {
 }
 
 bool RunQueue::Slot::admit(const Ticket& ticket) {
-  auto share = queue_.reserve(ticket);
+  auto reservation = queue_.reserve(ticket);
   MutexLock lock(queue_.mutex_);
   Slots& slots = queue_.of(priority_);
-  if (!share || slots.running > slots.count || !queue_.has_share(priority_, ticket.client))
+  if (!reservation || slots.running > slots.count || !queue_.has_share(priority_, ticket.client))
     return false;
   if (!ticket.client.empty()) ++slots.running_of[ticket.client];
   client_ = ticket.client;
-  share_ = std::move(*share);
+  reservation_ = std::move(*reservation);
   is_light_ = queue_.is_light(ticket.estimate);
   slots.last_was_pushed = false;
   slots.may_be_more = true;
@@ -315,32 +315,32 @@ RunQueue::Pause::~Pause() {
 }
 
 void RunQueue::Slot::promote(const std::function<bool()>& stopped) {
-  share_.turn_heavy();
+  reservation_.reclassify_as_heavy();
   is_light_ = false;
-  if (priority_ == Priority::kHeavy) return;
+  if (priority_ == PriorityClass::kHeavy) return;
   MutexLock lock(queue_.mutex_);
   if (queue_.options_.client_share < 1 && !client_.empty())
     queue_.distrust_.turned_out_heavy(client_, Clock::now());
   const auto self = queue_.promoted_.insert(queue_.promoted_.end(), this);
   queue_.end(*this);
-  priority_ = Priority::kHeavy;
+  priority_ = PriorityClass::kHeavy;
   if (pushed_) ++queue_.figures_.waiting;
   queue_.add_thread_if_short();
   queue_.slot_is_free();
-  share_.set_parked(true);  // those in the slots may wait for the memory of this one
+  reservation_.mark_blocked(true);  // the runs in the slots may wait for this one's memory
   while (!queue_.stopping_ &&
-         (queue_.next_promoted() != this || !queue_.has_slot(Priority::kHeavy))) {
-    queue_.heavy_slot_.wait_for(lock.native(), kAsk);
+         (queue_.next_promoted() != this || !queue_.has_slot(PriorityClass::kHeavy))) {
+    queue_.heavy_slot_.wait_for(lock.native(), kStopPollInterval);
     lock.unlock();
     const bool stop = stopped();
     lock.lock();
     if (stop) break;
   }
-  share_.set_parked(false);
+  reservation_.mark_blocked(false);
   queue_.promoted_.erase(self);
   if (pushed_) --queue_.figures_.waiting;
   queue_.begin(*this);
-  queue_.slot_is_free();  // another one may be, which nobody looked at because of this run
+  queue_.slot_is_free();  // a further slot may be free: other runs let this one go first
 }
 
 // --- threads ---
@@ -350,17 +350,18 @@ void RunQueue::work() {
   while (!stopping_) {
     Slot slot(*this);
     if (!next(slot)) {
-      idle_.wait_for(lock.native(), kTurn);
+      idle_.wait_for(lock.native(), kSourceTimeout);
       continue;
     }
-    // There may be another run that can begin, which this thread was woken for.
-    if (figures_.waiting > 0 && (has_slot(Priority::kHeavy) || has_slot(Priority::kLight)))
+    // This thread may have been woken for another run than the one that it takes.
+    if (figures_.waiting > 0 &&
+        (has_slot(PriorityClass::kHeavy) || has_slot(PriorityClass::kLight)))
       idle_.notify_one();
     Source* const source = slot.pushed_ ? nullptr : source_;
     lock.unlock();
     source != nullptr ? source->run_next(slot) : slot.item_->run(slot);
     slot.item_.reset();
-    slot.share_ = {};
+    slot.reservation_ = {};
     lock.lock();
     end(slot);
     heavy_slot_.notify_all();

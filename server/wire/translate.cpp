@@ -386,12 +386,12 @@ v1::Stage to_wire(Stage stage) {
   return v1::STAGE_UNSPECIFIED;
 }
 
-void tell_progress(const Progress& now, double elapsed_seconds, v1::Progress& told) {
-  told.set_stage(std::max(told.stage(), to_wire(now.stage)));
-  told.set_triangles(std::max<std::uint64_t>(told.triangles(), now.triangles));
-  told.set_expected_triangles(now.expected_triangles);
-  told.set_fraction(std::max(told.fraction(), now.fraction));
-  told.set_elapsed_seconds(elapsed_seconds);
+void write_progress(const Progress& now, double elapsed_seconds, v1::Progress& progress) {
+  progress.set_stage(std::max(progress.stage(), to_wire(now.stage)));
+  progress.set_triangles(std::max<std::uint64_t>(progress.triangles(), now.triangles));
+  progress.set_expected_triangles(now.expected_triangles);
+  progress.set_fraction(std::max(progress.fraction(), now.fraction));
+  progress.set_elapsed_seconds(elapsed_seconds);
 }
 
 grpc::ByteBuffer serialize(const google::protobuf::MessageLite& message) {

@@ -53,8 +53,8 @@ v1::Summary to_wire(const Summary& summary, std::uint32_t threads);
 // Adds those boxes, unless there are more than kMaxLeafBoxes.
 void add_quadtree(const Summary& summary, v1::Summary& message);
 v1::Stage to_wire(Stage stage);
-// Writes what is new over what was told before: nothing goes back.
-void tell_progress(const Progress& now, double elapsed_seconds, v1::Progress& told);
+// Updates the progress that was sent last: nothing in it goes back.
+void write_progress(const Progress& now, double elapsed_seconds, v1::Progress& progress);
 
 // The bytes of a message, as one gRPC buffer.
 grpc::ByteBuffer serialize(const google::protobuf::MessageLite& message);

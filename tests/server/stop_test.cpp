@@ -121,9 +121,9 @@ TEST(Stop, ASlowReaderHoldsUpItsOwnJobOnlyAndMemoryStaysBounded) {
   EXPECT_TRUE(refused.wait());
 }
 
-// More clients than there are places, none of which reads: another one's call does not wait for
+// More clients than there are slots, none of which reads: another one's call does not wait for
 // them.
-TEST(Stop, ClientsThatReadNothingKeepNobodyFromAPlace) {
+TEST(Stop, ClientsThatReadNothingKeepNoOtherFromASlot) {
   constexpr int kStalled = 6;
   std::atomic<int> streams{0};
   std::atomic<std::uint32_t> sent{0};

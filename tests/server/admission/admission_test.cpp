@@ -130,20 +130,20 @@ TEST(Admission, HoldsMemoryForWhatIsParsedInsteadOfItsMessage) {
   Log log;
   Metrics metrics("", "");
   const Authenticator everybody(nullptr);
-  MemoryGate gate({.capacity = 100 * kMiB}, [] {});
-  Admission admission({.request_bytes = 10 * kMiB, .memory = &gate}, everybody, metrics,
+  MemoryBudget budget({.capacity = 100 * kMiB}, [] {});
+  Admission admission({.request_bytes = 10 * kMiB, .memory = &budget}, everybody, metrics,
                       log.logger());
   AdmittedCall first{};
   AdmittedCall second{};
-  EXPECT_FALSE(admission.hold(first, 4 * kMiB));
-  EXPECT_FALSE(admission.hold(first, 8 * kMiB));
-  EXPECT_EQ(gate.taken(), 8 * kMiB);
-  const auto failure = admission.hold(second, 4 * kMiB);
+  EXPECT_FALSE(admission.reserve(first, 4 * kMiB));
+  EXPECT_FALSE(admission.reserve(first, 8 * kMiB));
+  EXPECT_EQ(budget.reserved(), 8 * kMiB);
+  const auto failure = admission.reserve(second, 4 * kMiB);
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->reason, Reason::kOutOfMemory);
-  EXPECT_FALSE(admission.hold(first, 2 * kMiB));
-  EXPECT_FALSE(admission.hold(second, 4 * kMiB));
-  EXPECT_EQ(gate.taken(), 6 * kMiB);
+  EXPECT_FALSE(admission.reserve(first, 2 * kMiB));
+  EXPECT_FALSE(admission.reserve(second, 4 * kMiB));
+  EXPECT_EQ(budget.reserved(), 6 * kMiB);
 }
 
 // Two bytes of an empty region become 80.
@@ -177,14 +177,14 @@ TEST(RefusalLog, TellsHowManyLinesWereLeftOut) {
   RefusalLog refusals(log.logger(), "call_refused", 2);
   const RefusalLog::Clock::time_point start{seconds(100)};
   int taken = 0;
-  for (int i = 0; i < 10; ++i) taken += refusals.take(start + milliseconds(10 * i));
+  for (int i = 0; i < 10; ++i) taken += refusals.allow(start + milliseconds(10 * i));
   EXPECT_EQ(taken, 2);
-  refusals.tell_of_rest(start + milliseconds(999));
+  refusals.flush_suppressed(start + milliseconds(999));
   EXPECT_EQ(log.text(), "");
-  refusals.tell_of_rest(start + seconds(1));
+  refusals.flush_suppressed(start + seconds(1));
   EXPECT_EQ(log.text(), "event=lines_left_out count=8 of=call_refused\n");
-  EXPECT_TRUE(refusals.take(start + seconds(1)));
-  refusals.tell_of_rest(start + seconds(3));
+  EXPECT_TRUE(refusals.allow(start + seconds(1)));
+  refusals.flush_suppressed(start + seconds(3));
   EXPECT_EQ(times(log.text(), "left_out"), 1u) << "none were left out since";
 }
 

@@ -135,7 +135,7 @@ TEST(GenerateMesh, RunsWaitingJobsFirstComeFirstServed) {
     contexts.push_back(std::make_unique<grpc::ClientContext>());
     readers.push_back(stub->GenerateMesh(contexts.back().get(), request));
     v1::GenerateMeshResponse accepted;
-    ASSERT_TRUE(readers.back()->Read(&accepted));  // it has its place in the queue now
+    ASSERT_TRUE(readers.back()->Read(&accepted));  // it waits in the queue now
   }
   release.set();
   for (auto& reader : readers) EXPECT_TRUE(read_all(*reader).status.ok());

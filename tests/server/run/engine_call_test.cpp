@@ -36,7 +36,7 @@ struct LightRun {
       std::function<void(RunQueue::Slot&)> work;
     };
     tl::expected<Summary, Failure> outcome;
-    RunQueue queue({.light_slots = 1, .capacity = 1, .light = 1});
+    RunQueue queue({.light_slots = 1, .capacity = 1, .max_light_estimate = 1});
     Event ended;
     queue.push(std::make_shared<Item>([&](RunQueue::Slot& slot) {
                  outcome = call_engine(
@@ -47,7 +47,7 @@ struct LightRun {
                       .deadline = deadline,
                       .pool = pool,
                       .threads = 2});
-                 was_promoted = slot.priority() == RunQueue::Priority::kHeavy;
+                 was_promoted = slot.priority() == RunQueue::PriorityClass::kHeavy;
                  ended.set();
                }),
                {});

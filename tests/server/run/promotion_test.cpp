@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "server/run/memory_gate.h"
+#include "server/run/memory_budget.h"
 #include "server/run/run_queue.h"
 #include "tests/server/run/runs.h"
 #include "tests/support/event.h"
@@ -24,13 +24,13 @@ TEST(PromotedRun, GivesItsLightSlotToAnotherAndWaitsForAHeavyOne) {
   Event moved;
   std::atomic<bool> has_moved{false};
   Busy busy;
-  RunQueue queue({.slots = 1, .light_slots = 1, .capacity = 10, .light = 10});
+  RunQueue queue({.slots = 1, .light_slots = 1, .capacity = 10, .max_light_estimate = 10});
   busy.occupy(queue, "a", 1000);
   ASSERT_TRUE(pushed(queue, make_slotted([&](RunQueue::Slot& slot) {
-                       EXPECT_EQ(slot.priority(), RunQueue::Priority::kLight);
+                       EXPECT_EQ(slot.priority(), RunQueue::PriorityClass::kLight);
                        moves.set();
                        slot.promote(kNever);
-                       EXPECT_EQ(slot.priority(), RunQueue::Priority::kHeavy);
+                       EXPECT_EQ(slot.priority(), RunQueue::PriorityClass::kHeavy);
                        has_moved = true;
                        moved.set();
                      }),
@@ -50,7 +50,7 @@ TEST(PromotedRun, GoesOnOnceItIsStopped) {
   Event moves;
   std::atomic<bool> stopped{false};
   Busy busy;
-  RunQueue queue({.slots = 1, .light_slots = 1, .capacity = 10, .light = 10});
+  RunQueue queue({.slots = 1, .light_slots = 1, .capacity = 10, .max_light_estimate = 10});
   busy.occupy(queue, "a", 1000);
   ASSERT_TRUE(pushed(queue, make_slotted([&](RunQueue::Slot& slot) {
                        moves.set();
@@ -83,8 +83,11 @@ class DistrustInTheQueue : public testing::TestWithParam<double> {
   }
 
   Busy busy_;
-  RunQueue queue_{
-      {.slots = 1, .light_slots = 1, .capacity = 10, .light = 10, .client_share = GetParam()}};
+  RunQueue queue_{{.slots = 1,
+                   .light_slots = 1,
+                   .capacity = 10,
+                   .max_light_estimate = 10,
+                   .client_share = GetParam()}};
 };
 
 INSTANTIATE_TEST_SUITE_P(OfClients, DistrustInTheQueue, testing::Values(0.75, 1.0));
@@ -111,7 +114,7 @@ TEST(PromotedRun, IsForgottenAfterAWhile) {
   RunQueue queue({.slots = 1,
                   .light_slots = 1,
                   .capacity = 10,
-                  .light = 10,
+                  .max_light_estimate = 10,
                   .client_share = 0.75,
                   .distrust = std::chrono::milliseconds(1)});
   busy.occupy(queue, "a", 1000);
@@ -134,7 +137,7 @@ TEST(PromotedRun, LeavesAllSlotsAsTheyWere) {
   constexpr int kMoving = 40;
   std::atomic<int> moved{0};
   std::atomic<int> running{0};
-  RunQueue queue({.slots = 2, .light_slots = 2, .capacity = 100, .light = 10});
+  RunQueue queue({.slots = 2, .light_slots = 2, .capacity = 100, .max_light_estimate = 10});
   for (int i = 0; i < kMoving; ++i)
     ASSERT_TRUE(pushed(queue, make_slotted([&](RunQueue::Slot& slot) {
                          slot.promote(kNever);
@@ -164,8 +167,8 @@ class Promotion : public testing::TestWithParam<bool> {};
 
 TEST_P(Promotion, OfARunThatHasTheMemoryOfTheOneInTheSlotEndsThat) {
   const bool from_source = GetParam();
-  MemoryGate gate({.capacity = 100}, [] {});
-  RunQueue queue({.light_slots = 1, .capacity = 10, .light = 60, .gate = &gate});
+  MemoryBudget budget({.capacity = 100}, [] {});
+  RunQueue queue({.light_slots = 1, .capacity = 10, .max_light_estimate = 60, .memory = &budget});
   ListSource source(queue);
   const auto begin = [&](std::uint64_t estimate, const ListSource::Work& work) {
     if (from_source)
@@ -186,7 +189,7 @@ TEST_P(Promotion, OfARunThatHasTheMemoryOfTheOneInTheSlotEndsThat) {
   ASSERT_TRUE(light_runs.wait());
   Event ended;
   begin(40, [&](RunQueue::Slot& slot) {
-    EXPECT_EQ(slot.priority(), RunQueue::Priority::kHeavy);
+    EXPECT_EQ(slot.priority(), RunQueue::PriorityClass::kHeavy);
     heavy_may_grow.set();
     const auto error = slot.memory().grow_to(80, go_on);
     ASSERT_TRUE(error);

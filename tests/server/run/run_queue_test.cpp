@@ -162,44 +162,44 @@ TEST(RunQueue, GivesTurnsRoundTheClients) {
 }
 
 TEST(RunQueue, PassesOverAJobThatNoMemoryIsLeftFor) {
-  MemoryGate gate({.capacity = 100}, [] {});
-  auto taken = gate.take({.estimate = 50});
+  MemoryBudget budget({.capacity = 100}, [] {});
+  auto reserved = budget.reserve({.estimate = 50});
   Event light_ran;
   Event heavy_ran;
-  RunQueue queue({.slots = 1, .capacity = 10, .gate = &gate});
+  RunQueue queue({.slots = 1, .capacity = 10, .memory = &budget});
   queue.push(make_task([&] { heavy_ran.set(); }), {.client = "heavy", .estimate = 60});
   queue.push(make_task([&] { light_ran.set(); }), {.client = "light", .estimate = 10});
   ASSERT_TRUE(light_ran.wait());
   EXPECT_EQ(queue.figures().waiting, 1);
-  taken.reset();
-  queue.notify();
+  reserved.reset();
+  queue.memory_released();
   EXPECT_TRUE(heavy_ran.wait());
 }
 
 TEST(RunQueue, DoesNotPassOverAJobForEver) {
-  MemoryGate gate({.capacity = 100}, [] {});
-  auto taken = gate.take({.estimate = 50});
+  MemoryBudget budget({.capacity = 100}, [] {});
+  auto reserved = budget.reserve({.estimate = 50});
   std::atomic<int> light_runs{0};
   Event heavy_ran;
   Busy busy;
-  RunQueue queue({.slots = 1, .capacity = 1000, .gate = &gate});
+  RunQueue queue({.slots = 1, .capacity = 1000, .memory = &budget});
   busy.occupy(queue);
   queue.push(make_task([&] { heavy_ran.set(); }), {.client = "heavy", .estimate = 60});
   for (int i = 0; i < 500; ++i)
     queue.push(make_task([&] { ++light_runs; }), {.client = "light", .estimate = 10});
   busy.release.set();
   while (light_runs < 60) std::this_thread::yield();
-  queue.notify();
+  queue.memory_released();
   EXPECT_LT(light_runs, 200);
-  taken.reset();
-  queue.notify();
+  reserved.reset();
+  queue.memory_released();
   EXPECT_TRUE(heavy_ran.wait());
 }
 
 TEST(RunQueue, HasASlotForLightJobsWhileHeavyOnesWait) {
   Event ran;
   Busy busy;
-  RunQueue queue({.slots = 1, .light_slots = 1, .capacity = 10, .light = 10});
+  RunQueue queue({.slots = 1, .light_slots = 1, .capacity = 10, .max_light_estimate = 10});
   busy.occupy(queue, "a", 1000);
   queue.push(make_task([] {}), {.client = "a", .estimate = 1000});
   queue.push(make_task([&] { ran.set(); }), {.client = "a", .estimate = 10});

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "server/run/memory_gate.h"
+#include "server/run/memory_budget.h"
 #include "server/run/run_queue.h"
 #include "tests/server/run/runs.h"
 #include "tests/support/event.h"
@@ -20,8 +20,8 @@ TEST(RunsOfASource, HaveTheSlotsInTurnsWithThoseThatWaitHere) {
   std::string order;
   Event done;
   Busy busy;
-  MemoryGate gate({}, [] {});
-  RunQueue queue({.capacity = 100, .gate = &gate});
+  MemoryBudget budget({}, [] {});
+  RunQueue queue({.capacity = 100, .memory = &budget});
   ListSource source(queue);
   busy.occupy(queue);
   const auto ran = [&](char what) {
@@ -43,8 +43,8 @@ TEST(RunsOfASource, AreBoundedByTheSlotsThatAllShare) {
   std::atomic<int> running{0};
   std::atomic<int> left{2 * kRuns};
   Event done;
-  MemoryGate gate({}, [] {});
-  RunQueue queue({.slots = 2, .capacity = 100, .gate = &gate});
+  MemoryBudget budget({}, [] {});
+  RunQueue queue({.slots = 2, .capacity = 100, .memory = &budget});
   ListSource source(queue);
   const auto run = [&](auto&) {
     EXPECT_LE(++running, 2);
@@ -65,8 +65,8 @@ TEST(RunsOfASource, CountTowardsTheSlotsOfTheirClientWithThoseThatWaitHere) {
   Event one_may_end;
   Event other_may_end;
   std::atomic<int> running{0};
-  MemoryGate gate({}, [] {});
-  RunQueue queue({.slots = 4, .capacity = 100, .gate = &gate, .client_share = 0.5});
+  MemoryBudget budget({}, [] {});
+  RunQueue queue({.slots = 4, .capacity = 100, .memory = &budget, .client_share = 0.5});
   ListSource source(queue);
   const auto run = [&](Event& may_end) {
     if (++running == 2) both_run.set();
@@ -91,8 +91,8 @@ TEST(RunsOfASource, CountTowardsTheSlotsOfTheirClientWithThoseThatWaitHere) {
 TEST(RunsOfASource, AreNobodysShareWithoutAClient) {
   Event all_run;
   std::atomic<int> running{0};
-  MemoryGate gate({}, [] {});
-  RunQueue queue({.slots = 4, .gate = &gate, .client_share = 0.5});
+  MemoryBudget budget({}, [] {});
+  RunQueue queue({.slots = 4, .memory = &budget, .client_share = 0.5});
   ListSource source(queue);
   for (int i = 0; i < 4; ++i)
     source.add("", 0, [&](auto&) {
@@ -105,12 +105,12 @@ TEST(RunsOfASource, AreNobodysShareWithoutAClient) {
 TEST(RunsOfASource, MayHaveALightSlotOnlyIfTheyAreLight) {
   Event ran;
   Busy busy;
-  MemoryGate gate({}, [] {});
-  RunQueue queue({.light_slots = 1, .capacity = 10, .light = 10, .gate = &gate});
+  MemoryBudget budget({}, [] {});
+  RunQueue queue({.light_slots = 1, .capacity = 10, .max_light_estimate = 10, .memory = &budget});
   ListSource source(queue);
   Event heavy_runs;
   source.add("a", 1000, [&](RunQueue::Slot& slot) {
-    EXPECT_EQ(slot.priority(), RunQueue::Priority::kHeavy);
+    EXPECT_EQ(slot.priority(), RunQueue::PriorityClass::kHeavy);
     EXPECT_FALSE(slot.is_light());
     heavy_runs.set();
     EXPECT_TRUE(busy.release.wait());
@@ -119,7 +119,7 @@ TEST(RunsOfASource, MayHaveALightSlotOnlyIfTheyAreLight) {
   Event second_ran;
   source.add("a", 1000, [&](auto&) { second_ran.set(); });
   source.add("a", 10, [&](RunQueue::Slot& slot) {
-    EXPECT_EQ(slot.priority(), RunQueue::Priority::kLight);
+    EXPECT_EQ(slot.priority(), RunQueue::PriorityClass::kLight);
     EXPECT_TRUE(slot.is_light());
     ran.set();
   });
@@ -130,31 +130,31 @@ TEST(RunsOfASource, MayHaveALightSlotOnlyIfTheyAreLight) {
 }
 
 TEST(RunsOfASource, AreNotAdmittedIfTheMemoryIsGone) {
-  MemoryGate gate({.capacity = 100}, [] {});
-  RunQueue queue({.gate = &gate});
+  MemoryBudget budget({.capacity = 100}, [] {});
+  RunQueue queue({.memory = &budget});
   struct Late final : RunQueue::Source {
-    explicit Late(MemoryGate& gate) : gate(gate) {}
+    explicit Late(MemoryBudget& budget) : budget(budget) {}
     void run_next(RunQueue::Slot& slot) noexcept override {
-      EXPECT_GE(slot.room(), 60u);
-      const auto other = gate.take({.estimate = 50});
+      EXPECT_GE(slot.max_estimate(), 60u);
+      const auto other = budget.reserve({.estimate = 50});
       EXPECT_FALSE(slot.admit({"a", 60}));
       EXPECT_TRUE(slot.admit({"a", 50}));
       asked.set();
     }
-    MemoryGate& gate;
+    MemoryBudget& budget;
     Event asked;
-  } source(gate);
+  } source(budget);
   queue.attach(source);
   queue.wake();
   EXPECT_TRUE(source.asked.wait());
   queue.detach();
-  EXPECT_EQ(gate.taken(), 0u);
+  EXPECT_EQ(budget.reserved(), 0u);
 }
 
 // Otherwise each mesh of a call would be a question to the database.
 TEST(RunsOfASource, AreAskedForOnlyIfThereMayBeOne) {
-  MemoryGate gate({}, [] {});
-  RunQueue queue({.capacity = 100, .gate = &gate});
+  MemoryBudget budget({}, [] {});
+  RunQueue queue({.capacity = 100, .memory = &budget});
   ListSource source(queue);
   Event source_ran;
   source.add("a", 0, [&](auto&) { source_ran.set(); });
@@ -173,8 +173,8 @@ TEST(RunsOfASource, AreAskedForOnlyIfThereMayBeOne) {
 
 TEST(RunsOfASource, HaveEndedOnceItIsDetached) {
   std::atomic<bool> ended{false};
-  MemoryGate gate({}, [] {});
-  RunQueue queue({.gate = &gate});
+  MemoryBudget budget({}, [] {});
+  RunQueue queue({.memory = &budget});
   std::optional<ListSource> source(queue);
   Event runs;
   Event release;

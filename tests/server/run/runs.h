@@ -77,7 +77,7 @@ class ListSource final : public RunQueue::Source {
     std::unique_lock lock(mutex_);
     ++asked_;
     const auto found = std::ranges::find_if(runs_, [&](const auto& run) {
-      return run.first.estimate <= slot.room() &&
+      return run.first.estimate <= slot.max_estimate() &&
              std::ranges::find(full, run.first.client) == full.end();
     });
     if (found == runs_.end()) return;

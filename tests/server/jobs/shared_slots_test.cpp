@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls and stored jobs run in the same places.
+// Calls and stored jobs run in the same slots.
 #include <atomic>
 #include <future>
 #include <memory>
@@ -16,11 +16,11 @@
 namespace weft::server::testing {
 namespace {
 
-// Each run waits in its place until it may end. Even numbers are calls, odd ones jobs.
-class SharedPlaces : public ::testing::Test {
+// Each run waits in its slot until it may end. Even numbers are calls, odd ones jobs.
+class SharedSlots : public ::testing::Test {
  protected:
   void serve(
-      std::uint32_t places, const JobServer::Wrap& wrap = [](auto store) { return store; }) {
+      std::uint32_t slots, const JobServer::Wrap& wrap = [](auto store) { return store; }) {
     server_.emplace(
         [this](const auto&, ChunkSink& sink, auto&) {
           const int now = ++running_;
@@ -31,7 +31,7 @@ class SharedPlaces : public ::testing::Test {
           ++ended_;
           return send_chunks(sink, 1);
         },
-        quick_jobs(), ServiceOptions{.jobs = places, .light_jobs = 0}, wrap);
+        quick_jobs(), ServiceOptions{.jobs = slots, .light_jobs = 0}, wrap);
   }
 
   void call(int number) {
@@ -61,7 +61,7 @@ class SharedPlaces : public ::testing::Test {
   std::vector<std::string> jobs_;
 };
 
-TEST_F(SharedPlaces, AreNoMoreForBothThanForOne) {
+TEST_F(SharedSlots, AreNoMoreForBothThanForOne) {
   serve(2);
   for (int i = 0; i < 4; ++i) {
     submit(2 * i + 1);
@@ -78,7 +78,7 @@ TEST_F(SharedPlaces, AreNoMoreForBothThanForOne) {
   EXPECT_EQ(ended_, 8);
 }
 
-TEST_F(SharedPlaces, AreLeftToCallsByAStoreThatDoesNotAnswer) {
+TEST_F(SharedSlots, AreLeftToCallsByAStoreThatDoesNotAnswer) {
   std::atomic<bool> hangs{false};
   Event goes_on;
   serve(1, [&](std::unique_ptr<JobStore> store) -> std::unique_ptr<JobStore> {
