@@ -157,7 +157,7 @@ void JobService::add_stream(const char* method) {
 template <class Response>
 void JobService::answer_soon(std::shared_ptr<AdmittedCall> call,
                              std::function<Answer<Response>()> handler) {
-  const auto work = [this, call, handler = std::move(handler)] {
+  const auto work = [this, call, handler = std::move(handler)](RunQueue::Slot&) {
     try {
       const Answer<Response> answer = handler();
       if (answer)
@@ -170,7 +170,7 @@ void JobService::answer_soon(std::shared_ptr<AdmittedCall> call,
       admission().refuse(*call, {Reason::kInternal, "", error.what()});
     }
   };
-  if (auto refusal = threads_.push(call->caller.client(), work))
+  if (auto refusal = threads_.push({.client = call->caller.client()}, work))
     admission().refuse(*call, *refusal);
 }
 

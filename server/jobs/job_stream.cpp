@@ -48,11 +48,11 @@ void JobStream::tick(Clock::time_point now) {
 }
 
 void JobStream::soon(std::function<void()> function) {
-  auto self = shared_from_this();
-  const auto work = [self = std::move(self), function = std::move(function)] {
+  const auto work = [self = shared_from_this(), function = std::move(function)](RunQueue::Slot&) {
     self->guarded(function);
   };
-  if (auto refusal = environment_.threads.push(job_.caller.client(), work)) fail(*refusal);
+  if (auto refusal = environment_.threads.push({.client = job_.caller.client()}, work))
+    fail(*refusal);
 }
 
 template <class F>

@@ -68,7 +68,8 @@ void MeshCall::start() noexcept try {
   }
   const std::uint64_t estimate =
       expected_bytes(*request_, environment_.limits) + bytes_besides(environment_.limits);
-  if (auto refusal = environment_.queue.push(shared_from_this(), {client_, estimate}))
+  const auto work = [self = shared_from_this()](RunQueue::Slot& slot) { self->run(slot); };
+  if (auto refusal = environment_.queue.push({client_, estimate, this}, work))
     return fail(*refusal);
   log_queued();
   pump();
@@ -94,7 +95,7 @@ void MeshCall::send_cached() {
 void MeshCall::stop(StopCause cause) {
   fail(failure_of_cause(cause));  // before the engine notices it and reports a cancellation
   run_.cancel();
-  environment_.queue.remove(*this);
+  environment_.queue.remove(this);
   if (cause == StopCause::kReaderStalled) kill();
 }
 

@@ -62,7 +62,6 @@ struct CacheLookup {
 };
 
 class MeshCall final : public MessageStream,
-                       public RunQueue::Item,
                        public std::enable_shared_from_this<MeshCall>,
                        private ChunkSink {
  public:
@@ -80,7 +79,7 @@ class MeshCall final : public MessageStream,
   void tick(Clock::time_point now);
 
  private:
-  void run(RunQueue::Slot& slot) noexcept override;
+  void run(RunQueue::Slot& slot) noexcept;
   // Logs once that the call is in the queue: its run may begin before `start` returns.
   void log_queued();
   void send_cached();

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <limits>
 #include <utility>
 
 namespace weft::server {
@@ -25,15 +24,6 @@ std::size_t share_of(std::size_t all, double share) {
   return std::max(part, std::min<std::size_t>(all, 1));
 }
 
-class Function final : public RunQueue::Item {
- public:
-  explicit Function(std::function<void()> function) : function_(std::move(function)) {}
-  void run(RunQueue::Slot&) noexcept override { function_(); }
-
- private:
-  std::function<void()> function_;
-};
-
 }  // namespace
 
 RunQueue::RunQueue(const Options& options)
@@ -44,7 +34,8 @@ RunQueue::RunQueue(const Options& options)
              .of_client = share_of(options.light_slots, options.client_share)},
       distrust_(options.distrust) {
   MutexLock lock(mutex_);
-  while (threads_.size() < heavy_.count + light_.count) add_thread();
+  while (threads_.size() < heavy_.count + light_.count)
+    threads_.emplace_back(&RunQueue::work, this);
 }
 
 void RunQueue::stop() {
@@ -61,23 +52,14 @@ void RunQueue::stop() {
   for (std::thread& thread : threads) thread.join();
 }
 
-void RunQueue::add_thread() {
-  threads_.emplace_back([this] { work(); });
-}
-
 void RunQueue::add_thread_if_short() {
   const std::size_t wanted = heavy_.count + light_.count + (source_ != nullptr ? 1 : 0) +
                              figures_.pausing + promoted_.size();
   try {
-    if (threads_.size() < wanted && !stopping_) add_thread();
+    if (threads_.size() < wanted && !stopping_) threads_.emplace_back(&RunQueue::work, this);
   } catch (const std::exception&) {
     // No thread can be made: the slot stays empty until the run that left it goes on.
   }
-}
-
-void RunQueue::slot_is_free() {
-  heavy_slot_.notify_all();
-  idle_.notify_one();
 }
 
 // --- which runs may begin ---
@@ -142,58 +124,56 @@ bool RunQueue::ask_source(Slot& slot) {
   return true;
 }
 
+// The client of a run that begins goes to the end of the round.
 bool RunQueue::next_pushed(Slot& slot) {
   for (auto client = round_robin_.begin(); client != round_robin_.end(); ++client) {
     if (!has_share(slot.priority_, client->name)) continue;
-    std::size_t index = 0;
+    auto run = client->runs.begin();
     if (slot.priority_ == PriorityClass::kLight) {
       if (distrust_.holds_for(client->name, Clock::now())) continue;
-      const auto light = std::ranges::find_if(
-          client->items, [this](const Waiting& each) { return is_light(each.estimate); });
-      if (light == client->items.end()) continue;
-      index = static_cast<std::size_t>(light - client->items.begin());
+      while (run != client->runs.end() && !is_light(run->ticket.estimate)) ++run;
+      if (run == client->runs.end()) continue;
     }
-    if (take(slot, client, index)) return true;
-    if (++client->items[index].bypass_count > kMaxBypasses) break;
+    if (!assign(slot, run->ticket)) {
+      if (++run->bypass_count > kMaxBypasses) break;
+      continue;
+    }
+    slot.work_ = std::move(run->work);
+    slot.pushed_ = true;
+    client->runs.erase(run);
+    --figures_.waiting;
+    if (client->runs.empty())
+      round_robin_.erase(client);
+    else
+      round_robin_.splice(round_robin_.end(), round_robin_, client);
+    of(slot.priority_).last_was_pushed = true;
+    begin(slot);
+    return true;
   }
   return false;
 }
 
-// Gives the slot to the client's item of this index if there is memory for it. The client then goes
-// to the end of the round.
-bool RunQueue::take(Slot& slot, Turn client, std::size_t index) {
-  const Waiting& waiting = client->items[index];
-  auto reservation = reserve({client->name, waiting.estimate});
-  if (!reservation) return false;
-  slot.reservation_ = std::move(*reservation);
-  slot.is_light_ = is_light(waiting.estimate);
-  slot.item_ = waiting.item;
-  slot.pushed_ = true;
-  slot.client_ = client->name;
-  client->items.erase(client->items.begin() + static_cast<std::ptrdiff_t>(index));
-  --figures_.waiting;
-  if (client->items.empty())
-    round_robin_.erase(client);
-  else
-    round_robin_.splice(round_robin_.end(), round_robin_, client);
-  of(slot.priority_).last_was_pushed = true;
-  begin(slot);
+// Reserves memory for a run in the slot; returns false if not enough is free.
+bool RunQueue::assign(Slot& slot, const Ticket& ticket) const {
+  const bool light = is_light(ticket.estimate);
+  if (options_.memory != nullptr) {
+    auto reservation = options_.memory->reserve(
+        {.estimate = ticket.estimate, .client = ticket.client, .light = light});
+    if (!reservation) return false;
+    slot.reservation_ = std::move(*reservation);
+  }
+  slot.is_light_ = light;
+  slot.client_ = ticket.client;
   return true;
-}
-
-std::optional<MemoryBudget::Reservation> RunQueue::reserve(const Ticket& ticket) const {
-  if (options_.memory == nullptr) return MemoryBudget::Reservation();
-  return options_.memory->reserve(
-      {.estimate = ticket.estimate, .client = ticket.client, .light = is_light(ticket.estimate)});
 }
 
 // --- runs that wait here ---
 
-std::optional<Failure> RunQueue::push(std::shared_ptr<Item> item, Ticket ticket) {
+std::optional<Failure> RunQueue::push(Ticket ticket, Work work) {
   MutexLock lock(mutex_);
   const std::size_t idle = heavy_.count - std::min(heavy_.running, heavy_.count);
   auto client = std::ranges::find(round_robin_, ticket.client, &Client::name);
-  std::size_t of_client = client != round_robin_.end() ? client->items.size() : 0;
+  std::size_t of_client = client != round_robin_.end() ? client->runs.size() : 0;
   for (const Slot* slot : promoted_) of_client += slot->pushed_ && slot->client_ == ticket.client;
   const bool has_room_of_its_own = options_.client_share < 1 && of_client == 0;
   const std::size_t all = options_.capacity;
@@ -206,26 +186,22 @@ std::optional<Failure> RunQueue::push(std::shared_ptr<Item> item, Ticket ticket)
         fmt::format("{} calls of yours wait already; this server's limit for one client is {}",
                     capacity_of_client_, capacity_of_client_)};
   if (client == round_robin_.end())
-    client = round_robin_.insert(round_robin_.end(), Client{std::move(ticket.client), {}});
-  client->items.push_back({std::move(item), ticket.estimate});
+    client = round_robin_.insert(round_robin_.end(), Client{ticket.client, {}});
+  client->runs.push_back({std::move(ticket), std::move(work)});
   ++figures_.waiting;
-  if (has_slot(PriorityClass::kHeavy) || has_slot(PriorityClass::kLight)) idle_.notify_one();
+  idle_.notify_one();
   return std::nullopt;
 }
 
-std::optional<Failure> RunQueue::push(std::string client, std::function<void()> function) {
-  return push(std::make_shared<Function>(std::move(function)), {.client = std::move(client)});
-}
-
-bool RunQueue::remove(const Item& item) {
+bool RunQueue::remove(const void* owner) {
   MutexLock lock(mutex_);
   for (auto client = round_robin_.begin(); client != round_robin_.end(); ++client) {
     const auto found = std::ranges::find_if(
-        client->items, [&](const Waiting& waiting) { return waiting.item.get() == &item; });
-    if (found == client->items.end()) continue;
-    client->items.erase(found);
+        client->runs, [owner](const Waiting& run) { return run.ticket.owner == owner; });
+    if (found == client->runs.end()) continue;
+    client->runs.erase(found);
     --figures_.waiting;
-    if (client->items.empty()) round_robin_.erase(client);
+    if (client->runs.empty()) round_robin_.erase(client);
     return true;
   }
   return false;
@@ -281,15 +257,11 @@ std::vector<std::string> RunQueue::Slot::full_clients() {
 }
 
 bool RunQueue::Slot::admit(const Ticket& ticket) {
-  auto reservation = queue_.reserve(ticket);
   MutexLock lock(queue_.mutex_);
   Slots& slots = queue_.of(priority_);
-  if (!reservation || slots.running > slots.count || !queue_.has_share(priority_, ticket.client))
-    return false;
+  if (slots.running > slots.count || !queue_.has_share(priority_, ticket.client)) return false;
+  if (!queue_.assign(*this, ticket)) return false;
   if (!ticket.client.empty()) ++slots.running_of[ticket.client];
-  client_ = ticket.client;
-  reservation_ = std::move(*reservation);
-  is_light_ = queue_.is_light(ticket.estimate);
   slots.last_was_pushed = false;
   slots.may_be_more = true;
   queue_.asked_ = nullptr;
@@ -299,13 +271,17 @@ bool RunQueue::Slot::admit(const Ticket& ticket) {
 
 // --- runs that leave their slot ---
 
+void RunQueue::leave(const Slot& slot) {
+  end(slot);
+  add_thread_if_short();
+  heavy_slot_.notify_all();
+  idle_.notify_one();
+}
+
 RunQueue::Pause::Pause(Slot& slot) : slot_(slot) {
-  RunQueue& queue = slot.queue_;
-  MutexLock lock(queue.mutex_);
-  queue.end(slot);
-  ++queue.figures_.pausing;
-  queue.add_thread_if_short();
-  queue.slot_is_free();
+  MutexLock lock(slot.queue_.mutex_);
+  ++slot.queue_.figures_.pausing;
+  slot.queue_.leave(slot);
 }
 
 RunQueue::Pause::~Pause() {
@@ -322,11 +298,9 @@ void RunQueue::Slot::promote(const std::function<bool()>& stopped) {
   if (queue_.options_.client_share < 1 && !client_.empty())
     queue_.distrust_.turned_out_heavy(client_, Clock::now());
   const auto self = queue_.promoted_.insert(queue_.promoted_.end(), this);
-  queue_.end(*this);
-  priority_ = PriorityClass::kHeavy;
   if (pushed_) ++queue_.figures_.waiting;
-  queue_.add_thread_if_short();
-  queue_.slot_is_free();
+  queue_.leave(*this);
+  priority_ = PriorityClass::kHeavy;
   reservation_.mark_blocked(true);  // the runs in the slots may wait for this one's memory
   while (!queue_.stopping_ &&
          (queue_.next_promoted() != this || !queue_.has_slot(PriorityClass::kHeavy))) {
@@ -340,7 +314,8 @@ void RunQueue::Slot::promote(const std::function<bool()>& stopped) {
   queue_.promoted_.erase(self);
   if (pushed_) --queue_.figures_.waiting;
   queue_.begin(*this);
-  queue_.slot_is_free();  // a further slot may be free: other runs let this one go first
+  queue_.heavy_slot_.notify_all();  // a further slot may be free: other runs let this one go first
+  queue_.idle_.notify_one();
 }
 
 // --- threads ---
@@ -353,14 +328,12 @@ void RunQueue::work() {
       idle_.wait_for(lock.native(), kSourceTimeout);
       continue;
     }
-    // This thread may have been woken for another run than the one that it takes.
-    if (figures_.waiting > 0 &&
-        (has_slot(PriorityClass::kHeavy) || has_slot(PriorityClass::kLight)))
-      idle_.notify_one();
+    if (figures_.waiting > 0)
+      idle_.notify_one();  // this thread may have been woken for another run
     Source* const source = slot.pushed_ ? nullptr : source_;
     lock.unlock();
-    source != nullptr ? source->run_next(slot) : slot.item_->run(slot);
-    slot.item_.reset();
+    source != nullptr ? source->run_next(slot) : slot.work_(slot);
+    slot.work_ = nullptr;
     slot.reservation_ = {};
     lock.lock();
     end(slot);

@@ -22,7 +22,8 @@
 // another server.
 //
 //   RunQueue queue({.slots = 4, .light_slots = 2, .capacity = 64, .max_light_estimate = 16 << 20});
-//   if (auto refusal = queue.push(run, {.client = "ann", .estimate = 9 << 20})) return *refusal;
+//   const auto run = [](RunQueue::Slot& slot) { ... };
+//   if (auto refusal = queue.push({.client = "ann", .estimate = 9 << 20}, run)) return *refusal;
 //
 // Law: no more runs compute at once than there are slots, except those that go on after a Pause,
 // and one that borrows the slot of a source that does not answer.
@@ -39,7 +40,6 @@
 #include <functional>
 #include <list>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
@@ -57,12 +57,7 @@ class RunQueue {
   enum class PriorityClass : std::uint8_t { kHeavy, kLight };
 
   class Slot;
-
-  class Item {
-   public:
-    virtual ~Item() = default;
-    virtual void run(Slot& slot) noexcept = 0;
-  };
+  using Work = std::function<void(Slot&)>;  // of a run; throws nothing
 
   class Source {
    public:
@@ -87,8 +82,9 @@ class RunQueue {
   };
 
   struct Ticket {
-    std::string client{};        // empty: not identified, so its slots are not bounded
-    std::uint64_t estimate = 0;  // bytes of memory
+    std::string client{};         // empty: not identified, so its slots are not bounded
+    std::uint64_t estimate = 0;   // bytes of memory
+    const void* owner = nullptr;  // by which a run that waits here can be removed
   };
 
   // The right to compute, which a run has from its begin to its end.
@@ -122,8 +118,8 @@ class RunQueue {
     RunQueue& queue_;
     PriorityClass priority_ = PriorityClass::kLight;
     bool is_light_ = false;
-    std::shared_ptr<Item> item_;  // of a run that was pushed
     bool pushed_ = false;
+    Work work_;  // if pushed
     std::string client_;
     MemoryBudget::Reservation reservation_;
   };
@@ -144,8 +140,6 @@ class RunQueue {
   explicit RunQueue(const Options& options);
   // Stops.
   ~RunQueue() { stop(); }
-  RunQueue(const RunQueue&) = delete;
-  RunQueue& operator=(const RunQueue&) = delete;
 
   // Drops the runs that wait, and returns when those that have begun have ended.
   void stop();
@@ -153,12 +147,11 @@ class RunQueue {
   // Refuses with kQueueFull if `capacity` runs wait already, or the client's share of that. If
   // client_share is below 1, a client without a waiting run is refused only if twice the capacity
   // waits: so a few clients that fill the queue do not shut out the others.
-  std::optional<Failure> push(std::shared_ptr<Item> item, Ticket ticket);
-  // REQUIRES: the function does not throw.
-  std::optional<Failure> push(std::string client, std::function<void()> function);
+  std::optional<Failure> push(Ticket ticket, Work work);
 
-  // Removes a run that has not begun. Returns false if it has begun, or was never pushed.
-  bool remove(const Item& item);
+  // Removes the owner's run, which has not begun; returns false if there is none. REQUIRES: not
+  // null.
+  bool remove(const void* owner);
 
   // There is at most one source. It is asked whenever it may have a run: after each wake(), and
   // when one of its runs has ended. detach() returns once all of its runs have ended.
@@ -180,15 +173,14 @@ class RunQueue {
 
  private:
   struct Waiting {
-    std::shared_ptr<Item> item;
-    std::uint64_t estimate;
+    Ticket ticket;
+    Work work;
     int bypass_count = 0;
   };
   struct Client {
     std::string name;
-    std::deque<Waiting> items;  // never empty
+    std::deque<Waiting> runs;  // never empty
   };
-  using Turn = std::list<Client>::iterator;
 
   struct Slots {
     std::size_t count;
@@ -201,16 +193,14 @@ class RunQueue {
   };
 
   void work();
-  void add_thread() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void add_thread_if_short() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void slot_is_free() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void begin(Slot& slot) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void end(const Slot& slot) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void leave(const Slot& slot) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool next(Slot& slot) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool ask_source(Slot& slot) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool next_pushed(Slot& slot) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  bool take(Slot& slot, Turn client, std::size_t index) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  std::optional<MemoryBudget::Reservation> reserve(const Ticket& ticket) const;
+  bool assign(Slot& slot, const Ticket& ticket) const;
   bool has_slot(PriorityClass priority) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool has_share(PriorityClass priority, const std::string& client)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -30,27 +29,21 @@ struct LightRun {
       : deadline(std::chrono::steady_clock::now() + time) {}
 
   tl::expected<Summary, Failure> call(const EngineFn& engine) {
-    struct Item final : RunQueue::Item {
-      explicit Item(std::function<void(RunQueue::Slot&)> work) : work(std::move(work)) {}
-      void run(RunQueue::Slot& slot) noexcept override { work(slot); }
-      std::function<void(RunQueue::Slot&)> work;
-    };
     tl::expected<Summary, Failure> outcome;
     RunQueue queue({.light_slots = 1, .capacity = 1, .max_light_estimate = 1});
     Event ended;
-    queue.push(std::make_shared<Item>([&](RunQueue::Slot& slot) {
-                 outcome = call_engine(
-                     engine, std::make_unique<v1::GenerateMeshRequest>(valid_request()), sink,
-                     {.run = run,
-                      .slot = slot,
-                      .besides = 0,
-                      .deadline = deadline,
-                      .pool = pool,
-                      .threads = 2});
-                 was_promoted = slot.priority() == RunQueue::PriorityClass::kHeavy;
-                 ended.set();
-               }),
-               {});
+    queue.push({}, [&](RunQueue::Slot& slot) {
+      outcome =
+          call_engine(engine, std::make_unique<v1::GenerateMeshRequest>(valid_request()), sink,
+                      {.run = run,
+                       .slot = slot,
+                       .besides = 0,
+                       .deadline = deadline,
+                       .pool = pool,
+                       .threads = 2});
+      was_promoted = slot.priority() == RunQueue::PriorityClass::kHeavy;
+      ended.set();
+    });
     EXPECT_TRUE(ended.wait());
     return outcome;
   }

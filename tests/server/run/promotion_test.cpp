@@ -26,17 +26,19 @@ TEST(PromotedRun, GivesItsLightSlotToAnotherAndWaitsForAHeavyOne) {
   Busy busy;
   RunQueue queue({.slots = 1, .light_slots = 1, .capacity = 10, .max_light_estimate = 10});
   busy.occupy(queue, "a", 1000);
-  ASSERT_TRUE(pushed(queue, make_slotted([&](RunQueue::Slot& slot) {
-                       EXPECT_EQ(slot.priority(), RunQueue::PriorityClass::kLight);
-                       moves.set();
-                       slot.promote(kNever);
-                       EXPECT_EQ(slot.priority(), RunQueue::PriorityClass::kHeavy);
-                       has_moved = true;
-                       moved.set();
-                     }),
-                     "b", 10));
+  ASSERT_TRUE(pushed(
+      queue,
+      [&](RunQueue::Slot& slot) {
+        EXPECT_EQ(slot.priority(), RunQueue::PriorityClass::kLight);
+        moves.set();
+        slot.promote(kNever);
+        EXPECT_EQ(slot.priority(), RunQueue::PriorityClass::kHeavy);
+        has_moved = true;
+        moved.set();
+      },
+      "b", 10));
   ASSERT_TRUE(moves.wait());
-  ASSERT_TRUE(pushed(queue, make_task([&] { light_ran.set(); }), "c", 10));
+  ASSERT_TRUE(pushed(queue, plain([&] { light_ran.set(); }), "c", 10));
   EXPECT_TRUE(light_ran.wait());
   EXPECT_FALSE(has_moved);
   EXPECT_EQ(queue.figures().waiting, 1u);
@@ -52,12 +54,14 @@ TEST(PromotedRun, GoesOnOnceItIsStopped) {
   Busy busy;
   RunQueue queue({.slots = 1, .light_slots = 1, .capacity = 10, .max_light_estimate = 10});
   busy.occupy(queue, "a", 1000);
-  ASSERT_TRUE(pushed(queue, make_slotted([&](RunQueue::Slot& slot) {
-                       moves.set();
-                       slot.promote([&] { return stopped.load(); });
-                       ended.set();
-                     }),
-                     "b", 10));
+  ASSERT_TRUE(pushed(
+      queue,
+      [&](RunQueue::Slot& slot) {
+        moves.set();
+        slot.promote([&] { return stopped.load(); });
+        ended.set();
+      },
+      "b", 10));
   ASSERT_TRUE(moves.wait());
   stopped = true;
   EXPECT_TRUE(ended.wait());
@@ -70,13 +74,15 @@ class DistrustInTheQueue : public testing::TestWithParam<double> {
   void SetUp() override { busy_.occupy(queue_, "a", 1000); }
   void turn_out_heavy(const char* client) {
     Event moves;
-    EXPECT_TRUE(pushed(queue_, make_slotted([&](RunQueue::Slot& slot) {
-                         slot.promote([&] {
-                           moves.set();
-                           return true;
-                         });
-                       }),
-                       client, 10));
+    EXPECT_TRUE(pushed(
+        queue_,
+        [&](RunQueue::Slot& slot) {
+          slot.promote([&] {
+            moves.set();
+            return true;
+          });
+        },
+        client, 10));
     EXPECT_TRUE(moves.wait());
     // It waits for the other slot until it has seen that it is to stop.
     while (queue_.figures().running > 1 || queue_.figures().waiting > 0) std::this_thread::yield();
@@ -97,8 +103,8 @@ TEST_P(DistrustInTheQueue,
   turn_out_heavy("b");
   Event of_b;
   Event of_c;
-  ASSERT_TRUE(pushed(queue_, make_task([&] { of_b.set(); }), "b", 10));
-  ASSERT_TRUE(pushed(queue_, make_task([&] { of_c.set(); }), "c", 10));
+  ASSERT_TRUE(pushed(queue_, plain([&] { of_b.set(); }), "b", 10));
+  ASSERT_TRUE(pushed(queue_, plain([&] { of_c.set(); }), "c", 10));
   EXPECT_TRUE(of_c.wait());
   if (GetParam() < 1) {
     EXPECT_EQ(queue_.figures().waiting, 1u) << "b is for the heavy slot";
@@ -119,15 +125,17 @@ TEST(PromotedRun, IsForgottenAfterAWhile) {
                   .distrust = std::chrono::milliseconds(1)});
   busy.occupy(queue, "a", 1000);
   Event ended;
-  ASSERT_TRUE(pushed(queue, make_slotted([&](RunQueue::Slot& slot) {
-                       slot.promote([] { return true; });
-                       ended.set();
-                     }),
-                     "b", 10));
+  ASSERT_TRUE(pushed(
+      queue,
+      [&](RunQueue::Slot& slot) {
+        slot.promote([] { return true; });
+        ended.set();
+      },
+      "b", 10));
   ASSERT_TRUE(ended.wait());
   std::this_thread::sleep_for(std::chrono::milliseconds(5));
   Event again;
-  ASSERT_TRUE(pushed(queue, make_task([&] { again.set(); }), "b", 10));
+  ASSERT_TRUE(pushed(queue, plain([&] { again.set(); }), "b", 10));
   EXPECT_TRUE(again.wait());
   busy.release.set();
 }
@@ -139,21 +147,23 @@ TEST(PromotedRun, LeavesAllSlotsAsTheyWere) {
   std::atomic<int> running{0};
   RunQueue queue({.slots = 2, .light_slots = 2, .capacity = 100, .max_light_estimate = 10});
   for (int i = 0; i < kMoving; ++i)
-    ASSERT_TRUE(pushed(queue, make_slotted([&](RunQueue::Slot& slot) {
-                         slot.promote(kNever);
-                         EXPECT_LE(++running, 2);
-                         std::this_thread::yield();
-                         --running;
-                         ++moved;
-                       }),
-                       "a", 10));
+    ASSERT_TRUE(pushed(
+        queue,
+        [&](RunQueue::Slot& slot) {
+          slot.promote(kNever);
+          EXPECT_LE(++running, 2);
+          std::this_thread::yield();
+          --running;
+          ++moved;
+        },
+        "a", 10));
   while (moved < kMoving || queue.figures().running > 0) std::this_thread::yield();
   EXPECT_EQ(queue.figures().waiting, 0u);
   EXPECT_EQ(queue.figures().pausing, 0u);
   Event all_run;
   std::atomic<int> at_once{0};
   for (int i = 0; i < 4; ++i)
-    ASSERT_TRUE(pushed(queue, make_task([&] {
+    ASSERT_TRUE(pushed(queue, plain([&] {
                          if (++at_once == 4) all_run.set();
                          EXPECT_TRUE(all_run.wait());
                        }),
@@ -170,11 +180,11 @@ TEST_P(Promotion, OfARunThatHasTheMemoryOfTheOneInTheSlotEndsThat) {
   MemoryBudget budget({.capacity = 100}, [] {});
   RunQueue queue({.light_slots = 1, .capacity = 10, .max_light_estimate = 60, .memory = &budget});
   ListSource source(queue);
-  const auto begin = [&](std::uint64_t estimate, const ListSource::Work& work) {
+  const auto begin = [&](std::uint64_t estimate, const RunQueue::Work& work) {
     if (from_source)
       source.add("a", estimate, work);
     else
-      ASSERT_TRUE(pushed(queue, make_slotted(work), "a", estimate));
+      ASSERT_TRUE(pushed(queue, work, "a", estimate));
   };
   const auto go_on = [] { return std::optional<Error>(); };
   Event light_runs;

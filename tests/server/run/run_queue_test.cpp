@@ -15,19 +15,20 @@ namespace {
 
 // What the queue says of an item that does nothing; empty: it takes it.
 std::string refusal(RunQueue& queue, const char* client) {
-  const auto failure = queue.push(make_task([] {}), {.client = client});
+  const auto failure = queue.push({.client = client}, plain([] {}));
   EXPECT_TRUE(!failure || failure->reason == Reason::kQueueFull);
   return failure ? failure->message : "";
 }
+
 TEST(RunQueue, RunsAsManyJobsAtOnceAsItHasSlots) {
   Event first_runs;
   Event second_runs;
   RunQueue queue({.slots = 2});
-  ASSERT_TRUE(pushed(queue, make_task([&] {
+  ASSERT_TRUE(pushed(queue, plain([&] {
                        first_runs.set();
                        EXPECT_TRUE(second_runs.wait());
                      })));
-  ASSERT_TRUE(pushed(queue, make_task([&] {
+  ASSERT_TRUE(pushed(queue, plain([&] {
                        second_runs.set();
                        EXPECT_TRUE(first_runs.wait());
                      })));
@@ -39,31 +40,31 @@ TEST(RunQueue, RefusesWhatIsOverItsCapacity) {
   Event runs;
   Event release;
   RunQueue queue({.slots = 1, .capacity = 1});
-  ASSERT_TRUE(pushed(queue, make_task([&] {
+  ASSERT_TRUE(pushed(queue, plain([&] {
                        runs.set();
                        EXPECT_TRUE(release.wait());
                      })));
   ASSERT_TRUE(runs.wait());
-  EXPECT_TRUE(pushed(queue, make_task([] {})));
-  EXPECT_FALSE(pushed(queue, make_task([] {})));
+  EXPECT_TRUE(pushed(queue, plain([] {})));
+  EXPECT_FALSE(pushed(queue, plain([] {})));
   release.set();
 }
 
-TEST(RunQueue, GivesBackAJobThatHasNotBegunAndNoOther) {
+TEST(RunQueue, RemovesARunThatHasNotBegunAndNoOther) {
   Event runs;
   Event release;
   RunQueue queue({.slots = 1, .capacity = 1});
-  const auto working = make_task([&] {
-    runs.set();
-    EXPECT_TRUE(release.wait());
-  });
-  const auto waiting = make_task([] { ADD_FAILURE() << "it was taken out"; });
-  ASSERT_TRUE(pushed(queue, working));
+  const int working = 0;
+  const int waiting = 0;
+  ASSERT_FALSE(queue.push({.owner = &working}, plain([&] {
+                            runs.set();
+                            EXPECT_TRUE(release.wait());
+                          })));
   ASSERT_TRUE(runs.wait());
-  ASSERT_TRUE(pushed(queue, waiting));
-  EXPECT_FALSE(queue.remove(*working));
-  EXPECT_TRUE(queue.remove(*waiting));
-  EXPECT_FALSE(queue.remove(*waiting));
+  ASSERT_FALSE(queue.push({.owner = &waiting}, plain([] { ADD_FAILURE() << "it was removed"; })));
+  EXPECT_FALSE(queue.remove(&working));
+  EXPECT_TRUE(queue.remove(&waiting));
+  EXPECT_FALSE(queue.remove(&waiting));
   release.set();
 }
 
@@ -72,21 +73,20 @@ TEST(RunQueue, GivesTheSlotOfAJobThatPausesToAnother) {
   Event other_ran;
   Event ended;
   RunQueue queue({.slots = 1, .capacity = 8});
-  ASSERT_TRUE(pushed(queue, make_slotted([&](RunQueue::Slot& slot) {
-                       {
-                         const RunQueue::Pause pause(slot);
-                         pauses.set();
-                         EXPECT_TRUE(other_ran.wait());
-                         EXPECT_EQ(queue.figures().pausing, 1u);
-                       }
-                       EXPECT_EQ(queue.figures().pausing, 0u);
-                       while (queue.figures().running > 1)
-                         std::this_thread::yield();  // the other one is about to end
-                       ended.set();
-                     })));
+  ASSERT_TRUE(pushed(queue, [&](RunQueue::Slot& slot) {
+    {
+      const RunQueue::Pause pause(slot);
+      pauses.set();
+      EXPECT_TRUE(other_ran.wait());
+      EXPECT_EQ(queue.figures().pausing, 1u);
+    }
+    EXPECT_EQ(queue.figures().pausing, 0u);
+    while (queue.figures().running > 1) std::this_thread::yield();  // the other one is about to end
+    ended.set();
+  }));
   ASSERT_TRUE(pauses.wait());
-  ASSERT_TRUE(pushed(queue, make_task([&] { EXPECT_EQ(queue.figures().running, 1u); })));
-  ASSERT_TRUE(pushed(queue, make_task([&] { other_ran.set(); })));
+  ASSERT_TRUE(pushed(queue, plain([&] { EXPECT_EQ(queue.figures().running, 1u); })));
+  ASSERT_TRUE(pushed(queue, plain([&] { other_ran.set(); })));
   EXPECT_TRUE(ended.wait());
 }
 
@@ -101,17 +101,17 @@ TEST(RunQueue, RunsNoMoreThanItsSlotsOnceWhatPausedHasGoneOn) {
   Event done;
   RunQueue queue({.slots = 2, .capacity = 100});
   for (int i = 0; i < kPausing; ++i) {
-    ASSERT_TRUE(pushed(queue, make_slotted([&](RunQueue::Slot& slot) {
-                         const RunQueue::Pause pause(slot);
-                         if (++pausing == kPausing) all_pause.set();
-                         EXPECT_TRUE(go_on.wait());
-                       })));
+    ASSERT_TRUE(pushed(queue, [&](RunQueue::Slot& slot) {
+      const RunQueue::Pause pause(slot);
+      if (++pausing == kPausing) all_pause.set();
+      EXPECT_TRUE(go_on.wait());
+    }));
   }
   EXPECT_TRUE(all_pause.wait());
   go_on.set();
   while (queue.figures().pausing + queue.figures().running > 0) std::this_thread::yield();
   for (int i = left; i > 0; --i) {
-    ASSERT_TRUE(pushed(queue, make_task([&] {
+    ASSERT_TRUE(pushed(queue, plain([&] {
                          most = std::max(most.load(), ++running);
                          std::this_thread::yield();
                          --running;
@@ -129,14 +129,14 @@ TEST(RunQueue, WaitsAtItsEndForJobsThatPause) {
   std::thread later;
   {
     RunQueue queue({.slots = 1});
-    ASSERT_TRUE(pushed(queue, make_slotted([&](RunQueue::Slot& slot) {
-                         {
-                           const RunQueue::Pause pause(slot);
-                           pauses.set();
-                           EXPECT_TRUE(go_on.wait());
-                         }
-                         ended = true;
-                       })));
+    ASSERT_TRUE(pushed(queue, [&](RunQueue::Slot& slot) {
+      {
+        const RunQueue::Pause pause(slot);
+        pauses.set();
+        EXPECT_TRUE(go_on.wait());
+      }
+      ended = true;
+    }));
     ASSERT_TRUE(pauses.wait());
     later = std::thread([&] { go_on.set(); });
   }
@@ -151,11 +151,10 @@ TEST(RunQueue, GivesTurnsRoundTheClients) {
   RunQueue queue({.slots = 1, .capacity = 100});
   busy.occupy(queue);
   for (const char* job : {"a", "a", "a", "b", "b", "c"})
-    queue.push(make_task([&, job] {
+    queue.push({.client = job, .estimate = 0}, plain([&, job] {
                  order += job;
                  if (order.size() == 6) done.set();
-               }),
-               {.client = job, .estimate = 0});
+               }));
   busy.release.set();
   ASSERT_TRUE(done.wait());
   EXPECT_EQ(order, "abcaba");
@@ -167,8 +166,8 @@ TEST(RunQueue, PassesOverAJobThatNoMemoryIsLeftFor) {
   Event light_ran;
   Event heavy_ran;
   RunQueue queue({.slots = 1, .capacity = 10, .memory = &budget});
-  queue.push(make_task([&] { heavy_ran.set(); }), {.client = "heavy", .estimate = 60});
-  queue.push(make_task([&] { light_ran.set(); }), {.client = "light", .estimate = 10});
+  queue.push({.client = "heavy", .estimate = 60}, plain([&] { heavy_ran.set(); }));
+  queue.push({.client = "light", .estimate = 10}, plain([&] { light_ran.set(); }));
   ASSERT_TRUE(light_ran.wait());
   EXPECT_EQ(queue.figures().waiting, 1);
   reserved.reset();
@@ -184,9 +183,9 @@ TEST(RunQueue, DoesNotPassOverAJobForEver) {
   Busy busy;
   RunQueue queue({.slots = 1, .capacity = 1000, .memory = &budget});
   busy.occupy(queue);
-  queue.push(make_task([&] { heavy_ran.set(); }), {.client = "heavy", .estimate = 60});
+  queue.push({.client = "heavy", .estimate = 60}, plain([&] { heavy_ran.set(); }));
   for (int i = 0; i < 500; ++i)
-    queue.push(make_task([&] { ++light_runs; }), {.client = "light", .estimate = 10});
+    queue.push({.client = "light", .estimate = 10}, plain([&] { ++light_runs; }));
   busy.release.set();
   while (light_runs < 60) std::this_thread::yield();
   queue.memory_released();
@@ -201,8 +200,8 @@ TEST(RunQueue, HasASlotForLightJobsWhileHeavyOnesWait) {
   Busy busy;
   RunQueue queue({.slots = 1, .light_slots = 1, .capacity = 10, .max_light_estimate = 10});
   busy.occupy(queue, "a", 1000);
-  queue.push(make_task([] {}), {.client = "a", .estimate = 1000});
-  queue.push(make_task([&] { ran.set(); }), {.client = "a", .estimate = 10});
+  queue.push({.client = "a", .estimate = 1000}, plain([] {}));
+  queue.push({.client = "a", .estimate = 10}, plain([&] { ran.set(); }));
   EXPECT_TRUE(ran.wait());
   EXPECT_EQ(queue.figures().waiting, 1);
   busy.release.set();
@@ -212,12 +211,12 @@ TEST(RunQueue, LetsOneClientHaveItsShareOfWhatMayWait) {
   Busy busy;
   RunQueue queue({.slots = 1, .capacity = 4, .client_share = 0.5});
   busy.occupy(queue);
-  EXPECT_TRUE(pushed(queue, make_task([] {}), "a"));
-  EXPECT_TRUE(pushed(queue, make_task([] {}), "a"));
+  EXPECT_TRUE(pushed(queue, plain([] {}), "a"));
+  EXPECT_TRUE(pushed(queue, plain([] {}), "a"));
   EXPECT_EQ(refusal(queue, "a"),
             "2 calls of yours wait already; this server's limit for one client is 2");
-  EXPECT_TRUE(pushed(queue, make_task([] {}), "b"));
-  EXPECT_TRUE(pushed(queue, make_task([] {}), "c"));
+  EXPECT_TRUE(pushed(queue, plain([] {}), "b"));
+  EXPECT_TRUE(pushed(queue, plain([] {}), "c"));
   EXPECT_EQ(refusal(queue, "c"), "4 calls wait already; this server's limit is 4");
   busy.release.set();
 }
@@ -242,14 +241,14 @@ TEST(RunQueue, LetsOneClientHaveItsShareOfTheSlots) {
   std::atomic<int> running{0};
   RunQueue queue({.slots = 4, .capacity = 40, .client_share = 0.75});
   for (int i = 0; i < 8; ++i)
-    ASSERT_TRUE(pushed(queue, make_task([&] {
+    ASSERT_TRUE(pushed(queue, plain([&] {
                          EXPECT_LE(++running, 3);
                          EXPECT_TRUE(release.wait());
                          --running;
                        }),
                        "a"));
   while (running < 3) std::this_thread::yield();
-  ASSERT_TRUE(pushed(queue, make_task([&] { other_ran.set(); }), "b"));
+  ASSERT_TRUE(pushed(queue, plain([&] { other_ran.set(); }), "b"));
   EXPECT_TRUE(other_ran.wait());
   release.set();
   while (queue.figures().waiting + queue.figures().running > 0) std::this_thread::yield();

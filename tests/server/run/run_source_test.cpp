@@ -29,7 +29,7 @@ TEST(RunsOfASource, HaveTheSlotsInTurnsWithThoseThatWaitHere) {
     if (order.size() == 7) done.set();
   };
   for (int i = 0; i < 3; ++i) {
-    ASSERT_TRUE(pushed(queue, make_task([&] { ran('c'); }), i == 0 ? "a" : "b"));
+    ASSERT_TRUE(pushed(queue, plain([&] { ran('c'); }), i == 0 ? "a" : "b"));
     source.add("a", 0, [&](auto&) { ran('j'); });
   }
   source.add("a", 0, [&](auto&) { ran('j'); });
@@ -53,7 +53,7 @@ TEST(RunsOfASource, AreBoundedByTheSlotsThatAllShare) {
     if (--left == 0) done.set();
   };
   for (int i = 0; i < kRuns; ++i) {
-    ASSERT_TRUE(pushed(queue, make_slotted(run), "a"));
+    ASSERT_TRUE(pushed(queue, run, "a"));
     source.add("b", 0, run);
   }
   EXPECT_TRUE(done.wait());
@@ -72,7 +72,7 @@ TEST(RunsOfASource, CountTowardsTheSlotsOfTheirClientWithThoseThatWaitHere) {
     if (++running == 2) both_run.set();
     EXPECT_TRUE(may_end.wait());
   };
-  ASSERT_TRUE(pushed(queue, make_task([&] { run(one_may_end); }), "a"));
+  ASSERT_TRUE(pushed(queue, plain([&] { run(one_may_end); }), "a"));
   source.add("a", 0, [&](auto&) { run(other_may_end); });
   ASSERT_TRUE(both_run.wait());
   source.add("a", 0, [&](auto&) { third_runs.set(); });
@@ -163,7 +163,7 @@ TEST(RunsOfASource, AreAskedForOnlyIfThereMayBeOne) {
   std::atomic<int> left{50};
   Event done;
   for (int i = 0; i < 50; ++i)
-    ASSERT_TRUE(pushed(queue, make_task([&] {
+    ASSERT_TRUE(pushed(queue, plain([&] {
                          if (--left == 0) done.set();
                        }),
                        "a"));

@@ -8,7 +8,6 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -19,27 +18,13 @@
 
 namespace weft::server {
 
-class Task final : public RunQueue::Item {
- public:
-  explicit Task(std::function<void(RunQueue::Slot&)> work) : work_(std::move(work)) {}
-  void run(RunQueue::Slot& slot) noexcept override { work_(slot); }
-
- private:
-  std::function<void(RunQueue::Slot&)> work_;
-};
-
-inline std::shared_ptr<Task> make_task(std::function<void()> work) {
-  return std::make_shared<Task>([work = std::move(work)](RunQueue::Slot&) { work(); });
+// A run that does not look at its slot.
+inline RunQueue::Work plain(std::function<void()> work) {
+  return [work = std::move(work)](RunQueue::Slot&) { work(); };
 }
-inline std::shared_ptr<Task> make_slotted(std::function<void(RunQueue::Slot&)> work) {
-  return std::make_shared<Task>(std::move(work));
-}
-inline bool pushed(RunQueue& queue, std::shared_ptr<Task> task, const char* client,
+inline bool pushed(RunQueue& queue, RunQueue::Work work, const char* client = "",
                    std::uint64_t estimate = 0) {
-  return !queue.push(std::move(task), {.client = client, .estimate = estimate});
-}
-inline bool pushed(RunQueue& queue, std::shared_ptr<Task> task) {
-  return pushed(queue, std::move(task), "");
+  return !queue.push({.client = client, .estimate = estimate}, std::move(work));
 }
 
 // A slot that is busy until `release`, so that what is pushed meanwhile waits.
@@ -47,7 +32,7 @@ struct Busy {
   Event runs;
   Event release;
   void occupy(RunQueue& queue, const char* client = "", std::uint64_t estimate = 0) {
-    ASSERT_TRUE(pushed(queue, make_task([this] {
+    ASSERT_TRUE(pushed(queue, plain([this] {
                          runs.set();
                          EXPECT_TRUE(release.wait());
                        }),
@@ -59,12 +44,10 @@ struct Busy {
 // Runs that wait in a list, the first first.
 class ListSource final : public RunQueue::Source {
  public:
-  using Work = std::function<void(RunQueue::Slot&)>;
-
   explicit ListSource(RunQueue& queue) : queue_(queue) { queue_.attach(*this); }
   ~ListSource() override { queue_.detach(); }
 
-  void add(const char* client, std::uint64_t estimate, Work work) {
+  void add(const char* client, std::uint64_t estimate, RunQueue::Work work) {
     {
       std::lock_guard lock(mutex_);
       runs_.push_back({{client, estimate}, std::move(work)});
@@ -82,7 +65,7 @@ class ListSource final : public RunQueue::Source {
     });
     if (found == runs_.end()) return;
     if (!slot.admit(found->first)) return;
-    const Work work = std::move(found->second);
+    const RunQueue::Work work = std::move(found->second);
     runs_.erase(found);
     lock.unlock();
     work(slot);
@@ -93,7 +76,7 @@ class ListSource final : public RunQueue::Source {
  private:
   RunQueue& queue_;
   std::mutex mutex_;
-  std::vector<std::pair<RunQueue::Ticket, Work>> runs_;
+  std::vector<std::pair<RunQueue::Ticket, RunQueue::Work>> runs_;
   std::atomic<int> asked_{0};
 };
 
