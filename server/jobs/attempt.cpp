@@ -73,7 +73,9 @@ void Attempt::run() {
 tl::expected<void, Failure> Attempt::make_mesh() {
   if (!request_) return tl::unexpected(request_.error());
   v1::GenerateMeshRequest options = options_of(**request_);
-  auto summary = call_engine(environment_.engine, std::move(*request_), *this,
+  MeshRequest converted = to_engine(**request_);
+  request_->reset();
+  auto summary = call_engine(environment_.engine, std::move(converted), *this,
                              {.run = run_,
                               .slot = slot_,
                               .besides = besides_,

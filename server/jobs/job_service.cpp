@@ -44,6 +44,16 @@ std::optional<Failure> check_id(const Request& request) {
   return std::nullopt;
 }
 
+// Refuses what the engine would refuse before it triangulates; returns the memory that the run is
+// expected to take. Linear time, and meanwhile memory for the engine's form of the request.
+tl::expected<std::uint64_t, Failure> check_and_estimate(const v1::GenerateMeshRequest& request,
+                                                        const Limits& limits) {
+  const MeshRequest converted = to_engine(request);
+  if (const auto error = check_pslg(converted.pslg)) return tl::unexpected(failure_of(*error));
+  return estimate(converted, to_budget(request.budget(), limits)).bytes + bytes_besides(limits) +
+         bytes_of_request(request);
+}
+
 WorkBudget budget_of(const v1::GenerateMeshRequest& request, const Limits& limits) {
   return {to_budget(request.budget(), limits).max_bytes,
           std::chrono::round<std::chrono::microseconds>(
@@ -190,12 +200,12 @@ JobService::Answer<v1::SubmitJobResponse> JobService::submit(const Caller& calle
                                                              v1::SubmitJobRequest request,
                                                              std::size_t bytes) {
   const int points = request.mesh().domain().points_size() / 2;
+  const auto estimate = check_and_estimate(request.mesh(), options_.limits);
+  if (!estimate) return tl::unexpected(estimate.error());
   Submission submission{.owner = caller.name,
                         .request_id = request.request_id(),
                         .request = request.mesh().SerializeAsString(),
-                        .estimate = expected_bytes(request.mesh(), options_.limits) +
-                                    bytes_besides(options_.limits) +
-                                    bytes_of_request(request.mesh()),
+                        .estimate = *estimate,
                         .budget = budget_of(request.mesh(), options_.limits),
                         .trace = caller.trace,
                         .no_cache = request.no_cache() || request.mesh().no_cache(),

@@ -25,6 +25,14 @@ grpc::ByteBuffer accepted_message(const std::string& id, std::uint32_t threads) 
   return serialize(message);
 }
 
+std::string queued_line(const std::string& id, const std::string& caller,
+                        const v1::Domain& domain) {
+  return fmt::format(
+      "event=call_queued call={} {} method=GenerateMesh points={} segments={} seeds={}", id, caller,
+      domain.points_size() / 2, domain.segments_size() / 2,
+      domain.holes_size() / 2 + domain.regions_size());
+}
+
 // The messages of a cached mesh share its bytes, so all of them may be queued.
 constexpr ChunkQueue::Bounds kNoBounds{std::numeric_limits<std::size_t>::max(),
                                        std::numeric_limits<std::size_t>::max()};
@@ -35,41 +43,39 @@ constexpr std::chrono::milliseconds kMaxWaitInSlot{5};
 }  // namespace
 
 MeshCall::MeshCall(const CallEnvironment& environment, AdmittedCall& call, std::string id,
-                   std::unique_ptr<v1::GenerateMeshRequest> request, CacheLookup cached)
+                   const v1::GenerateMeshRequest& request, MeshRequest converted,
+                   CacheLookup cached)
     : MessageStream(
           call.call,
-          accepted_message(id, to_threads(request->threads(), environment.pool.threads())),
+          accepted_message(id, to_threads(request.threads(), environment.pool.threads())),
           cached.hit ? kNoBounds : ChunkQueue::Bounds::of_bytes(environment.limits.stream_buffer)),
       environment_(environment),
       id_(std::move(id)),
       caller_(log_fields(call.caller)),
       client_(call.caller.client()),
       call_deadline_(call.call->context()->deadline()),
-      max_seconds_(to_seconds(request->budget(), environment.limits)),
-      threads_(to_threads(request->threads(), environment.pool.threads())),
-      first_chunk_(request->first_chunk()),
-      wants_quadtree_(request->want_quadtree()),
+      max_seconds_(to_seconds(request.budget(), environment.limits)),
+      threads_(to_threads(request.threads(), environment.pool.threads())),
+      first_chunk_(request.first_chunk()),
+      wants_quadtree_(request.want_quadtree()),
       cached_(std::move(cached)),
+      queued_line_(queued_line(id_, caller_, request.domain())),
       pass_(std::exchange(call.pass, std::nullopt)),
-      run_(to_budget(request->budget(), environment.limits)),
+      budget_(to_budget(request.budget(), environment.limits)),
+      run_(budget_),
       request_memory_(std::move(call.memory)),
-      request_(std::move(request)) {}
+      request_(std::move(converted)) {}
 
 void MeshCall::start() noexcept try {
-  const v1::Domain& domain = request_->domain();
-  queued_line_ =
-      fmt::format("event=call_queued call={} {} method=GenerateMesh points={} segments={} seeds={}",
-                  id_, caller_, domain.points_size() / 2, domain.segments_size() / 2,
-                  domain.holes_size() / 2 + domain.regions_size());
   if (cached_.hit) {
     log_queued();
     send_cached();
     return;
   }
-  const std::uint64_t estimate =
-      expected_bytes(*request_, environment_.limits) + bytes_besides(environment_.limits);
+  const std::uint64_t expected =
+      estimate(request_, budget_).bytes + bytes_besides(environment_.limits);
   const auto work = [self = shared_from_this()](RunQueue::Slot& slot) { self->run(slot); };
-  if (auto refusal = environment_.queue.push({client_, estimate, this}, work))
+  if (auto refusal = environment_.queue.push({client_, expected, this}, work))
     return fail(*refusal);
   log_queued();
   pump();
@@ -83,7 +89,6 @@ void MeshCall::log_queued() {
 
 void MeshCall::send_cached() {
   const FinishedMesh& mesh = *cached_.hit;
-  request_.reset();
   if (auto failure = check_first_chunk(mesh.summary)) return fail(*failure);
   for (std::size_t i = first_chunk_; i < mesh.chunks.size(); ++i) {
     if (!send(mesh.chunks[i])) return;

@@ -31,6 +31,7 @@
 #include "server/wire/limits.h"
 #include "weft/run.h"
 #include "weft/v1/mesh_service.pb.h"
+#include "weft/weft.h"
 
 namespace weft::server {
 
@@ -65,9 +66,10 @@ class MeshCall final : public MessageStream,
                        public std::enable_shared_from_this<MeshCall>,
                        private ChunkSink {
  public:
-  // Takes all parts of the call except its bytes.
+  // Takes all parts of the call except its bytes. `converted` is the request in the engine's form;
+  // empty if the mesh is cached.
   MeshCall(const CallEnvironment& environment, AdmittedCall& call, std::string id,
-           std::unique_ptr<v1::GenerateMeshRequest> request, CacheLookup cached);
+           const v1::GenerateMeshRequest& request, MeshRequest converted, CacheLookup cached);
 
   // Joins the queue, or ends with QUEUE_FULL; sends the mesh if it is cached. Call once.
   void start() noexcept;
@@ -112,11 +114,12 @@ class MeshCall final : public MessageStream,
   const std::uint32_t first_chunk_;  // those before it are not sent
   const bool wants_quadtree_;
   const CacheLookup cached_;
-  std::string queued_line_;  // of the log
+  const std::string queued_line_;  // of the log
   std::once_flag queued_;
   RunQueue::Slot* slot_ = nullptr;  // used only by the worker
   const Clock::time_point admitted_ = Clock::now();
   const std::optional<DrainGate::Pass> pass_;
+  const Budget budget_;
   Run run_;
   std::atomic<std::uint64_t> chunks_{0};  // handed to the stream
   std::atomic<std::uint64_t> bytes_{0};
@@ -124,7 +127,7 @@ class MeshCall final : public MessageStream,
   RequestMemory request_memory_;  // until the run has ended
 
   // Used only by the worker.
-  std::unique_ptr<v1::GenerateMeshRequest> request_;
+  MeshRequest request_;
   v1::GenerateMeshResponse chunk_message_;  // kept for the memory of its arrays
   std::optional<MeshRecording> recording_;
 

@@ -6,6 +6,7 @@
 #include <new>
 #include <utility>
 
+#include "server/run/memory_estimate.h"
 #include "server/wire/request_key.h"
 #include "server/wire/request_reader.h"
 #include "server/wire/translate.h"
@@ -68,18 +69,21 @@ void MeshService::generate_mesh(AdmittedCall& call) {
   auto request = read_mesh_request(std::exchange(call.bytes, {}), options_.limits);
   if (!request) return admission().refuse(call, request.error());
   // Two bytes of an empty region become 80, so what is parsed may be far more than the message.
-  if (auto failure = admission().reserve(call, (*request)->SpaceUsedLong()))
+  if (auto failure = admission().reserve(call, bytes_of_larger_form(**request)))
     return admission().refuse(call, *failure);
   CacheLookup cached = look_up(**request, size, call.caller);
+  MeshRequest converted;
+  if (!cached.hit) converted = to_engine(**request);
   std::shared_ptr<MeshCall> mesh_call;
   {
     std::lock_guard lock(mutex_);
     mesh_call = std::make_shared<MeshCall>(environment_, call,
                                            fmt::format("{}-{}", options_.instance, ++last_number_),
-                                           std::move(*request), std::move(cached));
+                                           **request, std::move(converted), std::move(cached));
     calls_.add(mesh_call);
   }
   changed_.notify_all();
+  request->reset();
   mesh_call->take_call();
   mesh_call->start();
 }

@@ -12,7 +12,6 @@
 
 #include "server/run/memory_estimate.h"
 #include "server/run/run_memory.h"
-#include "server/wire/translate.h"
 
 namespace weft::server {
 namespace {
@@ -68,13 +67,10 @@ Result<Summary> run_engine(const EngineFn& engine, const MeshRequest& request, C
 
 }  // namespace
 
-tl::expected<Summary, Failure> call_engine(const EngineFn& engine,
-                                           std::unique_ptr<v1::GenerateMeshRequest> request,
+tl::expected<Summary, Failure> call_engine(const EngineFn& engine, MeshRequest request,
                                            ChunkSink& sink, const EngineRun& call) noexcept {
   try {
-    const MeshRequest converted = to_engine(*request);
-    request.reset();
-    const Result<Summary> summary = run_engine(engine, converted, sink, call);
+    const Result<Summary> summary = run_engine(engine, request, sink, call);
     if (!summary) return tl::unexpected(failure_of(summary.error()));
     return *summary;
   } catch (const std::bad_alloc&) {

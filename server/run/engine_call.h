@@ -14,13 +14,11 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <tl/expected.hpp>
 
 #include "server/run/run_queue.h"
 #include "server/wire/errors.h"
 #include "weft/run.h"
-#include "weft/v1/mesh_service.pb.h"
 #include "weft/weft.h"
 
 namespace weft::server {
@@ -37,11 +35,9 @@ struct EngineRun {
   std::uint32_t threads;  // of the pool
 };
 
-// Frees the request as soon as the engine's own form of it is made. Errors: those of the engine; an
-// exception becomes OUT_OF_MEMORY if it is std::bad_alloc, otherwise INTERNAL.
-// REQUIRES: check_shape and check_limits returned nullopt for the request.
-tl::expected<Summary, Failure> call_engine(const EngineFn& engine,
-                                           std::unique_ptr<v1::GenerateMeshRequest> request,
+// Frees the request when the run has ended. Errors: those of the engine; an exception becomes
+// OUT_OF_MEMORY if it is std::bad_alloc, otherwise INTERNAL.
+tl::expected<Summary, Failure> call_engine(const EngineFn& engine, MeshRequest request,
                                            ChunkSink& sink, const EngineRun& call) noexcept;
 
 // The time in `seconds` from now; at most 30 years, so that the clock can represent it.

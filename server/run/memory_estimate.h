@@ -22,7 +22,10 @@ inline constexpr std::chrono::milliseconds kLightTime{300};
 
 // What the server holds for a run beside the engine's memory: chunks that wait for their reader,
 // and buffers.
-std::uint64_t bytes_besides(const Limits& limits);
+inline std::uint64_t bytes_besides(const Limits& limits) {
+  constexpr std::uint64_t kBuffers = std::uint64_t{8} << 20;
+  return kBuffers + limits.stream_buffer;
+}
 
 // The highest estimate of a light run, with what is besides.
 inline std::uint64_t max_light_bytes(const Limits& limits) {
@@ -33,9 +36,10 @@ inline std::uint64_t max_light_bytes(const Limits& limits) {
 inline std::uint64_t bytes_of_request(const v1::GenerateMeshRequest& request) {
   return 2 * request.SpaceUsedLong();
 }
-
-// At most what the request's budget allows. Takes linear time, and meanwhile memory for the
-// engine's form of the request. REQUIRES: check_shape and check_limits found nothing.
-std::uint64_t expected_bytes(const v1::GenerateMeshRequest& request, const Limits& limits);
+// A request in the larger of these forms: the engine's segments have a marker and an area, 8 bytes,
+// which the wire may leave out.
+inline std::uint64_t bytes_of_larger_form(const v1::GenerateMeshRequest& request) {
+  return request.SpaceUsedLong() + 4 * static_cast<std::uint64_t>(request.domain().segments_size());
+}
 
 }  // namespace weft::server

@@ -65,7 +65,6 @@ tl::expected<v1::SubmitJobRequest, Failure> read_submission(grpc::ByteBuffer byt
   if (request.mesh().first_chunk() != 0)
     return tl::unexpected(Failure{Reason::kBadOption, "first_chunk",
                                   "first_chunk of a job must be 0; FetchMesh has its own"});
-  if (auto failure = check_coordinates(request.mesh().domain())) return tl::unexpected(*failure);
   return request;
 }
 

@@ -5,8 +5,8 @@
 //   auto request = read_mesh_request(bytes, limits);
 //   if (!request) return refuse(request.error());
 //
-// Errors: MALFORMED_REQUEST, LIMIT_EXCEEDED, BAD_ARRAY, BAD_OPTION, those of a size, and for a job
-// those of a PSLG; all but the first name a field.
+// Errors: MALFORMED_REQUEST, LIMIT_EXCEEDED, BAD_ARRAY, BAD_OPTION, those of a size; all but the
+// first name a field. The PSLG is not checked.
 // The bytes are freed as they are read. Throws std::bad_alloc alone.
 #pragma once
 
@@ -28,8 +28,7 @@ namespace weft::server {
 tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure> read_mesh_request(
     grpc::ByteBuffer bytes, const Limits& limits);
 
-// The mesh, and the name that the client gave to the job. Whoever submits a job does not wait for
-// it; so all that can be refused without a triangulation is refused here.
+// The mesh, and the name that the client gave to the job.
 tl::expected<v1::SubmitJobRequest, Failure> read_submission(grpc::ByteBuffer bytes,
                                                             const Limits& limits);
 

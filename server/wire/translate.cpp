@@ -57,8 +57,10 @@ std::optional<Failure> check_bounds(const std::string& field, const Bounded& bou
   return std::nullopt;
 }
 
+// The bound on the areas of triangles that max_area and max_edge of a region or an area make
+// together.
 template <class Bounded>
-std::optional<double> bound_of(const Bounded& bounded) {
+std::optional<double> max_area_of(const Bounded& bounded) {
   std::optional<double> area;
   if (bounded.has_max_area()) area = bounded.max_area();
   if (!bounded.has_max_edge()) return area;
@@ -102,6 +104,33 @@ std::optional<Failure> check_domain(const v1::Domain& domain) {
     return bad_option("domain.fill", fmt::format("domain.fill is {}, which is not a Fill",
                                                  static_cast<int>(domain.fill())));
   return check_names(domain);
+}
+
+Pslg to_engine(const v1::Domain& domain) {
+  Pslg out;
+  out.points = to_points(domain.points());
+  out.holes = to_points(domain.holes());
+  out.segments.resize(static_cast<std::size_t>(domain.segments_size() / 2));
+  const bool marked = domain.segment_markers_size() != 0;
+  const bool bordering = domain.segment_areas_size() != 0;
+  for (std::size_t i = 0; i < out.segments.size(); ++i) {
+    const std::uint32_t* ends = domain.segments().data() + 2 * i;
+    // 0, for none, becomes kNone.
+    const std::uint32_t area = bordering ? domain.segment_areas().data()[i] - 1 : kNone;
+    out.segments[i] = {ends[0], ends[1], marked ? domain.segment_markers().data()[i] : 0, area};
+  }
+  out.regions.reserve(static_cast<std::size_t>(domain.regions_size()));
+  for (const v1::Region& region : domain.regions())
+    out.regions.push_back({{region.x(), region.y()}, region.id(), max_area_of(region)});
+  out.areas.reserve(static_cast<std::size_t>(domain.areas_size()));
+  for (const v1::Area& area : domain.areas())
+    out.areas.push_back({.region = area.has_region() ? std::optional(area.region()) : std::nullopt,
+                         .priority = area.priority(),
+                         .max_area = max_area_of(area),
+                         .is_hole = area.hole()});
+  out.fill = to_engine(domain.fill());
+  out.snap = domain.snap();
+  return out;
 }
 
 // All of a request but its domain and its size.
@@ -179,46 +208,6 @@ std::optional<Failure> check_shape(const v1::GenerateMeshRequest& request) {
 std::optional<Failure> check_values(const v1::GenerateMeshRequest& request) {
   if (const auto error = check_options(options_of(request))) return failure_of(*error);
   return check_values(request.size());
-}
-
-std::optional<Failure> check_coordinates(const v1::Domain& domain) {
-  const auto error = check_pslg(to_engine(domain));
-  return error ? std::optional(failure_of(*error)) : std::nullopt;
-}
-
-std::optional<double> max_area_of(const v1::Region& region) {
-  return bound_of(region);
-}
-
-std::optional<double> max_area_of(const v1::Area& area) {
-  return bound_of(area);
-}
-
-Pslg to_engine(const v1::Domain& domain) {
-  Pslg out;
-  out.points = to_points(domain.points());
-  out.holes = to_points(domain.holes());
-  out.segments.resize(static_cast<std::size_t>(domain.segments_size() / 2));
-  const bool marked = domain.segment_markers_size() != 0;
-  const bool bordering = domain.segment_areas_size() != 0;
-  for (std::size_t i = 0; i < out.segments.size(); ++i) {
-    const std::uint32_t* ends = domain.segments().data() + 2 * i;
-    // 0, for none, becomes kNone.
-    const std::uint32_t area = bordering ? domain.segment_areas().data()[i] - 1 : kNone;
-    out.segments[i] = {ends[0], ends[1], marked ? domain.segment_markers().data()[i] : 0, area};
-  }
-  out.regions.reserve(static_cast<std::size_t>(domain.regions_size()));
-  for (const v1::Region& region : domain.regions())
-    out.regions.push_back({{region.x(), region.y()}, region.id(), max_area_of(region)});
-  out.areas.reserve(static_cast<std::size_t>(domain.areas_size()));
-  for (const v1::Area& area : domain.areas())
-    out.areas.push_back({.region = area.has_region() ? std::optional(area.region()) : std::nullopt,
-                         .priority = area.priority(),
-                         .max_area = max_area_of(area),
-                         .is_hole = area.hole()});
-  out.fill = to_engine(domain.fill());
-  out.snap = domain.snap();
-  return out;
 }
 
 MeshRequest to_engine(const v1::GenerateMeshRequest& request) {

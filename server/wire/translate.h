@@ -2,8 +2,8 @@
 // Between the wire and the engine: the only place that knows both.
 //
 // Lengths of arrays are checked here, options and the size by the engine, both before a request is
-// admitted. The engine checks coordinates and indices when it runs, those of a job before the job
-// is stored. Errors carry the path of the field as the wire spells it.
+// admitted. The engine checks coordinates and indices when it runs, and those of a job before the
+// job is stored. Errors carry the path of the field as the wire spells it.
 #pragma once
 
 #include <grpcpp/support/byte_buffer.h>
@@ -33,16 +33,8 @@ std::optional<Failure> check_shape(const v1::GenerateMeshRequest& request);
 // nothing.
 std::optional<Failure> check_values(const v1::GenerateMeshRequest& request);
 
-// Refuses what the engine would refuse before it triangulates: check_pslg. Takes linear time, and
-// memory for a copy of the domain meanwhile. REQUIRES: as check_values.
-std::optional<Failure> check_coordinates(const v1::Domain& domain);
-
-// REQUIRES: as check_values.
+// Takes linear time. REQUIRES: as check_values.
 MeshRequest to_engine(const v1::GenerateMeshRequest& request);
-Pslg to_engine(const v1::Domain& domain);
-// The bound on the areas of triangles that max_area and max_edge make together.
-std::optional<double> max_area_of(const v1::Region& region);
-std::optional<double> max_area_of(const v1::Area& area);
 Budget to_budget(const v1::Budget& budget, const Limits& limits);
 double to_seconds(const v1::Budget& budget, const Limits& limits);
 

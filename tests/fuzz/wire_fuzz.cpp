@@ -157,12 +157,13 @@ void judge(const std::uint8_t* data, std::size_t size) {
   must(budget.triangle_limit <= kLimits.max_triangles && budget.max_bytes <= kLimits.max_bytes &&
            seconds >= 0 && seconds <= kLimits.max_seconds,
        "budget", "beyond the limits");
-  must(expected_bytes(request, kLimits) <= kLimits.max_bytes, "budget", "it weighs more");
+  const MeshRequest converted = to_engine(request);
+  must(estimate(converted, budget).bytes <= kLimits.max_bytes, "budget", "it weighs more");
   must(to_threads(request.threads(), 4) <= 4, "budget", "threads");
 
   weft::Run run(budget);
   CollectedMesh mesh;
-  const auto summary = stream(to_engine(request), mesh, run);
+  const auto summary = stream(converted, mesh, run);
   if (!summary) {
     must(summary.error().code != ErrorCode::kInternal, "internal", summary.error().message);
     return refuse(failure_of(summary.error()));

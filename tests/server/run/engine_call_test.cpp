@@ -9,6 +9,7 @@
 
 #include "engine/base/context.h"
 #include "server/run/memory_estimate.h"
+#include "server/wire/translate.h"
 #include "tests/server/harness.h"
 
 namespace weft::server::testing {
@@ -33,14 +34,13 @@ struct LightRun {
     RunQueue queue({.light_slots = 1, .capacity = 1, .max_light_estimate = 1});
     Event ended;
     queue.push({}, [&](RunQueue::Slot& slot) {
-      outcome =
-          call_engine(engine, std::make_unique<v1::GenerateMeshRequest>(valid_request()), sink,
-                      {.run = run,
-                       .slot = slot,
-                       .besides = 0,
-                       .deadline = deadline,
-                       .pool = pool,
-                       .threads = 2});
+      outcome = call_engine(engine, to_engine(valid_request()), sink,
+                            {.run = run,
+                             .slot = slot,
+                             .besides = 0,
+                             .deadline = deadline,
+                             .pool = pool,
+                             .threads = 2});
       was_promoted = slot.priority() == RunQueue::PriorityClass::kHeavy;
       ended.set();
     });
