@@ -48,7 +48,7 @@
 #include "server/run/distrust.h"
 #include "server/run/memory_budget.h"
 #include "server/run/mutex.h"
-#include "server/wire/errors.h"
+#include "server/wire/failure.h"
 
 namespace weft::server {
 
