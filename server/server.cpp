@@ -114,10 +114,10 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
       service_(with_info(options, store != nullptr), admission_, metrics_, engine, pool_, queue_,
                log_) {
   metrics_.add_queue("calls", [this] {
-    QueueFigures figures = service_.figures();
-    const double of_jobs = jobs_ ? jobs_->figures().admitted_bytes : 0;
-    figures.admitted_bytes = std::max(0.0, static_cast<double>(memory_.reserved()) - of_jobs);
-    return figures;
+    QueueStats stats = service_.stats();
+    const double of_jobs = jobs_ ? jobs_->stats().admitted_bytes : 0;
+    stats.admitted_bytes = std::max(0.0, static_cast<double>(memory_.reserved()) - of_jobs);
+    return stats;
   });
   if (!store) return;
   JobOptions jobs = options.jobs;
@@ -128,7 +128,7 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
   jobs.runner.worker = options.service.instance;
   jobs_.emplace(std::move(store), std::move(jobs), admission_, metrics_, engine, pool_, memory_,
                 queue_, log_);
-  metrics_.add_queue("jobs", [this] { return jobs_->figures(); });
+  metrics_.add_queue("jobs", [this] { return jobs_->stats(); });
 }
 
 tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOptions& options,

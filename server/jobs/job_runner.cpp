@@ -50,13 +50,12 @@ void JobRunner::stop() {
   collector_.join();
 }
 
-QueueFigures JobRunner::figures() const {
-  QueueFigures figures;
+QueueStats JobRunner::stats() const {
+  QueueStats stats;
   MutexLock lock(mutex_);
-  figures.running = static_cast<double>(runs_.size());
-  for (const auto& run : runs_)
-    figures.admitted_bytes += static_cast<double>(run->reserved_bytes());
-  return figures;
+  stats.running = static_cast<double>(runs_.size());
+  for (const auto& run : runs_) stats.admitted_bytes += static_cast<double>(run->reserved_bytes());
+  return stats;
 }
 
 // An exception here, such as for lack of memory, must not end the server: the step is tried again.

@@ -8,7 +8,7 @@
 //   store.on_change([&] { runner.wake(); });
 //   ... runner.stop();
 //
-// Thread-safety: `wake`, `stop` and `figures` may be called from any thread.
+// Thread-safety: `wake`, `stop` and `stats` may be called from any thread.
 #pragma once
 
 #include <chrono>
@@ -50,7 +50,7 @@ class JobRunner final : private RunQueue::Source {
   void stop();
 
   // The number of tasks that run here, and the memory that they have.
-  QueueFigures figures() const;
+  QueueStats stats() const;
 
  private:
   class Listed;

@@ -44,11 +44,11 @@ void JobSystem::notify() {
   if (runner_) runner_->wake();
 }
 
-QueueFigures JobSystem::figures() {
-  QueueFigures figures;
-  if (runner_) figures = runner_->figures();
-  if (const auto stored = store_->figures()) figures.waiting = static_cast<double>(stored->queued);
-  return figures;
+QueueStats JobSystem::stats() {
+  QueueStats stats;
+  if (runner_) stats = runner_->stats();
+  if (const auto stored = store_->stats()) stats.waiting = static_cast<double>(stored->queued);
+  return stats;
 }
 
 void JobSystem::close() {

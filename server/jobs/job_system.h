@@ -38,7 +38,7 @@ class JobSystem {
   JobService* service() { return service_ ? &*service_ : nullptr; }
 
   // Calls the store.
-  QueueFigures figures();
+  QueueStats stats();
 
   // Refuses new calls and puts running tasks back into the queue. Open calls go on.
   void close();

@@ -57,11 +57,11 @@ void MeshService::stop_all() {
   for (const auto& call : calls_.all()) call->stop(StopCause::kStopping);
 }
 
-QueueFigures MeshService::figures() const {
-  const RunQueue::Figures figures = queue_.figures();
-  return {.waiting = static_cast<double>(figures.waiting),
-          .running = static_cast<double>(figures.running),
-          .pausing = static_cast<double>(figures.pausing)};
+QueueStats MeshService::stats() const {
+  const RunQueue::Stats stats = queue_.stats();
+  return {.waiting = static_cast<double>(stats.waiting),
+          .running = static_cast<double>(stats.running),
+          .pausing = static_cast<double>(stats.pausing)};
 }
 
 void MeshService::generate_mesh(AdmittedCall& call) {

@@ -65,7 +65,7 @@ class MeshService final : public RawService {
   // Ends every open call with UNAVAILABLE.
   void stop_all();
 
-  QueueFigures figures() const;
+  QueueStats stats() const;
 
  private:
   void generate_mesh(AdmittedCall& call);

@@ -96,9 +96,9 @@ void Metrics::job_became(std::string_view state) {
   jobs_.Add({{"state", std::string(state)}}).Increment();
 }
 
-void Metrics::add_queue(std::string name, std::function<QueueFigures()> figures) {
+void Metrics::add_queue(std::string name, std::function<QueueStats()> stats) {
   std::lock_guard lock(mutex_);
-  queues_.push_back({std::move(name), std::move(figures)});
+  queues_.push_back({std::move(name), std::move(stats)});
 }
 
 std::string Metrics::text() const {
@@ -114,11 +114,11 @@ std::string Metrics::text() const {
   auto bytes =
       gauge_family("weft_admission_bytes", "Memory that calls or jobs at work were admitted with");
   for (const Queue& queue : queues) {
-    const QueueFigures figures = queue.figures();
-    add_gauge(waiting, queue.name, figures.waiting);
-    add_gauge(running, queue.name, figures.running);
-    add_gauge(pausing, queue.name, figures.pausing);
-    add_gauge(bytes, queue.name, figures.admitted_bytes);
+    const QueueStats stats = queue.stats();
+    add_gauge(waiting, queue.name, stats.waiting);
+    add_gauge(running, queue.name, stats.running);
+    add_gauge(pausing, queue.name, stats.pausing);
+    add_gauge(bytes, queue.name, stats.admitted_bytes);
   }
   std::vector<prometheus::MetricFamily> families = registry_.Collect();
   for (auto* family : {&waiting, &running, &pausing, &bytes})

@@ -4,7 +4,7 @@
 //
 //   Metrics metrics("0.1.0", "2");
 //   metrics.call_ended("GenerateMesh", grpc::StatusCode::OK, 0.25);
-//   metrics.add_queue("calls", [&] { return QueueFigures{.waiting = 3, .running = 4}; });
+//   metrics.add_queue("calls", [&] { return QueueStats{.waiting = 3, .running = 4}; });
 //   std::cout << metrics.text();
 //
 // Cost: an atomic addition or a short lock, at the end of calls and once per
@@ -27,7 +27,7 @@
 namespace weft::server {
 
 // The state of a queue at the moment of a scrape.
-struct QueueFigures {
+struct QueueStats {
   double waiting = 0;
   double running = 0;
   double pausing = 0;
@@ -60,9 +60,9 @@ class Metrics {
   // Counts leases that ran out. Each is found by only one server of a store.
   void leases_lost(std::uint64_t count) { leases_lost_.Increment(static_cast<double>(count)); }
 
-  // `figures` is called at every scrape, on the scraping thread, until the metrics are destroyed or
+  // `stats` is called at every scrape, on the scraping thread, until the metrics are destroyed or
   // scraping ends.
-  void add_queue(std::string name, std::function<QueueFigures()> figures);
+  void add_queue(std::string name, std::function<QueueStats()> stats);
 
   // The text format of Prometheus, version 0.0.4.
   std::string text() const;
@@ -70,7 +70,7 @@ class Metrics {
  private:
   struct Queue {
     std::string name;
-    std::function<QueueFigures()> figures;
+    std::function<QueueStats()> stats;
   };
 
   prometheus::Registry registry_;

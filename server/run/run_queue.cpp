@@ -54,7 +54,7 @@ void RunQueue::stop() {
 
 void RunQueue::add_thread_if_short() {
   const std::size_t wanted = heavy_.count + light_.count + (source_ != nullptr ? 1 : 0) +
-                             figures_.pausing + promoted_.size();
+                             stats_.pausing + promoted_.size();
   try {
     if (threads_.size() < wanted && !stopping_) threads_.emplace_back(&RunQueue::work, this);
   } catch (const std::exception&) {
@@ -80,13 +80,13 @@ void RunQueue::begin(Slot& slot) {
   Slots& slots = of(slot.priority_);
   if (!slot.client_.empty()) ++slots.running_of[slot.client_];  // may throw std::bad_alloc
   ++slots.running;
-  if (slot.pushed_) ++figures_.running;
+  if (slot.pushed_) ++stats_.running;
 }
 
 void RunQueue::end(const Slot& slot) {
   Slots& slots = of(slot.priority_);
   --slots.running;
-  if (slot.pushed_) --figures_.running;
+  if (slot.pushed_) --stats_.running;
   slots.may_be_more |= !slot.pushed_ && asked_ != &slot;
   if (const auto found = slots.running_of.find(slot.client_); found != slots.running_of.end()) {
     slots.may_be_more |= slots.left_out && found->second >= slots.of_client;  // of this client
@@ -141,7 +141,7 @@ bool RunQueue::next_pushed(Slot& slot) {
     slot.work_ = std::move(run->work);
     slot.pushed_ = true;
     client->runs.erase(run);
-    --figures_.waiting;
+    --stats_.waiting;
     if (client->runs.empty())
       round_robin_.erase(client);
     else
@@ -177,7 +177,7 @@ std::optional<Failure> RunQueue::push(Ticket ticket, Work work) {
   for (const Slot* slot : promoted_) of_client += slot->pushed_ && slot->client_ == ticket.client;
   const bool has_room_of_its_own = options_.client_share < 1 && of_client == 0;
   const std::size_t all = options_.capacity;
-  if (figures_.waiting >= idle + all * (has_room_of_its_own ? 2 : 1))
+  if (stats_.waiting >= idle + all * (has_room_of_its_own ? 2 : 1))
     return Failure{Reason::kQueueFull, "",
                    fmt::format("{} calls wait already; this server's limit is {}", all, all)};
   if (of_client >= std::min(idle, heavy_.of_client) + capacity_of_client_)
@@ -188,7 +188,7 @@ std::optional<Failure> RunQueue::push(Ticket ticket, Work work) {
   if (client == round_robin_.end())
     client = round_robin_.insert(round_robin_.end(), Client{ticket.client, {}});
   client->runs.push_back({std::move(ticket), std::move(work)});
-  ++figures_.waiting;
+  ++stats_.waiting;
   idle_.notify_one();
   return std::nullopt;
 }
@@ -200,7 +200,7 @@ bool RunQueue::remove(const void* owner) {
         client->runs, [owner](const Waiting& run) { return run.ticket.owner == owner; });
     if (found == client->runs.end()) continue;
     client->runs.erase(found);
-    --figures_.waiting;
+    --stats_.waiting;
     if (client->runs.empty()) round_robin_.erase(client);
     return true;
   }
@@ -212,9 +212,9 @@ void RunQueue::memory_released() {
   idle_.notify_all();
 }
 
-RunQueue::Figures RunQueue::figures() const {
+RunQueue::Stats RunQueue::stats() const {
   MutexLock lock(mutex_);
-  return figures_;
+  return stats_;
 }
 
 // --- runs of the source ---
@@ -280,13 +280,13 @@ void RunQueue::leave(const Slot& slot) {
 
 RunQueue::Pause::Pause(Slot& slot) : slot_(slot) {
   MutexLock lock(slot.queue_.mutex_);
-  ++slot.queue_.figures_.pausing;
+  ++slot.queue_.stats_.pausing;
   slot.queue_.leave(slot);
 }
 
 RunQueue::Pause::~Pause() {
   MutexLock lock(slot_.queue_.mutex_);
-  --slot_.queue_.figures_.pausing;
+  --slot_.queue_.stats_.pausing;
   slot_.queue_.begin(slot_);
 }
 
@@ -298,7 +298,7 @@ void RunQueue::Slot::promote(const std::function<bool()>& stopped) {
   if (queue_.options_.client_share < 1 && !client_.empty())
     queue_.distrust_.turned_out_heavy(client_, Clock::now());
   const auto self = queue_.promoted_.insert(queue_.promoted_.end(), this);
-  if (pushed_) ++queue_.figures_.waiting;
+  if (pushed_) ++queue_.stats_.waiting;
   queue_.leave(*this);
   priority_ = PriorityClass::kHeavy;
   reservation_.mark_blocked(true);  // the runs in the slots may wait for this one's memory
@@ -312,7 +312,7 @@ void RunQueue::Slot::promote(const std::function<bool()>& stopped) {
   }
   reservation_.mark_blocked(false);
   queue_.promoted_.erase(self);
-  if (pushed_) --queue_.figures_.waiting;
+  if (pushed_) --queue_.stats_.waiting;
   queue_.begin(*this);
   queue_.heavy_slot_.notify_all();  // a further slot may be free: other runs let this one go first
   queue_.idle_.notify_one();
@@ -328,8 +328,7 @@ void RunQueue::work() {
       idle_.wait_for(lock.native(), kSourceTimeout);
       continue;
     }
-    if (figures_.waiting > 0)
-      idle_.notify_one();  // this thread may have been woken for another run
+    if (stats_.waiting > 0) idle_.notify_one();  // this thread may have been woken for another run
     Source* const source = slot.pushed_ ? nullptr : source_;
     lock.unlock();
     source != nullptr ? source->run_next(slot) : slot.work_(slot);

@@ -164,12 +164,12 @@ class RunQueue {
 
   // The numbers of runs that were pushed. A run that pauses is not running; one that is promoted
   // waits until it has a heavy slot.
-  struct Figures {
+  struct Stats {
     std::size_t waiting = 0;
     std::size_t running = 0;
     std::size_t pausing = 0;
   };
-  Figures figures() const;
+  Stats stats() const;
 
  private:
   struct Waiting {
@@ -221,7 +221,7 @@ class RunQueue {
   std::list<Client> round_robin_ ABSL_GUARDED_BY(mutex_);  // the next client first
   std::list<Slot*> promoted_ ABSL_GUARDED_BY(mutex_);      // that wait for a heavy slot
   Distrust distrust_ ABSL_GUARDED_BY(mutex_);
-  Figures figures_ ABSL_GUARDED_BY(mutex_);
+  Stats stats_ ABSL_GUARDED_BY(mutex_);
   Source* source_ ABSL_GUARDED_BY(mutex_) = nullptr;
   std::size_t of_source_ ABSL_GUARDED_BY(mutex_) = 0;    // threads that are in the source
   const Slot* asked_ ABSL_GUARDED_BY(mutex_) = nullptr;  // for which it looks for a run

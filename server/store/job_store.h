@@ -191,7 +191,7 @@ struct Collected {
   bool operator==(const Collected&) const = default;
 };
 
-struct StoreFigures {
+struct StoreStats {
   std::uint64_t queued = 0;  // tasks
   std::uint64_t running = 0;
   std::uint64_t queued_estimate = 0;
@@ -246,7 +246,7 @@ class JobStore {
   // --- for the house-keeping of any server, at any time ---
   virtual StoreResult<Reaped> reap(const RetryPolicy& policy) = 0;
   virtual StoreResult<Collected> collect(const KeepPolicy& policy) = 0;
-  virtual StoreResult<StoreFigures> figures() = 0;
+  virtual StoreResult<StoreStats> stats() = 0;
 
   // `listener` is called, on any thread, when something may have changed: a job, its progress, a
   // task to claim. It is a hint: changes are not announced while a connection is down, and it may

@@ -166,7 +166,7 @@ class Caller {
       }
       (void)store_.chunk(std::string(key));
     }
-    (void)store_.figures();
+    (void)store_.stats();
   }
 
   void work() {

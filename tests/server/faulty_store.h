@@ -76,8 +76,8 @@ class FaultyStore final : public JobStore {
   StoreResult<Collected> collect(const KeepPolicy& policy) override {
     return unless<Collected>("collect", [&] { return store_->collect(policy); });
   }
-  StoreResult<StoreFigures> figures() override {
-    return unless<StoreFigures>("figures", [&] { return store_->figures(); });
+  StoreResult<StoreStats> stats() override {
+    return unless<StoreStats>("stats", [&] { return store_->stats(); });
   }
   void on_change(std::function<void()> listener) override {
     store_->on_change(std::move(listener));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Garbage collection of the PostgreSQL store: leases that ran out, what was kept too long, figures.
+// Garbage collection of the PostgreSQL store: leases that ran out, what was kept too long, stats.
 // Large deletions are done in steps. Servers that collect at the same time do not wait for each
 // other.
 #include "server/store/garbage_collection.h"
@@ -240,9 +240,9 @@ StoreResult<Collected> PostgresJobs::collect(const KeepPolicy& policy) {
   return all;
 }
 
-StoreResult<StoreFigures> PostgresJobs::figures() {
+StoreResult<StoreStats> PostgresJobs::stats() {
   return core_->run(Begin::kOneStatement, Repeat::kWhenUnclear, [&](Transaction& transaction) {
-    StoreFigures figures;
+    StoreStats stats;
     Rows rows = transaction.run(
         "SELECT count(*) FILTER (WHERE state = 0), count(*) FILTER (WHERE state = 1), "
         "least(coalesce(sum(weight) FILTER (WHERE state = 0), 0), 9223372036854775807)::bigint, "
@@ -250,15 +250,15 @@ StoreResult<StoreFigures> PostgresJobs::figures() {
         "(SELECT count(*) FROM weft_mesh), "
         "(SELECT coalesce(sum(size), 0)::bigint FROM weft_chunk) FROM weft_task");
     if (rows.next()) {
-      figures.queued = to_unsigned(rows.integer(0));
-      figures.running = to_unsigned(rows.integer(1));
-      figures.queued_estimate = to_unsigned(rows.integer(2));
+      stats.queued = to_unsigned(rows.integer(0));
+      stats.running = to_unsigned(rows.integer(1));
+      stats.queued_estimate = to_unsigned(rows.integer(2));
       const std::int64_t waited = std::max<std::int64_t>(rows.integer(3), 0);
-      figures.oldest_queued_seconds = 1e-6 * static_cast<double>(waited);
-      figures.meshes = to_unsigned(rows.integer(4));
-      figures.chunk_bytes = to_unsigned(rows.integer(5));
+      stats.oldest_queued_seconds = 1e-6 * static_cast<double>(waited);
+      stats.meshes = to_unsigned(rows.integer(4));
+      stats.chunk_bytes = to_unsigned(rows.integer(5));
     }
-    return figures;
+    return stats;
   });
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Garbage collection of the SQLite store: leases that ran out, what was kept too long, figures.
+// Garbage collection of the SQLite store: leases that ran out, what was kept too long, stats.
 // Large deletions are done in steps, so that others can write in between.
 #include <algorithm>
 
@@ -204,20 +204,20 @@ StoreResult<Collected> SqliteJobs::collect(const KeepPolicy& policy) {
   return all;
 }
 
-StoreResult<StoreFigures> SqliteJobs::figures() {
+StoreResult<StoreStats> SqliteJobs::stats() {
   return core_->read([&](Transaction& transaction) {
-    StoreFigures figures;
+    StoreStats stats;
     {
       Rows rows = transaction.run(
           "SELECT count(*), CAST(total(weight) AS INTEGER), min(created) FROM task WHERE state = "
           "0");
       if (rows.next()) {
-        figures.queued = to_unsigned(rows.integer(0));
-        figures.queued_estimate = to_unsigned(rows.integer(1));
-        if (figures.queued != 0) {
+        stats.queued = to_unsigned(rows.integer(0));
+        stats.queued_estimate = to_unsigned(rows.integer(1));
+        if (stats.queued != 0) {
           const std::int64_t waited =
               to_micros(core_->now()) - to_micros(from_micros(rows.integer(2)));
-          figures.oldest_queued_seconds =
+          stats.oldest_queued_seconds =
               1e-6 * static_cast<double>(std::max<std::int64_t>(waited, 0));
         }
       }
@@ -226,11 +226,11 @@ StoreResult<StoreFigures> SqliteJobs::figures() {
         "SELECT (SELECT count(*) FROM task WHERE state = 1), (SELECT count(*) FROM mesh), "
         "(SELECT coalesce(sum(size), 0) FROM chunk)");
     if (rows.next()) {
-      figures.running = to_unsigned(rows.integer(0));
-      figures.meshes = to_unsigned(rows.integer(1));
-      figures.chunk_bytes = to_unsigned(rows.integer(2));
+      stats.running = to_unsigned(rows.integer(0));
+      stats.meshes = to_unsigned(rows.integer(1));
+      stats.chunk_bytes = to_unsigned(rows.integer(2));
     }
-    return figures;
+    return stats;
   });
 }
 

@@ -43,7 +43,7 @@ class SqliteJobs final : public JobStore {
 
   StoreResult<Reaped> reap(const RetryPolicy& policy) override;
   StoreResult<Collected> collect(const KeepPolicy& policy) override;
-  StoreResult<StoreFigures> figures() override;
+  StoreResult<StoreStats> stats() override;
 
   void on_change(std::function<void()> listener) override { core_->on_change(std::move(listener)); }
 

@@ -66,8 +66,8 @@ class SlotShare : public ::testing::Test {
   void end_all() {
     all_may_end_.set();
     EXPECT_TRUE(eventually([&] {
-      const auto figures = store_->figures();
-      return figures && figures->queued + figures->running == 0;
+      const auto stats = store_->stats();
+      return stats && stats->queued + stats->running == 0;
     }));
   }
 

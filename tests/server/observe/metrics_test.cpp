@@ -94,9 +94,9 @@ TEST(Metrics, AskQueuesWhenTheyAreScraped) {
   Metrics metrics("v", "e");
   double waiting = 3;
   metrics.add_queue("calls", [&] {
-    return QueueFigures{.waiting = waiting, .running = 2, .pausing = 7, .admitted_bytes = 4096};
+    return QueueStats{.waiting = waiting, .running = 2, .pausing = 7, .admitted_bytes = 4096};
   });
-  metrics.add_queue("jobs", [] { return QueueFigures{}; });
+  metrics.add_queue("jobs", [] { return QueueStats{}; });
   EXPECT_EQ(value_of(metrics.text(), "weft_queue_length{queue=\"calls\"}"), 3);
   waiting = 5;
   const std::string text = metrics.text();

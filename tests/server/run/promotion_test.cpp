@@ -41,8 +41,8 @@ TEST(PromotedRun, GivesItsLightSlotToAnotherAndWaitsForAHeavyOne) {
   ASSERT_TRUE(pushed(queue, plain([&] { light_ran.set(); }), "c", 10));
   EXPECT_TRUE(light_ran.wait());
   EXPECT_FALSE(has_moved);
-  EXPECT_EQ(queue.figures().waiting, 1u);
-  EXPECT_EQ(queue.figures().pausing, 0u);
+  EXPECT_EQ(queue.stats().waiting, 1u);
+  EXPECT_EQ(queue.stats().pausing, 0u);
   busy.release.set();
   EXPECT_TRUE(moved.wait());
 }
@@ -85,7 +85,7 @@ class DistrustInTheQueue : public testing::TestWithParam<double> {
         client, 10));
     EXPECT_TRUE(moves.wait());
     // It waits for the other slot until it has seen that it is to stop.
-    while (queue_.figures().running > 1 || queue_.figures().waiting > 0) std::this_thread::yield();
+    while (queue_.stats().running > 1 || queue_.stats().waiting > 0) std::this_thread::yield();
   }
 
   Busy busy_;
@@ -107,7 +107,7 @@ TEST_P(DistrustInTheQueue,
   ASSERT_TRUE(pushed(queue_, plain([&] { of_c.set(); }), "c", 10));
   EXPECT_TRUE(of_c.wait());
   if (GetParam() < 1) {
-    EXPECT_EQ(queue_.figures().waiting, 1u) << "b is for the heavy slot";
+    EXPECT_EQ(queue_.stats().waiting, 1u) << "b is for the heavy slot";
   } else {
     EXPECT_TRUE(of_b.wait());
   }
@@ -157,9 +157,9 @@ TEST(PromotedRun, LeavesAllSlotsAsTheyWere) {
           ++moved;
         },
         "a", 10));
-  while (moved < kMoving || queue.figures().running > 0) std::this_thread::yield();
-  EXPECT_EQ(queue.figures().waiting, 0u);
-  EXPECT_EQ(queue.figures().pausing, 0u);
+  while (moved < kMoving || queue.stats().running > 0) std::this_thread::yield();
+  EXPECT_EQ(queue.stats().waiting, 0u);
+  EXPECT_EQ(queue.stats().pausing, 0u);
   Event all_run;
   std::atomic<int> at_once{0};
   for (int i = 0; i < 4; ++i)

@@ -78,14 +78,14 @@ TEST(RunQueue, GivesTheSlotOfAJobThatPausesToAnother) {
       const RunQueue::Pause pause(slot);
       pauses.set();
       EXPECT_TRUE(other_ran.wait());
-      EXPECT_EQ(queue.figures().pausing, 1u);
+      EXPECT_EQ(queue.stats().pausing, 1u);
     }
-    EXPECT_EQ(queue.figures().pausing, 0u);
-    while (queue.figures().running > 1) std::this_thread::yield();  // the other one is about to end
+    EXPECT_EQ(queue.stats().pausing, 0u);
+    while (queue.stats().running > 1) std::this_thread::yield();  // the other one is about to end
     ended.set();
   }));
   ASSERT_TRUE(pauses.wait());
-  ASSERT_TRUE(pushed(queue, plain([&] { EXPECT_EQ(queue.figures().running, 1u); })));
+  ASSERT_TRUE(pushed(queue, plain([&] { EXPECT_EQ(queue.stats().running, 1u); })));
   ASSERT_TRUE(pushed(queue, plain([&] { other_ran.set(); })));
   EXPECT_TRUE(ended.wait());
 }
@@ -109,7 +109,7 @@ TEST(RunQueue, RunsNoMoreThanItsSlotsOnceWhatPausedHasGoneOn) {
   }
   EXPECT_TRUE(all_pause.wait());
   go_on.set();
-  while (queue.figures().pausing + queue.figures().running > 0) std::this_thread::yield();
+  while (queue.stats().pausing + queue.stats().running > 0) std::this_thread::yield();
   for (int i = left; i > 0; --i) {
     ASSERT_TRUE(pushed(queue, plain([&] {
                          most = std::max(most.load(), ++running);
@@ -169,7 +169,7 @@ TEST(RunQueue, PassesOverAJobThatNoMemoryIsLeftFor) {
   queue.push({.client = "heavy", .estimate = 60}, plain([&] { heavy_ran.set(); }));
   queue.push({.client = "light", .estimate = 10}, plain([&] { light_ran.set(); }));
   ASSERT_TRUE(light_ran.wait());
-  EXPECT_EQ(queue.figures().waiting, 1);
+  EXPECT_EQ(queue.stats().waiting, 1);
   reserved.reset();
   queue.memory_released();
   EXPECT_TRUE(heavy_ran.wait());
@@ -203,7 +203,7 @@ TEST(RunQueue, HasASlotForLightJobsWhileHeavyOnesWait) {
   queue.push({.client = "a", .estimate = 1000}, plain([] {}));
   queue.push({.client = "a", .estimate = 10}, plain([&] { ran.set(); }));
   EXPECT_TRUE(ran.wait());
-  EXPECT_EQ(queue.figures().waiting, 1);
+  EXPECT_EQ(queue.stats().waiting, 1);
   busy.release.set();
 }
 
@@ -251,7 +251,7 @@ TEST(RunQueue, LetsOneClientHaveItsShareOfTheSlots) {
   ASSERT_TRUE(pushed(queue, plain([&] { other_ran.set(); }), "b"));
   EXPECT_TRUE(other_ran.wait());
   release.set();
-  while (queue.figures().waiting + queue.figures().running > 0) std::this_thread::yield();
+  while (queue.stats().waiting + queue.stats().running > 0) std::this_thread::yield();
 }
 
 }  // namespace

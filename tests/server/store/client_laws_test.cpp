@@ -59,7 +59,7 @@ TEST_P(StoreTest, ARequestIdFindsTheSameJobAgain) {
   EXPECT_EQ(again->outcome, SubmitOutcome::kFound);
   EXPECT_EQ(again->job.id, job.id);
   EXPECT_EQ(list({.owner = "ann"}).size(), 1U);
-  EXPECT_EQ(figures().queued, 1U);
+  EXPECT_EQ(stats().queued, 1U);
 }
 
 TEST_P(StoreTest, ARequestIdFindsAJobThatHasEnded) {
@@ -76,7 +76,7 @@ TEST_P(StoreTest, ARequestIdForAnotherKeyIsAConflictAndChangesNothing) {
   const auto other = store_->submit({.owner = "ann", .request_id = "r", .key = key_of("another")});
   EXPECT_EQ(other->outcome, SubmitOutcome::kConflict);
   EXPECT_EQ(other->job.id, job.id);
-  EXPECT_EQ(figures().queued, 1U);
+  EXPECT_EQ(stats().queued, 1U);
   EXPECT_EQ(list({.owner = "ann"}).size(), 1U);
 }
 
@@ -89,7 +89,7 @@ TEST_P(StoreTest, OwnersUseTheSameRequestIdForJobsOfTheirOwn) {
 TEST_P(StoreTest, JobsOfTheSameKeyShareATask) {
   const JobRecord one = submit("ann", "k");
   const JobRecord two = submit("bob", "k");
-  EXPECT_EQ(figures().queued, 1U);
+  EXPECT_EQ(stats().queued, 1U);
   const Claim claimed = claim();
   EXPECT_EQ(claimed.owner, "ann");
   EXPECT_EQ(claimed.job_id, one.id);
@@ -132,7 +132,7 @@ TEST_P(StoreTest, NoCacheSharesNoTask) {
   const JobRecord own = submit({.owner = "ann", .key = key_of("k"), .no_cache = true});
   const JobRecord another = submit({.owner = "ann", .key = key_of("k"), .no_cache = true});
   submit("ann", "k");
-  EXPECT_EQ(figures().queued, 3U);
+  EXPECT_EQ(stats().queued, 3U);
   ASSERT_EQ(store_->finish(claim().ref, put({"a"})), Held::kHeld);
   EXPECT_EQ(get(shared).state, JobState::kSucceeded);
   EXPECT_EQ(get(own).state, JobState::kQueued);
@@ -165,7 +165,7 @@ TEST_P(StoreTest, AFullQueueTakesNoFurtherTask) {
   const auto refused = store_->submit({.owner = "cid", .key = key_of("3"), .max_queued = 2});
   EXPECT_EQ(refused->outcome, SubmitOutcome::kQueueFull);
   EXPECT_TRUE(list({.owner = "cid"}).empty());
-  EXPECT_EQ(figures().queued, 2U);
+  EXPECT_EQ(stats().queued, 2U);
   claim();
   submit({.owner = "cid", .key = key_of("3"), .max_queued = 2});
 }

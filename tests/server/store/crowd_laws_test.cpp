@@ -50,7 +50,7 @@ TEST_P(StoreTest, ManyWhoAskForTheSameMeshShareOneTask) {
     }
   });
   EXPECT_EQ(accepted, kThreads * 20);
-  EXPECT_EQ(figures().queued, 1U);
+  EXPECT_EQ(stats().queued, 1U);
   ASSERT_EQ(store_->finish(claim().ref, put({"a"})), Held::kHeld);
   for (int thread = 0; thread < kThreads; ++thread) {
     const ListQuery succeeded{.owner = "owner " + std::to_string(thread),
@@ -76,7 +76,7 @@ TEST_P(StoreTest, ManyWhoSendTheSameRequestIdFindOneJob) {
   });
   EXPECT_EQ(accepted, kRequests);
   EXPECT_EQ(ids.size(), static_cast<std::size_t>(kRequests));
-  EXPECT_EQ(figures().queued, static_cast<std::uint64_t>(kRequests));
+  EXPECT_EQ(stats().queued, static_cast<std::uint64_t>(kRequests));
 }
 
 TEST_P(StoreTest, ManyWhoSubmitAtOnceFillTheQueueExactly) {
@@ -90,7 +90,7 @@ TEST_P(StoreTest, ManyWhoSubmitAtOnceFillTheQueueExactly) {
     }
   });
   EXPECT_EQ(accepted, 50);
-  EXPECT_EQ(figures().queued, 50U);
+  EXPECT_EQ(stats().queued, 50U);
 }
 
 // Submissions join while their task is settled: whichever comes first, none is left behind.
@@ -103,7 +103,7 @@ TEST_P(StoreTest, WhoeverJoinsWhileTheTaskEndsIsServedOrQueuedAnew) {
       return;
     }
     const StoredMesh made = put({"a"});
-    while (submitting > 0 || figures().queued + figures().running > 0) {
+    while (submitting > 0 || stats().queued + stats().running > 0) {
       const auto found = try_claim();
       if (!found) continue;
       const auto held =
@@ -130,7 +130,7 @@ TEST_P(StoreTest, CancellingWhileOthersJoinLeavesNoJobBehind) {
       }
     }
   });
-  EXPECT_EQ(figures().queued, 1U);
+  EXPECT_EQ(stats().queued, 1U);
   ASSERT_EQ(store_->finish(claim().ref, put({"a"})), Held::kHeld);
   const ListQuery succeeded{.owner = "ann", .states = {JobState::kSucceeded}, .limit = 1000};
   EXPECT_EQ(list(succeeded).size(), static_cast<std::size_t>(kept));
@@ -145,14 +145,14 @@ TEST_P(StoreTest, ATaskMayLoseItsLastJobWhileAnotherJoins) {
       EXPECT_EQ((*cancelled)->state, JobState::kCancelled);
     }
   });
-  EXPECT_EQ(figures().queued, 0U);
+  EXPECT_EQ(stats().queued, 0U);
 }
 
 TEST_P(StoreTest, ManyWhoPutTheSameChunksStoreThemOnce) {
   together([&](int thread) {
     for (int i = 0; i < 50; ++i) put({"chunk " + std::to_string((i + 7 * thread) % 50)});
   });
-  EXPECT_EQ(figures().chunk_bytes, 10U * 7 + 40U * 8);
+  EXPECT_EQ(stats().chunk_bytes, 10U * 7 + 40U * 8);
 }
 
 // Law 3 against the house-keeping: what `finish` has accepted is whole, whatever is collected.

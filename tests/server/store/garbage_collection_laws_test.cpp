@@ -89,7 +89,7 @@ TEST_P(StoreTest, OverTheBytesTheMeshesGoThatWereLongestNotAskedFor) {
   EXPECT_EQ(collected->bytes, 2000U);
   EXPECT_TRUE(mesh("0") && mesh("3"));
   EXPECT_FALSE(mesh("1") || mesh("2"));
-  EXPECT_EQ(figures().chunk_bytes, 2000U);
+  EXPECT_EQ(stats().chunk_bytes, 2000U);
   EXPECT_EQ(store_->collect(policy)->meshes, 0U);
 }
 
@@ -100,7 +100,7 @@ TEST_P(StoreTest, ManyMeshesAreCollectedInOneCall) {
   EXPECT_EQ(collected->jobs, 120U);
   EXPECT_EQ(collected->meshes, 120U);
   EXPECT_EQ(collected->chunks, 120U);
-  EXPECT_EQ(figures().chunk_bytes, 0U);
+  EXPECT_EQ(stats().chunk_bytes, 0U);
 }
 
 TEST_P(StoreTest, ChunksOfAMeshThatIsBeingMadeStayForTheirLooseAge) {
@@ -123,7 +123,7 @@ TEST_P(StoreTest, ChunksOfAMeshThatIsBeingMadeStayForTheirLooseAge) {
 TEST_P(StoreTest, TheChunksThatAReplacedMeshLeavesAreCollected) {
   made("k", {"a", "shared"});
   made("k", {"b", "shared"});
-  EXPECT_EQ(figures().meshes, 1U);
+  EXPECT_EQ(stats().meshes, 1U);
   const auto collected =
       store_->collect({.age = hours(1), .bytes = kAnyBytes, .loose_age = seconds(0)});
   ASSERT_TRUE(collected) << collected.error().message;
@@ -138,7 +138,7 @@ TEST_P(StoreTest, AJobOutlivesItsMesh) {
   EXPECT_EQ(get(job).state, JobState::kSucceeded);
   EXPECT_FALSE(mesh("k"));
   submit("ann", "k");
-  EXPECT_EQ(figures().queued, 1U) << "it is made anew";
+  EXPECT_EQ(stats().queued, 1U) << "it is made anew";
 }
 
 TEST_P(StoreTest, CollectingTouchesNoTask) {
@@ -148,20 +148,20 @@ TEST_P(StoreTest, CollectingTouchesNoTask) {
   backend_->pass(hours(100));
   const auto collected = store_->collect({.age = seconds(0), .loose_age = seconds(0)});
   ASSERT_TRUE(collected) << collected.error().message;
-  EXPECT_EQ(figures().queued, 1U);
-  EXPECT_EQ(figures().running, 1U);
+  EXPECT_EQ(stats().queued, 1U);
+  EXPECT_EQ(stats().running, 1U);
   get(queued);
   get(running);
 }
 
-TEST_P(StoreTest, FiguresCountWhatIsThere) {
-  EXPECT_EQ(figures().oldest_queued_seconds, 0);
+TEST_P(StoreTest, StatsCountWhatIsThere) {
+  EXPECT_EQ(stats().oldest_queued_seconds, 0);
   made("made", {"0123456789", "abc"});
   submit({.owner = "ann", .key = key_of("1"), .estimate = 5});
   backend_->pass(seconds(100));
   submit({.owner = "bob", .key = key_of("2"), .estimate = 6});
   submit({.owner = "cid", .key = key_of("3"), .estimate = 9});
-  StoreFigures found = figures();
+  StoreStats found = stats();
   EXPECT_EQ(found.queued, 3U);
   EXPECT_EQ(found.running, 0U);
   EXPECT_EQ(found.queued_estimate, 20U);
@@ -170,7 +170,7 @@ TEST_P(StoreTest, FiguresCountWhatIsThere) {
   EXPECT_EQ(found.meshes, 1U);
   EXPECT_EQ(found.chunk_bytes, 13U);
   claim();
-  found = figures();
+  found = stats();
   EXPECT_EQ(found.queued, 2U);
   EXPECT_EQ(found.running, 1U);
 }

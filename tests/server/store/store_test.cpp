@@ -102,10 +102,10 @@ std::optional<StoredMesh> StoreTest::mesh(const std::string& key_name) {
   return std::move(*found);
 }
 
-StoreFigures StoreTest::figures() {
-  const auto figures = store_->figures();
-  EXPECT_TRUE(figures) << figures.error().message;
-  return figures.value_or(StoreFigures{});
+StoreStats StoreTest::stats() {
+  const auto stats = store_->stats();
+  EXPECT_TRUE(stats) << stats.error().message;
+  return stats.value_or(StoreStats{});
 }
 
 Reaped StoreTest::reap(std::uint32_t max_attempts) {

@@ -48,7 +48,7 @@ class StoreTest : public testing::TestWithParam<BackendKind> {
   // A job that has succeeded with these chunks.
   JobRecord made(const std::string& key_name, const std::vector<std::string>& chunks);
   std::optional<StoredMesh> mesh(const std::string& key_name);
-  StoreFigures figures();
+  StoreStats stats();
   // With this many attempts for a task, and no delay between them.
   Reaped reap(std::uint32_t max_attempts = 3);
   std::vector<std::string> list(const ListQuery& query);  // the ids

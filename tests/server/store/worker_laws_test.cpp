@@ -103,7 +103,7 @@ TEST_P(StoreTest, AClaimTakesNoMoreThanItsWeight) {
 TEST_P(StoreTest, TheGreatestWeightsAreTakenToo) {
   submit({.owner = "ann", .key = key_of("1"), .estimate = kAnyEstimate});
   submit({.owner = "ann", .key = key_of("2"), .estimate = kAnyEstimate});
-  EXPECT_GT(figures().queued_estimate, std::uint64_t{1} << 62);
+  EXPECT_GT(stats().queued_estimate, std::uint64_t{1} << 62);
   EXPECT_FALSE(try_claim(hours(1), std::uint64_t{1} << 62));
   claim();
   claim();
@@ -270,7 +270,7 @@ TEST_P(StoreTest, AMeshWithAMissingChunkIsRefusedAndTheClaimIsStillHeld) {
 TEST_P(StoreTest, AChunkThatIsThereIsPutAgainInVain) {
   put({"a"});
   put({"a"});
-  EXPECT_EQ(figures().chunk_bytes, 1U);
+  EXPECT_EQ(stats().chunk_bytes, 1U);
   EXPECT_TRUE(has_chunk("a"));
 }
 
@@ -306,7 +306,7 @@ TEST_P(StoreTest, AllJobsOfAFailedTaskFail) {
   }
   EXPECT_FALSE(mesh("k"));
   submit("ann", "k");
-  EXPECT_EQ(figures().queued, 1U) << "a failure is not kept as an answer";
+  EXPECT_EQ(stats().queued, 1U) << "a failure is not kept as an answer";
 }
 
 TEST_P(StoreTest, ChangesAreAnnounced) {

@@ -82,7 +82,7 @@ TEST_F(PostgresTest, SeveralServersMayBeginOnAnEmptyDatabase) {
     ASSERT_TRUE(store);
     EXPECT_TRUE(store->submit({.owner = "ann", .key = key_of("k")}));
   }
-  EXPECT_EQ(stores[0]->figures()->queued, 1U);
+  EXPECT_EQ(stores[0]->stats()->queued, 1U);
 }
 
 TEST_F(PostgresTest, WhatOneServerAcceptsAnotherMakesAndAThirdReads) {
@@ -201,14 +201,14 @@ TEST_F(PostgresTest, ADatabaseThatDoesNotAnswerIsGivenUp) {
   const auto store =
       open({.uri = uri_, .connect_timeout = seconds(2), .statement_timeout = milliseconds(200)});
   postgres_server().freeze();
-  const auto figures = store->figures();
+  const auto stats = store->stats();
   postgres_server().thaw();
-  ASSERT_FALSE(figures);
-  EXPECT_EQ(figures.error().kind, StoreErrorKind::kUnavailable);
+  ASSERT_FALSE(stats);
+  EXPECT_EQ(stats.error().kind, StoreErrorKind::kUnavailable);
   const auto end = std::chrono::steady_clock::now() + kPatience;
-  while (!store->figures() && std::chrono::steady_clock::now() < end) {
+  while (!store->stats() && std::chrono::steady_clock::now() < end) {
   }
-  EXPECT_TRUE(store->figures());
+  EXPECT_TRUE(store->stats());
 }
 
 TEST_F(PostgresTest, ASubmissionWhoseAnswerWasLostIsAcceptedOnce) {
@@ -219,7 +219,7 @@ TEST_F(PostgresTest, ASubmissionWhoseAnswerWasLostIsAcceptedOnce) {
   ASSERT_TRUE(submitted) << submitted.error().message;
   EXPECT_EQ(submitted->outcome, SubmitOutcome::kAccepted);
   EXPECT_EQ(count_jobs(*store), 1U);
-  EXPECT_EQ(store->figures()->queued, 1U);
+  EXPECT_EQ(store->stats()->queued, 1U);
   EXPECT_TRUE(*store->get("ann", submitted->job.id));
 }
 
