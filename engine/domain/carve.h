@@ -18,6 +18,7 @@ struct Carving {
   std::vector<std::uint32_t> region;
   std::vector<Region> regions;  // regions[0] is the default
   Overlap overlap;
+  OutsideSegments outside{};  // see find_outside
 };
 
 // Errors: kSeedOutsideDomain, kSeedOnSegment, kEmptyDomain. Throws Stopped.

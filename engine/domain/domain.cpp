@@ -8,6 +8,7 @@
 #include "engine/domain/arrangement/arrangement.h"
 #include "engine/domain/carve.h"
 #include "engine/domain/extract.h"
+#include "engine/domain/outside.h"
 #include "engine/domain/stop_poller.h"
 #include "engine/domain/validate.h"
 
@@ -20,6 +21,7 @@ Result<Domain> run(const Pslg& pslg, StopPoller& poller) {
   const Arrangement arrangement = arrange(pslg, poller);
   Result<Carving> carving = carve(arrangement, pslg, poller);
   if (!carving) return tl::unexpected(std::move(carving).error());
+  carving->outside = find_outside(arrangement, *carving, pslg, poller);
   return extract(arrangement, *std::move(carving), poller);
 }
 

@@ -39,36 +39,6 @@ std::vector<std::uint32_t> kept_triangles(const Arrangement& a, const Carving& c
   return order;
 }
 
-// `subsegment_number`: kNone for constraints that do not stay.
-OutsideSegments find_outside(const Arrangement& a, const Carving& carving,
-                             const std::vector<std::uint32_t>& subsegment_number,
-                             StopPoller& poller) {
-  std::uint32_t end = 0;  // of the segments on constraints
-  for (const Arrangement::Constraint& c : a.constraints) end = std::max(end, c.segment + 1);
-  std::vector<bool> known(end, false);  // as staying, or counted
-  for (std::size_t c = 0; c < a.constraints.size(); ++c) {
-    poller.step();
-    if (subsegment_number[c] != kNone) known[a.constraints[c].segment] = true;
-  }
-  OutsideSegments outside{.first = kNone};
-  for (std::size_t t = 0; t < a.triangles.size(); ++t) {
-    poller.step();
-    if (carving.region[t] != kNone) continue;
-    const Arrangement::Triangle& triangle = a.triangles[t];
-    for (int i = 0; i < 3; ++i) {
-      if (triangle.constraint[i] == kNone) continue;
-      const std::uint32_t segment = a.constraints[triangle.constraint[i]].segment;
-      if (known[segment]) continue;
-      known[segment] = true;
-      ++outside.segments;
-      if (segment >= outside.first) continue;
-      outside.first = segment;
-      outside.at = a.vertices[std::min(triangle.vertex[ccw(i)], triangle.vertex[cw(i)])];
-    }
-  }
-  return outside.segments > 0 ? outside : OutsideSegments{};
-}
-
 }  // namespace
 
 Domain extract(const Arrangement& a, Carving&& carving, StopPoller& poller) {
@@ -132,8 +102,7 @@ Domain extract(const Arrangement& a, Carving&& carving, StopPoller& poller) {
   domain.regions = std::move(carving.regions);
   domain.merging = a.merging;
   domain.overlap = carving.overlap;
-  if (subsegments < a.constraints.size())
-    domain.outside = find_outside(a, carving, subsegment_number, poller);
+  domain.outside = carving.outside;
   return domain;
 }
 

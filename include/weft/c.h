@@ -192,7 +192,8 @@ typedef struct weft_summary {
   uint64_t simplified_points, dropped_islands, dropped_waters, cut_channels;
   double simplified_area, simplified_farthest;
   uint64_t cut_off_waters, straits;
-  /* segments of the input of which no part bounds the mesh or lies in it, and the first */
+  /* segments that border no area and of which no part bounds the mesh or lies in it, and the first
+   */
   uint64_t outside_segments;
   double outside_x, outside_y;
   uint32_t outside_first;

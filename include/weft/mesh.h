@@ -82,8 +82,8 @@ struct Overlap {
   bool united = false;      // or else, by even-odd filling, not meshed where an even number overlap
 };
 
-// Segments of the input of which no part bounds the mesh or lies in it; of several that coincide,
-// one counts. Where lines should enclose a face and do not close, they are outside.
+// Segments that border no area and of which no part bounds the mesh or lies in it; of several that
+// coincide, one counts. Where lines should enclose a face and do not close, they are outside.
 struct OutsideSegments {
   std::uint64_t segments = 0;
   std::uint32_t first = 0;  // index into Pslg::segments

@@ -120,8 +120,8 @@ class NarrowPlace:
 
 @dataclasses.dataclass(frozen=True)
 class OutsideSegments:
-    """Segments of the domain of which no part bounds the mesh or lies in it. Where lines should enclose a
-    face and do not close, they are outside."""
+    """Segments of the domain that border no area and of which no part bounds the mesh or lies in it. Where lines
+    should enclose a face and do not close, they are outside."""
 
     segments: int
     """Number of them; of several that coincide, one counts."""
@@ -217,7 +217,7 @@ class Summary:
     narrow: NarrowPlace | None
     """The costliest one, if it has at least a fifth of a mesh of a thousand triangles or more."""
     outside: OutsideSegments | None
-    """None if all segments bound the mesh or lie in it, in part at least."""
+    """None if there are none."""
     simplification: Simplification | None
     """Only with `simplify`."""
     timings: Timings

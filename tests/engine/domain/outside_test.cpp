@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/domain/extract.h"
+#include "engine/domain/outside.h"
 
 #include <gtest/gtest.h>
 
@@ -62,6 +62,16 @@ TEST(OutsideSegments, AreNoPiecesThatMergingBent) {
   Pslg pslg = square(4);
   pslg.snap = 0.1;
   add_segment(pslg, {0.5, 0.02}, {3.5, 0.03});  // onto the side
+  expect_outside(pslg, 0, 0, {});
+}
+
+TEST(OutsideSegments, AreNoBordersOfAreas) {
+  Pslg pslg;
+  add_box(pslg, {0, 0}, {9, 9});
+  add_box(pslg, {1, 1}, {2, 2});  // a hole
+  add_box(pslg, {2, 1}, {3, 2});  // beside it
+  add_area(pslg, 0, {});
+  pslg.fill = Fill::kUnion;
   expect_outside(pslg, 0, 0, {});
 }
 
