@@ -7,6 +7,8 @@
 #include <queue>
 #include <utility>
 
+#include "engine/parallel/task_graph.h"
+
 namespace weft::bench {
 namespace {
 

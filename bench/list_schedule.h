@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the recorded tasks of a stage would go on other numbers of threads.
 //
-// The rules are those of GraphRun (engine/base/task_graph.h): a task is ready when all that it
+// The rules are those of GraphRun (engine/parallel/task_graph.h): a task is ready when all that it
 // waits for are done; a free thread takes the ready task that is needed first, and of equal ones
 // the one with the lowest number; what waits for a skipped task waits for the one that skipped it;
 // parts wait for room as parts_ahead says, and tasks that later parts need as parts_begun says, for

@@ -11,11 +11,11 @@
 #include <utility>
 #include <variant>
 
-#include "engine/base/trace.h"
 #include "engine/domain/domain_picture.h"
+#include "engine/parallel/mesh_plan.h"
+#include "engine/parallel/task_graph.h"
 #include "engine/refine/edge_limits.h"
 #include "engine/refine/quality_bounds.h"
-#include "engine/schedule/mesh_run.h"
 #include "engine/size/lattice/lattice.h"
 #include "engine/size/size_spec.h"
 #include "weft/weft.h"
@@ -41,7 +41,7 @@ constexpr double kIfItVaries = 1.1;  // on the lattice, unless the size is the s
 // Angles alone ask for about so many.
 constexpr double kTrianglesPerPoint = 4;
 
-// Of a mesh that leaves while it is refined (schedule/mesh_run.h): a strip of leaves is held, and
+// Of a mesh that leaves while it is refined (parallel/mesh_plan.h): a strip of leaves is held, and
 // what each leaf has all the time. Measured with 10 M to 1,000 M triangles: 370 for a size that
 // grows with the distance from something, up to half more for one that is the same everywhere.
 constexpr double kBytesOfStrip = 420;  // times the root of triangles of the mesh and of a leaf

@@ -15,7 +15,7 @@
 //     phi = theta                   beyond.
 // The first is the least that the proof below needs. The second is Shewchuk's lens, the least
 // possible. He deletes the free vertices in the diametral disk before a split, and has a proof up
-// to 26.5 degrees; here vertices stay, because the schedule relies on it (schedule/leaf_radius.h).
+// to 26.5 degrees; here vertices stay, because the schedule relies on it (parallel/leaf_radius.h).
 //
 // What is proven. Let theta be at most 20.7 degrees, and all angles between segments at least 90.
 // Then refinement ends. Let D be a lower bound on the distance of any two vertices that see each
@@ -55,7 +55,7 @@
 //
 // The mesh is constrained Delaunay, and not conforming Delaunay: the circumdisk of a triangle at a
 // segment may hold vertices beyond it. No cavity crosses a segment, so this affects neither the
-// ownership of triangles (ownership.h) nor the bound on circumradii (schedule/leaf_radius.h).
+// ownership of triangles (ownership.h) nor the bound on circumradii (parallel/leaf_radius.h).
 #pragma once
 
 #include <algorithm>

@@ -6,10 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "engine/parallel/task_graph.h"
+
 namespace weft::bench {
 namespace {
 
-Trace::Graph graph_of(std::vector<double> seconds, std::vector<TaskGraph::Edge> edges) {
+Trace::Graph graph_of(std::vector<double> seconds, std::vector<TaskEdge> edges) {
   Trace::Graph graph{.name = {"stage", {"even", "odd"}},
                      .seconds = std::move(seconds),
                      .skipped_by = {},

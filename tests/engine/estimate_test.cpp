@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
+#include "engine/parallel/mesh_plan.h"
 #include "engine/refine/quality_bounds.h"
-#include "engine/schedule/mesh_run.h"
 #include "weft/weft.h"
 
 namespace weft {
