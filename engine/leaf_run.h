@@ -5,9 +5,8 @@
 //   LeafRun<ConstantArea> run(plan, refinement, stage, root, parts);
 //   if (auto error = run.run()) return error;
 //
-// A leaf is settled if it and those in conflict with it have nothing left, and final if all of
-// these are settled: no task touches its slots then but its own smoothing and its part
-// (leaf_graph.h).
+// A leaf is settled if it and those that overlap it have nothing left, and final if all of these
+// are settled: no task touches its slots then but its own smoothing and its part (leaf_graph.h).
 #pragma once
 
 #include <algorithm>
@@ -165,14 +164,14 @@ class LeafRun {
   }
 
   bool is_settled(std::uint32_t leaf) const {
-    const auto& conflicts = order_.conflicts(leaf);
+    const auto& around = order_.overlapping(leaf);
     return !leaves_.has_left(leaf) && (!blocks_ || blocks_->leaf_fits(leaf)) &&
-           std::none_of(conflicts.begin(), conflicts.end(),
+           std::none_of(around.begin(), around.end(),
                         [&](std::uint32_t other) { return leaves_.has_left(other); });
   }
   bool is_final(std::uint32_t leaf) const {
-    const auto& conflicts = order_.conflicts(leaf);
-    return settled_[leaf] && std::all_of(conflicts.begin(), conflicts.end(),
+    const auto& around = order_.overlapping(leaf);
+    return settled_[leaf] && std::all_of(around.begin(), around.end(),
                                          [&](std::uint32_t other) { return settled_[other]; });
   }
 

@@ -5,7 +5,7 @@
 //   LeafParts<ConstantArea> parts(mesh, order, leaves, numbers);
 //   parts.number(l);           // in the order of the leaves
 //   parts.hand_on(l);
-//   parts.fill(l, builder);    // once those in conflict with l have handed on
+//   parts.fill(l, builder);    // once those that overlap l have handed on
 //   parts.built(l);
 //
 // Thread-safety: the steps may run in any order that LeafGraph permits.
@@ -72,7 +72,7 @@ class LeafParts {
       }
       builder.add_triangles(first, last);
     });
-    for (const std::uint32_t other : order_.conflicts(leaf)) {
+    for (const std::uint32_t other : order_.overlapping(leaf)) {
       if (other > leaf) break;
       for (const HandedOn& h : handed_on_[other]) {
         if (h.owner == slots.owner()) builder.add_triangle(h.triangle());

@@ -9,7 +9,7 @@ BlocksNear::BlocksNear(const Quadtree& blocks, const Quadtree& leaves) {
   first_.reserve(leaves.leaves().size() + 1);
   first_.push_back(0);
   for (const Quadtree::Leaf& leaf : leaves.leaves()) {
-    blocks.for_overlapping(leaf.grown, [&](std::uint32_t b) { blocks_.push_back(b); });
+    blocks.for_overlapping(leaf.halo, [&](std::uint32_t b) { blocks_.push_back(b); });
     first_.push_back(static_cast<std::uint32_t>(blocks_.size()));
   }
 }
@@ -39,7 +39,7 @@ void BlockGraph::add(const LeafOrder& blocks, const BlocksNear& near, TaskGraph&
     const std::uint32_t number = n + b;
     for (std::uint32_t task = round(number, 1); task <= LeafGraph::part(number); ++task)
       graph.add_dependency(task - 1, task);
-    for (const std::uint32_t other : blocks.conflicts(b)) {
+    for (const std::uint32_t other : blocks.overlapping(b)) {
       for (std::uint32_t r = 0; r < kRounds; ++r) {
         if (blocks.before(other, b, LeafOrder::phase_of(r))) {
           graph.add_dependency(round(n + other, r), round(number, r));

@@ -8,7 +8,7 @@
 //       BlockGraph::of_run(order, true, smooths, &block_order, &near, context);
 //
 // A block has two rounds and a judging task; its other tasks are empty. Each of these waits for the
-// blocks in conflict, and the leaves' first round waits until the blocks around are judged.
+// overlapping blocks, and the leaves' first round waits until the blocks around are judged.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@
 
 namespace weft {
 
-// Per leaf, the blocks whose grown boxes overlap the leaf's own.
+// Per leaf, the blocks whose halos overlap the leaf's own.
 class BlocksNear {
  public:
   // From the trees of the blocks and of the leaves.

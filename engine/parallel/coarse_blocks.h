@@ -17,18 +17,18 @@
 // second leaves few triangles, which the leaves refine.
 //
 // Then the triangles in the slots of the block, and those of owner 0 with centroids in the block,
-// are judged by the bounds of the final mesh. Only tasks of the block and of blocks in conflict
-// with it touch them, and these are done: a triangle in a slot of block b lies in b's grown box
-// (leaf_release.h, 2), and so does one of owner 0 (`fit`).
+// are judged by the bounds of the final mesh. Only tasks of the block and of blocks that overlap it
+// touch them, and these are done: a triangle in a slot of block b lies in b's halo (leaf_release.h,
+// 2), and so does one of owner 0 (`fit`).
 //
-// A leaf begins when all blocks whose grown boxes overlap its own are judged: only these have
-// triangles with two vertices there, or with centroids in the leaf, and no task of any other block
-// touches these.
+// A leaf begins when all blocks whose halos overlap its own are judged: only these have triangles
+// with two vertices there, or with centroids in the leaf, and no task of any other block touches
+// these.
 //
 // Once the parts of all these leaves around a block are built, the triangles in its slots are no
-// longer read: a leaf's part waits for the tasks of the leaves in conflict with it, to which it
-// may have handed a triangle on. Nearly always all of them are dead, and their slots are given
-// back. Vertices stay.
+// longer read: a leaf's part waits for the tasks of the leaves that overlap it, to which it may
+// have handed a triangle on. Nearly always all of them are dead, and their slots are given back.
+// Vertices stay.
 //
 // Thread-safety: the steps may run in any order that BlockGraph permits.
 #pragma once
@@ -98,8 +98,8 @@ class CoarseBlocks {
     return error;
   }
 
-  // Whether each triangle of owner 0 lies in the grown box of the block of its centroid. If not,
-  // blocks cannot be refined by tasks.
+  // Whether each triangle of owner 0 lies in the halo of the block of its centroid. If not, blocks
+  // cannot be refined by tasks.
   bool fit() const { return fit_; }
 
   std::uint32_t size() const { return tasks_.size(); }
@@ -114,7 +114,7 @@ class CoarseBlocks {
 
   std::optional<Error> judge(std::uint32_t block) {
     AreaBound area = area_.again();
-    area.begin(tree_.leaves()[block].grown);
+    area.begin(tree_.leaves()[block].halo);
     TriangleJudge judge;
     const auto look_at = [&](std::uint32_t t) {
       if (!refinement_.mesh.triangles[t].dead()) judge_triangle(t, judge, area, judged_[block]);
@@ -230,9 +230,9 @@ class CoarseBlocks {
       for (std::uint32_t t = first; t < last; ++t) {
         Triangle& triangle = mesh.triangles[t];
         const std::uint32_t block = tree_.leaf_at(centroid_of(t));
-        const Box& grown = tree_.leaves()[block].grown;
+        const Box& halo = tree_.leaves()[block].halo;
         for (const std::uint32_t v : triangle.vertex)
-          fit_ = fit_ && OwnsBox::contains(grown, mesh.vertices[v].x, mesh.vertices[v].y);
+          fit_ = fit_ && OwnsBox::contains(halo, mesh.vertices[v].x, mesh.vertices[v].y);
         base_[block].push_back(t);
         triangle.set_badness(judge(mesh, t, region_bound(t), no_angles_, radius));
         if (triangle.badness() != kGood) bad.push_back({t, triangle.vertex[0]});

@@ -14,19 +14,19 @@ std::vector<std::uint32_t> along_order(const LeafOrder& order, LeafOrder::Phase 
                                        std::vector<std::uint32_t> first) {
   const std::vector<std::uint32_t> all = order.all(phase);
   std::for_each(all.rbegin(), all.rend(), [&](std::uint32_t l) {
-    for (const std::uint32_t other : order.conflicts(l)) {
+    for (const std::uint32_t other : order.overlapping(l)) {
       if (order.before(l, other, phase)) first[l] = std::min(first[l], first[other]);
     }
   });
   return first;
 }
 
-// Per leaf: the first part that it, or a leaf in conflict with it, is needed for.
+// Per leaf: the first part that it, or a leaf that overlaps it, is needed for.
 std::vector<std::uint32_t> first_around(const LeafOrder& order,
                                         const std::vector<std::uint32_t>& needs) {
   std::vector<std::uint32_t> first = needs;
   for (std::uint32_t l = 0; l < order.size(); ++l) {
-    for (const std::uint32_t other : order.conflicts(l))
+    for (const std::uint32_t other : order.overlapping(l))
       first[l] = std::min(first[l], needs[other]);
   }
   return first;
@@ -39,7 +39,7 @@ void LeafGraph::add_refinement(const LeafOrder& order, TaskGraph& graph) {
     for (std::uint32_t r = 0; r < kRounds; ++r) {
       const bool looks = r == kHandOverRounds;
       if (r > 0) graph.add_dependency(looks ? look(l) : round(l, r - 1), round(l, r));
-      for (const std::uint32_t other : order.conflicts(l)) {
+      for (const std::uint32_t other : order.overlapping(l)) {
         if (order.before(other, l, LeafOrder::phase_of(r))) {
           graph.add_dependency(round(other, r), round(l, r));
         } else if (r > 0 && !looks) {
@@ -48,7 +48,7 @@ void LeafGraph::add_refinement(const LeafOrder& order, TaskGraph& graph) {
       }
     }
     graph.add_dependency(round(l, kHandOverRounds - 1), look(l));
-    for (const std::uint32_t other : order.conflicts(l))
+    for (const std::uint32_t other : order.overlapping(l))
       graph.add_dependency(round(other, kHandOverRounds - 1), look(l));
   }
 }
@@ -62,7 +62,7 @@ void LeafGraph::add_parts(const LeafOrder& order, TaskGraph& graph, bool smooths
     graph.add_dependency(number(l), hand_on(l));
     graph.add_dependency(hand_on(l), part(l));
     graph.add_dependency(smooth(l), part(l));
-    for (const std::uint32_t other : order.conflicts(l)) {
+    for (const std::uint32_t other : order.overlapping(l)) {
       graph.add_dependency(round(other, kRounds - 1), settle(l));
       graph.add_dependency(settle(other), number(l));
       if (smooths && order.before(other, l, LeafOrder::kSmoothing))
@@ -78,11 +78,10 @@ LeafGraph::RoundNeeds LeafGraph::needs_of_rounds(const LeafOrder& order,
   static_assert(kHandOverRounds == 2);
   RoundNeeds needs;
   needs.second = along_order(order, LeafOrder::kLaterRounds, first_around(order, next));
-  // The second round of a leaf waits for the first round of those in conflict with it that come
-  // later.
+  // The second round of a leaf waits for the first round of those that overlap it that come later.
   needs.first = needs.second;
   for (std::uint32_t l = 0; l < order.size(); ++l) {
-    for (const std::uint32_t other : order.conflicts(l)) {
+    for (const std::uint32_t other : order.overlapping(l)) {
       if (order.before(other, l, LeafOrder::kLaterRounds))
         needs.first[l] = std::min(needs.first[l], needs.second[other]);
     }

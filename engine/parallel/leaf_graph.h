@@ -8,7 +8,7 @@
 //   graph.set_needs(LeafGraph::needs(order, true));
 //
 // The memory of a mesh depends on how many leaves must have begun before the next one can be sent.
-// Each of these tasks waits for the leaves in conflict, one step further ahead:
+// Each of these tasks waits for the overlapping leaves, one step further ahead:
 //   - the part, until they are smoothed, because that moves vertices of this leaf, too;
 //   - the settling, until their rounds are done;
 //   - each round, until their previous round is done.
@@ -50,10 +50,9 @@ struct LeafGraph {
 
   static void add_refinement(const LeafOrder& order, TaskGraph& graph);
 
-  // A leaf is settled if neither it nor any leaf in conflict with it, which own a part of its grown
-  // box, has anything left. Then it is smoothed, if the mesh is. It is final if the leaves in
-  // conflict are settled, too, because the clean-up needs room to work. It is sent once those are
-  // smoothed.
+  // A leaf is settled if neither it nor any leaf that overlaps it, which own a part of its halo,
+  // has anything left. Then it is smoothed, if the mesh is. It is final if the overlapping leaves
+  // are settled, too, because the clean-up needs room to work. It is sent once those are smoothed.
   static void add_parts(const LeafOrder& order, TaskGraph& graph, bool smooths);
 
   // Per task, the first part that waits for it, if all leaves skip the rounds that they may skip,
@@ -61,7 +60,7 @@ struct LeafGraph {
   static std::vector<std::uint32_t> needs(const LeafOrder& order, bool smooths);
 
   // The needs of the first two rounds, per leaf, from those of the next task, which waits for the
-  // second round of the leaf and of the leaves in conflict.
+  // second round of the leaf and of the overlapping leaves.
   struct RoundNeeds {
     std::vector<std::uint32_t> first, second;
   };

@@ -24,10 +24,10 @@ std::vector<std::uint32_t> ranks(const std::vector<Quadtree::Leaf>& leaves, Key 
 }
 
 // The place of each leaf if all are sorted by when they begin, by colouring of intervals: from the
-// heaviest leaf on, each begins at the earliest time at which none of those in conflict is at work.
+// heaviest leaf on, each begins at the earliest time at which no overlapping leaf is at work.
 std::vector<std::uint32_t> ranks_by_start(
     const std::vector<Quadtree::Leaf>& leaves,
-    const std::vector<std::vector<std::uint32_t>>& conflicts) {
+    const std::vector<std::vector<std::uint32_t>>& overlapping) {
   constexpr double kLeastWork = 0.02;  // of the mean: every task costs something
   struct Interval {
     double begin;
@@ -48,7 +48,7 @@ std::vector<std::uint32_t> ranks_by_start(
   std::vector<Interval> busy;
   for (const std::uint32_t leaf : heaviest_first) {
     busy.clear();
-    for (const std::uint32_t other : conflicts[leaf]) {
+    for (const std::uint32_t other : overlapping[leaf]) {
       if (begin[other]) busy.push_back({*begin[other], *begin[other] + work(other)});
     }
     std::sort(busy.begin(), busy.end(),
@@ -70,12 +70,12 @@ constexpr std::size_t kFewLeaves = 256;
 
 }  // namespace
 
-LeafOrder::LeafOrder(const Quadtree& tree) : conflicts_(tree.conflicts()) {
+LeafOrder::LeafOrder(const Quadtree& tree) : overlapping_(tree.overlapping()) {
   const auto& leaves = tree.leaves();
   rank_[kLaterRounds] =
       ranks(leaves, [](const Quadtree::Leaf& l) { return std::tuple(l.depth, l.across & 1); });
   if (leaves.size() <= kFewLeaves) {
-    rank_[kFirstRound] = ranks_by_start(leaves, conflicts_);
+    rank_[kFirstRound] = ranks_by_start(leaves, overlapping_);
     rank_[kSmoothing] = rank_[kFirstRound];
     return;
   }
@@ -89,7 +89,7 @@ LeafOrder::LeafOrder(const Quadtree& tree) : conflicts_(tree.conflicts()) {
 
 LeafOrder LeafOrder::along_sweep(const Quadtree& tree) {
   LeafOrder order;
-  order.conflicts_ = tree.conflicts();
+  order.overlapping_ = tree.overlapping();
   for (auto& rank : order.rank_) {
     rank.resize(order.size());
     std::iota(rank.begin(), rank.end(), 0u);
@@ -103,14 +103,14 @@ std::vector<std::uint32_t> LeafOrder::all(Phase phase) const {
   return order;
 }
 
-bool LeafOrder::in_conflict(std::uint32_t leaf, std::uint32_t other) const {
-  return std::binary_search(conflicts_[leaf].begin(), conflicts_[leaf].end(), other);
+bool LeafOrder::overlap(std::uint32_t leaf, std::uint32_t other) const {
+  return std::binary_search(overlapping_[leaf].begin(), overlapping_[leaf].end(), other);
 }
 
 std::size_t LeafOrder::bytes() const {
-  std::size_t bytes = conflicts_.capacity() * sizeof(std::vector<std::uint32_t>);
+  std::size_t bytes = overlapping_.capacity() * sizeof(std::vector<std::uint32_t>);
   for (const auto& rank : rank_) bytes += rank.capacity() * sizeof(std::uint32_t);
-  for (const auto& c : conflicts_) bytes += c.capacity() * sizeof(std::uint32_t);
+  for (const auto& c : overlapping_) bytes += c.capacity() * sizeof(std::uint32_t);
   return bytes;
 }
 

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // Refinement by leaves of the quadtree.
 //
-// A leaf's task owns the leaf's grown box (ownership.h) and refines the bad triangles whose
-// centroids lie in the leaf. Tasks whose grown boxes overlap are in conflict and run one after the
-// other, all others at the same time. The ORDER between two in conflict is fixed beforehand: by
-// round, then by leaf_order.h. So the mesh depends on the request alone, whatever the threads do.
+// A leaf's task owns the leaf's halo (ownership.h) and refines the bad triangles whose centroids
+// lie in the leaf. Two leaves overlap if their halos do: their tasks run one after the other, all
+// others at the same time. The ORDER between two that overlap is fixed beforehand: by round, then
+// by leaf_order.h. So the mesh depends on the request alone, whatever the threads do.
 //
 // Rounds. In the first two a task hands bad triangles that it makes outside its leaf to the leaf
 // there, and each leaf takes those that its neighbours have left for it: from neighbours before it
 // in the same round, from those after it in the next. In the last two a task refines all that it
-// owns. A triangle that no task could refine, because its cavity reaches beyond the grown box, is
-// handed to the leaf of its Steiner point, or waits for the next round. About 11 % of the
-// insertions are handed over; 0.02 to 0.3 % wait, if a size makes the mesh or if two parallel
-// segments do. A leaf that has nothing left and is handed nothing skips the later rounds.
+// owns. A triangle that no task could refine, because its cavity reaches beyond the halo, is handed
+// to the leaf of its Steiner point, or waits for the next round. About 11 % of the insertions are
+// handed over; 0.02 to 0.3 % wait, if a size makes the mesh or if two parallel segments do. A leaf
+// that has nothing left and is handed nothing skips the later rounds.
 //
 // The first round begins with rows of the lattice in what is clear of segments (row_filler.h).
 //
 // One task cleans up what is left after the rounds. It owns everything that has not been sent: all
-// but the leaves before `frozen` and their grown boxes.
+// but the leaves before `frozen` and their halos.
 //
-// Thread-safety: `refine` may run at the same time for leaves that are not in conflict.
+// Thread-safety: `refine` may run at the same time for leaves that do not overlap.
 #pragma once
 
 #include <algorithm>
@@ -53,27 +53,27 @@ struct EarlierOwner {
   const Slots* slots;
 };
 
-// The clean-up's ownership: all but the grown boxes of the frozen leaves, the first ones.
+// The clean-up's ownership: all but the halos of the frozen leaves, the first ones.
 struct OwnsUnfrozen {
   static constexpr bool kRestricted = true;
   const Quadtree* tree = nullptr;
-  // Per leaf, the frozen ones among itself and those in conflict with it.
+  // Per leaf, the frozen ones among itself and those that overlap it.
   const std::vector<std::vector<std::uint32_t>>* frozen = nullptr;
   bool owns(Point p) const {
     const auto& near = (*frozen)[tree->leaf_at(p)];
     return std::none_of(near.begin(), near.end(), [&](std::uint32_t l) {
-      return OwnsBox::contains(tree->leaves()[l].grown, p.x, p.y);
+      return OwnsBox::contains(tree->leaves()[l].halo, p.x, p.y);
     });
   }
   constexpr bool in_core(double, double) const { return true; }
   constexpr bool core_holds(Point, double) const { return true; }
 };
 
-// A leaf's ownership while it is smoothed: its grown box without those of frozen leaves.
+// A leaf's ownership while it is smoothed: its halo without those of frozen leaves.
 struct OwnsBoxUnfrozen {
   static constexpr bool kRestricted = true;
   Box box;
-  // Grown boxes that overlap `box`. The first ones are those of frozen leaves.
+  // Halos that overlap `box`. The first ones are those of frozen leaves.
   const std::vector<Box>* others = nullptr;
   std::size_t frozen = 0;
   bool owns(Point p) const {
@@ -81,9 +81,9 @@ struct OwnsBoxUnfrozen {
            std::none_of(others->begin(), others->begin() + static_cast<std::ptrdiff_t>(frozen),
                         [&](const Box& b) { return OwnsBox::contains(b, p.x, p.y); });
   }
-  // Whether an owned vertex may move from one point to another: not out of any grown box. The
-  // vertices that a leaf has made must lie in its grown box, because the clean-up relies on that to
-  // avoid those of frozen leaves.
+  // Whether an owned vertex may move from one point to another: not out of any halo. The vertices
+  // that a leaf has made must lie in its halo, because the clean-up relies on that to avoid those
+  // of frozen leaves.
   bool may_move(Point from, Point to) const {
     return owns(to) && std::none_of(others->begin(), others->end(), [&](const Box& b) {
              return OwnsBox::contains(b, from.x, from.y) && !OwnsBox::contains(b, to.x, to.y);
@@ -154,8 +154,8 @@ class LeafTasks {
     const Lease worker(*this);
     auto& refiner = worker->refiner;
     const Quadtree::Leaf& place = tree_.leaves()[leaf];
-    const OwnsBox ownership{place.grown, LeafGraph::hands_over(round) ? place.box : place.grown};
-    refiner.begin(l.slots, ownership, place.grown);
+    const OwnsBox ownership{place.halo, LeafGraph::hands_over(round) ? place.box : place.halo};
+    refiner.begin(l.slots, ownership, place.halo);
     for (const BadTriangle& t : l.left) refiner.queue(t);
     for (const SegmentEdge& s : l.segments_left) refiner.queue(s);
     for_handed_to(leaf, round, [&](const auto& what) {
@@ -179,19 +179,19 @@ class LeafTasks {
     return error;
   }
 
-  // Smooths a leaf in `sweeps` sweeps. REQUIRES: no other task refines in its grown box, and the
-  // conflicts before it are smoothed or will not be. Does not change what the leaves before
-  // `frozen` have made.
+  // Smooths a leaf in `sweeps` sweeps. REQUIRES: no other task refines in its halo, and the
+  // overlapping leaves before it are smoothed or will not be. Does not change what the leaves
+  // before `frozen` have made.
   std::optional<Error> smooth(std::uint32_t leaf, std::uint32_t sweeps, std::uint32_t frozen) {
     std::vector<Box> others;
     std::size_t frozen_others = 0;
-    for (const std::uint32_t other : order_.conflicts(leaf)) {
-      others.push_back(tree_.leaves()[other].grown);
+    for (const std::uint32_t other : order_.overlapping(leaf)) {
+      others.push_back(tree_.leaves()[other].halo);
       if (other < frozen) std::swap(others.back(), others[frozen_others++]);
     }
     const Lease worker(*this);
     auto& smoother = worker->smoother;
-    const Box& box = tree_.leaves()[leaf].grown;
+    const Box& box = tree_.leaves()[leaf].halo;
     smoother.begin(OwnsBoxUnfrozen{box, &others, frozen_others}, box, 0, first_owner_);
     return smoother.run(leaves_[leaf].slots, sweeps);
   }
@@ -202,7 +202,7 @@ class LeafTasks {
     std::vector<std::vector<std::uint32_t>> frozen_near(leaves_.size());
     for (std::uint32_t l = 0; l < leaves_.size(); ++l) {
       if (l < frozen) frozen_near[l].push_back(l);
-      for (const std::uint32_t other : order_.conflicts(l)) {
+      for (const std::uint32_t other : order_.overlapping(l)) {
         if (other < frozen) frozen_near[l].push_back(other);
       }
     }
@@ -340,7 +340,7 @@ class LeafTasks {
   template <class F>
   void for_handed_to(std::uint32_t leaf, std::uint32_t round, F&& f) const {
     if (round > LeafGraph::kHandOverRounds) return;
-    for (const std::uint32_t other : order_.conflicts(leaf)) {
+    for (const std::uint32_t other : order_.overlapping(leaf)) {
       // A triangle is due in the first task of this leaf after the task that handed it over.
       const auto is_due = [&](const auto& h) {
         if (h.leaf != leaf) return false;
@@ -379,7 +379,7 @@ class LeafTasks {
     }
   }
   bool may_hand_over(std::uint32_t from, std::uint32_t round, std::uint32_t to) const {
-    return LeafGraph::hands_over(round) && order_.in_conflict(from, to);
+    return LeafGraph::hands_over(round) && order_.overlap(from, to);
   }
 
   // Whether a leaf's task may read the vertices in a slot at any time: those of earlier owners are
@@ -387,7 +387,7 @@ class LeafTasks {
   bool may_look_at(std::uint32_t leaf, std::uint32_t slot) const {
     const std::uint32_t owner = refinement_.mesh.owner_of_triangle(slot);
     return owner < first_owner_ || owner == first_owner_ + leaf ||
-           order_.in_conflict(leaf, owner - first_owner_);
+           order_.overlap(leaf, owner - first_owner_);
   }
 
   Point steiner_point_of(const BadTriangle& bad) const {

@@ -138,17 +138,17 @@ Quadtree Quadtree::build(const Box& domain, std::vector<Sample> samples, double 
     const std::int64_t side = std::int64_t{2} << (kMaxDepth - depth);  // in halves of cells
     const std::int64_t x0 = x * side;
     const std::int64_t y0 = y * side;
-    const Box grown =
+    const Box halo =
         grid.box(x0 - side / 2, y0 - side / 2, x0 + side + side / 2, y0 + side + side / 2);
     const Box centre = grid.box(x0 + side / 2, y0 + side / 2, x0 + side / 2, y0 + side / 2);
-    tree.nodes_[index] = {{centre.min_x, centre.min_y}, grown, 0, 0};
+    tree.nodes_[index] = {{centre.min_x, centre.min_y}, halo, 0, 0};
     const auto code = morton(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y));
     if (!splits[depth].contains(code)) {
       tree.nodes_[index].leaf = static_cast<std::uint32_t>(tree.leaves_.size());
       const unsigned shift = 2 * (kMaxDepth - depth);
       double weight = 0;
       for (; next != keyed.end() && next->code >> shift == code; ++next) weight += next->weight;
-      tree.leaves_.push_back({grid.box(x0, y0, x0 + side, y0 + side), grown, weight, depth,
+      tree.leaves_.push_back({grid.box(x0, y0, x0 + side, y0 + side), halo, weight, depth,
                               static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)});
       return;
     }
@@ -213,7 +213,7 @@ std::vector<std::uint32_t> Quadtree::touching(std::uint32_t leaf) const {
   while (!stack.empty()) {
     const Node& node = nodes_[stack.back()];
     stack.pop_back();
-    if (!touch(node.grown, leaves_[leaf].box)) continue;
+    if (!touch(node.halo, leaves_[leaf].box)) continue;
     if (node.first_child != 0) {
       for (std::uint32_t child = 4; child-- > 0;) stack.push_back(node.first_child + child);
     } else if (node.leaf != leaf && touch(leaves_[node.leaf].box, leaves_[leaf].box)) {
@@ -224,10 +224,10 @@ std::vector<std::uint32_t> Quadtree::touching(std::uint32_t leaf) const {
   return result;
 }
 
-std::vector<std::vector<std::uint32_t>> Quadtree::conflicts() const {
+std::vector<std::vector<std::uint32_t>> Quadtree::overlapping() const {
   std::vector<std::vector<std::uint32_t>> result(leaves_.size());
   for (std::uint32_t l = 0; l < leaves_.size(); ++l) {
-    for_overlapping(leaves_[l].grown, [&](std::uint32_t other) {
+    for_overlapping(leaves_[l].halo, [&](std::uint32_t other) {
       if (other != l) result[l].push_back(other);
     });
     std::sort(result[l].begin(), result[l].end());

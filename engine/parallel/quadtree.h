@@ -33,7 +33,7 @@ class Quadtree {
 
   struct Leaf {
     Box box;         // half-open
-    Box grown;       // by half of its side in each direction
+    Box halo;        // by half of its side in each direction
     double weight;   // of the samples in it
     unsigned depth;  // its side is that of the square over 2^depth
     // Its position among the squares of its depth, in the direction of the sweep and across it.
@@ -53,12 +53,12 @@ class Quadtree {
   std::uint32_t leaf_at(Point p) const;
   // The other leaves whose boxes touch that of a leaf, in order.
   std::vector<std::uint32_t> touching(std::uint32_t leaf) const;
-  // Calls f(leaf) in any order for the leaves whose grown boxes overlap the open `box`.
+  // Calls f(leaf) in any order for the leaves whose halos overlap the open `box`.
   template <class F>
   void for_overlapping(const Box& box, F&& f) const {
     const auto visit = [&](auto& self, const Node& node) -> void {
-      if (!(node.grown.min_x < box.max_x && box.min_x < node.grown.max_x &&
-            node.grown.min_y < box.max_y && box.min_y < node.grown.max_y)) {
+      if (!(node.halo.min_x < box.max_x && box.min_x < node.halo.max_x &&
+            node.halo.min_y < box.max_y && box.min_y < node.halo.max_y)) {
         return;
       }
       if (node.first_child == 0) return f(node.leaf);
@@ -67,8 +67,8 @@ class Quadtree {
     };
     visit(visit, nodes_.front());
   }
-  // Per leaf, the others whose grown boxes overlap its own, in order.
-  std::vector<std::vector<std::uint32_t>> conflicts() const;
+  // Per leaf, the others whose halos overlap its own, in order.
+  std::vector<std::vector<std::uint32_t>> overlapping() const;
 
   std::size_t bytes() const {
     return nodes_.capacity() * sizeof(Node) + leaves_.capacity() * sizeof(Leaf);
@@ -77,7 +77,7 @@ class Quadtree {
  private:
   struct Node {
     Point middle;
-    Box grown;                  // contains the grown boxes of all leaves below
+    Box halo;                   // contains the halos of all leaves below
     std::uint32_t first_child;  // of four, in Morton order; 0 for a leaf
     std::uint32_t leaf;         // its index, for a leaf
   };

@@ -133,13 +133,13 @@ TEST(BlockGraph, HasTheLeavesAndTheBlocksInOneGraph) {
     const std::vector<std::uint32_t> all = one_order(tasks);
     ASSERT_EQ(all.size(), tasks.size()) << seed;
 
-    // A leaf begins after all tasks of the blocks whose tasks own anything in its grown box.
+    // A leaf begins after all tasks of the blocks whose tasks own anything in its halo.
     std::vector<std::uint32_t> place(all.size());
     for (std::uint32_t i = 0; i < all.size(); ++i) place[all[i]] = i;
     for (std::uint32_t l = 0; l < n; ++l) {
       for (std::uint32_t b = 0; b < of_blocks.size(); ++b) {
-        const Box& leaf = leaves.leaves()[l].grown;
-        const Box& block = blocks.leaves()[b].grown;
+        const Box& leaf = leaves.leaves()[l].halo;
+        const Box& block = blocks.leaves()[b].halo;
         const bool overlap = leaf.min_x < block.max_x && block.min_x < leaf.max_x &&
                              leaf.min_y < block.max_y && block.min_y < leaf.max_y;
         ASSERT_EQ(std::count(near[l].begin(), near[l].end(), b), overlap ? 1 : 0) << l << ' ' << b;
@@ -160,7 +160,7 @@ TEST(BlockGraph, HasTheLeavesAndTheBlocksInOneGraph) {
   }
 }
 
-TEST(BlockGraph, JudgesABlockAfterTheRoundsOfThoseInConflict) {
+TEST(BlockGraph, JudgesABlockAfterTheRoundsOfThoseThatOverlap) {
   const Quadtree leaves = graded_tree(2);
   const Quadtree blocks = blocks_over(leaves, 500);
   const LeafOrder order = LeafOrder::along_sweep(blocks);
@@ -173,12 +173,12 @@ TEST(BlockGraph, JudgesABlockAfterTheRoundsOfThoseInConflict) {
                        [&](const TaskEdge& e) { return e.before == before && e.after == after; });
   };
   for (std::uint32_t b = 0; b < order.size(); ++b) {
-    for (const std::uint32_t other : order.conflicts(b))
+    for (const std::uint32_t other : order.overlapping(b))
       EXPECT_TRUE(waits(BlockGraph::round(n + other, 1), BlockGraph::judge(n + b))) << b;
   }
 }
 
-TEST(LeafGraph, OrdersLeavesInConflictOneWayOrTheOther) {
+TEST(LeafGraph, OrdersOverlappingLeavesOneWayOrTheOther) {
   const LeafOrder order(graded_tree(1));
   for (const auto phase :
        {LeafOrder::kFirstRound, LeafOrder::kLaterRounds, LeafOrder::kSmoothing}) {

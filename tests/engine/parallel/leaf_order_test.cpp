@@ -34,7 +34,7 @@ double heaviest_chain(const Quadtree& tree, const LeafOrder& order, LeafOrder::P
   std::vector<double> end(order.size());
   for (const std::uint32_t leaf : order.all(phase)) {
     double begin = 0;
-    for (const std::uint32_t other : order.conflicts(leaf)) {
+    for (const std::uint32_t other : order.overlapping(leaf)) {
       if (order.before(other, leaf, phase)) begin = std::max(begin, end[other]);
     }
     end[leaf] = begin + tree.leaves()[leaf].weight;

@@ -218,29 +218,29 @@ TEST_P(Quadtrees, GrowLeavesByHalfOfTheirSide) {
     for (const auto& leaf : tree.quadtree.leaves()) {
       const double half = 0.5 * leaf.side();
       const double slack = 1e-3 * leaf.side();
-      EXPECT_NEAR(leaf.grown.min_x, leaf.box.min_x - half, slack);
-      EXPECT_NEAR(leaf.grown.min_y, leaf.box.min_y - half, slack);
-      EXPECT_NEAR(leaf.grown.max_x, leaf.box.max_x + half, slack);
-      EXPECT_NEAR(leaf.grown.max_y, leaf.box.max_y + half, slack);
+      EXPECT_NEAR(leaf.halo.min_x, leaf.box.min_x - half, slack);
+      EXPECT_NEAR(leaf.halo.min_y, leaf.box.min_y - half, slack);
+      EXPECT_NEAR(leaf.halo.max_x, leaf.box.max_x + half, slack);
+      EXPECT_NEAR(leaf.halo.max_y, leaf.box.max_y + half, slack);
     }
   });
 }
 
-TEST_P(Quadtrees, HaveConflictsExactlyWhereGrownBoxesOverlap) {
+TEST_P(Quadtrees, FindEveryLeafWhoseHaloOverlaps) {
   for_trees([](const Tree& tree) {
     const auto& leaves = tree.quadtree.leaves();
-    const auto conflicts = tree.quadtree.conflicts();
-    ASSERT_EQ(conflicts.size(), leaves.size());
+    const auto overlapping = tree.quadtree.overlapping();
+    ASSERT_EQ(overlapping.size(), leaves.size());
     for (std::uint32_t a = 0; a < leaves.size(); ++a) {
       std::vector<std::uint32_t> expected;
       for (std::uint32_t b = 0; b < leaves.size(); ++b) {
-        const Box& p = leaves[a].grown;
-        const Box& q = leaves[b].grown;
+        const Box& p = leaves[a].halo;
+        const Box& q = leaves[b].halo;
         const bool apart =
             p.max_x <= q.min_x || q.max_x <= p.min_x || p.max_y <= q.min_y || q.max_y <= p.min_y;
         if (a != b && !apart) expected.push_back(b);
       }
-      ASSERT_EQ(conflicts[a], expected) << "leaf " << a;
+      ASSERT_EQ(overlapping[a], expected) << "leaf " << a;
     }
   });
 }
@@ -258,7 +258,7 @@ TEST(Quadtree, OfLittleIsOneLeaf) {
   const Quadtree tree = Quadtree::build({0, 0, 1, 1}, {{{0.5, 0.5}, kTarget}}, kTarget);
   ASSERT_EQ(tree.leaves().size(), 1u);
   EXPECT_EQ(tree.leaves()[0].weight, kTarget);
-  EXPECT_TRUE(tree.conflicts()[0].empty());
+  EXPECT_TRUE(tree.overlapping()[0].empty());
 }
 
 TEST(Quadtree, DoesNotSplitForOneSampleAlone) {
