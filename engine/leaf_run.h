@@ -5,7 +5,7 @@
 //   LeafRun<ConstantArea> run(plan, refinement, stage, root, parts);
 //   if (auto error = run.run()) return error;
 //
-// A leaf is settled if it and those that overlap it have nothing left, and final if all of these
+// A leaf is settled if it and those that overlap it have nothing pending, and final if all of these
 // are settled: no task touches its slots then but its own smoothing and its part (leaf_graph.h).
 #pragma once
 
@@ -64,7 +64,7 @@ class LeafRun {
     if (auto error = refine_all()) return error;
     if (!stopped() && final_leaves_ < n) {
       cleaned_up_ = true;
-      if (leaves_.left() > 0) clean_up();
+      if (leaves_.pending() > 0) clean_up();
       if (!stage_.streams() && !stopped()) parts_.send_vertices(root_);
       send_from(final_leaves_.exchange(n));
     }
@@ -94,9 +94,10 @@ class LeafRun {
                        const std::uint32_t step = task % LeafGraph::kTasks;
                        if (leaf >= leaves_.size()) return do_block(leaf - leaves_.size(), step);
                        if (step < LeafGraph::kRounds) refine(leaf, step);
-                       if (task == LeafGraph::look(leaf)) look(leaf);
+                       if (task == LeafGraph::check_pending(leaf)) check_pending(leaf);
                        if (!streams) return;  // nothing to settle yet
-                       if (task == LeafGraph::settle(leaf)) settled_[leaf] = is_settled(leaf);
+                       if (task == LeafGraph::check_settled(leaf))
+                         settled_[leaf] = is_settled(leaf);
                        if (task == LeafGraph::smooth(leaf) && settled_[leaf]) smooth(leaf, 0);
                        if (task == LeafGraph::number(leaf) && !is_final(leaf)) end_sending_at(leaf);
                        if (leaf < final_leaves_) send_leaf(task, leaf);
@@ -132,13 +133,13 @@ class LeafRun {
     if (auto error = time_.measure([&] { return leaves_.refine(leaf, round); }))
       parts_.run().stop(*error);
     if (round == 0) context_.add_fraction(kRefining * stage_.share_of(leaf));
-    if (round >= LeafGraph::kHandOverRounds && !leaves_.has_left(leaf))
+    if (round >= LeafGraph::kMigrationRounds && !leaves_.has_pending(leaf))
       skip_rounds(leaf, round + 1, LeafGraph::round(leaf, round));
   }
 
-  void look(std::uint32_t leaf) {
-    if (!leaves_.has_work(leaf, LeafGraph::kHandOverRounds))
-      skip_rounds(leaf, LeafGraph::kHandOverRounds, LeafGraph::look(leaf));
+  void check_pending(std::uint32_t leaf) {
+    if (!leaves_.has_work(leaf, LeafGraph::kMigrationRounds))
+      skip_rounds(leaf, LeafGraph::kMigrationRounds, LeafGraph::check_pending(leaf));
   }
 
   // Skips the rounds from `first` on; task `by` found that they have nothing to do.
@@ -165,9 +166,9 @@ class LeafRun {
 
   bool is_settled(std::uint32_t leaf) const {
     const auto& around = order_.overlapping(leaf);
-    return !leaves_.has_left(leaf) && (!blocks_ || blocks_->leaf_fits(leaf)) &&
+    return !leaves_.has_pending(leaf) && (!blocks_ || blocks_->leaf_fits(leaf)) &&
            std::none_of(around.begin(), around.end(),
-                        [&](std::uint32_t other) { return leaves_.has_left(other); });
+                        [&](std::uint32_t other) { return leaves_.has_pending(other); });
   }
   bool is_final(std::uint32_t leaf) const {
     const auto& around = order_.overlapping(leaf);

@@ -50,7 +50,7 @@ struct BlockGraph {
     return LeafGraph::round(number, round);
   }
   static std::uint32_t judge(std::uint32_t number) { return LeafGraph::round(number, kRounds); }
-  static constexpr std::uint32_t kRounds = LeafGraph::kHandOverRounds;
+  static constexpr std::uint32_t kRounds = LeafGraph::kMigrationRounds;
 
   // The graph of all tasks that run while a mesh is refined: with the parts of the leaves if it
   // `streams`, and the blocks' tasks if there are blocks. Errors: kCancelled, kDeadlineExceeded.

@@ -13,8 +13,8 @@
 //   if (blocks.fit()) BlockGraph::add(blocks.order(), blocks.near(), graph);
 //   ... blocks.refine(b, 0), blocks.refine(b, 1), blocks.judge(b), blocks.seed(l, leaves) ...
 //
-// A block has two rounds, in both of which it hands over bad triangles outside the block. The
-// second leaves few triangles, which the leaves refine.
+// A block has two rounds, in both of which bad triangles outside the block migrate. The second
+// leaves few triangles, which the leaves refine.
 //
 // Then the triangles in the slots of the block, and those of owner 0 with centroids in the block,
 // are judged by the bounds of the final mesh. Only tasks of the block and of blocks that overlap it

@@ -37,34 +37,35 @@ std::vector<std::uint32_t> first_around(const LeafOrder& order,
 void LeafGraph::add_refinement(const LeafOrder& order, TaskGraph& graph) {
   for (std::uint32_t l = 0; l < order.size(); ++l) {
     for (std::uint32_t r = 0; r < kRounds; ++r) {
-      const bool looks = r == kHandOverRounds;
-      if (r > 0) graph.add_dependency(looks ? look(l) : round(l, r - 1), round(l, r));
+      const bool after_check = r == kMigrationRounds;
+      if (r > 0)
+        graph.add_dependency(after_check ? check_pending(l) : round(l, r - 1), round(l, r));
       for (const std::uint32_t other : order.overlapping(l)) {
         if (order.before(other, l, LeafOrder::phase_of(r))) {
           graph.add_dependency(round(other, r), round(l, r));
-        } else if (r > 0 && !looks) {
+        } else if (r > 0 && !after_check) {
           graph.add_dependency(round(other, r - 1), round(l, r));
         }
       }
     }
-    graph.add_dependency(round(l, kHandOverRounds - 1), look(l));
+    graph.add_dependency(round(l, kMigrationRounds - 1), check_pending(l));
     for (const std::uint32_t other : order.overlapping(l))
-      graph.add_dependency(round(other, kHandOverRounds - 1), look(l));
+      graph.add_dependency(round(other, kMigrationRounds - 1), check_pending(l));
   }
 }
 
 void LeafGraph::add_parts(const LeafOrder& order, TaskGraph& graph, bool smooths) {
   for (std::uint32_t l = 0; l < order.size(); ++l) {
-    graph.add_dependency(round(l, kRounds - 1), settle(l));
-    graph.add_dependency(settle(l), smooth(l));
-    graph.add_dependency(settle(l), number(l));
+    graph.add_dependency(round(l, kRounds - 1), check_settled(l));
+    graph.add_dependency(check_settled(l), smooth(l));
+    graph.add_dependency(check_settled(l), number(l));
     if (l > 0) graph.add_dependency(number(l - 1), number(l));
     graph.add_dependency(number(l), hand_on(l));
     graph.add_dependency(hand_on(l), part(l));
     graph.add_dependency(smooth(l), part(l));
     for (const std::uint32_t other : order.overlapping(l)) {
-      graph.add_dependency(round(other, kRounds - 1), settle(l));
-      graph.add_dependency(settle(other), number(l));
+      graph.add_dependency(round(other, kRounds - 1), check_settled(l));
+      graph.add_dependency(check_settled(other), number(l));
       if (smooths && order.before(other, l, LeafOrder::kSmoothing))
         graph.add_dependency(smooth(other), smooth(l));
       if (smooths) graph.add_dependency(smooth(other), part(l));
@@ -75,7 +76,7 @@ void LeafGraph::add_parts(const LeafOrder& order, TaskGraph& graph, bool smooths
 
 LeafGraph::RoundNeeds LeafGraph::needs_of_rounds(const LeafOrder& order,
                                                  const std::vector<std::uint32_t>& next) {
-  static_assert(kHandOverRounds == 2);
+  static_assert(kMigrationRounds == 2);
   RoundNeeds needs;
   needs.second = along_order(order, LeafOrder::kLaterRounds, first_around(order, next));
   // The second round of a leaf waits for the first round of those that overlap it that come later.
@@ -100,16 +101,16 @@ std::vector<std::uint32_t> LeafGraph::needs(const LeafOrder& order, bool smooths
   std::vector<std::uint32_t> settled(n);
   std::transform(smoothed.begin(), smoothed.end(), around.begin(), settled.begin(),
                  [](std::uint32_t a, std::uint32_t b) { return std::min(a, b); });
-  const std::vector<std::uint32_t> looked = first_around(order, settled);
-  const RoundNeeds rounds = needs_of_rounds(order, looked);
+  const std::vector<std::uint32_t> checked = first_around(order, settled);
+  const RoundNeeds rounds = needs_of_rounds(order, checked);
 
   std::vector<std::uint32_t> result(std::size_t{n} * kTasks);
   for (std::uint32_t l = 0; l < n; ++l) {
     result[round(l, 0)] = rounds.first[l];
     result[round(l, 1)] = rounds.second[l];
-    for (std::uint32_t r = kHandOverRounds; r < kRounds; ++r) result[round(l, r)] = looked[l];
-    result[look(l)] = looked[l];
-    result[settle(l)] = settled[l];
+    for (std::uint32_t r = kMigrationRounds; r < kRounds; ++r) result[round(l, r)] = checked[l];
+    result[check_pending(l)] = checked[l];
+    result[check_settled(l)] = settled[l];
     result[smooth(l)] = smoothed[l];
     result[number(l)] = result[hand_on(l)] = result[part(l)] = l;
   }

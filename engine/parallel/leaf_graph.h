@@ -2,19 +2,30 @@
 // The tasks of the leaves and their dependencies: rounds of refinement, then smoothing, then the
 // tasks that make the leaf a part of the sent mesh.
 //
+//   round 1, 2, 3, 4   refine; 1 and 2 let bad triangles migrate (leaf_tasks.h)
+//   check pending      after round 2: skips rounds 3 and 4 of a leaf that has no work for them
+//   check settled      whether the rounds have left nothing pending in the leaf and around
+//   smooth
+//   number             give the leaf's vertices their numbers in the mesh
+//   hand on            copy the triangles that go with the part of another leaf
+//   part               build the part, to be sent
+//
 //   TaskGraph graph(order.size() * LeafGraph::kTasks);
 //   LeafGraph::add_refinement(order, graph);
 //   LeafGraph::add_parts(order, graph, true);
 //   graph.set_needs(LeafGraph::needs(order, true));
 //
-// The memory of a mesh depends on how many leaves must have begun before the next one can be sent.
-// Each of these tasks waits for the overlapping leaves, one step further ahead:
-//   - the part, until they are smoothed, because that moves vertices of this leaf, too;
-//   - the settling, until their rounds are done;
-//   - each round, until their previous round is done.
+// The memory of a mesh is that of the leaves that have begun and are not sent. Which leaves must
+// have begun before leaf l can be sent follows from what its tasks wait for, each in the leaves
+// that overlap one ring further out:
+//   - its part, for their smoothing, because that moves vertices of l, too;
+//   - their smoothing, for the rounds of the leaves that overlap them;
+//   - each round, for the previous round of the leaves that overlap.
 // No task waits longer than necessary: a leaf is smoothed once the rounds around it are done,
-// though it is final only one step later. And nearly all leaves are handed nothing in the second
-// round, and skip the later ones without waiting for the order in them.
+// though it is final only when those around are settled, too. Nearly all leaves receive nothing in
+// the second round, and skip the later ones without waiting for the order in them.
+//
+// Thread-safety: pure functions of their arguments.
 #pragma once
 
 #include <cstdint>
@@ -27,22 +38,22 @@
 namespace weft {
 
 struct LeafGraph {
-  static constexpr std::uint32_t kHandOverRounds = 2;
+  static constexpr std::uint32_t kMigrationRounds = 2;
   static constexpr std::uint32_t kRounds = 4;
   static constexpr std::uint32_t kTasks = kRounds + 6;  // of a leaf
-  // Whether a leaf's task hands over bad triangles outside its leaf in this round.
-  static constexpr bool hands_over(std::uint32_t round) { return round < kHandOverRounds; }
-  static constexpr Trace::GraphName kName{"leaves",
-                                          {"round 1", "round 2", "round 3", "round 4", "look",
-                                           "settle", "smooth", "number", "hand on", "part"}};
+  // Whether a leaf's task passes bad triangles outside its leaf to the leaf there in this round.
+  static constexpr bool migrates(std::uint32_t round) { return round < kMigrationRounds; }
+  static constexpr Trace::GraphName kName{
+      "leaves",
+      {"round 1", "round 2", "round 3", "round 4", "check pending", "check settled", "smooth",
+       "number", "hand on", "part"}};
 
   static std::uint32_t round(std::uint32_t leaf, std::uint32_t round) {
     return leaf * kTasks + round;
   }
-  // A leaf's other tasks: test whether there is work for the rounds without handing over; test
-  // whether the rounds settled the leaf; smooth; number; hand on triangles; build the part.
-  static std::uint32_t look(std::uint32_t leaf) { return leaf * kTasks + kRounds; }
-  static std::uint32_t settle(std::uint32_t leaf) { return leaf * kTasks + kRounds + 1; }
+  // A leaf's other tasks.
+  static std::uint32_t check_pending(std::uint32_t leaf) { return leaf * kTasks + kRounds; }
+  static std::uint32_t check_settled(std::uint32_t leaf) { return leaf * kTasks + kRounds + 1; }
   static std::uint32_t smooth(std::uint32_t leaf) { return leaf * kTasks + kRounds + 2; }
   static std::uint32_t number(std::uint32_t leaf) { return leaf * kTasks + kRounds + 3; }
   static std::uint32_t hand_on(std::uint32_t leaf) { return leaf * kTasks + kRounds + 4; }
@@ -51,8 +62,9 @@ struct LeafGraph {
   static void add_refinement(const LeafOrder& order, TaskGraph& graph);
 
   // A leaf is settled if neither it nor any leaf that overlaps it, which own a part of its halo,
-  // has anything left. Then it is smoothed, if the mesh is. It is final if the overlapping leaves
-  // are settled, too, because the clean-up needs room to work. It is sent once those are smoothed.
+  // has anything pending. Then it is smoothed, if the mesh is. It is final if the overlapping
+  // leaves are settled, too, because the clean-up needs room to work. It is sent once those are
+  // smoothed.
   static void add_parts(const LeafOrder& order, TaskGraph& graph, bool smooths);
 
   // Per task, the first part that waits for it, if all leaves skip the rounds that they may skip,

@@ -1,25 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// Refinement by leaves of the quadtree.
+// Refinement by leaves of the quadtree, one task at a time for each leaf (the paper's Section 2.4).
 //
-// A leaf's task owns the leaf's halo (ownership.h) and refines the bad triangles whose centroids
-// lie in the leaf. Two leaves overlap if their halos do: their tasks run one after the other, all
-// others at the same time. The ORDER between two that overlap is fixed beforehand: by round, then
-// by leaf_order.h. So the mesh depends on the request alone, whatever the threads do.
+// A leaf's task owns the leaf's halo (refine/ownership.h) and refines the bad triangles whose
+// centroids lie in the leaf. Two leaves overlap if their halos do: their tasks run one after the
+// other, all others at the same time. The ORDER of two that overlap is fixed beforehand: by round,
+// then by leaf_order.h. So the mesh depends on the request alone, whatever the threads do.
 //
-// Rounds. In the first two a task hands bad triangles that it makes outside its leaf to the leaf
-// there, and each leaf takes those that its neighbours have left for it: from neighbours before it
-// in the same round, from those after it in the next. In the last two a task refines all that it
-// owns. A triangle that no task could refine, because its cavity reaches beyond the halo, is handed
-// to the leaf of its Steiner point, or waits for the next round. About 11 % of the insertions are
-// handed over; 0.02 to 0.3 % wait, if a size makes the mesh or if two parallel segments do. A leaf
-// that has nothing left and is handed nothing skips the later rounds.
+//   round 1, 2   Bad triangles that a task makes outside its leaf migrate to the leaf there, which
+//                takes them in a fixed order: those of an overlapping leaf before it in the same
+//                round, those of one after it in the next. Some 11 % of the insertions are for
+//                these.
+//   round 3, 4   A task refines all bad triangles that it owns. A leaf that has nothing pending and
+//                receives nothing skips these.
+//   clean-up     One task refines what is pending after the rounds. It owns all that has not been
+//                sent: all but the halos of the leaves before `frozen`.
 //
-// The first round begins with rows of the lattice in what is clear of segments (row_filler.h).
+// A triangle that a task cannot refine, because its cavity reaches beyond the halo, migrates to the
+// leaf of its Steiner point, or is pending until the next round: 0.02 to 0.3 %, if a size makes the
+// mesh or if two parallel segments do. The first round begins with rows of the lattice in what is
+// clear of segments (refine/row_filler.h).
 //
-// One task cleans up what is left after the rounds. It owns everything that has not been sent: all
-// but the leaves before `frozen` and their halos.
+//   LeafTasks<ConstantArea> leaves(refinement, quality, area, tree, order, 1);
+//   leaves.seed(bad);
+//   ... leaves.refine(l, 0), ... in an order that LeafGraph permits ...
+//   if (leaves.pending() > 0) leaves.clean_up(0);
 //
-// Thread-safety: `refine` may run at the same time for leaves that do not overlap.
+// Errors: those of refinement (refine/refiner.h). Thread-safety: of different leaves, `refine` and
+// `smooth` may run at the same time if the leaves do not overlap, `seed` and giving back memory
+// always; `clean_up` and the statistics only while no task runs.
 #pragma once
 
 #include <algorithm>
@@ -113,13 +121,13 @@ class LeafTasks {
   // lie in the leaf, in their order.
   void seed(std::uint32_t leaf, const std::vector<BadTriangle>& seeds) {
     gave(leaves_[leaf].bytes());
-    leaves_[leaf].left.insert(leaves_[leaf].left.end(), seeds.begin(), seeds.end());
+    leaves_[leaf].pending.insert(leaves_[leaf].pending.end(), seeds.begin(), seeds.end());
     took(leaves_[leaf].bytes());
   }
   // The same for all leaves.
   void seed(const std::vector<BadTriangle>& seeds) {
     for (const BadTriangle& t : seeds)
-      leaves_[tree_.leaf_at(centroid_of(t.triangle))].left.push_back(t);
+      leaves_[tree_.leaf_at(centroid_of(t.triangle))].pending.push_back(t);
     for (const Leaf& l : leaves_) took(l.bytes());
   }
 
@@ -154,23 +162,23 @@ class LeafTasks {
     const Lease worker(*this);
     auto& refiner = worker->refiner;
     const Quadtree::Leaf& place = tree_.leaves()[leaf];
-    const OwnsBox ownership{place.halo, LeafGraph::hands_over(round) ? place.box : place.halo};
+    const OwnsBox ownership{place.halo, LeafGraph::migrates(round) ? place.box : place.halo};
     refiner.begin(l.slots, ownership, place.halo);
-    for (const BadTriangle& t : l.left) refiner.queue(t);
-    for (const SegmentEdge& s : l.segments_left) refiner.queue(s);
-    for_handed_to(leaf, round, [&](const auto& what) {
+    for (const BadTriangle& t : l.pending) refiner.queue(t);
+    for (const SegmentEdge& s : l.pending_segments) refiner.queue(s);
+    for_migrants_to(leaf, round, [&](const auto& what) {
       refiner.queue(what);
       return true;
     });
-    if (round == 0) worker->filler.fill(refiner, l.slots, ownership, place.box, l.left);
+    if (round == 0) worker->filler.fill(refiner, l.slots, ownership, place.box, l.pending);
     auto error = refiner.run();
-    l.left.clear();
-    l.segments_left.clear();
-    for (const BadTriangle& t : refiner.deferred()) hand_on(leaf, round, t, steiner_point_of(t));
-    for (const SegmentEdge& s : refiner.deferred_segments()) hand_on(leaf, round, s);
-    for (const BadTriangle& t : refiner.handed_over()) {
+    l.pending.clear();
+    l.pending_segments.clear();
+    for (const BadTriangle& t : refiner.deferred()) migrate(leaf, round, t, steiner_point_of(t));
+    for (const SegmentEdge& s : refiner.deferred_segments()) migrate(leaf, round, s);
+    for (const BadTriangle& t : refiner.migrants()) {
       if (refinement_.mesh.triangles[t.triangle].vertex[0] == t.first_vertex)
-        hand_on(leaf, round, t, centroid_of(t.triangle));
+        migrate(leaf, round, t, centroid_of(t.triangle));
     }
     deferred_.fetch_add(refiner.deferred().size() + refiner.deferred_segments().size(),
                         std::memory_order_relaxed);
@@ -196,8 +204,8 @@ class LeafTasks {
     return smoother.run(leaves_[leaf].slots, sweeps);
   }
 
-  // Refines triangles that are left after the last round, without touching what the leaves before
-  // `frozen` have made. Triangles too near to these stay as they are.
+  // Refines triangles that are pending after the last round, without touching what the leaves
+  // before `frozen` have made. Triangles too near to these stay as they are.
   std::optional<Error> clean_up(std::uint32_t frozen) {
     std::vector<std::vector<std::uint32_t>> frozen_near(leaves_.size());
     for (std::uint32_t l = 0; l < leaves_.size(); ++l) {
@@ -209,23 +217,23 @@ class LeafTasks {
     Refiner<OwnsUnfrozen, AreaBound> refiner(refinement_, quality_, area_.again());
     refiner.begin(clean_up_slots_, OwnsUnfrozen{&tree_, &frozen_near}, tree_.box());
     for (const Leaf& l : leaves_) {
-      for (const BadTriangle& t : l.left) refiner.queue(t);
-      for (const SegmentEdge& s : l.segments_left) refiner.queue(s);
+      for (const BadTriangle& t : l.pending) refiner.queue(t);
+      for (const SegmentEdge& s : l.pending_segments) refiner.queue(s);
     }
     auto error = refiner.run();
     clean_up_figures_ = refiner.figures();
     return error;
   }
 
-  // Whether `leaf` has anything left for a later round.
-  bool has_left(std::uint32_t leaf) const {
-    return !leaves_[leaf].left.empty() || !leaves_[leaf].segments_left.empty();
+  // Whether `leaf` has anything pending.
+  bool has_pending(std::uint32_t leaf) const {
+    return !leaves_[leaf].pending.empty() || !leaves_[leaf].pending_segments.empty();
   }
   // Whether the leaf has anything to do in a round. REQUIRES: the tasks that the round waits for
   // are done.
   bool has_work(std::uint32_t leaf, std::uint32_t round) const {
-    bool any = has_left(leaf);
-    for_handed_to(leaf, round, [&](const auto&) {
+    bool any = has_pending(leaf);
+    for_migrants_to(leaf, round, [&](const auto&) {
       any = true;
       return false;
     });
@@ -233,9 +241,9 @@ class LeafTasks {
   }
 
   // Bad triangles and encroached segments that wait for another round, or the clean-up.
-  std::uint64_t left() const {
+  std::uint64_t pending() const {
     std::uint64_t count = 0;
-    for (const Leaf& l : leaves_) count += l.left.size() + l.segments_left.size();
+    for (const Leaf& l : leaves_) count += l.pending.size() + l.pending_segments.size();
     return count;
   }
 
@@ -270,23 +278,23 @@ class LeafTasks {
   }
 
   template <class What>
-  struct HandedOver {
+  struct Migrant {
     std::uint32_t leaf;
-    std::uint32_t round;  // of the task that hands it over
+    std::uint32_t round;  // of the task from which it migrates
     What what;
   };
 
   struct Leaf {
     Slots slots = {};
-    std::vector<BadTriangle> left = {};
-    std::vector<SegmentEdge> segments_left = {};
-    std::vector<HandedOver<BadTriangle>> handed_over = {};
-    std::vector<HandedOver<SegmentEdge>> segments_handed_over = {};
+    std::vector<BadTriangle> pending = {};
+    std::vector<SegmentEdge> pending_segments = {};
+    std::vector<Migrant<BadTriangle>> migrants = {};
+    std::vector<Migrant<SegmentEdge>> migrant_segments = {};
     std::uint64_t bytes() const {
-      return slots.bytes() + left.capacity() * sizeof(left[0]) +
-             segments_left.capacity() * sizeof(segments_left[0]) +
-             handed_over.capacity() * sizeof(handed_over[0]) +
-             segments_handed_over.capacity() * sizeof(segments_handed_over[0]);
+      return slots.bytes() + pending.capacity() * sizeof(pending[0]) +
+             pending_segments.capacity() * sizeof(pending_segments[0]) +
+             migrants.capacity() * sizeof(migrants[0]) +
+             migrant_segments.capacity() * sizeof(migrant_segments[0]);
     }
   };
 
@@ -336,50 +344,51 @@ class LeafTasks {
     Worker* worker_;
   };
 
-  // Calls f for the triangles that neighbours have left for this leaf, as long as f returns true.
+  // Calls f for the triangles that migrate to this leaf from those that overlap it, as long as f
+  // returns true.
   template <class F>
-  void for_handed_to(std::uint32_t leaf, std::uint32_t round, F&& f) const {
-    if (round > LeafGraph::kHandOverRounds) return;
+  void for_migrants_to(std::uint32_t leaf, std::uint32_t round, F&& f) const {
+    if (round > LeafGraph::kMigrationRounds) return;
     for (const std::uint32_t other : order_.overlapping(leaf)) {
-      // A triangle is due in the first task of this leaf after the task that handed it over.
+      // A triangle is due in the first task of this leaf after the task from which it migrates.
       const auto is_due = [&](const auto& h) {
         if (h.leaf != leaf) return false;
         return round ==
                (order_.before(other, leaf, LeafOrder::phase_of(h.round)) ? h.round : h.round + 1);
       };
-      for (const auto& h : leaves_[other].handed_over) {
+      for (const auto& h : leaves_[other].migrants) {
         if (is_due(h) && !f(h.what)) return;
       }
-      for (const auto& h : leaves_[other].segments_handed_over) {
+      for (const auto& h : leaves_[other].migrant_segments) {
         if (is_due(h) && !f(h.what)) return;
       }
     }
   }
 
-  // Hands a triangle on to the leaf that contains its next vertex, whose task owns the
+  // Lets a triangle migrate to the leaf that contains its next vertex, whose task owns the
   // surroundings.
-  void hand_on(std::uint32_t from, std::uint32_t round, const BadTriangle& bad, Point next) {
+  void migrate(std::uint32_t from, std::uint32_t round, const BadTriangle& bad, Point next) {
     Leaf& l = leaves_[from];
     const std::uint32_t to = tree_.leaf_at(next);
-    if (may_hand_over(from, round, to) && may_look_at(to, bad.triangle)) {
-      l.handed_over.push_back({to, round, bad});
+    if (may_migrate(from, round, to) && may_look_at(to, bad.triangle)) {
+      l.migrants.push_back({to, round, bad});
     } else {
-      l.left.push_back(bad);
+      l.pending.push_back(bad);
     }
   }
-  void hand_on(std::uint32_t from, std::uint32_t round, const SegmentEdge& s) {
+  void migrate(std::uint32_t from, std::uint32_t round, const SegmentEdge& s) {
     Leaf& l = leaves_[from];
     const Point a = refinement_.mesh.vertices[s.a];
     const Point b = refinement_.mesh.vertices[s.b];
     const std::uint32_t to = tree_.leaf_at({a.x + 0.5 * (b.x - a.x), a.y + 0.5 * (b.y - a.y)});
-    if (may_hand_over(from, round, to) && may_look_at(to, s.triangle)) {
-      l.segments_handed_over.push_back({to, round, s});
+    if (may_migrate(from, round, to) && may_look_at(to, s.triangle)) {
+      l.migrant_segments.push_back({to, round, s});
     } else {
-      l.segments_left.push_back(s);
+      l.pending_segments.push_back(s);
     }
   }
-  bool may_hand_over(std::uint32_t from, std::uint32_t round, std::uint32_t to) const {
-    return LeafGraph::hands_over(round) && order_.overlap(from, to);
+  bool may_migrate(std::uint32_t from, std::uint32_t round, std::uint32_t to) const {
+    return LeafGraph::migrates(round) && order_.overlap(from, to);
   }
 
   // Whether a leaf's task may read the vertices in a slot at any time: those of earlier owners are

@@ -17,8 +17,8 @@
 // of the cavity's border lie in the task's box; the box is convex, so the point does, too, and all
 // new triangles have three vertices of this task. So no other running task sees a change.
 //
-// In addition, a task that begins checks whether a triangle handed on to it still exists: only in
-// slots that no concurrent task writes (leaf_tasks.h, may_look_at).
+// In addition, a task that begins checks whether a triangle that migrated to it still exists: only
+// in slots that no concurrent task writes (leaf_tasks.h, may_look_at).
 #pragma once
 
 #include "engine/base/geometry.h"
@@ -35,7 +35,7 @@ struct OwnsAll {
 };
 
 // A task owns the vertices of a half-open box, beside other tasks. It refines triangles with their
-// centroid in the core, and hands the others over.
+// centroid in the core, and lets the others migrate to their own task.
 struct OwnsBox {
   static constexpr bool kRestricted = true;
   Box box;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tasks of a run share, what they report, and what they hand on.
+// What the tasks of a run share, what they report, and the bad triangles that they pass to one
+// another.
 #pragma once
 
 #include <algorithm>
@@ -54,7 +55,7 @@ struct RefinerFigures {
   }
 };
 
-// A bad triangle that a task hands on. It is gone if the slot has another first vertex.
+// A bad triangle that migrates to another task. It is gone if the slot has another first vertex.
 struct BadTriangle {
   std::uint32_t triangle;
   std::uint32_t first_vertex;

@@ -14,8 +14,8 @@
 //
 // Ownership is a compile-time parameter (ownership.h). If an insertion meets a triangle that the
 // task does not own, the task leaves the mesh as it was and keeps the bad triangle in `deferred()`.
-// Bad triangles that it makes outside its core go to `handed_over()`. One Refiner serves many
-// tasks, one after the other.
+// Bad triangles that it makes outside its core go to `migrants()`. One Refiner serves many tasks,
+// one after the other.
 //
 // Tasks name a triangle by its slot and first vertex: only the slot's owner writes vertices, and
 // the first one differs each time. So a task may check whether a triangle still exists before it
@@ -86,21 +86,22 @@ class Refiner {
     segments_.clear();
     deferred_.clear();
     deferred_segments_.clear();
-    handed_over_.clear();
+    migrants_.clear();
   }
 
-  // Queues a triangle that another task has left, if it still exists; defers it if it is not owned.
-  void queue(const BadTriangle& left) {
-    const Triangle& t = mesh_.triangles[left.triangle];
-    if (t.vertex[0] != left.first_vertex) return;
+  // Queues a triangle that is pending from another task, if it still exists; defers it if it is not
+  // owned.
+  void queue(const BadTriangle& pending) {
+    const Triangle& t = mesh_.triangles[pending.triangle];
+    if (t.vertex[0] != pending.first_vertex) return;
     if (!owns(t)) {
-      deferred_.push_back(left);
+      deferred_.push_back(pending);
     } else if (t.badness() != kGood) {
-      mesh_.triangles[left.triangle].set_deferred(false);
-      bad_.push(left.triangle, t.badness());
+      mesh_.triangles[pending.triangle].set_deferred(false);
+      bad_.push(pending.triangle, t.badness());
     }
   }
-  void queue(const SegmentEdge& left) { segments_.push_back(left); }
+  void queue(const SegmentEdge& pending) { segments_.push_back(pending); }
 
   // Judges every triangle and queues the bad ones; splits segments down to the limits of their
   // markers. REQUIRES: all triangles lie in the slots of this task.
@@ -158,7 +159,7 @@ class Refiner {
   const std::vector<BadTriangle>& deferred() const { return deferred_; }
   const std::vector<SegmentEdge>& deferred_segments() const { return deferred_segments_; }
   // Some of these may no longer exist.
-  const std::vector<BadTriangle>& handed_over() const { return handed_over_; }
+  const std::vector<BadTriangle>& migrants() const { return migrants_; }
 
   RefinerFigures figures() const {
     return {insertions_, star_.exact_predicates() + petal_search_.exact_predicates() + exact_,
@@ -380,21 +381,21 @@ class Refiner {
     } else {
       added_ += star_.make(mesh_, *slots_, vertex, closed,
                            [&](std::uint32_t t, Badness badness, std::uint32_t edge) {
-                             queue_or_hand_over(t, badness, vertex, p, edge);
+                             queue_or_migrate(t, badness, vertex, p, edge);
                            });
     }
   }
 
-  // Queues a bad triangle of the star of p, at an edge of the ring, or hands it over if it lies
+  // Queues a bad triangle of the star of p, at an edge of the ring, or lets it migrate if it lies
   // outside the core.
-  void queue_or_hand_over(std::uint32_t t, Badness badness, std::uint32_t vertex, Point p,
-                          std::uint32_t edge) {
+  void queue_or_migrate(std::uint32_t t, Badness badness, std::uint32_t vertex, Point p,
+                        std::uint32_t edge) {
     const RingPoint& a = star_.ring().points[edge];
     const RingPoint& b = star_.ring().points[edge + 1];
     if (ownership_.in_core(p.x + (a.x + b.x) * (1.0 / 3), p.y + (a.y + b.y) * (1.0 / 3))) {
       bad_.push(t, badness);
     } else {
-      handed_over_.push_back({t, vertex});
+      migrants_.push_back({t, vertex});
     }
   }
 
@@ -544,7 +545,7 @@ class Refiner {
   std::vector<SegmentEdge> segments_;  // encroached upon; entries may be stale
   std::vector<BadTriangle> deferred_;
   std::vector<SegmentEdge> deferred_segments_;
-  std::vector<BadTriangle> handed_over_;
+  std::vector<BadTriangle> migrants_;
   bool segments_deferred_ = false;
   // Why segments of the last call of split_queued_segments were not split; precision takes
   // precedence over the caller's floor.

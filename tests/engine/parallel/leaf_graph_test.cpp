@@ -81,7 +81,7 @@ TEST(LeafGraph, KnowsTheFirstPartThatWaitsForATask) {
       std::vector<std::vector<std::uint32_t>> successors(graph.tasks.size());
       const auto is_skipped = [](std::uint32_t task) {
         const std::uint32_t step = task % LeafGraph::kTasks;
-        return LeafGraph::kHandOverRounds <= step && step < LeafGraph::kRounds;
+        return LeafGraph::kMigrationRounds <= step && step < LeafGraph::kRounds;
       };
       for (const auto& e : graph.tasks.edges()) {
         const bool of_one_leaf = e.before / LeafGraph::kTasks == e.after / LeafGraph::kTasks;
