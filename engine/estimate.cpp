@@ -49,12 +49,12 @@ constexpr double kBytesPerLeaf = 2700;
 // Full ones. With fewer, nearly all leaves may have begun before much is sent, if a thread stands
 // still for a while.
 constexpr double kFewestLeaves = 128;
-// Of parts that are built and wait for their reader, per triangle. If the reader stalls, so many
-// full leaves wait: parts_ahead, each of which is about .6 of the largest.
+// Of fragments that are built and wait for their reader, per triangle. If the reader stalls, so many
+// full leaves wait: fragments_ahead, each of which is about .6 of the largest.
 constexpr double kBytesOfWaiting = 22;
 constexpr int kThreads = 2;
 double full_leaves_waiting() {
-  return 0.6 * parts_ahead(kThreads);
+  return 0.6 * fragments_ahead(kThreads);
 }
 
 double inverse(double bound) {
@@ -157,7 +157,7 @@ double triangles_by_pieces(const MeshRequest& request) {
 }
 
 // Bytes of a mesh that is held as a whole, or, if it may stream, of the strip that is held; and of
-// its parts that wait for their reader.
+// its fragments that wait for their reader.
 double bytes_of_mesh(double triangles, double of_leaf, bool may_stream) {
   const double whole = kBytesPerTriangle * triangles;
   const double waiting = kBytesOfWaiting * std::min(triangles, full_leaves_waiting() * of_leaf);

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "engine/base/work_time.h"
-#include "engine/emit/slot_parts.h"
+#include "engine/emit/slot_fragments.h"
 #include "engine/leaf_run.h"
 #include "engine/parallel/leaf_stage.h"
 #include "engine/refine/area_bound.h"
@@ -47,7 +47,7 @@ class MeshRun {
                     plan.domain.bytes() + plan.other_bytes + plan.corners.bytes(),
                     cut_off ? context.budget().triangle_limit : limit(plan, context)},
         root_(Slots::of_domain(plan.domain)),
-        parts_(plan, area, refinement_, cut_off, sink, summary),
+        fragments_(plan, area, refinement_, cut_off, sink, summary),
         leaves_(plan, area, refinement_, root_) {}
 
   // What comes before the leaves' tasks, or all refinement if there are no leaves. `start` is when
@@ -67,7 +67,7 @@ class MeshRun {
   std::optional<Error> run(Clock::time_point start) {
     std::uint64_t run_bytes = 0;
     if (leaves_.exists()) {
-      LeafRun<AreaBound> run(plan_, refinement_, leaves_, root_, parts_);
+      LeafRun<AreaBound> run(plan_, refinement_, leaves_, root_, fragments_);
       if (auto error = run.run()) return error;
       run_bytes = run.bytes();
       summary_.refine_seconds += run.refine_seconds();
@@ -78,18 +78,18 @@ class MeshRun {
     } else if (auto error = send_alone()) {
       return error;
     }
-    parts_.close();
+    fragments_.close();
     context_.end_stage("closing");
     RefinerFigures figures = leaves_.figures();
     figures += alone_;
     summary_.insertions += figures.insertions;
     summary_.exact_predicates += figures.exact_predicates;
     summary_.deferred = leaves_.deferred();
-    summary_.engine_seconds = seconds_since(start) - parts_.run().blocked_seconds();
+    summary_.engine_seconds = seconds_since(start) - fragments_.run().blocked_seconds();
     summary_.refine_seconds += refine_time_.seconds();
-    summary_.emit_seconds = parts_.build_seconds();
+    summary_.emit_seconds = fragments_.build_seconds();
     summary_.peak_bytes = refinement_.other_bytes + mesh_.bytes() + root_.bytes() + figures.bytes +
-                          parts_.run().peak_bytes() + leaves_.bytes() + run_bytes;
+                          fragments_.run().peak_bytes() + leaves_.bytes() + run_bytes;
     return std::nullopt;
   }
 
@@ -125,12 +125,12 @@ class MeshRun {
 
   std::optional<Error> send_alone() {
     root_.number_vertices(mesh_, 0);
-    typename SlotParts<AreaBound>::Sections sections;
+    typename SlotFragments<AreaBound>::Sections sections;
     sections.add_vertices(root_);
     sections.add_triangles(root_);
-    parts_.send(sections);
+    fragments_.send(sections);
     context_.add_fraction(1);
-    return parts_.run().error();
+    return fragments_.run().error();
   }
 
   const MeshPlan& plan_;
@@ -141,7 +141,7 @@ class MeshRun {
   const bool cut_off_;
   const RefinementContext refinement_;
   Slots root_;
-  SlotParts<AreaBound> parts_;
+  SlotFragments<AreaBound> fragments_;
   LeafStage<AreaBound> leaves_;
   RefinerFigures alone_;
   WorkTime refine_time_;

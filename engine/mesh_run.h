@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the domain to the chunks: coarse phase, quadtree, the leaves' tasks, and the parts of
+// Makes the mesh of a domain: coarse phase, quadtree, the leaves' tasks, and the fragments of
 // finished leaves, which are sent while others are refined.
 #pragma once
 

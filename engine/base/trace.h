@@ -55,9 +55,9 @@ struct Trace {
     // that task instead.
     std::vector<std::uint32_t> skipped_by;
     std::vector<TaskEdge> edges;
-    // The tasks that build the parts, in the order in which parts are sent. Each waits until the
-    // part parts_ahead(threads) before its own has been sent.
-    std::vector<std::uint32_t> part_tasks;
+    // The tasks that build the fragments, in the order in which fragments are sent. Each waits
+    // until the fragment fragments_ahead(threads) before its own has been sent.
+    std::vector<std::uint32_t> fragment_tasks;
     std::vector<std::uint32_t> needs = {};  // of TaskGraph::set_needs
   };
 
@@ -100,7 +100,7 @@ struct Trace {
         needs};
     start();
   }
-  void add_part(std::uint32_t task) { graph_->part_tasks.push_back(task); }
+  void add_fragment(std::uint32_t task) { graph_->fragment_tasks.push_back(task); }
   template <class F>
   void time(std::uint32_t task, F&& f) {
     const auto start = Clock::now();

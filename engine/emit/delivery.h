@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sends the parts of a mesh in their order, and sums up their figures.
+// Sends the fragments of a mesh in their order, as chunks that know their place in it, and sums up
+// the statistics and the digest of the mesh.
+//
+// Errors: what stopped the context, or kCancelled, if the sink accepts no more. Not thread-safe:
+// the caller's thread sends.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +12,7 @@
 
 #include "engine/base/context.h"
 #include "engine/emit/digest.h"
-#include "engine/emit/emit.h"
+#include "engine/emit/fragment.h"
 #include "engine/emit/quality_statistics.h"
 #include "weft/error.h"
 #include "weft/mesh.h"
@@ -30,13 +34,13 @@ class Delivery {
   Delivery(ChunkSink& sink, const ExecutionContext& context, Summary& summary)
       : sink_(sink), context_(context), summary_(summary) {}
 
-  // Numbers the chunks of the part and gives them to the sink.
-  std::optional<Error> send(Part&& part) {
-    statistics_.add(part.statistics);
-    if (summary_.unrefined.without_exemption() == 0) summary_.unrefined_at = part.unrefined_at;
-    summary_.unrefined += part.unrefined;
-    summary_.edges += part.edges;
-    for (Chunk& chunk : part.chunks) {
+  // Numbers the chunks of the fragment and gives them to the sink.
+  std::optional<Error> send(Fragment&& fragment) {
+    statistics_.add(fragment.statistics);
+    if (summary_.unrefined.without_exemption() == 0) summary_.unrefined_at = fragment.unrefined_at;
+    summary_.unrefined += fragment.unrefined;
+    summary_.edges += fragment.edges;
+    for (Chunk& chunk : fragment.chunks) {
       chunk.index = summary_.chunks++;
       chunk.first_vertex = static_cast<std::uint32_t>(summary_.vertices);
       chunk.first_triangle = static_cast<std::uint32_t>(summary_.triangles);
@@ -50,7 +54,7 @@ class Delivery {
     return std::nullopt;
   }
 
-  // Call after the last part.
+  // Call after the last fragment.
   void finish() {
     statistics_.write(summary_);
     summary_.digest = digest_.finish();

@@ -25,7 +25,7 @@ class QualityStatistics {
  private:
   double percentile(double rank) const;
 
-  // Triangles by their smallest angle, in two columns. A part without triangles has none.
+  // Triangles by their smallest angle, in two columns. A fragment without triangles has none.
   static constexpr std::size_t kFineBins = 1024;
 
   double area_ = 0;

@@ -21,7 +21,7 @@ Result<TaskGraph> BlockGraph::of_run(const LeafOrder& leaves, bool streams, bool
   LeafGraph::add_refinement(leaves, graph);
   if (!streams) return graph;
   if (auto error = context.poll()) return tl::unexpected(*error);
-  LeafGraph::add_parts(leaves, graph, smooths);
+  LeafGraph::add_emission(leaves, graph, smooths);
   if (auto error = context.poll()) return tl::unexpected(*error);
   std::vector<std::uint32_t> needs = LeafGraph::needs(leaves, smooths);
   if (auto error = context.poll()) return tl::unexpected(*error);
@@ -37,7 +37,7 @@ void BlockGraph::add(const LeafOrder& blocks, const BlocksNear& near, TaskGraph&
   const std::uint32_t n = near.leaves();
   for (std::uint32_t b = 0; b < blocks.size(); ++b) {
     const std::uint32_t number = n + b;
-    for (std::uint32_t task = round(number, 1); task <= LeafGraph::part(number); ++task)
+    for (std::uint32_t task = round(number, 1); task <= LeafGraph::emit(number); ++task)
       graph.add_dependency(task - 1, task);
     for (const std::uint32_t other : blocks.overlapping(b)) {
       for (std::uint32_t r = 0; r < kRounds; ++r) {

@@ -52,7 +52,7 @@ struct BlockGraph {
   static std::uint32_t judge(std::uint32_t number) { return LeafGraph::round(number, kRounds); }
   static constexpr std::uint32_t kRounds = LeafGraph::kMigrationRounds;
 
-  // The graph of all tasks that run while a mesh is refined: with the parts of the leaves if it
+  // The graph of all tasks that run while a mesh is refined: with the fragments of the leaves if it
   // `streams`, and the blocks' tasks if there are blocks. Errors: kCancelled, kDeadlineExceeded.
   static Result<TaskGraph> of_run(const LeafOrder& leaves, bool streams, bool smooths,
                                   const LeafOrder* blocks, const BlocksNear* near,

@@ -18,19 +18,20 @@
 //
 // Then the triangles in the slots of the block, and those of owner 0 with centroids in the block,
 // are judged by the bounds of the final mesh. Only tasks of the block and of blocks that overlap it
-// touch them, and these are done: a triangle in a slot of block b lies in b's halo (leaf_release.h,
-// 2), and so does one of owner 0 (`fit`).
+// touch them, and these are done: a triangle in a slot of block b lies in b's halo
+// (emit/leaf_release.h, 2), and so does one of owner 0 (`fit`).
 //
 // A leaf begins when all blocks whose halos overlap its own are judged: only these have triangles
 // with two vertices there, or with centroids in the leaf, and no task of any other block touches
 // these.
 //
-// Once the parts of all these leaves around a block are built, the triangles in its slots are no
-// longer read: a leaf's part waits for the tasks of the leaves that overlap it, to which it may
-// have handed a triangle on. Nearly always all of them are dead, and their slots are given back.
-// Vertices stay.
+// Once the fragments of all leaves around a block are built, the triangles in its slots are no
+// longer read: a leaf's fragment waits for the tasks of the leaves that overlap it, to which a
+// triangle may have migrated from it. Nearly always all of them are dead, and their slots are given
+// back. Vertices stay.
 //
-// Thread-safety: the steps may run in any order that BlockGraph permits.
+// Errors: those of refinement (refine/refiner.h). Thread-safety: the steps may run in any order
+// that BlockGraph permits, of different blocks and leaves at the same time.
 #pragma once
 
 #include <algorithm>
@@ -152,7 +153,7 @@ class CoarseBlocks {
                        [&](std::uint32_t t) { return refinement_.mesh.triangles[t].dead(); });
   }
 
-  // Call when the part of a leaf is built.
+  // Call when the fragment of a leaf is built.
   void built(std::uint32_t leaf) {
     for (const std::uint32_t b : near_[leaf]) {
       if (unbuilt_[b].fetch_sub(1, std::memory_order_acq_rel) == 1 && all_dead(slots(b)))
@@ -252,7 +253,7 @@ class CoarseBlocks {
     const auto& v = triangle.vertex;
     const double radius2 =
         circumradius2(mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]);
-    const double limit = LeafRadius<AreaBound>::kPart * leaves_.leaves()[leaf].side();
+    const double limit = LeafRadius<AreaBound>::kRadiusPerSide * leaves_.leaves()[leaf].side();
     const bool fits = radius2 <= limit * limit;
     if (badness == kGood && fits) return;
     judged.push_back({leaf, {t, triangle.vertex[0]}, badness != kGood, fits});
@@ -271,8 +272,8 @@ class CoarseBlocks {
   std::vector<std::vector<std::uint32_t>> base_;  // per block, owner 0's triangles, until judged
   const BlocksNear near_;
   std::vector<std::vector<Judged>> judged_;  // per block, until its leaves are seeded
-  // Per block, the number of leaves near it that are not seeded, and of those whose parts are not
-  // built.
+  // Per block, the number of leaves near it that are not seeded, and of those whose fragments are
+  // not built.
   std::vector<std::atomic<std::uint32_t>> unseeded_;
   std::vector<std::atomic<std::uint32_t>> unbuilt_;
   std::vector<std::vector<std::uint32_t>> unfit_;  // per leaf

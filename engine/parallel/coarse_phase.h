@@ -280,8 +280,8 @@ class CoarsePhase {
     const Point a = refinement_.mesh.vertices[t.vertex[0]];
     const Point b = refinement_.mesh.vertices[t.vertex[1]];
     const Point c = refinement_.mesh.vertices[t.vertex[2]];
-    const double limit =
-        LeafRadius<AreaBound>::kPart * tree.leaves()[tree.leaf_at(centroid(a, b, c))].side();
+    const double limit = LeafRadius<AreaBound>::kRadiusPerSide *
+                         tree.leaves()[tree.leaf_at(centroid(a, b, c))].side();
     return circumradius2(a, b, c) <= limit * limit;
   }
 

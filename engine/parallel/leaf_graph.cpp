@@ -21,7 +21,7 @@ std::vector<std::uint32_t> along_order(const LeafOrder& order, LeafOrder::Phase 
   return first;
 }
 
-// Per leaf: the first part that it, or a leaf that overlaps it, is needed for.
+// Per leaf: the first fragment that it, or a leaf that overlaps it, is needed for.
 std::vector<std::uint32_t> first_around(const LeafOrder& order,
                                         const std::vector<std::uint32_t>& needs) {
   std::vector<std::uint32_t> first = needs;
@@ -54,22 +54,22 @@ void LeafGraph::add_refinement(const LeafOrder& order, TaskGraph& graph) {
   }
 }
 
-void LeafGraph::add_parts(const LeafOrder& order, TaskGraph& graph, bool smooths) {
+void LeafGraph::add_emission(const LeafOrder& order, TaskGraph& graph, bool smooths) {
   for (std::uint32_t l = 0; l < order.size(); ++l) {
     graph.add_dependency(round(l, kRounds - 1), check_settled(l));
     graph.add_dependency(check_settled(l), smooth(l));
-    graph.add_dependency(check_settled(l), number(l));
-    if (l > 0) graph.add_dependency(number(l - 1), number(l));
-    graph.add_dependency(number(l), hand_on(l));
-    graph.add_dependency(hand_on(l), part(l));
-    graph.add_dependency(smooth(l), part(l));
+    graph.add_dependency(check_settled(l), number_vertices(l));
+    if (l > 0) graph.add_dependency(number_vertices(l - 1), number_vertices(l));
+    graph.add_dependency(number_vertices(l), export_triangles(l));
+    graph.add_dependency(export_triangles(l), emit(l));
+    graph.add_dependency(smooth(l), emit(l));
     for (const std::uint32_t other : order.overlapping(l)) {
       graph.add_dependency(round(other, kRounds - 1), check_settled(l));
-      graph.add_dependency(check_settled(other), number(l));
+      graph.add_dependency(check_settled(other), number_vertices(l));
       if (smooths && order.before(other, l, LeafOrder::kSmoothing))
         graph.add_dependency(smooth(other), smooth(l));
-      if (smooths) graph.add_dependency(smooth(other), part(l));
-      if (other < l) graph.add_dependency(hand_on(other), part(l));
+      if (smooths) graph.add_dependency(smooth(other), emit(l));
+      if (other < l) graph.add_dependency(export_triangles(other), emit(l));
     }
   }
 }
@@ -93,11 +93,11 @@ LeafGraph::RoundNeeds LeafGraph::needs_of_rounds(const LeafOrder& order,
 
 std::vector<std::uint32_t> LeafGraph::needs(const LeafOrder& order, bool smooths) {
   const std::uint32_t n = order.size();
-  std::vector<std::uint32_t> parts(n);
-  std::iota(parts.begin(), parts.end(), 0u);
-  const std::vector<std::uint32_t> around = first_around(order, parts);
+  std::vector<std::uint32_t> fragments(n);
+  std::iota(fragments.begin(), fragments.end(), 0u);
+  const std::vector<std::uint32_t> around = first_around(order, fragments);
   const std::vector<std::uint32_t> smoothed =
-      smooths ? along_order(order, LeafOrder::kSmoothing, around) : parts;
+      smooths ? along_order(order, LeafOrder::kSmoothing, around) : fragments;
   std::vector<std::uint32_t> settled(n);
   std::transform(smoothed.begin(), smoothed.end(), around.begin(), settled.begin(),
                  [](std::uint32_t a, std::uint32_t b) { return std::min(a, b); });
@@ -112,7 +112,7 @@ std::vector<std::uint32_t> LeafGraph::needs(const LeafOrder& order, bool smooths
     result[check_pending(l)] = checked[l];
     result[check_settled(l)] = settled[l];
     result[smooth(l)] = smoothed[l];
-    result[number(l)] = result[hand_on(l)] = result[part(l)] = l;
+    result[number_vertices(l)] = result[export_triangles(l)] = result[emit(l)] = l;
   }
   return result;
 }

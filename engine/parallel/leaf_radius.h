@@ -47,7 +47,7 @@ inline double busy_weight(const Quadtree& tree, double busy) {
 template <class AreaBound>
 class LeafRadius {
  public:
-  static constexpr double kPart = 0.25;
+  static constexpr double kRadiusPerSide = 0.25;
 
   // A leaf is busy from this weight on. REQUIRES: the tree outlives this, and all like it.
   LeafRadius(const Quadtree& tree, double busy, const AreaBound& area,
@@ -81,7 +81,7 @@ class LeafRadius {
     double limit = kElsewhere * leaves[leaf].side();
     for (const std::uint32_t l : (*busy_near_)[leaf]) {
       const double away = std::max(0.0, -room_in(leaves[l].box, centroid));
-      limit = std::min(limit, kPart * leaves[l].side() + kGrowth * away);
+      limit = std::min(limit, kRadiusPerSide * leaves[l].side() + kGrowth * away);
     }
     return limit;
   }

@@ -29,8 +29,8 @@ namespace weft {
 template <class AreaBound>
 class LeafStage {
  public:
-  // From so many leaves on, parts are sent while others are refined. A smaller mesh takes little
-  // time, and may be cleaned up anywhere.
+  // From so many leaves on, fragments are sent while others are refined. A smaller mesh takes
+  // little time, and may be cleaned up anywhere.
   static constexpr std::uint32_t kStreamingLeaves = 64;
 
   // `root` has all triangles of the mesh. All outlive this.
@@ -54,7 +54,7 @@ class LeafStage {
 
   // Whether there are leaves; if not, the mesh should be refined by one task.
   bool exists() const { return leaves_.has_value(); }
-  // Whether parts may be sent while others are refined.
+  // Whether fragments may be sent while others are refined.
   bool streams() const { return streams_; }
 
   const Quadtree& tree() const { return tree_; }
@@ -97,7 +97,7 @@ class LeafStage {
   }
   // Bytes of those that exist from the beginning to the end.
   std::uint64_t lasting_bytes() const {
-    constexpr std::uint64_t kPerLeaf = 320;  // leaf_tasks.h, leaf_parts.h
+    constexpr std::uint64_t kPerLeaf = 320;  // leaf_tasks.h, leaf_fragments.h
     return order_.bytes() + tree_.bytes() + leaves_->size() * kPerLeaf +
            (blocks_ ? blocks_->bytes() : 0);
   }

@@ -54,8 +54,8 @@
 
 namespace weft {
 
-// An owner before the leaves, whose vertices leave with a leaf's part: the first one that may need
-// them.
+// An owner before the leaves, whose vertices leave with a leaf's fragment: the first one that may
+// need them.
 struct EarlierOwner {
   std::uint32_t leaf;
   const Slots* slots;

@@ -19,7 +19,7 @@
 
 namespace weft {
 
-// Up to this minimum angle, in degrees, the parts of a large mesh are sent while others are
+// Up to this minimum angle, in degrees, the fragments of a large mesh are sent while others are
 // refined. Above it, the clean-up's points make skinny triangles far around, and with small leaves
 // one domain in 270 would keep some near leaves that were sent (of 8,000 up to 30 degrees, none).
 // So above it all is cleaned up before anything is sent, and a stream begins when the work is

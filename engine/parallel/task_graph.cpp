@@ -90,9 +90,9 @@ bool GraphRun::step() {
 // held.
 bool GraphRun::may_begin(int others) const {
   if (ready_.empty() || stopping_) return false;
-  const std::uint64_t part = ready_.top() >> 32;
-  if (!waiting_ || notified_) return part <= while_away_;
-  return part <= while_waiting_ || others == 0;
+  const std::uint64_t fragment = ready_.top() >> 32;
+  if (!waiting_ || notified_) return fragment <= while_away_;
+  return fragment <= while_waiting_ || others == 0;
 }
 
 // REQUIRES: the mutex is held, and a task is ready.

@@ -12,18 +12,18 @@
 // is needed first runs first (TaskGraph::set_needs), then the one with the lowest number. There is
 // no barrier: a slow or preempted task holds back only what depends on it.
 //
-// The hold (`begin_up_to`): tasks that make parts which leave in order keep their results in memory
-// until these have left. So a task that is needed only by parts far ahead of the next one does not
-// begin while the caller of `step` does something else, such as sending a part: a reader that
-// stalls stops the tasks. While the caller waits in `step`, tasks may begin further ahead, but only
-// up to another bound, because otherwise many threads would begin whatever is ready. Beyond that
-// bound, the first ready task begins only if no other task runs. So tasks cannot wait for ever: if
-// the caller waits in `step`, either a task runs, or none is ready, and then all are done, or held,
-// or wait for one another.
+// The hold (`begin_up_to`): tasks that make fragments which leave in order keep their results in
+// memory until these have left. So a task that is needed only by fragments far ahead of the next
+// one does not begin while the caller of `step` does something else, such as sending a fragment: a
+// reader that stalls stops the tasks. While the caller waits in `step`, tasks may begin further
+// ahead, but only up to another bound, because otherwise many threads would begin whatever is
+// ready. Beyond that bound, the first ready task begins only if no other task runs. So tasks cannot
+// wait for ever: if the caller waits in `step`, either a task runs, or none is ready, and then all
+// are done, or held, or wait for one another.
 //
 // Fairness: a thread gives the arena's slot back after kSlice and queues for the next, so the runs
 // of an arena take turns. Only then does it wake the caller that waits in `step`: waking it for
-// each part of a mesh took two threads 1.5 % of their time at 1 M triangles.
+// each fragment of a mesh took two threads 1.5 % of their time at 1 M triangles.
 #pragma once
 
 #include <atomic>
@@ -55,8 +55,8 @@ class TaskGraph {
   }
   // `task` also waits for a call of GraphRun::release.
   void hold(std::uint32_t task) { ++waits_for_[task]; }
-  // Per task, the first part that needs it, if the tasks make parts that leave in order. DEFAULT:
-  // the first part needs all tasks.
+  // Per task, the first fragment that needs it, if the tasks make fragments that leave in order.
+  // DEFAULT: the first fragment needs all tasks.
   void set_needs(std::vector<std::uint32_t> needs) { needs_ = std::move(needs); }
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(waits_for_.size()); }
@@ -87,7 +87,7 @@ class GraphRun {
   // Call once.
   void start();
 
-  // The last parts whose tasks may begin: while the caller is not in `step`, and while it waits
+  // The last fragments whose tasks may begin: while the caller is not in `step`, and while it waits
   // there. Neither falls. DEFAULT: the first. Thread-safe.
   void begin_up_to(std::uint32_t while_away, std::uint32_t while_waiting);
 
@@ -115,7 +115,7 @@ class GraphRun {
   void notify();
 
  private:
-  // Each entry is a pair in one word: the first part that needs a task, and the task.
+  // Each entry is a pair in one word: the first fragment that needs a task, and the task.
   using Ready = std::priority_queue<std::uint64_t, std::vector<std::uint64_t>, std::greater<>>;
   static constexpr std::chrono::milliseconds kSlice{2};
 
@@ -156,24 +156,26 @@ class GraphRun {
   bool stopping_ = false;
 };
 
-// How many parts may be built ahead of the one to be sent next, so that a slow reader holds back no
-// more than these. While a part is being sent, tasks that only later parts need do not begin.
-inline std::uint32_t parts_ahead(int threads) {
+// How many fragments may be built ahead of the one to be sent next, so that a slow reader holds
+// back no more than these. While a fragment is being sent, tasks that only later fragments need do
+// not begin.
+inline std::uint32_t fragments_ahead(int threads) {
   return 32 + 4 * static_cast<std::uint32_t>(threads);
 }
 
-// How many parts ahead of the next one tasks may begin while the caller waits for that one, if the
-// mesh has `parts` parts: two columns of the leaves, and some work for each thread. So the front
-// between parts that are sent and parts that are not begun is bounded at any number of threads. For
-// schedules of the recorded tasks of 10 M triangles (leaf_order.h): the share of the mesh that has
-// begun and is not sent, in percent, with and without the bound, and the ratio of times:
+// How many fragments ahead of the next one tasks may begin while the caller waits for that one, if
+// the mesh has `fragments` fragments: two columns of the leaves, and some work for each thread. So
+// the front between fragments that are sent and fragments that are not begun is bounded at any
+// number of threads. For schedules of the recorded tasks of 10 M triangles (leaf_order.h): the
+// share of the mesh that has begun and is not sent, in percent, with and without the bound, and the
+// ratio of times:
 //
 //   threads      2                   16                  64
 //   cylinder     13.6  13.6  1.00    16.6  16.6  1.00    60.3  71.2  1.00
 //   constant     19.1  19.1  1.00    24.4  24.1  1.00    45.4  49.8  1.00
 //   pipe         21.4  21.4  1.00    22.6  22.6  1.00    41.0  41.1  1.00
-inline std::uint32_t parts_begun(std::uint32_t parts, int threads) {
-  return 2 * static_cast<std::uint32_t>(std::sqrt(parts)) +
+inline std::uint32_t fragments_begun(std::uint32_t fragments, int threads) {
+  return 2 * static_cast<std::uint32_t>(std::sqrt(fragments)) +
          32 * static_cast<std::uint32_t>(threads);
 }
 

@@ -530,7 +530,7 @@ class Refiner {
   const QualityBounds quality_;
   AreaBound area_;
   ExecutionContext& context_;
-  HeldBytes::Part held_;
+  HeldBytes::Scope held_;
   const std::uint64_t other_bytes_;  // held by the run all the time
   const std::uint64_t triangle_limit_;
   const std::uint32_t poll_interval_;  // insertions

@@ -221,7 +221,7 @@ class RowFiller {
   const std::vector<Region>& regions_;
   const QualityBounds quality_;
   const AreaBound& area_;
-  HeldBytes::Part held_;
+  HeldBytes::Scope held_;
   LatticeRows rows_;
   LeafRefiner* refiner_ = nullptr;
   const std::vector<BadTriangle>* bad_ = nullptr;

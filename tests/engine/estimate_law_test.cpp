@@ -19,7 +19,7 @@ namespace {
 // Of what any run takes, however small its mesh.
 constexpr double kFixed = 2e6;
 
-// Takes a chunk in kEvery only when the run has come to rest, so that all parts which may wait do.
+// Takes a chunk in kEvery only when the run has come to rest, so that all fragments that may wait do.
 // The peak then hardly depends on how fast the threads are.
 class Stalling : public ChunkSink {
  public:

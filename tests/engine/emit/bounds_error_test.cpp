@@ -9,7 +9,7 @@
 
 #include "engine/base/arena.h"
 #include "engine/domain/domain.h"
-#include "engine/emit/emit.h"
+#include "engine/emit/fragment.h"
 #include "engine/engine.h"
 #include "engine/refine/area_bound.h"
 #include "engine/refine/storage/mesh_store.h"
@@ -111,29 +111,29 @@ TEST(BoundsError, EndsAStreamAfterItsChunksAndIsTheSameOnAnyNumberOfThreads) {
 }
 
 // What the summary tells if one triangle of two is left bad.
-Part part_with_a_bad_triangle(Badness badness, bool cut_off) {
+Fragment fragment_with_a_bad_triangle(Badness badness, bool cut_off) {
   const ExecutionContext context;
   const Domain domain = *triangulate(square(), context);
   MeshStore mesh = *MeshStore::from(domain, 1000, 2, context);
   const AcuteCorners corners = *AcuteCorners::build(domain, QualityBounds{}, context);
   Slots::of_domain(domain).number_vertices(mesh, 0);
   mesh.triangles[1].set_badness(badness);
-  PartBuilder<ConstantArea> builder(mesh, domain, corners, ConstantArea(1), false, cut_off,
-                                    context);
+  FragmentBuilder<ConstantArea> builder(mesh, domain, corners, ConstantArea(1), false, cut_off,
+                                        context);
   builder.add_vertices(0, 4);
   builder.add_triangles(0, 2);
   return *builder.finish();
 }
 
 TEST(BoundsError, ATriangleThatStreamingLeavesIsNotTakenForTheBudgets) {
-  const Part left = part_with_a_bad_triangle(kSkinny, false);
+  const Fragment left = fragment_with_a_bad_triangle(kSkinny, false);
   EXPECT_EQ(left.unrefined.streaming, 1u);
   EXPECT_EQ(left.unrefined.too_large, 0u);
   EXPECT_EQ(left.unrefined.budget, 0u);
   EXPECT_NEAR(left.unrefined_at.x + left.unrefined_at.y, 1, 0.5);
-  EXPECT_EQ(part_with_a_bad_triangle(kLarge, false).unrefined.too_large, 1u);
+  EXPECT_EQ(fragment_with_a_bad_triangle(kLarge, false).unrefined.too_large, 1u);
 
-  const Part cut_off = part_with_a_bad_triangle(kSkinny, true);
+  const Fragment cut_off = fragment_with_a_bad_triangle(kSkinny, true);
   EXPECT_EQ(cut_off.unrefined.streaming, 0u);
   EXPECT_EQ(cut_off.unrefined.budget, 1u);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The leaves' tasks: that the orders of all phases fit together, and what the first parts need.
+// The leaves' tasks: that the orders of all phases fit together, and what the first fragments need.
 #include "engine/parallel/leaf_graph.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ struct Graph {
   explicit Graph(std::uint64_t seed, bool smooths)
       : order(graded_tree(seed)), tasks(order.size() * LeafGraph::kTasks) {
     LeafGraph::add_refinement(order, tasks);
-    LeafGraph::add_parts(order, tasks, smooths);
+    LeafGraph::add_emission(order, tasks, smooths);
   }
   LeafOrder order;
   TaskGraph tasks;
@@ -73,7 +73,7 @@ TEST(LeafGraph, HasNoTasksThatWaitForOneAnother) {
   }
 }
 
-TEST(LeafGraph, KnowsTheFirstPartThatWaitsForATask) {
+TEST(LeafGraph, KnowsTheFirstFragmentThatWaitsForATask) {
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     for (const bool smooths : {false, true}) {
       const Graph graph(seed, smooths);
@@ -92,7 +92,7 @@ TEST(LeafGraph, KnowsTheFirstPartThatWaitsForATask) {
       const auto order = one_order(graph.tasks);
       std::for_each(order.rbegin(), order.rend(), [&](std::uint32_t task) {
         const std::uint32_t leaf = task / LeafGraph::kTasks;
-        if (task == LeafGraph::part(leaf)) needs[task] = leaf;
+        if (task == LeafGraph::emit(leaf)) needs[task] = leaf;
         for (const std::uint32_t next : successors[task])
           needs[task] = std::min(needs[task], needs[next]);
       });
@@ -128,7 +128,7 @@ TEST(BlockGraph, HasTheLeavesAndTheBlocksInOneGraph) {
     const std::uint32_t n = order.size();
     TaskGraph tasks((n + of_blocks.size()) * LeafGraph::kTasks);
     LeafGraph::add_refinement(order, tasks);
-    LeafGraph::add_parts(order, tasks, true);
+    LeafGraph::add_emission(order, tasks, true);
     BlockGraph::add(of_blocks, near, tasks);
     const std::vector<std::uint32_t> all = one_order(tasks);
     ASSERT_EQ(all.size(), tasks.size()) << seed;

@@ -34,7 +34,7 @@ TEST(LeafRadius, AsksAllLeavesIfNearlyAllAreFull) {
   for (const Quadtree::Leaf& leaf : tree.leaves()) {
     const Point middle{0.5 * (leaf.box.min_x + leaf.box.max_x),
                        0.5 * (leaf.box.min_y + leaf.box.max_y)};
-    EXPECT_EQ(radius.limit_at(middle), LeafRadius<ConstantArea>::kPart * leaf.side());
+    EXPECT_EQ(radius.limit_at(middle), LeafRadius<ConstantArea>::kRadiusPerSide * leaf.side());
   }
 }
 

@@ -212,7 +212,7 @@ TEST(TaskGraph, RunsTheReadyTaskThatIsNeededFirst) {
   EXPECT_EQ(ran, (std::vector<std::uint32_t>{5, 4, 0, 2, 3, 1}));
 }
 
-// Ten tasks that wait for nothing; each is needed by the part of its number.
+// Ten tasks that wait for nothing; each is needed by the fragment of its number.
 TaskGraph ten_needed_in_turn() {
   TaskGraph graph(10);
   graph.set_needs({0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
@@ -266,7 +266,8 @@ TEST(TaskGraph, RunsEachTaskOnceWhateverIsHeld) {
       Record record(g);
       GraphRun run(g.graph, &arena, threads, [&](std::uint32_t task) { record.run(task); });
       run.start();
-      for (std::uint32_t part = 0; run.step(); ++part) run.begin_up_to(part / 2, part);
+      for (std::uint32_t fragment = 0; run.step(); ++fragment)
+        run.begin_up_to(fragment / 2, fragment);
       ASSERT_EQ(record.fault(), "") << "seed " << seed;
     }
   }

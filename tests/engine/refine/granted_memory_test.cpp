@@ -48,7 +48,7 @@ TEST(GrantedMemory, ChangesNothingInTheMesh) {
   }
 }
 
-// Peaks of parts are added up in the summary, so that it may say a little more. On several threads,
+// Peaks of fragments are added up in the summary, so that it may say a little more. On several threads,
 // how many are at work at once decides by how much.
 TEST(GrantedMemory, IsNearlyAllThatTheSummaryTellsOf) {
   for (const double triangles : {100'000.0, 2'000'000.0}) {

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes parts of the mesh from slots, and sends them to the sink.
+// Fragments of whole slots, and the builder that every fragment of a run is built with; sends them
+// to the sink.
 //
-//   SlotParts<ConstantArea> parts(plan, area, refinement, cut_off, sink, summary);
-//   parts.send_vertices(root);
-//   parts.run().run(..., [&](std::uint32_t task) {
-//     parts.run().finish(index, parts.build([&](auto& builder) { ... }));
+//   SlotFragments<ConstantArea> fragments(plan, area, refinement, cut_off, sink, summary);
+//   fragments.send_vertices(root);
+//   fragments.run().run(..., [&](std::uint32_t task) {
+//     fragments.run().finish(index, fragments.build([&](auto& builder) { ... }));
 //   });
-//   SlotParts<ConstantArea>::Sections sections;
+//   SlotFragments<ConstantArea>::Sections sections;
 //   sections.add_triangles(root);
-//   parts.send(sections);
-//   parts.close();
+//   fragments.send(sections);
+//   fragments.close();
 //
-// Thread-safety: tasks may call `build`, and the functions of `run()` that say so; the rest may be
-// called only between runs.
+// Errors: those of the run (fragment_run.h), in run().error(). Thread-safety: tasks may call
+// `build`, and the functions of `run()` that say so; the rest may be called only between runs.
 #pragma once
 
 #include <algorithm>
@@ -26,8 +27,8 @@
 #include "engine/base/trace.h"
 #include "engine/base/work_time.h"
 #include "engine/emit/delivery.h"
-#include "engine/emit/emit.h"
-#include "engine/emit/part_run.h"
+#include "engine/emit/fragment.h"
+#include "engine/emit/fragment_run.h"
 #include "engine/parallel/mesh_plan.h"
 #include "engine/parallel/task_graph.h"
 #include "engine/refine/refinement_context.h"
@@ -37,7 +38,7 @@
 namespace weft {
 
 template <class AreaBound>
-class SlotParts {
+class SlotFragments {
  public:
   // Pieces of owners' slots.
   class Sections {
@@ -54,7 +55,7 @@ class SlotParts {
     }
 
    private:
-    friend class SlotParts;
+    friend class SlotFragments;
     struct Section {
       std::uint32_t first;
       std::uint32_t last;
@@ -64,8 +65,8 @@ class SlotParts {
   };
 
   // `cut_off`: whether refinement ended before all triangles were good.
-  SlotParts(const MeshPlan& plan, const AreaBound& area, const RefinementContext& refinement,
-            bool cut_off, ChunkSink& sink, Summary& summary)
+  SlotFragments(const MeshPlan& plan, const AreaBound& area, const RefinementContext& refinement,
+                bool cut_off, ChunkSink& sink, Summary& summary)
       : plan_(plan),
         area_(area),
         refinement_(refinement),
@@ -73,52 +74,56 @@ class SlotParts {
         delivery_(sink, refinement.context, summary),
         run_(delivery_, refinement.context) {}
 
-  PartRun& run() { return run_; }
-  const PartRun& run() const { return run_; }
+  FragmentRun& run() { return run_; }
+  const FragmentRun& run() const { return run_; }
 
   // The sum over all tasks.
   double build_seconds() const { return time_.seconds(); }
 
-  // Builds a part of what `fill` puts into a PartBuilder; nullopt if the context stops the run.
+  // Builds a fragment of what `fill` puts into a FragmentBuilder; nullopt if the context stops the
+  // run.
   template <class F>
-  std::optional<Part> build(F&& fill) {
+  std::optional<Fragment> build(F&& fill) {
     return time_.measure([&] {
-      PartBuilder<AreaBound> builder(refinement_.mesh, plan_.domain, refinement_.corners,
-                                     area_.again(), plan_.quality.lattice.exists(), cut_off_,
-                                     refinement_.context);
+      FragmentBuilder<AreaBound> builder(refinement_.mesh, plan_.domain, refinement_.corners,
+                                         area_.again(), plan_.quality.lattice.exists(), cut_off_,
+                                         refinement_.context);
       fill(builder);
       return builder.finish();
     });
   }
 
-  // Sends an owner's vertices at once, before any part of a run.
+  // Sends an owner's vertices at once, before any fragment of a run.
   void send_vertices(const Slots& slots) {
-    auto part = refinement_.context.compute([&] {
-      return build([&](PartBuilder<AreaBound>& builder) {
+    auto fragment = refinement_.context.compute([&] {
+      return build([&](FragmentBuilder<AreaBound>& builder) {
         slots.for_vertices(
             [&](std::uint32_t first, std::uint32_t last) { builder.add_vertices(first, last); });
       });
     });
-    const auto error = part ? delivery_.send(std::move(*part)) : refinement_.context.poll();
+    const auto error = fragment ? delivery_.send(std::move(*fragment)) : refinement_.context.poll();
     if (error) run_.stop(*error);
   }
 
-  // Builds the parts of the given sections in parallel, and sends them. REQUIRES: these are final.
+  // Builds the fragments of the given sections in parallel, and sends them. REQUIRES: these are
+  // final.
   void send(const Sections& sections) {
-    constexpr std::size_t kPerPart = 48;  // about 10,000 vertices or triangles
+    constexpr std::size_t kPerFragment = 48;  // about 10,000 vertices or triangles
     const auto& all = sections.all_;
-    const auto parts = static_cast<std::uint32_t>((all.size() + kPerPart - 1) / kPerPart);
+    const auto fragments =
+        static_cast<std::uint32_t>((all.size() + kPerFragment - 1) / kPerFragment);
     run_.run(
-        kClosingGraph, TaskGraph(parts), 0, parts, [](std::uint32_t part) { return part; },
-        [&](std::uint32_t part) {
-          run_.finish(part, build([&](PartBuilder<AreaBound>& builder) {
-                        const std::size_t end = std::min((part + 1) * kPerPart, all.size());
+        kClosingGraph, TaskGraph(fragments), 0, fragments,
+        [](std::uint32_t fragment) { return fragment; },
+        [&](std::uint32_t fragment) {
+          run_.finish(fragment, build([&](FragmentBuilder<AreaBound>& builder) {
+                        const std::size_t end = std::min((fragment + 1) * kPerFragment, all.size());
                         std::size_t vertices = 0;
                         std::size_t triangles = 0;
-                        for (std::size_t s = part * kPerPart; s < end; ++s)
+                        for (std::size_t s = fragment * kPerFragment; s < end; ++s)
                           (all[s].vertices ? vertices : triangles) += all[s].last - all[s].first;
                         builder.expect(vertices, triangles);
-                        for (std::size_t s = part * kPerPart; s < end; ++s) {
+                        for (std::size_t s = fragment * kPerFragment; s < end; ++s) {
                           if (all[s].vertices) {
                             builder.add_vertices(all[s].first, all[s].last);
                           } else {
@@ -129,18 +134,18 @@ class SlotParts {
         });
   }
 
-  // Call after the last part.
+  // Call after the last fragment.
   void close() { delivery_.finish(); }
 
  private:
-  static constexpr Trace::GraphName kClosingGraph{"closing parts", {"closing part"}};
+  static constexpr Trace::GraphName kClosingGraph{"closing fragments", {"closing fragment"}};
 
   const MeshPlan& plan_;
   const AreaBound& area_;
   const RefinementContext& refinement_;
   const bool cut_off_;
   Delivery delivery_;
-  PartRun run_;
+  FragmentRun run_;
   WorkTime time_;
 };
 

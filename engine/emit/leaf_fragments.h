@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the parts of finished leaves (emit.h), and gives back the memory that is no longer needed
-// once they are built (emit/leaf_release.h).
+// The fragments of finished leaves (fragment.h): numbers their vertices, exports triangles, fills
+// the fragments, and gives back the memory that is no longer read once they are built
+// (leaf_release.h).
 //
-//   LeafParts<ConstantArea> parts(mesh, order, leaves, numbers);
-//   parts.number(l);           // in the order of the leaves
-//   parts.hand_on(l);
-//   parts.fill(l, builder);    // once those that overlap l have handed on
-//   parts.built(l);
+//   LeafFragments<ConstantArea> fragments(mesh, order, leaves, first_number, earlier_owners);
+//   fragments.number_vertices(l);   // in the order of the leaves
+//   fragments.export_triangles(l);
+//   fragments.fill(l, builder);     // once the leaves that overlap l have exported theirs
+//   fragments.built(l);
 //
-// Thread-safety: the steps may run in any order that LeafGraph permits.
+// Thread-safety: the steps may run in any order that LeafGraph permits, of different leaves at the
+// same time; the rest only while no step runs.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +20,7 @@
 #include <vector>
 
 #include "engine/base/held_bytes.h"
-#include "engine/emit/emit.h"
+#include "engine/emit/fragment.h"
 #include "engine/emit/leaf_release.h"
 #include "engine/parallel/leaf_order.h"
 #include "engine/parallel/leaf_tasks.h"
@@ -28,34 +30,34 @@
 namespace weft {
 
 template <class AreaBound>
-class LeafParts {
+class LeafFragments {
  public:
   // Numbers the leaves' vertices from `first_number` on. `earlier_owners` are in the order of their
   // leaves.
-  LeafParts(MeshStore& mesh, const LeafOrder& order, LeafTasks<AreaBound>& leaves,
-            std::uint32_t first_number, std::vector<EarlierOwner> earlier_owners)
+  LeafFragments(MeshStore& mesh, const LeafOrder& order, LeafTasks<AreaBound>& leaves,
+                std::uint32_t first_number, std::vector<EarlierOwner> earlier_owners)
       : mesh_(mesh),
         order_(order),
         leaves_(leaves),
         earlier_owners_(std::move(earlier_owners)),
         release_(order),
-        handed_on_(order.size()),
+        exported_(order.size()),
         numbers_(first_number) {}
 
-  void number(std::uint32_t leaf) {
+  void number_vertices(std::uint32_t leaf) {
     for_slots(leaf, [&](const Slots& s) { numbers_ = s.number_vertices(mesh_, numbers_); });
   }
   // The number after the last vertex numbered so far.
   std::uint32_t numbers() const { return numbers_; }
 
-  // Copies the triangles that go with other parts.
-  void hand_on(std::uint32_t leaf) {
-    auto& handed_on = handed_on_[leaf];
-    handed_on = triangles_handed_on(mesh_, leaves_.slots(leaf));
-    copies_.add(handed_on.capacity() * sizeof(HandedOn));
+  // Copies the triangles that go with other fragments.
+  void export_triangles(std::uint32_t leaf) {
+    auto& exported = exported_[leaf];
+    exported = exported_triangles(mesh_, leaves_.slots(leaf));
+    copies_.add(exported.capacity() * sizeof(ExportedTriangle));
   }
 
-  void fill(std::uint32_t leaf, PartBuilder<AreaBound>& builder) const {
+  void fill(std::uint32_t leaf, FragmentBuilder<AreaBound>& builder) const {
     const Slots& slots = leaves_.slots(leaf);
     std::size_t vertices = 0;
     for_slots(leaf, [&](const Slots& s) { vertices += s.vertex_count(); });
@@ -64,9 +66,9 @@ class LeafParts {
       s.for_vertices(
           [&](std::uint32_t first, std::uint32_t last) { builder.add_vertices(first, last); });
     });
-    auto gone = handed_on_[leaf].cbegin();
+    auto gone = exported_[leaf].cbegin();
     slots.for_triangles([&](std::uint32_t first, std::uint32_t last) {
-      for (; gone != handed_on_[leaf].cend() && first <= gone->slot && gone->slot < last; ++gone) {
+      for (; gone != exported_[leaf].cend() && first <= gone->slot && gone->slot < last; ++gone) {
         builder.add_triangles(first, gone->slot);
         first = gone->slot + 1;
       }
@@ -74,7 +76,7 @@ class LeafParts {
     });
     for (const std::uint32_t other : order_.overlapping(leaf)) {
       if (other > leaf) break;
-      for (const HandedOn& h : handed_on_[other]) {
+      for (const ExportedTriangle& h : exported_[other]) {
         if (h.owner == slots.owner()) builder.add_triangle(h.triangle());
       }
     }
@@ -82,11 +84,11 @@ class LeafParts {
 
   void built(std::uint32_t leaf) {
     leaves_.give_back_triangles(leaf);
-    release_.part_built(
+    release_.fragment_built(
         leaf,
         [&](std::uint32_t a) {
-          copies_.remove(handed_on_[a].capacity() * sizeof(HandedOn));
-          handed_on_[a] = std::vector<HandedOn>();
+          copies_.remove(exported_[a].capacity() * sizeof(ExportedTriangle));
+          exported_[a] = std::vector<ExportedTriangle>();
         },
         [&](std::uint32_t b) { leaves_.give_back_vertices(b); });
   }
@@ -107,11 +109,11 @@ class LeafParts {
 
   // Bytes at the peak.
   std::uint64_t bytes() const {
-    return release_.bytes() + handed_on_.capacity() * sizeof(handed_on_[0]) + copies_.peak();
+    return release_.bytes() + exported_.capacity() * sizeof(exported_[0]) + copies_.peak();
   }
 
  private:
-  // Calls f for the owners whose vertices leave with the part of a leaf, in order.
+  // Calls f for the owners whose vertices leave with the fragment of a leaf, in order.
   template <class F>
   void for_slots(std::uint32_t leaf, F&& f) const {
     auto earlier =
@@ -126,7 +128,7 @@ class LeafParts {
   LeafTasks<AreaBound>& leaves_;
   std::vector<EarlierOwner> earlier_owners_;  // by the leaf
   LeafRelease release_;
-  std::vector<std::vector<HandedOn>> handed_on_;  // per leaf
+  std::vector<std::vector<ExportedTriangle>> exported_;  // per leaf
   HeldBytes copies_;
   std::uint32_t numbers_;
 };

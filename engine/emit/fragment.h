@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns the refined mesh into chunks, part by part, each on any thread.
+// A fragment: some finished vertices and triangles of the mesh as chunks, which are built on any
+// thread and sent in the order of the fragments. Coordinates are in units of the domain, angles in
+// degrees.
 //
-// Vertices are numbered by owner and then in the order in which the owner made them
-// (Slots::number_vertices). A triangle goes with the last of its vertices: the part of the owner
-// whose number is the highest among them. So a chunk refers only to its own vertices and to those
-// of earlier chunks, no two parts have to agree on anything, and there is no table of numbers. An
-// insertion makes only triangles with a vertex of the slot's owner, so most triangles stay in their
-// part; 2 % are handed on to a neighbour (`handed_on`). A triangle of a row (lattice_rows.h) may
-// have vertices of earlier owners alone: it stays in the slot's part, too, because that is later.
+// Vertices are numbered by owner, and then in the order in which the owner made them
+// (Slots::number_vertices). A triangle goes with the last of its vertices: into the fragment of the
+// owner whose number is the highest among them. So a chunk refers only to its own vertices and to
+// those of earlier chunks, no two fragments have to agree on anything, and there is no table of
+// numbers.
+//
+// An insertion makes only triangles with a vertex of the slot's owner, so most triangles stay in
+// the fragment of their slot's owner. About 2 % have a vertex of a later owner, and are exported to
+// its fragment (ExportedTriangle). A triangle of a row (refine/lattice_rows.h) may have vertices of
+// earlier owners alone: it stays, too, because its slot's owner is later than these.
+//
+// Thread-safety: a builder and its fragment belong to one thread at a time. Errors: none; a builder
+// returns no fragment if the context stops the run.
 #pragma once
 
 #include <array>
@@ -30,20 +38,20 @@ namespace weft {
 
 // Chunks without their place in the mesh: Delivery sets `index`, `first_vertex` and
 // `first_triangle`.
-struct Part {
+struct Fragment {
   std::vector<Chunk> chunks;
   QualityStatistics statistics;
   Unrefined unrefined;
-  Point unrefined_at;  // as Summary::unrefined_at, of this part
+  Point unrefined_at;  // as Summary::unrefined_at, of this fragment
   std::uint64_t edges = 0;
 
   std::uint64_t bytes() const;  // of the memory that it points to
 };
 
-// A triangle that goes with the part of another owner. (A Triangle is aligned to 32 bytes, which
-// would make this one 64 bytes long.)
-struct HandedOn {
-  HandedOn(std::uint32_t owner, std::uint32_t slot, const Triangle& triangle)
+// A triangle that goes into the fragment of another owner. (A Triangle is aligned to 32 bytes,
+// which would make this one 64 bytes long.)
+struct ExportedTriangle {
+  ExportedTriangle(std::uint32_t owner, std::uint32_t slot, const Triangle& triangle)
       : owner(owner), slot(slot), copy(std::bit_cast<Copy>(triangle)) {}
   Triangle triangle() const { return std::bit_cast<Triangle>(copy); }
 
@@ -53,20 +61,20 @@ struct HandedOn {
   Copy copy;
 };
 
-// Returns an owner's triangles that go with later parts, in the order of its slots. REQUIRES: they
-// are final.
-std::vector<HandedOn> triangles_handed_on(const MeshStore& mesh, const Slots& slots);
+// Returns an owner's triangles that go into later fragments, in the order of its slots. REQUIRES:
+// they are final.
+std::vector<ExportedTriangle> exported_triangles(const MeshStore& mesh, const Slots& slots);
 
-// Builds one part. `AreaBound` gives the bounds for the size histogram: it has bounds_at, as
+// Builds one fragment. `AreaBound` gives the bounds for the size histogram: it has bounds_at, as
 // ConstantArea and MappedArea do. REQUIRES: all added slots are final, and all vertices of
 // triangles have their numbers; `lattice` says whether Steiner points came from one
 // (refine/steiner_point.h). A triangle that is still bad counts as `budget` if the budget `cut_off`
 // refinement; otherwise as `streaming`, because its surroundings had been sent.
 template <class AreaBound>
-class PartBuilder {
+class FragmentBuilder {
  public:
-  PartBuilder(const MeshStore& mesh, const Domain& domain, const AcuteCorners& corners,
-              AreaBound area, bool lattice, bool cut_off, const ExecutionContext& context);
+  FragmentBuilder(const MeshStore& mesh, const Domain& domain, const AcuteCorners& corners,
+                  AreaBound area, bool lattice, bool cut_off, const ExecutionContext& context);
 
   // Reserves room for about so many: without it, vectors take up to twice what they need.
   void expect(std::size_t vertices, std::size_t triangles);
@@ -77,7 +85,7 @@ class PartBuilder {
   void add_triangle(const Triangle& triangle);
 
   // Returns nullopt if the context stops the run.
-  std::optional<Part> finish();
+  std::optional<Fragment> finish();
 
  private:
   void count_unrefined(const Triangle& triangle);
@@ -94,7 +102,7 @@ class PartBuilder {
   const bool cut_off_;
   const ExecutionContext& context_;
   bool stopped_ = false;
-  Part part_;
+  Fragment fragment_;
   Chunk chunk_;
   std::size_t bytes_ = 0;  // in chunk_, with those of the block
   // Triangles that are still to be measured and put into chunk_, all at once.

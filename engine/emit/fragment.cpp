@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/emit/emit.h"
+#include "engine/emit/fragment.h"
 
 #include <algorithm>
 #include <utility>
@@ -22,7 +22,7 @@ bool leads_upward(Point a, Point b) {
 
 }  // namespace
 
-std::uint64_t Part::bytes() const {
+std::uint64_t Fragment::bytes() const {
   std::uint64_t bytes = 0;
   for (const Chunk& chunk : chunks) {
     bytes += chunk.coordinates.capacity() * sizeof(double) + chunk.triangles.capacity() * 4 +
@@ -32,8 +32,8 @@ std::uint64_t Part::bytes() const {
   return bytes;
 }
 
-std::vector<HandedOn> triangles_handed_on(const MeshStore& mesh, const Slots& slots) {
-  std::vector<HandedOn> result;
+std::vector<ExportedTriangle> exported_triangles(const MeshStore& mesh, const Slots& slots) {
+  std::vector<ExportedTriangle> result;
   slots.for_triangles([&](std::uint32_t first, std::uint32_t last) {
     for (std::uint32_t t = first; t < last; ++t) {
       const Triangle& triangle = mesh.triangles[t];
@@ -48,9 +48,10 @@ std::vector<HandedOn> triangles_handed_on(const MeshStore& mesh, const Slots& sl
 }
 
 template <class AreaBound>
-PartBuilder<AreaBound>::PartBuilder(const MeshStore& mesh, const Domain& domain,
-                                    const AcuteCorners& corners, AreaBound area, bool lattice,
-                                    bool cut_off, const ExecutionContext& context)
+FragmentBuilder<AreaBound>::FragmentBuilder(const MeshStore& mesh, const Domain& domain,
+                                            const AcuteCorners& corners, AreaBound area,
+                                            bool lattice, bool cut_off,
+                                            const ExecutionContext& context)
     : mesh_(mesh),
       domain_(domain),
       corners_(corners),
@@ -62,13 +63,13 @@ PartBuilder<AreaBound>::PartBuilder(const MeshStore& mesh, const Domain& domain,
       context_(context) {}
 
 template <class AreaBound>
-void PartBuilder<AreaBound>::expect(std::size_t vertices, std::size_t triangles) {
+void FragmentBuilder<AreaBound>::expect(std::size_t vertices, std::size_t triangles) {
   chunk_.coordinates.reserve(std::min(2 * vertices, kMaxChunkBytes / sizeof(double)));
   chunk_.triangles.reserve(std::min(3 * triangles, kMaxChunkBytes / sizeof(std::uint32_t)));
 }
 
 template <class AreaBound>
-void PartBuilder<AreaBound>::add_vertices(std::uint32_t first, std::uint32_t last) {
+void FragmentBuilder<AreaBound>::add_vertices(std::uint32_t first, std::uint32_t last) {
   stopped_ = stopped_ || context_.poll();
   for (std::uint32_t v = first; v < last && !stopped_; ++v) {
     make_room(kMaxVertexBytes);
@@ -83,14 +84,14 @@ void PartBuilder<AreaBound>::add_vertices(std::uint32_t first, std::uint32_t las
 }
 
 template <class AreaBound>
-void PartBuilder<AreaBound>::add_triangles(std::uint32_t first, std::uint32_t last) {
+void FragmentBuilder<AreaBound>::add_triangles(std::uint32_t first, std::uint32_t last) {
   for (std::uint32_t t = first; t < last && !stopped_; ++t) {
     if (!mesh_.triangles[t].dead()) add_triangle(mesh_.triangles[t]);
   }
 }
 
 template <class AreaBound>
-void PartBuilder<AreaBound>::add_triangle(const Triangle& triangle) {
+void FragmentBuilder<AreaBound>::add_triangle(const Triangle& triangle) {
   if (block_->size == TriangleBlock::kSize) add_block();
   make_room(kMaxTriangleBytes);
   bytes_ += has_regions_ ? 16 : 12;
@@ -114,13 +115,13 @@ void PartBuilder<AreaBound>::add_triangle(const Triangle& triangle) {
     const Subsegment& s = domain_.subsegments[corners_.subsegment(mesh_, a, b)];
     chunk_.edges.push_back({mesh_.number_of(a), mesh_.number_of(b), s.segment, s.marker});
     bytes_ += sizeof(Chunk::Edge);
-    ++part_.edges;
+    ++fragment_.edges;
   }
 }
 
 template <class AreaBound>
-void PartBuilder<AreaBound>::count_unrefined(const Triangle& triangle) {
-  Unrefined& count = part_.unrefined;
+void FragmentBuilder<AreaBound>::count_unrefined(const Triangle& triangle) {
+  Unrefined& count = fragment_.unrefined;
   const bool left = triangle.badness() != kGood;
   if (left && cut_off_) {
     ++count.budget;
@@ -130,7 +131,7 @@ void PartBuilder<AreaBound>::count_unrefined(const Triangle& triangle) {
     ++count.edge_floor;
   } else {
     if (count.without_exemption() == 0) {
-      part_.unrefined_at =
+      fragment_.unrefined_at =
           centroid(mesh_.vertices[triangle.vertex[0]], mesh_.vertices[triangle.vertex[1]],
                    mesh_.vertices[triangle.vertex[2]]);
     }
@@ -140,30 +141,30 @@ void PartBuilder<AreaBound>::count_unrefined(const Triangle& triangle) {
 }
 
 template <class AreaBound>
-std::optional<Part> PartBuilder<AreaBound>::finish() {
+std::optional<Fragment> FragmentBuilder<AreaBound>::finish() {
   if (stopped_) return std::nullopt;
   if (bytes_ > 0) close_chunk();
-  return std::move(part_);
+  return std::move(fragment_);
 }
 
 template <class AreaBound>
-void PartBuilder<AreaBound>::make_room(std::size_t bytes) {
+void FragmentBuilder<AreaBound>::make_room(std::size_t bytes) {
   if (bytes_ + bytes > kMaxChunkBytes) [[unlikely]]
     close_chunk();
 }
 
 template <class AreaBound>
-void PartBuilder<AreaBound>::close_chunk() {
+void FragmentBuilder<AreaBound>::close_chunk() {
   add_block();
   const auto is_zero = [](std::int32_t id) { return id == 0; };
   if (std::all_of(chunk_.regions.begin(), chunk_.regions.end(), is_zero)) chunk_.regions.clear();
   chunk_.digest = chunk_digest(chunk_);
-  part_.chunks.push_back(std::exchange(chunk_, Chunk{}));
+  fragment_.chunks.push_back(std::exchange(chunk_, Chunk{}));
   bytes_ = 0;
 }
 
 template <class AreaBound>
-void PartBuilder<AreaBound>::add_block() {
+void FragmentBuilder<AreaBound>::add_block() {
   stopped_ = stopped_ || context_.poll();
   const std::size_t n = block_->size;
   if (n == 0) return;
@@ -177,11 +178,11 @@ void PartBuilder<AreaBound>::add_block() {
         lattice_ && area_.on_lattice({block_->centroid_x[i], block_->centroid_y[i]},
                                      block_->bound[i], region_bound_[i]);
   }
-  part_.statistics.add(*block_);
+  fragment_.statistics.add(*block_);
   block_->size = 0;
 }
 
-template class PartBuilder<ConstantArea>;
-template class PartBuilder<MappedArea>;
+template class FragmentBuilder<ConstantArea>;
+template class FragmentBuilder<MappedArea>;
 
 }  // namespace weft
