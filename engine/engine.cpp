@@ -23,7 +23,7 @@
 #include "engine/refine/storage/mesh_store.h"
 #include "engine/size/gradation/scaled_size.h"
 #include "engine/size/gradation/within_size.h"
-#include "engine/size/lattice/grain_map.h"
+#include "engine/size/lattice/lattice_map.h"
 #include "engine/size/size_map.h"
 #include "engine/size/size_spec.h"
 #include "engine/size/size_warnings.h"
@@ -117,16 +117,18 @@ class Pipeline {
     if (auto error = check_borders()) return tl::unexpected(*error);
     if (auto error = admit(bound)) return tl::unexpected(*error);
     if (!map_) return mesh(ConstantArea(bound), 0);
-    GrainMap grains;
+    LatticeMap lattices;
     if (quality_.lattice.exists()) {
-      auto laid_out = context_.compute(
-          [&] { return GrainMap::build(size(), *map_, summary_.box, quality_.lattice, context_); });
+      auto laid_out = context_.compute([&] {
+        return LatticeMap::build(size(), *map_, summary_.box, quality_.lattice, context_);
+      });
       if (!laid_out) return tl::unexpected(laid_out.error());
-      grains = std::move(*laid_out);
-      lattices_ = grains.lattices_that_vary();
+      lattices = std::move(*laid_out);
+      lattices_ = lattices.lattices_that_vary();
     }
-    context_.end_stage("grains");
-    return mesh(MappedArea(size(), *map_, grains), map_->bytes() + grains.bytes() + size_->bytes());
+    context_.end_stage("lattices");
+    return mesh(MappedArea(size(), *map_, lattices),
+                map_->bytes() + lattices.bytes() + size_->bytes());
   }
 
   // Measures the gradation within the domain on a mesh of its own, with a share of the sizes that

@@ -27,7 +27,7 @@ namespace {
 // constrained triangulation.
 constexpr double kBytesPerTriangle = 48;
 constexpr double kBytesPerPoint = 300;
-// Of the lattices of a size that varies (size/lattice/grain_map.h): one for some 80 triangles where
+// Of the lattices of a size that varies (size/lattice/lattice_map.h): one for some 80 triangles where
 // they change within a few rows, and no more than about this in all.
 constexpr double kBytesOfLattices = 5;  // a triangle
 constexpr double kMostBytesOfLattices = 8e6;

@@ -347,9 +347,10 @@ double NarrowPlaces::elsewhere(const QualityBounds& quality) {
   return std::max(1.0, 0.6 * Grading::of(quality.sin2).per_square);
 }
 
-void NarrowPlaces::add_samples(double grain, std::vector<Quadtree::Sample>& samples) const {
+void NarrowPlaces::add_samples(double triangles_per_sample,
+                               std::vector<Quadtree::Sample>& samples) const {
   constexpr double kMostSamples = 1 << 17;
-  const double most = std::max(grain, likely_ / kMostSamples);
+  const double most = std::max(triangles_per_sample, likely_ / kMostSamples);
   for (const Piece& piece : pieces_) {
     const auto parts = static_cast<std::uint32_t>(std::ceil(piece.triangles / most));
     for (std::uint32_t i = 0; i < parts; ++i)

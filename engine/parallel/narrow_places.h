@@ -68,9 +68,9 @@ class NarrowPlaces {
   // 1.7 to 3.1, measured on coasts at 20 to 33 degrees.
   static double elsewhere(const QualityBounds& quality);
 
-  // Adds samples where the triangles are expected, of at most `grain` triangles each, or more if
-  // there would be more than 2^17 samples.
-  void add_samples(double grain, std::vector<Quadtree::Sample>& samples) const;
+  // Adds samples where the triangles are expected, of at most `triangles_per_sample` triangles
+  // each, or more if there would be more than 2^17 samples.
+  void add_samples(double triangles_per_sample, std::vector<Quadtree::Sample>& samples) const;
 
   std::size_t bytes() const { return pieces_.capacity() * sizeof(Piece); }
 

@@ -39,10 +39,10 @@ struct QualityBounds {
 
 // Triangles over the integral of 1 / bound, as they come out; and the area of most over the bound.
 inline double triangles_per_bound(const LatticeShape& lattice) {
-  return lattice.exists() ? 1.03 / lattice.fill : 1.55;
+  return lattice.exists() ? 1.03 / lattice.area_ratio : 1.55;
 }
 inline double area_over_bound(const QualityBounds& quality) {
-  return quality.lattice.exists() ? quality.lattice.fill : 0.64;
+  return quality.lattice.exists() ? quality.lattice.area_ratio : 0.64;
 }
 
 // Squared circumradius of a counter-clockwise triangle.

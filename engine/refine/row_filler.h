@@ -201,7 +201,7 @@ class RowFiller {
   // sqrt(2) / 2 jitters to an area of kEquilateral.
   bool may_exceed() const {
     const LatticeShape& lattice = quality_.lattice;
-    return lattice.fill * (1 + 5 * lattice.jitter) >= 1;
+    return lattice.area_ratio * (1 + 5 * lattice.jitter) >= 1;
   }
 
   void queue_large(double bound) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/size/lattice/grain_map.h"
+#include "engine/size/lattice/lattice_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 namespace weft {
 namespace {
 
-using Grain = GrainMap::Grain;
-using Kind = GrainMap::Kind;
+using Cell = LatticeMap::Cell;
+using Kind = LatticeMap::Kind;
 
 // A square that is to be looked at.
 struct Pending {
@@ -20,9 +20,9 @@ struct Pending {
   double half = 0;
 };
 
-// The result of looking at a square: its grain, and whether smaller ones would be better.
+// The result of looking at a square: its cell, and whether smaller ones would be better.
 struct Look {
-  Grain grain;
+  Cell cell;
   bool split = false;
 };
 
@@ -44,29 +44,29 @@ bool mostly_equal(const double* size) {
 class Surveyor {
  public:
   Surveyor(const SizeFunction& size, const SizeMap& map, const LatticeShape& shape)
-      : size_(size), map_(map), scale_(std::sqrt(shape.fill)) {}
+      : size_(size), map_(map), scale_(std::sqrt(shape.area_ratio)) {}
 
   Look look_at(const Pending& square) const {
     const Point centre = square.centre;
     const double half = square.half;
     Look look;
-    Grain& grain = look.grain;
-    grain.box = {centre.x - half, centre.y - half, centre.x + half, centre.y + half};
-    const SizeMap::Place place = map_.locate(grain.box);
+    Cell& cell = look.cell;
+    cell.box = {centre.x - half, centre.y - half, centre.x + half, centre.y + half};
+    const SizeMap::Place place = map_.locate(cell.box);
     if (place.node->leaf() && !place.node->meets_domain) {
-      grain.kind = Kind::kOutside;
+      cell.kind = Kind::kOutside;
       return look;
     }
-    if (const auto uniform = map_.uniform_size(place, grain.box)) {
-      grain.kind = Kind::kConstant;
-      grain.size = *uniform;
+    if (const auto uniform = map_.uniform_size(place, cell.box)) {
+      cell.kind = Kind::kConstant;
+      cell.size = *uniform;
       return look;
     }
     Sampled<CoarseFitter> few;
     sample(few, coarse_, square);
     if (few.any()) {
       const double rows = rows_of(few, square);
-      if (rows < GrainMap::kCoarseRows) {
+      if (rows < LatticeMap::kCoarseRows) {
         fit(look, few, coarse_, square);
         return look;
       }
@@ -137,7 +137,7 @@ class Surveyor {
   // off by kHopeless times as much as may be.
   bool hopeless(const Sampled<CoarseFitter>& few, double rows) const {
     constexpr double kHopeless = 2;
-    const double most = rows < GrainMap::kSmallRows ? GrainMap::kAnyFit : GrainMap::kGoodFit;
+    const double most = rows < LatticeMap::kSmallRows ? LatticeMap::kAnyFit : LatticeMap::kGoodFit;
     return few.all && coarse_.fit(few.edges).deviation() > kHopeless * most;
   }
 
@@ -145,54 +145,55 @@ class Surveyor {
   template <class Fitter>
   void fit(Look& look, const Sampled<Fitter>& at, const Fitter& fitter,
            const Pending& square) const {
-    Grain& grain = look.grain;
+    Cell& cell = look.cell;
     const double rows = rows_of(at, square);
-    const bool small = rows < GrainMap::kSmallRows;
-    look.split = rows >= GrainMap::kFewRows;
+    const bool small = rows < LatticeMap::kSmallRows;
+    look.split = rows >= LatticeMap::kFewRows;
     if (mostly_equal<Fitter>(at.size)) {
-      grain.kind = Kind::kStepped;
+      cell.kind = Kind::kStepped;
       return;
     }
     // The indices of the lattice are exact far beyond kMostRows, and no mesh has so many rows.
     if (!at.all || at.hi > kMostRatio * at.lo || !(rows < kMostRows)) return;
-    if (!small && missed(size_.bounds(grain.box), at.lo, at.hi)) return;
+    if (!small && missed(size_.bounds(cell.box), at.lo, at.hi)) return;
 
     HarmonicFit fit = fitter.fit(at.edges);
     const double bend = fit.bend();
-    const double most_bend = small ? ConformalMap::kMostBend : GrainMap::kFewBends;
-    const double most =
-        small ? GrainMap::kAnyFit : std::max(GrainMap::kGoodFit, GrainMap::kGoodFitRows / rows);
+    const double most_bend = small ? ConformalMap::kMostBend : LatticeMap::kFewBends;
+    const double most = small ? LatticeMap::kAnyFit
+                              : std::max(LatticeMap::kGoodFit, LatticeMap::kGoodFitRows / rows);
     if (!(bend < most_bend && fit.deviation() <= most)) return;
     look.split = false;
     fit.u[0].re -= fit.above;
-    grain.kind = Kind::kFit;
-    grain.map = ConformalMap(square.centre, square.half * kRootTwo, fit.u, scale_);
+    cell.kind = Kind::kFit;
+    cell.map = ConformalMap(square.centre, square.half * kRootTwo, fit.u, scale_);
   }
 
   static bool missed(const Interval& bounds, double lo, double hi) {
-    return bounds.may_be_nan || !(bounds.hi <= GrainMap::kMissed * hi) ||
-           !(bounds.lo * GrainMap::kMissed >= lo);
+    return bounds.may_be_nan || !(bounds.hi <= LatticeMap::kMissed * hi) ||
+           !(bounds.lo * LatticeMap::kMissed >= lo);
   }
 
   const SizeFunction& size_;
   const SizeMap& map_;
-  const double scale_;  // of the lattice's edges, by its fill
+  const double scale_;  // of the lattice's edges, by its area ratio
   const FineFitter fine_;
   const CoarseFitter coarse_;
 };
 
 }  // namespace
 
-Result<GrainMap> GrainMap::build(const SizeFunction& size, const SizeMap& map, const Box& domain,
-                                 const LatticeShape& shape, const ExecutionContext& context) {
+Result<LatticeMap> LatticeMap::build(const SizeFunction& size, const SizeMap& map,
+                                     const Box& domain, const LatticeShape& shape,
+                                     const ExecutionContext& context) {
   constexpr std::size_t kAtATime = 16;  // squares: about 100 us
   const Surveyor surveyor(size, map, shape);
-  GrainMap grains;
-  grains.grains_.clear();
-  grains.centre_ = {0.5 * domain.min_x + 0.5 * domain.max_x,
-                    0.5 * domain.min_y + 0.5 * domain.max_y};
-  grains.half_ = 0.5 * std::max(domain.width(), domain.height()) * (1 + 1e-9);
-  std::vector<Pending> level{{0, grains.centre_, grains.half_}};
+  LatticeMap lattices;
+  lattices.cells_.clear();
+  lattices.centre_ = {0.5 * domain.min_x + 0.5 * domain.max_x,
+                      0.5 * domain.min_y + 0.5 * domain.max_y};
+  lattices.half_ = 0.5 * std::max(domain.width(), domain.height()) * (1 + 1e-9);
+  std::vector<Pending> level{{0, lattices.centre_, lattices.half_}};
   std::vector<Look> looks;
   for (int depth = 0; !level.empty(); ++depth) {
     looks.resize(level.size());
@@ -205,16 +206,16 @@ Result<GrainMap> GrainMap::build(const SizeFunction& size, const SizeMap& map, c
     std::vector<Pending> next;
     for (std::size_t i = 0; i < level.size(); ++i) {
       const Pending& square = level[i];
-      // Each square whose turn is still to come gives one grain at least.
-      const std::size_t known = grains.grains_.size() + (level.size() - i) + next.size();
-      if (!looks[i].split || depth == kMaxDepth || known + 3 > kMaxGrains) {
-        grains.nodes_[square.node].grain = static_cast<std::uint32_t>(grains.grains_.size());
-        grains.grains_.push_back(looks[i].grain);
+      // Each square whose turn is still to come gives one cell at least.
+      const std::size_t known = lattices.cells_.size() + (level.size() - i) + next.size();
+      if (!looks[i].split || depth == kMaxDepth || known + 3 > kMaxCells) {
+        lattices.nodes_[square.node].cell = static_cast<std::uint32_t>(lattices.cells_.size());
+        lattices.cells_.push_back(looks[i].cell);
         continue;
       }
-      const auto child = static_cast<std::uint32_t>(grains.nodes_.size());
-      grains.nodes_[square.node].first_child = child;
-      grains.nodes_.resize(child + 4);
+      const auto child = static_cast<std::uint32_t>(lattices.nodes_.size());
+      lattices.nodes_[square.node].first_child = child;
+      lattices.nodes_.resize(child + 4);
       const double half = 0.5 * square.half;
       for (unsigned c = 0; c < 4; ++c) {
         next.push_back(
@@ -225,35 +226,35 @@ Result<GrainMap> GrainMap::build(const SizeFunction& size, const SizeMap& map, c
     }
     level = std::move(next);
   }
-  grains.join_mixed();
-  if (auto error = grains.align(shape, context)) return tl::unexpected(*error);
-  return grains;
+  lattices.join_mixed();
+  if (auto error = lattices.align(shape, context)) return tl::unexpected(*error);
+  return lattices;
 }
 
-void GrainMap::join_mixed() {
+void LatticeMap::join_mixed() {
   // Children come after their parents.
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     Node& node = nodes_[n];
     if (node.first_child == 0) continue;
     const auto mixed = [&](unsigned c) {
       const Node& child = nodes_[node.first_child + c];
-      return child.first_child == 0 && grains_[child.grain].kind == Kind::kMixed;
+      return child.first_child == 0 && cells_[child.cell].kind == Kind::kMixed;
     };
     if (!(mixed(0) && mixed(1) && mixed(2) && mixed(3))) continue;
-    const Box last = grains_[nodes_[node.first_child + 3].grain].box;
-    node.grain = nodes_[node.first_child].grain;
+    const Box last = cells_[nodes_[node.first_child + 3].cell].box;
+    node.cell = nodes_[node.first_child].cell;
     node.first_child = 0;
-    grains_[node.grain].box.merge(last);
+    cells_[node.cell].box.merge(last);
   }
 }
 
-std::size_t GrainMap::lattices_that_vary() const {
-  return static_cast<std::size_t>(std::count_if(grains_.begin(), grains_.end(), [](const Grain& g) {
+std::size_t LatticeMap::lattices_that_vary() const {
+  return static_cast<std::size_t>(std::count_if(cells_.begin(), cells_.end(), [](const Cell& g) {
     return g.kind == Kind::kFit || g.kind == Kind::kMixed;
   }));
 }
 
-std::uint32_t GrainMap::index_at(Point p) const {
+std::uint32_t LatticeMap::index_at(Point p) const {
   Point centre = centre_;
   double half = half_;
   const Node* node = nodes_.data();
@@ -265,12 +266,12 @@ std::uint32_t GrainMap::index_at(Point p) const {
     centre.x += right ? half : -half;
     centre.y += up ? half : -half;
   }
-  return node->grain;
+  return node->cell;
 }
 
-std::vector<GrainMap::Contact> GrainMap::contacts_of(std::uint32_t grain) const {
+std::vector<LatticeMap::Contact> LatticeMap::contacts_of(std::uint32_t cell) const {
   std::vector<Contact> contacts;
-  const Box& box = grains_[grain].box;
+  const Box& box = cells_[cell].box;
   const double beyond = 1e-6 * box.width();
   for (const bool across_x : {true, false}) {
     const double first = across_x ? box.min_y : box.min_x;
@@ -282,10 +283,10 @@ std::vector<GrainMap::Contact> GrainMap::contacts_of(std::uint32_t grain) const 
       };
       for (double along = first + beyond; along < last;) {
         const std::uint32_t other = index_at(place(along));
-        const Box& next = grains_[other].box;
+        const Box& next = cells_[other].box;
         const double from = across_x ? next.min_y : next.min_x;
         const double to = across_x ? next.max_y : next.max_x;
-        if (other != grain && grains_[other].kind == Kind::kFit)
+        if (other != cell && cells_[other].kind == Kind::kFit)
           contacts.push_back({other, place(0.5 * (std::max(first, from) + std::min(last, to)))});
         if (!(to >= along)) break;          // the side ends outside, or only rounding is left
         if (!(to + beyond > along)) break;  // far from the origin, `beyond` may round to nothing
@@ -296,38 +297,38 @@ std::vector<GrainMap::Contact> GrainMap::contacts_of(std::uint32_t grain) const 
   return contacts;
 }
 
-std::optional<Error> GrainMap::align(const LatticeShape& shape, const ExecutionContext& context) {
-  constexpr std::size_t kAtATime = 64;  // grains: about 20 us
-  const auto has_lattice = [](const Grain& g) {
+std::optional<Error> LatticeMap::align(const LatticeShape& shape, const ExecutionContext& context) {
+  constexpr std::size_t kAtATime = 64;  // cells: about 20 us
+  const auto has_lattice = [](const Cell& g) {
     return g.kind == Kind::kConstant || g.kind == Kind::kFit;
   };
-  std::vector<std::vector<Contact>> contacts(grains_.size());
-  context.for_each((grains_.size() + kAtATime - 1) / kAtATime, [&](std::size_t group) {
-    const std::size_t end = std::min((group + 1) * kAtATime, grains_.size());
+  std::vector<std::vector<Contact>> contacts(cells_.size());
+  context.for_each((cells_.size() + kAtATime - 1) / kAtATime, [&](std::size_t group) {
+    const std::size_t end = std::min((group + 1) * kAtATime, cells_.size());
     for (std::size_t g = group * kAtATime; g < end; ++g) {
-      if (has_lattice(grains_[g])) contacts[g] = contacts_of(static_cast<std::uint32_t>(g));
+      if (has_lattice(cells_[g])) contacts[g] = contacts_of(static_cast<std::uint32_t>(g));
     }
   });
   if (auto error = context.poll()) return error;
 
-  std::vector<char> aligned(grains_.size());
+  std::vector<char> aligned(cells_.size());
   std::vector<std::uint32_t> queue;
-  for (std::uint32_t g = 0; g < grains_.size(); ++g) {
-    if (grains_[g].kind == Kind::kConstant) queue.push_back(g);
+  for (std::uint32_t g = 0; g < cells_.size(); ++g) {
+    if (cells_[g].kind == Kind::kConstant) queue.push_back(g);
   }
   std::size_t head = 0;
-  for (std::uint32_t first = 0; first <= grains_.size(); ++first) {
+  for (std::uint32_t first = 0; first <= cells_.size(); ++first) {
     while (head < queue.size()) {
       const std::uint32_t from = queue[head++];
       for (const Contact& contact : contacts[from]) {
-        if (aligned[contact.grain]) continue;
-        continue_lattice(grains_[from], grains_[contact.grain], contact.at, shape.fill);
-        aligned[contact.grain] = true;
-        queue.push_back(contact.grain);
+        if (aligned[contact.cell]) continue;
+        continue_lattice(cells_[from], cells_[contact.cell], contact.at, shape.area_ratio);
+        aligned[contact.cell] = true;
+        queue.push_back(contact.cell);
       }
     }
-    if (first == grains_.size()) break;
-    if (grains_[first].kind == Kind::kFit && !aligned[first]) {
+    if (first == cells_.size()) break;
+    if (cells_[first].kind == Kind::kFit && !aligned[first]) {
       aligned[first] = true;
       queue.push_back(first);
     }
@@ -335,10 +336,10 @@ std::optional<Error> GrainMap::align(const LatticeShape& shape, const ExecutionC
   return std::nullopt;
 }
 
-void GrainMap::continue_lattice(const Grain& from, Grain& to, Point at, double fill) {
+void LatticeMap::continue_lattice(const Cell& from, Cell& to, Point at, double area_ratio) {
   ConformalMap::Value there;
   if (from.kind == Kind::kConstant) {
-    const double per_unit = 1 / std::sqrt(fill * from.size / kEquilateral);
+    const double per_unit = 1 / std::sqrt(area_ratio * from.size / kEquilateral);
     there = {{at.x * per_unit, at.y * per_unit}, {per_unit, 0}};
   } else {
     there = from.map.at(at);
