@@ -30,24 +30,24 @@ double seconds_since(Clock::time_point start) {
 template <class AreaBound>
 class MeshRun {
  public:
-  // `cut_off`: stop at the client's number of triangles, and keep the mesh as it is then.
+  // `truncated`: stop at the client's number of triangles, and keep the mesh as it is then.
   MeshRun(const MeshPlan& plan, const AreaBound& area, ChunkSink& sink, ExecutionContext& context,
-          Summary& summary, MeshStore& mesh, bool cut_off)
+          Summary& summary, MeshStore& mesh, bool truncated)
       : plan_(plan),
         area_(area),
         context_(context),
         summary_(summary),
         mesh_(mesh),
-        cut_off_(cut_off),
+        truncated_(truncated),
         refinement_{mesh,
                     plan.corners,
                     plan.domain.regions,
                     plan.edge_limits,
                     context,
                     plan.domain.bytes() + plan.other_bytes + plan.corners.bytes(),
-                    cut_off ? context.budget().triangle_limit : limit(plan, context)},
+                    truncated ? context.budget().triangle_limit : limit(plan, context)},
         root_(Slots::of_domain(plan.domain)),
-        fragments_(plan, area, refinement_, cut_off, sink, summary),
+        fragments_(plan, area, refinement_, truncated, sink, summary),
         leaves_(plan, area, refinement_, root_) {}
 
   // What comes before the leaves' tasks, or all refinement if there are no leaves. `start` is when
@@ -56,7 +56,7 @@ class MeshRun {
     context_.add_triangles(static_cast<std::int64_t>(plan_.domain.triangles.size()));
     context_.end_stage("mesh set-up");
     std::optional<Error> error;
-    if (!cut_off_ && plan_.wants_leaves())
+    if (!truncated_ && plan_.wants_leaves())
       error = leaves_.prepare(!plan_.max_triangles && plan_.may_stream);
     if (!error && !leaves_.exists()) error = refine_alone();
     summary_.coarse_seconds = seconds_since(start);
@@ -106,12 +106,12 @@ class MeshRun {
     context_.count_triangles_as(LeafRun<AreaBound>::kRefining);
     return refine_time_.measure([&] {
       Refiner<OwnsAll, AreaBound> refiner(refinement_, plan_.quality, area_,
-                                          cut_off_ ? *plan_.max_triangles : kNoCap);
+                                          truncated_ ? *plan_.max_triangles : kNoCap);
       refiner.begin(root_, OwnsAll{}, plan_.box);
       auto error = refiner.queue_all();
       if (!error) error = refiner.run();
       alone_ = refiner.figures();
-      if (!error && plan_.sweeps > 0 && !cut_off_) error = smooth_alone();
+      if (!error && plan_.sweeps > 0 && !truncated_) error = smooth_alone();
       return error;
     });
   }
@@ -138,7 +138,7 @@ class MeshRun {
   ExecutionContext& context_;
   Summary& summary_;
   MeshStore& mesh_;
-  const bool cut_off_;
+  const bool truncated_;
   const RefinementContext refinement_;
   Slots root_;
   SlotFragments<AreaBound> fragments_;
@@ -152,7 +152,7 @@ class MeshRun {
 template <class AreaBound>
 std::optional<Error> run_mesh(const MeshPlan& plan, const AreaBound& area, ChunkSink& sink,
                               ExecutionContext& context, Summary& summary) {
-  const auto attempt = [&](bool cut_off) -> std::optional<Error> {
+  const auto attempt = [&](bool truncated) -> std::optional<Error> {
     const auto start = Clock::now();
     std::optional<MeshStore> mesh;
     std::optional<MeshRun<AreaBound>> run;
@@ -165,14 +165,14 @@ std::optional<Error> run_mesh(const MeshPlan& plan, const AreaBound& area, Chunk
                                        plan.expected_triangles, context);
       if (!mesh_made) return mesh_made.error();
       mesh.emplace(std::move(*mesh_made));
-      run.emplace(plan, area, sink, context, summary, *mesh, cut_off);
+      run.emplace(plan, area, sink, context, summary, *mesh, truncated);
       return run->prepare(start);
     };
     if (auto error = context.compute(prepare)) return error;
     return run->run(start);
   };
   const double cap = static_cast<double>(plan.max_triangles.value_or(0));
-  if (plan.max_triangles && plan.least_triangles > cap) return attempt(true);
+  if (plan.max_triangles && plan.triangles_lower_bound > cap) return attempt(true);
   const Summary before = summary;
   auto error = attempt(false);
   const bool reached = error && error->code == ErrorCode::kLimitExceeded && plan.max_triangles &&

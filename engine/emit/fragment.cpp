@@ -50,7 +50,7 @@ std::vector<ExportedTriangle> exported_triangles(const MeshStore& mesh, const Sl
 template <class AreaBound>
 FragmentBuilder<AreaBound>::FragmentBuilder(const MeshStore& mesh, const Domain& domain,
                                             const AcuteCorners& corners, AreaBound area,
-                                            bool lattice, bool cut_off,
+                                            bool lattice, bool truncated,
                                             const ExecutionContext& context)
     : mesh_(mesh),
       domain_(domain),
@@ -59,7 +59,7 @@ FragmentBuilder<AreaBound>::FragmentBuilder(const MeshStore& mesh, const Domain&
                                [](const Region& r) { return r.id != 0; })),
       area_(std::move(area)),
       lattice_(lattice),
-      cut_off_(cut_off),
+      truncated_(truncated),
       context_(context) {}
 
 template <class AreaBound>
@@ -123,7 +123,7 @@ template <class AreaBound>
 void FragmentBuilder<AreaBound>::count_unrefined(const Triangle& triangle) {
   Unrefined& count = fragment_.unrefined;
   const bool left = triangle.badness() != kGood;
-  if (left && cut_off_) {
+  if (left && truncated_) {
     ++count.budget;
   } else if (triangle.refusal() == Refusal::kSmallInputAngle) {
     ++count.small_input_angle;

@@ -68,13 +68,13 @@ std::vector<ExportedTriangle> exported_triangles(const MeshStore& mesh, const Sl
 // Builds one fragment. `AreaBound` gives the bounds for the size histogram: it has bounds_at, as
 // ConstantArea and MappedArea do. REQUIRES: all added slots are final, and all vertices of
 // triangles have their numbers; `lattice` says whether Steiner points came from one
-// (refine/steiner_point.h). A triangle that is still bad counts as `budget` if the budget `cut_off`
-// refinement; otherwise as `streaming`, because its surroundings had been sent.
+// (refine/steiner_point.h). A triangle that is still bad counts as `budget` if the budget
+// `truncated` refinement; otherwise as `streaming`, because its surroundings had been sent.
 template <class AreaBound>
 class FragmentBuilder {
  public:
   FragmentBuilder(const MeshStore& mesh, const Domain& domain, const AcuteCorners& corners,
-                  AreaBound area, bool lattice, bool cut_off, const ExecutionContext& context);
+                  AreaBound area, bool lattice, bool truncated, const ExecutionContext& context);
 
   // Reserves room for about so many: without it, vectors take up to twice what they need.
   void expect(std::size_t vertices, std::size_t triangles);
@@ -99,7 +99,7 @@ class FragmentBuilder {
   const bool has_regions_;
   AreaBound area_;
   const bool lattice_;
-  const bool cut_off_;
+  const bool truncated_;
   const ExecutionContext& context_;
   bool stopped_ = false;
   Fragment fragment_;

@@ -2,7 +2,7 @@
 // Fragments of whole slots, and the builder that every fragment of a run is built with; sends them
 // to the sink.
 //
-//   SlotFragments<ConstantArea> fragments(plan, area, refinement, cut_off, sink, summary);
+//   SlotFragments<ConstantArea> fragments(plan, area, refinement, truncated, sink, summary);
 //   fragments.send_vertices(root);
 //   fragments.run().run(..., [&](std::uint32_t task) {
 //     fragments.run().finish(index, fragments.build([&](auto& builder) { ... }));
@@ -64,13 +64,13 @@ class SlotFragments {
     std::vector<Section> all_;
   };
 
-  // `cut_off`: whether refinement ended before all triangles were good.
+  // `truncated`: whether refinement ended before all triangles were good.
   SlotFragments(const MeshPlan& plan, const AreaBound& area, const RefinementContext& refinement,
-                bool cut_off, ChunkSink& sink, Summary& summary)
+                bool truncated, ChunkSink& sink, Summary& summary)
       : plan_(plan),
         area_(area),
         refinement_(refinement),
-        cut_off_(cut_off),
+        truncated_(truncated),
         delivery_(sink, refinement.context, summary),
         run_(delivery_, refinement.context) {}
 
@@ -86,7 +86,7 @@ class SlotFragments {
   std::optional<Fragment> build(F&& fill) {
     return time_.measure([&] {
       FragmentBuilder<AreaBound> builder(refinement_.mesh, plan_.domain, refinement_.corners,
-                                         area_.again(), plan_.quality.lattice.exists(), cut_off_,
+                                         area_.again(), plan_.quality.lattice.exists(), truncated_,
                                          refinement_.context);
       fill(builder);
       return builder.finish();
@@ -143,7 +143,7 @@ class SlotFragments {
   const MeshPlan& plan_;
   const AreaBound& area_;
   const RefinementContext& refinement_;
-  const bool cut_off_;
+  const bool truncated_;
   Delivery delivery_;
   FragmentRun run_;
   WorkTime time_;

@@ -47,10 +47,10 @@ struct MeshPlan {
   const AcuteCorners& corners;  // of the domain
   const NarrowPlaces& narrow;
   double expected_triangles;
-  double expected_by_size;   // of these, what the size alone makes
-  bool may_stream;           // the minimum angle is at most kMaxStreamingAngleDeg
-  double leaf_triangles;     // maximum triangles of the final mesh in a leaf of the quadtree
-  double least_triangles;    // the mesh has at least so many
+  double expected_by_size;  // of these, what the size alone makes
+  bool may_stream;          // the minimum angle is at most kMaxStreamingAngleDeg
+  double leaf_triangles;    // maximum triangles of the final mesh in a leaf of the quadtree
+  double triangles_lower_bound;
   std::uint32_t sweeps = 0;  // of smoothing
   // Stops at so many triangles: then one task refines in order. If fewer are enough, the mesh is
   // the same as without this bound; nothing is sent before that is known.

@@ -78,10 +78,10 @@ struct Grading {
 class NarrowPlaces::Search {
  public:
   Search(const Domain& domain, const CrossedArms& crossed_arms, const QualityBounds& quality,
-         const std::function<double(Point)>& likely_area)
+         const std::function<double(Point)>& expected_area)
       : domain_(domain),
         crossed_arms_(crossed_arms),
-        likely_area_(likely_area),
+        expected_area_(expected_area),
         area_over_bound_(area_over_bound(quality)),
         grading_(Grading::of(quality.sin2)),
         floor_(std::sqrt(quality.min_length2)) {}
@@ -240,7 +240,7 @@ class NarrowPlaces::Search {
       constexpr unsigned kPoints = 3;
       std::array<double, kPoints> h{};
       std::array<Nearest, kPoints> sees{};
-      double likely = 0;
+      double expected = 0;
       double quality_alone = 0;
       for (unsigned i = 0; i < kPoints; ++i) {
         const Point q = between(a, b, from + (to - from) * ((2 * i + 1) * (1.0 / (2 * kPoints))));
@@ -248,13 +248,13 @@ class NarrowPlaces::Search {
         const Nearest two = nearest(there, q);
         sees[i] = one.distance <= two.distance ? one : two;
         h[i] = std::max(sees[i].distance, floor_);
-        const double area = likely_area_(q);
+        const double area = expected_area_(q);
         for (const auto& [side, near] : {std::pair{here, one}, std::pair{there, two}}) {
           if (side.triangle == kNone) continue;
           const double bound =
               std::min(area, domain_.regions[domain_.triangles[side.triangle].region].max_area);
           const double w = std::max(near.distance, h[i]);
-          likely += grading_.beside(h[i], w, area_over_bound_ * bound) / kPoints;
+          expected += grading_.beside(h[i], w, area_over_bound_ * bound) / kPoints;
           quality_alone += grading_.beside(h[i], w, kInfinity) / kPoints;
         }
       }
@@ -266,23 +266,23 @@ class NarrowPlaces::Search {
         continue;
       }
       if (piece < *low) continue;
-      found.pieces_.push_back({between(a, b, from), between(a, b, to), likely * piece});
-      found.likely_ += likely * piece;
+      found.pieces_.push_back({between(a, b, from), between(a, b, to), expected * piece});
+      found.expected_ += expected * piece;
       // A clean strip has segments all along, and no edge that the floor on edges exempts.
       const bool clean = piece > 4 * *high && *low > 4 * floor_ && *high < kInfinity &&
                          std::all_of(sees.begin(), sees.end(),
                                      [](const Nearest& n) { return n.subsegment != kNone; });
       if (!clean) continue;
-      const double least = kCertain * quality_alone * piece;
-      found.least_ += least;
-      costliest.least += least;
-      if (least <= most) continue;
-      most = least;
+      const double lower_bound = kCertain * quality_alone * piece;
+      found.lower_bound_ += lower_bound;
+      costliest.lower_bound += lower_bound;
+      if (lower_bound <= most) continue;
+      most = lower_bound;
       costliest.other = domain_.subsegments[sees[1].subsegment].segment;
       costliest.at = between(a, b, 0.5 * (from + to));
       costliest.width = sees[1].distance;
     }
-    if (costliest.least > (found.costliest_ ? found.costliest_->least : 0))
+    if (costliest.lower_bound > (found.costliest_ ? found.costliest_->lower_bound : 0))
       found.costliest_ = costliest;
   }
 
@@ -291,7 +291,7 @@ class NarrowPlaces::Search {
 
   const Domain& domain_;
   const CrossedArms& crossed_arms_;
-  const std::function<double(Point)>& likely_area_;
+  const std::function<double(Point)>& expected_area_;
   const double area_over_bound_;
   const Grading grading_;
   const double floor_;
@@ -301,7 +301,7 @@ class NarrowPlaces::Search {
 
 Result<NarrowPlaces> NarrowPlaces::find(const Domain& domain, const CrossedArms& crossed_arms,
                                         const QualityBounds& quality,
-                                        const std::function<double(Point)>& likely_area,
+                                        const std::function<double(Point)>& expected_area,
                                         const ExecutionContext& context) {
   constexpr std::size_t kAtATime = 1024;  // triangles
   NarrowPlaces all;
@@ -324,7 +324,7 @@ Result<NarrowPlaces> NarrowPlaces::find(const Domain& domain, const CrossedArms&
       stopped = true;
       return;
     }
-    Search search(domain, crossed_arms, quality, likely_area);
+    Search search(domain, crossed_arms, quality, expected_area);
     const auto [first, last] = range(i);
     search.look_at(first, last, maybe_thin);
     found[i] = std::move(search.found);
@@ -334,9 +334,10 @@ Result<NarrowPlaces> NarrowPlaces::find(const Domain& domain, const CrossedArms&
   }
   for (const NarrowPlaces& some : found) {
     all.pieces_.insert(all.pieces_.end(), some.pieces_.begin(), some.pieces_.end());
-    all.likely_ += some.likely_;
-    all.least_ += some.least_;
-    if (some.costliest_ && some.costliest_->least > (all.costliest_ ? all.costliest_->least : 0))
+    all.expected_ += some.expected_;
+    all.lower_bound_ += some.lower_bound_;
+    if (some.costliest_ &&
+        some.costliest_->lower_bound > (all.costliest_ ? all.costliest_->lower_bound : 0))
       all.costliest_ = some.costliest_;
   }
   return all;
@@ -350,7 +351,7 @@ double NarrowPlaces::elsewhere(const QualityBounds& quality) {
 void NarrowPlaces::add_samples(double triangles_per_sample,
                                std::vector<Quadtree::Sample>& samples) const {
   constexpr double kMostSamples = 1 << 17;
-  const double most = std::max(triangles_per_sample, likely_ / kMostSamples);
+  const double most = std::max(triangles_per_sample, expected_ / kMostSamples);
   for (const Piece& piece : pieces_) {
     const auto parts = static_cast<std::uint32_t>(std::ceil(piece.triangles / most));
     for (std::uint32_t i = 0; i < parts; ++i)

@@ -88,17 +88,6 @@ class Petal {
   Point along_;  // the edge's direction, with the distance of the places from the centre as length
 };
 
-// The value of a point's star.
-struct StarWorth {
-  std::int32_t fewer_bad;  // triangles
-  double nearest2;         // squared distance from the point to what it is joined to
-
-  bool operator>(const StarWorth& other) const {
-    return fewer_bad > other.fewer_bad ||
-           (fewer_bad == other.fewer_bad && nearest2 > other.nearest2);
-  }
-};
-
 // Calls consider(half_tangent) for places of a petal; `consider` tells whether its place is the
 // best one. Up to 34 degrees these are five: over the edge's middle, 65 degrees to both sides, and
 // 35 degrees to both sides of the best one so far. Above they are 13 all over the arc: at 36

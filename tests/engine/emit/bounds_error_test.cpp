@@ -111,14 +111,14 @@ TEST(BoundsError, EndsAStreamAfterItsChunksAndIsTheSameOnAnyNumberOfThreads) {
 }
 
 // What the summary tells if one triangle of two is left bad.
-Fragment fragment_with_a_bad_triangle(Badness badness, bool cut_off) {
+Fragment fragment_with_a_bad_triangle(Badness badness, bool truncated) {
   const ExecutionContext context;
   const Domain domain = *triangulate(square(), context);
   MeshStore mesh = *MeshStore::from(domain, 1000, 2, context);
   const AcuteCorners corners = *AcuteCorners::build(domain, QualityBounds{}, context);
   Slots::of_domain(domain).number_vertices(mesh, 0);
   mesh.triangles[1].set_badness(badness);
-  FragmentBuilder<ConstantArea> builder(mesh, domain, corners, ConstantArea(1), false, cut_off,
+  FragmentBuilder<ConstantArea> builder(mesh, domain, corners, ConstantArea(1), false, truncated,
                                         context);
   builder.add_vertices(0, 4);
   builder.add_triangles(0, 2);
@@ -133,9 +133,9 @@ TEST(BoundsError, ATriangleThatStreamingLeavesIsNotTakenForTheBudgets) {
   EXPECT_NEAR(left.unrefined_at.x + left.unrefined_at.y, 1, 0.5);
   EXPECT_EQ(fragment_with_a_bad_triangle(kLarge, false).unrefined.too_large, 1u);
 
-  const Fragment cut_off = fragment_with_a_bad_triangle(kSkinny, true);
-  EXPECT_EQ(cut_off.unrefined.streaming, 0u);
-  EXPECT_EQ(cut_off.unrefined.budget, 1u);
+  const Fragment truncated = fragment_with_a_bad_triangle(kSkinny, true);
+  EXPECT_EQ(truncated.unrefined.streaming, 0u);
+  EXPECT_EQ(truncated.unrefined.budget, 1u);
 }
 
 std::string message_of(const Unrefined& unrefined) {

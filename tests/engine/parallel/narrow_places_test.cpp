@@ -84,9 +84,9 @@ TEST(NarrowPlaces, AreEstimatedWithinAFactorOfTwo) {
   for (const Case& c : cases()) {
     for (const double angle : {20, 25, 30}) {
       const double triangles = triangles_of(c.pslg, angle);
-      const double likely = places_of(c.pslg, angle).likely();
-      EXPECT_LT(likely, 2 * triangles) << c.name << ", " << angle;
-      EXPECT_GT(likely, 0.5 * triangles) << c.name << ", " << angle;
+      const double expected = places_of(c.pslg, angle).expected();
+      EXPECT_LT(expected, 2 * triangles) << c.name << ", " << angle;
+      EXPECT_GT(expected, 0.5 * triangles) << c.name << ", " << angle;
     }
   }
 }
@@ -94,36 +94,36 @@ TEST(NarrowPlaces, AreEstimatedWithinAFactorOfTwo) {
 TEST(NarrowPlaces, HaveTheirLeastTrianglesInEveryMesh) {
   for (const Case& c : cases()) {
     for (const double angle : {5, 10, 15, 20, 25, 30, 33, 36}) {
-      const double least = places_of(c.pslg, angle).least();
-      EXPECT_GT(least, 0) << c.name << ", " << angle;
-      EXPECT_LT(1.3 * least, triangles_of(c.pslg, angle)) << c.name << ", " << angle;
+      const double lower_bound = places_of(c.pslg, angle).lower_bound();
+      EXPECT_GT(lower_bound, 0) << c.name << ", " << angle;
+      EXPECT_LT(1.3 * lower_bound, triangles_of(c.pslg, angle)) << c.name << ", " << angle;
     }
   }
 }
 
 TEST(NarrowPlaces, AreNoneWithoutABoundOnAngles) {
   const NarrowPlaces places = places_of(side_by_side(0.001, 0), 0);
-  EXPECT_EQ(places.likely(), 0);
-  EXPECT_EQ(places.least(), 0);
+  EXPECT_EQ(places.expected(), 0);
+  EXPECT_EQ(places.lower_bound(), 0);
 }
 
 TEST(NarrowPlaces, CostNothingWhereTheSizeIsFiner) {
-  EXPECT_EQ(places_of(side_by_side(0.01, 0), 20, 1e-5).likely(), 0);
-  EXPECT_GT(places_of(side_by_side(0.01, 0), 20, 1e-2).likely(), 1000);
+  EXPECT_EQ(places_of(side_by_side(0.01, 0), 20, 1e-5).expected(), 0);
+  EXPECT_GT(places_of(side_by_side(0.01, 0), 20, 1e-2).expected(), 1000);
 }
 
 TEST(NarrowPlaces, OfAVertexNearASegmentCostALogarithm) {
   Pslg pslg = square(10);
   pslg.points.push_back({3.7, 1e-6});
   const NarrowPlaces places = places_of(pslg, 20);
-  EXPECT_LT(places.likely(), 1000);
-  EXPECT_EQ(places.least(), 0);
+  EXPECT_LT(places.expected(), 1000);
+  EXPECT_EQ(places.lower_bound(), 0);
 }
 
 TEST(NarrowPlaces, AreFewAlongACoast) {
   const NarrowPlaces places = places_of(read_poly(model("us-east-coast.poly")), 20);
-  EXPECT_LT(places.likely(), 1000);
-  EXPECT_LT(places.least(), 100);
+  EXPECT_LT(places.expected(), 1000);
+  EXPECT_LT(places.lower_bound(), 100);
 }
 
 TEST(NarrowPlaces, KnowWhatIsCostliest) {
@@ -167,7 +167,7 @@ TEST(NarrowPlaces, AreSampledWhereTheyAre) {
     EXPECT_NEAR(s.at.y, 5, 0.01);
     sum += s.weight;
   }
-  EXPECT_NEAR(sum, places.likely(), 1e-6 * places.likely());
+  EXPECT_NEAR(sum, places.expected(), 1e-6 * places.expected());
 }
 
 TEST(NarrowPlaces, ThatCostTooMuchAreRefusedAtOnceAndNamed) {
