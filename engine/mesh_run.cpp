@@ -80,15 +80,15 @@ class MeshRun {
     }
     fragments_.close();
     context_.end_stage("closing");
-    RefinerFigures figures = leaves_.figures();
-    figures += alone_;
-    summary_.insertions += figures.insertions;
-    summary_.exact_predicates += figures.exact_predicates;
+    RefinerStats stats = leaves_.stats();
+    stats += alone_;
+    summary_.insertions += stats.insertions;
+    summary_.exact_predicates += stats.exact_predicates;
     summary_.deferred = leaves_.deferred();
     summary_.engine_seconds = seconds_since(start) - fragments_.run().blocked_seconds();
     summary_.refine_seconds += refine_time_.seconds();
     summary_.emit_seconds = fragments_.build_seconds();
-    summary_.peak_bytes = refinement_.other_bytes + mesh_.bytes() + root_.bytes() + figures.bytes +
+    summary_.peak_bytes = refinement_.other_bytes + mesh_.bytes() + root_.bytes() + stats.bytes +
                           fragments_.run().peak_bytes() + leaves_.bytes() + run_bytes;
     return std::nullopt;
   }
@@ -110,7 +110,7 @@ class MeshRun {
       refiner.begin(root_, OwnsAll{}, plan_.box);
       auto error = refiner.queue_all();
       if (!error) error = refiner.run();
-      alone_ = refiner.figures();
+      alone_ = refiner.stats();
       if (!error && plan_.sweeps > 0 && !truncated_) error = smooth_alone();
       return error;
     });
@@ -143,7 +143,7 @@ class MeshRun {
   Slots root_;
   SlotFragments<AreaBound> fragments_;
   LeafStage<AreaBound> leaves_;
-  RefinerFigures alone_;
+  RefinerStats alone_;
   WorkTime refine_time_;
 };
 

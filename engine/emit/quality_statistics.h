@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The figures of a mesh: angles, aspect ratios, mean quality, areas over their bounds. They are
+// The statistics of a mesh: angles, aspect ratios, mean quality, areas over their bounds. They are
 // gathered while the mesh is sent, in blocks of triangles: two at once if possible, in counters
 // that do not wait for one another. One triangle at a time took 13 % of the whole run.
 #pragma once
@@ -19,7 +19,7 @@ class QualityStatistics {
  public:
   void add(const TriangleBlock& block);
   void add(const QualityStatistics& other);
-  // Writes all figures into the summary. REQUIRES: there is a triangle.
+  // Writes all statistics into the summary. REQUIRES: there is a triangle.
   void write(Summary& summary) const;
 
  private:

@@ -94,7 +94,7 @@ class CoarseBlocks {
     refiner.begin(slots, OwnsAll{}, box);
     auto error = refiner.queue_all();
     if (!error) error = refiner.run();
-    figures_ = refiner.figures();
+    stats_ = refiner.stats();
     if (!error) spread(slots);
     return error;
   }
@@ -161,9 +161,9 @@ class CoarseBlocks {
     }
   }
 
-  RefinerFigures figures() const {
-    RefinerFigures sum = figures_;
-    sum += tasks_.figures();
+  RefinerStats stats() const {
+    RefinerStats sum = stats_;
+    sum += tasks_.stats();
     return sum;
   }
   // Bytes at the peak, without the judged triangles.
@@ -278,7 +278,7 @@ class CoarseBlocks {
   std::vector<std::atomic<std::uint32_t>> unbuilt_;
   std::vector<std::vector<std::uint32_t>> unfit_;  // per leaf
   bool fit_ = true;
-  RefinerFigures figures_;
+  RefinerStats stats_;
 };
 
 }  // namespace weft

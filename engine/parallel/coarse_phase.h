@@ -96,7 +96,7 @@ class CoarsePhase {
   // Whether every circumradius is below a quarter of its leaf's side, even in leaves that are not
   // busy: then the clean-up stays near.
   bool fits() const { return fits_; }
-  const RefinerFigures& figures() const { return figures_; }
+  const RefinerStats& stats() const { return stats_; }
 
  private:
   // The number of coarse triangles per leaf: a dozen are needed to place the leaves' borders well.
@@ -125,7 +125,7 @@ class CoarsePhase {
     refiner.begin(slots_, OwnsAll{}, box);
     auto error = refiner.queue_all();
     if (!error) error = refiner.run();
-    figures_ += refiner.figures();
+    stats_ += refiner.stats();
     return error;
   }
 
@@ -300,7 +300,7 @@ class CoarsePhase {
   LeafOrder order_;
   std::vector<BadTriangle> bad_;
   bool fits_ = true;
-  RefinerFigures figures_;
+  RefinerStats stats_;
 };
 
 }  // namespace weft

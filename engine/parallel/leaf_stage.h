@@ -48,7 +48,7 @@ class LeafStage {
     tree_ = std::move(*tree);
     for (const Quadtree::Leaf& leaf : tree_.leaves()) total_weight_ += leaf.weight;
     auto error = tree_.leaves().size() > 1 ? make_leaves(coarse, pieces, may_stream) : std::nullopt;
-    before_ += coarse.figures();
+    before_ += coarse.stats();
     return error;
   }
 
@@ -80,11 +80,11 @@ class LeafStage {
     return result;
   }
 
-  // The figures of all refiners so far.
-  RefinerFigures figures() const {
-    RefinerFigures all = before_;
-    if (leaves_) all += leaves_->figures();
-    if (blocks_) all += blocks_->figures();
+  // The statistics of all refiners so far.
+  RefinerStats stats() const {
+    RefinerStats all = before_;
+    if (leaves_) all += leaves_->stats();
+    if (blocks_) all += blocks_->stats();
     return all;
   }
   std::uint64_t deferred() const {
@@ -133,7 +133,7 @@ class LeafStage {
     context.end_stage("blocks");
     if (!error) error = context.poll();
     if (!error && blocks_->fit() && tree_.leaves().size() >= kStreamingLeaves) return std::nullopt;
-    before_ += blocks_->figures();
+    before_ += blocks_->stats();
     blocks_.reset();
     return error;
   }
@@ -148,7 +148,7 @@ class LeafStage {
   std::optional<LeafTasks<AreaBound>> leaves_;
   bool streams_ = false;
   double total_weight_ = 0;
-  RefinerFigures before_;  // the coarse phase's, and those of blocks that were given up
+  RefinerStats before_;  // the coarse phase's, and those of blocks that were given up
 };
 
 }  // namespace weft

@@ -221,7 +221,7 @@ class LeafTasks {
       for (const SegmentEdge& s : l.pending_segments) refiner.queue(s);
     }
     auto error = refiner.run();
-    clean_up_figures_ = refiner.figures();
+    clean_up_stats_ = refiner.stats();
     return error;
   }
 
@@ -247,14 +247,14 @@ class LeafTasks {
     return count;
   }
 
-  // Figures. REQUIRES: no task runs.
+  // Statistics. REQUIRES: no task runs.
   std::uint64_t deferred() const { return deferred_.load(); }
   std::uint32_t rounds() const {
     return static_cast<std::uint32_t>(std::count(rounds_.begin(), rounds_.end(), true));
   }
-  RefinerFigures figures() const {
-    RefinerFigures sum = clean_up_figures_;
-    for (const auto& w : workers_) sum += w->refiner.figures();
+  RefinerStats stats() const {
+    RefinerStats sum = clean_up_stats_;
+    for (const auto& w : workers_) sum += w->refiner.stats();
     return sum;
   }
   // Bytes at the peak.
@@ -421,7 +421,7 @@ class LeafTasks {
   Slots clean_up_slots_;
   HeldBytes held_;  // by the vectors of the leaves
   std::atomic<std::uint64_t> deferred_{0};
-  RefinerFigures clean_up_figures_;
+  RefinerStats clean_up_stats_;
   std::array<std::atomic<bool>, LeafGraph::kRounds> rounds_{};  // whether each found work
 
   std::mutex mutex_;  // guards the two below while tasks run

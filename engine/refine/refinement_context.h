@@ -42,12 +42,12 @@ inline std::optional<Error> check_budget(const ExecutionContext& context, std::u
 }
 
 // What refiners have done.
-struct RefinerFigures {
+struct RefinerStats {
   std::uint64_t insertions = 0;
   std::uint64_t exact_predicates = 0;
   std::uint64_t bytes = 0;  // of one refiner, at the peak
 
-  RefinerFigures& operator+=(const RefinerFigures& other) {
+  RefinerStats& operator+=(const RefinerStats& other) {
     insertions += other.insertions;
     exact_predicates += other.exact_predicates;
     bytes = std::max(bytes, other.bytes);

@@ -161,7 +161,7 @@ class Refiner {
   // Some of these may no longer exist.
   const std::vector<BadTriangle>& migrants() const { return migrants_; }
 
-  RefinerFigures figures() const {
+  RefinerStats stats() const {
     return {insertions_, star_.exact_predicates() + petal_search_.exact_predicates() + exact_,
             bytes()};
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The figures of single triangles.
+// The statistics of single triangles.
 #include "engine/emit/quality_statistics.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace weft {
 namespace {
 
-Summary figures_of(Point a, Point b, Point c) {
+Summary stats_of(Point a, Point b, Point c) {
   TriangleBlock block;
   block.add(a, b, c);
   block.bound[0] = block.bound[1] = 1;
@@ -22,7 +22,7 @@ Summary figures_of(Point a, Point b, Point c) {
 }
 
 TEST(QualityStatistics, MeasuresATriangle) {
-  const Summary summary = figures_of({0, 0}, {2, 0}, {0, 2});
+  const Summary summary = stats_of({0, 0}, {2, 0}, {0, 2});
   EXPECT_DOUBLE_EQ(summary.area, 2);
   EXPECT_NEAR(summary.min_angle_deg, 45, 1e-12);
   EXPECT_NEAR(summary.max_angle_deg, 90, 1e-12);
@@ -35,7 +35,7 @@ TEST(QualityStatistics, ATriangleMayTurnLeftByLessThanRounding) {
   const Point c{0.4028662800503084, 0.5043851275979977};
   ASSERT_GT(orientation_exact(a, b, c), 0);
   ASSERT_LT((b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x), 0) << "rounded";
-  const Summary summary = figures_of(a, b, c);
+  const Summary summary = stats_of(a, b, c);
   EXPECT_GE(summary.area, 0);
   EXPECT_NEAR(summary.min_angle_deg, 0, 1e-12);
   EXPECT_NEAR(summary.max_angle_deg, 180, 1e-12);

@@ -35,7 +35,8 @@ inline Result<Summary> mesh_on(Arena* arena, const MeshRequest& request) {
   return mesh_on(arena, request, sink);
 }
 
-// What a run gives, for comparison: the digest and the figures that are not of time, or the error.
+// What a run gives, for comparison: the digest and the statistics that are not of time, or the
+// error.
 inline std::string outcome(const Result<Summary>& result) {
   if (!result) return "error: " + result.error().field + ": " + result.error().message;
   std::string text;

@@ -23,7 +23,7 @@ std::uint64_t fill(RowGround& ground) {
   RowFiller<ConstantArea> filler(ground.refinement(), ground.quality, ground.area);
   const std::vector<BadTriangle> bad = ground.queue_bad();
   filler.fill(ground.refiner, ground.slots, ground.ownership, kLeaf, bad);
-  return ground.refiner.figures().insertions;
+  return ground.refiner.stats().insertions;
 }
 
 // The triangles that there are over those that the leaf will have.
