@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The statistics of a mesh: angles, aspect ratios, mean quality, areas over their bounds. They are
-// gathered while the mesh is sent, in blocks of triangles: two at once if possible, in counters
-// that do not wait for one another. One triangle at a time took 13 % of the whole run.
+// The statistics of a mesh: angles in degrees, aspect ratios, mean quality, areas over their
+// bounds. They are gathered while the mesh is sent, in blocks of triangles: two at once if
+// possible, in counters that do not wait for one another. Not thread-safe: each fragment has its
+// own, and Delivery adds them up.
 #pragma once
 
 #include <array>

@@ -9,6 +9,8 @@
 //
 // A block has two rounds and a judging task; its other tasks are empty. Each of these waits for the
 // overlapping blocks, and the leaves' first round waits until the blocks around are judged.
+//
+// Thread-safety: BlocksNear is immutable once built; the rest are pure functions.
 #pragma once
 
 #include <cstdint>

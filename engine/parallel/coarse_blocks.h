@@ -58,8 +58,8 @@ class CoarseBlocks {
  public:
   using Tasks = LeafTasks<LeafRadius<AreaBound>>;
 
-  // `leaves` is the tree over `box`; a block weighs at most `weight`. REQUIRES: all leaves are busy
-  // (leaf_radius.h), and the tree outlives this.
+  // `leaves` is the tree over `box`; a block weighs at most `weight`. REQUIRES: all leaves are
+  // dense (leaf_radius.h), and the tree outlives this.
   CoarseBlocks(const RefinementContext& refinement, const QualityBounds& quality,
                const AreaBound& area, const Quadtree& leaves, const Box& box, double weight)
       : refinement_(refinement),

@@ -17,6 +17,8 @@
 // If there are many leaves, the coarse mesh is coarser still, and its triangles are cut into pieces
 // that obey the same bound, which serve only as samples. Then it is refined block by block
 // (coarse_blocks.h).
+//
+// Errors: those of refinement (refine/refiner.h). Not thread-safe; it uses the context's threads.
 #pragma once
 
 #include <algorithm>
@@ -74,7 +76,7 @@ class CoarsePhase {
   // leaf.
   std::optional<Error> fit(const Quadtree& tree, const Box& box) {
     std::optional<Error> error;
-    const LeafRadius<AreaBound> radius(tree, least_busy(tree), area_, refinement_.context);
+    const LeafRadius<AreaBound> radius(tree, min_dense_weight(tree), area_, refinement_.context);
     // These two are independent.
     refinement_.context.for_each(2, [&](std::size_t which) {
       if (which == 0) error = refine(radius, box);
@@ -88,22 +90,22 @@ class CoarsePhase {
   }
 
   // Whether the criterion of the circumradius applies to all leaves.
-  bool all_busy(const Quadtree& tree) const { return least_busy(tree) == 0; }
+  bool all_dense(const Quadtree& tree) const { return min_dense_weight(tree) == 0; }
 
   LeafOrder take_order() { return std::move(order_); }
   // In the order of the slots.
   const std::vector<BadTriangle>& bad_triangles() const { return bad_; }
   // Whether every circumradius is below a quarter of its leaf's side, even in leaves that are not
-  // busy: then the clean-up stays near.
+  // dense: then the clean-up stays near.
   bool fits() const { return fits_; }
   const RefinerStats& stats() const { return stats_; }
 
  private:
   // The number of coarse triangles per leaf: a dozen are needed to place the leaves' borders well.
   static constexpr double kCoarseTrianglesPerLeaf = 16;
-  // A leaf is busy if it expects one in kBusy of the triangles that it has room for: a bound on the
-  // circumradius adds few to these.
-  static constexpr double kBusy = 16;
+  // A leaf is dense if it expects one in kDense of the triangles that it has room for: a bound on
+  // the circumradius adds few to these.
+  static constexpr double kDense = 16;
 
   using Run = std::pair<std::uint32_t, std::uint32_t>;  // of slots: first, and one past the last
 
@@ -115,8 +117,8 @@ class CoarsePhase {
   };
 
   double coarseness() const { return leaf_triangles_ / kCoarseTrianglesPerLeaf; }
-  double least_busy(const Quadtree& tree) const {
-    return busy_weight(tree, leaf_triangles_ / kBusy);
+  double min_dense_weight(const Quadtree& tree) const {
+    return dense_weight(tree, leaf_triangles_ / kDense);
   }
 
   template <class Area>

@@ -4,11 +4,13 @@
 // so once it holds, circumdisks stay small, and a leaf's task rarely meets vertices that it does
 // not own.
 //
-// That makes some 25 triangles in a leaf, so it is applied only to busy leaves, for which
-// many more are expected. Around a busy leaf the limit grows by half of the distance from it; away
-// from all of them it is twice the leaf's side. (Applied everywhere, it made 15 % more triangles
-// than the size on a square with one fine spot, with 166 leaves of which 4 are busy; now 0.6 to
-// 1 %.)
+// That makes some 25 triangles in a leaf, so it is applied only to dense leaves, for which many
+// more are expected. Around a dense leaf the limit grows by half of the distance from it; away from
+// all of them it is twice the leaf's side. So it makes about 1 % more triangles than the size asks
+// for, even if few leaves are dense.
+//
+// Units: lengths of the domain; weights are triangles. Thread-safety: `again` makes one for each
+// thread.
 #pragma once
 
 #include <algorithm>
@@ -25,21 +27,19 @@
 
 namespace weft {
 
-// The weight from which on a leaf counts as busy: `busy`, or 0 if applying the criterion to all
+// The weight from which on a leaf counts as dense: `dense`, or 0 if applying the criterion to all
 // leaves adds little to the mesh. So a mesh that fills most of its leaves has the criterion in all
-// of them, and may be streamed (CoarsePhase::fits). us-east-coast with a size of 1e-4, where 67 of
-// 736 leaves are light, takes 40.5 bytes per triangle, and 43.3 if these are left out, because then
-// nothing is sent before all is refined.
-inline double busy_weight(const Quadtree& tree, double busy) {
+// of them, and may be streamed (CoarsePhase::fits), which takes less memory.
+inline double dense_weight(const Quadtree& tree, double dense) {
   constexpr double kInLeaf = 25;  // triangles
   constexpr double kFew = 0.002;  // of all
   double light = 0;
   double all = 0;
   for (const Quadtree::Leaf& leaf : tree.leaves()) {
     all += leaf.weight;
-    if (leaf.weight < busy) light += kInLeaf;
+    if (leaf.weight < dense) light += kInLeaf;
   }
-  return light <= kFew * all ? 0 : busy;
+  return light <= kFew * all ? 0 : dense;
 }
 
 // Replaces the grading function (refine/area_bound.h), except for its lattice, because points that
@@ -49,26 +49,26 @@ class LeafRadius {
  public:
   static constexpr double kRadiusPerSide = 0.25;
 
-  // A leaf is busy from this weight on. REQUIRES: the tree outlives this, and all like it.
-  LeafRadius(const Quadtree& tree, double busy, const AreaBound& area,
+  // A leaf is dense from this weight on. REQUIRES: the tree outlives this, and all like it.
+  LeafRadius(const Quadtree& tree, double dense, const AreaBound& area,
              const ExecutionContext& context)
       : tree_(&tree), area_(area.again()) {
     constexpr std::size_t kAtOnce = 512;
     const auto& leaves = tree.leaves();
-    const auto is_busy = [&](std::uint32_t l) { return leaves[l].weight >= busy; };
+    const auto is_dense = [&](std::uint32_t l) { return leaves[l].weight >= dense; };
     std::vector<Near> near(leaves.size());
     context.for_each((leaves.size() + kAtOnce - 1) / kAtOnce, [&](std::size_t batch) {
       if (context.poll()) return;  // the caller polls, too
       const std::size_t end = std::min((batch + 1) * kAtOnce, leaves.size());
       for (auto l = static_cast<std::uint32_t>(batch * kAtOnce); l < end; ++l) {
-        if (is_busy(l)) near[l].push_back(l);
+        if (is_dense(l)) near[l].push_back(l);
         for (const std::uint32_t other : tree.touching(l)) {
-          const bool counts = !is_busy(l) || leaves[other].depth > leaves[l].depth;
-          if (counts && is_busy(other)) near[l].push_back(other);
+          const bool counts = !is_dense(l) || leaves[other].depth > leaves[l].depth;
+          if (counts && is_dense(other)) near[l].push_back(other);
         }
       }
     });
-    busy_near_ = std::make_shared<const std::vector<Near>>(std::move(near));
+    dense_near_ = std::make_shared<const std::vector<Near>>(std::move(near));
   }
 
   // A copy for another thread.
@@ -79,7 +79,7 @@ class LeafRadius {
     const auto& leaves = tree_->leaves();
     const std::uint32_t leaf = tree_->leaf_at(centroid);
     double limit = kElsewhere * leaves[leaf].side();
-    for (const std::uint32_t l : (*busy_near_)[leaf]) {
+    for (const std::uint32_t l : (*dense_near_)[leaf]) {
       const double away = std::max(0.0, -room_in(leaves[l].box, centroid));
       limit = std::min(limit, kRadiusPerSide * leaves[l].side() + kGrowth * away);
     }
@@ -115,8 +115,8 @@ class LeafRadius {
   std::optional<double> uniform_bound(const Box&) const { return std::nullopt; }
 
   std::uint64_t bytes() const {
-    std::uint64_t bytes = busy_near_->capacity() * sizeof(Near);
-    for (const Near& near : *busy_near_) bytes += near.capacity() * sizeof(near[0]);
+    std::uint64_t bytes = dense_near_->capacity() * sizeof(Near);
+    for (const Near& near : *dense_near_) bytes += near.capacity() * sizeof(near[0]);
     return bytes;
   }
 
@@ -127,13 +127,13 @@ class LeafRadius {
   static constexpr double kElsewhere = 2;
   static constexpr double kGrowth = 0.5;  // 1 doubles what is deferred and saves 0.1 %
 
-  // The busy leaves among a leaf and those that it touches. In a busy leaf, only smaller ones set a
-  // lower limit than its own.
+  // The dense leaves among a leaf and those that it touches. In a dense leaf, only smaller ones set
+  // a lower limit than its own.
   using Near = std::vector<std::uint32_t>;
 
   const Quadtree* tree_;
   AreaBound area_;
-  std::shared_ptr<const std::vector<Near>> busy_near_;  // per leaf
+  std::shared_ptr<const std::vector<Near>> dense_near_;  // per leaf
   std::optional<BadSize> bad_size_;
 };
 

@@ -104,7 +104,7 @@ class LeafStage {
 
  private:
   std::optional<Error> make_leaves(CoarsePhase<AreaBound>& coarse, double pieces, bool may_stream) {
-    if (pieces > 1 && coarse.all_busy(tree_)) {
+    if (pieces > 1 && coarse.all_dense(tree_)) {
       if (auto error = make_blocks(pieces)) return error;
     }
     if (!blocks_) {

@@ -20,21 +20,17 @@
 namespace weft {
 
 // Up to this minimum angle, in degrees, the fragments of a large mesh are sent while others are
-// refined. Above it, the clean-up's points make skinny triangles far around, and with small leaves
-// one domain in 270 would keep some near leaves that were sent (of 8,000 up to 30 degrees, none).
-// So above it all is cleaned up before anything is sent, and a stream begins when the work is
-// nearly done.
+// refined. Above it, the clean-up's points make skinny triangles far around, some of them near
+// leaves that were sent: in one domain of 270 with small leaves, and in none of 8,000 up to this
+// angle. So above it all is cleaned up before anything is sent, and a stream begins when the work
+// is nearly done.
 inline constexpr double kMaxStreamingAngleDeg = 30;
 
-// The maximum number of triangles in a leaf, for a mesh of about `triangles`. With 12,000 the
-// cylinder of 0.63 M has 187 leaves, which keep 9.1 of 16 threads busy; with 16,000 it has 76, for
-// 4.2, and one thread needs 4 % fewer instructions (1 % on other models). A mesh that streams takes
-// the memory of a strip a few leaves wide, which is smaller if its leaves are, and about 3 kB per
-// leaf, for its tasks and for the triangles of the coarse mesh. The sum is least if leaves grow as
-// the cube root of the mesh. Processor seconds of 10 M triangles on the cylinder, the least of
-// three runs on a busy machine, and bytes per triangle at the peak:
-//
-//   4,000: 4.48, 8.2    6,000: 4.31, 8.6    8,000: 4.20, 11.5    16,000: 3.97, 13.7
+// The maximum number of triangles in a leaf, for a mesh of about `triangles`. Small leaves keep
+// many threads busy, large ones need fewer instructions. A mesh that streams takes the memory of a
+// strip a few leaves wide, which is smaller if its leaves are, and about 3 kB per leaf, for its
+// tasks and for the triangles of the coarse mesh. The sum is least if leaves grow as the cube root
+// of the mesh (bench/README.md).
 inline double leaf_triangles_for(double triangles) {
   const double least = std::clamp(0.4 * std::sqrt(triangles), 6'000.0, 16'000.0);
   return std::clamp(3.2e10 / triangles, least, std::max(least, 12'000.0));

@@ -11,6 +11,9 @@
 // time, so the sweep goes in the direction in which the largest weight of these is smaller.
 //
 // Borders between boxes are computed from integers, so boxes that touch share the same doubles.
+//
+// Units: coordinates of the domain; weights are triangles of the final mesh. Thread-safety:
+// immutable once built.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +36,7 @@ class Quadtree {
 
   struct Leaf {
     Box box;         // half-open
-    Box halo;        // by half of its side in each direction
+    Box halo;        // with the buffer zone around it, half of its side wide
     double weight;   // of the samples in it
     unsigned depth;  // its side is that of the square over 2^depth
     // Its position among the squares of its depth, in the direction of the sweep and across it.

@@ -23,7 +23,11 @@
 //
 // Fairness: a thread gives the arena's slot back after kSlice and queues for the next, so the runs
 // of an arena take turns. Only then does it wake the caller that waits in `step`: waking it for
-// each fragment of a mesh took two threads 1.5 % of their time at 1 M triangles.
+// each fragment costs more.
+//
+// Errors: none; `starved` says whether no thread could be started. Thread-safety: a graph is built
+// by one thread; the functions of a run say which may be called from tasks, the rest is the
+// caller's.
 #pragma once
 
 #include <atomic>
@@ -166,14 +170,7 @@ inline std::uint32_t fragments_ahead(int threads) {
 // How many fragments ahead of the next one tasks may begin while the caller waits for that one, if
 // the mesh has `fragments` fragments: two columns of the leaves, and some work for each thread. So
 // the front between fragments that are sent and fragments that are not begun is bounded at any
-// number of threads. For schedules of the recorded tasks of 10 M triangles (leaf_order.h): the
-// share of the mesh that has begun and is not sent, in percent, with and without the bound, and the
-// ratio of times:
-//
-//   threads      2                   16                  64
-//   cylinder     13.6  13.6  1.00    16.6  16.6  1.00    60.3  71.2  1.00
-//   constant     19.1  19.1  1.00    24.4  24.1  1.00    45.4  49.8  1.00
-//   pipe         21.4  21.4  1.00    22.6  22.6  1.00    41.0  41.1  1.00
+// number of threads (bench/README.md).
 inline std::uint32_t fragments_begun(std::uint32_t fragments, int threads) {
   return 2 * static_cast<std::uint32_t>(std::sqrt(fragments)) +
          32 * static_cast<std::uint32_t>(threads);

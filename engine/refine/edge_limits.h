@@ -7,6 +7,8 @@
 //
 //   EdgeLimits limits(size.at);
 //   if (limits.pieces(marker, a, b) > 1) ... the edge from a to b is too long
+//
+// Units: lengths of the domain. Thread-safety: immutable.
 #pragma once
 
 #include <algorithm>

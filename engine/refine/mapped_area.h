@@ -20,8 +20,7 @@ namespace weft {
 
 // Used by one task at a time. `begin` lays a grid over the task's box; once a ring needed a cell,
 // the cell knows whether the function is constant in it and the cells around it. Most rings lie in
-// the constant box of the last one, most others in such a cell: with the step function of the
-// cylinder model, 6 % of the rings are evaluated.
+// the constant box of the last one, most others in such a cell (bench/README.md).
 class MappedArea {
  public:
   // Bounds are multiplied by `coarseness`.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tasks of a run share, what they report, and the bad triangles that they pass to one
-// another.
+// What the tasks of a run share: the mesh, the domain's corners and limits, the budget. And what
+// passes between them: bad triangles that migrate, and statistics.
+//
+// Errors: those of `check_budget`. Thread-safety: all tasks use one context; who may touch what of
+// the mesh is in ownership.h.
 #pragma once
 
 #include <algorithm>

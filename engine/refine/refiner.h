@@ -1,25 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
-// Delaunay refinement of a region of the mesh, as in the paper's Section 2: while a triangle
-// is bad (too large or too skinny), insert its Steiner point by Bowyer-Watson; if the point would
-// encroach upon a segment, split the segment instead.
+// Delaunay refinement of a region of the mesh (the paper's Section 2; J. Ruppert 1995,
+// J. R. Shewchuk 2002).
+//
+//   while there is a bad triangle t: too large, or with an angle below the bound   `run`, `refine`
+//     p := the Steiner point of t (steiner_point.h, petal_search.h)                `insert_for`
+//     grow the cavity of p: the triangles whose open circumdisk contains p         `grow`
+//     if p encroaches upon a segment:       split that instead (lens.h), then try t again
+//     if the cavity meets another task's:   defer t, the mesh stays as it was (ownership.h)
+//     if the star would have an edge that
+//     is too short, or a flat triangle:     refuse t, which stays as it is
+//     else:                                 replace the cavity by the star of p, and queue the bad
+//                                           triangles of the star                  `retriangulate`
+//
+//          e-------d                   e-------d
+//         /|\      |\                 / \     / \      Left: the cavity of p, four triangles, and
+//        / | \  t  | \               /   \   /   \     its ring a b c d e f (cavity.h).
+//       /  |  \    |  \             /     \ /     \    Right: the star of p (star.h), a triangle
+//      f   |   \ p |   c    ->     f-------p-------c   for each edge of the ring: two more than
+//       \  |    \  |  /             \     / \     /    there were.
+//        \ |     \ | /               \   /   \   /
+//         \|      \|/                 \ /     \ /
+//          a-------b                   a-------b
+//
+// No point location is needed: t belongs to the cavity of its own Steiner point. The cavity's slots
+// are used again. The worst triangle comes first, last in first out among equals (bad_triangles.h).
 //
 //   Refiner<OwnsAll, ConstantArea> refiner(refinement, quality, ConstantArea(1e-3));
 //   refiner.begin(slots, OwnsAll{}, box);
-//   refiner.queue_all();                              // the bad triangles
-//   std::optional<Error> stopped = refiner.run();     // nullopt: all is refined or refused
+//   if (auto error = refiner.queue_all()) return error;   // the bad triangles
+//   if (auto error = refiner.run()) return error;         // then all are refined or refused
 //
-// It needs no point location: a bad triangle belongs to the cavity of its own Steiner point. The
-// cavity's slots are reused. Queue entries have a few bytes, and show whether their triangle still
-// exists; the worst comes first, last in first out among equals (bad_triangles.h).
+// Tasks. Ownership is a compile-time parameter. Bad triangles that a task cannot refine are in
+// `deferred()`, those that it makes outside its core in `migrants()`. A task names a triangle of
+// another one by its slot and first vertex: only the slot's owner writes vertices, and the first
+// one differs each time. So a task may check whether a triangle still exists before it knows that
+// it owns it; it reads the flags after that. One Refiner serves many tasks, one after the other.
 //
-// Ownership is a compile-time parameter (ownership.h). If an insertion meets a triangle that the
-// task does not own, the task leaves the mesh as it was and keeps the bad triangle in `deferred()`.
-// Bad triangles that it makes outside its core go to `migrants()`. One Refiner serves many tasks,
-// one after the other.
-//
-// Tasks name a triangle by its slot and first vertex: only the slot's owner writes vertices, and
-// the first one differs each time. So a task may check whether a triangle still exists before it
-// knows that it owns it (it reads the flags after that).
+// Units: coordinates of the domain; bounds on areas are in their square. Errors: kCancelled,
+// kDeadlineExceeded, kLimitExceeded (triangles), kBudgetExceeded (bytes), that of a source of
+// memory that grants no more, kBadSizeValue; throws what MeshStore does. Thread-safety: one thread
+// at a time; refiners of tasks that own disjoint vertices run at the same time on one mesh.
 #pragma once
 
 #include <algorithm>
@@ -137,7 +157,8 @@ class Refiner {
 
   bool stopped() const { return stopped_.has_value(); }
 
-  // Refines until the queue is empty, `max_triangles` are reached, or the context stops it.
+  // The loop: refines until no triangle is queued, `max_triangles` are reached, or the context
+  // stops it.
   std::optional<Error> run() {
     split_queued_segments();
     while (!full() && !stopped_) {

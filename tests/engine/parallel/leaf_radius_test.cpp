@@ -12,7 +12,7 @@ namespace weft {
 namespace {
 
 constexpr double kTarget = 100;
-constexpr double kBusy = 6;
+constexpr double kDense = 6;
 
 // Of a square of side 64 with this weight at the middle of each unit square up to `side`.
 Quadtree tree_of(int side, double weight) {
@@ -29,8 +29,8 @@ Quadtree tree_of(int side, double weight) {
 TEST(LeafRadius, AsksAllLeavesIfNearlyAllAreFull) {
   const Quadtree tree = tree_of(64, 10);
   ASSERT_GT(tree.leaves().size(), 256u);
-  EXPECT_EQ(busy_weight(tree, kBusy), 0);
-  const LeafRadius radius(tree, busy_weight(tree, kBusy), ConstantArea(1), ExecutionContext());
+  EXPECT_EQ(dense_weight(tree, kDense), 0);
+  const LeafRadius radius(tree, dense_weight(tree, kDense), ConstantArea(1), ExecutionContext());
   for (const Quadtree::Leaf& leaf : tree.leaves()) {
     const Point middle{0.5 * (leaf.box.min_x + leaf.box.max_x),
                        0.5 * (leaf.box.min_y + leaf.box.max_y)};
@@ -40,8 +40,8 @@ TEST(LeafRadius, AsksAllLeavesIfNearlyAllAreFull) {
 
 TEST(LeafRadius, SparesTheLightLeavesAroundASpot) {
   const Quadtree tree = tree_of(8, 10);
-  EXPECT_EQ(busy_weight(tree, kBusy), kBusy);
-  const LeafRadius radius(tree, busy_weight(tree, kBusy), ConstantArea(1), ExecutionContext());
+  EXPECT_EQ(dense_weight(tree, kDense), kDense);
+  const LeafRadius radius(tree, dense_weight(tree, kDense), ConstantArea(1), ExecutionContext());
   EXPECT_GT(radius.limit_at({63, 63}), 16);
 }
 
