@@ -158,7 +158,7 @@ class NarrowPlaces::Search {
     return domain_.vertices[domain_.triangles[side.triangle].vertex[(side.edge + i) % 3]];
   }
 
-  // Where the apex over an edge stands, as a part of its length.
+  // Where the apex over an edge stands, as a fraction of its length.
   double foot(const Side& side) const {
     const Point apex = corner(side, 0);
     const Point a = corner(side, 1);

@@ -343,15 +343,15 @@ class Cavity {
       return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     };
     if (encroached_.size() < 2) return;
-    double nearest = 1;  // part of the way
+    double nearest = 1;  // fraction of the way
     for (const SegmentEdge s : std::vector<SegmentEdge>(encroached_)) {
       const Point a = vertices_[s.a];
       const Point b = vertices_[s.b];
       const double before = side(a, b, from);
-      const double part = before / (before - side(a, b, p));
+      const double fraction = before / (before - side(a, b, p));
       const bool between = (side(from, p, a) < 0) != (side(from, p, b) < 0);
-      if (!(between && part > 0 && part < nearest)) continue;
-      nearest = part;
+      if (!(between && fraction > 0 && fraction < nearest)) continue;
+      nearest = fraction;
       encroached_.assign(1, s);
     }
   }

@@ -66,7 +66,7 @@ TEST(ListSchedule, WithUnboundedThreadsTheChainIsTheCriticalPath) {
   EXPECT_DOUBLE_EQ(by_kind.at("odd"), 5);
 }
 
-TEST(ListSchedule, PartsWaitForRoomBeforeTheFirstUnsentOne) {
+TEST(ListSchedule, FragmentsWaitForRoomBeforeTheFirstUnsentOne) {
   // Fragment 0 takes long; of the others only as many as fit may be built in the meantime.
   const std::uint32_t ahead = fragments_ahead(2);
   std::vector<double> seconds(2 * ahead, 1.0);
@@ -77,7 +77,7 @@ TEST(ListSchedule, PartsWaitForRoomBeforeTheFirstUnsentOne) {
   EXPECT_DOUBLE_EQ(schedule(graph, 2, 0).seconds, 10.0 * ahead + ahead / 2.0);
 }
 
-TEST(ListSchedule, WhatHasBegunAheadOfTheNextPartIsBounded) {
+TEST(ListSchedule, WhatHasBegunAheadOfTheNextFragmentIsBounded) {
   // Leaves of one task, each of which makes a fragment; that of the first takes long.
   const std::uint32_t begun = fragments_begun(10'000, 2);
   std::vector<double> seconds(10'000, 1.0);

@@ -109,7 +109,7 @@ TEST(RecordedRun, TheScheduleOnOneThreadTakesTheWorkAndNoScheduleTakesLessThanIt
   }
 }
 
-TEST(RecordedRun, PartsDoNotWaitForOneAnother) {
+TEST(RecordedRun, FragmentsDoNotWaitForOneAnother) {
   // A chain of fragments through the leaves in their order would bound the speed-up.
   Recording run;
   run_square(run);

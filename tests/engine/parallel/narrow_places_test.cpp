@@ -91,7 +91,7 @@ TEST(NarrowPlaces, AreEstimatedWithinAFactorOfTwo) {
   }
 }
 
-TEST(NarrowPlaces, HaveTheirLeastTrianglesInEveryMesh) {
+TEST(NarrowPlaces, HaveTheirLowerBoundInEveryMesh) {
   for (const Case& c : cases()) {
     for (const double angle : {5, 10, 15, 20, 25, 30, 33, 36}) {
       const double lower_bound = places_of(c.pslg, angle).lower_bound();

@@ -219,7 +219,7 @@ TaskGraph ten_needed_in_turn() {
   return graph;
 }
 
-TEST(TaskGraph, BeginsWhatFarPartsNeedOnlyWhileTheCallerWaits) {
+TEST(TaskGraph, BeginsWhatFarFragmentsNeedOnlyWhileTheCallerWaits) {
   Arena arena(2);
   std::atomic<std::uint32_t> ran{0};
   GraphRun run(ten_needed_in_turn(), &arena, 2, [&](std::uint32_t) { ++ran; });

@@ -330,7 +330,7 @@ TEST(Leaves, AddNoTrianglesAroundAFineSpot) {
 
 // What is cleaned up around leaves with large triangles needs room far around: nothing may have
 // left.
-TEST(Leaves, ThatAreNotBusyKeepTheGuarantee) {
+TEST(Leaves, ThatAreNotDenseKeepTheGuarantee) {
   MeshRequest request{.pslg = square(1000), .size = "hypot(x-333.3,y-411.7)<1 ? 1.3e-4 : 1e9"};
   const auto summary = expect_one_mesh(request);
   ASSERT_TRUE(summary);
