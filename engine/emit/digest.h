@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SHA-256 of a mesh, computed incrementally, Not thread-safe.
+// SHA-256 of a mesh, computed incrementally. Not thread-safe.
 #pragma once
 
 #include <openssl/types.h>

@@ -5,7 +5,7 @@
 //   round 1, 2, 3, 4   refine; 1 and 2 let bad triangles migrate (leaf_tasks.h)
 //   check pending      after round 2: skips rounds 3 and 4 of a leaf that has no work for them
 //   check settled      whether the rounds have left nothing pending in the leaf and around
-//   smooth
+//   smooth             move its vertices to where angles are larger (refine/smoothing/smoother.h)
 //   number             give the leaf's vertices their numbers in the mesh
 //   export             copy the triangles that go into the fragment of another leaf
 //   emit               build the fragment, to be sent
