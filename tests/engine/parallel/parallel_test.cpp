@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/engine/refine/parallel.h"
+#include "tests/engine/parallel/parallel.h"
 #include "tests/engine/refine/random_pslg.h"
 #include "tests/support/poly.h"
 

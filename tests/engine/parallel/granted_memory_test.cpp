@@ -9,7 +9,7 @@
 #include <random>
 #include <thread>
 
-#include "tests/engine/refine/parallel.h"
+#include "tests/engine/parallel/parallel.h"
 #include "tests/support/event.h"
 
 namespace weft {
@@ -48,8 +48,8 @@ TEST(GrantedMemory, ChangesNothingInTheMesh) {
   }
 }
 
-// Peaks of fragments are added up in the summary, so that it may say a little more. On several threads,
-// how many are at work at once decides by how much.
+// Peaks of fragments are added up in the summary, so that it may say a little more. On several
+// threads, how many are at work at once decides by how much.
 TEST(GrantedMemory, IsNearlyAllThatTheSummaryTellsOf) {
   for (const double triangles : {100'000.0, 2'000'000.0}) {
     Arena arena(1);

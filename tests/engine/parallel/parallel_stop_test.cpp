@@ -10,7 +10,7 @@
 #include <random>
 #include <thread>
 
-#include "tests/engine/refine/parallel.h"
+#include "tests/engine/parallel/parallel.h"
 #include "tests/support/processor_time.h"
 
 namespace weft {

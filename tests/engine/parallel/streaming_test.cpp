@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "tests/engine/refine/parallel.h"
+#include "tests/engine/parallel/parallel.h"
 #include "tests/support/poly.h"
 
 namespace weft {

@@ -5,7 +5,7 @@
 #include <thread>
 #include <vector>
 
-#include "tests/engine/refine/parallel.h"
+#include "tests/engine/parallel/parallel.h"
 #include "tests/support/event.h"
 
 namespace weft {
