@@ -43,7 +43,7 @@ class MappedArea {
     if (const double room = room_in(box_, p); room > 0) [[likely]] {
       const RingVerdict verdict =
           judge_ring(ring, first, last, quality, uniform(region_bound), badness);
-      if (verdict.reach2 <= room * room) [[likely]]
+      if (verdict.farthest2 <= room * room) [[likely]]
         return verdict;
     }
     return judge_by_cell(ring, first, last, p, region_bound, quality, badness);

@@ -43,10 +43,10 @@ struct OwnsBox {
 
   bool owns(Point p) const { return contains(box, p.x, p.y); }
   bool in_core(double x, double y) const { return contains(core, x, y); }
-  // Whether the disk around p of squared radius `reach2` lies in the core.
-  bool core_holds(Point p, double reach2) const {
+  // Whether the disk around p of squared radius `radius2` lies in the core.
+  bool core_holds(Point p, double radius2) const {
     const double room = room_in(core, p);
-    return room > 0 && reach2 <= room * room;
+    return room > 0 && radius2 <= room * room;
   }
 
   static bool contains(const Box& b, double x, double y) {

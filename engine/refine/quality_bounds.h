@@ -57,7 +57,7 @@ inline double circumradius2(Point a, Point b, Point c) {
 struct RingVerdict {
   bool flat = false;       // a triangle may not be counter-clockwise: use the exact predicate
   bool too_close = false;  // p is nearer to a point of the ring than the floor
-  double reach2 = 0;       // squared distance from p to the farthest point of the ring
+  double farthest2 = 0;    // squared distance from p to the farthest point of the ring
   double nearest2 = 0;     // and to the nearest
 };
 

@@ -263,7 +263,7 @@ class Refiner {
     };
     const auto best =
         petal_search_.run(star_, Petal(a, b, c, quality_), {standard, verdict}, quality_, look_at);
-    retriangulate(slots_->add_vertex(mesh_, best.at), best.at, best.verdict.reach2, true);
+    retriangulate(slots_->add_vertex(mesh_, best.at), best.at, best.verdict.farthest2, true);
     return Outcome::kInserted;
   }
 
@@ -301,7 +301,7 @@ class Refiner {
     const RingVerdict verdict = judge_star(star_, t, p);
     if (verdict.nearest2 < clearance2 || !acceptable(verdict, p)) [[unlikely]]
       return Outcome::kTooClose;
-    retriangulate(slots_->add_vertex(mesh_, p), p, verdict.reach2, true);
+    retriangulate(slots_->add_vertex(mesh_, p), p, verdict.farthest2, true);
     return Outcome::kInserted;
   }
 
@@ -377,7 +377,7 @@ class Refiner {
                       star_.judged());
       verdict.flat |= far.flat;
       verdict.too_close |= far.too_close;
-      verdict.reach2 = std::max(verdict.reach2, far.reach2);
+      verdict.farthest2 = std::max(verdict.farthest2, far.farthest2);
     }
     if (!acceptable(verdict, p)) return verdict.too_close ? Outcome::kTooClose : Outcome::kFlat;
     if (!star_is_delaunay(mesh_, ring, 0, near_side, p) ||
@@ -386,16 +386,16 @@ class Refiner {
 
     const std::uint32_t near_region = triangle.region;
     const std::uint32_t far_region = closed ? mesh_.triangles[triangle_of(across)].region : 0;
-    retriangulate(slots_->add_segment_vertex(mesh_, p, subsegment), p, verdict.reach2, closed);
+    retriangulate(slots_->add_segment_vertex(mesh_, p, subsegment), p, verdict.farthest2, closed);
     star_.mark_segment(mesh_, near_side, closed, near_region, far_region);
     return Outcome::kInserted;
   }
 
-  // Replaces the cavity by the star of its point p, now a vertex. `reach2` is the squared distance
-  // to the farthest point of the ring.
-  void retriangulate(std::uint32_t vertex, Point p, double reach2, bool closed) {
+  // Replaces the cavity by the star of its point p, now a vertex. `farthest2` is the squared
+  // distance to the farthest point of the ring.
+  void retriangulate(std::uint32_t vertex, Point p, double farthest2, bool closed) {
     ++insertions_;
-    if (ownership_.core_holds(p, reach2)) [[likely]] {
+    if (ownership_.core_holds(p, farthest2)) [[likely]] {
       added_ += star_.make(
           mesh_, *slots_, vertex, closed,
           [this](std::uint32_t t, Badness badness, std::uint32_t) { bad_.push(t, badness); });
