@@ -27,8 +27,8 @@ namespace {
 // constrained triangulation.
 constexpr double kBytesPerTriangle = 48;
 constexpr double kBytesPerPoint = 300;
-// Of the lattices of a size that varies (size/lattice/lattice_map.h): one for some 80 triangles where
-// they change within a few rows, and no more than about this in all.
+// Of the lattices of a size that varies (size/lattice/lattice_map.h): one for some 80 triangles
+// where they change within a few rows, and no more than about this in all.
 constexpr double kBytesOfLattices = 5;  // a triangle
 constexpr double kMostBytesOfLattices = 8e6;
 // Any run takes this for tables and buffers.
@@ -49,8 +49,8 @@ constexpr double kBytesPerLeaf = 2700;
 // Full ones. With fewer, nearly all leaves may have begun before much is sent, if a thread stands
 // still for a while.
 constexpr double kFewestLeaves = 128;
-// Of fragments that are built and wait for their reader, per triangle. If the reader stalls, so many
-// full leaves wait: fragments_ahead, each of which is about .6 of the largest.
+// Of fragments that are built and wait for their reader, per triangle. If the reader stalls, so
+// many full leaves wait: fragments_ahead, each of which is about .6 of the largest.
 constexpr double kBytesOfWaiting = 22;
 constexpr int kThreads = 2;
 double full_leaves_waiting() {
