@@ -7,6 +7,8 @@
 #include <queue>
 #include <utility>
 
+#include "engine/parallel/task_graph.h"
+
 namespace weft::bench {
 namespace {
 
@@ -20,7 +22,7 @@ class ListScheduling {
         send_seconds_(send_seconds),
         successors_(graph.seconds.size()),
         skips_(graph.seconds.size()),
-        part_of_(graph.seconds.size(), kNone),
+        fragment_of_(graph.seconds.size(), kNone),
         waits_for_(graph.seconds.size(), 0),
         released_by_(graph.seconds.size(), kNone),
         done_(graph.seconds.size(), 0) {
@@ -32,15 +34,17 @@ class ListScheduling {
       if (graph.skipped_by[t] != kNone) skips_[graph.skipped_by[t]].push_back(t);
     }
     // With more threads than this, the window limits nothing.
-    const auto parts = static_cast<std::uint32_t>(graph.part_tasks.size());
+    const auto fragments = static_cast<std::uint32_t>(graph.fragment_tasks.size());
     const int most_threads = std::min(threads, 1 << 20);
-    ahead_ = parts_ahead(most_threads);
-    begun_ahead_ = parts_begun(parts, most_threads);
+    ahead_ = fragments_ahead(most_threads);
+    begun_ahead_ = fragments_begun(fragments, most_threads);
     const auto period = static_cast<std::uint32_t>(graph.name.period());
     undone_.resize(size() / period + 1, period);
     has_begun_.resize(undone_.size(), 0);
-    for (std::uint32_t part = 0; part < parts; ++part) part_of_[graph.part_tasks[part]] = part;
-    for (std::uint32_t part = ahead_; part < parts; ++part) ++waits_for_[graph.part_tasks[part]];
+    for (std::uint32_t fragment = 0; fragment < fragments; ++fragment)
+      fragment_of_[graph.fragment_tasks[fragment]] = fragment;
+    for (std::uint32_t fragment = ahead_; fragment < fragments; ++fragment)
+      ++waits_for_[graph.fragment_tasks[fragment]];
   }
 
   Schedule run() {
@@ -60,7 +64,7 @@ class ListScheduling {
         last = event.task;
         finish(event.task, event.task);
         for (const std::uint32_t t : skips_[event.task]) finish(t, event.task);
-        if (part_of_[event.task] != kNone) send_next();
+        if (fragment_of_[event.task] != kNone) send_next();
       }
       start_tasks();
     }
@@ -74,7 +78,7 @@ class ListScheduling {
   struct Event {
     double time;
     std::uint32_t task;
-    bool is_sent;  // the next part was sent, instead of the end of a task
+    bool is_sent;  // the next fragment was sent, instead of the end of a task
     bool operator>(const Event& other) const {
       return std::pair(time, task) > std::pair(other.time, other.task);
     }
@@ -89,7 +93,7 @@ class ListScheduling {
 
   bool may_begin() const {
     if (ready_.empty()) return false;
-    return running_ == 0 || ready_.top() >> 32 <= std::uint64_t{next_part_} + begun_ahead_;
+    return running_ == 0 || ready_.top() >> 32 <= std::uint64_t{next_fragment_} + begun_ahead_;
   }
   std::size_t group_of(std::uint32_t task) const { return task / graph_.name.period(); }
 
@@ -116,17 +120,17 @@ class ListScheduling {
   }
 
   void send_next() {
-    if (sending_ || next_part_ >= graph_.part_tasks.size()) return;
-    if (!done_[graph_.part_tasks[next_part_]]) return;
+    if (sending_ || next_fragment_ >= graph_.fragment_tasks.size()) return;
+    if (!done_[graph_.fragment_tasks[next_fragment_]]) return;
     sending_ = true;
-    events_.push({now_ + send_seconds_, graph_.part_tasks[next_part_], true});
+    events_.push({now_ + send_seconds_, graph_.fragment_tasks[next_fragment_], true});
   }
 
   void sent() {
     sending_ = false;
-    const std::uint32_t by = graph_.part_tasks[next_part_++];
-    const std::size_t freed = next_part_ - 1 + std::size_t{ahead_};
-    if (freed < graph_.part_tasks.size()) release(graph_.part_tasks[freed], by);
+    const std::uint32_t by = graph_.fragment_tasks[next_fragment_++];
+    const std::size_t freed = next_fragment_ - 1 + std::size_t{ahead_};
+    if (freed < graph_.fragment_tasks.size()) release(graph_.fragment_tasks[freed], by);
     send_next();
   }
 
@@ -135,7 +139,7 @@ class ListScheduling {
   const double send_seconds_;
   std::vector<std::vector<std::uint32_t>> successors_;
   std::vector<std::vector<std::uint32_t>> skips_;
-  std::vector<std::uint32_t> part_of_;
+  std::vector<std::uint32_t> fragment_of_;
   std::vector<std::uint32_t> waits_for_;
   std::vector<std::uint32_t> released_by_;
   std::vector<char> done_;
@@ -148,7 +152,7 @@ class ListScheduling {
 
   double now_ = 0;
   int running_ = 0;
-  std::uint32_t next_part_ = 0;
+  std::uint32_t next_fragment_ = 0;
   bool sending_ = false;
   std::priority_queue<std::uint64_t, std::vector<std::uint64_t>, std::greater<>> ready_;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the recorded tasks of a stage would go on other numbers of threads.
 //
-// The rules are those of GraphRun (engine/base/task_graph.h): a task is ready when all that it
+// The rules are those of GraphRun (engine/parallel/task_graph.h): a task is ready when all that it
 // waits for are done; a free thread takes the ready task that is needed first, and of equal ones
 // the one with the lowest number; what waits for a skipped task waits for the one that skipped it;
-// parts wait for room as parts_ahead says, and tasks that later parts need as parts_begun says, for
-// a reader who takes parts at once. A task takes the seconds that were recorded, so what threads do
-// to each other (memory bandwidth, caches, clock rates, the scheduler's lock) is not seen.
+// fragments wait for room as fragments_ahead says, and tasks that later fragments need as
+// fragments_begun says, for a reader who takes fragments at once. A task takes the seconds that
+// were recorded, so what threads do to each other (memory bandwidth, caches, clock rates, the
+// scheduler's lock) is not seen.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,7 @@ namespace weft::bench {
 inline constexpr int kUnboundedThreads = std::numeric_limits<int>::max();
 
 struct Schedule {
-  double seconds = 0;  // until the last task is done and the last part sent
+  double seconds = 0;  // until the last task is done and the last fragment sent
   // A chain of tasks, each begun when the one before ended, that ends with the last task: with
   // unbounded threads, the critical path.
   std::vector<std::uint32_t> chain;
@@ -32,7 +33,7 @@ struct Schedule {
   std::uint32_t most_begun = 0;
 };
 
-// `send_seconds` go by between a part's being next and its having been sent, on a thread of its
+// `send_seconds` go by between a fragment's being next and its having been sent, on a thread of its
 // own. REQUIRES: threads >= 1.
 Schedule schedule(const Trace::Graph& graph, int threads, double send_seconds);
 

@@ -38,9 +38,9 @@ struct Recorded {
 
 // The time of a graph's stage beside its tasks: sending, and the scheduler. It counts as serial.
 double send_seconds(const Trace::Stage& stage) {
-  const std::size_t parts = stage.graph->part_tasks.size();
+  const std::size_t fragments = stage.graph->fragment_tasks.size();
   const double beside = std::max(0.0, stage.seconds - work_of(*stage.graph));
-  return parts == 0 ? 0 : beside / static_cast<double>(parts);
+  return fragments == 0 ? 0 : beside / static_cast<double>(fragments);
 }
 
 // The time of the loops of a stage, added up.

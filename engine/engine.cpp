@@ -12,21 +12,21 @@
 #include "engine/domain/domain.h"
 #include "engine/domain/simplify/simplify.h"
 #include "engine/domain/tolerance.h"
+#include "engine/emit/bounds_error.h"
 #include "engine/gradation_mesh.h"
-#include "engine/output/bounds_error.h"
-#include "engine/output/size_warnings.h"
+#include "engine/mesh_run.h"
+#include "engine/parallel/narrow_places.h"
 #include "engine/refine/acute_corners.h"
 #include "engine/refine/area_bound.h"
 #include "engine/refine/edge_limits.h"
 #include "engine/refine/mapped_area.h"
 #include "engine/refine/storage/mesh_store.h"
-#include "engine/schedule/mesh_run.h"
-#include "engine/schedule/narrow_places.h"
 #include "engine/size/gradation/scaled_size.h"
 #include "engine/size/gradation/within_size.h"
-#include "engine/size/lattice/grain_map.h"
+#include "engine/size/lattice/lattice_map.h"
 #include "engine/size/size_map.h"
 #include "engine/size/size_spec.h"
+#include "engine/size/size_warnings.h"
 #include "engine/size/vanishing_size.h"
 
 namespace weft {
@@ -117,16 +117,18 @@ class Pipeline {
     if (auto error = check_borders()) return tl::unexpected(*error);
     if (auto error = admit(bound)) return tl::unexpected(*error);
     if (!map_) return mesh(ConstantArea(bound), 0);
-    GrainMap grains;
+    LatticeMap lattices;
     if (quality_.lattice.exists()) {
-      auto laid_out = context_.compute(
-          [&] { return GrainMap::build(size(), *map_, summary_.box, quality_.lattice, context_); });
+      auto laid_out = context_.compute([&] {
+        return LatticeMap::build(size(), *map_, summary_.box, quality_.lattice, context_);
+      });
       if (!laid_out) return tl::unexpected(laid_out.error());
-      grains = std::move(*laid_out);
-      lattices_ = grains.lattices_that_vary();
+      lattices = std::move(*laid_out);
+      lattices_ = lattices.lattices_that_vary();
     }
-    context_.end_stage("grains");
-    return mesh(MappedArea(size(), *map_, grains), map_->bytes() + grains.bytes() + size_->bytes());
+    context_.end_stage("lattices");
+    return mesh(MappedArea(size(), *map_, lattices),
+                map_->bytes() + lattices.bytes() + size_->bytes());
   }
 
   // Measures the gradation within the domain on a mesh of its own, with a share of the sizes that
@@ -243,7 +245,7 @@ class Pipeline {
 
   // Refuses sizes for which refinement would not end, unless the client has said where it may.
   std::optional<Error> check_borders() {
-    if (!map_ || request_.min_edge > 0 || wants_cap()) return std::nullopt;
+    if (!map_ || request_.min_edge > 0 || has_triangle_cap()) return std::nullopt;
     const auto found = find_vanishing(size(), domain_, quality_.min_length2, context_);
     if (!found) return found.error();
     if (!*found) return std::nullopt;
@@ -264,30 +266,32 @@ class Pipeline {
     };
     const double by_bounds = triangles_asked(domain_, bound);
     const double pieces = edge_limits_.pieces(domain_);
-    const double by_pieces = EdgeLimits::least_triangles(pieces, domain_);
-    const double least = std::max({map_ ? map_->least_triangles() : 0, by_bounds, by_pieces});
-    const double likely = std::max(map_ ? map_->likely_triangles() : 0, by_bounds);
+    const double by_pieces = EdgeLimits::triangles_lower_bound(pieces, domain_);
+    const double lower_bound =
+        std::max({map_ ? map_->triangles_lower_bound() : 0, by_bounds, by_pieces});
+    const double expected = std::max(map_ ? map_->expected_triangles() : 0, by_bounds);
     if (domain_.triangles.size() > budget.triangle_limit) {
       return over_limit("domain", "the domain itself has " +
                                       std::to_string(domain_.triangles.size()) +
                                       " triangles, more than the limit of " +
                                       std::to_string(budget.triangle_limit));
     }
-    const char* const asked_by = least > by_pieces ? "size" : "size.at";
-    if (!wants_cap() && least > static_cast<double>(budget.triangle_limit)) {
-      return over_limit(asked_by, "the size asks for at least " + count_text(least) +
+    const char* const asked_by = lower_bound > by_pieces ? "size" : "size.at";
+    if (!has_triangle_cap() && lower_bound > static_cast<double>(budget.triangle_limit)) {
+      return over_limit(asked_by, "the size asks for at least " + count_text(lower_bound) +
                                       " triangles, more than the limit of " +
                                       std::to_string(budget.triangle_limit));
     }
-    if (!wants_cap() && !may_stream() && least > static_cast<double>(MeshStore::kMaxTriangles)) {
-      return over_limit(asked_by, "the size asks for at least " + count_text(least) +
+    if (!has_triangle_cap() && !may_stream() &&
+        lower_bound > static_cast<double>(MeshStore::kMaxTriangles)) {
+      return over_limit(asked_by, "the size asks for at least " + count_text(lower_bound) +
                                       " triangles; a mesh with a minimum angle above " +
                                       text(kMaxStreamingAngleDeg) + " degrees has at most " +
                                       std::to_string(MeshStore::kMaxTriangles) +
                                       ", because all of it is in memory at the same time");
     }
     if (auto error = check_bytes_of_pieces(pieces)) return error;
-    by_size_ = std::max(triangles_per_bound(quality_.lattice) * likely,
+    by_size_ = std::max(triangles_per_bound(quality_.lattice) * expected,
                         static_cast<double>(domain_.triangles.size()));
     auto corners =
         context_.compute([&] { return AcuteCorners::build(domain_, quality_, context_); });
@@ -296,18 +300,19 @@ class Pipeline {
     auto narrow = context_.compute([&] {
       return NarrowPlaces::find(
           domain_, corners_->crossed_arms(), quality_,
-          [&](Point p) { return map_ ? map_->likely_size(p) : bound; }, context_);
+          [&](Point p) { return map_ ? map_->expected_size(p) : bound; }, context_);
     });
     if (!narrow) return narrow.error();
     narrow_ = std::move(*narrow);
-    if (!wants_cap() && narrow_.least() > static_cast<double>(budget.triangle_limit))
+    if (!has_triangle_cap() && narrow_.lower_bound() > static_cast<double>(budget.triangle_limit))
       return too_narrow();
-    least_ = std::max(least, narrow_.least());
+    lower_bound_ = std::max(lower_bound, narrow_.lower_bound());
     const double elsewhere =
         NarrowPlaces::elsewhere(quality_) * static_cast<double>(domain_.triangles.size());
-    expected_ =
-        std::max({by_size_, elsewhere, EdgeLimits::kTrianglesPerPiece * pieces}) + narrow_.likely();
-    const double most = static_cast<double>(wants_cap() ? budget.max_triangles : kUncountable);
+    expected_ = std::max({by_size_, elsewhere, EdgeLimits::kTrianglesPerPiece * pieces}) +
+                narrow_.expected();
+    const double most =
+        static_cast<double>(has_triangle_cap() ? budget.max_triangles : kUncountable);
     context_.report_expected(static_cast<std::uint64_t>(std::min(expected_, most)));
     context_.end_stage("size map");
     return std::nullopt;
@@ -315,8 +320,8 @@ class Pipeline {
 
   // Refuses sizes at markers whose edges alone take more than the run may have.
   std::optional<Error> check_bytes_of_pieces(double pieces) const {
-    if (wants_cap()) return std::nullopt;
-    const double bytes = EdgeLimits::least_bytes(pieces, domain_);
+    if (has_triangle_cap()) return std::nullopt;
+    const double bytes = EdgeLimits::bytes_lower_bound(pieces, domain_);
     const std::uint64_t most = context_.budget().max_bytes;
     if (bytes <= static_cast<double>(most)) return std::nullopt;
     return Error{ErrorCode::kBudgetExceeded, "size.at",
@@ -338,11 +343,11 @@ class Pipeline {
                   .expected_by_size = by_size_,
                   .may_stream = may_stream(),
                   .leaf_triangles = request_.leaf_triangles.value_or(leaf_triangles_for(by_size_)),
-                  .least_triangles = least_,
+                  .triangles_lower_bound = lower_bound_,
                   .sweeps = sweeps(),
                   .other_bytes = size_bytes + narrow_.bytes(),
                   .edge_limits = edge_limits_};
-    if (wants_cap()) plan.max_triangles = context_.budget().max_triangles;
+    if (has_triangle_cap()) plan.max_triangles = context_.budget().max_triangles;
     if (auto error = run_mesh(plan, area, sink_, context_, summary_)) return tl::unexpected(*error);
     summary_.engine_seconds += summary_.triangulate_seconds + summary_.size_seconds;
     summary_.size_warnings = size_warnings(request_.size, summary_.box, summary_.least_bound);
@@ -380,7 +385,7 @@ class Pipeline {
   Error too_narrow() const {
     const NarrowPlaces::Costliest& worst = *narrow_.costliest();
     return {ErrorCode::kLimitExceeded, "quality.min_angle_deg",
-            "the minimum angle asks for at least " + count_text(narrow_.least()) +
+            "the minimum angle asks for at least " + count_text(narrow_.lower_bound()) +
                 " triangles where the domain is narrow, more than the limit of " +
                 std::to_string(context_.budget().triangle_limit) +
                 "; most of them between segments " + std::to_string(worst.segment) + " and " +
@@ -394,7 +399,7 @@ class Pipeline {
     constexpr double kLargePart = 0.2;
     const auto& worst = narrow_.costliest();
     const auto triangles = static_cast<double>(summary_.triangles);
-    const double least = worst ? 2 * worst->least : 0;  // the other segment has as many
+    const double least = worst ? 2 * worst->lower_bound : 0;  // the other segment has as many
     if (summary_.triangles < kMany || least < kLargePart * triangles) return std::nullopt;
     return NarrowPlace{.segment = worst->segment,
                        .other = worst->other,
@@ -406,9 +411,9 @@ class Pipeline {
   bool may_stream() const { return request_.min_angle_deg <= kMaxStreamingAngleDeg; }
 
   // Whether the client set a limit of its own: reaching that is no error.
-  bool wants_cap() const {
-    const std::uint64_t wish = context_.budget().max_triangles;
-    return wish <= context_.budget().triangle_limit && wish != Budget{}.max_triangles;
+  bool has_triangle_cap() const {
+    const std::uint64_t cap = context_.budget().max_triangles;
+    return cap <= context_.budget().triangle_limit && cap != Budget{}.max_triangles;
   }
 
   const SizeFunction& size() const { return size_->function(); }
@@ -424,7 +429,7 @@ class Pipeline {
   EdgeLimits edge_limits_;
   std::optional<AcuteCorners> corners_;  // of domain_
   NarrowPlaces narrow_;
-  double least_ = 0;          // triangles, for certain
+  double lower_bound_ = 0;    // of the triangles
   double expected_ = 0;       // triangles
   double by_size_ = 0;        // of these, what the size alone makes
   std::size_t lattices_ = 0;  // that the size bends, or where none fits

@@ -11,11 +11,11 @@
 #include <utility>
 #include <variant>
 
-#include "engine/base/trace.h"
 #include "engine/domain/domain_picture.h"
+#include "engine/parallel/mesh_plan.h"
+#include "engine/parallel/task_graph.h"
 #include "engine/refine/edge_limits.h"
 #include "engine/refine/quality_bounds.h"
-#include "engine/schedule/mesh_run.h"
 #include "engine/size/lattice/lattice.h"
 #include "engine/size/size_spec.h"
 #include "weft/weft.h"
@@ -27,8 +27,8 @@ namespace {
 // constrained triangulation.
 constexpr double kBytesPerTriangle = 48;
 constexpr double kBytesPerPoint = 300;
-// Of the lattices of a size that varies (size/lattice/grain_map.h): one for some 80 triangles where
-// they change within a few rows, and no more than about this in all.
+// Of the lattices of a size that varies (size/lattice/lattice_map.h): one for some 80 triangles
+// where they change within a few rows, and no more than about this in all.
 constexpr double kBytesOfLattices = 5;  // a triangle
 constexpr double kMostBytesOfLattices = 8e6;
 // Any run takes this for tables and buffers.
@@ -41,7 +41,7 @@ constexpr double kIfItVaries = 1.1;  // on the lattice, unless the size is the s
 // Angles alone ask for about so many.
 constexpr double kTrianglesPerPoint = 4;
 
-// Of a mesh that leaves while it is refined (schedule/mesh_run.h): a strip of leaves is held, and
+// Of a mesh that leaves while it is refined (parallel/mesh_plan.h): a strip of leaves is held, and
 // what each leaf has all the time. Measured with 10 M to 1,000 M triangles: 370 for a size that
 // grows with the distance from something, up to half more for one that is the same everywhere.
 constexpr double kBytesOfStrip = 420;  // times the root of triangles of the mesh and of a leaf
@@ -49,12 +49,12 @@ constexpr double kBytesPerLeaf = 2700;
 // Full ones. With fewer, nearly all leaves may have begun before much is sent, if a thread stands
 // still for a while.
 constexpr double kFewestLeaves = 128;
-// Of parts that are built and wait for their reader, per triangle. If the reader stalls, so many
-// full leaves wait: parts_ahead, each of which is about .6 of the largest.
+// Of fragments that are built and wait for their reader, per triangle. If the reader stalls, so
+// many full leaves wait: fragments_ahead, each of which is about .6 of the largest.
 constexpr double kBytesOfWaiting = 22;
 constexpr int kThreads = 2;
 double full_leaves_waiting() {
-  return 0.6 * parts_ahead(kThreads);
+  return 0.6 * fragments_ahead(kThreads);
 }
 
 double inverse(double bound) {
@@ -157,7 +157,7 @@ double triangles_by_pieces(const MeshRequest& request) {
 }
 
 // Bytes of a mesh that is held as a whole, or, if it may stream, of the strip that is held; and of
-// its parts that wait for their reader.
+// its fragments that wait for their reader.
 double bytes_of_mesh(double triangles, double of_leaf, bool may_stream) {
   const double whole = kBytesPerTriangle * triangles;
   const double waiting = kBytesOfWaiting * std::min(triangles, full_leaves_waiting() * of_leaf);

@@ -19,8 +19,8 @@ import pathlib
 import re
 import sys
 
-LAYERS = {"engine": ["engine/base", "engine/domain", "engine/size", "engine/refine", "engine/output",
-                     "engine/schedule"],
+LAYERS = {"engine": ["engine/base", "engine/domain", "engine/size", "engine/refine", "engine/parallel",
+                     "engine/emit"],
           "client": ["client/base", "client/formats", "client/geo", "client/call"],
           "server": ["server/store", "server/wire", "server/run"]}
 FACE = {f"weft/{name}.h" for name in ("c", "error", "geometry", "mesh", "pslg", "run", "size", "weft")}

@@ -11,12 +11,12 @@ namespace weft {
 class HeldBytes {
  public:
   // Holds `bytes` while it lives.
-  class Part {
+  class Scope {
    public:
-    Part(HeldBytes& held, std::uint64_t bytes) : held_(held), bytes_(bytes) { held_.add(bytes_); }
-    ~Part() { held_.remove(bytes_); }
-    Part(const Part&) = delete;
-    Part& operator=(const Part&) = delete;
+    Scope(HeldBytes& held, std::uint64_t bytes) : held_(held), bytes_(bytes) { held_.add(bytes_); }
+    ~Scope() { held_.remove(bytes_); }
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
 
     // Does nothing if `bytes` is not more. One thread at a time may call it.
     void grow_to(std::uint64_t bytes) {

@@ -18,7 +18,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -26,9 +25,12 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/task_graph.h"
-
 namespace weft {
+
+// Task `after` waits until task `before` is done.
+struct TaskEdge {
+  std::uint32_t before, after;
+};
 
 struct Trace {
   using Clock = std::chrono::steady_clock;
@@ -52,10 +54,10 @@ struct Trace {
     // Per task, the task that skipped it, or kNone. Tasks that wait for the skipped one waited for
     // that task instead.
     std::vector<std::uint32_t> skipped_by;
-    std::vector<TaskGraph::Edge> edges;
-    // The tasks that build the parts, in the order in which parts are sent. Each waits until the
-    // part parts_ahead(threads) before its own has been sent.
-    std::vector<std::uint32_t> part_tasks;
+    std::vector<TaskEdge> edges;
+    // The tasks that build the fragments, in the order in which fragments are sent. Each waits
+    // until the fragment fragments_ahead(threads) before its own has been sent.
+    std::vector<std::uint32_t> fragment_tasks;
     std::vector<std::uint32_t> needs = {};  // of TaskGraph::set_needs
   };
 
@@ -91,16 +93,14 @@ struct Trace {
   }
 
   // Begins a stage that is a graph. The time that the trace itself takes here is left out.
-  void begin_graph(const GraphName& name, const TaskGraph& graph) {
-    graph_ = Graph{name,
-                   std::vector<double>(graph.size(), 0.0),
-                   std::vector<std::uint32_t>(graph.size(), kNone),
-                   graph.edges(),
-                   {},
-                   graph.needs()};
+  void begin_graph(const GraphName& name, std::size_t tasks, const std::vector<TaskEdge>& edges,
+                   const std::vector<std::uint32_t>& needs) {
+    graph_ = Graph{
+        name, std::vector<double>(tasks, 0.0), std::vector<std::uint32_t>(tasks, kNone), edges, {},
+        needs};
     start();
   }
-  void add_part(std::uint32_t task) { graph_->part_tasks.push_back(task); }
+  void add_fragment(std::uint32_t task) { graph_->fragment_tasks.push_back(task); }
   template <class F>
   void time(std::uint32_t task, F&& f) {
     const auto start = Clock::now();
@@ -114,26 +114,5 @@ struct Trace {
   std::vector<std::vector<double>> loops_;
   std::optional<Graph> graph_;
 };
-
-// How many parts may be built ahead of the one to be sent next, so that a slow reader holds back no
-// more than these. While a part is being sent, tasks that only later parts need do not begin.
-inline std::uint32_t parts_ahead(int threads) {
-  return 32 + 4 * static_cast<std::uint32_t>(threads);
-}
-
-// How many parts ahead of the next one tasks may begin while the caller waits for that one, if the
-// mesh has `parts` parts: two columns of the leaves, and some work for each thread. So the front
-// between parts that are sent and parts that are not begun is bounded at any number of threads. For
-// schedules of the recorded tasks of 10 M triangles (leaf_order.h): the share of the mesh that has
-// begun and is not sent, in percent, with and without the bound, and the ratio of times:
-//
-//   threads      2                   16                  64
-//   cylinder     13.6  13.6  1.00    16.6  16.6  1.00    60.3  71.2  1.00
-//   constant     19.1  19.1  1.00    24.4  24.1  1.00    45.4  49.8  1.00
-//   pipe         21.4  21.4  1.00    22.6  22.6  1.00    41.0  41.1  1.00
-inline std::uint32_t parts_begun(std::uint32_t parts, int threads) {
-  return 2 * static_cast<std::uint32_t>(std::sqrt(parts)) +
-         32 * static_cast<std::uint32_t>(threads);
-}
 
 }  // namespace weft

@@ -43,19 +43,19 @@ double dyadic_between(double low, double high) {
   return middle;
 }
 
-// The part of the way from `from` to `to`, both on a ray from the corner, at which this distance
-// from the corner lies.
-double part_of(double distance, Point corner, Point from, Point to) {
+// The fraction of the way from `from` to `to`, both on a ray from the corner, at which this
+// distance from the corner lies.
+double fraction_at(double distance, Point corner, Point from, Point to) {
   const double start = length(from - corner);
   return (distance - start) / (length(to - corner) - start);
 }
 
-// A vertex that a piece is to match is nearer to it than this part of its length.
+// A vertex that a piece is to match is nearer to it than this fraction of its length.
 constexpr double kNarrow = 0.1;
 
 // A split here leaves no piece below a quarter.
-bool in_middle(double part) {
-  return part > 0.25 && part < 0.75;
+bool in_middle(double fraction) {
+  return fraction > 0.25 && fraction < 0.75;
 }
 
 // Whether p and q are at the same distance from the corner, and below 60 degrees apart there.
@@ -180,25 +180,27 @@ std::optional<Error> AcuteCorners::sort_by_ends(const Domain& domain,
   return std::nullopt;
 }
 
-Point AcuteCorners::split_point(const MeshStore& mesh, Pair ends, Pair apexes, double part) const {
+Point AcuteCorners::split_point(const MeshStore& mesh, Pair ends, Pair apexes,
+                                double fraction) const {
   const Point from = mesh.vertices[ends[0]];
   const Point to = mesh.vertices[ends[1]];
   const std::uint32_t s = subsegment(mesh, ends[0], ends[1]);
   if (has_shells((*subsegments_)[s].a) || has_shells((*subsegments_)[s].b) ||
       !crossed_.of(s).empty()) {
-    const auto matching = matching_part(mesh, s, from, to, apexes);
-    part = matching ? *matching : dyadic_part(mesh, s, from, to);
+    const auto matching = matching_fraction(mesh, s, from, to, apexes);
+    fraction = matching ? *matching : dyadic_fraction(mesh, s, from, to);
   }
   // The half of exact ends is exact: no length is rounded.
-  if (part == 0.5) return {0.5 * from.x + 0.5 * to.x, 0.5 * from.y + 0.5 * to.y};
-  return {from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)};
+  if (fraction == 0.5) return {0.5 * from.x + 0.5 * to.x, 0.5 * from.y + 0.5 * to.y};
+  return {from.x + fraction * (to.x - from.x), from.y + fraction * (to.y - from.y)};
 }
 
-std::optional<double> AcuteCorners::matching_part(const MeshStore& mesh, std::uint32_t subsegment,
-                                                  Point from, Point to, Pair apexes) const {
+std::optional<double> AcuteCorners::matching_fraction(const MeshStore& mesh,
+                                                      std::uint32_t subsegment, Point from,
+                                                      Point to, Pair apexes) const {
   const Subsegment& s = (*subsegments_)[subsegment];
   const Vector piece = to - from;
-  std::optional<double> part;
+  std::optional<double> fraction;
   double narrowest = kNarrow * dot(piece, piece);  // distance times the piece's length
   const auto match = [&](std::uint32_t apex, std::uint32_t corner_vertex, std::uint32_t far_end) {
     if (apex == kNone || !on_other_arm(mesh, apex, corner_vertex, subsegment)) return;
@@ -206,10 +208,10 @@ std::optional<double> AcuteCorners::matching_part(const MeshStore& mesh, std::ui
     const Point at = mesh.vertices[apex];
     const Point far = mesh.vertices[far_end];
     if (!below_60_degrees_apart(at - corner, far - corner)) return;
-    const double candidate = part_of(length(at - corner), corner, from, to);
+    const double candidate = fraction_at(length(at - corner), corner, from, to);
     const double width = std::fabs(cross(piece, at - from));
     if (!in_middle(candidate) || width >= narrowest) return;
-    part = candidate;
+    fraction = candidate;
     narrowest = width;
   };
   for (const std::uint32_t apex : apexes) {
@@ -217,11 +219,11 @@ std::optional<double> AcuteCorners::matching_part(const MeshStore& mesh, std::ui
     if (has_shells(s.b)) match(apex, s.b, s.a);
     for (const CrossedArms::Arm& arm : crossed_.of(subsegment)) match(apex, arm.corner, arm.end);
   }
-  return part;
+  return fraction;
 }
 
-double AcuteCorners::dyadic_part(const MeshStore& mesh, std::uint32_t subsegment, Point from,
-                                 Point to) const {
+double AcuteCorners::dyadic_fraction(const MeshStore& mesh, std::uint32_t subsegment, Point from,
+                                     Point to) const {
   const Subsegment& s = (*subsegments_)[subsegment];
   const Point a = mesh.vertices[s.a];
   const Point b = mesh.vertices[s.b];
@@ -230,8 +232,8 @@ double AcuteCorners::dyadic_part(const MeshStore& mesh, std::uint32_t subsegment
   if (!has_shells(s.a) && !has_shells(s.b))
     corner = mesh.vertices[crossed_.of(subsegment).front().corner];
   const auto [low, high] = std::minmax({length(from - corner), length(to - corner)});
-  const double part = part_of(dyadic_between(low, high), corner, from, to);
-  return in_middle(part) ? part : 0.5;
+  const double fraction = fraction_at(dyadic_between(low, high), corner, from, to);
+  return in_middle(fraction) ? fraction : 0.5;
 }
 
 bool AcuteCorners::on_other_arm(const MeshStore& mesh, std::uint32_t vertex, std::uint32_t corner,

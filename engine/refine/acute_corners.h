@@ -18,9 +18,9 @@
 //
 // Two vertices are at the same distance if rounding explains the difference: 2^-47 of the largest
 // coordinate of the three points. A vertex on an arm is off its distance by at most 10 units in the
-// last place: 3 of its part of the piece, 4 of two distances, 3 of coordinates. A larger tolerance
-// is harmful: a triangle that has the third vertex between the two arms'
-// vertices has an angle of nearly 180 degrees, and must not stay. The checker allows twice that
+// last place: 3 of its fraction of the piece, 4 of two distances, 3 of coordinates. A larger
+// tolerance is harmful: a triangle that has the third vertex between the two arms' vertices has an
+// angle of nearly 180 degrees, and must not stay. The checker allows twice that
 // (checker/mesh/exemption.h).
 //
 // Right angles. If the bound on angles is above 30 degrees, arms that meet at less than 93 are
@@ -36,6 +36,9 @@
 //
 // An input vertex that ends an arm counts as on a shell, but two of them do not exempt a triangle:
 // a fan of equal arms is refined toward its corner.
+//
+// Errors: those of `build`. Thread-safety: immutable once built; it reads the mesh as its caller
+// may.
 #pragma once
 
 #include <array>
@@ -66,10 +69,10 @@ class AcuteCorners {
   // Two vertices of the mesh.
   using Pair = std::array<std::uint32_t, 2>;
 
-  // Where to split the piece of a segment between two vertices: as above on an arm, otherwise
-  // after `part` of the way. `apexes` face the piece from its two sides; kNone if a side has no
+  // Where to split the piece of a segment between two vertices: as above on an arm, otherwise after
+  // that `fraction` of the way. `apexes` face the piece from its two sides; kNone if a side has no
   // triangle.
-  Point split_point(const MeshStore& mesh, Pair ends, Pair apexes, double part) const;
+  Point split_point(const MeshStore& mesh, Pair ends, Pair apexes, double fraction) const;
 
   const CrossedArms& crossed_arms() const { return crossed_; }
   // The places where two of the domain's segments meet at a small angle outside of it.
@@ -119,9 +122,10 @@ class AcuteCorners {
 
   // These return the place of a split as a fraction of the way from one end of a piece to the
   // other.
-  std::optional<double> matching_part(const MeshStore& mesh, std::uint32_t subsegment, Point from,
-                                      Point to, Pair apexes) const;
-  double dyadic_part(const MeshStore& mesh, std::uint32_t subsegment, Point from, Point to) const;
+  std::optional<double> matching_fraction(const MeshStore& mesh, std::uint32_t subsegment,
+                                          Point from, Point to, Pair apexes) const;
+  double dyadic_fraction(const MeshStore& mesh, std::uint32_t subsegment, Point from,
+                         Point to) const;
 
   const std::vector<Subsegment>* subsegments_;
   std::vector<Corner> corners_;       // per vertex of the domain

@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernel's view of a grading function: bounds on the areas of a ring of new triangles.
-// The kernel is a template over this, so that a constant costs nothing.
+// The kernel's view of a grading function: bounds on the areas of a ring of new triangles, in
+// squared units of the domain; infinity is none. The kernel is a template over this, so that a
+// constant costs nothing.
+//
+//   ConstantArea area(1e-3);
+//   area.begin(box);
+//   const RingVerdict verdict = area.judge(ring, 0, ring.size, p, region_bound, quality, badness);
+//
+// Errors: bad_size() is the first point where the size is no size; the task polls it. Not
+// thread-safe: `again` makes one for each thread.
 #pragma once
 
 #include <algorithm>

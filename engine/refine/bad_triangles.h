@@ -1,29 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bad triangles that wait to be refined, and their order.
+// The queue of bad triangles, which orders refinement.
 //
-// Too large ones come first, by how much too large they are (four levels per octave), last in first
-// out within a level. Compared with a single stack, the cylinder model has 1.7 % fewer triangles,
-// and the speed is the same while a task's mesh stays in the cache.
+//   - Too large ones come first, the one farthest over its bound first: four levels per octave,
+//     last in first out within a level.
+//   - Then come the skinny ones, the smallest first, by the longest edge times the cube of the
+//     shortest: refining these makes larger triangles around them, and few of either are needed.
 //
-// Then come the skinny ones, the smallest first: refining these makes larger triangles around them,
-// and few of either are needed. The measure is the longest edge times the cube of the shortest.
-// Triangles without a size, at 20, 25, 30 and 33 degrees, and of two more models at 33:
+// Nothing is ever searched for or removed: an entry goes stale when its triangle dies, as two
+// thirds do. The entry of a too large triangle has 4 bytes, and is valid if the slot's triangle
+// still has that badness. The entry of a skinny triangle has the first vertex as well, which names
+// the triangle (refiner.h): the slot's next triangle, skinny too, but much larger, must not take
+// its place. bench/README.md compares other orders.
 //
-//                              us-east-coast                  pipe     cylinder
-//   last in first out          16,884 21,043 29,799 48,049    2,526    1,314
-//   shortest edge              15,661 18,575 23,535 29,035    1,992      545
-//   shortest times longest     15,703 18,670 23,881 29,353    1,826      469
-//   shortest cubed, longest    15,582 18,544 23,531 29,057    1,830      470
-//
-// If a size makes nearly all triangles, the order costs little: 0.4 % more instructions of the
-// whole engine at 20 degrees, and none at 30 (cylinder, 40,000 triangles).
-//
-// Nothing is ever searched for or removed: an entry goes stale when its triangle dies (two thirds
-// do). The entry of a too large triangle has 4 bytes, and is valid if the slot's triangle still has
-// that badness. The entry of a skinny triangle has the first vertex as well, which names the
-// triangle (refiner.h). Without it the slot's next triangle, skinny too, but much larger, took
-// the place of the one that died: 2, 9 and 18 % more triangles of us-east-coast at 20, 30 and 33
-// degrees, and 33 % more of floor plans with narrow gaps at 30.
+// Not thread-safe: one per task.
 #pragma once
 
 #include <algorithm>

@@ -11,6 +11,8 @@
 //
 // Only corners below kSharp are kept, and for a subsegment only the sharpest on each of its sides:
 // wider strips cost few triangles.
+//
+// Errors: those of `find`. Thread-safety: immutable once found.
 #pragma once
 
 #include <cstdint>

@@ -7,6 +7,8 @@
 //
 //   EdgeLimits limits(size.at);
 //   if (limits.pieces(marker, a, b) > 1) ... the edge from a to b is too long
+//
+// Units: lengths of the domain. Thread-safety: immutable.
 #pragma once
 
 #include <algorithm>
@@ -50,17 +52,17 @@ class EdgeLimits {
     return std::max(1.0, std::ceil((length(b - a) - slack) / found->max_edge));
   }
 
-  // Triangles of a mesh with so many edges on segments, at least: each edge belongs to one, and a
-  // triangle has several only at a corner between two subsegments of the domain.
-  static double least_triangles(double pieces, const Domain& domain) {
+  // A lower bound on the triangles of a mesh with so many edges on segments: each edge belongs to
+  // one, and a triangle has several only at a corner between two subsegments of the domain.
+  static double triangles_lower_bound(double pieces, const Domain& domain) {
     constexpr double kSides = 3;
     const double corners = 2 * static_cast<double>(domain.subsegments.size());
     return std::max(pieces / kSides, pieces - corners);
   }
 
-  // Bytes of the mesh once its segments are split, which is before any part of it can leave: each
-  // piece but the first of a segment is a vertex, and adds a triangle at least.
-  static double least_bytes(double pieces, const Domain& domain) {
+  // A lower bound on the bytes of the mesh once its segments are split, which is before any part of
+  // it can leave: each piece but the first of a segment is a vertex, and adds a triangle at least.
+  static double bytes_lower_bound(double pieces, const Domain& domain) {
     constexpr double kBytesPerPiece =
         sizeof(Triangle) + sizeof(Point) + sizeof(std::uint32_t);  // its segment
     return kBytesPerPiece * std::max(0.0, pieces - static_cast<double>(domain.subsegments.size()));

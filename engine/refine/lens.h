@@ -15,7 +15,7 @@
 //     phi = theta                   beyond.
 // The first is the least that the proof below needs. The second is Shewchuk's lens, the least
 // possible. He deletes the free vertices in the diametral disk before a split, and has a proof up
-// to 26.5 degrees; here vertices stay, because the schedule relies on it (schedule/leaf_radius.h).
+// to 26.5 degrees; here vertices stay, because the schedule relies on it (parallel/leaf_radius.h).
 //
 // What is proven. Let theta be at most 20.7 degrees, and all angles between segments at least 90.
 // Then refinement ends. Let D be a lower bound on the distance of any two vertices that see each
@@ -43,19 +43,17 @@
 //     most as often.
 // What is observed. Beyond 20.7 degrees, and with angles below 90 (acute_corners.h), nothing is
 // proven. Up to 34 degrees everything tried has ended: floor plans with rounded coordinates,
-// wedges, stars of 360 rays. At 36, 3 of 500 such plans end at the precision floor, and a star of
-// 200 rays of unequal lengths does not end; at 34 it takes 56,815 triangles, at 20 4,503. The
-// bound on the number of triangles against the least is proven for Ruppert's disk, not for this.
+// wedges, stars of 360 rays. At 36, some such plans end at the precision floor, and a star of 200
+// rays of unequal lengths does not end. The bound on the number of triangles against the least is
+// proven for Ruppert's disk, not for this.
 //
-//   us-east-coast, no size,
-//   the standard place alone    20 deg    25 deg    30 deg    33 deg
-//   disk                        17,869    23,049    33,463    60,745
-//   lens, phi = theta           17,853    23,065    33,337    45,289
-//   this lens                   17,856    23,065    33,337    45,289
+// bench/README.md compares this lens with the disk.
 //
 // The mesh is constrained Delaunay, and not conforming Delaunay: the circumdisk of a triangle at a
 // segment may hold vertices beyond it. No cavity crosses a segment, so this affects neither the
-// ownership of triangles (ownership.h) nor the bound on circumradii (schedule/leaf_radius.h).
+// ownership of triangles (ownership.h) nor the bound on circumradii (parallel/leaf_radius.h).
+//
+// Thread-safety: pure functions.
 #pragma once
 
 #include <algorithm>

@@ -38,16 +38,17 @@ RingVerdict MappedArea::judge_by_cell(const Ring& ring, std::uint32_t first, std
     cell.size = map_.uniform_size(cell.place, around).value_or(0);
     cell.known = true;
   }
-  double reach2 = 0;
-  for (std::uint32_t i = first; i <= last; ++i) reach2 = std::max(reach2, ring.points[i].length2);
-  if (const double room = room_in(around, p); room > 0 && reach2 <= room * room) [[likely]] {
+  double farthest2 = 0;
+  for (std::uint32_t i = first; i <= last; ++i)
+    farthest2 = std::max(farthest2, ring.points[i].length2);
+  if (const double room = room_in(around, p); room > 0 && farthest2 <= room * room) [[likely]] {
     if (cell.size == 0)
       return judge_evaluated(cell.place, ring, first, last, p, region_bound, quality, badness);
     box_ = around;
     size_ = cell.size;
     return judge_ring(ring, first, last, quality, uniform(region_bound), badness);
   }
-  const double reach = std::sqrt(reach2);
+  const double reach = std::sqrt(farthest2);
   const Box ring_box{p.x - reach, p.y - reach, p.x + reach, p.y + reach};
   return judge_evaluated(map_.locate(ring_box), ring, first, last, p, region_bound, quality,
                          badness);

@@ -12,29 +12,28 @@
 #include <vector>
 
 #include "engine/refine/area_bound.h"
-#include "engine/size/lattice/grain_map.h"
 #include "engine/size/lattice/lattice.h"
+#include "engine/size/lattice/lattice_map.h"
 #include "engine/size/size_map.h"
 
 namespace weft {
 
 // Used by one task at a time. `begin` lays a grid over the task's box; once a ring needed a cell,
 // the cell knows whether the function is constant in it and the cells around it. Most rings lie in
-// the constant box of the last one, most others in such a cell: with the step function of the
-// cylinder model, 6 % of the rings are evaluated.
+// the constant box of the last one, most others in such a cell (bench/README.md).
 class MappedArea {
  public:
   // Bounds are multiplied by `coarseness`.
-  MappedArea(const SizeFunction& function, const SizeMap& map, const GrainMap& grains,
+  MappedArea(const SizeFunction& function, const SizeMap& map, const LatticeMap& lattices,
              double coarseness = 1)
       : function_(function),
         map_(map),
-        grains_(grains),
-        grain_(&grains.grains().front()),
+        lattices_(lattices),
+        lattice_cell_(&lattices.cells().front()),
         coarseness_(coarseness) {}
 
   // A copy for another thread or another coarseness.
-  MappedArea again(double coarseness = 1) const { return {function_, map_, grains_, coarseness}; }
+  MappedArea again(double coarseness = 1) const { return {function_, map_, lattices_, coarseness}; }
 
   // Begins a task most of whose rings lie in `box`.
   void begin(const Box& box);
@@ -44,7 +43,7 @@ class MappedArea {
     if (const double room = room_in(box_, p); room > 0) [[likely]] {
       const RingVerdict verdict =
           judge_ring(ring, first, last, quality, uniform(region_bound), badness);
-      if (verdict.reach2 <= room * room) [[likely]]
+      if (verdict.farthest2 <= room * room) [[likely]]
         return verdict;
     }
     return judge_by_cell(ring, first, last, p, region_bound, quality, badness);
@@ -53,16 +52,16 @@ class MappedArea {
   // The lattice point nearest to c. The lattice is that of the final mesh, whatever the coarseness.
   // A region has its own lattice where its bound is below that of the size's lattice.
   LatticePoint nearest_of_lattice(Point c, double region_bound, const LatticeShape& shape) {
-    find_grain(c);
-    if (grain_->kind == GrainMap::Kind::kFit) {
-      const LatticePoint point = grain_->map.nearest(c, shape.jitter);
+    find_lattice_cell(c);
+    if (lattice_cell_->kind == LatticeMap::Kind::kFit) {
+      const LatticePoint point = lattice_cell_->map.nearest(c, shape.jitter);
       if (kEquilateral * point.spacing2 <= region_bound) [[likely]]
         return point;
       return lattice_.nearest(c, region_bound, shape);
     }
     double bound = 0;
-    if (grain_->kind == GrainMap::Kind::kConstant) bound = grain_->size;
-    if (grain_->kind == GrainMap::Kind::kStepped) bound = bound_of_piece(c);
+    if (lattice_cell_->kind == LatticeMap::Kind::kConstant) bound = lattice_cell_->size;
+    if (lattice_cell_->kind == LatticeMap::Kind::kStepped) bound = bound_of_piece(c);
     if (bound == 0 && region_bound < kNoBound && region_bound <= function_(c)) bound = region_bound;
     return lattice_.nearest(c, std::min(bound, region_bound), shape);
   }
@@ -72,9 +71,9 @@ class MappedArea {
 
   // Whether there is a lattice at p. `bound` is the bound there, that of the region included.
   bool on_lattice(Point p, double bound, double region_bound) {
-    find_grain(p);
-    return grain_->kind == GrainMap::Kind::kFit || grain_->kind == GrainMap::Kind::kConstant ||
-           region_bound <= bound;
+    find_lattice_cell(p);
+    return lattice_cell_->kind == LatticeMap::Kind::kFit ||
+           lattice_cell_->kind == LatticeMap::Kind::kConstant || region_bound <= bound;
   }
 
   // Insertions between polls: fewer if the function is costly (4,096 powers take 1 ms per ring).
@@ -103,9 +102,9 @@ class MappedArea {
     SizeMap::Place place{};
   };
 
-  void find_grain(Point p) {
-    if (!(room_in(grain_->box, p) > 0)) [[unlikely]]
-      grain_ = &grains_.locate(p);
+  void find_lattice_cell(Point p) {
+    if (!(room_in(lattice_cell_->box, p) > 0)) [[unlikely]]
+      lattice_cell_ = &lattices_.locate(p);
   }
   // At the border of constant pieces: the bound at c if it is the same an edge's length away, in x
   // and in y, on at least one side; otherwise 0.
@@ -123,8 +122,8 @@ class MappedArea {
 
   const SizeFunction& function_;
   const SizeMap& map_;
-  const GrainMap& grains_;
-  const GrainMap::Grain* grain_;  // the last one asked for
+  const LatticeMap& lattices_;
+  const LatticeMap::Cell* lattice_cell_;  // the last one asked for
   UniformLattice lattice_;
   const double coarseness_;
   Box box_;          // where the function is constant; empty at first

@@ -6,6 +6,8 @@
 //
 //   const Result<Needles> needles = Needles::find(domain, context);
 //   if (!needles->keep_apart(subsegment, split)) ...
+//
+// Thread-safety: immutable once found.
 #pragma once
 
 #include <cstdint>

@@ -17,8 +17,8 @@
 // of the cavity's border lie in the task's box; the box is convex, so the point does, too, and all
 // new triangles have three vertices of this task. So no other running task sees a change.
 //
-// In addition, a task that begins checks whether a triangle handed on to it still exists: only in
-// slots that no concurrent task writes (leaf_tasks.h, may_look_at).
+// In addition, a task that begins checks whether a triangle that migrated to it still exists: only
+// in slots that no concurrent task writes (leaf_tasks.h, may_look_at).
 #pragma once
 
 #include "engine/base/geometry.h"
@@ -35,7 +35,7 @@ struct OwnsAll {
 };
 
 // A task owns the vertices of a half-open box, beside other tasks. It refines triangles with their
-// centroid in the core, and hands the others over.
+// centroid in the core, and lets the others migrate to their own task.
 struct OwnsBox {
   static constexpr bool kRestricted = true;
   Box box;
@@ -43,10 +43,10 @@ struct OwnsBox {
 
   bool owns(Point p) const { return contains(box, p.x, p.y); }
   bool in_core(double x, double y) const { return contains(core, x, y); }
-  // Whether the disk around p of squared radius `reach2` lies in the core.
-  bool core_holds(Point p, double reach2) const {
+  // Whether the disk around p of squared radius `radius2` lies in the core.
+  bool core_holds(Point p, double radius2) const {
     const double room = room_in(core, p);
-    return room > 0 && reach2 <= room * room;
+    return room > 0 && radius2 <= room * room;
   }
 
   static bool contains(const Box& b, double x, double y) {

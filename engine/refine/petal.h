@@ -16,20 +16,11 @@
 // search. Other places of that kind are left out. The search ends early if a place removes all bad
 // triangles around.
 //
-// Triangles without a size, at 20, 25, 30 and 33 degrees, and of three more models at 33:
+// Five places on the arc make a third fewer triangles than the standard place alone at 33 degrees
+// (bench/README.md). Segments are not split at the best of several places, because the proof in
+// lens.h needs the middle.
 //
-//                               us-east-coast                 pipe    key    cylinder
-//   Triangle 1.6                17,802 23,074 33,309 45,260   4,886   890    1,532
-//   the standard place alone    17,856 23,065 33,337 45,289   4,762   892    1,236
-//   5 places on the arc         15,582 18,544 23,531 29,057   1,830   405      470
-//   13, and 15 on inner arcs    15,319 18,117 22,654 27,264   1,972   408      483
-//
-// The last row was measured with the shortest edge first (bad_triangles.h). Splitting segments at
-// the best of five places would save 0.5 to 1.5 % more of us-east-coast, but the proof in lens.h
-// needs the middle.
-// Refinement takes 1.7 to 2.2 times as long as with the standard place alone. With a size that
-// makes nearly all triangles, few are ever skinny, and the search changes little: neither their
-// number nor the time.
+// Units: coordinates of the domain. Thread-safety: values.
 #pragma once
 
 #include <algorithm>
@@ -86,17 +77,6 @@ class Petal {
   double shortest2_;
   Point centre_;
   Point along_;  // the edge's direction, with the distance of the places from the centre as length
-};
-
-// The value of a point's star.
-struct StarWorth {
-  std::int32_t fewer_bad;  // triangles
-  double nearest2;         // squared distance from the point to what it is joined to
-
-  bool operator>(const StarWorth& other) const {
-    return fewer_bad > other.fewer_bad ||
-           (fewer_bad == other.fewer_bad && nearest2 > other.nearest2);
-  }
 };
 
 // Calls consider(half_tangent) for places of a petal; `consider` tells whether its place is the

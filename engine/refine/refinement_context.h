@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tasks of a run share, what they report, and what they hand on.
+// What the tasks of a run share: the mesh, the domain's corners and limits, the budget. And what
+// passes between them: bad triangles that migrate, and statistics.
+//
+// Errors: those of `check_budget`. Thread-safety: all tasks use one context; who may touch what of
+// the mesh is in ownership.h.
 #pragma once
 
 #include <algorithm>
@@ -41,12 +45,12 @@ inline std::optional<Error> check_budget(const ExecutionContext& context, std::u
 }
 
 // What refiners have done.
-struct RefinerFigures {
+struct RefinerStats {
   std::uint64_t insertions = 0;
   std::uint64_t exact_predicates = 0;
   std::uint64_t bytes = 0;  // of one refiner, at the peak
 
-  RefinerFigures& operator+=(const RefinerFigures& other) {
+  RefinerStats& operator+=(const RefinerStats& other) {
     insertions += other.insertions;
     exact_predicates += other.exact_predicates;
     bytes = std::max(bytes, other.bytes);
@@ -54,7 +58,7 @@ struct RefinerFigures {
   }
 };
 
-// A bad triangle that a task hands on. It is gone if the slot has another first vertex.
+// A bad triangle that migrates to another task. It is gone if the slot has another first vertex.
 struct BadTriangle {
   std::uint32_t triangle;
   std::uint32_t first_vertex;

@@ -1,25 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
-// Delaunay refinement of a region of the mesh, as in the paper's Section 2: while a triangle
-// is bad (too large or too skinny), insert its Steiner point by Bowyer-Watson; if the point would
-// encroach upon a segment, split the segment instead.
+// Delaunay refinement of a region of the mesh (the paper's Section 2; J. Ruppert 1995,
+// J. R. Shewchuk 2002).
+//
+//   while there is a bad triangle t: too large, or with an angle below the bound   `run`, `refine`
+//     p := the Steiner point of t (steiner_point.h, petal_search.h)                `insert_for`
+//     grow the cavity of p: the triangles whose open circumdisk contains p         `grow`
+//     if p encroaches upon a segment:       split that instead (lens.h), then try t again
+//     if the cavity meets another task's:   defer t, the mesh stays as it was (ownership.h)
+//     if the star would have an edge that
+//     is too short, or a flat triangle:     refuse t, which stays as it is
+//     else:                                 replace the cavity by the star of p, and queue the bad
+//                                           triangles of the star                  `retriangulate`
+//
+//          e-------d                   e-------d
+//         /|\      |\                 / \     / \      Left: the cavity of p, four triangles, and
+//        / | \  t  | \               /   \   /   \     its ring a b c d e f (cavity.h).
+//       /  |  \    |  \             /     \ /     \    Right: the star of p (star.h), a triangle
+//      f   |   \ p |   c    ->     f-------p-------c   for each edge of the ring: two more than
+//       \  |    \  |  /             \     / \     /    there were.
+//        \ |     \ | /               \   /   \   /
+//         \|      \|/                 \ /     \ /
+//          a-------b                   a-------b
+//
+// No point location is needed: t belongs to the cavity of its own Steiner point. The cavity's slots
+// are used again. The worst triangle comes first, last in first out among equals (bad_triangles.h).
 //
 //   Refiner<OwnsAll, ConstantArea> refiner(refinement, quality, ConstantArea(1e-3));
 //   refiner.begin(slots, OwnsAll{}, box);
-//   refiner.queue_all();                              // the bad triangles
-//   std::optional<Error> stopped = refiner.run();     // nullopt: all is refined or refused
+//   if (auto error = refiner.queue_all()) return error;   // the bad triangles
+//   if (auto error = refiner.run()) return error;         // then all are refined or refused
 //
-// It needs no point location: a bad triangle belongs to the cavity of its own Steiner point. The
-// cavity's slots are reused. Queue entries have a few bytes, and show whether their triangle still
-// exists; the worst comes first, last in first out among equals (bad_triangles.h).
+// Tasks. Ownership is a compile-time parameter. Bad triangles that a task cannot refine are in
+// `deferred()`, those that it makes outside its core in `migrants()`. A task names a triangle of
+// another one by its slot and first vertex: only the slot's owner writes vertices, and the first
+// one differs each time. So a task may check whether a triangle still exists before it knows that
+// it owns it; it reads the flags after that. One Refiner serves many tasks, one after the other.
 //
-// Ownership is a compile-time parameter (ownership.h). If an insertion meets a triangle that the
-// task does not own, the task leaves the mesh as it was and keeps the bad triangle in `deferred()`.
-// Bad triangles that it makes outside its core go to `handed_over()`. One Refiner serves many
-// tasks, one after the other.
-//
-// Tasks name a triangle by its slot and first vertex: only the slot's owner writes vertices, and
-// the first one differs each time. So a task may check whether a triangle still exists before it
-// knows that it owns it (it reads the flags after that).
+// Units: coordinates of the domain; bounds on areas are in their square. Errors: kCancelled,
+// kDeadlineExceeded, kLimitExceeded (triangles), kBudgetExceeded (bytes), that of a source of
+// memory that grants no more, kBadSizeValue; throws what MeshStore does. Thread-safety: one thread
+// at a time; refiners of tasks that own disjoint vertices run at the same time on one mesh.
 #pragma once
 
 #include <algorithm>
@@ -86,21 +106,22 @@ class Refiner {
     segments_.clear();
     deferred_.clear();
     deferred_segments_.clear();
-    handed_over_.clear();
+    migrants_.clear();
   }
 
-  // Queues a triangle that another task has left, if it still exists; defers it if it is not owned.
-  void queue(const BadTriangle& left) {
-    const Triangle& t = mesh_.triangles[left.triangle];
-    if (t.vertex[0] != left.first_vertex) return;
+  // Queues a triangle that is pending from another task, if it still exists; defers it if it is not
+  // owned.
+  void queue(const BadTriangle& pending) {
+    const Triangle& t = mesh_.triangles[pending.triangle];
+    if (t.vertex[0] != pending.first_vertex) return;
     if (!owns(t)) {
-      deferred_.push_back(left);
+      deferred_.push_back(pending);
     } else if (t.badness() != kGood) {
-      mesh_.triangles[left.triangle].set_deferred(false);
-      bad_.push(left.triangle, t.badness());
+      mesh_.triangles[pending.triangle].set_deferred(false);
+      bad_.push(pending.triangle, t.badness());
     }
   }
-  void queue(const SegmentEdge& left) { segments_.push_back(left); }
+  void queue(const SegmentEdge& pending) { segments_.push_back(pending); }
 
   // Judges every triangle and queues the bad ones; splits segments down to the limits of their
   // markers. REQUIRES: all triangles lie in the slots of this task.
@@ -136,7 +157,8 @@ class Refiner {
 
   bool stopped() const { return stopped_.has_value(); }
 
-  // Refines until the queue is empty, `max_triangles` are reached, or the context stops it.
+  // The loop: refines until no triangle is queued, `max_triangles` are reached, or the context
+  // stops it.
   std::optional<Error> run() {
     split_queued_segments();
     while (!full() && !stopped_) {
@@ -158,9 +180,9 @@ class Refiner {
   const std::vector<BadTriangle>& deferred() const { return deferred_; }
   const std::vector<SegmentEdge>& deferred_segments() const { return deferred_segments_; }
   // Some of these may no longer exist.
-  const std::vector<BadTriangle>& handed_over() const { return handed_over_; }
+  const std::vector<BadTriangle>& migrants() const { return migrants_; }
 
-  RefinerFigures figures() const {
+  RefinerStats stats() const {
     return {insertions_, star_.exact_predicates() + petal_search_.exact_predicates() + exact_,
             bytes()};
   }
@@ -241,7 +263,7 @@ class Refiner {
     };
     const auto best =
         petal_search_.run(star_, Petal(a, b, c, quality_), {standard, verdict}, quality_, look_at);
-    retriangulate(slots_->add_vertex(mesh_, best.at), best.at, best.verdict.reach2, true);
+    retriangulate(slots_->add_vertex(mesh_, best.at), best.at, best.verdict.farthest2, true);
     return Outcome::kInserted;
   }
 
@@ -279,7 +301,7 @@ class Refiner {
     const RingVerdict verdict = judge_star(star_, t, p);
     if (verdict.nearest2 < clearance2 || !acceptable(verdict, p)) [[unlikely]]
       return Outcome::kTooClose;
-    retriangulate(slots_->add_vertex(mesh_, p), p, verdict.reach2, true);
+    retriangulate(slots_->add_vertex(mesh_, p), p, verdict.farthest2, true);
     return Outcome::kInserted;
   }
 
@@ -355,7 +377,7 @@ class Refiner {
                       star_.judged());
       verdict.flat |= far.flat;
       verdict.too_close |= far.too_close;
-      verdict.reach2 = std::max(verdict.reach2, far.reach2);
+      verdict.farthest2 = std::max(verdict.farthest2, far.farthest2);
     }
     if (!acceptable(verdict, p)) return verdict.too_close ? Outcome::kTooClose : Outcome::kFlat;
     if (!star_is_delaunay(mesh_, ring, 0, near_side, p) ||
@@ -364,37 +386,37 @@ class Refiner {
 
     const std::uint32_t near_region = triangle.region;
     const std::uint32_t far_region = closed ? mesh_.triangles[triangle_of(across)].region : 0;
-    retriangulate(slots_->add_segment_vertex(mesh_, p, subsegment), p, verdict.reach2, closed);
+    retriangulate(slots_->add_segment_vertex(mesh_, p, subsegment), p, verdict.farthest2, closed);
     star_.mark_segment(mesh_, near_side, closed, near_region, far_region);
     return Outcome::kInserted;
   }
 
-  // Replaces the cavity by the star of its point p, now a vertex. `reach2` is the squared distance
-  // to the farthest point of the ring.
-  void retriangulate(std::uint32_t vertex, Point p, double reach2, bool closed) {
+  // Replaces the cavity by the star of its point p, now a vertex. `farthest2` is the squared
+  // distance to the farthest point of the ring.
+  void retriangulate(std::uint32_t vertex, Point p, double farthest2, bool closed) {
     ++insertions_;
-    if (ownership_.core_holds(p, reach2)) [[likely]] {
+    if (ownership_.core_holds(p, farthest2)) [[likely]] {
       added_ += star_.make(
           mesh_, *slots_, vertex, closed,
           [this](std::uint32_t t, Badness badness, std::uint32_t) { bad_.push(t, badness); });
     } else {
       added_ += star_.make(mesh_, *slots_, vertex, closed,
                            [&](std::uint32_t t, Badness badness, std::uint32_t edge) {
-                             queue_or_hand_over(t, badness, vertex, p, edge);
+                             queue_or_migrate(t, badness, vertex, p, edge);
                            });
     }
   }
 
-  // Queues a bad triangle of the star of p, at an edge of the ring, or hands it over if it lies
+  // Queues a bad triangle of the star of p, at an edge of the ring, or lets it migrate if it lies
   // outside the core.
-  void queue_or_hand_over(std::uint32_t t, Badness badness, std::uint32_t vertex, Point p,
-                          std::uint32_t edge) {
+  void queue_or_migrate(std::uint32_t t, Badness badness, std::uint32_t vertex, Point p,
+                        std::uint32_t edge) {
     const RingPoint& a = star_.ring().points[edge];
     const RingPoint& b = star_.ring().points[edge + 1];
     if (ownership_.in_core(p.x + (a.x + b.x) * (1.0 / 3), p.y + (a.y + b.y) * (1.0 / 3))) {
       bad_.push(t, badness);
     } else {
-      handed_over_.push_back({t, vertex});
+      migrants_.push_back({t, vertex});
     }
   }
 
@@ -529,7 +551,7 @@ class Refiner {
   const QualityBounds quality_;
   AreaBound area_;
   ExecutionContext& context_;
-  HeldBytes::Part held_;
+  HeldBytes::Scope held_;
   const std::uint64_t other_bytes_;  // held by the run all the time
   const std::uint64_t triangle_limit_;
   const std::uint32_t poll_interval_;  // insertions
@@ -544,7 +566,7 @@ class Refiner {
   std::vector<SegmentEdge> segments_;  // encroached upon; entries may be stale
   std::vector<BadTriangle> deferred_;
   std::vector<SegmentEdge> deferred_segments_;
-  std::vector<BadTriangle> handed_over_;
+  std::vector<BadTriangle> migrants_;
   bool segments_deferred_ = false;
   // Why segments of the last call of split_queued_segments were not split; precision takes
   // precedence over the caller's floor.

@@ -8,13 +8,10 @@
 //
 // A part is clear if its bound is one value, and no segment of a bad triangle of the leaf comes
 // within two spacings. Neighbours that went first are refined already, so looking around in the
-// mesh would take longer than what it saves (22 % of refinement). If the leaf is not clear, its
+// mesh would take longer than what it saves. If the leaf is not clear, its
 // quarters are tried, four levels deep, as long as they have kFewest rows. What is missed, because
 // a point of the ring comes too close to a vertex or some other segment is in the way, is refined
 // as if there were no rows; the points of the ring are points that refinement would have placed.
-//
-// The cylinder model with 0.63 M triangles takes 0.099 s for 0.139 on one thread (the fastest of
-// five runs of each task, weft-bench scaling).
 //
 // Thread-safety: one RowFiller per task.
 #pragma once
@@ -201,7 +198,7 @@ class RowFiller {
   // sqrt(2) / 2 jitters to an area of kEquilateral.
   bool may_exceed() const {
     const LatticeShape& lattice = quality_.lattice;
-    return lattice.fill * (1 + 5 * lattice.jitter) >= 1;
+    return lattice.area_ratio * (1 + 5 * lattice.jitter) >= 1;
   }
 
   void queue_large(double bound) {
@@ -221,7 +218,7 @@ class RowFiller {
   const std::vector<Region>& regions_;
   const QualityBounds quality_;
   const AreaBound& area_;
-  HeldBytes::Part held_;
+  HeldBytes::Scope held_;
   LatticeRows rows_;
   LeafRefiner* refiner_ = nullptr;
   const std::vector<BadTriangle>* bad_ = nullptr;

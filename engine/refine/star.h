@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The star of a point to be inserted: grows its cavity, holds the badness of its triangles, and
-// puts them into the mesh.
+// puts them into the mesh (refiner.h has a picture).
 //
 //   if (star.grow_from_triangle(t, p, lens) == Growth::kComplete) {
 //     area.judge(star.ring(), 0, star.ring().size, p, bound, quality, star.judged());
 //     star.make(mesh, slots, slots.add_vertex(mesh, p), true, queue);
 //   }
 //
-// The mesh does not change before `make`, so a point may be tried and discarded.
+// The mesh does not change before `make`, so a point may be tried and discarded. Not thread-safe:
+// one per task.
 #pragma once
 
 #include <algorithm>

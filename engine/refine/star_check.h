@@ -14,6 +14,8 @@
 //     |a|^2 (b x c) - |b|^2 (a x c) + |c|^2 (a x b),
 // all relative to p: at least 0 if p is not outside the circle through a, b, c. The rounding error
 // is that of the in-circle test in cavity.h.
+//
+// Thread-safety: pure functions of the ring and of what the task owns of the mesh.
 #pragma once
 
 #include <algorithm>

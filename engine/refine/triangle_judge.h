@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The badness of a triangle that no insertion here has made. It is judged as a ring around its
 // first vertex, made of the opposite edge there and back, because rings are judged two triangles at
-// a time (quality_bounds.h).
+// a time (quality_bounds.h). Not thread-safe: one per thread.
 #pragma once
 
 #include <array>
@@ -13,7 +13,6 @@
 
 namespace weft {
 
-// Not thread-safe: one per thread.
 class TriangleJudge {
  public:
   template <class AreaBound>

@@ -14,7 +14,7 @@ namespace {
 constexpr Interval kAnything{-std::numeric_limits<double>::infinity(),
                              std::numeric_limits<double>::infinity(), true};
 
-double likely(double lo, double hi) {
+double expected(double lo, double hi) {
   return lo > 0 ? std::sqrt(lo) * std::sqrt(hi) : hi;
 }
 
@@ -166,9 +166,9 @@ Result<SizeMap> SizeMap::build(const SizeFunction& size, const Domain& domain,
         }
         first += std::accumulate(look.overlaps.begin(), look.overlaps.end(), 0u);
         const double area = look.split ? common_area(level, pending, domain) : look.area;
-        if (bounds.lo > 0 && !bounds.may_be_nan) map.least_triangles_ += area / bounds.hi;
-        const double guess = likely(bounds.lo, bounds.hi);
-        if (guess > 0) map.likely_triangles_ += area / guess;
+        if (bounds.lo > 0 && !bounds.may_be_nan) map.triangles_lower_bound_ += area / bounds.hi;
+        const double guess = expected(bounds.lo, bounds.hi);
+        if (guess > 0) map.expected_triangles_ += area / guess;
       }
     }
     level = std::move(next);
@@ -185,9 +185,9 @@ Result<SizeMap> SizeMap::build(const SizeFunction& size, const Domain& domain,
   return map;
 }
 
-double SizeMap::likely_size(Point p) const {
+double SizeMap::expected_size(Point p) const {
   const Place place = locate({p.x, p.y, p.x, p.y});
-  return likely(place.node->lo, place.node->hi);
+  return expected(place.node->lo, place.node->hi);
 }
 
 SizeMap::Place SizeMap::locate(const Box& box) const {

@@ -80,12 +80,13 @@ class SizeMap {
   // area / kFeatureFactor for certain.
   bool covers_finer(const Place& place, const std::array<Point, 3>& corners, double area) const;
 
-  // Integral of 1 / size over the domain: from below with the upper bounds, and a best guess.
-  double least_triangles() const { return least_triangles_; }
-  double likely_triangles() const { return likely_triangles_; }
+  // The integral of 1 / size over the domain, which is the number of triangles that are as large as
+  // they may be: a lower bound, by the upper bounds on the size, and the expected value.
+  double triangles_lower_bound() const { return triangles_lower_bound_; }
+  double expected_triangles() const { return expected_triangles_; }
 
-  // A best guess of the function's value at a point of the domain.
-  double likely_size(Point p) const;
+  // The function's expected value at a point of the domain: the geometric mean of its bounds there.
+  double expected_size(Point p) const;
 
   std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
 
@@ -99,8 +100,8 @@ class SizeMap {
 
   Box root_;
   std::vector<Node> nodes_;
-  double least_triangles_ = 0;
-  double likely_triangles_ = 0;
+  double triangles_lower_bound_ = 0;
+  double expected_triangles_ = 0;
 };
 
 }  // namespace weft

@@ -6,15 +6,17 @@
 #include <utility>
 #include <vector>
 
+#include "engine/parallel/task_graph.h"
+
 namespace weft::bench {
 namespace {
 
-Trace::Graph graph_of(std::vector<double> seconds, std::vector<TaskGraph::Edge> edges) {
+Trace::Graph graph_of(std::vector<double> seconds, std::vector<TaskEdge> edges) {
   Trace::Graph graph{.name = {"stage", {"even", "odd"}},
                      .seconds = std::move(seconds),
                      .skipped_by = {},
                      .edges = std::move(edges),
-                     .part_tasks = {}};
+                     .fragment_tasks = {}};
   graph.skipped_by.assign(graph.seconds.size(), Trace::kNone);
   return graph;
 }
@@ -64,26 +66,26 @@ TEST(ListSchedule, WithUnboundedThreadsTheChainIsTheCriticalPath) {
   EXPECT_DOUBLE_EQ(by_kind.at("odd"), 5);
 }
 
-TEST(ListSchedule, PartsWaitForRoomBeforeTheFirstUnsentOne) {
-  // Part 0 takes long; of the others only as many as fit may be built in the meantime.
-  const std::uint32_t ahead = parts_ahead(2);
+TEST(ListSchedule, FragmentsWaitForRoomBeforeTheFirstUnsentOne) {
+  // Fragment 0 takes long; of the others only as many as fit may be built in the meantime.
+  const std::uint32_t ahead = fragments_ahead(2);
   std::vector<double> seconds(2 * ahead, 1.0);
   seconds[0] = 10.0 * ahead;
   auto graph = graph_of(std::move(seconds), {});
-  for (std::uint32_t t = 0; t < 2 * ahead; ++t) graph.part_tasks.push_back(t);
+  for (std::uint32_t t = 0; t < 2 * ahead; ++t) graph.fragment_tasks.push_back(t);
   // Then those that waited, ahead + 1 in all, go on both threads.
   EXPECT_DOUBLE_EQ(schedule(graph, 2, 0).seconds, 10.0 * ahead + ahead / 2.0);
 }
 
-TEST(ListSchedule, WhatHasBegunAheadOfTheNextPartIsBounded) {
-  // Leaves of one task, each of which makes a part; that of the first takes long.
-  const std::uint32_t begun = parts_begun(10'000, 2);
+TEST(ListSchedule, WhatHasBegunAheadOfTheNextFragmentIsBounded) {
+  // Leaves of one task, each of which makes a fragment; that of the first takes long.
+  const std::uint32_t begun = fragments_begun(10'000, 2);
   std::vector<double> seconds(10'000, 1.0);
   seconds[0] = 1e6;
   auto graph = graph_of(std::move(seconds), {});
-  graph.name = {"stage", {"part"}};
+  graph.name = {"stage", {"fragment"}};
   for (std::uint32_t t = 0; t < 10'000; ++t) {
-    graph.part_tasks.push_back(t);
+    graph.fragment_tasks.push_back(t);
     graph.needs.push_back(t);
   }
   const Schedule result = schedule(graph, 2, 0);
@@ -93,7 +95,7 @@ TEST(ListSchedule, WhatHasBegunAheadOfTheNextPartIsBounded) {
 
 TEST(ListSchedule, SendingIsOneAfterTheOther) {
   auto graph = graph_of({1, 1, 1}, {});
-  graph.part_tasks = {0, 1, 2};
+  graph.fragment_tasks = {0, 1, 2};
   EXPECT_DOUBLE_EQ(schedule(graph, 3, 2).seconds, 7);
 }
 

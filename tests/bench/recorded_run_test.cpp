@@ -88,10 +88,10 @@ TEST(RecordedRun, ATaskRunsOrIsSkippedByOneThatItWaitsForAndThatRan) {
   EXPECT_GT(skipped, 0u);
 }
 
-TEST(RecordedRun, EachLeafHasAPart) {
+TEST(RecordedRun, EachLeafHasAFragment) {
   Recording run;
   run_square(run);
-  EXPECT_EQ(leaves_of(run.trace).part_tasks.size(), run.summary.leaves.size());
+  EXPECT_EQ(leaves_of(run.trace).fragment_tasks.size(), run.summary.leaves.size());
 }
 
 TEST(RecordedRun, TheScheduleOnOneThreadTakesTheWorkAndNoScheduleTakesLessThanItsShare) {
@@ -109,17 +109,18 @@ TEST(RecordedRun, TheScheduleOnOneThreadTakesTheWorkAndNoScheduleTakesLessThanIt
   }
 }
 
-TEST(RecordedRun, PartsDoNotWaitForOneAnother) {
-  // A chain of parts through the leaves in their order would bound the speed-up.
+TEST(RecordedRun, FragmentsDoNotWaitForOneAnother) {
+  // A chain of fragments through the leaves in their order would bound the speed-up.
   Recording run;
   run_square(run);
   const Trace::Graph& graph = leaves_of(run.trace);
   const Schedule path = schedule(graph, kUnboundedThreads, 0);
-  const auto parts = std::count_if(path.chain.begin(), path.chain.end(), [&](std::uint32_t task) {
-    return std::find(graph.part_tasks.begin(), graph.part_tasks.end(), task) !=
-           graph.part_tasks.end();
-  });
-  EXPECT_LE(parts, 1);
+  const auto fragments =
+      std::count_if(path.chain.begin(), path.chain.end(), [&](std::uint32_t task) {
+        return std::find(graph.fragment_tasks.begin(), graph.fragment_tasks.end(), task) !=
+               graph.fragment_tasks.end();
+      });
+  EXPECT_LE(fragments, 1);
 }
 
 TEST(RecordedRun, ATraceLeavesTheMeshAsItIs) {

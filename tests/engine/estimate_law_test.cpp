@@ -19,8 +19,8 @@ namespace {
 // Of what any run takes, however small its mesh.
 constexpr double kFixed = 2e6;
 
-// Takes a chunk in kEvery only when the run has come to rest, so that all parts which may wait do.
-// The peak then hardly depends on how fast the threads are.
+// Takes a chunk in kEvery only when the run has come to rest, so that all fragments that may wait
+// do. The peak then hardly depends on how fast the threads are.
 class Stalling : public ChunkSink {
  public:
   explicit Stalling(const weft::Run& run) : run_(run) {}

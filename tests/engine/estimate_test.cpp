@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
+#include "engine/parallel/mesh_plan.h"
 #include "engine/refine/quality_bounds.h"
-#include "engine/schedule/mesh_run.h"
 #include "weft/weft.h"
 
 namespace weft {
@@ -44,7 +44,7 @@ const double kOnLattice = 1.48 * triangles_per_bound(LatticeShape::for_angle(20)
 const double kAtCircumcentres = 1.16 * triangles_per_bound({});
 constexpr double kIfItVaries = 1.1;
 
-// Of parts that wait for their reader, 24 leaves at the most.
+// Of fragments that wait for their reader, 24 leaves at the most.
 double of_waiting(double triangles) {
   return 22 * std::min(triangles, 24 * leaf_triangles_for(triangles));
 }

@@ -13,10 +13,8 @@
 // triangle is, then around the best place so far. It works in floats, in units of the triangles'
 // edge, so its result is a proposal, which the caller judges in full precision.
 //
-// It makes 32 trials, without a branch within one. A search that ended a trial at the first
-// triangle worse than the best star so far made 26 trials and took longer, because the
-// processor cannot predict where a trial ends. Two sweeps add 12 % (pipe) and 13 % (coast) to the
-// engine's instructions.
+// It makes 32 trials, without a branch within one, because the processor cannot predict where a
+// trial would end. Not thread-safe: one per task.
 #pragma once
 
 #include <algorithm>

@@ -2,9 +2,8 @@
 // Hands out the numbers of blocks. Thread-safe. A block is taken once in a few hundred insertions,
 // so a mutex is good enough.
 //
-// A thread gets its blocks in runs, so that one thread fills adjacent blocks. When two threads took
-// blocks in turn, the processor prefetched what the other thread was writing: refinement by two
-// threads took 5 % more work than by one. With runs it takes 2 % more.
+// A thread gets its blocks in runs, so that one thread fills adjacent blocks: if two threads took
+// blocks in turn, the processor would prefetch what the other thread is writing.
 #pragma once
 
 #include <algorithm>

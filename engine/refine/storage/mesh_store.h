@@ -10,8 +10,11 @@
 // replace it; another owner's slot in the cavity is only marked dead. So the slots of a task are
 // final once no task can reach into its region, and a slot's first vertex shows whether the
 // triangle in it is still the same. 3 to 5 % of the slots end dead. Blocks that are no longer
-// read are given back and taken again (schedule/leaf_release.h), so that a mesh that is sent while
+// read are given back and taken again (emit/leaf_release.h), so that a mesh that is sent while
 // it is refined takes the memory of a strip of it.
+//
+// Units: coordinates of the domain. Errors: those of `from`; taking a block throws. Thread-safety:
+// blocks may be taken and given back at any time; the rest is governed by ownership.h.
 #pragma once
 
 #include <cstdint>

@@ -2,14 +2,15 @@
 // Address space for the most that a run may need: the system commits a page when it is first
 // touched, so arrays in it grow without moving.
 //
-// Large ranges use huge pages, which saves 18 % of the refinement time at 1 M triangles. Small ones
-// do not, because clearing 2 MiB costs more than a small mesh.
+// Large ranges use huge pages. Small ones do not, because clearing 2 MiB costs more than a small
+// mesh.
 //
-// The ranges of a run are kept for later runs, because clearing new pages took 6 % of the time of
-// one thread at 1 M triangles and 8 % of two, and a third of all page faults at 18,000 triangles.
-// Up to kKeptBytes are kept, of up to kKeptRanges ranges with huge pages and as many without, or
-// less if `keep_at_most` says so. The system may take these pages if memory is short while they are
-// not in use (MADV_FREE), but they count as the process's memory.
+// The ranges of a run are kept for later runs, because clearing new pages takes time. Up to
+// kKeptBytes are kept, of up to kKeptRanges ranges with huge pages and as many without, or less if
+// `keep_at_most` says so. The system may take these pages if memory is short while they are not in
+// use (MADV_FREE), but they count as the process's memory.
+//
+// Thread-safety: `reserve` and `keep_at_most`; a range has one owner.
 #pragma once
 
 #include <cstddef>

@@ -4,6 +4,9 @@
 //
 // An owner's slots, in the order in which it took them, are the same on every run, though the
 // blocks may lie elsewhere: numbers and chunks in that order are deterministic.
+//
+// Errors: throws what MeshStore does if all blocks are taken. Not thread-safe: its owner's task
+// uses it, and later who emits it.
 #pragma once
 
 #include <emmintrin.h>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A set of vertices that is filled and cleared many times: a table with open addressing. No result
 // depends on its order.
+//
+// Not thread-safe: one per task.
 #pragma once
 
 #include <algorithm>

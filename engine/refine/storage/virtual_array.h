@@ -3,8 +3,7 @@
 // it grows.
 //
 // If several threads touch a huge page for the first time at the same moment, each clears one, and
-// all but one discard theirs: 5 % of the time of two threads at 1 M triangles. So the thread that
-// is half through a page commits the next.
+// all but one discard theirs. So the thread that is half through a page commits the next.
 #pragma once
 
 #include <sys/mman.h>

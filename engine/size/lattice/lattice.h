@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The hexagonal lattice from which the Steiner points of too large triangles are taken
 // (refine/steiner_point.h): most triangles are then equilateral, and nearly as large as their
-// bound allows. Circumcentres make 1.53 times the least number of triangles, the lattice 1.02 times
-// (docs/how-it-works.md).
+// bound allows (docs/how-it-works.md).
 //
 // A bound D on the area is that of equilateral triangles of edge h = sqrt(4 D / sqrt(3)). The
-// lattice is laid out with triangles of `fill` D, so that rounding, jitter and the curvature of a
-// graded lattice (conformal_map.h) make none too large.
+// lattice is laid out with triangles of `area_ratio` D, so that rounding, jitter and the curvature
+// of a graded lattice (conformal_map.h) make none too large.
 //
 // Jitter. Each point is moved by up to `jitter` spacings each way, by a hash of its indices, so the
 // same point always moves alike. In a perfect lattice every in-circle test is a tie; 1e-4 of a
@@ -14,13 +13,11 @@
 // second reason: an extra vertex in a perfect lattice makes triangles of 30, 30 and 120 degrees,
 // whose circumcentres are the centroids of the next triangles, and so on through the whole lattice
 // (up to 2.2 times the least number of triangles were seen). With 1 % of jitter that dies out, from
-// 30 degrees on with 5 % more per degree; jitter reduces the fill:
+// 30 degrees on with 5 % more per degree; jitter reduces the area ratio. Above 31.5 degrees it does
+// not die out, and there is no lattice. bench/README.md has the measurements.
 //
-//     triangles over the least number, bound on angles    20     29.5    30     31     31.5 degrees
-//     cylinder model, stepped                              1.018  1.026   1.057  1.212  1.297
-//     pipe model, smooth                                   1.023  1.025   1.049  1.201  1.280
-//
-// Above 31.5 degrees it does not die out, and there is no lattice.
+// Units: coordinates of the domain; bounds in their square. Thread-safety: values and pure
+// functions, but for UniformLattice.
 #pragma once
 
 #include <algorithm>
@@ -37,10 +34,10 @@ inline constexpr double kEquilateral = 0.43301270189221932;
 
 // How the lattice is laid out.
 struct LatticeShape {
-  double fill = 0;    // area of its triangles over the bound; 0: there is no lattice
-  double jitter = 0;  // of its points, in spacings
+  double area_ratio = 0;  // area of its triangles over the bound; 0: there is no lattice
+  double jitter = 0;      // of its points, in spacings
 
-  bool exists() const { return fill > 0; }
+  bool exists() const { return area_ratio > 0; }
 
   // The shape for a bound on angles, in degrees.
   static LatticeShape for_angle(double min_angle_deg) {
@@ -102,7 +99,7 @@ inline Complex nearest_of_lattice(Complex w, double jitter) {
 // exists.
 inline double lattice_spacing2(double bound, const LatticeShape& shape) {
   constexpr double kMostBound = 1e150;
-  return bound > 0 && bound < kMostBound ? shape.fill * bound / kEquilateral : 0;
+  return bound > 0 && bound < kMostBound ? shape.area_ratio * bound / kEquilateral : 0;
 }
 
 // The lattice for one bound everywhere, through the origin. It remembers the last bound.

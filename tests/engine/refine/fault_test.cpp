@@ -9,7 +9,7 @@
 #include <new>
 #include <random>
 
-#include "tests/engine/refine/parallel.h"
+#include "tests/engine/parallel/parallel.h"
 
 namespace {
 

@@ -159,7 +159,7 @@ TEST(LatticeRows, ReplaceWhatIsInsideTheirRing) {
   EXPECT_GT(gain->vertices, 1000u);
   for (const std::uint32_t* t = ground.rows.begin_made(); t != ground.rows.end_made(); ++t) {
     ASSERT_EQ(ground.mesh.owner_of_triangle(*t), ground.slots.owner());
-    ASSERT_NEAR(ground.area_of(*t), ground.quality.lattice.fill * RowGround::kBound, 1e-4);
+    ASSERT_NEAR(ground.area_of(*t), ground.quality.lattice.area_ratio * RowGround::kBound, 1e-4);
   }
 }
 

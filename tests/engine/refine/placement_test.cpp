@@ -135,7 +135,7 @@ TEST(Placement, OfALatticePointThatIsTooCloseIsTheCircumcentre) {
 // and which is all ties.
 TEST(Placement, OnALatticeInLineWithTheSegmentsNeedsFewExactPredicates) {
   constexpr double kEdge = 0.0625;
-  const double bound = kEdge * kEdge * kEquilateral / LatticeShape::for_angle(20).fill;
+  const double bound = kEdge * kEdge * kEquilateral / LatticeShape::for_angle(20).area_ratio;
   MeshRequest request{.pslg = square(16), .size = bound, .leaf_triangles = 2000};
   add_segment(request.pslg, {0, 4}, {16, 4}, 1);
   add_segment(request.pslg, {4, 4}, {4, 16}, 1);
@@ -166,7 +166,7 @@ TEST(Placement, OfHostileSizesEndsWithASoundMeshOrATypedError) {
   }
 }
 
-// A millionth of a grain is less there than the distance of two coordinates.
+// A millionth of a lattice cell is less there than the distance of two coordinates.
 TEST(Placement, EndsFarFromTheOrigin) {
   MeshRequest request;
   add_ring(request.pslg, {{499999.9, 4649999.9},

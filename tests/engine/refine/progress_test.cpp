@@ -55,7 +55,7 @@ TEST(Fraction, IsOneAtTheEndOfAMeshOfOneTask) {
   EXPECT_EQ(fractions_of({.pslg = square(), .size = 1e-3}).back(), 1);
 }
 
-TEST(Fraction, OfAMeshThatIsCutOffIsOfTheTrianglesAllowed) {
+TEST(Fraction, OfAMeshThatIsTruncatedIsOfTheTrianglesAllowed) {
   Budget budget;
   budget.max_triangles = 5'000;
   ExecutionContext context(budget);

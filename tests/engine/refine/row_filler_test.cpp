@@ -23,7 +23,7 @@ std::uint64_t fill(RowGround& ground) {
   RowFiller<ConstantArea> filler(ground.refinement(), ground.quality, ground.area);
   const std::vector<BadTriangle> bad = ground.queue_bad();
   filler.fill(ground.refiner, ground.slots, ground.ownership, kLeaf, bad);
-  return ground.refiner.figures().insertions;
+  return ground.refiner.stats().insertions;
 }
 
 // The triangles that there are over those that the leaf will have.
@@ -111,7 +111,7 @@ TEST(RowFiller, KeepsEveryPointSegmentAndHole) {
 }
 
 // A triangle of a row may have three vertices of earlier leaves; then nobody but its own leaf sends
-// it (emit.h).
+// it (fragment.h).
 TEST(RowFiller, LosesNoTriangleBetweenLeaves) {
   for (const double leaf : {300.0, 450.0, 700.0}) {
     const MeshRequest request{.pslg = square(10), .size = 1e-3, .leaf_triangles = leaf};

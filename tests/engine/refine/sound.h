@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/engine/refine/parallel.h"
+#include "tests/engine/parallel/parallel.h"
 #include "tests/support/collected_mesh.h"
 
 namespace weft {

@@ -48,8 +48,8 @@ TEST(SizeMap, OfAStepFunctionIsConstantAwayFromTheStep) {
 TEST(SizeMap, EstimatesTheTrianglesFromBelow) {
   const Mapped m("x < 4 ? 0.01 : 1", square(8));
   // The boxes that touch the step count at the larger size.
-  EXPECT_GT(m.map.least_triangles(), 0.9 * (32 / 0.01 + 32));
-  EXPECT_LE(m.map.least_triangles(), 1.0000001 * (32 / 0.01 + 32));
+  EXPECT_GT(m.map.triangles_lower_bound(), 0.9 * (32 / 0.01 + 32));
+  EXPECT_LE(m.map.triangles_lower_bound(), 1.0000001 * (32 / 0.01 + 32));
 }
 
 TEST(SizeMap, LooksAtNoBoxOutsideTheDomain) {

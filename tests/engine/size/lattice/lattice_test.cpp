@@ -67,7 +67,8 @@ TEST(UniformLattice, HasNoPointForWhatIsNoSize) {
     EXPECT_EQ(UniformLattice().nearest({1, 1}, bound, shape).spacing2, 0) << bound;
   EXPECT_EQ(UniformLattice().nearest({1e40, 1}, 1, shape).spacing2, 0);
   EXPECT_EQ(UniformLattice().nearest({std::nan(""), 1}, 1, shape).spacing2, 0);
-  EXPECT_NEAR(UniformLattice().nearest({1, 1}, 1, shape).spacing2, shape.fill / kEquilateral, 1e-9);
+  EXPECT_NEAR(UniformLattice().nearest({1, 1}, 1, shape).spacing2, shape.area_ratio / kEquilateral,
+              1e-9);
 }
 
 // U = u_1 zeta + u_2 zeta^2 + u_3 zeta^3 about (5, 7), radius 2, for edges of exp(Re U) / 100.
