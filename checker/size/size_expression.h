@@ -53,8 +53,8 @@ class SizeExpression {
     using Operation = double (*)(const double* values, std::size_t count);
     Operation function = nullptr;
     std::size_t operands = 0;
-    double number = 0;                 // pushed if there is no function and no input
-    std::optional<std::size_t> input;  // pushed: x, y, then those of fields
+    double number = 0;                   // pushed if there is no function and no input
+    std::optional<std::size_t> input{};  // pushed: x, y, then those of fields
   };
 
   SizeExpression() = default;

@@ -51,7 +51,7 @@ Result<MeshReport> download(JobServer& server, const v1::Job& job, const InputDo
     output.bring_back_by(input->projection);
     mesh->input_point_markers = input->domain.point_markers;
   }
-  if (report->summary.has_outside()) add_warnings({outside_warning(report->summary)}, *report);
+  if (auto ok = add_outside_warning(input, *report); !ok) return tl::unexpected(ok.error());
   // 0 if the job has no such budget, or an earlier version of the server stored its mesh.
   if (const std::uint64_t budget = report->summary.request().budget().max_triangles(); budget != 0)
     if (auto warning = budget_warning(report->summary, budget))

@@ -7,6 +7,7 @@
 #include "client/formats/domain_formats.h"
 #include "client/formats/raster.h"
 #include "client/geo/lonlat_extent.h"
+#include "client/report/mesh_text.h"
 #include "client/report/projection_report.h"
 
 namespace weft::client {
@@ -70,6 +71,16 @@ void add_projection(const InputDomain& input, MeshReport& report) {
   const auto warnings = input.projection->warnings();
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
   if (!input.projection->to_metres()) bring_places_back(*input.projection, report.summary);
+}
+
+Result<void> add_outside_warning(const InputDomain* input, MeshReport& report) {
+  if (!report.summary.has_outside()) return {};
+  std::string warning = outside_warning(report.summary);
+  if (input != nullptr && !input->strict.empty())
+    return fail(ExitCode::kUnreadableInput,
+                input->strict.string() + ": refused, because of --strict\n  " + warning);
+  add_warnings({std::move(warning)}, report);
+  return {};
 }
 
 }  // namespace weft::client

@@ -46,6 +46,10 @@ void warn_of_degrees(const std::filesystem::path& path, Domain& domain);
 // `options` may be null. The origin refers to both.
 RequestOrigin origin_of(const InputDomain& input, const RequestOptions* options = nullptr);
 
+// Warns of segments that are no part of the mesh. Error (kUnreadableInput): there are some, and the
+// input is strict. `input` may be null. REQUIRES: add_projection, if there is one.
+Result<void> add_outside_warning(const InputDomain* input, MeshReport& report);
+
 // Adds the projection and its warnings to the report; if the mesh is written in longitude and
 // latitude, so are the places that the summary names.
 void add_projection(const InputDomain& input, MeshReport& report);

@@ -35,13 +35,7 @@ Result<MeshReport> mesh_into(const Connection& connection, const InputDomain& in
   received();
   add_projection(input, *report);
   add_warnings(input.domain.warnings, *report);
-  if (report->summary.has_outside()) {
-    std::string warning = outside_warning(report->summary);
-    if (!input.strict.empty())
-      return fail(ExitCode::kUnreadableInput,
-                  input.strict.string() + ": refused, because of --strict\n  " + warning);
-    add_warnings({std::move(warning)}, *report);
-  }
+  if (auto ok = add_outside_warning(&input, *report); !ok) return tl::unexpected(ok.error());
   if (auto warning = budget_warning(report->summary, request_options.max_triangles))
     add_warnings({std::move(*warning)}, *report);
   add_warnings(request_options.warnings, *report);

@@ -2,8 +2,8 @@
 #include "engine/domain/outside.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "engine/domain/face.h"
@@ -12,28 +12,37 @@ namespace weft {
 
 OutsideSegments find_outside(const Arrangement& a, const Carving& carving, const Pslg& pslg,
                              StopPoller& poller) {
-  // Calls visit(segment, triangle, i) for the constraints of all triangles that stay, or of the
-  // others.
-  const auto for_each_constraint = [&](bool stays, auto&& visit) {
-    for (std::size_t t = 0; t < a.triangles.size(); ++t) {
-      poller.step();
-      if ((carving.region[t] != kNone) != stays) continue;
-      for (int i = 0; i < 3; ++i)
-        if (const std::uint32_t c = a.triangles[t].constraint[i]; c != kNone)
-          visit(a.constraints[c].segment, a.triangles[t], i);
+  const auto stays = [&](std::uint32_t t) { return t != kNone && carving.region[t] != kNone; };
+  // The segments of which a piece is outside, and a point on each. Most domains have none.
+  std::vector<std::pair<std::uint32_t, Point>> pieces;
+  for (std::uint32_t t = 0; t < a.triangles.size(); ++t) {
+    poller.step();
+    if (stays(t)) continue;
+    const Arrangement::Triangle& triangle = a.triangles[t];
+    for (int i = 0; i < 3; ++i) {
+      if (triangle.constraint[i] == kNone || stays(triangle.neighbor[i])) continue;
+      const std::uint32_t segment = a.constraints[triangle.constraint[i]].segment;
+      const std::uint32_t end = std::min(triangle.vertex[ccw(i)], triangle.vertex[cw(i)]);
+      if (pslg.segments[segment].area == kNone) pieces.push_back({segment, a.vertices[end]});
     }
-  };
-  std::vector<bool> known(pslg.segments.size(), false);  // to stay, or counted
-  for_each_constraint(true,
-                      [&](std::uint32_t segment, const auto&, int) { known[segment] = true; });
+  }
+  if (pieces.empty()) return {};
+
+  std::vector<bool> known(pslg.segments.size(), false);  // to stay in part, or counted
+  for (std::uint32_t t = 0; t < a.triangles.size(); ++t) {
+    poller.step();
+    if (!stays(t)) continue;
+    for (const std::uint32_t c : a.triangles[t].constraint)
+      if (c != kNone) known[a.constraints[c].segment] = true;
+  }
   OutsideSegments outside;
-  for_each_constraint(false, [&](std::uint32_t segment, const auto& triangle, int i) {
-    if (known[segment] || pslg.segments[segment].area != kNone) return;
+  for (const auto& [segment, at] : pieces) {
+    if (known[segment]) continue;
     known[segment] = true;
-    if (outside.segments++ > 0 && segment > outside.first) return;
+    if (outside.segments++ > 0 && segment > outside.first) continue;
     outside.first = segment;
-    outside.at = a.vertices[std::min(triangle.vertex[ccw(i)], triangle.vertex[cw(i)])];
-  });
+    outside.at = at;
+  }
   return outside;
 }
 

@@ -8,7 +8,7 @@ export function warningsOf({ sizeWarnings, outside }: Summary): string[] {
   if (outside)
     sentences.push(
       `${count(outside.segments)} ${outside.segments === 1n ? "segment lies" : "segments lie"} outside of what is meshed, ` +
-        `${outside.segments === 1n ? "" : "the first "}at (${outside.x}, ${outside.y}): lines that should enclose a part do not close`,
+        `${outside.segments === 1n ? "" : "the first "}at (${outside.x}, ${outside.y}). Lines that do not close enclose nothing.`,
     );
   return sentences;
 }

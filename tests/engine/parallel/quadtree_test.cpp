@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace weft {
 namespace {
@@ -20,6 +22,23 @@ struct Tree {
   std::vector<Quadtree::Sample> samples;
   Quadtree quadtree;
 };
+
+// The leaves with which a leaf's `box` shares a point; `apart(x, y)`: whether a box that ends at x
+// shares none with one that begins at y.
+template <class Apart>
+std::vector<std::uint32_t> others(const Tree& tree, std::uint32_t leaf, Box Quadtree::Leaf::*box,
+                                  Apart apart) {
+  const auto& leaves = tree.quadtree.leaves();
+  const Box& p = leaves[leaf].*box;
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t other = 0; other < leaves.size(); ++other) {
+    const Box& q = leaves[other].*box;
+    if (other != leaf && !apart(p.max_x, q.min_x) && !apart(q.max_x, p.min_x) &&
+        !apart(p.max_y, q.min_y) && !apart(q.max_y, p.min_y))
+      found.push_back(other);
+  }
+  return found;
+}
 
 // Samples that crowd towards one point of the domain, so that leaves differ much in size.
 Tree graded(const Box& domain, std::uint64_t seed) {
@@ -198,18 +217,9 @@ TEST_P(Quadtrees, LoseNoWeight) {
 
 TEST_P(Quadtrees, KnowWhichLeavesTouch) {
   for_trees([](const Tree& tree) {
-    const auto& leaves = tree.quadtree.leaves();
-    for (std::uint32_t a = 0; a < leaves.size(); ++a) {
-      std::vector<std::uint32_t> expected;
-      for (std::uint32_t b = 0; b < leaves.size(); ++b) {
-        const Box& p = leaves[a].box;
-        const Box& q = leaves[b].box;
-        const bool apart =
-            p.max_x < q.min_x || q.max_x < p.min_x || p.max_y < q.min_y || q.max_y < p.min_y;
-        if (a != b && !apart) expected.push_back(b);
-      }
-      ASSERT_EQ(tree.quadtree.touching(a), expected) << "leaf " << a;
-    }
+    for (std::uint32_t a = 0; a < tree.quadtree.leaves().size(); ++a)
+      ASSERT_EQ(tree.quadtree.touching(a), others(tree, a, &Quadtree::Leaf::box, std::less<>()))
+          << "leaf " << a;
   });
 }
 
@@ -228,20 +238,11 @@ TEST_P(Quadtrees, GrowLeavesByHalfOfTheirSide) {
 
 TEST_P(Quadtrees, FindEveryLeafWhoseHaloOverlaps) {
   for_trees([](const Tree& tree) {
-    const auto& leaves = tree.quadtree.leaves();
     const auto overlapping = tree.quadtree.overlapping();
-    ASSERT_EQ(overlapping.size(), leaves.size());
-    for (std::uint32_t a = 0; a < leaves.size(); ++a) {
-      std::vector<std::uint32_t> expected;
-      for (std::uint32_t b = 0; b < leaves.size(); ++b) {
-        const Box& p = leaves[a].halo;
-        const Box& q = leaves[b].halo;
-        const bool apart =
-            p.max_x <= q.min_x || q.max_x <= p.min_x || p.max_y <= q.min_y || q.max_y <= p.min_y;
-        if (a != b && !apart) expected.push_back(b);
-      }
-      ASSERT_EQ(overlapping[a], expected) << "leaf " << a;
-    }
+    ASSERT_EQ(overlapping.size(), tree.quadtree.leaves().size());
+    for (std::uint32_t a = 0; a < overlapping.size(); ++a)
+      ASSERT_EQ(overlapping[a], others(tree, a, &Quadtree::Leaf::halo, std::less_equal<>()))
+          << "leaf " << a;
   });
 }
 

@@ -4,9 +4,11 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "server/run/memory_budget.h"
 #include "server/run/run_queue.h"
@@ -18,57 +20,54 @@ namespace {
 
 const auto kNever = [] { return false; };
 
-TEST(PromotedRun, GivesItsLightSlotToAnotherAndWaitsForAHeavyOne) {
+// The heavy slot is busy, so that only the light one is left.
+class PromotedRunThatWaits : public testing::Test {
+ protected:
+  void SetUp() override { busy_.occupy(queue_, "a", 1000); }
+  // Pushes a run that is promoted; returns when it is about to wait for the heavy slot.
+  void promote(const std::function<bool()>& stopped, std::function<void(RunQueue::Slot&)> then) {
+    const auto run = [this, stopped, then = std::move(then)](RunQueue::Slot& slot) {
+      EXPECT_EQ(slot.priority(), RunQueue::PriorityClass::kLight);
+      moves_.set();
+      slot.promote(stopped);
+      then(slot);
+    };
+    ASSERT_TRUE(pushed(queue_, run, "b", 10));
+    ASSERT_TRUE(moves_.wait());
+  }
+
+  Event moves_;
+  Event ended_;
+  Busy busy_;
+  RunQueue queue_{{.slots = 1, .light_slots = 1, .capacity = 10, .max_light_estimate = 10}};
+};
+
+TEST_F(PromotedRunThatWaits, GivesItsLightSlotToAnotherAndWaitsForAHeavyOne) {
   Event light_ran;
-  Event moves;
-  Event moved;
   std::atomic<bool> has_moved{false};
-  Busy busy;
-  RunQueue queue({.slots = 1, .light_slots = 1, .capacity = 10, .max_light_estimate = 10});
-  busy.occupy(queue, "a", 1000);
-  ASSERT_TRUE(pushed(
-      queue,
-      [&](RunQueue::Slot& slot) {
-        EXPECT_EQ(slot.priority(), RunQueue::PriorityClass::kLight);
-        moves.set();
-        slot.promote(kNever);
-        EXPECT_EQ(slot.priority(), RunQueue::PriorityClass::kHeavy);
-        has_moved = true;
-        moved.set();
-      },
-      "b", 10));
-  ASSERT_TRUE(moves.wait());
-  ASSERT_TRUE(pushed(queue, plain([&] { light_ran.set(); }), "c", 10));
+  promote(kNever, [&](RunQueue::Slot& slot) {
+    EXPECT_EQ(slot.priority(), RunQueue::PriorityClass::kHeavy);
+    has_moved = true;
+    ended_.set();
+  });
+  ASSERT_TRUE(pushed(queue_, plain([&] { light_ran.set(); }), "c", 10));
   EXPECT_TRUE(light_ran.wait());
   EXPECT_FALSE(has_moved);
-  EXPECT_EQ(queue.stats().waiting, 1u);
-  EXPECT_EQ(queue.stats().pausing, 0u);
-  busy.release.set();
-  EXPECT_TRUE(moved.wait());
+  EXPECT_EQ(queue_.stats().waiting, 1u);
+  EXPECT_EQ(queue_.stats().pausing, 0u);
+  busy_.release.set();
+  EXPECT_TRUE(ended_.wait());
 }
 
-TEST(PromotedRun, GoesOnOnceItIsStopped) {
-  Event ended;
-  Event moves;
+TEST_F(PromotedRunThatWaits, GoesOnOnceItIsStopped) {
   std::atomic<bool> stopped{false};
-  Busy busy;
-  RunQueue queue({.slots = 1, .light_slots = 1, .capacity = 10, .max_light_estimate = 10});
-  busy.occupy(queue, "a", 1000);
-  ASSERT_TRUE(pushed(
-      queue,
-      [&](RunQueue::Slot& slot) {
-        moves.set();
-        slot.promote([&] { return stopped.load(); });
-        ended.set();
-      },
-      "b", 10));
-  ASSERT_TRUE(moves.wait());
+  promote([&] { return stopped.load(); }, [&](RunQueue::Slot&) { ended_.set(); });
   stopped = true;
-  EXPECT_TRUE(ended.wait());
-  busy.release.set();
+  EXPECT_TRUE(ended_.wait());
+  busy_.release.set();
 }
 
-// The heavy slot is busy, so that only the light one is left.
+// As with PromotedRunThatWaits.
 class DistrustInTheQueue : public testing::TestWithParam<double> {
  protected:
   void SetUp() override { busy_.occupy(queue_, "a", 1000); }

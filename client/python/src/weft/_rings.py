@@ -6,17 +6,21 @@ end in polygons of very many edges near each other."""
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import combinations
 
 import numpy as np
 import numpy.typing as npt
 
 Points = npt.NDArray[np.float64]
 
+_FEW = 16  # corners of a ring, of which numpy's calls would take longer than the work
 _MOST_WORK = 50_000_000  # edges that are looked at, about a second of work
 
 
 def find_crossing(ring: Points) -> tuple[int, int] | None:
     """Two edges whose insides cross, by their first corners, the lower first."""
+    if len(ring) <= _FEW:
+        return _crossing_of_few(ring)
     ends = np.stack([ring, np.roll(ring, -1, axis=0)], axis=1)
     low, high = ends.min(axis=1), ends.max(axis=1)
     # Along the axis on which fewer edges overlap: each with those that begin before it ends.
@@ -37,6 +41,15 @@ def find_crossing(ring: Points) -> tuple[int, int] | None:
         if len(crossing):
             a, b = int(i[crossing[0]]), int(j[crossing[0]])
             return min(a, b), max(a, b)
+    return None
+
+
+def _crossing_of_few(ring: Points) -> tuple[int, int] | None:
+    corners = [complex(*corner) for corner in ring.tolist()]
+    for (i, (a, b)), (j, (c, d)) in combinations(enumerate(zip(corners, corners[1:] + corners[:1])), 2):
+        u, v = (b - a).conjugate(), (d - c).conjugate()
+        if ((u * (c - a)).imag * (u * (d - a)).imag < 0) and ((v * (a - c)).imag * (v * (b - c)).imag < 0):
+            return i, j
     return None
 
 
