@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <random>
 #include <thread>
+#include <utility>
 
 #include "tests/engine/parallel/parallel.h"
 #include "tests/support/event.h"
@@ -48,10 +49,10 @@ TEST(GrantedMemory, ChangesNothingInTheMesh) {
   }
 }
 
-// Peaks of fragments are added up in the summary, so that it may say a little more. On several
-// threads, how many are at work at once decides by how much.
+// Peaks of fragments are added up in the summary, so that it may say more: of a mesh of few
+// fragments by a half, the more the later the sender's thread comes.
 TEST(GrantedMemory, IsNearlyAllThatTheSummaryTellsOf) {
-  for (const double triangles : {100'000.0, 2'000'000.0}) {
+  for (const auto& [triangles, least] : {std::pair(100'000.0, 0.4), {2'000'000.0, 0.9}}) {
     Arena arena(1);
     ExecutionContext context;
     context.set_arena(arena);
@@ -62,7 +63,7 @@ TEST(GrantedMemory, IsNearlyAllThatTheSummaryTellsOf) {
     ASSERT_TRUE(summary);
     const auto peak = static_cast<double>(summary->peak_bytes);
     const auto asked = static_cast<double>(source.most());
-    EXPECT_GT(asked, 0.65 * peak) << triangles;
+    EXPECT_GT(asked, least * peak) << triangles;
     EXPECT_LT(asked, 1.05 * peak) << triangles;
     EXPECT_EQ(context.held_bytes().now(), 0) << triangles;
   }
