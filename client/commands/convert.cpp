@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -113,6 +114,14 @@ Result<ExitCode> convert_mesh(const ConvertOptions& options, const std::stop_tok
                warnings);
 }
 
+// A line on the system of the coordinates, if the file says one. client/python/src/weft/_convert.py
+// reads it.
+std::string system_text(const std::optional<CoordinateSystem>& system) {
+  if (!system) return "";
+  return "coordinates: " + std::string(system->geographic ? "longitude and latitude" : "a plane") +
+         " (" + harmless(system->name) + ")\n";
+}
+
 Result<ExitCode> convert_domain(const ConvertOptions& options, std::stop_token stop) {
   std::error_code ignored;
   if (std::filesystem::equivalent(options.input, options.output, ignored))
@@ -129,6 +138,7 @@ Result<ExitCode> convert_domain(const ConvertOptions& options, std::stop_token s
   auto read = read_domain(options.input, options.layers);
   if (!read) return tl::unexpected(read.error());
   const bool is_message = lower_extension(options.output) == kMessage;
+  const std::optional<CoordinateSystem> system = read->system;
   auto domain = is_message ? std::move(read) : seeded(std::move(*read));
   if (!domain)
     return fail(domain.error().exit, options.input.string() + ": " + domain.error().message);
@@ -138,12 +148,18 @@ Result<ExitCode> convert_domain(const ConvertOptions& options, std::stop_token s
     write_triangle_poly(*domain, files[0]);
   if (auto done = commit(files); !done) return tl::unexpected(done.error());
   if (options.quiet) return ExitCode::kOk;
+  if (!is_message && system && system->geographic)
+    domain->warnings.push_back(
+        options.output.string() +
+        ": does not say that its coordinates are longitudes and latitudes (" + system->name +
+        "); mesh it with --lonlat");
   return print(with_separators(domain->points.size()) + " points, " +
                with_separators(domain->segments.size()) + " segments, " +
                with_separators(domain->holes.size()) + " holes, " +
                with_separators(domain->regions.size()) + " regions" +
-               (is_message ? ", " + with_separators(domain->areas.size()) + " areas" : "") +
-               "\nwrote " + options.output.string() + "\n" + warnings_text(domain->warnings));
+               (is_message ? ", " + with_separators(domain->areas.size()) + " areas" : "") + "\n" +
+               system_text(system) + "wrote " + options.output.string() + "\n" +
+               warnings_text(domain->warnings));
 }
 
 }  // namespace

@@ -106,6 +106,7 @@ Result<ExitCode> run_submit(const SubmitOptions& options, std::stop_token stop) 
     if (failed) return tl::unexpected(*failed);
     MeshReport report{.accepted = {}, .summary = job->summary()};
     add_projection(*input, report);
+    if (auto ok = add_outside_warning(&*input, report); !ok) return tl::unexpected(ok.error());
     if (!options.quiet)
       std::fputs((summary_text(report.summary) + warnings_text(report.summary)).c_str(), stderr);
     return ExitCode::kOk;

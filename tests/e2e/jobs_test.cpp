@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <future>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -75,6 +76,30 @@ TEST_F(JobsByCommand, MadeWhileNobodyWaitsAreTheFilesThatMeshWrites) {
     const std::string made = client::contents_of(folder_ / (std::string("m") + extension));
     EXPECT_FALSE(made.empty());
     EXPECT_EQ(client::contents_of(folder_ / (std::string("f") + extension)), made) << extension;
+  }
+}
+
+TEST_F(JobsByCommand, OfWhichSegmentsAreOutsideFailIfTheyAreStrict) {
+  // Three sides of a square around a triangle.
+  const std::string gap = folder_.write("gap.poly",
+                                        "7 2\n1 0 0\n2 9 0\n3 9 9\n4 0 9\n5 3 3\n6 6 3\n7 6 6\n"
+                                        "6\n1 1 2\n2 2 3\n3 3 4\n4 5 6\n5 6 7\n6 7 5\n0\n");
+  const std::string told = "3 segments lie outside of what is meshed, the first at (0, 0)";
+  const std::string mesh = folder_ / "gap.vtu";
+  for (const Words& output : {Words{}, Words{"-o", mesh}}) {
+    Words words = {"submit", gap, "--size", "1", "--wait"};
+    words.insert(words.end(), output.begin(), output.end());
+    const Outcome lenient = weft(words);
+    EXPECT_EQ(lenient.exit_code, 0) << lenient.err;
+    EXPECT_NE(lenient.err.find("WARNING: " + told), std::string::npos) << lenient.err;
+    std::filesystem::remove(mesh);
+    words.push_back("--strict");
+    const Outcome strict = weft(words);
+    EXPECT_EQ(strict.exit_code, 4);
+    EXPECT_NE(strict.err.find("gap.poly: refused, because of --strict\n  " + told),
+              std::string::npos)
+        << strict.err;
+    EXPECT_FALSE(std::filesystem::exists(mesh));
   }
 }
 

@@ -193,3 +193,17 @@ def test_degrees_that_the_file_names_are_a_warning_without_lonlat(tmp_path):
     assert subprocess.run([WEFT, "lint", file, "--lonlat"], capture_output=True).returncode == 0
     file.write_text("y,x\n52.1,4.2\n52.2,4.9\n52.6,4.8\n")
     assert "warnings" not in Mesh(tmp_path, file, "--edge", 0.05).report
+
+
+def test_a_domain_that_is_converted_is_still_known_to_be_in_degrees(tmp_path):
+    file = tmp_path / "triangle.csv"
+    file.write_text("lat,lon\n52.1,4.2\n52.2,4.9\n52.6,4.8\n")
+    system = "coordinates: longitude and latitude (columns 'lon' and 'lat')"
+    for name, told in (("d.pb", []), ("d.poly", [
+            f"WARNING: {tmp_path / 'd.poly'}: does not say that its coordinates are longitudes and latitudes "
+            "(columns 'lon' and 'lat'); mesh it with --lonlat"])):
+        done = subprocess.run([WEFT, "convert", file, tmp_path / name], capture_output=True, text=True, check=True)
+        assert done.stdout.splitlines()[1:] == [system, f"wrote {tmp_path / name}", *told]
+    file.write_text("x,y\n52.1,4.2\n52.2,4.9\n52.6,4.8\n")
+    done = subprocess.run([WEFT, "convert", file, tmp_path / "d.poly"], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[1:] == [f"wrote {tmp_path / 'd.poly'}"]

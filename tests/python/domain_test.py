@@ -361,27 +361,6 @@ def test_a_coordinate_system_that_is_not_wgs_84_is_a_warning(recwarn, name, told
         f"its crs is '{name}', not WGS 84 as GeoJSON's is; coordinates are taken as they are"][:told]
 
 
-class _Frame:
-    """As a GeoDataFrame is, as far as it is looked at."""
-
-    def __init__(self, geographic):
-        self.crs = type("Crs", (), {"is_geographic": geographic})()
-        self.__geo_interface__ = {"type": "Polygon", "coordinates": [SQUARE]}
-
-
-@pytest.mark.parametrize("domain, degrees", [
-    (_Frame(True), True), (_Frame(False), False), ({"type": "Polygon", "coordinates": [SQUARE]}, False),
-    ({"type": "Polygon", "coordinates": [SQUARE],
-      "crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}}, True)])
-def test_degrees_that_are_not_projected_are_a_warning(recwarn, client, domain, degrees):
-    client.mesh(domain, size=1)
-    assert [str(warning.message).partition(":")[0] for warning in recwarn] == \
-        ["the coordinates are longitudes and latitudes"][:degrees]
-    recwarn.clear()
-    client.mesh(domain, size=1e10, lonlat=True)
-    assert not recwarn.list
-
-
 def test_what_has_no_area_and_no_length_is_left_out_with_one_warning(client, digest_of, tmp_path):
     flat = [[1, 1], [2, 2], [2, 2], [1, 1]]
     path = tmp_path / "left.geojson"

@@ -2,6 +2,7 @@
 """Domains in longitude and latitude: the same meshes as on the command line."""
 
 import json
+import subprocess
 import sys
 
 import numpy as np
@@ -11,6 +12,7 @@ import weft
 from conftest import MODELS
 
 COAST = MODELS / "us-east-coast.geojson"
+SQUARE = [[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]]
 GROUND = pyproj.Geod(ellps="WGS84")
 RINGS = {
     "tall": [(10, 40), (12, 40), (12, 52), (10, 52)],
@@ -162,6 +164,66 @@ def test_of_a_raster_file_only_the_part_is_read_that_the_plane_needs(
         assert mesh.summary.triangles == pytest.approx(by_command, rel=0.02)
         assert 0 < sum(sizes) <= most
         sizes.clear()
+
+
+def test_places_of_the_summary_are_in_degrees_as_the_mesh_is(client):
+    box, stray = [(10, 50), (12, 50), (12, 51), (10, 51), (10.002, 51.002)], [(13, 50), (13.5, 50)]
+    domain = weft.Domain([*box, *stray], [(0, 1), (1, 2), (2, 3), (3, 0), (3, 4), (5, 6)])
+
+    def places(**options):
+        with pytest.warns(weft.WeftWarning, match="outside"):
+            summary = client.mesh(domain, edge=20_000, snap=1000, lonlat=True, **options).summary
+        return (summary.outside.x, summary.outside.y), (summary.merging.farthest_x, summary.merging.farthest_y)
+
+    outside, farthest = places()
+    assert 13 <= outside[0] <= 13.5 and outside[1] == pytest.approx(50, abs=0.01)
+    assert farthest == pytest.approx((10, 51), abs=0.01)
+    assert min(np.hypot(*place) for place in places(to_metres=True)) > 10_000
+
+
+class _Frame:
+    """As a GeoDataFrame is, as far as it is looked at."""
+
+    def __init__(self, geographic):
+        self.crs = type("Crs", (), {"is_geographic": geographic})()
+        self.__geo_interface__ = {"type": "Polygon", "coordinates": [SQUARE]}
+
+
+@pytest.mark.parametrize("domain, degrees", [
+    (_Frame(True), True), (_Frame(False), False), ({"type": "Polygon", "coordinates": [SQUARE]}, False),
+    ({"type": "Polygon", "coordinates": [SQUARE],
+      "crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}}, True)])
+def test_degrees_that_are_not_projected_are_a_warning(recwarn, client, domain, degrees):
+    client.mesh(domain, size=1)
+    assert [str(warning.message).partition(":")[0] for warning in recwarn] == \
+        ["the coordinates are longitudes and latitudes"][:degrees]
+    recwarn.clear()
+    if degrees:
+        client.mesh(domain, size=1e10, lonlat=True)
+    assert not recwarn.list
+
+
+@pytest.mark.parametrize("header, degrees", [("lon,lat", True), ("x,y", False)])
+def test_degrees_of_a_file_that_the_command_line_reads_are_a_warning(recwarn, client, tmp_path, header, degrees):
+    path = tmp_path / "triangle.csv"
+    path.write_text(f"{header}\n0,0\n1,0\n0,1\n")
+    client.mesh(path, size=0.1)
+    assert [str(warning.message).partition(":")[0] for warning in recwarn] == \
+        ["the coordinates are longitudes and latitudes"][:degrees]
+    recwarn.clear()
+    client.mesh(path, size=1e9, lonlat=True)
+    assert not recwarn.list
+
+
+def test_what_lies_in_a_plane_is_not_projected(client, tmp_path):
+    with pytest.raises(weft.DomainError, match="lies in a plane"):
+        client.mesh(_Frame(False), lonlat=True)
+    source, path = tmp_path / "d.geojson", tmp_path / "d.gpkg"
+    source.write_text(json.dumps({"type": "Polygon", "coordinates": [SQUARE]}))
+    subprocess.run(["ogr2ogr", path, source, "-a_srs", "EPSG:32618"], check=True)
+    with pytest.raises(weft.DomainError, match="lies in a plane"):
+        client.mesh(path, crs="EPSG:32618")
+    assert client.mesh(path, size=1).summary.area == 16
 
 
 def test_what_cannot_be_projected_is_named(client, tmp_path):

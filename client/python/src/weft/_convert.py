@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import pathlib
 import subprocess
@@ -11,6 +12,7 @@ from . import _carried
 from .errors import WeftError
 
 _USAGE, _PREFIX = 2, "weft: "
+_WARNING, _SYSTEM = "WARNING: ", "coordinates: "
 
 
 class Refused(Exception):
@@ -22,9 +24,18 @@ class Refused(Exception):
         """Whether its arguments are at fault, such as an extension that it does not know."""
 
 
+@dataclasses.dataclass(frozen=True)
+class Said:
+    """By `weft convert` of what it has written."""
+
+    warnings: list[str]
+    geographic: bool | None
+    """Whether the file says that a domain is in longitude and latitude, or in a plane; None: neither."""
+
+
 def convert(source: pathlib.Path, target: pathlib.Path, *options: str,
-            error: type[WeftError]) -> list[str]:
-    """Writes `target` and returns the warnings. Raises Refused; `error` if the program is missing;
+            error: type[WeftError]) -> Said:
+    """Writes `target`. Raises Refused; `error` if the program is missing;
     OSError if `source` cannot be opened."""
     program = _carried.program("weft")
     if not program:
@@ -39,5 +50,7 @@ def convert(source: pathlib.Path, target: pathlib.Path, *options: str,
         if done.returncode != _USAGE:
             open(source, "rb").close()  # an OSError says more to those who catch it
         raise Refused(done.stderr.strip().removeprefix(_PREFIX), done.returncode == _USAGE)
-    return [line.removeprefix("WARNING: ") for line in done.stdout.splitlines()
-            if line.startswith("WARNING: ")]
+    lines = done.stdout.splitlines()
+    systems = [line.removeprefix(_SYSTEM) for line in lines if line.startswith(_SYSTEM)]
+    return Said([line.removeprefix(_WARNING) for line in lines if line.startswith(_WARNING)],
+                systems[0].startswith("longitude and latitude") if systems else None)

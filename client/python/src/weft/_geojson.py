@@ -243,7 +243,7 @@ def read(json: Any, area: Callable[..., Any], file: str = "") -> dict[str, Any]:
     reader.read(json, "", {})
     domain = reader.domain(area)
     system = _system(json)
-    domain["geographic"] = system.lower().endswith(("crs84", ":4326"))
+    domain["geographic"] = system.lower().endswith(("crs84", ":4326")) or None
     if system and not domain["geographic"]:
         reader.warn(f"its crs is '{system}', not WGS 84 as GeoJSON's is; coordinates are taken as they are")
     return domain

@@ -35,10 +35,10 @@ def mesh(domain: DomainLike, size: Size = None, min_angle: float = 20, *,
     sent = given if projected is None else projected.domain
     made = _library.make(request, on_progress)
     warn_of(made.summary, sampled=callable(size) or callable(options.get("edge")))
-    points = made.points
+    points, summary = made.points, made.summary
     if projected is not None:
-        points = projected.to_lonlat(points, made.input_points)
+        points, summary = projected.to_lonlat(points, made.input_points), projected.brought_back(summary)
     return Mesh(points=points, triangles=made.triangles, regions=made.regions, edges=made.edges,
                 edge_markers=made.edge_markers, edge_segments=made.edge_segments,
-                input_points=made.input_points, summary=made.summary,
+                input_points=made.input_points, summary=summary,
                 marker_names=sent.marker_names, region_names=sent.region_names)

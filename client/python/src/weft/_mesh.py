@@ -94,7 +94,7 @@ class Mesh:
         with tempfile.TemporaryDirectory(prefix="weft-") as folder:
             npz = pathlib.Path(folder) / "mesh.npz"
             try:
-                warned = _convert.convert(path, npz, error=MeshFileError)
+                warned = _convert.convert(path, npz, error=MeshFileError).warnings
             except _convert.Refused as refused:
                 raise MeshFileError(str(refused)) from None
             for sentence in warned:
@@ -286,7 +286,7 @@ class Mesh:
         npz = part.with_name("arrays.npz")
         _npz.write(npz, arrays)
         try:
-            warned = _convert.convert(npz, path, *options, error=MeshFileError)
+            warned = _convert.convert(npz, path, *options, error=MeshFileError).warnings
         except _convert.Refused as refused:
             if not refused.usage or options:
                 raise MeshFileError(str(refused)) from None

@@ -21,6 +21,7 @@ from ._raster_window import Window
 from .domain import Domain
 from .errors import DomainError
 from .fields import Distance, Field, FileField, MeshField, RasterField
+from .results import Summary
 
 Floats = npt.NDArray[np.float64]
 
@@ -62,6 +63,27 @@ class Projection:
         same[same] = (self._metres[inputs[same]] == points[vertices[same]]).all(axis=1)
         lonlat[vertices[same]] = self._lonlat[inputs[same]]
         return lonlat
+
+    def brought_back(self, summary: Summary) -> Summary:
+        """The summary with the places that it names in degrees, unless the mesh stays in metres."""
+        if self.to_metres:
+            return summary
+
+        def moved(record: Any, x: str, y: str) -> Any:
+            at = np.array([[getattr(record, x), getattr(record, y)]])
+            return dataclasses.replace(record, **dict(zip((x, y), self._as_in_file(self._inverse(at))[0].tolist())))
+
+        unrefined, merging = summary.unrefined, summary.merging
+        if unrefined.precision + unrefined.streaming:
+            unrefined = moved(unrefined, "x", "y")
+        if merging.farthest:
+            merging = moved(merging, "farthest_x", "farthest_y")
+        if merging.vanished_faces:
+            merging = moved(merging, "vanished_x", "vanished_y")
+        return dataclasses.replace(
+            summary, unrefined=unrefined, merging=merging,
+            narrow=summary.narrow and moved(summary.narrow, "x", "y"),
+            outside=summary.outside and moved(summary.outside, "x", "y"))
 
     def field(self, field: Field) -> Field:
         """The field in the plane: its points are in longitude and latitude, those of an earlier

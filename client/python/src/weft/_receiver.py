@@ -157,7 +157,7 @@ class MeshReceiver:
                 raise _damaged(f"{came} {what} came, the summary says {announced}")
         if self._sha256.hexdigest() != summary.digest:
             raise _damaged("the mesh does not match the SHA-256 of the summary")
-        self.summary = summary
+        self.summary = summary if self._projected is None else self._projected.brought_back(summary)
         warn_of(summary, self._sampled)
 
     def mesh(self) -> Mesh:

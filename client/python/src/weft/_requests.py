@@ -96,12 +96,15 @@ _FILL_NUMBERS = {name: number for number, name in _FILLS.items()}
 
 
 def projection(domain: Domain, options: MeshOptions) -> Projection | None:
-    """Of a domain that the options say is in longitude and latitude."""
+    """Of a domain that the options say is in longitude and latitude. Raises DomainError, MissingPackage."""
     if not (options.get("lonlat") or options.get("crs") or options.get("to_metres")):
         if domain.geographic:
             warn("the coordinates are longitudes and latitudes: lengths, areas and angles are those of degrees; "
                  "lonlat=True has them on the ground")
         return None
+    if domain.geographic is False:
+        raise DomainError("the domain lies in a plane, its file or object says: leave out lonlat, crs and to_metres, "
+                          "or bring it into longitude and latitude")
     return Projection(domain, options.get("crs"), options.get("to_metres", False))
 
 

@@ -78,8 +78,8 @@ class Domain:
     `marker_names`, `region_names`: what markers and regions are called, by number:
     `{2: "inlet"}`; each name once, UTF-8 of 1 to 255 bytes without control characters. The mesh
     comes back with them.
-    `geographic`: whether its file or object says that it is in longitude and latitude: a mesh of it without
-    `lonlat` has a warning.
+    `geographic`: whether its file or object says that it is in longitude and latitude, or in a plane: a mesh of
+    the former without `lonlat` has a warning, of the latter with it is an error. Default: it says neither.
     `region_values`: the attributes of a .poly file that are no integers, by the id that stands for
     each; no server needs them.
 
@@ -101,7 +101,7 @@ class Domain:
     region_names: Mapping[int, str] = dataclasses.field(default_factory=dict)
     areas: Sequence[Area] = ()
     segment_areas: npt.NDArray[np.uint32] = dataclasses.field(default_factory=lambda: np.zeros(0, np.uint32))
-    geographic: bool = False
+    geographic: bool | None = None
 
     def __post_init__(self) -> None:
         points = _floats("points", self.points)
@@ -180,12 +180,12 @@ class Domain:
         with tempfile.TemporaryDirectory(prefix="weft-") as folder:
             message = pathlib.Path(folder) / "domain.pb"
             try:
-                warned = _convert.convert(path, message, error=DomainError)
+                said = _convert.convert(path, message, error=DomainError)
             except _convert.Refused as refused:
                 raise DomainError(str(refused)) from None
-            for sentence in warned:
+            for sentence in said.warnings:
                 warn(sentence)
-            return _of_message(message.read_bytes())
+            return dataclasses.replace(_of_message(message.read_bytes()), geographic=said.geographic)
 
 
 DomainLike = Union[Domain, str, "os.PathLike[str]", dict[str, Any], npt.NDArray[Any],
@@ -206,7 +206,7 @@ def as_domain(domain: DomainLike) -> Domain:
     if hasattr(domain, "__geo_interface__"):
         read = Domain.geojson(domain.__geo_interface__)
         system = getattr(domain, "crs", None)  # of a GeoDataFrame, by pyproj
-        return dataclasses.replace(read, geographic=bool(getattr(system, "is_geographic", False)))
+        return dataclasses.replace(read, geographic=getattr(system, "is_geographic", None))
     if isinstance(domain, (Sequence, np.ndarray)) and len(domain):
         depth = 1 + np.ndim(domain[0])
         if depth == 2:
