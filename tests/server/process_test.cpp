@@ -39,7 +39,10 @@ class Weftd {
     argv.push_back(nullptr);
     std::vector<std::string> settings;
     for (const auto& [name, value] : environment) settings.push_back(name + "=" + value);
-    for (char** each = environ; *each != nullptr; ++each) settings.emplace_back(*each);
+    for (char** each = environ; *each != nullptr; ++each) {
+      const std::string setting = *each;
+      if (!environment.contains(setting.substr(0, setting.find('=')))) settings.push_back(setting);
+    }
     std::vector<char*> envp;
     for (std::string& setting : settings) envp.push_back(setting.data());
     envp.push_back(nullptr);
