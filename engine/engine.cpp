@@ -388,7 +388,7 @@ class Pipeline {
             "the minimum angle asks for at least " + count_text(narrow_.lower_bound()) +
                 " triangles where the domain is narrow, more than the limit of " +
                 std::to_string(context_.budget().triangle_limit) +
-                "; most of them between segments " + std::to_string(worst.segment) + " and " +
+                "; the most of them between segments " + std::to_string(worst.segment) + " and " +
                 std::to_string(worst.other) + ", " + text(worst.width) + " apart at (" +
                 text(worst.at.x) + ", " + text(worst.at.y) + ")",
             worst.at};
@@ -400,12 +400,16 @@ class Pipeline {
     const auto& worst = narrow_.costliest();
     const auto triangles = static_cast<double>(summary_.triangles);
     const double least = worst ? 2 * worst->lower_bound : 0;  // the other segment has as many
-    if (summary_.triangles < kMany || least < kLargePart * triangles) return std::nullopt;
+    const double in_all = std::max(least, narrow_.lower_bound());
+    if (summary_.triangles < kMany || in_all < kLargePart * triangles || !worst)
+      return std::nullopt;
     return NarrowPlace{.segment = worst->segment,
                        .other = worst->other,
                        .at = worst->at,
                        .width = worst->width,
-                       .triangles = std::min(least, triangles)};
+                       .triangles = std::min(least, triangles),
+                       .in_all = std::min(in_all, triangles),
+                       .widest = narrow_.widest()};
   }
 
   bool may_stream() const { return request_.min_angle_deg <= kMaxStreamingAngleDeg; }

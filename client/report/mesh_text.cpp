@@ -61,7 +61,9 @@ Json narrow_json(const v1::Summary& summary) {
   return {{"segments", {narrow.segment(), narrow.other()}},
           {"at", {narrow.x(), narrow.y()}},
           {"width", narrow.width()},
-          {"triangles", narrow.triangles()}};
+          {"triangles", narrow.triangles()},
+          {"in_all", narrow.in_all()},
+          {"widest", narrow.widest()}};
 }
 
 // Three digits of a distance are enough for people.
@@ -231,16 +233,28 @@ std::string simplification_text(const v1::Summary& summary) {
          rounded(made.area()) + ", no line moved by more than " + rounded(made.farthest()) + "\n";
 }
 
+// Two digits, rounded up.
+std::string merging_tolerance(double width) {
+  char tolerance[32];
+  const double unit = std::pow(10, std::floor(std::log10(width)) - 1);
+  std::snprintf(tolerance, sizeof tolerance, "%g", unit * (std::floor(width / unit) + 1));
+  return tolerance;
+}
+
 std::string narrow_text(const v1::Summary& summary) {
   if (!summary.has_narrow()) return "";
   const v1::NarrowPlace& narrow = summary.narrow();
-  char tolerance[32];  // one that merges them: two digits, rounded up
-  const double unit = std::pow(10, std::floor(std::log10(narrow.width())) - 1);
-  std::snprintf(tolerance, sizeof tolerance, "%g", unit * (std::floor(narrow.width() / unit) + 1));
-  return "at least " + with_separators(narrow.triangles()) + " triangles lie between segments " +
-         std::to_string(narrow.segment()) + " and " + std::to_string(narrow.other()) + ", " +
-         rounded(narrow.width()) + " apart at " + coordinates(narrow.x(), narrow.y()) +
-         ": if they should be one, --snap " + tolerance + " merges them\n";
+  const std::string pair = "between segments " + std::to_string(narrow.segment()) + " and " +
+                           std::to_string(narrow.other()) + ", " + rounded(narrow.width()) +
+                           " apart at " + coordinates(narrow.x(), narrow.y());
+  if (narrow.in_all() < 2 * narrow.triangles())
+    return "at least " + with_separators(narrow.triangles()) + " triangles lie " + pair +
+           ": if they should be one, --snap " + merging_tolerance(narrow.width()) +
+           " merges them\n";
+  return "at least " + with_separators(narrow.in_all()) +
+         " triangles lie where segments are up to " + rounded(narrow.widest()) +
+         " apart, the most of them " + pair + ": if these should be one, --snap " +
+         merging_tolerance(narrow.widest()) + " merges them\n";
 }
 
 std::string merging_text(const v1::Merging& merging) {

@@ -115,6 +115,23 @@ test("a property that is no marker, no region and no name is left out with a war
   expect([...domain.markerNames]).toEqual([[1, "a"]]);
 });
 
+test("degrees are a warning, and a plane that is named, as on the command line", () => {
+  const told = (ring: number[][], crs?: unknown) =>
+    readDomain("a.json", JSON.stringify({ type: "Polygon", coordinates: [ring], crs })).warnings;
+  const round = [[4, 52], [5, 52], [5, 53], [4, 52]];
+  const degrees = [[4.8952, 52.3702], [4.9001, 52.3702], [4.9, 52.4], [4.8952, 52.3702]];
+  const named = (name: string) => ({ type: "name", properties: { name } });
+  const warning = expect.stringMatching(/^the coordinates are longitudes and latitudes: .*--lonlat/);
+  expect(told(degrees)).toEqual([warning]);
+  expect(told(round, named("urn:ogc:def:crs:OGC:1.3:CRS84"))).toEqual([warning]);
+  expect(told(round)).toEqual([]);
+  expect(told(degrees.map(([x, y]) => [x - 4.9, y - 52.38]))).toEqual([]);
+  expect(told(degrees.map(([x, y]) => [x, y + 38]))).toEqual([]);
+  expect(told(degrees, named("EPSG:32618"))).toEqual([
+    "its crs is “EPSG:32618”, not WGS 84 as GeoJSON's is; coordinates are taken as they are",
+  ]);
+});
+
 test("rings that parity does not take for holes are a warning, as on the command line", () => {
   const warnings = (...holes: number[][][]) =>
     readDomain("a.json", JSON.stringify({ type: "Polygon", coordinates: [ring, ...holes] })).warnings;

@@ -248,6 +248,8 @@ void weft_mesh_summary(const weft_mesh* mesh, weft_summary* summary) {
     to.narrow_y = from.narrow->at.y;
     to.narrow_width = from.narrow->width;
     to.narrow_triangles = from.narrow->triangles;
+    to.narrow_in_all = from.narrow->in_all;
+    to.narrow_widest = from.narrow->widest;
   }
   to.triangulate_seconds = from.triangulate_seconds;
   to.size_seconds = from.size_seconds;

@@ -26,10 +26,16 @@ std::optional<Error> bounds_error(const Summary& summary, double min_angle_deg) 
   if (unrefined.precision > 0 && unrefined.streaming > 0) why += ", or because ";
   if (unrefined.streaming > 0)
     why += std::string("what is around ") + (count == 1 ? "it" : "them") + " had been sent already";
+  // Where only the angle is missed, features of the domain are as near together as its digits
+  // allow.
+  const std::string remedy = unrefined.precision > 0 && unrefined.too_large == 0
+                                 ? "; a larger snap merges what lies too near together"
+                                 : "";
   return Error{ErrorCode::kBoundsNotMet, "",
                std::to_string(count) + (count == 1 ? " triangle misses " : " triangles miss ") +
                    bound + " because " + why + "; the first is at (" +
-                   text(summary.unrefined_at.x) + ", " + text(summary.unrefined_at.y) + ")",
+                   text(summary.unrefined_at.x) + ", " + text(summary.unrefined_at.y) + ")" +
+                   remedy,
                summary.unrefined_at};
 }
 

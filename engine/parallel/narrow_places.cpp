@@ -72,6 +72,26 @@ struct Grading {
   }
 };
 
+// A clean one.
+struct Strip {
+  double width;
+  double lower_bound;  // of the triangles
+};
+
+double width_of_most(std::vector<Strip>& strips, double lower_bound) {
+  constexpr double kMost = 0.9;
+  std::sort(strips.begin(), strips.end(),
+            [](const Strip& a, const Strip& b) { return a.width < b.width; });
+  double width = 0;
+  double sum = 0;
+  for (const Strip& strip : strips) {
+    if (sum >= kMost * lower_bound) break;
+    sum += strip.lower_bound;
+    width = strip.width;
+  }
+  return width;
+}
+
 }  // namespace
 
 // One thread's look at some of the domain's triangles.
@@ -119,6 +139,7 @@ class NarrowPlaces::Search {
   }
 
   NarrowPlaces found;
+  std::vector<Strip> strips;
 
  private:
   void look_at(std::uint32_t t) {
@@ -275,6 +296,7 @@ class NarrowPlaces::Search {
       if (!clean) continue;
       const double lower_bound = kCertain * quality_alone * piece;
       found.lower_bound_ += lower_bound;
+      strips.push_back({*high, lower_bound});
       costliest.lower_bound += lower_bound;
       if (lower_bound <= most) continue;
       most = lower_bound;
@@ -308,6 +330,7 @@ Result<NarrowPlaces> NarrowPlaces::find(const Domain& domain, const CrossedArms&
   if (!(quality.sin2 > 0)) return all;
   const std::size_t n = domain.triangles.size();
   std::vector<NarrowPlaces> found((n + kAtATime - 1) / kAtATime);
+  std::vector<std::vector<Strip>> strips(found.size());
   const auto range = [&](std::size_t i) {
     return std::pair{static_cast<std::uint32_t>(i * kAtATime),
                      static_cast<std::uint32_t>(std::min(n, (i + 1) * kAtATime))};
@@ -328,6 +351,7 @@ Result<NarrowPlaces> NarrowPlaces::find(const Domain& domain, const CrossedArms&
     const auto [first, last] = range(i);
     search.look_at(first, last, maybe_thin);
     found[i] = std::move(search.found);
+    strips[i] = std::move(search.strips);
   });
   if (stopped) {
     if (auto error = context.poll()) return tl::unexpected(*error);
@@ -340,6 +364,9 @@ Result<NarrowPlaces> NarrowPlaces::find(const Domain& domain, const CrossedArms&
         some.costliest_->lower_bound > (all.costliest_ ? all.costliest_->lower_bound : 0))
       all.costliest_ = some.costliest_;
   }
+  std::vector<Strip> every;
+  for (const auto& some : strips) every.insert(every.end(), some.begin(), some.end());
+  all.widest_ = width_of_most(every, all.lower_bound_);
   return all;
 }
 

@@ -63,6 +63,8 @@ class NarrowPlaces {
   // as many.
   double lower_bound() const { return lower_bound_; }
   const std::optional<Costliest>& costliest() const { return costliest_; }
+  // Nine tenths of the lower bound lie where segments are no further apart than this.
+  double widest() const { return widest_; }
 
   // How many triangles the bound on angles makes of a triangle of the domain elsewhere, on average:
   // 1.7 to 3.1, measured on coasts at 20 to 33 degrees.
@@ -86,6 +88,7 @@ class NarrowPlaces {
   std::vector<Piece> pieces_;
   double expected_ = 0;
   double lower_bound_ = 0;
+  double widest_ = 0;
   std::optional<Costliest> costliest_;
 };
 

@@ -197,6 +197,8 @@ typedef struct weft_summary {
   uint64_t outside_segments;
   double outside_x, outside_y;
   uint32_t outside_first;
+  /* of all narrow places, see weft/mesh.h: 0 without */
+  double narrow_in_all, narrow_widest;
 } weft_summary;
 #define WEFT_SUMMARY \
   { .struct_size = sizeof(weft_summary) }

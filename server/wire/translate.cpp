@@ -325,6 +325,8 @@ v1::Summary to_wire(const Summary& summary, std::uint32_t threads) {
     narrow.set_y(summary.narrow->at.y);
     narrow.set_width(summary.narrow->width);
     narrow.set_triangles(static_cast<std::uint64_t>(summary.narrow->triangles));
+    narrow.set_in_all(static_cast<std::uint64_t>(summary.narrow->in_all));
+    narrow.set_widest(summary.narrow->widest);
   }
   for (const SizeWarning& warning : summary.size_warnings) {
     v1::SizeWarning& warned = *message.add_size_warnings();

@@ -74,8 +74,8 @@ def test_text_has_a_line_for_each_fault(yard: pathlib.Path) -> None:
 
 
 def test_a_domain_without_faults_ends_with_0(tmp_path: pathlib.Path) -> None:
-    for model in ("key.poly", "pipe.poly", "us-east-coast.geojson"):
-        done = weft(tmp_path, "lint", MODELS / model)
+    for model, *more in (("key.poly",), ("pipe.poly",), ("us-east-coast.geojson", "--lonlat")):
+        done = weft(tmp_path, "lint", MODELS / model, *more)
         assert (done.returncode, done.stdout) == (0, f"no faults in {MODELS / model}\n")
 
 

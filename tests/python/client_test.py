@@ -115,6 +115,7 @@ def test_two_segments_that_cost_many_triangles_are_told(client):
     narrow = client.mesh(domain).summary.narrow
     assert {narrow.segment, narrow.other} == {4, 5}
     assert narrow.width == pytest.approx(0.002)
+    assert narrow.triangles <= narrow.in_all and narrow.widest == pytest.approx(0.002)
     assert narrow.y == pytest.approx(5, abs=0.01)
     assert client.mesh(domain, snap=0.01).summary.narrow is None
 

@@ -2,6 +2,8 @@
 #include "client/formats/domains/geojson.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <new>
 #include <nlohmann/json.hpp>
@@ -26,6 +28,24 @@ using Json = nlohmann::json;
 constexpr std::uint64_t kMaxJsonBytes = std::uint64_t{512} << 20;
 constexpr int kMaxJsonDepth = 64;
 
+// GeoJSON is in longitude and latitude, but drawings in a plane are written as GeoJSON, too: most
+// of these lie around the origin, or have round coordinates.
+bool looks_geographic(const std::vector<Point>& points) {
+  double west = 180, east = -180, south = 90, north = -90;
+  std::size_t fine = 0;  // coordinates of more than three decimals
+  for (const Point p : points) {
+    west = std::min(west, p.x);
+    east = std::max(east, p.x);
+    south = std::min(south, p.y);
+    north = std::max(north, p.y);
+    for (const double value : {p.x, p.y})
+      fine += std::abs(1000 * value - std::round(1000 * value)) > 1e-6 ? 1 : 0;
+  }
+  const bool on_earth = -180 <= west && east <= 180 && -90 <= south && north <= 90;
+  const bool around_origin = west <= 0 && 0 <= east && south <= 0 && 0 <= north;
+  return on_earth && !around_origin && fine >= points.size();
+}
+
 class Reader {
  public:
   explicit Reader(const std::string& name) : name_(name), builder_(name) {}
@@ -38,6 +58,8 @@ class Reader {
     const std::string lower = lower_case(system);
     if (lower.ends_with("crs84") || lower.ends_with(":4326"))
       domain->system = CoordinateSystem{system, true, ""};
+    else if (system.empty() && looks_geographic(domain->points))
+      domain->system = CoordinateSystem{"RFC 7946", true, ""};
     else if (!system.empty())
       domain->warnings.push_back(name_ + ": its crs is " + in_quotes(system) +
                                  ", not WGS 84 as GeoJSON's is; coordinates are taken as they are");

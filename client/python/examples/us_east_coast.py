@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ocean off the US east coast, finer towards New York: a mesh and its picture.
+"""The ocean off the US east coast, finer towards the shore: a mesh and its picture.
 
     python3 us_east_coast.py [PICTURE]     default: us_east_coast.png
 """
@@ -14,8 +14,8 @@ coast = pathlib.Path(__file__).parents[3] / "tests/models/us-east-coast.geojson"
 new_york = (-74.0, 40.6)
 
 with weft.local() as client:
-    size = "1e-4 + 0.01*hypot(x+74, y-40.6)^2"  # squared degrees
-    mesh = client.mesh(coast, size=size, min_angle=30)
+    mesh = client.mesh(coast, lonlat=True, min_angle=30, edge="min(5000 + 0.15*shore, 50000)",  # metres
+                       fields={"shore": weft.distance()})
 print(mesh.quality())
 
 figure, (all_of_it, close) = plt.subplots(1, 2, figsize=(11, 6), layout="constrained")

@@ -21,7 +21,36 @@ export function readGeoJson(name: string, text: string): PlanarDomain {
   }
   const builder = new GeometryBuilder();
   read(root, "", noProperties, builder, 0);
-  return builder.finish(name);
+  const domain = builder.finish(name);
+  const system = systemOf(root as Json);
+  if (system ? /(crs84|:4326)$/i.test(system) : looksGeographic(domain.points))
+    domain.warnings.push(
+      "the coordinates are longitudes and latitudes: lengths, areas and angles are those of degrees; on the command line, --lonlat has them on the ground",
+    );
+  else if (system)
+    domain.warnings.push(`its crs is “${system}”, not WGS 84 as GeoJSON's is; coordinates are taken as they are`);
+  return domain;
+}
+
+// What the member crs, of GeoJSON before RFC 7946, names, if anything.
+function systemOf({ crs }: Json): string {
+  if (crs === undefined || crs === null) return "";
+  const name = isObject(crs) && isObject(crs.properties) ? crs.properties.name : undefined;
+  return typeof name === "string" ? name : shown(crs);
+}
+
+// GeoJSON is in longitude and latitude, but drawings in a plane are written as GeoJSON, too: most of these lie
+// around the origin, or have round coordinates.
+function looksGeographic(points: Float64Array): boolean {
+  let [west, east, south, north, fine] = [180, -180, 90, -90, 0];
+  points.forEach((value, i) => {
+    if (i % 2 === 0) [west, east] = [Math.min(west, value), Math.max(east, value)];
+    else [south, north] = [Math.min(south, value), Math.max(north, value)];
+    if (Math.abs(1000 * value - Math.round(1000 * value)) > 1e-6) fine++; // more than three decimals
+  });
+  const onEarth = -180 <= west && east <= 180 && -90 <= south && north <= 90;
+  const aroundOrigin = west <= 0 && 0 <= east && south <= 0 && 0 <= north;
+  return onEarth && !aroundOrigin && 2 * fine >= points.length;
 }
 
 const member = (path: string, name: string) => (path ? `${path}.${name}` : name);

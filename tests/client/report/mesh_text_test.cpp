@@ -118,14 +118,22 @@ TEST(MeshReport, TellsWhichSegmentsCostManyTrianglesAndWhatMergesThem) {
   narrow.set_y(4);
   narrow.set_width(1.23e-5);
   narrow.set_triangles(95'000);
+  narrow.set_in_all(189'999);
+  narrow.set_widest(0.00021);
   EXPECT_EQ(narrow_text(summary),
             "at least 95,000 triangles lie between segments 2 and 5, 1.23e-05 apart at (0, 4): if "
             "they should be one, --snap 1.3e-05 merges them\n");
+  narrow.set_in_all(190'000);
+  EXPECT_EQ(
+      narrow_text(summary),
+      "at least 190,000 triangles lie where segments are up to 0.00021 apart, the most of them "
+      "between segments 2 and 5, 1.23e-05 apart at (0, 4): if these should be one, --snap "
+      "0.00022 merges them\n");
   EXPECT_EQ(summary_json(summary)["narrow"],
             Json::parse(R"({"segments": [2, 5], "at": [0.0, 4.0], "width": 1.23e-5,
-                            "triangles": 95000})"));
+                            "triangles": 95000, "in_all": 190000, "widest": 0.00021})"));
   for (const auto& [width, snap] : {std::pair{0.003, "0.0031 "}, {1.0, "1.1 "}, {99.5, "100 "}}) {
-    narrow.set_width(width);
+    narrow.set_widest(width);
     EXPECT_NE(narrow_text(summary).find(std::string("--snap ") + snap), std::string::npos) << width;
   }
 }

@@ -152,7 +152,7 @@ TEST(BoundsError, TellsTheReasonsApart) {
   EXPECT_EQ(message_of({.small_input_angle = 3, .edge_floor = 2, .budget = 1}), "");
   EXPECT_EQ(message_of({.precision = 12}),
             "12 triangles miss the minimum angle of 20 degrees because double precision ends; the "
-            "first is at (0.25, -2)");
+            "first is at (0.25, -2); a larger snap merges what lies too near together");
   EXPECT_EQ(message_of({.streaming = 1, .too_large = 1}),
             "1 triangle misses the bound on its area because what is around it had been sent "
             "already; the first is at (0.25, -2)");

@@ -151,10 +151,37 @@ TEST(NarrowPlaces, AreToldOfAMeshIfOneMakesAFifthOfIt) {
   const auto triangles = static_cast<double>(narrow->triangles);
   EXPECT_GE(narrow->narrow->triangles, 0.2 * triangles);
   EXPECT_LE(narrow->narrow->triangles, triangles);
+  EXPECT_NEAR(narrow->narrow->in_all, narrow->narrow->triangles, 1e-6 * triangles);
+  EXPECT_NEAR(narrow->narrow->widest, 0.003, 1e-6);
 
   const auto wide = generate_mesh({.pslg = side_by_side(0.5, 0), .size = 1e-3}, sink, context);
   ASSERT_TRUE(wide);
   EXPECT_FALSE(wide->narrow);
+}
+
+TEST(NarrowPlaces, AreToldOfAMeshIfAllTogetherMakeAFifthOfIt) {
+  Pslg pslg = square(100);
+  constexpr int kPlaces = 12;
+  for (int i = 0; i < kPlaces; ++i) {
+    const double y = 8 + 7.5 * i;
+    const double gap = i == 7 ? 0.08 : 0.09;
+    add_segment(pslg, {10, y}, {90, y});
+    add_segment(pslg, {10, y + gap}, {90, y + gap});
+  }
+  ExecutionContext context;
+  Forgetful sink;
+  const auto made = generate_mesh({.pslg = pslg}, sink, context);
+  ASSERT_TRUE(made);
+  ASSERT_TRUE(made->narrow);
+  const NarrowPlace& narrow = *made->narrow;
+  EXPECT_NEAR(narrow.width, 0.08, 1e-9);
+  EXPECT_NEAR(narrow.at.y, 8 + 7.5 * 7, 0.081);
+  EXPECT_NEAR(narrow.widest, 0.09, 1e-6);
+  const auto triangles = static_cast<double>(made->triangles);
+  EXPECT_LT(narrow.triangles, 0.2 * triangles);
+  EXPECT_GT(narrow.in_all, 0.2 * triangles);
+  EXPECT_LT(narrow.in_all, triangles);
+  EXPECT_NEAR(narrow.in_all, kPlaces * narrow.triangles, 0.2 * narrow.in_all);
 }
 
 TEST(NarrowPlaces, AreSampledWhereTheyAre) {

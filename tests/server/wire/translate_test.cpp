@@ -82,7 +82,7 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   summary.size_histogram[9] = 10;
   summary.unrefined = {11, 12, 13, 27, 28, 29};
   summary.unrefined_at = {30, 31};
-  summary.narrow = NarrowPlace{51, 52, {53, 54}, 55, 56};
+  summary.narrow = NarrowPlace{51, 52, {53, 54}, 55, 56, 57, 58};
   summary.outside = {65, 66, {67, 68}};
   summary.simplified = Simplification{57, 58, 59, 60, 63, 64, 61, 62};
   summary.merging = {32, 33, 34, 35, {36, 37}, 38, {39, 40}};
@@ -143,6 +143,8 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   EXPECT_EQ(message.narrow().y(), 54);
   EXPECT_EQ(message.narrow().width(), 55);
   EXPECT_EQ(message.narrow().triangles(), 56u);
+  EXPECT_EQ(message.narrow().in_all(), 57u);
+  EXPECT_EQ(message.narrow().widest(), 58);
   EXPECT_EQ(message.outside().segments(), 65u);
   EXPECT_EQ(message.outside().first(), 66u);
   EXPECT_EQ(message.outside().x(), 67);

@@ -243,10 +243,21 @@ def read(json: Any, area: Callable[..., Any], file: str = "") -> dict[str, Any]:
     reader.read(json, "", {})
     domain = reader.domain(area)
     system = _system(json)
-    domain["geographic"] = system.lower().endswith(("crs84", ":4326")) or None
+    domain["geographic"] = (system.lower().endswith(("crs84", ":4326")) if system else
+                            _looks_geographic(domain["points"])) or None
     if system and not domain["geographic"]:
         reader.warn(f"its crs is '{system}', not WGS 84 as GeoJSON's is; coordinates are taken as they are")
     return domain
+
+
+def _looks_geographic(points: Points) -> bool:
+    """GeoJSON is in longitude and latitude, but drawings in a plane are written as GeoJSON, too: most of
+    these lie around the origin, or have round coordinates."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    on_earth = (low >= (-180, -90)).all() and (high <= (180, 90)).all()
+    around_origin = (low <= 0).all() and (high >= 0).all()
+    fine = np.abs(1000 * points - np.round(1000 * points)) > 1e-6
+    return bool(on_earth and not around_origin and 2 * fine.sum() >= fine.size)
 
 
 def _system(json: dict[str, Any]) -> str:

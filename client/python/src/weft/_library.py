@@ -132,7 +132,8 @@ class Summary(ctypes.Structure):
                     "simplified_points", "dropped_islands", "dropped_waters", "cut_channels")),
                 ("simplified_area", c_double), ("simplified_farthest", c_double),
                 *((name, c_uint64) for name in ("cut_off_waters", "straits", "outside_segments")),
-                ("outside_x", c_double), ("outside_y", c_double), ("outside_first", c_uint32)]
+                ("outside_x", c_double), ("outside_y", c_double), ("outside_first", c_uint32),
+                ("narrow_in_all", c_double), ("narrow_widest", c_double)]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -345,7 +346,7 @@ def _summary(library: Any, mesh: Any, arrays: Arrays, with_leaves: bool) -> resu
 
     leaves = arrays.leaf_count if with_leaves and arrays.leaf_count <= _MOST_LEAVES else 0
     narrow = results.NarrowPlace(told.narrow_segment, told.narrow_other, told.narrow_x, told.narrow_y,
-                                 told.narrow_width, int(told.narrow_triangles))
+                                 told.narrow_width, int(told.narrow_triangles), int(told.narrow_in_all), told.narrow_widest)
     simplification = results.Simplification(
         told.simplified_points, told.dropped_islands, told.dropped_waters, told.cut_channels,
         told.cut_off_waters, told.straits, told.simplified_area, told.simplified_farthest)

@@ -144,8 +144,9 @@ class Domain:
 
         A ring's last point leads to its first, and may repeat it.
         """
-        return Domain.geojson({"type": "MultiLineString", "coordinates": ()} if not rings else {
+        read = Domain.geojson({"type": "MultiLineString", "coordinates": ()} if not rings else {
             "type": "Polygon", "coordinates": [_closed(i, ring) for i, ring in enumerate(rings)]})
+        return dataclasses.replace(read, geographic=None)
 
     @staticmethod
     def geojson(json: dict[str, Any]) -> Domain:

@@ -102,7 +102,7 @@ class Merging:
 @dataclasses.dataclass(frozen=True)
 class NarrowPlace:
     """Two segments so near to each other that the bound on angles makes many triangles between them. A
-    `snap` a little above `width` merges them."""
+    `snap` a little above `width` merges them, one above `widest` most of such places."""
 
     segment: int
     """Index of a segment of the domain."""
@@ -116,6 +116,10 @@ class NarrowPlace:
     """How far they are apart there."""
     triangles: int
     """Between them and around, at least."""
+    in_all: int
+    """Triangles in all such places of the domain, at least."""
+    widest: float
+    """Nine tenths of these lie where segments are no further apart than this."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -215,7 +219,7 @@ class Summary:
     unrefined: Unrefined
     merging: Merging
     narrow: NarrowPlace | None
-    """The costliest one, if it has at least a fifth of a mesh of a thousand triangles or more."""
+    """The costliest one, if such places have at least a fifth of a mesh of a thousand triangles or more."""
     outside: OutsideSegments | None
     """None if there are none."""
     simplification: Simplification | None

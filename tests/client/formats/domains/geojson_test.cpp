@@ -190,6 +190,26 @@ TEST_F(GeoJson, TellsOfACoordinateSystemThatIsNotWgs84) {
   EXPECT_FALSE(system);
 }
 
+TEST_F(GeoJson, IsInDegreesIfItsNumbersLookSo) {
+  const auto system = [&](const std::string& more) {
+    const auto domain = read(R"({"type": "Polygon", "coordinates": [[)" + more + "]]}");
+    EXPECT_TRUE(domain) << domain.error().message;
+    return domain->system;
+  };
+  const CoordinateSystem degrees{"RFC 7946", true, ""};
+  EXPECT_EQ(system("[4.8952, 52.3702], [4.9, 52.3702], [4.9, 52.4], [4.8952, 52.3702]"), degrees);
+  EXPECT_EQ(system("[-180, -89.9999], [-178, -89.9999], [-178.0003, -60], [-180, -89.9999]"),
+            degrees);
+  // Most are round.
+  EXPECT_FALSE(system("[4.8952, 52.3702], [4.9, 52.37], [4.9, 52.4], [4.8952, 52.3702]"));
+  EXPECT_FALSE(system("[4.895, 52.37], [4.9, 52.37], [4.9, 52.4], [4.895, 52.37]"));
+  // The origin is in their box.
+  EXPECT_FALSE(system("[-1.0001, -1.0001], [1.0001, 0], [1.0001, 1.0001], [-1.0001, -1.0001]"));
+  // Not on Earth.
+  EXPECT_FALSE(system("[4.8952, 88.3702], [4.9001, 88.3702], [4.9, 90.0001], [4.8952, 88.3702]"));
+  EXPECT_FALSE(system("[178.8952, 8.3702], [180.001, 8.37], [179.1, 9.0001], [178.8952, 8.3702]"));
+}
+
 TEST_F(GeoJson, CountsThePolygonsOfRingsThatOverlap) {
   std::string polygons;
   for (int i = 0; i < 8; ++i)
