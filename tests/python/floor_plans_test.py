@@ -4,8 +4,9 @@
 import pytest
 from floor_plans import floor_plan, write_poly
 
-PLANS = [*range(500, 512), 525, 535]
-"""In 506, 525 and 535, chains of segments are led beside each other."""
+PLANS = [*range(500, 512), 520, 525, 535, 559, 599]
+"""In 506, 525 and 535, chains of segments are led beside each other; in 520, 559 and 599, a wall is led away from a
+door that ends at it."""
 
 
 @pytest.mark.parametrize("seed", PLANS)

@@ -5,9 +5,10 @@
 //
 // How segments meet. All predicates are exact on doubles. With T = merge_tolerance (tolerance.h):
 //   - Points nearer to each other than T become one, before anything else (merging.h).
-//   - A piece of a segment is led through every vertex nearer than T to it and to its input
-//     segment, and through every vertex nearer than T / 2 to it: during its insertion, those that
-//     it passes; at the end, those beside the edge (strip_search.h), until none is left.
+//   - A piece of a segment is led through every vertex nearer than T to its input segment, though
+//     earlier ones may have led it up to 2 T away, and through every vertex nearer than T / 2 to
+//     it: during its insertion, those that it passes; at the end, those beside the edge
+//     (strip_search.h), until none is left.
 //   - If two pieces cross, the crossing of the two INPUT segments is computed exactly and
 //     rounded once; if merging has bent the pieces away from it, that of the pieces. The vertex
 //     nearest to the crossing is used if it is nearer than T, otherwise a new vertex is made; both

@@ -339,18 +339,19 @@ void SegmentInserter::count_split() {
                        " times, which is the limit"}};
 }
 
-// True within the tolerance of both the piece and its input segment, or within half the tolerance
-// of the piece, however far earlier merges have led it from its segment.
+// True within the tolerance of the input segment, or within half the tolerance of the piece,
+// however far earlier merges have led it from its segment. A vertex that is within the tolerance of
+// the segment is within twice that of a piece whose ends are so, too.
 bool SegmentInserter::touches(Vertex w, const Piece& piece) const {
   const Point u = at(piece.u), v = at(piece.v), p = at(w);
   const double x = v.x - u.x, y = v.y - u.y;
   const double cross = x * (p.y - u.y) - y * (p.x - u.x);
   const double length2 = x * x + y * y;
-  if (cross * cross > tolerance2_ * length2) [[likely]]
+  if (cross * cross > 4 * tolerance2_ * length2) [[likely]]
     return false;
   // Squares of tiny coordinates underflow, lengths do not.
   const double off = std::fabs(cross) / std::sqrt(length2);
-  if (off >= merging_.tolerance || !shortens(piece.u, p, piece.v)) return false;
+  if (off >= 2 * merging_.tolerance || !shortens(piece.u, p, piece.v)) return false;
   if (off < 0.5 * merging_.tolerance) return true;
   const auto [a, b] = input_segment(piece.constraint);
   return distance_to_segment(p, a, b) < merging_.tolerance;

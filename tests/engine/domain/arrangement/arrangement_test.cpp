@@ -218,6 +218,21 @@ TEST(Arrangement, LeadsASegmentThroughAPointWithinTheToleranceOfIt) {
   EXPECT_EQ(domain.merging.farthest_at, pslg.points.back());
 }
 
+TEST(Arrangement, LeadsASegmentThroughAllPointsWithinTheToleranceOfItWhereverOthersLeadIt) {
+  Pslg pslg = square();
+  pslg.snap = 0.01;
+  const Point from{0.1, 0.5}, above{0.3, 0.508}, below{0.34, 0.492}, to{0.9, 0.5};
+  add_segment(pslg, from, to);
+  pslg.points.insert(pslg.points.end(), {above, below});
+  const Result<Domain> domain = triangulate(pslg, ExecutionContext());
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(broken_law(pslg, *domain), std::nullopt);
+  EXPECT_EQ(broken_separation(pslg, *domain), std::nullopt);
+  EXPECT_NE(subsegment(*domain, from, above), nullptr);
+  EXPECT_NE(subsegment(*domain, above, below), nullptr);
+  EXPECT_NE(subsegment(*domain, below, to), nullptr);
+}
+
 TEST(Arrangement, KeepsAPointFartherThanTheToleranceFromASegmentApart) {
   Pslg pslg = square();
   pslg.points.push_back({0.5, 1.1 * 0x1p-40});
