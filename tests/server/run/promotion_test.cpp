@@ -144,6 +144,8 @@ TEST(PromotedRun, LeavesAllSlotsAsTheyWere) {
   constexpr int kMoving = 40;
   std::atomic<int> moved{0};
   std::atomic<int> running{0};
+  Event all_run;
+  std::atomic<int> at_once{0};
   RunQueue queue({.slots = 2, .light_slots = 2, .capacity = 100, .max_light_estimate = 10});
   for (int i = 0; i < kMoving; ++i)
     ASSERT_TRUE(pushed(
@@ -159,8 +161,6 @@ TEST(PromotedRun, LeavesAllSlotsAsTheyWere) {
   while (moved < kMoving || queue.stats().running > 0) std::this_thread::yield();
   EXPECT_EQ(queue.stats().waiting, 0u);
   EXPECT_EQ(queue.stats().pausing, 0u);
-  Event all_run;
-  std::atomic<int> at_once{0};
   for (int i = 0; i < 4; ++i)
     ASSERT_TRUE(pushed(queue, plain([&] {
                          if (++at_once == 4) all_run.set();
