@@ -48,11 +48,14 @@ class Provenance {
   std::vector<Run> runs_;
 };
 
+// Longitude and latitude of WGS 84, as GDAL calls it.
+inline constexpr const char* kLonLat = "OGC:CRS84";
+
 // Of the coordinates in a file.
 struct CoordinateSystem {
   std::string name;         // for messages: "WGS 84 / UTM zone 18N"
   bool geographic = false;  // longitudes and latitudes, not a plane
-  std::string definition;   // as WKT: of OGC or of Esri
+  std::string definition;   // as WKT, of OGC or of Esri; or kLonLat
   friend bool operator==(const CoordinateSystem&, const CoordinateSystem&) = default;
 };
 

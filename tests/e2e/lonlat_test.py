@@ -207,3 +207,13 @@ def test_a_domain_that_is_converted_is_still_known_to_be_in_degrees(tmp_path):
     file.write_text("x,y\n52.1,4.2\n52.2,4.9\n52.6,4.8\n")
     done = subprocess.run([WEFT, "convert", file, tmp_path / "d.poly"], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[1:] == [f"wrote {tmp_path / 'd.poly'}"]
+
+
+def test_a_raster_in_a_plane_is_warped_to_a_domain_in_degrees(tmp_path):
+    file = tmp_path / "triangle.csv"
+    file.write_text("lat,lon\n52.1,4.2\n52.2,4.9\n52.6,4.8\n")
+    (tmp_path / "d.asc").write_text("ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n" + "0.03 0.03 0.03\n" * 3)
+    subprocess.run(["gdal_translate", "-q", "-a_srs", "EPSG:32631", "-a_ullr", "500000", "5900000", "700000", "5700000",
+                    "d.asc", "d.tif"], cwd=tmp_path, check=True)
+    warped = Mesh(tmp_path, file, "--edge", "d", "--field", f"d={tmp_path / 'd.tif'}").report["triangles"]
+    assert warped == pytest.approx(Mesh(tmp_path, file, "--edge", 0.03).report["triangles"], rel=0.02)

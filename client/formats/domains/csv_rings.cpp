@@ -118,7 +118,7 @@ class Reader {
     if (geometry_ || names.empty()) return std::nullopt;
     const std::string &x = names[place_of(Column::kX)], &y = names[place_of(Column::kY)];
     if (!is_of_degrees(x, y)) return std::nullopt;
-    return CoordinateSystem{"columns " + in_quotes(x) + " and " + in_quotes(y), true, ""};
+    return CoordinateSystem{"columns " + in_quotes(x) + " and " + in_quotes(y), true, kLonLat};
   }
 
   Result<void> take_names() {

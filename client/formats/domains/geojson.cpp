@@ -57,9 +57,9 @@ class Reader {
     const std::string system = system_of(root);
     const std::string lower = lower_case(system);
     if (lower.ends_with("crs84") || lower.ends_with(":4326"))
-      domain->system = CoordinateSystem{system, true, ""};
+      domain->system = CoordinateSystem{system, true, kLonLat};
     else if (system.empty() && looks_geographic(domain->points))
-      domain->system = CoordinateSystem{"RFC 7946", true, ""};
+      domain->system = CoordinateSystem{"RFC 7946", true, kLonLat};
     else if (!system.empty())
       domain->warnings.push_back(name_ + ": its crs is " + in_quotes(system) +
                                  ", not WGS 84 as GeoJSON's is; coordinates are taken as they are");

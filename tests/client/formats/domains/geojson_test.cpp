@@ -184,7 +184,7 @@ TEST_F(GeoJson, TellsOfACoordinateSystemThatIsNotWgs84) {
   for (const char* name : {"urn:ogc:def:crs:OGC:1.3:CRS84", "urn:ogc:def:crs:OGC::CRS84",
                            "EPSG:4326", "urn:ogc:def:crs:EPSG::4326"}) {
     EXPECT_EQ(named(name), "") << name;
-    EXPECT_EQ(system, (CoordinateSystem{name, true, ""}));
+    EXPECT_EQ(system, (CoordinateSystem{name, true, kLonLat}));
   }
   EXPECT_EQ(told("null"), "");
   EXPECT_FALSE(system);
@@ -196,7 +196,7 @@ TEST_F(GeoJson, IsInDegreesIfItsNumbersLookSo) {
     EXPECT_TRUE(domain) << domain.error().message;
     return domain->system;
   };
-  const CoordinateSystem degrees{"RFC 7946", true, ""};
+  const CoordinateSystem degrees{"RFC 7946", true, kLonLat};
   EXPECT_EQ(system("[4.8952, 52.3702], [4.9, 52.3702], [4.9, 52.4], [4.8952, 52.3702]"), degrees);
   EXPECT_EQ(system("[-180, -89.9999], [-178, -89.9999], [-178.0003, -60], [-180, -89.9999]"),
             degrees);
