@@ -137,7 +137,8 @@ std::optional<Error> DistanceField::add_quadtree(const DomainCover& cover,
   fill_table(0, 0, 0, 0);
   constexpr double kBesides = 80;
   constexpr double kPerLook = 20;
-  operations_ = static_cast<std::size_t>(kBesides + kPerLook * looks / static_cast<double>(leaves));
+  const auto divisor = static_cast<double>(std::max<std::size_t>(leaves, 1));
+  operations_ = static_cast<std::size_t>(kBesides + kPerLook * looks / divisor);
   return std::nullopt;
 }
 

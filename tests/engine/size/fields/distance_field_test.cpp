@@ -200,6 +200,15 @@ const Hostile kHostile[] = {
      }},
 };
 
+TEST(DistanceField, CostsLittleWhereNothingHasLists) {
+  const ExecutionContext context;
+  std::mt19937_64 random(1);
+  const auto field = DistanceField::make(random_lines(100, kUnit, random),
+                                         DomainCover::nothing_of(kUnit), context);
+  ASSERT_TRUE(field);
+  EXPECT_LT(field->operations(), 1000u);
+}
+
 TEST(DistanceField, IsExactToOneLineAndOnePoint) {
   const DistanceField to_line = distance_to({{{0, 0}, {1, 0}}});
   EXPECT_EQ(to_line({0.5, 0.25}), 0.25);
