@@ -61,11 +61,11 @@ struct RegionSeed {
 enum class Fill : std::uint8_t { kSeeds, kEvenOdd, kUnion };
 
 struct Pslg {
-  std::vector<Point> points;
-  std::vector<Segment> segments;
-  std::vector<Point> holes;
-  std::vector<RegionSeed> regions;
-  std::vector<Area> areas;
+  std::vector<Point> points{};
+  std::vector<Segment> segments{};
+  std::vector<Point> holes{};
+  std::vector<RegionSeed> regions{};
+  std::vector<Area> areas{};
   Fill fill = Fill::kSeeds;
   // Features nearer than this are merged first: points, points and segments, crossings. In the
   // units of the coordinates, 0 or more. 0: only what double precision cannot keep apart.

@@ -33,12 +33,12 @@ inline constexpr std::size_t kMaxSizesAt = 32;
 // and dy positive; columns * rows values, one at least.
 template <class T>
 struct GridOf {
-  Point origin;  // of the first node
+  Point origin{};  // of the first node
   double dx = 0;
   double dy = 0;
   std::uint32_t columns = 0;
   std::uint32_t rows = 0;
-  std::vector<T> values;  // by rows from the lowest: that of node (i, j) is [j * columns + i]
+  std::vector<T> values{};  // by rows from the lowest: that of node (i, j) is [j * columns + i]
 };
 // Sizes, each positive and finite; outside the grid those of its nearest point.
 using Raster = GridOf<double>;
@@ -49,9 +49,9 @@ using FieldRaster = GridOf<float>;
 // A field on an earlier mesh: linear in its triangles, from values at its vertices; outside them
 // the value at the nearest point. The triangles may be oriented as they like.
 struct FieldMesh {
-  std::vector<Point> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<double> values;  // one for each vertex, may be NaN
+  std::vector<Point> vertices{};
+  std::vector<std::array<std::uint32_t, 3>> triangles{};
+  std::vector<double> values{};  // one for each vertex, may be NaN
 };
 
 // The distance to the nearest of: the points, or the segments between them; if there are none, the
@@ -68,7 +68,7 @@ struct WidthSpec {};
 // A field that an expression may name.
 struct FieldSpec {
   std::string name;  // letters, digits and _, a letter or _ first; at most kMaxFieldNameBytes
-  std::variant<DistanceSpec, FieldRaster, FieldMesh, WidthSpec> kind;
+  std::variant<DistanceSpec, FieldRaster, FieldMesh, WidthSpec> kind{};
 };
 
 // How long edges may be on segments with a marker.
