@@ -4,9 +4,9 @@
 import pytest
 from floor_plans import floor_plan, write_poly
 
-PLANS = [*range(500, 512), 520, 525, 535, 559, 599]
+PLANS = [*range(500, 512), 520, 525, 535, 559, 599, 665]
 """In 506, 525 and 535, chains of segments are led beside each other; in 520, 559 and 599, a wall is led away from a
-door that ends at it."""
+door that ends at it; in 665, towards a partition that ends beside it."""
 
 
 @pytest.mark.parametrize("seed", PLANS)

@@ -6,14 +6,16 @@
 // How segments meet. All predicates are exact on doubles. With T = merge_tolerance (tolerance.h):
 //   - Points nearer to each other than T become one, before anything else (merging.h).
 //   - A piece of a segment is led through every vertex nearer than T to its input segment, though
-//     earlier ones may have led it up to 2 T away, and through every vertex nearer than T / 2 to
-//     it: during its insertion, those that it passes; at the end, those beside the edge
-//     (strip_search.h), until none is left.
+//     earlier ones may have led it up to 2 T away, and through every vertex nearer than half of the
+//     least tolerance to it: during its insertion, those that it passes; at the end, those beside
+//     the edge (strip_search.h), until none is left. A vertex that is nearer than T to no more than
+//     the piece is left beside it, because the caller's snap keeps the two apart.
 //   - If two pieces cross, the crossing of the two INPUT segments is computed exactly and
 //     rounded once; if merging has bent the pieces away from it, that of the pieces. The vertex
 //     nearest to the crossing is used if it is nearer than T, otherwise a new vertex is made; both
 //     pieces are led through it.
-// Afterwards all vertices are T apart, and no constrained edge passes a vertex nearer than T / 2.
+// Afterwards all vertices are T apart, and no constrained edge passes a vertex nearer than half of
+// the least tolerance, nor one nearer than T / 2 that is nearer than T to its input segment.
 // So a T-junction whose end was rounded is a junction, double walls whose ends are rounded apart
 // are one, and nearly concurrent segments meet in one vertex. If segments become one edge, each
 // counts in `odd`.

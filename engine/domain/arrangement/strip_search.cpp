@@ -36,7 +36,8 @@ bool StripSearch::leads_on(Edge edge) const {
   return std::max(p.along, q.along) > 0 && std::min(p.along, q.along) < length2_;
 }
 
-StripSearch::Vertex StripSearch::nearest(Edge edge) {
+StripSearch::Vertex StripSearch::nearest(Edge edge,
+                                         const std::function<bool(Vertex)>& is_asked_for) {
   if (is_clear(edge)) return Triangulation::kInfinite;
   u_ = t_.right(edge);
   v_ = t_.left(edge);
@@ -57,7 +58,8 @@ StripSearch::Vertex StripSearch::nearest(Edge edge) {
     if (w == Triangulation::kInfinite || !seen_.insert(across.face).second) continue;
     const Place p = place(w);
     if (p.along > 0 && p.along < length2_ && w != u_ && w != v_ &&
-        (std::fabs(p.above) < best_above || (std::fabs(p.above) == best_above && w < best))) {
+        (std::fabs(p.above) < best_above || (std::fabs(p.above) == best_above && w < best)) &&
+        is_asked_for(w)) {
       best = w;
       best_above = std::fabs(p.above);
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <unordered_set>
 #include <vector>
 
@@ -27,12 +28,12 @@ class StripSearch {
   }
 
   // Returns the vertex nearest to the edge among those on the side of edge.face that are nearer
-  // than the height, between the edge's ends, and not hidden by another constrained edge; kInfinite
-  // if there is none. So the triangle that it makes with the edge has no vertex inside.
+  // than the height, between the edge's ends, not hidden by another constrained edge, and asked
+  // for; kInfinite if there is none.
   //
   // It searches the faces that the strip of this height passes through; around the edge's ends,
   // those within 30 degrees of the edge. Throws Stopped.
-  Vertex nearest(Edge edge);
+  Vertex nearest(Edge edge, const std::function<bool(Vertex)>& is_asked_for);
 
   // Whether the face proves that there is no such vertex, as most faces do. If the face's apex sees
   // the edge at an angle of at most 120 degrees, so does every visible vertex, because it lies

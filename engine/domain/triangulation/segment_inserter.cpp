@@ -31,9 +31,9 @@ SegmentInserter::SegmentInserter(const Pslg& pslg, const std::vector<Point>& poi
       max_splits_(max_splits),
       merging_(merging),
       poller_(poller),
-      tolerance2_(merging.tolerance * merging.tolerance) {
-  constexpr double kRounding = 0x1p-50;  // 4 to 8 units in the last place
-  rounding_ = kRounding * largest_coordinate(pslg.points);
+      tolerance2_(merging.tolerance * merging.tolerance),
+      least_tolerance_(std::min(merging.tolerance, least_tolerance(pslg))),
+      rounding_(0x1p-10 * least_tolerance(pslg)) {  // 4 to 8 units in the last place
   constraints_.reserve(pslg.segments.size());
 }
 
@@ -106,8 +106,9 @@ void SegmentInserter::separate() {
         if (strip.is_clear(edge)) continue;
         const Vertex apex = t_.apex(edge);
         const Piece piece{t_.right(edge), t_.left(edge), constraints_[t_.constraint(edge)]};
-        const Vertex w = touches(apex, piece) ? apex : strip.nearest(edge);
-        if (w == Triangulation::kInfinite || !shortens(piece.u, at(w), piece.v)) continue;
+        const auto is_touched = [&](Vertex v) { return touches(v, piece); };
+        const Vertex w = touches(apex, piece) ? apex : strip.nearest(edge, is_touched);
+        if (w == Triangulation::kInfinite) continue;
         unconstrain(edge);
         merge_through(w, piece);
         insert_pieces();
@@ -339,9 +340,9 @@ void SegmentInserter::count_split() {
                        " times, which is the limit"}};
 }
 
-// True within the tolerance of the input segment, or within half the tolerance of the piece,
-// however far earlier merges have led it from its segment. A vertex that is within the tolerance of
-// the segment is within twice that of a piece whose ends are so, too.
+// True within the tolerance of the input segment, however far earlier merges have led the piece
+// from it, or within half the least tolerance of the piece. A vertex that is within the tolerance
+// of the segment is within twice that of a piece whose ends are so, too.
 bool SegmentInserter::touches(Vertex w, const Piece& piece) const {
   const Point u = at(piece.u), v = at(piece.v), p = at(w);
   const double x = v.x - u.x, y = v.y - u.y;
@@ -352,7 +353,7 @@ bool SegmentInserter::touches(Vertex w, const Piece& piece) const {
   // Squares of tiny coordinates underflow, lengths do not.
   const double off = std::fabs(cross) / std::sqrt(length2);
   if (off >= 2 * merging_.tolerance || !shortens(piece.u, p, piece.v)) return false;
-  if (off < 0.5 * merging_.tolerance) return true;
+  if (off < 0.5 * least_tolerance_) return true;
   const auto [a, b] = input_segment(piece.constraint);
   return distance_to_segment(p, a, b) < merging_.tolerance;
 }

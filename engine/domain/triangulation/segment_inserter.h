@@ -26,7 +26,7 @@ class SegmentInserter {
   SegmentInserter(const Pslg& pslg, const std::vector<Point>& points, Triangulation& triangulation,
                   double spacing, std::uint64_t max_splits, Merging& merging, StopPoller& poller);
 
-  // Afterwards no vertex is nearer to a constrained edge than half the tolerance. Throws Stopped.
+  // Afterwards constrained edges and vertices are apart as arrangement.h says. Throws Stopped.
   void insert_all();
 
   // The constraints, indexed as in the triangulation; some are no longer in use.
@@ -95,7 +95,8 @@ class SegmentInserter {
   Merging& merging_;
   StopPoller& poller_;
   const double tolerance2_;
-  double rounding_ = 0;  // what a vertex on a segment may be off it
+  const double least_tolerance_;
+  const double rounding_;  // what a vertex on a segment may be off it
   std::vector<Constraint> constraints_;
   std::vector<Arrangement::AreaJoin> area_joins_;
   std::vector<Piece> pieces_;          // still to insert, last one first

@@ -9,6 +9,8 @@
 #include <set>
 #include <vector>
 
+#include "engine/domain/tolerance.h"
+
 namespace weft {
 namespace {
 
@@ -237,7 +239,10 @@ Broken broken_separation(const Pslg& pslg, const Domain& d, double reach) {
       const Subsegment& s = d.subsegments[k];
       if (s.a == v || s.b == v) continue;
       const double off = to_segment(p, d.vertices[s.a], d.vertices[s.b]);
-      if (off < (0.5 - kRounding) * tolerance)
+      const Segment& from = pslg.segments[s.segment];
+      const bool is_near =
+          to_segment(p, pslg.points[from.a], pslg.points[from.b]) < (1 - kRounding) * tolerance;
+      if (off < (0.5 - kRounding) * (is_near ? tolerance : least_tolerance(pslg)))
         return broken("vertex ", v, " is ", off / tolerance, " tolerances off subsegment ", k);
     }
   }

@@ -22,9 +22,10 @@ std::optional<std::string> broken_chain(const Pslg& pslg, const Domain& domain, 
 // segment, and names the lowest of them and the first marker that is not 0.
 std::optional<std::string> broken_origin(const Pslg& pslg, const Domain& domain, double ulps = 6);
 
-// For domains that carve nothing away: no two vertices are nearer than the tolerance, no vertex is
-// nearer than half of it to a subsegment that it is no end of, and every input point is within
-// `reach` tolerances of a vertex, every subsegment within as many of the segment that it names.
+// For domains that carve nothing away: no two vertices are nearer than the tolerance; no vertex is
+// nearer than half of the least one to a subsegment that it is no end of, nor nearer than half of
+// the tolerance if it is nearer than that to the segment that the subsegment names; every input
+// point is within `reach` tolerances of a vertex, every subsegment within as many of its segment.
 std::optional<std::string> broken_separation(const Pslg& pslg, const Domain& domain,
                                              double reach = 1.01);
 

@@ -233,6 +233,22 @@ TEST(Arrangement, LeadsASegmentThroughAllPointsWithinTheToleranceOfItWhereverOth
   EXPECT_NE(subsegment(*domain, below, to), nullptr);
 }
 
+// The wall is led to a point that is nearer than half the snap to the end of the door.
+TEST(Arrangement, KeepsADoorFartherThanTheSnapFromItsWallApartWhereverOthersLeadTheWall) {
+  Pslg pslg = square();
+  pslg.snap = 0.01;
+  const Point from{0.1, 0.5}, above{0.3, 0.508}, end{0.312, 0.511}, to{0.9, 0.5};
+  add_segment(pslg, from, to);
+  add_segment(pslg, end, {0.312, 0.9});
+  pslg.points.push_back(above);
+  const Result<Domain> domain = triangulate(pslg, ExecutionContext());
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(broken_law(pslg, *domain), std::nullopt);
+  EXPECT_EQ(broken_separation(pslg, *domain), std::nullopt);
+  EXPECT_NE(subsegment(*domain, from, above), nullptr);
+  EXPECT_NE(subsegment(*domain, above, to), nullptr);
+}
+
 TEST(Arrangement, KeepsAPointFartherThanTheToleranceFromASegmentApart) {
   Pslg pslg = square();
   pslg.points.push_back({0.5, 1.1 * 0x1p-40});

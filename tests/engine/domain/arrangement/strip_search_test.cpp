@@ -61,7 +61,7 @@ TEST(StripSearch, KnowsNoMoreOfWideSpacedVerticesThanASearch) {
       quick.set_spacing(kSpacing);
       const bool is_clear = quick.is_clear(side);
       EXPECT_EQ(quick.is_clear(side.face), is_clear || crowd.t.is_infinite(side.face));
-      const auto nearest = thorough.nearest(side);
+      const auto nearest = thorough.nearest(side, [](auto) { return true; });
       found += nearest != Triangulation::kInfinite;
       if (!is_clear) continue;
       ++clear;
@@ -70,6 +70,21 @@ TEST(StripSearch, KnowsNoMoreOfWideSpacedVerticesThanASearch) {
   }
   EXPECT_GT(clear, 20);
   EXPECT_GT(found, 0);
+}
+
+TEST(StripSearch, PassesOverVerticesThatAreNotAskedFor) {
+  int second = 0;
+  for (unsigned seed = 0; seed < 400; ++seed) {
+    const Crowd crowd(seed, 0.02);
+    StopPoller poller(crowd.context);
+    StripSearch search(crowd.t, 0.01, poller);
+    const auto first = search.nearest(crowd.segment, [](auto) { return true; });
+    if (first == Triangulation::kInfinite) continue;
+    const auto next = search.nearest(crowd.segment, [&](auto v) { return v != first; });
+    EXPECT_NE(next, first) << seed;
+    second += next != Triangulation::kInfinite;
+  }
+  EXPECT_GT(second, 0);
 }
 
 }  // namespace
