@@ -28,6 +28,12 @@ using Json = nlohmann::json;
 constexpr std::uint64_t kMaxJsonBytes = std::uint64_t{512} << 20;
 constexpr int kMaxJsonDepth = 64;
 
+// What the names of systems in longitude and latitude end with: of WGS 84, and of those that the
+// coastlines and boundaries of many countries come in.
+constexpr std::string_view kWgs84[] = {"crs84", "4326", "4979"};
+constexpr std::string_view kGeographic[] = {"crs27", "crs83", "4258", "4267", "4269",
+                                            "4283",  "4490",  "4617", "4674", "7844"};
+
 // GeoJSON is in longitude and latitude, but drawings in a plane are written as GeoJSON, too: most
 // of these lie around the origin, or have round coordinates.
 bool looks_geographic(const std::vector<Point>& points) {
@@ -55,12 +61,13 @@ class Reader {
     auto domain = builder_.finish();
     if (!domain) return domain;
     const std::string system = system_of(root);
-    const std::string lower = lower_case(system);
-    if (lower.ends_with("crs84") || lower.ends_with(":4326"))
-      domain->system = CoordinateSystem{system, true, kLonLat};
+    const std::string code = lower_case(system.substr(system.find_last_of(":/#") + 1));
+    const bool is_wgs84 = std::ranges::find(kWgs84, code) != std::end(kWgs84);
+    if (is_wgs84 || std::ranges::find(kGeographic, code) != std::end(kGeographic))
+      domain->system = CoordinateSystem{harmless(system), true, kLonLat};
     else if (system.empty() && looks_geographic(domain->points))
       domain->system = CoordinateSystem{"RFC 7946", true, kLonLat};
-    else if (!system.empty())
+    if (!system.empty() && !is_wgs84)
       domain->warnings.push_back(name_ + ": its crs is " + in_quotes(system) +
                                  ", not WGS 84 as GeoJSON's is; coordinates are taken as they are");
     return domain;

@@ -14,8 +14,8 @@
 //   max_edge     positive number: bound on the length of their edges, as --edge
 //
 // Errors (kUnreadableInput) name the line and column if the text is not JSON, otherwise the path
-// of the offender ("features[3].geometry.coordinates[0]"): wrong types, a ring that is not closed
-// or has fewer than 3 distinct points, nesting deeper than 64 levels.
+// of the offender ("features[3].geometry.coordinates[0]"): wrong types, nesting deeper than 64
+// levels. What is left out or closed is a warning (geometry_builder.h).
 #pragma once
 
 #include <filesystem>

@@ -146,7 +146,7 @@ void GeometryBuilder::check_crossing(const Chain& ring, const std::string& path)
 
 Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::string& path,
                                    const GeometryProperties& properties,
-                                   std::span<const std::uint32_t> markers, bool must_close) {
+                                   std::span<const std::uint32_t> markers, bool is_closed) {
   auto ring = chain(positions, path, properties, markers);
   if (!ring) return tl::unexpected(ring.error());
   if (lacks_outer_ring_) return {};
@@ -157,12 +157,12 @@ Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::
     return {};
   }
   std::vector<Point>& points = ring->points;
-  const bool closed = points.size() > 1 && points.front() == points.back();
-  if (must_close && points.front() != points.back())
-    return bad(path, "is a ring that is not closed: it starts at " +
-                         coordinates(points.front().x, points.front().y) + " and ends at " +
-                         coordinates(points.back().x, points.back().y));
-  if (closed) points.pop_back();
+  if (points.front() == points.back())
+    points.pop_back();
+  else if (is_closed && ++open_rings_ <= kMostTold)
+    warn(": " + path + " is a ring that is not closed: it starts at " +
+         coordinates(points.front().x, points.front().y) + " and ends at " +
+         coordinates(points.back().x, points.back().y) + "; a segment closes it");
   check_crossing(*ring, path);
   polygon_rings_.push_back({domain_.points.size(), points.size(), path});
   return add(*ring, true, path);
@@ -224,6 +224,8 @@ Result<Domain> GeometryBuilder::finish() {
     segment.marker = markers[static_cast<std::size_t>(segment.marker)];
   markers_.name_all(NameKind::kMarker, names_);
   regions_.name_all(NameKind::kRegion, names_);
+  if (open_rings_ > kMostTold)
+    warn(": " + std::to_string(open_rings_ - kMostTold) + " more rings are not closed");
   if (crossings_ > kMostTold)
     domain_.warnings.push_back(file_ + ": " + std::to_string(crossings_ - kMostTold) +
                                std::string(kMoreCross));

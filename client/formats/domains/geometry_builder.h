@@ -12,11 +12,12 @@
 // Positions that repeat their predecessor are dropped.
 //
 // `path` names a part in its file ("features[3].geometry.coordinates[0]"); its position i is then
-// path[i]. Errors (kUnreadableInput) name the file and the path: magnitudes beyond 1e50, a ring
-// that is not closed. A ring that crosses itself or another of its polygon is a warning, as is one
-// whose role is not what parity makes of it (ring_crossing.h): parity decides what is inside. Rings
-// without an area (fewer than 3 distinct points), with the holes of such a ring, and lines without
-// a length are left out, which one warning tells of (left_out.h).
+// path[i]. Errors (kUnreadableInput) name the file and the path: magnitudes beyond 1e50. A ring
+// that does not end where it starts is closed, with a warning. A ring that crosses itself or
+// another of its polygon is a warning, as is one whose role is not what parity makes of it
+// (ring_crossing.h): parity decides what is inside. Rings without an area (fewer than 3 distinct
+// points), with the holes of such a ring, and lines without a length are left out, which one
+// warning tells of (left_out.h).
 //
 //   GeometryBuilder builder("coast.wkt");
 //   builder.begin_polygon();
@@ -81,10 +82,11 @@ class GeometryBuilder {
 
   // A polygon is the rings between these two calls.
   void begin_polygon(RingRoles roles = RingRoles::kOuterFirst);
-  // The last position repeats the first; if `must_close` is false it may be left out.
+  // `is_closed`: whether the last position repeats the first in the file's format; where it does
+  // not, a warning tells of it.
   Result<void> ring(std::span<const Point> positions, const std::string& path,
                     const GeometryProperties& properties,
-                    std::span<const std::uint32_t> markers = {}, bool must_close = true);
+                    std::span<const std::uint32_t> markers = {}, bool is_closed = true);
   void end_polygon(const std::string& path, const GeometryProperties& properties);
 
   // Returns an error if nothing was added. The builder must not be used afterwards.
@@ -123,6 +125,7 @@ class GeometryBuilder {
   Labels markers_;
   Labels regions_;
   LeftOut left_out_;
+  std::size_t open_rings_ = 0;
   std::size_t crossings_ = 0;  // rings that cross themselves
   std::size_t overlaps_ = 0;   // polygons of rings that overlap
   std::size_t odd_properties_ = 0;

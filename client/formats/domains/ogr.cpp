@@ -198,9 +198,8 @@ class Reader {
       case wkbTriangle:
         builder_.begin_polygon();
         for (int i = 0; i < parts; ++i)
-          if (auto added =
-                  builder_.ring(points_of(gdal_.OGR_G_GetGeometryRef(geometry, i)),
-                                path + ", ring " + std::to_string(i), properties, {}, false);
+          if (auto added = builder_.ring(points_of(gdal_.OGR_G_GetGeometryRef(geometry, i)),
+                                         path + ", ring " + std::to_string(i), properties);
               !added)
             return added;
         builder_.end_polygon(path, properties);

@@ -23,14 +23,20 @@ export function readGeoJson(name: string, text: string): PlanarDomain {
   read(root, "", noProperties, builder, 0);
   const domain = builder.finish(name);
   const system = systemOf(root as Json);
-  if (system ? /(crs84|:4326)$/i.test(system) : looksGeographic(domain.points))
+  const code = system.toLowerCase().split(/[:/#]/).pop()!;
+  if (system ? wgs84.has(code) || geographic.has(code) : looksGeographic(domain.points))
     domain.warnings.push(
       "the coordinates are longitudes and latitudes: lengths, areas and angles are those of degrees; on the command line, --lonlat has them on the ground",
     );
-  else if (system)
+  if (system && !wgs84.has(code))
     domain.warnings.push(`its crs is “${system}”, not WGS 84 as GeoJSON's is; coordinates are taken as they are`);
   return domain;
 }
+
+// What the names of systems in longitude and latitude end with: of WGS 84, and of those that the coastlines and
+// boundaries of many countries come in.
+const wgs84 = new Set(["crs84", "4326", "4979"]);
+const geographic = new Set(["crs27", "crs83", "4258", "4267", "4269", "4283", "4490", "4617", "4674", "7844"]);
 
 // What the member crs, of GeoJSON before RFC 7946, names, if anything.
 function systemOf({ crs }: Json): string {

@@ -39,6 +39,7 @@ export class GeometryBuilder {
   private readonly areas: Area[] = []; // their regions are labels
   readonly leftOut = new LeftOut();
   private readonly oddProperties: string[] = []; // sentences
+  private readonly open: string[] = []; // sentences
   private readonly crossings: string[] = []; // sentences
   private readonly overlaps: string[] = []; // sentences
 
@@ -59,7 +60,7 @@ export class GeometryBuilder {
     this.chain(positions, 0, properties);
   }
 
-  // Each ring ends in its first position. The holes of a ring that is left out are left out, too.
+  // Each ring ends in its first position, or is closed with a warning. The holes of a ring that is left out are left out, too.
   polygon(rings: readonly (readonly Point[])[], place: string, properties: Properties): void {
     const kept: { path: string; ring: Point[] }[] = [];
     const crossings = this.crossings.length;
@@ -70,16 +71,25 @@ export class GeometryBuilder {
         if (i === 0) return;
         continue;
       }
-      if (!same(ring[0], ring[ring.length - 1])) throw new FileError(`${place}[${i}]`, "is a ring that is not closed");
-      this.chain(ring.slice(0, -1), this.areas.length + 1, properties);
-      kept.push({ path: `${place}[${i}]`, ring: ring.slice(0, -1) });
-      this.checkCrossing(ring, `${place}[${i}]`);
+      const closed = this.close(ring, `${place}[${i}]`);
+      this.chain(closed.slice(0, -1), this.areas.length + 1, properties);
+      kept.push({ path: `${place}[${i}]`, ring: closed.slice(0, -1) });
+      this.checkCrossing(closed, `${place}[${i}]`);
     }
     if (kept.length === 0) return;
     if (this.crossings.length === crossings) this.checkOverlap(kept);
     const { region, regionName, maxArea } = properties;
     const asks = region !== undefined || regionName !== "";
     this.areas.push({ region: asks ? this.regionLabels.of(region ?? 0, regionName) : undefined, maxArea });
+  }
+
+  // Tells of a ring that does not end where it starts.
+  private close(ring: readonly Point[], path: string): readonly Point[] {
+    const [first, last] = [ring[0], ring[ring.length - 1]];
+    if (same(first, last)) return ring;
+    const ends = `it starts at (${first.join(", ")}) and ends at (${last.join(", ")})`;
+    this.open.push(`${path} is a ring that is not closed: ${ends}; a segment closes it`);
+    return [...ring, first];
   }
 
   private checkCrossing(ring: readonly Point[], path: string): void {
@@ -111,6 +121,7 @@ export class GeometryBuilder {
       return more > 0 ? [...sentences.slice(0, mostTold), `${more} ${others}`] : sentences;
     };
     const odd = told(this.oddProperties, "more properties are left out");
+    const open = told(this.open, "more rings are not closed");
     const crossings = told(this.crossings, "more rings cross themselves");
     const overlaps = told(this.overlaps, "more polygons have rings that overlap");
     const [ofMarkers, ofRegions] = [this.markerLabels.reader, this.regionLabels.reader];
@@ -125,7 +136,7 @@ export class GeometryBuilder {
       borders: Uint32Array.from(this.borders),
       markerNames: ofMarkers.names,
       regionNames: ofRegions.names,
-      warnings: [...(leftOut ? [leftOut] : []), ...crossings, ...overlaps, ...odd, ...ofMarkers.warnings, ...ofRegions.warnings],
+      warnings: [...(leftOut ? [leftOut] : []), ...open, ...crossings, ...overlaps, ...odd, ...ofMarkers.warnings, ...ofRegions.warnings],
     };
   }
 

@@ -60,14 +60,20 @@ TEST_F(DomainFile, WktTellsWhereItIsWrong) {
             "d.wkt:1:18: expected ')', found the end of the file");
   EXPECT_EQ(refusal("d.wkt", "CIRCLE(0 0, 1 0)"),
             "d.wkt:1:7: expected a geometry of well-known text, found 'CIRCLE'");
-  EXPECT_EQ(
-      refusal("d.wkt", "\nPOLYGON((0 0, 1 0, 1 1, 0 1))"),
-      "d.wkt: line 2, geometry 0, ring 0 is a ring that is not closed: it starts at (0, 0) and "
-      "ends at (0, 1)");
   EXPECT_EQ(refusal("d.wkt", " \n"), "d.wkt: holds no geometry");
   std::string deep;
   for (int i = 0; i < 100; ++i) deep += "GEOMETRYCOLLECTION(";
   EXPECT_NE(refusal("d.wkt", deep).find("is nested deeper than 64 levels"), std::string::npos);
+}
+
+TEST_F(DomainFile, RingsOfWktAreClosedWithAWarning) {
+  const Domain domain = read("d.wkt", "\nPOLYGON((0 0, 1 0, 1 1, 0 1))");
+  EXPECT_EQ(domain.segments.size(), 4u);
+  ASSERT_EQ(domain.warnings.size(), 1u);
+  EXPECT_TRUE(
+      domain.warnings[0].ends_with("d.wkt: line 2, geometry 0, ring 0 is a ring that is not "
+                                   "closed: it starts at (0, 0) and ends "
+                                   "at (0, 1); a segment closes it"));
 }
 
 TEST_F(DomainFile, CsvRingsEndAtBlankLinesAndAtANewNumber) {

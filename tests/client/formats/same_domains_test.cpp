@@ -31,5 +31,24 @@ TEST(SameDomains, AreReadFromFilesAsPythonAndTheConsoleReadThem) {
   EXPECT_GE(expect.size(), 12u);
 }
 
+TEST(SameDomains, AreInDegreesIfPythonAndTheConsoleTakeThemSo) {
+  const auto folder = std::filesystem::path(weft::testing::kModels).parent_path() / "domain_files";
+  const auto cases = nlohmann::json::parse(contents_of(folder / "degrees.json"));
+  const TempFolder files;
+  for (const auto& [number, given] : cases.items()) {
+    SCOPED_TRACE(given.dump());
+    auto ring = given["ring"];
+    ring.push_back(ring[0]);
+    nlohmann::json text = {{"type", "Polygon"}, {"coordinates", {ring}}};
+    if (given.contains("crs"))
+      text["crs"] = {{"type", "name"}, {"properties", {{"name", given["crs"]}}}};
+    const auto domain = read_domain(files.write("map.geojson", text.dump()));
+    ASSERT_TRUE(domain) << domain.error().message;
+    EXPECT_EQ(domain->system && domain->system->geographic, given["degrees"].get<bool>());
+    EXPECT_EQ(domain->warnings.size(), given.value("is_told", false) ? 1u : 0u);
+  }
+  EXPECT_GE(cases.size(), 19u);
+}
+
 }  // namespace
 }  // namespace weft::client

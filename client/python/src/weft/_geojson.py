@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import numbers
+import re
 from collections.abc import Callable, Sequence
 from json import dumps
 from typing import Any
@@ -44,6 +45,7 @@ class _Reader:
         self.first_left_out = ""
         self.file = file
         self.odd_properties = 0
+        self.open_rings = 0
         self.crossings = 0
         self.overlaps = 0
 
@@ -158,17 +160,25 @@ class _Reader:
                 if i == 0:  # its holes have no more
                     return
                 continue
-            if (points[0] != points[-1]).any():
-                raise DomainError(f"{path}[{i}] is a ring that is not closed: it starts at "
-                                  f"{tuple(points[0])} and ends at {tuple(points[-1])}")
-            kept[f"{path}[{i}]"] = points[:-1]
-            self.check_crossing(points[:-1], ring, f"{path}[{i}]")
-            self.chain(points[:-1], len(self.polygons) + 1, properties)
+            points = self.without_end(points, f"{path}[{i}]")
+            kept[f"{path}[{i}]"] = points
+            self.check_crossing(points, ring, f"{path}[{i}]")
+            self.chain(points, len(self.polygons) + 1, properties)
         if self.crossings == crossings:
             self.check_overlap(kept)
         if len(rings):
             asks = {"region", "region_name"} & properties.keys()
             self.polygons.append((self.region_labels.of(properties) if asks else None, properties))
+
+    def without_end(self, ring: Points, path: str) -> Points:
+        """A ring less its last position, which repeats the first. Tells of one that does not."""
+        if (ring[0] == ring[-1]).all():
+            return ring[:-1]
+        self.open_rings += 1
+        if self.open_rings <= _MOST_TOLD:
+            self.warn(f"{path} is a ring that is not closed: it starts at {coordinates(*ring[0].tolist())} and ends "
+                      f"at {coordinates(*ring[-1].tolist())}; a segment closes it")
+        return ring
 
     def check_crossing(self, ring: Points, positions: Any, path: str) -> None:
         """Tells of a ring that crosses itself; `positions`: as it is given."""
@@ -215,6 +225,8 @@ class _Reader:
                               (f": {self.left_out_sentence()}" if self.left_out else ""))
         if self.left_out:
             self.warn(self.left_out_sentence())
+        if self.open_rings > _MOST_TOLD:
+            self.warn(f"{self.open_rings - _MOST_TOLD} more rings are not closed")
         if self.crossings > _MOST_TOLD:
             self.warn(f"{self.crossings - _MOST_TOLD} more rings cross themselves")
         if self.odd_properties > _MOST_TOLD:
@@ -243,11 +255,17 @@ def read(json: Any, area: Callable[..., Any], file: str = "") -> dict[str, Any]:
     reader.read(json, "", {})
     domain = reader.domain(area)
     system = _system(json)
-    domain["geographic"] = (system.lower().endswith(("crs84", ":4326")) if system else
-                            _looks_geographic(domain["points"])) or None
-    if system and not domain["geographic"]:
+    code = re.split("[:/#]", system.lower())[-1]
+    domain["geographic"] = (code in _WGS84 | _GEOGRAPHIC if system else _looks_geographic(domain["points"])) or None
+    if system and code not in _WGS84:
         reader.warn(f"its crs is '{system}', not WGS 84 as GeoJSON's is; coordinates are taken as they are")
     return domain
+
+
+_WGS84 = {"crs84", "4326", "4979"}
+_GEOGRAPHIC = {"crs27", "crs83", "4258", "4267", "4269", "4283", "4490", "4617", "4674", "7844"}
+"""What the names of systems in longitude and latitude end with: of WGS 84, and of those that the coastlines and
+boundaries of many countries come in."""
 
 
 def _looks_geographic(points: Points) -> bool:
