@@ -19,6 +19,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import zipfile
 
 import gmsh
 import numpy
@@ -83,6 +84,16 @@ def write_shapefile(path):
         writer.record(3, 7)
         writer.poly([BESIDE[::-1]])
         writer.record(4, 8)
+
+
+def write_archive(path):
+    """A shapefile in a folder, as it is published."""
+    with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        write_shapefile(os.path.join(folder, "d.shp"))
+        for name in sorted(os.listdir(folder)):
+            archive.write(os.path.join(folder, name), f"borders/{name}")
+            archive.writestr(f"__MACOSX/borders/._{name}", b"of macOS")
+        archive.writestr("borders/read me.txt", "by their owner")
 
 
 def write_csv(path):
@@ -173,6 +184,8 @@ CASES = [  # file, kind, writer, what writes, what is expected
     ("d.gpkg", "", GDAL, ogr_file("GPKG"), OF_FIELDS),
     ("d.fgb", "", GDAL, ogr_file("FlatGeobuf"), OF_FIELDS),
     ("d.kml", "", GDAL, ogr_file("LIBKML"), OF_FIELDS),
+    ("d.kmz", "", GDAL, ogr_file("LIBKML"), OF_FIELDS),
+    ("d.zip", " of a `.shp`", f"pyshp {shapefile.__version__}", write_archive, OF_FIELDS),
     ("d.gml", "", GDAL, ogr_file("GML"), OF_FIELDS),
     ("d.dxf", "", GDAL, ogr_file("DXF", lines=True), DRAWN),
     ("d.dgn", "", GDAL, ogr_file("DGN", lines=True), DRAWN),

@@ -177,7 +177,9 @@ class Reader {
     const auto kind = std::find_if(std::begin(kKinds), std::end(kKinds),
                                    [&type](const Kind& k) { return k.name == type; });
     if (kind == std::end(kKinds))
-      return bad(path, "has the type " + in_quotes(type) + ", which is not GeoJSON's");
+      return bad(path,
+                 "has the type " + in_quotes(type) + ", which is not GeoJSON's" +
+                     (type == "Topology" ? "; TopoJSON is read from files named .topojson" : ""));
     const auto coordinates = json.find("coordinates");
     if (coordinates == json.end() || !coordinates->is_array())
       return bad(path, "has no array \"coordinates\"");

@@ -14,6 +14,7 @@
 #include "client/base/text.h"
 #include "client/formats/domains/feature_properties.h"
 #include "client/formats/domains/geometry_builder.h"
+#include "client/formats/domains/ogr_archive.h"
 #include "client/formats/domains/ogr_formats.h"
 #include "client/formats/files/gdal_library.h"
 #include "client/formats/mesh_formats.h"
@@ -40,12 +41,18 @@ class Reader {
     const std::string address = std::filesystem::absolute(path_).string();
     if (address.starts_with("/vsi"))
       return builder_.bad("", "is in a folder whose name GDAL takes for another file system");
+    OgrSource source{address, &format};
+    if (format.is_archive) {
+      auto found = find_in_archive(gdal_, address);
+      if (!found) return builder_.bad("", found.error().message);
+      source = std::move(*found);
+    }
     Dataset dataset(nullptr, gdal_.GDALClose);
     {
       const GdalErrors errors(gdal_);
-      dataset.reset(gdal_.GDALOpenEx(address.c_str(),
+      dataset.reset(gdal_.GDALOpenEx(source.address.c_str(),
                                      GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
-                                     format.drivers, format.options, nullptr));
+                                     source.format->drivers, source.format->options, nullptr));
       if (!dataset) return builder_.bad("", "is damaged, or of another format: " + errors.first());
     }
     const auto layers = choose(dataset.get(), options.layers);

@@ -5,8 +5,8 @@
 // same as in GeoJSON (geojson.h). What is meshed: see geometry_builder.h. Coordinates are taken as
 // they are, longitude before latitude.
 //
-// Only the file and those that its format keeps beside it are opened: no other format is tried, and
-// nothing is fetched that a file names.
+// Only the file and those that its format keeps beside it are opened, of a ZIP archive those in it
+// (ogr_archive.h): no other format is tried, and nothing is fetched that a file names.
 //
 // Errors (kUnreadableInput) name the file, the layer and the feature: GDAL is missing; a layer that
 // does not exist, or several of which none is named; a condition that is no SQL; layers in

@@ -15,8 +15,10 @@ constexpr const char* kGeoPackage[] = {"GPKG", nullptr};
 constexpr const char* kGml[] = {"GML", nullptr};
 constexpr const char* kGmt[] = {"OGR_GMT", nullptr};
 constexpr const char* kKml[] = {"LIBKML", "KML", nullptr};
+constexpr const char* kKmz[] = {"LIBKML", nullptr};
 constexpr const char* kMapInfo[] = {"MapInfo File", nullptr};
 constexpr const char* kShapefile[] = {"ESRI Shapefile", nullptr};
+constexpr const char* kTopoJson[] = {"TopoJSON", nullptr};
 
 // A GML file may name an address for its schema, and GDAL would write what it learned to a file
 // beside it.
@@ -26,6 +28,7 @@ constexpr OgrFormat kFormats[] = {
     {".gpkg", kGeoPackage},
     {".fgb", kFlatGeobuf},
     {".kml", kKml},
+    {".kmz", kKmz},
     {".gml", kGml, kGmlAlone},
     {".dxf", kDxf},
     {".dgn", kDgn},
@@ -33,6 +36,8 @@ constexpr OgrFormat kFormats[] = {
     {".mif", kMapInfo},
     {".gmt", kGmt},
     {".geojsonl", kGeoJsonSequence},
+    {".topojson", kTopoJson},
+    {.extension = ".zip", .drivers = nullptr, .is_archive = true},
     {".shp", kShapefile, nullptr, true},
     {".geojson", kGeoJson, nullptr, true},
     {".json", kGeoJson, nullptr, true},

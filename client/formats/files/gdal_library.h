@@ -6,6 +6,8 @@
 
 #include <cpl_conv.h>
 #include <cpl_error.h>
+#include <cpl_string.h>
+#include <cpl_vsi.h>
 #include <gdal.h>
 #include <gdal_alg.h>
 #include <ogr_api.h>
@@ -21,6 +23,7 @@
   EACH(CPLGetErrorHandlerUserData)          \
   EACH(CPLPopErrorHandler)                  \
   EACH(CPLPushErrorHandlerEx)               \
+  EACH(CSLDestroy)                          \
   EACH(GDALAllRegister)                     \
   EACH(GDALApproxTransform)                 \
   EACH(GDALClose)                           \
@@ -89,7 +92,8 @@
   EACH(OSRNewSpatialReference)              \
   EACH(OSRSetAxisMappingStrategy)           \
   EACH(OSRSetFromUserInput)                 \
-  EACH(VSIFree)
+  EACH(VSIFree)                             \
+  EACH(VSIReadDirRecursive)
 
 namespace weft::client {
 

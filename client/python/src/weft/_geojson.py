@@ -89,7 +89,8 @@ class _Reader:
             "Polygon": self.polygon}
         read = kinds.get(kind.removeprefix("Multi"))
         if read is None:
-            raise DomainError(f"{path} is of the type {kind!r}, which is not GeoJSON's")
+            raise DomainError(f"{path} is of the type {kind!r}, which is not GeoJSON's" +
+                              ("; TopoJSON is read from files named .topojson" if kind == "Topology" else ""))
         if coordinates is None:
             raise DomainError(f"{path} is missing")
         if len(coordinates) == 0:  # RFC 7946 allows it

@@ -288,8 +288,10 @@ TEST_F(GeoJson, TakesATextOfBlanksForNothing) {
 TEST_F(GeoJson, RefusesWrongTypes) {
   EXPECT_EQ(refusal("[]"), "map.geojson: is not a GeoJSON object");
   EXPECT_EQ(refusal("{}"), "map.geojson: has no string \"type\"");
-  EXPECT_EQ(refusal(R"({"type": "Topology"})"),
-            "map.geojson: has the type 'Topology', which is not GeoJSON's");
+  EXPECT_EQ(
+      refusal(R"({"type": "Topology"})"),
+      "map.geojson: has the type 'Topology', which is not GeoJSON's; TopoJSON is read from files "
+      "named .topojson");
   EXPECT_EQ(refusal(R"({"type": "Polygon"})"), "map.geojson: has no array \"coordinates\"");
   EXPECT_EQ(refusal(R"({"type": "Polygon", "coordinates": [7]})"),
             "map.geojson: coordinates[0] is not an array of positions");

@@ -68,6 +68,19 @@ class OgrFile : public ::testing::Test {
     GDALClose(file);
     return path;
   }
+  // An archive of files of this test's folder: pairs of the name in the archive, and theirs.
+  std::filesystem::path archive(
+      const std::vector<std::pair<std::string, std::string>>& files) const {
+    std::filesystem::path path = folder_ / "d.zip";
+    std::filesystem::remove(path);
+    for (const auto& [name, source] : files) {
+      const std::string contents = contents_of(folder_ / source);
+      VSILFILE* file = VSIFOpenL(("/vsizip/" + path.string() + "/" + name).c_str(), "wb");
+      EXPECT_EQ(VSIFWriteL(contents.data(), 1, contents.size(), file), contents.size());
+      VSIFCloseL(file);
+    }
+    return path;
+  }
   std::string refusal(const std::filesystem::path& path, const LayerOptions& layers = {},
                       ExitCode exit = ExitCode::kUnreadableInput) {
     const auto domain = read_domain(path, layers);
@@ -159,7 +172,8 @@ TEST_F(OgrFile, OfAFormatThatWeftReadsItselfIsReadInPart) {
   EXPECT_EQ(markers(read_domain(path, {.where = "marker = 4"})), std::vector<std::int32_t>{4});
   EXPECT_EQ(refusal(folder_.write("d.poly", ""), {.where = "marker = 4"}, ExitCode::kUsage),
             "d.poly: --layer and --where are for files with layers and attributes: .gpkg, .fgb, "
-            ".kml, .gml, .dxf, .dgn, .tab, .mif, .gmt, .geojsonl, .shp, .geojson, .json");
+            ".kml, .kmz, .gml, .dxf, .dgn, .tab, .mif, .gmt, .geojsonl, .topojson, .zip, .shp, "
+            ".geojson, .json");
 }
 
 TEST_F(OgrFile, HasLayersOfOneCoordinateSystem) {
@@ -229,6 +243,57 @@ TEST_F(OgrFile, WarnsOfARingThatCrossesItself) {
       "d.gpkg: layer 'd', feature 1, part 0, ring 0 is a ring that crosses itself: edge 0 from "
       "(0, 0) to (2, 2) crosses edge 2 from (2, 0) to (0, 2)"))
       << domain->warnings[0];
+}
+
+TEST_F(OgrFile, IsFoundInAnArchive) {
+  write("land.shp", "ESRI Shapefile", {{"land", {kSquare}}});
+  write("pier.shp", "ESRI Shapefile", {{"pier", {kWall}}});
+  write("land.gpkg", "GPKG", {{"land", {kSquare}}});
+  folder_.write("notes.txt", "by their owner");
+  std::vector<std::pair<std::string, std::string>> files = {
+      {"a b/notes.txt", "notes.txt"},    {"a b/land.shp", "land.shp"},
+      {"a b/land.shx", "land.shx"},      {"a b/land.dbf", "land.dbf"},
+      {"__MACOSX/._d.shp", "notes.txt"}, {"._d.shp", "notes.txt"}};
+  const auto domain = read_domain(archive(files));
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->segments.size(), 7u);
+  EXPECT_TRUE(
+      domain->point_places.locate(0).ends_with("d.zip: layer 'land', feature 0, ring 0[0]"));
+
+  for (const char* name : {"pier.shp", "pier.shx", "pier.dbf"})
+    files.emplace_back(std::string("a b/") + name, name);
+  EXPECT_EQ(refusal(archive(files)),
+            "d.zip: has 2 layers; name those that are meant by --layer; there are 'land', 'pier'");
+  const auto pier = read_domain(folder_ / "d.zip", {.layers = {"pier"}});
+  ASSERT_TRUE(pier) << pier.error().message;
+  EXPECT_EQ(pier->segments.size(), 1u);
+
+  for (const auto& [name, source] :
+       {std::pair{"a b/land.gpkg", "land.gpkg"}, {"c.shp", "land.shp"}}) {
+    auto more = files;
+    more.emplace_back(name, source);
+    EXPECT_EQ(refusal(archive(more)),
+              "d.zip: holds several files that are read as a domain, take one out of it: "
+              "'a b/land.shp', 'a b/pier.shp', '" +
+                  std::string(name) + "'");
+  }
+  EXPECT_EQ(refusal(archive({{"notes.txt", "notes.txt"}, {"d.zip", "notes.txt"}})),
+            "d.zip: holds no file that is read as a domain");
+  EXPECT_TRUE(refusal(folder_.write("d.zip", "PK")).starts_with("d.zip: is damaged, or no ZIP"));
+}
+
+TEST_F(OgrFile, OfTopologyIsMadeOfItsArcs) {
+  const auto domain = read_domain(folder_.write(
+      "d.topojson",
+      R"({"type": "Topology", "arcs": [[[1, 0], [0, 2]], [[1, 2], [-1, 0], [0, -2], [1, 0]],
+          [[1, 0], [1, 0], [0, 2], [-1, 0]]], "transform": {"scale": [2, 1], "translate": [10, 0]},
+          "objects": {"d": {"type": "GeometryCollection", "geometries": [
+            {"type": "Polygon", "arcs": [[0, 1]], "properties": {"region": 1}},
+            {"type": "Polygon", "arcs": [[2, -1]], "properties": {"region": 2}}]}}})"));
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->areas, (std::vector<Domain::Area>{{.region = 1}, {.region = 2}}));
+  EXPECT_EQ(domain->points[0], (Point{12, 0}));
+  EXPECT_EQ(domain->points.size(), 8u);
 }
 
 // What is in a file decides nothing but the domain.

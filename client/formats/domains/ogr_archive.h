@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds the files of a ZIP archive that are read as a domain. Boundaries and coastlines are mostly
+// published as archives of shapefiles.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "client/base/error.h"
+#include "client/formats/domains/ogr_formats.h"
+#include "client/formats/files/gdal_library.h"
+
+namespace weft::client {
+
+// What GDAL opens.
+struct OgrSource {
+  std::string address;
+  const OgrFormat* format;
+};
+
+// The only file of the archive at the absolute path that has an ogr_format, in whatever folder; or
+// a folder of several shapefiles, each a layer. Errors (kUnreadableInput), which follow the name of
+// the archive: it is damaged, has no such file, or several.
+Result<OgrSource> find_in_archive(const Gdal& gdal, const std::string& path);
+
+}  // namespace weft::client
