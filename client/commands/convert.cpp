@@ -182,8 +182,8 @@ Result<ExitCode> run_convert(const ConvertOptions& options, std::stop_token stop
                                       options.input.string() + " -o " + options.output.string() +
                                       "`; to convert it, write a .poly file or a .pb file");
   if (options.layers.wanted())
-    return fail(ExitCode::kUsage,
-                "--layer and --where are for domains, " + options.input.string() + " is a mesh");
+    return fail(ExitCode::kUsage, "--layer, --where and --attribute are for domains, " +
+                                      options.input.string() + " is a mesh");
   return convert_mesh(options, stop);
 }
 

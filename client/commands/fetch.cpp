@@ -22,7 +22,7 @@ Result<std::optional<InputDomain>> read_submitted(const FetchOptions& options) {
                 "domain that was submitted, too: --domain INPUT");
   if (!options.domain && options.layers.wanted())
     return fail(ExitCode::kUsage,
-                "--layer and --where are for the domain: give --domain INPUT, too");
+                "--layer, --where and --attribute are for the domain: give --domain INPUT, too");
   if (!options.domain) return std::nullopt;
   if (!is_domain_path(*options.domain)) return unknown_domain_format(*options.domain);
   auto domain = read_input_domain(*options.domain, {}, projected, options.layers);

@@ -145,8 +145,8 @@ Result<ExitCode> run_info(const InfoOptions& options) {
   }
   if (!is_domain_path(file)) return unknown_domain_format(file);
   if (options.layers.wanted())
-    return fail(ExitCode::kUsage,
-                "--layer and --where are for domains, " + file.string() + " is a mesh");
+    return fail(ExitCode::kUsage, "--layer, --where and --attribute are for domains, " +
+                                      file.string() + " is a mesh");
   const auto mesh = read_mesh(file);
   if (!mesh) return tl::unexpected(mesh.error());
   const std::string about = row("mesh", file.string()) + describe(*mesh) + warnings(mesh->warnings);

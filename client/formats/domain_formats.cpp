@@ -82,8 +82,8 @@ Result<Domain> read_any(const std::filesystem::path& path, const LayerOptions& l
   const OgrFormat* ogr = ogr_format(lower_extension(path));
   if (layers.wanted() && ogr == nullptr)
     return fail(ExitCode::kUsage, path.string() +
-                                      ": --layer and --where are for files with layers "
-                                      "and attributes: " +
+                                      ": --layer, --where and --attribute are for files "
+                                      "with layers and attributes: " +
                                       layered_extensions());
   try {
     if (ogr != nullptr && (layers.wanted() || !ogr->own_reader)) return read_with_ogr(path, layers);

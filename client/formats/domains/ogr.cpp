@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/formats/domains/ogr.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -57,6 +59,8 @@ class Reader {
     }
     const auto layers = choose(dataset.get(), options.layers);
     if (!layers) return tl::unexpected(layers.error());
+    attributes_ = &options.attributes;
+    if (auto ok = check_attributes(*layers); !ok) return tl::unexpected(ok.error());
     for (OGRLayerH layer : *layers)
       if (auto added = add_layer(layer, options.where); !added)
         return tl::unexpected(added.error());
@@ -112,6 +116,25 @@ class Reader {
     return chosen;
   }
 
+  // Each attribute is in one of the layers.
+  Result<void> check_attributes(const std::vector<OGRLayerH>& layers) const {
+    for (const auto& [property, attribute] : *attributes_) {
+      const auto has_it = [this, name = attribute.c_str()](OGRLayerH layer) {
+        return gdal_.OGR_L_FindFieldIndex(layer, name, TRUE) >= 0;
+      };
+      if (std::ranges::any_of(layers, has_it)) continue;
+      std::string names;
+      for (OGRLayerH layer : layers) {
+        OGRFeatureDefnH features = gdal_.OGR_L_GetLayerDefn(layer);
+        for (int i = 0; i < gdal_.OGR_FD_GetFieldCount(features); ++i)
+          names += (names.empty() ? "; there are " : ", ") +
+                   in_quotes(gdal_.OGR_Fld_GetNameRef(gdal_.OGR_FD_GetFieldDefn(features, i)));
+      }
+      return builder_.bad("", "has no attribute " + in_quotes(attribute) + names);
+    }
+    return {};
+  }
+
   Result<void> add_layer(OGRLayerH layer, const std::string& where) {
     const std::string name = "layer " + in_quotes(name_of(layer));
     if (auto ok = check_system(layer, name); !ok) return ok;
@@ -161,15 +184,17 @@ class Reader {
     return add_geometry(linear.get(), path, *properties, 0);
   }
 
-  PropertyValue value(OGRFeatureH feature, const char* field) const {
-    const int index = gdal_.OGR_F_GetFieldIndex(feature, field);
+  PropertyValue value(OGRFeatureH feature, const char* property) const {
+    const auto named = attributes_->find(property);
+    const char* const attribute = named == attributes_->end() ? property : named->second.c_str();
+    const int index = gdal_.OGR_F_GetFieldIndex(feature, attribute);
     if (index < 0 || gdal_.OGR_F_IsFieldSetAndNotNull(feature, index) == 0) return {};
     const auto type = gdal_.OGR_Fld_GetType(gdal_.OGR_F_GetFieldDefnRef(feature, index));
     const std::string text = gdal_.OGR_F_GetFieldAsString(feature, index);
     if (type == OFTString) return {std::nullopt, text, ""};
     const bool is_number = type == OFTInteger || type == OFTInteger64 || type == OFTReal;
     const double number = is_number ? gdal_.OGR_F_GetFieldAsDouble(feature, index) : 0;
-    if (is_number && std::isfinite(number)) return number_of_table(field, number);
+    if (is_number && std::isfinite(number)) return number_of_table(property, number);
     return {std::nullopt, "", in_quotes(text)};
   }
 
@@ -233,8 +258,9 @@ class Reader {
   const Gdal& gdal_;
   const std::filesystem::path& path_;
   GeometryBuilder builder_;
-  bool first_ = true;                   // no layer was read yet
-  OGRSpatialReferenceH crs_ = nullptr;  // of the layers, which own it
+  const std::map<std::string, std::string>* attributes_ = nullptr;  // as in LayerOptions
+  bool first_ = true;                                               // no layer was read yet
+  OGRSpatialReferenceH crs_ = nullptr;                              // of the layers, which own it
 };
 
 }  // namespace

@@ -56,6 +56,8 @@
   EACH(GDALRasterIO)                        \
   EACH(GDALReprojectionTransform)           \
   EACH(GDALSetCacheMax64)                   \
+  EACH(OGR_FD_GetFieldCount)                \
+  EACH(OGR_FD_GetFieldDefn)                 \
   EACH(OGR_F_Destroy)                       \
   EACH(OGR_F_GetFID)                        \
   EACH(OGR_F_GetFieldAsDouble)              \
@@ -64,6 +66,7 @@
   EACH(OGR_F_GetFieldIndex)                 \
   EACH(OGR_F_GetGeometryRef)                \
   EACH(OGR_F_IsFieldSetAndNotNull)          \
+  EACH(OGR_Fld_GetNameRef)                  \
   EACH(OGR_Fld_GetType)                     \
   EACH(OGR_GT_Flatten)                      \
   EACH(OGR_G_DestroyGeometry)               \
@@ -76,7 +79,9 @@
   EACH(OGR_G_GetPoints)                     \
   EACH(OGR_G_HasCurveGeometry)              \
   EACH(OGR_G_IsEmpty)                       \
+  EACH(OGR_L_FindFieldIndex)                \
   EACH(OGR_L_GetFeatureCount)               \
+  EACH(OGR_L_GetLayerDefn)                  \
   EACH(OGR_L_GetName)                       \
   EACH(OGR_L_GetNextFeature)                \
   EACH(OGR_L_GetSpatialRef)                 \

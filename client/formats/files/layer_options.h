@@ -3,6 +3,7 @@
 // whether it must be without faults.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,11 +12,13 @@ namespace weft::client {
 struct LayerOptions {
   std::vector<std::string> layers{};  // names; empty: the only one that holds anything
   std::string where{};                // an SQL expression of attributes; empty: all features
+  // By the name of a property (feature_properties.h), the attribute of features that stands for it.
+  std::map<std::string, std::string> attributes{};
 
   bool strict = false;  // refuse a file of which something is left out or repaired
 
   // Whether a part of the file is wanted.
-  bool wanted() const { return !layers.empty() || !where.empty(); }
+  bool wanted() const { return !layers.empty() || !where.empty() || !attributes.empty(); }
 };
 
 }  // namespace weft::client

@@ -152,17 +152,31 @@ TEST_F(RequestRows, AskForTheSameAsFlagVariableAndKey) {
 
 // in.poly has no layers.
 TEST_F(RequestRows, OfLayersReachTheReaderAsFlagAndKey) {
-  const std::string refusal = "in.poly: --layer and --where are for files with layers";
+  const std::string refusal = "in.poly: --layer, --where and --attribute are for files with layers";
   for (const auto& row : layer_rows()) {
     if (row.name == "strict") continue;  // for all files
     SCOPED_TRACE(row.name);
     EXPECT_EQ(run({"mesh", folder_ / "in.poly", "-o", out_file("m.vtu"), "--server", address_,
-                   "--" + row.name, "x"}),
+                   "--" + row.name, "region=x"}),
               2);
     EXPECT_THAT(err(), ::testing::HasSubstr(refusal));
-    EXPECT_EQ(run({"batch", manifest("m.vtu", row.name, "x"), "--server", address_}), 2);
+    EXPECT_EQ(run({"batch", manifest("m.vtu", row.name, "region=x"), "--server", address_}), 2);
     EXPECT_THAT(err(), ::testing::HasSubstr(refusal));
   }
+}
+
+TEST_F(RequestRows, OfAttributesNameAPropertyOnce) {
+  for (const auto& [text, fault] :
+       {std::pair{"LANDUSE", "'LANDUSE' is not a property and an attribute, such as region=NAME"},
+        {"region=", "'region=' is not a property and an attribute"},
+        {"name=LANDUSE", "'name' is not region, marker, max_edge or max_area"}}) {
+    EXPECT_EQ(run({"mesh", folder_ / "in.poly", "-o", out_file("m.vtu"), "--attribute", text}), 2);
+    EXPECT_THAT(err(), ::testing::HasSubstr(fault));
+  }
+  EXPECT_EQ(run({"mesh", folder_ / "in.poly", "-o", out_file("m.vtu"), "--attribute", "region=A",
+                 "--attribute", "region=B"}),
+            2);
+  EXPECT_THAT(err(), ::testing::HasSubstr("'region' has two attributes"));
 }
 
 // Whether the request has something in the field.

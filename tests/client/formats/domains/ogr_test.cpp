@@ -171,9 +171,27 @@ TEST_F(OgrFile, OfAFormatThatWeftReadsItselfIsReadInPart) {
   EXPECT_EQ(markers(read_domain(path)).size(), 8u);
   EXPECT_EQ(markers(read_domain(path, {.where = "marker = 4"})), std::vector<std::int32_t>{4});
   EXPECT_EQ(refusal(folder_.write("d.poly", ""), {.where = "marker = 4"}, ExitCode::kUsage),
-            "d.poly: --layer and --where are for files with layers and attributes: .gpkg, .fgb, "
-            ".kml, .kmz, .gml, .dxf, .dgn, .tab, .mif, .gmt, .geojsonl, .topojson, .zip, .shp, "
+            "d.poly: --layer, --where and --attribute are for files with layers and attributes: "
+            ".gpkg, .fgb, .kml, .kmz, .gml, .dxf, .dgn, .tab, .mif, .gmt, .geojsonl, .topojson, "
+            ".zip, .shp, "
             ".geojson, .json");
+}
+
+TEST_F(OgrFile, HasPropertiesInTheAttributesThatAreNamed) {
+  const SampleFeature hole = {"POLYGON((9 0, 9 1, 10 0, 9 0))",
+                              {{"kind", "pond"}, {"region", "5"}}};
+  const auto path = write("d.shp", "ESRI Shapefile", {{"d", {kSquare, hole}}});
+  const auto domain = read_domain(path, {.attributes = {{"region", "KIND"}, {"marker", "region"}}});
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(markers(domain), (std::vector<std::int32_t>{7, 7, 7, 7, 7, 7, 7, 5, 5, 5}));
+  EXPECT_EQ(domain->areas, (std::vector<Domain::Area>{{std::nullopt, 2}, {.region = 1}}));
+  EXPECT_EQ(domain->names.regions, (std::map<std::int32_t, std::string>{{1, "pond"}}));
+  const auto bounded = read_domain(path, {.attributes = {{"max_edge", "region"}}});
+  ASSERT_TRUE(bounded) << bounded.error().message;
+  EXPECT_NEAR(*bounded->areas[1].max_area, 10.83, 0.01);
+  EXPECT_EQ(refusal(path, {.attributes = {{"region", "use"}}}),
+            "d.shp: has no attribute 'use'; there are 'marker', 'region', 'max_area', 'kind', "
+            "'marker_nam', 'region_nam'");
 }
 
 TEST_F(OgrFile, HasLayersOfOneCoordinateSystem) {
