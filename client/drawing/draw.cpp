@@ -269,7 +269,8 @@ Legend Drawing::legend(const Page& page) const {
   if (added_ > 0 || marks_.empty())
     legend.add_text((shown_ < added_ ? with_separators(shown_) + " of " : "") +
                     with_separators(added_) + (added_ == 1 ? " triangle" : " triangles"));
-  if (page.coloring != nullptr) legend.add_colors(*page.coloring, options_.unit, page.dense);
+  if (page.coloring != nullptr)
+    legend.add_colors(*page.coloring, options_.unit, page.dense, region_names_);
   if (const auto worst = worst_.sorted(); !worst.empty()) {
     const std::string least = number_text(worst.front().angle_deg) + "\u00b0";
     const std::string most = number_text(worst.back().angle_deg) + "\u00b0";

@@ -20,6 +20,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "client/base/atomic_file.h"
@@ -69,6 +70,8 @@ class Drawing {
   void add(const MeshView& piece);
   // Puts a ring around each place, with the number of the call, which the legend explains.
   void mark(DrawnMarks marks);
+  // What the legend calls regions; those without a name by their number.
+  void name_regions(NameTable names) { region_names_ = std::move(names); }
   // Those of which something is shown.
   std::size_t triangles() const { return shown_; }
   // The marked ones, the worst first. Their centroids are in view.
@@ -117,6 +120,7 @@ class Drawing {
   std::vector<DrawnEdge> edges_;  // on input segments
   WorstTriangles worst_;
   std::vector<DrawnMarks> marks_;
+  NameTable region_names_;
 };
 
 }  // namespace weft::client

@@ -15,14 +15,24 @@ namespace {
 // In ems.
 constexpr double kAbove = 0.5;  // the first row
 constexpr double kRow = 3;
-constexpr double kGap = 2.5;
 constexpr double kBarTop = 0.3;
 constexpr double kBarHeight = 0.9;
 constexpr double kBaseline = 1.1;  // of text beside a bar
 constexpr double kBelow = 2.25;    // baseline of text below a bar
 constexpr double kSmall = 0.82;    // height of that text
 constexpr double kValueBarWidth = 18;
-constexpr std::size_t kMostSwatches = 10;
+constexpr std::size_t kMostSwatches = 24;
+
+// At most so many characters of a name.
+std::string abbreviated(const std::string& name) {
+  constexpr std::size_t kMost = 32;
+  std::size_t characters = 0;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const bool begins = (static_cast<unsigned char>(name[i]) & 0xC0) != 0x80;  // of UTF-8
+    if (begins && ++characters > kMost) return name.substr(0, i) + "\u2026";
+  }
+  return name;
+}
 
 struct Tick {
   double value = 0;  // in the unit that Coloring uses
@@ -191,38 +201,42 @@ void Legend::add_value_bar(const Coloring& coloring, DrawnUnit unit, bool mean) 
        }});
 }
 
-void Legend::add_regions(const Coloring& coloring) {
-  std::vector<std::pair<std::string, Color>> swatches;
-  for (const std::int32_t region : coloring.regions()) {
-    if (swatches.size() == kMostSwatches) break;
-    swatches.push_back({std::to_string(region), region_color(region)});
-  }
-  const bool more = coloring.regions().size() > swatches.size();
-  const std::string title = "region";
-  const auto swatch_width = [em = em_](const std::string& text) {
-    return 1.3 * em + text_width(text, em) + 0.8 * em;
+void Legend::add_regions(const Coloring& coloring, const NameTable& names) {
+  const auto part_of = [em = em_](const std::string& text) {
+    return Part{text_width(text, em),
+                [=](cairo_t* cairo, PagePoint at) {
+                  put_text(cairo, {at.x, at.y + em * kBaseline}, text, {.height = em});
+                },
+                1};
   };
-  double width = text_width(title, em_) + em_ + (more ? em_ : 0);
-  for (const auto& [text, color] : swatches) width += swatch_width(text);
-  parts_.push_back({width, [=, em = em_](cairo_t* cairo, PagePoint at) {
-                      const double baseline = at.y + em * kBaseline;
-                      put_text(cairo, {at.x, baseline}, title, {.height = em});
-                      double x = at.x + text_width(title, em) + em;
-                      for (const auto& [text, color] : swatches) {
-                        loaded_cairo().cairo_rectangle(cairo, x, at.y + em * kBarTop,
-                                                       em * kBarHeight, em * kBarHeight);
-                        set_color(cairo, color);
-                        loaded_cairo().cairo_fill(cairo);
-                        put_text(cairo, {x + 1.3 * em, baseline}, text, {.height = em});
-                        x += swatch_width(text);
-                      }
-                      if (more) put_text(cairo, {x, baseline}, "...", {.height = em});
-                    }});
+  parts_.push_back(part_of("region"));
+  std::size_t told = 0;
+  for (const std::int32_t region : coloring.regions()) {
+    if (told++ == kMostSwatches) {
+      parts_.push_back(part_of("..."));
+      break;
+    }
+    const std::string* const name = name_of(names, region);
+    const std::string text = name == nullptr ? std::to_string(region) : abbreviated(*name);
+    const double indent = 1.3 * em_;
+    parts_.push_back(
+        {indent + text_width(text, em_),
+         [=, em = em_, color = region_color(region)](cairo_t* cairo, PagePoint at) {
+           loaded_cairo().cairo_rectangle(cairo, at.x, at.y + em * kBarTop, em * kBarHeight,
+                                          em * kBarHeight);
+           set_color(cairo, color);
+           loaded_cairo().cairo_fill(cairo);
+           put_text(cairo, {at.x + indent, at.y + em * kBaseline}, text, {.height = em});
+         },
+         0.8});
+  }
+  parts_.back().gap = kGap;
 }
 
-void Legend::add_colors(const Coloring& coloring, DrawnUnit unit, bool mean) {
+void Legend::add_colors(const Coloring& coloring, DrawnUnit unit, bool mean,
+                        const NameTable& regions) {
   if (coloring.by_value()) return add_value_bar(coloring, unit, mean);
-  if (coloring.by() == DrawColor::kRegion) add_regions(coloring);
+  if (coloring.by() == DrawColor::kRegion) add_regions(coloring, regions);
 }
 
 double Legend::least_width() const {
@@ -241,7 +255,7 @@ double Legend::lay_out(double width, const At& at) const {
       y += kRow * em_;
     }
     at(part, x, y);
-    x += part.width + kGap * em_;
+    x += part.width + part.gap * em_;
   }
   return parts_.empty() ? 0 : y + kRow * em_;
 }

@@ -11,6 +11,7 @@
 #include "client/drawing/canvas.h"
 #include "client/drawing/coloring.h"
 #include "client/drawing/colors.h"
+#include "client/formats/names.h"
 
 // Of cairo.
 typedef struct _cairo cairo_t;
@@ -26,8 +27,9 @@ class Legend {
   // for a metre if the unit is metres or degrees.
   void add_scale_bar(double scale, double most, DrawnUnit unit);
   void add_text(const std::string& text);
-  // What the colours mean; `mean`: each pixel shows the mean of its triangles.
-  void add_colors(const Coloring& coloring, DrawnUnit unit, bool mean);
+  // What the colours mean; `mean`: each pixel shows the mean of its triangles; `regions`: their
+  // names, as far as they have any.
+  void add_colors(const Coloring& coloring, DrawnUnit unit, bool mean, const NameTable& regions);
   // A mark as put_mark puts it, and what it means.
   void add_mark(const std::string& text, const Color& color = kMarkInk);
 
@@ -37,12 +39,14 @@ class Legend {
   void draw(cairo_t* cairo, PagePoint top_left, double width) const;
 
  private:
+  static constexpr double kGap = 2.5;
   struct Part {
     double width = 0;
     std::function<void(cairo_t*, PagePoint top_left)> draw;
+    double gap = kGap;  // behind it, in ems
   };
   void add_value_bar(const Coloring& coloring, DrawnUnit unit, bool mean);
-  void add_regions(const Coloring& coloring);
+  void add_regions(const Coloring& coloring, const NameTable& names);
   // Calls at(part, x, y) for each part, and returns the height of all.
   template <class At>
   double lay_out(double width, const At& at) const;

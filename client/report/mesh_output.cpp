@@ -173,6 +173,7 @@ Result<void> MeshOutput::write(const MeshView& arrived, const v1::Summary& summa
     if (auto written = write_files(arrived); !written) return written;
   std::span<OutputFile> drawings(files_);
   drawings = drawings.last(options_.drawings.size());
+  if (drawing_) drawing_->name_regions(arrived.names->regions);
   std::span<const double> leaves;
   if (options_.draw_quadtree)
     leaves = {summary.leaf_boxes().data(), static_cast<std::size_t>(summary.leaf_boxes_size())};

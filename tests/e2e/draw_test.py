@@ -3,6 +3,7 @@
 XML parser."""
 from __future__ import annotations
 
+import json
 import os
 import pathlib
 import re
@@ -79,6 +80,18 @@ def test_pdf_is_a_page_with_a_legend(key: pathlib.Path) -> None:
     assert "3 smallest angles" in text
     for tick in ("0°", "30°", "60°"):
         assert tick in text
+
+
+def test_legend_has_the_names_of_regions(tmp_path: pathlib.Path) -> None:
+    domain, mesh, pdf = (tmp_path / name for name in ("land.geojson", "land.vtu", "land.pdf"))
+    domain.write_text(json.dumps({"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": properties,
+         "geometry": {"type": "Polygon", "coordinates": [[[x, 0], [x + 1, 0], [x + 1, 1], [x, 1], [x, 0]]]}}
+        for x, properties in enumerate(({"region": "Østerbro"}, {"region": 7}))]}))
+    done = weft("mesh", domain, "-o", mesh, "--draw", pdf, "--color", "region", "--quiet")
+    assert done.returncode == 0, done.stderr
+    for file in (pdf, drawn(mesh, "again.pdf", "--color", "region")):
+        assert re.search(r"region\s+Østerbro\s+7\n", output_of("pdftotext", "-layout", file, "-"))
 
 
 def test_pdf_and_png_look_alike(key: pathlib.Path) -> None:

@@ -8,8 +8,10 @@
 #include <cmath>
 #include <utility>
 
+#include "client/drawing/coloring.h"
 #include "client/drawing/colors.h"
 #include "client/drawing/drawn_triangle.h"
+#include "client/drawing/legend.h"
 #include "tests/client/support/sample_mesh.h"
 #include "tests/client/support/temp_folder.h"
 
@@ -43,6 +45,7 @@ class DrawingTest : public ::testing::Test {
       if (p > 0) piece.edges = {};
       drawing.add(piece);
     }
+    drawing.name_regions(mesh.names.regions);
     const auto drawn = drawing.draw(draw_format(name).value(), options.boxes, files[0]);
     EXPECT_TRUE(drawn) << drawn.error().message;
     EXPECT_TRUE(commit(files));
@@ -123,6 +126,33 @@ TEST_F(DrawingTest, ColorsByRegion) {
       draw_to("m.png", square_mesh(4), {.color = DrawColor::kRegion, .long_side = 600}));
   EXPECT_TRUE(alike(image.color(110, 110), region_color(0)));
   EXPECT_TRUE(alike(image.color(500, 110), region_color(7)));
+}
+
+// The widest thing in a legend of the regions 0 and 7, in ems.
+double width_of_regions(const std::string& name_of_7) {
+  Coloring coloring(DrawColor::kRegion, DrawnUnit::kNone, {});
+  for (const int region : {0, 7}) coloring.note_region(region);
+  Legend legend(1);
+  legend.add_colors(coloring, DrawnUnit::kNone, false, {{7, name_of_7}});
+  return legend.least_width();
+}
+
+TEST(LegendTest, HasTheNamesOfRegionsUpTo32Characters) {
+  EXPECT_GT(width_of_regions("the sea beyond"), width_of_regions("sea") + 3);
+  std::string greek;
+  for (int i = 0; i < 32; ++i) greek += "\u03c9";
+  EXPECT_GT(width_of_regions(greek + "\u03c9"), width_of_regions(greek));
+  EXPECT_EQ(width_of_regions(greek + "\u03c9"), width_of_regions(greek + greek));
+}
+
+TEST_F(DrawingTest, HasTheNamesOfRegionsInItsLegend) {
+  Mesh mesh = square_mesh(4);
+  const auto bytes = [&](const NameTable& names) {
+    mesh.names.regions = names;
+    return contents_of(draw_to("m.png", mesh, {.color = DrawColor::kRegion, .more = {}}));
+  };
+  EXPECT_NE(bytes({{7, "sea"}}), bytes({}));
+  EXPECT_EQ(bytes({{7, "7"}}), bytes({}));
 }
 
 TEST_F(DrawingTest, ColorsBySmallestAngle) {
