@@ -28,6 +28,14 @@ std::string in_quotes(std::string_view text) {
   return out;
 }
 
+std::string in_quotes(const std::vector<std::string>& texts) {
+  constexpr std::size_t kMost = 24;
+  std::string list;
+  for (std::size_t i = 0; i < texts.size() && i < kMost; ++i)
+    list += (i == 0 ? "" : ", ") + in_quotes(texts[i]);
+  return texts.size() > kMost ? list + ", ..." : list;
+}
+
 std::string harmless(std::string_view text) {
   std::string out;
   for (const char c : text) {

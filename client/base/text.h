@@ -5,11 +5,14 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace weft::client {
 
 // 'text', shortened to 32 bytes; bytes that are not printable ASCII become \xNN.
 std::string in_quotes(std::string_view text);
+// "'a', 'b'"; after 24 of them "...".
+std::string in_quotes(const std::vector<std::string>& texts);
 
 // A server's text, safe for a terminal: control characters except line feeds become '?'.
 std::string harmless(std::string_view text);

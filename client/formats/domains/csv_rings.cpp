@@ -142,16 +142,8 @@ class Reader {
                                 in_quotes(names[i]) + " mean the same");
     }
     if (!geometry_ && (place_of(Column::kX) == kAbsent || place_of(Column::kY) == kAbsent))
-      return refuse("the columns x and y must be there, or WKT; there are " + list(names));
+      return refuse("the columns x and y must be there, or WKT; there are " + in_quotes(names));
     return {};
-  }
-
-  static std::string list(const std::vector<std::string>& names) {
-    constexpr std::size_t kMost = 24;
-    std::string text;
-    for (std::size_t i = 0; i < names.size() && i < kMost; ++i)
-      text += (i == 0 ? "" : ", ") + in_quotes(names[i]);
-    return names.size() > kMost ? text + ", ..." : text;
   }
 
   void warn_of_columns() {
@@ -165,7 +157,7 @@ class Reader {
     if (!ignored.empty())
       builder_.warn(
           (ignored.size() == 1 ? ": this column is ignored: " : ": these columns are ignored: ") +
-          list(ignored));
+          in_quotes(ignored));
     if (unnamed_line_ > 0)
       builder_.warn(":" + std::to_string(unnamed_line_) +
                     ": columns after the first two are ignored, because no line names them");

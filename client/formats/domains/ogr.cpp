@@ -85,11 +85,9 @@ class Reader {
   std::string name_of(OGRLayerH layer) const { return gdal_.OGR_L_GetName(layer); }
 
   std::string list(const std::vector<OGRLayerH>& layers) const {
-    constexpr std::size_t kMost = 24;
-    std::string text;
-    for (std::size_t i = 0; i < layers.size() && i < kMost; ++i)
-      text += (i > 0 ? ", " : "") + in_quotes(name_of(layers[i]));
-    return layers.size() > kMost ? text + ", ..." : text;
+    std::vector<std::string> names;
+    for (OGRLayerH layer : layers) names.push_back(name_of(layer));
+    return in_quotes(names);
   }
 
   // The layers that are named, or the only one that has a feature.
@@ -123,14 +121,14 @@ class Reader {
         return gdal_.OGR_L_FindFieldIndex(layer, name, TRUE) >= 0;
       };
       if (std::ranges::any_of(layers, has_it)) continue;
-      std::string names;
+      std::vector<std::string> names;
       for (OGRLayerH layer : layers) {
         OGRFeatureDefnH features = gdal_.OGR_L_GetLayerDefn(layer);
         for (int i = 0; i < gdal_.OGR_FD_GetFieldCount(features); ++i)
-          names += (names.empty() ? "; there are " : ", ") +
-                   in_quotes(gdal_.OGR_Fld_GetNameRef(gdal_.OGR_FD_GetFieldDefn(features, i)));
+          names.emplace_back(gdal_.OGR_Fld_GetNameRef(gdal_.OGR_FD_GetFieldDefn(features, i)));
       }
-      return builder_.bad("", "has no attribute " + in_quotes(attribute) + names);
+      return builder_.bad("", "has no attribute " + in_quotes(attribute) +
+                                  (names.empty() ? "" : "; there are " + in_quotes(names)));
     }
     return {};
   }

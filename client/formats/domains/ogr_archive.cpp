@@ -16,14 +16,6 @@ bool is_of_macos(const std::filesystem::path& name) {
   return name.string().starts_with("__MACOSX/") || name.filename().string().starts_with("._");
 }
 
-std::string list(const std::vector<std::filesystem::path>& names) {
-  constexpr std::size_t kMost = 24;
-  std::string text;
-  for (std::size_t i = 0; i < names.size() && i < kMost; ++i)
-    text += (i > 0 ? ", " : "") + in_quotes(names[i].string());
-  return names.size() > kMost ? text + ", ..." : text;
-}
-
 }  // namespace
 
 Result<OgrSource> find_in_archive(const Gdal& gdal, const std::string& path) {
@@ -36,24 +28,24 @@ Result<OgrSource> find_in_archive(const Gdal& gdal, const std::string& path) {
   if (!entries)
     return fail(ExitCode::kUnreadableInput,
                 "is damaged, or no ZIP archive" + (errors.any() ? ": " + errors.first() : ""));
-  std::vector<std::filesystem::path> names;
+  std::vector<std::string> names;
   for (char** entry = entries.get(); *entry != nullptr; ++entry) {
-    const std::filesystem::path name(*entry);
-    const OgrFormat* format = ogr_format(lower_extension(name));
-    if (format != nullptr && !format->is_archive && !is_of_macos(name)) names.push_back(name);
+    const OgrFormat* format = ogr_format(lower_extension(*entry));
+    if (format != nullptr && !format->is_archive && !is_of_macos(*entry))
+      names.emplace_back(*entry);
   }
   if (names.empty())
     return fail(ExitCode::kUnreadableInput, "holds no file that is read as a domain");
   const OgrFormat* format = ogr_format(lower_extension(names[0]));
-  if (names.size() == 1) return OgrSource{root + "/" + names[0].string(), format};
-  const std::filesystem::path folder = names[0].parent_path();
-  const bool are_layers = std::ranges::all_of(names, [&](const auto& name) {
+  if (names.size() == 1) return OgrSource{root + "/" + names[0], format};
+  const std::filesystem::path folder = std::filesystem::path(names[0]).parent_path();
+  const bool are_layers = std::ranges::all_of(names, [&](const std::filesystem::path& name) {
     return lower_extension(name) == ".shp" && name.parent_path() == folder;
   });
   if (!are_layers)
     return fail(
         ExitCode::kUnreadableInput,
-        "holds several files that are read as a domain, take one out of it: " + list(names));
+        "holds several files that are read as a domain, take one out of it: " + in_quotes(names));
   return OgrSource{root + (folder.empty() ? "" : "/" + folder.string()), format};
 }
 

@@ -60,7 +60,8 @@ export class GeometryBuilder {
     this.chain(positions, 0, properties);
   }
 
-  // Each ring ends in its first position, or is closed with a warning. The holes of a ring that is left out are left out, too.
+  // Each ring ends in its first position, or is closed with a warning. The holes of a ring that is left out are
+  // left out, too.
   polygon(rings: readonly (readonly Point[])[], place: string, properties: Properties): void {
     const kept: { path: string; ring: Point[] }[] = [];
     const crossings = this.crossings.length;

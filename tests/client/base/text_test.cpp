@@ -11,6 +11,14 @@ TEST(Text, QuotesWhatIsNotPrintableAndShortensWhatIsLong) {
   EXPECT_EQ(in_quotes(std::string(40, 'x')), "'" + std::string(32, 'x') + "...'");
 }
 
+TEST(Text, QuotesUpTo24Texts) {
+  std::vector<std::string> texts(24, "a");
+  EXPECT_EQ(in_quotes(std::vector<std::string>{"a", "b\n"}), "'a', 'b\\x0a'");
+  EXPECT_FALSE(in_quotes(texts).ends_with("..."));
+  texts.emplace_back("b");
+  EXPECT_TRUE(in_quotes(texts).ends_with("'a', ..."));
+}
+
 TEST(Text, SeparatesThousands) {
   EXPECT_EQ(with_separators(0), "0");
   EXPECT_EQ(with_separators(999), "999");
