@@ -132,6 +132,8 @@ Result<std::vector<CrossedArms::Sector>> AcuteCorners::find_corners(
         const std::uint32_t other_arm = current.subsegment[kNext[at_corner]];
         if (other_arm != kNone) {
           corners_[corner] = std::max(corners_[corner], acute ? Corner::kAcute : Corner::kShells);
+          const double sine = cross(from, to) / (length(from) * length(to));
+          sines_[corner] = std::min(sines_[corner], static_cast<float>(sine));
           const double tangent = cross(from, to) / dot(from, to);
           if (acute && tangent < CrossedArms::kSharp)
             sharp.push_back(
@@ -227,8 +229,9 @@ double AcuteCorners::dyadic_fraction(const MeshStore& mesh, std::uint32_t subseg
   const Subsegment& s = (*subsegments_)[subsegment];
   const Point a = mesh.vertices[s.a];
   const Point b = mesh.vertices[s.b];
-  const bool nearer_b = length(from - b) + length(to - b) < length(from - a) + length(to - a);
-  Point corner = has_shells(s.a) && (!has_shells(s.b) || !nearer_b) ? a : b;
+  const double width_a = (length(from - a) + length(to - a)) * sines_[s.a];
+  const double width_b = (length(from - b) + length(to - b)) * sines_[s.b];
+  Point corner = has_shells(s.a) && (!has_shells(s.b) || width_a <= width_b) ? a : b;
   if (!has_shells(s.a) && !has_shells(s.b))
     corner = mesh.vertices[crossed_.of(subsegment).front().corner];
   const auto [low, high] = std::minmax({length(from - corner), length(to - corner)});

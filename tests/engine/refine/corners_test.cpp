@@ -227,6 +227,19 @@ TEST_P(Wedge, AtEachEndOfOneSegmentTakesFewTriangles) {
   EXPECT_LE(mesh(pslg, 20).triangles, 300u);
 }
 
+TEST_P(Wedge, ThatEndsOnAThirdSegmentTakesFewTriangles) {
+  for (const Point corner :
+       {Point{0.1, 0.1}, {5.2679, 0.1915}, {7.4709, 2.8654}, {1.2884, 2.6071}}) {
+    const double end = 0.7 * corner.x + 3;
+    Pslg pslg;
+    add_ring(pslg,
+             {corner, {end, 10}, {end - 10 * GetParam(), 10}, {0, 10}, {0, 0}, {10, 0}, {10, 9}});
+    pslg.segments.push_back({0, 2});
+    for (const double degrees : {25, 30, 33, 34})
+      EXPECT_LE(mesh(pslg, degrees).triangles, 2000u) << degrees << " " << corner.x;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Of, Wedge, testing::Values(1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9),
                          [](const auto& info) {
                            return "1e" + std::to_string(-std::lround(std::log10(info.param)));
