@@ -22,7 +22,7 @@ PLACES = {
         ("client/python/src/weft/client.py", r"lower bound on every angle, degrees, 0 to (\d+);"),
         ("console/src/mesh/mesh-form.tsx", r'max="(\d+)" step="0\.5" aria-label="Smallest angle'),
         ("README.md", r"minimum angle is 20 degrees unless you say otherwise, and (\d+) at most"),
-        ("README.md", r"ended, and nearly all at (\d+)\."),
+        ("README.md", r"ended, and most at (\d+)\."),
         ("docs/how-it-works.md", r"up to the (\d+) that `--min-angle`")],
     "kMaxSweeps": [
         (PROTO, r"Sweeps of smoothing, from 0 to (\d+):"),

@@ -228,14 +228,19 @@ TEST_P(Wedge, AtEachEndOfOneSegmentTakesFewTriangles) {
 }
 
 TEST_P(Wedge, ThatEndsOnAThirdSegmentTakesFewTriangles) {
-  for (const Point corner :
-       {Point{0.1, 0.1}, {5.2679, 0.1915}, {7.4709, 2.8654}, {1.2884, 2.6071}}) {
-    const double end = 0.7 * corner.x + 3;
+  struct Place {
+    Point corner;
+    double end;
+  };
+  for (const auto& [corner, end] : {Place{{0.1, 0.1}, 9},
+                                    {{5.267881354549644, 0.19148719047755264}, 6.555440798619096},
+                                    {{7.470879147465335, 2.8653566962959807}, 8.478717316844126},
+                                    {{1.2883892751215147, 2.607071650378749}, 4.180056885907814}}) {
     Pslg pslg;
     add_ring(pslg,
              {corner, {end, 10}, {end - 10 * GetParam(), 10}, {0, 10}, {0, 0}, {10, 0}, {10, 9}});
     pslg.segments.push_back({0, 2});
-    for (const double degrees : {25, 30, 33, 34})
+    for (const double degrees : {25.0, 30.0, 30.5, 33.0, 34.0})
       EXPECT_LE(mesh(pslg, degrees).triangles, 2000u) << degrees << " " << corner.x;
   }
 }
