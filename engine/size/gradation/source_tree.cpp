@@ -13,6 +13,8 @@
 #include "engine/size/fields/distance_field.h"
 #include "engine/size/fields/polled_loop.h"
 #include "engine/size/gradation/domain_boxes.h"
+#include "engine/size/gradation/hull.h"
+#include "engine/size/gradation/lowest_samples.h"
 
 namespace weft {
 namespace {
@@ -27,122 +29,6 @@ double diagonal(const Box& box) {
   return std::sqrt(box.width() * box.width() + box.height() * box.height());
 }
 
-// The largest distance from a point of the box.
-double farthest(Point p, const Box& box) {
-  const double dx = std::max(p.x - box.min_x, box.max_x - p.x);
-  const double dy = std::max(p.y - box.min_y, box.max_y - p.y);
-  return std::sqrt(dx * dx + dy * dy);
-}
-
-// A point of the domain and the length of edges there.
-struct Sample {
-  Point p;
-  double edge = kInfinity;
-  // The longest edge at the corners of a box and in the middles of its sides; infinity if the
-  // domain does not hold all of the box.
-  double highest = kInfinity;
-  bool bad = false;  // negative or NaN, which no size may be
-};
-
-// A sample that may lie below all of a box. If its box was divided at the last level, samples of
-// the children may lie lower still.
-struct Candidate {
-  Sample sample;
-  std::uint32_t slot = kNone;  // of its box, at its level
-};
-
-struct Candidates {
-  static constexpr std::size_t kMost = 6;
-  std::array<Candidate, kMost> best;
-  std::size_t count = 0;
-};
-
-// The samples that are lowest at a point, sorted.
-class LowestAt {
- public:
-  LowestAt(Point at, double gradation) : at_(at), gradation_(gradation) {}
-
-  void add(const Candidate& candidate) {
-    const double height =
-        candidate.sample.edge + gradation_ * std::sqrt(distance2(at_, candidate.sample.p));
-    if (!(height < kInfinity)) return;
-    std::size_t place = found_.count;
-    while (place > 0 && height < heights_[place - 1]) --place;
-    if (place == Candidates::kMost) return;
-    found_.count = std::min(found_.count + 1, Candidates::kMost);
-    for (std::size_t i = found_.count - 1; i > place; --i) {
-      found_.best[i] = found_.best[i - 1];
-      heights_[i] = heights_[i - 1];
-    }
-    found_.best[place] = candidate;
-    heights_[place] = height;
-  }
-  const Candidates& found() const { return found_; }
-
- private:
-  Point at_;
-  double gradation_;
-  Candidates found_;
-  std::array<double, Candidates::kMost> heights_{};
-};
-
-// Half-planes that hold all points: those of the longest sides of their convex hull, which is found
-// by A. M. Andrew's "Another efficient algorithm for convex hulls in two dimensions" (1979).
-class Hull {
- public:
-  explicit Hull(std::vector<Point> points);
-  // Whether the box lies beyond one of the sides.
-  bool misses(const Box& box) const;
-
- private:
-  static constexpr std::size_t kMostSides = 64;
-
-  struct Side {
-    Point normal;  // of length 1, outwards
-    double reach;  // of the points along it
-  };
-  std::vector<Side> sides_;
-};
-
-Hull::Hull(std::vector<Point> points) {
-  std::sort(points.begin(), points.end(),
-            [](Point a, Point b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
-  const auto turns_left = [](Point a, Point b, Point c) {
-    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0;
-  };
-  std::vector<Point> ring;  // counter-clockwise, the first point again at the end
-  const auto add = [&](Point p, std::size_t least) {
-    while (ring.size() > least && !turns_left(ring[ring.size() - 2], ring.back(), p))
-      ring.pop_back();
-    ring.push_back(p);
-  };
-  for (const Point p : points) add(p, 1);
-  const std::size_t lower = ring.size();
-  for (std::size_t i = points.size() - 1; i-- > 0;) add(points[i], lower);
-  std::vector<std::pair<double, std::size_t>> lengths;
-  for (std::size_t i = 0; i + 1 < ring.size(); ++i)
-    lengths.emplace_back(-std::sqrt(distance2(ring[i], ring[i + 1])), i);
-  std::sort(lengths.begin(), lengths.end());
-  lengths.resize(std::min(lengths.size(), kMostSides));
-  for (const auto& [length, i] : lengths) {
-    const Point normal{(ring[i + 1].y - ring[i].y) / -length, (ring[i + 1].x - ring[i].x) / length};
-    // Taken over all corners of the hull, so that the rounding of the tests above does not matter.
-    double reach = -kInfinity;
-    for (const Point p : ring) reach = std::max(reach, normal.x * p.x + normal.y * p.y);
-    sides_.push_back({normal, reach});
-  }
-}
-
-bool Hull::misses(const Box& box) const {
-  const double slack = kSlack * (std::fabs(box.min_x) + std::fabs(box.max_x) +
-                                 std::fabs(box.min_y) + std::fabs(box.max_y));
-  return std::any_of(sides_.begin(), sides_.end(), [&](const Side& side) {
-    const double x = side.normal.x > 0 ? box.min_x : box.max_x;
-    const double y = side.normal.y > 0 ? box.min_y : box.max_y;
-    return side.normal.x * x + side.normal.y * y > side.reach + slack;
-  });
-}
-
 // A box that is to be looked at.
 struct Pending {
   DomainBox at;
@@ -153,13 +39,13 @@ struct Pending {
 struct Level {
   std::vector<Pending> boxes;
   std::vector<std::uint32_t> triangles;
-  std::vector<Candidates> families;
+  std::vector<LowSamples> families;
   std::vector<std::uint32_t> children_of;  // slot at the level before -> first slot at this one
 };
 
 struct Seen {
   Interval edge;  // not below 0
-  Sample sample;
+  SizeSample sample;
 };
 
 enum class Fate : std::uint8_t { kDropped, kSource, kDivided };
@@ -169,7 +55,7 @@ struct Verdict {
   Box box;          // of a source
   double edge = 0;  // of a source
   std::array<DomainBox, 4> children;
-  Candidates candidates;
+  LowSamples candidates;
 };
 
 // Boxes that one thread looks at.
@@ -214,10 +100,9 @@ class Builder {
   static constexpr std::size_t kGroupsAtATime = 256;
 
   void see(const DomainBox& at, const std::uint32_t* triangles, Seen& seen) const;
-  Sample sample(const DomainBox& at, const std::uint32_t* triangles) const;
+  SizeSample sample(const DomainBox& at, const std::uint32_t* triangles) const;
   std::optional<Error> judge(const Level& level, const std::vector<Seen>& seen, std::size_t slot,
                              int depth, bool may_divide, TrianglePoll& poll, Group& group) const;
-  bool above(const Candidates& candidates, const Box& box, double edge) const;
   bool gentle(const Box& box, const Interval& edge) const;
   bool on_border(const DomainBox& at, const std::uint32_t* triangles) const;
   bool irrelevant(const Box& box, Group& group) const;
@@ -250,7 +135,7 @@ Interval Builder::edges(const Box& box) const {
 }
 
 // The lowest of eight points.
-Sample Builder::sample(const DomainBox& at, const std::uint32_t* triangles) const {
+SizeSample Builder::sample(const DomainBox& at, const std::uint32_t* triangles) const {
   alignas(64) std::array<double, Field::kLanes> x;
   alignas(64) std::array<double, Field::kLanes> y;
   alignas(64) std::array<double, Field::kLanes> area;
@@ -287,7 +172,7 @@ Sample Builder::sample(const DomainBox& at, const std::uint32_t* triangles) cons
     }
   }
   size_.evaluate(Field::kLanes, x.data(), y.data(), area.data());
-  Sample best;
+  SizeSample best;
   double highest = 0;
   for (std::size_t i = 0; i < Field::kLanes; ++i) {
     best.bad = best.bad || !(area[i] >= 0);
@@ -304,15 +189,7 @@ Sample Builder::sample(const DomainBox& at, const std::uint32_t* triangles) cons
 
 void Builder::see(const DomainBox& at, const std::uint32_t* triangles, Seen& seen) const {
   seen.edge = edges(at.box);
-  seen.sample = seen.edge.lo <= seen.edge.hi && at.count > 0 ? sample(at, triangles) : Sample{};
-}
-
-bool Builder::above(const Candidates& candidates, const Box& box, double edge) const {
-  for (std::size_t i = 0; i < candidates.count; ++i) {
-    const Sample& sample = candidates.best[i].sample;
-    if (sample.edge + gradation_ * farthest(sample.p, box) < edge * (1 - kSlack)) return true;
-  }
-  return false;
+  seen.sample = seen.edge.lo <= seen.edge.hi && at.count > 0 ? sample(at, triangles) : SizeSample{};
 }
 
 // If the bounds are far apart, the steepness is not asked for: the children will decide.
@@ -392,10 +269,10 @@ std::optional<Error> Builder::judge(const Level& level, const std::vector<Seen>&
   if (!outside && (edge.lo > edge.hi || (seen[slot].sample.bad && depth >= kBadDepth)))
     return std::nullopt;
 
-  LowestAt lowest(middle(at.box), gradation_);
-  const Candidates& family = level.families[pending.family];
+  LowestSamples lowest(middle(at.box), gradation_);
+  const LowSamples& family = level.families[pending.family];
   for (std::size_t i = 0; i < family.count; ++i) {
-    Candidate candidate = family.best[i];
+    LowSample candidate = family.best[i];
     const std::uint32_t children =
         candidate.slot != kNone ? level.children_of[candidate.slot] : kNone;
     candidate.slot = kNone;
@@ -408,7 +285,7 @@ std::optional<Error> Builder::judge(const Level& level, const std::vector<Seen>&
   if (family.count == 0) lowest.add({seen[slot].sample, static_cast<std::uint32_t>(slot)});
   verdict.candidates = lowest.found();
 
-  if (above(verdict.candidates, at.box, edge.lo)) return std::nullopt;
+  if (verdict.candidates.below(edge.lo * (1 - kSlack), at.box, gradation_)) return std::nullopt;
   const bool border = borders_count_ && on_border(at, triangles);
   if (!border && gentle(at.box, edge)) return std::nullopt;
   const double finest = std::max(SourceTree::kTolerance, SourceTree::kSmallest * gradation_);
@@ -430,7 +307,7 @@ std::optional<Error> Builder::judge(const Level& level, const std::vector<Seen>&
     verdict.box = shrunk(at, triangles);
     verdict.edge = edge.lo;
     if (verdict.edge >= kLeastEdge) return std::nullopt;
-    const Sample& sample = seen[slot].sample;
+    const SizeSample& sample = seen[slot].sample;
     verdict.box = {sample.p.x, sample.p.y, sample.p.x, sample.p.y};
     verdict.edge = sample.edge;
     if (!(sample.edge < kInfinity)) verdict.fate = Fate::kDropped;
@@ -449,7 +326,7 @@ std::optional<Error> Builder::hold(const Level& level, const Level& next) {
   const auto of = [](const Level& l) {
     return l.boxes.capacity() * (sizeof(Pending) + sizeof(Seen)) +
            l.triangles.capacity() * sizeof(std::uint32_t) +
-           l.families.capacity() * sizeof(Candidates);
+           l.families.capacity() * sizeof(LowSamples);
   };
   const std::uint64_t bytes = domain_.bytes() + size_.bytes() + (far_ ? far_->bytes() : 0) +
                               drafts_.capacity() * (sizeof(Draft) + sizeof(SourceTree::Node)) +
