@@ -5,11 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -63,17 +61,20 @@ std::vector<std::array<std::uint32_t, N>> rows(const std::uint32_t* numbers, std
 
 // On areas, of what errors call `path`.
 std::optional<double> bound(const weft_bound& given, const std::string& path) {
+  const auto check = [&](const char* name, double value, double area, const char* rule) {
+    if (!(std::isfinite(area) && area > 0))
+      refuse(path + name,
+             path + name + " is " + text(value) + "; it must be positive and finite" + rule);
+  };
   std::optional<double> area;
-  for (const auto& [has, value, name] :
-       {std::tuple(given.has_max_area, given.max_area, ".max_area"),
-        std::tuple(given.has_max_edge, given.max_edge, ".max_edge")})
-    if (has != 0 && !(std::isfinite(area_of_edge(value)) && value > 0))
-      refuse(path + name, path + name + " is " + text(value) +
-                              "; it must be positive and finite, as its square");
-  if (given.has_max_area != 0) area = given.max_area;
+  if (given.has_max_area != 0) {
+    area = given.max_area;
+    check(".max_area", given.max_area, given.max_area, "");
+  }
   if (given.has_max_edge == 0) return area;
-  return std::min(area.value_or(std::numeric_limits<double>::infinity()),
-                  area_of_edge(given.max_edge));
+  const double by_edge = area_of_edge(given.max_edge);
+  check(".max_edge", given.max_edge, by_edge, ", and so must its square");
+  return area ? std::min(*area, by_edge) : by_edge;
 }
 
 template <class T>

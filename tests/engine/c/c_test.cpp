@@ -191,9 +191,15 @@ TEST(CInterface, NamesWhatItCannotTake) {
   given.request.fill = 3;
   EXPECT_EQ(given.reason_and_field(), "BAD_OPTION domain.fill");
   given.request.fill = 0;
-  given.region.bound.max_edge = 0;
-  EXPECT_EQ(given.reason_and_field(), "BAD_OPTION domain.regions[0].max_edge");
+  // The squares of the last two are 0 and infinite.
+  for (const double edge : {0.0, -1.0, 1e-200, 1e200}) {
+    given.region.bound.max_edge = edge;
+    EXPECT_EQ(given.reason_and_field(), "BAD_OPTION domain.regions[0].max_edge") << edge;
+  }
   given.region.bound.max_edge = 1;
+  given.region.bound.has_max_area = 1;
+  EXPECT_EQ(given.reason_and_field(), "BAD_OPTION domain.regions[0].max_area");
+  given.region.bound.max_area = 1e200;
   given.request.size_kind = WEFT_SIZE_RASTER;
   EXPECT_EQ(given.reason_and_field(), "BAD_OPTION size.raster.dx");
   given.request.size_kind = 9;
