@@ -17,6 +17,7 @@
 #include "client/formats/domains/feature_properties.h"
 #include "client/formats/domains/geometry_builder.h"
 #include "client/formats/domains/ogr_archive.h"
+#include "client/formats/domains/ogr_dxf.h"
 #include "client/formats/domains/ogr_formats.h"
 #include "client/formats/files/gdal_library.h"
 #include "client/formats/mesh_formats.h"
@@ -49,12 +50,15 @@ class Reader {
       if (!found) return builder_.bad("", found.error().message);
       source = std::move(*found);
     }
+    std::optional<DxfWithHeader> completed;  // which the data set reads
     Dataset dataset(nullptr, gdal_.GDALClose);
     {
       const GdalErrors errors(gdal_);
-      dataset.reset(gdal_.GDALOpenEx(source.address.c_str(),
-                                     GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
-                                     source.format->drivers, source.format->options, nullptr));
+      dataset = open(source.address, *source.format);
+      if (!dataset && source.format->extension == ".dxf") {
+        completed.emplace(gdal_, source.address);
+        dataset = open(completed->address(), *source.format);
+      }
       if (!dataset) return builder_.bad("", "is damaged, or of another format: " + errors.first());
     }
     const auto layers = choose(dataset.get(), options.layers);
@@ -70,6 +74,13 @@ class Reader {
   }
 
  private:
+  Dataset open(const std::string& address, const OgrFormat& format) const {
+    return {
+        gdal_.GDALOpenEx(address.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+                         format.drivers, format.options, nullptr),
+        gdal_.GDALClose};
+  }
+
   CoordinateSystem system() const {
     const char* name = gdal_.OSRGetName(crs_);
     CoordinateSystem found{

@@ -97,8 +97,12 @@
   EACH(OSRNewSpatialReference)              \
   EACH(OSRSetAxisMappingStrategy)           \
   EACH(OSRSetFromUserInput)                 \
+  EACH(VSIFCloseL)                          \
+  EACH(VSIFileFromMemBuffer)                \
   EACH(VSIFree)                             \
-  EACH(VSIReadDirRecursive)
+  EACH(VSIIngestFile)                       \
+  EACH(VSIReadDirRecursive)                 \
+  EACH(VSIUnlink)
 
 namespace weft::client {
 

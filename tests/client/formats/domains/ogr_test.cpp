@@ -314,6 +314,24 @@ TEST_F(OgrFile, OfTopologyIsMadeOfItsArcs) {
   EXPECT_EQ(domain->points.size(), 8u);
 }
 
+// OpenSCAD wrote such drawings up to version 2021.01.
+TEST_F(OgrFile, OfADrawingNeedsNoHeader) {
+  std::string lines;
+  for (const char* line :
+       {"10\n0\n20\n0\n11\n4\n21\n0", "10\n4\n20\n0\n11\n0\n21\n3", "10\n0\n20\n3\n11\n0\n21\n0"})
+    lines += std::string("  0\nLINE\n  8\n0\n") + line + "\n";
+  const std::string drawing =
+      "  0\nSECTION\n  2\nBLOCKS\n  0\nENDSEC\n  0\nSECTION\n  2\nENTITIES\n" + lines +
+      "  0\nENDSEC\n  0\nEOF\n";
+  for (const char* before : {"", "999\nplate\n"}) {
+    const auto path = folder_.write("d.dxf", before + drawing);
+    EXPECT_EQ(markers(read_domain(path)).size(), 3u) << before;
+    EXPECT_EQ(markers(read_domain(archive({{"plate/d.dxf", "d.dxf"}}))).size(), 3u) << before;
+  }
+  EXPECT_TRUE(refusal(folder_.write("d.dxf", drawing.substr(0, 30)))
+                  .starts_with("d.dxf: is damaged, or of another format: "));
+}
+
 // What is in a file decides nothing but the domain.
 TEST_F(OgrFile, IsReadInTheFormatOfItsNameAlone) {
   const std::string vrt =
