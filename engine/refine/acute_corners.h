@@ -18,8 +18,8 @@
 //     distances, and a piece at the corner ends at a power of two. If two borders part and end on a
 //     third, their lengths differ by less than the width between them. Distances from these ends,
 //     which are nearer, match none on the other arm: of 100 such wedges of 1e-8 to 1e-5 rad, 3 were
-//     filled with triangles at 30 degrees, 14 at 33. By the width, none is up to 34, and 54 real
-//     domains have 9 % fewer triangles at 33 degrees, one of them a fifth.
+//     filled with triangles at 30 degrees, 14 at 33. By the width, none is up to 34, and 54 maps and
+//     test polygons have 9 % fewer triangles at 33 degrees, one of them a fifth.
 //
 // Two vertices are at the same distance if rounding explains the difference: 2^-47 of the largest
 // coordinate of the three points. A vertex on an arm is off its distance by at most 10 units in the

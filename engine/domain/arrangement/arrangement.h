@@ -8,8 +8,8 @@
 //   - A piece of a segment is led through every vertex nearer than T to its input segment, though
 //     earlier ones may have led it up to 2 T away, and through every vertex nearer than half of the
 //     least tolerance to it: during its insertion, those that it passes; at the end, those beside
-//     the edge (strip_search.h), until none is left. A vertex that is nearer than T to no more than
-//     the piece is left beside it, because the caller's snap keeps the two apart.
+//     the edge (strip_search.h), until none is left. Vertices that are nearer than T to the piece,
+//     but not to its input segment, stay beside it: the caller's snap keeps the two apart.
 //   - If two pieces cross, the crossing of the two INPUT segments is computed exactly and
 //     rounded once; if merging has bent the pieces away from it, that of the pieces. The vertex
 //     nearest to the crossing is used if it is nearer than T, otherwise a new vertex is made; both
