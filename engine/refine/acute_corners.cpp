@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -132,8 +133,11 @@ Result<std::vector<CrossedArms::Sector>> AcuteCorners::find_corners(
         const std::uint32_t other_arm = current.subsegment[kNext[at_corner]];
         if (other_arm != kNone) {
           corners_[corner] = std::max(corners_[corner], acute ? Corner::kAcute : Corner::kShells);
-          const double sine = cross(from, to) / (length(from) * length(to));
-          sines_[corner] = std::min(sines_[corner], static_cast<float>(sine));
+          const auto sine = static_cast<float>(cross(from, to) / (length(from) * length(to)));
+          for (const std::uint32_t s : {domain.triangles[t].subsegment[kPrevious[i]], other_arm}) {
+            float& least = sines_[s][domain.subsegments[s].b == corner ? 1 : 0];
+            least = std::min(least, sine);
+          }
           const double tangent = cross(from, to) / dot(from, to);
           if (acute && tangent < CrossedArms::kSharp)
             sharp.push_back(
@@ -227,13 +231,18 @@ std::optional<double> AcuteCorners::matching_fraction(const MeshStore& mesh,
 double AcuteCorners::dyadic_fraction(const MeshStore& mesh, std::uint32_t subsegment, Point from,
                                      Point to) const {
   const Subsegment& s = (*subsegments_)[subsegment];
-  const Point a = mesh.vertices[s.a];
-  const Point b = mesh.vertices[s.b];
-  const double width_a = (length(from - a) + length(to - a)) * sines_[s.a];
-  const double width_b = (length(from - b) + length(to - b)) * sines_[s.b];
-  Point corner = has_shells(s.a) && (!has_shells(s.b) || width_a <= width_b) ? a : b;
-  if (!has_shells(s.a) && !has_shells(s.b))
-    corner = mesh.vertices[crossed_.of(subsegment).front().corner];
+  Point corner;
+  double narrowest = std::numeric_limits<double>::infinity();
+  const auto consider = [&](std::uint32_t vertex, double sine) {
+    const Point at = mesh.vertices[vertex];
+    const double width = (length(from - at) + length(to - at)) * sine;
+    if (width >= narrowest) return;
+    corner = at;
+    narrowest = width;
+  };
+  if (has_shells(s.a)) consider(s.a, sines_[subsegment][0]);
+  if (has_shells(s.b)) consider(s.b, sines_[subsegment][1]);
+  for (const CrossedArms::Arm& arm : crossed_.of(subsegment)) consider(arm.corner, arm.tangent);
   const auto [low, high] = std::minmax({length(from - corner), length(to - corner)});
   const double fraction = fraction_at(dyadic_between(low, high), corner, from, to);
   return in_middle(fraction) ? fraction : 0.5;

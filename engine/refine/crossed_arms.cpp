@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <queue>
 #include <tuple>
 #include <utility>
 
@@ -22,54 +23,35 @@ struct Piece {
   double at;  // where it begins along the arm
 };
 
-// That an input segment is an arm of a sharp corner.
-struct SharpEnd {
-  std::uint32_t segment;
+// A side of a sector: the subsegment of one arm, and how far from the corner the other arm goes on.
+struct Side {
+  std::uint32_t subsegment;
   std::uint32_t corner;
   double tangent;
+  double reach;
 };
 
-bool before(const SharpEnd& a, const SharpEnd& b) {
-  return std::tie(a.segment, a.corner, a.tangent) < std::tie(b.segment, b.corner, b.tangent);
+auto place_of(const Side& side) {
+  return std::tie(side.subsegment, side.corner);
 }
 
-// By segment and corner, the sharpest of each.
-std::vector<SharpEnd> sharp_ends(const Domain& domain,
-                                 const std::vector<CrossedArms::Sector>& sectors) {
-  std::vector<SharpEnd> ends;
-  ends.reserve(2 * sectors.size());
+// The pieces of the input segments that are arms, by segment.
+Result<std::vector<Piece>> pieces_of(const Domain& domain,
+                                     const std::vector<CrossedArms::Sector>& sectors,
+                                     const ExecutionContext& context) {
+  std::vector<std::uint32_t> segments;
+  segments.reserve(2 * sectors.size());
   for (const CrossedArms::Sector& sector : sectors)
     for (const std::uint32_t s : sector.subsegments)
-      ends.push_back({domain.subsegments[s].segment, sector.corner, sector.tangent});
-  std::sort(ends.begin(), ends.end(), before);
-  const auto last = std::unique(ends.begin(), ends.end(), [](const SharpEnd& a, const SharpEnd& b) {
-    return a.segment == b.segment && a.corner == b.corner;
-  });
-  ends.erase(last, ends.end());
-  return ends;
-}
-
-const SharpEnd* find_end(const std::vector<SharpEnd>& ends, std::uint32_t segment,
-                         std::uint32_t corner) {
-  const auto found =
-      std::lower_bound(ends.begin(), ends.end(), SharpEnd{segment, corner, 0}, before);
-  return found != ends.end() && found->segment == segment && found->corner == corner ? &*found
-                                                                                     : nullptr;
-}
-
-// The pieces of the segments of `ends`, by segment.
-Result<std::vector<Piece>> pieces_of(const Domain& domain, const std::vector<SharpEnd>& ends,
-                                     const ExecutionContext& context) {
+      segments.push_back(domain.subsegments[s].segment);
+  std::sort(segments.begin(), segments.end());
   std::vector<Piece> pieces;
   for (std::uint32_t s = 0; s < domain.subsegments.size(); ++s) {
     if (s % kPollInterval == 0) {
       if (auto error = context.poll()) return tl::unexpected(*error);
     }
     const Subsegment& subsegment = domain.subsegments[s];
-    const auto end = std::lower_bound(
-        ends.begin(), ends.end(), subsegment.segment,
-        [](const SharpEnd& e, std::uint32_t segment) { return e.segment < segment; });
-    if (end != ends.end() && end->segment == subsegment.segment)
+    if (std::binary_search(segments.begin(), segments.end(), subsegment.segment))
       pieces.push_back({subsegment.segment, s, subsegment.a, subsegment.b, 0});
   }
   std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
@@ -97,38 +79,80 @@ void order_along(const Domain& domain, std::span<Piece> pieces) {
   });
 }
 
+// The sides of the sectors, by place_of. REQUIRES: `segments` are the pieces of each arm, along it.
+std::vector<Side> sides_of(const Domain& domain, const std::vector<CrossedArms::Sector>& sectors,
+                           const std::vector<std::span<Piece>>& segments) {
+  // From the corner, in the direction of the arm's subsegment there.
+  const auto reach = [&](std::uint32_t corner, std::uint32_t subsegment) {
+    const Subsegment& s = domain.subsegments[subsegment];
+    const Point at = domain.vertices[corner];
+    const Vector direction = domain.vertices[s.a == corner ? s.b : s.a] - at;
+    const auto pieces = std::partition_point(
+        segments.begin(), segments.end(),
+        [&](const std::span<Piece>& arm) { return arm.front().segment < s.segment; });
+    const Vector back = domain.vertices[pieces->front().low] - at;
+    const Vector ahead = domain.vertices[pieces->back().high] - at;
+    return length(dot(ahead, direction) > dot(back, direction) ? ahead : back);
+  };
+  std::vector<Side> sides;
+  sides.reserve(2 * sectors.size());
+  for (const auto& [corner, arms, tangent] : sectors) {
+    sides.push_back({arms[0], corner, tangent, reach(corner, arms[1])});
+    sides.push_back({arms[1], corner, tangent, reach(corner, arms[0])});
+  }
+  std::sort(sides.begin(), sides.end(),
+            [](const Side& a, const Side& b) { return place_of(a) < place_of(b); });
+  return sides;
+}
+
 }  // namespace
 
 Result<CrossedArms> CrossedArms::find(const Domain& domain, const std::vector<Sector>& sectors,
                                       const ExecutionContext& context) {
   CrossedArms arms;
   if (sectors.empty()) return arms;
-  const std::vector<SharpEnd> ends = sharp_ends(domain, sectors);
-  auto pieces = pieces_of(domain, ends, context);
+  auto pieces = pieces_of(domain, sectors, context);
   if (!pieces) return tl::unexpected(pieces.error());
-
-  // The sharpest corner among the vertices that a sweep along the segment has left behind.
-  const auto sweep = [&](const Piece& piece, std::uint32_t from, const SharpEnd*& sharpest) {
-    if (sharpest != nullptr)
-      for (const std::uint32_t end : {piece.low, piece.high})
-        arms.by_subsegment_.push_back({piece.subsegment, sharpest->corner, end});
-    const SharpEnd* here = find_end(ends, piece.segment, from);
-    if (here != nullptr && (sharpest == nullptr || here->tangent < sharpest->tangent))
-      sharpest = here;
-  };
+  std::vector<std::span<Piece>> segments;
   for (auto first = pieces->begin(); first != pieces->end();) {
-    if (auto error = context.poll()) return tl::unexpected(*error);
     const auto last = std::find_if(
         first, pieces->end(), [&](const Piece& piece) { return piece.segment != first->segment; });
-    const std::span<Piece> segment(first, last);
-    if (segment.size() > 1) {
-      order_along(domain, segment);
-      const SharpEnd* sharpest = nullptr;
-      for (const Piece& piece : segment) sweep(piece, piece.low, sharpest);
-      sharpest = nullptr;
-      for (std::size_t i = segment.size(); i-- > 0;) sweep(segment[i], segment[i].high, sharpest);
-    }
+    segments.emplace_back(first, last);
+    order_along(domain, segments.back());
     first = last;
+  }
+  const std::vector<Side> sides = sides_of(domain, sectors, segments);
+
+  // Sweeps along a segment, from this end of each piece. Of the sides that it has left behind, the
+  // sharpest whose other arm reaches the piece counts.
+  const auto is_wider = [](const Side& a, const Side& b) {
+    return std::tie(a.tangent, a.corner) > std::tie(b.tangent, b.corner);
+  };
+  const auto sweep = [&](std::span<const Piece> segment, std::uint32_t Piece::*end) {
+    std::priority_queue<Side, std::vector<Side>, decltype(is_wider)> behind(is_wider);
+    for (const Piece& piece : segment) {
+      const std::uint32_t from = piece.*end;
+      const auto is_past = [&](const Side& side) {
+        return length(domain.vertices[from] - domain.vertices[side.corner]) >= side.reach;
+      };
+      while (!behind.empty() && is_past(behind.top())) behind.pop();
+      if (!behind.empty())
+        for (const std::uint32_t v : {piece.low, piece.high})
+          arms.by_subsegment_.push_back(
+              {piece.subsegment, behind.top().corner, v, static_cast<float>(behind.top().tangent)});
+      const Side here{piece.subsegment, from, 0, 0};
+      const auto [first, last] =
+          std::equal_range(sides.begin(), sides.end(), here,
+                           [](const Side& a, const Side& b) { return place_of(a) < place_of(b); });
+      for (auto side = first; side != last; ++side) behind.push(*side);
+    }
+  };
+  for (const std::span<Piece> segment : segments) {
+    if (segment.size() == 1) continue;
+    if (auto error = context.poll()) return tl::unexpected(*error);
+    sweep(segment, &Piece::low);
+    std::reverse(segment.begin(), segment.end());
+    sweep(segment, &Piece::high);
   }
   const auto key = [](const Arm& arm) { return std::tie(arm.subsegment, arm.corner, arm.end); };
   std::sort(arms.by_subsegment_.begin(), arms.by_subsegment_.end(),
@@ -142,7 +166,7 @@ Result<CrossedArms> CrossedArms::find(const Domain& domain, const std::vector<Se
 
 std::span<const CrossedArms::Arm> CrossedArms::of(std::uint32_t subsegment) const {
   const auto [first, last] =
-      std::equal_range(by_subsegment_.begin(), by_subsegment_.end(), Arm{subsegment, 0, 0},
+      std::equal_range(by_subsegment_.begin(), by_subsegment_.end(), Arm{subsegment, 0, 0, 0},
                        [](const Arm& a, const Arm& b) { return a.subsegment < b.subsegment; });
   return {first, last};
 }
@@ -156,7 +180,7 @@ bool CrossedArms::share_corner(std::uint32_t subsegment, std::uint32_t other) co
 
 std::span<const CrossedArms::Arm> CrossedArms::at(std::uint32_t vertex) const {
   const auto [first, last] =
-      std::equal_range(by_end_.begin(), by_end_.end(), Arm{0, 0, vertex},
+      std::equal_range(by_end_.begin(), by_end_.end(), Arm{0, 0, vertex, 0},
                        [](const Arm& a, const Arm& b) { return a.end < b.end; });
   return {first, last};
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/engine.h"
@@ -95,6 +96,23 @@ TEST(CrossedArms, KeepTheSharpestOfSeveralCorners) {
   EXPECT_EQ(corner->x, 0);
 }
 
+TEST(CrossedArms, AreNotKeptPastTheEndOfTheOtherArm) {
+  Pslg pslg = crossed_wedge(1e-3, {4, 7});
+  pslg.points[pslg.segments[5].b] = {5, 5e-3};  // the second arm's end
+  const Found found = find(pslg);
+  EXPECT_TRUE(found.corner({5.5, 0}));  // past the second arm, and beside it
+  EXPECT_FALSE(found.corner({8.5, 0}));
+}
+
+TEST(CrossedArms, KeepTheNextCornerPastTheSharpest) {
+  Pslg pslg = crossed_wedge(1e-3, {4, 7});
+  pslg.points[pslg.segments[5].b] = {5, 5e-3};
+  add_segment(pslg, {2, 0}, {9, -0.1});  // a second corner on the first arm, at 1/70
+  const Found found = find(pslg);
+  EXPECT_EQ(found.corner({5.5, 0})->x, 0);
+  EXPECT_EQ(found.corner({8.5, 0})->x, 2);
+}
+
 // Of two arms that end 1e-5 apart, 5 from their corner, and are crossed twice.
 Pslg sliver(double offset) {
   Pslg pslg;
@@ -118,8 +136,7 @@ TEST(CrossedArms, CostALogarithmOfLengthOverWidth) {
   }
 }
 
-// Above 20 degrees some strips still cost a hundred times as many.
-TEST(CrossedArms, CostLittleHoweverTheyAreCrossedAt20Degrees) {
+TEST(CrossedArms, CostLittleHoweverTheyAreCrossed) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Random random(seed);
     const double tangent = std::pow(10, -2 - 5 * random.unit());
@@ -142,10 +159,13 @@ TEST(CrossedArms, CostLittleHoweverTheyAreCrossedAt20Degrees) {
       const double slant = 2 * random.unit() - 1;  // 45 degrees and more from the arms
       add_segment(pslg, turned({x - slant, -1}), turned({x + slant, 1}));
     }
-    const Sound made = sound({.pslg = pslg});
     const double levels = (crossings + 1) * std::log2(1 / tangent);
-    EXPECT_LE(static_cast<double>(made.summary.triangles), 300 + 15 * levels) << seed;
-    EXPECT_EQ(made.summary.unrefined.total(), made.summary.unrefined.small_input_angle) << seed;
+    for (const auto [degrees, most] : {std::pair{20.0, 15}, {30.0, 30}, {33.0, 45}}) {
+      const Sound made = sound({.pslg = pslg, .min_angle_deg = degrees});
+      EXPECT_LE(static_cast<double>(made.summary.triangles), 300 + most * levels)
+          << seed << ' ' << degrees;
+      EXPECT_EQ(made.summary.unrefined.total(), made.summary.unrefined.small_input_angle) << seed;
+    }
   }
 }
 
