@@ -160,7 +160,7 @@ TEST(CrossedArms, CostLittleHoweverTheyAreCrossed) {
       add_segment(pslg, turned({x - slant, -1}), turned({x + slant, 1}));
     }
     const double levels = (crossings + 1) * std::log2(1 / tangent);
-    for (const auto [degrees, most] : {std::pair{20.0, 15}, {30.0, 30}, {33.0, 45}}) {
+    for (const auto& [degrees, most] : {std::pair{20.0, 15}, {30.0, 30}, {33.0, 45}}) {
       const Sound made = sound({.pslg = pslg, .min_angle_deg = degrees});
       EXPECT_LE(static_cast<double>(made.summary.triangles), 300 + most * levels)
           << seed << ' ' << degrees;
