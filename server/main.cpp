@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // weftd: the process around the server. Exit codes: 0 drained, 1 failed, 2 wrong flags, 3 cannot
-// listen, 4 cannot open the store, 128 + signal where a second signal cut the draining short.
+// listen, 4 cannot open the store, 5 an address no longer answers, 128 + signal where a second
+// signal cut the draining short.
 #include <fmt/format.h>
 #include <grpc/grpc.h>
 #include <malloc.h>
@@ -36,6 +37,7 @@ namespace {
 constexpr int kExitFailed = 1;
 constexpr int kExitCannotListen = 3;
 constexpr int kExitNoStore = 4;
+constexpr int kExitLost = 5;
 
 void write_addresses(std::ostream& out, const Server& server) {
   for (const std::string& address : server.addresses()) out << address << '\n';
@@ -123,6 +125,11 @@ int serve(Options options) {
     log->error("event=cannot_open_store message={}", log_value(store.error().message));
     return kExitNoStore;
   }
+  // Whoever supervises the process starts another one. Jobs go on from the store.
+  options.server.address_lost = [&log](const std::string&) {
+    log->flush();
+    std::_Exit(kExitLost);
+  };
   auto started = Server::start(options.server, stream, log, std::move(*store));
   if (!started) {
     log->error("event=cannot_listen message={}", log_value(started.error()));

@@ -27,6 +27,7 @@ Exit codes:
   2        the command line is wrong
   3        cannot listen
   4        cannot open the store
+  5        an address no longer answers
   128 + n  a second signal n cut the draining short)";
 
 // Flags that have no effect if no jobs are kept.
@@ -161,6 +162,15 @@ struct Given {
   CLI::Option* cache_bytes = nullptr;
 };
 
+// A connection has three descriptors: the client's, and both ends of the pair to gRPC. The store,
+// the console and files keep some in reserve.
+std::uint64_t connections_for(std::uint64_t descriptors) {
+  constexpr std::uint64_t kReserve = 768;
+  constexpr std::uint64_t kMaxByDefault = 4096;
+  return std::clamp<std::uint64_t>((descriptors - std::min(descriptors / 2, kReserve)) / 3, 1,
+                                   kMaxByDefault);
+}
+
 // Defaults, some of which depend on the machine.
 Options defaults(const Machine& machine) {
   Options options;
@@ -170,6 +180,7 @@ Options defaults(const Machine& machine) {
   options.server.jobs.runner.keep.bytes = std::uint64_t{16} << 30;
   options.server.jobs.runner.keep.jobs_of_owner = 10'000;
   if (machine.memory != 0) options.server.memory = machine.memory / 4 * 3;
+  options.server.max_connections = connections_for(machine.descriptors);
   return options;
 }
 
@@ -312,7 +323,15 @@ void add_limits(Flags& flags, Options& options, Given& given) {
       ->check(silent(CLI::Range(1.0, double{std::numeric_limits<int>::max()})));  // gRPC's range
   flags.seconds("--request-timeout", given.request_timeout,
                 "Maximum time for a request message to arrive");
-  flags.value("--max-resets", options.server.admission.max_resets, "N",
+  flags
+      .value(
+          "--max-connections", options.server.max_connections, "N",
+          "Connections over TCP that may be open at the same time; one client has at most "
+          "--client-share of them. Each takes three descriptors. Default: what ulimit -n allows, "
+          "at most 4096")
+      ->check(silent(CLI::PositiveNumber))
+      ->default_str("");
+  flags.value("--max-resets", options.server.max_resets, "N",
               "Maximum calls that a connection may reset in a second before it is closed; 0: no "
               "limit");
 }

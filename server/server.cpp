@@ -83,6 +83,21 @@ std::string random_secret() {
   return fmt::format("{:02x}", fmt::join(bytes, ""));
 }
 
+// gRPC keeps up to 70 KB for each stream that is open or was just reset: a part of --memory.
+constexpr std::uint64_t kMemoryPerStream = std::uint64_t{512} << 10;
+constexpr std::uint64_t kMinLoad = 512;
+// So many connections one host may have whatever its share.
+constexpr std::size_t kMinPerHost = 16;
+constexpr std::uint64_t kMaxLoad = 16'384;
+
+ConnectionTable::Bounds connection_bounds(const ServerOptions& options) {
+  const auto connections = static_cast<double>(options.max_connections);
+  return {.connections = options.max_connections,
+          .per_host = std::max(
+              kMinPerHost, static_cast<std::size_t>(options.service.client_share * connections)),
+          .load = std::clamp(options.memory / kMemoryPerStream, kMinLoad, kMaxLoad)};
+}
+
 ServiceOptions with_info(const ServerOptions& options, bool has_store) {
   ServiceOptions service = options.service;
   service.info = server_info(options, has_store);
@@ -96,7 +111,8 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
     : log_(std::move(log)),
       tokens_(std::move(tokens)),
       console_secret_(random_secret()),
-      authenticator_(tokens_.get(), console_secret_),
+      connections_(connection_bounds(options), console_secret_),
+      authenticator_(tokens_.get(), console_secret_, &connections_),
       metrics_(kVersion, kEngineVersion),
       memory_(budget_options(options), [this] { queue_.memory_released(); }),
       admission_(admission_options(options, memory_), authenticator_, metrics_, log_),
@@ -113,6 +129,7 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
               .client_share = options.service.client_share}),
       service_(with_info(options, store != nullptr), admission_, metrics_, engine, pool_, queue_,
                log_) {
+  metrics_.set_connections([this] { return static_cast<double>(connections_.size()); });
   metrics_.add_queue("calls", [this] {
     QueueStats stats = service_.stats();
     const double of_jobs = jobs_ ? jobs_->stats().admitted_bytes : 0;
@@ -138,8 +155,8 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
     if (const auto claimed = claim(address); !claimed)
       return tl::unexpected(fmt::format("cannot listen on {}: {}", address, claimed.error()));
 
-  auto credentials = credentials_for(options.listen, options.tls, options.insecure);
-  if (!credentials) return tl::unexpected(credentials.error());
+  if (const auto good = check_encryption(options.listen, options.tls, options.insecure); !good)
+    return tl::unexpected(good.error());
   if (!options.metrics.empty() && !options.insecure && !is_local(options.metrics))
     return tl::unexpected(fmt::format(
         "{} would show the metrics to other machines, unencrypted and to everyone: "
@@ -154,31 +171,22 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
 
   std::unique_ptr<Server> server(
       new Server(options, std::move(tokens), std::move(engine), std::move(log), std::move(store)));
-  grpc::ServerBuilder builder;
-  configure(builder, options);
-  limit_connections(builder);
-  std::vector<int> ports(options.listen.size());
-  for (std::size_t i = 0; i < ports.size(); ++i)
-    builder.AddListeningPort(options.listen[i], (*credentials)[i], &ports[i]);
-  builder.RegisterService(&server->health_);
-  builder.RegisterService(&server->reflection_);
-  builder.RegisterService(&server->reflection_alpha_);
-  builder.RegisterService(&server->service_);
-  JobService* const job_service = server->job_service();
-  if (job_service != nullptr) builder.RegisterService(job_service);
-  server->server_ = builder.BuildAndStart();
-  for (std::size_t i = 0; i < ports.size(); ++i) {
-    if (ports[i] == 0) return tl::unexpected(fmt::format("cannot listen on {}", options.listen[i]));
-    server->addresses_.push_back(bound_address(options.listen[i], ports[i]));
-  }
+  if (auto failed = server->listen(options)) return tl::unexpected(std::move(*failed));
   server->health_.set("", true);
   server->health_.set(kMeshServiceName, true);
-  if (job_service != nullptr) server->health_.set(kJobServiceName, true);
+  if (server->job_service() != nullptr) server->health_.set(kJobServiceName, true);
   server->serving_ = true;
+  server->probe_ =
+      std::make_unique<Probe>(ProbeOptions{.addresses = server->addresses_,
+                                           .encrypted = !options.tls.certificate.empty(),
+                                           .lost = options.address_lost},
+                              server->log_);
   if (!options.metrics.empty()) {
     auto endpoint = MetricsEndpoint::start(
-        options.metrics, {.metrics = [self = server.get()] { return self->metrics_.text(); },
-                          .healthy = [self = server.get()] { return self->serving_.load(); }});
+        options.metrics,
+        {.metrics = [self = server.get()] { return self->metrics_.text(); },
+         .healthy = [self =
+                         server.get()] { return self->serving_ && self->probe_->all_answer(); }});
     if (!endpoint) return tl::unexpected(endpoint.error());
     server->endpoint_ = std::move(*endpoint);
     server->log_->info("event=showing_metrics address={}", log_value(server->metrics_address()));
@@ -189,6 +197,46 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
                        security_of(address, options.tls), server->tokens_ ? "yes" : "no",
                        log_value(address));
   return server;
+}
+
+std::optional<std::string> Server::listen(const ServerOptions& options) {
+  FrontOptions front{.tls = options.tls,
+                     .max_resets = options.max_resets,
+                     .lanes = std::clamp(options.service.threads / 4, 1u, 4u)};
+  for (const std::string& address : options.listen)
+    if (!is_unix(address)) front.listen.push_back(address);
+  if (!front.listen.empty()) {
+    auto opened = Front::open(front, connections_, log_,
+                              [this](const char* cause) { metrics_.connection_closed(cause); });
+    if (!opened) return std::move(opened.error());
+    front_ = std::move(*opened);
+  }
+  grpc::ServerBuilder builder;
+  configure(builder, options);
+  limit_connections(builder);
+  std::vector<int> bound(options.listen.size());
+  for (std::size_t i = 0; i < bound.size(); ++i)
+    if (is_unix(options.listen[i]))
+      builder.AddListeningPort(options.listen[i], grpc::InsecureServerCredentials(), &bound[i]);
+  std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor;
+  if (front_ != nullptr)
+    acceptor = builder.experimental().AddExternalConnectionAcceptor(
+        grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD,
+        grpc::InsecureServerCredentials());
+  builder.RegisterService(&health_);
+  builder.RegisterService(&reflection_);
+  builder.RegisterService(&reflection_alpha_);
+  builder.RegisterService(&service_);
+  if (job_service() != nullptr) builder.RegisterService(job_service());
+  server_ = builder.BuildAndStart();
+  for (std::size_t i = 0, of_tcp = 0; i < bound.size(); ++i) {
+    if (!is_unix(options.listen[i])) bound[i] = front_->ports()[of_tcp++];
+    if (bound[i] == 0) return fmt::format("cannot listen on {}", options.listen[i]);
+    addresses_.push_back(bound_address(options.listen[i], bound[i]));
+  }
+  if (server_ == nullptr) return "gRPC does not start";
+  if (front_ != nullptr) front_->start(std::move(acceptor));
+  return std::nullopt;
 }
 
 std::optional<std::string> Server::start_console(const ServerOptions& options) {
@@ -217,6 +265,7 @@ std::optional<std::string> Server::start_console(const ServerOptions& options) {
 
 void Server::drain(std::chrono::steady_clock::duration at_most) {
   const auto end = std::chrono::steady_clock::now() + at_most;
+  if (probe_ != nullptr) probe_->stop();
   health_.set_all(false);
   serving_ = false;
   service_.gate().close();
@@ -232,8 +281,10 @@ void Server::drain(std::chrono::steady_clock::duration at_most) {
     empty_by(std::chrono::steady_clock::now() + kLastWords);
   }
   if (console_ != nullptr) console_->stop(std::chrono::steady_clock::now() + kOthersGrace);
+  if (front_ != nullptr) front_->stop_accepting();
   server_->Shutdown(std::chrono::system_clock::now() + kOthersGrace);
   server_->Wait();
+  if (front_ != nullptr) front_->finish(std::chrono::steady_clock::now() + kLastWords);
   console_.reset();
   server_.reset();
   remove_socket_files();

@@ -12,6 +12,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,9 +21,12 @@
 
 #include "server/admission/admission.h"
 #include "server/console/console.h"
+#include "server/front/front.h"
+#include "server/front/probe.h"
 #include "server/jobs/job_system.h"
 #include "server/mesh/mesh_service.h"
 #include "server/net/caller.h"
+#include "server/net/connection_table.h"
 #include "server/net/health_service.h"
 #include "server/net/reflection_service.h"
 #include "server/net/tls.h"
@@ -42,12 +46,20 @@ struct ServerOptions {
   std::uint64_t memory = std::uint64_t{8} << 30;
   // Where there is a store. Their limits are those of `service`.
   JobOptions jobs{};
-  TlsOptions tls{};      // of TCP addresses; a unix socket is guarded by its folder
+  TlsOptions tls{};  // of TCP addresses; a unix socket is guarded by its folder
+  // Connections over TCP that may be open at the same time; one client has the share of
+  // `service.client_share`.
+  std::uint64_t max_connections = 1024;
+  // Calls that one connection may reset in a second; more close it. 0: no bound, nor on those that
+  // do not end.
+  std::uint64_t max_resets = 600;
   std::string tokens{};  // the file, see tokens.h; empty: whoever can connect may call
   // Listen unencrypted even if other machines can connect, and show the metrics to them.
   bool insecure = false;
   std::string metrics{};  // HOST:PORT to show them on, see metrics_endpoint.h; empty: nowhere
   ConsoleOptions console{};
+  // Called once if an address has not answered the server itself for a minute, see probe.h.
+  std::function<void(const std::string& address)> address_lost = [](const std::string&) {};
 };
 
 class Server {
@@ -82,12 +94,14 @@ class Server {
   Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, EngineFn engine,
          Logger log, std::unique_ptr<JobStore> store);
   JobService* job_service();  // null if there is none
-  // Returns what is wrong.
+  // These return what is wrong.
+  std::optional<std::string> listen(const ServerOptions& options);
   std::optional<std::string> start_console(const ServerOptions& options);
 
   const Logger log_;
   const std::unique_ptr<TokenFile> tokens_;  // may be null
   const std::string console_secret_;         // see caller.h
+  ConnectionTable connections_;
   const Authenticator authenticator_;
   Metrics metrics_;
   MemoryBudget memory_;
@@ -99,10 +113,12 @@ class Server {
   RunQueue queue_;
   MeshService service_;
   std::optional<JobSystem> jobs_;
+  std::unique_ptr<Front> front_;  // null if no address is of TCP
   std::unique_ptr<grpc::Server> server_;
   std::unique_ptr<Console> console_;  // may be null
   std::vector<std::string> addresses_;
   std::atomic<bool> serving_{false};
+  std::unique_ptr<Probe> probe_;
   std::unique_ptr<MetricsEndpoint> endpoint_;  // destroyed first: it asks all of the above
 };
 

@@ -6,8 +6,6 @@
 #include <grpcpp/impl/rpc_service_method.h>
 #include <grpcpp/support/server_callback.h>
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <exception>
 #include <new>
@@ -42,8 +40,6 @@ Admission::Admission(const AdmissionOptions& options, const Authenticator& authe
       metrics_(metrics),
       log_(std::move(log)),
       refusals_(log_, "call_refused", options.refusal_lines),
-      closings_(log_, "connection_closed", options.refusal_lines),
-      resets_(options.max_resets),
       requests_memory_({.capacity = options.request_bytes}, [] {}),
       ticker_([this] { tick_until_stopped(); }) {}
 
@@ -69,8 +65,6 @@ RawCall* Admission::open(grpc::CallbackServerContext* context, const Method& met
 }
 
 void Admission::admit(const std::shared_ptr<RawCall>& raw, const Method& method, DrainGate* gate) {
-  if (resets_.began(raw->peer()))
-    close_connections(raw->peer(), "calls_without_end", ResetGuard::kMostOpen);
   const auto call = std::make_shared<AdmittedCall>(
       AdmittedCall{raw, method.name, authenticator_.unverified(*raw->context()), std::nullopt});
   auto caller = authenticator_.identify(*raw->context());
@@ -173,20 +167,8 @@ void Admission::note(const AdmittedCall& call, const Failure& failure) {
              log_value(failure.field.empty() ? "-" : failure.field));
 }
 
-void Admission::cancelled(RawCall& call) {
-  if (resets_.was_reset(call.peer())) close_connections(call.peer(), "resets", options_.max_resets);
-}
-
-void Admission::ended(RawCall& call) {
-  resets_.ended(call.peer());
+void Admission::ended(RawCall&) {
   give_to_grpc(this);
-}
-
-void Admission::close_connections(const std::string& peer, const char* cause, std::uint64_t most) {
-  if (close_connections_of(peer) == 0) return;
-  closed_some_ = true;
-  if (closings_.allow())
-    log_->warn("event=connection_closed peer={} cause={} most={}", log_value(peer), cause, most);
 }
 
 void Admission::expire_pending(Clock::time_point now) {
@@ -216,8 +198,6 @@ void Admission::tick_until_stopped() {
     try {
       expire_pending(Clock::now());
       refusals_.flush_suppressed();
-      closings_.flush_suppressed();
-      if (closed_some_.exchange(false)) malloc_trim(0);  // thousands of calls lie scattered in it
     } catch (const std::bad_alloc&) {
       // The next tick does it.
     }

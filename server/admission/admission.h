@@ -24,7 +24,6 @@
 
 #include <grpcpp/impl/service_type.h>
 
-#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -37,11 +36,10 @@
 #include <string>
 #include <thread>
 
-#include "server/admission/refusal_log.h"
 #include "server/net/caller.h"
 #include "server/net/drain_gate.h"
 #include "server/net/raw_call.h"
-#include "server/net/reset_guard.h"
+#include "server/observe/bounded_log.h"
 #include "server/observe/log.h"
 #include "server/observe/metrics.h"
 #include "server/run/memory_budget.h"
@@ -55,9 +53,6 @@ inline constexpr std::size_t kSmallRequest = std::size_t{64} << 10;
 struct AdmissionOptions {
   // From the headers of a call to the end of its message.
   std::chrono::steady_clock::duration request_timeout = std::chrono::seconds(120);
-  // Calls that one connection may reset in a second; more close it. 0: no bound, nor on those that
-  // are reset before they end.
-  std::uint64_t max_resets = 600;
   // Refusals that are logged in a second; more are counted.
   std::uint64_t refusal_lines = 20;
   // The maximum memory of large messages that are parsed, or wait to be, and of requests that wait
@@ -134,9 +129,7 @@ class Admission : private RawCall::Observer {
   void handle(const std::shared_ptr<AdmittedCall>& call, const Method& method,
               grpc::ByteBuffer bytes);
   void note(const AdmittedCall& call, const Failure& failure);
-  void cancelled(RawCall& call) override;
   void ended(RawCall& call) override;
-  void close_connections(const std::string& peer, const char* cause, std::uint64_t most);
   void expire_pending(std::chrono::steady_clock::time_point now);
   void tick_until_stopped();
 
@@ -144,11 +137,8 @@ class Admission : private RawCall::Observer {
   const Authenticator& authenticator_;
   Metrics& metrics_;
   const Logger log_;
-  RefusalLog refusals_;
-  RefusalLog closings_;
-  ResetGuard resets_;
+  BoundedLog refusals_;
   MemoryBudget requests_memory_;
-  std::atomic<bool> closed_some_{false};  // connections, since the last tick
 
   std::mutex mutex_;            // guards the two below
   std::list<Reading> reading_;  // the oldest first

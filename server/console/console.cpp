@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "server/console/session.h"
-#include "server/console/tls_context.h"
+#include "server/net/tls_context.h"
 #include "server/net/drain_gate.h"
 #include "server/net/listen.h"
 
@@ -162,7 +162,7 @@ tl::expected<std::unique_ptr<Console>, std::string> Console::start(const Console
         "--tls-key, or --insecure to do it anyway");
   std::optional<TlsContext> tls;
   if (encrypts) {
-    auto opened = TlsContext::open(parts.tls, parts.log);
+    auto opened = TlsContext::open(parts.tls, TlsProtocol::kHttp1, parts.log);
     if (!opened) return tl::unexpected(opened.error());
     tls = std::move(*opened);
   }

@@ -24,7 +24,7 @@
 #include "server/console/call_body.h"
 #include "server/console/call_headers.h"
 #include "server/console/pages.h"
-#include "server/console/peer.h"
+#include "server/net/peer.h"
 #include "server/console/transport.h"
 
 namespace weft::server {

@@ -2,7 +2,6 @@
 #include "server/net/caller.h"
 
 #include <fmt/format.h>
-#include <grpc/grpc_security_constants.h>
 #include <openssl/crypto.h>
 #include <strings.h>
 
@@ -33,16 +32,6 @@ std::optional<std::string_view> bearer_token(std::optional<std::string_view> val
       ::strncasecmp(value->data(), kScheme.data(), kScheme.size()) != 0)
     return std::nullopt;
   return value->substr(kScheme.size());
-}
-
-// Connections without a certificate, or one that nobody checked, have no such properties.
-std::string name_in_certificate(const grpc::ServerContextBase& context) {
-  const auto connection = context.auth_context();
-  if (connection == nullptr) return "";
-  for (const char* property : {GRPC_X509_CN_PROPERTY_NAME, GRPC_X509_SAN_PROPERTY_NAME})
-    for (const grpc::string_ref& value : connection->FindPropertyValues(property))
-      if (!value.empty()) return std::string(view(value));
-  return "";
 }
 
 bool all_lower_hex(std::string_view text) {
@@ -91,24 +80,43 @@ bool Authenticator::is_console(const grpc::ServerContextBase& context) const {
          CRYPTO_memcmp(secret->data(), console_secret_.data(), secret->size()) == 0;
 }
 
-Caller Authenticator::unverified(const grpc::ServerContextBase& context) const {
+Authenticator::Connection Authenticator::connection_of(const std::string& peer) const {
+  return connections_ == nullptr ? nullptr : connections_->find(peer);
+}
+
+Caller Authenticator::caller_of(const grpc::ServerContextBase& context,
+                                const Connection& connection) const {
   const auto peer = is_console(context) ? header(context, kConsolePeer) : std::nullopt;
   return {.name = {},
-          .peer = peer ? std::string(*peer) : context.peer(),
+          .peer = peer         ? std::string(*peer)
+                  : connection ? connection->peer()
+                               : context.peer(),
           .trace = trace_id(header(context, "traceparent").value_or(""))};
+}
+
+Caller Authenticator::unverified(const grpc::ServerContextBase& context) const {
+  return caller_of(context, connection_of(context.peer()));
 }
 
 tl::expected<Caller, Failure> Authenticator::identify(
     const grpc::ServerContextBase& context) const {
-  Caller caller = unverified(context);
+  const std::string peer = context.peer();
+  const Connection connection = connection_of(peer);
+  if (connection == nullptr && connections_ != nullptr && connections_->has_named(peer))
+    return tl::unexpected(
+        Failure{Reason::kUnauthenticated, "", "the connection has ended before the call began"});
+  Caller caller = caller_of(context, connection);
   if (tokens_ == nullptr) {
-    caller.name = is_console(context) ? header(context, kConsoleName).value_or("")
-                                      : name_in_certificate(context);
+    if (is_console(context))
+      caller.name = header(context, kConsoleName).value_or("");
+    else if (connection != nullptr)
+      caller.name = connection->certificate_name();
     return caller;
   }
   auto name = token_name(header(context, "authorization"));
   if (!name) return tl::unexpected(name.error());
   caller.name = std::move(*name);
+  if (connection != nullptr) connection->set_identified();
   return caller;
 }
 

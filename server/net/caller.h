@@ -21,12 +21,14 @@
 #include <grpcpp/server_context.h>
 
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
 #include <utility>
 
+#include "server/net/connection_table.h"
 #include "server/net/tokens.h"
 #include "server/wire/errors.h"
 
@@ -68,9 +70,11 @@ inline constexpr std::string_view kConsoleName = "weft-console-name";  // in its
 class Authenticator {
  public:
   // `tokens` must outlive the authenticator; null: anyone who can connect may call. Nobody is
-  // believed to be the console if `console_secret` is empty.
-  explicit Authenticator(const TokenFile* tokens, std::string console_secret = "")
-      : tokens_(tokens), console_secret_(std::move(console_secret)) {}
+  // believed to be the console if `console_secret` is empty. `connections` knows the peers that
+  // came over TCP, and outlives the authenticator; null: there are none.
+  explicit Authenticator(const TokenFile* tokens, std::string console_secret = "",
+                         const ConnectionTable* connections = nullptr)
+      : tokens_(tokens), console_secret_(std::move(console_secret)), connections_(connections) {}
 
   tl::expected<Caller, Failure> identify(const grpc::ServerContextBase& context) const;
 
@@ -81,10 +85,16 @@ class Authenticator {
   tl::expected<std::string, Failure> token_name(std::optional<std::string_view> header) const;
 
  private:
+  using Connection = std::shared_ptr<ConnectionTable::Connection>;
+
   bool is_console(const grpc::ServerContextBase& context) const;
+  Caller caller_of(const grpc::ServerContextBase& context, const Connection& connection) const;
+  // By which the call came; null if that was not TCP, or if it has ended.
+  Connection connection_of(const std::string& peer) const;
 
   const TokenFile* const tokens_;
   const std::string console_secret_;
+  const ConnectionTable* const connections_;
 };
 
 }  // namespace weft::server

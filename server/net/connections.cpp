@@ -6,26 +6,17 @@
 #include "server/net/listen.h"
 
 namespace weft::server {
-tl::expected<std::vector<std::shared_ptr<grpc::ServerCredentials>>, std::string> credentials_for(
-    const std::vector<std::string>& addresses, const TlsOptions& tls, bool insecure) {
-  const bool encrypts = !tls.certificate.empty();
-  std::shared_ptr<grpc::ServerCredentials> encrypted;
-  if (encrypts) {
-    auto made = tls_credentials(tls);
-    if (!made) return tl::unexpected(made.error());
-    encrypted = std::move(*made);
-  }
-  std::vector<std::shared_ptr<grpc::ServerCredentials>> credentials;
-  for (const std::string& address : addresses) {
-    const bool plain = !encrypts || is_unix(address);
-    if (plain && !insecure && !is_local(address))
+
+tl::expected<void, std::string> check_encryption(const std::vector<std::string>& addresses,
+                                                 const TlsOptions& tls, bool insecure) {
+  if (insecure || !tls.certificate.empty()) return {};
+  for (const std::string& address : addresses)
+    if (!is_local(address))
       return tl::unexpected(
           fmt::format("will not listen on {} unencrypted, where other machines can connect: give "
                       "--tls-cert and --tls-key, or --insecure to do it anyway",
                       address));
-    credentials.push_back(plain ? grpc::InsecureServerCredentials() : encrypted);
-  }
-  return credentials;
+  return {};
 }
 
 const char* security_of(const std::string& address, const TlsOptions& tls) {
@@ -42,13 +33,11 @@ void limit_connections(grpc::ServerBuilder& builder) {
   // Three early pings in a row, with nothing sent in between, end the connection.
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 10'000);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PING_STRIKES, 2);
-  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMostStreams);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, static_cast<int>(kMaxStreams));
   // A call may send HTTP/2's own 64 KiB before its caller is known. Probes of the bandwidth would
   // let gRPC raise that to megabytes. Once a message is wanted, the window is opened for it.
   builder.AddChannelArgument(GRPC_ARG_HTTP2_BDP_PROBE, 0);
-  // Bounds how long a connection that never finishes its handshake, or makes no call, keeps a
-  // descriptor.
-  builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, 20'000);
+  // Bounds how long a connection that makes no call keeps a descriptor.
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, 600'000);
 }
 

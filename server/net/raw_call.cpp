@@ -108,7 +108,6 @@ void RawCall::OnCancel() {
     cancelled_ = true;
     writer = writer_;
   }
-  observer_.cancelled(*this);
   if (writer != nullptr) writer->cancelled();
   give_to_grpc(this);
 }

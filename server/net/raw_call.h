@@ -47,8 +47,6 @@ class RawCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
   // Is notified of the end of every call that it is given to; must outlive them all.
   class Observer {
    public:
-    // The client cancelled, went away, or its deadline passed.
-    virtual void cancelled(RawCall& call) = 0;
     // gRPC releases the call.
     virtual void ended(RawCall& call) = 0;
 

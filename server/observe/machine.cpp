@@ -2,6 +2,7 @@
 #include "server/observe/machine.h"
 
 #include <sched.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
@@ -107,17 +108,30 @@ std::uint32_t allowed_processors() {
   return std::max(1u, std::thread::hardware_concurrency());
 }
 
+// Returns how many there may be now.
+std::uint64_t raise_descriptors() {
+  constexpr rlim_t kUseful = 65'536;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return Machine{}.descriptors;
+  const rlim_t before = limit.rlim_cur;
+  limit.rlim_cur = std::max(before, std::min(limit.rlim_max, kUseful));
+  return ::setrlimit(RLIMIT_NOFILE, &limit) == 0 ? limit.rlim_cur : before;
+}
+
 }  // namespace
 
 Machine read_machine(const fs::path& root, std::uint32_t allowed) {
   const Grant grant = read_cgroups(root);
   const double processors = std::min<double>(allowed, std::ceil(grant.processors));
   const double bytes = std::min(read_total_memory(root), grant.bytes);
-  return {static_cast<std::uint32_t>(std::max(1.0, processors)), static_cast<std::uint64_t>(bytes)};
+  return {.threads = static_cast<std::uint32_t>(std::max(1.0, processors)),
+          .memory = static_cast<std::uint64_t>(bytes)};
 }
 
 Machine this_machine() {
-  return read_machine("/", allowed_processors());
+  Machine machine = read_machine("/", allowed_processors());
+  machine.descriptors = raise_descriptors();
+  return machine;
 }
 
 }  // namespace weft::server

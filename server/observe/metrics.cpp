@@ -58,6 +58,9 @@ Metrics::Metrics(std::string_view version, std::string_view engine_version)
           histograms(registry_, "weft_request_seconds", "From a call to the end of its answer")),
       jobs_(counters(registry_, "weft_jobs_total",
                      "Jobs that reached a state; jobs that share a mesh count once as running")),
+      connections_closed_(
+          counters(registry_, "weft_connections_closed_total",
+                   "Connections closed for what their clients did, or to make room for others")),
       queue_seconds_(histogram(registry_, "weft_queue_seconds",
                                "From being accepted to the start of the work")),
       refine_seconds_(histogram(registry_, "weft_refine_seconds",
@@ -75,7 +78,8 @@ Metrics::Metrics(std::string_view version, std::string_view engine_version)
       leases_lost_(counter(
           registry_, "weft_leases_lost_total",
           "Attempts at a mesh whose lease ran out, because their worker was lost or hung")) {
-  // So that the first job in a state shows as an increase, too.
+  // So that the first of each shows as an increase, too.
+  for (const char* cause : kClosingCauses) connections_closed_.Add({{"cause", cause}});
   for (const char* state : {"queued", "running", "succeeded", "failed", "cancelled"})
     jobs_.Add({{"state", state}});
   prometheus::BuildGauge()
@@ -96,6 +100,15 @@ void Metrics::job_became(std::string_view state) {
   jobs_.Add({{"state", std::string(state)}}).Increment();
 }
 
+void Metrics::connection_closed(std::string_view cause) {
+  connections_closed_.Add({{"cause", std::string(cause)}}).Increment();
+}
+
+void Metrics::set_connections(std::function<double()> open) {
+  std::lock_guard lock(mutex_);
+  connections_ = std::move(open);
+}
+
 void Metrics::add_queue(std::string name, std::function<QueueStats()> stats) {
   std::lock_guard lock(mutex_);
   queues_.push_back({std::move(name), std::move(stats)});
@@ -103,10 +116,14 @@ void Metrics::add_queue(std::string name, std::function<QueueStats()> stats) {
 
 std::string Metrics::text() const {
   std::vector<Queue> queues;
+  std::function<double()> open;
   {
     std::lock_guard lock(mutex_);
     queues = queues_;
+    open = connections_;
   }
+  auto connections = gauge_family("weft_connections", "Connections over TCP that are open");
+  connections.metric.emplace_back().gauge.value = open();
   auto waiting = gauge_family("weft_queue_length", "Calls or jobs that wait for their turn");
   auto running = gauge_family("weft_running_jobs", "Calls or jobs at work");
   auto pausing =
@@ -121,7 +138,7 @@ std::string Metrics::text() const {
     add_gauge(bytes, queue.name, stats.admitted_bytes);
   }
   std::vector<prometheus::MetricFamily> families = registry_.Collect();
-  for (auto* family : {&waiting, &running, &pausing, &bytes})
+  for (auto* family : {&connections, &waiting, &running, &pausing, &bytes})
     families.push_back(std::move(*family));
   for (auto& family : process_metrics()) families.push_back(std::move(family));
   std::ostringstream out;

@@ -34,6 +34,11 @@ struct QueueStats {
   double admitted_bytes = 0;  // memory with which the running jobs were admitted
 };
 
+// Why the front closes connections: see connection_rules.h and connection_table.h.
+inline constexpr const char* kClosingCauses[] = {
+    "calls_without_end", "connections", "continuations", "descriptors", "frames",
+    "header_block",      "load",        "pings",         "resets",      "unexpected_frame"};
+
 class Metrics {
  public:
   Metrics(std::string_view version, std::string_view engine_version);
@@ -55,6 +60,9 @@ class Metrics {
   // Counts a job's new state, on a server with a store. `state` is in lower case: queued, running,
   // succeeded, failed or cancelled.
   void job_became(std::string_view state);
+  // Counts a connection that was closed for what its client did, or to make room. `cause` is as in
+  // the log.
+  void connection_closed(std::string_view cause);
   void cache_hit() { cache_hits_.Increment(); }
   void cache_missed() { cache_misses_.Increment(); }
   // Counts leases that ran out. Each is found by only one server of a store.
@@ -63,6 +71,9 @@ class Metrics {
   // `stats` is called at every scrape, on the scraping thread, until the metrics are destroyed or
   // scraping ends.
   void add_queue(std::string name, std::function<QueueStats()> stats);
+
+  // The connections over TCP that are open, asked as `stats` of a queue is.
+  void set_connections(std::function<double()> open);
 
   // The text format of Prometheus, version 0.0.4.
   std::string text() const;
@@ -77,6 +88,7 @@ class Metrics {
   prometheus::Family<prometheus::Counter>& requests_;
   prometheus::Family<prometheus::Histogram>& request_seconds_;
   prometheus::Family<prometheus::Counter>& jobs_;
+  prometheus::Family<prometheus::Counter>& connections_closed_;
   prometheus::Histogram& queue_seconds_;
   prometheus::Histogram& refine_seconds_;
   prometheus::Histogram& first_chunk_seconds_;
@@ -86,8 +98,9 @@ class Metrics {
   prometheus::Counter& cache_misses_;
   prometheus::Counter& leases_lost_;
 
-  mutable std::mutex mutex_;  // guards the one below
+  mutable std::mutex mutex_;  // guards the two below
   std::vector<Queue> queues_;
+  std::function<double()> connections_ = [] { return 0.0; };
 };
 
 }  // namespace weft::server

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A small web server for monitoring: GET /metrics for Prometheus, GET /healthz for load balancers
-// (200 while the server accepts calls, 503 while it drains).
+// (200 while the server accepts calls, 503 while it drains or one of its addresses is silent).
 //
 // It has one thread, and serves one request per connection. A connection is closed if its request
 // is not complete within the time limit or has more than 8 KiB, or if its reply is not read in

@@ -80,8 +80,10 @@ Outcome run_program(const std::string& program, const std::vector<std::string>& 
   return outcome;
 }
 
-Server::Server(const std::vector<std::string>& arguments)
-    : arguments_(arguments), address_("unix:" + (folder_ / "weftd.sock").string()) {
+Server::Server(const std::vector<std::string>& arguments, unsigned descriptors)
+    : arguments_(arguments),
+      descriptors_(descriptors),
+      address_("unix:" + (folder_ / "weftd.sock").string()) {
   start();
 }
 
@@ -90,7 +92,13 @@ void Server::start() {
   std::filesystem::remove(port_file);
   std::vector<std::string> all{"--listen", address_, "--port-file", port_file};
   all.insert(all.end(), arguments_.begin(), arguments_.end());
-  pid_ = e2e::start(testing::kWeftd, all, folder_ / "out", folder_ / "err");
+  std::string program = testing::kWeftd;
+  if (descriptors_ != 0) {
+    all.insert(all.begin(),
+               {"-c", "ulimit -n \"$0\" && exec \"$@\"", std::to_string(descriptors_), program});
+    program = "/bin/sh";
+  }
+  pid_ = e2e::start(program, all, folder_ / "out", folder_ / "err");
   while (!std::filesystem::exists(port_file)) {
     if (waitpid(pid_, nullptr, WNOHANG) != 0) {
       pid_ = -1;

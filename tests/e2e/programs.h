@@ -32,7 +32,8 @@ Outcome run_program(const std::string& program, const std::vector<std::string>& 
 // A weftd on a unix socket; SIGTERM at the end, after which it must exit with 0.
 class Server {
  public:
-  explicit Server(const std::vector<std::string>& arguments = {});
+  // `descriptors`: how many it may have, by its hard limit; 0: as many as the test.
+  explicit Server(const std::vector<std::string>& arguments = {}, unsigned descriptors = 0);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
@@ -59,6 +60,7 @@ class Server {
 
  private:
   const std::vector<std::string> arguments_;
+  const unsigned descriptors_;
   Folder folder_;
   std::string address_;
   pid_t pid_ = -1;

@@ -7,13 +7,14 @@
 #include <chrono>
 #include <utility>
 
-#include "tests/e2e/fleet.h"
 #include "weft/v1/mesh_service.grpc.pb.h"
 
 namespace weft::e2e {
 
-Bystander::Bystander(const std::string& address, std::string token)
-    : thread_([this, address, token = std::move(token)] { ask(address, token); }) {}
+Bystander::Bystander(std::shared_ptr<grpc::Channel> channel, std::string token)
+    : thread_([this, channel = std::move(channel), token = std::move(token)] {
+        ask(channel, token);
+      }) {}
 
 void Bystander::stop() {
   stopping_ = true;
@@ -26,9 +27,9 @@ double Bystander::seconds_of(double share) const {
   return seconds_[static_cast<std::size_t>(share * static_cast<double>(seconds_.size() - 1))];
 }
 
-void Bystander::ask(const std::string& address, const std::string& token) {
+void Bystander::ask(const std::shared_ptr<grpc::Channel>& channel, const std::string& token) {
   using Clock = std::chrono::steady_clock;
-  const auto stub = v1::MeshService::NewStub(connect(address));
+  const auto stub = v1::MeshService::NewStub(channel);
   while (!stopping_) {
     const Clock::time_point begin = Clock::now();
     grpc::ClientContext context;

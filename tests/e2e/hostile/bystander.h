@@ -3,7 +3,10 @@
 // connection of its own, and remembers how long each answer took.
 #pragma once
 
+#include <grpcpp/channel.h>
+
 #include <atomic>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -13,7 +16,7 @@ namespace weft::e2e {
 class Bystander {
  public:
   // Asks GetServerInfo with this token until it is destroyed, or `stop` is called.
-  Bystander(const std::string& address, std::string token);
+  Bystander(std::shared_ptr<grpc::Channel> channel, std::string token);
   ~Bystander() { stop(); }
   Bystander(const Bystander&) = delete;
   Bystander& operator=(const Bystander&) = delete;
@@ -27,7 +30,7 @@ class Bystander {
   double seconds_of(double share) const;
 
  private:
-  void ask(const std::string& address, const std::string& token);
+  void ask(const std::shared_ptr<grpc::Channel>& channel, const std::string& token);
 
   std::atomic<bool> stopping_{false};
   std::vector<double> seconds_;  // sorted once it is stopped

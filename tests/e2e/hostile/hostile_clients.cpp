@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // One hostile client of each kind, all at once, each on connections of its own:
 //
-//   build/release/hostile_clients HOST:PORT SECONDS [KIND...]
+//   build/release/hostile_clients HOST:PORT SECONDS [tcp|tls [KIND...]]
 //
+// KIND is one of kinds.h, which speak no TLS, or of floods.h; without any, all of kinds.h.
 // Those that the server is to know send the token `the-token-of-KIND`. Prints how often each did
 // what it does. A process of its own: what hostile clients compute, they compute on other machines,
 // so here they take what the server and honest clients leave.
@@ -24,6 +25,7 @@
 #include <vector>
 
 #include "tests/e2e/fleet.h"
+#include "tests/e2e/hostile/floods.h"
 #include "tests/e2e/hostile/http2_client.h"
 #include "tests/e2e/hostile/kinds.h"
 #include "tests/server/raw_call.h"
@@ -53,9 +55,10 @@ v1::GenerateMeshRequest square(const std::string& size) {
   return request;
 }
 
-struct Target {
+// A server that knows the token of this kind.
+struct Victim {
   std::string address;  // TCP
-  std::string kind;     // whose token the server knows
+  std::string kind;
 };
 
 std::string repeated(std::string_view part, std::size_t bytes) {
@@ -65,7 +68,7 @@ std::string repeated(std::string_view part, std::size_t bytes) {
   return all;
 }
 
-void send_unknown_fields(const Target& target, const std::string& authorization) {
+void send_unknown_fields(const Victim& target, const std::string& authorization) {
   const std::string junk = repeated("\x7b\x7c", 8 * kMiB);
   const auto channel = connect(target.address);
   for (const char* method :
@@ -73,14 +76,14 @@ void send_unknown_fields(const Target& target, const std::string& authorization)
         "/weft.v1.JobService/SubmitJob", "/weft.v1.JobService/GetJob"})
     (void)raw_unary(channel, method, junk, authorization);
 }
-void send_unknown_fields_unknown(const Target& target) {
+void send_unknown_fields_unknown(const Victim& target) {
   send_unknown_fields(target, "");
 }
-void send_unknown_fields_known(const Target& target) {
+void send_unknown_fields_known(const Victim& target) {
   send_unknown_fields(target, "Bearer " + token_of(target.kind));
 }
 
-void reset_calls(const Target& target) {
+void reset_calls(const Victim& target) {
   Http2Client client(target.address);
   while (client.alive() && !over) {
     for (int i = 0; i < 64; ++i) client.reset(client.open("/weft.v1.MeshService/GetServerInfo"));
@@ -90,7 +93,7 @@ void reset_calls(const Target& target) {
 }
 
 // Bodies that never end.
-void begin_messages(const Target& target, const Http2Client::Headers& headers) {
+void begin_messages(const Victim& target, const Http2Client::Headers& headers) {
   std::vector<std::unique_ptr<Http2Client>> clients;
   std::vector<std::uint32_t> streams;
   for (int i = 0; i < 8; ++i) {
@@ -107,15 +110,15 @@ void begin_messages(const Target& target, const Http2Client::Headers& headers) {
       clients[i]->listen(milliseconds(5));
     }
 }
-void begin_messages_unknown(const Target& target) {
+void begin_messages_unknown(const Victim& target) {
   begin_messages(target, {});
 }
-void begin_messages_known(const Target& target) {
+void begin_messages_known(const Victim& target) {
   begin_messages(target, {{"authorization", "Bearer " + token_of(target.kind)}});
 }
 
 // Calls of this mesh, so many at a time, read to their end.
-void ask_together(const Target& target, const v1::GenerateMeshRequest& request, int calls) {
+void ask_together(const Victim& target, const v1::GenerateMeshRequest& request, int calls) {
   std::vector<std::thread> threads;
   for (int i = 0; i < calls; ++i)
     threads.emplace_back([&] {
@@ -130,7 +133,7 @@ void ask_together(const Target& target, const v1::GenerateMeshRequest& request, 
   for (std::thread& thread : threads) thread.join();
 }
 // 170 M triangles, of which neither the size nor a picture of it tells.
-void ask_for_crumbs(const Target& target) {
+void ask_for_crumbs(const Victim& target) {
   v1::GenerateMeshRequest request = square("1");
   v1::Region& region = *request.mutable_domain()->add_regions();
   region.set_x(0.5);
@@ -138,14 +141,14 @@ void ask_for_crumbs(const Target& target) {
   region.set_max_area(1e-8);
   ask_together(target, request, 6);
 }
-void ask_for_a_spike(const Target& target) {
+void ask_for_a_spike(const Victim& target) {
   ask_together(target, square("hypot(x-0.5,y-0.5)<0.0065?4e-12:0.01"), 6);
 }
-void flood(const Target& target) {
+void flood(const Victim& target) {
   ask_together(target, square("1e-5"), 90);
 }
 
-void read_nothing(const Target& target) {
+void read_nothing(const Victim& target) {
   const v1::GenerateMeshRequest request = square("1e-6");
   std::vector<std::unique_ptr<grpc::ClientContext>> contexts;
   std::vector<std::unique_ptr<grpc::ClientReader<v1::GenerateMeshResponse>>> readers;
@@ -161,7 +164,7 @@ void read_nothing(const Target& target) {
   }
 }
 
-void submit_and_cancel(const Target& target) {
+void submit_and_cancel(const Victim& target) {
   const auto stub = v1::JobService::NewStub(connect(target.address));
   for (int i = 0; i < 200 && !over; ++i) {
     v1::SubmitJobRequest submission;
@@ -179,14 +182,14 @@ void submit_and_cancel(const Target& target) {
   }
 }
 
-void send_long_ids(const Target& target) {
+void send_long_ids(const Victim& target) {
   const auto channel = connect(target.address);
   for (const char* method : {"/weft.v1.JobService/GetJob", "/weft.v1.JobService/DeleteJob"})
     for (const std::size_t bytes : {std::size_t{60'000}, std::size_t{8} << 20})
       (void)raw_unary(channel, method, repeated("A", bytes), "Bearer " + token_of(target.kind));
 }
 
-using Act = void (*)(const Target& target);
+using Act = void (*)(const Victim& target);
 // Of kHostileKinds.
 constexpr Act kActs[] = {send_unknown_fields_unknown,
                          send_unknown_fields_known,
@@ -222,8 +225,17 @@ int main(int argc, char** argv) {
   if (argc < 3) return 2;
   (void)setpriority(PRIO_PROCESS, 0, 19);
   const std::string address = argv[1];
-  const std::vector<std::string> only(argv + 3, argv + argc);
+  const bool encrypted = argc > 3 && std::string(argv[3]) == "tls";
+  const std::vector<std::string> only(argv + std::min(argc, 4), argv + argc);
   std::vector<std::thread> threads;
+  for (const Flood& flood : kFloods)
+    if (std::find(only.begin(), only.end(), flood.name) != only.end())
+      threads.emplace_back([&flood, &address, encrypted] {
+        const Flooded flooded = flood.run({address, encrypted}, [] { return over.load(); });
+        std::printf("%s: %llu connections, %llu closed\n", flood.name,
+                    static_cast<unsigned long long>(flooded.connections),
+                    static_cast<unsigned long long>(flooded.closed));
+      });
   for (std::size_t kind = 0; kind < std::size(kHostileKinds); ++kind)
     if (only.empty() || std::find(only.begin(), only.end(), kHostileKinds[kind]) != only.end())
       threads.emplace_back([kind, &address] {

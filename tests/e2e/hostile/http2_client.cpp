@@ -2,6 +2,7 @@
 #include "tests/e2e/hostile/http2_client.h"
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -10,6 +11,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstring>
 #include <stdexcept>
 
@@ -58,10 +60,6 @@ std::string text_of(std::string_view text) {
   return out.append(text);
 }
 
-std::string header(std::string_view name, std::string_view value) {
-  return std::string(1, '\0') + text_of(name) + text_of(value);
-}
-
 int connected(const std::string& address) {
   sockaddr_storage where{};
   socklen_t length = 0;
@@ -88,14 +86,56 @@ int connected(const std::string& address) {
 
 }  // namespace
 
+std::string literal_header(std::string_view name, std::string_view value) {
+  return std::string(1, '\0') + text_of(name) + text_of(value);
+}
+
 std::string message_prefix(std::uint32_t bytes) {
   return std::string(1, '\0') + big_endian(bytes, 4);
 }
 
-Http2Client::Http2Client(const std::string& address) : fd_(connected(address)) {
+Http2Client::Http2Client(const std::string& address, bool encrypted) : fd_(connected(address)) {
+  if (encrypted) encrypt();
   out_ = "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n";
   frame(kSettings, 0, 0, "");
   listen(std::chrono::seconds(5));  // its settings
+}
+
+void Http2Client::encrypt() {
+  std::signal(SIGPIPE, SIG_IGN);  // OpenSSL writes to what the peer has closed
+  context_.reset(SSL_CTX_new(TLS_client_method()));
+  SSL_CTX_set_mode(context_.get(),
+                   SSL_MODE_ENABLE_PARTIAL_WRITE | SSL_MODE_ACCEPT_MOVING_WRITE_BUFFER);
+  ssl_.reset(SSL_new(context_.get()));
+  constexpr unsigned char kHttp2[] = {2, 'h', '2'};
+  SSL_set_alpn_protos(ssl_.get(), kHttp2, sizeof kHttp2);
+  SSL_set_fd(ssl_.get(), fd_);
+  if (SSL_connect(ssl_.get()) != 1) {
+    ::close(fd_);
+    throw std::runtime_error("the handshake failed");
+  }
+  ::fcntl(fd_, F_SETFL, ::fcntl(fd_, F_GETFL) | O_NONBLOCK);
+}
+
+ssize_t Http2Client::put(std::string_view bytes) {
+  if (ssl_ == nullptr) {
+    const ssize_t sent = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    return sent < 0 && errno == EAGAIN ? 0 : sent;
+  }
+  const int sent = SSL_write(ssl_.get(), bytes.data(), static_cast<int>(bytes.size()));
+  const int error = SSL_get_error(ssl_.get(), sent);
+  if (sent > 0) return sent;
+  return error == SSL_ERROR_WANT_WRITE || error == SSL_ERROR_WANT_READ ? 0 : -1;
+}
+
+ssize_t Http2Client::get(char* to, std::size_t most) {
+  if (ssl_ == nullptr) {
+    const ssize_t got = ::recv(fd_, to, most, MSG_DONTWAIT);
+    return got < 0 && errno == EAGAIN ? 0 : got == 0 ? -1 : got;
+  }
+  const int got = SSL_read(ssl_.get(), to, static_cast<int>(most));
+  if (got > 0) return got;
+  return SSL_get_error(ssl_.get(), got) == SSL_ERROR_WANT_READ ? 0 : -1;
 }
 
 Http2Client::~Http2Client() {
@@ -103,6 +143,7 @@ Http2Client::~Http2Client() {
 }
 
 std::uint32_t Http2Client::open(std::string_view path, const Headers& more) {
+  const auto header = literal_header;
   std::string block = header(":method", "POST") + header(":scheme", "http") +
                       header(":path", path) + header(":authority", "weft") +
                       header("te", "trailers") + header("content-type", "application/grpc");
@@ -152,15 +193,16 @@ void Http2Client::frame(std::uint8_t type, std::uint8_t flags, std::uint32_t str
 bool Http2Client::flush() {
   std::string_view left = out_;
   while (alive_ && !left.empty()) {
-    const ssize_t sent = ::send(fd_, left.data(), left.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    const ssize_t sent = put(left);
     if (sent > 0) {
       left.remove_prefix(static_cast<std::size_t>(sent));
-    } else if (errno == EAGAIN) {
+    } else if (sent == 0) {
       pollfd waits{fd_, POLLOUT | POLLIN, 0};
       if (::poll(&waits, 1, 10'000) <= 0) return false;
       // A peer that waits for us to read takes nothing meanwhile.
       if ((waits.revents & POLLIN) != 0) read_some(std::chrono::milliseconds(0));
     } else {
+      read_some(std::chrono::milliseconds(0));  // its last word
       alive_ = false;
     }
   }
@@ -170,10 +212,12 @@ bool Http2Client::flush() {
 
 bool Http2Client::read_some(std::chrono::milliseconds at_most) {
   pollfd waits{fd_, POLLIN, 0};
-  if (!alive_ || ::poll(&waits, 1, static_cast<int>(at_most.count())) <= 0) return false;
+  const bool ready = ssl_ != nullptr && SSL_pending(ssl_.get()) > 0;
+  if (!alive_ || (!ready && ::poll(&waits, 1, static_cast<int>(at_most.count())) <= 0))
+    return false;
   char bytes[65536];
-  const ssize_t got = ::recv(fd_, bytes, sizeof bytes, MSG_DONTWAIT);
-  if (got <= 0) alive_ = got < 0 && errno == EAGAIN;
+  const ssize_t got = get(bytes, sizeof bytes);
+  if (got < 0) alive_ = false;
   if (got > 0) in_.append(bytes, static_cast<std::size_t>(got));
   return got > 0;
 }
@@ -222,6 +266,7 @@ void Http2Client::take(std::string_view payload, std::uint8_t type, std::uint8_t
       if ((flags & kEndStream) != 0) end_stream();
       return;
     case kGoAway:
+      goaway_ = number(payload.substr(4, 4));
       alive_ = false;
       return;
     default:

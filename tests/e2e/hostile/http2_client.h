@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A client of HTTP/2 that does what no library lets one do: begin streams and reset them, send half
-// a message, never read. One connection, plain text, on one thread; flow control is respected,
-// since a peer ends a connection that breaks it.
+// a message, headers that never end, any frame, never read. One connection on one thread; flow
+// control is respected, since a peer ends a connection that breaks it.
 //
 //   Http2Client client("127.0.0.1:7421");
 //   const std::uint32_t stream = client.open("/weft.v1.MeshService/GetServerInfo", {});
@@ -13,9 +13,13 @@
 // whatever is sent is dropped.
 #pragma once
 
+#include <openssl/ssl.h>
+
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -27,8 +31,8 @@ class Http2Client {
  public:
   using Headers = std::vector<std::pair<std::string, std::string>>;
 
-  // HOST:PORT of IPv4, or unix:PATH.
-  explicit Http2Client(const std::string& address);
+  // HOST:PORT of IPv4, or unix:PATH. Encrypted connections trust any certificate.
+  explicit Http2Client(const std::string& address, bool encrypted = false);
   ~Http2Client();
   Http2Client(const Http2Client&) = delete;
   Http2Client& operator=(const Http2Client&) = delete;
@@ -42,6 +46,9 @@ class Http2Client {
   // RST_STREAM with CANCEL.
   void reset(std::uint32_t stream);
 
+  // Any frame.
+  void frame(std::uint8_t type, std::uint8_t flags, std::uint32_t stream, std::string_view payload);
+
   // Reads what the peer has sent, for this long at most, until one frame was read.
   void listen(std::chrono::milliseconds at_most);
 
@@ -49,18 +56,26 @@ class Http2Client {
   bool flush();
 
   bool alive() const { return alive_; }
+  // The error of the peer's GOAWAY; nullopt if it has sent none.
+  std::optional<std::uint32_t> goaway() const { return goaway_; }
   // The peer has ended the stream, by trailers or by a reset.
   bool ended(std::uint32_t stream) const;
   // Streams that the peer has ended.
   std::size_t ended_streams() const { return ended_; }
 
  private:
-  void frame(std::uint8_t type, std::uint8_t flags, std::uint32_t stream, std::string_view payload);
+  void encrypt();
+  // As ::send and ::recv do, but 0 if it must wait.
+  ssize_t put(std::string_view bytes);
+  ssize_t get(char* to, std::size_t most);
   void take(std::string_view payload, std::uint8_t type, std::uint8_t flags, std::uint32_t stream);
   bool read_some(std::chrono::milliseconds at_most);
 
   int fd_ = -1;
+  std::unique_ptr<SSL_CTX, decltype(&SSL_CTX_free)> context_{nullptr, &SSL_CTX_free};
+  std::unique_ptr<SSL, decltype(&SSL_free)> ssl_{nullptr, &SSL_free};
   bool alive_ = true;
+  std::optional<std::uint32_t> goaway_;
   std::string out_;
   std::string in_;
   std::uint32_t next_ = 1;
@@ -70,6 +85,11 @@ class Http2Client {
   std::size_t largest_frame_ = 16384;
   std::map<std::uint32_t, std::int64_t> windows_;  // of open streams
 };
+
+inline constexpr std::uint32_t kEnhanceYourCalm = 0xb;
+
+// A header field that the peer's table does not keep.
+std::string literal_header(std::string_view name, std::string_view value);
 
 // The five bytes before a message of gRPC.
 std::string message_prefix(std::uint32_t bytes);

@@ -54,11 +54,11 @@ std::string repeated(std::string_view part, std::size_t bytes) {
 class Strangers : public ::testing::Test {
  protected:
   Strangers() {
-    Bystander warm_up(server_.address(), kToken);
+    Bystander warm_up(connect(server_.address()), kToken);
     std::this_thread::sleep_for(milliseconds(100));
     warm_up.stop();
     memory_before_ = server_.peak_bytes();
-    bystander_.emplace(server_.address(), kToken);
+    bystander_.emplace(connect(server_.address()), kToken);
   }
 
   // TCP, so that peers can be told apart.

@@ -4,8 +4,6 @@
 
 #include <thread>
 
-#include "server/admission/refusal_log.h"
-#include "server/net/reset_guard.h"
 #include "tests/client/support/temp_folder.h"
 #include "tests/server/logged_server.h"
 #include "tests/server/raw_call.h"
@@ -170,89 +168,6 @@ TEST(Admission, RefusesAMessageWhoseParsedRegionsFindNoMemory) {
             "other large requests take the memory that there is for them");
   may_end.set();
   first.join();
-}
-
-TEST(RefusalLog, TellsHowManyLinesWereLeftOut) {
-  Log log;
-  RefusalLog refusals(log.logger(), "call_refused", 2);
-  const RefusalLog::Clock::time_point start{seconds(100)};
-  int taken = 0;
-  for (int i = 0; i < 10; ++i) taken += refusals.allow(start + milliseconds(10 * i));
-  EXPECT_EQ(taken, 2);
-  refusals.flush_suppressed(start + milliseconds(999));
-  EXPECT_EQ(log.text(), "");
-  refusals.flush_suppressed(start + seconds(1));
-  EXPECT_EQ(log.text(), "event=lines_left_out count=8 of=call_refused\n");
-  EXPECT_TRUE(refusals.allow(start + seconds(1)));
-  refusals.flush_suppressed(start + seconds(3));
-  EXPECT_EQ(times(log.text(), "left_out"), 1u) << "none were left out since";
-}
-
-TEST(ResetGuard, NamesAPeerOnceASecondWhenItResetsTooMuch) {
-  ResetGuard guard(3);
-  const ResetGuard::Clock::time_point start{seconds(100)};
-  int named = 0;
-  for (int i = 0; i < 10; ++i) {
-    named += guard.was_reset("ipv4:10.0.0.1:1", start + milliseconds(i));
-    if (i < 3) {
-      EXPECT_FALSE(guard.was_reset("ipv4:10.0.0.2:1", start + milliseconds(i)));
-    }
-  }
-  EXPECT_EQ(named, 1);
-  for (int i = 0; i < 3; ++i) EXPECT_FALSE(guard.was_reset("ipv4:10.0.0.1:1", start + seconds(2)));
-  EXPECT_TRUE(guard.was_reset("ipv4:10.0.0.1:1", start + seconds(2)));
-}
-
-TEST(ResetGuard, KnowsNoBoundAtZero) {
-  ResetGuard guard(0);
-  for (int i = 0; i < 1000; ++i) EXPECT_FALSE(guard.was_reset("ipv4:10.0.0.1:1"));
-  for (std::uint64_t i = 0; i <= ResetGuard::kMostOpen; ++i)
-    EXPECT_FALSE(guard.began("ipv4:10.0.0.1:1"));
-}
-
-TEST(ResetGuard, CountsNoCallsOfUnixSockets) {
-  ResetGuard guard(3);
-  for (std::uint64_t i = 0; i <= ResetGuard::kMostOpen; ++i) {
-    EXPECT_FALSE(guard.began("unix:"));
-    EXPECT_FALSE(guard.was_reset("unix:"));
-  }
-}
-
-TEST(ResetGuard, NamesAPeerWhoseCallsDoNotEnd) {
-  ResetGuard guard(1000);
-  for (std::uint64_t i = 0; i < 3 * ResetGuard::kMostOpen; ++i) {
-    EXPECT_FALSE(guard.began("ipv4:10.0.0.2:1"));
-    guard.ended("ipv4:10.0.0.2:1");
-  }
-  for (std::uint64_t i = 0; i < ResetGuard::kMostOpen; ++i)
-    ASSERT_FALSE(guard.began("ipv4:10.0.0.1:1"));
-  EXPECT_TRUE(guard.began("ipv4:10.0.0.1:1"));
-  EXPECT_FALSE(guard.began("ipv4:10.0.0.1:1")) << "once";
-}
-
-TEST(ResetGuard, ClosesTheConnectionOfACallersPeer) {
-  ServerOptions options = local();
-  options.admission.max_resets = 5;
-  LoggedServer server(options);
-  const auto guilty = plain(server);
-  const auto other = plain(server);
-  ASSERT_TRUE(ask(other).ok());
-  for (int i = 0; i < 6; ++i) {
-    grpc::ClientContext context;
-    const grpc::internal::RpcMethod rpc("/grpc.health.v1.Health/Watch",
-                                        grpc::internal::RpcMethod::SERVER_STREAMING, guilty);
-    const std::unique_ptr<grpc::ClientReader<grpc::ByteBuffer>> watch(
-        grpc::internal::ClientReaderFactory<grpc::ByteBuffer>::Create(guilty.get(), rpc, &context,
-                                                                      to_buffer("")));
-    grpc::ByteBuffer status;
-    EXPECT_TRUE(watch->Read(&status));
-    context.TryCancel();
-    (void)watch->Finish();
-  }
-  EXPECT_TRUE(eventually([&] { return server.log().contains("event=connection_closed peer="); }));
-  EXPECT_EQ(other->GetState(false), GRPC_CHANNEL_READY);
-  EXPECT_TRUE(ask(other).ok());
-  EXPECT_TRUE(eventually([&] { return ask(guilty).ok(); })) << "it may connect again";
 }
 
 }  // namespace

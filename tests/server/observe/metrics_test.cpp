@@ -74,6 +74,16 @@ TEST(Metrics, CountWhatBecomesOfJobsFromZeroOn) {
   }
 }
 
+TEST(Metrics, CountClosedConnectionsByCauseFromZeroOn) {
+  Metrics metrics("v", "e");
+  const std::string series = "weft_connections_closed_total{cause=\"resets\"}";
+  EXPECT_EQ(value_of(metrics.text(), series), 0);
+  metrics.connection_closed("resets");
+  EXPECT_EQ(value_of(metrics.text(), series), 1);
+  metrics.set_connections([] { return 7.0; });
+  EXPECT_EQ(value_of(metrics.text(), "weft_connections"), 7);
+}
+
 TEST(Metrics, CountHitsAndMissesAndLostLeasesFromZeroOn) {
   Metrics metrics("v", "e");
   const auto values = [&] {

@@ -2,7 +2,7 @@
 // Lines of the log that unauthenticated callers can cause, bounded per second: further ones are
 // suppressed, and a line says how many were.
 //
-//   RefusalLog refusals(log, "call_refused", 20);
+//   BoundedLog refusals(log, "call_refused", 20);
 //   if (refusals.allow()) log->info("event=call_refused ...");
 //   ... a few times a second: refusals.flush_suppressed() ...
 //     event=lines_left_out count=41873 of=call_refused
@@ -19,11 +19,11 @@
 
 namespace weft::server {
 
-class RefusalLog {
+class BoundedLog {
  public:
   using Clock = std::chrono::steady_clock;
 
-  RefusalLog(Logger log, const char* event, std::uint64_t max_lines_per_second)
+  BoundedLog(Logger log, const char* event, std::uint64_t max_lines_per_second)
       : log_(std::move(log)), event_(event), max_lines_(max_lines_per_second) {}
 
   // Returns whether the caller may write a line now; if not, counts it as suppressed.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/admission/refusal_log.h"
+#include "server/observe/bounded_log.h"
 
 #include <utility>
 
 namespace weft::server {
 
-bool RefusalLog::allow(Clock::time_point now) {
+bool BoundedLog::allow(Clock::time_point now) {
   std::lock_guard lock(mutex_);
   turn(now);
   if (lines_ < max_lines_) return ++lines_, true;
@@ -13,12 +13,12 @@ bool RefusalLog::allow(Clock::time_point now) {
   return false;
 }
 
-void RefusalLog::flush_suppressed(Clock::time_point now) {
+void BoundedLog::flush_suppressed(Clock::time_point now) {
   std::lock_guard lock(mutex_);
   turn(now);
 }
 
-void RefusalLog::turn(Clock::time_point now) {
+void BoundedLog::turn(Clock::time_point now) {
   if (now - second_ < std::chrono::seconds(1)) return;
   second_ = now;
   lines_ = 0;

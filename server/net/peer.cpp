@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/console/peer.h"
+#include "server/net/peer.h"
 
 #include <fmt/format.h>
 #include <openssl/x509v3.h>

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/net/connection_table.h"
+
+#include <tuple>
+#include <utility>
+
+namespace weft::server {
+namespace {
+
+// How gRPC spells a peer with an abstract unix socket.
+constexpr std::string_view kAbstract = "unix-abstract:";
+
+}  // namespace
+
+std::string host_of_peer(const std::string& peer) {
+  return peer.substr(0, peer.rfind(':'));
+}
+
+std::shared_ptr<ConnectionTable::Connection> ConnectionTable::enter(std::string peer, Close close) {
+  std::lock_guard lock(mutex_);
+  const auto host = hosts_.try_emplace(host_of_peer(peer)).first;
+  Host& own = host->second;
+  ++own.connections;  // so that it stays while another one of it ends
+  const bool too_many_of_host = own.connections > bounds_.per_host;
+  if (too_many_of_host || entries_.size() >= bounds_.connections) {
+    Connection* const idle = idle_one(too_many_of_host ? &own : nullptr);
+    if (idle == nullptr) {
+      if (--own.connections == 0) hosts_.erase(host);
+      return nullptr;
+    }
+    end(*idle, kCauseConnections);
+  }
+  std::shared_ptr<Connection> connection(new Connection, [this](Connection* last) {
+    leave(*last);
+    delete last;
+  });
+  connection->peer_ = std::move(peer);
+  connection->close_ = std::move(close);
+  connection->last_active_ = Clock::now().time_since_epoch().count();
+  connection->host_ = &own;
+  connection->place_ = entries_.insert(entries_.end(), connection.get());
+  return connection;
+}
+
+bool ConnectionTable::hand_over(const std::shared_ptr<Connection>& connection, Handover handover) {
+  std::lock_guard lock(mutex_);
+  if (!connection->listed_) return false;
+  connection->name_ = std::move(handover.name);
+  connection->certificate_name_ = std::move(handover.certificate_name);
+  connection->close_ = std::move(handover.close);
+  if (!connection->certificate_name_.empty()) connection->identified_ = true;
+  connection->handed_over_ = true;
+  handed_over_[connection->name_] = connection;
+  return true;
+}
+
+bool ConnectionTable::has_named(std::string_view peer) const {
+  return peer.starts_with(kAbstract) && peer.substr(kAbstract.size()).starts_with(prefix_);
+}
+
+std::shared_ptr<ConnectionTable::Connection> ConnectionTable::find(std::string_view peer) const {
+  if (!has_named(peer)) return nullptr;
+  std::lock_guard lock(mutex_);
+  const auto found = handed_over_.find(std::string(peer.substr(kAbstract.size())));
+  return found == handed_over_.end() ? nullptr : found->second.lock();
+}
+
+void ConnectionTable::set_load(Connection& connection, const Load& load) {
+  connection.open_ = load.open;
+  connection.answered_ = load.answered;
+  connection.last_active_ = Clock::now().time_since_epoch().count();
+  const std::uint64_t own = load.open + load.resets;
+  const std::uint64_t before = connection.load_.exchange(own);
+  const std::uint64_t all = load_ += own - before;  // modulo 2^64
+  if (all <= bounds_.load || own <= before) return;
+  std::lock_guard lock(mutex_);
+  shed();
+}
+
+std::size_t ConnectionTable::size() const {
+  std::lock_guard lock(mutex_);
+  return entries_.size();
+}
+
+void ConnectionTable::unlist(Connection& connection) {
+  if (!std::exchange(connection.listed_, false)) return;
+  entries_.erase(connection.place_);
+  load_ -= connection.load_.exchange(0);
+  Host& host = *connection.host_;
+  if (--host.connections == 0) hosts_.erase(host_of_peer(connection.peer_));
+}
+
+void ConnectionTable::end(Connection& connection, const char* cause) {
+  unlist(connection);
+  connection.close_(cause);
+}
+
+void ConnectionTable::leave(Connection& connection) {
+  std::lock_guard lock(mutex_);
+  unlist(connection);
+  load_ -= connection.load_.exchange(0);  // what it did while it was being closed
+  if (connection.handed_over_) handed_over_.erase(connection.name_);
+}
+
+ConnectionTable::Connection* ConnectionTable::idle_one(const Host* only) const {
+  // Less goes first.
+  const auto rank = [](const Connection& connection) {
+    return std::tuple(connection.identified_.load(), connection.answered_ != 0,
+                      connection.last_active_.load());
+  };
+  Connection* found = nullptr;
+  for (Connection* const each : entries_) {
+    if (only != nullptr && each->host_ != only) continue;
+    if (!each->handed_over_) return each;
+    if (each->open_ == 0 && (found == nullptr || rank(*each) < rank(*found))) found = each;
+  }
+  return found;
+}
+
+void ConnectionTable::shed() {
+  // More goes first.
+  const auto rank = [](const Connection& connection) {
+    return std::pair(!connection.identified_, connection.load_.load());
+  };
+  while (load_ > bounds_.load) {
+    Connection* largest = nullptr;
+    for (Connection* const each : entries_)  // of equals, the youngest
+      if (largest == nullptr || rank(*each) >= rank(*largest)) largest = each;
+    if (largest == nullptr || largest->load_ == 0) return;
+    end(*largest, kCauseLoad);
+  }
+}
+
+}  // namespace weft::server
