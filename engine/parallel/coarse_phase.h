@@ -66,7 +66,11 @@ class CoarsePhase {
     refinement_.context.end_stage("coarse mesh");
     std::vector<Quadtree::Sample> all = samples();
     if (auto error = refinement_.context.poll()) return tl::unexpected(*error);
-    Quadtree tree = Quadtree::build(box, std::move(all), leaf_triangles_);
+    const std::uint64_t held = refinement_.other_bytes + refinement_.mesh.bytes() +
+                               all.capacity() * sizeof(Quadtree::Sample);
+    auto tree = Quadtree::build(box, std::move(all), leaf_triangles_, [&](std::uint64_t leaves) {
+      return refinement_.context.need_bytes(held + leaves * kBytesPerLeaf, "the mesh");
+    });
     refinement_.context.end_stage("quadtree");
     if (auto error = refinement_.context.poll()) return tl::unexpected(*error);
     return tree;
@@ -103,6 +107,9 @@ class CoarsePhase {
  private:
   // The number of coarse triangles per leaf: a dozen are needed to place the leaves' borders well.
   static constexpr double kCoarseTrianglesPerLeaf = 16;
+  // What a leaf takes before any of its triangles are made: in the tree and while it is sorted, in
+  // the order, and in the graph of tasks while it is built.
+  static constexpr std::uint64_t kBytesPerLeaf = 2000;
   // A leaf is dense if it expects one in kDense of the triangles that it has room for: a bound on
   // the circumradius adds few to these.
   static constexpr double kDense = 16;

@@ -9,6 +9,8 @@
 #include <unordered_set>
 #include <utility>
 
+#include "engine/base/failure.h"
+
 namespace weft {
 namespace {
 
@@ -55,8 +57,34 @@ class Grid {
   double cell_;
 };
 
-// The nodes to split, per depth, by Morton code.
-using Splits = std::array<std::unordered_set<std::uint64_t>, kMaxDepth + 1>;
+// The nodes to split, per depth, by Morton code. Throws Failure if there may not be so many.
+class Splits {
+ public:
+  explicit Splits(const Quadtree::MayHave& may_have) : may_have_(may_have) {}
+
+  void insert(unsigned depth, std::uint64_t code) {
+    if (of_depth_[depth].insert(code).second && ++count_ == next_look_) look();
+  }
+  bool contains(unsigned depth, std::uint64_t code) const {
+    return of_depth_[depth].contains(code);
+  }
+  const std::unordered_set<std::uint64_t>& at(unsigned depth) const { return of_depth_[depth]; }
+  std::size_t nodes() const { return 1 + 4 * count_; }
+  std::size_t leaves() const { return 1 + 3 * count_; }
+
+  void look() {
+    next_look_ = count_ + kBetweenLooks;
+    if (auto error = may_have_(leaves())) throw Failure(*std::move(error));
+  }
+
+ private:
+  static constexpr std::size_t kBetweenLooks = 1024;
+
+  const Quadtree::MayHave& may_have_;
+  std::array<std::unordered_set<std::uint64_t>, kMaxDepth + 1> of_depth_;
+  std::size_t count_ = 0;
+  std::size_t next_look_ = kBetweenLooks;
+};
 
 struct Keyed {
   std::uint64_t code;
@@ -69,7 +97,7 @@ void split_by_weight(Splits& splits, const Keyed* first, const Keyed* last, unsi
   for (const Keyed* s = first; s != last; ++s) weight += s->weight;
   if (weight <= target || last - first == 1 || depth == kMaxDepth) return;
   const unsigned shift = 2 * (kMaxDepth - depth);
-  splits[depth].insert(first->code >> shift);
+  splits.insert(depth, first->code >> shift);
   for (unsigned child = 0; first != last; ++child) {
     const Keyed* const end = std::find_if(
         first, last, [&](const Keyed& s) { return (s.code >> (shift - 2) & 3) != child; });
@@ -82,7 +110,7 @@ void split_by_weight(Splits& splits, const Keyed* first, const Keyed* last, unsi
 void balance(Splits& splits) {
   for (unsigned depth = kMaxDepth; depth >= 1; --depth) {
     const std::uint64_t across = std::uint64_t{1} << depth;
-    for (const std::uint64_t code : splits[depth]) {
+    for (const std::uint64_t code : splits.at(depth)) {
       std::uint64_t x = 0;
       std::uint64_t y = 0;
       for (unsigned bit = 0; bit < depth; ++bit) {
@@ -91,9 +119,24 @@ void balance(Splits& splits) {
       }
       for (std::uint64_t i = x == 0 ? 0 : x - 1; i <= x + 1 && i < across; ++i) {
         for (std::uint64_t j = y == 0 ? 0 : y - 1; j <= y + 1 && j < across; ++j)
-          splits[depth - 1].insert(morton(i >> 1, j >> 1));
+          splits.insert(depth - 1, morton(i >> 1, j >> 1));
       }
     }
+  }
+}
+
+// Moves leaf order[i] to place i, without a second list of them.
+void put_in_order(std::vector<Quadtree::Leaf>& leaves, std::vector<std::uint32_t> order) {
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    if (order[i] == i) continue;
+    const Quadtree::Leaf first = leaves[i];
+    std::uint32_t hole = i;
+    while (order[hole] != i) {
+      leaves[hole] = leaves[order[hole]];
+      hole = std::exchange(order[hole], hole);
+    }
+    leaves[hole] = first;
+    order[hole] = hole;
   }
 }
 
@@ -119,7 +162,8 @@ double most_cut(const std::vector<Quadtree::Leaf>& leaves, std::uint32_t Quadtre
 
 }  // namespace
 
-Quadtree Quadtree::build(const Box& domain, std::vector<Sample> samples, double target) {
+Result<Quadtree> Quadtree::build(const Box& domain, std::vector<Sample> samples, double target,
+                                 const MayHave& may_have) try {
   const Grid grid(domain);
   std::vector<Keyed> keyed;
   keyed.reserve(samples.size());
@@ -127,11 +171,14 @@ Quadtree Quadtree::build(const Box& domain, std::vector<Sample> samples, double 
     keyed.push_back({morton(grid.column(s.at.x), grid.row(s.at.y)), s.weight});
   std::stable_sort(keyed.begin(), keyed.end(),
                    [](const Keyed& a, const Keyed& b) { return a.code < b.code; });
-  Splits splits;
+  Splits splits(may_have);
   split_by_weight(splits, keyed.data(), keyed.data() + keyed.size(), 0, target);
   balance(splits);
+  splits.look();
 
   Quadtree tree;
+  tree.nodes_.reserve(splits.nodes());
+  tree.leaves_.reserve(splits.leaves());
   auto next = keyed.cbegin();  // leaves come in Morton order, as the samples do
   const auto add = [&](auto& self, std::uint32_t index, unsigned depth, std::int64_t x,
                        std::int64_t y) -> void {
@@ -143,7 +190,7 @@ Quadtree Quadtree::build(const Box& domain, std::vector<Sample> samples, double 
     const Box centre = grid.box(x0 + side / 2, y0 + side / 2, x0 + side / 2, y0 + side / 2);
     tree.nodes_[index] = {{centre.min_x, centre.min_y}, halo, 0, 0};
     const auto code = morton(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y));
-    if (!splits[depth].contains(code)) {
+    if (!splits.contains(depth, code)) {
       tree.nodes_[index].leaf = static_cast<std::uint32_t>(tree.leaves_.size());
       const unsigned shift = 2 * (kMaxDepth - depth);
       double weight = 0;
@@ -163,6 +210,8 @@ Quadtree Quadtree::build(const Box& domain, std::vector<Sample> samples, double 
   add(add, 0, 0, 0, 0);
   tree.sweep();
   return tree;
+} catch (const Failure& failure) {
+  return tl::unexpected(failure.error());
 }
 
 // Sorts the leaves, which so far have their columns and rows for `along` and `across`.
@@ -182,13 +231,8 @@ void Quadtree::sweep() {
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
   std::vector<std::uint32_t> place(order.size());
-  std::vector<Leaf> sorted;
-  sorted.reserve(order.size());
-  for (const std::uint32_t l : order) {
-    place[l] = static_cast<std::uint32_t>(sorted.size());
-    sorted.push_back(leaves_[l]);
-  }
-  leaves_ = std::move(sorted);
+  for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+  put_in_order(leaves_, std::move(order));
   for (Node& node : nodes_) {
     if (node.first_child == 0) node.leaf = place[node.leaf];
   }

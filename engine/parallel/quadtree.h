@@ -18,9 +18,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/base/geometry.h"
+#include "weft/error.h"
 
 namespace weft {
 
@@ -44,9 +48,18 @@ class Quadtree {
     double side() const { return box.max_x - box.min_x; }
   };
 
+  // Called with a number of leaves before there are so many, the more often the more there are;
+  // returns the error to stop with, if they would take too much.
+  using MayHave = std::function<std::optional<Error>(std::uint64_t leaves)>;
+
   // Builds the tree over a square that contains `domain`. A leaf weighs at most `target`, unless it
-  // has only one sample or is 2^31 times smaller than the square.
-  static Quadtree build(const Box& domain, std::vector<Sample> samples, double target);
+  // has only one sample or is 2^31 times smaller than the square. Errors: those of `may_have`.
+  static Result<Quadtree> build(const Box& domain, std::vector<Sample> samples, double target,
+                                const MayHave& may_have);
+  static Quadtree build(const Box& domain, std::vector<Sample> samples, double target) {
+    return *build(domain, std::move(samples), target,
+                  [](std::uint64_t) { return std::optional<Error>(); });
+  }
 
   // In the order of the sweep.
   const std::vector<Leaf>& leaves() const { return leaves_; }

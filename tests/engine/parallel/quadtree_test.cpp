@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -266,6 +268,27 @@ TEST(Quadtree, DoesNotSplitForOneSampleAlone) {
   const Quadtree tree = Quadtree::build({0, 0, 1, 1}, {{{0.3, 0.7}, 1e9}}, kTarget);
   ASSERT_EQ(tree.leaves().size(), 1u);
   EXPECT_EQ(tree.leaves()[0].weight, 1e9);
+}
+
+TEST(Quadtree, AsksBeforeThereAreManyLeaves) {
+  Tree tree = graded({0, 0, 1, 1}, 1);
+  std::uint64_t asked = 0;
+  const auto build = [&](std::uint64_t most) {
+    return Quadtree::build(tree.domain, tree.samples, kTarget / 1000,
+                           [&](std::uint64_t leaves) -> std::optional<Error> {
+                             asked = leaves;
+                             if (leaves <= most) return std::nullopt;
+                             return Error{ErrorCode::kBudgetExceeded, "", "too many leaves"};
+                           });
+  };
+  const auto whole = build(1'000'000);
+  ASSERT_TRUE(whole);
+  ASSERT_GT(whole->leaves().size(), 7'000u);
+  EXPECT_EQ(asked, whole->leaves().size());
+  const auto stopped = build(3'000);
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().message, "too many leaves");
+  EXPECT_LT(asked, 6'200u) << "it asked when they were there";
 }
 
 TEST(Quadtree, EndsWhereSamplesInOnePlaceOutweighTheTarget) {

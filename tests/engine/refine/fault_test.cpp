@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Memory that runs out, at any moment and on any thread, ends the run with a typed error and leaves
-// the arena fit for the next run.
+// the arena fit for the next run. And what a run has allocated stays within its budget.
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <atomic>
 #include <cstdlib>
@@ -20,6 +21,22 @@ std::atomic<std::int64_t> allocations_left{kNever};
 // Whether all that follow fail too.
 std::atomic<bool> for_good{false};
 
+// Bytes of what is allocated, and the most that there were.
+std::atomic<std::int64_t> held{0};
+std::atomic<std::int64_t> most_held{0};
+
+void count(void* p) {
+  const auto bytes = static_cast<std::int64_t>(malloc_usable_size(p));
+  const std::int64_t now = held.fetch_add(bytes, std::memory_order_relaxed) + bytes;
+  for (std::int64_t most = most_held.load(std::memory_order_relaxed); most < now;)
+    if (most_held.compare_exchange_weak(most, now, std::memory_order_relaxed)) break;
+}
+
+void release(void* p) noexcept {
+  held.fetch_sub(static_cast<std::int64_t>(malloc_usable_size(p)), std::memory_order_relaxed);
+  std::free(p);
+}
+
 void* allocate(std::size_t size, std::size_t alignment) {
   const std::int64_t left = allocations_left.fetch_sub(1, std::memory_order_relaxed);
   if (left == 1 || (left < 1 && for_good.load(std::memory_order_relaxed))) throw std::bad_alloc();
@@ -27,6 +44,7 @@ void* allocate(std::size_t size, std::size_t alignment) {
   void* const p = alignment > alignof(std::max_align_t) ? std::aligned_alloc(alignment, rounded)
                                                         : std::malloc(rounded);
   if (!p) throw std::bad_alloc();
+  count(p);
   return p;
 }
 
@@ -47,19 +65,19 @@ void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
 }
 // Inlined, g++ takes them for a free of what new has returned.
 [[gnu::noinline]] void operator delete(void* p) noexcept {
-  std::free(p);
+  release(p);
 }
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
+  release(p);
 }
 [[gnu::noinline]] void operator delete(void* p, const std::nothrow_t&) noexcept {
-  std::free(p);
+  release(p);
 }
 [[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept {
-  std::free(p);
+  release(p);
 }
 [[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
-  std::free(p);
+  release(p);
 }
 
 namespace weft {
@@ -124,6 +142,32 @@ TEST_P(Faults, InATaskEndTheJobWithATypedErrorAndLeaveTheArenaSound) {
 INSTANTIATE_TEST_SUITE_P(Of, Faults, testing::Bool(), [](const auto& info) {
   return info.param ? "AllAllocationsFromOneOn" : "OneAllocation";
 });
+
+// Of squares that lie so close that the bound on angles asks for a million leaves between them.
+TEST(HeldMemory, OfManyLeavesStaysWithinTheBudget) {
+  constexpr double kApart = 1e-6;
+  MeshRequest request;
+  for (int i = 0; i < 50; ++i) {
+    const double half = 1 - kApart * i;
+    const auto first = static_cast<std::uint32_t>(request.pslg.points.size());
+    for (const Point corner : {Point{-half, -half}, {half, -half}, {half, half}, {-half, half}})
+      request.pslg.points.push_back(corner);
+    for (std::uint32_t k = 0; k < 4; ++k)
+      request.pslg.segments.push_back({first + k, first + (k + 1) % 4});
+  }
+  request.min_angle_deg = 20;
+  for (const std::int64_t budget : {24'000'000, 64'000'000}) {
+    ExecutionContext context(
+        {.triangle_limit = 4'000'000'000, .max_bytes = static_cast<std::uint64_t>(budget)});
+    const std::int64_t before = held;
+    most_held = before;
+    ForgetfulSink sink;
+    const auto summary = generate_mesh(request, sink, context);
+    ASSERT_FALSE(summary);
+    EXPECT_EQ(summary.error().code, ErrorCode::kBudgetExceeded) << summary.error().message;
+    EXPECT_LT(most_held - before, budget);
+  }
+}
 
 }  // namespace
 }  // namespace weft
