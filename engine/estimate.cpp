@@ -187,12 +187,13 @@ Estimate estimate(const MeshRequest& request, const Budget& budget) {
                static_cast<double>(most));
   const bool may_stream = budget.max_triangles == Budget{}.max_triangles &&
                           request.min_angle_deg <= kMaxStreamingAngleDeg;
+  const std::uint64_t least = bytes_to_make(request.size, request.pslg);
   const double bytes =
-      kBytesPerRun + kBytesPerPoint * points +
-      static_cast<double>(bytes_to_make(request.size, request.pslg)) + bytes_of_lattices(by_size) +
+      kBytesPerRun + kBytesPerPoint * points + static_cast<double>(least) +
+      bytes_of_lattices(by_size) +
       bytes_of_mesh(triangles, request.leaf_triangles.value_or(leaf_triangles_for(triangles)),
                     may_stream);
-  return {at_most(most, triangles), at_most(budget.max_bytes, bytes)};
+  return {at_most(most, triangles), at_most(budget.max_bytes, bytes), least};
 }
 
 }  // namespace weft

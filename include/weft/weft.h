@@ -81,8 +81,9 @@ std::optional<Error> check_raster_values(std::span<const double> values, std::ui
 std::optional<Error> check_pslg(const Pslg& pslg);
 
 struct Estimate {
-  std::uint64_t triangles = 0;  // on the high side, up to 2.5 times as many as are made
-  std::uint64_t bytes = 0;      // of engine memory at the peak
+  std::uint64_t triangles = 0;    // on the high side, up to 2.5 times as many as are made
+  std::uint64_t bytes = 0;        // of engine memory at the peak
+  std::uint64_t least_bytes = 0;  // without which the run ends as it begins: those of its size
 };
 
 // What a run is expected to make and to take, at most what the budget allows: a guess, in linear

@@ -117,12 +117,23 @@ void Admission::received(const std::shared_ptr<AdmittedCall>& call, const Method
 void Admission::handle(const std::shared_ptr<AdmittedCall>& call, const Method& method,
                        grpc::ByteBuffer bytes) {
   if (const std::size_t length = bytes.Length(); length > kMaxUnreserved)
-    if (auto failure = reserve(*call, length * kTimesTheBytes)) return refuse(*call, *failure);
+    if (auto failure = take(*call, length * kTimesTheBytes)) return refuse(*call, *failure);
   call->bytes = std::move(bytes);
   method.handler(call);
 }
 
-std::optional<Failure> Admission::reserve(AdmittedCall& call, std::uint64_t bytes) {
+std::optional<Failure> Admission::reserve(AdmittedCall& call, std::uint64_t bytes,
+                                          const char* field) {
+  if (options_.memory != nullptr)
+    if (const auto error = options_.memory->check_fits(0, bytes))
+      return Failure{Reason::kLimitExceeded, field,
+                     fmt::format("the request takes {} bytes; this server's limit for requests "
+                                 "and runs is {}",
+                                 bytes, options_.memory->capacity())};
+  return take(call, bytes);
+}
+
+std::optional<Failure> Admission::take(AdmittedCall& call, std::uint64_t bytes) {
   RequestMemory& memory = call.memory;
   if (bytes <= kMaxUnreserved || (memory.of_requests && memory.of_requests.bytes() >= bytes)) {
     memory.shrink_to(bytes);

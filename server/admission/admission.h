@@ -106,8 +106,9 @@ class Admission : private RawCall::Observer {
   RawCall* open(grpc::CallbackServerContext* context, const Method& method, DrainGate* gate);
 
   // Reserves memory for the request that was parsed from the call's message, instead of what was
-  // reserved for the message; 64 KiB need none. Errors: OUT_OF_MEMORY if so much is not free.
-  std::optional<Failure> reserve(AdmittedCall& call, std::uint64_t bytes);
+  // reserved for the message; 64 KiB need none. `field` takes most of them. Errors: LIMIT_EXCEEDED
+  // if there is never so much, OUT_OF_MEMORY if it is not free now.
+  std::optional<Failure> reserve(AdmittedCall& call, std::uint64_t bytes, const char* field);
 
   // Whether a line on a call that failed may be logged now; if not, it is counted.
   bool may_log_failure() { return refusals_.allow(); }
@@ -128,6 +129,7 @@ class Admission : private RawCall::Observer {
                 std::optional<grpc::ByteBuffer> bytes);
   void handle(const std::shared_ptr<AdmittedCall>& call, const Method& method,
               grpc::ByteBuffer bytes);
+  std::optional<Failure> take(AdmittedCall& call, std::uint64_t bytes);
   void note(const AdmittedCall& call, const Failure& failure);
   void ended(RawCall& call) override;
   void expire_pending(std::chrono::steady_clock::time_point now);

@@ -44,14 +44,21 @@ std::optional<Failure> check_id(const Request& request) {
   return std::nullopt;
 }
 
-// Refuses what the engine would refuse before it triangulates; returns the memory that the run is
-// expected to take. Linear time, and meanwhile memory for the engine's form of the request.
+// Refuses what the engine would refuse before it triangulates, and what does not fit into `runs`,
+// unless that is null; returns the memory that the run is expected to take. Linear time, and
+// meanwhile memory for the engine's form of the request.
 tl::expected<std::uint64_t, Failure> check_and_estimate(const v1::GenerateMeshRequest& request,
-                                                        const Limits& limits) {
+                                                        const Limits& limits,
+                                                        const MemoryBudget* runs) {
   const MeshRequest converted = to_engine(request);
   if (const auto error = check_pslg(converted.pslg)) return tl::unexpected(failure_of(*error));
-  return estimate(converted, to_budget(request.budget(), limits)).bytes + bytes_besides(limits) +
-         bytes_of_request(request);
+  const Estimate expected = estimate(converted, to_budget(request.budget(), limits));
+  const std::uint64_t besides = bytes_besides(limits) + bytes_of_request(request);
+  if (runs == nullptr) return expected.bytes + besides;
+  if (auto error = runs->check_fits(expected.least_bytes + besides, 0))
+    return tl::unexpected(
+        Failure{Reason::kLimitExceeded, largest_field(request), std::move(error->message)});
+  return expected.bytes + besides;
 }
 
 WorkBudget budget_of(const v1::GenerateMeshRequest& request, const Limits& limits) {
@@ -190,7 +197,8 @@ void JobService::submit_job(const std::shared_ptr<AdmittedCall>& call) {
     const std::size_t bytes = call->bytes.Length();
     auto request = read_submission(std::exchange(call->bytes, {}), options_.limits);
     if (!request) return tl::unexpected(request.error());
-    if (auto failure = admission().reserve(*call, request->SpaceUsedLong()))
+    if (auto failure =
+            admission().reserve(*call, request->SpaceUsedLong(), largest_field(request->mesh())))
       return tl::unexpected(*failure);
     return submit(call->caller, std::move(*request), bytes);
   });
@@ -200,7 +208,8 @@ JobService::Answer<v1::SubmitJobResponse> JobService::submit(const Caller& calle
                                                              v1::SubmitJobRequest request,
                                                              std::size_t bytes) {
   const int points = request.mesh().domain().points_size() / 2;
-  const auto estimate = check_and_estimate(request.mesh(), options_.limits);
+  const auto estimate = check_and_estimate(request.mesh(), options_.limits,
+                                           options_.works ? &environment_.memory : nullptr);
   if (!estimate) return tl::unexpected(estimate.error());
   Submission submission{.owner = caller.name,
                         .request_id = request.request_id(),

@@ -31,6 +31,8 @@ namespace weft::server {
 
 struct JobServiceOptions {
   Limits limits{};
+  // Whether this server's own workers take the jobs, so that its memory tells what can never begin.
+  bool works = true;
   // Whether a client's job may share work or a mesh with another client's.
   bool share_across_clients = true;
   // Maximum waiting tasks of all clients, and jobs of one client that have not ended.

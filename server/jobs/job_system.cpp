@@ -25,6 +25,7 @@ JobSystem::JobSystem(std::unique_ptr<JobStore> store, JobOptions options, Admiss
   const RunEnvironment environment{engine,        pool,    *store_, options.service.limits,
                                    options.retry, metrics, log};
   store_->on_change([this] { notify(); });
+  options.service.works = options.works;
   if (options.serves) service_.emplace(options.service, admission, metrics, memory, *store_, log);
   if (options.works) runner_.emplace(environment, queue, options.runner);
   MutexLock lock(mutex_);

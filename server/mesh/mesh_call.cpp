@@ -51,15 +51,16 @@ MeshCall::MeshCall(const CallEnvironment& environment, AdmittedCall& call, std::
           cached.hit ? kNoBounds : ChunkQueue::Bounds::of_bytes(environment.limits.stream_buffer)),
       environment_(environment),
       id_(std::move(id)),
-      caller_(log_fields(call.caller)),
-      client_(call.caller.client()),
+      caller_(call.caller),
+      caller_fields_(log_fields(caller_)),
       call_deadline_(call.call->context()->deadline()),
       max_seconds_(to_seconds(request.budget(), environment.limits)),
       threads_(to_threads(request.threads(), environment.pool.threads())),
       first_chunk_(request.first_chunk()),
       wants_quadtree_(request.want_quadtree()),
       cached_(std::move(cached)),
-      queued_line_(queued_line(id_, caller_, request.domain())),
+      largest_field_(largest_field(request)),
+      queued_line_(queued_line(id_, caller_fields_, request.domain())),
       pass_(std::exchange(call.pass, std::nullopt)),
       budget_(to_budget(request.budget(), environment.limits)),
       run_(budget_),
@@ -72,11 +73,19 @@ void MeshCall::start() noexcept try {
     send_cached();
     return;
   }
-  const std::uint64_t expected =
-      estimate(request_, budget_).bytes + bytes_besides(environment_.limits);
+  const Estimate expected = estimate(request_, budget_);
+  const std::uint64_t besides = bytes_besides(environment_.limits);
   const auto work = [self = shared_from_this()](RunQueue::Slot& slot) { self->run(slot); };
-  if (auto refusal = environment_.queue.push({client_, expected, this}, work))
+  auto refusal = environment_.queue.push({.client = caller_.client(),
+                                          .estimate = expected.bytes + besides,
+                                          .owner = this,
+                                          .least = expected.least_bytes + besides,
+                                          .input = request_memory_.of_all.bytes()},
+                                         work);
+  if (refusal) {
+    if (refusal->reason == Reason::kLimitExceeded) refusal->field = largest_field_;
     return fail(*refusal);
+  }
   log_queued();
   pump();
 } catch (const std::bad_alloc&) {
@@ -169,7 +178,7 @@ tl::expected<Summary, Failure> MeshCall::work(RunQueue::Slot& slot) {
   }
   const double waited = Seconds(Clock::now() - admitted_).count();
   environment_.metrics.waited(waited);
-  environment_.log->info("event=call_started call={} {} waited_seconds={:.3f}", id_, caller_,
+  environment_.log->info("event=call_started call={} {} waited_seconds={:.3f}", id_, caller_fields_,
                          waited);
   if (!cached_.key.empty() && first_chunk_ == 0) recording_.emplace(environment_.cache.largest());
   auto summary = call_engine(environment_.engine, std::move(request_), *this,
@@ -274,8 +283,8 @@ void MeshCall::log_end(grpc::StatusCode code, std::string_view reason) const {
   environment_.log->info(
       "event=call_ended call={} {} method=GenerateMesh status={} reason={} cached={} "
       "triangles={} chunks={} bytes={} seconds={:.3f}",
-      id_, caller_, code_name(code), reason, cached_.hit ? "yes" : "no", triangles, chunks_.load(),
-      bytes_.load(), seconds);
+      id_, caller_fields_, code_name(code), reason, cached_.hit ? "yes" : "no", triangles,
+      chunks_.load(), bytes_.load(), seconds);
 }
 
 }  // namespace weft::server

@@ -106,8 +106,8 @@ class MeshCall final : public MessageStream,
 
   const CallEnvironment& environment_;
   const std::string id_;
-  const std::string caller_;  // as in a line of the log
-  const std::string client_;  // of the queue
+  const Caller caller_;
+  const std::string caller_fields_;  // of the log
   const std::chrono::system_clock::time_point call_deadline_;
   const double max_seconds_;  // of the run
   const std::uint32_t threads_;
@@ -118,6 +118,7 @@ class MeshCall final : public MessageStream,
   std::once_flag queued_;
   RunQueue::Slot* slot_ = nullptr;  // used only by the worker
   const Clock::time_point admitted_ = Clock::now();
+  const char* const largest_field_;
   const std::optional<DrainGate::Pass> pass_;
   const Budget budget_;
   Run run_;

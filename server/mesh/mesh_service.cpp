@@ -69,7 +69,8 @@ void MeshService::generate_mesh(AdmittedCall& call) {
   auto request = read_mesh_request(std::exchange(call.bytes, {}), options_.limits);
   if (!request) return admission().refuse(call, request.error());
   // Two bytes of an empty region become 80, so what is parsed may be far more than the message.
-  if (auto failure = admission().reserve(call, bytes_of_larger_form(**request)))
+  if (auto failure =
+          admission().reserve(call, bytes_of_larger_form(**request), largest_field(**request)))
     return admission().refuse(call, *failure);
   CacheLookup cached = look_up(**request, size, call.caller);
   MeshRequest converted;

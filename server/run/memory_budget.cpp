@@ -20,18 +20,29 @@ std::uint64_t excess(std::uint64_t wanted, std::uint64_t estimate) {
 
 std::optional<MemoryBudget::Reservation> MemoryBudget::reserve(const Request& request) {
   MutexLock lock(mutex_);
-  const bool is_input = request.purpose == Purpose::kInput;
-  const bool fits = is_input ? entries_.empty() || request.estimate <= free_for(false)
-                             : request.estimate <= max_estimate_for(request.light);
-  if (!fits) return std::nullopt;
-  const auto of_client = of_clients_.find(request.client);
-  if (!is_input && of_client != of_clients_.end() && of_client->second >= options_.max_per_client)
-    return std::nullopt;
+  if (!fits(request)) return std::nullopt;
   const auto entry = entries_.insert(entries_.end(), Entry{.request = request, .bytes = 0});
   if (entry->is_run()) ++runs_;
   add(*entry,
       std::min(request.estimate, options_.capacity - std::min(reserved_, options_.capacity)));
   return Reservation(*this, entry);
+}
+
+std::optional<Error> MemoryBudget::check_fits(std::uint64_t bytes, std::uint64_t input) const {
+  const std::uint64_t most =
+      options_.capacity - std::min(options_.light_reserve, options_.capacity);
+  if (input <= most && bytes <= most - input) return std::nullopt;
+  const std::string beside =
+      input > 0 ? fmt::format(" beside the {} of its request", input) : std::string();
+  return Error{ErrorCode::kLimitExceeded, "",
+               fmt::format("the mesh needs more than {} bytes{}; this server's limit for all of "
+                           "its runs is {}",
+                           bytes, beside, options_.capacity)};
+}
+
+bool MemoryBudget::has_share(const std::string& client) const {
+  MutexLock lock(mutex_);
+  return has_share_now(client);
 }
 
 std::uint64_t MemoryBudget::max_estimate(bool light) const {
@@ -49,6 +60,18 @@ std::size_t MemoryBudget::waiting() const {
   return static_cast<std::size_t>(
       std::count_if(entries_.begin(), entries_.end(),
                     [](const Entry& entry) { return entry.waiting_threads > 0; }));
+}
+
+bool MemoryBudget::has_share_now(const std::string& client) const {
+  const auto found = of_clients_.find(client);
+  return found == of_clients_.end() || found->second < options_.max_per_client;
+}
+
+bool MemoryBudget::fits(const Request& request) const {
+  if (request.purpose == Purpose::kInput) {
+    return entries_.empty() || request.estimate < free_for(false);
+  }
+  return request.estimate <= max_estimate_for(request.light) && has_share_now(request.client);
 }
 
 std::uint64_t MemoryBudget::free_for(bool light) const {
@@ -110,11 +133,7 @@ std::optional<Error> MemoryBudget::grow(Entry& entry, std::uint64_t bytes,
                                         const std::function<std::optional<Error>()>& poll) {
   MutexLock lock(mutex_);
   if (try_grow(entry, bytes)) return std::nullopt;
-  if (bytes > options_.capacity - std::min(options_.light_reserve, options_.capacity))
-    return Error{ErrorCode::kLimitExceeded, "",
-                 fmt::format("the mesh needs more than {} bytes; this server's limit for all of "
-                             "its runs is {}",
-                             bytes, options_.capacity)};
+  if (auto error = check_fits(bytes, entry.request.input)) return error;
   ++entry.waiting_threads;
   std::optional<Error> error;
   while (!error) {

@@ -10,13 +10,15 @@
 // A run begins if the bytes of its estimate are free, and reserves more as it grows; if no more are
 // free, it waits until other runs release some. If all runs wait, the one that exceeds its estimate
 // most is cancelled, of several such the youngest. So a request with too low an estimate ends
-// before those whose estimate was right.
+// before those whose estimate was right. What a run could have only without its own request is
+// refused, because nobody else would release it.
 //
 // `light_reserve` bytes are kept for runs that begin as light ones: heavy runs can neither begin
 // nor grow in it. A client that has reserved `max_per_client` or more cannot begin another run.
 //
 // Law: the sum of all reservations never exceeds the capacity. Law: a run begins if there is no
-// other, however high its estimate: it then gets all of the capacity.
+// other, however high its estimate: it then gets all of the capacity. Requests never take the last
+// byte, which it begins with, except one that is alone, until `check_fits` has judged it.
 // Units: bytes. Thread-safety: every function may be called from any thread; one thread at a time
 // makes, moves or ends a Reservation, several may grow it. A budget outlives its reservations.
 #pragma once
@@ -58,6 +60,7 @@ class MemoryBudget {
     std::string client{};
     bool light = false;
     Purpose purpose = Purpose::kRun;
+    std::uint64_t input = 0;  // of a run: what its request holds in a reservation of its own
   };
 
   // Releases its bytes when it ends.
@@ -81,7 +84,7 @@ class MemoryBudget {
 
     // Returns once the reservation has at least `bytes`; it gets kStep at a time while that much is
     // free. If it must wait, it calls `poll` every 20 ms, without a lock; an error that this
-    // returns ends the wait. Errors: kLimitExceeded if the capacity is smaller, kOutOfMemory if
+    // returns ends the wait. Errors: those of `check_fits`, with the run's input, kOutOfMemory if
     // this run was cancelled because all runs waited, those of `poll`.
     std::optional<Error> grow_to(std::uint64_t bytes,
                                  const std::function<std::optional<Error>()>& poll);
@@ -110,8 +113,16 @@ class MemoryBudget {
   MemoryBudget(const Options& options, std::function<void()> on_release)
       : options_(options), on_release_(std::move(on_release)) {}
 
-  // Returns nullopt if `request.estimate` bytes are not free, or the client has its maximum.
+  // Returns nullopt if `request.estimate` bytes are not free, or the client has its maximum. A
+  // request that is alone gets what there is.
   std::optional<Reservation> reserve(const Request& request);
+
+  // Returns kLimitExceeded if a run of `bytes` bytes would not fit beside its request of `input`
+  // bytes, though there were nothing else.
+  std::optional<Error> check_fits(std::uint64_t bytes, std::uint64_t input) const;
+  std::uint64_t capacity() const { return options_.capacity; }
+  // Whether the client has less than its maximum.
+  bool has_share(const std::string& client) const;
 
   // The highest estimate with which a light or a heavy run of some client may begin now.
   std::uint64_t max_estimate(bool light) const;
@@ -132,6 +143,8 @@ class MemoryBudget {
     bool is_of_client() const { return request.purpose != Purpose::kInput; }
   };
 
+  bool has_share_now(const std::string& client) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool fits(const Request& request) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::uint64_t free_for(bool light) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   std::uint64_t max_estimate_for(bool light) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void add(Entry& entry, std::uint64_t bytes) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);

@@ -42,4 +42,9 @@ inline std::uint64_t bytes_of_larger_form(const v1::GenerateMeshRequest& request
   return request.SpaceUsedLong() + 4 * static_cast<std::uint64_t>(request.domain().segments_size());
 }
 
+// The field that takes most of the request.
+inline const char* largest_field(const v1::GenerateMeshRequest& request) {
+  return request.size().SpaceUsedLong() > request.domain().SpaceUsedLong() ? "size" : "domain";
+}
+
 }  // namespace weft::server

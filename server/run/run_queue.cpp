@@ -116,6 +116,7 @@ bool RunQueue::next(Slot& slot) {
 bool RunQueue::ask_source(Slot& slot) {
   Slots& slots = of(slot.priority_);
   if (source_ == nullptr || asked_ != nullptr || !slots.may_be_more) return false;
+  if (slot.priority_ == PriorityClass::kHeavy && somebody_starves(slot)) return false;
   slots.may_be_more = false;  // until there is one, or it says so again
   asked_ = &slot;
   asked_since_ = Clock::now();
@@ -126,21 +127,9 @@ bool RunQueue::ask_source(Slot& slot) {
 
 // The client of a run that begins goes to the end of the round.
 bool RunQueue::next_pushed(Slot& slot) {
+  const bool only_starving = slot.priority_ == PriorityClass::kHeavy && somebody_starves(slot);
   for (auto client = round_robin_.begin(); client != round_robin_.end(); ++client) {
-    if (!has_share(slot.priority_, client->name)) continue;
-    auto run = client->runs.begin();
-    if (slot.priority_ == PriorityClass::kLight) {
-      if (distrust_.holds_for(client->name, Clock::now())) continue;
-      while (run != client->runs.end() && !is_light(run->ticket.estimate)) ++run;
-      if (run == client->runs.end()) continue;
-    }
-    if (!assign(slot, run->ticket)) {
-      if (++run->bypass_count > kMaxBypasses) break;
-      continue;
-    }
-    slot.work_ = std::move(run->work);
-    slot.pushed_ = true;
-    client->runs.erase(run);
+    if (!may_try(slot, *client) || !begin_one_of(*client, slot, only_starving)) continue;
     --stats_.waiting;
     if (client->runs.empty())
       round_robin_.erase(client);
@@ -153,12 +142,53 @@ bool RunQueue::next_pushed(Slot& slot) {
   return false;
 }
 
+// Whether the client's share allows another run; memory apart from that is not looked at.
+bool RunQueue::may_try(const Slot& slot, const Client& client) {
+  if (!has_share(slot.priority_, client.name)) return false;
+  if (slot.priority_ == PriorityClass::kLight && distrust_.holds_for(client.name, Clock::now()))
+    return false;
+  return options_.memory == nullptr || options_.memory->has_share(client.name);
+}
+
+// Gives the slot the client's first run for which there is memory.
+bool RunQueue::begin_one_of(Client& client, Slot& slot, bool only_starving) {
+  for (auto run = client.runs.begin(); run != client.runs.end(); ++run) {
+    if (slot.priority_ == PriorityClass::kLight && !is_light(run->ticket.estimate)) continue;
+    if (only_starving && run->bypass_count < kMaxBypasses) continue;
+    run->lacks_memory = !assign(slot, run->ticket);
+    if (run->lacks_memory) continue;
+    slot.work_ = std::move(run->work);
+    slot.pushed_ = true;
+    client.runs.erase(run);
+    count_bypass();
+    return true;
+  }
+  return false;
+}
+
+// A run begins while others lack memory.
+void RunQueue::count_bypass() {
+  for (Client& client : round_robin_)
+    for (Waiting& run : client.runs) run.bypass_count += run.lacks_memory ? 1 : 0;
+}
+
+// Whether a run was bypassed so often that no other may begin before it. One that its client's
+// share keeps from the slot is not waited for.
+bool RunQueue::somebody_starves(const Slot& slot) {
+  const auto starves = [](const Waiting& run) { return run.bypass_count >= kMaxBypasses; };
+  for (const Client& client : round_robin_)
+    if (std::ranges::any_of(client.runs, starves) && may_try(slot, client)) return true;
+  return false;
+}
+
 // Reserves memory for a run in the slot; returns false if not enough is free.
 bool RunQueue::assign(Slot& slot, const Ticket& ticket) const {
   const bool light = is_light(ticket.estimate);
   if (options_.memory != nullptr) {
-    auto reservation = options_.memory->reserve(
-        {.estimate = ticket.estimate, .client = ticket.client, .light = light});
+    auto reservation = options_.memory->reserve({.estimate = ticket.estimate,
+                                                 .client = ticket.client,
+                                                 .light = light,
+                                                 .input = ticket.input});
     if (!reservation) return false;
     slot.reservation_ = std::move(*reservation);
   }
@@ -170,6 +200,9 @@ bool RunQueue::assign(Slot& slot, const Ticket& ticket) const {
 // --- runs that wait here ---
 
 std::optional<Failure> RunQueue::push(Ticket ticket, Work work) {
+  if (options_.memory != nullptr)
+    if (auto error = options_.memory->check_fits(ticket.least, ticket.input))
+      return Failure{Reason::kLimitExceeded, "", std::move(error->message)};
   MutexLock lock(mutex_);
   const std::size_t idle = heavy_.count - std::min(heavy_.running, heavy_.count);
   auto client = std::ranges::find(round_robin_, ticket.client, &Client::name);
@@ -202,6 +235,7 @@ bool RunQueue::remove(const void* owner) {
     client->runs.erase(found);
     --stats_.waiting;
     if (client->runs.empty()) round_robin_.erase(client);
+    idle_.notify_one();  // others may have waited for this one
     return true;
   }
   return false;
@@ -262,6 +296,7 @@ bool RunQueue::Slot::admit(const Ticket& ticket) {
   if (slots.running > slots.count || !queue_.has_share(priority_, ticket.client)) return false;
   if (!queue_.assign(*this, ticket)) return false;
   if (!ticket.client.empty()) ++slots.running_of[ticket.client];
+  queue_.count_bypass();
   slots.last_was_pushed = false;
   slots.may_be_more = true;
   queue_.asked_ = nullptr;

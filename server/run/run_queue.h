@@ -4,8 +4,10 @@
 //
 // Clients that have waiting runs take turns (round robin), so none can starve another; a client's
 // own runs begin first come, first served. One client has at most its share of the waiting runs, of
-// the slots and of the memory. A run for which no memory is free is bypassed, 64 times at most:
-// after that the runs behind it wait with it.
+// the slots and of the memory. A run for which no memory is free is bypassed by all that begin
+// meanwhile, also by its client's own and those of the source, 64 times at most: after that only
+// light slots are given away until enough runs have ended for it to begin. Each of these does, and
+// what could not begin then either is refused at once.
 //
 // Slots have a priority class. Light slots are for light runs only, whatever else their client has
 // in the queue: a mesh of a millisecond does not wait for meshes that take seconds. A run that
@@ -28,7 +30,7 @@
 // Law: no more runs compute at once than there are slots, except those that go on after a Pause,
 // and one that borrows the slot of a source that does not answer.
 //
-// Units: bytes. Errors: kQueueFull.
+// Units: bytes. Errors: kQueueFull; kLimitExceeded for what can never begin.
 // Thread-safety: every function may be called from any thread, those of a Slot by its run alone.
 #pragma once
 
@@ -85,6 +87,8 @@ class RunQueue {
     std::string client{};         // empty: not identified, so its slots are not bounded
     std::uint64_t estimate = 0;   // bytes of memory
     const void* owner = nullptr;  // by which a run that waits here can be removed
+    std::uint64_t least = 0;      // bytes without which the run cannot begin to work
+    std::uint64_t input = 0;      // bytes that its request holds in `memory`
   };
 
   // The right to compute, which a run has from its begin to its end.
@@ -144,7 +148,8 @@ class RunQueue {
   // Drops the runs that wait, and returns when those that have begun have ended.
   void stop();
 
-  // Refuses with kQueueFull if `capacity` runs wait already, or the client's share of that. If
+  // Refuses with kLimitExceeded if the least that the run takes does not fit into the memory beside
+  // its request, with kQueueFull if `capacity` runs wait already, or the client's share of that. If
   // client_share is below 1, a client without a waiting run is refused only if twice the capacity
   // waits: so a few clients that fill the queue do not shut out the others.
   std::optional<Failure> push(Ticket ticket, Work work);
@@ -175,7 +180,8 @@ class RunQueue {
   struct Waiting {
     Ticket ticket;
     Work work;
-    int bypass_count = 0;
+    bool lacks_memory = false;  // when it was last looked at
+    int bypass_count = 0;       // runs that have begun since then
   };
   struct Client {
     std::string name;
@@ -200,6 +206,11 @@ class RunQueue {
   bool next(Slot& slot) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool ask_source(Slot& slot) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool next_pushed(Slot& slot) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool may_try(const Slot& slot, const Client& client) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool begin_one_of(Client& client, Slot& slot, bool only_starving)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void count_bypass() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool somebody_starves(const Slot& slot) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool assign(Slot& slot, const Ticket& ticket) const;
   bool has_slot(PriorityClass priority) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   bool has_share(PriorityClass priority, const std::string& client)

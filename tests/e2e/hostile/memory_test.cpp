@@ -96,5 +96,38 @@ TEST(HostileWork, OfASpikeBetweenTheSamplesStaysWithinTheMemory) {
   expect_bounds_against(spike());
 }
 
+// Within all limits, and more than there is for runs.
+v1::GenerateMeshRequest large_raster() {
+  constexpr std::uint32_t kSide = 4096;
+  v1::GenerateMeshRequest request = square();
+  v1::Raster& raster = *request.mutable_size()->mutable_raster();
+  raster.set_dx(1.0 / (kSide - 1));
+  raster.set_dy(1.0 / (kSide - 1));
+  raster.set_columns(kSide);
+  raster.set_rows(kSide);
+  raster.mutable_values()->Resize(kSide * kSide, 1e-3);
+  return request;
+}
+
+TEST(HostileWork, ThatCanNeverBeginIsRefusedAndNobodyWaitsBehindIt) {
+  const Folder folder;
+  const Server server({"--memory", "512MiB", "--data", (folder.path() / "data").string()});
+  const v1::GenerateMeshRequest large = large_raster();
+  const grpc::Status refused = call(server.address(), large);
+  EXPECT_EQ(refused.error_code(), grpc::RESOURCE_EXHAUSTED) << refused.error_message();
+  EXPECT_NE(refused.error_message().find("limit"), std::string::npos) << refused.error_message();
+  EXPECT_FALSE(is_full(refused)) << "it asks the client to come again";
+  EXPECT_TRUE(call(server.address(), square()).ok());
+  v1::SubmitJobRequest submission;
+  *submission.mutable_mesh() = large;
+  v1::SubmitJobResponse submitted;
+  grpc::ClientContext context;
+  const grpc::Status job = v1::JobService::NewStub(connect(server.address()))
+                               ->SubmitJob(&context, submission, &submitted);
+  EXPECT_EQ(job.error_code(), grpc::RESOURCE_EXHAUSTED) << job.error_message();
+  EXPECT_FALSE(is_full(job));
+  EXPECT_TRUE(call(server.address(), square()).ok());
+}
+
 }  // namespace
 }  // namespace weft::e2e

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "tests/client/support/temp_folder.h"
+#include "tests/server/job_harness.h"
 #include "tests/server/logged_server.h"
 #include "tests/server/raw_call.h"
 
@@ -133,15 +134,80 @@ TEST(Admission, HoldsMemoryForWhatIsParsedInsteadOfItsMessage) {
                       log.logger());
   AdmittedCall first{};
   AdmittedCall second{};
-  EXPECT_FALSE(admission.reserve(first, 4 * kMiB));
-  EXPECT_FALSE(admission.reserve(first, 8 * kMiB));
+  EXPECT_FALSE(admission.reserve(first, 4 * kMiB, "domain"));
+  EXPECT_FALSE(admission.reserve(first, 8 * kMiB, "domain"));
   EXPECT_EQ(budget.reserved(), 8 * kMiB);
-  const auto failure = admission.reserve(second, 4 * kMiB);
+  const auto failure = admission.reserve(second, 4 * kMiB, "domain");
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->reason, Reason::kOutOfMemory);
-  EXPECT_FALSE(admission.reserve(first, 2 * kMiB));
-  EXPECT_FALSE(admission.reserve(second, 4 * kMiB));
+  EXPECT_FALSE(admission.reserve(first, 2 * kMiB, "domain"));
+  EXPECT_FALSE(admission.reserve(second, 4 * kMiB, "domain"));
   EXPECT_EQ(budget.reserved(), 6 * kMiB);
+}
+
+TEST(Admission, RefusesARequestThatIsLargerThanWhatThereIsForAllRuns) {
+  Log log;
+  Metrics metrics("", "");
+  const Authenticator everybody(nullptr);
+  MemoryBudget budget({.capacity = 1000'000}, [] {});
+  Admission admission({.request_bytes = 2000'000, .memory = &budget}, everybody, metrics,
+                      log.logger());
+  AdmittedCall call{};
+  const auto failure = admission.reserve(call, 1000'001, "size");
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->reason, Reason::kLimitExceeded);
+  EXPECT_EQ(failure->field, "size");
+  EXPECT_EQ(failure->message,
+            "the request takes 1000001 bytes; this server's limit for requests and runs is "
+            "1000000");
+  EXPECT_FALSE(admission.reserve(call, 1000'000, "size"));
+}
+
+// Within all limits, but the raster and what is made of it take more than there is for runs.
+v1::GenerateMeshRequest raster_of(int side) {
+  v1::GenerateMeshRequest request = valid_request();
+  v1::Raster& raster = *request.mutable_size()->mutable_raster();
+  raster.set_dx(1);
+  raster.set_dy(1);
+  raster.set_columns(side);
+  raster.set_rows(side);
+  raster.mutable_values()->Resize(side * side, 1);
+  return request;
+}
+
+ServerOptions of_160_mebibytes() {  // 59 for runs, 64 for messages
+  ServerOptions options = local();
+  options.memory = std::uint64_t{160} << 20;
+  options.service.cache_bytes = 0;
+  options.service.limits.max_request_bytes = std::size_t{32} << 20;
+  return options;
+}
+
+TEST(Admission, RefusesACallThatCanNeverBegin) {
+  LoggedServer server(of_160_mebibytes());
+  const grpc::Status refused = mesh(server, raster_of(1800));
+  EXPECT_EQ(refused.error_code(), grpc::RESOURCE_EXHAUSTED);
+  const Details details = details_of(refused);
+  EXPECT_EQ(details.error_info.reason(), "LIMIT_EXCEEDED") << refused.error_message();
+  EXPECT_FALSE(details.retry_info);
+  ASSERT_TRUE(details.bad_request);
+  EXPECT_EQ(details.bad_request->field_violations(0).field(), "size");
+  EXPECT_TRUE(mesh(server, valid_request()).ok()) << "others wait behind it";
+  EXPECT_TRUE(mesh(server, raster_of(1000)).ok());
+}
+
+TEST(Admission, RefusesAJobThatCanNeverBegin) {
+  const client::TempFolder folder;
+  LoggedServer server(of_160_mebibytes(), *SqliteStore::open({.folder = folder.path().string()}));
+  JobClient client(channel_to(server.address(), grpc::InsecureChannelCredentials()));
+  v1::SubmitJobRequest submission;
+  *submission.mutable_mesh() = raster_of(1400);
+  const grpc::Status refused = client.submit(submission).status;
+  EXPECT_EQ(details_of(refused).error_info.reason(), "LIMIT_EXCEEDED") << refused.error_message();
+  ASSERT_TRUE(details_of(refused).bad_request);
+  EXPECT_EQ(details_of(refused).bad_request->field_violations(0).field(), "size");
+  const v1::Job job = client.wait(client.submit(raster_of(900)));
+  EXPECT_EQ(job.state(), v1::JOB_STATE_SUCCEEDED);
 }
 
 // Two bytes of an empty region become 80.

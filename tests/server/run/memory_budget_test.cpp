@@ -89,6 +89,38 @@ TEST(MemoryBudget, RefusesARequestThatDoesNotFitThoughNothingRuns) {
   EXPECT_FALSE(budget.reserve({.estimate = 41, .purpose = Purpose::kInput}));
 }
 
+TEST(MemoryBudget, KeepsTheLastByteFromRequestsSoThatARunMayBegin) {
+  MemoryBudget budget({.capacity = 100, .light_reserve = 20}, kNoRelease);
+  const auto first = budget.reserve({.estimate = 60, .purpose = Purpose::kInput});
+  EXPECT_FALSE(budget.reserve({.estimate = 20, .purpose = Purpose::kInput}));
+  const auto second = budget.reserve({.estimate = 19, .purpose = Purpose::kInput});
+  ASSERT_TRUE(second);
+  EXPECT_TRUE(budget.reserve({.estimate = 50}));
+}
+
+TEST(MemoryBudget, RefusesWhatNeverFitsBesideItsRequest) {
+  MemoryBudget budget({.capacity = 100, .light_reserve = 10}, kNoRelease);
+  EXPECT_FALSE(budget.check_fits(60, 30));
+  const auto error = budget.check_fits(61, 30);
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code, ErrorCode::kLimitExceeded);
+  EXPECT_EQ(error->message,
+            "the mesh needs more than 61 bytes beside the 30 of its request; this server's limit "
+            "for all of its runs is 100");
+  EXPECT_TRUE(budget.check_fits(0, 91));
+}
+
+TEST(MemoryBudget, DoesNotLetARunWaitForItsOwnRequest) {
+  MemoryBudget budget({.capacity = 100}, kNoRelease);
+  const auto request = budget.reserve({.estimate = 60, .purpose = Purpose::kInput});
+  auto run = budget.reserve({.estimate = 20, .input = 60});
+  ASSERT_TRUE(run);
+  EXPECT_FALSE(run->grow_to(40, kGoOn));
+  const auto error = run->grow_to(41, kGoOn);
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code, ErrorCode::kLimitExceeded) << "trying again would end the same way";
+}
+
 TEST(MemoryBudget, ReleasesTheBytesOfAReservationOnceAndReportsIt) {
   int releases = 0;
   MemoryBudget budget({.capacity = 100}, [&] { ++releases; });

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <string>
 #include <thread>
 
@@ -193,6 +194,70 @@ TEST(RunQueue, DoesNotPassOverAJobForEver) {
   reserved.reset();
   queue.memory_released();
   EXPECT_TRUE(heavy_ran.wait());
+}
+
+TEST(RunQueue, RefusesWhatCanNeverBegin) {
+  MemoryBudget budget({.capacity = 100}, [] {});
+  const auto input = budget.reserve({.estimate = 60, .purpose = MemoryBudget::Purpose::kInput});
+  Event ran;
+  RunQueue queue({.slots = 1, .capacity = 10, .memory = &budget});
+  const auto refused = queue.push({.least = 41, .input = 60}, plain([] { FAIL() << "it ran"; }));
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->reason, Reason::kLimitExceeded);
+  EXPECT_NE(refused->message.find("41"), std::string::npos) << refused->message;
+  EXPECT_EQ(queue.stats().waiting, 0);
+  EXPECT_FALSE(queue.push({.estimate = 1000, .least = 40, .input = 60}, plain([&] { ran.set(); })));
+  EXPECT_TRUE(ran.wait());
+}
+
+TEST(RunQueue, PassesOverAJobForALaterOneOfTheSameClient) {
+  MemoryBudget budget({.capacity = 100}, [] {});
+  auto reserved = budget.reserve({.estimate = 50});
+  Event small_ran;
+  Event large_ran;
+  RunQueue queue({.slots = 1, .capacity = 10, .memory = &budget});
+  queue.push({.client = "a", .estimate = 60}, plain([&] { large_ran.set(); }));
+  queue.push({.client = "a", .estimate = 10}, plain([&] { small_ran.set(); }));
+  EXPECT_TRUE(small_ran.wait());
+  EXPECT_FALSE(large_ran.happened());
+  reserved.reset();
+  queue.memory_released();
+  EXPECT_TRUE(large_ran.wait());
+}
+
+// The queue is looked through whenever memory is released, whether a run begins then or not.
+TEST(RunQueue, CountsRunsThatBeginAndNotHowOftenItLooks) {
+  MemoryBudget budget({.capacity = 100}, [] {});
+  auto reserved = budget.reserve({.estimate = 50});
+  Busy busy;
+  Event small_ran;
+  RunQueue queue({.slots = 2, .capacity = 10, .memory = &budget});
+  busy.occupy(queue, "other");
+  queue.push({.client = "large", .estimate = 60}, plain([] {}));
+  for (int i = 0; i < 500; ++i) {
+    queue.memory_released();
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+  queue.push({.client = "small", .estimate = 10}, plain([&] { small_ran.set(); }));
+  EXPECT_TRUE(small_ran.wait());
+  busy.release.set();
+  reserved.reset();
+  queue.memory_released();
+}
+
+TEST(RunQueue, LetsNobodyWaitForOneWhoseClientHasItsShareOfTheMemory) {
+  MemoryBudget budget({.capacity = 100, .max_per_client = 40}, [] {});
+  const auto unread = budget.reserve(
+      {.estimate = 40, .client = "reader", .purpose = MemoryBudget::Purpose::kOutput});
+  std::atomic<int> ran{0};
+  Event all_ran;
+  RunQueue queue({.slots = 1, .capacity = 1000, .memory = &budget});
+  queue.push({.client = "reader", .estimate = 10}, plain([] { FAIL() << "it ran"; }));
+  for (int i = 0; i < 200; ++i)
+    queue.push({.client = "other", .estimate = 10}, plain([&] {
+                 if (++ran == 200) all_ran.set();
+               }));
+  EXPECT_TRUE(all_ran.wait()) << ran << " ran";
 }
 
 TEST(RunQueue, HasASlotForLightJobsWhileHeavyOnesWait) {

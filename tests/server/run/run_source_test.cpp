@@ -88,6 +88,33 @@ TEST(RunsOfASource, CountTowardsTheSlotsOfTheirClientWithThoseThatWaitHere) {
   other_may_end.set();
 }
 
+TEST(RunsOfASource, WaitWithARunThatWasBypassedTooOften) {
+  MemoryBudget budget({.capacity = 100}, [] {});
+  auto reserved = budget.reserve({.estimate = 50});
+  std::atomic<int> of_source{0};
+  Event large_ran;
+  Event all_ran;
+  constexpr int kRuns = 500;
+  RunQueue queue({.slots = 1, .capacity = 10, .memory = &budget});
+  Busy busy;
+  busy.occupy(queue);
+  queue.push({.client = "large", .estimate = 60}, plain([&] { large_ran.set(); }));
+  ListSource source(queue);
+  for (int i = 0; i < kRuns; ++i)
+    source.add("small", 10, [&](auto&) {
+      if (++of_source == kRuns) all_ran.set();
+    });
+  busy.release.set();
+  while (of_source < 64) std::this_thread::yield();
+  for (int i = 0; i < 20; ++i) queue.wake();
+  EXPECT_LT(of_source, 100);
+  EXPECT_FALSE(large_ran.happened());
+  reserved.reset();
+  queue.memory_released();
+  EXPECT_TRUE(large_ran.wait());
+  EXPECT_TRUE(all_ran.wait());
+}
+
 TEST(RunsOfASource, AreNobodysShareWithoutAClient) {
   Event all_run;
   std::atomic<int> running{0};
