@@ -181,6 +181,8 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
                                            .encrypted = !options.tls.certificate.empty(),
                                            .lost = options.address_lost},
                               server->log_);
+  if (server->tokens_)
+    server->tokens_->on_change([self = server.get()] { self->revoke_unknown(); });
   if (!options.metrics.empty()) {
     auto endpoint = MetricsEndpoint::start(
         options.metrics,
@@ -263,6 +265,17 @@ std::optional<std::string> Server::start_console(const ServerOptions& options) {
   return std::nullopt;
 }
 
+void Server::reload() {
+  if (tokens_) tokens_->reload();
+  if (console_ != nullptr) console_->reload();
+}
+
+void Server::revoke_unknown() {
+  health_.revoke_unknown(authenticator_);
+  service_.revoke_unknown(authenticator_);
+  if (job_service() != nullptr) job_service()->revoke_unknown(authenticator_);
+}
+
 void Server::drain(std::chrono::steady_clock::duration at_most) {
   const auto end = std::chrono::steady_clock::now() + at_most;
   if (probe_ != nullptr) probe_->stop();
@@ -299,6 +312,7 @@ void Server::remove_socket_files() {
 }
 
 Server::~Server() {
+  if (tokens_) tokens_->on_change({});
   if (server_ != nullptr) drain(seconds(0));
   if (jobs_) jobs_->close();
   queue_.stop();  // its runs use all that is destroyed now

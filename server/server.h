@@ -87,6 +87,10 @@ class Server {
   // files. Call at most once.
   void drain(std::chrono::steady_clock::duration at_most);
 
+  // Reads the tokens and the certificates again, which happens by itself within two seconds of a
+  // change; what is open stays open, but for the streams of tokens that are gone.
+  void reload();
+
   // For a process that exits without draining.
   void remove_socket_files();
 
@@ -94,6 +98,8 @@ class Server {
   Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, EngineFn engine,
          Logger log, std::unique_ptr<JobStore> store);
   JobService* job_service();  // null if there is none
+  // Ends the streams of callers whose token is no longer known.
+  void revoke_unknown();
   // These return what is wrong.
   std::optional<std::string> listen(const ServerOptions& options);
   std::optional<std::string> start_console(const ServerOptions& options);

@@ -101,6 +101,7 @@ void Admission::admit(const std::shared_ptr<RawCall>& raw, const Method& method,
 void Admission::received(const std::shared_ptr<AdmittedCall>& call, const Method& method,
                          std::optional<grpc::ByteBuffer> bytes) {
   if (!bytes) return refuse(*call, {Reason::kMalformedRequest, "", "the call carries no message"});
+  if (!authenticator_.still_knows(call->caller)) return refuse(*call, token_revoked());
   if (bytes->Length() > method.most_bytes)
     return refuse(*call, {Reason::kLimitExceeded, "",
                           fmt::format("the request has {} bytes; the limit of {} is {}",

@@ -76,6 +76,12 @@ class Console::Listener {
   void set_address(std::string address) { address_ = std::move(address); }
   const std::string& address() const { return address_; }
 
+  void reload() {
+    asio::post(io_, [this] {
+      if (tls_) tls_->reload();
+    });
+  }
+
   void stop(Clock::time_point end) {
     if (!thread_.joinable() || std::exchange(stopped_, true)) return;
     asio::post(io_, [this, end] {
@@ -185,6 +191,10 @@ Console::~Console() = default;
 
 const std::string& Console::address() const {
   return listener_->address();
+}
+
+void Console::reload() {
+  listener_->reload();
 }
 
 void Console::stop(Clock::time_point end) {

@@ -78,6 +78,9 @@ class Console {
   // As bound.
   const std::string& address() const;
 
+  // Reads the certificates again for the next connection.
+  void reload();
+
   // Accepts no more connections, closes idle ones and lets responses at work be written until
   // `end`; then closes all, which cancels their calls. Returns when no call is open.
   void stop(std::chrono::steady_clock::time_point end);

@@ -63,6 +63,10 @@ class JobService final : public RawService {
 
   // Ends every open call with UNAVAILABLE.
   void stop_all();
+  // Ends the streams of callers whose token is no longer known.
+  void revoke_unknown(const Authenticator& authenticator) {
+    streams_.revoke_unknown(authenticator);
+  }
 
  private:
   template <class Response>

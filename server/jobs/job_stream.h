@@ -60,6 +60,9 @@ class JobStream : public MessageStream, public std::enable_shared_from_this<JobS
   // Ends the call because the server stops now.
   void stop() { fail({Reason::kStopping, "", "the server is stopping"}); }
 
+  const Caller& caller() const { return job_.caller; }
+  void revoke() { fail(token_revoked()); }
+
  protected:
   JobStream(const StreamEnvironment& environment, AdmittedCall& call, std::string id);
 

@@ -232,6 +232,8 @@ Failure MeshCall::failure_of_cause(StopCause cause) const {
       return {Reason::kReaderStalled, "", "the client reads too slowly"};
     case StopCause::kStopping:
       return {Reason::kStopping, "", "the server is stopping"};
+    case StopCause::kTokenRevoked:
+      return token_revoked();
   }
   return {Reason::kDeadlineExceeded, "", "the call's deadline passed"};
 }

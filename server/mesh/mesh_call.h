@@ -40,6 +40,7 @@ enum class StopCause {
   kTimeUp,         // DEADLINE_EXCEEDED
   kReaderStalled,  // CANCELLED
   kStopping,       // UNAVAILABLE
+  kTokenRevoked,   // UNAUTHENTICATED
 };
 
 // Shared by all calls; outlives them.
@@ -75,6 +76,9 @@ class MeshCall final : public MessageStream,
   void start() noexcept;
 
   void stop(StopCause cause);
+
+  const Caller& caller() const { return caller_; }
+  void revoke() { stop(StopCause::kTokenRevoked); }
 
   // Called a few times a second: sends progress, ends the call at its deadline, cuts off a client
   // that reads nothing.
@@ -114,11 +118,11 @@ class MeshCall final : public MessageStream,
   const std::uint32_t first_chunk_;  // those before it are not sent
   const bool wants_quadtree_;
   const CacheLookup cached_;
+  const char* const largest_field_;
   const std::string queued_line_;  // of the log
   std::once_flag queued_;
   RunQueue::Slot* slot_ = nullptr;  // used only by the worker
   const Clock::time_point admitted_ = Clock::now();
-  const char* const largest_field_;
   const std::optional<DrainGate::Pass> pass_;
   const Budget budget_;
   Run run_;

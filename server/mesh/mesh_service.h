@@ -64,6 +64,8 @@ class MeshService final : public RawService {
 
   // Ends every open call with UNAVAILABLE.
   void stop_all();
+  // Ends the calls of callers whose token is no longer known.
+  void revoke_unknown(const Authenticator& authenticator) { calls_.revoke_unknown(authenticator); }
 
   QueueStats stats() const;
 

@@ -113,11 +113,21 @@ tl::expected<Caller, Failure> Authenticator::identify(
       caller.name = connection->certificate_name();
     return caller;
   }
-  auto name = token_name(header(context, "authorization"));
+  const auto authorization = header(context, "authorization");
+  auto name = token_name(authorization);
   if (!name) return tl::unexpected(name.error());
   caller.name = std::move(*name);
   if (connection != nullptr) connection->set_identified();
+  caller.token = TokenTable::digest_of(*bearer_token(authorization));
   return caller;
+}
+
+bool Authenticator::still_knows(const Caller& caller) const {
+  return caller.token.empty() || tokens_->table()->name_of_digest(caller.token) == caller.name;
+}
+
+Failure token_revoked() {
+  return {Reason::kUnauthenticated, "", "this server knows the token no longer"};
 }
 
 tl::expected<std::string, Failure> Authenticator::token_name(

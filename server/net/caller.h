@@ -40,6 +40,7 @@ struct Caller {
   std::string name{};
   std::string peer{};   // the address, as gRPC writes it
   std::string trace{};  // W3C trace id, 32 hexadecimal digits; empty if the caller sent none
+  std::string token{};  // the digest of its token; empty without one
   std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();  // of the call
 
   // Who has a share: the name or, without one, the host.
@@ -52,6 +53,9 @@ struct Caller {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
   }
 };
+
+// With what the streams of a caller end whose token is no longer known.
+Failure token_revoked();
 
 // `client=`, `peer=` and `trace=` for a line of the log, without those that are empty.
 std::string log_fields(const Caller& caller);
@@ -77,6 +81,9 @@ class Authenticator {
       : tokens_(tokens), console_secret_(std::move(console_secret)), connections_(connections) {}
 
   tl::expected<Caller, Failure> identify(const grpc::ServerContextBase& context) const;
+
+  // Whether the token by which the caller was identified still stands for its name.
+  bool still_knows(const Caller& caller) const;
 
   // Returns the caller, without checking the token.
   Caller unverified(const grpc::ServerContextBase& context) const;

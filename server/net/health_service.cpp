@@ -5,6 +5,7 @@
 #include <google/protobuf/wire_format_lite.h>
 #include <grpcpp/support/proto_buffer_reader.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@ using google::protobuf::internal::WireFormatLite;
 constexpr std::size_t kMostBytes = 1024;
 // Each watch holds a stream, for a caller that nobody knows.
 constexpr std::size_t kMostWatches = 1024;
+constexpr std::ptrdiff_t kMostWatchesOfClient = 64;
 // HealthCheckRequest.service, and HealthCheckResponse.status with its values.
 constexpr std::uint32_t kServiceTag =
     WireFormatLite::MakeTag(1, WireFormatLite::WIRETYPE_LENGTH_DELIMITED);
@@ -56,20 +58,24 @@ char status_of(const std::map<std::string, bool>& serving, const std::string& se
 
 class HealthService::Watch final : public MessageStream {
  public:
-  Watch(HealthService& owner, std::shared_ptr<RawCall> call, std::string service, char status)
-      : MessageStream(std::move(call), response(status), {}),
+  Watch(HealthService& owner, const AdmittedCall& call, std::string service, char status)
+      : MessageStream(call.call, response(status), {}),
         owner_(owner),
+        caller_(call.caller),
         service_(std::move(service)) {}
 
   void start() { pump(); }
   void tell(char status) { offer(response(status)); }
   const std::string& service() const { return service_; }
+  const Caller& caller() const { return caller_; }
+  void revoke() { abort(to_status(token_revoked(), "")); }
 
  private:
   void client_gone() override { abort({grpc::CANCELLED, "the client cancelled the call"}); }
   void ended_for_good() override { owner_.watches_.forget(*this); }
 
   HealthService& owner_;
+  const Caller caller_;
   const std::string service_;
 };
 
@@ -110,6 +116,10 @@ void HealthService::set_all(bool serving) {
   for (const std::string& service : services) set(service, serving);
 }
 
+void HealthService::revoke_unknown(const Authenticator& authenticator) {
+  watches_.revoke_unknown(authenticator);
+}
+
 void HealthService::check(const AdmittedCall& call, const std::string& service) {
   char status = 0;
   {
@@ -128,8 +138,14 @@ void HealthService::watch(const AdmittedCall& call, const std::string& service) 
     std::lock_guard lock(mutex_);
     if (watches_.size() >= kMostWatches)
       return call.call->finish({grpc::RESOURCE_EXHAUSTED, "too many watch already"});
+    const auto all = watches_.all();
+    const auto is_of_client = [client = call.caller.client()](const auto& other) {
+      return other->caller().client() == client;
+    };
+    if (std::ranges::count_if(all, is_of_client) >= kMostWatchesOfClient)
+      return call.call->finish({grpc::RESOURCE_EXHAUSTED, "you watch too often already"});
     first = status_of(serving_, service);
-    watch = std::make_shared<Watch>(*this, call.call, service, first);
+    watch = std::make_shared<Watch>(*this, call, service, first);
     watches_.add(watch);
   }
   watch->take_call();

@@ -6,7 +6,8 @@
 // a time limit: eight calls that never end their message held 2 GiB. This one uses the Admission
 // like the other services. On a server with tokens, it does not read an unidentified caller's
 // message: it replies for the whole server, whatever service the message names. All services share
-// one state.
+// one state. One client, by its name or host, has at most 64 of the 1,024 watches, so that no
+// stranger takes them all.
 //
 // Source: https://github.com/grpc/grpc/blob/master/doc/health-checking.md
 // Thread-safety: every function may be called from any thread.
@@ -34,6 +35,8 @@ class HealthService final : public RawService {
   void set(const std::string& service, bool serving);
   // Sets the state of all known services.
   void set_all(bool serving);
+  // Ends the watches of callers whose token is no longer known.
+  void revoke_unknown(const Authenticator& authenticator);
 
  private:
   class Watch;

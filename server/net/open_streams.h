@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/net/caller.h"
 #include "server/net/message_stream.h"
 
 namespace weft::server {
@@ -45,6 +46,12 @@ class OpenStreams {
     all.reserve(streams_.size());
     for (const auto& [key, stream] : streams_) all.push_back(stream);
     return all;
+  }
+
+  // Calls `revoke` of those whose caller the authenticator does not know any more.
+  void revoke_unknown(const Authenticator& authenticator) const {
+    for (const auto& stream : all())
+      if (!authenticator.still_knows(stream->caller())) stream->revoke();
   }
 
   std::size_t size() const {

@@ -32,6 +32,11 @@ class TlsContext {
   static tl::expected<TlsContext, std::string> open(const TlsOptions& options, TlsProtocol protocol,
                                                     Logger log);
 
+  // Reads the files for the next connection, whether they seem to have changed or not.
+  void reload() {
+    seen_.clear();
+    next_look_ = {};
+  }
   // For the next connection. Looks for changes of the files at most once per second.
   std::shared_ptr<boost::asio::ssl::context> current();
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <openssl/crypto.h>
 #include <openssl/sha.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -19,9 +20,12 @@ constexpr std::size_t kLongestName = 128;
 // Of 64 characters, 16 have 96 bits.
 constexpr std::size_t kShortestToken = 16;
 
+// Of the file's mode: others may read it or write it, or the group may write it.
+constexpr unsigned kExposed = 0026;
+
 using Digest = std::array<unsigned char, SHA256_DIGEST_LENGTH>;
 
-Digest digest_of(std::string_view text) {
+Digest sha256_of(std::string_view text) {
   Digest digest;
   SHA256(reinterpret_cast<const unsigned char*>(text.data()), text.size(), digest.data());
   return digest;
@@ -73,17 +77,27 @@ tl::expected<TokenTable, std::string> TokenTable::parse(std::string_view text) {
       return bad(fmt::format("the token has {} characters; the least is {}", token.size(),
                              kShortestToken));
     if (table.name_of(token)) return bad("the token is used twice");
-    table.entries_.push_back({std::string(name), digest_of(token)});
+    table.entries_.push_back({std::string(name), sha256_of(token)});
   }
   if (table.entries_.empty()) return tl::unexpected(std::string("it holds no token"));
   return table;
 }
 
 std::optional<std::string> TokenTable::name_of(std::string_view token) const {
-  const Digest digest = digest_of(token);
+  return name_of_digest(digest_of(token));
+}
+
+std::string TokenTable::digest_of(std::string_view token) {
+  const Digest digest = sha256_of(token);
+  return {digest.begin(), digest.end()};
+}
+
+std::optional<std::string> TokenTable::name_of_digest(std::string_view digest) const {
   const Entry* found = nullptr;
   for (const Entry& entry : entries_)
-    if (CRYPTO_memcmp(entry.digest.data(), digest.data(), digest.size()) == 0) found = &entry;
+    if (digest.size() == entry.digest.size() &&
+        CRYPTO_memcmp(entry.digest.data(), digest.data(), digest.size()) == 0)
+      found = &entry;
   if (found == nullptr) return std::nullopt;
   return found->name;
 }
@@ -95,6 +109,7 @@ tl::expected<std::unique_ptr<TokenFile>, std::string> TokenFile::open(
   if (!table)
     return tl::unexpected(fmt::format("the tokens in {}: {}", path.string(), table.error()));
   file->table_ = std::make_shared<const TokenTable>(std::move(**table));
+  file->warn_if_exposed();
   file->watcher_ = std::thread([self = file.get()] { self->look_until_stopped(); });
   return file;
 }
@@ -108,7 +123,7 @@ TokenFile::~TokenFile() {
     std::lock_guard lock(mutex_);
     stopping_ = true;
   }
-  stopped_.notify_all();
+  changed_.notify_all();
   if (watcher_.joinable()) watcher_.join();
 }
 
@@ -117,11 +132,24 @@ std::shared_ptr<const TokenTable> TokenFile::table() const {
   return table_;
 }
 
+void TokenFile::reload() {
+  {
+    std::lock_guard lock(mutex_);
+    look_now_ = true;
+  }
+  changed_.notify_all();
+}
+
+void TokenFile::on_change(std::function<void()> listener) {
+  std::lock_guard lock(calling_);
+  listener_ = std::move(listener);
+}
+
 // Reads the whole file every time: it is small, and its time stamp may stay the same when it
 // changes.
 tl::expected<std::optional<TokenTable>, std::string> TokenFile::read() {
   const auto text = contents_of(path_);
-  const Digest digest = digest_of(text ? *text : text.error());
+  const Digest digest = sha256_of(text ? *text : text.error());
   std::string seen(digest.begin(), digest.end());
   if (seen == last_seen_) return std::nullopt;
   last_seen_ = std::move(seen);
@@ -131,22 +159,44 @@ tl::expected<std::optional<TokenTable>, std::string> TokenFile::read() {
   return std::move(*table);
 }
 
+void TokenFile::warn_if_exposed() {
+  struct stat file {};
+  if (::stat(path_.c_str(), &file) != 0) return;
+  const unsigned mode = file.st_mode & 0777;
+  if ((mode & kExposed) != 0 && mode != seen_mode_)
+    log_->warn("event=tokens_exposed path={} mode={:04o} message={}", log_value(path_.string()),
+               mode, log_value("other users of this machine may read or write the tokens"));
+  seen_mode_ = mode;
+}
+
+void TokenFile::look() {
+  warn_if_exposed();
+  auto table = read();
+  if (!table) {
+    log_->warn("event=tokens_kept path={} message={}", log_value(path_.string()),
+               log_value(table.error()));
+    return;
+  }
+  if (!*table) return;
+  log_->info("event=tokens_read path={} tokens={}", log_value(path_.string()), (*table)->size());
+  auto fresh = std::make_shared<const TokenTable>(std::move(**table));
+  {
+    std::lock_guard lock(mutex_);
+    table_ = std::move(fresh);
+  }
+  std::lock_guard lock(calling_);
+  if (listener_) listener_();
+}
+
 void TokenFile::look_until_stopped() {
   std::unique_lock lock(mutex_);
-  while (!stopped_.wait_for(lock, between_looks_, [this] { return stopping_; })) {
+  while (true) {
+    changed_.wait_for(lock, between_looks_, [this] { return stopping_ || look_now_; });
+    if (stopping_) return;
+    look_now_ = false;
     lock.unlock();
-    auto table = read();
-    if (!table) {
-      log_->warn("event=tokens_kept path={} message={}", log_value(path_.string()),
-                 log_value(table.error()));
-    } else if (*table) {
-      log_->info("event=tokens_read path={} tokens={}", log_value(path_.string()),
-                 (*table)->size());
-    }
-    std::shared_ptr<const TokenTable> fresh;
-    if (table && *table) fresh = std::make_shared<const TokenTable>(std::move(**table));
+    look();
     lock.lock();
-    if (fresh) table_ = std::move(fresh);
   }
 }
 

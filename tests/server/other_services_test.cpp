@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "tests/client/support/temp_folder.h"
 #include "tests/server/harness.h"
+#include "tests/server/logged_server.h"
 #include "tests/server/raw_call.h"
 
 namespace weft::server::testing {
@@ -55,6 +57,27 @@ TEST(Health, SaysNotServingWhileTheServerDrains) {
   release.set();
   EXPECT_TRUE(read_all(*reader).status.ok());
   drainer.join();
+}
+
+TEST(Health, LetsNobodyTakeThePlacesOfAllWhoWatch) {
+  constexpr const char* kWatch = "/grpc.health.v1.Health/Watch";
+  const client::TempFolder folder;
+  LoggedServer server(
+      {.listen = {"127.0.0.1:0", "unix:" + (folder / "s").string()}, .service = {}});
+  const auto from = [&](std::size_t address) {
+    return channel_to(server->addresses()[address], grpc::InsecureChannelCredentials());
+  };
+  const auto channel = from(0);
+  std::vector<std::unique_ptr<RawStream>> open;
+  for (int i = 0; i < 64; ++i) {
+    open.push_back(std::make_unique<RawStream>(channel, kWatch, ""));
+    ASSERT_TRUE(open.back()->read()) << i;
+  }
+  const grpc::Status refused = RawStream(from(0), kWatch, "").end();
+  EXPECT_EQ(refused.error_code(), grpc::RESOURCE_EXHAUSTED) << "another connection of that host";
+  EXPECT_TRUE(RawStream(from(1), kWatch, "").read()) << "another host";
+  open.pop_back();
+  EXPECT_TRUE(eventually([&] { return RawStream(channel, kWatch, "").read(); }));
 }
 
 // A stream of reflection, of either version.

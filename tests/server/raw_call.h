@@ -39,19 +39,39 @@ inline std::pair<grpc::Status, std::string> raw_unary(const std::shared_ptr<grpc
   return {std::move(status), to_string(response)};
 }
 
-// A call that may answer with any number of messages, read to its end; its deadline is a minute.
+// A call that may answer with any number of messages; its deadline is a minute.
+class RawStream {
+ public:
+  RawStream(std::shared_ptr<grpc::Channel> channel, const char* method, const std::string& request,
+            const std::string& authorization = "")
+      : channel_(std::move(channel)),
+        rpc_(method, grpc::internal::RpcMethod::SERVER_STREAMING, channel_) {
+    context_.set_deadline(std::chrono::system_clock::now() + std::chrono::minutes(1));
+    if (!authorization.empty()) context_.AddMetadata("authorization", authorization);
+    reader_.reset(grpc::internal::ClientReaderFactory<grpc::ByteBuffer>::Create(
+        channel_.get(), rpc_, &context_, to_buffer(request)));
+  }
+
+  bool read() {
+    grpc::ByteBuffer message;
+    return reader_->Read(&message);
+  }
+  grpc::Status end() {
+    while (read()) continue;
+    return reader_->Finish();
+  }
+
+ private:
+  const std::shared_ptr<grpc::Channel> channel_;
+  const grpc::internal::RpcMethod rpc_;
+  grpc::ClientContext context_;
+  std::unique_ptr<grpc::ClientReader<grpc::ByteBuffer>> reader_;
+};
+
+// One that is read to its end.
 inline grpc::Status raw_stream(const std::shared_ptr<grpc::Channel>& channel, const char* method,
                                const std::string& request) {
-  grpc::ClientContext context;
-  context.set_deadline(std::chrono::system_clock::now() + std::chrono::minutes(1));
-  const grpc::internal::RpcMethod rpc(method, grpc::internal::RpcMethod::SERVER_STREAMING, channel);
-  const std::unique_ptr<grpc::ClientReader<grpc::ByteBuffer>> reader(
-      grpc::internal::ClientReaderFactory<grpc::ByteBuffer>::Create(channel.get(), rpc, &context,
-                                                                    to_buffer(request)));
-  grpc::ByteBuffer response;
-  while (reader->Read(&response)) {
-  }
-  return reader->Finish();
+  return RawStream(channel, method, request).end();
 }
 
 // GenerateMesh, read to its end.

@@ -4,6 +4,8 @@
 
 #include <google/protobuf/descriptor.h>
 
+#include <filesystem>
+
 #include "server/store/sqlite/sqlite_store.h"
 #include "tests/client/support/temp_folder.h"
 #include "tests/server/logged_server.h"
@@ -234,6 +236,49 @@ TEST(TraceId, IsEmptyWhereTheHeaderIsMalformed) {
            "00-4BF92F3577B34DA6A3CE929D0E0E4736-00f067aa0ba902b7-01",
            "00-" + trace + "-00f067aa0ba902b7"})
     EXPECT_EQ(trace_id(header), "") << header;
+}
+
+TEST(RevokedTokens, EndTheStreamsOfTheirCallers) {
+  const client::TempFolder folder;
+  const auto tokens = folder.write("tokens", "ann secret-of-ann-16\nbob secret-of-bob-16\n");
+  LoggedServer server(
+      {.listen = {"127.0.0.1:0"}, .service = {}, .tokens = tokens.string()},
+      std::move(*SqliteStore::open({.folder = folder / "data"})),
+      [](const auto&, ChunkSink&, weft::Run& run) { return work_until_stopped(run); });
+  const auto channel = channel_to(server.address(), grpc::InsecureChannelCredentials());
+  const std::string mesh = valid_request().SerializeAsString();
+  constexpr const char* kHealth = "/grpc.health.v1.Health/Watch";
+  constexpr const char* kMesh = "/weft.v1.MeshService/GenerateMesh";
+  const std::string of_ann = "Bearer secret-of-ann-16";
+  const std::string of_bob = "Bearer secret-of-bob-16";
+  v1::SubmitJobRequest submission;
+  *submission.mutable_mesh() = valid_request();
+  const auto [status, bytes] =
+      raw_unary(channel, "/weft.v1.JobService/SubmitJob", submission.SerializeAsString(), of_bob);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  v1::SubmitJobResponse submitted;
+  submitted.ParseFromString(bytes);
+  v1::WatchJobRequest watch;
+  watch.set_id(submitted.job().id());
+
+  RawStream health(channel, kHealth, "", of_bob);
+  RawStream job(channel, "/weft.v1.JobService/WatchJob", watch.SerializeAsString(), of_bob);
+  RawStream call(channel, kMesh, mesh, of_bob);
+  RawStream of_another(channel, kHealth, "", of_ann);
+  RawStream of_nobody(channel, kHealth, "");
+  for (RawStream* const each : {&health, &job, &call, &of_another, &of_nobody})
+    ASSERT_TRUE(each->read());
+  std::filesystem::rename(folder.write("new", "ann secret-of-ann-16\n"), tokens);
+  server->reload();
+  for (RawStream* const each : {&health, &job, &call}) {
+    const grpc::Status ended = each->end();
+    EXPECT_EQ(ended.error_code(), StatusCode::UNAUTHENTICATED) << ended.error_message();
+  }
+  EXPECT_EQ(raw_unary(channel, "/weft.v1.MeshService/GetServerInfo", "", of_ann).first.error_code(),
+            StatusCode::OK);
+  server->drain(std::chrono::seconds(0));
+  EXPECT_NE(of_another.end().error_code(), StatusCode::UNAUTHENTICATED);
+  EXPECT_NE(of_nobody.end().error_code(), StatusCode::UNAUTHENTICATED);
 }
 
 }  // namespace

@@ -64,6 +64,8 @@ TEST(TokenTable, RefusesToBeEmpty) {
   EXPECT_NE(error_of("# nobody\n"), "");
 }
 
+using testing::Log;
+
 class TokenFiles : public ::testing::Test {
  protected:
   void write(std::string_view text) { std::filesystem::rename(folder_.write("new", text), path_); }
@@ -112,6 +114,45 @@ TEST_F(TokenFiles, AreNamedWhereTheyCannotBeOpened) {
   std::filesystem::remove(path_);
   write(std::string(std::size_t{2} << 20, '#'));
   EXPECT_NE(open_error().find("more than 1048576 bytes"), std::string::npos) << open_error();
+}
+
+TEST_F(TokenFiles, AreReadAtOnceWhenThatIsAskedFor) {
+  write("ann the-token-nr-one\n");
+  const auto file = TokenFile::open(path_, log_.logger(), std::chrono::hours(1)).value();
+  std::atomic<int> changes{0};
+  file->on_change([&] { ++changes; });
+  file->reload();
+  write("ann the-token-nr-two\n");
+  file->reload();
+  EXPECT_TRUE(eventually([&] { return file->table()->name_of("the-token-nr-two") == "ann"; }));
+  EXPECT_TRUE(eventually([&] { return changes == 1; }));
+  file->on_change({});
+  write("ann the-token-nr-one\n");
+  file->reload();
+  EXPECT_TRUE(eventually([&] { return file->table()->name_of("the-token-nr-one") == "ann"; }));
+  EXPECT_EQ(changes, 1);
+}
+
+TEST_F(TokenFiles, ThatOthersMayReadOrWriteAreWarnedOfOnce) {
+  write("ann the-token-nr-one\n");
+  const auto mode = [&](unsigned bits) {
+    std::filesystem::permissions(path_, static_cast<std::filesystem::perms>(bits));
+  };
+  mode(0640);
+  const auto file = open();
+  EXPECT_FALSE(log_.contains("event=tokens_exposed"));
+  mode(0666);
+  EXPECT_TRUE(eventually([&] { return log_.contains("event=tokens_exposed"); }));
+  EXPECT_TRUE(log_.contains("mode=0666"));
+  write("ann the-token-nr-two\n");
+  mode(0666);
+  EXPECT_TRUE(eventually([&] { return file->table()->name_of("the-token-nr-two") == "ann"; }));
+  for (const unsigned bits : {0644U, 0620U, 0604U}) {
+    Log log;
+    mode(bits);
+    const auto other = TokenFile::open(path_, log.logger());
+    EXPECT_TRUE(log.contains("event=tokens_exposed")) << std::oct << bits;
+  }
 }
 
 }  // namespace
