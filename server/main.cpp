@@ -75,6 +75,16 @@ const char* name_of(const StopEvents::Event& event) {
   return event.signal == SIGINT ? "SIGINT" : "SIGTERM";
 }
 
+// Waits for what ends the process.
+StopEvents::Event wait_for_end(Server& server, StopEvents& events, const Logger& log) {
+  while (true) {
+    const StopEvents::Event event = events.wait();
+    if (event.kind != StopEvents::Kind::kSignal || event.signal != SIGHUP) return event;
+    server.reload();
+    log->info("event=reloaded cause=SIGHUP");
+  }
+}
+
 // Drains on a thread of its own, so that a second signal is noticed in the meantime.
 void drain(Server& server, StopEvents& events, const Options& options, const Logger& log) {
   std::thread drainer([&] {
@@ -84,7 +94,7 @@ void drain(Server& server, StopEvents& events, const Options& options, const Log
   while (true) {
     const StopEvents::Event event = events.wait();
     if (event.kind == StopEvents::Kind::kNotified) break;
-    if (event.kind != StopEvents::Kind::kSignal) continue;
+    if (event.kind != StopEvents::Kind::kSignal || event.signal == SIGHUP) continue;
     log->warn("event=exit_now cause={}", name_of(event));
     server.remove_socket_files();
     std::_Exit(128 + event.signal);
@@ -140,7 +150,8 @@ int serve(Options options) {
     log->error("event=cannot_write_port_file path={}", log_value(options.port_file));
     return kExitFailed;
   }
-  log->info("event=draining cause={} seconds={}", name_of(events.wait()), options.drain.count());
+  log->info("event=draining cause={} seconds={}", name_of(wait_for_end(server, events, log)),
+            options.drain.count());
   drain(server, events, options, log);
   log->info("event=stopped");
   return 0;

@@ -24,6 +24,7 @@ int open_signals() {
   sigemptyset(&set);
   sigaddset(&set, SIGTERM);
   sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGHUP);
   checked(-pthread_sigmask(SIG_BLOCK, &set, nullptr), "pthread_sigmask");
   return checked(::signalfd(-1, &set, SFD_CLOEXEC), "signalfd");
 }

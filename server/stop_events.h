@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What may end the process, as events that one thread waits for: SIGTERM, SIGINT, the end of
-// standard input, and a note from another thread. Signals arrive by a file descriptor: nothing runs
-// in a signal handler.
+// What may end the process, and what asks it to reload, as events that one thread waits for:
+// SIGTERM, SIGINT, SIGHUP, the end of standard input, and a note from another thread. Signals
+// arrive by a file descriptor: nothing runs in a signal handler.
 //
 // Construct before any other thread starts: they inherit the blocked signals.
 #pragma once

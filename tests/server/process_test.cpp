@@ -196,6 +196,28 @@ TEST_F(TemporaryFolder, ASecondSignalEndsItAtOnceAndLeavesNoSocketFile) {
   EXPECT_FALSE(fs::exists(folder_ / "s"));
 }
 
+TEST_F(TemporaryFolder, ReadsTokensAgainOnSighupAndGoesOn) {
+  const std::string tokens = folder_.write("tokens", "ann secret-of-ann-16\n").string();
+  Weftd weftd({"--listen", "127.0.0.1:0", "--tokens", tokens, "--drain", "1000"});
+  const std::string address = weftd.address();
+  weftd.signal(SIGHUP);
+  EXPECT_NE(weftd.read_until("event=reloaded cause=SIGHUP"), "");
+  folder_.write("tokens", "ann secret-of-ann-16\nbob secret-of-bob-16\n");
+  weftd.signal(SIGHUP);
+  EXPECT_NE(weftd.read_until("event=tokens_read"), "");
+  auto stub = connect(address);
+  grpc::ClientContext context;
+  context.AddMetadata("authorization", "Bearer secret-of-bob-16");
+  auto reader = stub->GenerateMesh(&context, endless_request());
+  v1::GenerateMeshResponse accepted;
+  ASSERT_TRUE(reader->Read(&accepted));
+  weftd.signal(SIGTERM);
+  EXPECT_NE(weftd.read_until("event=draining"), "");
+  weftd.signal(SIGHUP);  // does not cut the draining short
+  context.TryCancel();
+  EXPECT_EQ(weftd.wait(), 0);
+}
+
 TEST(Process, EndsWithStandardInputWhereAsked) {
   Weftd weftd({"--listen", "127.0.0.1:0", "--exit-with-stdin"});
   weftd.address();
