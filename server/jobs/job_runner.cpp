@@ -125,7 +125,13 @@ void JobRunner::renew() {
 
 void JobRunner::reap() {
   const auto reaped = environment_.store.reap(environment_.retry);
-  if (!reaped || reaped->requeued + reaped->failed == 0) return;
+  if (!reaped) return;
+  if (reaped->clock_was_set_back && !clock_was_set_back_)
+    environment_.log->warn("event=clock_set_back message={}",
+                           log_value("jobs were submitted later than the clock of the store shows; "
+                                     "they keep their order"));
+  clock_was_set_back_ = reaped->clock_was_set_back;
+  if (reaped->requeued + reaped->failed == 0) return;
   environment_.metrics.leases_lost(reaped->requeued + reaped->failed);
   for (std::uint64_t i = 0; i < reaped->failed; ++i) environment_.metrics.job_became("failed");
   environment_.log->warn("event=leases_lost requeued={} failed={}", reaped->requeued,

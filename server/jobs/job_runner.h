@@ -78,6 +78,7 @@ class JobRunner final : private RunQueue::Source {
   std::set<std::shared_ptr<Attempt>> runs_ ABSL_GUARDED_BY(mutex_);
   bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
   std::condition_variable stopped_;
+  bool clock_was_set_back_ = false;  // at the last look; used only by the renewer
   std::thread renewer_;
   std::thread collector_;
 };

@@ -22,10 +22,11 @@ JobSystem::JobSystem(std::unique_ptr<JobStore> store, JobOptions options, Admiss
                      MemoryBudget& memory, RunQueue& queue, const Logger& log)
     : store_(std::move(store)) {
   options.retry.error = lost_workers(options.retry);
+  options.retry.longest_lease = options.runner.lease;
   const RunEnvironment environment{engine,        pool,    *store_, options.service.limits,
                                    options.retry, metrics, log};
-  store_->on_change([this] { notify(); });
   options.service.works = options.works;
+  store_->on_change([this] { notify(); });
   if (options.serves) service_.emplace(options.service, admission, metrics, memory, *store_, log);
   if (options.works) runner_.emplace(environment, queue, options.runner);
   MutexLock lock(mutex_);

@@ -24,6 +24,8 @@
 //   4. No transaction is open between two calls.
 //
 // Errors: see StoreError. Every function may block on the disk or the network, so none may be
+//   5. Tasks are claimed in the order in which they were made, whatever the clock says. If it was
+//      set back, `reap` shortens leases and pauses that could not have been given now.
 // called on a thread of gRPC. Thread-safety: every function may be called from any thread.
 //
 //   auto store = SqliteStore::open({.folder = "/var/lib/weft"});
@@ -157,17 +159,21 @@ struct RetryPolicy {
   std::string error{};                          // of jobs whose task has used up its attempts
 };
 
+  // No server of the store gives a longer lease.
+  std::chrono::milliseconds longest_lease = std::chrono::hours(24 * 365);
 // The time from the end of this attempt to the next.
 constexpr std::chrono::milliseconds delay_after(const RetryPolicy& policy, std::uint32_t attempt) {
-  constexpr std::chrono::milliseconds kMinute{60'000};
+inline constexpr std::chrono::milliseconds kLongestDelay{60'000};
+
   constexpr std::uint32_t kMostDoublings = 16;
   const std::uint32_t doublings = std::min(std::max(attempt, 1u) - 1, kMostDoublings);
-  return std::min(policy.first_delay * (std::int64_t{1} << doublings), kMinute);
+  return std::min(policy.first_delay * (std::int64_t{1} << doublings), kLongestDelay);
 }
 
 struct Reaped {
   std::uint64_t requeued = 0;
-  std::uint64_t failed = 0;  // tasks without attempts left
+  std::uint64_t failed = 0;         // tasks without attempts left
+  bool clock_was_set_back = false;  // a task was made later than now
 };
 
 struct KeepPolicy {
@@ -238,8 +244,8 @@ class JobStore {
   virtual StoreResult<Held> finish(const ClaimRef& claim, const StoredMesh& mesh) = 0;
   // Settles all jobs of the task as failed.
   virtual StoreResult<Held> fail(const ClaimRef& claim, const std::string& error) = 0;
-  // Puts the task back into the queue, due after `delay`. If `counts` is false, the attempt does
-  // not count: the server stops, and the task is not at fault.
+  // Puts the task back into the queue, due after `delay`, at most kLongestDelay. If `counts` is
+  // false, the attempt does not count: the server stops, and the task is not at fault.
   virtual StoreResult<Held> release(const ClaimRef& claim, std::chrono::milliseconds delay,
                                     bool counts) = 0;
 

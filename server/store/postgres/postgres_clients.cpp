@@ -145,7 +145,7 @@ Submitted PostgresJobs::submit_in(Transaction& transaction, const Submission& su
                            Blob{submission.key});
       Rows made = transaction.run(
           "INSERT INTO weft_task (key, shared, owner, job, weight, request, trace, max_bytes, "
-          "max_micros) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9) RETURNING id",
+          "max_micros, due) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, '-infinity') RETURNING id",
           Blob{submission.key}, !submission.no_cache, submission.owner, id,
           to_sql(submission.estimate), Blob{submission.request}, submission.trace,
           to_sql(submission.budget.bytes), to_micros(submission.budget.time));

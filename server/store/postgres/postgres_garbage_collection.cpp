@@ -28,6 +28,29 @@ std::vector<LostTask> find_lost(Transaction& transaction, std::int64_t max_attem
   return lost;
 }
 
+// Times further ahead than any that is given now are those of a clock that was set back.
+void shorten_times(Transaction& transaction, std::chrono::microseconds lease) {
+  transaction.change(
+      "UPDATE weft_task SET lease_end = now() + $1 * interval '1 microsecond' WHERE id IN "
+      "(SELECT id FROM weft_task WHERE state = 1 AND lease_end > now() + $1 * interval "
+      "'1 microsecond' FOR UPDATE SKIP LOCKED)",
+      to_micros(lease));
+  transaction.change(
+      "UPDATE weft_task SET due = '-infinity' WHERE id IN (SELECT id FROM weft_task WHERE state = "
+      "0 "
+      "AND due > now() + $1 * interval '1 microsecond' FOR UPDATE SKIP LOCKED)",
+      to_micros(kLongestDelay));
+}
+
+// Whether the oldest or the youngest task was made a second later than now, or more.
+bool has_future_tasks(Transaction& transaction) {
+  return transaction
+      .run(
+          "SELECT 1 FROM weft_task WHERE id IN ((SELECT min(id) FROM weft_task), "
+          "(SELECT max(id) FROM weft_task)) AND created > clock_timestamp() + interval '1 second'")
+      .next();
+}
+
 // Whether this transaction may collect. Only one can until it ends.
 bool collects(Transaction& transaction) {
   Rows rows = transaction.run("SELECT pg_try_advisory_xact_lock($1)", kCollectLock);
@@ -191,6 +214,8 @@ void forget_what_is_over(Transaction& transaction) {
 StoreResult<Reaped> PostgresJobs::reap(const RetryPolicy& policy) {
   return core_->run(Begin::kDurable, Repeat::kWhenUnclear, [&](Transaction& transaction) {
     Reaped reaped;
+    shorten_times(transaction, policy.longest_lease);
+    reaped.clock_was_set_back = has_future_tasks(transaction);
     for (const LostTask& lost : find_lost(transaction, policy.max_attempts)) {
       if (lost.tries >= policy.max_attempts) {
         settle_jobs(transaction, lost.task, "", JobState::kFailed, policy.error);

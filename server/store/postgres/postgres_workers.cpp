@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The PostgreSQL store for workers: tasks are claimed, and settled or given back.
+#include <algorithm>
+
 #include "server/store/postgres/postgres_jobs.h"
 #include "server/store/sql_values.h"
 
@@ -192,7 +194,7 @@ StoreResult<Held> PostgresJobs::release(const ClaimRef& claim, std::chrono::mill
         "lease_end = NULL, progress = '', tries = tries - $4, "
         "started = CASE WHEN tries > $4 THEN started END "
         "WHERE id = $1 AND attempt = $2 AND state = 1",
-        claim.task, claim.attempt, to_micros(delay), counts ? 0 : 1);
+        claim.task, claim.attempt, to_micros(std::min(delay, kLongestDelay)), counts ? 0 : 1);
     if (released == 0) return Held::kLost;
     core_->announce(transaction);
     return Held::kHeld;

@@ -102,7 +102,7 @@ Submitted SqliteJobs::submit_in(Transaction& transaction, const Submission& subm
       transaction.change("UPDATE task SET shared = 0 WHERE key = ?1 AND shared", key);
     Rows rows = transaction.run(
         "INSERT INTO task (key, shared, owner, job, weight, created, due, trace, max_bytes, "
-        "max_micros) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?6, ?7, ?8, ?9) RETURNING id",
+        "max_micros) VALUES (?1, ?2, ?3, ?4, ?5, ?6, 0, ?7, ?8, ?9) RETURNING id",
         key, !submission.no_cache, submission.owner, fresh.id, to_sql(submission.estimate), now,
         submission.trace, max_bytes, max_micros);
     if (rows.next()) task = rows.integer(0);

@@ -28,6 +28,24 @@ std::vector<LostTask> find_lost(Transaction& transaction, std::int64_t now,
   return lost;
 }
 
+// Times further ahead than any that is given now are those of a clock that was set back.
+void shorten_times(Transaction& transaction, std::int64_t now, std::chrono::microseconds lease) {
+  transaction.change("UPDATE task SET lease_end = ?1 WHERE state = 1 AND lease_end > ?1",
+                     now + to_micros(lease));
+  transaction.change("UPDATE task SET due = 0 WHERE state = 0 AND due > ?1",
+                     now + to_micros(kLongestDelay));
+}
+
+// Whether the oldest or the youngest task was made a second later than now, or more.
+bool has_future_tasks(Transaction& transaction, std::int64_t now) {
+  return transaction
+      .run(
+          "SELECT 1 FROM task WHERE id IN ((SELECT min(id) FROM task), (SELECT max(id) FROM task)) "
+          "AND created > ?1 + 1000000",
+          now)
+      .next();
+}
+
 std::uint64_t delete_jobs(Transaction& transaction, std::int64_t ended) {
   return to_unsigned(transaction.change(
       "DELETE FROM job WHERE id IN (SELECT id FROM job WHERE ended <= ?1 LIMIT ?2)", ended,
@@ -155,6 +173,8 @@ StoreResult<Reaped> SqliteJobs::reap(const RetryPolicy& policy) {
   return core_->write(Durability::kWait, [&](Transaction& transaction) {
     Reaped reaped;
     const WallTime now = core_->now();
+    shorten_times(transaction, to_micros(now), policy.longest_lease);
+    reaped.clock_was_set_back = has_future_tasks(transaction, to_micros(now));
     for (const LostTask& lost : find_lost(transaction, to_micros(now), policy.max_attempts)) {
       if (lost.tries >= policy.max_attempts) {
         settle_jobs(transaction, lost.task, "", JobState::kFailed, policy.error, now);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The SQLite store for workers: tasks are claimed, and settled or given back.
+#include <algorithm>
+
 #include "server/store/sql_values.h"
 #include "server/store/sqlite/sqlite_jobs.h"
 
@@ -180,7 +182,8 @@ StoreResult<Held> SqliteJobs::release(const ClaimRef& claim, std::chrono::millis
         "UPDATE task SET state = 0, due = ?3, lease_end = NULL, progress = x'', "
         "tries = tries - ?4, started = CASE WHEN tries > ?4 THEN started END "
         "WHERE id = ?1 AND attempt = ?2 AND state = 1",
-        claim.task, claim.attempt, to_micros(core_->now()) + to_micros(delay), counts ? 0 : 1);
+        claim.task, claim.attempt,
+        to_micros(core_->now()) + to_micros(std::min(delay, kLongestDelay)), counts ? 0 : 1);
     return released == 1 ? Held::kHeld : Held::kLost;
   });
 }

@@ -51,6 +51,40 @@ TEST_P(StoreTest, TheOldestTaskOfAnOwnerComesFirst) {
   for (const char* key : {"1", "2", "3"}) EXPECT_EQ(claim().key, key_of(key));
 }
 
+TEST_P(StoreTest, TasksKeepTheirOrderThoughTheClockIsSetBack) {
+  submit("ann", "older");
+  EXPECT_FALSE(store_->reap({})->clock_was_set_back);
+  backend_->pass(-hours(1));
+  submit("ann", "younger");
+  EXPECT_TRUE(store_->reap({})->clock_was_set_back);
+  EXPECT_EQ(claim().key, key_of("older")) << "it waits until the clock has caught up";
+  EXPECT_EQ(claim().key, key_of("younger"));
+}
+
+TEST_P(StoreTest, WhatIsGivenBackIsDueThoughTheClockIsSetBack) {
+  submit("ann", "k");
+  ASSERT_EQ(store_->release(claim().ref, hours(5), true), Held::kHeld);
+  EXPECT_FALSE(try_claim());
+  backend_->pass(kLongestDelay);
+  ASSERT_EQ(store_->release(claim().ref, kLongestDelay, true), Held::kHeld);
+  reap();
+  EXPECT_FALSE(try_claim()) << "it was made due though it need not be";
+  backend_->pass(-hours(1));
+  reap();
+  EXPECT_TRUE(try_claim());
+}
+
+TEST_P(StoreTest, ALeaseEndsInTimeThoughTheClockIsSetBack) {
+  submit("ann", "k");
+  const Claim claimed = claim(seconds(30));
+  const RetryPolicy policy{.first_delay = milliseconds(0), .longest_lease = seconds(30)};
+  backend_->pass(-hours(1));
+  EXPECT_EQ(store_->reap(policy)->requeued, 0U) << "its holder may be at work";
+  EXPECT_EQ(store_->renew(claimed.ref, seconds(30), ""), Held::kHeld);
+  backend_->pass(seconds(31));
+  EXPECT_EQ(store_->reap(policy)->requeued, 1U);
+}
+
 TEST_P(StoreTest, TheOwnerWithTheFewestClaimsComesFirst) {
   for (int i = 0; i < 6; ++i) submit("ann", "a" + std::to_string(i));
   for (int i = 0; i < 3; ++i) submit("bob", "b" + std::to_string(i));
