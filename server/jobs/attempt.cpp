@@ -108,6 +108,10 @@ bool Attempt::accept(Chunk&& chunk) {
     store_error_ = put.error();
     return false;
   }
+  if (*put) {
+    environment_.metrics.chunk_damaged();
+    environment_.log->error("event=chunk_damaged {} bytes={} mended=yes", label_, bytes.size());
+  }
   bytes_ += bytes.size();
   mesh_.chunks.push_back(std::move(stored));
   ++chunks_stored_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "server/wire/job_wire.h"
+#include "server/wire/request_key.h"
 #include "server/wire/translate.h"
 
 namespace weft::server {
@@ -203,9 +204,21 @@ bool FetchStream::send_chunk(const std::string& sha256) {
   auto chunk = environment_.store.chunk(sha256);
   if (!chunk) return fail(failure_of(chunk.error())), false;
   if (!*chunk) return fail(mesh_gone(job_.id)), false;
+  if (server::sha256(**chunk) != sha256) return drop_damaged(sha256, **chunk), false;
   bytes_ += (*chunk)->size();
   environment_.metrics.chunk_sent((*chunk)->size());
   return send(to_buffer(std::move(**chunk)));
+}
+
+// The mesh is dropped, so that whoever submits the job again gets it made anew.
+void FetchStream::drop_damaged(const std::string& sha256, const std::string& bytes) {
+  environment_.metrics.chunk_damaged();
+  const auto dropped = environment_.store.drop_damaged(sha256, bytes);
+  environment_.log->error("event=chunk_damaged job={} {} bytes={} mended=no meshes_dropped={}",
+                          log_value(job_.id), log_fields(job_.caller), bytes.size(),
+                          dropped ? fmt::to_string(*dropped) : "-");
+  if (!dropped) return fail(failure_of(dropped.error()));
+  fail(mesh_damaged(job_.id));
 }
 
 }  // namespace weft::server

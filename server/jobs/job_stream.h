@@ -122,6 +122,7 @@ class FetchStream final : public JobStream {
   void send_what_fits();
   // Returns false if that has ended the call.
   bool send_chunk(const std::string& sha256);
+  void drop_damaged(const std::string& sha256, const std::string& bytes);
 
   // Used only by the thread that has set busy_.
   StoredMesh mesh_;

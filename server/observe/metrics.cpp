@@ -75,9 +75,11 @@ Metrics::Metrics(std::string_view version, std::string_view engine_version)
                           "Requests answered with a mesh that was kept, or is being made")),
       cache_misses_(
           counter(registry_, "weft_cache_misses_total", "Requests whose mesh had to be made")),
-      leases_lost_(counter(
-          registry_, "weft_leases_lost_total",
-          "Attempts at a mesh whose lease ran out, because their worker was lost or hung")) {
+      leases_lost_(
+          counter(registry_, "weft_leases_lost_total",
+                  "Attempts at a mesh whose lease ran out, because their worker was lost or hung")),
+      damaged_chunks_(counter(registry_, "weft_damaged_chunks_total",
+                              "Stored chunks that were found to have other bytes than were put")) {
   // So that the first of each shows as an increase, too.
   for (const char* cause : kClosingCauses) connections_closed_.Add({{"cause", cause}});
   for (const char* state : {"queued", "running", "succeeded", "failed", "cancelled"})

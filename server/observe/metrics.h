@@ -68,6 +68,9 @@ class Metrics {
   // Counts leases that ran out. Each is found by only one server of a store.
   void leases_lost(std::uint64_t count) { leases_lost_.Increment(static_cast<double>(count)); }
 
+  // Counts stored chunks that were found damaged.
+  void chunk_damaged() { damaged_chunks_.Increment(); }
+
   // `stats` is called at every scrape, on the scraping thread, until the metrics are destroyed or
   // scraping ends.
   void add_queue(std::string name, std::function<QueueStats()> stats);
@@ -97,6 +100,7 @@ class Metrics {
   prometheus::Counter& cache_hits_;
   prometheus::Counter& cache_misses_;
   prometheus::Counter& leases_lost_;
+  prometheus::Counter& damaged_chunks_;
 
   mutable std::mutex mutex_;  // guards the two below
   std::vector<Queue> queues_;

@@ -9,6 +9,8 @@
 //   mesh   a finished mesh: a summary and chunks, each named by its SHA-256
 //
 // The store does not interpret requests, progress, errors, summaries and chunks: they are bytes.
+// Disks and memories lose bits: who reads a chunk compares it with its SHA-256, and calls
+// `drop_damaged` if it is another; the mesh is then made anew for the next who asks.
 // `key` names a mesh: 32 bytes, a digest of the request and the engine version, and of the owner if
 // clients share nothing. Jobs of the same key share a task, and find the mesh once it is made.
 //
@@ -22,10 +24,10 @@
 //   3. A mesh is complete: `finish` settles the mesh, the task and all jobs in one transaction, and
 //      only if every chunk is stored.
 //   4. No transaction is open between two calls.
-//
-// Errors: see StoreError. Every function may block on the disk or the network, so none may be
 //   5. Tasks are claimed in the order in which they were made, whatever the clock says. If it was
 //      set back, `reap` shortens leases and pauses that could not have been given now.
+//
+// Errors: see StoreError. Every function may block on the disk or the network, so none may be
 // called on a thread of gRPC. Thread-safety: every function may be called from any thread.
 //
 //   auto store = SqliteStore::open({.folder = "/var/lib/weft"});
@@ -157,14 +159,14 @@ struct RetryPolicy {
   std::uint32_t max_attempts = 3;
   std::chrono::milliseconds first_delay{1000};  // doubled with every attempt, at most a minute
   std::string error{};                          // of jobs whose task has used up its attempts
-};
-
   // No server of the store gives a longer lease.
   std::chrono::milliseconds longest_lease = std::chrono::hours(24 * 365);
-// The time from the end of this attempt to the next.
-constexpr std::chrono::milliseconds delay_after(const RetryPolicy& policy, std::uint32_t attempt) {
+};
+
 inline constexpr std::chrono::milliseconds kLongestDelay{60'000};
 
+// The time from the end of this attempt to the next.
+constexpr std::chrono::milliseconds delay_after(const RetryPolicy& policy, std::uint32_t attempt) {
   constexpr std::uint32_t kMostDoublings = 16;
   const std::uint32_t doublings = std::min(std::max(attempt, 1u) - 1, kMostDoublings);
   return std::min(policy.first_delay * (std::int64_t{1} << doublings), kLongestDelay);
@@ -226,7 +228,13 @@ class JobStore {
                                                        const std::string& id) = 0;
   // Returns nullopt if the mesh is not kept. Counts as asking for the mesh.
   virtual StoreResult<std::optional<StoredMesh>> mesh(const std::string& key) = 0;
+  // Its bytes may have been damaged.
   virtual StoreResult<std::optional<std::string>> chunk(const std::string& sha256) = 0;
+  // Deletes a chunk that is stored as these bytes, which are not those of its SHA-256, with the
+  // meshes that it is part of; returns the number of meshes. It stays if it has other bytes by
+  // now.
+  virtual StoreResult<std::uint64_t> drop_damaged(const std::string& sha256,
+                                                  std::string_view bytes) = 0;
 
   // --- for workers ---
   // Claims a task that is due and has at most this estimate; nullopt if there is none. The owner
@@ -238,8 +246,9 @@ class JobStore {
                                                   const std::vector<std::string>& except = {}) = 0;
   virtual StoreResult<Held> renew(const ClaimRef& claim, std::chrono::milliseconds lease,
                                   const std::string& progress) = 0;
-  // Does nothing if the chunk is stored already. `sha256` is that of `bytes`.
-  virtual StoreResult<void> put_chunk(const std::string& sha256, std::string_view bytes) = 0;
+  // Changes nothing if the chunk is stored already with these bytes; returns whether it was stored
+  // with others, which it then replaces. `sha256` is that of `bytes`.
+  virtual StoreResult<bool> put_chunk(const std::string& sha256, std::string_view bytes) = 0;
   // Settles all jobs of the task as succeeded. kUnavailable if a chunk is missing.
   virtual StoreResult<Held> finish(const ClaimRef& claim, const StoredMesh& mesh) = 0;
   // Settles all jobs of the task as failed.

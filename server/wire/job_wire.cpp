@@ -70,6 +70,13 @@ Failure mesh_gone(std::string_view id) {
   return {Reason::kMeshGone, "", fmt::format("the mesh of job {} is no longer kept", id)};
 }
 
+Failure mesh_damaged(std::string_view id) {
+  return {Reason::kMeshGone, "",
+          fmt::format("the mesh of job {} was damaged in the store, and is no longer kept: submit "
+                      "it again, and it is made anew",
+                      id)};
+}
+
 v1::Job to_wire(const JobRecord& record) {
   v1::Job job;
   job.set_id(text_of(record.id));

@@ -17,6 +17,7 @@ Failure failure_of(const StoreError& error);
 
 Failure no_such_job(std::string_view id);
 Failure mesh_gone(std::string_view id);
+Failure mesh_damaged(std::string_view id);  // and therefore gone
 
 // A client can read it whatever the record holds: bytes of texts that are no UTF-8 become '?', and
 // messages that do not parse are left empty.

@@ -57,8 +57,13 @@ class FaultyStore final : public JobStore {
                           const std::string& progress) override {
     return unless<Held>("renew", [&] { return store_->renew(claim, lease, progress); });
   }
-  StoreResult<void> put_chunk(const std::string& sha256, std::string_view bytes) override {
-    return unless<void>("put_chunk", [&] { return store_->put_chunk(sha256, bytes); });
+  StoreResult<std::uint64_t> drop_damaged(const std::string& sha256,
+                                          std::string_view bytes) override {
+    return unless<std::uint64_t>("drop_damaged",
+                                 [&] { return store_->drop_damaged(sha256, bytes); });
+  }
+  StoreResult<bool> put_chunk(const std::string& sha256, std::string_view bytes) override {
+    return unless<bool>("put_chunk", [&] { return store_->put_chunk(sha256, bytes); });
   }
   StoreResult<Held> finish(const ClaimRef& claim, const StoredMesh& mesh) override {
     return unless<Held>("finish", [&] { return store_->finish(claim, mesh); });

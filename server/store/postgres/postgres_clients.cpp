@@ -260,4 +260,24 @@ StoreResult<std::optional<std::string>> PostgresJobs::chunk(const std::string& s
   });
 }
 
+StoreResult<std::uint64_t> PostgresJobs::drop_damaged(const std::string& sha256,
+                                                      std::string_view bytes) {
+  return core_->run(Begin::kLater, Repeat::kWhenUnclear, [&](Transaction& transaction) {
+    std::uint64_t meshes = 0;
+    const bool damaged = transaction
+                             .run(
+                                 "SELECT 1 FROM weft_chunk WHERE sha256 = $1 AND bytes = $2 "
+                                 "FOR UPDATE",
+                                 Blob{sha256}, Blob{bytes})
+                             .next();
+    if (!damaged) return meshes;
+    meshes = to_unsigned(transaction.change(
+        "DELETE FROM weft_mesh WHERE id IN (SELECT mesh FROM weft_mesh_chunk WHERE chunk = $1)",
+        Blob{sha256}));
+    transaction.change("DELETE FROM weft_chunk WHERE sha256 = $1", Blob{sha256});
+    core_->announce(transaction);
+    return meshes;
+  });
+}
+
 }  // namespace weft::server

@@ -142,21 +142,25 @@ StoreResult<Held> PostgresJobs::renew(const ClaimRef& claim, std::chrono::millis
   });
 }
 
-StoreResult<void> PostgresJobs::put_chunk(const std::string& sha256, std::string_view bytes) {
-  const auto put = core_->run(Begin::kLater, Repeat::kWhenUnclear, [&](Transaction& transaction) {
-    // If the chunk is there already, as most are, it is not sent.
-    const bool there =
-        transaction.change("UPDATE weft_chunk SET touched = clock_timestamp() WHERE sha256 = $1",
-                           Blob{sha256}) == 1;
-    if (there) return true;
+StoreResult<bool> PostgresJobs::put_chunk(const std::string& sha256, std::string_view bytes) {
+  return core_->run(Begin::kLater, Repeat::kWhenUnclear, [&](Transaction& transaction) {
+    // If the chunk is there already, it is not sent.
+    std::optional<bool> sound;
+    {
+      Rows rows = transaction.run(
+          "UPDATE weft_chunk SET touched = clock_timestamp() WHERE sha256 = $1 "
+          "RETURNING sha256(bytes) = sha256",
+          Blob{sha256});
+      if (rows.next()) sound = rows.integer(0) != 0;
+    }
+    if (sound == true) return false;
     transaction.change(
         "INSERT INTO weft_chunk (sha256, size, bytes) VALUES ($1, $2, $3) "
-        "ON CONFLICT (sha256) DO UPDATE SET touched = clock_timestamp()",
+        "ON CONFLICT (sha256) DO UPDATE SET touched = clock_timestamp(), size = excluded.size, "
+        "bytes = excluded.bytes WHERE sha256(weft_chunk.bytes) <> weft_chunk.sha256",
         Blob{sha256}, to_sql(bytes.size()), Blob{bytes});
-    return true;
+    return sound == false;
   });
-  if (!put) return tl::unexpected(put.error());
-  return {};
 }
 
 StoreResult<Held> PostgresJobs::finish(const ClaimRef& claim, const StoredMesh& mesh) {

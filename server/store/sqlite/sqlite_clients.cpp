@@ -194,14 +194,31 @@ StoreResult<std::optional<StoredMesh>> SqliteJobs::mesh(const std::string& key) 
 StoreResult<std::optional<std::string>> SqliteJobs::chunk(const std::string& sha256) {
   return core_->read([&](Transaction& transaction) {
     std::optional<std::string> bytes;
-    Rows rows = transaction.run("SELECT id, size FROM chunk WHERE sha256 = ?1", Blob{sha256});
-    if (!rows.next()) return bytes;
-    bytes = transaction.blob("chunk_bytes", "bytes", rows.integer(0));
-    if (bytes->size() != to_unsigned(rows.integer(1))) {
-      transaction.fail(
-          {StoreErrorKind::kBroken, "a chunk has another length than when it was put"});
-    }
+    Rows rows = transaction.run("SELECT id FROM chunk WHERE sha256 = ?1", Blob{sha256});
+    if (rows.next()) bytes = transaction.blob("chunk_bytes", "bytes", rows.integer(0));
     return bytes;
+  });
+}
+
+StoreResult<std::uint64_t> SqliteJobs::drop_damaged(const std::string& sha256,
+                                                    std::string_view bytes) {
+  return core_->write(Durability::kLater, [&](Transaction& transaction) {
+    std::uint64_t meshes = 0;
+    std::optional<std::int64_t> chunk;
+    {
+      Rows rows = transaction.run("SELECT id FROM chunk WHERE sha256 = ?1", Blob{sha256});
+      if (rows.next()) chunk = rows.integer(0);
+    }
+    if (!chunk || transaction.blob("chunk_bytes", "bytes", *chunk) != bytes) return meshes;
+    {
+      Rows rows =
+          transaction.run("SELECT count(DISTINCT mesh) FROM mesh_chunk WHERE chunk = ?1", *chunk);
+      if (rows.next()) meshes = to_unsigned(rows.integer(0));
+    }
+    transaction.change(
+        "DELETE FROM mesh WHERE id IN (SELECT mesh FROM mesh_chunk WHERE chunk = ?1)", *chunk);
+    transaction.change("DELETE FROM chunk WHERE id = ?1", *chunk);
+    return meshes;
   });
 }
 

@@ -28,6 +28,8 @@ class SqliteJobs final : public JobStore {
                                                const std::string& id) override;
   StoreResult<std::optional<StoredMesh>> mesh(const std::string& key) override;
   StoreResult<std::optional<std::string>> chunk(const std::string& sha256) override;
+  StoreResult<std::uint64_t> drop_damaged(const std::string& sha256,
+                                          std::string_view bytes) override;
 
   StoreResult<std::optional<Claim>> claim(const std::string& worker,
                                           std::chrono::milliseconds lease,
@@ -35,7 +37,7 @@ class SqliteJobs final : public JobStore {
                                           const std::vector<std::string>& except) override;
   StoreResult<Held> renew(const ClaimRef& claim, std::chrono::milliseconds lease,
                           const std::string& progress) override;
-  StoreResult<void> put_chunk(const std::string& sha256, std::string_view bytes) override;
+  StoreResult<bool> put_chunk(const std::string& sha256, std::string_view bytes) override;
   StoreResult<Held> finish(const ClaimRef& claim, const StoredMesh& mesh) override;
   StoreResult<Held> fail(const ClaimRef& claim, const std::string& error) override;
   StoreResult<Held> release(const ClaimRef& claim, std::chrono::milliseconds delay,

@@ -73,6 +73,15 @@ bool insert_mesh(Transaction& transaction, std::int64_t task, const std::string&
   return true;
 }
 
+// The chunk's row, if there is one, which then counts as put now.
+std::optional<std::int64_t> touch_chunk(Transaction& transaction, const std::string& sha256,
+                                        std::int64_t now) {
+  Rows rows = transaction.run("UPDATE chunk SET touched = ?2 WHERE sha256 = ?1 RETURNING id",
+                              Blob{sha256}, now);
+  if (!rows.next()) return std::nullopt;
+  return rows.integer(0);
+}
+
 }  // namespace
 
 StoreResult<std::optional<Claim>> SqliteJobs::claim(const std::string& worker,
@@ -124,11 +133,13 @@ StoreResult<Held> SqliteJobs::renew(const ClaimRef& claim, std::chrono::millisec
   });
 }
 
-StoreResult<void> SqliteJobs::put_chunk(const std::string& sha256, std::string_view bytes) {
-  const auto put = core_->write_quietly(Durability::kLater, [&](Transaction& transaction) {
+StoreResult<bool> SqliteJobs::put_chunk(const std::string& sha256, std::string_view bytes) {
+  return core_->write_quietly(Durability::kLater, [&](Transaction& transaction) {
     const std::int64_t now = to_micros(core_->now());
-    if (transaction.change("UPDATE chunk SET touched = ?2 WHERE sha256 = ?1", Blob{sha256}, now) ==
-        1) {
+    if (const auto there = touch_chunk(transaction, sha256, now)) {
+      if (transaction.blob("chunk_bytes", "bytes", *there) == bytes) return false;
+      transaction.change("UPDATE chunk SET size = ?2 WHERE id = ?1", *there, to_sql(bytes.size()));
+      transaction.change("UPDATE chunk_bytes SET bytes = ?2 WHERE chunk = ?1", *there, Blob{bytes});
       return true;
     }
     std::int64_t id = 0;
@@ -139,10 +150,8 @@ StoreResult<void> SqliteJobs::put_chunk(const std::string& sha256, std::string_v
       if (rows.next()) id = rows.integer(0);
     }
     transaction.change("INSERT INTO chunk_bytes (chunk, bytes) VALUES (?1, ?2)", id, Blob{bytes});
-    return true;
+    return false;
   });
-  if (!put) return tl::unexpected(put.error());
-  return {};
 }
 
 StoreResult<Held> SqliteJobs::finish(const ClaimRef& claim, const StoredMesh& mesh) {

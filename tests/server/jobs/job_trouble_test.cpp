@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Jobs when something is wrong: a store that fails, readers that do not read, servers that stop.
+#include <sqlite3.h>
+
 #include <atomic>
 #include <thread>
 
@@ -323,6 +325,65 @@ TEST(JobTrouble, AMeshThatIsNoLongerKeptIsGoneByThatName) {
   EXPECT_EQ(fetched.status.error_code(), grpc::NOT_FOUND);
   EXPECT_EQ(details_of(fetched.status).error_info.reason(), "MESH_GONE");
   EXPECT_EQ(client.get(id).message.job().state(), v1::JOB_STATE_SUCCEEDED);
+}
+
+// Flips a bit in the last chunk that was stored.
+void flip_a_bit(const client::TempFolder& folder) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open((folder / "weft.db").c_str(), &database), SQLITE_OK);
+  sqlite3_busy_timeout(database, 10'000);
+  sqlite3_blob* bytes = nullptr;
+  ASSERT_EQ(sqlite3_blob_open(database, "main", "chunk_bytes", "bytes", 3, 1, &bytes), SQLITE_OK);
+  char byte = 0;
+  sqlite3_blob_read(bytes, &byte, 1, 17);
+  byte ^= 4;
+  EXPECT_EQ(sqlite3_blob_write(bytes, &byte, 1, 17), SQLITE_OK);
+  sqlite3_blob_close(bytes);
+  sqlite3_close(database);
+}
+
+TEST(JobTrouble, AMeshThatTheStoreHasDamagedIsMadeAnew) {
+  const client::TempFolder folder;
+  JobServer server(engine_of_chunks(3), quick_jobs(), folder.path().string());
+  JobClient client = server.client();
+  const std::string id = client.submit(valid_request());
+  client.wait(id);
+  const Fetched whole = client.fetch(id);
+  ASSERT_TRUE(whole.status.ok());
+  flip_a_bit(folder);
+  EXPECT_EQ(server.metric("weft_damaged_chunks_total"), 0);
+  const Fetched damaged = client.fetch(id);
+  EXPECT_EQ(details_of(damaged.status).error_info.reason(), "MESH_GONE");
+  EXPECT_NE(damaged.status.error_message().find("damaged"), std::string::npos);
+  EXPECT_EQ(damaged.chunk_indices(), (std::vector<std::uint32_t>{0, 1})) << "what is sound";
+  EXPECT_EQ(server.metric("weft_damaged_chunks_total"), 1);
+  EXPECT_TRUE(server.log().contains("event=chunk_damaged job=" + id));
+  const std::string again = client.submit(valid_request());
+  EXPECT_FALSE(client.wait(again).from_store());
+  for (const std::string& each : {id, again}) {
+    const Fetched anew = client.fetch(each);
+    ASSERT_TRUE(anew.status.ok()) << anew.status.error_message();
+    ASSERT_EQ(anew.messages.size(), whole.messages.size());
+    for (std::size_t i = 1; i + 1 < whole.messages.size(); ++i)
+      EXPECT_EQ(anew.messages[i].SerializeAsString(), whole.messages[i].SerializeAsString());
+  }
+}
+
+TEST(JobTrouble, AMeshThatIsMadeInSpiteOfAKeptOneMendsItsChunks) {
+  const client::TempFolder folder;
+  JobServer server(engine_of_chunks(3), quick_jobs(), folder.path().string());
+  JobClient client = server.client();
+  const std::string id = client.submit(valid_request());
+  client.wait(id);
+  flip_a_bit(folder);
+  v1::SubmitJobRequest submission;
+  *submission.mutable_mesh() = valid_request();
+  submission.set_no_cache(true);
+  const std::string again = client.submit(submission).message.job().id();
+  client.wait(again);
+  EXPECT_EQ(server.metric("weft_damaged_chunks_total"), 1);
+  EXPECT_TRUE(client.fetch(id).status.ok());
+  EXPECT_TRUE(client.fetch(again).status.ok());
 }
 
 }  // namespace

@@ -84,20 +84,21 @@ TEST(Metrics, CountClosedConnectionsByCauseFromZeroOn) {
   EXPECT_EQ(value_of(metrics.text(), "weft_connections"), 7);
 }
 
-TEST(Metrics, CountHitsAndMissesAndLostLeasesFromZeroOn) {
+TEST(Metrics, CountHitsMissesLostLeasesAndDamagedChunksFromZeroOn) {
   Metrics metrics("v", "e");
   const auto values = [&] {
     const std::string text = metrics.text();
-    return std::vector<double>{value_of(text, "weft_cache_hits_total"),
-                               value_of(text, "weft_cache_misses_total"),
-                               value_of(text, "weft_leases_lost_total")};
+    return std::vector<double>{
+        value_of(text, "weft_cache_hits_total"), value_of(text, "weft_cache_misses_total"),
+        value_of(text, "weft_leases_lost_total"), value_of(text, "weft_damaged_chunks_total")};
   };
-  EXPECT_EQ(values(), (std::vector<double>{0, 0, 0}));
+  EXPECT_EQ(values(), (std::vector<double>{0, 0, 0, 0}));
   metrics.cache_hit();
   metrics.cache_missed();
   metrics.cache_missed();
   metrics.leases_lost(3);
-  EXPECT_EQ(values(), (std::vector<double>{1, 2, 3}));
+  for (int i = 0; i < 4; ++i) metrics.chunk_damaged();
+  EXPECT_EQ(values(), (std::vector<double>{1, 2, 3, 4}));
 }
 
 TEST(Metrics, AskQueuesWhenTheyAreScraped) {

@@ -10,6 +10,7 @@
 #include <memory>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "server/store/job_store.h"
@@ -24,6 +25,8 @@ class Backend {
   virtual StoreResult<std::unique_ptr<JobStore>> open() = 0;
   // Makes all that is stored older.
   virtual void pass(std::chrono::microseconds time) = 0;
+  // Stores other bytes under the digest of a chunk, as a disk that errs.
+  virtual void damage(const std::string& sha256, const std::string& bytes) = 0;
 };
 
 // Where stores are made: in memory where there is room, for the disks of some machines take
@@ -35,6 +38,15 @@ inline std::filesystem::path folder_for_tests() {
   const bool roomy = access(memory.c_str(), W_OK) == 0 &&
                      std::filesystem::space(memory, error).available >= kRoom && !error;
   return roomy ? memory : std::filesystem::temp_directory_path();
+}
+
+inline std::string hex(std::string_view bytes) {
+  std::string digits;
+  for (const unsigned char byte : bytes) {
+    digits += "0123456789abcdef"[byte >> 4];
+    digits += "0123456789abcdef"[byte & 15];
+  }
+  return digits;
 }
 
 // A kind, with a name for the tests.

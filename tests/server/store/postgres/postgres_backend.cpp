@@ -39,6 +39,11 @@ class PostgresBackend final : public Backend {
     postgres_server().execute(uri_, sql);
   }
 
+  void damage(const std::string& sha256, const std::string& bytes) override {
+    postgres_server().execute(uri_, "UPDATE weft_chunk SET bytes = '\\x" + hex(bytes) +
+                                        "' WHERE sha256 = '\\x" + hex(sha256) + "'");
+  }
+
  private:
   struct Times {
     const char* table;

@@ -206,7 +206,7 @@ class FullDiskTest : public SqliteTest {
   }
 
   void expect_that_it_is_said_when_the_disk_is_full() {
-    StoreResult<void> put{};
+    StoreResult<bool> put = false;
     for (char name = 'a'; name <= 'z' && put; ++name) {
       const std::string chunk(kChunk, name);
       put = store_->put_chunk(sha256_of(chunk), chunk);
