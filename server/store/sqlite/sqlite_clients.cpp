@@ -137,29 +137,33 @@ StoreResult<std::vector<JobRecord>> SqliteJobs::list(const ListQuery& query) {
 
 StoreResult<std::optional<JobRecord>> SqliteJobs::cancel(const std::string& owner,
                                                          const std::string& id) {
-  return core_->write(Durability::kWait, [&](Transaction& transaction) {
-    std::optional<std::int64_t> task;
-    {
-      Rows rows = transaction.run(
-          "SELECT task FROM job WHERE owner = ?1 AND id = ?2 AND task IS NOT NULL", owner, id);
-      if (rows.next()) task = rows.integer(0);
-    }
-    if (task) {
-      settle_jobs(transaction, *task, id, JobState::kCancelled, "", core_->now());
-      transaction.change(
-          "DELETE FROM task WHERE id = ?1 AND NOT EXISTS (SELECT * FROM job WHERE task = ?1)",
-          *task);
-    }
-    return find_job(transaction, owner, id);
+  return core_->with_reserve([&] {
+    return core_->write(Durability::kWait, [&](Transaction& transaction) {
+      std::optional<std::int64_t> task;
+      {
+        Rows rows = transaction.run(
+            "SELECT task FROM job WHERE owner = ?1 AND id = ?2 AND task IS NOT NULL", owner, id);
+        if (rows.next()) task = rows.integer(0);
+      }
+      if (task) {
+        settle_jobs(transaction, *task, id, JobState::kCancelled, "", core_->now());
+        transaction.change(
+            "DELETE FROM task WHERE id = ?1 AND NOT EXISTS (SELECT * FROM job WHERE task = ?1)",
+            *task);
+      }
+      return find_job(transaction, owner, id);
+    });
   });
 }
 
 StoreResult<std::optional<JobRecord>> SqliteJobs::remove(const std::string& owner,
                                                          const std::string& id) {
-  return core_->write(Durability::kWait, [&](Transaction& transaction) {
-    std::optional<JobRecord> job = find_job(transaction, owner, id);
-    if (job && is_final(job->state)) transaction.change("DELETE FROM job WHERE id = ?1", id);
-    return job;
+  return core_->with_reserve([&] {
+    return core_->write(Durability::kWait, [&](Transaction& transaction) {
+      std::optional<JobRecord> job = find_job(transaction, owner, id);
+      if (job && is_final(job->state)) transaction.change("DELETE FROM job WHERE id = ?1", id);
+      return job;
+    });
   });
 }
 

@@ -28,6 +28,10 @@ PRAGMA foreign_keys = ON;
 )sql";
 
 constexpr std::int64_t kVacuumStep = 512;  // pages: 8 MiB, some tens of milliseconds
+// On a full disk, and what is kept free for deletions: a step, and what it takes to delete some
+// chunks.
+constexpr std::int64_t kSmallVacuumStep = 64;
+constexpr off_t kReserve = off_t{4} << 20;
 
 StoreError failed_at(const std::string& path) {
   const int error = errno;
@@ -55,6 +59,18 @@ StoreResult<FileHandle> lock_folder(const std::string& folder) {
       StoreError{StoreErrorKind::kUnavailable, folder + " is in use by another weftd"});
 }
 
+// A store that was cut off must not begin anew as if nothing had been in it. kBroken if the file is
+// empty though a server had the folder before.
+StoreResult<void> check_not_emptied(const std::string& folder, const std::string& path) {
+  std::error_code error;
+  const bool is_empty = std::filesystem::file_size(path, error) == 0 && !error;
+  if (!is_empty || !std::filesystem::exists(folder + "/weft.lock", error)) return {};
+  return tl::unexpected(StoreError{
+      StoreErrorKind::kBroken,
+      path + " has 0 bytes, but a server has had " + folder +
+          " before: restore the file, or remove it if the store may begin anew without its jobs"});
+}
+
 // SQLite gives a new file the permissions of the umask, and the files beside it those of the first.
 StoreResult<void> make_private(const std::string& path) {
   const FileHandle file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
@@ -69,12 +85,27 @@ FileHandle::~FileHandle() {
 }
 
 StoreResult<std::unique_ptr<SqliteCore>> SqliteCore::open(SqliteStore::Options options) {
+  const std::string path = options.folder + "/weft.db";
   if (const auto made = make_folder(options.folder); !made) return tl::unexpected(made.error());
+  const auto sound = check_not_emptied(options.folder, path);
   StoreResult<FileHandle> lock = lock_folder(options.folder);
   if (!lock) return tl::unexpected(lock.error());
+  if (!sound) return tl::unexpected(sound.error());
 
-  const std::string path = options.folder + "/weft.db";
-  std::unique_ptr<SqliteCore> core(new SqliteCore(std::move(*lock), std::move(options.clock)));
+  std::error_code error;
+  const bool is_new = !std::filesystem::exists(path, error);
+  auto core = open_locked(std::move(*lock), path, std::move(options));
+  if (!core && is_new) std::filesystem::remove(path, error);  // as empty as it was made
+  return core;
+}
+
+StoreResult<std::unique_ptr<SqliteCore>> SqliteCore::open_locked(FileHandle lock,
+                                                                 const std::string& path,
+                                                                 SqliteStore::Options options) {
+  const std::string spare = options.folder + "/weft.reserve";
+  FileHandle reserve(::open(spare.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  std::unique_ptr<SqliteCore> core(
+      new SqliteCore(std::move(lock), std::move(reserve), std::move(options.clock)));
   if (const auto made = make_private(path); !made) return tl::unexpected(made.error());
   auto writer = sqlite::Connection::open(path, sqlite::Access::kWrite);
   if (!writer) return tl::unexpected(writer.error());
@@ -89,6 +120,7 @@ StoreResult<std::unique_ptr<SqliteCore>> SqliteCore::open(SqliteStore::Options o
     if (!reader) return tl::unexpected(reader.error());
     core->idle_readers_.push_back(std::move(*reader));
   }
+  core->keep_reserve();
   return core;
 }
 
@@ -114,19 +146,50 @@ StoreResult<void> SqliteCore::wait_for_disk(bool wait) {
   return set;
 }
 
-StoreResult<void> SqliteCore::give_space_back() {
-  const std::string step = "PRAGMA incremental_vacuum(" + std::to_string(kVacuumStep) + ")";
+// Without space there is no reserve, and no error.
+void SqliteCore::keep_reserve() {
+  if (posix_fallocate(reserve_.get(), 0, kReserve) != 0) release_reserve();
+}
+
+void SqliteCore::release_reserve() {
+  (void)!ftruncate(reserve_.get(), 0);
+  const std::lock_guard lock(writing_);
+  (void)empty_log();
+}
+
+// A checkpoint shrinks the file. This one waits for readers and empties the log, which would only
+// grow if there are readers at all times.
+StoreResult<void> SqliteCore::empty_log() {
+  return writer_->execute("PRAGMA wal_checkpoint(TRUNCATE)");
+}
+
+// Gives back so many pages at a time.
+StoreResult<void> SqliteCore::vacuum(std::int64_t pages) {
+  const std::string step = "PRAGMA incremental_vacuum(" + std::to_string(pages) + ")";
   while (true) {
     const std::lock_guard lock(writing_);
     const auto free_pages = writer_->pragma("PRAGMA freelist_count");
     if (!free_pages) return tl::unexpected(free_pages.error());
-    if (*free_pages == 0) break;
+    if (*free_pages == 0) return {};
     if (auto done = writer_->execute(step.c_str()); !done) return done;
+    if (pages < kVacuumStep)
+      if (auto done = empty_log(); !done) return done;
   }
-  // A checkpoint shrinks the file. This one waits for readers and empties the log, which would only
-  // grow if there are readers at all times.
-  const std::lock_guard lock(writing_);
-  return writer_->execute("PRAGMA wal_checkpoint(TRUNCATE)");
+}
+
+StoreResult<void> SqliteCore::give_space_back() {
+  auto done = vacuum(kVacuumStep);
+  if (!done && done.error().kind == StoreErrorKind::kFull) {
+    release_reserve();
+    done = vacuum(kSmallVacuumStep);
+  }
+  if (!done) return done;
+  {
+    const std::lock_guard lock(writing_);
+    if (done = empty_log(); !done) return done;
+  }
+  keep_reserve();
+  return {};
 }
 
 }  // namespace weft::server

@@ -55,13 +55,22 @@ class SqliteCore {
     bool changed = false;
     return locked_write(durability, body, changed);
   }
+  // Returns what `write()` does, which deletes: on a full disk, it may use the space that is kept.
+  template <class Write>
+  auto with_reserve(const Write& write) {
+    auto result = write();
+    if (result || result.error().kind != StoreErrorKind::kFull) return result;
+    release_reserve();
+    return write();
+  }
   template <class Body>
   auto read(const Body& body) {
     Reader reader(*this);
     return in_transaction(*reader.connection, sqlite::Access::kRead, body);
   }
 
-  // Gives free pages back to the file system, in steps between which others may write.
+  // Gives free pages back to the file system, in steps between which others may write. Keeps space
+  // for later deletions if there is some.
   StoreResult<void> give_space_back();
 
   void on_change(std::function<void()> listener) { listener_ = std::move(listener); }
@@ -78,8 +87,8 @@ class SqliteCore {
     std::unique_ptr<sqlite::Connection> connection;
   };
 
-  SqliteCore(FileHandle lock, std::function<WallTime()> clock)
-      : lock_(std::move(lock)), clock_(std::move(clock)) {}
+  SqliteCore(FileHandle lock, FileHandle reserve, std::function<WallTime()> clock)
+      : lock_(std::move(lock)), reserve_(std::move(reserve)), clock_(std::move(clock)) {}
 
   template <class Body>
   static auto in_transaction(sqlite::Connection& connection, sqlite::Access access,
@@ -109,9 +118,17 @@ class SqliteCore {
     return result;
   }
 
+  static StoreResult<std::unique_ptr<SqliteCore>> open_locked(FileHandle lock,
+                                                              const std::string& path,
+                                                              SqliteStore::Options options);
   StoreResult<void> wait_for_disk(bool wait);
+  void keep_reserve();
+  void release_reserve();
+  StoreResult<void> vacuum(std::int64_t pages);
+  StoreResult<void> empty_log();
 
-  const FileHandle lock_;  // keeps other servers out; destroyed last
+  const FileHandle lock_;     // keeps other servers out; destroyed last
+  const FileHandle reserve_;  // a file that takes space until a deletion needs it
   const std::function<WallTime()> clock_;
   std::function<void()> listener_;
 

@@ -198,26 +198,32 @@ StoreResult<Collected> SqliteJobs::collect(const KeepPolicy& policy) {
   const std::int64_t aged = to_micros(now - policy.age);
   Collected all;
   const auto ended = collect_in_steps(all, [&] {
-    return core_->write(Durability::kLater, [&](Transaction& transaction) {
-      Collected step;
-      step.jobs = delete_jobs(transaction, aged) +
-                  delete_surplus_jobs(transaction, to_sql(policy.jobs_of_owner));
-      if (policy.share_of_owner < 1)
-        step.meshes = delete_surplus_meshes(transaction, bytes_of_owner(policy));
-      step.meshes += delete_meshes(transaction, aged, to_sql(policy.bytes));
-      return step;
+    return core_->with_reserve([&] {
+      return core_->write(Durability::kLater, [&](Transaction& transaction) {
+        Collected step;
+        step.jobs = delete_jobs(transaction, aged) +
+                    delete_surplus_jobs(transaction, to_sql(policy.jobs_of_owner));
+        if (policy.share_of_owner < 1)
+          step.meshes = delete_surplus_meshes(transaction, bytes_of_owner(policy));
+        step.meshes += delete_meshes(transaction, aged, to_sql(policy.bytes));
+        return step;
+      });
     });
   });
   if (!ended) return tl::unexpected(ended.error());
   const auto loose = collect_in_steps(all, [&] {
-    return core_->write_quietly(Durability::kLater, [&](Transaction& transaction) {
-      return delete_loose_chunks(transaction, to_micros(now - policy.loose_age));
+    return core_->with_reserve([&] {
+      return core_->write_quietly(Durability::kLater, [&](Transaction& transaction) {
+        return delete_loose_chunks(transaction, to_micros(now - policy.loose_age));
+      });
     });
   });
   if (!loose) return tl::unexpected(loose.error());
-  const auto forgotten = core_->write_quietly(Durability::kLater, [&](Transaction& transaction) {
-    forget_what_is_over(transaction, to_micros(now - kSettledAge));
-    return true;
+  const auto forgotten = core_->with_reserve([&] {
+    return core_->write_quietly(Durability::kLater, [&](Transaction& transaction) {
+      forget_what_is_over(transaction, to_micros(now - kSettledAge));
+      return true;
+    });
   });
   if (!forgotten) return tl::unexpected(forgotten.error());
   if (const auto given = core_->give_space_back(); !given) return tl::unexpected(given.error());

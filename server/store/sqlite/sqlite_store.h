@@ -21,6 +21,9 @@
 //
 // Mapping the file would read at 9 GB/s, but a read error of the disk would then end the process.
 //
+// On a full disk jobs can still be cancelled and deleted, and garbage be collected: weft.reserve
+// keeps 4 MiB for these, if the disk had them when the folder was opened.
+//
 // One connection writes, under a mutex; a few others read meanwhile, and do not wait for the
 // writer. A second server on the same folder is refused. So when the folder is opened, no holder of
 // a claim is left, and all leases end.
@@ -44,7 +47,8 @@ class SqliteStore {
     std::function<WallTime()> clock = [] { return std::chrono::system_clock::now(); };
   };
 
-  // kUnavailable if another server has the folder, kBroken if the file has a newer version.
+  // kUnavailable if another server has the folder, kBroken if the file has a newer version, or was
+  // emptied since a server had it.
   static StoreResult<std::unique_ptr<JobStore>> open(Options options);
 };
 

@@ -27,7 +27,8 @@ class SqliteTest : public testing::Test {
 
   std::uintmax_t bytes_on_disk() const {
     std::uintmax_t bytes = 0;
-    for (const auto& file : std::filesystem::directory_iterator(path())) bytes += file.file_size();
+    for (const auto& file : std::filesystem::directory_iterator(path()))
+      if (file.path().filename() != "weft.reserve") bytes += file.file_size();
     return bytes;
   }
 
@@ -173,11 +174,11 @@ class Quota {
 // A disk of its own, as large as it is told to be. Only this process sees it, and it goes with it.
 class SmallDisk {
  public:
-  explicit SmallDisk(std::string path) : path_(std::move(path)) {
+  explicit SmallDisk(std::string path, const char* size = "size=4m") : path_(std::move(path)) {
     std::filesystem::create_directories(path_);
     mounted_ = unshare(CLONE_NEWNS) == 0 &&
                mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
-               mount("tmpfs", path_.c_str(), "tmpfs", 0, "size=4m") == 0;
+               mount("tmpfs", path_.c_str(), "tmpfs", 0, size) == 0;
   }
   ~SmallDisk() {
     if (mounted_) umount(path_.c_str());
@@ -252,6 +253,68 @@ TEST_F(FullDiskTest, ADiskThatIsFullIsSaidAndSurvived) {
   expect_that_it_is_said_when_the_disk_is_full();
   ASSERT_TRUE(disk.grow());
   expect_that_it_goes_on_once_there_is_room();
+}
+
+TEST_F(SqliteTest, OnAFullDiskJobsAreStillDeletedAndGarbageCollected) {
+  const SmallDisk disk(path(), "size=32m");
+  if (!disk.mounted()) GTEST_SKIP() << "only root can make a small disk";
+  auto store = *open();
+  const auto job = store->submit({.owner = "ann", .key = key_of("k")});
+  const auto waiting = store->submit({.owner = "ann", .key = key_of("w")});
+  ASSERT_TRUE(job && waiting);
+  StoredMesh mesh{.summary = "s", .brief = "b", .chunks = {}};
+  const auto claim = *store->claim("worker", hours(1), 1);
+  for (int i = 0; i < 8; ++i) {
+    const std::string chunk(std::size_t{1} << 20, static_cast<char>('a' + i));
+    ASSERT_TRUE(store->put_chunk(sha256_of(chunk), chunk));
+    mesh.chunks.push_back({sha256_of(chunk), chunk.size()});
+  }
+  ASSERT_EQ(store->finish(claim->ref, mesh), Held::kHeld);
+  StoreResult<bool> put = false;
+  for (int i = 8; put; ++i) {
+    const std::string chunk(std::size_t{1} << 20, static_cast<char>('a' + i));
+    put = store->put_chunk(sha256_of(chunk), chunk);
+  }
+  EXPECT_EQ(put.error().kind, StoreErrorKind::kFull);
+  {  // another program takes the rest
+    std::ofstream rest(path() + "/rest", std::ios::binary);
+    const std::string page(4096, 'x');
+    while (rest.write(page.data(), 4096).flush()) continue;
+  }
+  while (store->submit({.owner = "bob", .key = key_of("b"), .request = std::string(1 << 20, 'r')}))
+    continue;
+  const auto cancelled = store->cancel("ann", waiting->job.id);
+  ASSERT_TRUE(cancelled) << cancelled.error().message;
+  const auto removed = store->remove("ann", job->job.id);
+  ASSERT_TRUE(removed) << removed.error().message;
+  EXPECT_FALSE(*store->get("ann", job->job.id));
+  const std::uintmax_t before = bytes_on_disk();
+  const auto collected = store->collect({.loose_age = seconds(0)});
+  ASSERT_TRUE(collected) << collected.error().message;
+  EXPECT_GT(collected->chunks, 8U);
+  EXPECT_LT(bytes_on_disk() + (std::uintmax_t{8} << 20), before);
+  EXPECT_EQ(std::filesystem::file_size(path() + "/weft.reserve"), std::uintmax_t{4} << 20)
+      << "the next time needs it, too";
+  EXPECT_TRUE(store->submit({.owner = "ann", .key = key_of("k")}));
+  store.reset();
+}
+
+TEST_F(SqliteTest, AStoreThatWasCutOffIsNoNewOne) {
+  {
+    const auto store = *open();
+    ASSERT_TRUE(store->submit({.owner = "ann", .key = key_of("k")}));
+  }
+  const std::string file = path() + "/weft.db";
+  std::filesystem::resize_file(file, 0);
+  for (int i = 0; i < 2; ++i) {
+    const auto opened = open();
+    ASSERT_FALSE(opened);
+    EXPECT_EQ(opened.error().kind, StoreErrorKind::kBroken);
+    EXPECT_NE(opened.error().message.find(file + " has 0 bytes"), std::string::npos)
+        << opened.error().message;
+  }
+  std::filesystem::remove(file);
+  EXPECT_TRUE(open()) << "that is how to begin anew";
 }
 
 }  // namespace
