@@ -73,3 +73,5 @@ WATCH_JOB = _method("JobService", "WatchJob")
 CANCEL_JOB = _method("JobService", "CancelJob")
 DELETE_JOB = _method("JobService", "DeleteJob")
 FETCH_MESH = _method("JobService", "FetchMesh")
+HEALTH = "/grpc.health.v1.Health/Check"
+"""Path of the method by which any server tells that it is there; an empty request is one."""

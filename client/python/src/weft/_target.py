@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import dataclasses
-import ipaddress
 import os
 import pathlib
 from typing import Any
 
 import grpc
 
+from ._address import is_local
 from .errors import WeftError
 
 
@@ -49,7 +49,7 @@ def connection(target: str | None, token: str | None, tls: TLS | bool | None,
     token = (token if token is not None else os.environ.get("WEFT_TOKEN", "")).strip()
     if not all("!" <= c <= "~" for c in token):
         raise WeftError("the token is not one word of visible ASCII characters")
-    if token and not tls and not insecure and not _is_local(target):
+    if token and not tls and not insecure and not is_local(target):
         raise WeftError(f"the token would travel unencrypted to {target}: give tls=True, or "
                         "insecure=True to send it anyway")
     options: list[tuple[str, Any]] = [
@@ -57,6 +57,8 @@ def connection(target: str | None, token: str | None, tls: TLS | bool | None,
         ("grpc.keepalive_time_ms", 30_000), ("grpc.keepalive_timeout_ms", 10_000),
         # One that starts again is found again.
         ("grpc.initial_reconnect_backoff_ms", 100), ("grpc.max_reconnect_backoff_ms", 1_000)]
+    if is_local(target):
+        options.append(("grpc.enable_http_proxy", 0))
     credentials = None
     if tls:
         tls = TLS() if tls is True else tls
@@ -67,15 +69,3 @@ def connection(target: str | None, token: str | None, tls: TLS | bool | None,
             options.append(("grpc.ssl_target_name_override", tls.server_name))
     metadata = (("authorization", f"Bearer {token}"),) if token else ()
     return Connection(target, credentials, options, metadata)
-
-
-def _is_local(target: str) -> bool:
-    """Whether what is sent there stays on this machine. A name other than localhost is not looked
-    up."""
-    if target.startswith(("unix:", "unix-abstract:")):
-        return True
-    host = target.rpartition(":")[0].strip("[]")
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"

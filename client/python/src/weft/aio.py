@@ -23,6 +23,7 @@ from typing import Any, Self, Unpack
 import grpc
 
 from . import _jobs, _protocol, _target, errors, results
+from ._channel import OwnChannel
 from ._receiver import MeshReceiver
 from ._requests import MeshOptions, job_request, stream_request
 from ._retry import Retry
@@ -45,15 +46,16 @@ class Client:
         self.target = connection.target
         self._metadata = connection.metadata
         self._retries = retries
-        if connection.credentials is None:
-            self._channel = grpc.aio.insecure_channel(self.target, connection.options)
-        else:
-            self._channel = grpc.aio.secure_channel(self.target, connection.credentials,
-                                                    connection.options)
+        self._own_channel = OwnChannel(grpc.aio, connection)
+
+    @property
+    def _channel(self) -> Any:
+        return self._own_channel.get()
 
     async def close(self) -> None:
-        """Ends the connection and the calls on it."""
-        await self._channel.close()
+        """See weft.Client.close."""
+        if self._own_channel.is_own():
+            await self._channel.close()
 
     async def __aenter__(self) -> Self:
         return self

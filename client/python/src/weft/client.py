@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable, Iterable, Iterator
 from types import TracebackType
@@ -11,6 +12,7 @@ from typing import Any, Self, Unpack
 import grpc
 
 from . import _jobs, _protocol, _target, errors, results
+from ._channel import OwnChannel
 from ._receiver import MeshReceiver
 from ._requests import MeshOptions, job_request, stream_request
 from ._retry import Retry
@@ -22,7 +24,8 @@ from .size import Size
 
 
 class Client:
-    """A connection to a server. Thread-safe; a context manager that closes it.
+    """A connection to a server. Thread-safe; a context manager that closes it. For the process that makes
+    it: in a fork, methods raise WeftError.
 
     `target`: "host:port" or "unix:/path"; default: $WEFT_SERVER. `token`: the bearer token; default:
     $WEFT_TOKEN. `tls`: True, or a TLS. `insecure`: send a token unencrypted even to other machines.
@@ -43,15 +46,17 @@ class Client:
         self.target = connection.target
         self._metadata = connection.metadata
         self._retries = retries
-        if connection.credentials is None:
-            self._channel = grpc.insecure_channel(self.target, connection.options)
-        else:
-            self._channel = grpc.secure_channel(self.target, connection.credentials,
-                                                connection.options)
+        self._own_channel = OwnChannel(grpc, connection)
+
+    @property
+    def _channel(self) -> Any:
+        return self._own_channel.get()
 
     def close(self) -> None:
-        """Ends the connection and the calls on it."""
-        self._channel.close()
+        """Ends the connection and the calls on it. In a fork of the process that made the client, does
+        nothing."""
+        if self._own_channel.is_own():
+            self._channel.close()
 
     def __enter__(self) -> Self:
         return self
@@ -212,12 +217,12 @@ class Client:
         return Retry(self._retries, timeout, self.target)
 
     def _wait(self, seconds: float) -> None:
-        # A connection comes back only while someone waits for it.
-        def changed(state: grpc.ChannelConnectivity) -> None:
-            pass
-        self._channel.subscribe(changed, try_to_connect=True)
-        time.sleep(seconds)
-        self._channel.unsubscribe(changed)
+        # A connection comes back only while someone waits for it. This call does; so would a subscription to
+        # the channel's state, but its thread may stop the interpreter from ending.
+        end = time.monotonic() + seconds
+        with contextlib.suppress(grpc.RpcError):
+            self._channel.unary_unary(_protocol.HEALTH)(b"", timeout=seconds, wait_for_ready=True)
+        time.sleep(max(0.0, end - time.monotonic()))
 
     def _call(self, method: _protocol.Method, timeout: float | None = None, **fields: Any) -> Any:
         call = self._channel.unary_unary(method.path, method.request.SerializeToString,

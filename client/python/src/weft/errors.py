@@ -13,6 +13,7 @@ import dataclasses
 from typing import Any
 
 from . import _protocol
+from ._address import proxy_of
 from ._arguments import argument_of
 
 _Status = _protocol.message("google.rpc.Status")
@@ -216,4 +217,6 @@ def of_call(call: Any, target: str, request: Any = None) -> ServerError:
                 status.Clear()
     status.code = call.code().value[0]
     status.message = call.details() or ""
+    if call.code().name == "UNAVAILABLE" and (proxy := proxy_of(target)):
+        status.message += f"\nit was called through {proxy}"
     return of_status(status, f"the server {target} answers", request)

@@ -7,8 +7,10 @@ import contextlib
 import os
 import pathlib
 import select
+import shutil
 import subprocess
 import tempfile
+import weakref
 from collections.abc import Iterator, Sequence
 from types import TracebackType
 from typing import Self
@@ -38,22 +40,23 @@ class LocalServer:
         if not program:
             raise LocalServerError("no private weftd: the package carries none, and it is not in the "
                                    "PATH; give its path, or WEFT_WEFTD")
-        self._cleanup = contextlib.ExitStack()
         with contextlib.ExitStack() as stack:
-            self.folder = pathlib.Path(stack.enter_context(_folder()))
+            self.folder = _make_folder()
+            stack.callback(shutil.rmtree, self.folder, ignore_errors=True)
             """Holds the socket and the log; is removed at the end."""
             self.target = f"unix:{self.folder}/socket"
             """What a Client takes."""
             self.addresses: list[str] = []
             """All at which it listens: `target`, those of --listen, metrics=HOST:PORT, console=HOST:PORT."""
             self._process = self._spawn(program, arguments)
-            stack.callback(self._end)
+            stack.callback(_end, self._process)
             self._wait_until_ready(program)
-            self._cleanup = stack.pop_all()
+            self._finalizer = weakref.finalize(self, _close, stack.pop_all(), os.getpid())
 
     def close(self) -> None:
-        """Stops the server; calls in it are cancelled."""
-        self._cleanup.close()
+        """Stops the server; calls in it are cancelled. In a fork of the process that started it, does
+        nothing."""
+        self._finalizer()
 
     def __enter__(self) -> Self:
         return self
@@ -61,10 +64,6 @@ class LocalServer:
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None,
                  traceback: TracebackType | None) -> None:
         self.close()
-
-    def __del__(self) -> None:
-        if hasattr(self, "_cleanup"):
-            self.close()
 
     def _spawn(self, program: str, arguments: Sequence[str]) -> subprocess.Popen[bytes]:
         # Nothing that configures servers that others use, too: this one has its own limits, keeps no
@@ -95,23 +94,28 @@ class LocalServer:
         what = "ended at start" if heard else f"is not ready after {_START_SECONDS:g} s"
         raise LocalServerError("\n  ".join([f"no private weftd: {program} {what}; it said:", *log]))
 
-    def _end(self) -> None:
-        self._process.terminate()
-        try:
-            self._process.wait(_STOP_SECONDS)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
-        assert self._process.stdin and self._process.stdout
-        self._process.stdin.close()
-        self._process.stdout.close()
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    process.terminate()
+    try:
+        process.wait(_STOP_SECONDS)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+    assert process.stdin and process.stdout
+    process.stdin.close()
+    process.stdout.close()
 
 
-def _folder() -> tempfile.TemporaryDirectory[str]:
+def _close(cleanup: contextlib.ExitStack, owner: int) -> None:
+    if os.getpid() == owner:
+        cleanup.close()
+
+
+def _make_folder() -> pathlib.Path:
     # A socket's path is short.
     base = tempfile.gettempdir()
-    return tempfile.TemporaryDirectory(prefix="weft-", dir=base if len(base) < 80 else "/tmp",
-                                       ignore_cleanup_errors=True)
+    return pathlib.Path(tempfile.mkdtemp(prefix="weft-", dir=base if len(base) < 80 else "/tmp"))
 
 
 @contextlib.contextmanager
