@@ -13,6 +13,7 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
+from ._short import ShortRepr
 from .errors import DamagedStream
 
 _VARINT, _FIXED64, _BYTES, _FIXED32 = 0, 1, 2, 5
@@ -23,8 +24,8 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class Chunk:
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Chunk(ShortRepr):
     """A piece of a mesh, in the order in which the server sends it.
 
     Vertices and triangles are numbered from 0 across the mesh. A chunk refers only to vertices of

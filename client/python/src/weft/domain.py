@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _convert, _geojson, _names, _poly, _protocol
+from ._short import ShortRepr
 from ._text import read_text
 from ._warning import warn
 from .errors import DomainError
@@ -62,8 +63,8 @@ class Area:
     hole: bool = False
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class Domain:
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Domain(ShortRepr):
     """A planar straight-line graph.
 
     `points`: (n, 2) float64, in any unit, magnitudes up to 1e50.
@@ -191,9 +192,11 @@ class Domain:
 
 DomainLike = Union[Domain, str, "os.PathLike[str]", dict[str, Any], npt.NDArray[Any],
                    Sequence[npt.NDArray[Any]], Any]
-"""What is taken for a domain: a Domain; the path of a file, see Domain.read; a GeoJSON object; an
-object with a `__geo_interface__`, such as a shapely geometry or a GeoDataFrame; an array (n, 2) or a list of
-n pairs, which is the ring of a polygon, or a sequence of them."""
+# The text of help(weft.DomainLike).
+DomainLike.__doc__ = """What is taken for a domain: a Domain; the path of a file, see Domain.read; a GeoJSON
+object; an object with a `__geo_interface__`, such as a shapely geometry or a GeoDataFrame; the ring of a polygon:
+an array (n, 2), a list of n pairs, or a DataFrame with the columns x and y; or a sequence of rings, of which what
+lies inside an odd number is meshed."""
 
 
 def as_domain(domain: DomainLike) -> Domain:
@@ -208,13 +211,26 @@ def as_domain(domain: DomainLike) -> Domain:
         read = Domain.geojson(domain.__geo_interface__)
         system = getattr(domain, "crs", None)  # of a GeoDataFrame, by pyproj
         return dataclasses.replace(read, geographic=getattr(system, "is_geographic", None))
-    if isinstance(domain, (Sequence, np.ndarray)) and len(domain):
+    if hasattr(domain, "columns") and hasattr(domain, "to_numpy"):  # of pandas or polars
+        return Domain.rings(_columns(domain))
+    if isinstance(domain, Sequence) or (isinstance(domain, np.ndarray) and domain.ndim):
+        if not any(np.size(part) for part in domain):
+            raise DomainError(f"an empty {type(domain).__name__} is no domain: it has no points")
         depth = 1 + np.ndim(domain[0])
         if depth == 2:
             return Domain.rings(domain)
         if depth == 3:
             return Domain.rings(*domain)
     raise DomainError(f"a {type(domain).__name__} is no domain; see weft.DomainLike")
+
+
+def _columns(frame: Any) -> npt.NDArray[Any]:
+    """(n, 2): x and y of a DataFrame, which has no other columns."""
+    names = [str(name) for name in frame.columns]
+    if sorted(names) != ["x", "y"]:
+        raise DomainError(f"a DataFrame is the ring of a polygon if its columns are x and y; this one has "
+                          f"{', '.join(names) or 'none'}")
+    return np.column_stack([frame["x"].to_numpy(), frame["y"].to_numpy()])
 
 
 def _of_message(message: bytes) -> Domain:

@@ -21,6 +21,7 @@ import numpy.typing as npt
 from ._names import marker_of
 from ._raster_file import RasterFile
 from ._raster_window import MOST_VALUES, read_window
+from ._short import ShortRepr
 from .errors import DomainError
 
 if TYPE_CHECKING:
@@ -33,8 +34,8 @@ Field = Union["Distance", "RasterField", "FileField", "MeshField", "Width"]
 _BYTES = 2  # the wire type of packed arrays
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class Distance:
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Distance(ShortRepr):
     """See distance."""
 
     markers: Sequence[int | str]
@@ -49,8 +50,8 @@ class Distance:
         to.segments.extend(self.segments.ravel().tolist())
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class RasterField:
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class RasterField(ShortRepr):
     """See raster."""
 
     values: npt.NDArray[np.float32]
@@ -82,8 +83,8 @@ class FileField:
         RasterField(**vars(window))._fill(message, domain)
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class MeshField:
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class MeshField(ShortRepr):
     """See on_mesh."""
 
     points: npt.NDArray[np.float64]

@@ -8,11 +8,13 @@ import dataclasses
 import numpy as np
 import numpy.typing as npt
 
+from ._short import ShortRepr
+
 Floats = npt.NDArray[np.float64]
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class Quality:
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Quality(ShortRepr):
     """A figure per triangle; `str` sums them up.
 
         quality = mesh.quality()

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _sampling
+from ._short import ShortRepr
 from .errors import DomainError
 
 if TYPE_CHECKING:
@@ -18,13 +19,14 @@ if TYPE_CHECKING:
 
 Floats = npt.NDArray[np.float64]
 Size = Union[float, str, "Raster", "Field", Callable[[Floats, Floats], npt.ArrayLike], None]
-"""Upper bound on the area of a triangle at its centroid, in squared units of the domain: a number;
+# The text of help(weft.Size).
+Size.__doc__ = """Upper bound on the area of a triangle at its centroid, in squared units of the domain: a number;
 an expression in x, y and names of fields; a Raster; a field, such as values at the vertices of an earlier
 mesh, see on_mesh; a function of two arrays, see Raster.adaptive, which samples it; or None for no bound."""
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class Raster:
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Raster(ShortRepr):
     """A size on a grid: bilinear between its nodes, outside it that of its nearest point.
 
     `values`: (rows, columns) float64, squared units of the domain, positive and finite, even where
