@@ -13,6 +13,7 @@ import yaml
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CHART = ROOT / "deploy/helm/weft"
 STORE = {"store": {"secret": "weft-store"}}
+SECURE = {"tls": {"secret": "weft-tls", "clients": True}, "tokens": {"secret": "weft-tokens", "key": "callers"}}
 
 
 @pytest.fixture(scope="module")
@@ -76,6 +77,39 @@ def test_values_are_taken(renderer):
     assert made["PersistentVolumeClaim"]["spec"]["resources"]["requests"]["storage"] == "1Ti"
 
 
+def test_certificates_and_tokens_are_mounted_and_the_probes_go_round_them(renderer):
+    made = objects(rendered(renderer, SECURE))
+    pod = made["Deployment"]["spec"]["template"]["spec"]
+    container, = pod["containers"]
+    folders = {mount["name"]: mount["mountPath"] for mount in container["volumeMounts"]}
+    secrets = {volume["name"]: volume["secret"] for volume in pod["volumes"] if "secret" in volume}
+    assert {name: secret["secretName"] for name, secret in secrets.items()} == \
+        {"tls": "weft-tls", "tokens": "weft-tokens"}
+    assert all(secret["defaultMode"] == 0o440 for secret in secrets.values())  # for the group of fsGroup alone
+    variables = {variable["name"]: variable.get("value") for variable in container["env"]}
+    assert variables["WEFT_TLS_CERT"] == folders["tls"] + "/tls.crt"
+    assert variables["WEFT_TLS_KEY"] == folders["tls"] + "/tls.key"
+    assert variables["WEFT_TLS_CLIENT_CA"] == folders["tls"] + "/ca.crt"
+    assert variables["WEFT_TOKENS"] == folders["tokens"] + "/callers"
+    for probe in ("startupProbe", "livenessProbe", "readinessProbe"):
+        assert container[probe]["httpGet"] == {"port": "metrics", "path": "/healthz"}
+    assert made["Service"]["spec"]["ports"][0]["appProtocol"] == "https"
+
+
+def test_tokens_alone_leave_the_probes_of_grpc(renderer):
+    made = objects(rendered(renderer, {"tokens": {"secret": "weft-tokens"}}))
+    container, = made["Deployment"]["spec"]["template"]["spec"]["containers"]
+    assert {"name": "WEFT_TOKENS", "value": "/etc/weft/tokens/tokens"} in container["env"]
+    assert "grpc" in container["livenessProbe"]
+
+
+def test_the_variables_of_the_chart_are_those_of_the_server(renderer):
+    container, = objects(rendered(renderer, SECURE))["Deployment"]["spec"]["template"]["spec"]["containers"]
+    flags = (ROOT / "docs/flags.md").read_text()
+    for variable in container["env"]:
+        assert f"(Env:{variable['name']})" in flags, variable["name"]
+
+
 def test_the_chart_has_the_version_of_the_programs():
     version, = re.findall(r"^project\(weft VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(), re.M)
     chart = yaml.safe_load((CHART / "Chart.yaml").read_text())
@@ -86,8 +120,8 @@ def test_all_that_is_rendered_fits_the_schemas(renderer):
     if not (ROOT / "deploy/node_modules").is_dir():
         pytest.skip("deploy/node_modules is not installed; tests/run.sh does that")
     judge = ["node", ROOT / "deploy/check-kubernetes.mjs"]
-    text = rendered(renderer, STORE) + rendered(renderer)
+    text = rendered(renderer, STORE) + rendered(renderer) + rendered(renderer, SECURE)
     done = subprocess.run(judge, input=text, capture_output=True, text=True)
-    assert (done.returncode, done.stderr, done.stdout) == (0, "", "11 objects\n")
+    assert (done.returncode, done.stderr, done.stdout) == (0, "", "16 objects\n")
     wrong = text.replace("clusterIP: None", "clusterIP: [none]")
     assert subprocess.run(judge, input=wrong, capture_output=True, text=True).returncode == 1
