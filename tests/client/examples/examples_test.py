@@ -88,6 +88,7 @@ def test_the_mesh_is_whole(example, server):
     assert triangles > 1000 and vertices > triangles / 2 and chunks >= 1
     assert smallest >= 25
     assert area == pytest.approx(60 - 12 * 0.2588190451, abs=1e-3)
+    assert f"```text\n{done.stdout}```" in (EXAMPLES / "README.md").read_text()
 
 
 def test_an_error_of_the_request_names_its_field(example, server):
