@@ -77,7 +77,8 @@ int run(int argc, char** argv) {
 
   Signals signals;
   const Result<ExitCode> result = chosen.run(signals.stop());
-  if (signals.received() != 0) {
+  // What was complete before the signal could end it is no failure.
+  if (signals.received() != 0 && !result) {
     if (!chosen.when_interrupted.empty())
       std::fprintf(stderr, "weft: %s\n", chosen.when_interrupted.c_str());
     signals.die();

@@ -27,6 +27,60 @@ std::filesystem::path folder_of(const std::filesystem::path& target) {
   return folder.empty() ? "." : folder;
 }
 
+// The folder itself, or the nearest one above it that exists.
+std::filesystem::path existing(std::filesystem::path folder) {
+  std::error_code ignored;
+  while (!std::filesystem::exists(folder, ignored) && !folder.empty()) {
+    const std::filesystem::path parent = folder.parent_path();
+    if (parent == folder) break;
+    folder = parent;
+  }
+  return folder.empty() ? "." : folder;
+}
+
+// Succeeds if files can be made in the folder, and nothing but a file has the target's name.
+Result<void> check_target_in(const std::filesystem::path& folder,
+                             const std::filesystem::path& target) {
+  struct stat status {};
+  if (::stat(folder.c_str(), &status) != 0)
+    return unwritable(target, "the folder " + folder.string() + ": " + std::strerror(errno));
+  if (!S_ISDIR(status.st_mode)) return unwritable(target, folder.string() + " is not a folder");
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    return unwritable(target, "the folder " + folder.string() + ": " + std::strerror(errno));
+  if (::stat(target.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
+    return unwritable(target, "something other than a regular file has this name");
+  return {};
+}
+
+// Folders that were not there, for files that are about to be.
+class NewFolders {
+ public:
+  NewFolders() = default;
+  NewFolders(const NewFolders&) = delete;
+  NewFolders& operator=(const NewFolders&) = delete;
+  ~NewFolders() {
+    for (auto made = made_.rbegin(); made != made_.rend(); ++made) ::rmdir(made->c_str());
+  }
+  // Makes those of `target` below `folder`, which exists.
+  Result<void> make(const std::filesystem::path& target, const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> missing;
+    for (std::filesystem::path at = folder_of(target); at != folder && !at.empty();
+         at = at.parent_path())
+      missing.push_back(at);
+    for (auto at = missing.rbegin(); at != missing.rend(); ++at) {
+      if (::mkdir(at->c_str(), 0777) == 0)
+        made_.push_back(*at);
+      else if (errno != EEXIST)
+        return unwritable(target, "the folder " + at->string() + ": " + std::strerror(errno));
+    }
+    return {};
+  }
+  void keep() { made_.clear(); }
+
+ private:
+  std::vector<std::filesystem::path> made_;  // removed at the end, if they are empty
+};
+
 std::filesystem::path hidden_name(const std::filesystem::path& folder) {
   std::random_device random;
   char name[32];
@@ -79,35 +133,31 @@ Result<FileDescriptor> open_unlinked(const std::filesystem::path& folder) {
 }
 
 Result<void> check_target(const std::filesystem::path& target) {
-  const std::filesystem::path folder = folder_of(target);
-  struct stat status {};
-  if (::stat(folder.c_str(), &status) != 0)
-    return unwritable(target, "the folder " + folder.string() + ": " + std::strerror(errno));
-  if (!S_ISDIR(status.st_mode)) return unwritable(target, folder.string() + " is not a folder");
-  if (::access(folder.c_str(), W_OK | X_OK) != 0)
-    return unwritable(target, "the folder " + folder.string() + ": " + std::strerror(errno));
-  if (::stat(target.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
-    return unwritable(target, "something other than a regular file has this name");
-  return {};
+  return check_target_in(folder_of(target), target);
 }
 
-Result<OutputFile> OutputFile::create(const std::filesystem::path& target, std::stop_token stop) {
+Result<OutputFile> OutputFile::create(const std::filesystem::path& target, std::stop_token stop,
+                                      MissingFolders missing) {
   // Writes through a link: the link stays, and its file is replaced.
   std::error_code ignored;
   std::filesystem::path real = std::filesystem::is_symlink(target, ignored)
                                    ? std::filesystem::weakly_canonical(target, ignored)
                                    : target;
   if (real.empty()) real = target;
-  if (auto ok = check_target(real); !ok) return tl::unexpected(ok.error());
+  std::filesystem::path folder = folder_of(real);
+  if (missing == MissingFolders::kMake) folder = existing(std::move(folder));
+  if (auto ok = check_target_in(folder, real); !ok) return tl::unexpected(ok.error());
   std::filesystem::path name;
-  auto fd = open_nameless(folder_of(real), name);
+  auto fd = open_nameless(folder, name);
   if (!fd) return unwritable(target, fd.error().message);
-  return OutputFile(std::move(real), std::move(*fd), std::move(name), std::move(stop));
+  return OutputFile(std::move(real), std::move(folder), std::move(*fd), std::move(name),
+                    std::move(stop));
 }
 
-OutputFile::OutputFile(std::filesystem::path target, FileDescriptor fd, std::filesystem::path name,
-                       std::stop_token stop)
+OutputFile::OutputFile(std::filesystem::path target, std::filesystem::path folder,
+                       FileDescriptor fd, std::filesystem::path name, std::stop_token stop)
     : target_(std::move(target)),
+      folder_(std::move(folder)),
       fd_(std::move(fd)),
       name_(std::move(name)),
       stop_(std::move(stop)),
@@ -115,6 +165,7 @@ OutputFile::OutputFile(std::filesystem::path target, FileDescriptor fd, std::fil
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
     : target_(std::move(other.target_)),
+      folder_(std::move(other.folder_)),
       fd_(std::move(other.fd_)),
       name_(std::exchange(other.name_, {})),
       stop_(std::move(other.stop_)),
@@ -177,7 +228,7 @@ Result<void> OutputFile::give_name() {
   if (!name_.empty()) return {};
   const std::string self = "/proc/self/fd/" + std::to_string(fd_.get());
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    const std::filesystem::path name = hidden_name(folder_of(target_));
+    const std::filesystem::path name = hidden_name(folder_);
     if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
       name_ = name;
       return {};
@@ -188,8 +239,11 @@ Result<void> OutputFile::give_name() {
 }
 
 Result<void> commit(std::vector<OutputFile>& files) {
-  for (OutputFile& file : files) {
+  for (OutputFile& file : files)
     if (auto done = file.finish(); !done) return done;
+  NewFolders folders;
+  for (const OutputFile& file : files) {
+    if (auto made = folders.make(file.target_, file.folder_); !made) return made;
     if (auto ok = check_target(file.target_); !ok) return ok;
   }
   for (OutputFile& file : files)
@@ -199,6 +253,7 @@ Result<void> commit(std::vector<OutputFile>& files) {
       return unwritable(file.target_, std::strerror(errno));
     file.name_.clear();
   }
+  folders.keep();
   return {};
 }
 

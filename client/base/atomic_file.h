@@ -4,7 +4,8 @@
 // An OutputFile is written without a name in the folder of its target (O_TMPFILE; if the file
 // system has no such files, under a hidden name that is removed again), so nothing is left
 // behind, whatever ends the process. `commit` then moves all files of a set into place: each
-// replaces an older file in one step, and no name appears before all contents are complete.
+// replaces an older file in one step, and no name appears before all contents are complete. A stop
+// that is requested before the first is moved undoes all; later it has no effect.
 //
 //   auto file = OutputFile::create("mesh.vtu", stop);
 //   file->put("<VTKFile>");
@@ -63,9 +64,13 @@ bool write_all(int fd, const void* bytes, std::size_t size);
 // `target` is a regular file.
 Result<void> check_target(const std::filesystem::path& target);
 
+enum class MissingFolders { kRefuse, kMake };
+
 class OutputFile {
  public:
-  static Result<OutputFile> create(const std::filesystem::path& target, std::stop_token stop);
+  // With kMake, `commit` makes the folders of `target` that are missing, and not earlier.
+  static Result<OutputFile> create(const std::filesystem::path& target, std::stop_token stop,
+                                   MissingFolders missing = MissingFolders::kRefuse);
 
   OutputFile(OutputFile&&) noexcept;
   OutputFile& operator=(OutputFile&&) = delete;
@@ -93,19 +98,22 @@ class OutputFile {
   // Flushes; returns the first failure of any write, if there was one. A requested stop counts.
   Result<void> finish();
   const std::filesystem::path& target() const { return target_; }
+  // An existing folder, on the file system of the target: its own, or the nearest above it.
+  const std::filesystem::path& folder() const { return folder_; }
 
  private:
   friend Result<void> commit(std::vector<OutputFile>& files);
   static constexpr std::size_t kBuffer = std::size_t{1} << 20;
 
-  OutputFile(std::filesystem::path target, FileDescriptor fd, std::filesystem::path name,
-             std::stop_token stop);
+  OutputFile(std::filesystem::path target, std::filesystem::path folder, FileDescriptor fd,
+             std::filesystem::path name, std::stop_token stop);
   char* reserve(std::size_t size);
   void flush();
-  // Gives the file a hidden name beside its target, from which it can be moved.
+  // Gives the file a hidden name in `folder`, from which it can be moved.
   Result<void> give_name();
 
   std::filesystem::path target_;
+  std::filesystem::path folder_;
   FileDescriptor fd_;
   std::filesystem::path name_;  // empty while nameless
   std::stop_token stop_;

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/call/connection.h"
 
-#include <arpa/inet.h>
 #include <grpcpp/create_channel.h>
 #include <grpcpp/security/credentials.h>
 #include <grpcpp/support/channel_arguments.h>
 #include <grpcpp/support/client_interceptor.h>
-#include <netinet/in.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -15,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/call/address.h"
 #include "client/formats/files/file_contents.h"
 
 namespace weft::client {
@@ -52,19 +51,6 @@ Result<std::string> read_token(const std::filesystem::path& path) {
     return fail(ExitCode::kUnreadableInput,
                 source + ": not a token, which is one word of visible ASCII characters");
   return text;
-}
-
-// Whether what is sent there stays on this machine. Names other than localhost are not looked up.
-bool is_local(const std::string& address) {
-  if (address.starts_with("unix:") || address.starts_with("unix-abstract:")) return true;
-  std::string host = address.substr(0, address.rfind(':'));
-  if (host.size() >= 2 && host.front() == '[' && host.back() == ']')
-    host = host.substr(1, host.size() - 2);
-  in_addr v4{};
-  if (::inet_pton(AF_INET, host.c_str(), &v4) == 1) return ntohl(v4.s_addr) >> 24 == 127;
-  in6_addr v6{};
-  if (::inet_pton(AF_INET6, host.c_str(), &v6) == 1) return IN6_IS_ADDR_LOOPBACK(&v6);
-  return host == "localhost";
 }
 
 bool wants_tls(const ConnectOptions& options) {
@@ -128,6 +114,7 @@ Result<std::shared_ptr<grpc::Channel>> open_channel(const ConnectOptions& option
   // Finds a server that restarts soon, because calls are repeated for some seconds only (retry.h).
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1'000);
+  if (is_local(options.server)) arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
   if (!options.tls_server_name.empty()) arguments.SetSslTargetNameOverride(options.tls_server_name);
   std::vector<std::unique_ptr<grpc::experimental::ClientInterceptorFactoryInterface>> interceptors;
   if (!token->empty()) interceptors.push_back(std::make_unique<AddTokenToAll>(std::move(*token)));

@@ -8,6 +8,7 @@
 
 #include "client/base/option_row.h"
 #include "client/base/text.h"
+#include "client/call/address.h"
 #include "client/call/field_path.h"
 #include "client/call/request_rows.h"
 #include "google/rpc/code.pb.h"
@@ -147,7 +148,11 @@ Error error_of(const google::rpc::Status& status, const std::string& subject,
 
 Error error_of(const grpc::Status& status, const std::string& address,
                const RequestOrigin& origin) {
-  return error_of(rich_status(status), "the server " + address + " answers", origin);
+  Error error = error_of(rich_status(status), "the server " + address + " answers", origin);
+  if (status.error_code() == grpc::StatusCode::UNAVAILABLE)
+    if (const std::string proxy = proxy_of(address); !proxy.empty())
+      error.message += "\n  it was called through " + proxy;
+  return error;
 }
 
 }  // namespace weft::client

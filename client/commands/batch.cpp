@@ -27,14 +27,6 @@ Result<void> write_text(const std::filesystem::path& file, const std::string& te
   return commit(files);
 }
 
-// Makes the folders of outputs, because a fresh checkout has none.
-void make_folders(const MeshOutputOptions& output) {
-  std::error_code ignored;  // opening the file reports it
-  for (const auto* files : {&output.files, &output.drawings})
-    for (const auto& file : *files)
-      std::filesystem::create_directories(file.parent_path(), ignored);
-}
-
 // The first drawing that a page of HTML can show; empty if there is none.
 std::filesystem::path picture_of(const MeshOutputOptions& output) {
   const auto found =
@@ -53,8 +45,9 @@ Result<MeshReport> make_mesh(const BatchMesh& mesh, const Connection& connection
   request_options->quadtree = mesh.output.draw_quadtree;
   std::optional<MeshOutput> output;
   if (!mesh.output.empty()) {
-    make_folders(mesh.output);
-    auto opened = MeshOutput::open(mesh.output, mesh.input, stop);
+    MeshOutputOptions wanted = mesh.output;
+    wanted.make_folders = true;  // a fresh checkout has none
+    auto opened = MeshOutput::open(wanted, mesh.input, stop);
     if (!opened) return tl::unexpected(opened.error());
     output.emplace(std::move(*opened));
   }

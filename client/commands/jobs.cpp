@@ -22,7 +22,7 @@ Result<void> for_each(const std::vector<std::string>& ids, const std::stop_token
                       const std::function<Result<void>(const std::string&)>& call) {
   std::optional<Error> failed;
   for (const std::string& id : ids) {
-    if (stop.stop_requested()) break;
+    if (stop.stop_requested()) return fail(ExitCode::kInternal, "interrupted");
     const auto done = call(id);
     if (done) continue;
     if (!failed) {

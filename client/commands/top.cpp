@@ -75,6 +75,7 @@ Result<ExitCode> run_top(const TopOptions& options, std::stop_token stop) {
     view.set_problem(sample ? "" : sample.error().message);
     if (sample) view.add(std::move(*sample));
   }
+  if (stop.stop_requested()) return fail(ExitCode::kInternal, "interrupted");
   return ExitCode::kOk;
 }
 

@@ -101,21 +101,21 @@ Result<void> check_names(const MeshOutputOptions& options,
 // Opens all files of the outputs, then the drawings, in the order of the options.
 Result<std::vector<OutputFile>> open_files(const MeshOutputOptions& options,
                                            const std::stop_token& stop) {
-  std::vector<std::filesystem::path> names;
-  for (const auto& output : options.files)
-    for (auto& file : mesh_files(output)) {
-      std::error_code ignored;  // opening the file reports it
-      if (file.parent_path() != output.parent_path())
-        std::filesystem::create_directories(file.parent_path(), ignored);
-      names.push_back(std::move(file));
-    }
-  names.insert(names.end(), options.drawings.begin(), options.drawings.end());
   std::vector<OutputFile> files;
-  for (const auto& name : names) {
-    auto file = OutputFile::create(name, stop);
+  const auto open = [&](const std::filesystem::path& name, bool in_own_folder) -> Result<void> {
+    auto file = OutputFile::create(
+        name, stop,
+        options.make_folders || in_own_folder ? MissingFolders::kMake : MissingFolders::kRefuse);
     if (!file) return tl::unexpected(file.error());
     files.push_back(std::move(*file));
-  }
+    return {};
+  };
+  for (const auto& output : options.files)
+    for (const auto& file : mesh_files(output))
+      if (auto opened = open(file, file.parent_path() != output.parent_path()); !opened)
+        return tl::unexpected(opened.error());
+  for (const auto& drawing : options.drawings)
+    if (auto opened = open(drawing, false); !opened) return tl::unexpected(opened.error());
   return files;
 }
 
@@ -153,7 +153,6 @@ MeshOutput::MeshOutput(MeshOutputOptions options, std::vector<OutputFile> files,
 }
 
 Result<std::unique_ptr<MeshSpool>> MeshOutput::make_spool() {
-  const auto folder = files_.front().target().parent_path();
   MeshSpoolOptions options{.vertices_only = options_.files.empty(), .on_piece = {}, .stop = stop_};
   if (drawing_ || other_drawing_ != nullptr)
     options.on_piece = [drawings =
@@ -161,7 +160,7 @@ Result<std::unique_ptr<MeshSpool>> MeshOutput::make_spool() {
       for (Drawing* const drawing : drawings)
         if (drawing != nullptr) drawing->add(piece);
     };
-  return MeshSpool::create(folder.empty() ? "." : folder, std::move(options));
+  return MeshSpool::create(files_.front().folder(), std::move(options));
 }
 
 Result<void> MeshOutput::find_markers(const NameTable& markers) {

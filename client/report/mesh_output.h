@@ -40,6 +40,7 @@ struct MeshOutputOptions {
   AreaBound area_bound{};          // that the drawings colour by
   bool draw_quadtree = false;      // over the drawings
   ProjectionOptions projection{};  // of the domain; the caller projects it
+  bool make_folders = false;       // that are missing, once the mesh is complete
   bool has_values = false;         // whether the mesh may come with values at its vertices
 
   bool empty() const { return files.empty() && drawings.empty(); }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The binary as a user runs it, against a weftd that does what the test wants (support/fake_weftd).
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 
 #include <chrono>
 #include <csignal>
@@ -207,6 +209,30 @@ TEST_F(CommandLine, SaysThatTheServerIsAbsent) {
   expect_nothing_left();
 }
 
+TEST_F(CommandLine, AsksNoProxyForThisMachine) {
+  const int proxy = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  sockaddr_in at{};
+  at.sin_family = AF_INET;
+  at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof at;
+  ASSERT_EQ(::bind(proxy, reinterpret_cast<sockaddr*>(&at), size), 0);
+  ASSERT_EQ(::listen(proxy, 1), 0);
+  ASSERT_EQ(::getsockname(proxy, reinterpret_cast<sockaddr*>(&at), &size), 0);
+  const std::string variable = "http_proxy=http://127.0.0.1:" + std::to_string(ntohs(at.sin_port));
+  const auto call = [&](const std::string& address) {
+    Words words = mesh_to("m.vtu");
+    words.insert(words.end(), {"--server", address, "--retries", "0", "--timeout", "10"});
+    return run(words, {variable});
+  };
+  EXPECT_EQ(call("127.0.0.1:1"), 78) << err();
+  EXPECT_EQ(err().find("proxy"), std::string::npos) << err();
+  EXPECT_LT(::accept(proxy, nullptr, nullptr), 0);
+  ::close(proxy);
+  EXPECT_EQ(call("mesh.invalid:7421"), 78);
+  EXPECT_NE(err().find("it was called through the proxy 127.0.0.1:"), std::string::npos) << err();
+  EXPECT_NE(err().find(", which http_proxy names"), std::string::npos) << err();
+}
+
 TEST_F(CommandLine, TakesTheServerFromTheEnvironment) {
   EXPECT_EQ(run(mesh_to("m.vtu"),
                 {"WEFT_SERVER=unix:" + (folder_ / "nobody").string(), "WEFT_RETRIES=1"}),
@@ -270,13 +296,43 @@ void wait_for_file(const std::filesystem::path& path) {
 TEST_F(CommandLine, EndsItsServerWhenInterrupted) {
   for (const int signal : {SIGINT, SIGTERM}) {
     std::filesystem::remove(folder_ / "pid");
-    const pid_t pid = start(mesh_to("m.vtu"), {"FAKE_WEFTD=hang"});
+    Words words = mesh_to("m.vtu");
+    words.insert(words.end(), {"-o", out_file("m.foam")});  // with folders of its own
+    const pid_t pid = start(words, {"FAKE_WEFTD=hang"});
     wait_for_file(folder_ / "pid");
     ::kill(pid, signal);
     EXPECT_EQ(end_of(pid), 128 + signal);
     EXPECT_NE(err().find("interrupted"), std::string::npos);
     expect_nothing_left();
   }
+}
+
+TEST_F(CommandLine, HasSucceededWhenASignalComesAfterItsFiles) {
+  // What it prints at the end waits until somebody reads.
+  int ends[2];
+  ASSERT_EQ(::pipe2(ends, O_CLOEXEC | O_NONBLOCK), 0);
+  const std::string page(4096, '.');
+  while (::write(ends[1], page.data(), page.size()) > 0) {
+  }
+  ::fcntl(ends[1], F_SETFL, 0);
+  const pid_t pid = start(mesh_to("m.vtu"), {}, ends[1]);
+  ::close(ends[1]);
+  wait_for_file(folder_ / "out" / "m.vtu");
+  ::kill(pid, SIGINT);
+  const std::string status = "/proc/" + std::to_string(pid) + "/status";
+  // The signal was taken once it is no longer pending.
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (contents_of(status).find("ShdPnd:\t0000000000000002") != std::string::npos &&
+         std::chrono::steady_clock::now() < deadline)
+    std::this_thread::yield();
+  ::fcntl(ends[0], F_SETFL, 0);
+  std::string text(page.size(), ' ');
+  while (::read(ends[0], text.data(), text.size()) > 0) {
+  }
+  ::close(ends[0]);
+  EXPECT_EQ(end_of(pid), 0) << err();
+  EXPECT_EQ(err().find("interrupted"), std::string::npos) << err();
+  EXPECT_EQ(left_in("out"), Words{"m.vtu"});
 }
 
 TEST_F(CommandLine, LeavesNothingWhenTheDiskIsFull) {

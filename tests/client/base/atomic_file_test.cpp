@@ -95,6 +95,40 @@ TEST(AtomicFile, NamesAMissingFolder) {
   EXPECT_NE(file.error().message.find("No such file or directory"), std::string::npos);
 }
 
+TEST(AtomicFile, MakesMissingFoldersWhenAllIsComplete) {
+  TempFolder folder;
+  std::vector<OutputFile> files;
+  for (const auto& name : {folder / "new" / "deep" / "a.txt", folder / "new" / "b.txt"}) {
+    auto file = OutputFile::create(name, {}, MissingFolders::kMake);
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->folder(), folder.path());
+    file->put("text");
+    files.push_back(std::move(*file));
+  }
+  EXPECT_EQ(folder.names(), FileNames{});
+  ASSERT_TRUE(commit(files));
+  EXPECT_EQ(folder.names(), FileNames{"new"});
+  EXPECT_EQ(contents_of(folder / "new" / "deep" / "a.txt"), "text");
+  EXPECT_EQ(contents_of(folder / "new" / "b.txt"), "text");
+}
+
+TEST(AtomicFile, LeavesNoNewFolderWithoutItsFiles) {
+  TempFolder folder;
+  std::stop_source stop;
+  std::vector<OutputFile> files;
+  files.push_back(*OutputFile::create(folder / "a.txt", stop.get_token()));
+  files.push_back(
+      *OutputFile::create(folder / "new" / "b.txt", stop.get_token(), MissingFolders::kMake));
+  std::filesystem::create_directory(folder / "a.txt");
+  EXPECT_FALSE(commit(files));
+  EXPECT_EQ(folder.names(), FileNames{"a.txt"});
+  std::filesystem::remove(folder / "a.txt");
+  stop.request_stop();
+  EXPECT_FALSE(commit(files));
+  files.clear();
+  EXPECT_EQ(folder.names(), FileNames{});
+}
+
 TEST(AtomicFile, RefusesATargetThatIsNoRegularFile) {
   EXPECT_FALSE(OutputFile::create("/dev/null", {}));
 }
