@@ -6,6 +6,7 @@
 #     build    compiles everything
 #     console  builds the console's pages into weftd: npm, unless there is one
 #     geo      compiles a weft that reads rasters, projects longitude and latitude, divides meshes
+#     python   runs weft for Python from the build folder, longitude and latitude included
 #     weftd    runs weftd
 #     weft     runs a weft that was compiled with geo; its own weftd needs weftd, too
 #     test     what tests/run.sh needs beyond build and geo
@@ -26,6 +27,7 @@ build=(
   libgtest-dev libgmock-dev librapidcheck-dev                            # tests
 )
 geo=(libgdal-dev libproj-dev libmetis-dev)
+python=(python3-grpcio python3-protobuf python3-numpy python3-pyproj)
 weftd=(
   libgmp10 libgmpxx4ldbl libmpfr6 libtbb12 libsleef3 libspdlog1.10
   libfmt9 libatomic1 libssl3 libsqlite3-0 libpq5 libprometheus-cpp-core1.0 zlib1g
@@ -70,6 +72,7 @@ for group in "${@:-all}"; do
   case $group in
     build) wanted+=("${build[@]}") ;;
     console) wanted+=("${console[@]}") ;;
+    python) wanted+=("${python[@]}") ;;
     geo) wanted+=("${geo[@]}") ;;
     weftd) wanted+=("${weftd[@]}") ;;
     weft) wanted+=("${weft[@]}") ;;
@@ -77,7 +80,7 @@ for group in "${@:-all}"; do
     solvers) wanted+=("${solvers[@]}") ;;
     all) wanted+=("${build[@]}" "${console[@]}" "${geo[@]}" "${test[@]}") ;;
     *)
-      echo "install-deps.sh: unknown group '$group'; there are build, console, geo, weftd, weft, test, solvers, all" >&2
+      echo "install-deps.sh: unknown group '$group'; there are build, console, geo, python, weftd, weft, test, solvers, all" >&2
       exit 2
       ;;
   esac
