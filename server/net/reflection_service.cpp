@@ -11,7 +11,9 @@
 #include <set>
 #include <utility>
 
+#include "grpc/health/v1/health.pb.h"
 #include "grpc/reflection/v1/reflection.pb.h"
+#include "grpc/reflection/v1alpha/reflection.pb.h"
 #include "server/wire/request_reader.h"
 #include "server/wire/translate.h"
 
@@ -132,6 +134,9 @@ class ReflectionService::Conversation final : public RawCall::Writer,
 ReflectionService::ReflectionService(Version version, Admission& admission,
                                      std::vector<std::string> services)
     : RawService(name_of(version), admission), services_(std::move(services)) {
+  // Links in the files of services that are listed, and that nothing else needs.
+  grpc::health::v1::HealthCheckRequest::descriptor();
+  grpc::reflection::v1alpha::ServerReflectionRequest::descriptor();
   constexpr bool kUngated = false;  // a client that explores the server does not delay a drain
   add({"ServerReflectionInfo", kSmallRequest, [this](const auto& call) { converse(*call); }},
       kUngated);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "grpc/reflection/v1/reflection.pb.h"
 #include "tests/client/support/temp_folder.h"
 #include "tests/server/harness.h"
 #include "tests/server/logged_server.h"
@@ -136,6 +137,20 @@ TEST(Reflection, ListsTheServicesInBothVersions) {
     EXPECT_TRUE(holds(answer, "grpc.health.v1.Health")) << version;
     EXPECT_FALSE(holds(answer, "weft.v1.JobService")) << version;  // no jobs are kept
     EXPECT_TRUE(reflection.end().ok());
+  }
+}
+
+TEST(Reflection, DescribesEveryServiceThatItLists) {
+  TestServer server(idle());
+  Reflection reflection(server.channel(), "v1");
+  grpc::reflection::v1::ServerReflectionResponse listed;
+  ASSERT_TRUE(listed.ParseFromString(reflection.ask(request(kListServices, "")).value()));
+  EXPECT_GE(listed.list_services_response().service_size(), 2);
+  for (const auto& service : listed.list_services_response().service()) {
+    grpc::reflection::v1::ServerReflectionResponse described;
+    ASSERT_TRUE(
+        described.ParseFromString(reflection.ask(request(kBySymbol, service.name())).value()));
+    EXPECT_TRUE(described.has_file_descriptor_response()) << service.name();
   }
 }
 
