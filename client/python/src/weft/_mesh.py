@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from . import _carried, _convert, _npz, _pixels, _solvers, _vtu
 from ._groups import Groups
+from ._masked import nan_where_masked
 from ._optional import need
 from ._warning import warn
 from .errors import MeshFileError, MissingPackage
@@ -268,7 +269,7 @@ class Mesh:
             if isinstance(source, (str, os.PathLike)):
                 options.append(f"--nodal={name}={os.fspath(source)}")
                 continue
-            values = np.asarray(source, np.float64)
+            values = nan_where_masked(source, np.float64)
             if values.shape not in ((), (len(self.points),)):
                 raise ValueError(f"nodal: {name} has the shape {values.shape}, expected "
                                  f"({len(self.points)},), a number per vertex")

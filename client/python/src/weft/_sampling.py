@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from ._masked import nan_where_masked
 from ._warning import warn
 from .errors import DomainError
 
@@ -25,7 +26,7 @@ _FACTOR = 1.25
 def evaluate(function: Function, x: Floats, y: Floats) -> Floats:
     """The function at points in arrays of any one shape. Raises DomainError."""
     try:
-        values = np.broadcast_to(np.asarray(function(x, y), np.float64), x.shape)
+        values = np.broadcast_to(nan_where_masked(function(x, y), np.float64), x.shape)
     except (TypeError, ValueError) as error:
         raise DomainError(f"size: the function of arrays {x.shape} does not give such an array: "
                           f"{error}") from error

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._hull import convex_hull
+from ._masked import refuse_masked
 from ._poly import region_ids
 from ._switches import Switches
 from .domain import Domain, Region
@@ -47,6 +48,7 @@ def read(tri: Mapping[str, npt.ArrayLike]) -> Arrays:
 
 
 def _array(key: str, values: npt.ArrayLike, dtype: Any, columns: int) -> npt.NDArray[Any]:
+    refuse_masked(key, values)
     try:
         array = np.asarray(values)
         converted = array.astype(dtype)

@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _convert, _geojson, _names, _poly, _protocol
+from ._masked import refuse_masked
 from ._short import ShortRepr
 from ._text import read_text
 from ._warning import warn
@@ -262,6 +263,7 @@ def _closed(index: int, ring: npt.ArrayLike) -> npt.NDArray[np.float64]:
 
 def _floats(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
     """(n, 2), all finite."""
+    refuse_masked(name, values)
     try:
         array = np.ascontiguousarray(values, np.float64)
     except (TypeError, ValueError) as error:
@@ -277,6 +279,7 @@ def _floats(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
 
 
 def _integers(name: str, values: npt.ArrayLike, dtype: type[Any]) -> npt.NDArray[Any]:
+    refuse_masked(name, values)
     array = np.asarray(values)
     converted = array.astype(dtype) if array.dtype != object else None
     if converted is None or (array.size and not np.array_equal(converted, array)):

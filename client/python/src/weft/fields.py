@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard, Union
 import numpy as np
 import numpy.typing as npt
 
+from ._masked import nan_where_masked, refuse_masked
 from ._names import marker_of
 from ._raster_file import RasterFile
 from ._raster_window import MOST_VALUES, read_window
@@ -143,7 +144,7 @@ def raster(source: npt.ArrayLike | str | os.PathLike[str], *,
     """
     if isinstance(source, (str, os.PathLike)):
         return FileField(os.fspath(source), "" if band is None else str(band))
-    values = np.ascontiguousarray(source, np.float32)
+    values = nan_where_masked(source, np.float32)
     if values.ndim != 2 or values.size == 0:
         raise DomainError(f"raster: values of shape {values.shape}, expected (rows, columns)")
     if origin is None or spacing is None:
@@ -167,7 +168,7 @@ def on_mesh(mesh: Mesh | tuple[npt.ArrayLike, npt.ArrayLike], values: npt.ArrayL
     points, triangles = mesh if isinstance(mesh, tuple) else (mesh.points, mesh.triangles)
     vertices = _table("on_mesh: points", points, np.float64, 2)
     corners = _table("on_mesh: triangles", triangles, np.int32, 3)
-    numbers = np.ascontiguousarray(values, np.float64)
+    numbers = nan_where_masked(values, np.float64)
     if numbers.shape != (len(vertices),):
         raise DomainError(f"on_mesh: values of shape {numbers.shape} for {len(vertices)} points")
     return MeshField(vertices, corners, numbers)
@@ -193,6 +194,7 @@ def check_is_field(name: str, field: object) -> None:
 
 
 def _table(what: str, rows: npt.ArrayLike, kind: Any, columns: int) -> Any:
+    refuse_masked(what, rows)
     table = np.ascontiguousarray(rows, kind)
     if table.size == 0:
         return table.reshape(0, columns)

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _sampling
+from ._masked import nan_where_masked
 from ._short import ShortRepr
 from .errors import DomainError
 
@@ -41,7 +42,7 @@ class Raster(ShortRepr):
     spacing: tuple[float, float]
 
     def __post_init__(self) -> None:
-        values = np.ascontiguousarray(self.values, np.float64)
+        values = nan_where_masked(self.values, np.float64)
         if values.ndim != 2 or values.size == 0:
             raise DomainError(f"raster: values of shape {values.shape}, expected (rows, columns)")
         object.__setattr__(self, "values", values)
