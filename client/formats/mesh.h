@@ -56,15 +56,38 @@ struct MeshView {
   std::size_t edge_count() const { return edges.size() / edge_nodes(); }
 };
 
+// Faces of any number of corners.
+struct Faces {
+  std::vector<std::uint32_t> corners;  // of all, one after the other
+  std::vector<std::size_t> ends;       // of each face in `corners`
+  std::vector<std::int32_t> regions;   // of each face
+  std::vector<std::int32_t> parts{};   // of each face, or empty
+
+  void add(std::span<const std::uint32_t> more, std::int32_t region) {
+    corners.insert(corners.end(), more.begin(), more.end());
+    ends.push_back(corners.size());
+    regions.push_back(region);
+  }
+  std::size_t size() const { return ends.size(); }
+  std::span<const std::uint32_t> of(std::size_t i) const {
+    const std::size_t first = i == 0 ? 0 : ends[i - 1];
+    return std::span(corners).subspan(first, ends[i] - first);
+  }
+  friend bool operator==(const Faces&, const Faces&) = default;
+};
+
 struct Mesh {
   std::vector<double> coordinates;
   std::vector<std::uint32_t> triangles;
   std::vector<std::int32_t> regions;
   std::vector<std::uint32_t> edges;
   std::vector<std::int32_t> edge_markers;
-  Names names{};                        // of markers and regions
-  std::vector<std::int32_t> parts{};    // one per triangle, from 0; empty: not divided
-  std::vector<std::string> warnings{};  // about the file: sentences for the user
+  Names names{};                             // of markers and regions
+  std::vector<std::int32_t> parts{};         // one per triangle, from 0; empty: not divided
+  std::vector<std::string> warnings{};       // about the file: sentences for the user
+  std::vector<std::int32_t> open_markers{};  // of boundaries that the file calls open
+  Faces faces{};              // while it is read: those that are no triangles (faces.h)
+  std::size_t cut_faces = 0;  // of these, those that became several triangles
 
   // REQUIRES: the mesh outlives the view.
   MeshView view() const {

@@ -12,6 +12,7 @@
 #include "client/base/text.h"
 #include "client/base/words.h"
 #include "client/formats/bed.h"
+#include "client/formats/derived/faces.h"
 #include "client/formats/derived/mesh_edges.h"
 #include "client/formats/derived/second_order.h"
 #include "client/formats/format_names.h"
@@ -95,11 +96,12 @@ constexpr MeshFormat kFormats[] = {
     adcirc_format(".14"),
     adcirc_format(".grd"),
     adcirc_format(".gr3"),
-    {".2dm", kFirstOrder, one_file<write_2dm>, read_2dm, nullptr, CarriesValues::kBed, kNoParts,
-     quotable_name, quotable_name, kBoundaryOnly},
-    {".nc", kFirstOrder, one_file<write_ugrid>, read_ugrid, nullptr, CarriesValues::kAll, kParts,
-     flag_meaning, flag_meaning},
-    {".slf", kFirstOrder, one_file<write_selafin>, nullptr, nullptr, CarriesValues::kAll},
+    {".2dm", kFirstOrder, one_file<write_2dm>, read_2dm, read_2dm_values, CarriesValues::kBed,
+     kNoParts, quotable_name, quotable_name, kBoundaryOnly},
+    {".nc", kFirstOrder, one_file<write_ugrid>, read_ugrid, read_ugrid_values, CarriesValues::kAll,
+     kParts, flag_meaning, flag_meaning},
+    {".slf", kFirstOrder, one_file<write_selafin>, read_selafin, read_selafin_values,
+     CarriesValues::kAll},
     {".xdmf", kSecondOrder, write_xdmf_mesh, nullptr, nullptr, CarriesValues::kAll, kParts,
      any_name, any_name},
     {".exo", kSecondOrder, one_file<write_exodus>, nullptr, nullptr, CarriesValues::kAll, kParts,
@@ -317,6 +319,12 @@ Result<Mesh> validated(const std::filesystem::path& path, Mesh mesh) {
     if (mesh.triangles[i] >= vertices)
       return refuse("triangle " + std::to_string(i / 3) + " has vertex " +
                     std::to_string(mesh.triangles[i]) + " of " + std::to_string(vertices));
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i)
+    for (const std::uint32_t corner : mesh.faces.of(i))
+      if (corner >= vertices)
+        return refuse("face " + std::to_string(i) + " of more than three corners has vertex " +
+                      std::to_string(corner) + " of " + std::to_string(vertices));
+  cut_faces(mesh);
   for (std::size_t i = 0; i < mesh.edges.size(); ++i)
     if (mesh.edges[i] >= vertices)
       return refuse("edge " + std::to_string(i / 2) + " has vertex " +

@@ -101,7 +101,7 @@ void write_mesh(const MeshFormat& format, const MeshView& mesh, std::span<Output
 // else is promised.
 Result<Mesh> read_mesh(const std::filesystem::path& path);
 
-// The last check of all readers: ensures the promises of read_mesh.
+// The last check of all readers: ensures the promises of read_mesh, and cuts faces into triangles.
 Result<Mesh> validated(const std::filesystem::path& path, Mesh mesh);
 
 // The extension in lower case.

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "client/base/text.h"
 #include "client/formats/derived/mesh_edges.h"
+#include "client/formats/derived/overlapping_mesh.h"
 
 namespace weft::client {
 namespace {
@@ -95,6 +97,7 @@ std::vector<std::uint32_t> repeated_triangles(const MeshView& mesh) {
 }
 
 Domain domain_of_single_triangles(const std::string& name, const MeshView& mesh) {
+  if (auto overlapping = domain_of_overlapping(name, mesh)) return std::move(*overlapping);
   const MeshEdges edges(mesh);
   const ScratchArray<std::int32_t> markers = edge_markers(mesh, edges);
   const std::vector<std::uint32_t> at_edge = triangles_at_edges(mesh, edges);

@@ -8,7 +8,8 @@
 // region is not 0 gets a seed. Without triangles every bounded face is filled (Fill::kSeeds).
 //
 // A triangle that has the corners of one before it, in any order, is left out with a warning:
-// MSH 2.2 has an element of two physical groups twice.
+// some programs write one that is in two groups twice. If triangles overlap, all that they cover is
+// filled (overlapping_mesh.h).
 #pragma once
 
 #include <string>

@@ -45,6 +45,15 @@ Result<std::vector<std::string>> chosen_arrays(const std::filesystem::path& path
                 listed(arrays) + (meant.empty() ? "" : "; " + meant));
 }
 
+MeshWithArrays with_bed_column(Mesh mesh, const std::string& name, std::vector<double> values,
+                               const std::optional<std::string>& wanted) {
+  MeshWithArrays all{std::move(mesh), {}};
+  const auto is_known = [](double value) { return value != 0; };
+  if (wanted || std::any_of(values.begin(), values.end(), is_known))
+    all.arrays.push_back({name, std::move(values)});
+  return all;
+}
+
 Result<std::vector<double>> checked(const std::filesystem::path& path, const std::string& name,
                                     Result<std::vector<double>> values, std::size_t vertices) {
   if (!values) return values;

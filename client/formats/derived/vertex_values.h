@@ -51,6 +51,11 @@ Result<std::vector<std::string>> chosen_arrays(const std::filesystem::path& path
                                                std::vector<std::string> arrays,
                                                const std::optional<std::string>& wanted);
 
+// For readers of formats that have a column for the bed, even if it is unknown: the mesh with that
+// array. If all of its values are 0 and it is not `wanted`, it is none.
+MeshWithArrays with_bed_column(Mesh mesh, const std::string& name, std::vector<double> values,
+                               const std::optional<std::string>& wanted);
+
 // Ensures the promises of MeshWithValues for the array of that name, of a mesh of so many vertices.
 Result<std::vector<double>> checked(const std::filesystem::path& path, const std::string& name,
                                     Result<std::vector<double>> values, std::size_t vertices);

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "client/base/text.h"
 #include "client/base/words.h"
 #include "client/formats/files/file_contents.h"
 #include "client/formats/files/line_scanner.h"
 #include "client/formats/files/node_numbers.h"
+#include "client/formats/files/number_text.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/meshes/adcirc.h"
 #include "client/formats/triangle/triangle_points.h"
@@ -44,9 +47,12 @@ Result<void> read_nodes(LineScanner& scanner, std::uint64_t count, NodeNumbers& 
       mesh.coordinates.push_back(*value);
     }
     if (depths == nullptr) continue;
-    const auto depth = scanner.real("the depth");
+    const auto depth = scanner.word("the depth");
     if (!depth) return tl::unexpected(depth.error());
-    depths->push_back(*depth);
+    const auto value = real_of(*depth);
+    if (!value && lower_case(*depth).find("nan") == std::string::npos)
+      return scanner.error("expected the depth, found " + in_quotes(*depth));
+    depths->push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
   }
   return {};
 }
@@ -54,20 +60,26 @@ Result<void> read_nodes(LineScanner& scanner, std::uint64_t count, NodeNumbers& 
 Result<void> read_elements(LineScanner& scanner, std::uint64_t count, const NodeNumbers& numbers,
                            Mesh& mesh) {
   mesh.triangles.reserve(3 * count);
+  std::vector<std::uint32_t> face;
   for (std::uint64_t i = 0; i < count; ++i) {
     if (auto line = scanner.next_line("an element"); !line) return line;
     if (auto number = scanner.integer("the element number"); !number)
       return tl::unexpected(number.error());
     const auto corners = scanner.integer("the nodes per element");
     if (!corners) return tl::unexpected(corners.error());
-    if (*corners != 3)
+    if (*corners != 3 && *corners != 4)
       return scanner.error("the nodes per element are " + std::to_string(*corners) +
-                           ", only 3 are read");
-    for (int k = 0; k < 3; ++k) {
+                           ", only 3 and 4 are read");
+    face.clear();
+    for (std::int64_t k = 0; k < *corners; ++k) {
       const auto v = numbers.read(scanner, "a corner");
       if (!v) return tl::unexpected(v.error());
-      mesh.triangles.push_back(*v);
+      face.push_back(*v);
     }
+    if (face.size() > 3)
+      mesh.faces.add(face, 0);
+    else
+      mesh.triangles.insert(mesh.triangles.end(), face.begin(), face.end());
   }
   return {};
 }
@@ -92,6 +104,8 @@ Result<void> read_boundaries(LineScanner& scanner, bool open, const NodeNumbers&
     const std::int32_t marker = marker_of(scanner.rest_of_line(), open     ? kOpenMarker
                                                                   : island ? kIslandMarker
                                                                            : kLandMarker);
+    if (open && std::ranges::find(mesh.open_markers, marker) == mesh.open_markers.end())
+      mesh.open_markers.push_back(marker);
     std::uint32_t first = 0;
     std::uint32_t last = 0;
     const auto add_edge = [&](std::uint32_t from, std::uint32_t to) {
@@ -147,12 +161,7 @@ Result<MeshWithArrays> read_adcirc_values(const std::filesystem::path& path,
   std::vector<double> depths;
   auto mesh = read_grid(path, &depths);
   if (!mesh) return tl::unexpected(mesh.error());
-  MeshWithArrays all{std::move(*mesh), {}};
-  // The format has a column of depths, even if they are unknown.
-  const auto is_known = [](double depth) { return depth != 0; };
-  if (!wanted && std::none_of(depths.begin(), depths.end(), is_known)) return all;
-  all.arrays.push_back({chosen->front(), std::move(depths)});
-  return all;
+  return with_bed_column(std::move(*mesh), chosen->front(), std::move(depths), wanted);
 }
 
 }  // namespace weft::client

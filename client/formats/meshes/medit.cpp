@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,8 +22,8 @@ namespace weft::client {
 namespace {
 
 constexpr std::string_view kFirstWord = "MeshVersionFormatted";
-constexpr std::array<std::string_view, 7> kOtherElements = {
-    "Quadrilaterals", "Tetrahedra", "Hexahedra", "Prisms", "Pyramids", "TrianglesP2", "EdgesP2"};
+constexpr std::array<std::string_view, 6> kOtherElements = {"Tetrahedra", "Hexahedra",   "Prisms",
+                                                            "Pyramids",   "TrianglesP2", "EdgesP2"};
 
 // Fields stand between blanks; lines mean nothing.
 class Reader {
@@ -65,6 +66,7 @@ class Reader {
     if (key == "Edges") return elements("the edge count", 2, mesh_.edges, mesh_.edge_markers);
     if (key == "Triangles")
       return elements("the triangle count", 3, mesh_.triangles, mesh_.regions);
+    if (key == "Quadrilaterals") return quadrilaterals();
     return other(key);
   }
 
@@ -115,6 +117,15 @@ class Reader {
       references.push_back(*reference);
     }
     return {};
+  }
+
+  Result<void> quadrilaterals() {
+    std::vector<std::uint32_t> corners;
+    std::vector<std::int32_t> references;
+    auto done = elements("the quadrilateral count", 4, corners, references);
+    for (std::size_t i = 0; done && i < references.size(); ++i)
+      mesh_.faces.add(std::span(corners).subspan(4 * i, 4), references[i]);
+    return done;
   }
 
   // Passes over the numbers of a section that is not read.

@@ -61,8 +61,8 @@ class Reader {
 
   Result<void> section(std::string_view key) {
     if (key == "dimension") return dimension();
-    if (key == "elements") return elements("the element count", 3, mesh_.triangles, mesh_.regions);
-    if (key == "boundary") return elements("the edge count", 2, mesh_.edges, mesh_.edge_markers);
+    if (key == "elements") return elements("the element count", /*are_lines=*/false);
+    if (key == "boundary") return elements("the edge count", /*are_lines=*/true);
     if (key == "vertices") return vertices();
     if (key == "attribute_sets") return sets(NameKind::kRegion);
     if (key == "bdr_attribute_sets") return sets(NameKind::kMarker);
@@ -78,28 +78,36 @@ class Reader {
     return {};
   }
 
-  // "attribute type v0 v1 ...": MFEM's number for an element is one less than that of its corners.
-  Result<void> elements(std::string_view what, int corners, std::vector<std::uint32_t>& vertices,
-                        std::vector<std::int32_t>& attributes) {
+  // "attribute type v0 v1 ...": MFEM's number for a line, a triangle and a square is one less than
+  // that of its corners.
+  Result<void> elements(std::string_view what, bool are_lines) {
     const auto number = count(what);
     if (!number) return tl::unexpected(number.error());
+    std::vector<std::uint32_t> corners;
     for (std::uint64_t i = 0; i < *number; ++i) {
       const auto attribute = integer("the attribute");
       if (!attribute) return tl::unexpected(attribute.error());
       const auto type = integer("the element's type");
       if (!type) return tl::unexpected(type.error());
-      if (*type != corners - 1)
+      if (are_lines ? *type != 1 : *type != 2 && *type != 3)
         return scanner_.error("the element's type is " + std::to_string(*type) + ", only " +
-                              std::to_string(corners - 1) + " is read here");
-      attributes.push_back(*attribute);
-      for (int k = 0; k < corners; ++k) {
+                              (are_lines ? "1 is" : "2 and 3 are") + " read here");
+      corners.clear();
+      for (int k = 0; k <= *type; ++k) {
         if (auto done = scanner_.to_field("a vertex"); !done) return done;
         // Vertices come later, so that their numbers are checked at the end.
         const auto v =
             read_index(scanner_, "a vertex", 0, std::numeric_limits<std::uint32_t>::max());
         if (!v) return tl::unexpected(v.error());
-        vertices.push_back(*v);
+        corners.push_back(*v);
       }
+      if (corners.size() > 3) {
+        mesh_.faces.add(corners, *attribute);
+        continue;
+      }
+      auto& list = are_lines ? mesh_.edges : mesh_.triangles;
+      list.insert(list.end(), corners.begin(), corners.end());
+      (are_lines ? mesh_.edge_markers : mesh_.regions).push_back(*attribute);
     }
     return {};
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
@@ -18,6 +19,7 @@
 #include "client/formats/files/number_text.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/meshes/msh.h"
+#include "client/formats/meshes/msh_group_losses.h"
 
 namespace weft::client {
 namespace {
@@ -28,6 +30,7 @@ constexpr std::string_view kBlanks = " \t\r\n";
 // The types of elements. The first two are also their dimensions.
 constexpr std::int32_t kLine = 1;
 constexpr std::int32_t kTriangle = 2;
+constexpr std::int32_t kQuadrilateral = 3;
 constexpr std::int32_t kPoint = 15;
 
 // Thrown and caught in this file only: a format of nested counts is easiest to read without a check
@@ -109,7 +112,11 @@ class Reader {
     }
     if (!has_format) throw Malformed{"is empty"};
     if (!has_nodes_ || !has_elements_) throw Malformed{"has no $Nodes or no $Elements"};
+    if (is_22_) losses_.remove_repeated(mesh_, groups_);
+    losses_.keep(groups_);
     mesh_.warnings = names_.warnings();
+    for (const std::string& sentence : losses_.sentences())
+      mesh_.warnings.push_back(path_.string() + ": " + sentence);
     mesh_.names = names_.take();
   }
 
@@ -200,6 +207,7 @@ class Reader {
   }
 
   void read_name(Tag group, std::string_view name) {
+    losses_.name(group, name);
     for (const std::string_view word : {"region ", "marker "}) {
       if (!name.starts_with(word)) continue;
       const std::string_view number = name.substr(word.size());
@@ -224,7 +232,7 @@ class Reader {
         const std::uint64_t groups = count();
         for (std::uint64_t g = 0; g < groups; ++g) {
           const auto group = next<std::int32_t>();
-          if (g == 0) group_of_entity_[{dimension, tag}] = group;
+          groups_of_entity_[{dimension, tag}].push_back(group);
         }
         if (dimension == 0) continue;
         const std::uint64_t bounding = count();
@@ -233,11 +241,15 @@ class Reader {
     }
   }
 
-  // The region or marker of an entity; 0 if it has no group.
-  std::int32_t id_of(Tag entity) const {
-    const auto group = group_of_entity_.find(entity);
-    if (group == group_of_entity_.end()) return 0;
-    return id_of_group(entity.first, group->second);
+  // The group of the elements of an entity; 0 if it has none.
+  std::int32_t group_of(Tag entity, std::uint64_t elements) {
+    const auto groups = groups_of_entity_.find(entity);
+    if (groups == groups_of_entity_.end()) return 0;
+    const std::int32_t first = groups->second.front();
+    for (const std::int32_t group : groups->second)
+      if (group != first && elements > 0)
+        losses_.lose({entity.first, group}, {entity.first, first}, elements);
+    return first;
   }
   std::int32_t id_of_group(std::int32_t dimension, std::int32_t group) const {
     const auto id = id_of_group_.find({dimension, group});
@@ -375,10 +387,10 @@ class Reader {
       const auto type = next<std::int32_t>();
       const std::uint64_t elements = count();
       check_type(type);
-      const std::int32_t id = id_of({dimension, entity});
+      const std::int32_t group = group_of({dimension, entity}, elements);
       for (std::uint64_t i = 0; i < elements; ++i) {
         next<std::uint64_t>();
-        read_element<std::uint64_t>(type, id);
+        read_element<std::uint64_t>(type, group);
       }
     }
   }
@@ -409,26 +421,35 @@ class Reader {
         const auto tag = next<std::int32_t>();
         if (k == 0) group = tag;
       }
-      read_element<std::int32_t>(type, id_of_group(type == kPoint ? 0 : type, group));
+      read_element<std::int32_t>(type, group);
     }
   }
 
   static void check_type(std::int32_t type) {
-    if (type != kLine && type != kTriangle && type != kPoint)
+    if (type != kLine && type != kTriangle && type != kQuadrilateral && type != kPoint)
       throw Malformed{"has elements of type " + std::to_string(type) +
-                      ", which are no triangles, lines or points"};
+                      ", which are no triangles, quadrilaterals, lines or points"};
   }
 
   template <class NodeTag>
-  void read_element(std::int32_t type, std::int32_t id) {
-    for (int corner = 0; corner < (type == kPoint ? 1 : type + 1); ++corner) {
+  void read_element(std::int32_t type, std::int32_t group) {
+    std::array<std::uint32_t, 4> corners;
+    const std::size_t count = type == kPoint ? 1 : static_cast<std::size_t>(type) + 1;
+    for (std::size_t corner = 0; corner < count; ++corner) {
       const auto tag = next<NodeTag>();
-      const std::uint32_t v = vertex(static_cast<std::make_unsigned_t<NodeTag>>(tag), "an element");
-      if (type == kTriangle) mesh_.triangles.push_back(v);
-      if (type == kLine) mesh_.edges.push_back(v);
+      corners[corner] = vertex(static_cast<std::make_unsigned_t<NodeTag>>(tag), "an element");
     }
-    if (type == kTriangle) mesh_.regions.push_back(id);
-    if (type == kLine) mesh_.edge_markers.push_back(id);
+    if (type == kPoint) return;
+    const std::int32_t id = id_of_group(type == kLine ? 1 : 2, group);
+    if (type == kQuadrilateral) {
+      mesh_.faces.add(corners, id);
+      groups_.of_faces.push_back(group);
+      return;
+    }
+    auto& list = type == kLine ? mesh_.edges : mesh_.triangles;
+    list.insert(list.end(), corners.begin(), corners.begin() + count);
+    (type == kLine ? mesh_.edge_markers : mesh_.regions).push_back(id);
+    (type == kLine ? groups_.of_edges : groups_.of_triangles).push_back(group);
   }
 
   std::filesystem::path path_;
@@ -439,7 +460,9 @@ class Reader {
   bool has_nodes_ = false;
   bool has_elements_ = false;
   std::map<Tag, std::int32_t> id_of_group_;
-  std::map<Tag, std::int32_t> group_of_entity_;
+  std::map<Tag, std::vector<std::int32_t>> groups_of_entity_;
+  MshGroups groups_;
+  MshGroupLosses losses_;
   std::vector<std::uint64_t> tags_;  // of the vertices, ascending
   // What follows each name of a section $NodeData.
   std::map<std::string, std::string_view> node_data_;

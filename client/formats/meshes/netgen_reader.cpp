@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <string>
@@ -52,8 +53,8 @@ class Reader {
       do more = scanner_.try_next_line();
       while (more && !is_keyword(scanner_.rest_of_line()));
     }
-    number(NameKind::kRegion, materials_, mesh_.regions);
-    number(NameKind::kMarker, conditions_, mesh_.edge_markers);
+    number(NameKind::kRegion, materials_, {&mesh_.regions, &mesh_.faces.regions});
+    number(NameKind::kMarker, conditions_, {&mesh_.edge_markers});
     return finished();
   }
 
@@ -128,11 +129,15 @@ class Reader {
       if (!value) return tl::unexpected(value.error());
       head[k] = *value;
     }
-    if (head[4] != 3)
+    if (head[4] != 3 && head[4] != 4)
       return scanner_.error("the element has " + std::to_string(head[4]) +
-                            " points, only triangles of 3 are read");
+                            " points, only 3 and 4 are read");
+    std::vector<std::uint32_t> points;
+    if (auto read = corners(head[4], points); !read) return read;
+    if (points.size() > 3) return mesh_.faces.add(points, head[1]), Result<void>{};
+    mesh_.triangles.insert(mesh_.triangles.end(), points.begin(), points.end());
     mesh_.regions.push_back(head[1]);
-    return corners(3, mesh_.triangles);
+    return {};
   }
 
   // "surfid 0 p1 p2", and what tells of triangles, domains and geometry.
@@ -160,7 +165,8 @@ class Reader {
 
   // A number is what its name says, "region_7", or the number of its name, or itself if it has
   // none.
-  void number(NameKind kind, const NumberNames& names, std::vector<std::int32_t>& of_elements) {
+  void number(NameKind kind, const NumberNames& names,
+              std::initializer_list<std::vector<std::int32_t>*> of_elements) {
     const std::string prefix = std::string(word_of(kind)) + "_";
     Labels labels;
     std::map<std::int32_t, std::uint32_t> label_of;
@@ -172,10 +178,12 @@ class Reader {
       const bool named = !says && !name.empty() && name != "default";
       label_of.emplace(number, named ? labels.of(name) : labels.of(said));
     }
-    for (const std::int32_t number : of_elements)
-      if (!label_of.contains(number)) label_of.emplace(number, labels.of(number));
+    for (const auto* list : of_elements)
+      for (const std::int32_t number : *list)
+        if (!label_of.contains(number)) label_of.emplace(number, labels.of(number));
     const std::vector<std::int32_t> numbers = labels.numbers();
-    for (std::int32_t& value : of_elements) value = numbers[label_of.at(value)];
+    for (auto* list : of_elements)
+      for (std::int32_t& value : *list) value = numbers[label_of.at(value)];
     labels.name_all(kind, names_);
   }
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <zlib.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
@@ -15,6 +13,7 @@
 #include <vector>
 
 #include "client/base/text.h"
+#include "client/formats/files/compression.h"
 #include "client/formats/files/file_contents.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/meshes/npz.h"
@@ -42,35 +41,6 @@ T number_at(std::string_view bytes, std::uint64_t at) {
 std::string_view piece(std::string_view bytes, std::uint64_t at, std::uint64_t size) {
   if (at > bytes.size() || bytes.size() - at < size) throw Malformed{"the archive is cut short"};
   return bytes.substr(at, size);
-}
-
-std::string inflated(std::string_view packed, std::uint64_t size) {
-  // Deflate cannot shrink to less than a thousandth, so an entry that claims more is refused before
-  // any memory is taken for it.
-  constexpr std::uint64_t kMostGrowth = 1100;
-  if (size / kMostGrowth > packed.size() + 1) throw Malformed{"an array claims an absurd size"};
-  std::string out(size, '\0');
-  z_stream stream{};
-  if (::inflateInit2(&stream, -MAX_WBITS) != Z_OK) throw Malformed{"zlib does not start"};
-  std::size_t read = 0;
-  std::size_t written = 0;
-  int state = Z_OK;
-  while (state == Z_OK) {
-    constexpr std::size_t kStep = std::size_t{1} << 30;
-    const std::size_t in = std::min(kStep, packed.size() - read);
-    const std::size_t room = std::min(kStep, out.size() - written);
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data() + read));
-    stream.avail_in = static_cast<uInt>(in);
-    stream.next_out = reinterpret_cast<Bytef*>(out.data() + written);
-    stream.avail_out = static_cast<uInt>(room);
-    state = ::inflate(&stream, Z_NO_FLUSH);
-    read += in - stream.avail_in;
-    written += room - stream.avail_out;
-  }
-  ::inflateEnd(&stream);
-  if (state != Z_STREAM_END || written != size)
-    throw Malformed{"an array does not unpack to the size that it claims"};
-  return out;
 }
 
 // The arrays of an archive, by name without ".npy".
@@ -111,7 +81,9 @@ class Archive {
     if (entry.method != 8)
       throw Malformed{"array " + in_quotes(name) + " is packed by the method " +
                       std::to_string(entry.method) + ", only 0 and 8 are read"};
-    return unpacked_.emplace(name, inflated(packed, entry.size)).first->second;
+    auto bytes = unpacked(Packing::kDeflate, packed, entry.size);
+    if (!bytes) throw Malformed{"array " + in_quotes(name) + " " + bytes.error()};
+    return unpacked_.emplace(name, std::move(*bytes)).first->second;
   }
 
  private:
@@ -171,7 +143,21 @@ struct Array {
   std::string type;                  // "<f8"
   std::vector<std::uint64_t> shape;  // one or two
   std::string_view values;
+  char kind = 'f';       // of the type: f, i, u, or U for text
   std::size_t item = 0;  // bytes
+  bool is_big_endian = false;
+  bool by_columns = false;  // in the order of Fortran, else by rows
+
+  template <class Stored>
+  Stored at(std::uint64_t row, std::uint64_t column, std::uint64_t columns) const {
+    const std::uint64_t i = by_columns ? column * shape[0] + row : row * columns + column;
+    char bytes[sizeof(Stored)];
+    std::memcpy(bytes, values.data() + i * sizeof bytes, sizeof bytes);
+    if (is_big_endian) std::reverse(std::begin(bytes), std::end(bytes));
+    Stored value;
+    std::memcpy(&value, bytes, sizeof value);
+    return value;
+  }
 };
 
 Array parse_npy(const std::string& name, std::string_view bytes) {
@@ -192,18 +178,26 @@ Array parse_npy(const std::string& name, std::string_view bytes) {
   Array array;
   const std::string_view type = after("'descr': '");
   array.type = type.substr(0, type.find('\''));
-  const bool is_text = array.type.starts_with("<U");
-  const bool known = is_text || array.type == "<f8" || array.type == "<f4" || array.type == "<i4" ||
-                     array.type == "<i8" || array.type == "<u4" || array.type == "<u8";
-  if (!known) throw bad("has the type " + in_quotes(array.type) + ", which is not read");
+  const auto unknown = [&] {
+    return bad("has the type " + in_quotes(array.type) + ", which is not read");
+  };
+  if (array.type.size() < 3 || std::string_view("<>|").find(array.type[0]) == type.npos)
+    throw unknown();
+  array.is_big_endian = array.type[0] == '>';
+  array.kind = array.type[1];
   std::uint64_t item = 0;  // in bytes, or in letters
   const char* const type_end = array.type.data() + array.type.size();
   const auto [item_end, item_problem] = std::from_chars(array.type.data() + 2, type_end, item);
   constexpr std::uint64_t kMostLetters = 1 << 20;
   if (item_problem != std::errc() || item_end != type_end || item == 0 || item > kMostLetters)
-    throw bad("has the type " + in_quotes(array.type) + ", which is not read");
+    throw unknown();
+  const bool is_integer = array.kind == 'i' || array.kind == 'u';
+  const bool is_number = (is_integer && (item == 1 || item == 2 || item == 4 || item == 8)) ||
+                         (array.kind == 'f' && (item == 4 || item == 8));
+  const bool is_text = array.kind == 'U' && !array.is_big_endian;
+  if (!is_number && !is_text) throw unknown();
   array.item = is_text ? 4 * item : item;
-  if (after("'fortran_order': ").starts_with("True")) throw bad("is in Fortran's order");
+  array.by_columns = after("'fortran_order': ").starts_with("True");
   std::string_view shape = after("'shape': (");
   shape = shape.substr(0, shape.find(')'));
   std::uint64_t count = 1;
@@ -229,9 +223,8 @@ void convert(const std::string& name, const Array& array, std::size_t columns, s
   out.reserve(rows * columns);
   for (std::uint64_t row = 0; row < rows; ++row) {
     for (std::size_t k = 0; k < columns; ++k) {
-      Stored value;
-      std::memcpy(&value, array.values.data() + (row * stride + k) * sizeof value, sizeof value);
-      if constexpr (std::is_integral_v<Stored>) {
+      const Stored value = array.at<Stored>(row, k, stride);
+      if constexpr (std::is_integral_v<Out>) {
         if (!std::in_range<Out>(value))
           throw Malformed{"array " + in_quotes(name) + " has " + std::to_string(value) +
                           " in row " + std::to_string(row) + ", out of range"};
@@ -253,15 +246,25 @@ std::vector<Out> column_values(Archive& archive, const std::string& name, std::s
     throw Malformed{"array " + in_quotes(name) + " does not have " + std::to_string(columns) +
                     (columns == 1 ? " column" : " columns")};
   std::vector<Out> out;
+  const auto is = [&array](char kind, std::size_t item) {
+    return array.kind == kind && array.item == item;
+  };
+  const auto as = [&]<class Stored>(Stored) {
+    convert<Stored>(name, array, columns, stride, out);
+    return std::move(out);
+  };
   if constexpr (std::is_floating_point_v<Out>) {
-    if (array.type == "<f8") return convert<double>(name, array, columns, stride, out), out;
-    if (array.type == "<f4") return convert<float>(name, array, columns, stride, out), out;
-  } else {
-    if (array.type == "<i4") return convert<std::int32_t>(name, array, columns, stride, out), out;
-    if (array.type == "<i8") return convert<std::int64_t>(name, array, columns, stride, out), out;
-    if (array.type == "<u4") return convert<std::uint32_t>(name, array, columns, stride, out), out;
-    if (array.type == "<u8") return convert<std::uint64_t>(name, array, columns, stride, out), out;
+    if (is('f', 8)) return as(double{});
+    if (is('f', 4)) return as(float{});
   }
+  if (is('i', 1)) return as(std::int8_t{});
+  if (is('i', 2)) return as(std::int16_t{});
+  if (is('i', 4)) return as(std::int32_t{});
+  if (is('i', 8)) return as(std::int64_t{});
+  if (is('u', 1)) return as(std::uint8_t{});
+  if (is('u', 2)) return as(std::uint16_t{});
+  if (is('u', 4)) return as(std::uint32_t{});
+  if (is('u', 8)) return as(std::uint64_t{});
   throw Malformed{"array " + in_quotes(name) + " has the type " + in_quotes(array.type) +
                   ", which does not fit"};
 }
@@ -289,7 +292,7 @@ void append_utf8(std::uint32_t point, std::string& out) {
 
 std::vector<std::string> texts(Archive& archive, const std::string& name) {
   const Array array = parse_npy(name, archive.array(name));
-  if (!array.type.starts_with("<U") || array.shape.size() != 1)
+  if (array.kind != 'U' || array.shape.size() != 1)
     throw Malformed{"array " + in_quotes(name) + " is not one of texts"};
   std::vector<std::string> out;
   for (std::uint64_t row = 0; row < array.shape[0]; ++row) {

@@ -8,11 +8,26 @@
 // A record has less than 2 GiB: more than 178,956,969 triangles are a failure of the file (EFBIG).
 #pragma once
 
+#include <filesystem>
+#include <optional>
+#include <string>
+
 #include "client/base/atomic_file.h"
+#include "client/base/error.h"
+#include "client/formats/derived/vertex_values.h"
 #include "client/formats/mesh.h"
 
 namespace weft::client {
 
 void write_selafin(const MeshView& mesh, OutputFile& file);
+
+// Reads files of either precision and byte order, of one plane; triangles or quadrilaterals.
+// Coordinates include the file's offset. It has no edges.
+Result<Mesh> read_selafin(const std::filesystem::path& path);
+
+// The same with its variables at the last time step, by their names; BOTTOM, or FOND in French, is
+// the array "elevation".
+Result<MeshWithArrays> read_selafin_values(const std::filesystem::path& path,
+                                           const std::optional<std::string>& wanted);
 
 }  // namespace weft::client

@@ -10,16 +10,24 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "client/base/atomic_file.h"
 #include "client/base/error.h"
+#include "client/formats/derived/vertex_values.h"
 #include "client/formats/mesh.h"
 
 namespace weft::client {
 
 void write_2dm(const MeshView& mesh, OutputFile& file);
 
-// Reads these cards of a file; others are passed over, but for elements that are no triangles.
+// Reads these cards of a file; E4Q lines, quadrilaterals, too; others are passed over, but for
+// elements of other kinds.
 Result<Mesh> read_2dm(const std::filesystem::path& path);
+
+// The same with the third coordinate, as the array "elevation".
+Result<MeshWithArrays> read_2dm_values(const std::filesystem::path& path,
+                                       const std::optional<std::string>& wanted);
 
 }  // namespace weft::client

@@ -11,6 +11,7 @@
 #include "client/base/text.h"
 #include "client/formats/files/file_contents.h"
 #include "client/formats/files/line_scanner.h"
+#include "client/formats/files/number_text.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/meshes/sms.h"
 #include "client/formats/triangle/triangle_points.h"
@@ -38,7 +39,8 @@ class Reader {
       if (auto done = read_card(*card); !done) return tl::unexpected(done.error());
     }
     if (first) return refuse("is empty");
-    for (std::vector<std::uint32_t>* numbers : {&mesh_.triangles, &mesh_.edges}) {
+    for (std::vector<std::uint32_t>* numbers :
+         {&mesh_.triangles, &mesh_.faces.corners, &mesh_.edges}) {
       for (std::uint32_t& number : *numbers) {
         const auto found = vertex_of_node_.find(number);
         if (found == vertex_of_node_.end()) return refuse("has no node " + std::to_string(number));
@@ -49,6 +51,7 @@ class Reader {
     mesh_.names = names_.take();
     return validated(path_, std::move(mesh_));
   }
+  std::vector<double> elevations() { return std::move(elevations_); }
 
  private:
   tl::unexpected<Error> refuse(const std::string& why) const {
@@ -57,12 +60,14 @@ class Reader {
 
   Result<void> read_card(std::string_view card) {
     if (card == "ND") return node();
-    if (card == "E3T") return triangle();
+    if (card == "E3T") return element(3);
+    if (card == "E4Q") return element(4);
     if (card == "NS") return node_string();
     if (card == "MAT") return material();
     const bool is_element = card.size() == 3 && card[0] == 'E' && card[1] >= '0' && card[1] <= '9';
     if (is_element)
-      return scanner_.error("the element is of the kind " + in_quotes(card) + ", only E3T is read");
+      return scanner_.error("the element is of the kind " + in_quotes(card) +
+                            ", only E3T and E4Q are read");
     return {};
   }
 
@@ -86,16 +91,21 @@ class Reader {
       if (!value) return tl::unexpected(value.error());
       mesh_.coordinates.push_back(*value);
     }
+    const auto z =
+        scanner_.at_line_end() ? Result<std::string_view>("0") : scanner_.word("the elevation");
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    elevations_.push_back(z ? real_of(*z).value_or(kNone) : kNone);
     return {};
   }
 
-  Result<void> triangle() {
+  Result<void> element(int corners) {
     if (auto number = scanner_.integer("the element's number"); !number)
       return tl::unexpected(number.error());
-    for (int corner = 0; corner < 3; ++corner) {
+    std::vector<std::uint32_t> nodes;
+    for (int corner = 0; corner < corners; ++corner) {
       const auto node = node_number();
       if (!node) return tl::unexpected(node.error());
-      mesh_.triangles.push_back(*node);
+      nodes.push_back(*node);
     }
     std::int32_t region = 0;
     if (!scanner_.at_line_end()) {
@@ -103,6 +113,8 @@ class Reader {
       if (!material) return tl::unexpected(material.error());
       region = *material;
     }
+    if (nodes.size() > 3) return mesh_.faces.add(nodes, region), Result<void>{};
+    mesh_.triangles.insert(mesh_.triangles.end(), nodes.begin(), nodes.end());
     mesh_.regions.push_back(region);
     return {};
   }
@@ -161,6 +173,7 @@ class Reader {
   std::vector<std::uint32_t> string_;  // the nodes of a node string that goes on in the next line
   std::int32_t strings_ = 0;
   NameReader names_;
+  std::vector<double> elevations_;
   Mesh mesh_;  // corners by the numbers of nodes, until all nodes are read
 };
 
@@ -170,6 +183,18 @@ Result<Mesh> read_2dm(const std::filesystem::path& path) {
   const auto contents = read_text_file(path, kMaxTextBytes);
   if (!contents) return tl::unexpected(contents.error());
   return Reader(path, contents->text()).read();
+}
+
+Result<MeshWithArrays> read_2dm_values(const std::filesystem::path& path,
+                                       const std::optional<std::string>& wanted) {
+  const auto chosen = chosen_arrays(path, {"elevation"}, wanted);
+  if (!chosen) return tl::unexpected(chosen.error());
+  const auto contents = read_text_file(path, kMaxTextBytes);
+  if (!contents) return tl::unexpected(contents.error());
+  Reader reader(path, contents->text());
+  auto mesh = reader.read();
+  if (!mesh) return tl::unexpected(mesh.error());
+  return with_bed_column(std::move(*mesh), chosen->front(), reader.elevations(), wanted);
 }
 
 }  // namespace weft::client

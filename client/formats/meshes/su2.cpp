@@ -5,6 +5,7 @@
 #include <charconv>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,52 @@ namespace {
 // VTK's numbers for the kinds of elements.
 constexpr int kLine = 3;
 constexpr int kTriangle = 5;
+constexpr int kQuadrilateral = 9;
+
+// The numbers at the ends of the lines of points: they may be missing, count up, or be those from 0
+// to the last one in any order.
+class PointNumbers {
+ public:
+  explicit PointNumbers(std::uint64_t count) : seen_(count) {}
+
+  // Reads the end of the next line.
+  Result<void> next(LineScanner& scanner) {
+    if (scanner.at_line_end()) {
+      numbers_.push_back(static_cast<std::int64_t>(numbers_.size()));
+    } else {
+      const auto number = scanner.integer("the number of the point");
+      if (!number) return tl::unexpected(number.error());
+      numbers_.push_back(*number);
+    }
+    const std::int64_t number = numbers_.back();
+    counts_up_ &= number - numbers_.front() == static_cast<std::int64_t>(numbers_.size()) - 1;
+    const bool is_free = number >= 0 && static_cast<std::uint64_t>(number) < seen_.size() &&
+                         !seen_[static_cast<std::size_t>(number)];
+    if (is_free)
+      seen_[static_cast<std::size_t>(number)] = true;
+    else if (!first_fault_)
+      first_fault_ = scanner.error("the number of the point is " + std::to_string(number) +
+                                   ", but points have the numbers from 0 to " +
+                                   std::to_string(seen_.size() - 1) + ", each once");
+    return {};
+  }
+
+  // Brings the coordinates into the order of the numbers. Error: no order has these numbers.
+  Result<void> sort(std::vector<double>& coordinates) const {
+    if (counts_up_) return {};
+    if (first_fault_) return *first_fault_;
+    const std::vector<double> listed = coordinates;
+    for (std::size_t i = 0; i < numbers_.size(); ++i)
+      std::copy_n(&listed[2 * i], 2, &coordinates[2 * static_cast<std::size_t>(numbers_[i])]);
+    return {};
+  }
+
+ private:
+  std::vector<bool> seen_;
+  std::vector<std::int64_t> numbers_;
+  bool counts_up_ = true;
+  std::optional<tl::unexpected<Error>> first_fault_;
+};
 
 class Reader {
  public:
@@ -51,7 +98,7 @@ class Reader {
                               ", only 2 is read");
       return {};
     }
-    if (key == "NELEM") return elements("the element count", kTriangle, mesh_.triangles);
+    if (key == "NELEM") return elements("the element count", /*are_lines=*/false);
     if (key == "NPOIN") return points();
     if (key == "NMARK") return {};
     if (key == "MARKER_TAG") return tag();
@@ -60,24 +107,31 @@ class Reader {
                           in_quotes(key));
   }
 
-  Result<void> elements(std::string_view what, int type, std::vector<std::uint32_t>& vertices) {
+  Result<void> elements(std::string_view what, bool are_lines) {
     const auto count = scanner_.count(what);
     if (!count) return tl::unexpected(count.error());
-    has_elements_ |= type == kTriangle;
+    has_elements_ |= !are_lines;
+    std::vector<std::uint32_t> corners;
     for (std::uint64_t i = 0; i < *count; ++i) {
       if (auto line = scanner_.next_line("an element"); !line) return line;
-      const auto found = scanner_.integer("the element's type");
-      if (!found) return tl::unexpected(found.error());
-      if (*found != type)
-        return scanner_.error("the element's type is " + std::to_string(*found) + ", only " +
-                              std::to_string(type) + " is read here");
-      for (int k = 0; k < (type == kTriangle ? 3 : 2); ++k) {
+      const auto type = scanner_.integer("the element's type");
+      if (!type) return tl::unexpected(type.error());
+      if (are_lines ? *type != kLine : *type != kTriangle && *type != kQuadrilateral)
+        return scanner_.error("the element's type is " + std::to_string(*type) + ", only " +
+                              (are_lines ? "3 is" : "5 and 9 are") + " read here");
+      corners.clear();
+      for (int k = 0; k < (are_lines ? 2 : *type == kTriangle ? 3 : 4); ++k) {
         // Points may come later, so their numbers are checked at the end.
         const auto v = read_index(scanner_, "a point of the element", 0,
                                   std::numeric_limits<std::uint32_t>::max());
         if (!v) return tl::unexpected(v.error());
-        vertices.push_back(*v);
+        corners.push_back(*v);
       }
+      auto& list = are_lines ? mesh_.edges : mesh_.triangles;
+      if (corners.size() > 3)
+        mesh_.faces.add(corners, 0);
+      else
+        list.insert(list.end(), corners.begin(), corners.end());
     }
     return {};
   }
@@ -87,6 +141,7 @@ class Reader {
     if (!count) return tl::unexpected(count.error());
     has_points_ = true;
     mesh_.coordinates.reserve(2 * *count);
+    PointNumbers numbers(*count);
     for (std::uint64_t i = 0; i < *count; ++i) {
       if (auto line = scanner_.next_line("a point"); !line) return line;
       for (const char* what : {"the x coordinate", "the y coordinate"}) {
@@ -94,8 +149,9 @@ class Reader {
         if (!value) return tl::unexpected(value.error());
         mesh_.coordinates.push_back(*value);
       }
+      if (auto number = numbers.next(scanner_); !number) return number;
     }
-    return {};
+    return numbers.sort(mesh_.coordinates);
   }
 
   Result<void> tag() {
@@ -108,7 +164,7 @@ class Reader {
 
   Result<void> marker_elements() {
     if (tags_.empty()) return scanner_.error("MARKER_ELEMS stands before any MARKER_TAG");
-    return elements("the marker's element count", kLine, mesh_.edges);
+    return elements("the marker's element count", /*are_lines=*/true);
   }
 
   // A tag that is an integer is the marker itself; any other tag is the name of a marker.

@@ -15,6 +15,9 @@ namespace weft::client {
 
 void write_su2(const MeshView& mesh, OutputFile& file);
 
+// Triangles and quadrilaterals. The numbers at the ends of the lines of points are obeyed if they
+// are those from 0 on in another order; numbers that count up from another one mean nothing, and
+// others are an error (kUnreadableInput).
 // Tags that are integers are the markers; other tags get the lowest numbers from 1 on that are
 // free, in the order of the file.
 Result<Mesh> read_su2(const std::filesystem::path& path);

@@ -39,8 +39,11 @@ class ObjReader {
       if (*key == "g") group();
       if (!done) return tl::unexpected(done.error());
     }
-    number(NameKind::kRegion, regions_, mesh_.regions);
-    number(NameKind::kMarker, markers_, mesh_.edge_markers);
+    number(regions_, mesh_.regions);
+    number(regions_, mesh_.faces.regions);
+    regions_.name_all(NameKind::kRegion, names_);
+    number(markers_, mesh_.edge_markers);
+    markers_.name_all(NameKind::kMarker, names_);
     mesh_.warnings = names_.warnings();
     mesh_.names = names_.take();
     return std::move(mesh_);
@@ -67,13 +70,16 @@ class ObjReader {
   }
 
   Result<void> face() {
-    for (int k = 0; k < 3; ++k) {
+    std::vector<std::uint32_t> corners;
+    while (corners.size() < 3 || !scanner_.at_line_end()) {
       const auto v = vertex();
       if (!v) return tl::unexpected(v.error());
-      mesh_.triangles.push_back(*v);
+      corners.push_back(*v);
     }
-    if (!scanner_.at_line_end()) return scanner_.error("the face is not a triangle");
-    mesh_.regions.push_back(label_in(regions_, "region_"));
+    const std::int32_t region = label_in(regions_, "region_");
+    if (corners.size() > 3) return mesh_.faces.add(corners, region), Result<void>{};
+    mesh_.triangles.insert(mesh_.triangles.end(), corners.begin(), corners.end());
+    mesh_.regions.push_back(region);
     return {};
   }
 
@@ -106,10 +112,9 @@ class ObjReader {
     return static_cast<std::int32_t>(is_name ? labels.of(group_) : labels.of(number));
   }
 
-  void number(NameKind kind, const Labels& labels, std::vector<std::int32_t>& of_elements) {
+  static void number(const Labels& labels, std::vector<std::int32_t>& of_elements) {
     const std::vector<std::int32_t> numbers = labels.numbers();
     for (std::int32_t& label : of_elements) label = numbers[static_cast<std::size_t>(label)];
-    labels.name_all(kind, names_);
   }
 
   LineScanner scanner_;
@@ -137,7 +142,14 @@ Result<Mesh> read_off(const std::filesystem::path& path) {
   if (auto line = scanner.next_line("the word OFF"); !line) return tl::unexpected(line.error());
   const auto word = scanner.word("the word OFF");
   if (!word) return tl::unexpected(word.error());
-  if (*word != "OFF") return scanner.error("expected the word OFF, found " + in_quotes(*word));
+  // What may stand before it tells what follows x, y and z in the lines of vertices.
+  std::string_view kind = *word;
+  for (const std::string_view prefix : {"ST", "C", "N"})
+    if (kind.starts_with(prefix)) kind.remove_prefix(prefix.size());
+  if (kind != "OFF")
+    return scanner.error("expected the word OFF, COFF, NOFF or STOFF, found " + in_quotes(*word));
+  if (!scanner.at_line_end() && scanner.rest_of_line().starts_with("BINARY"))
+    return scanner.error("the file is binary, only text is read");
   if (scanner.at_line_end())
     if (auto line = scanner.next_line("the vertex count"); !line)
       return tl::unexpected(line.error());
@@ -153,18 +165,24 @@ Result<Mesh> read_off(const std::filesystem::path& path) {
     if (auto read = read_xy(scanner, mesh); !read) return tl::unexpected(read.error());
   }
   mesh.triangles.reserve(3 * *faces);
+  std::vector<std::uint32_t> face;
   for (std::uint64_t i = 0; i < *faces; ++i) {
     if (auto line = scanner.next_line("a face"); !line) return tl::unexpected(line.error());
     const auto corners = scanner.integer("the corners of the face");
     if (!corners) return tl::unexpected(corners.error());
-    if (*corners != 3)
+    if (*corners < 3)
       return scanner.error("the face has " + std::to_string(*corners) +
-                           " corners, only triangles are read");
-    for (int k = 0; k < 3; ++k) {
+                           " corners, 3 are the least");
+    face.clear();
+    for (std::int64_t k = 0; k < *corners; ++k) {
       const auto v = read_index(scanner, "a corner", 0, *vertices);
       if (!v) return tl::unexpected(v.error());
-      mesh.triangles.push_back(*v);
+      face.push_back(*v);
     }
+    if (face.size() > 3)
+      mesh.faces.add(face, 0);
+    else
+      mesh.triangles.insert(mesh.triangles.end(), face.begin(), face.end());
   }
   return validated(path, std::move(mesh));
 }

@@ -15,18 +15,26 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "client/base/atomic_file.h"
 #include "client/base/error.h"
+#include "client/formats/derived/vertex_values.h"
 #include "client/formats/mesh.h"
 
 namespace weft::client {
 
 void write_ugrid(const MeshView& mesh, OutputFile& file);
 
-// Reads the first two-dimensional mesh of a UGRID file in NetCDF's classic format, if all of its
-// faces are triangles; regions and markers by the names above, after that of the mesh. Its edges
-// are those with a marker that is not 0.
+// Reads the first two-dimensional mesh of a UGRID file in NetCDF's classic format, whose
+// faces may have more than three nodes; regions and markers by the names above, after that of the
+// mesh. Its edges are those with a marker that is not 0.
 Result<Mesh> read_ugrid(const std::filesystem::path& path);
+
+// The same with the values at its nodes, by their names without that of the mesh; node_z is the
+// array "elevation", or "depth" if it is positive down.
+Result<MeshWithArrays> read_ugrid_values(const std::filesystem::path& path,
+                                         const std::optional<std::string>& wanted);
 
 }  // namespace weft::client

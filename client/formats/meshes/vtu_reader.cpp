@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -17,6 +15,7 @@
 #include "client/formats/files/file_contents.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/meshes/vtu.h"
+#include "client/formats/meshes/vtu_arrays.h"
 
 namespace weft::client {
 namespace {
@@ -33,14 +32,22 @@ struct Tag {
   std::string_view text;  // up to the next '<'
 };
 
-// An array of the grid whose values are not read yet.
-struct Array {
-  std::string_view type;
-  bool ascii = false;
-  std::string_view text;     // of an ASCII array
-  std::uint64_t offset = 0;  // of an appended one
+using Arrays = std::map<std::string_view, VtuArray>;
+
+// VTK's numbers for the kinds of cells, of as many corners as are listed beside them; 0: any number
+// from `least` on.
+struct CellKind {
+  std::uint64_t type;
+  std::uint64_t corners;
+  std::uint64_t least;
 };
-using Arrays = std::map<std::string_view, Array>;
+constexpr std::uint64_t kVertex = 1;
+constexpr std::uint64_t kVertices = 2;
+constexpr std::uint64_t kLine = 3;
+constexpr std::uint64_t kChain = 4;
+constexpr std::uint64_t kPixel = 8;
+constexpr CellKind kCells[] = {{kVertex, 1, 1}, {kVertices, 0, 1}, {kLine, 2, 2},  {kChain, 0, 2},
+                               {5, 3, 3},       {7, 0, 3},         {kPixel, 4, 4}, {9, 4, 4}};
 
 class Reader {
  public:
@@ -88,30 +95,49 @@ class Reader {
     for (std::size_t i = 0; i < points_; ++i)
       mesh.coordinates.insert(mesh.coordinates.end(), {(*points)[3 * i], (*points)[3 * i + 1]});
     std::uint64_t first = 0;
+    std::vector<std::uint32_t> chain;  // the corners of a cell
     for (std::size_t cell = 0; cell < cells_; ++cell) {
       const std::uint64_t end = (*offsets)[cell];
       const std::uint64_t type = (*types)[cell];
-      constexpr std::uint64_t kCorners[] = {0, 1, 0, 2, 0, 3};  // vertex, line and triangle
-      if (type >= std::size(kCorners) || kCorners[type] == 0)
+      const auto* const kind = std::find_if(std::begin(kCells), std::end(kCells),
+                                            [type](const CellKind& k) { return k.type == type; });
+      if (kind == std::end(kCells))
         return refuse("cell " + std::to_string(cell) + " has the type " + std::to_string(type) +
-                      ", which is no vertex, line or triangle");
-      if (end < first || end - first != kCorners[type] || end > corners->size())
+                      ", which is no vertex, line, triangle or polygon");
+      if (end < first || end > corners->size() || end - first < kind->least ||
+          (kind->corners != 0 && end - first != kind->corners))
         return refuse("cell " + std::to_string(cell) + " has a wrong offset");
-      auto& list = type == 5 ? mesh.triangles : mesh.edges;
-      for (; first < end; ++first) {
-        const std::uint64_t v = (*corners)[first];
+      chain.assign(corners->begin() + static_cast<std::ptrdiff_t>(first),
+                   corners->begin() + static_cast<std::ptrdiff_t>(end));
+      first = end;
+      for (const std::uint64_t v : chain)
         if (v >= points_)
           return refuse("cell " + std::to_string(cell) + " has vertex " + std::to_string(v) +
                         " of " + std::to_string(points_));
-        if (type != 1) list.push_back(static_cast<std::uint32_t>(v));
+      if (type == kVertex || type == kVertices) continue;
+      if (type == kLine || type == kChain) {
+        for (std::size_t k = 1; k < chain.size(); ++k) {
+          mesh.edges.insert(mesh.edges.end(), {chain[k - 1], chain[k]});
+          mesh.edge_markers.push_back(markers->empty() ? 0 : (*markers)[cell]);
+        }
+        continue;
       }
-      if (type == 5) mesh.regions.push_back(regions->empty() ? 0 : (*regions)[cell]);
-      if (type == 5 && parts && !parts->empty()) mesh.parts.push_back((*parts)[cell]);
-      if (type == 3) mesh.edge_markers.push_back(markers->empty() ? 0 : (*markers)[cell]);
+      if (type == kPixel) std::swap(chain[2], chain[3]);
+      const std::int32_t region = regions->empty() ? 0 : (*regions)[cell];
+      const bool is_triangle = chain.size() == 3;
+      if (is_triangle) {
+        mesh.triangles.insert(mesh.triangles.end(), chain.begin(), chain.end());
+        mesh.regions.push_back(region);
+      } else {
+        mesh.faces.add(chain, region);
+      }
+      if (parts && !parts->empty())
+        (is_triangle ? mesh.parts : mesh.faces.parts).push_back((*parts)[cell]);
     }
     // Other programs may use the name for something else.
-    if (std::any_of(mesh.parts.begin(), mesh.parts.end(), [](std::int32_t p) { return p < 0; }))
-      mesh.parts.clear();
+    const auto is_none = [](std::int32_t part) { return part < 0; };
+    if (std::ranges::any_of(mesh.parts, is_none) || std::ranges::any_of(mesh.faces.parts, is_none))
+      mesh.parts = mesh.faces.parts = {};
     return validated(path_, std::move(mesh));
   }
 
@@ -173,8 +199,8 @@ class Reader {
         is_grid = tag.attributes["type"] == "UnstructuredGrid";
         if (!is_grid) return refuse("is not a VTK unstructured grid");
         if (tag.attributes["byte_order"] == "BigEndian") return refuse("is big-endian");
-        if (tag.attributes.contains("compressor")) return refuse("is compressed");
-        wide_headers_ = tag.attributes["header_type"] == "UInt64";
+        data_.set_headers(tag.attributes["header_type"] == "UInt64");
+        if (auto known = set_compressor(tag.attributes["compressor"]); !known) return known;
       } else if (tag.name == "FieldData") {
         in_field_data = true;
       } else if (tag.name == "Piece") {
@@ -202,25 +228,35 @@ class Reader {
           return kept;
         in_points = false;
       } else if (tag.name == "AppendedData") {
-        if (tag.attributes["encoding"] != "raw") return refuse("its appended data is not raw");
+        const std::string_view encoding = tag.attributes["encoding"];
+        if (encoding != "raw" && encoding != "base64")
+          return refuse("its appended data is in the encoding " + in_quotes(encoding) +
+                        ", only raw and base64 are read");
         const std::size_t start = rest_.find('_');
         if (start == std::string_view::npos) return refuse("its appended data is missing");
-        appended_ = rest_.substr(start + 1);
+        const std::string_view bytes = rest_.substr(start + 1);
+        const bool is_base64 = encoding == "base64";
+        data_.set_appended(is_base64 ? bytes.substr(0, bytes.find('<')) : bytes, is_base64);
         return {};
       }
     }
   }
 
+  Result<void> set_compressor(std::string_view name) {
+    if (name.empty()) return {};
+    if (name == "vtkZLibDataCompressor")
+      return data_.set_compressor(Packing::kZlib), Result<void>{};
+    if (name == "vtkLZ4DataCompressor") return data_.set_compressor(Packing::kLz4), Result<void>{};
+    if (name == "vtkLZMADataCompressor")
+      return data_.set_compressor(Packing::kLzma), Result<void>{};
+    return refuse("is compressed by " + in_quotes(name) +
+                  ", only vtkZLibDataCompressor, vtkLZ4DataCompressor and vtkLZMADataCompressor "
+                  "are read");
+  }
+
   // Field data may hold anything; what is not a name is skipped.
   void keep_field(Tag& tag) {
-    Array array;
-    array.type = tag.attributes["type"];
-    array.ascii = tag.attributes["format"] == "ascii";
-    array.text = tag.text;
-    const auto offset = number(tag.attributes["offset"]);
-    if (!array.ascii && !(tag.attributes["format"] == "appended" && offset)) return;
-    array.offset = offset.value_or(0);
-    fields_.emplace_back(tag.attributes["Name"], array);
+    if (const auto array = array_of(tag)) fields_.emplace_back(tag.attributes["Name"], *array);
   }
 
   void read_names(Mesh& mesh) const {
@@ -251,62 +287,30 @@ class Reader {
     return out;
   }
 
-  Result<void> keep(Tag& tag, bool is_points, Arrays& arrays) {
-    Array array;
-    array.type = tag.attributes["type"];
+  // Nullopt if the tag does not say where the values are.
+  std::optional<VtuArray> array_of(Tag& tag) {
     const std::string_view format = tag.attributes["format"];
+    VtuArray array{.type = tag.attributes["type"], .text = tag.text};
+    if (format == "ascii") return array;
+    array.place = VtuArray::Place::kInline;
+    if (format == "binary") return array;
+    const auto offset = number(tag.attributes["offset"]);
+    if (format != "appended" || !offset) return std::nullopt;
+    array.place = VtuArray::Place::kAppended;
+    array.offset = *offset;
+    data_.add_offset(*offset);
+    return array;
+  }
+
+  Result<void> keep(Tag& tag, bool is_points, Arrays& arrays) {
     const std::string_view name = is_points ? "Points" : tag.attributes["Name"];
-    if (format == "ascii") {
-      array.ascii = true;
-      array.text = tag.text;
-    } else if (const auto offset = number(tag.attributes["offset"]);
-               format == "appended" && offset) {
-      array.offset = *offset;
-    } else {
-      return refuse("the array " + in_quotes(name) + " is neither ASCII nor appended");
-    }
-    arrays[name] = array;
+    const auto array = array_of(tag);
+    if (!array)
+      return refuse("the array " + in_quotes(name) + " is in the format " +
+                    in_quotes(tag.attributes["format"]) +
+                    ", only ascii, binary and appended are read");
+    arrays[name] = *array;
     return {};
-  }
-
-  // Converts one value; nullopt if it does not fit into T.
-  template <class T, class From>
-  static std::optional<T> convert(From value) {
-    if constexpr (std::is_floating_point_v<T>) {
-      return static_cast<T>(value);
-    } else {
-      const auto number = static_cast<long double>(value);  // holds all integers of 64 bits
-      if (!(number >= static_cast<long double>(std::numeric_limits<T>::min()) &&
-            number <= static_cast<long double>(std::numeric_limits<T>::max())))
-        return std::nullopt;
-      return static_cast<T>(value);
-    }
-  }
-
-  template <class T, class From>
-  bool append_raw(std::string_view bytes, std::vector<T>& out) const {
-    for (std::size_t at = 0; at + sizeof(From) <= bytes.size(); at += sizeof(From)) {
-      From value;
-      std::memcpy(&value, bytes.data() + at, sizeof value);
-      const auto converted = convert<T>(value);
-      if (!converted) return false;
-      out.push_back(*converted);
-    }
-    return true;
-  }
-
-  template <class T>
-  static bool append_text(std::string_view text, std::vector<T>& out) {
-    for (;;) {
-      const std::size_t start = text.find_first_not_of(kBlanks);
-      if (start == std::string_view::npos) return true;
-      text.remove_prefix(start);
-      T value{};
-      const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-      if (problem != std::errc()) return false;
-      out.push_back(value);
-      text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    }
   }
 
   template <class T>
@@ -318,39 +322,14 @@ class Reader {
   }
 
   template <class T>
-  Result<std::vector<T>> values_of(const Array& array, std::string_view name,
+  Result<std::vector<T>> values_of(const VtuArray& array, std::string_view name,
                                    std::uint64_t count) const {
-    std::vector<T> out;
-    bool read = false;
-    if (array.ascii) {
-      read = append_text(array.text, out);
-    } else {
-      const std::size_t header = wide_headers_ ? 8 : 4;
-      if (array.offset > appended_.size() || appended_.size() - array.offset < header)
-        return refuse("the array " + in_quotes(name) + " lies beyond the end of the file");
-      std::uint64_t size = 0;
-      std::memcpy(&size, appended_.data() + array.offset, header);
-      if (size > appended_.size() - array.offset - header)
-        return refuse("the array " + in_quotes(name) + " goes on beyond the end of the file");
-      const std::string_view bytes = appended_.substr(array.offset + header, size);
-      if (array.type == "Float64") read = append_raw<T, double>(bytes, out);
-      if (array.type == "Float32") read = append_raw<T, float>(bytes, out);
-      if (array.type == "Int64") read = append_raw<T, std::int64_t>(bytes, out);
-      if (array.type == "UInt64") read = append_raw<T, std::uint64_t>(bytes, out);
-      if (array.type == "Int32") read = append_raw<T, std::int32_t>(bytes, out);
-      if (array.type == "UInt32") read = append_raw<T, std::uint32_t>(bytes, out);
-      if (array.type == "Int16") read = append_raw<T, std::int16_t>(bytes, out);
-      if (array.type == "UInt16") read = append_raw<T, std::uint16_t>(bytes, out);
-      if (array.type == "Int8") read = append_raw<T, std::int8_t>(bytes, out);
-      if (array.type == "UInt8") read = append_raw<T, std::uint8_t>(bytes, out);
-    }
-    if (!read)
-      return refuse("the array " + in_quotes(name) + " of type " + in_quotes(array.type) +
-                    " holds a value that does not belong there");
-    if (out.size() != count)
-      return refuse("the array " + in_quotes(name) + " has " + std::to_string(out.size()) +
+    auto out = data_.values<T>(array);
+    if (!out) return refuse("the array " + in_quotes(name) + " " + out.error());
+    if (out->size() != count)
+      return refuse("the array " + in_quotes(name) + " has " + std::to_string(out->size()) +
                     " values, it should have " + std::to_string(count));
-    return out;
+    return std::move(*out);
   }
 
   Result<std::vector<std::int32_t>> optional_values(std::string_view name) const {
@@ -361,11 +340,10 @@ class Reader {
   std::filesystem::path path_;
   std::string_view rest_;
   Arrays point_arrays_;
-  Arrays arrays_;                                           // all others
-  std::vector<std::pair<std::string_view, Array>> fields_;  // of the grid
-  std::string_view appended_;
+  Arrays arrays_;                                              // all others
+  std::vector<std::pair<std::string_view, VtuArray>> fields_;  // of the grid
+  VtuArrays data_;
   bool has_piece_ = false;
-  bool wide_headers_ = false;
   std::uint64_t points_ = 0;
   std::uint64_t cells_ = 0;
 };

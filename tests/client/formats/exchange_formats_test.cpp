@@ -3,7 +3,10 @@
 // read_back.py to say.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <initializer_list>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -162,19 +165,20 @@ TEST_F(ExchangeFormat, ObjByOthersMayCountBackwardsAndNameTextures) {
 TEST_F(ExchangeFormat, RefusesWhatItCannotRead) {
   EXPECT_EQ(refusal("m.14", "title\n1 3\n1 0 0 0\n2 1 0 0\n2 0 1 0\n"),
             "m.14:5:1: the node number is 2, as that of another one before it");
-  EXPECT_EQ(refusal("m.14", "title\n1 3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n1 4 1 2 3 3\n"),
-            "m.14:6:3: the nodes per element are 4, only 3 are read");
+  EXPECT_EQ(refusal("m.14", "title\n1 3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n1 5 1 2 3 3 3\n"),
+            "m.14:6:3: the nodes per element are 5, only 3 and 4 are read");
   EXPECT_EQ(refusal("m.14", "title\n1 99999999\n1 0 0 0\n"),
             "m.14:2:3: the node count is 99999999, more than the rest of the file can hold");
   EXPECT_EQ(refusal("m.su2", "NDIME= 3\n"), "m.su2:1:8: the dimension is 3, only 2 is read");
-  EXPECT_EQ(refusal("m.su2", "NDIME= 2\nNELEM= 1\n9 0 1 2 3 0\n"),
-            "m.su2:3:1: the element's type is 9, only 5 is read here");
+  EXPECT_EQ(refusal("m.su2", "NDIME= 2\nNELEM= 1\n12 0 1 2 3 0\n"),
+            "m.su2:3:1: the element's type is 12, only 5 and 9 are read here");
   EXPECT_EQ(refusal("m.su2", "NDIME= 2\nNELEM= 1\n5 0 1 7 0\nNPOIN= 1\n0 0\n"),
             "m.su2: triangle 0 has vertex 1 of 1");
   EXPECT_EQ(refusal("m.obj", "v 0 0 0\nf 1 2 3\n"),
             "m.obj:2:5: the vertex is 2, so far there are 1");
-  EXPECT_EQ(refusal("m.obj", "v 0 0 0\nf 1 1 1 1\n"), "m.obj:2:7: the face is not a triangle");
-  EXPECT_EQ(refusal("m.off", "COFF\n"), "m.off:1:1: expected the word OFF, found 'COFF'");
+  EXPECT_EQ(refusal("m.off", "XOFF\n"),
+            "m.off:1:1: expected the word OFF, COFF, NOFF or STOFF, found 'XOFF'");
+  EXPECT_EQ(refusal("m.off", "OFF BINARY\n"), "m.off:1:1: the file is binary, only text is read");
   EXPECT_EQ(refusal("m.npz", "PK"), "m.npz: is not a zip archive, or it is cut short");
 }
 
@@ -228,6 +232,147 @@ TEST_F(ExchangeFormat, SecondOrderIsForFormatsThatHaveIt) {
   EXPECT_EQ(checked.error().message,
             "m.su2: the extension '.su2' is not that of a mesh of second order: .vtu, .msh, .node, "
             ".xdmf, .exo, .e");
+}
+
+// A unit of two triangles whose points have these lines.
+std::string su2_with(const std::string& points) {
+  return "NDIME= 2\nNPOIN= 4\n" + points + "NELEM= 2\n5 0 1 2 0\n5 0 2 3 1\n";
+}
+
+TEST_F(ExchangeFormat, Su2ObeysTheNumbersOfItsPoints) {
+  const std::vector<double> square = {0, 0, 2, 0, 2, 1, 0, 1};
+  for (const char* points : {"0 0 0\n2 0 1\n2 1 2\n0 1 3\n", "2 1 2\n0 0 0\n2 0 1\n0 1 3\n",
+                             "0 0 1\n2 0 2\n2 1 3\n0 1 4\n", "0 0\n2 0\n2 1\n0 1\n"}) {
+    const auto mesh = read_mesh(folder_.write("m.su2", su2_with(points)));
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    EXPECT_EQ(mesh->coordinates, square) << points;
+  }
+  EXPECT_EQ(
+      refusal("m.su2", su2_with("0 0 0\n2 0 2\n2 1 2\n0 1 3\n")),
+      "m.su2:5:5: the number of the point is 2, but points have the numbers from 0 to 3, each "
+      "once");
+  EXPECT_EQ(
+      refusal("m.su2", su2_with("0 0 0\n2 0 1\n2 1 4\n0 1 3\n")),
+      "m.su2:5:5: the number of the point is 4, but points have the numbers from 0 to 3, each "
+      "once");
+}
+
+// The header of an array, and its bytes.
+std::string npy(const std::string& type, bool by_columns, const std::string& shape,
+                const std::string& values) {
+  std::string head = "{'descr': '" + type +
+                     "', 'fortran_order': " + (by_columns ? "True" : "False") + ", 'shape': (" +
+                     shape + "), }";
+  head.resize(117, ' ');
+  return "\x93NUMPY" + std::string("\1\0\x76\0", 4) + head + "\n" + values;
+}
+
+template <class T>
+std::string raw(std::initializer_list<T> values) {
+  return {reinterpret_cast<const char*>(std::data(values)), sizeof(T) * values.size()};
+}
+
+// An archive without compression.
+std::string archive(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::string local, directory;
+  const auto number = [](std::size_t value, std::size_t bytes) {
+    return std::string(reinterpret_cast<const char*>(&value), bytes);
+  };
+  for (const auto& [name, body] : files) {
+    const std::string common = number(20, 2) + number(0, 8) + number(0, 4) +
+                               number(body.size(), 4) + number(body.size(), 4) +
+                               number(name.size(), 2) + number(0, 2);
+    directory += "PK\1\2" + number(20, 2) + common + number(0, 10) + number(local.size(), 4) + name;
+    local += "PK\3\4" + common + name + body;
+  }
+  return local + directory + "PK\5\6" + number(0, 4) + number(files.size(), 2) +
+         number(files.size(), 2) + number(directory.size(), 4) + number(local.size(), 4) +
+         number(0, 2);
+}
+
+TEST_F(ExchangeFormat, NpzMayBeInTheOrderOfColumnsAndOfAnyNumbers) {
+  const std::string be_doubles = [] {
+    std::string bytes = raw<double>({0, 0, 2, 0, 0, 2});
+    for (std::size_t i = 0; i < bytes.size(); i += 8) std::reverse(&bytes[i], &bytes[i] + 8);
+    return bytes;
+  }();
+  const std::vector<std::string> points = {
+      npy("<f8", true, "3, 2", raw<double>({0, 2, 0, 0, 0, 2})),
+      npy("<f4", true, "3, 2", raw<float>({0, 2, 0, 0, 0, 2})),
+      npy("<f4", false, "3, 3", raw<float>({0, 0, 9, 2, 0, 9, 0, 2, 9})),
+      npy("<f4", true, "3, 3", raw<float>({0, 2, 0, 0, 0, 2, 9, 9, 9})),
+      npy("<i8", true, "3, 2", raw<std::int64_t>({0, 2, 0, 0, 0, 2})),
+      npy("|i1", false, "3, 2", raw<std::int8_t>({0, 0, 2, 0, 0, 2})),
+      npy("<u2", false, "3, 2", raw<std::uint16_t>({0, 0, 2, 0, 0, 2})),
+      npy(">f8", false, "3, 2", be_doubles)};
+  const std::vector<std::string> triangles = {
+      npy("<i8", true, "1, 3", raw<std::int64_t>({0, 1, 2})),
+      npy("<i2", false, "1, 3", raw<std::int16_t>({0, 1, 2})),
+      npy("|u1", true, "1, 3", raw<std::uint8_t>({0, 1, 2}))};
+  for (const std::string& of_points : points)
+    for (const std::string& of_triangles : triangles) {
+      const auto mesh = read_mesh(folder_.write(
+          "m.npz", archive({{"points.npy", of_points},
+                            {"triangles.npy", of_triangles},
+                            {"regions.npy", npy("<i8", true, "1,", raw<std::int64_t>({4}))}})));
+      ASSERT_TRUE(mesh) << mesh.error().message;
+      EXPECT_EQ(mesh->coordinates, (std::vector<double>{0, 0, 2, 0, 0, 2}));
+      EXPECT_EQ(mesh->triangles, (std::vector<std::uint32_t>{0, 1, 2}));
+      EXPECT_EQ(mesh->regions, std::vector<std::int32_t>{4});
+    }
+  EXPECT_EQ(
+      refusal("m.npz",
+              archive({{"points.npy", points[0]},
+                       {"triangles.npy", npy("<f8", false, "1, 3", raw<double>({0, 1, 2}))}})),
+      "m.npz: array 'triangles' has the type '<f8', which does not fit");
+  EXPECT_EQ(refusal("m.npz", archive({{"points.npy", npy("<c16", false, "3, 2", "")}})),
+            "m.npz: array 'points' has the type '<c16', which is not read");
+}
+
+TEST_F(ExchangeFormat, TheBedComesBackFromWhereItIsWritten) {
+  Mesh mesh = square_mesh(1);
+  const std::vector<double> depths = {1, 2, 3, 4.5};
+  const VertexValues bed{"depth", depths};
+  MeshView view = mesh.view();
+  view.vertex_values = {&bed, 1};
+  for (const char* name : {"m.nc", "m.2dm", "m.14", "m.slf"}) {
+    std::vector<OutputFile> files;
+    files.push_back(OutputFile::create(folder_ / name, {}).value());
+    write_mesh(*mesh_format(name), view, files);
+    ASSERT_TRUE(commit(files));
+    const auto back = read_mesh_with_arrays(folder_ / name);
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(back->mesh.coordinates, mesh.coordinates) << name;
+    EXPECT_EQ(back->mesh.triangles, mesh.triangles) << name;
+    ASSERT_EQ(back->arrays.size(), 1u) << name;
+    ASSERT_TRUE(back->arrays[0].values) << name;
+    std::vector<double> found = *back->arrays[0].values;
+    if (back->arrays[0].name == "elevation")
+      for (double& value : found) value = -value;
+    EXPECT_EQ(found, depths) << name;
+  }
+  EXPECT_EQ(read_mesh_with_arrays(folder_ / "m.2dm")->arrays[0].name, "elevation");
+}
+
+TEST_F(ExchangeFormat, SelafinThatIsDamagedIsRefused) {
+  ASSERT_TRUE(write_files(square_mesh(1).view(), folder_ / "whole.slf"));
+  const std::string whole = contents_of(folder_ / "whole.slf");
+  ASSERT_TRUE(read_mesh(folder_ / "whole.slf"));
+  EXPECT_EQ(refusal("m.slf", "what is this"),
+            "m.slf: is not in TELEMAC's format: it does not begin with a title");
+  EXPECT_EQ(refusal("m.slf", whole.substr(0, 200)),
+            "m.slf: ends inside the counts of elements and points");
+  std::string odd = whole;
+  odd[84] = '\1';  // the length behind the title
+  EXPECT_EQ(refusal("m.slf", odd), "m.slf: is damaged at the title");
+}
+
+TEST_F(ExchangeFormat, AdcircSaysWhichOfItsBoundariesAreOpen) {
+  std::vector<OutputFile> files;
+  files.push_back(OutputFile::create(folder_ / "fort.14", {}).value());
+  write_mesh(*mesh_format("fort.14"), square_mesh(1).view(), files, {.open_boundaries = {2, 3}});
+  ASSERT_TRUE(commit(files));
+  EXPECT_EQ(read_mesh(folder_ / "fort.14")->open_markers, (std::vector<std::int32_t>{2, 3}));
 }
 
 }  // namespace

@@ -217,8 +217,8 @@ TEST(NamesInFiles, OfSmsByOthersAreRead) {
   };
   EXPECT_EQ(refusal(""), "x.2dm: is empty");
   EXPECT_EQ(refusal("ND 1 0 0 0\n"), "x.2dm:1:1: the first line is not MESH2D");
-  EXPECT_EQ(refusal("MESH2D\nE4Q 1 1 2 3 4 1\n"),
-            "x.2dm:2:1: the element is of the kind 'E4Q', only E3T is read");
+  EXPECT_EQ(refusal("MESH2D\nE6T 1 1 2 3 4 5 6 1\n"),
+            "x.2dm:2:1: the element is of the kind 'E6T', only E3T and E4Q are read");
   EXPECT_EQ(refusal("MESH2D\nND 1 0 0 0\nND 1 0 0 0\n"), "x.2dm:3:4: the node 1 comes twice");
   EXPECT_EQ(refusal("MESH2D\nE3T 1 1 2 3 1\n"), "x.2dm: has no node 1");
   EXPECT_EQ(refusal("MESH2D\nNS 1 -9223372036854775808\n"),

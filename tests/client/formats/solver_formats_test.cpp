@@ -166,7 +166,7 @@ TEST(Netgen, RefusesWhatItCannotRead) {
   EXPECT_EQ(refusal("mesh3d\ndimension\n3\n", "m.vol"),
             "m.vol:3:1: the dimension is 3, only 2 is read");
   EXPECT_EQ(refusal(head + "surfaceelements\n1\n2 1 0 0 6 1 2 3 4 5 6\n", "m.vol"),
-            "m.vol:6:9: the element has 6 points, only triangles of 3 are read");
+            "m.vol:6:9: the element has 6 points, only 3 and 4 are read");
   EXPECT_EQ(refusal(head + "volumeelements\n1\n1 4 1 2 3 4\n", "m.vol"),
             "m.vol:6:1: there are volume elements, only triangles are read");
   EXPECT_EQ(refusal(head + "points\n2\n0 0 0\n", "m.vol"),
@@ -220,8 +220,8 @@ TEST(Mfem, RefusesWhatItCannotRead) {
             "m.mfem:1:6: expected MFEM mesh v1.0 to v1.3, found 'MFEM NC mesh v1.0'");
   EXPECT_EQ(refusal("MFEM mesh v1.0\ndimension\n3\n", "m.mfem"),
             "m.mfem:3:1: the dimension is 3, only 2 is read");
-  EXPECT_EQ(refusal(head + "elements\n1\n1 3 0 1 2 3\n", "m.mfem"),
-            "m.mfem:6:3: the element's type is 3, only 2 is read here");
+  EXPECT_EQ(refusal(head + "elements\n1\n1 4 0 1 2 3\n", "m.mfem"),
+            "m.mfem:6:3: the element's type is 4, only 2 and 3 are read here");
   EXPECT_EQ(refusal(head + "vertices\n0\n\nnodes\n", "m.mfem"),
             "m.mfem:7:1: expected the number of coordinates, found 'nodes'");
   EXPECT_EQ(refusal(head + "nodes\nFiniteElementSpace\n", "m.mfem"),

@@ -163,7 +163,7 @@ TEST_F(VertexValuesOf, AreAnErrorOfUseIfTheFormatHasNone) {
   EXPECT_EQ(values.error().exit, ExitCode::kUsage);
   EXPECT_EQ(values.error().message,
             "m.obj: the extension '.obj' is not that of a mesh with values at its vertices: .vtu, "
-            ".msh, .14, .grd, .gr3, .npz");
+            ".msh, .14, .grd, .gr3, .2dm, .nc, .slf, .npz");
 }
 
 // A zip archive of arrays, uncompressed, without checksums, which are not read.

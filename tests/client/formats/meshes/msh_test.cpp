@@ -125,8 +125,8 @@ TEST_F(Msh, RefusesWhatItCannotRead) {
   says("", "is empty");
   says(ascii_with("4.1 0 8", "3 0 8"), "has the version 3, only 4.1 and 2.2 are read");
   says(ascii_with("1 10\n", "1 11\n"), "an element names the node 11, which is missing");
-  says(ascii_with("2 1 2 1\n", "2 1 3 1\n"),
-       "has elements of type 3, which are no triangles, lines or points");
+  says(ascii_with("2 1 2 1\n", "2 1 9 1\n"),
+       "has elements of type 9, which are no triangles, quadrilaterals, lines or points");
   says(ascii_with("10\n40\n", "10\n10\n"), "has two nodes with the tag 10");
   says(ascii_with("1 3 10 40", "1 99999999 10 40"),
        "announces 99999999 items, more than the file can hold");
@@ -139,6 +139,66 @@ TEST_F(Msh, RefusesABinaryFileThatIsCutShort) {
   const std::string whole = contents_of(folder_ / "whole.msh");
   EXPECT_NE(refusal(whole.substr(0, whole.size() - 60)).find("the file ends inside a section"),
             std::string::npos);
+}
+
+constexpr char kTwice[] = R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+5
+0 30 "tip"
+1 7 "wall"
+1 9 "inlet"
+2 1 "all"
+2 3 "left"
+$EndPhysicalNames
+$Nodes
+4
+1 0 0 0
+2 2 0 0
+3 2 2 0
+4 0 2 0
+$EndNodes
+$Elements
+8
+1 1 2 7 1 1 2
+2 1 2 9 1 2 1
+3 1 2 9 1 2 3
+4 2 2 1 1 1 2 3
+5 2 2 1 1 1 3 4
+6 2 2 3 1 2 3 1
+7 2 2 3 1 1 3 4
+8 15 2 30 1 1
+$EndElements
+)";
+
+TEST_F(Msh, GivesAnElementOfSeveralGroupsTheFirst) {
+  const std::filesystem::path path = folder_.write("m.msh", kTwice);
+  const auto mesh = read_msh(path);
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_EQ(mesh->edges, (std::vector<std::uint32_t>{0, 1, 1, 2}));
+  EXPECT_EQ(mesh->edge_markers, (std::vector<std::int32_t>{7, 9}));
+  EXPECT_EQ(mesh->triangles, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
+  EXPECT_EQ(mesh->regions, (std::vector<std::int32_t>{1, 1}));
+  EXPECT_EQ(
+      mesh->warnings,
+      (std::vector<std::string>{
+          path.string() + ": 1 edge of the physical curve 9 'inlet' is in the physical curve "
+                          "7 'wall', too; the first group counts",
+          path.string() + ": 2 faces of the physical surface 3 'left' are in the physical "
+                          "surface 1 'all', too; the first group counts, so nothing carries "
+                          "this one",
+          path.string() + ": the physical point 30 'tip' is left out: vertices carry no markers"}));
+}
+
+TEST_F(Msh, GivesAnEntityOfSeveralGroupsTheFirst) {
+  const auto mesh = read_msh(
+      folder_.write("m.msh", ascii_with("1 0 0 0 1 0 0 1 4 0\n1 0 0 0 1 1 0 1 9 1 1",
+                                        "1 0 0 0 1 0 0 2 4 5 0\n1 0 0 0 1 1 0 3 9 8 7 1 1")));
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_EQ(mesh->edge_markers, std::vector<std::int32_t>{-3});
+  EXPECT_EQ(mesh->regions, std::vector<std::int32_t>{9});
+  EXPECT_EQ(mesh->warnings.size(), 3u);
 }
 
 }  // namespace

@@ -68,8 +68,9 @@ TEST_F(Vtu, ReadsAsciiByOthersAndDropsVertexCells) {
 }
 
 TEST_F(Vtu, RefusesWhatIsNoTriangleMesh) {
-  EXPECT_EQ(refusal(ascii_with("1 5 3<", "1 9 3<")),
-            "cell 1 has the type 9, which is no vertex, line or triangle");
+  EXPECT_EQ(refusal(ascii_with("1 5 3<", "1 9 3<")), "cell 1 has a wrong offset");
+  EXPECT_EQ(refusal(ascii_with("1 5 3<", "1 22 3<")),
+            "cell 1 has the type 22, which is no vertex, line, triangle or polygon");
   EXPECT_EQ(refusal(ascii_with("0 0 1 2 1 2", "0 0 1 2 1 7")), "cell 2 has vertex 7 of 3");
   EXPECT_EQ(refusal(ascii_with("0 0 1 2 1 2", "0 0 1 2 1 -1")),
             "the array 'connectivity' of type 'Int32' holds a value that does not belong there");
@@ -79,9 +80,43 @@ TEST_F(Vtu, RefusesWhatIsNoTriangleMesh) {
   EXPECT_EQ(refusal(ascii_with("1e0", "nan")), "vertex 2 has a coordinate that is not finite");
   EXPECT_EQ(refusal(ascii_with("\"types\"", "\"typos\"")), "has no array 'types'");
   EXPECT_EQ(refusal(ascii_with("format=\"ascii\"", "format=\"binary\"")),
-            "the array 'Points' is neither ASCII nor appended");
+            "the array 'Points' is not in base64");
+  EXPECT_EQ(refusal(ascii_with("format=\"ascii\"", "format=\"hex\"")),
+            "the array 'Points' is in the format 'hex', only ascii, binary and appended are read");
+  EXPECT_EQ(refusal("<VTKFile type=\"UnstructuredGrid\" compressor=\"vtkMine\">"),
+            "is compressed by 'vtkMine', only vtkZLibDataCompressor, vtkLZ4DataCompressor and "
+            "vtkLZMADataCompressor are read");
   EXPECT_EQ(refusal("<VTKFile type=\"PolyData\">"), "is not a VTK unstructured grid");
   EXPECT_EQ(refusal("what is this"), "is not a VTK unstructured grid");
+}
+
+// That VTK's files are read in all their encodings: read_others.py.
+TEST_F(Vtu, ReadsAnArrayThatIsCompressedInBlocks) {
+  const char* const zlib = "AQAAAACAAABIAAAAEgAAAA==eJxjYMAHPtjjlUaSBwA9VgJf";
+  std::string text = ascii_with(
+      "<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0\n 0 1e0 0",
+      std::string("<DataArray type=\"Float64\" format=\"binary\">") + zlib);
+  // The other arrays stay text, which no compressor touches.
+  text.insert(text.find(" byte_order"), " compressor=\"vtkZLibDataCompressor\"");
+  const auto mesh = read_vtu(folder_.write("m.vtu", text));
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_EQ(mesh->coordinates, (std::vector<double>{0, 0, 1, 0, 0, 1}));
+  text.replace(text.find("AABIAAAA"), 8, "AABJAAAA");
+  EXPECT_EQ(refusal(text), "the array 'Points' does not unpack to the size that it claims");
+}
+
+TEST_F(Vtu, CutsCellsOfMoreCornersIntoTriangles) {
+  std::string text = ascii_with("1 5 3<", "1 9 3<");
+  text.replace(text.find("NumberOfPoints=\"3\""), 18, "NumberOfPoints=\"4\"");
+  text.replace(text.find("0 1e0 0"), 7, "1 1 0 0 1 0");
+  text.replace(text.find("0 0 1 2 1 2"), 11, "0 0 1 2 3 1 2");
+  text.replace(text.find("1 4 6"), 5, "1 5 7");
+  const auto mesh = read_vtu(folder_.write("m.vtu", text));
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_EQ(mesh->triangles.size(), 6u);
+  EXPECT_EQ(mesh->regions.size(), 2u);
+  EXPECT_EQ(mesh->cut_faces, 1u);
+  EXPECT_EQ(mesh->edges, (std::vector<std::uint32_t>{1, 2}));
 }
 
 TEST_F(Vtu, RefusesAFileThatIsCutShort) {
