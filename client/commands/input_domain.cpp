@@ -42,7 +42,10 @@ Result<InputDomain> read_input_domain(const std::filesystem::path& path,
                 grid +
                     ": a grid of sizes lies in the plane of the projection, so the projection "
                     "needs a name: give --crs CODE, and a grid in its metres");
-  auto domain = read_domain(path, layers);
+  LayerOptions how = layers;
+  how.lonlat = options.wanted();
+  how.even_odd = wanted.fill == PolygonFill::kEvenOdd;
+  auto domain = read_domain(path, how);
   if (!domain) return tl::unexpected(domain.error());
   if (auto named = set_names(wanted.names, domain->names); !named)
     return tl::unexpected(named.error());

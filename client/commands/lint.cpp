@@ -71,7 +71,10 @@ Result<void> write_files(const LintOptions& options, const Domain& domain, const
 
 Result<ExitCode> run_lint(const LintOptions& options, std::stop_token stop) {
   if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
-  auto domain = read_domain(options.file, options.layers);
+  LayerOptions how = options.layers;
+  how.lonlat = options.lonlat;
+  how.even_odd = options.fill == PolygonFill::kEvenOdd;
+  auto domain = read_domain(options.file, how);
   if (!domain) return tl::unexpected(domain.error());
   if (!options.lonlat)
     warn_of_degrees(options.file, *domain);

@@ -21,13 +21,17 @@ namespace {
 
 struct DomainFormat {
   std::string_view extension;  // lower case
-  Result<Domain> (*read)(const std::filesystem::path&);
+  Result<Domain> (*read)(const std::filesystem::path&, bool lonlat);
 };
 
+// Its segments are no rings.
+Result<Domain> read_poly(const std::filesystem::path& path, bool) {
+  return read_triangle_poly(path);
+}
+
 constexpr DomainFormat kFormats[] = {
-    {".poly", read_triangle_poly}, {".geojson", read_geojson},
-    {".json", read_geojson},       {".wkt", read_wkt},
-    {".shp", read_shapefile},      {".csv", read_csv_rings},
+    {".poly", read_poly}, {".geojson", read_geojson}, {".json", read_geojson},
+    {".wkt", read_wkt},   {".shp", read_shapefile},   {".csv", read_csv_rings},
 };
 
 const DomainFormat* domain_format(const std::filesystem::path& path) {
@@ -87,7 +91,7 @@ Result<Domain> read_any(const std::filesystem::path& path, const LayerOptions& l
                                       layered_extensions());
   try {
     if (ogr != nullptr && (layers.wanted() || !ogr->own_reader)) return read_with_ogr(path, layers);
-    if (const DomainFormat* format = domain_format(path)) return format->read(path);
+    if (const DomainFormat* format = domain_format(path)) return format->read(path, layers.lonlat);
     const auto mesh = read_mesh(path);
     if (!mesh) return tl::unexpected(mesh.error());
     Domain domain = domain_of_mesh(path.string(), mesh->view());

@@ -46,7 +46,9 @@ Result<void> check_domain(const Domain& domain) {
       return ok;
   for (std::size_t i = 0; i < domain.segments.size(); ++i) {
     const auto& [a, b, marker, area] = domain.segments[i];
-    if (std::abs(domain.points[b].x - domain.points[a].x) >= 360)
+    const bool is_at_pole =
+        std::abs(domain.points[a].y) == 90 && domain.points[a].y == domain.points[b].y;
+    if (!is_at_pole && std::abs(domain.points[b].x - domain.points[a].x) >= 360)
       return refuse(domain.segment_places, i, "segment",
                     "the segment goes all around the Earth: divide it, or cut the domain");
   }

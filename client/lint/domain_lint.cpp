@@ -9,9 +9,11 @@
 #include "checker/domain/domain_rules.h"
 #include "checker/lint/lint.h"
 #include "client/base/text.h"
+#include "client/formats/domain_formats.h"
 #include "client/formats/domains/geometry_builder.h"
 #include "client/formats/domains/to_checker.h"
 #include "client/formats/mesh_formats.h"
+#include "client/lint/judged_domain.h"
 
 namespace weft::client {
 namespace {
@@ -29,15 +31,15 @@ std::string rounded(double value) {
 
 class Wording {
  public:
-  Wording(const Domain& domain, const std::string& file, bool lonlat)
-      : domain_(domain), file_(file), lonlat_(lonlat) {}
+  Wording(const JudgedDomain& judged, const std::string& file, bool lonlat)
+      : judged_(judged), domain_(judged.domain()), file_(file), lonlat_(lonlat) {}
 
   Finding finding(const Fault& fault) const {
     Finding out{.kind = std::string(fault_name(fault.kind)),
-                .at = Point{fault.at.x, fault.at.y},
+                .at = judged_.in_file({fault.at.x, fault.at.y}),
                 .text = text(fault),
                 .remedy = remedy(fault)};
-    if (fault.to) out.to = Point{fault.to->x, fault.to->y};
+    if (fault.to) out.to = judged_.in_file({fault.to->x, fault.to->y});
     for (const Offender& offender : fault.offenders) out.offenders.push_back(place(offender));
     if (fault.measure > 0) out.measure = fault.measure;
     return out;
@@ -175,6 +177,7 @@ class Wording {
     return std::string(text) + (fault.kind == FaultKind::kGap ? " closes it" : " merges them");
   }
 
+  const JudgedDomain& judged_;
   const Domain& domain_;
   const std::string& file_;
   bool lonlat_;
@@ -203,8 +206,11 @@ bool is_fault_kind(const std::string& name) {
 
 Result<Lint> lint_domain(const Domain& domain, const std::string& file,
                          const LintSettings& settings) {
+  const bool of_mesh = !is_plain_domain_path(file);
+  const auto prepared = JudgedDomain::make(domain, settings.lonlat, of_mesh);
+  if (!prepared) return tl::unexpected(prepared.error());
   const check::Domain judged =
-      checker_domain(domain, settings.snap / (settings.lonlat ? kMetresPerDegree : 1));
+      checker_domain(prepared->domain(), settings.snap / (settings.lonlat ? kMetresPerDegree : 1));
   check::Findings malformed(1);
   if (!check::judge_domain(judged, malformed)) {
     check::Report report;
@@ -218,7 +224,7 @@ Result<Lint> lint_domain(const Domain& domain, const std::string& file,
            settings.ignored.end();
   };
   Lint lint{.file = file, .complete = found.complete};
-  const Wording wording(domain, file, settings.lonlat);
+  const Wording wording(*prepared, file, settings.lonlat);
   for (const Fault& fault : found.faults.kept())
     if (!is_ignored(std::string(fault_name(fault.kind))))
       lint.findings.push_back(wording.finding(fault));

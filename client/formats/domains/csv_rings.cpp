@@ -72,8 +72,8 @@ bool is_property(std::string_view name) {
 
 class Reader {
  public:
-  Reader(const std::string& name, std::string_view text)
-      : name_(name), table_(name, text), builder_(name) {}
+  Reader(const std::string& name, std::string_view text, bool lonlat)
+      : name_(name), table_(name, text), builder_(name, lonlat) {}
 
   Result<Domain> read() {
     if (auto begun = table_.begin(kGeometryNames); !begun) return tl::unexpected(begun.error());
@@ -416,10 +416,10 @@ class Reader {
 
 }  // namespace
 
-Result<Domain> read_csv_rings(const std::filesystem::path& path) {
+Result<Domain> read_csv_rings(const std::filesystem::path& path, bool lonlat) {
   const auto contents = read_text_file(path, kMaxTextBytes);
   if (!contents) return tl::unexpected(contents.error());
-  return Reader(path.string(), contents->text()).read();
+  return Reader(path.string(), contents->text(), lonlat).read();
 }
 
 }  // namespace weft::client

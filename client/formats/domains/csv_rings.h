@@ -34,6 +34,6 @@
 
 namespace weft::client {
 
-Result<Domain> read_csv_rings(const std::filesystem::path& path);
+Result<Domain> read_csv_rings(const std::filesystem::path& path, bool lonlat = false);
 
 }  // namespace weft::client

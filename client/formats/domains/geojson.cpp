@@ -54,7 +54,7 @@ bool looks_geographic(const std::vector<Point>& points) {
 
 class Reader {
  public:
-  explicit Reader(const std::string& name) : name_(name), builder_(name) {}
+  Reader(const std::string& name, bool lonlat) : name_(name), builder_(name, lonlat) {}
 
   Result<Domain> read(const Json& root) {
     if (auto read = object(root, "", {}); !read) return tl::unexpected(read.error());
@@ -111,8 +111,20 @@ class Reader {
 
   Result<void> object(const Json& json, const std::string& path,
                       const GeometryProperties& properties) {
+    if (json.is_array() && path.empty())
+      return bad(path,
+                 "is a list, and GeoJSON is an object: write {\"type\": \"GeometryCollection\", "
+                 "\"geometries\": [...]} around geometries, or {\"type\": \"FeatureCollection\", "
+                 "\"features\": [...]} around features");
     if (!json.is_object()) return bad(path, "is not a GeoJSON object");
     const auto type = json.find("type");
+    const bool is_of_esri = json.contains("geometryType") || json.contains("rings") ||
+                            json.contains("paths") || json.contains("spatialReference");
+    if (type == json.end() && is_of_esri)
+      return bad(path,
+                 "is JSON of Esri, not GeoJSON: ask its server for f=geojson, or convert it with "
+                 "ogr2ogr -f GeoJSON OUT.geojson ESRIJSON:" +
+                     name_);
     if (type == json.end() || !type->is_string()) return bad(path, "has no string \"type\"");
     const auto& name = type->get_ref<const std::string&>();
     if (name == "FeatureCollection") return objects(json, "features", path, properties);
@@ -249,13 +261,13 @@ class Reader {
 
 }  // namespace
 
-Result<Domain> read_geojson(const std::filesystem::path& path) {
+Result<Domain> read_geojson(const std::filesystem::path& path, bool lonlat) {
   const auto contents = read_text_file(path, kMaxJsonBytes);
   if (!contents) return tl::unexpected(contents.error());
   try {
     const auto json = parse_json(path.string(), contents->text(), kMaxJsonDepth);
     if (!json) return tl::unexpected(json.error());
-    return Reader(path.string()).read(*json);
+    return Reader(path.string(), lonlat).read(*json);
   } catch (const std::bad_alloc&) {
     return fail(ExitCode::kUnreadableInput, path.string() + ": not enough memory to read it");
   }

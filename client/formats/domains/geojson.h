@@ -25,6 +25,6 @@
 
 namespace weft::client {
 
-Result<Domain> read_geojson(const std::filesystem::path& path);
+Result<Domain> read_geojson(const std::filesystem::path& path, bool lonlat = false);
 
 }  // namespace weft::client

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "client/base/text.h"
+#include "client/formats/domains/ring_on_sphere.h"
 
 namespace weft::client {
 namespace {
@@ -30,6 +31,12 @@ bool is_collapsed(std::span<const Point> points) {
                                   [&](const Point& p) { return p != points.front(); });
   return std::all_of(other, points.end(),
                      [&](const Point& p) { return p == points.front() || p == *other; });
+}
+
+// Half-way between the least and the greatest longitude.
+double middle(std::span<const Point> ring) {
+  const auto [west, east] = std::ranges::minmax_element(ring, {}, &Point::x);
+  return (west->x + east->x) / 2;
 }
 
 }  // namespace
@@ -115,6 +122,9 @@ Result<void> GeometryBuilder::line(std::span<const Point> positions, const std::
                                    std::span<const std::uint32_t> markers) {
   const auto line = chain(positions, path, properties, markers);
   if (!line) return tl::unexpected(line.error());
+  if (ruled_line_.empty() && (properties.region.value_or(0) != 0 ||
+                              !properties.region_name.empty() || area_bound(properties)))
+    ruled_line_ = path;
   if (line->points.size() < 2) {
     leave_out(LeftOut::kLine, path);
     return {};
@@ -131,10 +141,12 @@ std::uint32_t GeometryBuilder::label_of(Labels& labels, NameKind kind, std::int3
 }
 
 void GeometryBuilder::check_crossing(const Chain& ring, const std::string& path) {
-  const auto crossing = find_crossing(ring.points);
+  const std::vector<Point> plane = lonlat_ ? unrolled(ring.points, 0) : std::vector<Point>();
+  const auto crossing = find_crossing(lonlat_ ? plane : ring.points);
   polygon_crosses_ = polygon_crosses_ || crossing;
   if (!crossing || ++crossings_ > kMostTold) return;
   const auto edge = [&ring](std::uint32_t i) {
+    i = std::min(i, static_cast<std::uint32_t>(ring.points.size() - 1));
     const Point a = ring.points[i];
     const Point b = ring.points[i + 1 < ring.points.size() ? i + 1 : 0];
     return "edge " + std::to_string(ring.numbers[i]) + " from " + coordinates(a.x, a.y) + " to " +
@@ -157,9 +169,12 @@ Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::
     return {};
   }
   std::vector<Point>& points = ring->points;
-  if (points.front() == points.back())
-    points.pop_back();
-  else if (is_closed && ++open_rings_ <= kMostTold)
+  const bool returns = points.front() == points.back();
+  if (returns) points.pop_back();
+  // The same meridian may be there by both of its longitudes.
+  const bool closes_round = lonlat_ && comes_round(points);
+  if (closes_round) points.pop_back();
+  if (!returns && !closes_round && is_closed && ++open_rings_ <= kMostTold)
     warn(": " + path + " is a ring that is not closed: it starts at " +
          coordinates(points.front().x, points.front().y) + " and ends at " +
          coordinates(points.back().x, points.back().y) + "; a segment closes it");
@@ -171,8 +186,17 @@ Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::
 void GeometryBuilder::check_overlap() {
   if (polygon_rings_.size() < 2 || polygon_crosses_) return;
   std::vector<std::span<const Point>> rings;
+  std::vector<std::vector<Point>> planes;
   for (const Ring& ring : polygon_rings_)
     rings.push_back(std::span(domain_.points).subspan(ring.first_point, ring.size));
+  if (lonlat_) {
+    // A polygon around a pole has no plane of degrees in which its holes are in one piece.
+    if (std::ranges::any_of(rings, is_around_pole)) return;
+    for (std::span<const Point>& ring : rings) {
+      planes.push_back(unrolled(ring, planes.empty() ? 0 : middle(planes[0])));
+      ring = planes.back();
+    }
+  }
   const auto found = find_overlap(rings, ring_roles_);
   if (!found || ++overlaps_ > kMostTold) return;
   const std::string at = coordinates(found->at.x, found->at.y);
@@ -216,6 +240,10 @@ Result<Domain> GeometryBuilder::finish() {
   if (domain_.points.empty())
     return bad("", "holds no geometry" + (left_out.empty() ? "" : ": " + left_out));
   if (!left_out.empty()) domain_.warnings.push_back(file_ + ": " + left_out);
+  if (!ruled_line_.empty() && domain_.areas.empty())
+    warn(": " + ruled_line_ +
+         " is a line, and has a region or a bound on triangles as if it were a polygon: there are "
+         "no polygons, so these have no effect");
   const std::vector<std::int32_t> region_numbers = regions_.numbers();
   for (Domain::Area& area : domain_.areas)
     if (area.region) area.region = region_numbers[static_cast<std::size_t>(*area.region)];

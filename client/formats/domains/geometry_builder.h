@@ -60,7 +60,11 @@ bool tells_of_crossing(std::string_view warning);
 
 class GeometryBuilder {
  public:
-  explicit GeometryBuilder(std::string file) : file_(std::move(file)), names_(file_) {}
+  // `lonlat`: positions are longitudes and latitudes in degrees, and rings are judged on the
+  // sphere, where they may go across the date line and around a pole. A ring that comes round to
+  // its own meridian, from -180 to 180 or from 0 to 360, is closed there.
+  explicit GeometryBuilder(std::string file, bool lonlat = false)
+      : file_(std::move(file)), names_(file_), lonlat_(lonlat) {}
 
   // A label for a marker, to be given to `line` and `ring`.
   std::uint32_t marker(std::int32_t number) { return markers_.of(number); }
@@ -122,12 +126,14 @@ class GeometryBuilder {
 
   std::string file_;
   NameReader names_;
+  bool lonlat_;
   Labels markers_;
   Labels regions_;
   LeftOut left_out_;
   std::size_t open_rings_ = 0;
   std::size_t crossings_ = 0;  // rings that cross themselves
   std::size_t overlaps_ = 0;   // polygons of rings that overlap
+  std::string ruled_line_{};   // the first line with a region, or a bound on triangles
   std::size_t odd_properties_ = 0;
   Domain domain_;  // the markers of its segments and the regions of its areas are labels
   std::size_t polygon_start_ = 0;

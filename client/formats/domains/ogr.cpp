@@ -16,6 +16,7 @@
 #include "client/base/text.h"
 #include "client/formats/domains/feature_properties.h"
 #include "client/formats/domains/geometry_builder.h"
+#include "client/formats/domains/nested_outlines.h"
 #include "client/formats/domains/ogr_archive.h"
 #include "client/formats/domains/ogr_dxf.h"
 #include "client/formats/domains/ogr_formats.h"
@@ -36,8 +37,8 @@ using Crs = std::unique_ptr<std::remove_pointer_t<OGRSpatialReferenceH>,
 
 class Reader {
  public:
-  Reader(const Gdal& gdal, const std::filesystem::path& path)
-      : gdal_(gdal), path_(path), builder_(path.string()) {}
+  Reader(const Gdal& gdal, const std::filesystem::path& path, bool lonlat)
+      : gdal_(gdal), path_(path), builder_(path.string(), lonlat) {}
 
   Result<Domain> read(const OgrFormat& format, const LayerOptions& options) {
     // An absolute path cannot begin with a prefix that GDAL would interpret, such as "GPKG:".
@@ -50,26 +51,33 @@ class Reader {
       if (!found) return builder_.bad("", found.error().message);
       source = std::move(*found);
     }
-    std::optional<DxfWithHeader> completed;  // which the data set reads
+    std::optional<DxfCopy> drawing;  // which the data set reads
     Dataset dataset(nullptr, gdal_.GDALClose);
     {
       const GdalErrors errors(gdal_);
-      dataset = open(source.address, *source.format);
-      if (!dataset && source.format->extension == ".dxf") {
-        completed.emplace(gdal_, source.address);
-        dataset = open(completed->address(), *source.format);
-      }
+      is_drawing_ = source.format->extension == ".dxf";
+      if (is_drawing_) drawing.emplace(gdal_, source.address);
+      dataset = open(drawing ? drawing->address() : source.address, *source.format);
       if (!dataset) return builder_.bad("", "is damaged, or of another format: " + errors.first());
     }
     const auto layers = choose(dataset.get(), options.layers);
     if (!layers) return tl::unexpected(layers.error());
     attributes_ = &options.attributes;
     if (auto ok = check_attributes(*layers); !ok) return tl::unexpected(ok.error());
+    if (is_drawing_)
+      for (OGRLayerH layer : *layers)
+        if (auto found = find_lines(layer, options.where); !found)
+          return tl::unexpected(found.error());
     for (OGRLayerH layer : *layers)
       if (auto added = add_layer(layer, options.where); !added)
         return tl::unexpected(added.error());
+    if (drawing)
+      for (const std::string& sentence : drawing->sentences()) builder_.warn(": " + sentence);
+    warn_of_filled_areas();
     auto domain = builder_.finish();
     if (domain && crs_ != nullptr) domain->system = system();
+    if (domain && domain->areas.empty() && is_drawing_ && !options.even_odd)
+      warn_of_nested_outlines(*domain);
     return domain;
   }
 
@@ -147,6 +155,29 @@ class Reader {
   Result<void> add_layer(OGRLayerH layer, const std::string& where) {
     const std::string name = "layer " + in_quotes(name_of(layer));
     if (auto ok = check_system(layer, name); !ok) return ok;
+    return for_each_feature(layer, where, [this](OGRFeatureH feature, const std::string& of_layer) {
+      return add_feature(feature, of_layer + ", feature " +
+                                      std::to_string(gdal_.OGR_F_GetFID(feature)) +
+                                      drawn_as(feature));
+    });
+  }
+
+  // Of an entity of a drawing: its layer there, and its handle.
+  std::string drawn_as(OGRFeatureH feature) const {
+    if (!is_drawing_) return "";
+    const auto field = [&](const char* name) {
+      const int index = gdal_.OGR_F_GetFieldIndex(feature, name);
+      return index < 0 ? std::string() : std::string(gdal_.OGR_F_GetFieldAsString(feature, index));
+    };
+    const std::string handle = field("EntityHandle");
+    return " on " + in_quotes(field("Layer")) +
+           (handle.empty() ? "" : ", handle " + harmless(handle));
+  }
+
+  // Calls `each` with the features of a layer that meet the condition.
+  template <class Each>
+  Result<void> for_each_feature(OGRLayerH layer, const std::string& where, const Each& each) {
+    const std::string name = "layer " + in_quotes(name_of(layer));
     const auto unreadable = [&](const GdalErrors& errors) {
       return builder_.bad(name + (where.empty() ? "" : ", --where " + in_quotes(where)),
                           "cannot be read: " + errors.first());
@@ -159,12 +190,52 @@ class Reader {
     for (;;) {
       const Feature feature(gdal_.OGR_L_GetNextFeature(layer), gdal_.OGR_F_Destroy);
       if (!feature) break;
-      const std::string path =
-          name + ", feature " + std::to_string(gdal_.OGR_F_GetFID(feature.get()));
-      if (auto added = add_feature(feature.get(), path); !added) return added;
+      if (Result<void> done = each(feature.get(), name); !done) return done;
     }
     if (reading.any()) return unreadable(reading);
     return {};
+  }
+
+  // In a drawing, polygons are hatches, solids and faces: what lines bound is filled by these for
+  // the eye. Only in a drawing without lines are they what is drawn.
+  Result<void> find_lines(OGRLayerH layer, const std::string& where) {
+    return for_each_feature(layer, where, [this](OGRFeatureH feature, const auto&) {
+      OGRGeometryH geometry = gdal_.OGR_F_GetGeometryRef(feature);
+      has_lines_ = has_lines_ || (geometry != nullptr && holds_line(geometry, 0));
+      return Result<void>{};
+    });
+  }
+  bool holds_line(OGRGeometryH geometry, int depth) const {
+    const auto type = gdal_.OGR_GT_Flatten(gdal_.OGR_G_GetGeometryType(geometry));
+    if (type == wkbPolygon || type == wkbTriangle || type == wkbPoint || depth > kMaxDepth)
+      return false;
+    if (type == wkbLineString || gdal_.OGR_G_HasCurveGeometry(geometry, FALSE) != 0) return true;
+    for (int i = 0; i < gdal_.OGR_G_GetGeometryCount(geometry); ++i)
+      if (holds_line(gdal_.OGR_G_GetGeometryRef(geometry, i), depth + 1)) return true;
+    return false;
+  }
+  void warn_of_filled_areas() {
+    if (filled_areas_ == 0) return;
+    const bool one = filled_areas_ == 1;
+    builder_.warn(": " + with_separators(filled_areas_) +
+                  (one ? " filled area (hatch, solid or face) is left out: "
+                       : " filled areas (hatches, solids or faces) are left out, the first is ") +
+                  first_filled_area_ +
+                  "; lines bound what is meshed; without lines, as --where can choose, such areas "
+                  "are");
+  }
+  void warn_of_nested_outlines(Domain& domain) const {
+    const std::vector<std::size_t> nested = nested_outlines(domain);
+    if (nested.empty()) return;
+    std::string first = domain.segment_places.locate(nested[0]);
+    first.erase(std::min(first.rfind(", edge from"), first.size()));
+    const std::string file = path_.string() + ": ";
+    if (first.starts_with(file)) first.erase(0, file.size());
+    domain.warnings.push_back(
+        file + with_separators(nested.size()) +
+        (nested.size() == 1 ? " closed outline lies inside another one and is filled: "
+                            : " closed outlines lie inside others and are filled, the first is ") +
+        first + "; --fill even-odd makes holes of them");
   }
 
   // All layers have one coordinate system.
@@ -237,6 +308,10 @@ class Reader {
         return builder_.line(points_of(geometry), path, properties);
       case wkbPolygon:
       case wkbTriangle:
+        if (is_drawing_ && has_lines_) {
+          if (filled_areas_++ == 0) first_filled_area_ = path;
+          return {};
+        }
         builder_.begin_polygon();
         for (int i = 0; i < parts; ++i)
           if (auto added = builder_.ring(points_of(gdal_.OGR_G_GetGeometryRef(geometry, i)),
@@ -268,8 +343,12 @@ class Reader {
   const std::filesystem::path& path_;
   GeometryBuilder builder_;
   const std::map<std::string, std::string>* attributes_ = nullptr;  // as in LayerOptions
-  bool first_ = true;                                               // no layer was read yet
-  OGRSpatialReferenceH crs_ = nullptr;                              // of the layers, which own it
+  bool is_drawing_ = false;                                         // of DXF
+  bool has_lines_ = false;                                          // the drawing
+  std::size_t filled_areas_ = 0;                                    // of a drawing with lines
+  std::string first_filled_area_{};
+  bool first_ = true;                   // no layer was read yet
+  OGRSpatialReferenceH crs_ = nullptr;  // of the layers, which own it
 };
 
 }  // namespace
@@ -281,7 +360,7 @@ Result<Domain> read_with_ogr(const std::filesystem::path& path, const LayerOptio
   const auto gdal = load_gdal();
   if (!gdal) return fail(gdal.error().exit, path.string() + ": " + gdal.error().message);
   const std::string extension = lower_extension(path);
-  auto domain = Reader(**gdal, path).read(*ogr_format(extension), options);
+  auto domain = Reader(**gdal, path, options.lonlat).read(*ogr_format(extension), options);
   // MicroStation's shapes have no holes: a shape inside another one stands for a hole.
   if (domain && !domain->areas.empty() && extension == ".dgn")
     domain->fill = Domain::Fill::kEvenOdd;

@@ -96,8 +96,8 @@ class Table {
 
 class Reader {
  public:
-  Reader(const std::filesystem::path& path, const SAHooks& hooks)
-      : path_(path), hooks_(hooks), builder_(path.string()) {}
+  Reader(const std::filesystem::path& path, const SAHooks& hooks, bool lonlat)
+      : path_(path), hooks_(hooks), builder_(path.string(), lonlat) {}
 
   Result<Domain> read() {
     const std::unique_ptr<SHPInfo, CloseShapes> shapes(
@@ -207,12 +207,12 @@ std::optional<CoordinateSystem> system_beside(const std::filesystem::path& path)
 
 }  // namespace
 
-Result<Domain> read_shapefile(const std::filesystem::path& path) {
+Result<Domain> read_shapefile(const std::filesystem::path& path, bool lonlat) {
   if (std::error_code missing; !std::filesystem::is_regular_file(path, missing))
     return fail(ExitCode::kUnreadableInput,
                 path.string() + ": " + (missing ? missing.message() : "is not a regular file"));
   const SAHooks hooks = quiet_hooks();
-  auto domain = Reader(path, hooks).read();
+  auto domain = Reader(path, hooks, lonlat).read();
   if (domain) domain->system = system_beside(path);
   return domain;
 }

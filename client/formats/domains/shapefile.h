@@ -15,6 +15,6 @@
 
 namespace weft::client {
 
-Result<Domain> read_shapefile(const std::filesystem::path& path);
+Result<Domain> read_shapefile(const std::filesystem::path& path, bool lonlat = false);
 
 }  // namespace weft::client

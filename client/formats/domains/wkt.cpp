@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "client/base/text.h"
+#include "client/base/words.h"
 #include "client/formats/domains/geometry_builder.h"
 #include "client/formats/files/file_contents.h"
 #include "client/formats/files/number_text.h"
@@ -120,6 +121,17 @@ class Reader {
     return *value;
   }
 
+  // NaN, as GEOS and GDAL write a height that is not there, in whatever way their C library does.
+  bool take_nan() {
+    skip_blanks();
+    const std::string_view word = rest_.substr(0, rest_.find_first_of("(),; \t\r\n\f\v"));
+    const std::string letters =
+        lower_case(word.substr(std::min(word.find_first_not_of("+-1.#"), word.size())));
+    if (!letters.starts_with("nan") && letters != "qnan" && letters != "ind") return false;
+    rest_.remove_prefix(word.size());
+    return true;
+  }
+
   // Reads two numbers, and up to two more that are dropped.
   Point position() {
     Point at;
@@ -128,7 +140,7 @@ class Reader {
     for (int more = 0; more < 2; ++more) {
       skip_blanks();
       if (rest_.empty() || rest_[0] == ',' || rest_[0] == ')') break;
-      number();
+      if (!take_nan()) number();
     }
     return at;
   }
@@ -244,10 +256,10 @@ class Reader {
 
 }  // namespace
 
-Result<Domain> read_wkt(const std::filesystem::path& path) {
+Result<Domain> read_wkt(const std::filesystem::path& path, bool lonlat) {
   const auto contents = read_text_file(path, kMaxTextBytes);
   if (!contents) return tl::unexpected(contents.error());
-  GeometryBuilder builder(path.string());
+  GeometryBuilder builder(path.string(), lonlat);
   if (auto added = add_wkt(path.string(), contents->text(), {}, {}, builder); !added)
     return tl::unexpected(added.error());
   return builder.finish();

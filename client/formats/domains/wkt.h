@@ -19,7 +19,7 @@
 
 namespace weft::client {
 
-Result<Domain> read_wkt(const std::filesystem::path& path);
+Result<Domain> read_wkt(const std::filesystem::path& path, bool lonlat = false);
 
 // Where a text of a file begins: both from 1.
 struct TextPlace {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/formats/files/gdal_library.h"
 
+#include <cstdlib>
+
 #include "client/base/text.h"
 
 namespace weft::client {
@@ -9,12 +11,62 @@ namespace {
 // Holds one or two rows of blocks of a wide raster.
 constexpr GIntBig kCacheBytes = GIntBig{128} << 20;
 
+// What GDAL takes from the environment, and its defaults. Without a default: an option that is not
+// there. The same file is the same domain, and the same field, for everybody.
+struct ConfigOption {
+  const char* name;
+  const char* value;
+};
+constexpr ConfigOption kOptions[] = {
+    {"OGR_ARC_STEPSIZE", "4"},
+    {"OGR_ARC_MAX_GAP", "0"},
+    {"OGR_STROKE_CURVE", "FALSE"},
+    {"OGR_ORGANIZE_POLYGONS", nullptr},
+    {"DXF_3D_EXTENSIBLE_MODE", "FALSE"},
+    {"DXF_CLOSED_LINE_AS_POLYGON", "FALSE"},
+    {"DXF_ENCODING", nullptr},
+    {"DXF_FEATURE_LIMIT_PER_BLOCK", "10000"},
+    {"DXF_HATCH_TOLERANCE", nullptr},
+    {"DXF_HEADER_ONLY", nullptr},
+    {"DXF_INCLUDE_RAW_CODE_VALUES", "FALSE"},
+    {"DXF_INLINE_BLOCKS", "TRUE"},
+    {"DXF_MAX_BSPLINE_CONTROL_POINTS", nullptr},
+    {"DXF_MERGE_BLOCK_GEOMETRIES", "TRUE"},
+    {"DXF_TRANSLATE_ESCAPE_SEQUENCES", "TRUE"},
+    {"GML_CONSIDER_EPSG_AS_URN", nullptr},
+    {"GML_FACE_HOLE_NEGATIVE", nullptr},
+    {"GML_FETCH_ALL_GEOMETRIES", nullptr},
+    {"GML_GET_SECONDARY_GEOM", nullptr},
+    {"GML_INVERT_AXIS_ORDER_IF_LAT_LONG", nullptr},
+    {"GML_SKIP_CORRUPTED_FEATURES", nullptr},
+    {"GML_SRS_DIMENSION_IF_MISSING", nullptr},
+    {"GML_SWAP_COORDINATES", nullptr},
+    {"LIBKML_READ_GROUND_OVERLAY", nullptr},
+    {"LIBKML_WRAPDATELINE", nullptr},
+    {"MITAB_BOUNDS_FILE", nullptr},
+    {"OSR_DEFAULT_AXIS_MAPPING_STRATEGY", nullptr},
+    {"OGR_CT_FORCE_TRADITIONAL_GIS_ORDER", nullptr},
+    {"SHAPE_ENCODING", nullptr},
+    {"GDAL_NETCDF_BOTTOMUP", nullptr},
+    {"GDAL_NETCDF_CENTERLONG_180", nullptr},
+    {"GTIFF_HONOUR_NEGATIVE_SCALEY", nullptr},
+    {"GTIFF_POINT_GEO_IGNORE", nullptr},
+};
+
+void set_options(const Gdal& gdal) {
+  for (const auto& [name, value] : kOptions) {
+    if (value == nullptr) ::unsetenv(name);
+    gdal.CPLSetConfigOption(name, value);
+  }
+}
+
 Result<Gdal> load() {
   auto loaded = load_functions<Gdal>(WEFT_GDAL_SONAME);
   if (!loaded)
     return fail(ExitCode::kUnreadableInput, loaded.error() + "; weft reads it with GDAL");
   Gdal& gdal = *loaded;
-  gdal.GDALAllRegister();
+  gdal.GDALAllRegister();  // reads files of options
+  set_options(gdal);
   if (gdal.CPLGetConfigOption("GDAL_CACHEMAX", nullptr) == nullptr)
     gdal.GDALSetCacheMax64(kCacheBytes);
   return gdal;

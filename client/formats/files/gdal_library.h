@@ -23,6 +23,7 @@
   EACH(CPLGetErrorHandlerUserData)          \
   EACH(CPLPopErrorHandler)                  \
   EACH(CPLPushErrorHandlerEx)               \
+  EACH(CPLSetConfigOption)                  \
   EACH(CSLDestroy)                          \
   EACH(GDALAllRegister)                     \
   EACH(GDALApproxTransform)                 \
@@ -108,7 +109,9 @@ namespace weft::client {
 
 WEFT_FUNCTION_TABLE(Gdal, WEFT_GDAL_FUNCTIONS);
 
-// Errors (kUnreadableInput) name the library and why it is not loaded.
+// Options of GDAL that would change what a file is read as have their defaults, whatever the
+// environment and GDAL's files of options say. Errors (kUnreadableInput) name the library and why
+// it is not loaded.
 Result<const Gdal*> load_gdal();
 
 // As long as it lives, GDAL prints nothing on this thread.

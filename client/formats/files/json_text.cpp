@@ -40,6 +40,33 @@ std::optional<std::size_t> too_deep(std::string_view text, int max_depth) {
   return std::nullopt;
 }
 
+// The text with null for NaN and Infinity outside of strings, which JSON has no word for, but
+// Python writes; empty if there are none.
+std::string without_nan(std::string_view text) {
+  std::string out;
+  bool in_string = false;
+  std::size_t copied = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (in_string) {
+      if (text[i] == '\\')
+        ++i;
+      else if (text[i] == '"')
+        in_string = false;
+      continue;
+    }
+    in_string = text[i] == '"';
+    for (const std::string_view word : {"NaN", "-Infinity", "Infinity"}) {
+      if (!text.substr(i).starts_with(word)) continue;
+      out += text.substr(copied, i - copied);
+      out += "null";
+      i += word.size() - 1;
+      copied = i + 1;
+      break;
+    }
+  }
+  return copied == 0 ? "" : out + std::string(text.substr(copied));
+}
+
 // The message of a parse error of the JSON library, without the parts that the caller says itself:
 // "[json.exception.parse_error.101] parse error at line 1, column 5: syntax error ...".
 std::string reason(std::string_view what) {
@@ -62,6 +89,8 @@ Result<nlohmann::json> parse_json(const std::string& name, std::string_view text
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::parse_error& error) {
+    if (const std::string other = without_nan(text); !other.empty())
+      return parse_json(name, other, max_depth);
     const std::size_t offset = error.byte > 0 ? error.byte - 1 : 0;
     return fail(ExitCode::kUnreadableInput,
                 place(name, text, std::min(offset, text.size())) + reason(error.what()));

@@ -15,7 +15,9 @@ struct LayerOptions {
   // By the name of a property (feature_properties.h), the attribute of features that stands for it.
   std::map<std::string, std::string> attributes{};
 
-  bool strict = false;  // refuse a file of which something is left out or repaired
+  bool strict = false;    // refuse a file of which something is left out or repaired
+  bool lonlat = false;    // coordinates are degrees, and rings are judged on the sphere
+  bool even_odd = false;  // outlines in outlines are holes, so no warning tells of them
 
   // Whether a part of the file is wanted.
   bool wanted() const { return !layers.empty() || !where.empty() || !attributes.empty(); }

@@ -225,5 +225,27 @@ TEST_F(DomainFile, PolygonsThatOverlapGetSeedsForEachFace) {
   EXPECT_EQ(markers, (std::multiset<std::int32_t>{5, 8, 8, 8, 8, 8, 8, 0, 0, 0, 0, 0, 0}));
 }
 
+TEST_F(DomainFile, HeightsThatAreNotThereAreDropped) {
+  for (const char* text :
+       {"POLYGON Z ((0 0 NaN, 4 0 nan, 4 3 NAN, 0 3 -nan, 0 0 1.#QNAN))",
+        "POLYGON ZM ((0 0 nan 1, 4 0 1 nan, 4 3 nan nan, 0 3 2 2, 0 0 nan 1))"}) {
+    const auto domain = read_domain(folder_.write("d.wkt", text));
+    ASSERT_TRUE(domain) << domain.error().message;
+    EXPECT_EQ(domain->points.size(), 4u);
+    EXPECT_TRUE(domain->warnings.empty());
+  }
+  const auto json = read_domain(folder_.write(
+      "d.geojson",
+      R"({"type": "Feature", "properties": {"max_area": NaN, "name": "NaN \" NaN"}, "geometry":
+          {"type": "Polygon", "coordinates": [[[0, 0, NaN], [4, 0, Infinity], [4, 3, -Infinity],
+           [0, 3, NaN], [0, 0, NaN]]]}})"));
+  ASSERT_TRUE(json) << json.error().message;
+  EXPECT_EQ(json->points.size(), 4u);
+  EXPECT_FALSE(json->areas[0].max_area);
+  EXPECT_FALSE(read_domain(folder_.write("d.wkt", "POLYGON ((0 nan, 4 0, 4 3, 0 nan))")));
+  EXPECT_FALSE(read_domain(
+      folder_.write("d.json", R"({"type": "LineString", "coordinates": [[0, NaN], [1, 1]]})")));
+}
+
 }  // namespace
 }  // namespace weft::client

@@ -132,5 +132,40 @@ TEST_F(DomainLint, ModelsHaveNoFaults) {
   }
 }
 
+TEST_F(DomainLint, FindsNoDuplicatesInAMeshWithEdgesInside) {
+  const Lint found = lint("two.msh",
+                          "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n1 0 0 0\n2 1 0 0\n"
+                          "3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n$EndNodes\n$Elements\n5\n"
+                          "1 1 2 4 1 2 5\n2 2 2 1 1 1 2 5\n3 2 2 1 1 1 5 4\n4 2 2 2 1 2 3 6\n"
+                          "5 2 2 2 1 2 6 5\n$EndElements\n");
+  EXPECT_EQ(counted(found), "");
+  EXPECT_EQ(counted(lint("d.poly",
+                         "4 2 0 0\n1 0 0\n2 1 0\n3 0 1\n4 1 1\n5 0\n1 1 2\n2 2 4\n"
+                         "3 4 3\n4 3 1\n5 1 3\n0\n")),
+            "duplicate-segment 1");
+}
+
+TEST_F(DomainLint, JudgesDegreesBeyondTheDateLineAndAroundThePoles) {
+  const auto degrees = [this](const std::string& rings) {
+    const auto file =
+        folder_.write("map.geojson", R"({"type": "Polygon", "coordinates": [)" + rings + "]}");
+    return lint_domain(read_domain(file, {.lonlat = true}).value(), file.string(), {.lonlat = true})
+        .value();
+  };
+  EXPECT_EQ(counted(degrees("[[177,-19],[-178,-19],[-178,-16],[177,-16],[177,-19]],"
+                            "[[179,-18],[-179,-18],[-179,-17],[179,-17],[179,-18]]")),
+            "");
+  EXPECT_EQ(counted(degrees("[[-180,80],[-90,80],[0,80],[90,80],[180,80],[-180,80]],"
+                            "[[170,85],[-170,85],[-170,86],[170,86],[170,85]]")),
+            "");
+  // Antarctica as it is drawn on maps.
+  EXPECT_EQ(counted(degrees("[[-180,-90],[-180,-80],[-90,-75],[0,-80],[90,-75],[180,-80],[180,-90],"
+                            "[-180,-90]]")),
+            "");
+  const Lint crossing = degrees("[[179,0],[-179,2],[-179,0],[179,2],[179,0]]");
+  EXPECT_EQ(counted(crossing), "self-crossing 1");
+  EXPECT_EQ(only(crossing, "self-crossing").at, (Point{-180, 1}));
+}
+
 }  // namespace
 }  // namespace weft::client

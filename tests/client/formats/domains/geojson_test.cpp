@@ -286,7 +286,11 @@ TEST_F(GeoJson, TakesATextOfBlanksForNothing) {
 }
 
 TEST_F(GeoJson, RefusesWrongTypes) {
-  EXPECT_EQ(refusal("[]"), "map.geojson: is not a GeoJSON object");
+  EXPECT_EQ(
+      refusal("[]"),
+      "map.geojson: is a list, and GeoJSON is an object: write {\"type\": \"GeometryCollection\", "
+      "\"geometries\": [...]} around geometries, or {\"type\": \"FeatureCollection\", "
+      "\"features\": [...]} around features");
   EXPECT_EQ(refusal("{}"), "map.geojson: has no string \"type\"");
   EXPECT_EQ(
       refusal(R"({"type": "Topology"})"),
@@ -342,6 +346,57 @@ TEST_F(GeoJson, RefusesGiantNumbers) {
                   .find("number overflow parsing '1e999'") != std::string::npos);
   EXPECT_EQ(refusal(R"({"type": "Point", "coordinates": [1e200, 2]})"),
             "map.geojson: coordinates is (1e+200, 2), magnitudes go up to 1e50");
+}
+
+TEST_F(GeoJson, SaysWhatAListAndJsonOfEsriAre) {
+  EXPECT_TRUE(refusal(R"([{"type": "Point", "coordinates": [0, 0]}])")
+                  .starts_with("map.geojson: is a list, and GeoJSON is an object: write {\"type\": "
+                               "\"GeometryCollection\", \"geometries\": [...]}"))
+      << refusal(R"([{"type": "Point", "coordinates": [0, 0]}])");
+  const std::string of_esri = refusal(
+      R"({"geometryType": "esriGeometryPolygon", "features": [{"geometry": {"rings": []}}]})");
+  EXPECT_TRUE(of_esri.starts_with("map.geojson: is JSON of Esri, not GeoJSON: ")) << of_esri;
+}
+
+TEST_F(GeoJson, JudgesRingsOfDegreesOnTheSphere) {
+  const auto read_degrees = [this](const std::string& rings) {
+    const auto path =
+        folder_.write("map.geojson", R"({"type": "Polygon", "coordinates": [)" + rings + "]}");
+    const auto domain = read_geojson(path, /*lonlat=*/true);
+    EXPECT_TRUE(domain) << domain.error().message;
+    return *domain;
+  };
+  const std::string box = "[[177,-19],[-178,-19],[-178,-16],[177,-16],[177,-19]]";
+  for (const char* hole : {"[[179,-18],[-179,-18],[-179,-17],[179,-17],[179,-18]]",
+                           "[[178,-18],[179,-18],[179,-17],[178,-17],[178,-18]]",
+                           "[[-179.5,-18],[-179,-18],[-179,-17],[-179.5,-17],[-179.5,-18]]",
+                           "[[181,-18],[181.5,-18],[181.5,-17],[181,-17],[181,-18]]"})
+    EXPECT_TRUE(read_degrees(box + "," + hole).warnings.empty()) << hole;
+  EXPECT_EQ(
+      read_degrees(box + ",[[170,-18],[171,-18],[171,-17],[170,-17],[170,-18]]").warnings.size(),
+      1u);
+  EXPECT_EQ(read_degrees("[[179,0],[-179,2],[-179,0],[179,2],[179,0]]").warnings.size(), 1u);
+  // Around a pole, closed at the meridian where it begins.
+  for (const char* cap : {"[[-180,80],[-90,80],[0,80],[90,80],[180,80],[-180,80]]",
+                          "[[0,80],[90,75],[180,80],[270,85],[360,80]]",
+                          "[[180,-80],[90,-80],[0,-80],[-90,-80],[-180,-80],[180,-80]]"}) {
+    const Domain domain = read_degrees(cap);
+    EXPECT_TRUE(domain.warnings.empty()) << cap;
+    EXPECT_EQ(domain.points.size(), 4u) << cap;
+  }
+  // A box around the Earth is none.
+  EXPECT_EQ(read_degrees("[[-180,-60],[180,-60],[180,60],[-180,60],[-180,-60]]").points.size(), 4u);
+}
+
+TEST_F(GeoJson, TellsOfARegionThatALineCannotHave) {
+  const auto domain = read(
+      R"({"type": "Feature", "properties": {"region": 3}, "geometry": {"type": "LineString",
+          "coordinates": [[0, 0], [4, 0], [4, 3], [0, 0]]}})");
+  ASSERT_TRUE(domain) << domain.error().message;
+  ASSERT_EQ(domain->warnings.size(), 1u);
+  EXPECT_TRUE(domain->warnings[0].find("geometry.coordinates is a line, and has a region") !=
+              std::string::npos)
+      << domain->warnings[0];
 }
 
 }  // namespace
