@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/call/request_rows.h"
 
+#include <algorithm>
 #include <cctype>
+#include <iterator>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -9,6 +12,7 @@
 #include "client/call/field_path.h"
 #include "client/formats/derived/vertex_values.h"
 #include "client/formats/domain_formats.h"
+#include "client/formats/mesh_formats.h"
 #include "client/formats/raster.h"
 
 namespace weft::client {
@@ -39,8 +43,17 @@ bool is_file(const std::string& text, const std::filesystem::path& folder) {
          std::filesystem::is_regular_file(folder / text, ignored);
 }
 
-// The kind of field that the file may be.
-std::string kind_of(const std::string& file) {
+// Whether the text ends as the path of a file that may be a field does.
+bool ends_as_a_file(const std::string& text) {
+  const std::string extension = lower_extension(text);
+  constexpr std::string_view kRasters[] = {".tif", ".tiff", ".img", ".bil", ".vrt"};
+  return is_domain_path(text) || mesh_format(text) != nullptr ||
+         std::ranges::find(kRasters, extension) != std::end(kRasters);
+}
+
+// The kind of field that the file may be. NetCDF has rasters and meshes.
+std::string kind_of(const std::string& file, const std::filesystem::path& folder) {
+  if (lower_extension(file) == ".nc" && !read_mesh(folder / file)) return file;
   if (check_has_vertex_values(file)) return "mesh:" + file;
   return (is_domain_path(file) ? "distance:" : "") + file;
 }
@@ -53,8 +66,10 @@ OptionValue<Request> size(std::string Request::*field) {
               return "expects a number, an expression or a grid, not an empty text";
             if (!is_raster_path(texts.front()) && is_file(texts.front(), folder))
               return in_quotes(texts.front()) +
-                     " is a file, not an expression: make it a field, d=" + kind_of(texts.front()) +
-                     ", whose name an expression can use";
+                     " is a file, not an expression: make it a field, d=" +
+                     kind_of(texts.front(), folder) + ", whose name an expression can use";
+            if (!is_raster_path(texts.front()) && ends_as_a_file(texts.front()))
+              return in_quotes(texts.front()) + " is no expression, and there is no such file";
             options.*field =
                 is_raster_path(texts.front()) ? (folder / texts.front()).string() : texts.front();
             return "";

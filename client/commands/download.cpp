@@ -48,7 +48,8 @@ Result<MeshReport> download(JobServer& server, const v1::Job& job, const InputDo
   if (auto found = output.find_markers(names.markers); !found) return tl::unexpected(found.error());
   if (input != nullptr) {
     add_projection(*input, *report);
-    output.bring_back_by(input->projection);
+    if (auto set = output.set_domain(input->domain, input->projection); !set)
+      return tl::unexpected(set.error());
     mesh->input_point_markers = input->domain.point_markers;
   }
   if (auto ok = add_outside_warning(input, *report); !ok) return tl::unexpected(ok.error());

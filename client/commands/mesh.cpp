@@ -14,6 +14,7 @@
 #include "client/formats/mesh_formats.h"
 #include "client/lint/domain_lint.h"
 #include "client/lint/lint_report.h"
+#include "client/lint/near_places.h"
 #include "client/report/mesh_text.h"
 #include "client/report/picture_terminal.h"
 #include "client/report/progress_bar.h"
@@ -111,8 +112,10 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
     return print(json_line(json));
   }
   if (options.quiet) return ExitCode::kOk;
-  const auto printed = print(mesh_text(*report, times) + region_values_text(domain.region_values) +
-                             output->text(report->summary));
+  const auto printed =
+      print(mesh_text(*report, times) +
+            near_places_text(domain, options.input.string(), report->summary) +
+            region_values_text(domain.region_values) + output->text(report->summary));
   return printed && picture ? picture->show() : printed;
 }
 

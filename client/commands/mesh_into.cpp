@@ -15,9 +15,12 @@ Result<MeshReport> mesh_into(const Connection& connection, const InputDomain& in
                              const RequestOptions& request_options, const MeshCallOptions& call,
                              MeshOutput* output, const std::function<void()>& received,
                              std::stop_token stop) {
-  if (output != nullptr)
+  if (output != nullptr) {
     if (auto found = output->find_markers(input.domain.names.markers); !found)
       return tl::unexpected(found.error());
+    if (auto set = output->set_domain(input.domain, input.projection); !set)
+      return tl::unexpected(set.error());
+  }
   std::error_code ignored;
   const auto spool = output != nullptr
                          ? output->make_spool()
@@ -40,7 +43,6 @@ Result<MeshReport> mesh_into(const Connection& connection, const InputDomain& in
     add_warnings({std::move(*warning)}, *report);
   add_warnings(request_options.warnings, *report);
   if (output == nullptr) return report;
-  output->bring_back_by(input.projection);
   auto mesh = (*spool)->view();
   if (!mesh) return tl::unexpected(mesh.error());
   mesh->input_point_markers = input.domain.point_markers;

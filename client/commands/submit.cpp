@@ -85,6 +85,9 @@ Result<ExitCode> run_submit(const SubmitOptions& options, std::stop_token stop) 
   warn(domain.warnings, options.quiet);
   times.read = times.connected = MeshTimes::Clock::now();
 
+  if (*output)
+    if (auto set = (*output)->set_domain(input->domain, input->projection); !set)
+      return tl::unexpected(set.error());
   auto job = submit(*server, *input, options);
   if (!job) return tl::unexpected(job.error());
   const auto print_id = [&] { return print(harmless(job->id()) + "\n"); };

@@ -86,6 +86,15 @@ double value_at(const FieldRaster& raster, double x, double y) {
   return first + j.weight * (along(j.second) - first);
 }
 
+Result<FieldRaster> read_in_plane(const std::filesystem::path& file, const std::string& band,
+                                  const RasterBox& box, const NodalPlane& plane,
+                                  std::uint64_t max_values) {
+  if (!plane.crs.empty())
+    return read_field_raster_projected(file, band, box, plane.crs, max_values);
+  if (plane.system) return read_field_raster_in(file, band, box, *plane.system, max_values);
+  return read_field_raster(file, band, box, max_values);
+}
+
 // The option with that name; the end if there is none.
 template <class Options>
 auto named(Options& options, const std::string& name) {
@@ -126,8 +135,18 @@ std::string add_nodal(const std::string& text, const std::filesystem::path& fold
   return "";
 }
 
+Result<void> check_nodal_sources(const NodalOption& option, const RasterBox& box,
+                                 const NodalPlane& plane) {
+  constexpr std::uint64_t kFew = 1 << 12;
+  for (const auto& source : option.sources)
+    if (const auto* raster = std::get_if<RasterPath>(&source))
+      if (auto read = read_in_plane(raster->file, raster->band, box, plane, kFew); !read)
+        return tl::unexpected(read.error());
+  return {};
+}
+
 Result<SampledValues> sample_nodal(const NodalOption& option, const MeshView& mesh,
-                                   const std::string& crs, std::span<const double> places) {
+                                   const NodalPlane& plane, std::span<const double> places) {
   SampledValues sampled{ScratchArray<double>(mesh.pages, mesh.vertex_count()), {}};
   ScratchArray<double>& values = sampled.values;
   for (const std::size_t v : mesh.up_to(mesh.vertex_count())) values[v] = kNoValue;
@@ -140,8 +159,7 @@ Result<SampledValues> sample_nodal(const NodalOption& option, const MeshView& me
       continue;
     }
     const auto& [file, band] = std::get<RasterPath>(source);
-    auto raster = crs.empty() ? read_field_raster(file, band, box)
-                              : read_field_raster_projected(file, band, box, crs);
+    auto raster = read_in_plane(file, band, box, plane, kMaxFieldValues);
     if (!raster) return tl::unexpected(raster.error());
     sampled.warnings.insert(sampled.warnings.end(), raster->warnings.begin(),
                             raster->warnings.end());

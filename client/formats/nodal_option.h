@@ -2,10 +2,11 @@
 // --nodal: values at the vertices of a mesh that is written, and how they are taken from rasters.
 //
 //   NodalOption depth{"depth", {RasterPath{"survey.tif", ""}, 5.0}};
-//   auto sampled = sample_nodal(depth, mesh, "", mesh.coordinates);
+//   auto sampled = sample_nodal(depth, mesh, {}, mesh.coordinates);
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -41,14 +42,25 @@ struct SampledValues {
   std::vector<std::string> warnings;
 };
 
+// Where the vertices of a mesh are: in the plane of the projection `crs`, or else in `system`, if
+// that is known. Rasters that are elsewhere are projected, as those of fields are.
+struct NodalPlane {
+  std::string crs{};
+  std::optional<CoordinateSystem> system{};
+};
+
+// Whether the sources of an option have values in the box, before there is a mesh. Errors: those of
+// field_raster.h.
+Result<void> check_nodal_sources(const NodalOption& option, const RasterBox& box,
+                                 const NodalPlane& plane);
+
 // Rasters are bilinear between the centres of their cells, and have no value more than half a cell
-// outside of them or beside a cell without one. With `crs`, the mesh is in the plane of that
-// projection, and rasters are projected as those of fields are. `places` has the coordinates of the
-// vertices for messages.
+// outside of them or beside a cell without one. `places` has the coordinates of the vertices for
+// messages.
 //
 // Errors (kUnreadableInput): those of field_raster.h; a vertex without a value, with its number and
 // its place. Memory: that of the rasters, one at a time, and the values in the mesh's pages.
 Result<SampledValues> sample_nodal(const NodalOption& option, const MeshView& mesh,
-                                   const std::string& crs, std::span<const double> places);
+                                   const NodalPlane& plane, std::span<const double> places);
 
 }  // namespace weft::client

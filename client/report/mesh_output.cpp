@@ -167,6 +167,19 @@ Result<void> MeshOutput::find_markers(const NameTable& markers) {
   return find_open_boundaries(options_.writing, markers);
 }
 
+Result<void> MeshOutput::set_domain(const Domain& domain,
+                                    std::shared_ptr<const DomainProjection> projection) {
+  projection_ = std::move(projection);
+  plane_ = {projection_ ? projection_->name() : "", projection_ ? std::nullopt : domain.system};
+  if (domain.points.empty()) return {};
+  const auto [west, east] = std::ranges::minmax_element(domain.points, {}, &Point::x);
+  const auto [south, north] = std::ranges::minmax_element(domain.points, {}, &Point::y);
+  for (const NodalOption& option : options_.writing.nodal)
+    if (auto ok = check_nodal_sources(option, {west->x, south->y, east->x, north->y}, plane_); !ok)
+      return ok;
+  return {};
+}
+
 Result<void> MeshOutput::write(const MeshView& arrived, const v1::Summary& summary) {
   if (!options_.files.empty())
     if (auto written = write_files(arrived); !written) return written;
@@ -227,8 +240,7 @@ Result<void> MeshOutput::write_files(const MeshView& arrived) try {
   std::vector<SampledValues> sampled;
   std::vector<VertexValues> vertex_values(plane.vertex_values.begin(), plane.vertex_values.end());
   for (const NodalOption& option : options_.writing.nodal) {
-    auto values =
-        sample_nodal(option, plane, projection_ ? projection_->name() : "", mesh.coordinates);
+    auto values = sample_nodal(option, plane, plane_, mesh.coordinates);
     if (!values) return tl::unexpected(values.error());
     warnings_.insert(warnings_.end(), values->warnings.begin(), values->warnings.end());
     vertex_values.push_back({option.name, values->values.values()});

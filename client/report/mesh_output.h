@@ -61,11 +61,11 @@ class MeshOutput {
   Drawing* drawing() const { return drawing_.get(); }
   // The spool adds the mesh to this drawing, too, which must outlive it.
   void also_draw(Drawing& other) { other_drawing_ = &other; }
-  // The mesh that arrives is in metres of this projection, and is written in longitude and latitude
-  // unless the projection says metres; drawings show the plane. Null: it is written as it arrives.
-  void bring_back_by(std::shared_ptr<const DomainProjection> projection) {
-    projection_ = std::move(projection);
-  }
+  // The mesh that arrives is that of `domain`, in metres of the projection, and is written in
+  // longitude and latitude unless the projection says metres; drawings show the plane. Null: it is
+  // written as it arrives. Errors: a source of values at the vertices has none there
+  // (check_nodal_sources).
+  Result<void> set_domain(const Domain& domain, std::shared_ptr<const DomainProjection> projection);
   // Makes markers of those that the options give by name. Error: that of find_marker.
   Result<void> find_markers(const NameTable& markers);
   // REQUIRES: find_markers was called if the options give markers by name.
@@ -93,6 +93,7 @@ class MeshOutput {
   std::vector<OutputFile> files_;  // those of options_.files, then the drawings
   std::stop_token stop_;
   std::shared_ptr<const DomainProjection> projection_;
+  NodalPlane plane_;  // of the mesh that arrives
   std::vector<std::string> warnings_;
   std::string text_;                  // lines on the order and the parts of what was written
   std::unique_ptr<Drawing> drawing_;  // source of all drawings; null if there are none

@@ -10,8 +10,8 @@ seed of a hole, are the domain.
 
 Rasters become values at the vertices of a mesh.
 
-Needs Debian's python3-gdal, python3-gmsh, python3-netgen, python3-numpy, python3-pyshp and
-python3-shapely.
+Needs Debian's python3-gdal, python3-gmsh, python3-meshio, python3-netgen, python3-numpy, python3-pyshp,
+python3-shapely and python3-vtk9.
 """
 
 import os
@@ -22,15 +22,18 @@ import tempfile
 import zipfile
 
 import gmsh
+import meshio
 import numpy
 import shapefile
 import shapely
 import shapely.wkt
+import vtkmodules.all as vtk
 from netgen import meshing
 from netgen.geom2d import SplineGeometry
-from osgeo import gdal, ogr
+from osgeo import gdal, ogr, osr
 from shapely.geometry import LineString, MultiLineString, MultiPolygon, Point, Polygon
 from shapely.ops import polygonize, unary_union
+from vtkmodules.util.numpy_support import numpy_to_vtk
 
 import format_table
 
@@ -145,10 +148,63 @@ def netgen_mesh(path):
     geometry.GenerateMesh(maxh=2.5).Save(path)
 
 
+def triangulation():
+    """Points, triangles with regions 7 and 8, edges with markers 5 and 6, of the plate and the triangle."""
+    inner = [HOLE[0], HOLE[3], HOLE[2], HOLE[1]]  # counter-clockwise, as the border is
+    points = numpy.array([(x, y, 0.0) for x, y in OUTER + inner + BESIDE])
+    triangles = [corners for k in range(4) for corners in
+                 ((k, (k + 1) % 4, 4 + (k + 1) % 4), (k, 4 + (k + 1) % 4, 4 + k))] + [(8, 9, 10)]
+    edges = [(k, (k + 1) % 4) for k in range(4)] + [(8, 9), (9, 10), (10, 8)]
+    return points, triangles, [7] * 8 + [8], edges, [5] * 4 + [6] * 3
+
+
+def vtk_grid(compressor, mode, base64, wide):
+    """Blocks are small, so that there are several."""
+    def write(path):
+        points, triangles, regions, edges, markers = triangulation()
+        grid = vtk.vtkUnstructuredGrid()
+        at = vtk.vtkPoints()
+        at.SetDataTypeToDouble()
+        for point in points:
+            at.InsertNextPoint(point)
+        grid.SetPoints(at)
+        for kind, cells in ((vtk.VTK_TRIANGLE, triangles), (vtk.VTK_LINE, edges)):
+            for cell in cells:
+                grid.InsertNextCell(kind, len(cell), cell)
+        for name, values in (("region", regions + [0] * len(edges)),
+                             ("marker", [0] * len(triangles) + markers)):
+            array = numpy_to_vtk(numpy.array(values, numpy.int64), deep=1)
+            array.SetName(name)
+            grid.GetCellData().AddArray(array)
+        writer = vtk.vtkXMLUnstructuredGridWriter()
+        getattr(writer, f"SetCompressorTypeTo{compressor}")()
+        getattr(writer, f"SetDataModeTo{mode}")()
+        writer.SetEncodeAppendedData(base64)
+        writer.SetHeaderTypeToUInt64() if wide else writer.SetHeaderTypeToUInt32()
+        writer.SetBlockSize(64)
+        writer.SetInputData(grid)
+        writer.SetFileName(path)
+        writer.Write()
+    return write
+
+
+def meshio_grid(compression):
+    def write(path):
+        points, triangles, regions, edges, markers = triangulation()
+        meshio.Mesh(points, [("triangle", numpy.array(triangles)), ("line", numpy.array(edges))],
+                    cell_data={"region": [numpy.array(regions), numpy.zeros(len(edges), int)],
+                               "marker": [numpy.zeros(len(triangles), int), numpy.array(markers)]},
+                    ).write(path, compression=compression)
+    return write
+
+
+VTK = f"VTK {vtk.vtkVersion.GetVTKVersion()}"
+MESHIO = f"meshio {meshio.__version__}"
 NETGEN = "Netgen 6.2.1905"
 GMSH = f"Gmsh {gmsh.__version__}"
 GDAL = f"GDAL {gdal.__version__}"
 REGIONS = {7: PLATE.area, 8: 8.0}
+OF_MESH = {"markers": {0, 5, 6}, "regions": REGIONS}
 OF_FIELDS = {"markers": {3, 4}, "regions": REGIONS}
 DRAWN = {"markers": {0}, "area": AREA + 16}  # the hole is a face like the others
 def ogr_file(driver, options=(), lines=False):
@@ -181,6 +237,13 @@ CASES = [  # file, kind, writer, what writes, what is expected
     ("d.mesh", "", GMSH, gmsh_model(True, 4.1), {"markers": {0, 1, 2, 3, 4, 9, 10, 11},
                                                  "regions": {1: PLATE.area, 2: 8.0}}),
     ("d.vol", "", NETGEN, netgen_mesh, {"markers": {1, 2, 3}, "regions": {1: PLATE.area, 2: 8.0}}),
+    ("dz.vtu", ", zlib, appended", VTK, vtk_grid("ZLib", "Appended", False, True), OF_MESH),
+    ("dl.vtu", ", LZ4, appended in base64", VTK, vtk_grid("LZ4", "Appended", True, False), OF_MESH),
+    ("dx.vtu", ", LZMA, inline", VTK, vtk_grid("LZMA", "Binary", False, True), OF_MESH),
+    ("dn.vtu", ", not compressed, inline", VTK, vtk_grid("None", "Binary", False, False), OF_MESH),
+    ("dt.vtu", ", text", VTK, vtk_grid("ZLib", "Ascii", False, False), OF_MESH),
+    ("dm.vtu", ", zlib", MESHIO, meshio_grid("zlib"), OF_MESH),
+    ("do.vtu", ", LZMA", MESHIO, meshio_grid("lzma"), OF_MESH),
     ("d.gpkg", "", GDAL, ogr_file("GPKG"), OF_FIELDS),
     ("d.fgb", "", GDAL, ogr_file("FlatGeobuf"), OF_FIELDS),
     ("d.kml", "", GDAL, ogr_file("LIBKML"), OF_FIELDS),
@@ -234,6 +297,34 @@ def check_raster(weft, folder, path):
     equal("values of the raster", float(abs(errors).max()) < 1e-6, True)
 
 
+def projected_raster(weft, folder):
+    """A raster in degrees gives values to a domain in metres; one that is elsewhere, or has no such
+    band, is refused before there is a mesh."""
+    depth, shore, out = (os.path.join(folder, name) for name in ("depth.tif", "shore.gpkg", "shore.npz"))
+    raster = gdal.GetDriverByName("GTiff").Create(depth, 60, 60, 1, gdal.GDT_Float32)
+    raster.SetGeoTransform([-75.3, 0.01, 0, 39.3, 0, -0.01])
+    degrees = osr.SpatialReference()
+    degrees.ImportFromEPSG(4326)
+    raster.SetProjection(degrees.ExportToWkt())
+    raster.GetRasterBand(1).WriteArray(numpy.full((60, 60), 7.5))
+    raster = None
+    plane = osr.SpatialReference()
+    plane.ImportFromEPSG(32618)
+    file = ogr.GetDriverByName("GPKG").CreateDataSource(shore)
+    layer = file.CreateLayer("d", srs=plane, geom_type=ogr.wkbPolygon)
+    feature = ogr.Feature(layer.GetLayerDefn())
+    feature.SetGeometry(ogr.CreateGeometryFromWkt(
+        "POLYGON ((500000 4317000, 510000 4317000, 510000 4327000, 500000 4317000))"))
+    layer.CreateFeature(feature)
+    file = layer = feature = None
+    subprocess.run([weft, "mesh", shore, "-o", out, "--quiet", "--nodal", "depth=" + depth], check=True)
+    equal("values of the projected raster", set(numpy.load(out)["depth"]), {7.5})
+    os.remove(out)
+    refused = subprocess.run([weft, "mesh", shore, "-o", out, "--nodal",
+                              f"depth={depth}:3"], capture_output=True, text=True)
+    equal("a band that is not there", (refused.returncode, "band" in refused.stderr), (4, True))
+
+
 def main():
     weft, docs = os.path.abspath(sys.argv[1]), sys.argv[2]
     gdal.UseExceptions()
@@ -253,6 +344,7 @@ def main():
                                       text=True).stdout
                 equal("names", re.findall(r"'([^']*)'", told), ["plate", "outer wall"])
         lines_only(weft, folder)
+        projected_raster(weft, folder)
         for extension, driver in RASTERS:
             path = os.path.join(folder, "raster" + extension)
             write_raster(path, driver)

@@ -177,7 +177,10 @@ TEST_F(Sizes, AreNoPathsOfFiles) {
               "an expression can use");
     EXPECT_THAT(fault_of("old.npz"), HasSubstr("d=mesh:old.npz"));
     EXPECT_THAT(fault_of("coast.geojson"), HasSubstr("d=distance:coast.geojson"));
-    for (const char* const text : {"x", "1.5", "none.tif"}) EXPECT_EQ(fault_of(text), "") << text;
+    folder_.write("waves.nc", "CDF");
+    EXPECT_THAT(fault_of("waves.nc"), HasSubstr("d=waves.nc,"));
+    EXPECT_EQ(fault_of("none.tif"), "'none.tif' is no expression, and there is no such file");
+    for (const char* const text : {"x", "1.5", "2.e5*x"}) EXPECT_EQ(fault_of(text), "") << text;
   }
 }
 

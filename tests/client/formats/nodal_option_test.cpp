@@ -65,7 +65,7 @@ class NodalValues : public ::testing::Test {
     std::vector<NodalOption> options;
     for (const std::string& text : texts) EXPECT_EQ(add_nodal(text, folder_.path(), options), "");
     mesh_.coordinates = std::move(coordinates);
-    return sample_nodal(options.at(0), mesh_.view(), "", mesh_.coordinates);
+    return sample_nodal(options.at(0), mesh_.view(), {}, mesh_.coordinates);
   }
   std::vector<double> values(std::vector<double> coordinates, const Texts& texts) {
     const auto sampled = sample(std::move(coordinates), texts);
