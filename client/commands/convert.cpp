@@ -105,6 +105,10 @@ Result<ExitCode> convert_mesh(const ConvertOptions& options, const std::stop_tok
   const v1::Summary none;
   if (auto written = output->write(view, none); !written) return tl::unexpected(written.error());
   if (options.quiet) return ExitCode::kOk;
+  if (mesh.cut_faces > 0)
+    warnings += warnings_text({options.input.string() + ": " + with_separators(mesh.cut_faces) +
+                               (mesh.cut_faces == 1 ? " face" : " faces") +
+                               " of more than three corners, cut into triangles"});
   for (const auto& all :
        {mesh.warnings, output->warnings(),
         open_boundary_warnings(markers_of(view), output->options().writing.open_boundaries)})
