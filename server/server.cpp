@@ -267,6 +267,7 @@ std::optional<std::string> Server::start_console(const ServerOptions& options) {
 
 void Server::reload() {
   if (tokens_) tokens_->reload();
+  if (front_ != nullptr) front_->reload();
   if (console_ != nullptr) console_->reload();
 }
 

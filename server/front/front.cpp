@@ -129,6 +129,12 @@ class Front::Door {
     });
   }
 
+  void reload() {
+    asio::post(io_, [this] {
+      if (tls_) tls_->reload();
+    });
+  }
+
   void stop_accepting() {
     if (!thread_.joinable() || stopped_.exchange(true)) return;
     std::promise<void> done;
@@ -282,6 +288,10 @@ const std::vector<int>& Front::ports() const {
 
 void Front::start(std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> grpc) {
   door_->start(std::move(grpc));
+}
+
+void Front::reload() {
+  door_->reload();
 }
 
 void Front::stop_accepting() {

@@ -63,6 +63,8 @@ class Front {
 
   // Begins to accept. gRPC has been started, and lives until `stop_accepting`.
   void start(std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> grpc);
+  // Reads the certificates again for the next connection.
+  void reload();
   void stop_accepting();
   // Lets connections that gRPC has closed send what is left, until `end`. REQUIRES: gRPC has shut
   // down.
