@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "server/console/session.h"
-#include "server/net/tls_context.h"
 #include "server/net/drain_gate.h"
 #include "server/net/listen.h"
+#include "server/net/tls_context.h"
 
 namespace weft::server {
 namespace {

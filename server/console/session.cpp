@@ -24,8 +24,8 @@
 #include "server/console/call_body.h"
 #include "server/console/call_headers.h"
 #include "server/console/pages.h"
-#include "server/net/peer.h"
 #include "server/console/transport.h"
+#include "server/net/peer.h"
 
 namespace weft::server {
 namespace {

@@ -52,8 +52,8 @@ class ConnectionTable {
   ConnectionTable(const Bounds& bounds, std::string_view secret)
       : bounds_(bounds), prefix_("weft-" + std::string(secret) + "-") {}
 
-  // `peer` is an address as gRPC spells it, see host_of_peer. Null if the connection must be closed.
-  // The connection leaves the table when its last owner releases it; the table outlives it.
+  // `peer` is an address as gRPC spells it, see host_of_peer. Null if the connection must be
+  // closed. The connection leaves the table when its last owner releases it; the table outlives it.
   std::shared_ptr<Connection> enter(std::string peer, Close close);
 
   // The name of the abstract unix socket by which gRPC tells the next connection from others.
