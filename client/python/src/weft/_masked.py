@@ -12,15 +12,21 @@ from .errors import DomainError
 
 def refuse_masked(name: str, values: npt.ArrayLike) -> None:
     """Raises DomainError, which names the first masked element, if there is one."""
-    if not isinstance(values, np.ma.MaskedArray) or not np.ma.is_masked(values):
+    where = np.argwhere(_mask_of(values))
+    if len(where) == 0:
         return
-    where = np.argwhere(np.ma.getmaskarray(values))
     more = f", and {len(where) - 1:,} more" if len(where) > 1 else ""
     raise DomainError(f"{name}{where[0].tolist()} is masked{more}: it has no value here")
 
 
 def nan_where_masked(values: npt.ArrayLike, dtype: Any) -> npt.NDArray[Any]:
     """An array of floating-point numbers, contiguous; a number is an array of shape ()."""
-    if isinstance(values, np.ma.MaskedArray):
-        values = np.ma.filled(values.astype(dtype), np.nan)
-    return np.asarray(values, dtype, "C")
+    if not isinstance(values, np.ma.MaskedArray):
+        return np.asarray(values, dtype, "C")
+    return np.where(_mask_of(values), dtype(np.nan), np.asarray(values.data, dtype))
+
+
+def _mask_of(values: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+    if not isinstance(values, np.ma.MaskedArray):
+        return np.zeros((), np.bool_)
+    return np.broadcast_to(np.asarray(values.mask, np.bool_), values.shape)
