@@ -87,8 +87,7 @@ struct Estimate {
 };
 
 // What a run is expected to make and to take, at most what the budget allows: a guess, in linear
-// time, without a triangulation. What fields of an expression ask for is not in it. Any request is
-// safe, one that `validate` refuses, too.
+// time, without a triangulation and what fields of an expression ask for. REQUIRES nothing.
 Estimate estimate(const MeshRequest& request, const Budget& budget = {});
 
 // Makes the mesh and sends it to the sink, chunk by chunk, most of a large mesh while it is
