@@ -33,10 +33,12 @@ constexpr seconds kLastWords{1};
 // Streams of other services, such as Health.Watch, do not end by themselves.
 constexpr milliseconds kOthersGrace{100};
 
-AdmissionOptions admission_options(const ServerOptions& options, MemoryBudget& budget) {
+AdmissionOptions admission_options(const ServerOptions& options, MemoryBudget& budget,
+                                   ConnectionTable& connections) {
   AdmissionOptions admission = options.admission;
   admission.request_bytes = plan_memory(options).received;
   admission.memory = &budget;
+  admission.connections = &connections;
   return admission;
 }
 
@@ -115,7 +117,7 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
       authenticator_(tokens_.get(), console_secret_, &connections_),
       metrics_(kVersion, kEngineVersion),
       memory_(budget_options(options), [this] { queue_.memory_released(); }),
-      admission_(admission_options(options, memory_), authenticator_, metrics_, log_),
+      admission_(admission_options(options, memory_, connections_), authenticator_, metrics_, log_),
       health_(admission_),
       reflection_(ReflectionService::Version::kV1, admission_, services(store != nullptr)),
       reflection_alpha_(ReflectionService::Version::kV1Alpha, admission_,

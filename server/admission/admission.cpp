@@ -56,6 +56,7 @@ Admission::~Admission() {
 RawCall* Admission::open(grpc::CallbackServerContext* context, const Method& method,
                          DrainGate* gate) {
   const auto raw = RawCall::make(context, *this);
+  if (options_.connections != nullptr) options_.connections->call_began(raw->peer());
   try {
     admit(raw, method, gate);
   } catch (const std::bad_alloc&) {

@@ -60,6 +60,8 @@ struct AdmissionOptions {
   // budget.
   std::uint64_t request_bytes = std::uint64_t{1} << 30;
   MemoryBudget* memory = nullptr;
+  // Is told of each call, and outlives the admission; null: nobody is.
+  ConnectionTable* connections = nullptr;
 };
 
 // The memory of a large message, and then of the request that is parsed from it, in both budgets.

@@ -14,24 +14,6 @@ constexpr std::uint32_t kSmallData = 64;
 
 }  // namespace
 
-std::optional<ConnectionRules::Violation> ConnectionRules::received(std::string_view bytes,
-                                                                    std::string& passes,
-                                                                    Clock::time_point now) {
-  pass_time(now);
-  std::optional<Violation> violation;
-  from_client_.split(
-      bytes,
-      [&](const FrameHeader& frame, std::string_view head) {
-        violation = judge(frame);
-        if (!violation && passing_) passes.append(head);
-        return !violation;
-      },
-      [&](std::string_view payload) {
-        if (passing_) passes.append(payload);
-      });
-  return violation;
-}
-
 std::optional<ConnectionRules::Violation> ConnectionRules::judge(const FrameHeader& frame) {
   passing_ = true;
   if (block_stream_ != 0) return judge_continuation(frame);

@@ -4,8 +4,9 @@
 //
 //   ConnectionRules rules({.max_resets = 600});
 //   std::string passes;
-//   if (const auto broken = rules.received(bytes, passes, now)) close(broken->cause);
-//   ... passes goes to gRPC; rules.sent(answer) follows what gRPC sends ...
+//   const auto received = rules.received(bytes, passes, now, may_begin);
+//   if (received.violation) close(received.violation->cause);
+//   ... passes goes to gRPC, received.rest is kept; rules.sent(answer) follows what gRPC sends ...
 //
 // Rules, on the bytes after the client's preface:
 //   - A header block has at most kMaxHeaderBytes, in at most 1 + kMaxContinuations frames
@@ -58,10 +59,18 @@ class ConnectionRules {
   ConnectionRules(const Options& options, Clock::time_point now)
       : options_(options), credit_time_(now), second_(now) {}
 
-  // Appends to `passes` what gRPC may see of the client's bytes. After a violation the connection
-  // must be closed; no function may be called any more.
-  std::optional<Violation> received(std::string_view bytes, std::string& passes,
-                                    Clock::time_point now);
+  struct Received {
+    std::optional<Violation> violation{};  // then the connection must be closed
+    // A call may not begin yet; `rest` are the bytes from there on, for another try.
+    bool waits = false;
+    std::string_view rest{};
+  };
+
+  // Appends to `passes` what gRPC may see of the client's bytes. Asks `may_begin()` for each call
+  // that begins. After a violation no function may be called any more.
+  template <class MayBegin>
+  Received received(std::string_view bytes, std::string& passes, Clock::time_point now,
+                    MayBegin&& may_begin);
   // Follows the bytes that gRPC sends to the client.
   void sent(std::string_view bytes);
 
@@ -75,6 +84,9 @@ class ConnectionRules {
   std::uint64_t answered() const { return answered_; }  // streams that gRPC ended
 
  private:
+  bool begins_call(const FrameHeader& frame) const {
+    return frame.type == FrameType::kHeaders && block_stream_ == 0 && frame.stream > last_stream_;
+  }
   std::optional<Violation> judge(const FrameHeader& frame);
   std::optional<Violation> judge_headers(const FrameHeader& frame);
   std::optional<Violation> judge_continuation(const FrameHeader& frame);
@@ -99,5 +111,27 @@ class ConnectionRules {
   std::uint64_t resets_ = 0;
   std::uint64_t answered_ = 0;
 };
+
+// --- implementation ---
+
+template <class MayBegin>
+ConnectionRules::Received ConnectionRules::received(std::string_view bytes, std::string& passes,
+                                                    Clock::time_point now, MayBegin&& may_begin) {
+  pass_time(now);
+  Received received;
+  received.rest = from_client_.split(
+      bytes,
+      [&](const FrameHeader& frame, std::string_view head) {
+        received.waits = begins_call(frame) && !may_begin();
+        if (received.waits) return false;
+        received.violation = judge(frame);
+        if (!received.violation && passing_) passes.append(head);
+        return !received.violation;
+      },
+      [&](std::string_view payload) {
+        if (passing_) passes.append(payload);
+      });
+  return received;
+}
 
 }  // namespace weft::server

@@ -54,10 +54,10 @@ class FrameSplitter {
   static constexpr std::size_t kHeaderBytes = 9;
 
   // Calls `begin(FrameHeader, its nine bytes)` as soon as a frame's header is complete, then
-  // `payload(bytes)` for its payload, in parts as they come. Stops for good once `begin` returns
-  // false.
+  // `payload(bytes)` for its payload, in parts as they come. If `begin` returns false, returns the
+  // bytes after that header at once; the next call, which must bring them, asks `begin` again.
   template <class Begin, class Payload>
-  void split(std::string_view bytes, Begin&& begin, Payload&& payload);
+  std::string_view split(std::string_view bytes, Begin&& begin, Payload&& payload);
 
   // Whether all frames so far are complete.
   bool between_frames() const { return left_ == 0 && got_ == 0; }
@@ -73,8 +73,15 @@ class FrameSplitter {
 // --- implementation ---
 
 template <class Begin, class Payload>
-void FrameSplitter::split(std::string_view bytes, Begin&& begin, Payload&& payload) {
-  while (!bytes.empty()) {
+std::string_view FrameSplitter::split(std::string_view bytes, Begin&& begin, Payload&& payload) {
+  while (!bytes.empty() || got_ == kHeaderBytes) {
+    if (got_ == kHeaderBytes) {
+      const FrameHeader frame = header();
+      if (!begin(frame, std::string_view(head_.data(), kHeaderBytes))) return bytes;
+      got_ = 0;
+      left_ = frame.length;
+      continue;
+    }
     if (left_ != 0) {
       const std::string_view part = bytes.substr(0, left_);
       left_ -= part.size();
@@ -86,12 +93,8 @@ void FrameSplitter::split(std::string_view bytes, Begin&& begin, Payload&& paylo
     bytes.copy(head_.data() + got_, now);
     got_ += now;
     bytes.remove_prefix(now);
-    if (got_ < kHeaderBytes) return;
-    got_ = 0;
-    const FrameHeader frame = header();
-    left_ = frame.length;
-    if (!begin(frame, std::string_view(head_.data(), kHeaderBytes))) return;
   }
+  return bytes;
 }
 
 }  // namespace weft::server

@@ -37,7 +37,7 @@ using tcp = asio::ip::tcp;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kPatience{20};  // for the handshake and the preface
-constexpr std::chrono::milliseconds kTick{250};
+constexpr std::chrono::milliseconds kTick{100};
 constexpr std::chrono::milliseconds kBreather{100};
 constexpr std::uint64_t kLinesPerSecond = 20;
 // What a client sends waits in the relay rather than in the pair of sockets: a connection that is
@@ -241,6 +241,7 @@ class Front::Door {
       while (!arrivals_.empty() && Clock::now() - arrivals_.front()->since() > kPatience)
         std::shared_ptr(arrivals_.front())->close();
       closings_.flush_suppressed();
+      table_.pass_time(Clock::now());
       if (closed_some_.exchange(false)) malloc_trim(0);  // thousands of calls lie scattered in it
       tick();
     });

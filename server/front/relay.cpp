@@ -24,6 +24,9 @@ constexpr std::size_t kBytesFromClient = std::size_t{32} << 10;
 constexpr std::size_t kBytesFromServer = std::size_t{256} << 10;
 constexpr int kTurns = 4;
 constexpr std::chrono::milliseconds kBetweenLooks{10};
+constexpr std::chrono::milliseconds kBetweenRefreshes{100};
+// How long gRPC has to hand over the calls of a connection that is closed.
+constexpr std::chrono::seconds kLongestEnd{1};
 
 bool would_wait() {
   return errno == EAGAIN || errno == EINTR;
@@ -34,7 +37,7 @@ bool would_wait() {
 // ---- the lane ----
 
 Lane::Lane() : scratch_(kBytesFromServer) {
-  refresh_every_second();
+  refresh_often();
   thread_ = std::thread([this] {
     sigset_t all;  // OpenSSL's writes may raise SIGPIPE
     sigfillset(&all);
@@ -54,7 +57,8 @@ void Lane::finish(Clock::time_point end) {
     std::promise<bool> empty;
     asio::post(io_, [&] {
       if (Clock::now() >= end)
-        for (Relay* const each : std::vector(relays_.begin(), relays_.end())) each->close();
+        for (Relay* const each : std::vector(relays_.begin(), relays_.end()))
+          each->close_to_server();
       empty.set_value(relays_.empty());
     });
     return empty.get_future().get();
@@ -62,12 +66,12 @@ void Lane::finish(Clock::time_point end) {
   while (!is_empty()) std::this_thread::sleep_for(kBetweenLooks);
 }
 
-void Lane::refresh_every_second() {
-  timer_.expires_after(std::chrono::seconds(1));
+void Lane::refresh_often() {
+  timer_.expires_after(kBetweenRefreshes);
   timer_.async_wait([this](error_code error) {
     if (error) return;
     for (Relay* const each : std::vector(relays_.begin(), relays_.end())) each->refresh();
-    refresh_every_second();
+    refresh_often();
   });
 }
 
@@ -103,17 +107,28 @@ void Relay::close_for(ConnectionRules::Violation violation) {
 }
 
 void Relay::from_client() {
-  if (connection_ == nullptr || !pass_on(std::exchange(to_server_, {}))) return;
+  if (is_closed() || !pass_on(std::exchange(to_server_, {}))) return;
   for (int turn = 0; turn < kTurns; ++turn) {
-    const auto read = client_.read(lane_.scratch_.data(), kBytesFromClient);
-    if (read.outcome == Outcome::kClosed) return close();
-    if (read.outcome != Outcome::kDone) return wait_for_client(read.outcome, &Relay::from_client);
+    std::string_view bytes = held_;
+    if (!holds_) {
+      const auto read = client_.read(lane_.scratch_.data(), kBytesFromClient);
+      if (read.outcome == Outcome::kClosed) return close();
+      if (read.outcome != Outcome::kDone) return wait_for_client(read.outcome, &Relay::from_client);
+      bytes = {lane_.scratch_.data(), read.bytes};
+    }
     lane_.passes_.clear();
-    const auto violation =
-        rules_.received({lane_.scratch_.data(), read.bytes}, lane_.passes_, Clock::now());
+    const auto received = rules_.received(bytes, lane_.passes_, Clock::now(), [this] {
+      return context_.table.take_turn(*connection_);
+    });
+    holds_ = received.waits;
+    held_ = std::string(received.waits ? received.rest : "");
     report();
-    if (violation) return violate(*violation);
+    if (received.violation) return violate(*received.violation);
     if (!pass_on(lane_.passes_)) return;
+    if (holds_)
+      return context_.table.wait_for_turn(*connection_, [weak = weak_from_this()] {
+        if (const auto self = weak.lock()) self->go_on(&Relay::from_client);
+      });
   }
   go_on(&Relay::from_client);
 }
@@ -143,7 +158,7 @@ void Relay::from_server() {
         ::recv(inner_.native_handle(), lane_.scratch_.data(), kBytesFromServer, MSG_DONTWAIT);
     if (got < 0 && would_wait())
       return wait(inner_, asio::socket_base::wait_read, &Relay::from_server);
-    if (got <= 0) return close();
+    if (got <= 0) return close_to_server();
     const std::string_view bytes(lane_.scratch_.data(), static_cast<std::size_t>(got));
     rules_.sent(bytes);
     report();
@@ -153,11 +168,11 @@ void Relay::from_server() {
 }
 
 bool Relay::send_back(std::string_view bytes) {
-  while (!bytes.empty()) {
+  while (!bytes.empty() && !is_closed()) {
     const auto sent = client_.write(bytes.data(), bytes.size());
     if (sent.outcome == Outcome::kClosed) {
       close();
-      return false;
+      return true;
     }
     bytes.remove_prefix(sent.bytes);
     if (sent.outcome == Outcome::kDone) continue;
@@ -186,7 +201,7 @@ void Relay::go_on(Step step) {
 }
 
 void Relay::violate(const ConnectionRules::Violation& violation) {
-  if (connection_ == nullptr) return;
+  if (is_closed()) return;
   context_.closed(connection_->peer(), violation);
   if (to_client_.empty() && rules_.sent_whole_frames()) {
     const std::string last = calm_down(violation.cause);
@@ -196,12 +211,23 @@ void Relay::violate(const ConnectionRules::Violation& violation) {
 }
 
 void Relay::close() {
+  if (is_closed()) return;
+  closed_ = Clock::now();
+  context_.table.retire(*connection_);
+  to_server_ = {};
+  to_client_ = {};
+  held_ = {};
+  client_.close();
+  if (!context_.table.has_turns(*connection_)) return close_to_server();
+  go_on(&Relay::from_server);  // which may have waited for the client
+}
+
+void Relay::close_to_server() {
+  if (connection_ == nullptr) return;
+  close();  // if it has not been
   if (connection_ == nullptr) return;
   lane_.relays_.erase(this);
   connection_.reset();
-  to_server_ = {};
-  to_client_ = {};
-  client_.close();
   error_code ignored;
   inner_.close(ignored);
 }
@@ -209,12 +235,16 @@ void Relay::close() {
 void Relay::refresh() {
   rules_.pass_time(Clock::now());
   report();
+  if (closed_ == Clock::time_point()) return;
+  if (Clock::now() - closed_ > kLongestEnd || !context_.table.has_turns(*connection_))
+    close_to_server();
 }
 
 void Relay::report() {
-  context_.table.set_load(
-      *connection_,
-      {.open = rules_.open_streams(), .resets = rules_.resets(), .answered = rules_.answered()});
+  const bool counts = !is_closed();
+  context_.table.set_load(*connection_, {.open = counts ? rules_.open_streams() : 0,
+                                         .resets = counts ? rules_.resets() : 0,
+                                         .answered = rules_.answered()});
 }
 
 }  // namespace weft::server

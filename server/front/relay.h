@@ -3,8 +3,9 @@
 //
 // gRPC has one end of a pair of sockets, the relay the other. Each direction moves until it would
 // wait, and holds no more than what the receiver did not take at once; so a client that reads
-// nothing stops gRPC, and gRPC that reads nothing stops the client. A silent connection has no
-// buffers. Closing sends GOAWAY, with the cause, if no frame is cut in two by that.
+// nothing stops gRPC, and gRPC that reads nothing stops the client, as does a call that must wait
+// for its turn. A silent connection has no buffers. Closing sends GOAWAY, with the cause, if no
+// frame is cut in two by that.
 //
 // Thread-safety: a relay lives on the thread of its lane. `start` may be called from any.
 #pragma once
@@ -46,7 +47,7 @@ class Lane {
  private:
   friend class Relay;
 
-  void refresh_every_second();
+  void refresh_often();
 
   boost::asio::io_context io_{1};
   const boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{
@@ -89,6 +90,7 @@ class Relay : public std::enable_shared_from_this<Relay> {
 
   Relay(Parts parts, const RelayContext& context, Lane& lane);
 
+  bool is_closed() const { return connection_ == nullptr || closed_ != decltype(closed_)(); }
   void from_client();
   bool pass_on(std::string_view bytes);  // false: waits for gRPC, or is closed
   void from_server();
@@ -98,7 +100,8 @@ class Relay : public std::enable_shared_from_this<Relay> {
   void wait_for_client(ClientSocket::Outcome outcome, Step then);
   void go_on(Step step);  // later, after others had their turn
   void violate(const ConnectionRules::Violation& violation);
-  void close();
+  void close();  // to the client; to gRPC once it has handed over all calls
+  void close_to_server();
   void refresh();  // what was reset in a second that has passed no longer counts
   void report();
 
@@ -106,8 +109,11 @@ class Relay : public std::enable_shared_from_this<Relay> {
   Lane& lane_;
   ClientSocket client_;
   Inner inner_;
-  std::shared_ptr<ConnectionTable::Connection> connection_;  // null once it is closed
+  std::shared_ptr<ConnectionTable::Connection> connection_;  // null once it is closed to gRPC
+  ConnectionRules::Clock::time_point closed_{};              // to the client; 0: it is open
   ConnectionRules rules_;
+  std::string held_;       // what the client sent from a call on that may not begin yet
+  bool holds_ = false;     // such a call
   std::string to_server_;  // what gRPC did not take
   std::string to_client_;  // what the client did not take
 };

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/net/connection_table.h"
 
+#include <algorithm>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace weft::server {
 namespace {
@@ -67,14 +69,84 @@ std::shared_ptr<ConnectionTable::Connection> ConnectionTable::find(std::string_v
 
 void ConnectionTable::set_load(Connection& connection, const Load& load) {
   connection.open_ = load.open;
-  connection.answered_ = load.answered;
+  const bool answered_more = connection.answered_.exchange(load.answered) != load.answered;
   connection.last_active_ = Clock::now().time_since_epoch().count();
   const std::uint64_t own = load.open + load.resets;
   const std::uint64_t before = connection.load_.exchange(own);
   const std::uint64_t all = load_ += own - before;  // modulo 2^64
-  if (all <= bounds_.load || own <= before) return;
+  const bool too_much = all > bounds_.load && own > before;
+  if (!answered_more && !too_much) return;
   std::lock_guard lock(mutex_);
-  shed();
+  if (answered_more) end_turns(connection, load.answered);
+  if (too_much) shed();
+}
+
+bool ConnectionTable::take_turn(Connection& connection) {
+  std::lock_guard lock(mutex_);
+  if (!std::exchange(connection.granted_, false)) {
+    const bool has_enough = connection.passed_ - connection.turns_over_ >= kMaxTurnsOfOne;
+    if (has_enough || turns_ >= kMaxTurns || !waiting_.empty()) return false;
+    ++turns_;
+  }
+  if (connection.passed_++ == connection.turns_over_) connection.turn_since_ = Clock::now();
+  return true;
+}
+
+void ConnectionTable::wait_for_turn(Connection& connection, std::function<void()> wake) {
+  std::lock_guard lock(mutex_);
+  waiting_.emplace_back(&connection, std::move(wake));
+  grant_turns();
+}
+
+void ConnectionTable::call_began(std::string_view peer) {
+  const auto connection = find(peer);
+  if (connection == nullptr) return;
+  std::lock_guard lock(mutex_);
+  end_turns(*connection, ++connection->begun_);
+}
+
+void ConnectionTable::pass_time(Clock::time_point now) {
+  std::vector<std::shared_ptr<Connection>> all;  // released once the table is unlocked
+  std::lock_guard lock(mutex_);
+  all.reserve(handed_over_.size());
+  for (const auto& [name, weak] : handed_over_) {
+    const auto& connection = all.emplace_back(weak.lock());
+    if (connection == nullptr || connection->passed_ == connection->turns_over_) continue;
+    if (now - connection->turn_since_ >= kLongestTurn) end_turns(*connection, connection->passed_);
+  }
+}
+
+void ConnectionTable::retire(Connection& connection) {
+  std::lock_guard lock(mutex_);
+  unlist(connection);
+}
+
+bool ConnectionTable::has_turns(const Connection& connection) const {
+  std::lock_guard lock(mutex_);
+  return connection.passed_ != connection.turns_over_;
+}
+
+void ConnectionTable::end_turns(Connection& connection, std::uint64_t upto) {
+  upto = std::min(upto, connection.passed_);
+  if (upto <= connection.turns_over_) return;
+  turns_ -= upto - connection.turns_over_;
+  connection.turns_over_ = upto;
+  connection.turn_since_ = Clock::now();
+  grant_turns();
+}
+
+void ConnectionTable::grant_turns() {
+  for (auto next = waiting_.begin(); next != waiting_.end() && turns_ < kMaxTurns;) {
+    Connection& connection = *next->first;
+    if (connection.passed_ - connection.turns_over_ >= kMaxTurnsOfOne) {
+      ++next;
+      continue;
+    }
+    ++turns_;
+    connection.granted_ = true;
+    next->second();
+    next = waiting_.erase(next);
+  }
 }
 
 std::size_t ConnectionTable::size() const {
@@ -99,6 +171,10 @@ void ConnectionTable::leave(Connection& connection) {
   std::lock_guard lock(mutex_);
   unlist(connection);
   load_ -= connection.load_.exchange(0);  // what it did while it was being closed
+  waiting_.remove_if([&](const auto& each) { return each.first == &connection; });
+  if (std::exchange(connection.granted_, false)) --turns_;
+  end_turns(connection, connection.passed_);
+  grant_turns();
   if (connection.handed_over_) handed_over_.erase(connection.name_);
 }
 

@@ -18,6 +18,12 @@
 // connection with the largest ends; of equals the youngest. A caller who was identified
 // ends last.
 //
+// Calls begin in turns: gRPC has at most kMaxTurns calls that were passed to it and that it has not
+// handed over, of one connection kMaxTurnsOfOne. Without that bound, calls wait in gRPC, where it
+// serves neither the memory nor other callers' patience. Connections that wait have the next turn
+// in the order in which they came. A turn is over when the call begins, is answered by gRPC
+// itself, or after kLongestTurn.
+//
 // Thread-safety: every function may be called from any thread.
 #pragma once
 
@@ -32,6 +38,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 
 namespace weft::server {
 
@@ -79,6 +86,24 @@ class ConnectionTable {
   };
   void set_load(Connection& connection, const Load& load);
 
+  static constexpr std::size_t kMaxTurns = 64;
+  static constexpr std::size_t kMaxTurnsOfOne = 16;
+  static constexpr std::chrono::milliseconds kLongestTurn{250};
+
+  // Whether the connection may pass a call to gRPC now.
+  bool take_turn(Connection& connection);
+  // Calls `wake` once it may, perhaps at once; it then takes its turn. At most one waits.
+  void wait_for_turn(Connection& connection, std::function<void()> wake);
+  // gRPC has handed over a call of this peer.
+  void call_began(std::string_view peer);
+  // Ends turns that have taken too long.
+  void pass_time(Clock::time_point now);
+
+  // It no longer counts, and never closes; calls that were passed to gRPC still begin.
+  void retire(Connection& connection);
+  // Whether all calls that it has passed to gRPC have begun.
+  bool has_turns(const Connection& connection) const;
+
   std::size_t size() const;
 
  private:
@@ -94,6 +119,8 @@ class ConnectionTable {
   void end(Connection& connection, const char* cause);
   Connection* idle_one(const Host* only) const;
   void shed();
+  void end_turns(Connection& connection, std::uint64_t upto);
+  void grant_turns();
 
   const Bounds bounds_;
   const std::string prefix_;
@@ -103,6 +130,8 @@ class ConnectionTable {
   Entries entries_;           // the oldest first, without those that are being closed
   std::map<std::string, Host> hosts_;
   std::unordered_map<std::string, std::weak_ptr<Connection>> handed_over_;  // by name
+  std::size_t turns_ = 0;  // that are taken or granted
+  std::list<std::pair<Connection*, std::function<void()>>> waiting_;
 };
 
 // One connection. Its strings do not change once it was handed over.
@@ -131,6 +160,11 @@ class ConnectionTable::Connection {
   // Guarded by the table's mutex.
   bool listed_ = true;
   Entries::iterator place_;
+  bool granted_ = false;          // a turn that is not taken yet
+  std::uint64_t passed_ = 0;      // calls to gRPC
+  std::uint64_t begun_ = 0;       // of these
+  std::uint64_t turns_over_ = 0;  // of these
+  Clock::time_point turn_since_{};
 };
 
 // The causes for which the table closes connections.

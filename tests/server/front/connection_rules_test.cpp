@@ -22,8 +22,10 @@ class Rules : public ::testing::Test {
  protected:
   // The cause of the violation; empty if there is none.
   std::string take(const std::string& bytes) {
-    const auto violation = rules_.received(bytes, passed_, now_);
-    return violation ? violation->cause : "";
+    const auto received = rules_.received(bytes, passed_, now_, [this] { return may_begin_; });
+    rest_ = received.rest;
+    waits_ = received.waits;
+    return received.violation ? received.violation->cause : "";
   }
   std::string take(FrameType type, std::uint8_t flags, std::uint32_t stream,
                    const std::string& payload) {
@@ -46,6 +48,9 @@ class Rules : public ::testing::Test {
   Clock::time_point now_{seconds(1000)};
   ConnectionRules rules_{{.max_resets = 10}, now_};
   std::string passed_;
+  bool may_begin_ = true;
+  bool waits_ = false;
+  std::string rest_;
 };
 
 TEST_F(Rules, PassWhatAnHonestClientSends) {
@@ -107,10 +112,30 @@ TEST_F(Rules, LetNothingIntoAHeaderBlock) {
 
 TEST_F(Rules, ExpectNoFramesThatOnlyServersSend) {
   EXPECT_EQ(ConnectionRules(rules_)
-                .received(frame_bytes(FrameType::kPushPromise, 0, 1, "p"), passed_, now_)
-                ->cause,
+                .received(frame_bytes(FrameType::kPushPromise, 0, 1, "p"), passed_, now_,
+                          [] { return true; })
+                .violation->cause,
             std::string("unexpected_frame"));
   EXPECT_EQ(begin(2), "unexpected_frame");
+}
+
+TEST_F(Rules, HoldACallUntilItMayBegin) {
+  const std::string before = frame_bytes(FrameType::kWindowUpdate, 0, 0, "1234");
+  const std::string call = frame_bytes(FrameType::kHeaders, kWhole, 1, "h");
+  const std::string after = frame_bytes(FrameType::kData, kFlagEndStream, 1, "d");
+  may_begin_ = false;
+  EXPECT_EQ(take(before + call + after), "");
+  EXPECT_TRUE(waits_);
+  EXPECT_EQ(passed_, before);
+  EXPECT_EQ(rules_.open_streams(), 0u);
+  const std::string rest = rest_;
+  EXPECT_EQ(take(rest), "");
+  EXPECT_TRUE(waits_);
+  EXPECT_EQ(rest_, rest);
+  may_begin_ = true;
+  EXPECT_EQ(take(rest), "");
+  EXPECT_FALSE(waits_);
+  EXPECT_EQ(passed_, before + call + after);
 }
 
 TEST_F(Rules, BoundStreamsThatDoNotEnd) {
@@ -150,12 +175,13 @@ TEST_F(Rules, ForgetResetsOfAPastSecond) {
 
 TEST_F(Rules, BoundNeitherResetsNorStreamsAtZero) {
   ConnectionRules lenient({.max_resets = 0}, now_);
+  const auto receive = [&](const std::string& bytes) {
+    return lenient.received(bytes, passed_, now_, [] { return true; }).violation;
+  };
   for (std::uint32_t stream = 1; stream < 8 * ConnectionRules::kMaxOpen; stream += 2) {
-    ASSERT_FALSE(
-        lenient.received(frame_bytes(FrameType::kHeaders, kWhole, stream, "h"), passed_, now_));
+    ASSERT_FALSE(receive(frame_bytes(FrameType::kHeaders, kWhole, stream, "h")));
     if (stream % 4 != 1) continue;
-    ASSERT_FALSE(
-        lenient.received(frame_bytes(FrameType::kReset, 0, stream, "1234"), passed_, now_));
+    ASSERT_FALSE(receive(frame_bytes(FrameType::kReset, 0, stream, "1234")));
   }
 }
 

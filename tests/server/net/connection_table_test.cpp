@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace weft::server::testing {
 namespace {
@@ -135,6 +136,54 @@ TEST_F(Table, ClosesIdentifiedCallersLast) {
   table_->set_load(*stranger, {.open = 3});
   table_->set_load(*identified, {.open = 9});
   EXPECT_EQ(ended_, (std::map<std::string, std::string>{{"stranger", kCauseLoad}}));
+}
+
+TEST_F(Table, LetsCallsBeginInTurns) {
+  make({});
+  std::vector<Connection> greedy;
+  for (std::size_t i = 0; i < ConnectionTable::kMaxTurns / ConnectionTable::kMaxTurnsOfOne; ++i) {
+    greedy.push_back(enter(std::to_string(i)));
+    for (std::size_t turn = 0; turn < ConnectionTable::kMaxTurnsOfOne; ++turn)
+      ASSERT_TRUE(table_->take_turn(*greedy.back()));
+    ASSERT_FALSE(table_->take_turn(*greedy.back())) << "one has its share";
+  }
+  const Connection first = enter("first");
+  const Connection second = enter("second");
+  EXPECT_FALSE(table_->take_turn(*first));
+  std::string woken;
+  table_->wait_for_turn(*first, [&] { woken += "first "; });
+  table_->wait_for_turn(*second, [&] { woken += "second "; });
+  EXPECT_EQ(woken, "");
+  const std::string peer = hand_over(greedy.front(), "greedy");
+  table_->call_began(peer);
+  EXPECT_EQ(woken, "first ");
+  EXPECT_FALSE(table_->take_turn(*greedy.front())) << "others wait";
+  EXPECT_TRUE(table_->take_turn(*first));
+  table_->set_load(*greedy.front(), {.answered = 2});
+  EXPECT_EQ(woken, "first second ");
+}
+
+TEST_F(Table, EndsTurnsThatTakeTooLongAndThoseOfWhatHasEnded) {
+  make({});
+  Connection one = enter("one");
+  hand_over(one, "one");
+  Connection gone = enter("gone");
+  const auto take_all = [&](ConnectionTable::Connection& connection) {
+    std::size_t count = 0;
+    while (table_->take_turn(connection)) ++count;
+    return count;
+  };
+  EXPECT_EQ(take_all(*one), ConnectionTable::kMaxTurnsOfOne);
+  EXPECT_TRUE(table_->has_turns(*one));
+  const auto now = ConnectionTable::Clock::now();
+  table_->pass_time(now);
+  EXPECT_TRUE(table_->has_turns(*one));
+  table_->pass_time(now + ConnectionTable::kLongestTurn);
+  EXPECT_FALSE(table_->has_turns(*one));
+  for (int i = 0; i < 100; ++i) {
+    gone = enter("gone");
+    ASSERT_EQ(take_all(*gone), ConnectionTable::kMaxTurnsOfOne);
+  }
 }
 
 TEST_F(Table, ForgetsTheLoadOfWhatHasEnded) {
