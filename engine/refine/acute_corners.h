@@ -5,41 +5,20 @@
 // shortest edge joins two arms at the same distance is left as it is (Miller, Pav and Walkington
 // 2003): splitting it could only make edges shorter, because its angle comes from the input.
 //
-// Where a piece of an arm is split:
+// A piece of an arm is split:
 //   - at the distance of the vertex that faces it, if that vertex is on another arm of the corner,
 //     the distance is in the middle half of the piece, and the vertex is nearer to the piece than a
-//     tenth of its length. So one vertex matches an arm that ends at any distance, or that another
-//     corner has split. Without this rule the other arm is split down to the width between them,
-//     30 times in a wedge of 1e-9 rad; if vertices farther away counted, twice as many triangles
-//     of us-east-coast would stay;
+//     tenth of its length;
 //   - otherwise at the coarsest multiple of a power of two in the middle third of its distances to
-//     a corner. So pieces of arms of unequal lengths get equal distances, and a piece at the corner
-//     ends at a power of two. Of the ends of the arm that have shells, and the corners that it
-//     keeps beyond what crosses it (crossed_arms.h), the one counts whose other arm is nearest to
-//     the middle of the piece, by the angle between the two. If two borders part and end on a
-//     third, their lengths differ by less than the width between them, and if a third crosses
-//     them, it makes corners that are nearer. Distances from these match none on the other arm: of
-//     60 wedges that are crossed, 17 were filled with triangles at 30 degrees and 42 at 33; of 100
-//     that end on a third, 3 and 14. By the width, none is up to 34. 150 rounded floor plans have
-//     17 % fewer triangles at 30 degrees, and less than a fifth of them at 33.
+//     a corner. Of the ends of the arm that have shells, and the corners that it keeps beyond what
+//     crosses it (crossed_arms.h), the one counts whose other arm is nearest to the middle of the
+//     piece, by the angle between the two.
 //
 // Two vertices are at the same distance if rounding explains the difference: 2^-47 of the largest
-// coordinate of the three points. A vertex on an arm is off its distance by at most 10 units in the
-// last place: 3 of its fraction of the piece, 4 of two distances, 3 of coordinates. A larger
-// tolerance is harmful: a triangle that has the third vertex between the two arms' vertices has an
-// angle of nearly 180 degrees, and must not stay. The checker allows twice that
-// (checker/mesh/exemption.h).
+// coordinate of the three points. The checker allows twice that (checker/mesh/exemption.h).
 //
-// Right angles. If the bound on angles is above 30 degrees, arms that meet at less than 93 are
-// split on shells, too, but this exempts no triangle. Four arms meet at right angles where a wall
-// crosses another by a rounding error, and triangles join pieces at the corner. If pieces are
-// halved, the logarithms of their lengths have fixed fractions: for 0, 1/4, 1/2 and 3/4 the four
-// ratios cannot all be below 2^(3/4), and the triangle with that ratio has an angle of 30.7
-// degrees. So halving went round the corner for ever: of 500 rounded floor plans, 17 ended at the
-// precision floor at 33 degrees, 52 at 34; with shells none does. At 20 to 30 degrees none does
-// without shells either, and shells make up to 1 % more triangles.
-//
-// Arms go on beyond segments that cross them (crossed_arms.h).
+// If the bound on angles is above 30 degrees, arms that meet at less than 93 degrees are split on
+// shells, too, but this exempts no triangle. docs/termination.md says why, and what each rule saves.
 //
 // An input vertex that ends an arm counts as on a shell, but two of them do not exempt a triangle:
 // a fan of equal arms is refined toward its corner.

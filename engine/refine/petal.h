@@ -18,7 +18,7 @@
 //
 // Five places on the arc make a third fewer triangles than the standard place alone at 33 degrees
 // (bench/README.md). Segments are not split at the best of several places, because the proof in
-// lens.h needs the middle.
+// docs/termination.md needs the middle.
 //
 // Units: coordinates of the domain. Thread-safety: values.
 #pragma once
