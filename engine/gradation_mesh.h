@@ -28,7 +28,7 @@ class GradationMesh final : public ChunkSink {
   bool accept(Chunk&& chunk) override;
 
   // A length of edges that grows by at most the gradation along any path in the domain, and is
-  // nowhere above `size` or what grows from segments and regions; infinite, as good as, in parts of
+  // nowhere above `size` or what grows from segments and regions; effectively infinite in parts of
   // the domain without any. The run holds `held` bytes besides. Errors: those of the context.
   Result<MeshField> limit(const SizeFunction& size, std::uint64_t held,
                           const ExecutionContext& context) &&;

@@ -18,7 +18,8 @@
 // coordinate of the three points. The checker allows twice that (checker/mesh/exemption.h).
 //
 // If the bound on angles is above 30 degrees, arms that meet at less than 93 degrees are split on
-// shells, too, but this exempts no triangle. docs/termination.md says why, and what each rule saves.
+// shells, too, but this exempts no triangle. docs/termination.md says why, and what each rule
+// saves.
 //
 // An input vertex that ends an arm counts as on a shell, but two of them do not exempt a triangle:
 // a fan of equal arms is refined toward its corner.

@@ -11,8 +11,8 @@
 // joined to.
 //
 // A place is admitted only if the vertices that it would be joined to are at least as far away as
-// the shortest edge is long, so that no smaller distance arises (lens.h). If a point at the
-// standard place encroaches upon a segment, or this task may not insert it, then there is no
+// the shortest edge is long, so that no smaller distance arises (docs/termination.md). If a point
+// at the standard place encroaches upon a segment, or this task may not insert it, then there is no
 // search. Other places of that kind are left out. The search ends early if a place removes all bad
 // triangles around.
 //

@@ -34,7 +34,7 @@ enum class Placement : std::uint8_t {
   // To a hexagonal lattice that follows the size: a third fewer triangles, nearly all of them
   // equilateral, along three directions. Above 31.5 degrees as kCircumcentre.
   kLattice,
-  // To circumcentres: no direction in the mesh, and half as many triangles more.
+  // To circumcentres: 50 % more triangles, in no preferred direction.
   kCircumcentre,
 };
 

@@ -2,7 +2,7 @@
 // Makes a domain no finer than its mesh needs: features smaller than a share of the size at their
 // place go, so that no edge of the mesh has to be shorter because of them.
 //
-//   Result<Simplified> made = simplify(domain, wish, context);
+//   Result<Simplified> made = simplify(domain, finest, context);
 //   made->domain; made->changes.points;
 //
 // Steps, until nothing is narrow any more, five times at most:

@@ -32,8 +32,8 @@
 //   double bound = (*size)({3, 4});                      // 1e-2
 //   double least = size->bounds({0, 0, 3, 3}).lo;        // 1e-3
 //
-// This folder has more than 25 files because it is a small compiler: lexer, parser, graph, program,
-// and one evaluator each for values, bounds and steepness.
+// A small compiler: lexer, parser, graph, program, and one evaluator each for values, bounds and
+// steepness.
 #pragma once
 
 #include <cstddef>
