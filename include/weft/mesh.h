@@ -100,6 +100,7 @@ struct Simplification {
   std::uint64_t straits = 0;   // channels that stay: the widest way to a large water
   double area = 0;             // of the new domain less that of the old one
   double farthest = 0;         // of a new line from the old ones, at most
+  std::vector<Point> cuts;     // a point in each of `channels`, of the first 1,024
 };
 
 // A warning about a size that is probably not what is wanted.

@@ -57,8 +57,7 @@ struct MeshRequest {
   // (Unrefined::without_exemption) is a result. If not, it ends with kBoundsNotMet, after its
   // chunks.
   bool allow_unrefined = false;
-  // Triangles of the final mesh that a leaf of the quadtree holds at most. Another number gives
-  // another mesh. For tests and measurements. Unset: by the size of the mesh.
+  // Most triangles in a leaf of the quadtree: another mesh. For tests. Unset: by the mesh's size.
   std::optional<double> leaf_triangles = std::nullopt;
 };
 

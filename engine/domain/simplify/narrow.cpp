@@ -308,7 +308,7 @@ class Narrowing {
     for (const auto& [_, t] : narrow) {
       if (!is_water(t) || borders(t) != 1 || !may_change(t)) continue;
       change(t);
-      ++result_.channels;
+      result_.cuts.push_back(centroid(at(t, 0), at(t, 1), at(t, 2)));
       peel(true);
     }
     drop_what_is_cut_off(was_water);

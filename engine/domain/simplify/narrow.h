@@ -24,6 +24,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "engine/domain/simplify/decimation.h"
 #include "engine/domain/simplify/line_graph.h"
@@ -33,11 +34,11 @@
 namespace weft {
 
 struct Narrowed {
-  std::uint64_t changed = 0;   // triangles
-  std::uint64_t channels = 0;  // that were cut
-  std::uint64_t cut_off = 0;   // waters behind them, which were dropped
-  std::uint64_t straits = 0;   // that are narrow and stay
-  Dropped dropped;             // by 1 and 3, to the last triangle
+  std::uint64_t changed = 0;  // triangles
+  std::vector<Point> cuts;    // of each channel that was cut, a point in the place
+  std::uint64_t cut_off = 0;  // waters behind them, which were dropped
+  std::uint64_t straits = 0;  // that are narrow and stay
+  Dropped dropped;            // by 1 and 3, to the last triangle
 };
 
 // `finest_at` is asked at new points, where the least of it and of what the ends of their line have

@@ -22,6 +22,7 @@ namespace weft {
 namespace {
 
 constexpr int kRounds = 5;
+constexpr std::size_t kMaxCuts = 1024;  // whose places are told
 // Of the finest length, for the first time that nodes are taken out: what is left is for the
 // narrow places that are closed afterwards.
 constexpr double kFirstShare = 0.5;
@@ -122,7 +123,9 @@ Simplified run(const Domain& domain, const Finest& finest, StopPoller& poller) {
         poller);
     if (result.changed > 0) {
       graph = std::move(narrowed);
-      changes.channels += result.channels;
+      changes.channels += result.cuts.size();
+      for (const Point cut : result.cuts)
+        if (changes.cuts.size() < kMaxCuts) changes.cuts.push_back(cut);
       changes.cut_off += result.cut_off;
       count(result.dropped);
     }

@@ -186,6 +186,9 @@ Pslg two_basins(double width, double second = 10) {
 TEST(Simplify, CutsAChannelThatIsNarrowerAndDropsTheSmallWaterBehindIt) {
   const Made made = simplified(two_basins(0.7, 3), 1);
   EXPECT_EQ(made.changes.channels, 1u);
+  ASSERT_EQ(made.changes.cuts.size(), 1u);
+  const Point cut = made.changes.cuts[0];
+  EXPECT_TRUE(10 <= cut.x && cut.x <= 15 && 4.6 <= cut.y && cut.y <= 5.4) << cut.x << ' ' << cut.y;
   EXPECT_EQ(made.changes.cut_off, 1u);
   EXPECT_EQ(made.changes.waters, 0u);
   EXPECT_EQ(made.changes.straits, 0u);
