@@ -107,7 +107,7 @@ API = """# The protocol, `weft.v1`
 Made from the comments of [`proto/weft/v1`](../proto/weft/v1) by `docs/generate.py`.
 
 [Clients in Node and Go](../client/examples/README.md) are worked out. From a shell, by reflection, which
-servers answer to callers that they let in:
+servers answer to callers that they let in (grpcurl 1.8.8 or later):
 
 ```sh
 grpcurl -plaintext 127.0.0.1:7421 list

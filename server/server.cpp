@@ -45,7 +45,7 @@ AdmissionOptions admission_options(const ServerOptions& options, MemoryBudget& b
 // What reflection lists.
 std::vector<std::string> services(bool keeps_jobs) {
   std::vector<std::string> names{"grpc.health.v1.Health", "grpc.reflection.v1.ServerReflection",
-                                 "grpc.reflection.v1alpha.ServerReflection", kMeshServiceName};
+                                 kMeshServiceName};
   if (keeps_jobs) names.push_back(kJobServiceName);
   return names;
 }
@@ -119,9 +119,7 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
       memory_(budget_options(options), [this] { queue_.memory_released(); }),
       admission_(admission_options(options, memory_, connections_), authenticator_, metrics_, log_),
       health_(admission_),
-      reflection_(ReflectionService::Version::kV1, admission_, services(store != nullptr)),
-      reflection_alpha_(ReflectionService::Version::kV1Alpha, admission_,
-                        services(store != nullptr)),
+      reflection_(admission_, services(store != nullptr)),
       pool_(static_cast<int>(options.service.threads)),
       queue_({.slots = options.service.jobs,
               .light_slots = options.service.light_jobs,
@@ -229,7 +227,6 @@ std::optional<std::string> Server::listen(const ServerOptions& options) {
         grpc::InsecureServerCredentials());
   builder.RegisterService(&health_);
   builder.RegisterService(&reflection_);
-  builder.RegisterService(&reflection_alpha_);
   builder.RegisterService(&service_);
   if (job_service() != nullptr) builder.RegisterService(job_service());
   server_ = builder.BuildAndStart();

@@ -114,7 +114,6 @@ class Server {
   Admission admission_;
   HealthService health_;
   ReflectionService reflection_;
-  ReflectionService reflection_alpha_;
   ThreadPool pool_;
   RunQueue queue_;
   MeshService service_;

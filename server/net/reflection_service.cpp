@@ -13,7 +13,6 @@
 
 #include "grpc/health/v1/health.pb.h"
 #include "grpc/reflection/v1/reflection.pb.h"
-#include "grpc/reflection/v1alpha/reflection.pb.h"
 #include "server/wire/request_reader.h"
 #include "server/wire/translate.h"
 
@@ -67,11 +66,6 @@ wire::ServerReflectionResponse answer_to(const wire::ServerReflectionRequest& re
     response.mutable_error_response()->set_error_message("this server has no such file or symbol");
   }
   return response;
-}
-
-const char* name_of(ReflectionService::Version version) {
-  return version == ReflectionService::Version::kV1 ? "/grpc.reflection.v1.ServerReflection/"
-                                                    : "/grpc.reflection.v1alpha.ServerReflection/";
 }
 
 }  // namespace
@@ -131,12 +125,11 @@ class ReflectionService::Conversation final : public RawCall::Writer,
   grpc::CallbackServerContext* context_;  // null after the end
 };
 
-ReflectionService::ReflectionService(Version version, Admission& admission,
-                                     std::vector<std::string> services)
-    : RawService(name_of(version), admission), services_(std::move(services)) {
+ReflectionService::ReflectionService(Admission& admission, std::vector<std::string> services)
+    : RawService("/grpc.reflection.v1.ServerReflection/", admission),
+      services_(std::move(services)) {
   // Links in the files of services that are listed, and that nothing else needs.
   grpc::health::v1::HealthCheckRequest::descriptor();
-  grpc::reflection::v1alpha::ServerReflectionRequest::descriptor();
   constexpr bool kUngated = false;  // a client that explores the server does not delay a drain
   add({"ServerReflectionInfo", kSmallRequest, [this](const auto& call) { converse(*call); }},
       kUngated);

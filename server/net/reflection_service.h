@@ -2,8 +2,6 @@
 // Server reflection, by which grpcurl and similar tools learn of services and messages. It uses the
 // Admission, so only identified callers may use it; gRPC's own plugin does not identify callers.
 //
-// Serves both versions of the protocol, v1 and v1alpha, which differ only in their names.
-//
 // Source: https://github.com/grpc/grpc/blob/master/doc/server-reflection.md
 // Thread-safety: every function may be called from any thread.
 #pragma once
@@ -20,11 +18,9 @@ namespace weft::server {
 
 class ReflectionService final : public RawService {
  public:
-  enum class Version { kV1, kV1Alpha };
-
   // Lists `services`; types are looked up among all that the program has. The admission must
   // outlive the service.
-  ReflectionService(Version version, Admission& admission, std::vector<std::string> services);
+  ReflectionService(Admission& admission, std::vector<std::string> services);
   // REQUIRES: no call is open.
   ~ReflectionService() override;
 

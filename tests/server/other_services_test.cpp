@@ -81,15 +81,13 @@ TEST(Health, LetsNobodyTakeThePlacesOfAllWhoWatch) {
   EXPECT_TRUE(eventually([&] { return RawStream(channel, kWatch, "").read(); }));
 }
 
-// A stream of reflection, of either version.
+// A stream of reflection.
 class Reflection {
  public:
-  Reflection(std::shared_ptr<grpc::Channel> channel, const std::string& version,
-             const std::string& token = "")
-      : method_("/grpc.reflection." + version + ".ServerReflection/ServerReflectionInfo"),
-        channel_(std::move(channel)),
-        rpc_(method_.c_str(), grpc::internal::RpcMethod::BIDI_STREAMING, channel_) {
-    if (!token.empty()) context_.AddMetadata("authorization", "Bearer " + token);
+  explicit Reflection(std::shared_ptr<grpc::Channel> channel)
+      : channel_(std::move(channel)),
+        rpc_("/grpc.reflection.v1.ServerReflection/ServerReflectionInfo",
+             grpc::internal::RpcMethod::BIDI_STREAMING, channel_) {
     stream_.reset(
         grpc::internal::ClientReaderWriterFactory<grpc::ByteBuffer, grpc::ByteBuffer>::Create(
             channel_.get(), rpc_, &context_));
@@ -109,7 +107,6 @@ class Reflection {
   }
 
  private:
-  const std::string method_;
   const std::shared_ptr<grpc::Channel> channel_;
   const grpc::internal::RpcMethod rpc_;
   grpc::ClientContext context_;
@@ -128,21 +125,19 @@ bool holds(const std::optional<std::string>& answer, const std::string& text) {
   return answer && answer->find(text) != std::string::npos;
 }
 
-TEST(Reflection, ListsTheServicesInBothVersions) {
+TEST(Reflection, ListsTheServices) {
   TestServer server(idle());
-  for (const char* version : {"v1", "v1alpha"}) {
-    Reflection reflection(server.channel(), version);
-    const auto answer = reflection.ask(request(kListServices, ""));
-    EXPECT_TRUE(holds(answer, "weft.v1.MeshService")) << version;
-    EXPECT_TRUE(holds(answer, "grpc.health.v1.Health")) << version;
-    EXPECT_FALSE(holds(answer, "weft.v1.JobService")) << version;  // no jobs are kept
-    EXPECT_TRUE(reflection.end().ok());
-  }
+  Reflection reflection(server.channel());
+  const auto answer = reflection.ask(request(kListServices, ""));
+  EXPECT_TRUE(holds(answer, "weft.v1.MeshService"));
+  EXPECT_TRUE(holds(answer, "grpc.health.v1.Health"));
+  EXPECT_FALSE(holds(answer, "weft.v1.JobService"));  // no jobs are kept
+  EXPECT_TRUE(reflection.end().ok());
 }
 
 TEST(Reflection, DescribesEveryServiceThatItLists) {
   TestServer server(idle());
-  Reflection reflection(server.channel(), "v1");
+  Reflection reflection(server.channel());
   grpc::reflection::v1::ServerReflectionResponse listed;
   ASSERT_TRUE(listed.ParseFromString(reflection.ask(request(kListServices, "")).value()));
   EXPECT_GE(listed.list_services_response().service_size(), 2);
@@ -156,7 +151,7 @@ TEST(Reflection, DescribesEveryServiceThatItLists) {
 
 TEST(Reflection, AnswersOneRequestAfterAnotherWithAFileAndWhatItImports) {
   TestServer server(idle());
-  Reflection reflection(server.channel(), "v1");
+  Reflection reflection(server.channel());
   const auto by_symbol = reflection.ask(request(kBySymbol, "weft.v1.JobService.SubmitJob"));
   EXPECT_TRUE(holds(by_symbol, "weft/v1/job_service.proto"));
   EXPECT_TRUE(holds(by_symbol, "weft/v1/mesh_service.proto"));
@@ -169,7 +164,7 @@ TEST(Reflection, AnswersOneRequestAfterAnotherWithAFileAndWhatItImports) {
 
 TEST(Reflection, RefusesWhatIsNoRequest) {
   TestServer server(idle());
-  Reflection reflection(server.channel(), "v1");
+  Reflection reflection(server.channel());
   EXPECT_FALSE(reflection.ask("\x0a\xff"));
   EXPECT_EQ(reflection.end().error_code(), grpc::INVALID_ARGUMENT);
 }
@@ -179,12 +174,10 @@ TEST(Reflection, BoundsTheStreamsThatAreOpen) {
   const auto channel = server.channel();
   std::vector<std::unique_ptr<Reflection>> open;
   for (int i = 0; i < 64; ++i) {
-    open.push_back(std::make_unique<Reflection>(channel, "v1"));
+    open.push_back(std::make_unique<Reflection>(channel));
     ASSERT_TRUE(open.back()->ask(request(kListServices, ""))) << i;
   }
-  Reflection one_more(channel, "v1alpha");  // each version has its own bound
-  EXPECT_TRUE(one_more.ask(request(kListServices, "")));
-  Reflection too_many(channel, "v1");
+  Reflection too_many(channel);
   EXPECT_FALSE(too_many.ask(request(kListServices, "")));
   EXPECT_EQ(too_many.end().error_code(), grpc::RESOURCE_EXHAUSTED);
   for (const auto& each : open) EXPECT_TRUE(each->end().ok());

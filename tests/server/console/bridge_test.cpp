@@ -45,7 +45,7 @@ TEST(Bridge, CallsEveryServiceOfTheServer) {
   const WebOutcome health = web_call(server.address(), "/grpc.health.v1.Health/Check", "");
   EXPECT_EQ(health.messages, std::vector{std::string("\x08\x01", 2)});
   const WebOutcome reflection =
-      web_call(server.address(), "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo",
+      web_call(server.address(), "/grpc.reflection.v1.ServerReflection/ServerReflectionInfo",
                std::string("\x3a\x00", 2));
   EXPECT_TRUE(reflection.status().ok()) << reflection.status().error_message();
   ASSERT_EQ(reflection.messages.size(), 1u);
@@ -144,7 +144,7 @@ TEST(Bridge, BoundsABodyOfManySmallMessages) {
   while (body.size() < 10'000) body += framed(std::string("\x3a\x00", 2));
   WebConnection browser(server.address());
   browser.send(
-      call_request("/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo", body));
+      call_request("/grpc.reflection.v1.ServerReflection/ServerReflectionInfo", body));
   EXPECT_EQ(reason_of(browser.read_call()), "LIMIT_EXCEEDED");
 }
 

@@ -175,7 +175,7 @@ TEST_F(Tokens, AreNotWantedByHealth) {
 }
 
 TEST_F(Tokens, AreAskedForByReflection) {
-  const char* method = "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
+  const char* method = "/grpc.reflection.v1.ServerReflection/ServerReflectionInfo";
   const std::string list_services("\x3a\x00", 2);
   EXPECT_EQ(raw_unary(channel_, method, list_services).first.error_code(),
             StatusCode::UNAUTHENTICATED);
