@@ -22,11 +22,10 @@ from typing import Any, Self, Unpack
 
 import grpc
 
-from . import _jobs, _protocol, _target, errors, results
-from ._channel import OwnChannel
+from . import _jobs, _protocol, errors, results
+from ._channel import ClientBase, StreamBase
 from ._receiver import MeshReceiver
 from ._requests import MeshOptions, job_request, stream_request
-from ._retry import Retry
 from ._warning import in_thread
 from ._wire import Chunk
 from .domain import DomainLike
@@ -36,21 +35,10 @@ from .results import Job, JobState, Progress, ServerInfo
 from .size import Size
 
 
-class Client:
+class Client(ClientBase):
     """See weft.Client. For one event loop, in which it must be made."""
 
-    def __init__(self, target: str | None = None, *, token: str | None = None,
-                 tls: _target.TLS | bool | None = None, insecure: bool = False,
-                 retries: int = 8) -> None:
-        connection = _target.connection(target, token, tls, insecure)
-        self.target = connection.target
-        self._metadata = connection.metadata
-        self._retries = retries
-        self._own_channel = OwnChannel(grpc.aio, connection)
-
-    @property
-    def _channel(self) -> Any:
-        return self._own_channel.get()
+    _grpc = grpc.aio
 
     async def close(self) -> None:
         """See weft.Client.close."""
@@ -154,9 +142,6 @@ class Client:
         request = _protocol.FETCH_MESH.request(id=_jobs.id_of(job))
         return MeshStream(self, _protocol.FETCH_MESH, lambda: (request, MeshReceiver()), timeout, None)
 
-    def _retry(self, timeout: float | None) -> Retry:
-        return Retry(self._retries, timeout, self.target)
-
     async def _wait(self, seconds: float) -> None:
         async def keep_connecting() -> None:
             # A connection comes back only while someone waits for it.
@@ -183,17 +168,8 @@ class Client:
             await self._wait(retry.wait_after(error))
             repeated = True
 
-    def _stream(self, method: _protocol.Method, retry: Retry, **fields: Any) -> Any:
-        call = self._channel.unary_stream(method.path, method.request.SerializeToString,
-                                          method.response.FromString)
-        return call(method.request(**fields), timeout=retry.time_left(), metadata=self._metadata)
 
-    def _raw_stream(self, method: _protocol.Method, request: Any, retry: Retry) -> Any:
-        call = self._channel.unary_stream(method.path, method.request.SerializeToString)
-        return call(request, timeout=retry.time_left(), metadata=self._metadata)
-
-
-class MeshStream(AsyncIterator[Chunk]):
+class MeshStream(StreamBase, AsyncIterator[Chunk]):
     """See weft.MeshStream. The request is made once its context is entered, or its first chunk is
     awaited, in a thread: that is where errors of files come, and where a function of x and y is
     called."""
@@ -201,36 +177,16 @@ class MeshStream(AsyncIterator[Chunk]):
     def __init__(self, client: Client, method: _protocol.Method,
                  make: Callable[[], tuple[Any, MeshReceiver]], timeout: float | None,
                  on_progress: Callable[[Progress], object] | None) -> None:
-        self._client = client
-        self._method = method
+        super().__init__(client, method, None, MeshReceiver(), on_progress)
+        self._client: Client = client
         self._make = make
         self._timeout = timeout
-        self._on_progress = on_progress
-        self._request: Any = None  # until it is made
-        self._receiver = MeshReceiver()
-        self._call: Any = None
-
-    @property
-    def accepted(self) -> results.Accepted | None:
-        """Which job it is, once the server admitted it."""
-        return self._receiver.accepted
-
-    @property
-    def summary(self) -> results.Summary | None:
-        """What the mesh is like, once all chunks are there."""
-        return self._receiver.summary
 
     async def mesh(self) -> Mesh:
         """Receives what is left and gives the whole mesh, also the chunks iterated over before."""
         async for _ in self:
             pass
         return await in_thread(self._receiver.mesh)
-
-    def close(self) -> None:
-        """Ends the call; does nothing to a stream that has ended."""
-        if self._call is not None:
-            self._call.cancel()
-            self._call = None
 
     async def __aenter__(self) -> Self:
         await self._prepare()
@@ -254,34 +210,14 @@ class MeshStream(AsyncIterator[Chunk]):
             try:
                 message = await self._open().read()
             except grpc.RpcError as broken:
-                self._call = None
-                error = errors.of_call(broken, self._client.target, self._request)
-                await self._client._wait(self._retry.wait_after(error))
+                await self._client._wait(self._wait_after(broken))
                 continue
             if message is grpc.aio.EOF:
                 raise errors.DamagedStream("the stream is damaged: it ended without a summary")
-            came = self._receive(message)
-            if isinstance(came, Chunk):
-                self._retry.restart()
-                return came
-            if came and self._on_progress:
-                self._on_progress(came)
+            if (chunk := self._receive(message)) is not None:
+                return chunk
         await self._finish()
         raise StopAsyncIteration
-
-    def _open(self) -> Any:
-        if self._call is None:
-            self._request.first_chunk = self._receiver.chunks
-            self._receiver.resume()
-            self._call = self._client._raw_stream(self._method, self._request, self._retry)
-        return self._call
-
-    def _receive(self, message: bytes) -> Chunk | Progress | None:
-        try:
-            return self._receiver.receive(message)
-        except BaseException:
-            self.close()
-            raise
 
     async def _finish(self) -> None:
         """Lets the call end by itself. What follows the summary does not matter: the mesh is whole."""

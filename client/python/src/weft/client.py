@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The client that blocks. weft.aio has its twin for asyncio."""
+"""The client that blocks. weft.aio has its twin for asyncio, _channel.py what both have in common."""
 
 from __future__ import annotations
 
@@ -11,11 +11,10 @@ from typing import Any, Self, Unpack
 
 import grpc
 
-from . import _jobs, _protocol, _target, errors, results
-from ._channel import OwnChannel
+from . import _jobs, _protocol, errors, results
+from ._channel import ClientBase, StreamBase
 from ._receiver import MeshReceiver
 from ._requests import MeshOptions, job_request, stream_request
-from ._retry import Retry
 from ._wire import Chunk
 from .domain import DomainLike
 from ._mesh import Mesh
@@ -23,7 +22,7 @@ from .results import Job, JobState, Progress, ServerInfo
 from .size import Size
 
 
-class Client:
+class Client(ClientBase):
     """A connection to a server. Thread-safe; a context manager that closes it. For the process that makes
     it: in a fork, methods raise WeftError.
 
@@ -39,18 +38,7 @@ class Client:
             mesh = client.mesh("pipe.poly", size="0.4*hypot(x-200, y-200) + 1", min_angle=30)
     """
 
-    def __init__(self, target: str | None = None, *, token: str | None = None,
-                 tls: _target.TLS | bool | None = None, insecure: bool = False,
-                 retries: int = 8) -> None:
-        connection = _target.connection(target, token, tls, insecure)
-        self.target = connection.target
-        self._metadata = connection.metadata
-        self._retries = retries
-        self._own_channel = OwnChannel(grpc, connection)
-
-    @property
-    def _channel(self) -> Any:
-        return self._own_channel.get()
+    _grpc = grpc
 
     def close(self) -> None:
         """Ends the connection and the calls on it. In a fork of the process that made the client, does
@@ -213,9 +201,6 @@ class Client:
         request = _protocol.FETCH_MESH.request(id=_jobs.id_of(job))
         return MeshStream(self, _protocol.FETCH_MESH, request, timeout, None, MeshReceiver())
 
-    def _retry(self, timeout: float | None) -> Retry:
-        return Retry(self._retries, timeout, self.target)
-
     def _wait(self, seconds: float) -> None:
         # A connection comes back only while someone waits for it. This call does; so would a subscription to
         # the channel's state, but its thread may stop the interpreter from ending.
@@ -241,17 +226,8 @@ class Client:
             self._wait(retry.wait_after(error))
             repeated = True
 
-    def _stream(self, method: _protocol.Method, retry: Retry, **fields: Any) -> Any:
-        call = self._channel.unary_stream(method.path, method.request.SerializeToString,
-                                          method.response.FromString)
-        return call(method.request(**fields), timeout=retry.time_left(), metadata=self._metadata)
 
-    def _raw_stream(self, method: _protocol.Method, request: Any, retry: Retry) -> Any:
-        call = self._channel.unary_stream(method.path, method.request.SerializeToString)
-        return call(request, timeout=retry.time_left(), metadata=self._metadata)
-
-
-class MeshStream(Iterator[Chunk]):
+class MeshStream(StreamBase, Iterator[Chunk]):
     """The chunks of a mesh, in order, each verified; then `summary`.
 
     A stream that broke goes on where it was: a mesh that is being made is made again and what is
@@ -262,35 +238,15 @@ class MeshStream(Iterator[Chunk]):
     def __init__(self, client: Client, method: _protocol.Method, request: Any,
                  timeout: float | None, on_progress: Callable[[Progress], object] | None,
                  receiver: MeshReceiver) -> None:
-        self._client = client
-        self._method = method
-        self._request = request
+        super().__init__(client, method, request, receiver, on_progress)
+        self._client: Client = client
         self._retry = client._retry(timeout)
-        self._on_progress = on_progress
-        self._receiver = receiver
-        self._call: Any = None
-
-    @property
-    def accepted(self) -> results.Accepted | None:
-        """Which job it is, once the server admitted it."""
-        return self._receiver.accepted
-
-    @property
-    def summary(self) -> results.Summary | None:
-        """What the mesh is like, once all chunks are there."""
-        return self._receiver.summary
 
     def mesh(self) -> Mesh:
         """Receives what is left and gives the whole mesh, also the chunks iterated over before."""
         for _ in self:
             pass
         return self._receiver.mesh()
-
-    def close(self) -> None:
-        """Ends the call; does nothing to a stream that has ended."""
-        if self._call is not None:
-            self._call.cancel()
-            self._call = None
 
     def __enter__(self) -> Self:
         return self
@@ -307,34 +263,14 @@ class MeshStream(Iterator[Chunk]):
             try:
                 message = next(self._open(), None)
             except grpc.RpcError as broken:
-                self._call = None
-                error = errors.of_call(broken, self._client.target, self._request)
-                self._client._wait(self._retry.wait_after(error))
+                self._client._wait(self._wait_after(broken))
                 continue
             if message is None:
                 raise errors.DamagedStream("the stream is damaged: it ended without a summary")
-            came = self._receive(message)
-            if isinstance(came, Chunk):
-                self._retry.restart()
-                return came
-            if came and self._on_progress:
-                self._on_progress(came)
+            if (chunk := self._receive(message)) is not None:
+                return chunk
         self._finish()
         raise StopIteration
-
-    def _open(self) -> Any:
-        if self._call is None:
-            self._request.first_chunk = self._receiver.chunks
-            self._receiver.resume()
-            self._call = self._client._raw_stream(self._method, self._request, self._retry)
-        return self._call
-
-    def _receive(self, message: bytes) -> Chunk | Progress | None:
-        try:
-            return self._receiver.receive(message)
-        except BaseException:
-            self.close()
-            raise
 
     def _finish(self) -> None:
         """Lets the call end by itself. What follows the summary does not matter: the mesh is whole."""
