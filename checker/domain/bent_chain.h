@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "checker/domain.h"
+#include "checker/domain/segment_steps.h"
 #include "checker/domain/tolerance.h"
 #include "checker/mesh.h"
-#include "checker/mesh/segment_steps.h"
 
 namespace weft::check {
 

@@ -11,10 +11,10 @@
 
 #include "checker/domain/bent_chain.h"
 #include "checker/domain/gaps.h"
+#include "checker/domain/mesh_points.h"
+#include "checker/domain/segment_steps.h"
 #include "checker/domain/tolerance.h"
 #include "checker/geometry/box_tree.h"
-#include "checker/mesh/mesh_points.h"
-#include "checker/mesh/segment_steps.h"
 
 namespace weft::check {
 namespace {

@@ -23,8 +23,8 @@
 #include "checker/domain.h"
 #include "checker/domain/bent_chain.h"
 #include "checker/domain/near_features.h"
+#include "checker/edges/listed_edges.h"
 #include "checker/mesh.h"
-#include "checker/mesh/listed_edges.h"
 
 namespace weft::check {
 

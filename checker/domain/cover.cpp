@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "checker/geometry/cover.h"
+#include "checker/domain/cover.h"
 
 #include <algorithm>
 #include <iterator>

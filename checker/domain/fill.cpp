@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "checker/geometry/fill.h"
+#include "checker/domain/fill.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <optional>
 #include <span>
 
+#include "checker/domain/cover.h"
 #include "checker/domain/slivers.h"
-#include "checker/geometry/cover.h"
 #include "checker/text.h"
 
 namespace weft::check {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "checker/domain/bent_domain.h"
+#include "checker/domain/fill.h"
 #include "checker/domain/slivers.h"
 #include "checker/geometry/arrangement.h"
-#include "checker/geometry/fill.h"
 
 namespace weft::check {
 

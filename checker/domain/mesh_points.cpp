@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "checker/mesh/mesh_points.h"
+#include "checker/domain/mesh_points.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "checker/mesh/segment_steps.h"
+#include "checker/domain/segment_steps.h"
 
 #include <algorithm>
 #include <limits>

@@ -12,8 +12,8 @@
 
 #include "checker/domain.h"
 #include "checker/domain/tolerance.h"
+#include "checker/edges/listed_edges.h"
 #include "checker/mesh.h"
-#include "checker/mesh/listed_edges.h"
 
 namespace weft::check {
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "checker/domain.h"
+#include "checker/edges/half_edges.h"
 #include "checker/mesh.h"
-#include "checker/mesh/half_edges.h"
 
 namespace weft::check {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "checker/mesh/half_edges.h"
+#include "checker/edges/half_edges.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "checker/mesh/listed_edges.h"
+#include "checker/edges/listed_edges.h"
 
 #include "checker/text.h"
 

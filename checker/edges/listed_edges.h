@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "checker/edges/half_edges.h"
 #include "checker/mesh.h"
-#include "checker/mesh/half_edges.h"
 #include "checker/report.h"
 
 namespace weft::check {

@@ -20,18 +20,6 @@ constexpr int kFixedBits = 1024;
 
 constexpr double kEpsilon = 0x1p-53;
 
-// mantissa * 2^exponent, exactly.
-struct Dyadic {
-  std::int64_t mantissa = 0;
-  int exponent = 0;
-};
-
-Dyadic decompose(double value) {
-  int exponent = 0;
-  const double fraction = std::frexp(value, &exponent);
-  return {static_cast<std::int64_t>(std::ldexp(fraction, 53)), exponent - 53};
-}
-
 // The coordinates as integers over one power of two. Scaling all of them changes no sign.
 template <std::size_t N>
 class CommonScale {
@@ -86,6 +74,12 @@ int sign(int value) {
 }
 
 }  // namespace
+
+Dyadic decompose(double value) {
+  int exponent = 0;
+  const double fraction = std::frexp(value, &exponent);
+  return {static_cast<std::int64_t>(std::ldexp(fraction, 53)), exponent - 53};
+}
 
 int cross_sign(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
   const double ux = b.x - a.x;

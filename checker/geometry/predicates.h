@@ -5,6 +5,8 @@
 // REQUIRES: finite coordinates, of any magnitude. Thread-safe.
 #pragma once
 
+#include <cstdint>
+
 #include "checker/domain.h"
 
 namespace weft::check {
@@ -20,5 +22,13 @@ inline int orientation(Vec2 a, Vec2 b, Vec2 c) {
 // > 0 if d lies strictly inside the circle through a, b, c, which must be counter-clockwise; 0 if
 // on it, < 0 outside.
 int in_circle(Vec2 a, Vec2 b, Vec2 c, Vec2 d);
+
+// mantissa * 2^exponent, exactly.
+struct Dyadic {
+  std::int64_t mantissa = 0;
+  int exponent = 0;
+};
+
+Dyadic decompose(double value);
 
 }  // namespace weft::check

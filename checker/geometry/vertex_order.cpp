@@ -6,22 +6,12 @@
 #include <limits>
 #include <numeric>
 
+#include "checker/geometry/predicates.h"
+
 namespace weft::check {
 namespace {
 
 using Integer = boost::multiprecision::cpp_int;
-
-// value = mantissa * 2^exponent.
-struct Dyadic {
-  std::int64_t mantissa;
-  int exponent;
-};
-
-Dyadic decompose(double value) {
-  int exponent = 0;
-  const double fraction = std::frexp(value, &exponent);
-  return {static_cast<std::int64_t>(std::ldexp(fraction, 53)), exponent - 53};
-}
 
 // numerator / denominator * 2^exponent, to within two units in the last place.
 double quotient(const Integer& numerator, const Integer& denominator, int exponent) {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "checker/domain/bent_domain.h"
+#include "checker/domain/cover.h"
 #include "checker/domain/gaps.h"
-#include "checker/geometry/cover.h"
 #include "checker/geometry/predicates.h"
 #include "checker/lint/rules.h"
 

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "checker/domain/segment_steps.h"
 #include "checker/domain/tolerance.h"
-#include "checker/mesh/segment_steps.h"
 #include "checker/text.h"
 
 namespace weft::check {

@@ -19,11 +19,11 @@
 #include <vector>
 
 #include "checker/domain/bent_domain.h"
+#include "checker/domain/fill.h"
+#include "checker/domain/mesh_points.h"
+#include "checker/edges/listed_edges.h"
 #include "checker/geometry/arrangement.h"
-#include "checker/geometry/fill.h"
 #include "checker/mesh.h"
-#include "checker/mesh/listed_edges.h"
-#include "checker/mesh/mesh_points.h"
 #include "checker/report.h"
 
 namespace weft::check {

@@ -15,12 +15,12 @@
 #include <vector>
 
 #include "checker/domain/bent_domain.h"
+#include "checker/domain/fill.h"
 #include "checker/domain/joined_faces.h"
+#include "checker/edges/half_edges.h"
+#include "checker/edges/listed_edges.h"
 #include "checker/geometry/arrangement.h"
-#include "checker/geometry/fill.h"
 #include "checker/mesh.h"
-#include "checker/mesh/half_edges.h"
-#include "checker/mesh/listed_edges.h"
 #include "checker/report.h"
 
 namespace weft::check {

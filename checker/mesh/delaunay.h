@@ -2,9 +2,9 @@
 // The constrained Delaunay property, exactly.
 #pragma once
 
+#include "checker/edges/half_edges.h"
+#include "checker/edges/listed_edges.h"
 #include "checker/mesh.h"
-#include "checker/mesh/half_edges.h"
-#include "checker/mesh/listed_edges.h"
 #include "checker/report.h"
 
 namespace weft::check {

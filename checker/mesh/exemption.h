@@ -16,9 +16,9 @@
 #include <cstdint>
 
 #include "checker/domain.h"
+#include "checker/edges/listed_edges.h"
 #include "checker/mesh.h"
 #include "checker/mesh/chains.h"
-#include "checker/mesh/listed_edges.h"
 
 namespace weft::check {
 

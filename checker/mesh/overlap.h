@@ -11,9 +11,9 @@
 // across every edge and agree at infinity: C = k, which is 0 or 1 everywhere.
 #pragma once
 
+#include "checker/edges/half_edges.h"
+#include "checker/edges/listed_edges.h"
 #include "checker/mesh.h"
-#include "checker/mesh/half_edges.h"
-#include "checker/mesh/listed_edges.h"
 #include "checker/report.h"
 
 namespace weft::check {

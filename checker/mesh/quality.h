@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "checker/geometry/fill.h"
+#include "checker/domain/fill.h"
 #include "checker/mesh.h"
 #include "checker/mesh/exemption.h"
 #include "checker/report.h"

@@ -7,8 +7,8 @@
 #pragma once
 
 #include "checker/domain.h"
+#include "checker/domain/fill.h"
 #include "checker/geometry/arrangement.h"
-#include "checker/geometry/fill.h"
 #include "checker/mesh.h"
 #include "checker/mesh/quality.h"
 #include "checker/report.h"

@@ -16,10 +16,10 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-class Judge {
+class PartsJudge {
  public:
-  Judge(const FacedDomain& original, const Mesh& mesh, const HalfEdges& half_edges,
-        Findings& findings)
+  PartsJudge(const FacedDomain& original, const Mesh& mesh, const HalfEdges& half_edges,
+             Findings& findings)
       : original_(original), mesh_(mesh), half_edges_(half_edges), findings_(findings) {}
 
   void judge_connection() {
@@ -126,7 +126,7 @@ class Judge {
 
 void judge_parts(const FacedDomain& original, const Mesh& mesh, const HalfEdges& half_edges,
                  Findings& findings) {
-  Judge judge(original, mesh, half_edges, findings);
+  PartsJudge judge(original, mesh, half_edges, findings);
   if (!(original.domain.snap > 0)) judge.judge_connection();
   judge.judge_pinches();
 }

@@ -2,8 +2,8 @@
 // Judges how a mesh of a simplified domain is connected, against the original domain.
 #pragma once
 
+#include "checker/edges/half_edges.h"
 #include "checker/mesh.h"
-#include "checker/mesh/half_edges.h"
 #include "checker/mesh/simplification.h"
 #include "checker/report.h"
 

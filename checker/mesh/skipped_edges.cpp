@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "checker/domain/segment_steps.h"
 #include "checker/domain/tolerance.h"
 #include "checker/geometry/box_tree.h"
-#include "checker/mesh/segment_steps.h"
 #include "checker/text.h"
 
 namespace weft::check {

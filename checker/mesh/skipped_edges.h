@@ -9,9 +9,9 @@
 
 #include "checker/domain.h"
 #include "checker/domain/bent_domain.h"
+#include "checker/edges/half_edges.h"
+#include "checker/edges/listed_edges.h"
 #include "checker/mesh.h"
-#include "checker/mesh/half_edges.h"
-#include "checker/mesh/listed_edges.h"
 #include "checker/report.h"
 
 namespace weft::check {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "checker/domain/domain_rules.h"
+#include "checker/edges/half_edges.h"
 #include "checker/geometry/predicates.h"
-#include "checker/mesh/half_edges.h"
 #include "checker/text.h"
 
 namespace weft::check {

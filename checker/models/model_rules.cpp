@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "checker/mesh/half_edges.h"
+#include "checker/edges/half_edges.h"
 #include "checker/report.h"
 
 namespace weft::check {

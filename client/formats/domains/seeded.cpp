@@ -11,9 +11,9 @@
 
 #include "checker/domain/bent_domain.h"
 #include "checker/domain/domain_rules.h"
+#include "checker/domain/fill.h"
 #include "checker/geometry/arrangement.h"
 #include "checker/geometry/contacts.h"
-#include "checker/geometry/fill.h"
 #include "checker/report.h"
 #include "client/formats/domains/interior_point.h"
 #include "client/formats/domains/to_checker.h"

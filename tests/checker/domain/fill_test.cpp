@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "checker/geometry/fill.h"
+#include "checker/domain/fill.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Paths of listed edges along one segment.
-#include "checker/mesh/segment_steps.h"
+#include "checker/domain/segment_steps.h"
 
 #include <gtest/gtest.h>
 
