@@ -2,7 +2,7 @@
 // Judges the objects on standard input, YAML documents, by the schemas of Kubernetes, Prometheus's
 // operator and KEDA:
 //
-//   kubectl kustomize overlays/single | node check-kubernetes.mjs
+//   helm template weft helm/weft | node check-kubernetes.mjs
 import {readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {parseAllDocuments} from 'yaml';
