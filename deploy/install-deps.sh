@@ -17,6 +17,7 @@ set -euo pipefail
 build=(
   ca-certificates git clang cmake ninja-build ccache pkg-config python3
   libgrpc++-dev libprotobuf-dev protobuf-compiler protobuf-compiler-grpc # the wire
+  libprotozero-dev
   libcgal-dev libgmp-dev libmpfr-dev libboost-dev                        # exact geometry
   libtbb-dev libsleef-dev libexpected-dev                                # the engine
   libspdlog-dev libfmt-dev libssl-dev                                    # the server

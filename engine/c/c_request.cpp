@@ -1,198 +1,272 @@
 // SPDX-License-Identifier: Apache-2.0
+// Each call appends its fields to the message: fields of one message that come apart are merged.
 #include "engine/c/c_request.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <optional>
-#include <span>
-#include <string>
+#include <charconv>
+#include <new>
+#include <protozero/pbf_writer.hpp>
+#include <string_view>
 #include <utility>
-#include <vector>
 
-#include "engine/base/failure.h"
-#include "engine/base/text.h"
+#include "wire/options.h"
 
 namespace weft {
 namespace {
 
-[[noreturn]] void refuse(std::string field, std::string message) {
-  throw Failure({ErrorCode::kBadOption, std::move(field), std::move(message)});
-}
+using protozero::pbf_writer;
+using wire::Option;
 
-// The first `count` of `numbers`, for an error's `field`.
-template <class T>
-std::span<const T> array(const T* numbers, std::size_t count, const std::string& field) {
-  if (numbers == nullptr && count > 0)
-    refuse(field, field + " is NULL, but its count is " + std::to_string(count));
-  return {numbers, count};
-}
+constexpr std::uint32_t kDomain = 1;
+constexpr std::uint32_t kSize = 2;
+constexpr std::uint32_t kSizeFields = 5;
+// Kinds of fields.
+constexpr std::uint32_t kDistance = 2;
+constexpr std::uint32_t kRaster = 3;
+constexpr std::uint32_t kMesh = 4;
+constexpr std::uint32_t kWidth = 5;
 
-// As `array`, of what may be left out.
-template <class T>
-std::span<const T> optional_array(const T* numbers, std::size_t count) {
-  return numbers == nullptr ? std::span<const T>() : std::span(numbers, count);
-}
-
-template <class T>
-T enumerator(std::int32_t number, T last, const char* field) {
-  if (number < 0 || number > static_cast<std::int32_t>(last))
-    refuse(field, std::string(field) + " is " + std::to_string(number) + "; it must be from 0 to " +
-                      std::to_string(static_cast<std::int32_t>(last)));
-  return static_cast<T>(number);
-}
-
-std::vector<Point> points(const double* numbers, std::size_t count, const std::string& field) {
-  const auto pairs = array(numbers, 2 * count, field);
-  std::vector<Point> points(count);
-  for (std::size_t i = 0; i < count; ++i) points[i] = {pairs[2 * i], pairs[2 * i + 1]};
-  return points;
-}
-
-template <std::size_t N>
-std::vector<std::array<std::uint32_t, N>> rows(const std::uint32_t* numbers, std::size_t count,
-                                               const std::string& field) {
-  const auto all = array(numbers, N * count, field);
-  std::vector<std::array<std::uint32_t, N>> rows(count);
-  for (std::size_t i = 0; i < count; ++i) std::copy_n(all.data() + N * i, N, rows[i].begin());
-  return rows;
-}
-
-// On areas, of what errors call `path`.
-std::optional<double> bound(const weft_bound& given, const std::string& path) {
-  const auto check = [&](const char* name, double value, double area, const char* rule) {
-    if (!(std::isfinite(area) && area > 0))
-      refuse(path + name,
-             path + name + " is " + text(value) + "; it must be positive and finite" + rule);
+// Appends what `write` writes to the request, or keeps why it cannot.
+template <class F>
+void append(weft_request* request, F&& write) {
+  const std::size_t before = request->bytes.size();
+  const auto fail_with = [&](Error error) {
+    request->bytes.resize(before);
+    if (!request->fault) request->fault = std::move(error);
   };
-  std::optional<double> area;
-  if (given.has_max_area != 0) {
-    area = given.max_area;
-    check(".max_area", given.max_area, given.max_area, "");
+  try {
+    pbf_writer message(request->bytes);
+    write(message);
+  } catch (const Error& error) {
+    fail_with(error);
+  } catch (const std::exception&) {
+    fail_with({ErrorCode::kOutOfMemory, "", "memory ran out"});
   }
-  if (given.has_max_edge == 0) return area;
-  const double by_edge = area_of_edge(given.max_edge);
-  check(".max_edge", given.max_edge, by_edge, ", and so must its square");
-  return area ? std::min(*area, by_edge) : by_edge;
+}
+
+// Of a field of the domain or of the size.
+template <class F>
+void append_to(weft_request* request, std::uint32_t field, F&& write) {
+  append(request, [&](pbf_writer& message) {
+    pbf_writer inner(message, field);
+    write(inner);
+  });
+}
+
+// Of a named field of the size; `kind` is its number.
+template <class F>
+void append_field(weft_request* request, const char* name, std::uint32_t kind, F&& write) {
+  append_to(request, kSize, [&](pbf_writer& size) {
+    pbf_writer field(size, kSizeFields);
+    field.add_string(1, name == nullptr ? "" : name);
+    // Writers leave messages out that stay empty, such as a distance to all segments.
+    if (kind == kDistance || kind == kWidth) field.add_message(kind, "", 0);
+    pbf_writer inner(field, kind);
+    write(inner);
+  });
+}
+
+// The end of an array, for an error's field.
+template <class T>
+const T* end_of(const T* numbers, std::size_t count, const char* field) {
+  if (numbers == nullptr && count > 0)
+    throw Error{ErrorCode::kBadOption, field,
+                std::string(field) + " is NULL, but its count is " + std::to_string(count)};
+  return numbers + count;
+}
+
+void add_bound(pbf_writer& message, std::uint32_t first_field, const weft_bound& bound) {
+  if (bound.max_area != 0) message.add_double(first_field, bound.max_area);
+  if (bound.max_edge != 0) message.add_double(first_field + 1, bound.max_edge);
+}
+
+void add_grid(pbf_writer& message, const weft_grid& grid) {
+  message.add_double(1, grid.x);
+  message.add_double(2, grid.y);
+  message.add_double(3, grid.dx);
+  message.add_double(4, grid.dy);
+  message.add_uint32(5, grid.columns);
+  message.add_uint32(6, grid.rows);
+}
+
+std::size_t nodes_of(const weft_grid& grid) {
+  return std::size_t{grid.columns} * grid.rows;
 }
 
 template <class T>
-GridOf<T> grid(const weft_grid& given, const T* values, const std::string& path) {
-  for (const auto& [name, value] : {std::pair{".x", given.x}, std::pair{".y", given.y}})
-    if (!std::isfinite(value))
-      refuse(path + name, path + name + " is " + text(value) + "; it must be finite");
-  for (const auto& [name, value] : {std::pair{".dx", given.dx}, std::pair{".dy", given.dy}})
-    if (!(std::isfinite(value) && value > 0))
-      refuse(path + name, path + name + " is " + text(value) + "; it must be positive and finite");
-  const std::size_t nodes = std::size_t{given.columns} * given.rows;
-  if (nodes == 0) refuse(path + ".values", path + " has no nodes; it takes at least one");
-  const auto all = array(values, nodes, path + ".values");
-  return {{given.x, given.y}, given.dx,   given.dy,
-          given.columns,      given.rows, {all.begin(), all.end()}};
+T number_of(const Option& option, std::string_view text, const char* kind) {
+  T value{};
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc() || end != text.data() + text.size())
+    throw Error{
+        ErrorCode::kBadOption, std::string(option.field),
+        std::string(option.field) + " is '" + std::string(text) + "', which is not " + kind};
+  return value;
 }
 
-FieldSpec field(const weft_field& given, const std::string& path) {
-  FieldSpec spec{given.name == nullptr ? "" : given.name, WidthSpec{}};
-  switch (given.kind) {
-    case WEFT_FIELD_DISTANCE: {
-      const std::string at = path + ".distance";
-      const auto markers = array(given.markers, given.marker_count, at + ".markers");
-      spec.kind = DistanceSpec{{markers.begin(), markers.end()},
-                               points(given.points, given.point_count, at + ".points"),
-                               rows<2>(given.segments, given.segment_count, at + ".segments")};
-      return spec;
-    }
-    case WEFT_FIELD_RASTER:
-      spec.kind = grid(given.grid, given.grid_values, path + ".raster");
-      return spec;
-    case WEFT_FIELD_MESH: {
-      const std::string at = path + ".mesh";
-      const auto values = array(given.point_values, given.point_count, at + ".values");
-      spec.kind = FieldMesh{points(given.points, given.point_count, at + ".vertices"),
-                            rows<3>(given.triangles, given.triangle_count, at + ".triangles"),
-                            {values.begin(), values.end()}};
-      return spec;
-    }
-    case WEFT_FIELD_WIDTH:
-      return spec;
-    default:
-      refuse(path, path + " has no kind; it must be a distance, a raster, a mesh or a width");
+std::uint32_t choice_of(const Option& option, std::string_view text, const char* kind) {
+  const auto found = std::find(option.names.begin(), option.names.end(), text);
+  if (found == option.names.end()) number_of<std::uint32_t>(option, "", kind);
+  return static_cast<std::uint32_t>(found - option.names.begin() + 1);
+}
+
+constexpr std::string_view kSwitch[] = {"true", "false"};
+
+void add_option(pbf_writer& message, std::uint32_t field, const Option& option,
+                std::string_view text) {
+  switch (option.kind) {
+    case Option::Kind::kNumber:
+      return message.add_double(field, number_of<double>(option, text, "a number"));
+    case Option::Kind::kCount:
+      return message.add_uint32(field, number_of<std::uint32_t>(option, text, "a count"));
+    case Option::Kind::kLargeCount:
+      return message.add_uint64(field, number_of<std::uint64_t>(option, text, "a count"));
+    case Option::Kind::kText:
+      return message.add_string(field, text.data(), text.size());
+    case Option::Kind::kSwitch:
+      return message.add_bool(
+          field, choice_of({option.field, {}, {}, kSwitch}, text, "true or false") == 1);
+    case Option::Kind::kChoice:
+      return message.add_uint32(field, choice_of(option, text, "one of its names"));
   }
-}
-
-// The path of the next element.
-template <class T>
-std::string at(const char* field, const std::vector<T>& elements) {
-  return std::string(field) + '[' + std::to_string(elements.size()) + ']';
-}
-
-Pslg pslg(const weft_request& request) {
-  Pslg pslg;
-  pslg.points = points(request.points, request.point_count, "domain.points");
-  pslg.holes = points(request.holes, request.hole_count, "domain.holes");
-  const auto ends = rows<2>(request.segments, request.segment_count, "domain.segments");
-  const auto markers = optional_array(request.segment_markers, ends.size());
-  const auto areas = optional_array(request.segment_areas, ends.size());
-  pslg.segments.reserve(ends.size());
-  for (std::size_t i = 0; i < ends.size(); ++i)
-    pslg.segments.push_back({ends[i][0], ends[i][1], markers.empty() ? 0 : markers[i],
-                             areas.empty() ? kNone : areas[i]});
-  for (const weft_region& r : array(request.regions, request.region_count, "domain.regions"))
-    pslg.regions.push_back({{r.x, r.y}, r.id, bound(r.bound, at("domain.regions", pslg.regions))});
-  for (const weft_area& a : array(request.areas, request.area_count, "domain.areas"))
-    pslg.areas.push_back({a.has_region != 0 ? std::optional(a.region) : std::nullopt, a.priority,
-                          bound(a.bound, at("domain.areas", pslg.areas)), a.is_hole != 0});
-  pslg.fill = enumerator(request.fill, Fill::kUnion, "domain.fill");
-  pslg.snap = request.snap;
-  return pslg;
-}
-
-SizeSpec size(const weft_request& request) {
-  SizeSpec spec;
-  switch (request.size_kind) {
-    case WEFT_SIZE_NONE:
-      break;
-    case WEFT_SIZE_CONSTANT:
-      spec.value = request.size_constant;
-      break;
-    case WEFT_SIZE_EXPRESSION:
-      if (request.size_expression == nullptr) refuse("size.expression", "size.expression is NULL");
-      spec.value = std::string(request.size_expression);
-      break;
-    case WEFT_SIZE_RASTER:
-      spec.value = grid(request.size_grid, request.size_values, "size.raster");
-      break;
-    default:
-      enumerator(request.size_kind, WEFT_SIZE_RASTER, "size");
-  }
-  spec.measure = enumerator(request.size_measure, Measure::kEdge, "size.measure");
-  const auto fields = array(request.fields, request.field_count, "size.fields");
-  for (std::size_t i = 0; i < fields.size(); ++i)
-    spec.fields.push_back(field(fields[i], "size.fields[" + std::to_string(i) + "]"));
-  spec.gradation = request.gradation;
-  spec.gradation_within = request.gradation_within != 0;
-  spec.cells_across = request.cells_across;
-  for (const weft_size_at& at : array(request.sizes_at, request.size_at_count, "size.at"))
-    spec.at.push_back({at.marker, at.max_edge});
-  return spec;
 }
 
 }  // namespace
+}  // namespace weft
 
-Result<MeshRequest> to_engine(const weft_request& request) try {
-  MeshRequest out;
-  out.pslg = pslg(request);
-  out.size = size(request);
-  out.min_angle_deg = request.min_angle_deg;
-  out.min_edge = request.min_edge;
-  out.placement = enumerator(request.placement, Placement::kCircumcentre, "quality.placement");
-  if (request.sweeps >= 0) out.sweeps = static_cast<std::uint32_t>(request.sweeps);
-  out.allow_unrefined = request.allow_unrefined != 0;
-  out.simplify = request.simplify;
-  return out;
-} catch (const Failure& failure) {
-  return tl::unexpected(failure.error());
+using protozero::pbf_writer;
+using weft::append;
+using weft::append_field;
+using weft::append_to;
+using weft::end_of;
+using weft::kDistance;
+using weft::kDomain;
+using weft::kMesh;
+using weft::kRaster;
+using weft::kSize;
+using weft::kWidth;
+
+extern "C" {
+
+weft_request* weft_request_new(void) {
+  return new (std::nothrow) weft_request;
+}
+void weft_request_free(weft_request* request) {
+  delete request;
 }
 
-}  // namespace weft
+void weft_set(weft_request* request, const char* field, const char* text) {
+  append(request, [&](pbf_writer& message) {
+    const auto& options = weft::wire::kOptions;
+    const std::string_view name = field == nullptr ? "" : field;
+    const auto option = std::find_if(options.begin(), options.end(),
+                                     [&](const auto& row) { return row.field == name; });
+    if (option == options.end())
+      throw weft::Error{weft::ErrorCode::kBadOption, std::string(name),
+                        '\'' + std::string(name) + "' is not an option"};
+    const std::string_view value = text == nullptr ? "" : text;
+    const auto [first, second] = option->numbers;
+    if (second == 0) return weft::add_option(message, first, *option, value);
+    pbf_writer inner(message, first);
+    weft::add_option(inner, second, *option, value);
+  });
+}
+
+void weft_set_points(weft_request* request, const double* xy, size_t count) {
+  append_to(request, kDomain, [&](pbf_writer& domain) {
+    domain.add_packed_double(1, xy, end_of(xy, 2 * count, "domain.points"));
+  });
+}
+
+void weft_set_holes(weft_request* request, const double* xy, size_t count) {
+  append_to(request, kDomain, [&](pbf_writer& domain) {
+    domain.add_packed_double(4, xy, end_of(xy, 2 * count, "domain.holes"));
+  });
+}
+
+void weft_set_segments(weft_request* request, const uint32_t* ends, const int32_t* markers,
+                       const uint32_t* areas, size_t count) {
+  append_to(request, kDomain, [&](pbf_writer& domain) {
+    domain.add_packed_uint32(2, ends, end_of(ends, 2 * count, "domain.segments"));
+    if (markers != nullptr) domain.add_packed_sint32(3, markers, markers + count);
+    if (areas == nullptr) return;
+    protozero::packed_field_uint32 field(domain, 11);  // 0 is none
+    for (size_t i = 0; i < count; ++i) field.add_element(areas[i] + 1);
+  });
+}
+
+void weft_add_region(weft_request* request, double x, double y, int32_t id, weft_bound bound) {
+  append_to(request, kDomain, [&](pbf_writer& domain) {
+    pbf_writer region(domain, 5);
+    region.add_double(1, x);
+    region.add_double(2, y);
+    region.add_sint32(3, id);
+    weft::add_bound(region, 4, bound);
+  });
+}
+
+void weft_add_area(weft_request* request, const int32_t* region, int32_t priority, weft_bound bound,
+                   int is_hole) {
+  append_to(request, kDomain, [&](pbf_writer& domain) {
+    pbf_writer area(domain, 10);
+    if (region != nullptr) area.add_sint32(1, *region);
+    weft::add_bound(area, 2, bound);
+    area.add_sint32(4, priority);
+    area.add_bool(5, is_hole != 0);
+  });
+}
+
+void weft_set_size_raster(weft_request* request, const weft_grid* grid, const double* values) {
+  append_to(request, kSize, [&](pbf_writer& size) {
+    pbf_writer raster(size, 3);
+    weft::add_grid(raster, *grid);
+    raster.add_packed_double(7, values,
+                             end_of(values, weft::nodes_of(*grid), "size.raster.values"));
+  });
+}
+
+void weft_add_size_at(weft_request* request, int32_t marker, double max_edge) {
+  append_to(request, kSize, [&](pbf_writer& size) {
+    pbf_writer at(size, 8);
+    at.add_sint32(1, marker);
+    at.add_double(2, max_edge);
+  });
+}
+
+void weft_add_distance(weft_request* request, const char* name, const int32_t* markers,
+                       size_t count) {
+  append_field(request, name, kDistance, [&](pbf_writer& distance) {
+    distance.add_packed_sint32(1, markers, end_of(markers, count, "size.fields"));
+  });
+}
+
+void weft_add_distance_to(weft_request* request, const char* name, const double* xy,
+                          size_t point_count, const uint32_t* ends, size_t segment_count) {
+  append_field(request, name, kDistance, [&](pbf_writer& distance) {
+    distance.add_packed_double(2, xy, end_of(xy, 2 * point_count, "size.fields"));
+    distance.add_packed_uint32(3, ends, end_of(ends, 2 * segment_count, "size.fields"));
+  });
+}
+
+void weft_add_raster(weft_request* request, const char* name, const weft_grid* grid,
+                     const float* values) {
+  append_field(request, name, kRaster, [&](pbf_writer& raster) {
+    weft::add_grid(raster, *grid);
+    raster.add_packed_float(7, values, end_of(values, weft::nodes_of(*grid), "size.fields"));
+  });
+}
+
+void weft_add_mesh(weft_request* request, const char* name, const double* xy, const double* values,
+                   size_t vertex_count, const uint32_t* triangles, size_t triangle_count) {
+  append_field(request, name, kMesh, [&](pbf_writer& mesh) {
+    mesh.add_packed_double(1, xy, end_of(xy, 2 * vertex_count, "size.fields"));
+    mesh.add_packed_uint32(2, triangles, end_of(triangles, 3 * triangle_count, "size.fields"));
+    mesh.add_packed_double(3, values, end_of(values, vertex_count, "size.fields"));
+  });
+}
+
+void weft_add_width(weft_request* request, const char* name) {
+  append_field(request, name, kWidth, [](pbf_writer&) {});
+}
+
+}  // extern "C"

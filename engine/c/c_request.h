@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A request of the C interface (weft/c.h) as the engine's own.
+// A request of the C interface (weft/c.h): the message that it is, and what could not be taken.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "weft/c.h"
-#include "weft/weft.h"
+#include "weft/error.h"
 
-namespace weft {
-
-// Copies all that the request points to. Errors: kBadOption with the field's path for a pointer
-// that is null although its count is not, an enumerator that is none, and grids without nodes or
-// spacings. Throws std::bad_alloc.
-Result<MeshRequest> to_engine(const weft_request& request);
-
-}  // namespace weft
+struct weft_request {
+  std::string bytes{};                              // of a weft.v1.GenerateMeshRequest
+  std::optional<weft::Error> fault = std::nullopt;  // the first
+};

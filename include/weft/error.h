@@ -35,16 +35,16 @@ enum class ErrorCode {
   // The request needs more than it may use.
   kLimitExceeded,   // refused before work: an input or an estimate is over a limit
   kBudgetExceeded,  // stopped during work: bytes ran out
-  // The machine is short of something; the same request may succeed later.
-  kOutOfMemory,
+  kOutOfMemory,     // the machine is short of it; the same request may succeed later
   // The request was stopped from outside.
   kDeadlineExceeded,
   kCancelled,
   // The mesh was made but is not what was asked for: a triangle misses a bound, and neither an
   // angle of the input nor the caller's own budget or shortest edge exempts it.
   kBoundsNotMet,
-  // The engine is wrong.
-  kInternal,
+  kInternal,          // the engine is wrong
+  kMalformedRequest,  // bytes that are no message of the protocol
+  kBadArray,          // an array of a message whose length makes no sense
 };
 
 struct Error {

@@ -172,11 +172,11 @@ void Admission::answer(const AdmittedCall& call, grpc::ByteBuffer message) {
 }
 
 void Admission::note(const AdmittedCall& call, const Failure& failure) {
-  const ErrorRow& row = row_of(failure.reason);
-  metrics_.call_ended(call.method, row.code, call.caller.seconds_since());
+  const grpc::StatusCode code = code_of(failure.reason);
+  metrics_.call_ended(call.method, code, call.caller.seconds_since());
   if (!refusals_.allow()) return;
   log_->info("event=call_refused {} method={} status={} reason={} field={}",
-             log_fields(call.caller), call.method, code_name(row.code), row.name,
+             log_fields(call.caller), call.method, code_name(code), row_of(failure.reason).name,
              log_value(failure.field.empty() ? "-" : failure.field));
 }
 

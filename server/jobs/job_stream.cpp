@@ -67,7 +67,7 @@ void JobStream::guarded(F&& function) {
 
 void JobStream::fail(const Failure& failure) {
   if (abort(to_status(failure, job_.id)))
-    log_end(row_of(failure.reason).code, row_of(failure.reason).name);
+    log_end(code_of(failure.reason), row_of(failure.reason).name);
 }
 
 void JobStream::log_end(grpc::StatusCode status, std::string_view reason) const {

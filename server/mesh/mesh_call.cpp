@@ -214,8 +214,7 @@ void MeshCall::succeed(const Summary& summary) {
 }
 
 void MeshCall::fail(const Failure& failure) {
-  const ErrorRow& row = row_of(failure.reason);
-  if (abort(to_status(failure, id_))) log_end(row.code, row.name);
+  if (abort(to_status(failure, id_))) log_end(code_of(failure.reason), row_of(failure.reason).name);
 }
 
 Failure MeshCall::failure_of_cause(StopCause cause) const {

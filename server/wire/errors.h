@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one table of what can go wrong with a call, and what each is called everywhere: the reason
-// in ErrorInfo, the gRPC code, and whether the same request may succeed later. The command line
-// exits with 64 + the gRPC code; metrics count by the gRPC code.
+// What fails a call (wire/errors.h), as gRPC has it.
 //
 // Example:
 //   Failure failure{Reason::kQueueFull, "", "64 calls wait already; the limit is 64"};
@@ -10,35 +8,25 @@
 
 #include <grpcpp/support/status.h>
 
-#include <span>
 #include <string_view>
 
-#include "server/wire/failure.h"
-#include "weft/error.h"
+#include "wire/errors.h"
 
 namespace weft::server {
 
-struct ErrorRow {
-  Reason reason;
-  std::string_view name;  // ErrorInfo.reason
-  grpc::StatusCode code;
-  bool retryable;  // the same request may succeed later; the status then carries a RetryInfo
-};
+using wire::error_table;
+using wire::ErrorRow;
+using wire::failure_of;
+using wire::reason_of;
+using wire::row_of;
 
-// Indexed by Reason.
-std::span<const ErrorRow> error_table();
-const ErrorRow& row_of(Reason reason);
-Reason reason_of(ErrorCode code);
+grpc::StatusCode code_of(Reason reason);
 
 // "INVALID_ARGUMENT" and so on.
 std::string_view code_name(grpc::StatusCode code);
 
-Failure failure_of(const Error& error);
-
-// A status whose details are a google.rpc.Status: an ErrorInfo, a BadRequest if a field is at
-// fault, a RetryInfo if a retry makes sense. The metadata of the ErrorInfo have the job's id as
-// "job_id", unless that is empty, and the coordinates of the place at fault as "x" and "y", if
-// there is one. Long messages are cut: a client refuses trailers of more than 8 KiB.
-grpc::Status to_status(const Failure& failure, std::string_view job_id);
+// A status whose details are those of wire::write_status. Long messages are cut: a client refuses
+// trailers of more than 8 KiB.
+grpc::Status to_status(Failure failure, std::string_view job_id);
 
 }  // namespace weft::server

@@ -13,23 +13,10 @@
 #include "server/wire/names.h"
 #include "server/wire/points.h"
 #include "server/wire/size_field.h"
+#include "wire/summary.h"
 
 namespace weft::server {
 namespace {
-
-v1::SizeWarningKind to_wire(SizeWarning::Kind kind) {
-  switch (kind) {
-    case SizeWarning::Kind::kBoundsNothing:
-      return v1::SIZE_WARNING_KIND_BOUNDS_NOTHING;
-    case SizeWarning::Kind::kCoarseRaster:
-      return v1::SIZE_WARNING_KIND_COARSE_RASTER;
-    case SizeWarning::Kind::kFieldNotNamed:
-      return v1::SIZE_WARNING_KIND_FIELD_NOT_NAMED;
-    case SizeWarning::Kind::kGradationWithinAlone:
-      return v1::SIZE_WARNING_KIND_GRADATION_WITHIN_ALONE;
-  }
-  return v1::SIZE_WARNING_KIND_UNSPECIFIED;
-}
 
 std::optional<Failure> check_pairs(std::string_view field, int size, std::string_view what) {
   if (size % 2 == 0) return std::nullopt;
@@ -152,35 +139,6 @@ void assign(Array& array, const Values& values) {
   array.Add(values.data(), values.data() + values.size());
 }
 
-void write_unrefined(const Summary& summary, v1::Unrefined& message) {
-  const Unrefined& unrefined = summary.unrefined;
-  message.set_small_input_angle(unrefined.small_input_angle);
-  message.set_edge_floor(unrefined.edge_floor);
-  message.set_budget(unrefined.budget);
-  message.set_precision(unrefined.precision);
-  message.set_streaming(unrefined.streaming);
-  message.set_too_large(unrefined.too_large);
-  if (unrefined.without_exemption() == 0) return;
-  message.set_x(summary.unrefined_at.x);
-  message.set_y(summary.unrefined_at.y);
-}
-
-void write_merging(const Merging& merging, v1::Merging& message) {
-  message.set_tolerance(merging.tolerance);
-  message.set_points(merging.points);
-  message.set_segments(merging.segments);
-  message.set_farthest(merging.farthest);
-  if (merging.farthest > 0) {
-    message.set_farthest_x(merging.farthest_at.x);
-    message.set_farthest_y(merging.farthest_at.y);
-  }
-  message.set_vanished_faces(merging.vanished_faces);
-  if (merging.vanished_faces > 0) {
-    message.set_vanished_x(merging.vanished_at.x);
-    message.set_vanished_y(merging.vanished_at.y);
-  }
-}
-
 template <class Bytes>
 std::string to_string(const Bytes& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -275,90 +233,12 @@ void to_wire(const Chunk& chunk, v1::Chunk& message) {
 
 v1::Summary to_wire(const Summary& summary, std::uint32_t threads) {
   v1::Summary message;
-  message.set_vertices(summary.vertices);
-  message.set_triangles(summary.triangles);
-  message.set_edges(summary.edges);
-  message.set_chunks(summary.chunks);
-  message.set_area(summary.area);
-  message.set_engine_version(std::string(kEngineVersion));
-  message.set_min_angle_deg(summary.min_angle_deg);
-  message.set_max_angle_deg(summary.max_angle_deg);
-  message.set_min_angle_p1_deg(summary.min_angle_p1_deg);
-  message.set_mean_quality(summary.mean_quality);
-  message.set_ideal_ratio(summary.ideal_ratio);
-  message.set_lattice_share(summary.lattice_share);
-  message.set_streamed(summary.streamed);
-  assign(*message.mutable_angle_histogram(), summary.angle_histogram);
-  assign(*message.mutable_aspect_histogram(), summary.aspect_histogram);
-  assign(*message.mutable_size_histogram(), summary.size_histogram);
-  write_unrefined(summary, *message.mutable_unrefined());
-  write_merging(summary.merging, *message.mutable_merging());
-  if (summary.overlap.areas > 0) {
-    v1::Overlap& overlap = *message.mutable_overlap();
-    overlap.set_areas(summary.overlap.areas);
-    overlap.set_area(summary.overlap.area);
-    overlap.set_united(summary.overlap.united);
-  }
-  if (summary.simplified) {
-    v1::Simplification& simplification = *message.mutable_simplification();
-    simplification.set_points(summary.simplified->points);
-    simplification.set_islands(summary.simplified->islands);
-    simplification.set_waters(summary.simplified->waters);
-    simplification.set_channels(summary.simplified->channels);
-    simplification.set_cut_off(summary.simplified->cut_off);
-    simplification.set_straits(summary.simplified->straits);
-    simplification.set_area(summary.simplified->area);
-    simplification.set_farthest(summary.simplified->farthest);
-  }
-  if (summary.outside.segments > 0) {
-    v1::OutsideSegments& outside = *message.mutable_outside();
-    outside.set_segments(summary.outside.segments);
-    outside.set_first(summary.outside.first);
-    outside.set_x(summary.outside.at.x);
-    outside.set_y(summary.outside.at.y);
-  }
-  if (summary.narrow) {
-    v1::NarrowPlace& narrow = *message.mutable_narrow();
-    narrow.set_segment(summary.narrow->segment);
-    narrow.set_other(summary.narrow->other);
-    narrow.set_x(summary.narrow->at.x);
-    narrow.set_y(summary.narrow->at.y);
-    narrow.set_width(summary.narrow->width);
-    narrow.set_triangles(static_cast<std::uint64_t>(summary.narrow->triangles));
-    narrow.set_in_all(static_cast<std::uint64_t>(summary.narrow->in_all));
-    narrow.set_widest(summary.narrow->widest);
-  }
-  for (const SizeWarning& warning : summary.size_warnings) {
-    v1::SizeWarning& warned = *message.add_size_warnings();
-    warned.set_kind(to_wire(warning.kind));
-    warned.set_field(warning.field);
-    warned.set_message(warning.message);
-  }
-  v1::Timings& timings = *message.mutable_timings();
-  timings.set_triangulate_seconds(summary.triangulate_seconds);
-  timings.set_size_seconds(summary.size_seconds);
-  timings.set_prelude_seconds(summary.coarse_seconds);
-  timings.set_refine_seconds(summary.refine_seconds);
-  timings.set_emit_seconds(summary.emit_seconds);
-  timings.set_engine_seconds(summary.engine_seconds);
-  message.set_peak_engine_bytes(summary.peak_bytes);
-  message.set_insertions(summary.insertions);
-  message.set_exact_predicates(summary.exact_predicates);
-  message.set_sha256(to_string(summary.digest));
-  message.set_threads(threads);
-  message.set_deferred(summary.deferred);
-  message.set_rounds(summary.rounds);
-  message.set_leaves(static_cast<std::uint32_t>(summary.leaves.size()));
+  message.ParseFromString(wire::write_summary(summary, threads));
   return message;
 }
 
 void add_quadtree(const Summary& summary, v1::Summary& message) {
-  if (summary.leaves.size() > kMaxLeafBoxes) return;
-  auto& boxes = *message.mutable_leaf_boxes();
-  boxes.Reserve(4 * static_cast<int>(summary.leaves.size()));
-  for (const Box& box : summary.leaves)
-    for (const double side : {box.min_x, box.min_y, box.max_x, box.max_y})
-      boxes.AddAlreadyReserved(side);
+  message.MergeFromString(wire::write_leaf_boxes(summary));
 }
 
 v1::Stage to_wire(Stage stage) {

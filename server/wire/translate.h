@@ -17,10 +17,6 @@
 
 namespace weft::server {
 
-// Leaves of a quadtree whose boxes are sent, at most: 2 MiB, half of what a client of gRPC takes in
-// a message by default.
-inline constexpr std::size_t kMaxLeafBoxes = 65'536;
-
 // Threads of `available` that a job takes at most, of which `wanted` are asked for; 0 is all.
 std::uint32_t to_threads(std::uint32_t wanted, int available);
 
@@ -42,7 +38,7 @@ double to_seconds(const v1::Budget& budget, const Limits& limits);
 void to_wire(const Chunk& chunk, v1::Chunk& message);
 // The summary of a job on so many threads, without the boxes of the quadtree's leaves.
 v1::Summary to_wire(const Summary& summary, std::uint32_t threads);
-// Adds those boxes, unless there are more than kMaxLeafBoxes.
+// Adds those boxes, unless there are more than wire::kMaxLeafBoxes.
 void add_quadtree(const Summary& summary, v1::Summary& message);
 v1::Stage to_wire(Stage stage);
 // Updates the progress that was sent last: nothing in it goes back.

@@ -194,11 +194,7 @@ def test_without_a_library_it_says_what_to_do():
 
 
 def test_structures_are_those_of_the_header(tmp_path):
-    names = {"weft_bound": _library.Bound, "weft_region": _library.Region, "weft_area": _library.Area,
-             "weft_size_at": _library.SizeAt, "weft_grid": _library.Grid, "weft_field": _library.Field,
-             "weft_request": _library.Request, "weft_progress": _library.Told,
-             "weft_control": _library.Control, "weft_arrays": _library.Arrays,
-             "weft_summary": _library.Summary}
+    names = {"weft_progress": _library.Progress, "weft_arrays": _library.Arrays}
     lines = ["#include <stdio.h>", "#include <weft/c.h>", "int main(void) {"]
     expected = []
     for name, kind in names.items():
@@ -212,6 +208,21 @@ def test_structures_are_those_of_the_header(tmp_path):
                    check=True)
     printed = subprocess.run([tmp_path / "offsets"], check=True, capture_output=True, text=True).stdout
     assert printed.splitlines() == expected
+
+
+@pytest.mark.parametrize("spoil", [lambda m: m[:-1], lambda m: m[:len(m) // 2], lambda m: b"\xff" * 9, lambda m: b""],
+                         ids=["one byte less", "half", "no message", "nothing"])
+def test_bytes_that_are_no_request_are_an_error(spoil):
+    """As a message that only serializes to them."""
+    from weft import _requests
+    message = _requests.mesh_request(SQUARE, 1, 20, {})
+
+    class Spoilt:
+        def SerializeToString(self):
+            return spoil(message.SerializeToString())
+    with pytest.raises(weft.InvalidRequest) as caught:
+        _library.make(Spoilt(), None)
+    assert caught.value.reason in ("MALFORMED_REQUEST", "BAD_OPTION")
 
 
 FORK = """

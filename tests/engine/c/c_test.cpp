@@ -8,9 +8,10 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <string>
+#include <vector>
 
-#include "engine/c/error_names.h"
 #include "tests/engine/domain/shapes.h"
 #include "tests/support/collected_mesh.h"
 #include "weft/weft.h"
@@ -18,32 +19,48 @@
 namespace weft {
 namespace {
 
-// The square of `square()`, with a hole and a region.
+struct Free {
+  void operator()(weft_request* request) const { weft_request_free(request); }
+  void operator()(weft_mesh* mesh) const { weft_mesh_free(mesh); }
+  void operator()(weft_error* error) const { weft_error_free(error); }
+};
+
+double figure(const weft_mesh* mesh, const char* path) {
+  double value = NAN;
+  EXPECT_TRUE(weft_figure(mesh, path, &value)) << path;
+  return value;
+}
+
+// A square with a hole and a region.
 struct Given {
   std::vector<double> points{0, 0, 4, 0, 4, 4, 0, 4, 1, 1, 2, 1, 2, 2, 1, 2};
   std::vector<std::uint32_t> segments{0, 1, 1, 2, 2, 3, 3, 0, 4, 5, 5, 6, 6, 7, 7, 4};
   std::vector<std::int32_t> markers{1, 1, 2, 2, 3, 3, 3, 3};
-  std::vector<double> holes{1.5, 1.5};
-  weft_region region{3, 3, 7, {0, 1, 0, 0.3}};
-  weft_request request = WEFT_REQUEST;
+  std::unique_ptr<weft_request, Free> request{weft_request_new()};
   MeshRequest same;
 
-  Given() {
-    request.points = points.data();
-    request.point_count = points.size() / 2;
-    request.segments = segments.data();
-    request.segment_count = markers.size();
-    request.segment_markers = markers.data();
-    request.holes = holes.data();
-    request.hole_count = 1;
-    request.regions = &region;
-    request.region_count = 1;
+  explicit Given(const std::vector<std::uint32_t>& areas = {}, weft_bound bound = {0, 0.3}) {
+    weft_set_points(get(), points.data(), points.size() / 2);
+    weft_set_segments(get(), segments.data(), markers.data(),
+                      areas.empty() ? nullptr : areas.data(), markers.size());
+    weft_add_region(get(), 3, 3, 7, bound);
     for (std::size_t i = 0; i < points.size(); i += 2)
       same.pslg.points.push_back({points[i], points[i + 1]});
     for (std::size_t i = 0; i < markers.size(); ++i)
-      same.pslg.segments.push_back({segments[2 * i], segments[2 * i + 1], markers[i]});
+      same.pslg.segments.push_back(
+          {segments[2 * i], segments[2 * i + 1], markers[i], areas.empty() ? kNone : areas[i]});
+    same.pslg.regions = {{.at = {3, 3}, .id = 7, .max_area = area_of_edge(bound.max_edge)}};
+  }
+
+  weft_request* get() { return request.get(); }
+  void set(const char* field, const char* text) { weft_set(get(), field, text); }
+  void add_hole() {
+    const double hole[] = {1.5, 1.5};
+    weft_set_holes(get(), hole, 1);
     same.pslg.holes = {{1.5, 1.5}};
-    same.pslg.regions = {{.at = {3, 3}, .id = 7, .max_area = area_of_edge(0.3)}};
+  }
+  std::unique_ptr<weft_mesh, Free> make(weft_error** error = nullptr) {
+    return std::unique_ptr<weft_mesh, Free>(weft_make(get(), nullptr, nullptr, error));
   }
 
   // Makes both, has the checker judge the one, and compares the other.
@@ -54,13 +71,14 @@ struct Given {
     ASSERT_TRUE(summary) << summary.error().message;
     EXPECT_EQ(verdict(same, judged, *summary), "");
     weft_error* error = nullptr;
-    weft_mesh* const made = weft_make(&request, nullptr, &error);
+    const auto made = make(&error);
     ASSERT_TRUE(made) << weft_error_message(error);
-    weft_summary told WEFT_SUMMARY;
-    weft_mesh_summary(made, &told);
-    EXPECT_TRUE(std::equal(summary->digest.begin(), summary->digest.end(), told.digest));
+    std::size_t size = 0;
+    const auto* const told = static_cast<const char*>(weft_mesh_summary(made.get(), &size));
+    const std::string digest(summary->digest.begin(), summary->digest.end());
+    EXPECT_NE(std::string(told, size).find(digest), std::string::npos);
     weft_arrays arrays WEFT_ARRAYS;
-    weft_mesh_arrays(made, &arrays);
+    weft_mesh_arrays(made.get(), &arrays);
     ASSERT_EQ(arrays.vertex_count, judged.mesh.vertices.size());
     ASSERT_EQ(arrays.triangle_count, judged.mesh.triangles.size());
     for (std::size_t i = 0; i < arrays.vertex_count; ++i)
@@ -72,27 +90,26 @@ struct Given {
     ASSERT_EQ(arrays.edge_count, judged.mesh.edges.size());
     for (std::size_t i = 0; i < arrays.edge_count; ++i)
       ASSERT_EQ(static_cast<std::int32_t>(arrays.edges[4 * i + 3]), judged.mesh.edges[i].marker);
-    weft_mesh_free(made);
   }
 
-  std::string reason_and_field() const {
-    weft_error* error = nullptr;
-    EXPECT_EQ(weft_make(&request, nullptr, &error), nullptr);
-    const std::string told = std::string(weft_error_reason(error)) + " " + weft_error_field(error);
-    weft_error_free(error);
-    return told;
+  std::string reason_and_field() {
+    weft_error* told = nullptr;
+    EXPECT_EQ(make(&told), nullptr);
+    const std::unique_ptr<weft_error, Free> error(told);
+    return std::string(weft_error_reason(told)) + " " + weft_error_field(told);
   }
 };
 
 TEST(CInterface, TakesConstants) {
   Given given;
-  given.request.size_kind = WEFT_SIZE_CONSTANT;
-  given.request.size_measure = WEFT_MEASURE_EDGE;
-  given.request.size_constant = 0.2;
-  given.request.min_angle_deg = given.same.min_angle_deg = 28;
-  given.request.placement = WEFT_PLACEMENT_CIRCUMCENTRE;
+  given.add_hole();
+  given.set("size.constant", "0.2");
+  given.set("size.measure", "edge");
+  given.set("quality.min_angle_deg", "28");
+  given.set("quality.placement", "circumcentre");
+  given.set("quality.optimise", "1");
+  given.same.min_angle_deg = 28;
   given.same.placement = Placement::kCircumcentre;
-  given.request.sweeps = 1;
   given.same.sweeps = 1;
   given.same.size = 0.2;
   given.same.size.measure = Measure::kEdge;
@@ -101,14 +118,12 @@ TEST(CInterface, TakesConstants) {
 
 TEST(CInterface, TakesRastersAndLengthsAtMarkers) {
   Given given;
+  given.add_hole();
   const std::array<double, 4> values{0.01, 0.02, 0.03, 0.1};
-  const weft_size_at at{3, 0.05};
-  given.request.size_kind = WEFT_SIZE_RASTER;
-  given.request.size_grid = {0, 0, 4, 4, 2, 2};
-  given.request.size_values = values.data();
-  given.request.sizes_at = &at;
-  given.request.size_at_count = 1;
-  given.request.gradation = given.same.size.gradation = 0.3;
+  const weft_grid grid{0, 0, 4, 4, 2, 2};
+  weft_set_size_raster(given.get(), &grid, values.data());
+  weft_add_size_at(given.get(), 3, 0.05);
+  given.set("size.gradation", "0.3");
   given.same.size = Raster{{0, 0}, 4, 4, 2, 2, {values.begin(), values.end()}};
   given.same.size.gradation = 0.3;
   given.same.size.at = {{3, 0.05}};
@@ -118,121 +133,118 @@ TEST(CInterface, TakesRastersAndLengthsAtMarkers) {
 // The checker cannot judge sizes by the width: it is given and not named.
 TEST(CInterface, TakesFieldsOfAllKinds) {
   Given given;
+  given.add_hole();
   const std::array<std::int32_t, 1> markers{3};
   const std::array<float, 4> depths{1, 2, 3, 4};
   const std::array<double, 6> triangle{0, 0, 9, 0, 0, 9};
   const std::array<std::uint32_t, 3> corners{0, 1, 2};
   const std::array<double, 3> heights{1, 2, 3};
-  std::array<weft_field, 4> fields{};
-  fields[0].name = "wall";
-  fields[0].kind = WEFT_FIELD_DISTANCE;
-  fields[0].markers = markers.data();
-  fields[0].marker_count = 1;
-  fields[1].name = "depth";
-  fields[1].kind = WEFT_FIELD_RASTER;
-  fields[1].grid = {0, 0, 4, 4, 2, 2};
-  fields[1].grid_values = depths.data();
-  fields[2].name = "height";
-  fields[2].kind = WEFT_FIELD_MESH;
-  fields[2].points = triangle.data();
-  fields[2].point_count = 3;
-  fields[2].triangles = corners.data();
-  fields[2].triangle_count = 1;
-  fields[2].point_values = heights.data();
-  fields[3].name = "across";
-  fields[3].kind = WEFT_FIELD_WIDTH;
-  const std::string size = "0.01 + 0.02 * wall + 1e-3 * depth + 1e-3 * height";
-  given.request.size_kind = WEFT_SIZE_EXPRESSION;
-  given.request.size_expression = size.c_str();
-  given.request.fields = fields.data();
-  given.request.field_count = fields.size();
+  const weft_grid grid{0, 0, 4, 4, 2, 2};
+  weft_add_distance(given.get(), "wall", markers.data(), 1);
+  weft_add_raster(given.get(), "depth", &grid, depths.data());
+  weft_add_mesh(given.get(), "height", triangle.data(), heights.data(), 3, corners.data(), 1);
+  weft_add_distance_to(given.get(), "line", triangle.data(), 3, corners.data(), 1);
+  weft_add_width(given.get(), "across");
+  weft_add_distance(given.get(), "sides", nullptr, 0);
+  const std::string size = "0.01 + 0.02 * wall + 1e-3 * depth + 1e-3 * height + 1e-3 * line";
+  given.set("size.expression", size.c_str());
   given.same.size = size;
   given.same.size.fields = {{"wall", DistanceSpec{{3}}},
                             {"depth", FieldRaster{{0, 0}, 4, 4, 2, 2, {1, 2, 3, 4}}},
                             {"height", FieldMesh{{{0, 0}, {9, 0}, {0, 9}}, {{0, 1, 2}}, {1, 2, 3}}},
-                            {"across", WidthSpec{}}};
+                            {"line", DistanceSpec{{}, {{0, 0}, {9, 0}, {0, 9}}, {{0, 1}}}},
+                            {"across", WidthSpec{}},
+                            {"sides", DistanceSpec{}}};
   given.expect_same();
 }
 
 TEST(CInterface, Simplifies) {
   Given given;
-  given.request.simplify = given.same.simplify = 6;  // of the region's edges of 0.3
+  given.add_hole();
+  given.set("simplify", "6");  // of the region's edges of 0.3
+  given.same.simplify = 6;
   given.expect_same();
-  weft_mesh* const made = weft_make(&given.request, nullptr, nullptr);
-  ASSERT_NE(made, nullptr);
-  weft_summary told WEFT_SUMMARY;
-  weft_mesh_summary(made, &told);
-  EXPECT_EQ(told.has_simplification, 1);
-  EXPECT_EQ(told.simplified_points, 4u);
-  EXPECT_EQ(told.dropped_islands, 1u);
-  EXPECT_EQ(told.simplified_area, 1);
-  weft_mesh_free(made);
+  const auto made = given.make();
+  ASSERT_TRUE(made);
+  EXPECT_EQ(figure(made.get(), "simplification.points"), 4);
+  EXPECT_EQ(figure(made.get(), "simplification.islands"), 1);
+  EXPECT_EQ(figure(made.get(), "simplification.area"), 1);
 }
 
 TEST(CInterface, TakesAreas) {
-  Given given;
-  const std::array<std::uint32_t, 8> areas{0, 0, 0, 0, 1, 1, 1, 1};
-  const std::array<weft_area, 2> of{weft_area{1, 5, 0, 0, {1, 0, 0.05, 0}},
-                                    weft_area{0, 0, 0, 1, {}}};
-  given.request.segment_areas = areas.data();
-  given.request.areas = of.data();
-  given.request.area_count = of.size();
-  given.request.fill = WEFT_FILL_UNION;
-  given.request.hole_count = 0;
-  given.same.pslg.holes.clear();
-  for (std::size_t i = 0; i < areas.size(); ++i) given.same.pslg.segments[i].area = areas[i];
+  Given given({0, 0, 0, 0, 1, 1, 1, 1});
+  const std::int32_t region = 5;
+  weft_add_area(given.get(), &region, 0, {0.05, 0}, 0);
+  weft_add_area(given.get(), nullptr, 0, {0, 0}, 1);
+  given.set("domain.fill", "union");
   given.same.pslg.areas = {{.region = 5, .max_area = 0.05}, {.is_hole = true}};
   given.same.pslg.fill = Fill::kUnion;
   given.expect_same();
 }
 
 TEST(CInterface, NamesWhatItCannotTake) {
-  Given given;
-  given.request.fill = 3;
-  EXPECT_EQ(given.reason_and_field(), "BAD_OPTION domain.fill");
-  given.request.fill = 0;
   // The squares of the last two are 0 and infinite.
-  for (const double edge : {0.0, -1.0, 1e-200, 1e200}) {
-    given.region.bound.max_edge = edge;
-    EXPECT_EQ(given.reason_and_field(), "BAD_OPTION domain.regions[0].max_edge") << edge;
+  for (const double edge : {-1.0, 1e-200, 1e200})
+    EXPECT_EQ(Given({}, {0, edge}).reason_and_field(), "BAD_OPTION domain.regions[0].max_edge")
+        << edge;
+  EXPECT_EQ(Given({}, {-1, 1}).reason_and_field(), "BAD_OPTION domain.regions[0].max_area");
+  Given raster;
+  const weft_grid grid{};
+  weft_set_size_raster(raster.get(), &grid, nullptr);
+  EXPECT_EQ(raster.reason_and_field(), "BAD_OPTION size.raster.dx");
+  Given given;
+  const double beyond[] = {1, 2};
+  weft_set_points(given.get(), beyond, 1);
+  const std::uint32_t ends[] = {0, 9};
+  weft_set_segments(given.get(), ends, nullptr, nullptr, 1);
+  EXPECT_EQ(given.reason_and_field(), "BAD_ARRAY domain.segment_markers");
+}
+
+TEST(CInterface, TakesMessagesAndRefusesWhatIsNone) {
+  // domain { points: 0 0 1 0 0 1, unpacked; segments: 0 1 1 2 2 0 }
+  std::string domain;
+  for (const double number : {0., 0., 1., 0., 0., 1.}) {
+    domain += '\x09';
+    domain.append(reinterpret_cast<const char*>(&number), sizeof number);
   }
-  given.region.bound.max_edge = 1;
-  given.region.bound.has_max_area = 1;
-  EXPECT_EQ(given.reason_and_field(), "BAD_OPTION domain.regions[0].max_area");
-  given.region.bound.max_area = 1e200;
-  given.request.size_kind = WEFT_SIZE_RASTER;
-  EXPECT_EQ(given.reason_and_field(), "BAD_OPTION size.raster.dx");
-  given.request.size_kind = 9;
-  EXPECT_EQ(given.reason_and_field(), "BAD_OPTION size");
-  given.request.size_kind = 0;
-  given.segments[3] = 8;
-  EXPECT_EQ(given.reason_and_field(), "INDEX_OUT_OF_RANGE domain.segments[1].b");
+  domain += std::string("\x12\x06\x00\x01\x01\x02\x02\x00", 8);
+  const std::string message = '\x0a' + std::string(1, static_cast<char>(domain.size())) + domain;
+  const auto make = [](const std::string& bytes) {
+    weft_error* error = nullptr;
+    weft_mesh_free(weft_make_message(bytes.data(), bytes.size(), nullptr, nullptr, &error));
+    const std::string reason = error == nullptr ? "" : weft_error_reason(error);
+    weft_error_free(error);
+    return reason;
+  };
+  EXPECT_EQ(make(message), "");
+  EXPECT_EQ(make(message + "\xf8\x7f\x01"), "") << "a field that it does not know";
+  EXPECT_EQ(make(""), "BAD_OPTION");
+  for (std::size_t size = 1; size < message.size(); ++size)
+    EXPECT_EQ(make(message.substr(0, size)), "MALFORMED_REQUEST") << size;
+  EXPECT_EQ(make(message + std::string("\x0a\x0a\x0a\x08\0\0\0\0\0\0\0\0", 12)), "BAD_ARRAY")
+      << "a packed array goes on where an unpacked one ended";
 }
 
 // TBB's threads do not go over to a child, which would wait for them.
 TEST(CInterface, ServesAChildOfForkToo) {
   Given given;
-  given.request.size_kind = WEFT_SIZE_CONSTANT;
-  given.request.size_constant = 1e-5;
-  weft_control control = WEFT_CONTROL;
-  control.threads = 2;
-  const auto make = [&] {
-    weft_mesh* const mesh = weft_make(&given.request, &control, nullptr);
-    weft_summary told WEFT_SUMMARY;
-    if (mesh != nullptr) weft_mesh_summary(mesh, &told);
-    weft_mesh_free(mesh);
-    return told.threads == 2;
+  given.add_hole();
+  given.set("size.constant", "1e-5");
+  given.set("threads", "2");
+  const auto makes = [&] {
+    const auto mesh = given.make();
+    return mesh != nullptr && figure(mesh.get(), "threads") == 2;
   };
-  EXPECT_TRUE(make());
+  EXPECT_TRUE(makes());
   const pid_t child = ::fork();
   if (child == 0) {
     ::alarm(300);
-    ::_exit(make() ? 0 : 1);
+    ::_exit(makes() ? 0 : 1);
   }
   int status = -1;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_EQ(status, 0);
-  EXPECT_TRUE(make());
+  EXPECT_TRUE(makes());
 }
 
 }  // namespace

@@ -18,16 +18,19 @@ static const double corners[] = {0, 0, 4, 0, 4, 4, 0, 4};
 static const uint32_t sides[] = {0, 1, 1, 2, 2, 3, 3, 0};
 static const int32_t markers[] = {1, 2, 3, 4};
 
-static weft_request square(const char *size) {
-  weft_request request = WEFT_REQUEST;
-  request.points = corners;
-  request.point_count = 4;
-  request.segments = sides;
-  request.segment_count = 4;
-  request.segment_markers = markers;
-  request.size_kind = WEFT_SIZE_EXPRESSION;
-  request.size_expression = size;
+static weft_request *square(const char *size) {
+  weft_request *request = weft_request_new();
+  weft_set_points(request, corners, 4);
+  weft_set_segments(request, sides, markers, NULL, 4);
+  weft_set(request, "size.expression", size);
   return request;
+}
+
+/* The mesh of the request, which it frees. */
+static weft_mesh *make(weft_request *request, weft_error **error) {
+  weft_mesh *mesh = weft_make(request, NULL, NULL, error);
+  weft_request_free(request);
+  return mesh;
 }
 
 static int cancel(const weft_progress *progress, void *calls) {
@@ -36,16 +39,19 @@ static int cancel(const weft_progress *progress, void *calls) {
   return 1;
 }
 
+static double figure(const weft_mesh *mesh, const char *path) {
+  double value = NAN;
+  EXPECT(weft_figure(mesh, path, &value));
+  return value;
+}
+
 static void makes_a_mesh(void) {
-  const weft_request request = square("0.01");
   weft_error *error = NULL;
-  weft_mesh *mesh = weft_make(&request, NULL, &error);
+  weft_mesh *mesh = make(square("0.01"), &error);
   EXPECT(mesh != NULL && error == NULL);
   if (mesh == NULL) return;
   weft_arrays arrays = WEFT_ARRAYS;
   weft_mesh_arrays(mesh, &arrays);
-  weft_summary summary = WEFT_SUMMARY;
-  weft_mesh_summary(mesh, &summary);
   double area = 0;
   for (size_t i = 0; i < arrays.triangle_count; ++i) {
     const double *p[3];
@@ -58,69 +64,90 @@ static void makes_a_mesh(void) {
     EXPECT(doubled > 0 && doubled <= 0.02 * (1 + 1e-12));
     area += doubled / 2;
   }
-  EXPECT(fabs(area - 16) < 1e-9 && fabs(summary.area - 16) < 1e-9);
+  EXPECT(fabs(area - 16) < 1e-9 && fabs(figure(mesh, "area") - 16) < 1e-9);
   EXPECT(arrays.regions == NULL);
   EXPECT(arrays.edge_count > 4 && arrays.input_point_count == 4);
   for (size_t i = 0; i < arrays.edge_count; ++i)
     EXPECT(arrays.edges[4 * i + 3] == arrays.edges[4 * i + 2] + 1);
-  EXPECT(summary.min_angle_deg >= 20 && summary.threads == 1 && summary.warning_count == 0);
+  EXPECT(figure(mesh, "min_angle_deg") >= 20 && figure(mesh, "threads") == 1);
+  EXPECT(figure(mesh, "unrefined.budget") == 0 && figure(mesh, "timings.engine_seconds") > 0);
+  double value = 7;
+  EXPECT(!weft_figure(mesh, "narrow.width", &value) && !weft_figure(mesh, "none", &value));
+  EXPECT(value == 7);
+  size_t size = 0;
+  EXPECT(weft_mesh_summary(mesh, &size) != NULL && size > 100);
   weft_mesh_free(mesh);
 }
 
 static void says_what_is_wrong(void) {
-  weft_request request = square("x +");
   weft_error *error = NULL;
-  EXPECT(weft_make(&request, NULL, &error) == NULL);
+  EXPECT(make(square("x +"), &error) == NULL);
   EXPECT(strcmp(weft_error_reason(error), "EXPRESSION_SYNTAX") == 0);
   EXPECT(strcmp(weft_error_field(error), "size.expression") == 0);
   EXPECT(strstr(weft_error_message(error), "column") != NULL);
   double x, y;
   EXPECT(!weft_error_point(error, &x, &y));
+  size_t size = 0;
+  EXPECT(weft_error_status(error, &size) != NULL && size > 20);
   weft_error_free(error);
 
-  request = square("1");
-  request.points = NULL;
-  EXPECT(weft_make(&request, NULL, NULL) == NULL);
-  EXPECT(weft_make(&request, NULL, &error) == NULL);
+  weft_request *request = square("1");
+  weft_set_points(request, NULL, 4);
+  EXPECT(weft_make(request, NULL, NULL, NULL) == NULL);
+  EXPECT(make(request, &error) == NULL);
   EXPECT(strcmp(weft_error_field(error), "domain.points") == 0);
   weft_error_free(error);
 
-  request = square("(x-1)^2");
-  EXPECT(weft_make(&request, NULL, &error) == NULL);
+  EXPECT(make(square("(x-1)^2"), &error) == NULL);
   EXPECT(weft_error_point(error, &x, &y) && fabs(x - 1) < 1e-6);
   weft_error_free(error);
 }
 
+static void names_the_option_that_it_cannot_take(void) {
+  static const char *const wrong[][2] = {{"quality.min_angle_deg", "much"},
+                                         {"quality.optimise", "-1"},
+                                         {"quality.placement", "Lattice"},
+                                         {"allow_unrefined", "yes"},
+                                         {"domain.points", "1"},
+                                         {"nothing", "1"}};
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
+    weft_request *request = square("1");
+    weft_set(request, wrong[i][0], wrong[i][1]);
+    weft_error *error = NULL;
+    EXPECT(make(request, &error) == NULL);
+    EXPECT(strcmp(weft_error_reason(error), "BAD_OPTION") == 0);
+    EXPECT(strcmp(weft_error_field(error), wrong[i][0]) == 0);
+    weft_error_free(error);
+  }
+}
+
 static void is_cancelled_by_its_caller(void) {
-  const weft_request request = square("1e-7");
+  weft_request *request = square("1e-7");
   int calls = 0;
-  weft_control control = WEFT_CONTROL;
-  control.on_progress = cancel;
-  control.user = &calls;
   weft_error *error = NULL;
-  EXPECT(weft_make(&request, &control, &error) == NULL);
+  EXPECT(weft_make(request, cancel, &calls, &error) == NULL);
   EXPECT(calls >= 1);
   EXPECT(error != NULL && strcmp(weft_error_reason(error), "CANCELLED") == 0);
   weft_error_free(error);
+  weft_request_free(request);
 }
 
 static void fills_what_an_older_caller_does_not_know(void) {
-  weft_request request = square("0.01");
-  request.struct_size = offsetof(weft_request, min_angle_deg);
-  request.min_angle_deg = 99; /* beyond what the caller was compiled with */
-  weft_mesh *mesh = weft_make(&request, NULL, NULL);
+  weft_mesh *mesh = make(square("0.01"), NULL);
   EXPECT(mesh != NULL);
-  weft_summary summary = WEFT_SUMMARY;
-  summary.struct_size = offsetof(weft_summary, chunks);
-  summary.chunks = 77;
-  weft_mesh_summary(mesh, &summary);
-  EXPECT(summary.chunks == 77 && summary.digest[0] + summary.digest[1] + summary.digest[2] > 0);
+  weft_arrays arrays = WEFT_ARRAYS;
+  arrays.struct_size = offsetof(weft_arrays, leaves);
+  const double mine = 1;
+  arrays.leaves = &mine;
+  weft_mesh_arrays(mesh, &arrays);
+  EXPECT(arrays.leaves == &mine && arrays.input_points != NULL);
   weft_mesh_free(mesh);
 }
 
 int main(void) {
   makes_a_mesh();
   says_what_is_wrong();
+  names_the_option_that_it_cannot_take();
   is_cancelled_by_its_caller();
   fills_what_an_older_caller_does_not_know();
   EXPECT(strlen(weft_version()) > 0 && strlen(weft_engine_version()) > 0);

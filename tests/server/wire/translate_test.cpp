@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "wire/summary.h"
+
 namespace weft::server {
 namespace {
 
@@ -194,16 +196,16 @@ TEST(SummaryToWire, CarriesTheBoxesOfTheQuadtreeInOrder) {
 TEST(SummaryToWire, LeavesBoxesOutWhereAClientMightNotTakeThem) {
   constexpr std::size_t kMostOfAClient = std::size_t{4} << 20;
   Summary summary;
-  summary.leaves.resize(kMaxLeafBoxes);
+  summary.leaves.resize(wire::kMaxLeafBoxes);
   v1::Summary message = to_wire(summary, 1);
   add_quadtree(summary, message);
-  EXPECT_EQ(static_cast<std::size_t>(message.leaf_boxes_size()), 4 * kMaxLeafBoxes);
+  EXPECT_EQ(static_cast<std::size_t>(message.leaf_boxes_size()), 4 * wire::kMaxLeafBoxes);
   EXPECT_LT(message.ByteSizeLong(), kMostOfAClient);
-  summary.leaves.resize(kMaxLeafBoxes + 1);
+  summary.leaves.resize(wire::kMaxLeafBoxes + 1);
   message = to_wire(summary, 1);
   add_quadtree(summary, message);
   EXPECT_EQ(message.leaf_boxes_size(), 0);
-  EXPECT_EQ(message.leaves(), kMaxLeafBoxes + 1);
+  EXPECT_EQ(message.leaves(), wire::kMaxLeafBoxes + 1);
 }
 
 TEST(BudgetFromWire, ZeroMeansTheServersLimits) {

@@ -82,7 +82,7 @@ class ServerError(WeftError):
         self.code = code
         """Name of the gRPC status code, such as `INVALID_ARGUMENT`."""
         self.reason = reason
-        """From the table in server/wire/errors.h, such as `BAD_OPTION`; empty if weft did not say."""
+        """From the table in wire/errors.h, such as `BAD_OPTION`; empty if weft did not say."""
         self.detail = detail
         """What the server says in words."""
         self.violations = violations
@@ -182,28 +182,6 @@ def of_status(status: Any, subject: str, request: Any = None) -> ServerError:
     return kind(
         text, code=code, reason=info.reason, detail=status.message, violations=violations,
         retry_after=delay, job_id=info.metadata.get("job_id", ""))
-
-
-# Of reasons that are no fault of the request, the gRPC code: as in the table in server/wire/errors.h.
-_CODES_OF_REASONS = {"LIMIT_EXCEEDED": "RESOURCE_EXHAUSTED", "BUDGET_EXCEEDED": "RESOURCE_EXHAUSTED",
-                     "OUT_OF_MEMORY": "RESOURCE_EXHAUSTED", "DEADLINE_EXCEEDED": "DEADLINE_EXCEEDED",
-                     "CANCELLED": "CANCELLED", "BOUNDS_NOT_MET": "FAILED_PRECONDITION",
-                     "INTERNAL": "INTERNAL"}
-
-
-def of_library(reason: str, message: str, field: str, request: Any) -> ServerError:
-    """The exception for an error of libweft.so."""
-    code = _CODES_OF_REASONS.get(reason, "INVALID_ARGUMENT")
-    status = _Status(code=_protocol.enum("google.rpc.Code").values_by_name[code].number, message=message)
-    details = [("ErrorInfo", _DETAILS["ErrorInfo"](reason=reason))]
-    if field:
-        bad = _DETAILS["BadRequest"]()
-        bad.field_violations.add(field=field, description=message)
-        details.append(("BadRequest", bad))
-    for name, detail in details:
-        status.details.add(type_url=f"type.googleapis.com/google.rpc.{name}",
-                           value=detail.SerializeToString())
-    return of_status(status, "the library answers", request)
 
 
 def of_call(call: Any, target: str, request: Any = None) -> ServerError:

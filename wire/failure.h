@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a call failed, without gRPC: errors.h has the table of what each reason is on the wire.
+// Why a call failed; errors.h has the table of what each reason is on the wire.
 //
 //   return Failure{Reason::kQueueFull, "", "64 calls wait already; this server's limit is 64"};
 #pragma once
@@ -10,7 +10,7 @@
 
 #include "weft/geometry.h"
 
-namespace weft::server {
+namespace weft {
 
 // The engine's codes come first, in their order, then the server's own.
 enum class Reason {
@@ -32,8 +32,8 @@ enum class Reason {
   kCancelled,
   kBoundsNotMet,
   kInternal,
-  kMalformedRequest,  // bytes that are no GenerateMeshRequest
-  kBadArray,          // an array whose length makes no sense
+  kMalformedRequest,
+  kBadArray,
   kQueueFull,         // too many jobs wait
   kStopping,          // the server drains
   kReaderStalled,     // the client read nothing for too long
@@ -62,4 +62,4 @@ inline Failure bad_option(std::string field, std::string message) {
   return {Reason::kBadOption, std::move(field), std::move(message)};
 }
 
-}  // namespace weft::server
+}  // namespace weft
