@@ -27,6 +27,13 @@ class MessageWriter {
   void counts(std::uint32_t field, const Counts& counts) {
     out_.add_packed_uint64(field, counts.begin(), counts.end());
   }
+  void points(std::uint32_t field, const std::vector<Point>& points) {
+    protozero::packed_field_double out(out_, field);
+    for (const Point p : points) {
+      out.add_element(p.x);
+      out.add_element(p.y);
+    }
+  }
   template <class F>
   void message(std::uint32_t field, const char*, F&& show) {
     MessageWriter inner(out_, field);
@@ -52,6 +59,7 @@ class FigureFinder {
   void text(std::uint32_t, std::string_view) {}
   template <class Counts>
   void counts(std::uint32_t, const Counts&) {}
+  void points(std::uint32_t, const std::vector<Point>&) {}
   template <class F>
   void message(std::uint32_t, const char* name, F&& show) {
     const std::size_t dot = path_.find('.');
@@ -109,6 +117,7 @@ void show(const Simplification& simplified, auto& out) {
   out.number(6, "farthest", simplified.farthest);
   out.number(7, "cut_off", simplified.cut_off);
   out.number(8, "straits", simplified.straits);
+  out.points(9, simplified.cuts);
 }
 
 void show(const OutsideSegments& outside, auto& out) {

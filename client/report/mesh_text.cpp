@@ -74,9 +74,12 @@ std::string rounded(double distance) {
 Json simplification_json(const v1::Summary& summary) {
   if (!summary.has_simplification()) return nullptr;
   const v1::Simplification& made = summary.simplification();
-  return {{"points", made.points()},     {"islands", made.islands()},  {"waters", made.waters()},
-          {"channels", made.channels()}, {"cut_off", made.cut_off()},  {"straits", made.straits()},
-          {"area", made.area()},         {"farthest", made.farthest()}};
+  Json cuts = Json::array();
+  for (int i = 0; i + 1 < made.cuts_size(); i += 2)
+    cuts.push_back({made.cuts(i), made.cuts(i + 1)});
+  return {{"points", made.points()},     {"islands", made.islands()},   {"waters", made.waters()},
+          {"channels", made.channels()}, {"cut_off", made.cut_off()},   {"straits", made.straits()},
+          {"area", made.area()},         {"farthest", made.farthest()}, {"cuts", std::move(cuts)}};
 }
 
 // "1 point", "1,200 points".

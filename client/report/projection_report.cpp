@@ -41,6 +41,12 @@ void bring_places_back(const DomainProjection& projection, v1::Summary& summary)
     narrow.set_x(at.x);
     narrow.set_y(at.y);
   }
+  for (int i = 0; i + 1 < summary.simplification().cuts_size(); i += 2) {
+    v1::Simplification& simplified = *summary.mutable_simplification();
+    const Point at = projection.to_lonlat({simplified.cuts(i), simplified.cuts(i + 1)});
+    simplified.set_cuts(i, at.x);
+    simplified.set_cuts(i + 1, at.y);
+  }
   v1::Merging& merging = *summary.mutable_merging();
   if (merging.farthest() > 0) {
     const Point at = projection.to_lonlat({merging.farthest_x(), merging.farthest_y()});

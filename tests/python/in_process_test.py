@@ -62,6 +62,14 @@ def test_a_simplified_domain_has_the_mesh_that_a_server_makes(client):
     assert weft.mesh(KEY, edge=12, min_angle=15).summary.simplification is None
 
 
+def test_the_places_of_cut_channels_are_in_the_coordinates_of_the_domain(client):
+    coast = weft.Domain.read(MODELS / "us-east-coast.geojson")
+    made = expect_same(client, coast, edge=40_000, lonlat=True, simplify=0.5, min_edge=5_000).summary.simplification
+    west, south, east, north = coast.box()
+    assert len(made.cuts) == made.channels > 10
+    assert all(west < x < east and south < y < north for x, y in made.cuts)
+
+
 @pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.name)
 def test_samples_have_the_mesh_that_a_server_makes(client, path):
     box = weft.Domain.read(path).box()

@@ -152,6 +152,7 @@ TEST(MeshReport, TellsWhatWasSimplified) {
   made.set_straits(1);
   made.set_area(3.73e8);
   made.set_farthest(998);
+  for (const double at : {1, 2, 3, 4}) made.add_cuts(at);
   EXPECT_EQ(simplification_text(summary),
             "simplified: 2,710 points, 1 island and 9 waters dropped, 38 channels cut, 7 waters "
             "behind them dropped, 1 strait kept, area +3.73e+08, no line moved by more than 998\n");
@@ -160,7 +161,8 @@ TEST(MeshReport, TellsWhatWasSimplified) {
   EXPECT_NE(simplification_text(summary).find("area -2,"), std::string::npos);
   EXPECT_EQ(summary_json(summary)["simplification"],
             Json::parse(R"({"points": 2710, "islands": 1, "waters": 9, "channels": 38,
-                            "cut_off": 7, "straits": 1, "area": -2.0, "farthest": 998.0})"));
+                            "cut_off": 7, "straits": 1, "area": -2.0, "farthest": 998.0,
+                            "cuts": [[1.0, 2.0], [3.0, 4.0]]})"));
 }
 
 TEST(MeshReport, TellsTheAttributesThatIdsStandFor) {

@@ -80,8 +80,12 @@ class Projection:
             merging = moved(merging, "farthest_x", "farthest_y")
         if merging.vanished_faces:
             merging = moved(merging, "vanished_x", "vanished_y")
+        simplification = summary.simplification
+        if simplification and simplification.cuts:
+            cuts = self._as_in_file(self._inverse(np.array(simplification.cuts)))
+            simplification = dataclasses.replace(simplification, cuts=tuple(map(tuple, cuts.tolist())))
         return dataclasses.replace(
-            summary, unrefined=unrefined, merging=merging,
+            summary, unrefined=unrefined, merging=merging, simplification=simplification,
             narrow=summary.narrow and moved(summary.narrow, "x", "y"),
             outside=summary.outside and moved(summary.outside, "x", "y"))
 

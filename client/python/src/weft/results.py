@@ -157,6 +157,8 @@ class Simplification:
     """Of the new domain less that of the old one."""
     farthest: float
     """No point of a new line is farther than this from the segments of the domain."""
+    cuts: tuple[tuple[float, float], ...]
+    """A point in each channel that was cut, of 1,024 channels at most."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -336,12 +338,16 @@ def summary(message: Any) -> Summary:
                  merging=_take(Merging, message.merging),
                  narrow=_take(NarrowPlace, message.narrow) if message.HasField("narrow") else None,
                  outside=_take(OutsideSegments, message.outside) if message.HasField("outside") else None,
-                 simplification=(_take(Simplification, message.simplification)
+                 simplification=(_simplification(message.simplification)
                                  if message.HasField("simplification") else None),
                  timings=_take(Timings, message.timings),
                  leaf_boxes=np.array(message.leaf_boxes, np.float64).reshape(-1, 4),
                  digest=message.sha256.hex(),
                  size_warnings=tuple(map(_size_warning, message.size_warnings)))
+
+
+def _simplification(message: Any) -> Simplification:
+    return _take(Simplification, message, cuts=tuple(zip(message.cuts[::2], message.cuts[1::2])))
 
 
 def _size_warning(message: Any) -> SizeWarning:
