@@ -9,6 +9,7 @@ code has to fit that of protobuf.
 from __future__ import annotations
 
 import dataclasses
+import functools
 import importlib.resources
 from typing import Any
 
@@ -37,6 +38,7 @@ def _class_of(descriptor: Any) -> Any:
     return message_factory.MessageFactory(_pool).GetPrototype(descriptor)
 
 
+@functools.cache  # it takes half a millisecond
 def message(name: str) -> Any:
     """The class of a message, such as `message("weft.v1.Domain")`."""
     return _class_of(_pool.FindMessageTypeByName(name))
