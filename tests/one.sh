@@ -3,11 +3,11 @@
 # Builds the program of one file of tests and runs the tests of that file.
 #
 #   tests/one.sh engine/size/raster [PRESET]     the tests of tests/engine/size/raster_test.cpp;
-#                                                PRESET: release (the default), asan or tsan
+#                                                PRESET: release (the default), library, asan or tsan
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 (($# == 1 || $# == 2)) || {
-  echo "usage: tests/one.sh engine/size/raster [release|asan|tsan]" >&2
+  echo "usage: tests/one.sh engine/size/raster [release|library|asan|tsan]" >&2
   exit 2
 }
 file=${1#tests/}

@@ -83,12 +83,30 @@ def test_the_headers_are_few_and_name_nothing_else(prefix):
     assert lines.pop("c.h") <= 220 and sum(lines.values()) <= 729
 
 
+def configured_without(packages, folder):
+    """The targets of the library's build, on a machine without these packages."""
+    absent = [f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in packages]
+    run(CMAKE, "-G", "Ninja", "-S", ROOT, "-B", folder, "-DWEFT_PARTS=library", *absent)
+    cache = (folder / "CMakeCache.txt").read_text().lower()
+    assert not [name for name in ("grpc", "cairo", "weft_postgres") if name in cache]
+    targets = (folder / "build.ninja").read_text()
+    assert "-lweft_" not in targets  # of a part that is not built
+    return targets
+
+
+# As CMake finds them; those that pkg-config finds, such as gRPC, are looked for in the cache.
+OF_THE_PROGRAMS = ("Protobuf", "PostgreSQL", "SQLite3", "fmt", "spdlog", "CLI11", "ZLIB", "nlohmann_json",
+                   "prometheus-cpp", "pugixml", "yaml-cpp")
+
+
 def test_the_library_configures_without_what_only_the_programs_need(tmp_path):
-    absent = [f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON"
-              for name in ("Protobuf", "PostgreSQL", "SQLite3", "fmt", "spdlog", "CLI11", "ZLIB",
-                           "nlohmann_json", "prometheus-cpp", "pugixml", "yaml-cpp", "GTest")]
-    run(CMAKE, "-S", ROOT, "-B", tmp_path, "-DWEFT_PARTS=library", *absent)
-    assert "grpc" not in (tmp_path / "CMakeCache.txt").read_text().lower()
+    assert "build weft_c:" in configured_without([*OF_THE_PROGRAMS, "GTest"], tmp_path)
+
+
+def test_the_tests_of_the_engine_and_the_judge_need_the_library_alone(tmp_path):
+    targets = configured_without(OF_THE_PROGRAMS, tmp_path)
+    for program in ("size_test", "domain_test", "refine_test", "parallel_test", "c_test", "checker_test"):
+        assert f"build {program}:" in targets, program
 
 
 def test_other_parts_are_refused_by_their_names(tmp_path):
