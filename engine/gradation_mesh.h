@@ -7,11 +7,11 @@
 #include <map>
 
 #include "engine/base/context.h"
-#include "engine/engine.h"
 #include "engine/size/fields/mesh_field.h"
 #include "engine/size/size_function.h"
 #include "weft/error.h"
 #include "weft/mesh.h"
+#include "weft/weft.h"
 
 namespace weft {
 

@@ -19,12 +19,12 @@
 #include <thread>
 
 #include "server/console/assets.h"
-#include "server/memory_plan.h"
 #include "server/net/health_check.h"
 #include "server/observe/log.h"
 #include "server/observe/machine.h"
 #include "server/options.h"
 #include "server/server.h"
+#include "server/server_options.h"
 #include "server/stop_events.h"
 #include "server/store/postgres/postgres_store.h"
 #include "server/store/sqlite/sqlite_store.h"

@@ -11,7 +11,6 @@
 #include <limits>
 
 #include "server/console/request_rules.h"
-#include "server/memory_plan.h"
 #include "server/net/listen.h"
 #include "server/version.h"
 

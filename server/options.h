@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "server/observe/machine.h"
-#include "server/server.h"
+#include "server/server_options.h"
 
 namespace weft::server {
 

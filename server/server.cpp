@@ -12,11 +12,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "server/memory_plan.h"
-#include "server/mesh/server_info.h"
 #include "server/net/connections.h"
 #include "server/net/listen.h"
 #include "server/run/memory_estimate.h"
+#include "server/server_info.h"
+#include "server/server_options.h"
 #include "server/version.h"
 
 namespace weft::server {

@@ -27,40 +27,16 @@
 #include "server/mesh/mesh_service.h"
 #include "server/net/caller.h"
 #include "server/net/connection_table.h"
-#include "server/net/health_service.h"
-#include "server/net/reflection_service.h"
-#include "server/net/tls.h"
 #include "server/net/tokens.h"
 #include "server/observe/metrics.h"
-#include "server/observe/metrics_endpoint.h"
 #include "server/run/memory_budget.h"
 #include "server/run/run_queue.h"
+#include "server/server_options.h"
+#include "server/services/health_service.h"
+#include "server/services/metrics_endpoint.h"
+#include "server/services/reflection_service.h"
 
 namespace weft::server {
-
-struct ServerOptions {
-  std::vector<std::string> listen;  // see listen.h
-  ServiceOptions service{};
-  AdmissionOptions admission{};  // its request_bytes are filled in
-  // Bytes of the whole process (memory_plan.h).
-  std::uint64_t memory = std::uint64_t{8} << 30;
-  // Where there is a store. Their limits are those of `service`.
-  JobOptions jobs{};
-  TlsOptions tls{};  // of TCP addresses; a unix socket is guarded by its folder
-  // Connections over TCP that may be open at the same time; one client has the share of
-  // `service.client_share`.
-  std::uint64_t max_connections = 1024;
-  // Calls that one connection may reset in a second; more close it. 0: no bound, nor on those that
-  // do not end.
-  std::uint64_t max_resets = 600;
-  std::string tokens{};  // the file, see tokens.h; empty: whoever can connect may call
-  // Listen unencrypted even if other machines can connect, and show the metrics to them.
-  bool insecure = false;
-  std::string metrics{};  // HOST:PORT to show them on, see metrics_endpoint.h; empty: nowhere
-  ConsoleOptions console{};
-  // Called once if an address has not answered the server itself for a minute, see probe.h.
-  std::function<void(const std::string& address)> address_lost = [](const std::string&) {};
-};
 
 class Server {
  public:

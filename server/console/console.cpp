@@ -9,7 +9,6 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <exception>
 #include <future>
 #include <optional>
 #include <thread>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "server/console/session.h"
+#include "server/net/acceptor.h"
 #include "server/net/drain_gate.h"
 #include "server/net/listen.h"
 #include "server/net/tls_context.h"
@@ -29,7 +29,6 @@ using boost::system::error_code;
 using tcp = boost::asio::ip::tcp;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kBreather{100};
 constexpr std::chrono::milliseconds kBetweenLooks{10};
 
 }  // namespace
@@ -60,20 +59,15 @@ class Console::Listener {
     if (thread_.joinable()) thread_.join();
   }
 
-  error_code listen(const tcp::endpoint& where) {
-    error_code error;
-    acceptor_.open(where.protocol(), error);
-    if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
-    if (!error) acceptor_.bind(where, error);
-    if (!error) acceptor_.listen(tcp::acceptor::max_listen_connections, error);
-    if (error) return error;
-    port_ = acceptor_.local_endpoint(error).port();
-    accept();
+  tl::expected<void, std::string> listen(const std::string& address) {
+    auto acceptor = Acceptor::listen(address, io_);
+    if (!acceptor) return tl::unexpected(acceptor.error());
+    acceptor_ = std::move(*acceptor);
+    address_ = bound_address(address, acceptor_->port());
+    acceptor_->start([this](tcp::socket socket) { open(std::move(socket)); });
     thread_ = std::thread([this] { io_.run(); });
-    return error;
+    return {};
   }
-  int port() const { return port_; }
-  void set_address(std::string address) { address_ = std::move(address); }
   const std::string& address() const { return address_; }
 
   void reload() {
@@ -85,8 +79,7 @@ class Console::Listener {
   void stop(Clock::time_point end) {
     if (!thread_.joinable() || std::exchange(stopped_, true)) return;
     asio::post(io_, [this, end] {
-      error_code ignored;
-      acceptor_.close(ignored);
+      acceptor_->close();
       context_.stopping = true;
       for (Session* const session : std::vector(context_.open.begin(), context_.open.end()))
         session->finish();
@@ -98,18 +91,6 @@ class Console::Listener {
   }
 
  private:
-  void accept() {
-    acceptor_.async_accept([this](error_code error, tcp::socket socket) {
-      if (error == asio::error::operation_aborted) return;
-      if (error) return rest();
-      try {
-        open(std::move(socket));
-      } catch (const std::exception&) {
-        // Out of memory: the connection is closed.
-      }
-      accept();
-    });
-  }
   void open(tcp::socket socket) {
     if (context_.open.size() >= most_connections_) {
       const auto longest = std::find_if(context_.open.begin(), context_.open.end(),
@@ -118,11 +99,6 @@ class Console::Listener {
       (*longest)->close();
     }
     make_session(std::move(socket), tls_ ? tls_->current() : nullptr, context_)->start();
-  }
-  // If descriptors have run out, trying again at once would keep a processor busy.
-  void rest() {
-    timer_.expires_after(kBreather);
-    timer_.async_wait([this](error_code) { accept(); });
   }
   void wait_for_sessions() {
     if (Clock::now() >= stop_end_)
@@ -142,13 +118,12 @@ class Console::Listener {
   bool stopped_ = false;
   Clock::time_point stop_end_;
   std::promise<void> all_closed_;  // after `stop`
-  int port_ = 0;
   std::string address_;
   SessionContext context_;  // used by sessions, which end with the io_context at the latest
   asio::io_context io_{1};
   // Keeps the thread running, because calls that were dropped may end there after the last session.
   const asio::executor_work_guard<asio::io_context::executor_type> work_{io_.get_executor()};
-  tcp::acceptor acceptor_{io_};
+  std::unique_ptr<Acceptor> acceptor_;
   asio::steady_timer timer_{io_};
   std::thread thread_;
 };
@@ -172,16 +147,11 @@ tl::expected<std::unique_ptr<Console>, std::string> Console::start(const Console
     if (!opened) return tl::unexpected(opened.error());
     tls = std::move(*opened);
   }
-  asio::io_context lookup;
-  error_code error;
-  const auto found = tcp::resolver(lookup).resolve(
-      where->host, where->port, tcp::resolver::passive | tcp::resolver::numeric_service, error);
-  if (error || found.empty()) return refuse(error.message());
   OriginRules rules{.tls = encrypts, .host = where->host, .origins = options.origins};
   auto listener =
       std::make_unique<Listener>(options, std::move(parts), std::move(rules), std::move(tls));
-  if (error = listener->listen(found.begin()->endpoint()); error) return refuse(error.message());
-  listener->set_address(bound_address(options.address, listener->port()));
+  if (const auto listens = listener->listen(options.address); !listens)
+    return refuse(listens.error());
   return std::unique_ptr<Console>(new Console(std::move(listener)));
 }
 

@@ -16,14 +16,13 @@
 #include <csignal>
 #include <exception>
 #include <future>
-#include <list>
 #include <optional>
 #include <thread>
 #include <utility>
 
 #include "server/front/arrival.h"
-#include "server/front/listeners.h"
 #include "server/front/relay.h"
+#include "server/net/acceptor.h"
 #include "server/net/peer.h"
 #include "server/net/tls_context.h"
 #include "server/observe/bounded_log.h"
@@ -38,7 +37,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kPatience{20};  // for the handshake and the preface
 constexpr std::chrono::milliseconds kTick{100};
-constexpr std::chrono::milliseconds kBreather{100};
 constexpr std::uint64_t kLinesPerSecond = 20;
 // What a client sends waits in the relay rather than in the pair of sockets: a connection that is
 // closed for its frames leaves few of them to gRPC.
@@ -107,11 +105,11 @@ class Front::Door {
       tls_ = std::move(*tls);
     }
     for (const std::string& address : options.listen) {
-      auto acceptors = listen_at(address, io_);
-      if (!acceptors)
-        return tl::unexpected(fmt::format("cannot listen on {}: {}", address, acceptors.error()));
-      ports_.push_back(acceptors->front().local_endpoint().port());
-      for (tcp::acceptor& each : *acceptors) acceptors_.emplace_back(std::move(each), io_);
+      auto acceptor = Acceptor::listen(address, io_);
+      if (!acceptor)
+        return tl::unexpected(fmt::format("cannot listen on {}: {}", address, acceptor.error()));
+      ports_.push_back((*acceptor)->port());
+      acceptors_.push_back(std::move(*acceptor));
     }
     return {};
   }
@@ -119,7 +117,9 @@ class Front::Door {
 
   void start(std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> grpc) {
     grpc_ = std::move(grpc);
-    for (Acceptor& each : acceptors_) accept(each);
+    for (const auto& each : acceptors_)
+      each->start([this](tcp::socket socket) { welcome(std::move(socket)); },
+                  [this](tcp::acceptor& listening) { refuse_next(listening); });
     tick();
     thread_ = std::thread([this] {
       sigset_t all;  // OpenSSL's writes may raise SIGPIPE
@@ -139,11 +139,7 @@ class Front::Door {
     if (!thread_.joinable() || stopped_.exchange(true)) return;
     std::promise<void> done;
     asio::post(io_, [&] {
-      for (Acceptor& each : acceptors_) {
-        error_code ignored;
-        each.socket.close(ignored);
-        each.breather.cancel();
-      }
+      for (const auto& each : acceptors_) each->close();
       timer_.cancel();
       for (const auto& each : Arrival::List(arrivals_)) each->close();
       done.set_value();
@@ -156,38 +152,14 @@ class Front::Door {
   }
 
  private:
-  struct Acceptor {
-    Acceptor(tcp::acceptor listening, asio::io_context& io)
-        : socket(std::move(listening)), breather(io) {}
-    tcp::acceptor socket;
-    asio::steady_timer breather;
-  };
-
-  void accept(Acceptor& acceptor) {
-    acceptor.socket.async_accept([this, &acceptor](error_code error, tcp::socket socket) {
-      if (error == asio::error::operation_aborted || stopped_) return;
-      if (error) return rest(acceptor);
-      try {
-        welcome(std::move(socket));
-      } catch (const std::exception&) {
-        // Out of memory: the connection is closed.
-      }
-      accept(acceptor);
-    });
-  }
-  // Descriptors have run out: whoever waits is told by the end of the connection. Trying again at
-  // once would keep a processor busy.
-  void rest(Acceptor& acceptor) {
+  // Whoever waits is told by the end of the connection that descriptors have run out.
+  void refuse_next(tcp::acceptor& listening) {
     spare_.give_up();
     error_code error;
-    acceptor.socket.non_blocking(true, error);
-    { const tcp::socket refused = acceptor.socket.accept(error); }
+    listening.non_blocking(true, error);
+    { const tcp::socket refused = listening.accept(error); }
     spare_.take();
     if (!error) closed("unknown", {"descriptors", 0});
-    acceptor.breather.expires_after(kBreather);
-    acceptor.breather.async_wait([this, &acceptor](error_code cancelled) {
-      if (!cancelled) accept(acceptor);
-    });
   }
 
   void welcome(tcp::socket socket) {
@@ -266,7 +238,7 @@ class Front::Door {
   };
   std::atomic<bool> stopped_{false};
   std::size_t next_lane_ = 0;
-  std::list<Acceptor> acceptors_;
+  std::vector<std::unique_ptr<Acceptor>> acceptors_;
   asio::steady_timer timer_{io_};
   std::thread thread_;
 };

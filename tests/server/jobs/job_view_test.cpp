@@ -5,7 +5,7 @@
 #include <string>
 
 #include "engine/base/context.h"
-#include "server/memory_plan.h"
+#include "server/server_options.h"
 #include "tests/server/job_harness.h"
 
 namespace weft::server::testing {

@@ -9,8 +9,8 @@
 #include <string>
 #include <variant>
 
-#include "server/mesh/server_info.h"
 #include "server/options.h"
+#include "server/server_info.h"
 
 namespace weft::server {
 namespace {

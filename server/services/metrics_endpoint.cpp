@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/observe/metrics_endpoint.h"
+#include "server/services/metrics_endpoint.h"
 
 #include <fmt/format.h>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/empty_body.hpp>
@@ -21,6 +20,7 @@
 #include <thread>
 #include <utility>
 
+#include "server/net/acceptor.h"
 #include "server/net/listen.h"
 
 namespace weft::server {
@@ -32,7 +32,6 @@ namespace http = boost::beast::http;
 using boost::system::error_code;
 using tcp = boost::asio::ip::tcp;
 
-constexpr std::chrono::milliseconds kBreather{100};
 constexpr std::uint32_t kMaxRequestBytes = 8192;
 
 using Response = http::response<http::string_body>;
@@ -125,37 +124,24 @@ class MetricsEndpoint::Listener {
     if (thread_.joinable()) thread_.join();
   }
 
-  error_code listen(const tcp::endpoint& where) {
-    error_code error;
-    acceptor_.open(where.protocol(), error);
-    if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
-    if (!error) acceptor_.bind(where, error);
-    if (!error) acceptor_.listen(tcp::acceptor::max_listen_connections, error);
-    if (error) return error;
-    port_ = acceptor_.local_endpoint(error).port();
-    accept();
+  // The port.
+  tl::expected<int, std::string> listen(const std::string& address) {
+    auto acceptor = Acceptor::listen(address, context_);
+    if (!acceptor) return tl::unexpected(acceptor.error());
+    acceptor_ = std::move(*acceptor);
+    acceptor_->start([this](tcp::socket socket) { open(std::move(socket)); });
     thread_ = std::thread([this] { context_.run(); });
-    return error;
+    return acceptor_->port();
   }
-  int port() const { return port_; }
 
  private:
-  void accept() {
-    acceptor_.async_accept([this](error_code error, tcp::socket socket) {
-      if (error) return rest();
-      // An honest client was answered long ago.
-      if (open_.size() >= static_cast<std::size_t>(limits_.connections)) {
-        open_.front()->close();
-        open_.splice(open_.end(), open_, open_.begin());  // not closed again while it ends
-      }
-      std::make_shared<Connection>(std::move(socket), pages_, limits_.patience, open_)->start();
-      accept();
-    });
-  }
-  // If descriptors have run out, trying again at once would keep a processor busy.
-  void rest() {
-    timer_.expires_after(kBreather);
-    timer_.async_wait([this](error_code) { accept(); });
+  void open(tcp::socket socket) {
+    // An honest client was answered long ago.
+    if (open_.size() >= static_cast<std::size_t>(limits_.connections)) {
+      open_.front()->close();
+      open_.splice(open_.end(), open_, open_.begin());  // not closed again while it ends
+    }
+    std::make_shared<Connection>(std::move(socket), pages_, limits_.patience, open_)->start();
   }
 
   const MetricsPages pages_;
@@ -163,30 +149,19 @@ class MetricsEndpoint::Listener {
   // The one that is open longest comes first. Used by the thread only, and at last when the context
   // is destroyed.
   std::list<Connection*> open_;
-  int port_ = 0;
   asio::io_context context_{1};
-  tcp::acceptor acceptor_{context_};
-  asio::steady_timer timer_{context_};
+  std::unique_ptr<Acceptor> acceptor_;
   std::thread thread_;
 };
 
 tl::expected<std::unique_ptr<MetricsEndpoint>, std::string> MetricsEndpoint::start(
     const std::string& address, MetricsPages pages, EndpointLimits limits) {
-  const auto refuse = [&address](const std::string& reason) {
-    return tl::unexpected(fmt::format("cannot show metrics on {}: {}", address, reason));
-  };
-  const auto where = split_host_port(address);
-  if (!where) return refuse("not of the form HOST:PORT");
-  asio::io_context lookup;
-  error_code error;
-  const auto found = tcp::resolver(lookup).resolve(
-      where->host, where->port, tcp::resolver::passive | tcp::resolver::numeric_service, error);
-  if (error || found.empty()) return refuse(error.message());
   auto listener = std::make_unique<Listener>(std::move(pages), limits);
-  if (error = listener->listen(found.begin()->endpoint()); error) return refuse(error.message());
-  std::string bound = bound_address(address, listener->port());
+  const auto port = listener->listen(address);
+  if (!port)
+    return tl::unexpected(fmt::format("cannot show metrics on {}: {}", address, port.error()));
   return std::unique_ptr<MetricsEndpoint>(
-      new MetricsEndpoint(std::move(listener), std::move(bound)));
+      new MetricsEndpoint(std::move(listener), bound_address(address, *port)));
 }
 
 MetricsEndpoint::MetricsEndpoint(std::unique_ptr<Listener> listener, std::string address)

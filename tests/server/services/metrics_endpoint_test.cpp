@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is shown over HTTP, and what strangers cannot do to it.
-#include "server/observe/metrics_endpoint.h"
+#include "server/services/metrics_endpoint.h"
 
 #include <gtest/gtest.h>
 

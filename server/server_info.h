@@ -2,7 +2,7 @@
 // What GetServerInfo answers, for as long as the server runs.
 #pragma once
 
-#include "server/server.h"
+#include "server/server_options.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::server {

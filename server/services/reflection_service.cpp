@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/net/reflection_service.h"
+#include "server/services/reflection_service.h"
 
 #include <fmt/format.h>
 #include <google/protobuf/descriptor.h>

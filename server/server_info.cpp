@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/mesh/server_info.h"
+#include "server/server_info.h"
 
 #include <chrono>
 #include <string>
 
-#include "server/memory_plan.h"
 #include "server/version.h"
 #include "server/wire/translate.h"
 

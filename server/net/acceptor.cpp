@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/front/listeners.h"
+#include "server/net/acceptor.h"
 
-#include <algorithm>
 #include <boost/asio/ip/v6_only.hpp>
+#include <chrono>
+#include <exception>
 #include <utility>
 
 #include "server/net/listen.h"
@@ -13,6 +14,8 @@ namespace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 using tcp = boost::asio::ip::tcp;
+
+constexpr std::chrono::milliseconds kBreather{100};
 
 tl::expected<tcp::acceptor, error_code> listen_on(const tcp::endpoint& where,
                                                   asio::io_context& io) {
@@ -27,8 +30,6 @@ tl::expected<tcp::acceptor, error_code> listen_on(const tcp::endpoint& where,
   if (error) return tl::unexpected(error);
   return acceptor;
 }
-
-}  // namespace
 
 tl::expected<std::vector<tcp::acceptor>, std::string> listen_at(const std::string& address,
                                                                 asio::io_context& io) {
@@ -54,6 +55,57 @@ tl::expected<std::vector<tcp::acceptor>, std::string> listen_at(const std::strin
   }
   if (acceptors.empty()) return tl::unexpected(error.message());
   return acceptors;
+}
+
+}  // namespace
+
+tl::expected<std::unique_ptr<Acceptor>, std::string> Acceptor::listen(const std::string& address,
+                                                                      asio::io_context& io) {
+  auto sockets = listen_at(address, io);
+  if (!sockets) return tl::unexpected(sockets.error());
+  return std::unique_ptr<Acceptor>(new Acceptor(std::move(*sockets), io));
+}
+
+Acceptor::Acceptor(std::vector<tcp::acceptor> sockets, asio::io_context& io)
+    : port_(sockets.front().local_endpoint().port()) {
+  for (tcp::acceptor& each : sockets) sockets_.push_back({std::move(each), asio::steady_timer(io)});
+}
+
+void Acceptor::start(Welcome welcome, Exhausted exhausted) {
+  welcome_ = std::move(welcome);
+  exhausted_ = std::move(exhausted);
+  for (Socket& each : sockets_) accept(each);
+}
+
+void Acceptor::close() {
+  closed_ = true;
+  for (Socket& each : sockets_) {
+    error_code ignored;
+    each.listening.close(ignored);
+    each.breather.cancel();
+  }
+}
+
+void Acceptor::accept(Socket& socket) {
+  socket.listening.async_accept([this, &socket](error_code error, tcp::socket connection) {
+    if (closed_) return;
+    if (error) return rest(socket);
+    try {
+      welcome_(std::move(connection));
+    } catch (const std::exception&) {
+      // Out of memory: the connection is closed.
+    }
+    accept(socket);
+  });
+}
+
+// Trying again at once would keep a processor busy.
+void Acceptor::rest(Socket& socket) {
+  exhausted_(socket.listening);
+  socket.breather.expires_after(kBreather);
+  socket.breather.async_wait([this, &socket](error_code) {
+    if (!closed_) accept(socket);
+  });
 }
 
 }  // namespace weft::server
