@@ -241,6 +241,7 @@ void add_convert(CLI::App& app, Chosen& chosen) {
   add_layers(convert, kept->layers);
   add_names(convert, kept->names);
   add_writing(convert, kept->writing);
+  add_json(convert, kept->json, "Print counts, coordinate system and warnings as one JSON object");
   add_quiet(convert, kept->quiet);
   convert.callback([kept, &chosen] {
     chosen.run = [kept](std::stop_token stop) { return run_convert(*kept, std::move(stop)); };

@@ -93,7 +93,7 @@ Result<void> judge_by_domain(const CheckOptions& options, const check::Mesh& mes
   wanted.fill = options.fill;
   const auto input = read_input_domain(options.domain, wanted, options.projection, options.layers);
   if (!input) return tl::unexpected(input.error());
-  print_warnings(input->domain.warnings);
+  print_warnings(sentences(input->domain.warnings));
   if (options.size.cells_across)
     print_warnings({"--cells-across is not judged: the checker knows no widths"});
   const auto requirements = requirements_of(options, *input);
@@ -160,7 +160,7 @@ Result<ExitCode> run_check(const CheckOptions& options) {
                 "and say --to-metres here, too");
   const auto read = read_mesh_with_arrays(options.mesh);
   if (!read) return tl::unexpected(read.error());
-  print_warnings(read->mesh.warnings);
+  print_warnings(sentences(read->mesh.warnings));
   check::Mesh mesh = to_checker(read->mesh);
   Verdict verdict;
   if (has_domain)

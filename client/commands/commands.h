@@ -87,6 +87,7 @@ struct ConvertOptions {
   LayerOptions layers;   // of a domain
   RequestOptions names;  // of a mesh; only name_rows are read
   MeshWriteOptions writing;
+  bool json = false;
   bool quiet = false;
 };
 Result<ExitCode> run_convert(const ConvertOptions& options, std::stop_token stop);

@@ -16,6 +16,7 @@
 #include "client/formats/domains/seeded.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/triangle/triangle_poly.h"
+#include "client/report/json_line.h"
 #include "client/report/marker_warnings.h"
 
 namespace weft::client {
@@ -46,10 +47,27 @@ void turn_counter_clockwise(Mesh& mesh) {
   }
 }
 
-std::string warnings_text(const std::vector<std::string>& warnings) {
+std::string warnings_text(const std::vector<Warning>& warnings) {
   std::string text;
-  for (const std::string& warning : warnings) text += "WARNING: " + warning + "\n";
+  for (const std::string& sentence : sentences(warnings)) text += "WARNING: " + sentence + "\n";
   return text;
+}
+
+Json warnings_json(const std::vector<Warning>& warnings) {
+  Json all = Json::array();
+  for (const Warning& warning : warnings) {
+    Json& json = all.emplace_back(Json{{"kind", warning_name(warning.kind)}});
+    if (!warning.file.empty()) json["file"] = warning.file;
+    if (warning.line > 0) json["line"] = warning.line;
+    if (!warning.place.empty()) json["place"] = warning.place;
+    json["count"] = warning.count;
+    json["sentence"] = warning.sentence();
+  }
+  return all;
+}
+
+void add(WarningKind kind, const std::vector<std::string>& texts, std::vector<Warning>& warnings) {
+  for (const std::string& text : texts) warnings.push_back({.kind = kind, .text = text});
 }
 
 // Why the array is not written; empty if it is. Only one of depth and elevation is written, so the
@@ -65,8 +83,8 @@ std::string excluded(const NamedArray& array, const std::vector<NodalOption>& be
 }
 
 struct CarriedValues {
-  std::vector<VertexValues> values;  // of the arrays
-  std::string warnings;              // on the arrays that are not among them, a line each
+  std::vector<VertexValues> values;   // of the arrays
+  std::vector<std::string> warnings;  // on the arrays that are not among them
 };
 
 // The values of the file that are written: those that --nodal does not replace, unless they cannot
@@ -77,7 +95,7 @@ CarriedValues carried(const std::vector<NamedArray>& arrays, std::vector<NodalOp
     const auto is_same = [&array](const NodalOption& option) { return option.name == array.name; };
     if (std::any_of(nodal.begin(), nodal.end(), is_same)) continue;
     if (const std::string why = excluded(array, nodal); !why.empty()) {
-      carried.warnings += "WARNING: values that the file has are not written: " + why + "\n";
+      carried.warnings.push_back("values that the file has are not written: " + why);
       continue;
     }
     carried.values.push_back({array.name, *array.values});
@@ -99,27 +117,47 @@ Result<ExitCode> convert_mesh(const ConvertOptions& options, const std::stop_tok
     return tl::unexpected(named.error());
   if (auto found = output->find_markers(mesh.names.markers); !found)
     return tl::unexpected(found.error());
-  auto [values, warnings] = carried(read->arrays, options.writing.nodal);
+  const auto [values, losses] = carried(read->arrays, options.writing.nodal);
   MeshView view = mesh.view();
   view.vertex_values = values;
   const v1::Summary none;
   if (auto written = output->write(view, none); !written) return tl::unexpected(written.error());
-  if (options.quiet) return ExitCode::kOk;
+  std::vector<Warning> warnings;
+  add(WarningKind::kNotWritten, losses, warnings);
   if (mesh.cut_faces > 0)
-    warnings += warnings_text({options.input.string() + ": " + with_separators(mesh.cut_faces) +
-                               (mesh.cut_faces == 1 ? " face" : " faces") +
-                               " of more than three corners, cut into triangles"});
-  for (const auto& all :
-       {mesh.warnings, output->warnings(),
-        open_boundary_warnings(markers_of(view), output->options().writing.open_boundaries)})
-    warnings += warnings_text(all);
+    warnings.push_back({.kind = WarningKind::kCutFaces,
+                        .file = options.input.string(),
+                        .count = mesh.cut_faces,
+                        .text = with_separators(mesh.cut_faces) +
+                                (mesh.cut_faces == 1 ? " face" : " faces") +
+                                " of more than three corners, cut into triangles"});
+  warnings.insert(warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
+  add(WarningKind::kNotWritten, output->warnings(), warnings);
+  add(WarningKind::kOpenBoundary,
+      open_boundary_warnings(markers_of(view), output->options().writing.open_boundaries),
+      warnings);
+  if (options.json)
+    return print(json_line({{"triangles", view.triangle_count()},
+                            {"vertices", view.vertex_count()},
+                            {"warnings", warnings_json(warnings)}}));
+  if (options.quiet) return ExitCode::kOk;
   return print(with_separators(view.triangle_count()) + " triangles, " +
                with_separators(view.vertex_count()) + " vertices\n" + output->text(none) +
-               warnings);
+               warnings_text(warnings));
 }
 
-// A line on the system of the coordinates, if the file says one. client/python/src/weft/_convert.py
-// reads it.
+Json domain_json(const Domain& domain, const std::optional<CoordinateSystem>& system) {
+  Json json = {{"points", domain.points.size()},
+               {"segments", domain.segments.size()},
+               {"holes", domain.holes.size()},
+               {"regions", domain.regions.size()},
+               {"areas", domain.areas.size()}};
+  if (system) json["coordinates"] = {{"name", system->name}, {"geographic", system->geographic}};
+  json["warnings"] = warnings_json(domain.warnings);
+  return json;
+}
+
+// A line on the system of the coordinates, if the file says one.
 std::string system_text(const std::optional<CoordinateSystem>& system) {
   if (!system) return "";
   return "coordinates: " + std::string(system->geographic ? "longitude and latitude" : "a plane") +
@@ -151,12 +189,14 @@ Result<ExitCode> convert_domain(const ConvertOptions& options, std::stop_token s
   else
     write_triangle_poly(*domain, files[0]);
   if (auto done = commit(files); !done) return tl::unexpected(done.error());
-  if (options.quiet) return ExitCode::kOk;
   if (!is_message && system && system->geographic)
     domain->warnings.push_back(
-        options.output.string() +
-        ": does not say that its coordinates are longitudes and latitudes (" + system->name +
-        "); mesh it with --lonlat");
+        {.kind = WarningKind::kCoordinates,
+         .file = options.output.string(),
+         .text = "does not say that its coordinates are longitudes and latitudes (" + system->name +
+                 "); mesh it with --lonlat"});
+  if (options.json) return print(json_line(domain_json(*domain, system)));
+  if (options.quiet) return ExitCode::kOk;
   return print(with_separators(domain->points.size()) + " points, " +
                with_separators(domain->segments.size()) + " segments, " +
                with_separators(domain->holes.size()) + " holes, " +

@@ -141,7 +141,8 @@ Result<ExitCode> run_info(const InfoOptions& options) {
       return fail(ExitCode::kUsage, file.string() + ": is a domain; --quality is for meshes");
     const auto domain = read_domain(file, options.layers);
     if (!domain) return tl::unexpected(domain.error());
-    return print(row("domain", file.string()) + describe(*domain) + warnings(domain->warnings));
+    return print(row("domain", file.string()) + describe(*domain) +
+                 warnings(sentences(domain->warnings)));
   }
   if (!is_domain_path(file)) return unknown_domain_format(file);
   if (options.layers.wanted())
@@ -149,7 +150,8 @@ Result<ExitCode> run_info(const InfoOptions& options) {
                                       file.string() + " is a mesh");
   const auto mesh = read_mesh(file);
   if (!mesh) return tl::unexpected(mesh.error());
-  const std::string about = row("mesh", file.string()) + describe(*mesh) + warnings(mesh->warnings);
+  const std::string about =
+      row("mesh", file.string()) + describe(*mesh) + warnings(sentences(mesh->warnings));
   if (!options.quality) return print(about);
   const auto bound = area_bound(options.size, file.string(), *mesh);
   if (!bound) return tl::unexpected(bound.error());

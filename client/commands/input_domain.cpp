@@ -28,8 +28,11 @@ Result<void> check_lonlat(const std::filesystem::path& path, const Domain& domai
 void warn_of_degrees(const std::filesystem::path& path, Domain& domain) {
   if (!domain.system || !domain.system->geographic) return;
   domain.warnings.push_back(
-      path.string() + ": its coordinates are longitudes and latitudes (" + domain.system->name +
-      "): lengths, areas and angles are those of degrees; --lonlat has them on the ground");
+      {.kind = WarningKind::kCoordinates,
+       .file = path.string(),
+       .text = "its coordinates are longitudes and latitudes (" + domain.system->name +
+               "): lengths, areas and angles are those of degrees; --lonlat has them on the "
+               "ground"});
 }
 
 Result<InputDomain> read_input_domain(const std::filesystem::path& path,

@@ -37,7 +37,7 @@ Result<MeshReport> mesh_into(const Connection& connection, const InputDomain& in
   }
   received();
   add_projection(input, *report);
-  add_warnings(input.domain.warnings, *report);
+  add_warnings(sentences(input.domain.warnings), *report);
   if (auto ok = add_outside_warning(&input, *report); !ok) return tl::unexpected(ok.error());
   if (auto warning = budget_warning(report->summary, request_options.max_triangles))
     add_warnings({std::move(*warning)}, *report);

@@ -82,7 +82,7 @@ Result<ExitCode> run_submit(const SubmitOptions& options, std::stop_token stop) 
                                        options.output.projection, options.layers);
   if (!input) return tl::unexpected(input.error());
   const Domain& domain = input->domain;
-  warn(domain.warnings, options.quiet);
+  warn(sentences(domain.warnings), options.quiet);
   times.read = times.connected = MeshTimes::Clock::now();
 
   if (*output)

@@ -11,6 +11,7 @@
 
 #include "client/formats/domains/region_values.h"
 #include "client/formats/names.h"
+#include "client/formats/warning.h"
 
 namespace weft::client {
 
@@ -95,7 +96,7 @@ struct Domain {
   Fill fill = Fill::kSeeds;
   std::optional<CoordinateSystem> system;  // if the file names one
   Names names;                             // of markers and regions, of the domain's own or not
-  std::vector<std::string> warnings;       // about the file: sentences for the user
+  std::vector<Warning> warnings;           // about the file
 
   Provenance point_places;
   Provenance segment_places;

@@ -109,7 +109,7 @@ Result<Domain> read_domain(const std::filesystem::path& path, const LayerOptions
   auto domain = read_any(path, layers);
   if (!domain || !layers.strict || domain->warnings.empty()) return domain;
   std::string message = path.string() + ": refused, because of --strict";
-  for (const std::string& warning : domain->warnings) message += "\n  " + warning;
+  for (const Warning& warning : domain->warnings) message += "\n  " + warning.sentence();
   return fail(ExitCode::kUnreadableInput, message);
 }
 

@@ -15,6 +15,7 @@
 
 #include "client/base/paged_memory.h"
 #include "client/formats/names.h"
+#include "client/formats/warning.h"
 
 namespace weft::client {
 
@@ -84,7 +85,7 @@ struct Mesh {
   std::vector<std::int32_t> edge_markers;
   Names names{};                             // of markers and regions
   std::vector<std::int32_t> parts{};         // one per triangle, from 0; empty: not divided
-  std::vector<std::string> warnings{};       // about the file: sentences for the user
+  std::vector<Warning> warnings{};           // about the file
   std::vector<std::int32_t> open_markers{};  // of boundaries that the file calls open
   Faces faces{};              // while it is read: those that are no triangles (faces.h)
   std::size_t cut_faces = 0;  // of these, those that became several triangles

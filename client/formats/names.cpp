@@ -110,15 +110,19 @@ void NameReader::add(NameKind kind, std::int32_t id, std::string_view name) {
 void NameReader::leave_out(NameKind kind, std::int32_t id, const std::string& why) {
   constexpr std::size_t kMostNamed = 5;
   if (left_out_++ < kMostNamed)
-    warnings_.push_back(file_ + ": a name of " + std::string(word_of(kind)) + " " +
-                        std::to_string(id) + " is left out: " + why);
+    warnings_.push_back({.kind = WarningKind::kName,
+                         .file = file_,
+                         .text = "a name of " + std::string(word_of(kind)) + " " +
+                                 std::to_string(id) + " is left out: " + why});
 }
 
-std::vector<std::string> NameReader::warnings() const {
-  std::vector<std::string> all = warnings_;
-  if (left_out_ > all.size())
-    all.push_back(file_ + ": " + with_separators(left_out_ - warnings_.size()) +
-                  " more names are left out");
+std::vector<Warning> NameReader::warnings() const {
+  std::vector<Warning> all = warnings_;
+  if (const std::size_t more = left_out_ - all.size(); more > 0)
+    all.push_back({.kind = WarningKind::kName,
+                   .file = file_,
+                   .count = more,
+                   .text = with_separators(more) + " more names are left out"});
   return all;
 }
 

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "client/base/error.h"
+#include "client/formats/warning.h"
 
 namespace weft::client {
 
@@ -64,8 +65,8 @@ class NameReader {
   // The same name for the same id again is no fault.
   void add(NameKind kind, std::int32_t id, std::string_view name);
 
-  // Sentences for the user, few of them.
-  std::vector<std::string> warnings() const;
+  // Few of them.
+  std::vector<Warning> warnings() const;
   Names take() { return std::move(names_); }
 
  private:
@@ -77,7 +78,7 @@ class NameReader {
   std::size_t count_ = 0;
   std::size_t bytes_ = 0;
   std::size_t left_out_ = 0;
-  std::vector<std::string> warnings_;  // the first of them
+  std::vector<Warning> warnings_;  // the first of them
 };
 
 // Markers or regions that a file gives by number or by name. A name gets the smallest positive

@@ -10,7 +10,6 @@
 #include "checker/lint/lint.h"
 #include "client/base/text.h"
 #include "client/formats/domain_formats.h"
-#include "client/formats/domains/geometry_builder.h"
 #include "client/formats/domains/to_checker.h"
 #include "client/formats/mesh_formats.h"
 #include "client/lint/judged_domain.h"
@@ -234,12 +233,13 @@ Result<Lint> lint_domain(const Domain& domain, const std::string& file,
   }
   if (is_ignored(kWarning)) return lint;
   std::uint64_t warnings = 0;
-  for (const std::string& warning : domain.warnings) {
-    if (tells_of_crossing(warning)) continue;  // a fault of its own
+  for (const Warning& warning : domain.warnings) {
+    if (is_of_crossing(warning.kind)) continue;  // a fault of its own
     ++warnings;
-    const bool named = warning.starts_with(file + ": ");
-    lint.findings.push_back(
-        {.kind = kWarning, .text = named ? warning.substr(file.size() + 2) : warning});
+    const bool is_of_all = warning.file == file && warning.line == 0;
+    lint.findings.push_back({.kind = kWarning,
+                             .warning = std::string(warning_name(warning.kind)),
+                             .text = is_of_all ? warning.text : warning.sentence()});
   }
   count(lint, kWarning, warnings);
   return lint;

@@ -24,6 +24,7 @@ struct LintSettings {
 
 struct Finding {
   std::string kind;                      // such as "open-end", or "warning" of the reader
+  std::string warning{};                 // of these the kind, such as "open-ring"
   std::optional<Point> at{};             // none for a warning
   std::optional<Point> to{};             // the other end, if it has a length
   std::string text;                      // what is wrong, without a full stop

@@ -33,6 +33,7 @@ Json position(Point p) {
 // What a finding has besides its place.
 Json properties_of(const Finding& finding) {
   Json json = {{"kind", finding.kind}, {"text", finding.text}};
+  if (!finding.warning.empty()) json["warning"] = finding.warning;
   if (!finding.remedy.empty()) json["remedy"] = finding.remedy;
   if (finding.measure) json["measure"] = *finding.measure;
   if (!finding.offenders.empty()) json["offenders"] = finding.offenders;

@@ -209,6 +209,18 @@ def test_a_domain_that_is_converted_is_still_known_to_be_in_degrees(tmp_path):
     assert done.stdout.splitlines()[1:] == [f"wrote {tmp_path / 'd.poly'}"]
 
 
+def test_what_is_converted_is_reported_as_data(tmp_path):
+    file = tmp_path / "ring.csv"
+    file.write_text("lat,lon,depth\n52.1,4.2,3\n52.2,4.9,3\n52.6,4.8,3\n")
+    done = subprocess.run([WEFT, "convert", "--json", file, tmp_path / "d.pb"], capture_output=True, text=True,
+                          check=True)
+    assert json.loads(done.stdout) == {
+        "points": 3, "segments": 3, "holes": 0, "regions": 0, "areas": 1,
+        "coordinates": {"name": "columns 'lon' and 'lat'", "geographic": True},
+        "warnings": [{"kind": "column", "file": str(file), "count": 1,
+                      "sentence": f"{file}: this column is ignored: 'depth'"}]}
+
+
 def test_a_raster_in_a_plane_is_warped_to_a_domain_in_degrees(tmp_path):
     file = tmp_path / "triangle.csv"
     file.write_text("lat,lon\n52.1,4.2\n52.2,4.9\n52.6,4.8\n")

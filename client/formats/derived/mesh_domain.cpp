@@ -152,11 +152,16 @@ Domain domain_of_mesh(const std::string& name, const MeshView& mesh) {
   single.regions = regions;
   Domain domain = domain_of_single_triangles(name, single);
   const bool one = repeated.size() == 1;
+  const std::string first = "triangle " + std::to_string(repeated[0]);
   domain.warnings.push_back(
-      name + ": " + with_separators(repeated.size()) +
-      (one ? " triangle that repeats another is left out, triangle "
-           : " triangles that repeat others are left out, the first is triangle ") +
-      std::to_string(repeated[0]));
+      {.kind = WarningKind::kRepeatedTriangle,
+       .file = name,
+       .place = first,
+       .count = repeated.size(),
+       .text = with_separators(repeated.size()) +
+               (one ? " triangle that repeats another is left out, "
+                    : " triangles that repeat others are left out, the first is ") +
+               first});
   return domain;
 }
 

@@ -50,10 +50,15 @@ class Overlaps {
   }
 
   bool any() const { return count_ > 0; }
-  std::string sentence() const {
-    return with_separators(count_) + " triangles overlap others, the first two are triangle " +
-           std::to_string(first_.first) + " and triangle " + std::to_string(first_.second) +
-           "; what any of them covers is meshed";
+  Warning warning(const std::string& file) const {
+    return {.kind = WarningKind::kOverlappingTriangles,
+            .file = file,
+            .place = "triangle " + std::to_string(first_.first),
+            .count = count_,
+            .text = with_separators(count_) +
+                    " triangles overlap others, the first two are triangle " +
+                    std::to_string(first_.first) + " and triangle " +
+                    std::to_string(first_.second) + "; what any of them covers is meshed"};
   }
   // The area of each triangle, by the number of its first triangle.
   const std::vector<std::uint32_t>& groups() const { return group_; }
@@ -174,7 +179,7 @@ std::optional<Domain> domain_of_overlapping(const std::string& name, const MeshV
     }
     add(e);
   }
-  domain.warnings.push_back(name + ": " + overlaps.sentence());
+  domain.warnings.push_back(overlaps.warning(name));
   return domain;
 }
 

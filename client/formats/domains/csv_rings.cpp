@@ -93,11 +93,13 @@ class Reader {
                               "semicolons");
     warn_of_columns();
     if (comment_line_ > 0)
-      builder_.warn(":" + std::to_string(comment_line_) +
-                    ": a line with nothing but a comment ends the ring before it");
+      builder_.warn({.kind = WarningKind::kRow,
+                     .line = comment_line_,
+                     .text = "a line with nothing but a comment ends the ring before it"});
     if (returned_line_ > 0)
-      builder_.warn(":" + std::to_string(returned_line_) +
-                    ": a ring that ended before comes again; it is taken for another ring");
+      builder_.warn({.kind = WarningKind::kRepeatedRing,
+                     .line = returned_line_,
+                     .text = "a ring that ended before comes again; it is taken for another ring"});
     if (auto added = add_rings(); !added) return tl::unexpected(added.error());
     auto domain = builder_.finish();
     if (domain) domain->system = system();
@@ -155,12 +157,16 @@ class Reader {
       if (!used && !trimmed(name).empty()) ignored.push_back(name);
     }
     if (!ignored.empty())
-      builder_.warn(
-          (ignored.size() == 1 ? ": this column is ignored: " : ": these columns are ignored: ") +
-          in_quotes(ignored));
+      builder_.warn({.kind = WarningKind::kColumn,
+                     .count = ignored.size(),
+                     .text = (ignored.size() == 1 ? "this column is ignored: "
+                                                  : "these columns are ignored: ") +
+                             in_quotes(ignored)});
     if (unnamed_line_ > 0)
-      builder_.warn(":" + std::to_string(unnamed_line_) +
-                    ": columns after the first two are ignored, because no line names them");
+      builder_.warn(
+          {.kind = WarningKind::kColumn,
+           .line = unnamed_line_,
+           .text = "columns after the first two are ignored, because no line names them"});
   }
 
   tl::unexpected<Error> error(const Record& record, std::size_t field,
@@ -377,11 +383,13 @@ class Reader {
   void warn_of(const std::vector<std::size_t>& rows, const char* one, const char* many) {
     if (rows.empty()) return;
     const Point at = corners_[rows[0]].at;
-    const std::string row =
-        ":" + std::to_string(lines_[rows[0]]) + ": the row " + coordinates(at.x, at.y);
-    builder_.warn(rows.size() == 1 ? row + " is taken for " + one
-                                   : row + " and " + with_separators(rows.size() - 1) +
-                                         " more like it are taken for " + many);
+    const std::string row = "the row " + coordinates(at.x, at.y);
+    builder_.warn({.kind = WarningKind::kRow,
+                   .line = lines_[rows[0]],
+                   .count = rows.size(),
+                   .text = rows.size() == 1 ? row + " is taken for " + one
+                                            : row + " and " + with_separators(rows.size() - 1) +
+                                                  " more like it are taken for " + many});
   }
 
   Result<void> add_ring(std::size_t start, std::size_t end) {

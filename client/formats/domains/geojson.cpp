@@ -68,8 +68,12 @@ class Reader {
     else if (system.empty() && looks_geographic(domain->points))
       domain->system = CoordinateSystem{"RFC 7946", true, kLonLat};
     if (!system.empty() && !is_wgs84)
-      domain->warnings.push_back(name_ + ": its crs is " + in_quotes(system) +
-                                 ", not WGS 84 as GeoJSON's is; coordinates are taken as they are");
+      domain->warnings.push_back(
+          {.kind = WarningKind::kCoordinates,
+           .file = name_,
+           .place = "crs",
+           .text = "its crs is " + in_quotes(system) +
+                   ", not WGS 84 as GeoJSON's is; coordinates are taken as they are"});
     return domain;
   }
 

@@ -12,9 +12,6 @@
 namespace weft::client {
 namespace {
 
-constexpr std::string_view kCrossesItself = " is a ring that crosses itself: ";
-constexpr std::string_view kMoreCross = " more rings cross themselves";
-constexpr std::string_view kCrossesAnother = " is a ring that crosses another of its polygon: ";
 constexpr std::size_t kMostTold = 5;  // of each kind
 
 // The bound on areas that a feature's two properties make together.
@@ -41,9 +38,16 @@ double middle(std::span<const Point> ring) {
 
 }  // namespace
 
-bool tells_of_crossing(std::string_view warning) {
-  return warning.find(kCrossesItself) != warning.npos || warning.ends_with(kMoreCross) ||
-         warning.find(kCrossesAnother) != warning.npos;
+void GeometryBuilder::warn(Warning warning) {
+  warning.file = file_;
+  domain_.warnings.push_back(std::move(warning));
+}
+
+void GeometryBuilder::warn_of_more(WarningKind kind, std::size_t all, const char* what) {
+  if (all > kMostTold)
+    warn({.kind = kind,
+          .count = all - kMostTold,
+          .text = std::to_string(all - kMostTold) + " more " + what});
 }
 
 tl::unexpected<Error> GeometryBuilder::bad(const std::string& path, const std::string& what) const {
@@ -152,8 +156,10 @@ void GeometryBuilder::check_crossing(const Chain& ring, const std::string& path)
     return "edge " + std::to_string(ring.numbers[i]) + " from " + coordinates(a.x, a.y) + " to " +
            coordinates(b.x, b.y);
   };
-  domain_.warnings.push_back(file_ + ": " + path + std::string(kCrossesItself) +
-                             edge(crossing->first) + " crosses " + edge(crossing->second));
+  warn({.kind = WarningKind::kRingCrossesItself,
+        .place = path,
+        .text = path + " is a ring that crosses itself: " + edge(crossing->first) + " crosses " +
+                edge(crossing->second)});
 }
 
 Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::string& path,
@@ -175,9 +181,11 @@ Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::
   const bool closes_round = lonlat_ && comes_round(points);
   if (closes_round) points.pop_back();
   if (!returns && !closes_round && is_closed && ++open_rings_ <= kMostTold)
-    warn(": " + path + " is a ring that is not closed: it starts at " +
-         coordinates(points.front().x, points.front().y) + " and ends at " +
-         coordinates(points.back().x, points.back().y) + "; a segment closes it");
+    warn({.kind = WarningKind::kOpenRing,
+          .place = path,
+          .text = path + " is a ring that is not closed: it starts at " +
+                  coordinates(points.front().x, points.front().y) + " and ends at " +
+                  coordinates(points.back().x, points.back().y) + "; a segment closes it"});
   check_crossing(*ring, path);
   polygon_rings_.push_back({domain_.points.size(), points.size(), path});
   return add(*ring, true, path);
@@ -202,15 +210,22 @@ void GeometryBuilder::check_overlap() {
   const std::string at = coordinates(found->at.x, found->at.y);
   std::string fault = " is a hole that is outside of its polygon or in another hole, at " + at;
   if (found->crossed)
-    fault = std::string(kCrossesAnother) + polygon_rings_[*found->crossed].path + ", near " + at;
+    fault =
+        " is a ring that crosses another of its polygon: " + polygon_rings_[*found->crossed].path +
+        ", near " + at;
   else if (ring_roles_ == RingRoles::kByDirection)
     fault = " overlaps another ring of its polygon, going by their directions, at " + at;
-  warn(": " + polygon_rings_[found->ring].path + fault +
-       "; what an odd number of the rings encloses is meshed");
+  const std::string& path = polygon_rings_[found->ring].path;
+  warn({.kind = found->crossed ? WarningKind::kRingCrossesAnother : WarningKind::kRingsOverlap,
+        .place = path,
+        .text = path + fault + "; what an odd number of the rings encloses is meshed"});
 }
 
 void GeometryBuilder::leave_out_property(const std::string& path, const std::string& what) {
-  if (++odd_properties_ <= kMostTold) warn(": " + path + " is left out: it is " + what);
+  if (++odd_properties_ <= kMostTold)
+    warn({.kind = WarningKind::kProperty,
+          .place = path,
+          .text = path + " is left out: it is " + what});
 }
 
 void GeometryBuilder::begin_polygon(RingRoles roles) {
@@ -239,11 +254,17 @@ Result<Domain> GeometryBuilder::finish() {
   const std::string left_out = left_out_.sentence();
   if (domain_.points.empty())
     return bad("", "holds no geometry" + (left_out.empty() ? "" : ": " + left_out));
-  if (!left_out.empty()) domain_.warnings.push_back(file_ + ": " + left_out);
+  if (!left_out.empty())
+    warn({.kind = WarningKind::kLeftOut,
+          .place = left_out_.first(),
+          .count = left_out_.count(),
+          .text = left_out});
   if (!ruled_line_.empty() && domain_.areas.empty())
-    warn(": " + ruled_line_ +
-         " is a line, and has a region or a bound on triangles as if it were a polygon: there are "
-         "no polygons, so these have no effect");
+    warn({.kind = WarningKind::kProperty,
+          .place = ruled_line_,
+          .text = ruled_line_ +
+                  " is a line, and has a region or a bound on triangles as if it were a polygon: "
+                  "there are no polygons, so these have no effect"});
   const std::vector<std::int32_t> region_numbers = regions_.numbers();
   for (Domain::Area& area : domain_.areas)
     if (area.region) area.region = region_numbers[static_cast<std::size_t>(*area.region)];
@@ -252,17 +273,11 @@ Result<Domain> GeometryBuilder::finish() {
     segment.marker = markers[static_cast<std::size_t>(segment.marker)];
   markers_.name_all(NameKind::kMarker, names_);
   regions_.name_all(NameKind::kRegion, names_);
-  if (open_rings_ > kMostTold)
-    warn(": " + std::to_string(open_rings_ - kMostTold) + " more rings are not closed");
-  if (crossings_ > kMostTold)
-    domain_.warnings.push_back(file_ + ": " + std::to_string(crossings_ - kMostTold) +
-                               std::string(kMoreCross));
-  if (odd_properties_ > kMostTold)
-    warn(": " + std::to_string(odd_properties_ - kMostTold) + " more properties are left out");
-  if (overlaps_ > kMostTold)
-    domain_.warnings.push_back(file_ + ": " + std::to_string(overlaps_ - kMostTold) +
-                               " more polygons have rings that overlap");
-  for (std::string& warning : names_.warnings()) domain_.warnings.push_back(std::move(warning));
+  warn_of_more(WarningKind::kOpenRing, open_rings_, "rings are not closed");
+  warn_of_more(WarningKind::kRingCrossesItself, crossings_, "rings cross themselves");
+  warn_of_more(WarningKind::kProperty, odd_properties_, "properties are left out");
+  warn_of_more(WarningKind::kRingsOverlap, overlaps_, "polygons have rings that overlap");
+  for (Warning& warning : names_.warnings()) domain_.warnings.push_back(std::move(warning));
   domain_.names = names_.take();
   return std::move(domain_);
 }

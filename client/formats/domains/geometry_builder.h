@@ -40,6 +40,7 @@
 #include "client/formats/domains/left_out.h"
 #include "client/formats/domains/ring_crossing.h"
 #include "client/formats/names.h"
+#include "client/formats/warning.h"
 
 namespace weft::client {
 
@@ -54,9 +55,6 @@ struct GeometryProperties {
   std::string marker_name{};
   std::string region_name{};
 };
-
-// Whether a warning of a builder is about rings that cross themselves or others.
-bool tells_of_crossing(std::string_view warning);
 
 class GeometryBuilder {
  public:
@@ -81,8 +79,8 @@ class GeometryBuilder {
   void leave_out(LeftOut::Kind kind, const std::string& path) { left_out_.add(kind, path); }
   // The same of a property at `path`, with what it is: "true, not a text".
   void leave_out_property(const std::string& path, const std::string& what);
-  // `sentence` follows the name of the file.
-  void warn(const std::string& sentence) { domain_.warnings.push_back(file_ + sentence); }
+  // Of this file.
+  void warn(Warning warning);
 
   // A polygon is the rings between these two calls.
   void begin_polygon(RingRoles roles = RingRoles::kOuterFirst);
@@ -120,6 +118,8 @@ class GeometryBuilder {
   tl::unexpected<Error> unusable(Point at, const std::string& path) const;
   std::uint32_t label_of(Labels& labels, NameKind kind, std::int32_t number,
                          const std::string& name);
+  // The sixth and further ones of a kind, if there are: "3 more rings are not closed".
+  void warn_of_more(WarningKind kind, std::size_t all, const char* what);
   void check_crossing(const Chain& ring, const std::string& path);
   void check_overlap();  // of the rings of the polygon
   Result<void> add(const Chain& chain, bool closed, const std::string& path);

@@ -18,18 +18,16 @@ std::string LeftOut::sentence() const {
   constexpr const char* kMany[] = {"rings without an area", "lines without a length",
                                    "empty geometries"};
   std::vector<std::string> parts;
-  std::size_t all = 0;
   for (std::size_t kind = 0; kind < counts_.size(); ++kind) {
     const std::size_t count = counts_[kind];
-    all += count;
     if (count > 0)
       parts.push_back(with_separators(count) + " " + (count == 1 ? kOne : kMany)[kind]);
   }
-  if (all == 0) return "";
+  if (parts.empty()) return "";
   std::string text;
   for (std::size_t i = 0; i < parts.size(); ++i)
     text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
-  return text + (all == 1 ? " is left out: " : " are left out, the first is ") + first_;
+  return text + (this->count() == 1 ? " is left out: " : " are left out, the first is ") + first_;
 }
 
 }  // namespace weft::client

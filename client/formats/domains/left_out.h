@@ -19,6 +19,9 @@ class LeftOut {
 
   // Empty if nothing was.
   std::string sentence() const;
+  // Its place in the file.
+  const std::string& first() const { return first_; }
+  std::size_t count() const { return counts_[kRing] + counts_[kLine] + counts_[kGeometry]; }
 
  private:
   std::array<std::size_t, 3> counts_{};  // by kind

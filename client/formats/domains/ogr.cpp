@@ -72,7 +72,8 @@ class Reader {
       if (auto added = add_layer(layer, options.where); !added)
         return tl::unexpected(added.error());
     if (drawing)
-      for (const std::string& sentence : drawing->sentences()) builder_.warn(": " + sentence);
+      for (const std::string& sentence : drawing->sentences())
+        builder_.warn({.kind = WarningKind::kLeftOut, .text = sentence});
     warn_of_filled_areas();
     auto domain = builder_.finish();
     if (domain && crs_ != nullptr) domain->system = system();
@@ -217,12 +218,16 @@ class Reader {
   void warn_of_filled_areas() {
     if (filled_areas_ == 0) return;
     const bool one = filled_areas_ == 1;
-    builder_.warn(": " + with_separators(filled_areas_) +
-                  (one ? " filled area (hatch, solid or face) is left out: "
-                       : " filled areas (hatches, solids or faces) are left out, the first is ") +
-                  first_filled_area_ +
-                  "; lines bound what is meshed; without lines, as --where can choose, such areas "
-                  "are");
+    builder_.warn(
+        {.kind = WarningKind::kLeftOut,
+         .place = first_filled_area_,
+         .count = filled_areas_,
+         .text = with_separators(filled_areas_) +
+                 (one ? " filled area (hatch, solid or face) is left out: "
+                      : " filled areas (hatches, solids or faces) are left out, the first is ") +
+                 first_filled_area_ +
+                 "; lines bound what is meshed; without lines, as --where can choose, such areas "
+                 "are"});
   }
   void warn_of_nested_outlines(Domain& domain) const {
     const std::vector<std::size_t> nested = nested_outlines(domain);
@@ -232,10 +237,16 @@ class Reader {
     const std::string file = path_.string() + ": ";
     if (first.starts_with(file)) first.erase(0, file.size());
     domain.warnings.push_back(
-        file + with_separators(nested.size()) +
-        (nested.size() == 1 ? " closed outline lies inside another one and is filled: "
-                            : " closed outlines lie inside others and are filled, the first is ") +
-        first + "; --fill even-odd makes holes of them");
+        {.kind = WarningKind::kNestedOutline,
+         .file = path_.string(),
+         .place = first,
+         .count = nested.size(),
+         .text =
+             with_separators(nested.size()) +
+             (nested.size() == 1 ? " closed outline lies inside another one and is filled: "
+                                 : " closed outlines lie inside others and are filled, the first "
+                                   "is ") +
+             first + "; --fill even-odd makes holes of them"});
   }
 
   // All layers have one coordinate system.

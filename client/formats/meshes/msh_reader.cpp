@@ -116,7 +116,8 @@ class Reader {
     losses_.keep(groups_);
     mesh_.warnings = names_.warnings();
     for (const std::string& sentence : losses_.sentences())
-      mesh_.warnings.push_back(path_.string() + ": " + sentence);
+      mesh_.warnings.push_back(
+          {.kind = WarningKind::kGroup, .file = path_.string(), .text = sentence});
     mesh_.names = names_.take();
   }
 

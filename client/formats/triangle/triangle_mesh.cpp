@@ -98,7 +98,7 @@ Result<void> read_edges(const std::filesystem::path& path, const NodeNumbers& nu
         mesh.edge_markers.push_back(marker);
       });
   if (!segments) return tl::unexpected(segments.error());
-  if (!segments->empty()) mesh.warnings.push_back(*segments);
+  if (*segments) mesh.warnings.push_back(**segments);
   read_names(contents->text(), names);
   return {};
 }

@@ -113,7 +113,7 @@ Result<Domain> read_triangle_poly(const std::filesystem::path& path) {
     names.add(NameKind::kRegion, id, shortest(value));
   read_names(contents->text(), names);
   domain.warnings = names.warnings();
-  if (!segments->empty()) domain.warnings.push_back(*segments);
+  if (*segments) domain.warnings.push_back(**segments);
   domain.names = names.take();
   return domain;
 }

@@ -6,7 +6,7 @@
 
 namespace weft::client {
 
-Result<std::string> read_triangle_segments(
+Result<std::optional<Warning>> read_triangle_segments(
     LineScanner& scanner, const NodeNumbers& numbers,
     const std::function<void(std::uint32_t, std::uint32_t, std::int32_t)>& take) {
   if (auto line = scanner.next_line("the segment count"); !line)
@@ -22,7 +22,7 @@ Result<std::string> read_triangle_segments(
                            ", it must be 0 or 1");
     marked = *markers == 1;
   }
-  std::string warning;
+  std::optional<Warning> warning;
   for (std::uint64_t i = 0; i < *count; ++i) {
     if (auto line = scanner.next_line("a segment"); !line) return tl::unexpected(line.error());
     if (auto number = scanner.integer("the segment number"); !number)
@@ -36,10 +36,13 @@ Result<std::string> read_triangle_segments(
       const auto value = scanner.marker("the segment marker");
       if (!value) return tl::unexpected(value.error());
       marker = *value;
-    } else if (!scanner.at_line_end() && warning.empty()) {
-      warning = scanner.name() + ":" + std::to_string(scanner.line()) +
-                ": what follows the points of segments is ignored, because their header says that "
-                "they have 0 markers";
+    } else if (!scanner.at_line_end() && !warning) {
+      warning = {.kind = WarningKind::kColumn,
+                 .file = scanner.name(),
+                 .line = scanner.line(),
+                 .text =
+                     "what follows the points of segments is ignored, because their header "
+                     "says that they have 0 markers"};
     }
     take(*a, *b, marker);
   }

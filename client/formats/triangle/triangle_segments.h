@@ -8,18 +8,20 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "client/base/error.h"
 #include "client/formats/files/line_scanner.h"
 #include "client/formats/files/node_numbers.h"
+#include "client/formats/warning.h"
 
 namespace weft::client {
 
 // Reads the section that starts at the scanner's next line, and hands over the indices of the ends
-// and the marker of each segment, while the scanner is at its line. Returns a sentence for the
-// user, or an empty text.
-Result<std::string> read_triangle_segments(
+// and the marker of each segment, while the scanner is at its line. Returns a warning, if
+// there is one.
+Result<std::optional<Warning>> read_triangle_segments(
     LineScanner& scanner, const NodeNumbers& numbers,
     const std::function<void(std::uint32_t a, std::uint32_t b, std::int32_t marker)>& take);
 

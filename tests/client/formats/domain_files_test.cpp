@@ -70,10 +70,10 @@ TEST_F(DomainFile, RingsOfWktAreClosedWithAWarning) {
   const Domain domain = read("d.wkt", "\nPOLYGON((0 0, 1 0, 1 1, 0 1))");
   EXPECT_EQ(domain.segments.size(), 4u);
   ASSERT_EQ(domain.warnings.size(), 1u);
-  EXPECT_TRUE(
-      domain.warnings[0].ends_with("d.wkt: line 2, geometry 0, ring 0 is a ring that is not "
-                                   "closed: it starts at (0, 0) and ends "
-                                   "at (0, 1); a segment closes it"));
+  EXPECT_TRUE(domain.warnings[0].sentence().ends_with(
+      "d.wkt: line 2, geometry 0, ring 0 is a ring that is not "
+      "closed: it starts at (0, 0) and ends "
+      "at (0, 1); a segment closes it"));
 }
 
 TEST_F(DomainFile, CsvRingsEndAtBlankLinesAndAtANewNumber) {

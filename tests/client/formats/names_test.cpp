@@ -68,7 +68,7 @@ TEST(NameReader, LeavesOutWhatCannotBeANameAndSaysSo) {
   reader.add(NameKind::kMarker, 5, "a\tb");
   reader.add(NameKind::kMarker, 6, std::string(256, 'x'));
   reader.add(NameKind::kRegion, 7, "\xc2\x85");
-  EXPECT_THAT(reader.warnings(),
+  EXPECT_THAT(sentences(reader.warnings()),
               ElementsAre("m.msh: a name of marker 1 is left out: the first is 'inlet'",
                           "m.msh: a name of marker 2 is left out: it is 'inlet', as that of 1",
                           "m.msh: a name of marker 3 is left out: it is empty",
@@ -92,7 +92,7 @@ TEST(NameReader, KnowsUtf8) {
 TEST(NameReader, TakesAsManyAsAServer) {
   NameReader reader("m.msh");
   for (int i = 0; i < 16'385; ++i) reader.add(NameKind::kMarker, i, std::to_string(i));
-  EXPECT_THAT(reader.warnings(),
+  EXPECT_THAT(sentences(reader.warnings()),
               ElementsAre("m.msh: a name of marker 16384 is left out: there are more than a "
                           "server takes"));
   EXPECT_EQ(reader.take().markers.size(), 16'384u);
@@ -440,7 +440,7 @@ TEST(NamesInDomains, OfGeojsonThatDifferAreLeftOut) {
   ASSERT_TRUE(domain) << domain.error().message;
   EXPECT_EQ(domain->names.markers, (NameTable{{1, "a"}}));
   ASSERT_EQ(domain->warnings.size(), 1u);
-  EXPECT_THAT(domain->warnings[0], HasSubstr("marker 1"));
+  EXPECT_THAT(domain->warnings[0].sentence(), HasSubstr("marker 1"));
 }
 
 TEST(NamesInDomains, OfCsvRingsAreMarkers) {
@@ -485,7 +485,8 @@ TEST(NamesInDomains, OfPolyFilesAreComments) {
   EXPECT_EQ(domain->names.markers, (NameTable{{-1, "last"}, {2, "inlet "}, {3, "in # out: all"}}));
   EXPECT_EQ(domain->names.regions, (NameTable{{1, "0.5"}, {4, "fluid"}}));
   ASSERT_EQ(domain->warnings.size(), 1u);
-  EXPECT_THAT(domain->warnings[0], HasSubstr("marker 3 is left out: the first is 'in # out: all'"));
+  EXPECT_THAT(domain->warnings[0].sentence(),
+              HasSubstr("marker 3 is left out: the first is 'in # out: all'"));
 }
 
 TEST(NamesInDomains, ArePutIntoPolyFiles) {

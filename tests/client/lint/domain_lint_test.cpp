@@ -72,6 +72,7 @@ TEST_F(DomainLint, NamesFaultsOfPolygonsByTheirFeatures) {
             "at features[4].geometry.coordinates, edge from [0]");
   EXPECT_EQ(only(found, "warning").text,
             "1 ring without an area is left out: features[0].geometry.coordinates[1]");
+  EXPECT_EQ(only(found, "warning").warning, "left-out");
   EXPECT_FALSE(only(found, "warning").at);
 }
 

@@ -23,7 +23,7 @@ Lint some_lint() {
                              .remedy = "--snap 2",
                              .offenders = {"line 1", "line 2"},
                              .measure = 1});
-  lint.findings.push_back({.kind = "warning", .text = "odd"});
+  lint.findings.push_back({.kind = "warning", .warning = "row", .text = "odd"});
   return lint;
 }
 
@@ -61,7 +61,7 @@ TEST(LintReport, JsonHasAllFindings) {
                                        {"offenders", {"line 1", "line 2"}},
                                        {"at", {3.0, 0.5}},
                                        {"to", {3.0, 1.5}}}));
-  EXPECT_EQ(json["findings"][25], Json({{"kind", "warning"}, {"text", "odd"}}));
+  EXPECT_EQ(json["findings"][25], Json({{"kind", "warning"}, {"text", "odd"}, {"warning", "row"}}));
 }
 
 TEST(LintReport, LayerHasAFeatureForEachFinding) {

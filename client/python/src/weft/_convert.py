@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import os
 import pathlib
 import subprocess
@@ -12,7 +13,6 @@ from . import _carried
 from .errors import WeftError
 
 _USAGE, _PREFIX = 2, "weft: "
-_WARNING, _SYSTEM = "WARNING: ", "coordinates: "
 
 
 class Refused(Exception):
@@ -25,8 +25,8 @@ class Refused(Exception):
 
 
 @dataclasses.dataclass(frozen=True)
-class Said:
-    """By `weft convert` of what it has written."""
+class Converted:
+    """What `weft convert` reports of what it has written."""
 
     warnings: list[str]
     geographic: bool | None
@@ -34,7 +34,7 @@ class Said:
 
 
 def convert(source: pathlib.Path, target: pathlib.Path, *options: str,
-            error: type[WeftError]) -> Said:
+            error: type[WeftError]) -> Converted:
     """Writes `target`. Raises Refused; `error` if the program is missing;
     OSError if `source` cannot be opened."""
     program = _carried.program("weft")
@@ -44,13 +44,13 @@ def convert(source: pathlib.Path, target: pathlib.Path, *options: str,
                     "weft")
     # The variables of weft are for a user who calls it, not for this call.
     environment = {k: v for k, v in os.environ.items() if not k.startswith("WEFT_")}
-    done = subprocess.run([program, "convert", str(source.absolute()), str(target.absolute()), *options],
+    done = subprocess.run([program, "convert", str(source.absolute()), str(target.absolute()),
+                           "--json", *options],
                           capture_output=True, text=True, env=environment, stdin=subprocess.DEVNULL)
     if done.returncode:
         if done.returncode != _USAGE:
             open(source, "rb").close()  # an OSError says more to those who catch it
         raise Refused(done.stderr.strip().removeprefix(_PREFIX), done.returncode == _USAGE)
-    lines = done.stdout.splitlines()
-    systems = [line.removeprefix(_SYSTEM) for line in lines if line.startswith(_SYSTEM)]
-    return Said([line.removeprefix(_WARNING) for line in lines if line.startswith(_WARNING)],
-                systems[0].startswith("longitude and latitude") if systems else None)
+    report = json.loads(done.stdout)
+    return Converted([warning["sentence"] for warning in report["warnings"]],
+                     report.get("coordinates", {}).get("geographic"))

@@ -183,12 +183,12 @@ class Domain(ShortRepr):
         with tempfile.TemporaryDirectory(prefix="weft-") as folder:
             message = pathlib.Path(folder) / "domain.pb"
             try:
-                said = _convert.convert(path, message, error=DomainError)
+                converted = _convert.convert(path, message, error=DomainError)
             except _convert.Refused as refused:
                 raise DomainError(str(refused)) from None
-            for sentence in said.warnings:
+            for sentence in converted.warnings:
                 warn(sentence)
-            return dataclasses.replace(_of_message(message.read_bytes()), geographic=said.geographic)
+            return dataclasses.replace(_of_message(message.read_bytes()), geographic=converted.geographic)
 
 
 DomainLike = Union[Domain, str, "os.PathLike[str]", dict[str, Any], npt.NDArray[Any],

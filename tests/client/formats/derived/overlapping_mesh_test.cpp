@@ -25,9 +25,10 @@ TEST(OverlappingMesh, IsTheUnionOfItsParts) {
   const auto domain = domain_of_overlapping("m.14", mesh.view());
   ASSERT_TRUE(domain);
   EXPECT_EQ(domain->fill, Domain::Fill::kUnion);
-  EXPECT_EQ(domain->warnings, std::vector<std::string>{
-                                  "m.14: 32 triangles overlap others, the first two are triangle "
-                                  "4 and triangle 32; what any of them covers is meshed"});
+  EXPECT_EQ(
+      sentences(domain->warnings),
+      std::vector<std::string>{"m.14: 32 triangles overlap others, the first two are triangle "
+                               "4 and triangle 32; what any of them covers is meshed"});
   // Each area is closed: an even number of its segments is at each of its points.
   for (std::uint32_t area = 1; area <= domain->areas.size(); ++area) {
     std::vector<int> ends(domain->points.size(), 0);

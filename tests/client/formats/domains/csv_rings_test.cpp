@@ -28,7 +28,7 @@ class CsvRings : public ::testing::Test {
   }
   std::vector<std::string> warnings(const std::string& text) {
     std::vector<std::string> out;
-    for (const std::string& warning : read(text).warnings)
+    for (const std::string& warning : sentences(read(text).warnings))
       out.push_back(warning.substr(folder_.path().string().size() + 1));
     return out;
   }

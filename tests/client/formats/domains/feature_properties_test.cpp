@@ -79,7 +79,7 @@ TEST(FeatureProperties, ThatAreNoMarkersNoRegionsAndNoNamesAreLeftOutWithAWarnin
   add({{"marker", other("true")}});
   add({{"marker", other("true")}});
   ASSERT_TRUE(builder.point({}, ""));
-  EXPECT_EQ(builder.finish()->warnings,
+  EXPECT_EQ(sentences(builder.finish()->warnings),
             (std::vector<std::string>{
                 "d: field marker is left out: it is true, neither a number nor a text",
                 "d: field region is left out: it is [1], neither a number nor a text",

@@ -128,10 +128,10 @@ TEST_F(GeoJson, ClosesRingsAndTellsOfTheFirstFive) {
   EXPECT_EQ(domain->segments[3], (Domain::Segment{3, 0, 3, 1}));
   EXPECT_TRUE(domain->segment_places.locate(3).ends_with("[0][0], edge from [3]"));
   ASSERT_EQ(domain->warnings.size(), 6u);
-  EXPECT_TRUE(domain->warnings[0].ends_with(
+  EXPECT_TRUE(domain->warnings[0].sentence().ends_with(
       "map.geojson: features[0].geometry.coordinates[0][0] is a ring that is not closed: it starts "
       "at (0, 0) and ends at (0, 4); a segment closes it"));
-  EXPECT_TRUE(domain->warnings[5].ends_with("map.geojson: 2 more rings are not closed"));
+  EXPECT_TRUE(domain->warnings[5].sentence().ends_with("map.geojson: 2 more rings are not closed"));
 }
 
 TEST_F(GeoJson, WarnsOfARingThatCrossesItselfAndNamesTheEdges) {
@@ -141,10 +141,10 @@ TEST_F(GeoJson, WarnsOfARingThatCrossesItselfAndNamesTheEdges) {
   EXPECT_EQ(domain->segments.size(), 4u);
   EXPECT_EQ(domain->areas.size(), 1u);
   ASSERT_EQ(domain->warnings.size(), 1u);
-  EXPECT_TRUE(domain->warnings[0].ends_with(
+  EXPECT_TRUE(domain->warnings[0].sentence().ends_with(
       "map.geojson: geometry.coordinates[0] is a ring that crosses itself: edge 0 from (0, 0) to "
       "(4, 4) crosses edge 2 from (4, 0) to (0, 4)"))
-      << domain->warnings[0];
+      << domain->warnings[0].sentence();
 }
 
 TEST_F(GeoJson, WarnsOfHolesThatParityDoesNotTakeForHoles) {
@@ -154,7 +154,7 @@ TEST_F(GeoJson, WarnsOfHolesThatParityDoesNotTakeForHoles) {
                              holes + "]}");
     EXPECT_TRUE(domain) << domain.error().message;
     std::string text;
-    for (const std::string& warning : domain->warnings)
+    for (const std::string& warning : sentences(domain->warnings))
       text += warning.substr(warning.find("map.geojson"));
     return text;
   };
@@ -175,8 +175,9 @@ TEST_F(GeoJson, TellsOfACoordinateSystemThatIsNotWgs84) {
     EXPECT_TRUE(domain) << domain.error().message;
     EXPECT_LE(domain->warnings.size(), 1u);
     system = domain->system;
-    return domain->warnings.empty() ? ""
-                                    : domain->warnings[0].substr(domain->warnings[0].find("map."));
+    return domain->warnings.empty()
+               ? ""
+               : domain->warnings[0].sentence().substr(domain->warnings[0].sentence().find("map."));
   };
   const auto named = [&told](const std::string& name) {
     return told(R"({"type": "name", "properties": {"name": ")" + name + R"("}})");
@@ -211,8 +212,8 @@ TEST_F(GeoJson, CountsThePolygonsOfRingsThatOverlap) {
   const auto domain = read(R"({"type": "MultiPolygon", "coordinates": [)" + polygons + "]}");
   ASSERT_TRUE(domain) << domain.error().message;
   ASSERT_EQ(domain->warnings.size(), 6u);
-  EXPECT_TRUE(
-      domain->warnings[5].ends_with("map.geojson: 3 more polygons have rings that overlap"));
+  EXPECT_TRUE(domain->warnings[5].sentence().ends_with(
+      "map.geojson: 3 more polygons have rings that overlap"));
 }
 
 TEST_F(GeoJson, CountsTheRingsThatCrossThemselves) {
@@ -222,7 +223,8 @@ TEST_F(GeoJson, CountsTheRingsThatCrossThemselves) {
   const auto domain = read(R"({"type": "MultiPolygon", "coordinates": [)" + rings + "]}");
   ASSERT_TRUE(domain) << domain.error().message;
   ASSERT_EQ(domain->warnings.size(), 6u);
-  EXPECT_TRUE(domain->warnings[5].ends_with("map.geojson: 3 more rings cross themselves"));
+  EXPECT_TRUE(
+      domain->warnings[5].sentence().ends_with("map.geojson: 3 more rings cross themselves"));
 }
 
 TEST_F(GeoJson, LeavesOutWhatHasNoAreaAndNoLengthAndCountsIt) {
@@ -234,10 +236,10 @@ TEST_F(GeoJson, LeavesOutWhatHasNoAreaAndNoLengthAndCountsIt) {
   ASSERT_TRUE(domain) << domain.error().message;
   EXPECT_EQ(domain->segments.size(), 4u);
   ASSERT_EQ(domain->warnings.size(), 1u);
-  EXPECT_TRUE(domain->warnings[0].ends_with(
+  EXPECT_TRUE(domain->warnings[0].sentence().ends_with(
       "map.geojson: 3 rings without an area, 1 line without a length and 3 empty geometries are "
       "left out, the first is geometries[0].coordinates[1]"))
-      << domain->warnings[0];
+      << domain->warnings[0].sentence();
 }
 
 TEST_F(GeoJson, LeavesOutTheHolesOfARingThatIsLeftOut) {
@@ -394,9 +396,9 @@ TEST_F(GeoJson, TellsOfARegionThatALineCannotHave) {
           "coordinates": [[0, 0], [4, 0], [4, 3], [0, 0]]}})");
   ASSERT_TRUE(domain) << domain.error().message;
   ASSERT_EQ(domain->warnings.size(), 1u);
-  EXPECT_TRUE(domain->warnings[0].find("geometry.coordinates is a line, and has a region") !=
-              std::string::npos)
-      << domain->warnings[0];
+  EXPECT_TRUE(domain->warnings[0].sentence().find(
+                  "geometry.coordinates is a line, and has a region") != std::string::npos)
+      << domain->warnings[0].sentence();
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ class DxfDrawing : public ::testing::Test {
     EXPECT_EQ(domain.warnings.size(), 1u);
     return domain.warnings.empty()
                ? ""
-               : domain.warnings[0].substr((folder_ / "d.dxf: ").string().size());
+               : domain.warnings[0].sentence().substr((folder_ / "d.dxf: ").string().size());
   }
   TempFolder folder_;
 };

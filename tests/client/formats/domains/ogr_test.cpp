@@ -257,10 +257,10 @@ TEST_F(OgrFile, WarnsOfARingThatCrossesItself) {
       write("d.gpkg", "GPKG", {{"d", {{"MULTIPOLYGON(((0 0, 2 2, 2 0, 0 2, 0 0)))"}}}}));
   ASSERT_TRUE(domain) << domain.error().message;
   ASSERT_EQ(domain->warnings.size(), 1u);
-  EXPECT_TRUE(domain->warnings[0].ends_with(
+  EXPECT_TRUE(domain->warnings[0].sentence().ends_with(
       "d.gpkg: layer 'd', feature 1, part 0, ring 0 is a ring that crosses itself: edge 0 from "
       "(0, 0) to (2, 2) crosses edge 2 from (2, 0) to (0, 2)"))
-      << domain->warnings[0];
+      << domain->warnings[0].sentence();
 }
 
 TEST_F(OgrFile, IsFoundInAnArchive) {

@@ -181,7 +181,7 @@ TEST_F(Msh, GivesAnElementOfSeveralGroupsTheFirst) {
   EXPECT_EQ(mesh->triangles, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
   EXPECT_EQ(mesh->regions, (std::vector<std::int32_t>{1, 1}));
   EXPECT_EQ(
-      mesh->warnings,
+      sentences(mesh->warnings),
       (std::vector<std::string>{
           path.string() + ": 1 edge of the physical curve 9 'inlet' is in the physical curve "
                           "7 'wall', too; the first group counts",

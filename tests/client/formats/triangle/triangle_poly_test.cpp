@@ -50,10 +50,10 @@ TEST_F(TrianglePoly, TellsOfMarkersThatTheHeaderOfSegmentsDenies) {
   ASSERT_TRUE(domain) << domain.error().message;
   EXPECT_EQ(domain->segments[0].marker, 0);
   ASSERT_EQ(domain->warnings.size(), 1u);
-  EXPECT_TRUE(domain->warnings[0].ends_with(
+  EXPECT_TRUE(domain->warnings[0].sentence().ends_with(
       "box.poly:9: what follows the points of segments is ignored, because their header says that "
       "they have 0 markers"))
-      << domain->warnings[0];
+      << domain->warnings[0].sentence();
   EXPECT_TRUE(read(kSquare)->warnings.empty());
 }
 
