@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/formats/domain_formats.h"
 
+#include <algorithm>
 #include <new>
 #include <stdexcept>
 #include <string_view>
@@ -10,7 +11,6 @@
 #include "client/formats/domains/csv_rings.h"
 #include "client/formats/domains/geojson.h"
 #include "client/formats/domains/ogr.h"
-#include "client/formats/domains/ogr_formats.h"
 #include "client/formats/domains/shapefile.h"
 #include "client/formats/domains/wkt.h"
 #include "client/formats/mesh_formats.h"
@@ -19,32 +19,57 @@
 namespace weft::client {
 namespace {
 
-struct DomainFormat {
-  std::string_view extension;  // lower case
-  Result<Domain> (*read)(const std::filesystem::path&, bool lonlat);
-};
+constexpr const char* kDgn[] = {"DGN", nullptr};
+constexpr const char* kDxf[] = {"DXF", nullptr};
+constexpr const char* kFlatGeobuf[] = {"FlatGeobuf", nullptr};
+constexpr const char* kGeoJson[] = {"GeoJSON", nullptr};
+constexpr const char* kGeoJsonSequence[] = {"GeoJSONSeq", "GeoJSON", nullptr};  // of one line
+constexpr const char* kGeoPackage[] = {"GPKG", nullptr};
+constexpr const char* kGml[] = {"GML", nullptr};
+constexpr const char* kGmt[] = {"OGR_GMT", nullptr};
+constexpr const char* kKml[] = {"LIBKML", "KML", nullptr};
+constexpr const char* kKmz[] = {"LIBKML", nullptr};
+constexpr const char* kMapInfo[] = {"MapInfo File", nullptr};
+constexpr const char* kShapefile[] = {"ESRI Shapefile", nullptr};
+constexpr const char* kTopoJson[] = {"TopoJSON", nullptr};
+
+// A GML file may name an address for its schema, and GDAL would write what it learned to a file
+// beside it.
+constexpr const char* kGmlAlone[] = {"DOWNLOAD_SCHEMA=NO", "WRITE_GFS=NO", nullptr};
 
 // Its segments are no rings.
 Result<Domain> read_poly(const std::filesystem::path& path, bool) {
   return read_triangle_poly(path);
 }
 
+// As messages list them.
 constexpr DomainFormat kFormats[] = {
-    {".poly", read_poly}, {".geojson", read_geojson}, {".json", read_geojson},
-    {".wkt", read_wkt},   {".shp", read_shapefile},   {".csv", read_csv_rings},
+    {.extension = ".poly", .read = read_poly},
+    {.extension = ".geojson", .read = read_geojson, .drivers = kGeoJson},
+    {.extension = ".json", .read = read_geojson, .drivers = kGeoJson},
+    {.extension = ".wkt", .read = read_wkt},
+    {.extension = ".shp", .read = read_shapefile, .drivers = kShapefile},
+    {.extension = ".csv", .read = read_csv_rings},
+    {.extension = ".gpkg", .drivers = kGeoPackage},
+    {.extension = ".fgb", .drivers = kFlatGeobuf},
+    {.extension = ".kml", .drivers = kKml},
+    {.extension = ".kmz", .drivers = kKmz},
+    {.extension = ".gml", .drivers = kGml, .driver_options = kGmlAlone},
+    {.extension = ".dxf", .drivers = kDxf},
+    {.extension = ".dgn", .drivers = kDgn},
+    {.extension = ".tab", .drivers = kMapInfo},
+    {.extension = ".mif", .drivers = kMapInfo},
+    {.extension = ".gmt", .drivers = kGmt},
+    {.extension = ".geojsonl", .drivers = kGeoJsonSequence},
+    {.extension = ".topojson", .drivers = kTopoJson},
+    {.extension = ".zip", .is_archive = true},
 };
 
-const DomainFormat* domain_format(const std::filesystem::path& path) {
-  const std::string extension = lower_extension(path);
-  for (const DomainFormat& format : kFormats)
-    if (format.extension == extension) return &format;
-  return nullptr;
-}
-
-std::string layered_extensions() {
+// Of the formats that `takes` takes.
+std::string extensions(bool (*takes)(const DomainFormat&)) {
   std::string list;
-  for (const OgrFormat& format : ogr_formats())
-    list += (list.empty() ? "" : ", ") + std::string(format.extension);
+  for (const DomainFormat& format : kFormats)
+    if (takes(format)) list += (list.empty() ? "" : ", ") + std::string(format.extension);
   return list;
 }
 
@@ -55,8 +80,14 @@ bool is_read_as_mesh(const std::filesystem::path& path) {
 
 }  // namespace
 
+const DomainFormat* domain_format(const std::filesystem::path& path) {
+  const auto* const found =
+      std::ranges::find(kFormats, lower_extension(path), &DomainFormat::extension);
+  return found == std::end(kFormats) ? nullptr : found;
+}
+
 bool is_plain_domain_path(const std::filesystem::path& path) {
-  return domain_format(path) != nullptr || ogr_format(lower_extension(path)) != nullptr;
+  return domain_format(path) != nullptr;
 }
 
 bool is_domain_path(const std::filesystem::path& path) {
@@ -64,12 +95,7 @@ bool is_domain_path(const std::filesystem::path& path) {
 }
 
 std::string domain_extensions() {
-  std::string list;
-  for (const DomainFormat& format : kFormats)
-    list += (list.empty() ? "" : ", ") + std::string(format.extension);
-  for (const OgrFormat& format : ogr_formats())
-    if (!format.own_reader) list += ", " + std::string(format.extension);
-  return list;
+  return extensions([](const DomainFormat&) { return true; });
 }
 
 tl::unexpected<Error> unknown_domain_format(const std::filesystem::path& path) {
@@ -81,22 +107,27 @@ tl::unexpected<Error> unknown_domain_format(const std::filesystem::path& path) {
 
 namespace {
 
+Result<Domain> read_mesh_as_domain(const std::filesystem::path& path) {
+  const auto mesh = read_mesh(path);
+  if (!mesh) return tl::unexpected(mesh.error());
+  Domain domain = domain_of_mesh(path.string(), mesh->view());
+  domain.warnings.insert(domain.warnings.begin(), mesh->warnings.begin(), mesh->warnings.end());
+  return domain;
+}
+
 Result<Domain> read_any(const std::filesystem::path& path, const LayerOptions& layers) {
-  if (!is_domain_path(path)) return unknown_domain_format(path);
-  const OgrFormat* ogr = ogr_format(lower_extension(path));
-  if (layers.wanted() && ogr == nullptr)
-    return fail(ExitCode::kUsage, path.string() +
-                                      ": --layer, --where and --attribute are for files "
-                                      "with layers and attributes: " +
-                                      layered_extensions());
+  const DomainFormat* const format = domain_format(path);
+  if (format == nullptr && !is_read_as_mesh(path)) return unknown_domain_format(path);
+  if (layers.wanted() && (format == nullptr || !format->has_layers()))
+    return fail(ExitCode::kUsage,
+                path.string() +
+                    ": --layer, --where and --attribute are for files with layers and "
+                    "attributes: " +
+                    extensions([](const DomainFormat& f) { return f.has_layers(); }));
   try {
-    if (ogr != nullptr && (layers.wanted() || !ogr->own_reader)) return read_with_ogr(path, layers);
-    if (const DomainFormat* format = domain_format(path)) return format->read(path, layers.lonlat);
-    const auto mesh = read_mesh(path);
-    if (!mesh) return tl::unexpected(mesh.error());
-    Domain domain = domain_of_mesh(path.string(), mesh->view());
-    domain.warnings.insert(domain.warnings.begin(), mesh->warnings.begin(), mesh->warnings.end());
-    return domain;
+    if (format == nullptr) return read_mesh_as_domain(path);
+    if (format->read == nullptr || layers.wanted()) return read_with_ogr(*format, path, layers);
+    return format->read(path, layers.lonlat);
   } catch (const std::bad_alloc&) {
   } catch (const std::length_error&) {
   }

@@ -5,12 +5,30 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "client/base/error.h"
 #include "client/formats/domain.h"
 #include "client/formats/files/layer_options.h"
 
 namespace weft::client {
+
+struct DomainFormat {
+  std::string_view extension;  // lower case, ".gpkg"
+  // weft's own reader, which is used unless layers or features are chosen; null: OGR reads it.
+  Result<Domain> (*read)(const std::filesystem::path&, bool lonlat) = nullptr;
+  // For GDALOpenEx, each a list that ends in null: the drivers that may read it, and how they open
+  // it. Null of an archive, and of what OGR does not read.
+  const char* const* drivers = nullptr;
+  const char* const* driver_options = nullptr;
+  bool is_archive = false;  // of files in other formats: ogr_archive.h
+
+  bool has_layers() const { return drivers != nullptr || is_archive; }
+};
+
+// The format of an extension, in upper or lower case; null if there is none. A mesh is no such
+// format.
+const DomainFormat* domain_format(const std::filesystem::path& path);
 
 // Reads a domain. Errors: kUsage for an unknown extension, and for one of a format without layers
 // and attributes if `layers` wants some; kUnreadableInput for the rest, and for a domain with

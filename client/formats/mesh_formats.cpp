@@ -68,65 +68,149 @@ void write_openfoam_mesh(const MeshView& mesh, Files files, const Options&) {
   write_openfoam(mesh, files);
 }
 
-constexpr bool kSecondOrder = true;
-constexpr bool kFirstOrder = false;
-constexpr bool kParts = true;
-constexpr bool kNoParts = false;
-constexpr bool kBoundaryOnly = true;
+std::vector<std::filesystem::path> xdmf_files(const std::filesystem::path& path) {
+  return {path, path.string() + ".bin"};
+}
 
-constexpr MeshFormat adcirc_format(std::string_view extension) {
-  MeshFormat format{
-      extension,   kFirstOrder,        write_adcirc_mesh,
-      read_adcirc, read_adcirc_values, CarriesValues::kBed,
-  };
-  format.open_boundaries = true;
-  return format;
+std::vector<std::filesystem::path> triangle_files(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> files;
+  for (const char* name : {".node", ".ele", ".poly"})
+    files.push_back(std::filesystem::path(path).replace_extension(name));
+  return files;
 }
 
 constexpr MeshFormat kFormats[] = {
-    {".vtu", kSecondOrder, one_file<write_vtu>, read_vtu, read_vtu_values, CarriesValues::kAll,
-     kParts, any_name, any_name},
-    {".msh", kSecondOrder, write_gmsh, read_msh, read_msh_values, CarriesValues::kAll, kNoParts,
-     gmsh_name, gmsh_name},
-    {".node", kSecondOrder, write_triangle, read_triangle_mesh, nullptr, CarriesValues::kNone,
-     kNoParts, any_name, any_name},
-    {".ele", kFirstOrder, nullptr, read_triangle_mesh},
-    {".edge", kFirstOrder, one_file<write_triangle_edges>, nullptr},
-    {".neigh", kFirstOrder, one_file<write_triangle_neighbours>, nullptr},
-    adcirc_format(".14"),
-    adcirc_format(".grd"),
-    adcirc_format(".gr3"),
-    {".2dm", kFirstOrder, one_file<write_2dm>, read_2dm, read_2dm_values, CarriesValues::kBed,
-     kNoParts, quotable_name, quotable_name, kBoundaryOnly},
-    {".nc", kFirstOrder, one_file<write_ugrid>, read_ugrid, read_ugrid_values, CarriesValues::kAll,
-     kParts, flag_meaning, flag_meaning},
-    {".slf", kFirstOrder, one_file<write_selafin>, read_selafin, read_selafin_values,
-     CarriesValues::kAll},
-    {".xdmf", kSecondOrder, write_xdmf_mesh, nullptr, nullptr, CarriesValues::kAll, kParts,
-     any_name, any_name},
-    {".exo", kSecondOrder, one_file<write_exodus>, nullptr, nullptr, CarriesValues::kAll, kParts,
-     exodus_name, exodus_name},
-    {".e", kSecondOrder, one_file<write_exodus>, nullptr, nullptr, CarriesValues::kAll, kParts,
-     exodus_name, exodus_name},
-    {".disv", kFirstOrder, one_file<write_disv>, nullptr, nullptr, CarriesValues::kBed},
-    {".foam", kFirstOrder, write_openfoam_mesh, nullptr, nullptr, CarriesValues::kNone, kNoParts,
-     foam_word, foam_word, kBoundaryOnly},
-    {".su2", kFirstOrder, one_file<write_su2>, read_su2, nullptr, CarriesValues::kNone, kNoParts,
-     su2_tag, nullptr, kBoundaryOnly},
-    {".mesh", kFirstOrder, one_file<write_medit>, read_medit},
-    {".vol", kFirstOrder, one_file<write_netgen>, read_netgen, nullptr, CarriesValues::kNone,
-     kNoParts, group_word, group_word},
-    {".mfem", kFirstOrder, one_file<write_mfem>, read_mfem, nullptr, CarriesValues::kNone, kNoParts,
-     quotable_name, quotable_name},
-    {".npz", kFirstOrder, one_file<write_npz>, read_npz, read_npz_values, CarriesValues::kAll,
-     kParts, any_name, any_name},
-    {".geojson", kFirstOrder, one_file<write_geojson_mesh>, nullptr, nullptr, CarriesValues::kNone,
-     kNoParts, any_name, any_name},
-    {".obj", kFirstOrder, one_file<write_obj>, read_obj, nullptr, CarriesValues::kNone, kNoParts,
-     group_word, group_word},
-    {".off", kFirstOrder, one_file<write_off>, read_off},
-    {".ply", kFirstOrder, one_file<write_ply>, nullptr},
-    {".stl", kFirstOrder, one_file<write_stl>, nullptr},
+    {.extension = ".vtu",
+     .second_order = true,
+     .write = one_file<write_vtu>,
+     .read = read_vtu,
+     .read_values = read_vtu_values,
+     .values = CarriesValues::kAll,
+     .parts = true,
+     .marker_names = any_name,
+     .region_names = any_name},
+    {.extension = ".msh",
+     .second_order = true,
+     .write = write_gmsh,
+     .read = read_msh,
+     .read_values = read_msh_values,
+     .values = CarriesValues::kAll,
+     .marker_names = gmsh_name,
+     .region_names = gmsh_name},
+    {.extension = ".node",
+     .files = triangle_files,
+     .second_order = true,
+     .write = write_triangle,
+     .read = read_triangle_mesh,
+     .marker_names = any_name,
+     .region_names = any_name},
+    {.extension = ".ele", .read = read_triangle_mesh},
+    {.extension = ".edge", .write = one_file<write_triangle_edges>},
+    {.extension = ".neigh", .write = one_file<write_triangle_neighbours>},
+    {.extension = ".14",
+     .write = write_adcirc_mesh,
+     .read = read_adcirc,
+     .read_values = read_adcirc_values,
+     .values = CarriesValues::kBed,
+     .open_boundaries = true},
+    {.extension = ".grd",
+     .write = write_adcirc_mesh,
+     .read = read_adcirc,
+     .read_values = read_adcirc_values,
+     .values = CarriesValues::kBed,
+     .open_boundaries = true},
+    {.extension = ".gr3",
+     .write = write_adcirc_mesh,
+     .read = read_adcirc,
+     .read_values = read_adcirc_values,
+     .values = CarriesValues::kBed,
+     .open_boundaries = true},
+    {.extension = ".2dm",
+     .write = one_file<write_2dm>,
+     .read = read_2dm,
+     .read_values = read_2dm_values,
+     .values = CarriesValues::kBed,
+     .marker_names = quotable_name,
+     .region_names = quotable_name,
+     .boundary_only = true},
+    {.extension = ".nc",
+     .write = one_file<write_ugrid>,
+     .read = read_ugrid,
+     .read_values = read_ugrid_values,
+     .values = CarriesValues::kAll,
+     .parts = true,
+     .marker_names = flag_meaning,
+     .region_names = flag_meaning},
+    {.extension = ".slf",
+     .write = one_file<write_selafin>,
+     .read = read_selafin,
+     .read_values = read_selafin_values,
+     .values = CarriesValues::kAll},
+    {.extension = ".xdmf",
+     .files = xdmf_files,
+     .second_order = true,
+     .write = write_xdmf_mesh,
+     .values = CarriesValues::kAll,
+     .parts = true,
+     .marker_names = any_name,
+     .region_names = any_name},
+    {.extension = ".exo",
+     .second_order = true,
+     .write = one_file<write_exodus>,
+     .values = CarriesValues::kAll,
+     .parts = true,
+     .marker_names = exodus_name,
+     .region_names = exodus_name},
+    {.extension = ".e",
+     .second_order = true,
+     .write = one_file<write_exodus>,
+     .values = CarriesValues::kAll,
+     .parts = true,
+     .marker_names = exodus_name,
+     .region_names = exodus_name},
+    {.extension = ".disv", .write = one_file<write_disv>, .values = CarriesValues::kBed},
+    {.extension = ".foam",
+     .files = openfoam_files,
+     .write = write_openfoam_mesh,
+     .marker_names = foam_word,
+     .region_names = foam_word,
+     .boundary_only = true},
+    {.extension = ".su2",
+     .write = one_file<write_su2>,
+     .read = read_su2,
+     .marker_names = su2_tag,
+     .boundary_only = true},
+    {.extension = ".mesh", .write = one_file<write_medit>, .read = read_medit},
+    {.extension = ".vol",
+     .write = one_file<write_netgen>,
+     .read = read_netgen,
+     .marker_names = group_word,
+     .region_names = group_word},
+    {.extension = ".mfem",
+     .write = one_file<write_mfem>,
+     .read = read_mfem,
+     .marker_names = quotable_name,
+     .region_names = quotable_name},
+    {.extension = ".npz",
+     .write = one_file<write_npz>,
+     .read = read_npz,
+     .read_values = read_npz_values,
+     .values = CarriesValues::kAll,
+     .parts = true,
+     .marker_names = any_name,
+     .region_names = any_name},
+    {.extension = ".geojson",
+     .write = one_file<write_geojson_mesh>,
+     .marker_names = any_name,
+     .region_names = any_name},
+    {.extension = ".obj",
+     .write = one_file<write_obj>,
+     .read = read_obj,
+     .marker_names = group_word,
+     .region_names = group_word},
+    {.extension = ".off", .write = one_file<write_off>, .read = read_off},
+    {.extension = ".ply", .write = one_file<write_ply>},
+    {.extension = ".stl", .write = one_file<write_stl>},
 };
 
 template <class Takes>
@@ -228,14 +312,9 @@ std::vector<std::string> not_carried(const std::filesystem::path& path, const Me
 }
 
 std::vector<std::filesystem::path> mesh_files(const std::filesystem::path& path) {
-  const std::string extension = lower_extension(path);
-  if (extension == ".xdmf") return {path, path.string() + ".bin"};
-  if (extension == ".foam") return openfoam_files(path);
-  if (extension != ".node") return {path};
-  std::vector<std::filesystem::path> files;
-  for (const char* name : {".node", ".ele", ".poly"})
-    files.push_back(std::filesystem::path(path).replace_extension(name));
-  return files;
+  const MeshFormat* const format = mesh_format(path);
+  return format != nullptr && format->files != nullptr ? format->files(path)
+                                                       : std::vector<std::filesystem::path>{path};
 }
 
 void write_mesh(const MeshFormat& format, const MeshView& mesh, std::span<OutputFile> files,

@@ -53,6 +53,8 @@ enum class CarriesValues { kNone, kBed, kAll };
 
 struct MeshFormat {
   std::string_view extension;  // lower case, ".vtu"
+  // The files that a mesh at a path is written to, itself among them; null: itself alone.
+  std::vector<std::filesystem::path> (*files)(const std::filesystem::path&) = nullptr;
   bool second_order = false;
   // Null if the format is only read, or only written.
   void (*write)(const MeshView&, std::span<OutputFile>, const MeshWriteOptions&) = nullptr;

@@ -4,7 +4,8 @@
 
 namespace weft::client {
 
-Result<Domain> read_with_ogr(const std::filesystem::path& path, const LayerOptions&) {
+Result<Domain> read_with_ogr(const DomainFormat&, const std::filesystem::path& path,
+                             const LayerOptions&) {
   return fail(ExitCode::kUnreadableInput,
               path.string() + ": this weft was built without GDAL, which reads such files");
 }

@@ -19,7 +19,6 @@
 #include "client/formats/domains/nested_outlines.h"
 #include "client/formats/domains/ogr_archive.h"
 #include "client/formats/domains/ogr_dxf.h"
-#include "client/formats/domains/ogr_formats.h"
 #include "client/formats/files/gdal_library.h"
 #include "client/formats/mesh_formats.h"
 
@@ -40,7 +39,7 @@ class Reader {
   Reader(const Gdal& gdal, const std::filesystem::path& path, bool lonlat)
       : gdal_(gdal), path_(path), builder_(path.string(), lonlat) {}
 
-  Result<Domain> read(const OgrFormat& format, const LayerOptions& options) {
+  Result<Domain> read(const DomainFormat& format, const LayerOptions& options) {
     // An absolute path cannot begin with a prefix that GDAL would interpret, such as "GPKG:".
     const std::string address = std::filesystem::absolute(path_).string();
     if (address.starts_with("/vsi"))
@@ -83,10 +82,10 @@ class Reader {
   }
 
  private:
-  Dataset open(const std::string& address, const OgrFormat& format) const {
+  Dataset open(const std::string& address, const DomainFormat& format) const {
     return {
         gdal_.GDALOpenEx(address.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
-                         format.drivers, format.options, nullptr),
+                         format.drivers, format.driver_options, nullptr),
         gdal_.GDALClose};
   }
 
@@ -364,16 +363,16 @@ class Reader {
 
 }  // namespace
 
-Result<Domain> read_with_ogr(const std::filesystem::path& path, const LayerOptions& options) {
+Result<Domain> read_with_ogr(const DomainFormat& format, const std::filesystem::path& path,
+                             const LayerOptions& options) {
   if (std::error_code missing; !std::filesystem::is_regular_file(path, missing))
     return fail(ExitCode::kUnreadableInput,
                 path.string() + ": " + (missing ? missing.message() : "is not a regular file"));
   const auto gdal = load_gdal();
   if (!gdal) return fail(gdal.error().exit, path.string() + ": " + gdal.error().message);
-  const std::string extension = lower_extension(path);
-  auto domain = Reader(**gdal, path, options.lonlat).read(*ogr_format(extension), options);
+  auto domain = Reader(**gdal, path, options.lonlat).read(format, options);
   // MicroStation's shapes have no holes: a shape inside another one stands for a hole.
-  if (domain && !domain->areas.empty() && extension == ".dgn")
+  if (domain && !domain->areas.empty() && format.extension == ".dgn")
     domain->fill = Domain::Fill::kEvenOdd;
   return domain;
 }

@@ -16,13 +16,14 @@
 #include <filesystem>
 
 #include "client/base/error.h"
-#include "client/formats/domain.h"
+#include "client/formats/domain_formats.h"
 #include "client/formats/files/layer_options.h"
 
 namespace weft::client {
 
-// REQUIRES: the file's extension is that of an ogr_format (ogr_formats.h).
-Result<Domain> read_with_ogr(const std::filesystem::path& path, const LayerOptions& options);
+// REQUIRES: `format`, that of the file, has layers.
+Result<Domain> read_with_ogr(const DomainFormat& format, const std::filesystem::path& path,
+                             const LayerOptions& options);
 
 // Whether coordinates mean the same place in both, but for the datum of longitudes and latitudes.
 bool are_same(const CoordinateSystem& a, const CoordinateSystem& b);

@@ -30,13 +30,13 @@ Result<OgrSource> find_in_archive(const Gdal& gdal, const std::string& path) {
                 "is damaged, or no ZIP archive" + (errors.any() ? ": " + errors.first() : ""));
   std::vector<std::string> names;
   for (char** entry = entries.get(); *entry != nullptr; ++entry) {
-    const OgrFormat* format = ogr_format(lower_extension(*entry));
-    if (format != nullptr && !format->is_archive && !is_of_macos(*entry))
+    const DomainFormat* format = domain_format(*entry);
+    if (format != nullptr && format->drivers != nullptr && !is_of_macos(*entry))
       names.emplace_back(*entry);
   }
   if (names.empty())
     return fail(ExitCode::kUnreadableInput, "holds no file that is read as a domain");
-  const OgrFormat* format = ogr_format(lower_extension(names[0]));
+  const DomainFormat* format = domain_format(names[0]);
   if (names.size() == 1) return OgrSource{root + "/" + names[0], format};
   const std::filesystem::path folder = std::filesystem::path(names[0]).parent_path();
   const bool are_layers = std::ranges::all_of(names, [&](const std::filesystem::path& name) {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "client/base/error.h"
-#include "client/formats/domains/ogr_formats.h"
+#include "client/formats/domain_formats.h"
 #include "client/formats/files/gdal_library.h"
 
 namespace weft::client {
@@ -15,10 +15,10 @@ namespace weft::client {
 // What GDAL opens.
 struct OgrSource {
   std::string address;
-  const OgrFormat* format;
+  const DomainFormat* format;
 };
 
-// The only file of the archive at the absolute path that has an ogr_format, in whatever folder; or
+// The only file of the archive at the absolute path that OGR reads, in whatever folder; or
 // a folder of several shapefiles, each a layer. Errors (kUnreadableInput), which follow the name of
 // the archive: it is damaged, has no such file, or several.
 Result<OgrSource> find_in_archive(const Gdal& gdal, const std::string& path);

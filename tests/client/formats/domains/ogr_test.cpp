@@ -172,9 +172,8 @@ TEST_F(OgrFile, OfAFormatThatWeftReadsItselfIsReadInPart) {
   EXPECT_EQ(markers(read_domain(path, {.where = "marker = 4"})), std::vector<std::int32_t>{4});
   EXPECT_EQ(refusal(folder_.write("d.poly", ""), {.where = "marker = 4"}, ExitCode::kUsage),
             "d.poly: --layer, --where and --attribute are for files with layers and attributes: "
-            ".gpkg, .fgb, .kml, .kmz, .gml, .dxf, .dgn, .tab, .mif, .gmt, .geojsonl, .topojson, "
-            ".zip, .shp, "
-            ".geojson, .json");
+            ".geojson, .json, .shp, .gpkg, .fgb, .kml, .kmz, .gml, .dxf, .dgn, .tab, .mif, .gmt, "
+            ".geojsonl, .topojson, .zip");
 }
 
 TEST_F(OgrFile, HasPropertiesInTheAttributesThatAreNamed) {

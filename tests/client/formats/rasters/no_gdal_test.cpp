@@ -17,7 +17,7 @@ TEST(NoGdal, IsNamedInTheError) {
 }
 
 TEST(NoGdal, IsNamedInTheErrorOfADomain) {
-  const auto domain = read_with_ogr("coast.gpkg", {});
+  const auto domain = read_with_ogr(*domain_format("coast.gpkg"), "coast.gpkg", {});
   ASSERT_FALSE(domain);
   EXPECT_EQ(domain.error().exit, ExitCode::kUnreadableInput);
   EXPECT_EQ(domain.error().message,
