@@ -143,8 +143,7 @@ TEST(Bridge, BoundsABodyOfManySmallMessages) {
   std::string body;
   while (body.size() < 10'000) body += framed(std::string("\x3a\x00", 2));
   WebConnection browser(server.address());
-  browser.send(
-      call_request("/grpc.reflection.v1.ServerReflection/ServerReflectionInfo", body));
+  browser.send(call_request("/grpc.reflection.v1.ServerReflection/ServerReflectionInfo", body));
   EXPECT_EQ(reason_of(browser.read_call()), "LIMIT_EXCEEDED");
 }
 
