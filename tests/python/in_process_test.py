@@ -66,7 +66,7 @@ def test_the_places_of_cut_channels_are_in_the_coordinates_of_the_domain(client)
     coast = weft.Domain.read(MODELS / "us-east-coast.geojson")
     made = expect_same(client, coast, edge=40_000, lonlat=True, simplify=0.5, min_edge=5_000).summary.simplification
     west, south, east, north = coast.box()
-    assert len(made.cuts) == made.channels > 10
+    assert len(made.cuts) == made.channels > 5
     assert all(west < x < east and south < y < north for x, y in made.cuts)
 
 

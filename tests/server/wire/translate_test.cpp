@@ -86,7 +86,7 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   summary.unrefined_at = {30, 31};
   summary.narrow = NarrowPlace{51, 52, {53, 54}, 55, 56, 57, 58};
   summary.outside = {65, 66, {67, 68}};
-  summary.simplified = Simplification{57, 58, 59, 60, 63, 64, 61, 62};
+  summary.simplified = Simplification{57, 58, 59, 60, 63, 64, 61, 62, {}};
   summary.merging = {32, 33, 34, 35, {36, 37}, 38, {39, 40}};
   summary.triangulate_seconds = 14;
   summary.size_seconds = 15;
