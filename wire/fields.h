@@ -82,7 +82,9 @@ class Fields {
   template <class T>
   void array(std::vector<T>& to) {
     array<T>([&](T number) { to.push_back(number); },
-             [&](std::size_t more) { to.reserve(to.size() + more); });
+             [&](std::size_t numbers) {
+               if (to.empty()) to.reserve(numbers);
+             });
   }
 
  private:

@@ -39,7 +39,10 @@ template <class Row, std::size_t N>
 class Rows {
  public:
   void read(Fields& in) {
-    const auto reserve = [this](std::size_t more) { rows_.reserve(rows_.size() + more / N); };
+    // Only once: a message may hold an array in any number of parts.
+    const auto reserve = [this](std::size_t numbers) {
+      if (rows_.empty()) rows_.reserve(numbers / N);
+    };
     in.array<Number>([this](Number number) { add(number); }, reserve);
   }
   std::size_t numbers() const { return numbers_; }

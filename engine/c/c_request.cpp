@@ -93,20 +93,23 @@ std::size_t nodes_of(const weft_grid& grid) {
   return std::size_t{grid.columns} * grid.rows;
 }
 
+[[noreturn]] void refuse(const Option& option, std::string_view text, const char* kind) {
+  const std::string field(option.field);
+  throw Error{ErrorCode::kBadOption, field,
+              field + " is '" + std::string(text) + "', which is not " + kind};
+}
+
 template <class T>
 T number_of(const Option& option, std::string_view text, const char* kind) {
   T value{};
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (problem != std::errc() || end != text.data() + text.size())
-    throw Error{
-        ErrorCode::kBadOption, std::string(option.field),
-        std::string(option.field) + " is '" + std::string(text) + "', which is not " + kind};
+  if (problem != std::errc() || end != text.data() + text.size()) refuse(option, text, kind);
   return value;
 }
 
 std::uint32_t choice_of(const Option& option, std::string_view text, const char* kind) {
   const auto found = std::find(option.names.begin(), option.names.end(), text);
-  if (found == option.names.end()) number_of<std::uint32_t>(option, "", kind);
+  if (found == option.names.end()) refuse(option, text, kind);
   return static_cast<std::uint32_t>(found - option.names.begin() + 1);
 }
 

@@ -42,7 +42,7 @@ WEFT_API void weft_set(weft_request* request, const char* field, const char* tex
 
 #define WEFT_NONE UINT32_MAX /* an area that a segment is no border of */
 
-/* x0, y0, x1, ... Once each, as all functions that are called set. */
+/* x0, y0, x1, ... Call each of these three at most once. */
 WEFT_API void weft_set_points(weft_request* request, const double* xy, size_t count);
 WEFT_API void weft_set_holes(weft_request* request, const double* xy, size_t count);
 /* Two points each; one marker and one area each, or NULL: all 0, all WEFT_NONE. */

@@ -266,6 +266,20 @@ TEST(ReadRequest, MergesWhatComesInParts) {
   EXPECT_EQ(request->mesh.placement, Placement::kCircumcentre);
 }
 
+// Half a million parts of two points each: to grow by each part would take hours.
+TEST(ReadRequest, TakesAnArrayInAnyNumberOfParts) {
+  v1::GenerateMeshRequest part;
+  for (const double at : {1, 2, 3, 4}) part.mutable_domain()->add_points(at);
+  const std::string bytes = part.SerializeAsString();
+  constexpr std::size_t kParts = 500'000;
+  std::string message;
+  message.reserve(kParts * bytes.size());
+  for (std::size_t i = 0; i < kParts; ++i) message += bytes;
+  const auto request = read_request(message);
+  ASSERT_TRUE(request) << request.error().message;
+  EXPECT_EQ(request->mesh.pslg.points.size(), 2 * kParts);
+}
+
 // The code and the field that are refused.
 std::pair<ErrorCode, std::string> fault_of(const v1::GenerateMeshRequest& message) {
   const auto request = read_request(message.SerializeAsString());

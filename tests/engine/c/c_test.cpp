@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <string>
 #include <vector>
@@ -198,6 +199,22 @@ TEST(CInterface, NamesWhatItCannotTake) {
   const std::uint32_t ends[] = {0, 9};
   weft_set_segments(given.get(), ends, nullptr, nullptr, 1);
   EXPECT_EQ(given.reason_and_field(), "BAD_ARRAY domain.segment_markers");
+}
+
+TEST(CInterface, NamesTheTextThatAnOptionCannotHave) {
+  for (const auto& [field, text] : {std::pair{"quality.placement", "north"},
+                                    {"allow_unrefined", "perhaps"},
+                                    {"quality.min_edge", "1e"},
+                                    {"threads", "-1"}}) {
+    Given given;
+    given.set(field, text);
+    weft_error* error = nullptr;
+    EXPECT_EQ(given.make(&error), nullptr);
+    ASSERT_NE(error, nullptr);
+    EXPECT_STREQ(weft_error_field(error), field);
+    EXPECT_NE(std::strstr(weft_error_message(error), text), nullptr) << weft_error_message(error);
+    weft_error_free(error);
+  }
 }
 
 TEST(CInterface, TakesMessagesAndRefusesWhatIsNone) {
