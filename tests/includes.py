@@ -16,6 +16,8 @@ Rules, on the quoted includes, and those of TBB, of all .h and .cpp files outsid
   - checker/ includes nothing of the four.
   - loader/ includes nothing of the others; server/ and client/ include it.
   - TBB is included by engine/base/arena.cpp alone.
+And no two headers define a class or an enumeration of one name in one namespace: a program that has both
+would take one's constructors for the other's, and no linker says so.
 """
 import pathlib
 import re
@@ -33,6 +35,7 @@ LAYERS = {
                 "check.*", "models", "lint"]}
 FACE = {f"weft/{name}.h" for name in ("c", "error", "geometry", "mesh", "pslg", "run", "size", "weft")}
 KNOWS_TBB = "engine/base/arena.cpp"
+TYPE = re.compile(r"^namespace ([\w:]+) \{$|^(?:class|struct|enum class|enum) (\w+)[^;(]*\{", re.MULTILINE)
 INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(tbb/[^>]+)>)', re.MULTILINE)
 
 
@@ -80,6 +83,21 @@ def forbidden(source: str, target: str) -> str | None:
     return None
 
 
+def defined_twice(root: pathlib.Path, sources: list[str]) -> list[str]:
+    """The types that two headers define, such as `weft::Failure: a.h, b.h`."""
+    headers: dict[str, set[str]] = {}
+    for source in sources:
+        if not source.endswith(".h"):
+            continue
+        path = root / ("include" if source.startswith("weft/") else "") / source
+        namespace = ""
+        for opened, name in TYPE.findall(path.read_text()):
+            namespace = opened or namespace
+            if name:
+                headers.setdefault(f"{namespace}::{name}", set()).add(source)
+    return [f"{name}: {', '.join(sorted(found))}" for name, found in headers.items() if len(found) > 1]
+
+
 def main() -> int:
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent)
     includes = includes_of(root)
@@ -96,7 +114,10 @@ def main() -> int:
             if why := forbidden(source, target):
                 faults += 1
                 print(f"{source}: {target}: {why}")
-    print(f"{len(includes)} sources, {faults} forbidden includes")
+    for twice in defined_twice(root, list(includes)):
+        faults += 1
+        print(f"{twice}: one name for two types")
+    print(f"{len(includes)} sources, {faults} faults")
     return 1 if faults else 0
 
 

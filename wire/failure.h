@@ -10,7 +10,7 @@
 
 #include "weft/geometry.h"
 
-namespace weft {
+namespace weft::wire {
 
 // The engine's codes come first, in their order, then the server's own.
 enum class Reason {
@@ -62,4 +62,4 @@ inline Failure bad_option(std::string field, std::string message) {
   return {Reason::kBadOption, std::move(field), std::move(message)};
 }
 
-}  // namespace weft
+}  // namespace weft::wire

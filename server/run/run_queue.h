@@ -50,7 +50,7 @@
 #include "server/run/distrust.h"
 #include "server/run/memory_budget.h"
 #include "server/run/mutex.h"
-#include "wire/failure.h"
+#include "server/wire/failure.h"
 
 namespace weft::server {
 

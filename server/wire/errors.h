@@ -10,6 +10,7 @@
 
 #include <string_view>
 
+#include "server/wire/failure.h"
 #include "wire/errors.h"
 
 namespace weft::server {

@@ -21,7 +21,7 @@ class ChainBuilder {
         poller_(poller),
         first_(graph.points.size() + 1, 0),
         done_(graph.lines.size(), false) {
-    for (const Line& line : graph.lines) ++first_[line.a + 1], ++first_[line.b + 1];
+    for (const GraphLine& line : graph.lines) ++first_[line.a + 1], ++first_[line.b + 1];
     for (std::size_t v = 1; v < first_.size(); ++v) first_[v] += first_[v - 1];
     spokes_.resize(first_.back());
     std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
@@ -68,7 +68,7 @@ class ChainBuilder {
                               .left = left(spoke),
                               .right = right(spoke),
                               .is_ring = is_ring});
-    const auto add = [&](std::uint32_t point, const Line& line) {
+    const auto add = [&](std::uint32_t point, const GraphLine& line) {
       const auto n = static_cast<std::uint32_t>(chains_.nodes.size());
       chains_.nodes.push_back({.point = point,
                                .chain = chain,
@@ -80,7 +80,7 @@ class ChainBuilder {
     };
     while (true) {
       poller_.step();
-      const Line& line = graph_.lines[spoke.line];
+      const GraphLine& line = graph_.lines[spoke.line];
       add(v, line);
       done_[spoke.line] = true;
       v = spoke.forward ? line.b : line.a;

@@ -17,7 +17,7 @@ namespace {
 // each of the PSLG's.
 Pslg pslg_of(const LineGraph& graph, std::vector<std::uint32_t>& point) {
   std::vector<std::uint32_t> number(graph.points.size(), kNone);
-  for (const Line& line : graph.lines) number[line.a] = number[line.b] = 0;
+  for (const GraphLine& line : graph.lines) number[line.a] = number[line.b] = 0;
   for (const std::uint32_t v : graph.loose) number[v] = 0;
   Pslg pslg;
   for (std::uint32_t v = 0; v < number.size(); ++v)
@@ -30,7 +30,7 @@ Pslg pslg_of(const LineGraph& graph, std::vector<std::uint32_t>& point) {
     pslg.points.push_back(graph.points[v]);
   }
   pslg.segments.reserve(graph.lines.size());
-  for (const Line& line : graph.lines)
+  for (const GraphLine& line : graph.lines)
     pslg.segments.push_back({.a = number[line.a], .b = number[line.b], .marker = line.marker});
   return pslg;
 }
@@ -39,7 +39,7 @@ void find_ends(LineGraph& graph) {
   std::vector<std::uint32_t> count(graph.points.size(), 0);
   std::vector<std::int32_t> marker(graph.points.size(), 0);  // of the last line
   graph.is_end.assign(graph.points.size(), false);
-  for (const Line& line : graph.lines) {
+  for (const GraphLine& line : graph.lines) {
     for (const std::uint32_t v : {line.a, line.b}) {
       if (count[v]++ > 0 && marker[v] != line.marker) graph.is_end[v] = true;
       marker[v] = line.marker;
@@ -66,7 +66,7 @@ std::vector<std::uint32_t> regions_of_faces(const LineGraph& graph, const Arrang
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t c = a.triangles[t].constraint[i];
       if (c == kNone) continue;
-      const Line& line = graph.lines[a.constraints[c].segment];
+      const GraphLine& line = graph.lines[a.constraints[c].segment];
       const Point p = a.vertices[a.triangles[t].vertex[ccw(i)]];
       const Point q = a.vertices[a.triangles[t].vertex[cw(i)]];
       const bool forward = along(graph.points[line.a], graph.points[line.b], p, q) > 0;
@@ -82,7 +82,7 @@ std::vector<std::uint32_t> regions_of_faces(const LineGraph& graph, const Arrang
 
 std::vector<bool> used_points(const LineGraph& graph) {
   std::vector<bool> used(graph.points.size(), false);
-  for (const Line& line : graph.lines) used[line.a] = used[line.b] = true;
+  for (const GraphLine& line : graph.lines) used[line.a] = used[line.b] = true;
   for (const std::uint32_t v : graph.loose) used[v] = true;
   return used;
 }

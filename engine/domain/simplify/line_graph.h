@@ -22,7 +22,7 @@ namespace weft {
 // The area of an equilateral triangle with edges of 1.
 inline constexpr double kFinestTriangle = 0.4330127018922193;
 
-struct Line {
+struct GraphLine {
   std::uint32_t a = 0;  // index into LineGraph::points
   std::uint32_t b = 0;
   std::uint32_t left = kNone;  // the region on the left from a to b; kNone is outside
@@ -42,7 +42,7 @@ struct LineGraph {
   std::vector<double> finest;           // per point: how near features may be there; 0: as they are
   std::vector<bool> is_end;          // per point: where the original lines meet, or a marker ends
   std::vector<std::uint32_t> loose;  // points that no line names, but that stay
-  std::vector<Line> lines;
+  std::vector<GraphLine> lines;
 
   // The index of a new point that is `error` from the original lines at most.
   std::uint32_t add_point(Point at, std::uint32_t vertex, double error, double finest);

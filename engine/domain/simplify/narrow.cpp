@@ -41,7 +41,7 @@ void divide(LineGraph& graph, const std::vector<std::uint32_t>& parts,
   const std::size_t count = graph.lines.size();
   for (std::size_t l = 0; l < count; ++l) {
     if (parts[l] < 2) continue;
-    const Line line = graph.lines[l];
+    const GraphLine line = graph.lines[l];
     const Point a = graph.points[line.a], b = graph.points[line.b];
     const double fine_a = graph.finest[line.a], fine_b = graph.finest[line.b];
     std::uint32_t from = line.a;
@@ -52,7 +52,7 @@ void divide(LineGraph& graph, const std::vector<std::uint32_t>& parts,
           i == parts[l]
               ? line.b
               : graph.add_point(p, kNone, line.error, std::min({fine_a, fine_b, finest_at(p)}));
-      Line part = line;
+      GraphLine part = line;
       part.a = from;
       part.b = to;
       i == 1 ? graph.lines[l] = part : graph.lines.emplace_back(part);
@@ -94,7 +94,7 @@ class Narrowing {
     is_plain_.assign(graph_.points.size(), true);
     line_at_.assign(graph_.points.size(), kNone);
     for (std::uint32_t l = 0; l < graph_.lines.size(); ++l) {
-      const Line& line = graph_.lines[l];
+      const GraphLine& line = graph_.lines[l];
       for (const std::uint32_t v : {line.a, line.b}) {
         line_at_[v] = l;
         const std::uint32_t here = std::min(line.left, line.right);
@@ -129,7 +129,7 @@ class Narrowing {
       if (!is_plain(t) || !(finest(t) > 0) || !is_low(t)) continue;
       for (const std::uint32_t l : source_[t]) {
         if (l == kNone) continue;
-        const Line& line = graph_.lines[l];
+        const GraphLine& line = graph_.lines[l];
         const double length = distance(graph_.points[line.a], graph_.points[line.b]);
         const double wanted = std::min(std::ceil(2 * length / finest(t)), kMostParts);
         parts[l] = std::max(parts[l], static_cast<std::uint32_t>(wanted));
@@ -340,7 +340,7 @@ class Narrowing {
   // The border as lines, and the lines inside as they were. A point where several shores meet
   // becomes one point for each.
   void set_lines() {
-    std::vector<Line> lines;
+    std::vector<GraphLine> lines;
     std::vector<bool> done(graph_.lines.size(), false);
     start_.assign(region_.size(), {kNone, kNone, kNone});
     end_ = start_;
@@ -353,7 +353,7 @@ class Narrowing {
       poller_.step();
       for (int i = 0; i < 3 && is_water(t); ++i) {
         if (source_[t][i] == kNone) continue;
-        const Line& from = graph_.lines[source_[t][i]];
+        const GraphLine& from = graph_.lines[source_[t][i]];
         if (is_border(t, i)) {
           lines.push_back({.a = start_[t][i],
                            .b = end_[t][i],
@@ -364,7 +364,7 @@ class Narrowing {
                            .error = error_of_border(t, i, from)});
         } else if (a_.triangles[t].constraint[i] != kNone && !from.bounds_domain() &&
                    t < a_.triangles[t].neighbor[i]) {
-          Line line = from;
+          GraphLine line = from;
           line.a = point(t, ccw(i));
           line.b = point(t, cw(i));
           line.left = region_[t];
@@ -376,7 +376,7 @@ class Narrowing {
     graph_.lines = std::move(lines);
   }
 
-  double error_of_border(std::uint32_t t, int i, const Line& from) const {
+  double error_of_border(std::uint32_t t, int i, const GraphLine& from) const {
     const std::uint32_t n = a_.triangles[t].neighbor[i];
     if (a_.triangles[t].constraint[i] != kNone) return from.error;
     for (const auto& [first, second] : {std::pair{t, n}, std::pair{n, t}}) {

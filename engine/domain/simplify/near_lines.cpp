@@ -30,7 +30,7 @@ double distance2(Point p, const Box& box) {
 NearLines::NearLines(const LineGraph& graph, StopPoller& poller) {
   std::vector<Point> middles;
   middles.reserve(graph.lines.size());
-  for (const Line& line : graph.lines)
+  for (const GraphLine& line : graph.lines)
     middles.push_back(middle(graph.points[line.a], graph.points[line.b]));
   for (const std::uint32_t l : hilbert_order(middles, poller))
     lines_.push_back(

@@ -148,7 +148,7 @@ class PinchOpener {
   void replace(std::uint32_t point, Point to, double error) {
     const std::uint32_t own = graph_.add_point(to, kNone, error, graph_.finest[point]);
     for (const std::uint32_t l : lines_at_[point]) {
-      Line& line = graph_.lines[l];
+      GraphLine& line = graph_.lines[l];
       (line.a == point ? line.a : line.b) = own;
       line.error = error;
     }
@@ -162,7 +162,7 @@ class PinchOpener {
       if (orientation(to, corner_[t][ccw(corner)], corner_[t][cw(corner)]) <= 0) return false;
     const Point at = graph_.points[sector.point];
     for (const int k : {0, 1}) {
-      const Line& line = graph_.lines[lines_at_[sector.point][k]];
+      const GraphLine& line = graph_.lines[lines_at_[sector.point][k]];
       const Point end = graph_.points[ends[k]];
       if (!original_.holds_near({end, to, to}, allowed, line.marker) ||
           !original_.holds_near({end, at, to}, allowed))

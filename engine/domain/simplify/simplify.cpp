@@ -48,7 +48,7 @@ double finest_at(const Finest& finest, Point p, double bound) {
 void set_finest(const Finest& finest, LineGraph& graph, StopPoller& poller) {
   std::vector<double> edge(graph.points.size(), std::numeric_limits<double>::infinity());
   std::vector<bool> is_named(graph.points.size(), false);
-  for (const Line& line : graph.lines) {
+  for (const GraphLine& line : graph.lines) {
     double bound = std::numeric_limits<double>::infinity();
     for (const std::uint32_t region : {line.left, line.right})
       if (region != kNone) bound = std::min(bound, finest.region_edge[region]);
@@ -77,7 +77,7 @@ double farthest_of(const LineGraph& graph, const NearLines& original, double tol
   double farthest = 0;
   for (const std::uint32_t l : by_error) {
     poller.step();
-    const Line& line = graph.lines[l];
+    const GraphLine& line = graph.lines[l];
     if (line.error <= farthest || line.error < tolerance) break;
     farthest = std::max(farthest,
                         original.farthest(graph.points[line.a], graph.points[line.b], line.error));
@@ -93,7 +93,7 @@ std::uint64_t kept_points(const Domain& domain) {
 
 void require_some_left(const LineGraph& graph) {
   if (std::any_of(graph.lines.begin(), graph.lines.end(),
-                  [](const Line& line) { return line.bounds_domain(); }))
+                  [](const GraphLine& line) { return line.bounds_domain(); }))
     return;
   throw Stopped{{ErrorCode::kEmptyDomain, "simplify",
                  "all of the domain is smaller than what simplify keeps, so nothing is left of it; "

@@ -25,7 +25,7 @@ LineGraph random_lines(std::mt19937& random, int count) {
 
 double brute_force(const LineGraph& graph, Point p) {
   double least = 1e300;
-  for (const Line& line : graph.lines)
+  for (const GraphLine& line : graph.lines)
     least = std::min(least, distance_to_segment(p, graph.points[line.a], graph.points[line.b]));
   return least;
 }
