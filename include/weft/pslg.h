@@ -40,6 +40,16 @@ struct Segment {
   std::uint32_t area = kNone;  // index into Pslg::areas if it is part of the border of one
 };
 
+// Makes a segment an arc of a circle, which its edges in the mesh approach as they get shorter: they
+// turn by 60 degrees at most, their vertices lie on the arc, and no vertex lies between the two.
+struct Arc {
+  std::uint32_t segment = 0;  // index into Pslg::segments; at most one arc each
+  // The tangent of a quarter of the angle by which the arc turns from `a` to `b`, as in DXF: 1 for a
+  // half circle, above 0 if it turns left. The centre is left of the line from a to b for 0 < bulge
+  // < 1. Magnitudes from 1e-9 to 1e3; 0 for a straight segment.
+  double bulge = 0;
+};
+
 // REQUIRES: its segments close to rings: an even number of their ends is at every point.
 struct Area {
   // Of all areas that cover a face and have a region, the one with the highest priority gives the
@@ -66,6 +76,7 @@ struct Pslg {
   std::vector<Point> holes{};
   std::vector<RegionSeed> regions{};
   std::vector<Area> areas{};
+  std::vector<Arc> arcs{};
   Fill fill = Fill::kSeeds;
   // Features nearer than this are merged first: points, points and segments, crossings. In the
   // units of the coordinates, 0 or more. 0: only what double precision cannot keep apart.
