@@ -9,6 +9,8 @@
 
 #include "engine/base/failure.h"
 #include "engine/base/text.h"
+#include "engine/domain/arcs/arc.h"
+#include "engine/domain/arcs/chords.h"
 #include "engine/domain/domain.h"
 #include "engine/domain/simplify/simplify.h"
 #include "engine/domain/tolerance.h"
@@ -108,8 +110,7 @@ class Pipeline {
   // From the domain and its size on. Reads neither `pslg` nor the value of the size.
   Result<Summary> refine() {
     const double bound = size().constant().value_or(std::numeric_limits<double>::infinity());
-    quality_ =
-        QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(summary_.box));
+    quality_ = QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(box_));
     if (request_.placement == Placement::kLattice)
       quality_.lattice = LatticeShape::for_angle(request_.min_angle_deg);
     edge_limits_ = EdgeLimits(request_.size.at);
@@ -119,9 +120,8 @@ class Pipeline {
     if (!map_) return mesh(ConstantArea(bound), 0);
     LatticeMap lattices;
     if (quality_.lattice.exists()) {
-      auto laid_out = context_.compute([&] {
-        return LatticeMap::build(size(), *map_, summary_.box, quality_.lattice, context_);
-      });
+      auto laid_out = context_.compute(
+          [&] { return LatticeMap::build(size(), *map_, box_, quality_.lattice, context_); });
       if (!laid_out) return tl::unexpected(laid_out.error());
       lattices = std::move(*laid_out);
       lattices_ = lattices.lattices_that_vary();
@@ -149,9 +149,12 @@ class Pipeline {
     run.size_.emplace(std::make_unique<ScaledSize>(across, share * share));
     run.domain_ = std::move(domain_);
     run.summary_.box = summary_.box;
+    run.box_ = box_;
+    run.flat_ = std::move(flat_);
     if (auto error = context.compute([&] { return run.map_size(); })) return error;
     if (auto made = run.refine(); !made) return made.error();
     domain_ = std::move(run.domain_);
+    flat_ = std::move(run.flat_);
     return context_.compute([&]() -> std::optional<Error> {
       const SizeFunction& unlimited = *size_->limited_across_land();
       auto within = std::move(mesh).limit(unlimited, domain_.bytes() + size_->bytes(), context_);
@@ -164,23 +167,54 @@ class Pipeline {
   // The domain's triangulation, and the map of a size that varies.
   std::optional<Error> prepare() {
     context_.enter(Stage::kTriangulate);
-    auto domain = triangulate(request_.pslg, context_);
+    // Up to twice the least angle, no triangle at the rim of an arc is cut off by it and good.
+    auto domain = triangulate(request_.pslg, context_,
+                              std::clamp(2 * request_.min_angle_deg, 40.0, kMaxTurnDeg));
     if (!domain) return domain.error();
     domain_ = std::move(*domain);
+    if (auto error = flatten()) return error;
     summary_.merging = domain_.merging;
     summary_.overlap = domain_.overlap;
     summary_.outside = domain_.outside;
     for (Point p : domain_.vertices) summary_.box.add(p);
     if (auto error = check_extent(summary_.box)) return error;
+    box_ = box_of_arcs();
     summary_.triangulate_seconds = clock_.lap();
     context_.end_stage("triangulation");
 
     context_.enter(Stage::kSize);
-    auto made = make_size(request_.size, request_.pslg, domain_, context_);
+    auto made = make_size(request_.size, flat_ ? flat_->pslg : request_.pslg, ground(), context_);
     if (!made) return made.error();
     size_.emplace(std::move(*made));
     if (request_.simplify > 0) return std::nullopt;  // the map is that of the simplified domain
     return map_size();
+  }
+
+  // What the size sees of a domain with arcs.
+  std::optional<Error> flatten() {
+    if (domain_.curvatures.empty()) return std::nullopt;
+    if (request_.simplify > 0)
+      return Error{ErrorCode::kBadOption, "simplify",
+                   "simplify is " + text(request_.simplify) +
+                       ", but the domain has arcs, and only straight segments are simplified"};
+    flat_.emplace(Flat{flatten_arcs(request_.pslg), {}});
+    auto domain = triangulate(flat_->pslg, context_);
+    if (auto error = context_.poll()) return error;
+    // A seed may be that near to an arc that it is not on its side: then chords have to do.
+    flat_->domain = domain ? std::move(*domain) : domain_;
+    return std::nullopt;
+  }
+  const Domain& ground() const { return flat_ ? flat_->domain : domain_; }
+
+  // That of the domain, with all places where its arcs may have vertices.
+  Box box_of_arcs() const {
+    Box box = summary_.box;
+    for (std::size_t i = 0; i < domain_.curvatures.size(); ++i) {
+      const Point a = domain_.vertices[domain_.subsegments[i].a];
+      const Point b = domain_.vertices[domain_.subsegments[i].b];
+      box.add(control_point(a, b, bulge_of(domain_.curvatures[i], length(b - a))));
+    }
+    return box;
   }
 
   // Makes the domain no finer than a share of its size. The size stays that of the domain as it
@@ -209,6 +243,7 @@ class Pipeline {
     summary_.simplified = made->changes;
     summary_.box = {};
     for (const Point p : domain_.vertices) summary_.box.add(p);
+    box_ = summary_.box;
     context_.end_stage("simplification");
     return map_size();
   }
@@ -223,7 +258,7 @@ class Pipeline {
 
   std::optional<Error> map_size() {
     if (size().constant()) return std::nullopt;
-    auto map = SizeMap::build(size(), domain_, context_);
+    auto map = SizeMap::build(size(), ground(), context_);
     if (!map) return map.error();
     map_.emplace(std::move(*map));
     return std::nullopt;
@@ -246,7 +281,7 @@ class Pipeline {
   // Refuses sizes for which refinement would not end, unless the client has said where it may.
   std::optional<Error> check_borders() {
     if (!map_ || request_.min_edge > 0 || has_triangle_cap()) return std::nullopt;
-    const auto found = find_vanishing(size(), domain_, quality_.min_length2, context_);
+    const auto found = find_vanishing(size(), ground(), quality_.min_length2, context_);
     if (!found) return found.error();
     if (!*found) return std::nullopt;
     const Point at = **found;
@@ -335,7 +370,7 @@ class Pipeline {
     summary_.size_seconds = clock_.lap();
     context_.enter(Stage::kRefine);
     MeshPlan plan{.domain = domain_,
-                  .box = summary_.box,
+                  .box = box_,
                   .quality = quality_,
                   .corners = *corners_,
                   .narrow = narrow_,
@@ -422,12 +457,20 @@ class Pipeline {
 
   const SizeFunction& size() const { return size_->function(); }
 
+  // A domain whose arcs are polylines.
+  struct Flat {
+    Pslg pslg;
+    Domain domain;
+  };
+
   const MeshRequest& request_;
   ChunkSink& sink_;
   ExecutionContext& context_;
   StageClock clock_;
   std::optional<Size> size_;
   Domain domain_;
+  Box box_;                   // of all vertices that the mesh may have
+  std::optional<Flat> flat_;  // of a domain with arcs
   std::optional<SizeMap> map_;
   QualityBounds quality_;
   EdgeLimits edge_limits_;

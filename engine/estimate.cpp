@@ -11,6 +11,7 @@
 #include <utility>
 #include <variant>
 
+#include "engine/domain/arcs/chords.h"
 #include "engine/domain/domain_picture.h"
 #include "engine/parallel/mesh_plan.h"
 #include "engine/parallel/task_graph.h"
@@ -125,7 +126,8 @@ struct BySize {
 };
 
 BySize by_size_of(const MeshRequest& request) {
-  const DomainPicture picture = DomainPicture::of(request.pslg);
+  const DomainPicture picture =
+      DomainPicture::of(request.pslg.arcs.empty() ? request.pslg : flatten_arcs(request.pslg));
   const Size size = size_to_estimate_by(request.size);
   const Integral over_bound = integral(picture, size.function());
   LatticeShape lattice;

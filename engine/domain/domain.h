@@ -64,6 +64,9 @@ struct Domain {
                                            // the coincident ones), or kNone if segments cross
   std::vector<Triangle> triangles;
   std::vector<Subsegment> subsegments;
+  // Per subsegment, of its arc from a to b: 1 over the radius, above 0 if it turns left; empty if
+  // all are straight.
+  std::vector<double> curvatures;
   std::vector<Region> regions;  // regions[0] is the default region
   Merging merging;
   Overlap overlap;
@@ -71,20 +74,28 @@ struct Domain {
 
   std::uint64_t bytes() const {
     return vertices.capacity() * sizeof(Point) + input_point.capacity() * sizeof(std::uint32_t) +
-           triangles.capacity() * sizeof(Triangle) + subsegments.capacity() * sizeof(Subsegment);
+           triangles.capacity() * sizeof(Triangle) + subsegments.capacity() * sizeof(Subsegment) +
+           curvatures.capacity() * sizeof(double);
   }
 };
 
-// Validates the PSLG and triangulates it. A segment whose ends are the same point is that point, as
-// rounding leaves many. If several seeds flood a face, the last one wins.
+// By how much a piece of an arc turns.
+inline constexpr double kMaxTurnDeg = 60;
+
+// Validates the PSLG and triangulates it. Arcs are cut into pieces that turn by at most
+// `max_turn_deg`, and as much further as it takes to keep them apart (arcs/chords.h). A segment
+// whose ends are the same point is that point, as rounding leaves many. If several seeds flood a
+// face, the last one wins.
 //
 // Errors, each naming the first offender:
 //   kBadCoordinate      domain.points[i].x or .y, the same of domain.holes[i], domain.regions[i]
-//   kIndexOutOfRange    domain.segments[i].a or .b, domain.segment_areas[i]
+//   kIndexOutOfRange    domain.segments[i].a or .b, domain.segment_areas[i], domain.arcs[i]
 //   kBadOption          domain.regions[i].max_area, domain.areas[i].max_area: not finite or not
 //   above
 //                       0; domain.areas[i]: its segments do not close to rings; domain.snap: not
-//                       finite or below 0
+//                       finite or below 0; domain.arcs[i]: its bulge, or a second arc of one
+//                       segment; domain.segments[i]: its arc begins where it ends, or leaves a
+//                       point in the same direction as another segment
 //   kTooFewPoints, kCollinearPoints                domain.points
 //   kSeedOutsideDomain, kSeedOnSegment             domain.holes[i], domain.regions[i]
 //   kEmptyDomain        domain.segments if no face is enclosed, domain.holes[i] if they carve
@@ -100,6 +111,7 @@ struct Domain {
 // Never throws. Thread-safe: calls share nothing.
 //
 // About 1 s for a million random points, 4 ms for a coast line of 9,370 (one core of 2023).
-Result<Domain> triangulate(const Pslg& pslg, const ExecutionContext& context);
+Result<Domain> triangulate(const Pslg& pslg, const ExecutionContext& context,
+                           double max_turn_deg = kMaxTurnDeg);
 
 }  // namespace weft

@@ -62,6 +62,34 @@ std::optional<Error> check_segment(const Pslg& pslg, std::size_t i) {
   return {};
 }
 
+std::optional<Error> check_arcs(const Pslg& pslg, StopPoller& poller) {
+  std::vector<bool> is_arc(pslg.arcs.empty() ? 0 : pslg.segments.size(), false);
+  for (std::size_t i = 0; i < pslg.arcs.size(); ++i) {
+    poller.step();
+    const Arc& arc = pslg.arcs[i];
+    const auto bad = [&](std::string message) {
+      return Error{ErrorCode::kBadOption, element("arcs", i), std::move(message)};
+    };
+    if (arc.segment >= pslg.segments.size())
+      return Error{ErrorCode::kIndexOutOfRange, element("arcs", i) + ".segment",
+                   text("arc ", i, " is segment ", arc.segment, ", but there are ",
+                        pslg.segments.size(), " segments")};
+    if (is_arc[arc.segment]) return bad(text("segment ", arc.segment, " has two arcs"));
+    is_arc[arc.segment] = true;
+    if (!(std::fabs(arc.bulge) <= kMaxBulge))
+      return bad(text("the bulge is ", arc.bulge, "; its magnitude must be at most ", kMaxBulge));
+    const Segment& s = pslg.segments[arc.segment];
+    const Point a = pslg.points[s.a], b = pslg.points[s.b];
+    if (a == b && arc.bulge != 0)
+      return bad(text("the arc of segment ", arc.segment, " ends where it begins, at (", a.x, ", ",
+                      a.y, "); a circle is two arcs or more"));
+    const double across = std::max(std::fabs(b.x - a.x), std::fabs(b.y - a.y));
+    if (across * std::max(1.0, std::fabs(arc.bulge)) > kMaxMagnitude)
+      return bad(text("the arc of segment ", arc.segment, " reaches beyond 1e50"));
+  }
+  return {};
+}
+
 std::optional<Error> check_area(const Area& area, std::size_t i) {
   if (!area.max_area || (std::isfinite(*area.max_area) && *area.max_area > 0)) return {};
   return Error{ErrorCode::kBadOption, element("areas", i) + ".max_area",
@@ -127,8 +155,10 @@ std::optional<Error> check_counts(const Pslg& pslg) {
   return {};
 }
 
-std::optional<Error> check_span(const std::vector<Point>& points, StopPoller& poller) {
+std::optional<Error> check_span(const Pslg& pslg, StopPoller& poller) {
+  const std::vector<Point>& points = pslg.points;
   const Span span = spanning_points(points, poller);
+  if (span.size == 2 && !pslg.arcs.empty()) return {};  // they enclose something between two points
   if (span.size < 2 || points.size() < 3)
     return Error{ErrorCode::kTooFewPoints, "domain.points",
                  text("there are ", points.size(), " points, ", span.size,
@@ -159,6 +189,7 @@ std::optional<Error> validate(const Pslg& pslg, StopPoller& poller) {
     poller.step();
     if (auto error = check_segment(pslg, i)) return error;
   }
+  if (auto error = check_arcs(pslg, poller)) return error;
   for (std::size_t i = 0; i < pslg.holes.size(); ++i) {
     poller.step();
     if (auto error = check_point(pslg.holes[i], "holes", i)) return error;
@@ -173,7 +204,7 @@ std::optional<Error> validate(const Pslg& pslg, StopPoller& poller) {
   }
   if (auto error = check_rings(pslg, poller)) return error;
   if (auto error = check_snap(pslg.snap)) return error;
-  return check_span(pslg.points, poller);
+  return check_span(pslg, poller);
 }
 
 Span spanning_points(const std::vector<Point>& points, StopPoller& poller) {

@@ -14,8 +14,8 @@
 
 namespace weft {
 
-// Returns the error of the first offender, in the order: points, segments, holes, regions, snap,
-// then the points as a whole; nullopt if the PSLG is valid. Throws Stopped.
+// Returns the error of the first offender, in the order: points, segments, arcs, holes, regions,
+// snap, then the points as a whole; nullopt if the PSLG is valid. Throws Stopped.
 std::optional<Error> validate(const Pslg& pslg, StopPoller& poller);
 
 // The first two points that are distinct, and the first that is not on their line; fewer if there

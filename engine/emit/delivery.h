@@ -44,6 +44,7 @@ class Delivery {
       chunk.index = summary_.chunks++;
       chunk.first_vertex = static_cast<std::uint32_t>(summary_.vertices);
       chunk.first_triangle = static_cast<std::uint32_t>(summary_.triangles);
+      summary_.box.merge(chunk.box);
       summary_.vertices += chunk.coordinates.size() / 2;
       summary_.triangles += chunk.triangles.size() / 3;
       digest_.add(chunk.digest.data(), chunk.digest.size());

@@ -8,7 +8,8 @@
 #include <numeric>
 #include <utility>
 
-#include "engine/refine/storage/vector.h"
+#include "engine/base/vector.h"
+#include "engine/domain/arcs/arc.h"
 
 namespace weft {
 namespace {
@@ -22,6 +23,21 @@ bool below_60_degrees_apart(Vector u, Vector v) {
 bool maybe_below_60_degrees_apart(Vector u, Vector v) {
   const double cosine = dot(u, v);
   return (cosine > 0) & (cosine * cosine > 0.249 * dot(u, u) * dot(v, v));
+}
+
+// Whether the chords of two arms may make an angle so large, though their tangents make one below
+// 93 degrees: each is 30 degrees from its tangent at most.
+bool maybe_tangents_of_right_angle(Vector u, Vector v) {
+  return dot(u, v) > -0.9 * length(u) * length(v);
+}
+
+// Along an arm, away from its corner.
+Vector leaving(const Domain& domain, std::uint32_t subsegment, std::uint32_t corner) {
+  const Subsegment& s = domain.subsegments[subsegment];
+  const Point a = domain.vertices[s.a], b = domain.vertices[s.b];
+  const double curvature = domain.curvatures[subsegment];
+  const double bulge = bulge_of(curvature, length(b - a));
+  return s.a == corner ? tangent_at_start(a, b, bulge) : tangent_at_start(b, a, -bulge);
 }
 
 // Whether they make an angle below 93 degrees: a right angle, after rounding.
@@ -93,6 +109,7 @@ Result<AcuteCorners> AcuteCorners::build(const Domain& domain, const QualityBoun
 Result<std::vector<CrossedArms::Sector>> AcuteCorners::find_corners(
     const Domain& domain, bool at_right_angles, const ExecutionContext& context) {
   std::vector<CrossedArms::Sector> sharp;
+  const bool has_arcs = !domain.curvatures.empty();
   // Collects the corners where a sector may begin, in rounds. Which ones do is hard to predict, so
   // there is no branch on it.
   constexpr std::uint32_t kRound = 256;
@@ -113,7 +130,7 @@ Result<std::vector<CrossedArms::Sector>> AcuteCorners::find_corners(
         const bool begins_sector =
             maybe_below_60_degrees_apart(domain.vertices[triangle.vertex[kNext[i]]] - at,
                                          domain.vertices[triangle.vertex[kPrevious[i]]] - at);
-        count += on_segment & (at_right_angles | begins_sector);
+        count += on_segment & (at_right_angles | has_arcs | begins_sector);
       }
     }
     for (std::uint32_t k = 0; k < count; ++k) {
@@ -127,21 +144,32 @@ Result<std::vector<CrossedArms::Sector>> AcuteCorners::find_corners(
       while (true) {
         const Domain::Triangle& current = domain.triangles[triangle];
         const Vector to = domain.vertices[current.vertex[kPrevious[at_corner]]] - at;
-        const bool acute = below_60_degrees_apart(from, to);
-        const bool counts = acute || (at_right_angles && at_most_right_angle_apart(from, to));
+        const bool counts = below_60_degrees_apart(from, to) ||
+                            (at_right_angles && at_most_right_angle_apart(from, to)) ||
+                            (has_arcs && maybe_tangents_of_right_angle(from, to));
         if (cross(from, to) <= 0 || !counts) break;
         const std::uint32_t other_arm = current.subsegment[kNext[at_corner]];
         if (other_arm != kNone) {
+          const std::array arms{domain.triangles[t].subsegment[kPrevious[i]], other_arm};
+          bool acute = below_60_degrees_apart(from, to);
+          bool right = at_right_angles && at_most_right_angle_apart(from, to);
+          if (has_arcs) {
+            const Vector u = leaving(domain, arms[0], corner);
+            const Vector v = leaving(domain, arms[1], corner);
+            acute |= below_60_degrees_apart(u, v);
+            right |= at_right_angles && at_most_right_angle_apart(u, v);
+          }
+          if (!acute && !right) break;
           corners_[corner] = std::max(corners_[corner], acute ? Corner::kAcute : Corner::kShells);
           const auto sine = static_cast<float>(cross(from, to) / (length(from) * length(to)));
-          for (const std::uint32_t s : {domain.triangles[t].subsegment[kPrevious[i]], other_arm}) {
+          for (const std::uint32_t s : arms) {
             float& least = sines_[s][domain.subsegments[s].b == corner ? 1 : 0];
             least = std::min(least, sine);
           }
           const double tangent = cross(from, to) / dot(from, to);
-          if (acute && tangent < CrossedArms::kSharp)
-            sharp.push_back(
-                {corner, {domain.triangles[t].subsegment[kPrevious[i]], other_arm}, tangent});
+          if (acute && tangent < CrossedArms::kSharp && curvature(arms[0]) == 0 &&
+              curvature(arms[1]) == 0)
+            sharp.push_back({corner, {arms[0], arms[1]}, tangent});
           break;
         }
         triangle = current.neighbor[kNext[at_corner]];
@@ -191,22 +219,52 @@ Point AcuteCorners::split_point(const MeshStore& mesh, Pair ends, Pair apexes,
   const Point from = mesh.vertices[ends[0]];
   const Point to = mesh.vertices[ends[1]];
   const std::uint32_t s = subsegment(mesh, ends[0], ends[1]);
-  if (has_shells((*subsegments_)[s].a) || has_shells((*subsegments_)[s].b) ||
-      !crossed_.of(s).empty()) {
-    const auto matching = matching_fraction(mesh, s, from, to, apexes);
-    fraction = matching ? *matching : dyadic_fraction(mesh, s, from, to);
-  }
+  const std::optional<Shell> shell = this->shell(mesh, s, from, to, apexes);
+  if (curvature(s) != 0) [[unlikely]]
+    return split_arc(mesh, s, from, to, shell, fraction);
+  if (shell) fraction = shell->fraction;
   // The half of exact ends is exact: no length is rounded.
   if (fraction == 0.5) return {0.5 * from.x + 0.5 * to.x, 0.5 * from.y + 0.5 * to.y};
   return {from.x + fraction * (to.x - from.x), from.y + fraction * (to.y - from.y)};
 }
 
-std::optional<double> AcuteCorners::matching_fraction(const MeshStore& mesh,
-                                                      std::uint32_t subsegment, Point from,
-                                                      Point to, Pair apexes) const {
+Point AcuteCorners::split_arc(const MeshStore& mesh, std::uint32_t subsegment, Point from, Point to,
+                              std::optional<Shell> shell, double fraction) const {
+  const Subsegment& s = (*subsegments_)[subsegment];
+  const Point a = mesh.vertices[s.a], b = mesh.vertices[s.b];
+  const double curvature = this->curvature(subsegment);
+  if (shell && shell->corner != kNone) {
+    const bool at_a = shell->corner == s.a;
+    const double bulge = bulge_of(curvature, length(b - a));
+    const Point corner = at_a ? a : b;
+    const Vector along = at_a ? tangent_at_start(a, b, bulge) : tangent_at_start(b, a, -bulge);
+    const double size = length(along);
+    const double start = length(from - corner);
+    return at_distance(corner, {along.x / size, along.y / size}, at_a ? curvature : -curvature,
+                       start + shell->fraction * (length(to - corner) - start));
+  }
+  const double bulge =
+      bulge_of(dot(to - from, b - a) > 0 ? curvature : -curvature, length(to - from));
+  if (fraction == 0.5) return middle_of_arc(from, to, bulge);
+  return at_fraction(from, to, bulge, fraction);
+}
+
+std::optional<AcuteCorners::Shell> AcuteCorners::shell(const MeshStore& mesh,
+                                                       std::uint32_t subsegment, Point from,
+                                                       Point to, Pair apexes) const {
+  const Subsegment& s = (*subsegments_)[subsegment];
+  if (!has_shells(s.a) && !has_shells(s.b) && crossed_.of(subsegment).empty()) return std::nullopt;
+  const auto matching = matching_shell(mesh, subsegment, from, to, apexes);
+  return matching ? matching : dyadic_shell(mesh, subsegment, from, to);
+}
+
+std::optional<AcuteCorners::Shell> AcuteCorners::matching_shell(const MeshStore& mesh,
+                                                                std::uint32_t subsegment,
+                                                                Point from, Point to,
+                                                                Pair apexes) const {
   const Subsegment& s = (*subsegments_)[subsegment];
   const Vector piece = to - from;
-  std::optional<double> fraction;
+  std::optional<Shell> shell;
   double narrowest = kNarrow * dot(piece, piece);  // distance times the piece's length
   const auto match = [&](std::uint32_t apex, std::uint32_t corner_vertex, std::uint32_t far_end) {
     if (apex == kNone || !on_other_arm(mesh, apex, corner_vertex, subsegment)) return;
@@ -217,7 +275,7 @@ std::optional<double> AcuteCorners::matching_fraction(const MeshStore& mesh,
     const double candidate = fraction_at(length(at - corner), corner, from, to);
     const double width = std::fabs(cross(piece, at - from));
     if (!in_middle(candidate) || width >= narrowest) return;
-    fraction = candidate;
+    shell = {candidate, corner_vertex};
     narrowest = width;
   };
   for (const std::uint32_t apex : apexes) {
@@ -225,27 +283,28 @@ std::optional<double> AcuteCorners::matching_fraction(const MeshStore& mesh,
     if (has_shells(s.b)) match(apex, s.b, s.a);
     for (const CrossedArms::Arm& arm : crossed_.of(subsegment)) match(apex, arm.corner, arm.end);
   }
-  return fraction;
+  return shell;
 }
 
-double AcuteCorners::dyadic_fraction(const MeshStore& mesh, std::uint32_t subsegment, Point from,
-                                     Point to) const {
+AcuteCorners::Shell AcuteCorners::dyadic_shell(const MeshStore& mesh, std::uint32_t subsegment,
+                                               Point from, Point to) const {
   const Subsegment& s = (*subsegments_)[subsegment];
-  Point corner;
+  std::uint32_t corner_vertex = kNone;
   double narrowest = std::numeric_limits<double>::infinity();
   const auto consider = [&](std::uint32_t vertex, double sine) {
     const Point at = mesh.vertices[vertex];
     const double width = (length(from - at) + length(to - at)) * sine;
     if (width >= narrowest) return;
-    corner = at;
+    corner_vertex = vertex;
     narrowest = width;
   };
   if (has_shells(s.a)) consider(s.a, sines_[subsegment][0]);
   if (has_shells(s.b)) consider(s.b, sines_[subsegment][1]);
   for (const CrossedArms::Arm& arm : crossed_.of(subsegment)) consider(arm.corner, arm.tangent);
+  const Point corner = mesh.vertices[corner_vertex];
   const auto [low, high] = std::minmax({length(from - corner), length(to - corner)});
   const double fraction = fraction_at(dyadic_between(low, high), corner, from, to);
-  return in_middle(fraction) ? fraction : 0.5;
+  return in_middle(fraction) ? Shell{fraction, corner_vertex} : Shell{0.5, kNone};
 }
 
 bool AcuteCorners::on_other_arm(const MeshStore& mesh, std::uint32_t vertex, std::uint32_t corner,

@@ -17,6 +17,10 @@
 // Two vertices are at the same distance if rounding explains the difference: 2^-47 of the largest
 // coordinate of the three points. The checker allows twice that (checker/mesh/exemption.h).
 //
+// Arms may be arcs: the angle at a corner is that of the tangents or that of the chords, whichever
+// is smaller, and a distance from the corner is taken along a straight line. An arc that is no arm
+// is split in its middle, where the bisector of the chord meets it.
+//
 // If the bound on angles is above 30 degrees, arms that meet at less than 93 degrees are split on
 // shells, too, but this exempts no triangle. docs/termination.md says why, and what each rule
 // saves.
@@ -61,6 +65,10 @@ class AcuteCorners {
   // triangle.
   Point split_point(const MeshStore& mesh, Pair ends, Pair apexes, double fraction) const;
 
+  // Of the arc that a subsegment is, from its a to its b; 0 if it is straight.
+  double curvature(std::uint32_t subsegment) const {
+    return curvatures_->empty() ? 0 : (*curvatures_)[subsegment];
+  }
   const CrossedArms& crossed_arms() const { return crossed_; }
   // The places where two of the domain's segments meet at a small angle outside of it.
   const Needles& needles() const { return needles_; }
@@ -91,6 +99,7 @@ class AcuteCorners {
 
   explicit AcuteCorners(const Domain& domain)
       : subsegments_(&domain.subsegments),
+        curvatures_(&domain.curvatures),
         corners_(domain.vertices.size(), Corner::kPlain),
         sines_(domain.subsegments.size(), {1, 1}) {}
   // Returns the sectors below CrossedArms::kSharp.
@@ -109,15 +118,23 @@ class AcuteCorners {
   bool on_other_arm(const MeshStore& mesh, std::uint32_t vertex, std::uint32_t corner,
                     std::uint32_t subsegment) const;
 
-  // These return the place of a split as a fraction of the way from one end of a piece to the
-  // other.
-  std::optional<double> matching_fraction(const MeshStore& mesh, std::uint32_t subsegment,
-                                          Point from, Point to, Pair apexes) const;
-  double dyadic_fraction(const MeshStore& mesh, std::uint32_t subsegment, Point from,
-                         Point to) const;
+  // The place of a split, as a fraction of the way from one end of a piece to the other: of their
+  // distances from the corner; its middle, and kNone, if no shell is near to that.
+  struct Shell {
+    double fraction;
+    std::uint32_t corner;
+  };
+  std::optional<Shell> matching_shell(const MeshStore& mesh, std::uint32_t subsegment, Point from,
+                                      Point to, Pair apexes) const;
+  Shell dyadic_shell(const MeshStore& mesh, std::uint32_t subsegment, Point from, Point to) const;
+  std::optional<Shell> shell(const MeshStore& mesh, std::uint32_t subsegment, Point from, Point to,
+                             Pair apexes) const;
+  Point split_arc(const MeshStore& mesh, std::uint32_t subsegment, Point from, Point to,
+                  std::optional<Shell> shell, double fraction) const;
 
   const std::vector<Subsegment>* subsegments_;
-  std::vector<Corner> corners_;  // per vertex of the domain
+  const std::vector<double>* curvatures_;  // see Domain
+  std::vector<Corner> corners_;            // per vertex of the domain
   // Per subsegment, at its ends a and b: of the smallest angle to another arm.
   std::vector<std::array<float, 2>> sines_;
   std::vector<Ends> by_ends_;         // by the lower end, then by the higher

@@ -119,7 +119,8 @@ class Cavity {
 
   // Grows the cavity of a point `p` of the segment that edge `edge` of `triangle` lies on. The ring
   // is closed if the segment has triangles on both sides; `far_end()` is then the ring's index of
-  // the segment's other end, and the ring starts at vertex[edge + 2].
+  // the segment's other end, and the ring starts at vertex[edge + 2]. If the segment is an arc, `p`
+  // is left of the edge, or beyond it where the domain ends.
   Growth grow_from_segment(std::uint32_t triangle, std::uint32_t edge, Point p) {
     const Triangle& t = triangles_[triangle];
     if (!owns(t.vertex[0]) || !owns(t.vertex[1]) || !owns(t.vertex[2])) return Growth::kNotOwned;
@@ -148,6 +149,42 @@ class Cavity {
       }
     }
     return growth;
+  }
+
+  // The same for an arc whose point is outside of the circumdisk of the triangle on the far side of
+  // the edge: that triangle stays, and the edge is part of the ring.
+  Growth grow_from_arc(std::uint32_t triangle, std::uint32_t edge, Point p) {
+    const Triangle& t = triangles_[triangle];
+    const HalfEdge across = t.neighbor[edge];
+    if (!owns(t.vertex[0]) || !owns(t.vertex[1]) || !owns(t.vertex[2]) ||
+        !owns(triangles_[triangle_of(across)].vertex[edge_of(across)]))
+      return Growth::kNotOwned;
+    const __m128d origin = _mm_set_pd(p.y, p.x);
+    const End a = end_at(t.vertex[kNext[edge]], origin);
+    const End b = end_at(t.vertex[kPrevious[edge]], origin);
+    begin_with(triangle);
+    begin_side(triangle, edge, b, a, origin, &stack_[0]);
+    begin_ring(b);
+    const Growth growth = grow(2, origin, false);
+    if (growth != Growth::kComplete) return growth;
+    far_end_ = ring_.size;
+    end_ring(a, b, across);
+    return growth;
+  }
+  // The same where the domain ends at the edge, and the point is beyond it: the cavity is empty.
+  Growth grow_beyond(std::uint32_t triangle, std::uint32_t edge, Point p) {
+    const Triangle& t = triangles_[triangle];
+    if (!owns(t.vertex[0]) || !owns(t.vertex[1]) || !owns(t.vertex[2])) return Growth::kNotOwned;
+    const __m128d origin = _mm_set_pd(p.y, p.x);
+    const End a = end_at(t.vertex[kNext[edge]], origin);
+    const End b = end_at(t.vertex[kPrevious[edge]], origin);
+    begin_with(triangle);  // whose region the star takes
+    cavity_size_ = 0;
+    foreign_ = 0;
+    begin_ring(b);
+    ring_.size = 0;
+    end_ring(b, a, half_edge(triangle, edge));
+    return Growth::kComplete;
   }
 
   const Ring& ring() const { return ring_; }
@@ -233,6 +270,17 @@ class Cavity {
     _mm_store_pd(&point.x, first.at);
     _mm_store_pd(&point.length2, _mm_set_sd(first.length2));
     point.vertex = first.vertex;
+  }
+
+  // Adds the edge from `start`, the last point of the ring, to `end`.
+  void end_ring(const End& start, const End& end, HalfEdge outside) {
+    RingPoint& point = ring_.points[++ring_.size];
+    _mm_store_pd(&point.x, end.at);
+    point.length2 = end.length2;
+    point.cross = cross(start, end);
+    point.vertex = end.vertex;
+    point.outside = outside;
+    point.constrained = 0;
   }
 
   // The two edges of a triangle beside the segment from `start` to `end`.

@@ -7,8 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/base/vector.h"
 #include "engine/refine/storage/mesh_store.h"
-#include "engine/refine/storage/vector.h"
 
 namespace weft {
 namespace {

@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "engine/base/geometry.h"
+#include "engine/base/vector.h"
 #include "engine/domain/domain.h"
 #include "engine/refine/storage/mesh_store.h"
-#include "engine/refine/storage/vector.h"
 #include "engine/size/size_spec.h"
 
 namespace weft {

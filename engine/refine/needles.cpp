@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 
+#include "engine/base/text.h"
+#include "engine/base/vector.h"
+#include "engine/domain/arcs/arc.h"
 #include "engine/domain/tolerance.h"
 #include "engine/refine/storage/mesh_store.h"
-#include "engine/refine/storage/vector.h"
 
 namespace weft {
 namespace {
@@ -16,6 +19,9 @@ namespace {
 // From this tangent on, arms are so far apart at the edges that refinement makes (tolerance.h) that
 // no point can be rounded across one.
 constexpr double kNeedleTangent = 0.125;
+
+// Arms whose tangents are so near to each other touch, in radians: as of contacts (arcs/chords.h).
+constexpr double kSameDirection = 1e-4;
 
 // How far apart arms must be, over the largest coordinate: 16 units in the last place.
 constexpr double kApart = 16 * 0x1p-53;
@@ -42,7 +48,7 @@ Result<Needles> Needles::find(const Domain& domain, const ExecutionContext& cont
   }
   Edges several;  // arms of corners with more
   for (const Edge& edge : *edges) {
-    const Edge back{edge.to, edge.from, edge.subsegment};
+    const Edge back{edge.to, edge.from, edge.subsegment, false};
     if (begins[edge.from] == kSeveral) several.push_back(edge);
     if (begins[edge.to] == kSeveral)
       several.push_back(back);
@@ -57,6 +63,7 @@ Result<Needles> Needles::find(const Domain& domain, const ExecutionContext& cont
     needles.add_fan(domain, Edges(first, last));
     first = last;
   }
+  if (needles.nested_) return tl::unexpected(*needles.nested_);
   std::sort(needles.ends_.begin(), needles.ends_.end(),
             [](const End& a, const End& b) { return a.subsegment < b.subsegment; });
   return needles;
@@ -75,7 +82,7 @@ Result<Needles::Edges> Needles::boundary(const Domain& domain, const ExecutionCo
       const Domain::Triangle& triangle = domain.triangles[t];
       for (std::uint32_t i = 0; i < 3; ++i) {
         round[count] = {triangle.vertex[kNext[i]], triangle.vertex[kPrevious[i]],
-                        triangle.subsegment[i]};
+                        triangle.subsegment[i], true};
         count += triangle.neighbor[i] == kNone;
       }
     }
@@ -103,8 +110,42 @@ void Needles::add(const Domain& domain, const Edge& arm, const Edge& other) {
   const double area = std::fabs(cross(u, v));
   const double along = dot(u, v);
   if (!(along > 0 && area < kNeedleTangent * along)) return;
+  if (!domain.curvatures.empty()) {
+    const bool turns_left = cross(u, v) > 0;
+    add_contact(domain, turns_left ? arm : other, turns_left ? other : arm);
+  }
   for (const Edge& a : {arm, other})
     ends_.push_back({a.subsegment, corner, apart_ * (along / area)});
+}
+
+// The parts of the left one, after as little as a quarter of its length, must keep left of the
+// chord of the right one, and so the other way round.
+void Needles::add_contact(const Domain& domain, const Edge& right, const Edge& left) {
+  if (right.domain_is_left || nested_) return;
+  const auto curvature = [&](const Edge& arm) {
+    const double forward = domain.curvatures[arm.subsegment];
+    return domain.subsegments[arm.subsegment].a == arm.from ? forward : -forward;
+  };
+  const auto direction = [&](const Edge& arm) {
+    const Point from = domain.vertices[arm.from], to = domain.vertices[arm.to];
+    return tangent_at_start(from, to, bulge_of(curvature(arm), length(to - from)));
+  };
+  const Vector u = direction(right), v = direction(left);
+  if (std::fabs(cross(u, v)) >= kSameDirection * length(u) * length(v)) return;
+  const double p = curvature(right), q = curvature(left);
+  if (p * q <= 0 ||
+      4 * std::min(std::fabs(p), std::fabs(q)) <= std::max(std::fabs(p), std::fabs(q)))
+    return;
+  const Point at = domain.vertices[right.from];
+  const auto segment = [&](const Edge& arm) {
+    return std::to_string(domain.subsegments[arm.subsegment].segment);
+  };
+  nested_ = Error{ErrorCode::kBadOption, "domain.segments[" + segment(right) + "]",
+                  "the arcs of segments " + segment(right) + " and " + segment(left) +
+                      " touch at (" + text(at.x) + ", " + text(at.y) +
+                      ") and curve the same way, and what is between them is not meshed: "
+                      "edges on them may cross there",
+                  at};
 }
 
 bool Needles::keep_apart(std::uint32_t subsegment, Point split) const {

@@ -338,6 +338,8 @@ class Refiner {
     const Point p = corners_.split_point(
         mesh_, {a, b}, {triangle.vertex[edge], across != kNone ? apex_of(across) : kNone},
         pieces > 1 ? std::ceil(pieces / 2) / pieces : 0.5);
+    if (corners_.curvature(corners_.subsegment(mesh_, a, b)) != 0) [[unlikely]]
+      return split_arc_at(t, edge, p);
     Outcome outcome = split_segment_at(t, edge, p);
     if (outcome != Outcome::kFlat) [[likely]]
       return outcome;
@@ -354,14 +356,79 @@ class Refiner {
     return outcome;
   }
 
+  // The same for an arc, whose point lies off its chord. The triangle on the far side of the chord
+  // stays if its circumdisk does not hold the point; else all is as for a straight segment.
+  //
+  // Where arcs touch, the chord of another one may hide the point from this one: then that one is
+  // split instead.
+  [[gnu::noinline]] Outcome split_arc_at(std::uint32_t t, std::uint32_t edge, Point p) {
+    const Outcome outcome = try_arc_at(t, edge, p);
+    if (outcome != Outcome::kFlat) return outcome;
+    const auto hiding = hiding_edge();
+    return hiding ? split_segment(triangle_of(*hiding), edge_of(*hiding)) : outcome;
+  }
+
+  // The edge on a segment that the last star's point lies beyond.
+  std::optional<HalfEdge> hiding_edge() const {
+    const Ring& ring = star_.ring();
+    for (std::uint32_t i = 0; i < ring.size; ++i) {
+      const RingPoint& end = ring.points[i + 1];
+      if (end.constrained == 0 || end.cross > 0) continue;
+      for (std::uint32_t k = 0; k < star_.cavity().size(); ++k) {
+        const std::uint32_t t = star_.cavity().triangles()[k];
+        for (std::uint32_t edge = 0; edge < 3; ++edge)
+          if (mesh_.triangles[t].vertex[kPrevious[edge]] == end.vertex &&
+              mesh_.triangles[t].vertex[kNext[edge]] == ring.points[i].vertex)
+            return half_edge(t, edge);
+      }
+    }
+    return std::nullopt;
+  }
+
+  Outcome try_arc_at(std::uint32_t t, std::uint32_t edge, Point p) {
+    const Triangle& triangle = mesh_.triangles[t];
+    const HalfEdge across = triangle.neighbor[edge];
+    if (!ownership_.owns(p)) return Outcome::kNotOwned;
+    ++exact_;
+    const double side = orientation_exact(mesh_.vertices[triangle.vertex[kNext[edge]]],
+                                          mesh_.vertices[triangle.vertex[kPrevious[edge]]], p);
+    if (side == 0) return split_segment_at(t, edge, p);
+    if (side > 0)
+      return across == kNone || holds(triangle_of(across), p)
+                 ? split_segment_at(t, edge, p)
+                 : split_segment_at(t, edge, p, star_.grow_from_arc(t, edge, p), across);
+    const HalfEdge far = half_edge(t, edge);
+    if (across == kNone)
+      return holds(t, p) ? split_segment_at(t, edge, p)
+                         : split_segment_at(t, edge, p, star_.grow_beyond(t, edge, p), far);
+    const std::uint32_t u = triangle_of(across);
+    const std::uint32_t j = edge_of(across);
+    if (!owns(mesh_.triangles[u])) return Outcome::kNotOwned;
+    return holds(t, p) ? split_segment_at(u, j, p)
+                       : split_segment_at(u, j, p, star_.grow_from_arc(u, j, p), far);
+  }
+
+  // Whether p lies in the open circumdisk of triangle t.
+  bool holds(std::uint32_t t, Point p) {
+    ++exact_;
+    const auto& v = mesh_.triangles[t].vertex;
+    return in_circle_exact(mesh_.vertices[v[0]], mesh_.vertices[v[1]], mesh_.vertices[v[2]], p);
+  }
+
   Outcome split_segment_at(std::uint32_t t, std::uint32_t edge, Point p) {
+    return split_segment_at(t, edge, p, star_.grow_from_segment(t, edge, p));
+  }
+
+  // `staying` is the edge as a triangle sees it that stays beside the new point, and loses its
+  // segment; kNone if there is none. REQUIRES: the star of p was grown from edge `edge` of t.
+  Outcome split_segment_at(std::uint32_t t, std::uint32_t edge, Point p, Growth growth,
+                           HalfEdge staying = kNone) {
+    if (growth == Growth::kNotOwned) return Outcome::kNotOwned;
     const Triangle& triangle = mesh_.triangles[t];
     const std::uint32_t a = triangle.vertex[kNext[edge]];
     const std::uint32_t b = triangle.vertex[kPrevious[edge]];
     const HalfEdge across = triangle.neighbor[edge];
     const bool closed = across != kNone;
-    if (star_.grow_from_segment(t, edge, p) == Growth::kNotOwned) return Outcome::kNotOwned;
-
     const Ring& ring = star_.ring();
     if (too_thin(mesh_, half_edge(t, edge), quality_.precision2) ||
         (closed && too_thin(mesh_, across, quality_.precision2)))
@@ -388,6 +455,8 @@ class Refiner {
     const std::uint32_t far_region = closed ? mesh_.triangles[triangle_of(across)].region : 0;
     retriangulate(slots_->add_segment_vertex(mesh_, p, subsegment), p, verdict.farthest2, closed);
     star_.mark_segment(mesh_, near_side, closed, near_region, far_region);
+    if (staying != kNone) [[unlikely]]
+      mesh_.triangles[triangle_of(staying)].flags &= ~(1u << edge_of(staying));
     return Outcome::kInserted;
   }
 

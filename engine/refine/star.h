@@ -46,6 +46,16 @@ class Star {
     return growth;
   }
 
+  Growth grow_from_arc(std::uint32_t triangle, std::uint32_t edge, Point p) {
+    Growth growth;
+    while ((growth = cavity_.grow_from_arc(triangle, edge, p)) == Growth::kOverflow)
+      [[unlikely]] enlarge();
+    return growth;
+  }
+  Growth grow_beyond(std::uint32_t triangle, std::uint32_t edge, Point p) {
+    return cavity_.grow_beyond(triangle, edge, p);
+  }
+
   const Ring& ring() const { return cavity_.ring(); }
   const Cavity<Ownership>& cavity() const { return cavity_; }
   // The badness of the triangle at each edge of the ring; there is room for all.

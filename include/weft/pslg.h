@@ -31,6 +31,7 @@ inline constexpr double kMinMagnitude = 1e-100;
 inline constexpr double kMaxMagnitude = 1e50;
 // So that vertices and triangles can be numbered in 32 bits.
 inline constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 28;
+inline constexpr double kMaxBulge = 1e6;  // all but 2.3e-4 degrees of a circle
 inline constexpr std::uint64_t kMaxSegments = std::uint64_t{1} << 30;
 
 struct Segment {
@@ -40,13 +41,14 @@ struct Segment {
   std::uint32_t area = kNone;  // index into Pslg::areas if it is part of the border of one
 };
 
-// Makes a segment an arc of a circle, which its edges in the mesh approach as they get shorter: they
-// turn by 60 degrees at most, their vertices lie on the arc, and no vertex lies between the two.
+// Makes a segment an arc of a circle, which its edges in the mesh approach as they get shorter:
+// they turn by 60 degrees at most, their vertices lie on the arc, and no vertex lies between the
+// two.
 struct Arc {
   std::uint32_t segment = 0;  // index into Pslg::segments; at most one arc each
-  // The tangent of a quarter of the angle by which the arc turns from `a` to `b`, as in DXF: 1 for a
-  // half circle, above 0 if it turns left. The centre is left of the line from a to b for 0 < bulge
-  // < 1. Magnitudes from 1e-9 to 1e3; 0 for a straight segment.
+  // The tangent of a quarter of the angle by which the arc turns from `a` to `b`, as in DXF: 1 for
+  // a half circle, above 0 if it turns left. The centre is left of the line from a to b for 0 <
+  // bulge < 1. At most kMaxBulge in magnitude; 0 for a straight segment.
   double bulge = 0;
 };
 

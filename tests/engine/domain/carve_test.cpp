@@ -36,7 +36,7 @@ void expect_error(const Pslg& pslg, ErrorCode code, const std::string& field,
 // The region that the triangle around p names; p must lie in the interior of one.
 Region region_at(const Domain& domain, Point p) {
   for (const Domain::Triangle& t : domain.triangles) {
-    const Domain one{domain.vertices, {}, {t}, {}, {}, {}, {}, {}};
+    const Domain one{domain.vertices, {}, {t}, {}, {}, {}, {}, {}, {}};
     if (cover(one, p) == 1) return domain.regions[t.region];
   }
   ADD_FAILURE() << "no triangle at (" << p.x << ", " << p.y << ")";
