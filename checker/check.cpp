@@ -7,9 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "checker/domain/arc_chains.h"
 #include "checker/domain/bent_domain.h"
 #include "checker/domain/domain_rules.h"
 #include "checker/domain/fill.h"
+#include "checker/domain/flattened.h"
 #include "checker/domain/joined_faces.h"
 #include "checker/domain/near_features.h"
 #include "checker/domain/simplified_domain.h"
@@ -17,6 +19,7 @@
 #include "checker/edges/listed_edges.h"
 #include "checker/geometry/arrangement.h"
 #include "checker/geometry/contacts.h"
+#include "checker/mesh/arc_rules.h"
 #include "checker/mesh/chain_ends.h"
 #include "checker/mesh/chains.h"
 #include "checker/mesh/coverage.h"
@@ -47,7 +50,6 @@ bool complete(const Contacts& contacts, Findings& findings) {
 }
 
 std::optional<NearFeatures> near_features(const Domain& domain, Findings& findings) {
-  if (!judge_domain(domain, findings)) return std::nullopt;
   const Contacts contacts = find_contacts(domain.points, domain.segments, kMaxContacts);
   if (!complete(contacts, findings)) return std::nullopt;
   return find_near_features(domain, contacts);
@@ -78,7 +80,9 @@ std::optional<FilledDomain> arrange(const BentDomain& bent, Findings& findings) 
 
 // What a mesh is compared with a domain by.
 struct Compared {
-  const Domain& domain;
+  const Domain& given;
+  const std::optional<ArcChains>& arcs;  // if the given domain has any
+  const Domain& domain;                  // without arcs
   const NearFeatures& near;
   const Mesh& mesh;
   const HalfEdges& half_edges;
@@ -95,18 +99,28 @@ struct Match {
   std::vector<std::uint32_t> faces{};                    // per triangle
 };
 
+void name_as_given(const StraightDomain& straight, BentDomain& bent) {
+  for (std::uint32_t& segment : bent.given) segment = straight.origin[segment];
+  for (BentDomain::Beside& beside : bent.beside) beside.segment = straight.origin[beside.segment];
+}
+
 Match match_with(const Compared& compared, bool no_overlap, const std::vector<Jumps>& jumps,
                  std::uint64_t listed_violations) {
-  const auto& [domain, near, mesh, half_edges, listed] = compared;
+  const auto& [given, arcs, domain, near, mesh, half_edges, listed] = compared;
   Match match{.findings = Findings(listed_violations)};
   match.bent = bend(domain, near, mesh, listed, jumps);
+  if (arcs) name_as_given(arcs->straight, match.bent);
   match.filled = arrange(match.bent, match.findings);
   if (!no_overlap || !match.filled) return match;
   const auto& [arrangement, roles, joined, needs] = *match.filled;
   match.skipped = find_skipped_edges(domain, match.bent, mesh, half_edges, listed);
   judge_skipped_edges(match.skipped, match.bent, mesh, match.findings);
   const InputPoints input_points(match.bent.domain, mesh);
-  judge_points(match.bent, domain.points.size(), arrangement, needs, input_points, match.findings);
+  if (arcs) {
+    judge_arc_crossings(*arcs, match.bent, arrangement, needs, mesh, match.findings);
+    judge_arc_gaps(*arcs, match.bent, arrangement, needs, mesh, listed, match.findings);
+  }
+  judge_points(match.bent, given.points.size(), arrangement, needs, input_points, match.findings);
   match.small_input_angles.emplace(
       mesh, listed,
       judge_chains(match.bent, arrangement, needs, mesh, listed, input_points, match.findings));
@@ -152,21 +166,40 @@ bool is_a_point(const Domain& domain, const SegmentEnds& ends) {
   return ends[0] < n && ends[1] < n && domain.points[ends[0]] == domain.points[ends[1]];
 }
 
+// But for arcs, which judge_domain refuses.
 Domain without_segments_that_are_points(Domain domain) {
+  std::vector<char> is_arc(domain.segments.size(), 0);
+  for (const Arc& arc : domain.arcs)
+    if (arc.segment < is_arc.size() && arc.bulge != 0) is_arc[arc.segment] = 1;
+  constexpr std::uint32_t kGone = 0xffffffffu;
+  std::vector<std::uint32_t> number(is_arc.size(), kGone);
   const bool have_markers = domain.markers.size() == domain.segments.size();
   const bool have_areas = domain.segment_areas.size() == domain.segments.size();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < domain.segments.size(); ++i) {
-    if (is_a_point(domain, domain.segments[i])) continue;
+    if (!is_arc[i] && is_a_point(domain, domain.segments[i])) continue;
+    number[i] = static_cast<std::uint32_t>(kept);
     domain.segments[kept] = domain.segments[i];
     if (have_markers) domain.markers[kept] = domain.markers[i];
     if (have_areas) domain.segment_areas[kept] = domain.segment_areas[i];
     ++kept;
   }
+  for (Arc& arc : domain.arcs)
+    if (arc.segment < number.size()) arc.segment = number[arc.segment];
+  std::erase_if(domain.arcs, [](const Arc& arc) { return arc.segment == kGone && arc.bulge == 0; });
   domain.segments.resize(kept);
   if (have_markers) domain.markers.resize(kept);
   if (have_areas) domain.segment_areas.resize(kept);
   return domain;
+}
+
+// What may be wrong with the domain itself.
+void judge_without_mesh(const Domain& domain, Findings& findings) {
+  const StraightDomain straight = flattened(domain);
+  if (!near_features(straight.domain, findings)) return;
+  BentDomain bent = unbent(straight.domain);
+  name_as_given(straight, bent);
+  arrange(bent, findings);
 }
 
 // The sizes are those of the domain as it was given: they may refer to segments that are points.
@@ -181,7 +214,7 @@ Report judge(const Domain& domain, const Domain& given, const Mesh& mesh,
   report.facts.triangles = mesh.triangles.size();
   report.facts.edges = mesh.edges.size();
 
-  const std::optional<NearFeatures> near = near_features(domain, findings);
+  const bool is_well_formed = judge_domain(domain, findings);
   std::optional<Match> match;
   QualityContext context;
 
@@ -193,11 +226,19 @@ Report judge(const Domain& domain, const Domain& given, const Mesh& mesh,
     const ListedEdges listed = find_listed_edges(mesh, *half_edges, findings);
     judge_delaunay(mesh, *half_edges, listed, findings);
     const bool no_overlap = judge_overlap(mesh, *half_edges, listed, findings);
+    std::optional<ArcChains> arcs;
+    if (is_well_formed && !domain.arcs.empty()) {
+      arcs = find_arc_chains(domain, mesh, listed);
+      judge_arc_chords(*arcs, mesh, listed, findings);
+    }
+    const Domain& straight = arcs ? arcs->straight.domain : domain;
+    std::optional<NearFeatures> near;
+    if (is_well_formed) near = near_features(straight, findings);
     if (near) {
       judge_named_points(domain, *near, mesh, findings);
       if (near->any) judge_chain_ends(domain, *near, mesh, listed, findings);
-      match.emplace(best_match({domain, *near, mesh, *half_edges, listed}, no_overlap,
-                               requirements.listed_violations));
+      match.emplace(best_match({domain, arcs, straight, *near, mesh, *half_edges, listed},
+                               no_overlap, requirements.listed_violations));
       findings.merge(match->findings);
     }
     if (match && match->small_input_angles)
@@ -209,7 +250,7 @@ Report judge(const Domain& domain, const Domain& given, const Mesh& mesh,
     judge_quality(given, mesh, requirements, context, report.facts, findings);
     judge_lengths(mesh, requirements, findings);
   } else {
-    if (near) arrange(unbent(domain), findings);  // for what may be wrong with the domain itself
+    if (is_well_formed) judge_without_mesh(domain, findings);
     if (findings.total(Rule::kStructure) > 0) skip({Rule::kOrientation});
     if (!sound) skip({Rule::kConformity});
     skip({Rule::kOverlap, Rule::kEdges, Rule::kChains, Rule::kPoints, Rule::kMarkers,
@@ -234,6 +275,8 @@ Report judge_simplified(const Domain& domain, const Domain& given, const Mesh& m
     report.not_judged.push_back(Rule::kSimplified);
     return report;
   }
+  if (!domain.arcs.empty())
+    return judge_simplified(flattened(domain).domain, given, mesh, requirements);
   const SimplifiedDomain simple = simplified_domain(domain, mesh, *half_edges);
   Report report = judge(simple.domain, given, simple.mesh, requirements);
   const BentDomain original = unbent(domain), own = unbent(simple.domain);

@@ -39,6 +39,14 @@ struct Area {
   bool is_hole = false;            // carves what it covers away, and has no other effect
 };
 
+// Makes a segment an arc of a circle.
+struct Arc {
+  std::uint32_t segment = 0;  // index into segments; at most one arc each
+  // The tangent of a quarter of the angle by which the arc turns from the segment's first point to
+  // its second; above 0 if it turns left.
+  double bulge = 0;
+};
+
 // Which faces of the segments' arrangement are meshed.
 enum class Fill : std::uint8_t {
   kSeeds,  // every bounded face without a hole seed
@@ -56,7 +64,8 @@ struct Domain {
   std::vector<RegionSeed> regions;
   std::vector<Area> areas;
   std::vector<std::uint32_t>
-      segment_areas;  // one per segment, or empty: 0, or 1 + an index into areas
+      segment_areas;      // one per segment, or empty: 0, or 1 + an index into areas
+  std::vector<Arc> arcs;  // all other segments are straight
   Fill fill = Fill::kSeeds;
   double snap = 0;  // features nearer than this must be merged (tolerance.h); at least 0
 };

@@ -23,7 +23,8 @@ enum class Rule : std::uint8_t {
   kConformity,   // an edge has at most two triangles, one on each side
   kOverlap,      // no point of the plane is covered twice
   kEdges,     // the edges listed are those mesh edges that lie on segments, the boundary among them
-  kChains,    // every segment that borders or lies in the domain is a chain of listed edges
+  kChains,    // every segment that borders or lies in the domain is a chain of listed edges; that
+              // of an arc is near it (mesh/arc_rules.h)
   kPoints,    // every input point in the domain is a vertex
   kMarkers,   // a listed edge carries the marker of its segment
   kCoverage,  // the triangles cover the domain, all of it and nothing else

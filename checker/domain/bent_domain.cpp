@@ -66,6 +66,7 @@ class Bender {
     link_touches();
     for (const std::array<Vec2, 2>& link : links_across_gaps(result_.domain))
       result_.links.push_back(link);
+    result_.given = result_.origin;
     return std::move(result_);
   }
 
@@ -254,6 +255,7 @@ BentDomain unbent(const Domain& domain) {
   result.links = links_across_gaps(domain);
   result.origin.resize(domain.segments.size());
   std::iota(result.origin.begin(), result.origin.end(), 0u);
+  result.given = result.origin;
   return result;
 }
 

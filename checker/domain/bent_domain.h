@@ -33,8 +33,11 @@ struct BentDomain {
   // the input's, in their order, with their markers; none for a segment whose ends have become one.
   Domain domain;
   std::vector<std::uint32_t> origin;  // per piece: the input's segment
-  std::vector<char> is_gap;           // per piece: whether the mesh seems to lack it
-  std::vector<char> is_tear;          // per piece: a gap so short that the mesh need not have it
+  // Per piece: the segment that violations name. That of the input, unless the input is itself
+  // derived from a domain with arcs (arc_chains.h).
+  std::vector<std::uint32_t> given;
+  std::vector<char> is_gap;   // per piece: whether the mesh seems to lack it
+  std::vector<char> is_tear;  // per piece: a gap so short that the mesh need not have it
   // Per piece: the uncertainty of its place because of merging; 0 if nothing is near.
   std::vector<double> slack;
   std::vector<std::array<Vec2, 2>> links;  // bound faces, but are not in the mesh

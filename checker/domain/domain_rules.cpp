@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "checker/text.h"
 
@@ -13,6 +14,35 @@ bool is_usable(double coordinate) {
   const double magnitude = std::fabs(coordinate);
   return magnitude == 0 || (magnitude >= kMinMagnitude && magnitude <= kMaxMagnitude);
 }
+
+bool is_bulge(double bulge) {
+  return std::fabs(bulge) <= 1e6;
+}
+
+namespace {
+
+void judge_arcs(const Domain& domain, Findings& findings) {
+  std::vector<char> is_arc(domain.segments.size(), 0);
+  for (std::size_t i = 0; i < domain.arcs.size(); ++i) {
+    const Arc& arc = domain.arcs[i];
+    const auto bad = [&](auto&&... parts) {
+      findings.add(Rule::kDomain, [&] { return say("arc ", i, parts...); });
+    };
+    if (arc.segment >= domain.segments.size()) {
+      bad(" is of segment ", arc.segment, ", but there are ", domain.segments.size());
+      continue;
+    }
+    if (is_arc[arc.segment]) bad(" is the second of segment ", arc.segment);
+    is_arc[arc.segment] = 1;
+    if (!is_bulge(arc.bulge)) bad(" has the bulge ", arc.bulge, ", of a magnitude beyond 1e6");
+    const auto [a, b] = domain.segments[arc.segment];
+    if (arc.bulge != 0 && a < domain.points.size() && b < domain.points.size() &&
+        domain.points[a] == domain.points[b])
+      bad(", of segment ", arc.segment, ", begins and ends at ", domain.points[a]);
+  }
+}
+
+}  // namespace
 
 bool judge_domain(const Domain& domain, Findings& findings) {
   const auto bad = [&](auto&&... parts) {
@@ -36,6 +66,7 @@ bool judge_domain(const Domain& domain, Findings& findings) {
     if (a >= domain.points.size() || b >= domain.points.size())
       bad("segment ", i, " joins points ", a, " and ", b, ", but there are ", domain.points.size());
   }
+  judge_arcs(domain, findings);
   if (!domain.segment_areas.empty() && domain.segment_areas.size() != domain.segments.size()) {
     bad(domain.segment_areas.size(), " areas for ", domain.segments.size(), " segments");
     return false;

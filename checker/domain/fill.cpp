@@ -204,7 +204,7 @@ std::vector<FaceRole> fill_faces(const BentDomain& bent, const Arrangement& arra
     findings.add(Rule::kDomain, [&] {
       const auto covers = arrangement.covers(*place.edge);
       return say(kind, " seed ", i, " at ", seed, " lies on ",
-                 covers.empty() ? "the end of a segment" : say("segment ", covers[0]),
+                 covers.empty() ? "the end of a segment" : say("segment ", bent.given[covers[0]]),
                  ": its face is ambiguous");
     });
     return nullptr;

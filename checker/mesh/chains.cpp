@@ -98,7 +98,7 @@ class ChainJudge {
   }
 
   SegmentsOfVertices take_segments() {
-    for (auto& [vertex, segment] : segments_) segment = bent_.origin[segment];
+    for (auto& [vertex, segment] : segments_) segment = bent_.given[segment];
     for (const BentDomain::Beside& beside : bent_.beside) {
       segments_.emplace_back(mesh_.edges[beside.edge].a, beside.segment);
       segments_.emplace_back(mesh_.edges[beside.edge].b, beside.segment);
@@ -250,7 +250,7 @@ class ChainJudge {
   void miss(std::uint32_t segment, std::uint32_t w) {
     if (is_optional_) return;
     findings_.add(Rule::kChains, [&] {
-      return say("segment ", bent_.origin[segment], ": no vertex where it meets others, near ",
+      return say("segment ", bent_.given[segment], ": no vertex where it meets others, near ",
                  arrangement_.vertices().at(w));
     });
   }
@@ -274,7 +274,7 @@ class ChainJudge {
     for (const Step& step : broken.steps)
       state_[step.edge] = std::max(state_[step.edge], State::kUnclear);
     findings_.add(Rule::kChains, [&] {
-      return say("segment ", bent_.origin[segment], ": between vertices ", from, " at ",
+      return say("segment ", bent_.given[segment], ": between vertices ", from, " at ",
                  mesh_.vertices[from], " and ", to, " at ", mesh_.vertices[to],
                  ", the chain of listed edges breaks off at vertex ", broken.farthest, " at ",
                  mesh_.vertices[broken.farthest]);

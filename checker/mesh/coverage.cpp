@@ -31,7 +31,7 @@ Vec2 centroid(const Mesh& mesh, std::uint32_t t) {
 std::string name_of_edge(const BentDomain& bent, const Arrangement& arrangement, std::uint32_t e) {
   const Arrangement::Edge& edge = arrangement.edges()[e];
   const auto covers = arrangement.covers(e);
-  const std::string segment = covers.empty() ? "a gap" : say("segment ", bent.origin[covers[0]]);
+  const std::string segment = covers.empty() ? "a gap" : say("segment ", bent.given[covers[0]]);
   return say(segment, " from ", arrangement.vertices().at(edge.u), " to ",
              arrangement.vertices().at(edge.v));
 }

@@ -48,7 +48,7 @@ void judge_skipped_edges(const std::vector<SkippedEdge>& skipped, const BentDoma
                          const Mesh& mesh, Findings& findings) {
   for (const SkippedEdge& edge : skipped)
     findings.add(Rule::kChains, [&] {
-      return say("segment ", bent.origin[edge.piece], ": the edge (", edge.a, ", ", edge.b,
+      return say("segment ", bent.given[edge.piece], ": the edge (", edge.a, ", ", edge.b,
                  ") from ", mesh.vertices[edge.a], " to ", mesh.vertices[edge.b],
                  " of its chain is not listed");
     });

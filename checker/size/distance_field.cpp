@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "checker/domain/flattened.h"
 #include "checker/size/segment_distance.h"
 #include "checker/text.h"
 
@@ -34,6 +35,7 @@ tl::expected<Distance, std::string> Distance::make(const DistanceField& field,
       return tl::unexpected(say("point ", i, " is ", points[i]));
   std::set<std::int32_t> missing(field.markers.begin(), field.markers.end());
   const std::set<std::int32_t> wanted = missing;
+  const std::vector<double> bulges = of_domain ? bulges_of(domain) : std::vector<double>{};
   std::vector<Piece> pieces;
   for (std::size_t s = 0; s < segments.size(); ++s) {
     const auto [a, b] = segments[s];
@@ -45,7 +47,11 @@ tl::expected<Distance, std::string> Distance::make(const DistanceField& field,
       if (!wanted.contains(marker)) continue;
       missing.erase(marker);
     }
-    pieces.push_back({points[a], points[b]});
+    Vec2 from = points[a];
+    if (of_domain)
+      for (const Vec2 p : flattened(from, points[b], bulges[s]))
+        pieces.push_back({std::exchange(from, p), p});
+    pieces.push_back({from, points[b]});
   }
   if (of_domain && !missing.empty())
     return tl::unexpected(say("no segment has the marker ", *missing.begin()));

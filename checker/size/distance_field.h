@@ -15,7 +15,8 @@
 namespace weft::check {
 
 // To the segments between `points`; if there are none, to the points themselves; if there are no
-// points, to the segments of the domain that have one of the markers; without markers, to all.
+// points, to the segments of the domain that have one of the markers; without markers, to all. Arcs
+// are polylines (domain/flattened.h).
 struct DistanceField {
   std::vector<std::int32_t> markers;
   std::vector<Vec2> points;

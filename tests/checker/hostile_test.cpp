@@ -30,6 +30,16 @@ TEST(Hostile, BadDomainsAreViolations) {
   EXPECT_TRUE(refused([](Domain& d) { d.points[1].y = -kInfinity; }));
   EXPECT_TRUE(refused([](Domain& d) { d.points[1].y = 1e200; }));
   EXPECT_TRUE(refused([](Domain& d) { d.markers.pop_back(); }));
+  EXPECT_FALSE(refused([](Domain& d) { d.arcs = {{0, 0}, {1, 1e3}, {2, -1e-300}}; }));
+  EXPECT_TRUE(refused([](Domain& d) { d.arcs = {{4, 1}}; }));
+  EXPECT_TRUE(refused([](Domain& d) { d.arcs = {{0, 1}, {0, 0.5}}; }));
+  EXPECT_TRUE(refused([](Domain& d) { d.arcs = {{0, kInfinity}}; }));
+  EXPECT_TRUE(refused([](Domain& d) { d.arcs = {{0, -1e7}}; }));
+  EXPECT_TRUE(refused([](Domain& d) { d.arcs = {{0, std::nan("")}}; }));
+  EXPECT_TRUE(refused([](Domain& d) {
+    d.segments[0][1] = d.segments[0][0];
+    d.arcs = {{0, 1}};
+  }));
   EXPECT_TRUE(refused([](Domain& d) { d.holes.push_back({kInfinity, 0}); }));
   EXPECT_TRUE(refused([](Domain& d) { d.regions.push_back({{std::nan(""), 0}, 1, 1}); }));
   EXPECT_TRUE(refused([](Domain& d) { d.regions.push_back({{1, 0.5}, 1, 0}); }));

@@ -181,6 +181,7 @@ check::Domain domain_of(const Pslg& pslg) {
   }
   for (const Area& area : pslg.areas)
     domain.areas.push_back({area.region, area.priority, area.max_area, area.is_hole});
+  for (const Arc& arc : pslg.arcs) domain.arcs.push_back({arc.segment, arc.bulge});
   domain.fill = pslg.fill == Fill::kSeeds     ? check::Fill::kSeeds
                 : pslg.fill == Fill::kEvenOdd ? check::Fill::kEvenOdd
                                               : check::Fill::kUnion;

@@ -95,6 +95,21 @@ TEST(CheckersDistanceField, IsToTheMarkersOfTheDomain) {
   EXPECT_EQ((*Distance::make({{0}, {}, {}}, domain))({9, 3}), 1);
 }
 
+TEST(CheckersDistanceField, ToAnArcIsThatToItsPolyline) {
+  Domain domain;
+  domain.points = {{3, 0}, {-3, 0}};
+  domain.segments = {{0, 1}, {1, 0}};
+  domain.markers = {1, 2};
+  domain.arcs = {{0, 1}};
+  const double inner = 3 * std::cos(std::numbers::pi / 180);
+  EXPECT_NEAR((*Distance::make({{1}, {}, {}}, domain))({0, 0}), inner, 1e-14);
+  EXPECT_NEAR((*Distance::make({{1}, {}, {}}, domain))({0, 5}), 2, 1e-14);
+  EXPECT_NEAR((*Distance::make({{2}, {}, {}}, domain))({0, 5}), 5, 1e-14);
+  EXPECT_NEAR((*Distance::make({{1}, {}, {}}, domain))({0, -4}), 5, 1e-14);
+  domain.arcs = {{0, -1}, {7, 1}};
+  EXPECT_NEAR((*Distance::make({{1}, {}, {}}, domain))({0, 5}), std::hypot(3, 5), 1e-14);
+}
+
 TEST(CheckersDistanceField, OfNonsenseIsRefused) {
   EXPECT_EQ(error_of({}), "there is nothing to measure to");
   EXPECT_EQ(error_of({{}, {{0, 0}, {1, 1}}, {{0, 2}}}), "segment 0 joins points 0 and 2 of 2");
