@@ -436,12 +436,10 @@ class Refiner {
     const std::uint32_t subsegment = corners_.subsegment(mesh_, a, b);
     if (!corners_.needles().keep_apart(subsegment, p)) return Outcome::kTooClose;
     const std::uint32_t near_side = closed ? star_.cavity().far_end() : ring.size;
-    RingVerdict verdict =
-        area_.judge(ring, 0, near_side, p, region_bound(t), quality_, star_.judged());
+    RingVerdict verdict = judge_side(0, near_side, p, region_bound(t));
     if (closed) {
       const RingVerdict far =
-          area_.judge(ring, near_side, ring.size, p, region_bound(triangle_of(across)), quality_,
-                      star_.judged());
+          judge_side(near_side, ring.size, p, region_bound(triangle_of(across)));
       verdict.flat |= far.flat;
       verdict.too_close |= far.too_close;
       verdict.farthest2 = std::max(verdict.farthest2, far.farthest2);
@@ -458,6 +456,15 @@ class Refiner {
     if (staying != kNone) [[unlikely]]
       mesh_.triangles[triangle_of(staying)].flags &= ~(1u << edge_of(staying));
     return Outcome::kInserted;
+  }
+
+  // The triangles of the star on one side of a segment: one alone, if there is an arc's chord.
+  RingVerdict judge_side(std::uint32_t first, std::uint32_t last, Point p, double bound) {
+    const Ring& ring = star_.ring();
+    if (last - first > 1) [[likely]]
+      return area_.judge(ring, first, last, p, bound, quality_, star_.judged());
+    return judge_(ring.points[first], ring.points[last], p, bound, quality_, area_,
+                  star_.judged()[first]);
   }
 
   // Replaces the cavity by the star of its point p, now a vertex. `farthest2` is the squared

@@ -27,22 +27,30 @@ class TriangleJudge {
   template <class AreaBound>
   Badness operator()(Point p, Point q, Point r, double region_bound, const QualityBounds& quality,
                      AreaBound& area) {
-    const Point ends[2] = {q, r};
-    ring_.size = 2;
-    for (std::uint32_t i = 0; i < 2; ++i) {
-      RingPoint& point = ring_.points[i];
-      point.x = ends[i].x - p.x;
-      point.y = ends[i].y - p.y;
-      point.length2 = point.x * point.x + point.y * point.y;
-    }
-    const RingPoint& a = ring_.points[0];
-    RingPoint& b = ring_.points[1];
+    const auto relative = [&](Point at) {
+      const double x = at.x - p.x, y = at.y - p.y;
+      return RingPoint{x, y, x * x + y * y, 0, 0, 0, 0};
+    };
+    const RingPoint a = relative(q);
+    RingPoint b = relative(r);
     b.cross = a.x * b.y - a.y * b.x;
-    ring_.points[2] = a;
+    Badness badness = kGood;
+    (*this)(a, b, p, region_bound, quality, area, badness);
+    return badness;
+  }
+
+  // The triangle of p and one edge of a ring around it, from a to b.
+  template <class AreaBound>
+  RingVerdict operator()(const RingPoint& a, const RingPoint& b, Point p, double region_bound,
+                         const QualityBounds& quality, AreaBound& area, Badness& badness) {
+    ring_.size = 2;
+    ring_.points[0] = ring_.points[2] = a;
+    ring_.points[1] = b;
     ring_.points[2].cross = b.cross;
-    std::array<Badness, 2> badness{};
-    area.judge(ring_, 0, 2, p, region_bound, quality, badness.data());
-    return badness[0];
+    std::array<Badness, 2> both{};
+    const RingVerdict verdict = area.judge(ring_, 0, 2, p, region_bound, quality, both.data());
+    badness = both[0];
+    return verdict;
   }
 
  private:

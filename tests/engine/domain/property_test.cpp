@@ -284,7 +284,7 @@ TEST(RandomAreas, AgreeWithRaysOnRandomPolygons) {
       ASSERT_EQ(domain ? cover(*domain, p) : 0, inside ? 1 : 0) << p.x << " " << p.y;
       if (!inside) continue;
       for (const Domain::Triangle& t : domain->triangles) {
-        if (cover(Domain{domain->vertices, {}, {t}, {}, {}, {}, {}, {}}, p) != 1) continue;
+        if (cover(Domain{domain->vertices, {}, {t}, {}, {}, {}, {}, {}, {}}, p) != 1) continue;
         const Region& region = domain->regions[t.region];
         EXPECT_EQ(region.max_area, bound);
         EXPECT_NE(std::find(regions.begin(), regions.end(), region.id), regions.end());

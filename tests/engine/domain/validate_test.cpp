@@ -89,6 +89,26 @@ TEST(Validate, RefusesAMaximumAreaThatIsNotFinite) {
                "the maximum area is inf; it must be finite and above 0");
 }
 
+TEST(Validate, NamesTheArcThatIsNone) {
+  const auto expect = [](std::vector<Arc> arcs, ErrorCode code, const std::string& field,
+                         const std::string& message) {
+    Pslg pslg = square();
+    pslg.points.push_back(pslg.points[0]);
+    pslg.segments.push_back({0, 4});
+    pslg.arcs = std::move(arcs);
+    expect_error(pslg, code, field, message);
+  };
+  expect({{0, 0.5}, {9, 1}}, ErrorCode::kIndexOutOfRange, "domain.arcs[1].segment",
+         "arc 1 is segment 9, but there are 5 segments");
+  expect({{1, 0.5}, {1, 0.5}}, ErrorCode::kBadOption, "domain.arcs[1]", "segment 1 has two arcs");
+  expect({{1, kNan}}, ErrorCode::kBadOption, "domain.arcs[0]",
+         "the bulge is nan; its magnitude must be at most 1000000");
+  expect({{1, -2e6}}, ErrorCode::kBadOption, "domain.arcs[0]",
+         "the bulge is -2000000; its magnitude must be at most 1000000");
+  expect({{4, 1}}, ErrorCode::kBadOption, "domain.arcs[0]",
+         "the arc of segment 4 ends where it begins, at (0, 0); a circle is two arcs or more");
+}
+
 TEST(Validate, RefusesASnapDistanceThatIsNoDistance) {
   Pslg pslg = square();
   for (const auto& [snap, text] :

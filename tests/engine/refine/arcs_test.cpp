@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// Meshes of domains whose segments are arcs. Every mesh is judged by the independent checker.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/base/arena.h"
+#include "engine/engine.h"
+#include "tests/engine/domain/arcs/arc_shapes.h"
+#include "tests/engine/parallel/parallel.h"
+#include "tests/engine/refine/sound.h"
+
+namespace weft {
+namespace {
+
+Pslg plate_with_holes(int across) {
+  Pslg pslg;
+  add_box(pslg, {0, 0}, {static_cast<double>(across), static_cast<double>(across)});
+  for (int i = 0; i < across; ++i) {
+    for (int j = 0; j < across; ++j) {
+      add_circle(pslg, {i + 0.5, j + 0.5}, 0.3);
+      pslg.holes.push_back({i + 0.5, j + 0.5});
+    }
+  }
+  return pslg;
+}
+
+Pslg two_circles(double radius, Point centre, double from = 0) {
+  Pslg pslg;
+  add_circle(pslg, {0, 0}, 1);
+  add_circle(pslg, centre, radius, 4, from);
+  return pslg;
+}
+
+double area_of(const CollectedMesh& collected) {
+  double area = 0;
+  for (const auto& [a, b, c] : collected.mesh.triangles) {
+    const auto &p = collected.mesh.vertices[a], &q = collected.mesh.vertices[b],
+               &r = collected.mesh.vertices[c];
+    area += 0.5 * ((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x));
+  }
+  return area;
+}
+
+struct Case {
+  std::string name;
+  Pslg pslg;
+  std::uint64_t edges, triangles;  // at most, at 20, 25 and 30 degrees
+};
+
+// Bounds are those of a sequential prototype, or what this engine makes.
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  Pslg circle;
+  add_circle(circle, {0, 0}, 1);
+  all.push_back({"circle", circle, 12, 12});
+  Pslg ring = two_circles(1.001, {0, 0});
+  ring.holes.push_back({0, 0});
+  all.push_back({"thin ring", ring, 8192, 8192});
+  all.push_back({"circle that touches from inside", two_circles(0.5, {0.5, 0}), 42, 66});
+  all.push_back({"circle that nearly fills another", two_circles(0.999, {0.001, 0}), 5562, 14357});
+  all.push_back({"circle that touches from outside", two_circles(1, {2, 0}, kPi), 42, 80});
+  all.push_back({"circles that cross", two_circles(0.8, {1, 0.1}), 60, 90});
+  Pslg half;
+  half.points = {{-1, 0}, {1, 0}};
+  add_arc(half, 1, 0, 1);
+  half.segments.push_back({0, 1});
+  all.push_back({"half disk", half, 8, 6});
+  Pslg sector;
+  sector.points = {{0, 0}, {1, 0}, {std::cos(0.05), std::sin(0.05)}};
+  sector.segments = {{0, 1}, {2, 0}};
+  add_arc(sector, 1, 2, std::tan(0.05 / 4));
+  all.push_back({"sector", sector, 11, 9});
+  Pslg lens;
+  lens.points = {{-1, 0}, {1, 0}};
+  add_arc(lens, 0, 1, std::tan(0.02 / 4));
+  add_arc(lens, 1, 0, std::tan(0.02 / 4));
+  all.push_back({"lens", lens, 40, 40});
+  Pslg tangent;
+  add_box(tangent, {-2, 0}, {2, 3});
+  add_circle(tangent, {0, 1}, 1, 4, 0.3);
+  tangent.holes.push_back({0, 1});
+  all.push_back({"hole that touches the border", tangent, 42, 60});
+  all.push_back({"plate", plate_with_holes(4), 260, 520});
+  return all;
+}
+
+TEST(Arcs, NamedDomainsHaveFewTriangles) {
+  for (const Case& c : cases()) {
+    for (const double angle : {20.0, 25.0, 30.0}) {
+      SCOPED_TRACE(c.name + " at " + std::to_string(angle));
+      const Sound made = sound({.pslg = c.pslg, .min_angle_deg = angle});
+      EXPECT_LE(made.summary.edges, c.edges);
+      EXPECT_LE(made.summary.triangles, c.triangles);
+      EXPECT_EQ(made.summary.unrefined.total(), made.summary.unrefined.small_input_angle);
+    }
+  }
+}
+
+TEST(Arcs, BoundariesFollowTheArcAsTheyGetFiner) {
+  Pslg pslg;
+  add_box(pslg, {-2, -2}, {2, 2});
+  add_circle(pslg, {0, 0}, 1, 2);
+  pslg.holes.push_back({0, 0});
+  for (const double edge : {0.2, 0.05, 0.0125}) {
+    const Sound made = sound({.pslg = pslg, .size = 0.433 * edge * edge});
+    EXPECT_NEAR(area_of(made.mesh), 16 - kPi, 0.35 * edge * edge) << edge;
+  }
+}
+
+TEST(Arcs, RandomDomainsKeepTheirBounds) {
+  for (std::uint64_t seed = 0; seed < (kSanitized ? 30 : 150); ++seed) {
+    for (const double angle : {20.0, 30.0}) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + " at " + std::to_string(angle));
+      sound({.pslg = random_arcs(seed), .min_angle_deg = angle});
+    }
+  }
+}
+
+TEST(Arcs, SizesAndSmoothingKeepToThem) {
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    MeshRequest request{.pslg = random_arcs(seed), .size = "0.01 + 0.01 * (x^2 + y^2)"};
+    request.sweeps = seed % 3;
+    sound(request);
+  }
+}
+
+TEST(Arcs, AMarkersLengthHoldsOnThem) {
+  Pslg pslg;
+  add_box(pslg, {-2, -2}, {2, 2});
+  add_circle(pslg, {0, 0}, 1, 3, 0.1, 7);
+  MeshRequest request{.pslg = pslg};
+  request.size.at = {{.marker = 7, .max_edge = 0.05}};
+  const Sound made = sound(request);
+  const auto on_circle = std::count_if(made.mesh.mesh.edges.begin(), made.mesh.mesh.edges.end(),
+                                       [](const auto& edge) { return edge.marker == 7; });
+  EXPECT_GE(on_circle, 126);
+  EXPECT_LE(on_circle, 200);
+}
+
+TEST(Arcs, SizesByDistanceSeeTheArc) {
+  Pslg pslg;
+  add_box(pslg, {-4, -4}, {4, 4});
+  add_circle(pslg, {0, 0}, 1, 2, 0, 7);
+  MeshRequest request{.pslg = pslg, .size = "0.001 + 0.05 * d^2"};
+  request.size.fields = {{.name = "d", .kind = DistanceSpec{.markers = {7}}}};
+  const Sound made = sound(request);
+  EXPECT_GT(made.summary.triangles, 3000U);
+}
+
+TEST(Arcs, MeshesAreTheSameOnAnyNumberOfThreads) {
+  MeshRequest request{.pslg = plate_with_holes(6), .size = 2e-4, .leaf_triangles = 3000};
+  const std::string alone = outcome(mesh_on(nullptr, request));
+  EXPECT_EQ(alone.find("error"), std::string::npos) << alone;
+  for (const unsigned threads : {1U, 2U, 3U, 8U}) {
+    Arena arena(threads);
+    EXPECT_EQ(outcome(mesh_on(&arena, request)), alone) << threads;
+  }
+}
+
+TEST(Arcs, NestedArcsWithNothingBetweenThemAreRefused) {
+  Pslg pslg = two_circles(0.7, {0.3, 0});
+  add_box(pslg, {-2, -2}, {2, 2});
+  pslg.holes.push_back({-0.9, 0});
+  const auto made = mesh_on(nullptr, {.pslg = pslg});
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, ErrorCode::kBadOption);
+  EXPECT_NE(made.error().message.find("touch at (1, 0) and curve the same way"), std::string::npos)
+      << made.error().message;
+}
+
+TEST(Arcs, ADomainWithThemIsNotSimplified) {
+  Pslg pslg;
+  add_circle(pslg, {0, 0}, 1);
+  MeshRequest request{.pslg = pslg, .size = 0.01};
+  request.simplify = 0.5;
+  const auto made = mesh_on(nullptr, request);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().field, "simplify");
+}
+
+}  // namespace
+}  // namespace weft
