@@ -85,6 +85,7 @@ def test_the_package_for_python_loads_the_library(prefix, tmp_path):
     assert {path.name for path in library.parent.iterdir()} == {
         "libweft.so.0", f"libweft.so.{program_help.version_of(prefix / 'bin/weft')}"}
     folder, = prefix.glob("lib/python3*/dist-packages")
+    assert not list(folder.rglob("carried"))
     printed = run("/usr/bin/python3", "-B", "-c",
                   "import sys, weft; print(len(weft.mesh(sys.argv[1]).triangles))", KEY,
                   env=CLEAN | {"PYTHONPATH": str(folder), "LD_LIBRARY_PATH": str(library.parent)})

@@ -7,6 +7,7 @@ import gc
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import threading
@@ -190,15 +191,27 @@ def test_ten_thousand_meshes_leave_no_memory_behind():
     assert make(10_000) < before + 40e6
 
 
-def test_without_a_library_it_says_what_to_do():
+def printed_by_package_in(folder):
+    """What is printed if the package there makes a mesh, with no help from the environment."""
     done = subprocess.run([sys.executable, "-B", "-c",
                            "import weft\n"
-                           "try: weft.mesh(weft.Domain(points=[[0,0],[1,0],[0,1]],"
-                           " segments=[[0,1],[1,2],[2,0]]))\n"
+                           "try: print(len(weft.mesh(weft.Domain(points=[[0,0],[1,0],[0,1]],"
+                           " segments=[[0,1],[1,2],[2,0]])).triangles))\n"
                            "except weft.MissingPackage as error: print(error)"],
-                          capture_output=True, text=True,
-                          env={k: v for k, v in os.environ.items() if k != "LD_LIBRARY_PATH"})
-    assert "libweft.so.0" in done.stdout and "weft.local()" in done.stdout, done.stderr
+                          capture_output=True, text=True, check=True,
+                          env={"PATH": "/usr/bin:/bin", "PYTHONPATH": str(folder)})
+    return done.stdout
+
+
+def test_the_package_of_the_build_finds_its_library():
+    assert int(printed_by_package_in(pathlib.Path(weft.__file__).parents[1])) >= 1
+
+
+def test_without_a_library_it_says_what_to_do(tmp_path):
+    shutil.copytree(pathlib.Path(weft.__file__).parent, tmp_path / "weft",
+                    ignore=shutil.ignore_patterns("carried"))
+    printed = printed_by_package_in(tmp_path)
+    assert "libweft.so.0" in printed and "weft.local()" in printed, printed
 
 
 def test_structures_are_those_of_the_header(tmp_path):

@@ -8,7 +8,8 @@ import pathlib
 import shutil
 
 FOLDER = pathlib.Path(__file__).parent / "carried"
-"""Holds bin/, and lib/ with what the programs load; exists only if the wheel carries it."""
+"""Holds bin/, and lib/ with what the programs load, if a wheel carries it; lib/ with libweft.so in the
+folder of a build; else it is not there."""
 
 
 def program(name: str) -> str | None:
