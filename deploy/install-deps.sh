@@ -24,7 +24,7 @@ build=(
   libsqlite3-dev libpq-dev prometheus-cpp-dev                            # its jobs and its metrics
   libcli11-dev nlohmann-json3-dev libcairo2-dev fonts-dejavu-core        # the command line
   libyaml-cpp-dev libpugixml-dev                                         # its batches
-  zlib1g-dev libshp-dev                                                  # .npz, shapefiles
+  zlib1g-dev liblzma-dev libshp-dev                                      # .npz, .vtu, shapefiles
   libgtest-dev libgmock-dev librapidcheck-dev                            # tests
 )
 geo=(libgdal-dev libproj-dev libmetis-dev)
@@ -34,7 +34,7 @@ weftd=(
   libfmt9 libatomic1 libssl3 libsqlite3-0 libpq5 libprometheus-cpp-core1.0 zlib1g
 )
 weft=(
-  libatomic1 libssl3 libcairo2 fonts-dejavu-core zlib1g libshp2
+  libatomic1 libssl3 libcairo2 fonts-dejavu-core zlib1g liblzma5 libshp2
   libyaml-cpp0.7 libpugixml1v5 libgdal32 libproj25 libmetis5
 )
 test=(

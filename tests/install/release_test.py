@@ -65,7 +65,7 @@ def test_the_recipe_for_conda_is_of_this_version_and_brings_what_is_loaded_later
     needs = recipe["requirements"]
     assert set(needs["run"]) - {"fonts-conda-forge"} <= set(needs["host"])
     later = "".join((BUILD / "loaded_later" / program).read_text() for program in ("weft", "weftd"))
-    assert {re.sub(r"^lib(?!pq)|[.]so.*", "", name) for name in later.split()} <= set(needs["run"])
+    assert {re.sub(r"^lib(?!pq|lzma)|[.]so.*", "", name) for name in later.split()} <= set(needs["run"])
 
 
 @pytest.fixture(scope="module")
@@ -94,10 +94,19 @@ def test_the_bill_has_what_the_programs_are_made_of(bill, program):
     names = {by_reference[reference]["name"] for reference in on}
     assert {"libc6", "libprotobuf-dev", "libgrpc-dev"} <= names
     assert ("libcgal-dev" in names) == (program == "weftd")
-    assert ("libcairo2" in names) == ("libproj25" in names) == (program == "weft")
-    assert ("libpq5" in names) == (program == "weftd")  # loaded when it is needed, as are those two
+    assert ("libcairo2" in names) == ("libproj25" in names) == ("liblzma5" in names) == (program == "weft")
+    assert ("libpq5" in names) == (program == "weftd")  # loaded when it is needed, as are those three
     loaded = components.packages_of(components.loaded_by(BUILD / program).values())
     assert {package.name for package in loaded} <= names
+
+
+@pytest.mark.parametrize("program", ["weft", "weftd"])
+def test_who_runs_a_program_installs_what_it_loads_later(program):
+    group = re.search(rf"^{program}=\(([^)]*)\)", (ROOT / "deploy/install-deps.sh").read_text(), re.M)[1]
+    later = (BUILD / "loaded_later" / program).read_text().split()
+    paths = components.loaded_by(BUILD / program)
+    packages = components.packages_of({paths[name] for name in later})
+    assert {package.name for package in packages} <= set(group.split())
 
 
 def test_the_bill_has_what_the_library_is_made_of(bill):

@@ -99,7 +99,7 @@ using DecodeStream = int(std::uint64_t* memory_limit, std::uint32_t flags, const
                          std::uint8_t* out, std::size_t* out_at, std::size_t out_size);
 
 Unpacked from_xz(std::string_view packed, std::uint64_t size) {
-  static const auto library = SharedLibrary::load("liblzma.so.5");
+  static const auto library = SharedLibrary::load(WEFT_LZMA_SONAME);
   if (!library) return tl::unexpected<std::string>("is packed by LZMA: " + library.error());
   auto* const decode = reinterpret_cast<DecodeStream*>(library->find("lzma_stream_buffer_decode"));
   if (decode == nullptr)
