@@ -108,9 +108,10 @@ Result<void> judge_by_domain(const CheckOptions& options, const check::Mesh& mes
 Result<void> judge_for_model(const CheckOptions& options, const MeshWithArrays& read,
                              check::Mesh mesh, Verdict& verdict) {
   MeshWriteOptions boundaries = options.writing;
-  if (auto found = find_open_boundaries(boundaries, read.mesh.names.markers); !found) return found;
-  // The file may say which boundaries are open, as ADCIRC's do.
-  if (!boundaries.opens_boundaries()) boundaries.open_boundaries = read.mesh.open_markers;
+  if (auto found =
+          find_open_boundaries(boundaries, read.mesh.names.markers, read.mesh.open_markers);
+      !found)
+    return found;
   print_warnings(open_boundary_warnings(markers_of(read.mesh.view()), boundaries.open_boundaries));
   const std::vector<double> depths = depths_of(read);
   if (!depths.empty() && !options.projection.wanted() && fits_the_globe(read.mesh))

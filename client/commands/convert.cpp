@@ -115,7 +115,7 @@ Result<ExitCode> convert_mesh(const ConvertOptions& options, const std::stop_tok
   turn_counter_clockwise(mesh);
   if (auto named = set_names(options.names.names, mesh.names); !named)
     return tl::unexpected(named.error());
-  if (auto found = output->find_markers(mesh.names.markers); !found)
+  if (auto found = output->find_markers(mesh.names.markers, mesh.open_markers); !found)
     return tl::unexpected(found.error());
   const auto [values, losses] = carried(read->arrays, options.writing.nodal);
   MeshView view = mesh.view();

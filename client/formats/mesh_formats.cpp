@@ -251,12 +251,15 @@ std::string lower_extension(const std::filesystem::path& path) {
   return lower_case(path.extension().string());
 }
 
-Result<void> find_open_boundaries(MeshWriteOptions& options, const NameTable& markers) {
+Result<void> find_open_boundaries(MeshWriteOptions& options, const NameTable& markers,
+                                  std::span<const std::int32_t> open_in_file) {
   for (const std::string& name : std::exchange(options.open_boundary_names, {})) {
     const auto marker = find_marker(name, markers);
     if (!marker) return tl::unexpected(marker.error());
     options.open_boundaries.push_back(*marker);
   }
+  if (!options.opens_boundaries())
+    options.open_boundaries.assign(open_in_file.begin(), open_in_file.end());
   return {};
 }
 

@@ -44,9 +44,10 @@ struct MeshWriteOptions {
   bool operator==(const MeshWriteOptions&) const = default;
 };
 
-// Adds the markers of `open_boundary_names` to `open_boundaries`. Error (kUsage): no marker has one
-// of the names.
-Result<void> find_open_boundaries(MeshWriteOptions& options, const NameTable& markers);
+// Adds the markers of `open_boundary_names` to `open_boundaries`; if the options open nothing,
+// those that the file of the mesh calls open. Error (kUsage): no marker has one of the names.
+Result<void> find_open_boundaries(MeshWriteOptions& options, const NameTable& markers,
+                                  std::span<const std::int32_t> open_in_file = {});
 
 // Which values at vertices a format carries: none, the bed (bed.h), or all.
 enum class CarriesValues { kNone, kBed, kAll };

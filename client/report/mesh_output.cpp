@@ -163,8 +163,9 @@ Result<std::unique_ptr<MeshSpool>> MeshOutput::make_spool() {
   return MeshSpool::create(files_.front().folder(), std::move(options));
 }
 
-Result<void> MeshOutput::find_markers(const NameTable& markers) {
-  return find_open_boundaries(options_.writing, markers);
+Result<void> MeshOutput::find_markers(const NameTable& markers,
+                                      std::span<const std::int32_t> open_in_file) {
+  return find_open_boundaries(options_.writing, markers, open_in_file);
 }
 
 Result<void> MeshOutput::set_domain(const Domain& domain,

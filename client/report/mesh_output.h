@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -66,8 +67,9 @@ class MeshOutput {
   // written as it arrives. Errors: a source of values at the vertices has none there
   // (check_nodal_sources).
   Result<void> set_domain(const Domain& domain, std::shared_ptr<const DomainProjection> projection);
-  // Makes markers of those that the options give by name. Error: that of find_marker.
-  Result<void> find_markers(const NameTable& markers);
+  // Decides which markers are open boundaries, as find_open_boundaries does.
+  Result<void> find_markers(const NameTable& markers,
+                            std::span<const std::int32_t> open_in_file = {});
   // REQUIRES: find_markers was called if the options give markers by name.
   // `mesh` is the spool's view; any view if nothing is drawn. Values at the vertices are sampled in
   // the plane in which it arrives, and written after those that it has, which REQUIRES other names

@@ -557,6 +557,24 @@ TEST_F(CommandLine, OpensABoundaryByItsDepth) {
       << out();
 }
 
+TEST_F(CommandLine, ConvertsAGridWithTheOpenBoundariesThatItHas) {
+  Words words = mesh_to("m.14");
+  words.insert(words.end(), {"--open-boundary", "3"});
+  ASSERT_EQ(run(words), 0) << err();
+  const std::string grid = contents_of(out_file("m.14"));
+  ASSERT_NE(grid.find("\n1 = Number of open boundaries\n"), std::string::npos);
+  ASSERT_EQ(run({"convert", out_file("m.14"), out_file("n.14")}), 0) << err();
+  EXPECT_EQ(contents_of(out_file("n.14")), grid);
+  EXPECT_EQ(out().find("WARNING"), std::string::npos) << out();
+  ASSERT_EQ(run({"convert", out_file("m.14"), out_file("m.vtu")}), 0) << err();
+  EXPECT_EQ(out().find("WARNING"), std::string::npos) << out();
+  // Those that are asked for replace them.
+  ASSERT_EQ(run({"convert", out_file("m.14"), out_file("n.14"), "--open-boundary", "7"}), 0)
+      << err();
+  EXPECT_NE(contents_of(out_file("n.14")).find("\n0 = Number of open boundaries\n"),
+            std::string::npos);
+}
+
 TEST_F(CommandLine, OpensNoBoundaryByADepthThatIsNotGiven) {
   const std::string needs =
       "--open-boundary deeper:50 needs the depths at the vertices: give --nodal depth=FILE";
