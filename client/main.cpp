@@ -13,6 +13,7 @@
 #include "client/cli/command_groups.h"
 #include "client/cli/flags.h"
 #include "client/cli/suggest.h"
+#include "client/formats/standard_streams.h"
 
 namespace {
 
@@ -49,6 +50,13 @@ void forget_variables_of_others(CLI::App& app, const std::string& called) {
       if (command->get_name() != called) option->envname("");
 }
 
+Result<ExitCode> run(const Chosen& chosen, const std::stop_token& stop) {
+  if (chosen.input != nullptr)
+    if (auto taken = take_standard_input(*chosen.input, stop); !taken)
+      return tl::unexpected(taken.error());
+  return chosen.run(stop);
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Graded, guaranteed-quality Delaunay meshes of planar domains.", "weft");
   app.set_version_flag("--version", "weft " WEFT_VERSION);
@@ -76,7 +84,7 @@ int run(int argc, char** argv) {
   }
 
   Signals signals;
-  const Result<ExitCode> result = chosen.run(signals.stop());
+  const Result<ExitCode> result = run(chosen, signals.stop());
   // What was complete before the signal could end it is no failure.
   if (signals.received() != 0 && !result) {
     if (!chosen.when_interrupted.empty())

@@ -12,6 +12,8 @@
 #include <random>
 #include <utility>
 
+#include "client/base/stream_copy.h"
+
 namespace weft::client {
 namespace {
 
@@ -138,8 +140,14 @@ Result<void> check_target(const std::filesystem::path& target) {
 
 Result<OutputFile> OutputFile::create(const std::filesystem::path& target, std::stop_token stop,
                                       MissingFolders missing) {
-  // Writes through a link: the link stays, and its file is replaced.
   std::error_code ignored;
+  if (target == kStandardOutput) {
+    std::filesystem::path folder = std::filesystem::temp_directory_path(ignored);
+    auto fd = open_unlinked(folder);
+    if (!fd) return unwritable(target, fd.error().message);
+    return OutputFile(target, std::move(folder), std::move(*fd), {}, std::move(stop));
+  }
+  // Writes through a link: the link stays, and its file is replaced.
   std::filesystem::path real = std::filesystem::is_symlink(target, ignored)
                                    ? std::filesystem::weakly_canonical(target, ignored)
                                    : target;
@@ -224,6 +232,18 @@ Result<void> OutputFile::finish() {
   return unwritable(target_, failure_ == ECANCELED ? "interrupted" : std::strerror(failure_));
 }
 
+std::uint64_t OutputFile::size() const {
+  struct stat status {};
+  return ::fstat(fd_.get(), &status) == 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
+}
+
+Result<void> OutputFile::copy_out() const {
+  if (::lseek(fd_.get(), 0, SEEK_SET) != 0) return unwritable(target_, std::strerror(errno));
+  if (const int problem = copy_stream(fd_.get(), STDOUT_FILENO, stop_))
+    return unwritable(target_, problem == ECANCELED ? "interrupted" : std::strerror(problem));
+  return {};
+}
+
 Result<void> OutputFile::give_name() {
   if (!name_.empty()) return {};
   const std::string self = "/proc/self/fd/" + std::to_string(fd_.get());
@@ -242,13 +262,16 @@ Result<void> commit(std::vector<OutputFile>& files) {
   for (OutputFile& file : files)
     if (auto done = file.finish(); !done) return done;
   NewFolders folders;
+  const auto has_name = [](const OutputFile& file) { return file.target_ != kStandardOutput; };
   for (const OutputFile& file : files) {
+    if (!has_name(file)) continue;
     if (auto made = folders.make(file.target_, file.folder_); !made) return made;
     if (auto ok = check_target(file.target_); !ok) return ok;
   }
   for (OutputFile& file : files)
-    if (auto named = file.give_name(); !named) return named;
+    if (auto named = has_name(file) ? file.give_name() : file.copy_out(); !named) return named;
   for (OutputFile& file : files) {
+    if (!has_name(file)) continue;
     if (::rename(file.name_.c_str(), file.target_.c_str()) != 0)
       return unwritable(file.target_, std::strerror(errno));
     file.name_.clear();

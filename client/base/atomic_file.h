@@ -5,7 +5,8 @@
 // system has no such files, under a hidden name that is removed again), so nothing is left
 // behind, whatever ends the process. `commit` then moves all files of a set into place: each
 // replaces an older file in one step, and no name appears before all contents are complete. A stop
-// that is requested before the first is moved undoes all; later it has no effect.
+// that is requested before the first is moved undoes all; later it has no effect. A file for
+// kStandardOutput is copied there by `commit`, when all are complete.
 //
 //   auto file = OutputFile::create("mesh.vtu", stop);
 //   file->put("<VTKFile>");
@@ -25,6 +26,7 @@
 #include <string_view>
 #include <vector>
 
+#include "client/base/data_path.h"
 #include "client/base/error.h"
 
 namespace weft::client {
@@ -98,6 +100,8 @@ class OutputFile {
   // Flushes; returns the first failure of any write, if there was one. A requested stop counts.
   Result<void> finish();
   const std::filesystem::path& target() const { return target_; }
+  // In bytes. REQUIRES: finished.
+  std::uint64_t size() const;
   // An existing folder, on the file system of the target: its own, or the nearest above it.
   const std::filesystem::path& folder() const { return folder_; }
 
@@ -109,6 +113,8 @@ class OutputFile {
              std::filesystem::path name, std::stop_token stop);
   char* reserve(std::size_t size);
   void flush();
+  // REQUIRES: finished, and the target is standard output.
+  Result<void> copy_out() const;
   // Gives the file a hidden name in `folder`, from which it can be moved.
   Result<void> give_name();
 

@@ -113,7 +113,8 @@ const std::map<std::string, Setter>& mesh_keys() {
         throw Wrong{n.Mark(), "input: " + unknown_domain_format(m.input).value().message};
     };
     all["output"] = [](const auto& n, auto& m, const auto& folder) {
-      m.output.files = paths_of(n, "output", folder);
+      const auto files = paths_of(n, "output", folder);
+      m.output.files.assign(files.begin(), files.end());
       for (const auto& file : m.output.files)
         if (const auto ok = check_writable(file, {}); !ok)
           throw Wrong{n.Mark(), "output: " + ok.error().message};

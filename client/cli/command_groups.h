@@ -8,6 +8,7 @@
 #include <stop_token>
 #include <string>
 
+#include "client/base/data_path.h"
 #include "client/base/error.h"
 
 namespace weft::client {
@@ -16,6 +17,7 @@ struct Chosen {
   std::function<Result<ExitCode>(std::stop_token)> run;
   // The message on SIGINT; empty: none.
   std::string when_interrupted = "interrupted, nothing was written";
+  const DataPath* input = nullptr;  // that may be standard input, which is taken in before `run`
 };
 
 void add_mesh_commands(CLI::App& app, Chosen& chosen);  // mesh, draw, check, convert, info

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <functional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "client/base/words.h"
 #include "client/call/request_rows.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/files/layer_rows.h"
@@ -30,7 +32,71 @@ void add_drawings(CLI::App& command, std::vector<std::filesystem::path>& drawing
       ->type_name("FILE");
 }
 
+// A flag for the format of files that were given before it.
+void add_format(CLI::App& command, const std::string& flag, const std::string& about,
+                bool (*is_known)(const DataPath&), const std::string& formats,
+                const std::function<void(const std::string&)>& set) {
+  command
+      .add_option(
+          flag,
+          [=](const CLI::results_t& texts) {
+            DataPath known;
+            known.format = lower_case(texts.front());
+            if (!known.format.starts_with('.')) known.format.insert(0, 1, '.');
+            if (!is_known(known))
+              throw CLI::ValidationError(flag, in_quotes(texts.front()) + " is none of " + formats);
+            set(known.format);
+            return true;
+          },
+          about)
+      ->type_name("FORMAT");
+}
+
+bool is_written(const DataPath& file) {
+  const MeshFormat* const format = mesh_format(file);
+  return format != nullptr && format->write != nullptr;
+}
+
 }  // namespace
+
+void add_input(CLI::App& command, const std::string& name, const std::string& about, DataPath& file,
+               Chosen& chosen) {
+  command
+      .add_option(
+          name,
+          [&file, &chosen](const CLI::results_t& texts) {
+            static_cast<std::filesystem::path&>(file) =
+                texts.front() == "-" ? kStandardInput : texts.front();
+            chosen.input = &file;
+            return true;
+          },
+          about + "; or - for standard input")
+      ->type_name("TEXT")
+      ->required();
+  add_format(command, "--from",
+             "Format of " + name + ", whatever its name is, such as poly; - needs it",
+             is_domain_path, domain_extensions() + ", " + read_mesh_extensions(),
+             [&file](const std::string& format) { file.format = format; });
+}
+
+void add_converted(CLI::App& command, DataPath& file) {
+  command
+      .add_option(
+          "OUT",
+          [&file](const CLI::results_t& texts) {
+            static_cast<std::filesystem::path&>(file) =
+                texts.front() == "-" ? kStandardOutput : texts.front();
+            return true;
+          },
+          "Mesh: " + written_mesh_extensions() + "; or domain: .poly; or - for standard output")
+      ->type_name("TEXT")
+      ->required();
+  add_format(
+      command, "--to", "Format of OUT, whatever its name is, such as vtu; - needs it",
+      [](const DataPath& f) { return is_written(f) || f.format == ".poly" || f.format == ".pb"; },
+      ".poly, .pb, " + written_mesh_extensions(),
+      [&file](const std::string& format) { file.format = format; });
+}
 
 void add_retries(CLI::App& command, std::uint32_t& retries) {
   add_row(command,
@@ -40,13 +106,12 @@ void add_retries(CLI::App& command, std::uint32_t& retries) {
           retries);
 }
 
-void add_domain_and_request_options(CLI::App& command, std::filesystem::path& input,
-                                    LayerOptions& layers, RequestOptions& request_options) {
-  command
-      .add_option("INPUT", input,
-                  "Domain: " + domain_extensions() +
-                      "; or a mesh, to mesh its domain anew: " + read_mesh_extensions())
-      ->required();
+void add_domain_and_request_options(CLI::App& command, DataPath& input, LayerOptions& layers,
+                                    RequestOptions& request_options, Chosen& chosen) {
+  add_input(command, "INPUT",
+            "Domain: " + domain_extensions() +
+                "; or a mesh, to mesh its domain anew: " + read_mesh_extensions(),
+            input, chosen);
   add_layers(command, layers);
   add_rows(command, request_rows(), request_options);
 }
@@ -96,10 +161,24 @@ void add_domain_drawing(CLI::App& command, std::vector<std::filesystem::path>& d
 
 void add_output(CLI::App& command, MeshOutputOptions& output) {
   command
-      .add_option("-o,--output", output.files,
-                  "File to write, may be repeated: " + written_mesh_extensions())
+      .add_option(
+          "-o,--output",
+          [&output](const CLI::results_t& texts) {
+            for (const std::string& text : texts)
+              output.files.emplace_back(text == "-" ? kStandardOutput : text);
+            return true;
+          },
+          "File to write, or - for standard output, may be repeated: " + written_mesh_extensions())
+      ->expected(CLI::detail::expected_max_vector_size)
       ->allow_extra_args(false)
       ->type_name("FILE");
+  add_format(command, "--to",
+             "Format of the file to write, whatever its name is, such as vtu; -o - needs it",
+             is_written, written_mesh_extensions(), [&output](const std::string& format) {
+               if (output.files.size() > 1)
+                 throw CLI::ValidationError("--to", "is the format of one file: give one -o");
+               for (DataPath& file : output.files) file.format = format;
+             });
   add_writing(command, output.writing);
   add_drawings(command, output.drawings);
   add_rows(command, drawing_rows_of_new_mesh(), output.drawing);
@@ -112,7 +191,8 @@ void refuse_idle_flags(const CLI::App& command, std::span<char* const> words) {
     std::string flag;
     std::string other;
   };
-  std::vector<Pair> needs = {{"--tls", "--server"},
+  std::vector<Pair> needs = {{"--to", "--output"},
+                             {"--tls", "--server"},
                              {"--tls-ca", "--server"},
                              {"--tls-cert", "--server"},
                              {"--tls-key", "--server"},

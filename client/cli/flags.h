@@ -11,6 +11,7 @@
 
 #include "client/base/option_row.h"
 #include "client/call/mesh_request.h"
+#include "client/cli/command_groups.h"
 #include "client/formats/files/layer_options.h"
 #include "client/geo/projection_options.h"
 #include "client/report/mesh_output.h"
@@ -50,9 +51,16 @@ void add_timeout(CLI::App& command, Seconds& seconds, const std::string& about,
 
 void add_retries(CLI::App& command, std::uint32_t& retries);
 
+// The file that the command reads, or `-`, and --from, its format.
+void add_input(CLI::App& command, const std::string& name, const std::string& about, DataPath& file,
+               Chosen& chosen);
+
+// The file that `weft convert` writes, or `-`, and --to, its format.
+void add_converted(CLI::App& command, DataPath& file);
+
 // INPUT, and what its mesh must satisfy.
-void add_domain_and_request_options(CLI::App& command, std::filesystem::path& input,
-                                    LayerOptions& layers, RequestOptions& request_options);
+void add_domain_and_request_options(CLI::App& command, DataPath& input, LayerOptions& layers,
+                                    RequestOptions& request_options, Chosen& chosen);
 
 // What of the domain's file is read.
 void add_layers(CLI::App& command, LayerOptions& layers);

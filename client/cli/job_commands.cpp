@@ -82,8 +82,8 @@ void bind(CLI::App& command, Result<ExitCode> (*run)(const Options&, std::stop_t
           const std::shared_ptr<Options>& options, const char* when_interrupted, Chosen& chosen) {
   command.callback([=, &command, &chosen] {
     look_at_variables(command, *options);
-    chosen = {[=](std::stop_token stop) { return run(*options, std::move(stop)); },
-              when_interrupted};
+    chosen.run = [=](std::stop_token stop) { return run(*options, std::move(stop)); };
+    chosen.when_interrupted = when_interrupted;
   });
 }
 
@@ -100,8 +100,8 @@ void add_submit(CLI::App& app, Chosen& chosen) {
   CLI::App& command =
       add_command(app, "submit", "Submit a domain to a server as a job, and print the job's id",
                   kSubmitExamples);
-  add_domain_and_request_options(command, options->input, options->layers,
-                                 options->request_options);
+  add_domain_and_request_options(command, options->input, options->layers, options->request_options,
+                                 chosen);
   add_calls(command, options->calls);
   command
       .add_option("--request-id", options->request_id,

@@ -125,7 +125,8 @@ void add_mesh(CLI::App& app, Chosen& chosen) {
   MeshOptions& options = kept->options;
   CLI::App& mesh = *app.add_subcommand("mesh", "Mesh a domain and write the mesh to files");
   mesh.footer(kMeshExamples);
-  add_domain_and_request_options(mesh, options.input, options.layers, options.request_options);
+  add_domain_and_request_options(mesh, options.input, options.layers, options.request_options,
+                                 chosen);
   add_server_flags(mesh, options.server, WithoutServer::kPrivate);
   add_timeout(mesh, options.timeout_seconds, "Maximum time of the whole call, in seconds", "none");
   add_retries(mesh, options.retries);
@@ -153,7 +154,7 @@ void add_draw(CLI::App& app, Chosen& chosen) {
   const auto kept = std::make_shared<DrawMeshOptions>();
   CLI::App& draw = *app.add_subcommand("draw", "Draw a mesh");
   draw.footer(kDrawExamples);
-  draw.add_option("MESH", kept->mesh, "Mesh: " + read_mesh_extensions())->required();
+  add_input(draw, "MESH", "Mesh: " + read_mesh_extensions(), kept->mesh, chosen);
   draw.add_option("-o,--output", kept->drawings,
                   "Drawing to write, may be repeated: .png, .svg, .pdf")
       ->required()
@@ -176,7 +177,7 @@ void add_check(CLI::App& app, Chosen& chosen) {
   CheckOptions& options = *kept;
   CLI::App& check = *app.add_subcommand("check", "Check a mesh with the independent checker");
   check.footer(kCheckExamples);
-  check.add_option("MESH", options.mesh, "Mesh: " + read_mesh_extensions())->required();
+  add_input(check, "MESH", "Mesh: " + read_mesh_extensions(), options.mesh, chosen);
   check
       .add_option("--domain", options.domain,
                   "Domain that was meshed: " + domain_extensions() + ". Required without --for")
@@ -231,13 +232,10 @@ void add_convert(CLI::App& app, Chosen& chosen) {
   const auto kept = std::make_shared<ConvertOptions>();
   CLI::App& convert = *app.add_subcommand("convert", "Write a mesh or a domain in another format");
   convert.footer(kConvertExamples);
-  convert
-      .add_option("IN", kept->input,
-                  "Mesh: " + read_mesh_extensions() + "; or domain: " + domain_extensions())
-      ->required();
-  convert
-      .add_option("OUT", kept->output, "Mesh: " + written_mesh_extensions() + "; or domain: .poly")
-      ->required();
+  add_input(convert, "IN",
+            "Mesh: " + read_mesh_extensions() + "; or domain: " + domain_extensions(), kept->input,
+            chosen);
+  add_converted(convert, kept->output);
   add_layers(convert, kept->layers);
   add_names(convert, kept->names);
   add_writing(convert, kept->writing);
@@ -252,7 +250,7 @@ void add_info(CLI::App& app, Chosen& chosen) {
   const auto kept = std::make_shared<InfoOptions>();
   CLI::App& info = *app.add_subcommand("info", "Describe a mesh or a domain");
   info.footer(kInfoExamples);
-  info.add_option("FILE", kept->file, "Mesh or domain")->required();
+  add_input(info, "FILE", "Mesh or domain", kept->file, chosen);
   info.add_flag("--quality", kept->quality,
                 "Print histograms of the angles, the aspect ratios and, with a size, the areas "
                 "over their bounds; and the worst triangles. For meshes only");
@@ -269,9 +267,9 @@ void add_lint(CLI::App& app, Chosen& chosen) {
   LintOptions& options = *kept;
   CLI::App& lint = *app.add_subcommand("lint", "List all faults of a domain");
   lint.footer(kLintExamples);
-  lint.add_option("FILE", options.file,
-                  "Domain: " + domain_extensions() + "; or a mesh: " + read_mesh_extensions())
-      ->required();
+  add_input(lint, "FILE",
+            "Domain: " + domain_extensions() + "; or a mesh: " + read_mesh_extensions(),
+            options.file, chosen);
   add_layers(lint, options.layers);
   add_row(
       lint,

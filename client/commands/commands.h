@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <stop_token>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "checker/models/model_rules.h"
+#include "client/base/data_path.h"
 #include "client/base/error.h"
 #include "client/batch/quality_gate.h"
 #include "client/call/connect_options.h"
@@ -22,7 +24,7 @@
 namespace weft::client {
 
 struct MeshOptions {
-  std::filesystem::path input;
+  DataPath input;
   LayerOptions layers;
   MeshOutputOptions output;
   RequestOptions request_options;
@@ -53,7 +55,7 @@ struct BatchOptions {
 Result<ExitCode> run_batch(const BatchOptions& options, std::stop_token stop);
 
 struct DrawMeshOptions {
-  std::filesystem::path mesh;
+  DataPath mesh;
   std::vector<std::filesystem::path> drawings;
   DrawOptions drawing;
   RequestOptions size;  // the bound on areas; only size_rows are read
@@ -64,7 +66,7 @@ struct DrawMeshOptions {
 Result<ExitCode> run_draw(const DrawMeshOptions& options, std::stop_token stop);
 
 struct CheckOptions {
-  std::filesystem::path mesh;
+  DataPath mesh;
   std::filesystem::path domain;  // empty: the mesh is judged for a model alone
   LayerOptions layers;
   RequestOptions size;  // how large triangles may be; the rest is not looked at
@@ -82,8 +84,8 @@ struct CheckOptions {
 Result<ExitCode> run_check(const CheckOptions& options);
 
 struct ConvertOptions {
-  std::filesystem::path input;
-  std::filesystem::path output;
+  DataPath input;
+  DataPath output;
   LayerOptions layers;   // of a domain
   RequestOptions names;  // of a mesh; only name_rows are read
   MeshWriteOptions writing;
@@ -93,7 +95,7 @@ struct ConvertOptions {
 Result<ExitCode> run_convert(const ConvertOptions& options, std::stop_token stop);
 
 struct InfoOptions {
-  std::filesystem::path file;
+  DataPath file;
   LayerOptions layers;   // of a domain
   bool quality = false;  // of a mesh: histograms and the worst triangles
   RequestOptions size;   // the bound on areas; only size_rows are read
@@ -103,7 +105,7 @@ struct InfoOptions {
 Result<ExitCode> run_info(const InfoOptions& options);
 
 struct LintOptions {
-  std::filesystem::path file;
+  DataPath file;
   LayerOptions layers;
   std::optional<double> snap;
   PolygonFill fill = PolygonFill::kUnion;
@@ -124,7 +126,7 @@ struct ServerOptions {
 Result<ExitCode> run_health(const ServerOptions& options, std::stop_token stop);
 Result<ExitCode> run_server_info(const ServerOptions& options, std::stop_token stop);
 
-// Writes to stdout; returns an error if that fails.
-Result<ExitCode> print(const std::string& text);
+// Writes to standard output, or to standard error; returns an error if that fails.
+Result<ExitCode> print(const std::string& text, std::FILE* to = stdout);
 
 }  // namespace weft::client

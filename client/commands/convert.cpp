@@ -15,6 +15,7 @@
 #include "client/formats/domain_formats.h"
 #include "client/formats/domains/seeded.h"
 #include "client/formats/mesh_formats.h"
+#include "client/formats/standard_streams.h"
 #include "client/formats/triangle/triangle_poly.h"
 #include "client/report/json_line.h"
 #include "client/report/marker_warnings.h"
@@ -24,11 +25,11 @@ namespace {
 
 constexpr const char* kMessage = ".pb";  // weft.v1.Domain
 
-bool is_mesh_input(const std::filesystem::path& path) {
+bool is_mesh_input(const DataPath& path) {
   return is_domain_path(path) && !is_plain_domain_path(path);
 }
 
-bool is_mesh_output(const std::filesystem::path& path) {
+bool is_mesh_output(const DataPath& path) {
   const MeshFormat* format = mesh_format(path);
   return format != nullptr && format->write != nullptr;
 }
@@ -136,14 +137,17 @@ Result<ExitCode> convert_mesh(const ConvertOptions& options, const std::stop_tok
   add(WarningKind::kOpenBoundary,
       open_boundary_warnings(markers_of(view), output->options().writing.open_boundaries),
       warnings);
+  std::FILE* const to = output->options().text_stream();
   if (options.json)
     return print(json_line({{"triangles", view.triangle_count()},
                             {"vertices", view.vertex_count()},
-                            {"warnings", warnings_json(warnings)}}));
+                            {"warnings", warnings_json(warnings)}}),
+                 to);
   if (options.quiet) return ExitCode::kOk;
   return print(with_separators(view.triangle_count()) + " triangles, " +
-               with_separators(view.vertex_count()) + " vertices\n" + output->text(none) +
-               warnings_text(warnings));
+                   with_separators(view.vertex_count()) + " vertices\n" + output->text(none) +
+                   warnings_text(warnings),
+               to);
 }
 
 Json domain_json(const Domain& domain, const std::optional<CoordinateSystem>& system) {
@@ -195,28 +199,32 @@ Result<ExitCode> convert_domain(const ConvertOptions& options, std::stop_token s
          .file = options.output.string(),
          .text = "does not say that its coordinates are longitudes and latitudes (" + system->name +
                  "); mesh it with --lonlat"});
-  if (options.json) return print(json_line(domain_json(*domain, system)));
+  std::FILE* const to = options.output == kStandardOutput ? stderr : stdout;
+  if (options.json) return print(json_line(domain_json(*domain, system)), to);
   if (options.quiet) return ExitCode::kOk;
   return print(with_separators(domain->points.size()) + " points, " +
-               with_separators(domain->segments.size()) + " segments, " +
-               with_separators(domain->holes.size()) + " holes, " +
-               with_separators(domain->regions.size()) + " regions" +
-               (is_message ? ", " + with_separators(domain->areas.size()) + " areas" : "") + "\n" +
-               system_text(system) + "wrote " + options.output.string() + "\n" +
-               warnings_text(domain->warnings));
+                   with_separators(domain->segments.size()) + " segments, " +
+                   with_separators(domain->holes.size()) + " holes, " +
+                   with_separators(domain->regions.size()) + " regions" +
+                   (is_message ? ", " + with_separators(domain->areas.size()) + " areas" : "") +
+                   "\n" + system_text(system) + "wrote " + options.output.string() + "\n" +
+                   warnings_text(domain->warnings),
+               to);
 }
 
 }  // namespace
 
 Result<ExitCode> run_convert(const ConvertOptions& options, std::stop_token stop) {
   const std::string extension = lower_extension(options.output);
+  if (auto ok = check_has_format(options.output, ".poly, .pb, " + written_mesh_extensions()); !ok)
+    return tl::unexpected(ok.error());
   const bool to_domain = extension == ".poly" || extension == kMessage;
   if (!is_domain_path(options.input)) return unknown_domain_format(options.input);
   if (to_domain) return convert_domain(options, std::move(stop));
   if (!is_mesh_output(options.output))
     return fail(ExitCode::kUsage,
                 options.output.string() + ": the extension " +
-                    in_quotes(options.output.extension().string()) +
+                    in_quotes(extension_of(options.output)) +
                     " is not that of a domain that is written: .poly, .pb; nor of a "
                     "mesh that is written: " +
                     written_mesh_extensions());

@@ -54,9 +54,10 @@ Result<ExitCode> run_fetch(const FetchOptions& options, std::stop_token stop) {
   }
   const auto report = download(*server, *job, input, *output, progress, times);
   if (!report) return tl::unexpected(report.error());
-  if (options.json) return print(json_line(download_json(*job, *report, times)));
+  std::FILE* const to = options.output.text_stream();
+  if (options.json) return print(json_line(download_json(*job, *report, times)), to);
   return options.quiet ? ExitCode::kOk
-                       : print(mesh_text(*report, times) + output->text(report->summary));
+                       : print(mesh_text(*report, times) + output->text(report->summary), to);
 }
 
 }  // namespace weft::client

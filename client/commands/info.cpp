@@ -135,7 +135,7 @@ std::string describe(const Mesh& mesh) {
 }  // namespace
 
 Result<ExitCode> run_info(const InfoOptions& options) {
-  const std::filesystem::path& file = options.file;
+  const DataPath& file = options.file;
   if (is_plain_domain_path(file)) {
     if (options.quality)
       return fail(ExitCode::kUsage, file.string() + ": is a domain; --quality is for meshes");

@@ -35,8 +35,7 @@ void warn_of_degrees(const std::filesystem::path& path, Domain& domain) {
                "ground"});
 }
 
-Result<InputDomain> read_input_domain(const std::filesystem::path& path,
-                                      const RequestOptions& wanted,
+Result<InputDomain> read_input_domain(const DataPath& path, const RequestOptions& wanted,
                                       const ProjectionOptions& options, const LayerOptions& layers,
                                       const std::function<void(const Domain&)>& as_read) {
   const std::string& grid = wanted.edge.empty() ? wanted.size : wanted.edge;
@@ -54,7 +53,8 @@ Result<InputDomain> read_input_domain(const std::filesystem::path& path,
     return tl::unexpected(named.error());
   fill_polygons(*domain, wanted.fill);
   if (as_read) as_read(*domain);
-  InputDomain input{std::move(*domain), nullptr, layers.strict ? path : std::filesystem::path()};
+  InputDomain input{std::move(*domain), nullptr,
+                    layers.strict ? std::filesystem::path(path) : std::filesystem::path()};
   if (!options.wanted()) {
     warn_of_degrees(path, input.domain);
     return input;

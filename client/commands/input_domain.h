@@ -30,8 +30,7 @@ struct InputDomain {
 // lies in a plane; kUsage if the size is the path of a grid, but the projection has no name that
 // the grid could have been made for. `as_read`, if any, is called with the domain before it is
 // projected. A domain of degrees that is not projected has a warning.
-Result<InputDomain> read_input_domain(const std::filesystem::path& path,
-                                      const RequestOptions& wanted,
+Result<InputDomain> read_input_domain(const DataPath& path, const RequestOptions& wanted,
                                       const ProjectionOptions& options, const LayerOptions& layers,
                                       const std::function<void(const Domain&)>& as_read = {});
 

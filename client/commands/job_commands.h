@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "client/base/data_path.h"
 #include "client/base/error.h"
 #include "client/call/job_server.h"
 #include "client/call/mesh_request.h"
@@ -19,7 +20,7 @@
 namespace weft::client {
 
 struct SubmitOptions {
-  std::filesystem::path input;
+  DataPath input;
   LayerOptions layers;
   RequestOptions request_options;
   MeshOutputOptions output;  // needs `wait`

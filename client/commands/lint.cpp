@@ -82,7 +82,7 @@ Result<ExitCode> run_lint(const LintOptions& options, std::stop_token stop) {
     return tl::unexpected(ok.error());
   fill_polygons(*domain, options.fill);
   const auto lint = lint_domain(
-      *domain, options.file.string(),
+      *domain, options.file,
       {.snap = options.snap.value_or(0), .lonlat = options.lonlat, .ignored = options.ignored});
   if (!lint) return tl::unexpected(lint.error());
   if (auto written = write_files(options, *domain, *lint, stop); !written)

@@ -47,7 +47,7 @@ class Picture {
 // What cannot be judged, the server will refuse.
 void print_faults(const Domain& domain, const MeshOptions& options) {
   const double snap = options.request_options.snap.value_or(0);
-  const auto lint = lint_domain(domain, options.input.string(),
+  const auto lint = lint_domain(domain, options.input,
                                 {.snap = std::isfinite(snap) && snap > 0 ? snap : 0,
                                  .lonlat = options.output.projection.wanted()});
   if (lint) std::fputs(lint_text(*lint).c_str(), stderr);
@@ -70,7 +70,8 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
   auto request_options = with_size(options.request_options, domain, input->projection.get());
   if (!request_options) return tl::unexpected(request_options.error());
   std::optional<Picture> picture;
-  if (!options.no_picture && !options.quiet && !options.json)
+  std::FILE* const text_stream = options.output.text_stream();
+  if (!options.no_picture && !options.quiet && !options.json && text_stream == stdout)
     if (const auto terminal = find_picture_terminal()) {
       picture.emplace(*terminal,
                       options.output.projection.wanted() ? DrawnUnit::kMetres : DrawnUnit::kNone);
@@ -109,13 +110,13 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
     Json json = mesh_json(*report, times);
     if (!domain.region_values.empty())
       json["region_values"] = region_values_json(domain.region_values);
-    return print(json_line(json));
+    return print(json_line(json), text_stream);
   }
   if (options.quiet) return ExitCode::kOk;
   const auto printed =
-      print(mesh_text(*report, times) +
-            near_places_text(domain, options.input.string(), report->summary) +
-            region_values_text(domain.region_values) + output->text(report->summary));
+      print(mesh_text(*report, times) + near_places_text(domain, options.input, report->summary) +
+                region_values_text(domain.region_values) + output->text(report->summary),
+            text_stream);
   return printed && picture ? picture->show() : printed;
 }
 

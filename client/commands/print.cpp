@@ -7,10 +7,11 @@
 
 namespace weft::client {
 
-Result<ExitCode> print(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+Result<ExitCode> print(const std::string& text, std::FILE* to) {
+  if (std::fwrite(text.data(), 1, text.size(), to) != text.size() || std::fflush(to) != 0)
     return fail(ExitCode::kUnwritableOutput,
-                std::string("standard output: ") + std::strerror(errno));
+                std::string(to == stdout ? "standard output: " : "standard error: ") +
+                    std::strerror(errno));
   return ExitCode::kOk;
 }
 

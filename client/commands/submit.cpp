@@ -90,8 +90,9 @@ Result<ExitCode> run_submit(const SubmitOptions& options, std::stop_token stop) 
       return tl::unexpected(set.error());
   auto job = submit(*server, *input, options);
   if (!job) return tl::unexpected(job.error());
-  const auto print_id = [&] { return print(harmless(job->id()) + "\n"); };
-  if (!options.wait) return options.json ? print(json_line(job_json(*job))) : print_id();
+  std::FILE* const to = options.output.text_stream();
+  const auto print_id = [&] { return print(harmless(job->id()) + "\n", to); };
+  if (!options.wait) return options.json ? print(json_line(job_json(*job)), to) : print_id();
   if (!options.json)
     if (auto printed = print_id(); !printed) return printed;
 
@@ -105,7 +106,7 @@ Result<ExitCode> run_submit(const SubmitOptions& options, std::stop_token stop) 
   if (failed || !*output) {
     progress.clear();
     if (options.json)
-      if (auto printed = print(json_line(job_json(*job))); !printed) return printed;
+      if (auto printed = print(json_line(job_json(*job)), to); !printed) return printed;
     if (failed) return tl::unexpected(*failed);
     MeshReport report{.accepted = {}, .summary = job->summary()};
     add_projection(*input, report);
@@ -116,7 +117,7 @@ Result<ExitCode> run_submit(const SubmitOptions& options, std::stop_token stop) 
   }
   const auto report = download(*server, *job, &*input, **output, progress, times);
   if (!report) return tl::unexpected(report.error());
-  if (options.json) return print(json_line(download_json(*job, *report, times)));
+  if (options.json) return print(json_line(download_json(*job, *report, times)), to);
   if (!options.quiet)
     std::fputs((mesh_text(*report, times) + (*output)->text(report->summary)).c_str(), stderr);
   return ExitCode::kOk;

@@ -48,17 +48,17 @@ constexpr DomainFormat kFormats[] = {
     {.extension = ".geojson", .read = read_geojson, .drivers = kGeoJson},
     {.extension = ".json", .read = read_geojson, .drivers = kGeoJson},
     {.extension = ".wkt", .read = read_wkt},
-    {.extension = ".shp", .read = read_shapefile, .drivers = kShapefile},
+    {.extension = ".shp", .read = read_shapefile, .drivers = kShapefile, .needs_name = true},
     {.extension = ".csv", .read = read_csv_rings},
-    {.extension = ".gpkg", .drivers = kGeoPackage},
+    {.extension = ".gpkg", .drivers = kGeoPackage, .needs_name = true},
     {.extension = ".fgb", .drivers = kFlatGeobuf},
     {.extension = ".kml", .drivers = kKml},
-    {.extension = ".kmz", .drivers = kKmz},
+    {.extension = ".kmz", .drivers = kKmz, .needs_name = true},
     {.extension = ".gml", .drivers = kGml, .driver_options = kGmlAlone},
     {.extension = ".dxf", .drivers = kDxf},
     {.extension = ".dgn", .drivers = kDgn},
-    {.extension = ".tab", .drivers = kMapInfo},
-    {.extension = ".mif", .drivers = kMapInfo},
+    {.extension = ".tab", .drivers = kMapInfo, .needs_name = true},
+    {.extension = ".mif", .drivers = kMapInfo, .needs_name = true},
     {.extension = ".gmt", .drivers = kGmt},
     {.extension = ".geojsonl", .drivers = kGeoJsonSequence},
     {.extension = ".topojson", .drivers = kTopoJson},
@@ -73,24 +73,24 @@ std::string extensions(bool (*takes)(const DomainFormat&)) {
   return list;
 }
 
-bool is_read_as_mesh(const std::filesystem::path& path) {
+bool is_read_as_mesh(const DataPath& path) {
   const MeshFormat* format = mesh_format(path);
   return format != nullptr && format->read != nullptr;
 }
 
 }  // namespace
 
-const DomainFormat* domain_format(const std::filesystem::path& path) {
+const DomainFormat* domain_format(const DataPath& path) {
   const auto* const found =
       std::ranges::find(kFormats, lower_extension(path), &DomainFormat::extension);
   return found == std::end(kFormats) ? nullptr : found;
 }
 
-bool is_plain_domain_path(const std::filesystem::path& path) {
+bool is_plain_domain_path(const DataPath& path) {
   return domain_format(path) != nullptr;
 }
 
-bool is_domain_path(const std::filesystem::path& path) {
+bool is_domain_path(const DataPath& path) {
   return is_plain_domain_path(path) || is_read_as_mesh(path);
 }
 
@@ -98,16 +98,16 @@ std::string domain_extensions() {
   return extensions([](const DomainFormat&) { return true; });
 }
 
-tl::unexpected<Error> unknown_domain_format(const std::filesystem::path& path) {
+tl::unexpected<Error> unknown_domain_format(const DataPath& path) {
   return fail(ExitCode::kUsage,
-              path.string() + ": the extension " + in_quotes(path.extension().string()) +
+              path.string() + ": the extension " + in_quotes(extension_of(path)) +
                   " is not that of a domain: " + domain_extensions() +
                   "; nor of a mesh that is read as one: " + read_mesh_extensions());
 }
 
 namespace {
 
-Result<Domain> read_mesh_as_domain(const std::filesystem::path& path) {
+Result<Domain> read_mesh_as_domain(const DataPath& path) {
   const auto mesh = read_mesh(path);
   if (!mesh) return tl::unexpected(mesh.error());
   Domain domain = domain_of_mesh(path.string(), mesh->view());
@@ -115,7 +115,7 @@ Result<Domain> read_mesh_as_domain(const std::filesystem::path& path) {
   return domain;
 }
 
-Result<Domain> read_any(const std::filesystem::path& path, const LayerOptions& layers) {
+Result<Domain> read_any(const DataPath& path, const LayerOptions& layers) {
   const DomainFormat* const format = domain_format(path);
   if (format == nullptr && !is_read_as_mesh(path)) return unknown_domain_format(path);
   if (layers.wanted() && (format == nullptr || !format->has_layers()))
@@ -136,7 +136,7 @@ Result<Domain> read_any(const std::filesystem::path& path, const LayerOptions& l
 
 }  // namespace
 
-Result<Domain> read_domain(const std::filesystem::path& path, const LayerOptions& layers) {
+Result<Domain> read_domain(const DataPath& path, const LayerOptions& layers) {
   auto domain = read_any(path, layers);
   if (!domain || !layers.strict || domain->warnings.empty()) return domain;
   std::string message = path.string() + ": refused, because of --strict";

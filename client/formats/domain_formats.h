@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "client/base/data_path.h"
 #include "client/base/error.h"
 #include "client/formats/domain.h"
 #include "client/formats/files/layer_options.h"
@@ -22,28 +23,29 @@ struct DomainFormat {
   const char* const* drivers = nullptr;
   const char* const* driver_options = nullptr;
   bool is_archive = false;  // of files in other formats: ogr_archive.h
+  bool needs_name = false;  // to be read: there are files beside it, or a library asks for the name
 
   bool has_layers() const { return drivers != nullptr || is_archive; }
 };
 
 // The format of an extension, in upper or lower case; null if there is none. A mesh is no such
 // format.
-const DomainFormat* domain_format(const std::filesystem::path& path);
+const DomainFormat* domain_format(const DataPath& path);
 
 // Reads a domain. Errors: kUsage for an unknown extension, and for one of a format without layers
 // and attributes if `layers` wants some; kUnreadableInput for the rest, and for a domain with
 // warnings if it is to be strict.
-Result<Domain> read_domain(const std::filesystem::path& path, const LayerOptions& layers = {});
+Result<Domain> read_domain(const DataPath& path, const LayerOptions& layers = {});
 
 // Whether the extension is that of a domain, or of a mesh that can be read as one.
-bool is_domain_path(const std::filesystem::path& path);
+bool is_domain_path(const DataPath& path);
 
 // ".poly, .geojson, ...": the extensions of domains only.
 std::string domain_extensions();
 // Whether the extension is one of these.
-bool is_plain_domain_path(const std::filesystem::path& path);
+bool is_plain_domain_path(const DataPath& path);
 
 // "'.dxf' is not that of a domain: .poly, .geojson, ...; nor of a mesh: .vtu, ..." (kUsage).
-tl::unexpected<Error> unknown_domain_format(const std::filesystem::path& path);
+tl::unexpected<Error> unknown_domain_format(const DataPath& path);
 
 }  // namespace weft::client

@@ -33,6 +33,7 @@
 #include "client/formats/meshes/ugrid.h"
 #include "client/formats/meshes/vtu.h"
 #include "client/formats/meshes/xdmf.h"
+#include "client/formats/standard_streams.h"
 #include "client/formats/triangle/triangle_edges.h"
 #include "client/formats/triangle/triangle_mesh.h"
 
@@ -99,12 +100,13 @@ constexpr MeshFormat kFormats[] = {
      .region_names = gmsh_name},
     {.extension = ".node",
      .files = triangle_files,
+     .needs_name = true,
      .second_order = true,
      .write = write_triangle,
      .read = read_triangle_mesh,
      .marker_names = any_name,
      .region_names = any_name},
-    {.extension = ".ele", .read = read_triangle_mesh},
+    {.extension = ".ele", .needs_name = true, .read = read_triangle_mesh},
     {.extension = ".edge", .write = one_file<write_triangle_edges>},
     {.extension = ".neigh", .write = one_file<write_triangle_neighbours>},
     {.extension = ".14",
@@ -221,9 +223,9 @@ std::string extensions(const Takes& takes) {
   return list;
 }
 
-tl::unexpected<Error> usage(const std::filesystem::path& path, const std::string& why) {
+tl::unexpected<Error> usage(const DataPath& path, const std::string& why) {
   return fail(ExitCode::kUsage,
-              path.string() + ": the extension " + in_quotes(path.extension().string()) + why);
+              path.string() + ": the extension " + in_quotes(extension_of(path)) + why);
 }
 
 std::set<std::int32_t> boundary_markers(const MeshView& mesh) {
@@ -247,10 +249,6 @@ Result<T> with_memory(const std::filesystem::path& path, const Read& read) {
 
 }  // namespace
 
-std::string lower_extension(const std::filesystem::path& path) {
-  return lower_case(path.extension().string());
-}
-
 Result<void> find_open_boundaries(MeshWriteOptions& options, const NameTable& markers,
                                   std::span<const std::int32_t> open_in_file) {
   for (const std::string& name : std::exchange(options.open_boundary_names, {})) {
@@ -263,7 +261,7 @@ Result<void> find_open_boundaries(MeshWriteOptions& options, const NameTable& ma
   return {};
 }
 
-const MeshFormat* mesh_format(const std::filesystem::path& path) {
+const MeshFormat* mesh_format(const DataPath& path) {
   const std::string extension = lower_extension(path);
   for (const MeshFormat& format : kFormats)
     if (format.extension == extension) return &format;
@@ -278,20 +276,24 @@ std::string read_mesh_extensions() {
   return extensions([](const MeshFormat& format) { return format.read != nullptr; });
 }
 
-tl::unexpected<Error> unknown_mesh_format(const std::filesystem::path& path) {
+tl::unexpected<Error> unknown_mesh_format(const DataPath& path) {
   return usage(path, " is not that of a mesh that is written: " + written_mesh_extensions());
 }
 
-Result<void> check_writable(const std::filesystem::path& path, const MeshWriteOptions& options) {
+Result<void> check_writable(const DataPath& path, const MeshWriteOptions& options) {
+  if (auto ok = check_has_format(path, written_mesh_extensions()); !ok) return ok;
   const MeshFormat* format = mesh_format(path);
   if (format == nullptr || format->write == nullptr) return unknown_mesh_format(path);
+  if (path == kStandardOutput && format->files != nullptr)
+    return fail(ExitCode::kUsage, "standard output is one file, and " +
+                                      std::string(format->extension) + " is written as several");
   if (options.order == 2 && !format->second_order)
     return usage(path, " is not that of a mesh of second order: " +
                            extensions([](const MeshFormat& f) { return f.second_order; }));
   return {};
 }
 
-std::vector<std::string> not_carried(const std::filesystem::path& path, const MeshView& mesh) {
+std::vector<std::string> not_carried(const DataPath& path, const MeshView& mesh) {
   const MeshFormat& format = *mesh_format(path);
   std::vector<std::string> sentences;
   std::string lost;
@@ -314,7 +316,7 @@ std::vector<std::string> not_carried(const std::filesystem::path& path, const Me
   return sentences;
 }
 
-std::vector<std::filesystem::path> mesh_files(const std::filesystem::path& path) {
+std::vector<std::filesystem::path> mesh_files(const DataPath& path) {
   const MeshFormat* const format = mesh_format(path);
   return format != nullptr && format->files != nullptr ? format->files(path)
                                                        : std::vector<std::filesystem::path>{path};
@@ -342,7 +344,7 @@ void write_mesh(const MeshFormat& format, const MeshView& mesh, std::span<Output
   }
 }
 
-Result<Mesh> read_mesh(const std::filesystem::path& path) {
+Result<Mesh> read_mesh(const DataPath& path) {
   const MeshFormat* format = mesh_format(path);
   if (format == nullptr || format->read == nullptr)
     return usage(path, " is not that of a mesh that is read: " + read_mesh_extensions());
@@ -372,7 +374,7 @@ Result<MeshWithValues> read_vertex_values(const std::filesystem::path& path,
   });
 }
 
-Result<MeshWithArrays> read_mesh_with_arrays(const std::filesystem::path& path) {
+Result<MeshWithArrays> read_mesh_with_arrays(const DataPath& path) {
   const MeshFormat* format = mesh_format(path);
   if (format == nullptr || format->read_values == nullptr) {
     auto mesh = read_mesh(path);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "client/base/atomic_file.h"
+#include "client/base/data_path.h"
 #include "client/base/error.h"
 #include "client/formats/derived/vertex_values.h"
 #include "client/formats/domain.h"
@@ -56,6 +57,7 @@ struct MeshFormat {
   std::string_view extension;  // lower case, ".vtu"
   // The files that a mesh at a path is written to, itself among them; null: itself alone.
   std::vector<std::filesystem::path> (*files)(const std::filesystem::path&) = nullptr;
+  bool needs_name = false;  // to be read: there are files beside it, or a library asks for the name
   bool second_order = false;
   // Null if the format is only read, or only written.
   void (*write)(const MeshView&, std::span<OutputFile>, const MeshWriteOptions&) = nullptr;
@@ -73,25 +75,25 @@ struct MeshFormat {
 };
 
 // The format of an extension, in upper or lower case; null if there is none.
-const MeshFormat* mesh_format(const std::filesystem::path& path);
+const MeshFormat* mesh_format(const DataPath& path);
 
 // ".vtu, .msh, .node, ...": those that are written, and those that are read.
 std::string written_mesh_extensions();
 std::string read_mesh_extensions();
 
 // "'.stp' is not that of a mesh format that is written: .vtu, .msh, .node, ..." (kUsage).
-tl::unexpected<Error> unknown_mesh_format(const std::filesystem::path& path);
+tl::unexpected<Error> unknown_mesh_format(const DataPath& path);
 
 // Succeeds if meshes can be written to `path` in this way; otherwise kUsage.
-Result<void> check_writable(const std::filesystem::path& path, const MeshWriteOptions& options);
+Result<void> check_writable(const DataPath& path, const MeshWriteOptions& options);
 
 // What of a mesh with these values, parts and names is not in a file at `path`, or is spelled in
 // another way, because of its format: sentences for the user, which name the file. REQUIRES: the
 // format is known.
-std::vector<std::string> not_carried(const std::filesystem::path& path, const MeshView& mesh);
+std::vector<std::string> not_carried(const DataPath& path, const MeshView& mesh);
 
 // The files that writing to `path` makes. REQUIRES: the format is known.
-std::vector<std::filesystem::path> mesh_files(const std::filesystem::path& path);
+std::vector<std::filesystem::path> mesh_files(const DataPath& path);
 
 // Writes the mesh into `files`, opened for mesh_files(path) in that order. Failures stay in the
 // files. REQUIRES: check_writable.
@@ -102,12 +104,9 @@ void write_mesh(const MeshFormat& format, const MeshView& mesh, std::span<Output
 // for the rest. A mesh that was read has vertex numbers in range, finite coordinates, as many
 // regions and markers as triangles and edges, and no parts or one from 0 for each triangle; nothing
 // else is promised.
-Result<Mesh> read_mesh(const std::filesystem::path& path);
+Result<Mesh> read_mesh(const DataPath& path);
 
 // The last check of all readers: ensures the promises of read_mesh, and cuts faces into triangles.
 Result<Mesh> validated(const std::filesystem::path& path, Mesh mesh);
-
-// The extension in lower case.
-std::string lower_extension(const std::filesystem::path& path);
 
 }  // namespace weft::client

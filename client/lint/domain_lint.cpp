@@ -203,9 +203,9 @@ bool is_fault_kind(const std::string& name) {
   return name == kWarning;
 }
 
-Result<Lint> lint_domain(const Domain& domain, const std::string& file,
-                         const LintSettings& settings) {
-  const bool of_mesh = !is_plain_domain_path(file);
+Result<Lint> lint_domain(const Domain& domain, const DataPath& path, const LintSettings& settings) {
+  const std::string file = path.string();
+  const bool of_mesh = !is_plain_domain_path(path);
   const auto prepared = JudgedDomain::make(domain, settings.lonlat, of_mesh);
   if (!prepared) return tl::unexpected(prepared.error());
   const check::Domain judged =
@@ -217,7 +217,7 @@ Result<Lint> lint_domain(const Domain& domain, const std::string& file,
     return fail(ExitCode::kUnreadableInput, file + ": " + report.violations.front().sentence);
   }
   // In .poly files alone, segments refer to points by their numbers.
-  const check::LintResult found = check::lint(judged, lower_extension(file) == ".poly");
+  const check::LintResult found = check::lint(judged, lower_extension(path) == ".poly");
   const auto is_ignored = [&](const std::string& kind) {
     return std::find(settings.ignored.begin(), settings.ignored.end(), kind) !=
            settings.ignored.end();

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/base/data_path.h"
 #include "client/base/error.h"
 #include "client/formats/domain.h"
 
@@ -46,9 +47,8 @@ struct Lint {
 std::string fault_kinds();
 bool is_fault_kind(const std::string& name);
 
-// `file` is the path that the domain was read from. Errors: kUnreadableInput for coordinates or
+// `path` is the path that the domain was read from. Errors: kUnreadableInput for coordinates or
 // indices that cannot be computed with.
-Result<Lint> lint_domain(const Domain& domain, const std::string& file,
-                         const LintSettings& settings);
+Result<Lint> lint_domain(const Domain& domain, const DataPath& path, const LintSettings& settings);
 
 }  // namespace weft::client

@@ -10,7 +10,7 @@
 
 namespace weft::client {
 
-std::string near_places_text(const Domain& domain, const std::string& file,
+std::string near_places_text(const Domain& domain, const DataPath& file,
                              const v1::Summary& summary) {
   // Of larger domains lint takes longer than the mesh.
   constexpr std::size_t kMostSegments = 1'000'000;

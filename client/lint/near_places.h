@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "client/base/data_path.h"
 #include "client/formats/domain.h"
 #include "weft/v1/mesh_service.pb.h"
 
@@ -13,7 +14,7 @@ namespace weft::client {
 // and which --snap merges them, as weft lint does; empty if the summary has no triangles that small
 // angles of the input force, already names a --snap, or no such points are found. `domain` is as it
 // was sent, read from `file`.
-std::string near_places_text(const Domain& domain, const std::string& file,
+std::string near_places_text(const Domain& domain, const DataPath& file,
                              const v1::Summary& summary);
 
 }  // namespace weft::client

@@ -32,7 +32,7 @@ Result<void> check_nodal(const MeshOutputOptions& options) {
   return {};
 }
 
-bool has_open_boundaries(const std::filesystem::path& file) {
+bool has_open_boundaries(const DataPath& file) {
   return mesh_format(file)->open_boundaries;
 }
 
@@ -134,6 +134,10 @@ std::string quadtree_text(const v1::Summary& summary) {
 }
 
 }  // namespace
+
+std::FILE* MeshOutputOptions::text_stream() const {
+  return std::ranges::find(files, DataPath(kStandardOutput)) == files.end() ? stdout : stderr;
+}
 
 Result<MeshOutput> MeshOutput::open(const MeshOutputOptions& options,
                                     const std::optional<std::filesystem::path>& input,
@@ -281,9 +285,7 @@ std::string MeshOutput::text(const v1::Summary& summary) const {
             std::to_string(worst.triangle.id) + " at " + coordinates(at.x, at.y) + "\n";
   }
   for (const OutputFile& file : files_) {
-    std::error_code ignored;
-    text += "wrote " + file.target().string() + ", " +
-            bytes_text(std::filesystem::file_size(file.target(), ignored)) + "\n";
+    text += "wrote " + file.target().string() + ", " + bytes_text(file.size()) + "\n";
   }
   return text;
 }

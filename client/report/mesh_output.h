@@ -12,6 +12,7 @@
 // is the input's; kUnwritableOutput if a file cannot be written. Not thread-safe.
 #pragma once
 
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -34,7 +35,7 @@
 namespace weft::client {
 
 struct MeshOutputOptions {
-  std::vector<std::filesystem::path> files{};
+  std::vector<DataPath> files{};
   MeshWriteOptions writing{};  // of the files
   std::vector<std::filesystem::path> drawings{};
   DrawOptions drawing{};           // of the drawings
@@ -45,6 +46,8 @@ struct MeshOutputOptions {
   bool has_values = false;         // whether the mesh may come with values at its vertices
 
   bool empty() const { return files.empty() && drawings.empty(); }
+  // Where text on the files goes: standard output, unless one of the files does.
+  std::FILE* text_stream() const;
 };
 
 class MeshOutput {

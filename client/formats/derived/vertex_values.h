@@ -40,7 +40,7 @@ struct MeshWithArrays {
 };
 
 // Reads a mesh, of any format that is read, and all its arrays. Errors: those of read_mesh.
-Result<MeshWithArrays> read_mesh_with_arrays(const std::filesystem::path& path);
+Result<MeshWithArrays> read_mesh_with_arrays(const DataPath& path);
 
 // Succeeds if the path's extension is that of a format that carries values; otherwise kUsage.
 Result<void> check_has_vertex_values(const std::filesystem::path& path);

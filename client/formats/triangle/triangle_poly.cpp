@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/base/data_path.h"
 #include "client/base/text.h"
 #include "client/formats/files/file_contents.h"
 #include "client/formats/files/line_scanner.h"
@@ -91,6 +92,9 @@ Result<Domain> read_triangle_poly(const std::filesystem::path& path) {
   auto points = read_triangle_points(scanner);
   if (!points) return tl::unexpected(points.error());
   if (points->points.empty()) {
+    if (path == kStandardInput)
+      return scanner.error(
+          "the points are in a .node file, which has no place beside standard input");
     points = read_node_file(std::filesystem::path(path).replace_extension(".node"));
     if (!points) return tl::unexpected(points.error());
   }

@@ -35,7 +35,8 @@ class WeftProcess : public ::testing::Test {
     return {"mesh", (folder_ / "in.poly").string(), "-o", (folder_ / "out" / name).string()};
   }
 
-  // `terminal` is stdin and stdout of the process, where there is one.
+  // `terminal` is stdin and stdout of the process, where there is one; else stdin is `input_`,
+  // where there is one.
   pid_t start(const Words& words, const Words& variables = {}, int terminal = -1) {
     Words arguments = {weft::testing::kWeft};
     arguments.insert(arguments.end(), words.begin(), words.end());
@@ -57,6 +58,7 @@ class WeftProcess : public ::testing::Test {
       posix_spawn_file_actions_adddup2(&actions, terminal, 0);
       posix_spawn_file_actions_adddup2(&actions, terminal, 1);
     } else {
+      if (input_ >= 0) posix_spawn_file_actions_adddup2(&actions, input_, 0);
       posix_spawn_file_actions_addopen(&actions, 1, (folder_ / "stdout").c_str(),
                                        O_WRONLY | O_CREAT | O_TRUNC, 0600);
     }
@@ -90,6 +92,7 @@ class WeftProcess : public ::testing::Test {
   }
 
   TempFolder folder_;
+  int input_ = -1;  // a descriptor
 };
 
 }  // namespace weft::client
