@@ -152,6 +152,21 @@ Area read_area(Fields in, const std::string& path) {
   return area;
 }
 
+Arc read_arc(Fields in) {
+  Arc arc;
+  while (in.next()) switch (in.number()) {
+      case 1:
+        in.read(arc.segment);
+        break;
+      case 2:
+        in.read(arc.bulge);
+        break;
+      default:
+        in.skip();
+    }
+  return arc;
+}
+
 // The path of the next element of an array.
 template <class T>
 std::string next_of(const char* field, const std::vector<T>& elements) {
@@ -193,6 +208,9 @@ class DomainReader {
           break;
         case 11:
           in.array(areas_);
+          break;
+        case 12:
+          in.message([this](Fields arc) { pslg_.arcs.push_back(read_arc(arc)); });
           break;
         default:
           in.skip();

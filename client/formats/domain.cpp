@@ -2,6 +2,8 @@
 #include "client/formats/domain.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace weft::client {
@@ -39,6 +41,42 @@ std::string Provenance::locate(std::size_t i) const {
   return run == nullptr
              ? ""
              : run->prefix + std::to_string(run->number + (i - run->first)) + run->suffix;
+}
+
+void flatten_arcs(Domain& domain) {
+  if (domain.arcs.empty()) return;
+  constexpr double kMaxTurn = 2 * std::numbers::pi / 180;
+  std::vector<Domain::Segment> segments;
+  Provenance places;
+  auto arc = domain.arcs.begin();
+  for (std::size_t s = 0; s < domain.segments.size(); ++s) {
+    Domain::Segment piece = domain.segments[s];
+    const std::uint32_t last = piece.b;
+    const double bulge = arc != domain.arcs.end() && arc->segment == s ? (arc++)->bulge : 0;
+    const double turn = 4 * std::atan(bulge);
+    const double count = std::ceil(std::abs(turn) / kMaxTurn * (1 - 1e-9));
+    const Point a = domain.points[piece.a], b = domain.points[last];
+    for (double k = 1; k < count; ++k) {
+      // Seen from a, the point lies half of the turn that is left to the right of b.
+      const double along = std::sin(0.5 * turn * k / count) / std::sin(0.5 * turn);
+      const double aside = -0.5 * turn * (1 - k / count);
+      const double x = along * std::cos(aside), y = along * std::sin(aside);
+      piece.b = static_cast<std::uint32_t>(domain.points.size());
+      domain.point_places.add_same(piece.b, domain.segment_places, s);
+      domain.points.push_back(
+          {a.x + x * (b.x - a.x) - y * (b.y - a.y), a.y + x * (b.y - a.y) + y * (b.x - a.x)});
+      places.add_same(segments.size(), domain.segment_places, s);
+      segments.push_back(piece);
+      piece.a = piece.b;
+    }
+    piece.b = last;
+    places.add_same(segments.size(), domain.segment_places, s);
+    segments.push_back(piece);
+  }
+  domain.segments = std::move(segments);
+  domain.segment_places = std::move(places);
+  domain.arcs.clear();
+  if (!domain.point_markers.empty()) domain.point_markers.resize(domain.points.size());
 }
 
 void fill_polygons(Domain& domain, PolygonFill fill) {

@@ -68,6 +68,12 @@ struct Domain {
     std::uint32_t area = 0;  // 1 + index into areas if it is part of the border of one
     friend bool operator==(const Segment&, const Segment&) = default;
   };
+  // Makes a segment an arc of a circle; see Arc in the protocol.
+  struct Arc {
+    std::uint32_t segment = 0;
+    double bulge = 0;
+    friend bool operator==(const Arc&, const Arc&) = default;
+  };
   // A polygon: what an odd number of its rings encloses.
   struct Area {
     std::optional<std::int32_t>
@@ -89,6 +95,7 @@ struct Domain {
   std::vector<Point> points;
   std::vector<std::int32_t> point_markers;  // one per point, or empty: all 0
   std::vector<Segment> segments;
+  std::vector<Arc> arcs;  // in the order of their segments, each once
   std::vector<Point> holes;
   std::vector<Region> regions;
   std::vector<Area> areas;
@@ -104,6 +111,9 @@ struct Domain {
   Provenance region_places;
   Provenance area_places;
 };
+
+// Replaces each arc by equal chords that turn by 2 degrees at most: for what knows no arcs.
+void flatten_arcs(Domain& domain);
 
 // What is meshed where polygons overlap: all that any of them covers; what an odd number of them
 // covers; the first less the others.

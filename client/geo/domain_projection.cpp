@@ -163,6 +163,7 @@ Result<DomainProjection> DomainProjection::project(Domain& domain,
   if (!Projection::available())
     return fail(ExitCode::kUsage,
                 "this weft was built without PROJ, which projects longitude and latitude");
+  flatten_arcs(domain);  // what is a circle in degrees is none in the plane
   const auto extent = lonlat_extent(domain);
   if (!extent) return tl::unexpected(extent.error());
   auto projection = projection_for(domain, *extent, options.crs);

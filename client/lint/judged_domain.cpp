@@ -69,6 +69,11 @@ void join_ends(const Domain& degrees, Domain& plane) {
 }  // namespace
 
 Result<JudgedDomain> JudgedDomain::make(const Domain& domain, bool lonlat, bool of_mesh) {
+  if (!domain.arcs.empty()) {
+    Domain flat = domain;
+    flatten_arcs(flat);
+    return make(flat, lonlat, of_mesh);
+  }
   JudgedDomain judged;
   judged.domain_ = domain;
   Domain& in_plane = judged.domain_;

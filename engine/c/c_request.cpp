@@ -198,6 +198,17 @@ void weft_set_segments(weft_request* request, const uint32_t* ends, const int32_
   });
 }
 
+void weft_set_arcs(weft_request* request, const uint32_t* segments, const double* bulges,
+                   size_t count) {
+  append_to(request, kDomain, [&](pbf_writer& domain) {
+    for (size_t i = 0; i < count; ++i) {
+      pbf_writer arc(domain, 12);
+      arc.add_uint32(1, segments[i]);
+      arc.add_double(2, bulges[i]);
+    }
+  });
+}
+
 void weft_add_region(weft_request* request, double x, double y, int32_t id, weft_bound bound) {
   append_to(request, kDomain, [&](pbf_writer& domain) {
     pbf_writer region(domain, 5);

@@ -71,6 +71,7 @@ void add_lone_points(const Domain& domain, Domain& out) {
 
 Result<Domain> seeded(Domain domain) {
   if (domain.fill == Domain::Fill::kSeeds && domain.areas.empty()) return domain;
+  flatten_arcs(domain);
   std::erase_if(domain.segments, [&](const Domain::Segment& segment) {
     return domain.points[segment.a] == domain.points[segment.b];
   });

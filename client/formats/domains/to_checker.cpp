@@ -10,6 +10,7 @@ check::Domain checker_domain(const Domain& domain, double snap) {
     out.segments.push_back({segment.a, segment.b});
     out.markers.push_back(segment.marker);
   }
+  for (const Domain::Arc& arc : domain.arcs) out.arcs.push_back({arc.segment, arc.bulge});
   for (const Point& hole : domain.holes) out.holes.push_back({hole.x, hole.y});
   for (const Domain::Region& region : domain.regions)
     out.regions.push_back({{region.at.x, region.at.y}, region.id, region.max_area});
