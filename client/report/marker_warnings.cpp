@@ -53,12 +53,17 @@ bool overlap(const Domain& domain, const Domain::Segment& s, const Domain::Segme
          before(before(s_low, t_low) ? t_low : s_low, before(s_high, t_high) ? s_high : t_high);
 }
 
-// Those that have a marker and a length.
+// Those that have a marker and a length, and are straight.
 std::vector<std::size_t> marked_segments(const Domain& domain) {
   std::vector<std::size_t> marked;
   std::set<std::int32_t> markers;
+  auto arc = domain.arcs.begin();
   for (std::size_t s = 0; s < domain.segments.size(); ++s) {
     const Domain::Segment& segment = domain.segments[s];
+    if (arc != domain.arcs.end() && arc->segment == s) {
+      ++arc;
+      continue;
+    }
     if (segment.marker == 0 || domain.points[segment.a] == domain.points[segment.b]) continue;
     marked.push_back(s);
     markers.insert(segment.marker);

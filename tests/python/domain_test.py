@@ -528,3 +528,44 @@ def test_names_are_checked():
                          ({2: "\ud800"}, "no number of a text")):
         with pytest.raises(weft.DomainError, match=words):
             weft.Domain(*triangle, marker_names=names)
+
+
+HALF_DISK = """2 2 0
+1 -1 0
+2 1 0
+2 1
+1 1 2 5
+2 2 1 6
+0
+# arc=2:1
+"""
+
+
+def test_arcs_are_followed_by_the_mesh(client, tmp_path):
+    path = tmp_path / "half.poly"
+    path.write_text(HALF_DISK)
+    domain = weft.Domain.read(path)
+    assert domain.arcs == {1: 1.0}
+    mesh = client.mesh(domain, edge=0.02)
+    x, y = mesh.points[np.unique(mesh.edges[mesh.edge_markers == 6])].T
+    assert len(x) > 150 and np.abs(np.hypot(x, y) - 1).max() < 1e-15 * 8
+    assert abs(mesh.summary.area - np.pi / 2) < 2e-4
+    assert weft.mesh(domain, edge=0.02).digest == mesh.digest
+
+
+def test_arcs_are_checked():
+    square = ([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)])
+    assert weft.Domain(*square, arcs={2: 1, np.int64(0): -0.5}).arcs == {0: -0.5, 2: 1.0}
+    for arcs, words in (({3: 1}, "arcs: segment 3 of 3"), ({0: np.nan}, r"arcs\[0\] is nan")):
+        with pytest.raises(weft.DomainError, match=words):
+            weft.Domain(*square, arcs=arcs)
+    with pytest.raises(weft.DomainError, match="longitude and latitude has no arcs"):
+        weft.mesh(weft.Domain(*square, arcs={0: 1}), edge=10000, lonlat=True)
+
+
+@pytest.mark.parametrize("comment", ["# arc=9:1", "# arc=2:x", "# arc=2:0.5"])
+def test_arcs_of_a_poly_that_cannot_be_are_refused(tmp_path, comment):
+    path = tmp_path / "half.poly"
+    path.write_text(HALF_DISK + comment + "\n")
+    with pytest.raises(weft.DomainError, match="# arc="):
+        weft.Domain.read(path)

@@ -179,6 +179,9 @@ v1::GenerateMeshRequest full_request() {
   area.set_max_area(0.25);
   area.set_priority(-9);
   area.set_hole(true);
+  v1::Arc& arc = *domain.add_arcs();
+  arc.set_segment(2);
+  arc.set_bulge(-0.5);
   domain.set_fill(v1::FILL_UNION);
   domain.set_snap(0.125);
   v1::Quality& quality = *request.mutable_quality();
@@ -219,6 +222,9 @@ TEST(ReadRequest, BringsTheDomain) {
   EXPECT_EQ(pslg.areas[0].max_area, 0.25);
   EXPECT_EQ(pslg.areas[0].priority, -9);
   EXPECT_TRUE(pslg.areas[0].is_hole);
+  ASSERT_EQ(pslg.arcs.size(), 1u);
+  EXPECT_EQ(pslg.arcs[0].segment, 2u);
+  EXPECT_EQ(pslg.arcs[0].bulge, -0.5);
   EXPECT_EQ(pslg.fill, Fill::kUnion);
   EXPECT_EQ(pslg.snap, 0.125);
 }

@@ -92,10 +92,10 @@ Result<void> read_edges(const std::filesystem::path& path, const NodeNumbers& nu
   if (!contents) return tl::unexpected(contents.error());
   LineScanner scanner(path.string(), contents->text());
   if (auto points = read_triangle_points(scanner); !points) return tl::unexpected(points.error());
-  const auto segments = read_triangle_segments(
-      scanner, numbers, [&mesh](std::uint32_t a, std::uint32_t b, std::int32_t marker) {
-        mesh.edges.insert(mesh.edges.end(), {a, b});
-        mesh.edge_markers.push_back(marker);
+  const auto segments =
+      read_triangle_segments(scanner, numbers, [&mesh](const TriangleSegment& segment) {
+        mesh.edges.insert(mesh.edges.end(), {segment.a, segment.b});
+        mesh.edge_markers.push_back(segment.marker);
       });
   if (!segments) return tl::unexpected(segments.error());
   if (*segments) mesh.warnings.push_back(**segments);

@@ -12,6 +12,7 @@
 #include "client/formats/files/file_contents.h"
 #include "client/formats/files/line_scanner.h"
 #include "client/formats/files/text_writer.h"
+#include "client/formats/triangle/triangle_arcs.h"
 #include "client/formats/triangle/triangle_names.h"
 #include "client/formats/triangle/triangle_points.h"
 #include "client/formats/triangle/triangle_segments.h"
@@ -103,12 +104,17 @@ Result<Domain> read_triangle_poly(const std::filesystem::path& path) {
   domain.point_markers = std::move(points->markers);
   domain.point_places = std::move(points->places);
 
-  const auto segments = read_triangle_segments(
-      scanner, points->numbers, [&](std::uint32_t a, std::uint32_t b, std::int32_t marker) {
+  std::vector<std::int64_t> segment_numbers;
+  const auto segments =
+      read_triangle_segments(scanner, points->numbers, [&](const TriangleSegment& segment) {
         domain.segment_places.extend(domain.segments.size(), scanner.name() + ":", scanner.line());
-        domain.segments.push_back({a, b, marker});
+        domain.segments.push_back({segment.a, segment.b, segment.marker});
+        segment_numbers.push_back(segment.number);
       });
   if (!segments) return tl::unexpected(segments.error());
+  auto arcs = read_arcs(scanner.name(), contents->text(), segment_numbers);
+  if (!arcs) return tl::unexpected(arcs.error());
+  domain.arcs = std::move(*arcs);
   if (auto read = read_holes(scanner, domain); !read) return tl::unexpected(read.error());
   if (auto read = read_regions(scanner, domain); !read) return tl::unexpected(read.error());
 
@@ -149,6 +155,7 @@ void write_triangle_poly(const Domain& domain, OutputFile& file) {
   Names names = domain.names;
   for (const RegionValue& value : domain.region_values) names.regions.erase(value.id);
   put_names(names, file);
+  put_arcs(domain.arcs, file);
 }
 
 }  // namespace weft::client

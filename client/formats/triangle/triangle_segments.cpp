@@ -8,7 +8,7 @@ namespace weft::client {
 
 Result<std::optional<Warning>> read_triangle_segments(
     LineScanner& scanner, const NodeNumbers& numbers,
-    const std::function<void(std::uint32_t, std::uint32_t, std::int32_t)>& take) {
+    const std::function<void(const TriangleSegment&)>& take) {
   if (auto line = scanner.next_line("the segment count"); !line)
     return tl::unexpected(line.error());
   const auto count = scanner.count("the segment count");
@@ -25,8 +25,8 @@ Result<std::optional<Warning>> read_triangle_segments(
   std::optional<Warning> warning;
   for (std::uint64_t i = 0; i < *count; ++i) {
     if (auto line = scanner.next_line("a segment"); !line) return tl::unexpected(line.error());
-    if (auto number = scanner.integer("the segment number"); !number)
-      return tl::unexpected(number.error());
+    const auto number = scanner.integer("the segment number");
+    if (!number) return tl::unexpected(number.error());
     const auto a = numbers.read(scanner, "the segment's first point");
     if (!a) return tl::unexpected(a.error());
     const auto b = numbers.read(scanner, "the segment's second point");
@@ -44,7 +44,7 @@ Result<std::optional<Warning>> read_triangle_segments(
                      "what follows the points of segments is ignored, because their header "
                      "says that they have 0 markers"};
     }
-    take(*a, *b, marker);
+    take({*number, *a, *b, marker});
   }
   return warning;
 }

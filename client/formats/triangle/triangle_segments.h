@@ -18,11 +18,16 @@
 
 namespace weft::client {
 
-// Reads the section that starts at the scanner's next line, and hands over the indices of the ends
-// and the marker of each segment, while the scanner is at its line. Returns a warning, if
-// there is one.
+struct TriangleSegment {
+  std::int64_t number;  // that the file gives it
+  std::uint32_t a, b;   // indices of points
+  std::int32_t marker;
+};
+
+// Reads the section that starts at the scanner's next line, and hands over each segment while the
+// scanner is at its line. Returns a warning, if there is one.
 Result<std::optional<Warning>> read_triangle_segments(
     LineScanner& scanner, const NodeNumbers& numbers,
-    const std::function<void(std::uint32_t a, std::uint32_t b, std::int32_t marker)>& take);
+    const std::function<void(const TriangleSegment&)>& take);
 
 }  // namespace weft::client

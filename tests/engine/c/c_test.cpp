@@ -183,6 +183,16 @@ TEST(CInterface, TakesAreas) {
   given.expect_same();
 }
 
+TEST(CInterface, TakesArcs) {
+  Given given;
+  const std::uint32_t segments[] = {1, 5};
+  const double bulges[] = {0.5, -0.25};
+  weft_set_arcs(given.get(), segments, bulges, 2);
+  given.same.pslg.arcs = {{1, 0.5}, {5, -0.25}};
+  given.add_hole();
+  given.expect_same();
+}
+
 TEST(CInterface, NamesWhatItCannotTake) {
   // The squares of the last two are 0 and infinite.
   for (const double edge : {-1.0, 1e-200, 1e200})

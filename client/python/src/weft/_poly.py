@@ -17,6 +17,7 @@ from ._text import read_text, shortest, without_fortran
 from ._warning import warn
 from .errors import DomainError
 
+_ARC = re.compile(r"# arc=(.*)")  # see client/formats/triangle/triangle_arcs.h
 _NAME = re.compile(r"# (marker|region)=(-?[0-9]+):(.*)")  # see client/formats/triangle/triangle_names.h
 _DOUBTFUL = re.compile(r"[0-9],[0-9]")
 
@@ -32,6 +33,7 @@ class Lines:
         self._lines = [without_fortran(line) for line in stripped if line]
         self._at = 0
         named = (_NAME.fullmatch(line.rstrip("\t")) for line in lines)
+        self.arcs = [found[1].strip() for found in map(_ARC.match, lines) if found]
         self.names = [(found[1], int(found[2]), found[3]) for found in named if found]
 
     @staticmethod
@@ -172,6 +174,7 @@ def read(path: pathlib.Path, region: Callable[..., Any]) -> dict[str, Any]:
         if -2**31 <= number < 2**31:
             names[kind].add(number, name)
     return {
+        "arcs": _arcs(lines.arcs, segments[:, 0]),
         "points": vertices[:, 1:3],
         "segments": indices(vertices[:, 0], segments[:, 1:3]),
         "markers": segments[:, 3] if segments.shape[1] > 3 else np.zeros(0, np.int32),
@@ -182,6 +185,23 @@ def read(path: pathlib.Path, region: Callable[..., Any]) -> dict[str, Any]:
         "region_names": names["region"].table,
         "fill": "seeds",
     }
+
+
+def _arcs(comments: list[str], numbers: npt.NDArray[np.float64]) -> dict[int, float]:
+    """Bulges by the index of the segment."""
+    arcs: dict[int, float] = {}
+    index = {int(number): i for i, number in enumerate(numbers.tolist())} if comments else {}
+    for comment in comments:
+        number, _, bulge = comment.partition(":")
+        try:
+            segment, value = index[int(number)], float(bulge)
+        except (KeyError, ValueError):
+            raise DomainError(f"the comment '# arc={comment}' is not the number of a segment, a colon, and the "
+                              "bulge of its arc") from None
+        if segment in arcs:
+            raise DomainError(f"the segment {number} has two comments '# arc='")
+        arcs[segment] = value
+    return arcs
 
 
 def _shortest(value: float) -> str:

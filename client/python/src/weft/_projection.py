@@ -35,6 +35,9 @@ class Projection:
     """Of one domain, which becomes `domain`, in metres. Raises DomainError, MissingPackage."""
 
     def __init__(self, domain: Domain, crs: str | None, to_metres: bool) -> None:
+        if domain.arcs:
+            raise DomainError("a domain in longitude and latitude has no arcs: what is a circle in degrees is "
+                              "none in the plane")
         extent = _Extent(domain)
         self.to_metres = to_metres
         self.name = crs if crs else _suitable(domain.points, extent)

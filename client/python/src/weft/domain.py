@@ -71,6 +71,10 @@ class Domain(ShortRepr):
     `points`: (n, 2) float64, in any unit, magnitudes up to 1e50.
     `segments`: (k, 2) int32, indices of points.
     `markers`: (k,) int32, carried by the mesh edges on each segment; default: all 0.
+    `arcs`: segments that are arcs of circles, and the bulge of each, the tangent of a quarter of the angle by
+    which it turns from its first point to its second, above 0 if it turns left, as in DXF: `{3: 1.0}` makes
+    segment 3 half a circle. A segment's ends are apart, so a circle is two arcs or more. Edges of the mesh on
+    an arc are chords of it. Default: all are straight.
     `holes`: (h, 2) float64, seeds: the face around each is carved away.
     `regions`: seeds of faces with an id and an area bound of their own.
     `fill`: "seeds" meshes every bounded face that no hole floods; "even-odd" the points inside an
@@ -104,6 +108,7 @@ class Domain(ShortRepr):
     areas: Sequence[Area] = ()
     segment_areas: npt.NDArray[np.uint32] = dataclasses.field(default_factory=lambda: np.zeros(0, np.uint32))
     geographic: bool | None = None
+    arcs: Mapping[int, float] = dataclasses.field(default_factory=dict)
 
     def __post_init__(self) -> None:
         points = _floats("points", self.points)
@@ -124,11 +129,17 @@ class Domain(ShortRepr):
         if len(borders) and borders.max() > len(self.areas):
             bad = int(np.argmax(borders))
             raise DomainError(f"segment_areas[{bad}] is {borders[bad]}, there are {len(self.areas)} areas")
+        arcs = {int(segment): float(bulge) for segment, bulge in sorted(self.arcs.items())}
+        for segment, bulge in arcs.items():
+            if not 0 <= segment < len(segments):
+                raise DomainError(f"arcs: segment {segment} of {len(segments)}")
+            if not np.isfinite(bulge):
+                raise DomainError(f"arcs[{segment}] is {bulge}")
         if self.fill not in ("seeds", "even-odd", "union"):
             raise DomainError(f"fill is {self.fill!r}; there are 'seeds', 'even-odd' and 'union'")
         for name, value in (("points", points), ("segments", segments), ("markers", markers),
                             ("holes", _floats("holes", self.holes)), ("regions", tuple(self.regions)),
-                            ("areas", tuple(self.areas)), ("segment_areas", borders),
+                            ("areas", tuple(self.areas)), ("segment_areas", borders), ("arcs", arcs),
                             ("marker_names", _names.checked("marker_names", self.marker_names)),
                             ("region_names", _names.checked("region_names", self.region_names))):
             object.__setattr__(self, name, value)
@@ -245,6 +256,7 @@ def _of_message(message: bytes) -> Domain:
         areas=[Area(_given(a, "region"), _given(a, "max_area"), _given(a, "max_edge"), a.priority, a.hole)
                for a in sent.areas],
         segment_areas=np.array(sent.segment_areas, np.uint32),
+        arcs={arc.segment: arc.bulge for arc in sent.arcs},
         fill=_FILLS[sent.fill],
         marker_names={name.id: name.name for name in sent.marker_names},
         region_names={name.id: name.name for name in sent.region_names})
