@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -24,10 +25,18 @@ struct Refused {
   throw Refused{{code, std::move(field), std::move(message)}};
 }
 
-template <class Number>
+template <std::integral Number>
 std::string text(Number number) {
+  return std::to_string(number);
+}
+// The shortest decimal that reads back as the same number, without an exponent from 1e-4 to 1e16.
+std::string text(double number) {
   char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, number).ptr};
+  char* const end = buffer + sizeof buffer;
+  const double size = std::abs(number);
+  return {buffer, size >= 1e-4 && size < 1e16
+                      ? std::to_chars(buffer, end, number, std::chars_format::fixed).ptr
+                      : std::to_chars(buffer, end, number).ptr};
 }
 
 [[noreturn]] void refuse_number(const std::string& field, double value, const char* rule) {

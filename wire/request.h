@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A request as the protocol spells it, weft.v1.GenerateMeshRequest, for the engine: from its bytes,
-// without protobuf, for libweft. weftd has a parsed message: server/wire/translate.h.
+// A request as the protocol spells it, weft.v1.GenerateMeshRequest, for the engine: the only place
+// that knows both. weftd and libweft read requests by it.
 //
 //   Result<wire::Request> request = wire::read_request(bytes);
 //   if (request) made = mesh(request->mesh);

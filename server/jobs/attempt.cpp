@@ -27,9 +27,8 @@ constexpr milliseconds kFirstPause{50};
 constexpr milliseconds kLongestPause{2000};
 
 // The request, or an empty one if there is none: the run then ends before it begins.
-const v1::GenerateMeshRequest& request_or_empty(
-    const tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure>& request) {
-  return request ? **request : v1::GenerateMeshRequest::default_instance();
+const v1::GenerateMeshRequest& request_or_empty(const tl::expected<ReadRequest, Failure>& request) {
+  return request ? *request->message : v1::GenerateMeshRequest::default_instance();
 }
 
 std::string label_of(const Claim& claim) {
@@ -72,10 +71,9 @@ void Attempt::run() {
 
 tl::expected<void, Failure> Attempt::make_mesh() {
   if (!request_) return tl::unexpected(request_.error());
-  v1::GenerateMeshRequest options = options_of(**request_);
-  MeshRequest converted = to_engine(**request_);
-  request_->reset();
-  auto summary = call_engine(environment_.engine, std::move(converted), *this,
+  v1::GenerateMeshRequest options = options_of(*request_->message);
+  request_->message.reset();
+  auto summary = call_engine(environment_.engine, std::move(request_->converted), *this,
                              {.run = run_,
                               .slot = slot_,
                               .besides = besides_,

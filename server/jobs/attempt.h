@@ -22,6 +22,7 @@
 #include "server/run/mutex.h"
 #include "server/run/run_queue.h"
 #include "server/store/job_store.h"
+#include "server/wire/job_wire.h"
 #include "server/wire/limits.h"
 #include "weft/run.h"
 #include "weft/v1/mesh_service.pb.h"
@@ -75,7 +76,7 @@ class Attempt final : private ChunkSink {
   const RunEnvironment& environment_;
   Claim claim_;              // its request is parsed, and empty, once this is made
   const std::string label_;  // of its lines in the log
-  tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure> request_;
+  tl::expected<ReadRequest, Failure> request_;
   RunQueue::Slot& slot_;
   const std::uint64_t besides_;  // bytes of memory, beside the engine's
   const Clock::time_point began_ = Clock::now();

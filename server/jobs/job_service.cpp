@@ -50,9 +50,10 @@ std::optional<Failure> check_id(const Request& request) {
 tl::expected<std::uint64_t, Failure> check_and_estimate(const v1::GenerateMeshRequest& request,
                                                         const Limits& limits,
                                                         const MemoryBudget* runs) {
-  const MeshRequest converted = to_engine(request);
-  if (const auto error = check_pslg(converted.pslg)) return tl::unexpected(failure_of(*error));
-  const Estimate expected = estimate(converted, to_budget(request.budget(), limits));
+  const auto converted = admissible(request, limits);
+  if (!converted) return tl::unexpected(converted.error());
+  if (const auto error = check_pslg(converted->pslg)) return tl::unexpected(failure_of(*error));
+  const Estimate expected = estimate(*converted, to_budget(request.budget(), limits));
   const std::uint64_t besides = bytes_besides(limits) + bytes_of_request(request);
   if (runs == nullptr) return expected.bytes + besides;
   if (auto error = runs->check_fits(expected.least_bytes + besides, 0))

@@ -68,19 +68,21 @@ void MeshService::generate_mesh(AdmittedCall& call) {
   const std::size_t size = call.bytes.Length();
   auto request = read_mesh_request(std::exchange(call.bytes, {}), options_.limits);
   if (!request) return admission().refuse(call, request.error());
+  const v1::GenerateMeshRequest& message = **request;
   // Two bytes of an empty region become 80, so what is parsed may be far more than the message.
   if (auto failure =
-          admission().reserve(call, bytes_of_larger_form(**request), largest_field(**request)))
+          admission().reserve(call, bytes_of_larger_form(message), largest_field(message)))
     return admission().refuse(call, *failure);
-  CacheLookup cached = look_up(**request, size, call.caller);
-  MeshRequest converted;
-  if (!cached.hit) converted = to_engine(**request);
+  auto converted = admissible(message, options_.limits);
+  if (!converted) return admission().refuse(call, converted.error());
+  CacheLookup cached = look_up(message, size, call.caller);
+  if (cached.hit) *converted = {};
   std::shared_ptr<MeshCall> mesh_call;
   {
     std::lock_guard lock(mutex_);
     mesh_call = std::make_shared<MeshCall>(environment_, call,
                                            fmt::format("{}-{}", options_.instance, ++last_number_),
-                                           **request, std::move(converted), std::move(cached));
+                                           message, *std::move(converted), std::move(cached));
     calls_.add(mesh_call);
   }
   changed_.notify_all();

@@ -101,14 +101,15 @@ v1::Job to_wire(const JobRecord& record) {
   return job;
 }
 
-tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure> read_request(const Claim& claim) {
-  auto request = std::make_unique<v1::GenerateMeshRequest>();
-  if (!request->ParseFromString(claim.request))
+tl::expected<ReadRequest, Failure> read_request(const Claim& claim) {
+  auto message = std::make_unique<v1::GenerateMeshRequest>();
+  if (!message->ParseFromString(claim.request))
     return tl::unexpected(Failure{Reason::kStoreBroken, "", "the stored request does not parse"});
-  if (const auto failure = check_shape(*request))
-    return tl::unexpected(
-        Failure{Reason::kStoreBroken, "", "the stored request is damaged: " + failure->message});
-  return request;
+  auto converted = to_engine(*message);
+  if (!converted)
+    return tl::unexpected(Failure{Reason::kStoreBroken, "",
+                                  "the stored request is damaged: " + converted.error().message});
+  return ReadRequest{std::move(message), *std::move(converted)};
 }
 
 tl::expected<v1::Summary, Failure> read_summary(const StoredMesh& mesh) {

@@ -10,6 +10,8 @@
 #include "server/store/job_store.h"
 #include "server/wire/errors.h"
 #include "weft/v1/job_service.pb.h"
+#include "weft/v1/mesh_service.pb.h"
+#include "weft/weft.h"
 
 namespace weft::server {
 
@@ -23,9 +25,14 @@ Failure mesh_damaged(std::string_view id);  // and therefore gone
 // messages that do not parse are left empty.
 v1::Job to_wire(const JobRecord& record);
 
+struct ReadRequest {
+  std::unique_ptr<v1::GenerateMeshRequest> message;
+  MeshRequest converted;  // the same for the engine
+};
+
 // What a store keeps as bytes, for whoever works with it: kStoreBroken if no server has written
-// them. The request is one in which check_shape finds nothing.
-tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure> read_request(const Claim& claim);
+// them.
+tl::expected<ReadRequest, Failure> read_request(const Claim& claim);
 tl::expected<v1::Summary, Failure> read_summary(const StoredMesh& mesh);
 
 // "queued" and so on.

@@ -46,7 +46,6 @@ inline constexpr std::array kCountLimits = {
     CountLimit{"max_raster_values", &Limits::max_raster_values, "Maximum values of a size raster"},
 };
 
-// REQUIRES: check_shape(request) returned nullopt.
 std::optional<Failure> check_limits(const v1::GenerateMeshRequest& request, const Limits& limits);
 
 // The same for a request that is not parsed yet, of what takes memory: parsing what passes takes at

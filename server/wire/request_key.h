@@ -25,8 +25,8 @@ inline constexpr std::array<std::string_view, 6> kNotInMeshKey = {
     "threads",  "first_chunk",      "want_quadtree",
     "no_cache", "budget.max_bytes", "budget.max_seconds"};
 
-// 32 bytes: SHA-256 over the engine's version and the request. REQUIRES: check_shape(request)
-// returned nullopt.
+// 32 bytes: SHA-256 over the engine's version and the request. REQUIRES: to_engine(request)
+// has a value.
 std::string mesh_key(v1::GenerateMeshRequest request);
 
 // The same key if clients share nothing: only those of this name find the mesh by it.

@@ -48,9 +48,6 @@ tl::expected<std::unique_ptr<v1::GenerateMeshRequest>, Failure> read_mesh_reques
     grpc::ByteBuffer bytes, const Limits& limits) {
   auto request = std::make_unique<v1::GenerateMeshRequest>();
   if (auto failure = parse(std::move(bytes), *request, &limits)) return tl::unexpected(*failure);
-  if (auto failure = check_shape(*request)) return tl::unexpected(*failure);
-  if (auto failure = check_limits(*request, limits)) return tl::unexpected(*failure);
-  if (auto failure = check_values(*request)) return tl::unexpected(*failure);
   return request;
 }
 
@@ -59,13 +56,19 @@ tl::expected<v1::SubmitJobRequest, Failure> read_submission(grpc::ByteBuffer byt
   v1::SubmitJobRequest request;
   if (auto failure = parse(std::move(bytes), request, &limits)) return tl::unexpected(*failure);
   if (auto failure = check_request_id(request.request_id())) return tl::unexpected(*failure);
-  if (auto failure = check_shape(request.mesh())) return tl::unexpected(*failure);
-  if (auto failure = check_limits(request.mesh(), limits)) return tl::unexpected(*failure);
-  if (auto failure = check_values(request.mesh())) return tl::unexpected(*failure);
   if (request.mesh().first_chunk() != 0)
     return tl::unexpected(Failure{Reason::kBadOption, "first_chunk",
                                   "first_chunk of a job must be 0; FetchMesh has its own"});
   return request;
+}
+
+tl::expected<MeshRequest, Failure> admissible(const v1::GenerateMeshRequest& request,
+                                              const Limits& limits) {
+  auto converted = to_engine(request);
+  if (!converted) return converted;
+  if (auto failure = check_limits(request, limits)) return tl::unexpected(*failure);
+  if (auto failure = check_values(*converted)) return tl::unexpected(*failure);
+  return converted;
 }
 
 std::optional<Failure> read_small(grpc::ByteBuffer bytes, google::protobuf::Message& message) {

@@ -1,137 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/wire/translate.h"
 
-#include <fmt/format.h>
 #include <grpcpp/impl/codegen/proto_utils.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 
 #include "server/wire/names.h"
-#include "server/wire/points.h"
-#include "server/wire/size_field.h"
+#include "wire/request.h"
 #include "wire/summary.h"
 
 namespace weft::server {
 namespace {
-
-std::optional<Failure> check_pairs(std::string_view field, int size, std::string_view what) {
-  if (size % 2 == 0) return std::nullopt;
-  return Failure{Reason::kBadArray, std::string(field),
-                 fmt::format("{} holds {} numbers; {} come in pairs", field, size, what)};
-}
-
-bool not_negative(double value) {
-  return std::isfinite(value) && value >= 0;
-}
-
-// Of a region or an area.
-template <class Bounded>
-std::optional<Failure> check_bounds(const std::string& field, const Bounded& bounded) {
-  if (bounded.has_max_area() && !(std::isfinite(bounded.max_area()) && bounded.max_area() > 0))
-    return bad_option(field + ".max_area",
-                      fmt::format("{}.max_area is {}; it must be positive and finite", field,
-                                  bounded.max_area()));
-  const double area = area_of_edge(bounded.max_edge());
-  if (bounded.has_max_edge() && !(std::isfinite(area) && area > 0))
-    return bad_option(field + ".max_edge",
-                      fmt::format("{}.max_edge is {}; it must be positive and finite, and so must "
-                                  "its square",
-                                  field, bounded.max_edge()));
-  return std::nullopt;
-}
-
-// The bound on the areas of triangles that max_area and max_edge of a region or an area make
-// together.
-template <class Bounded>
-std::optional<double> max_area_of(const Bounded& bounded) {
-  std::optional<double> area;
-  if (bounded.has_max_area()) area = bounded.max_area();
-  if (!bounded.has_max_edge()) return area;
-  const double by_edge = area_of_edge(bounded.max_edge());
-  return area ? std::min(*area, by_edge) : by_edge;
-}
-
-Fill to_engine(v1::Fill fill) {
-  switch (fill) {
-    case v1::FILL_EVEN_ODD:
-      return Fill::kEvenOdd;
-    case v1::FILL_UNION:
-      return Fill::kUnion;
-    default:
-      return Fill::kSeeds;
-  }
-}
-
-std::optional<Failure> check_domain(const v1::Domain& domain) {
-  if (auto f = check_pairs("domain.points", domain.points_size(), "coordinates")) return f;
-  if (auto f = check_pairs("domain.segments", domain.segments_size(), "point indices")) return f;
-  if (auto f = check_pairs("domain.holes", domain.holes_size(), "coordinates")) return f;
-  const int segments = domain.segments_size() / 2;
-  const int markers = domain.segment_markers_size();
-  if (markers != 0 && markers != segments)
-    return Failure{Reason::kBadArray, "domain.segment_markers",
-                   fmt::format("domain.segment_markers holds {} markers for {} segments; give one "
-                               "per segment, or none",
-                               markers, segments)};
-  const int areas = domain.segment_areas_size();
-  if (areas != 0 && areas != segments)
-    return Failure{Reason::kBadArray, "domain.segment_areas",
-                   fmt::format("domain.segment_areas holds {} areas for {} segments; give one per "
-                               "segment, or none",
-                               areas, segments)};
-  for (int i = 0; i < domain.regions_size(); ++i)
-    if (auto f = check_bounds(fmt::format("domain.regions[{}]", i), domain.regions(i))) return f;
-  for (int i = 0; i < domain.areas_size(); ++i)
-    if (auto f = check_bounds(fmt::format("domain.areas[{}]", i), domain.areas(i))) return f;
-  if (!v1::Fill_IsValid(domain.fill()))
-    return bad_option("domain.fill", fmt::format("domain.fill is {}, which is not a Fill",
-                                                 static_cast<int>(domain.fill())));
-  return check_names(domain);
-}
-
-Pslg to_engine(const v1::Domain& domain) {
-  Pslg out;
-  out.points = to_points(domain.points());
-  out.holes = to_points(domain.holes());
-  out.segments.resize(static_cast<std::size_t>(domain.segments_size() / 2));
-  const bool marked = domain.segment_markers_size() != 0;
-  const bool bordering = domain.segment_areas_size() != 0;
-  for (std::size_t i = 0; i < out.segments.size(); ++i) {
-    const std::uint32_t* ends = domain.segments().data() + 2 * i;
-    // 0, for none, becomes kNone.
-    const std::uint32_t area = bordering ? domain.segment_areas().data()[i] - 1 : kNone;
-    out.segments[i] = {ends[0], ends[1], marked ? domain.segment_markers().data()[i] : 0, area};
-  }
-  out.regions.reserve(static_cast<std::size_t>(domain.regions_size()));
-  for (const v1::Region& region : domain.regions())
-    out.regions.push_back({{region.x(), region.y()}, region.id(), max_area_of(region)});
-  out.areas.reserve(static_cast<std::size_t>(domain.areas_size()));
-  for (const v1::Area& area : domain.areas())
-    out.areas.push_back({.region = area.has_region() ? std::optional(area.region()) : std::nullopt,
-                         .priority = area.priority(),
-                         .max_area = max_area_of(area),
-                         .is_hole = area.hole()});
-  out.fill = to_engine(domain.fill());
-  out.snap = domain.snap();
-  return out;
-}
-
-// All of a request but its domain and its size.
-MeshRequest options_of(const v1::GenerateMeshRequest& request) {
-  MeshRequest out;
-  if (request.quality().has_min_angle_deg()) out.min_angle_deg = request.quality().min_angle_deg();
-  out.min_edge = request.quality().min_edge();
-  if (request.quality().placement() == v1::PLACEMENT_CIRCUMCENTRE)
-    out.placement = Placement::kCircumcentre;
-  if (request.quality().has_optimise()) out.sweeps = request.quality().optimise();
-  out.simplify = request.simplify();
-  out.allow_unrefined = request.allow_unrefined();
-  return out;
-}
 
 template <class Array, class Values>
 void assign(Array& array, const Values& values) {
@@ -146,33 +28,19 @@ std::string to_string(const Bytes& bytes) {
 
 }  // namespace
 
-std::optional<Failure> check_shape(const v1::GenerateMeshRequest& request) {
-  if (!request.has_domain()) return bad_option("domain", "domain is missing; it is required");
-  if (auto f = check_domain(request.domain())) return f;
-
-  if (auto f = check_shape(request.size())) return f;
-  const v1::Quality& quality = request.quality();
-  if (!v1::Placement_IsValid(quality.placement()))
-    return bad_option("quality.placement",
-                      fmt::format("quality.placement is {}, which is not a Placement",
-                                  static_cast<int>(quality.placement())));
-  if (!not_negative(request.budget().max_seconds()))
-    return bad_option("budget.max_seconds",
-                      fmt::format("budget.max_seconds is {}; it must be 0 or more, and finite",
-                                  request.budget().max_seconds()));
-  return std::nullopt;
+tl::expected<MeshRequest, Failure> to_engine(const v1::GenerateMeshRequest& request) {
+  auto read = wire::read_request(request.SerializeAsString());
+  if (!read) return tl::unexpected(failure_of(read.error()));
+  if (auto failure = check_names(request.domain())) return tl::unexpected(*failure);
+  return std::move(read->mesh);
 }
 
-std::optional<Failure> check_values(const v1::GenerateMeshRequest& request) {
-  if (const auto error = check_options(options_of(request))) return failure_of(*error);
-  return check_values(request.size());
-}
-
-MeshRequest to_engine(const v1::GenerateMeshRequest& request) {
-  MeshRequest out = options_of(request);
-  out.pslg = to_engine(request.domain());
-  out.size = to_engine(request.size());
-  return out;
+std::optional<Failure> check_values(const MeshRequest& request) {
+  std::optional<Error> error = check_options(request);
+  if (!error) error = check_size(request.size);
+  if (const auto* raster = std::get_if<Raster>(&request.size.value); raster != nullptr && !error)
+    error = check_raster_values(raster->values, raster->columns);
+  return error ? std::optional(failure_of(*error)) : std::nullopt;
 }
 
 Budget to_budget(const v1::Budget& budget, const Limits& limits) {

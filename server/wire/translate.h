@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between the wire and the engine: the only place that knows both.
+// Between parsed messages and the engine: what wire/ has from bytes, and chunks.
 //
-// Lengths of arrays are checked here, options and the size by the engine, both before a request is
-// admitted. The engine checks coordinates and indices when it runs, and those of a job before the
-// job is stored. Errors carry the path of the field as the wire spells it.
+// Lengths of arrays, options and the size are checked before a request is admitted. The engine
+// checks coordinates and indices when it runs, and those of a job before the job is stored. Errors
+// carry the path of the field as the wire spells it.
 #pragma once
 
 #include <grpcpp/support/byte_buffer.h>
 
 #include <optional>
+#include <tl/expected.hpp>
 
 #include "server/wire/errors.h"
 #include "server/wire/limits.h"
@@ -20,17 +21,14 @@ namespace weft::server {
 // Threads of `available` that a job takes at most, of which `wanted` are asked for; 0 is all.
 std::uint32_t to_threads(std::uint32_t wanted, int available);
 
-// Refuses arrays of impossible lengths and what only the wire has (enums, the budget), in constant
-// time but for the regions and the names.
-std::optional<Failure> check_shape(const v1::GenerateMeshRequest& request);
+// Refuses arrays of impossible lengths, names of markers and regions with a fault, and what only
+// the wire has (wire/request.h). Takes linear time, and meanwhile memory for the request's bytes.
+tl::expected<MeshRequest, Failure> to_engine(const v1::GenerateMeshRequest& request);
 
 // Refuses what the engine would refuse before it looks at the domain: options outside their ranges,
-// and a size with a fault. REQUIRES: check_shape(request) and check_limits(request, limits) found
-// nothing.
-std::optional<Failure> check_values(const v1::GenerateMeshRequest& request);
+// and a size with a fault.
+std::optional<Failure> check_values(const MeshRequest& request);
 
-// Takes linear time. REQUIRES: as check_values.
-MeshRequest to_engine(const v1::GenerateMeshRequest& request);
 Budget to_budget(const v1::Budget& budget, const Limits& limits);
 double to_seconds(const v1::Budget& budget, const Limits& limits);
 

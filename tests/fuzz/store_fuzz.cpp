@@ -179,7 +179,7 @@ class Caller {
     const auto claim = store_.claim("worker", milliseconds(1000), 1 << 20);
     if (claim && *claim) {
       const ClaimRef ref = (*claim)->ref;
-      if (const auto request = read_request(**claim)) (void)to_engine(**request);
+      (void)read_request(**claim);
       (void)store_.renew(ref, milliseconds(1000), "progress");
       (void)store_.put_chunk(std::string(kKeys[1]), "chunk");
       (void)store_.finish(ref,

@@ -144,7 +144,9 @@ void judge(const std::uint8_t* data, std::size_t size) {
        "counts", std::to_string(counted(v1::Domain::kRegionsFieldNumber)));
   if (!read) return;
   must(read->SerializeAsString() == submission.SerializeAsString(), "admission", "another message");
-  must(!check_shape(request) && !check_limits(request, kLimits), "admission", "it passes no check");
+  const auto converted = admissible(request, kLimits);
+  if (!converted) return refuse(converted.error());
+  must(!check_limits(request, kLimits), "admission", "it passes no check");
 
   const std::string key = mesh_key(request);
   v1::GenerateMeshRequest again;
@@ -157,13 +159,12 @@ void judge(const std::uint8_t* data, std::size_t size) {
   must(budget.triangle_limit <= kLimits.max_triangles && budget.max_bytes <= kLimits.max_bytes &&
            seconds >= 0 && seconds <= kLimits.max_seconds,
        "budget", "beyond the limits");
-  const MeshRequest converted = to_engine(request);
-  must(estimate(converted, budget).bytes <= kLimits.max_bytes, "budget", "it weighs more");
+  must(estimate(*converted, budget).bytes <= kLimits.max_bytes, "budget", "it weighs more");
   must(to_threads(request.threads(), 4) <= 4, "budget", "threads");
 
   weft::Run run(budget);
   CollectedMesh mesh;
-  const auto summary = stream(converted, mesh, run);
+  const auto summary = stream(*converted, mesh, run);
   if (!summary) {
     must(summary.error().code != ErrorCode::kInternal, "internal", summary.error().message);
     return refuse(failure_of(summary.error()));

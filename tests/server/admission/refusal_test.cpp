@@ -352,6 +352,8 @@ INSTANTIATE_TEST_SUITE_P(
              "quality.placement", "7"},
         Case{"SecondsNegative", [](Request& r) { r.mutable_budget()->set_max_seconds(-3); },
              "budget.max_seconds", "is -3"},
+        Case{"SecondsFar", [](Request& r) { r.mutable_budget()->set_max_seconds(-100'000); },
+             "budget.max_seconds", "is -100000;"},
         Case{"SecondsNan", [](Request& r) { r.mutable_budget()->set_max_seconds(kNan); },
              "budget.max_seconds", "nan"}),
     name_of);

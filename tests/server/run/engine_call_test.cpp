@@ -34,7 +34,7 @@ struct LightRun {
     RunQueue queue({.light_slots = 1, .capacity = 1, .max_light_estimate = 1});
     Event ended;
     queue.push({}, [&](RunQueue::Slot& slot) {
-      outcome = call_engine(engine, to_engine(valid_request()), sink,
+      outcome = call_engine(engine, *to_engine(valid_request()), sink,
                             {.run = run,
                              .slot = slot,
                              .besides = 0,

@@ -11,7 +11,7 @@ TEST(MemoryEstimate, OfARunStaysWithinTheBudgetOfItsRequest) {
   v1::GenerateMeshRequest request = valid_request();
   Limits limits;
   const auto expected = [&] {
-    return estimate(to_engine(request), to_budget(request.budget(), limits)).bytes;
+    return estimate(*to_engine(request), to_budget(request.budget(), limits)).bytes;
   };
   request.mutable_quality()->set_min_angle_deg(35);
   request.mutable_size()->set_constant(1e-12);
@@ -30,7 +30,7 @@ TEST(MemoryEstimate, OfARequestHasRoomForTheEnginesForm) {
     request.mutable_domain()->add_segments(i);
     request.mutable_domain()->add_segments(i + 1);
   }
-  const Pslg pslg = to_engine(request).pslg;
+  const Pslg pslg = to_engine(request)->pslg;
   const std::uint64_t engine_bytes = pslg.segments.size() * sizeof(pslg.segments.front());
   EXPECT_LE(engine_bytes, bytes_of_larger_form(request));
   EXPECT_GT(engine_bytes, request.SpaceUsedLong()) << "the wire's form is larger";
