@@ -172,7 +172,10 @@ class Pipeline {
                               std::clamp(2 * request_.min_angle_deg, 40.0, kMaxTurnDeg));
     if (!domain) return domain.error();
     domain_ = std::move(*domain);
-    if (auto error = flatten()) return error;
+    if (request_.simplify > 0 && !domain_.curvatures.empty())
+      return Error{ErrorCode::kBadOption, "simplify",
+                   "simplify is " + text(request_.simplify) +
+                       ", but the domain has arcs, and only straight segments are simplified"};
     summary_.merging = domain_.merging;
     summary_.overlap = domain_.overlap;
     summary_.outside = domain_.outside;
@@ -183,6 +186,9 @@ class Pipeline {
     context_.end_stage("triangulation");
 
     context_.enter(Stage::kSize);
+    const SizeSpec& spec = request_.size;
+    if (!spec.fields.empty() || spec.gradation > 0 || spec.cells_across > 0)
+      if (auto error = flatten()) return error;
     auto made = make_size(request_.size, flat_ ? flat_->pslg : request_.pslg, ground(), context_);
     if (!made) return made.error();
     size_.emplace(std::move(*made));
@@ -192,11 +198,7 @@ class Pipeline {
 
   // What the size sees of a domain with arcs.
   std::optional<Error> flatten() {
-    if (domain_.curvatures.empty()) return std::nullopt;
-    if (request_.simplify > 0)
-      return Error{ErrorCode::kBadOption, "simplify",
-                   "simplify is " + text(request_.simplify) +
-                       ", but the domain has arcs, and only straight segments are simplified"};
+    if (flat_ || domain_.curvatures.empty()) return std::nullopt;
     flat_.emplace(Flat{flatten_arcs(request_.pslg), {}});
     auto domain = triangulate(flat_->pslg, context_);
     if (auto error = context_.poll()) return error;
@@ -258,6 +260,7 @@ class Pipeline {
 
   std::optional<Error> map_size() {
     if (size().constant()) return std::nullopt;
+    if (auto error = flatten()) return error;
     auto map = SizeMap::build(size(), ground(), context_);
     if (!map) return map.error();
     map_.emplace(std::move(*map));
