@@ -161,21 +161,6 @@ Area read_area(Fields in, const std::string& path) {
   return area;
 }
 
-Arc read_arc(Fields in) {
-  Arc arc;
-  while (in.next()) switch (in.number()) {
-      case 1:
-        in.read(arc.segment);
-        break;
-      case 2:
-        in.read(arc.bulge);
-        break;
-      default:
-        in.skip();
-    }
-  return arc;
-}
-
 // The path of the next element of an array.
 template <class T>
 std::string next_of(const char* field, const std::vector<T>& elements) {
@@ -219,7 +204,10 @@ class DomainReader {
           in.array(areas_);
           break;
         case 12:
-          in.message([this](Fields arc) { pslg_.arcs.push_back(read_arc(arc)); });
+          in.array(arc_segments_);
+          break;
+        case 13:
+          in.array(bulges_);
           break;
         default:
           in.skip();
@@ -235,11 +223,22 @@ class DomainReader {
     for (std::size_t i = 0; i < markers_.size(); ++i) pslg_.segments[i].marker = markers_[i];
     // 0, for none, becomes kNone.
     for (std::size_t i = 0; i < areas_.size(); ++i) pslg_.segments[i].area = areas_[i] - 1;
+    pslg_.arcs = take_arcs();
     pslg_.fill = enumerator(fill_, Fill::kUnion, "domain.fill", "Fill");
     return std::move(pslg_);
   }
 
  private:
+  std::vector<Arc> take_arcs() const {
+    if (bulges_.size() != arc_segments_.size())
+      refuse(ErrorCode::kBadArray, "domain.arc_bulges",
+             "domain.arc_bulges holds " + text(bulges_.size()) + " bulges for " +
+                 text(arc_segments_.size()) + " arcs; give one per arc");
+    std::vector<Arc> arcs;
+    arcs.reserve(bulges_.size());
+    for (std::size_t i = 0; i < bulges_.size(); ++i) arcs.push_back({arc_segments_[i], bulges_[i]});
+    return arcs;
+  }
   void check_one_each(const std::string& name, const char* what, std::size_t count) const {
     const std::size_t segments = pslg_.segments.size();
     if (count == 0 || count == segments) return;
@@ -255,6 +254,8 @@ class DomainReader {
   Rows<Segment, 2> segments_;
   std::vector<std::int32_t> markers_;
   std::vector<std::uint32_t> areas_;
+  std::vector<std::uint32_t> arc_segments_;
+  std::vector<double> bulges_;
   std::int32_t fill_ = 0;
 };
 

@@ -62,9 +62,8 @@ void fill(const Domain& domain, v1::Domain& out) {
   if (marked)
     for (const Domain::Segment& segment : domain.segments) out.add_segment_markers(segment.marker);
   for (const Domain::Arc& arc : domain.arcs) {
-    v1::Arc& added = *out.add_arcs();
-    added.set_segment(arc.segment);
-    added.set_bulge(arc.bulge);
+    out.add_arc_segments(arc.segment);
+    out.add_arc_bulges(arc.bulge);
   }
   for (const Point& hole : domain.holes) {
     out.add_holes(hole.x);

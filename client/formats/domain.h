@@ -68,7 +68,7 @@ struct Domain {
     std::uint32_t area = 0;  // 1 + index into areas if it is part of the border of one
     friend bool operator==(const Segment&, const Segment&) = default;
   };
-  // Makes a segment an arc of a circle; see Arc in the protocol.
+  // Makes a segment an arc of a circle; see arc_bulges in the protocol.
   struct Arc {
     std::uint32_t segment = 0;
     double bulge = 0;

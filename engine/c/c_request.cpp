@@ -201,11 +201,8 @@ void weft_set_segments(weft_request* request, const uint32_t* ends, const int32_
 void weft_set_arcs(weft_request* request, const uint32_t* segments, const double* bulges,
                    size_t count) {
   append_to(request, kDomain, [&](pbf_writer& domain) {
-    for (size_t i = 0; i < count; ++i) {
-      pbf_writer arc(domain, 12);
-      arc.add_uint32(1, segments[i]);
-      arc.add_double(2, bulges[i]);
-    }
+    domain.add_packed_uint32(12, segments, end_of(segments, count, "domain.arc_segments"));
+    domain.add_packed_double(13, bulges, bulges + count);
   });
 }
 

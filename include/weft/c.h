@@ -45,7 +45,7 @@ WEFT_API void weft_set(weft_request* request, const char* field, const char* tex
 /* x0, y0, x1, ... Call each of these three at most once. */
 WEFT_API void weft_set_points(weft_request* request, const double* xy, size_t count);
 WEFT_API void weft_set_holes(weft_request* request, const double* xy, size_t count);
-/* Segments that are arcs of circles, and the bulge of each (Arc in the protocol). Call it at most
+/* Segments that are arcs of circles, and the bulge of each. Call it at most
  * once. */
 WEFT_API void weft_set_arcs(weft_request* request, const uint32_t* segments, const double* bulges,
                             size_t count);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 
 #include "server/wire/names.h"
@@ -24,6 +25,7 @@ struct Amounts {
   std::uint64_t segments = 0;
   std::uint64_t markers = 0;
   std::uint64_t borders = 0;  // segments' areas
+  std::uint64_t arcs = 0;     // segments' numbers or bulges, whichever are more
   std::uint64_t seeds = 0;
   std::uint64_t names = 0;
   std::uint64_t expression_bytes = 0;
@@ -45,6 +47,7 @@ std::optional<Failure> check(const Amounts& amounts, const Limits& limits) {
     return f;
   if (auto f = over("domain.segment_areas", "areas", amounts.borders, limits.max_segments))
     return f;
+  if (auto f = over("domain.arc_segments", "arcs", amounts.arcs, limits.max_segments)) return f;
   if (amounts.seeds > limits.max_seeds)
     return Failure{Reason::kLimitExceeded, "domain.regions",
                    fmt::format("the domain has {} hole and region seeds and areas; this server's "
@@ -81,6 +84,8 @@ std::optional<Failure> check_limits(const WireScan& scan, const Limits& limits) 
       .segments = of_domain(v1::Domain::kSegmentsFieldNumber) / 2,
       .markers = of_domain(v1::Domain::kSegmentMarkersFieldNumber),
       .borders = of_domain(v1::Domain::kSegmentAreasFieldNumber),
+      .arcs = std::max(of_domain(v1::Domain::kArcSegmentsFieldNumber),
+                       of_domain(v1::Domain::kArcBulgesFieldNumber)),
       .seeds = of_domain(v1::Domain::kHolesFieldNumber) / 2 +
                of_domain(v1::Domain::kRegionsFieldNumber) +
                of_domain(v1::Domain::kAreasFieldNumber),
@@ -113,6 +118,7 @@ std::optional<Failure> check_limits(const v1::GenerateMeshRequest& request, cons
       .segments = count(domain.segments_size(), 2),
       .markers = count(domain.segment_markers_size(), 1),
       .borders = count(domain.segment_areas_size(), 1),
+      .arcs = std::max(count(domain.arc_segments_size(), 1), count(domain.arc_bulges_size(), 1)),
       .seeds = count(domain.holes_size(), 2) + count(domain.regions_size(), 1) +
                count(domain.areas_size(), 1),
       .names = count(domain.marker_names_size(), 1) + count(domain.region_names_size(), 1),

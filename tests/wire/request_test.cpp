@@ -179,9 +179,8 @@ v1::GenerateMeshRequest full_request() {
   area.set_max_area(0.25);
   area.set_priority(-9);
   area.set_hole(true);
-  v1::Arc& arc = *domain.add_arcs();
-  arc.set_segment(2);
-  arc.set_bulge(-0.5);
+  domain.add_arc_segments(2);
+  domain.add_arc_bulges(-0.5);
   domain.set_fill(v1::FILL_UNION);
   domain.set_snap(0.125);
   v1::Quality& quality = *request.mutable_quality();
@@ -305,6 +304,7 @@ TEST(ReadRequest, NamesArraysWhoseLengthsMakeNoSense) {
   expect("domain.holes", [](v1::Domain& domain) { domain.add_holes(1); });
   expect("domain.segment_markers", [](v1::Domain& domain) { domain.add_segment_markers(1); });
   expect("domain.segment_areas", [](v1::Domain& domain) { domain.add_segment_areas(1); });
+  expect("domain.arc_bulges", [](v1::Domain& domain) { domain.add_arc_bulges(1); });
 }
 
 TEST(ReadRequest, NamesOptionsThatAreNone) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The arcs in Triangle's .poly files, which have no place for them but comments. A line that begins
-// so makes the segment of that number an arc with that bulge (Arc in the protocol):
+// so makes the segment of that number an arc with that bulge (arc_bulges in the protocol):
 //
 //   # arc=4:0.41421356237309503
 //

@@ -207,6 +207,11 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"Hole", [](auto& r) { r.mutable_domain()->add_holes(1); }},
         Change{"Region", [](auto& r) { r.mutable_domain()->add_regions()->set_id(1); }},
         Change{"Area", [](auto& r) { r.mutable_domain()->add_areas()->set_hole(true); }},
+        Change{"Arc",
+               [](auto& r) {
+                 r.mutable_domain()->add_arc_segments(1);
+                 r.mutable_domain()->add_arc_bulges(0.5);
+               }},
         Change{"SegmentArea", [](auto& r) { r.mutable_domain()->add_segment_areas(1); }},
         Change{"Fill", [](auto& r) { r.mutable_domain()->set_fill(v1::FILL_EVEN_ODD); }},
         Change{"Size", [](auto& r) { r.mutable_size()->set_constant(0.2); }},

@@ -192,8 +192,8 @@ def _fill_domain(domain: Domain, message: Any) -> None:
     message.segments.extend(domain.segments.ravel().tolist())
     if domain.markers.any():
         message.segment_markers.extend(domain.markers.tolist())
-    for segment, bulge in domain.arcs.items():
-        message.arcs.add(segment=segment, bulge=bulge)
+    message.arc_segments.extend(domain.arcs.keys())
+    message.arc_bulges.extend(domain.arcs.values())
     message.holes.extend(domain.holes.ravel().tolist())
     for region in domain.regions:
         message.regions.add(x=region.x, y=region.y, id=region.id, max_area=region.max_area,

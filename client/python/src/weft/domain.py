@@ -256,7 +256,7 @@ def _of_message(message: bytes) -> Domain:
         areas=[Area(_given(a, "region"), _given(a, "max_area"), _given(a, "max_edge"), a.priority, a.hole)
                for a in sent.areas],
         segment_areas=np.array(sent.segment_areas, np.uint32),
-        arcs={arc.segment: arc.bulge for arc in sent.arcs},
+        arcs=dict(zip(sent.arc_segments, sent.arc_bulges)),
         fill=_FILLS[sent.fill],
         marker_names={name.id: name.name for name in sent.marker_names},
         region_names={name.id: name.name for name in sent.region_names})
