@@ -9,6 +9,7 @@
 #include "client/base/text.h"
 #include "client/formats/derived/mesh_domain.h"
 #include "client/formats/domains/csv_rings.h"
+#include "client/formats/domains/dxf.h"
 #include "client/formats/domains/geojson.h"
 #include "client/formats/domains/ogr.h"
 #include "client/formats/domains/shapefile.h"
@@ -20,7 +21,6 @@ namespace weft::client {
 namespace {
 
 constexpr const char* kDgn[] = {"DGN", nullptr};
-constexpr const char* kDxf[] = {"DXF", nullptr};
 constexpr const char* kFlatGeobuf[] = {"FlatGeobuf", nullptr};
 constexpr const char* kGeoJson[] = {"GeoJSON", nullptr};
 constexpr const char* kGeoJsonSequence[] = {"GeoJSONSeq", "GeoJSON", nullptr};  // of one line
@@ -55,7 +55,7 @@ constexpr DomainFormat kFormats[] = {
     {.extension = ".kml", .drivers = kKml},
     {.extension = ".kmz", .drivers = kKmz, .needs_name = true},
     {.extension = ".gml", .drivers = kGml, .driver_options = kGmlAlone},
-    {.extension = ".dxf", .drivers = kDxf},
+    {.extension = ".dxf", .read_layers = read_dxf},
     {.extension = ".dgn", .drivers = kDgn},
     {.extension = ".tab", .drivers = kMapInfo, .needs_name = true},
     {.extension = ".mif", .drivers = kMapInfo, .needs_name = true},
@@ -126,6 +126,7 @@ Result<Domain> read_any(const DataPath& path, const LayerOptions& layers) {
                     extensions([](const DomainFormat& f) { return f.has_layers(); }));
   try {
     if (format == nullptr) return read_mesh_as_domain(path);
+    if (format->read_layers != nullptr) return format->read_layers(path, layers);
     if (format->read == nullptr || layers.wanted()) return read_with_ogr(*format, path, layers);
     return format->read(path, layers.lonlat);
   } catch (const std::bad_alloc&) {

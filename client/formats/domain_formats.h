@@ -18,6 +18,8 @@ struct DomainFormat {
   std::string_view extension;  // lower case, ".gpkg"
   // weft's own reader, which is used unless layers or features are chosen; null: OGR reads it.
   Result<Domain> (*read)(const std::filesystem::path&, bool lonlat) = nullptr;
+  // The same of a format whose layers and features it chooses itself.
+  Result<Domain> (*read_layers)(const std::filesystem::path&, const LayerOptions&) = nullptr;
   // For GDALOpenEx, each a list that ends in null: the drivers that may read it, and how they open
   // it. Null of an archive, and of what OGR does not read.
   const char* const* drivers = nullptr;
@@ -25,7 +27,7 @@ struct DomainFormat {
   bool is_archive = false;  // of files in other formats: ogr_archive.h
   bool needs_name = false;  // to be read: there are files beside it, or a library asks for the name
 
-  bool has_layers() const { return drivers != nullptr || is_archive; }
+  bool has_layers() const { return drivers != nullptr || read_layers != nullptr || is_archive; }
 };
 
 // The format of an extension, in upper or lower case; null if there is none. A mesh is no such

@@ -57,6 +57,7 @@ const std::vector<Format>& formats() {
       {Kind::kMesh, {".mesh"}},
       {Kind::kMesh, {".vol"}},
       {Kind::kMesh, {".mfem"}},
+      {Kind::kDomain, {".dxf"}},
   };
   return all;
 }
@@ -97,6 +98,11 @@ std::string wrong_with(const Domain& domain) {
     if (!finite(r.at) || (r.max_area && !(*r.max_area > 0))) return "a region that is no region";
   if (!domain.point_markers.empty() && domain.point_markers.size() != domain.points.size())
     return "markers of points are missing";
+  for (std::size_t i = 0; i < domain.arcs.size(); ++i)
+    if (domain.arcs[i].segment >= domain.segments.size() ||
+        (i > 0 && domain.arcs[i].segment <= domain.arcs[i - 1].segment) ||
+        !(std::abs(domain.arcs[i].bulge) <= 1e6))
+      return "an arc that is no arc";
   for (std::size_t i = 0; i < domain.segments.size(); ++i) (void)domain.segment_places.locate(i);
   return "";
 }

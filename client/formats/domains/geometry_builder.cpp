@@ -67,7 +67,8 @@ tl::unexpected<Error> GeometryBuilder::unusable(Point at, const std::string& pat
 Result<GeometryBuilder::Chain> GeometryBuilder::chain(std::span<const Point> positions,
                                                       const std::string& path,
                                                       const GeometryProperties& properties,
-                                                      std::span<const std::uint32_t> markers) {
+                                                      std::span<const std::uint32_t> markers,
+                                                      std::span<const double> bulges) {
   Chain out;
   const std::uint32_t label = markers.empty() ? label_of(markers_, NameKind::kMarker,
                                                          properties.marker, properties.marker_name)
@@ -75,17 +76,21 @@ Result<GeometryBuilder::Chain> GeometryBuilder::chain(std::span<const Point> pos
   out.points.reserve(positions.size());
   out.numbers.reserve(positions.size());
   out.markers.reserve(positions.size());
+  out.bulges.reserve(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (!is_usable(positions[i]))
       return unusable(positions[i], path + "[" + std::to_string(i) + "]");
     const std::uint32_t marker = markers.empty() ? label : markers[i];
+    const double bulge = bulges.empty() ? 0 : bulges[i];
     if (!out.points.empty() && out.points.back() == positions[i]) {
       out.markers.back() = marker;  // of the segment that begins there
+      out.bulges.back() = bulge;
       continue;
     }
     out.points.push_back(positions[i]);
     out.numbers.push_back(i);
     out.markers.push_back(marker);
+    out.bulges.push_back(bulge);
   }
   return out;
 }
@@ -107,6 +112,9 @@ Result<void> GeometryBuilder::add(const Chain& chain, bool closed, const std::st
       domain_.segment_places.add(domain_.segments.size(), file_ + ": " + path + ", edge from [",
                                  chain.numbers[i], "]");
     const std::size_t next = i + 1 < size ? i + 1 : 0;
+    if (chain.bulges[i] != 0)
+      domain_.arcs.push_back(
+          {static_cast<std::uint32_t>(domain_.segments.size()), chain.bulges[i]});
     domain_.segments.push_back({static_cast<std::uint32_t>(first + i),
                                 static_cast<std::uint32_t>(first + next),
                                 static_cast<std::int32_t>(chain.markers[i])});
@@ -123,8 +131,9 @@ Result<void> GeometryBuilder::point(Point at, const std::string& path) {
 
 Result<void> GeometryBuilder::line(std::span<const Point> positions, const std::string& path,
                                    const GeometryProperties& properties,
-                                   std::span<const std::uint32_t> markers) {
-  const auto line = chain(positions, path, properties, markers);
+                                   std::span<const std::uint32_t> markers,
+                                   std::span<const double> bulges) {
+  const auto line = chain(positions, path, properties, markers, bulges);
   if (!line) return tl::unexpected(line.error());
   if (ruled_line_.empty() && (properties.region.value_or(0) != 0 ||
                               !properties.region_name.empty() || area_bound(properties)))

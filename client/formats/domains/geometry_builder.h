@@ -70,10 +70,12 @@ class GeometryBuilder {
 
   Result<void> point(Point at, const std::string& path);
   // `markers`: a label for each position, of the segment that starts there; or empty: the marker of
-  // the properties.
+  // the properties. `bulges`: of each of these segments, 0 if it is straight (Domain::Arc); or
+  // empty: all are.
   Result<void> line(std::span<const Point> positions, const std::string& path,
                     const GeometryProperties& properties,
-                    std::span<const std::uint32_t> markers = {});
+                    std::span<const std::uint32_t> markers = {},
+                    std::span<const double> bulges = {});
 
   // Tells of something that a reader leaves out.
   void leave_out(LeftOut::Kind kind, const std::string& path) { left_out_.add(kind, path); }
@@ -103,6 +105,7 @@ class GeometryBuilder {
     std::vector<Point> points;
     std::vector<std::size_t> numbers;
     std::vector<std::uint32_t> markers;  // labels
+    std::vector<double> bulges;
   };
 
   // A ring of the polygon, in the points of the domain.
@@ -113,7 +116,8 @@ class GeometryBuilder {
   };
 
   Result<Chain> chain(std::span<const Point> positions, const std::string& path,
-                      const GeometryProperties& properties, std::span<const std::uint32_t> markers);
+                      const GeometryProperties& properties, std::span<const std::uint32_t> markers,
+                      std::span<const double> bulges = {});
   static bool is_usable(Point at);
   tl::unexpected<Error> unusable(Point at, const std::string& path) const;
   std::uint32_t label_of(Labels& labels, NameKind kind, std::int32_t number,

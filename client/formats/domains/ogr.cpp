@@ -14,13 +14,13 @@
 #include <vector>
 
 #include "client/base/text.h"
+#include "client/formats/domains/dxf.h"
 #include "client/formats/domains/feature_properties.h"
 #include "client/formats/domains/geometry_builder.h"
-#include "client/formats/domains/nested_outlines.h"
 #include "client/formats/domains/ogr_archive.h"
-#include "client/formats/domains/ogr_dxf.h"
 #include "client/formats/files/gdal_library.h"
 #include "client/formats/mesh_formats.h"
+#include "client/formats/triangle/triangle_points.h"
 
 namespace weft::client {
 namespace {
@@ -50,34 +50,22 @@ class Reader {
       if (!found) return builder_.bad("", found.error().message);
       source = std::move(*found);
     }
-    std::optional<DxfCopy> drawing;  // which the data set reads
+    if (source.format->drivers == nullptr) return read_drawing(source.address, options);
     Dataset dataset(nullptr, gdal_.GDALClose);
     {
       const GdalErrors errors(gdal_);
-      is_drawing_ = source.format->extension == ".dxf";
-      if (is_drawing_) drawing.emplace(gdal_, source.address);
-      dataset = open(drawing ? drawing->address() : source.address, *source.format);
+      dataset = open(source.address, *source.format);
       if (!dataset) return builder_.bad("", "is damaged, or of another format: " + errors.first());
     }
     const auto layers = choose(dataset.get(), options.layers);
     if (!layers) return tl::unexpected(layers.error());
     attributes_ = &options.attributes;
     if (auto ok = check_attributes(*layers); !ok) return tl::unexpected(ok.error());
-    if (is_drawing_)
-      for (OGRLayerH layer : *layers)
-        if (auto found = find_lines(layer, options.where); !found)
-          return tl::unexpected(found.error());
     for (OGRLayerH layer : *layers)
       if (auto added = add_layer(layer, options.where); !added)
         return tl::unexpected(added.error());
-    if (drawing)
-      for (const std::string& sentence : drawing->sentences())
-        builder_.warn({.kind = WarningKind::kLeftOut, .text = sentence});
-    warn_of_filled_areas();
     auto domain = builder_.finish();
     if (domain && crs_ != nullptr) domain->system = system();
-    if (domain && domain->areas.empty() && is_drawing_ && !options.even_odd)
-      warn_of_nested_outlines(*domain);
     return domain;
   }
 
@@ -87,6 +75,17 @@ class Reader {
         gdal_.GDALOpenEx(address.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
                          format.drivers, format.driver_options, nullptr),
         gdal_.GDALClose};
+  }
+
+  // Of an archive.
+  Result<Domain> read_drawing(const std::string& address, const LayerOptions& options) const {
+    const GdalErrors errors(gdal_);
+    GByte* bytes = nullptr;
+    vsi_l_offset size = 0;
+    if (gdal_.VSIIngestFile(nullptr, address.c_str(), &bytes, &size, kMaxTextBytes) == 0)
+      return builder_.bad("", "is damaged: " + errors.first());
+    const std::unique_ptr<GByte, decltype(&VSIFree)> owner(bytes, gdal_.VSIFree);
+    return read_dxf_text(path_.string(), {reinterpret_cast<const char*>(bytes), size}, options);
   }
 
   CoordinateSystem system() const {
@@ -156,22 +155,9 @@ class Reader {
     const std::string name = "layer " + in_quotes(name_of(layer));
     if (auto ok = check_system(layer, name); !ok) return ok;
     return for_each_feature(layer, where, [this](OGRFeatureH feature, const std::string& of_layer) {
-      return add_feature(feature, of_layer + ", feature " +
-                                      std::to_string(gdal_.OGR_F_GetFID(feature)) +
-                                      drawn_as(feature));
+      return add_feature(feature,
+                         of_layer + ", feature " + std::to_string(gdal_.OGR_F_GetFID(feature)));
     });
-  }
-
-  // Of an entity of a drawing: its layer there, and its handle.
-  std::string drawn_as(OGRFeatureH feature) const {
-    if (!is_drawing_) return "";
-    const auto field = [&](const char* name) {
-      const int index = gdal_.OGR_F_GetFieldIndex(feature, name);
-      return index < 0 ? std::string() : std::string(gdal_.OGR_F_GetFieldAsString(feature, index));
-    };
-    const std::string handle = field("EntityHandle");
-    return " on " + in_quotes(field("Layer")) +
-           (handle.empty() ? "" : ", handle " + harmless(handle));
   }
 
   // Calls `each` with the features of a layer that meet the condition.
@@ -194,58 +180,6 @@ class Reader {
     }
     if (reading.any()) return unreadable(reading);
     return {};
-  }
-
-  // In a drawing, polygons are hatches, solids and faces: what lines bound is filled by these for
-  // the eye. Only in a drawing without lines are they what is drawn.
-  Result<void> find_lines(OGRLayerH layer, const std::string& where) {
-    return for_each_feature(layer, where, [this](OGRFeatureH feature, const auto&) {
-      OGRGeometryH geometry = gdal_.OGR_F_GetGeometryRef(feature);
-      has_lines_ = has_lines_ || (geometry != nullptr && holds_line(geometry, 0));
-      return Result<void>{};
-    });
-  }
-  bool holds_line(OGRGeometryH geometry, int depth) const {
-    const auto type = gdal_.OGR_GT_Flatten(gdal_.OGR_G_GetGeometryType(geometry));
-    if (type == wkbPolygon || type == wkbTriangle || type == wkbPoint || depth > kMaxDepth)
-      return false;
-    if (type == wkbLineString || gdal_.OGR_G_HasCurveGeometry(geometry, FALSE) != 0) return true;
-    for (int i = 0; i < gdal_.OGR_G_GetGeometryCount(geometry); ++i)
-      if (holds_line(gdal_.OGR_G_GetGeometryRef(geometry, i), depth + 1)) return true;
-    return false;
-  }
-  void warn_of_filled_areas() {
-    if (filled_areas_ == 0) return;
-    const bool one = filled_areas_ == 1;
-    builder_.warn(
-        {.kind = WarningKind::kLeftOut,
-         .place = first_filled_area_,
-         .count = filled_areas_,
-         .text = with_separators(filled_areas_) +
-                 (one ? " filled area (hatch, solid or face) is left out: "
-                      : " filled areas (hatches, solids or faces) are left out, the first is ") +
-                 first_filled_area_ +
-                 "; lines bound what is meshed; without lines, as --where can choose, such areas "
-                 "are"});
-  }
-  void warn_of_nested_outlines(Domain& domain) const {
-    const std::vector<std::size_t> nested = nested_outlines(domain);
-    if (nested.empty()) return;
-    std::string first = domain.segment_places.locate(nested[0]);
-    first.erase(std::min(first.rfind(", edge from"), first.size()));
-    const std::string file = path_.string() + ": ";
-    if (first.starts_with(file)) first.erase(0, file.size());
-    domain.warnings.push_back(
-        {.kind = WarningKind::kNestedOutline,
-         .file = path_.string(),
-         .place = first,
-         .count = nested.size(),
-         .text =
-             with_separators(nested.size()) +
-             (nested.size() == 1 ? " closed outline lies inside another one and is filled: "
-                                 : " closed outlines lie inside others and are filled, the first "
-                                   "is ") +
-             first + "; --fill even-odd makes holes of them"});
   }
 
   // All layers have one coordinate system.
@@ -318,10 +252,6 @@ class Reader {
         return builder_.line(points_of(geometry), path, properties);
       case wkbPolygon:
       case wkbTriangle:
-        if (is_drawing_ && has_lines_) {
-          if (filled_areas_++ == 0) first_filled_area_ = path;
-          return {};
-        }
         builder_.begin_polygon();
         for (int i = 0; i < parts; ++i)
           if (auto added = builder_.ring(points_of(gdal_.OGR_G_GetGeometryRef(geometry, i)),
@@ -353,12 +283,8 @@ class Reader {
   const std::filesystem::path& path_;
   GeometryBuilder builder_;
   const std::map<std::string, std::string>* attributes_ = nullptr;  // as in LayerOptions
-  bool is_drawing_ = false;                                         // of DXF
-  bool has_lines_ = false;                                          // the drawing
-  std::size_t filled_areas_ = 0;                                    // of a drawing with lines
-  std::string first_filled_area_{};
-  bool first_ = true;                   // no layer was read yet
-  OGRSpatialReferenceH crs_ = nullptr;  // of the layers, which own it
+  bool first_ = true;                                               // no layer was read yet
+  OGRSpatialReferenceH crs_ = nullptr;                              // of the layers, which own it
 };
 
 }  // namespace

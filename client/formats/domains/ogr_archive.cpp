@@ -31,7 +31,7 @@ Result<OgrSource> find_in_archive(const Gdal& gdal, const std::string& path) {
   std::vector<std::string> names;
   for (char** entry = entries.get(); *entry != nullptr; ++entry) {
     const DomainFormat* format = domain_format(*entry);
-    if (format != nullptr && format->drivers != nullptr && !is_of_macos(*entry))
+    if (format != nullptr && format->has_layers() && !format->is_archive && !is_of_macos(*entry))
       names.emplace_back(*entry);
   }
   if (names.empty())

@@ -18,7 +18,7 @@ struct OgrSource {
   const DomainFormat* format;
 };
 
-// The only file of the archive at the absolute path that OGR reads, in whatever folder; or
+// The only file of the archive at the absolute path that has layers, in whatever folder; or
 // a folder of several shapefiles, each a layer. Errors (kUnreadableInput), which follow the name of
 // the archive: it is damaged, has no such file, or several.
 Result<OgrSource> find_in_archive(const Gdal& gdal, const std::string& path);

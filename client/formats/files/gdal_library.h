@@ -98,12 +98,9 @@
   EACH(OSRNewSpatialReference)              \
   EACH(OSRSetAxisMappingStrategy)           \
   EACH(OSRSetFromUserInput)                 \
-  EACH(VSIFCloseL)                          \
-  EACH(VSIFileFromMemBuffer)                \
   EACH(VSIFree)                             \
   EACH(VSIIngestFile)                       \
-  EACH(VSIReadDirRecursive)                 \
-  EACH(VSIUnlink)
+  EACH(VSIReadDirRecursive)
 
 namespace weft::client {
 

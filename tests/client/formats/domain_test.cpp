@@ -8,7 +8,7 @@
 namespace weft::client {
 namespace {
 
-TEST(Domain, FlattensArcsToEqualChordsOfTwoDegrees) {
+TEST(FlatDomain, FlattensArcsToEqualChordsOfTwoDegrees) {
   Domain domain;
   domain.points = {{1, 0}, {-1, 0}, {0, 0}};
   domain.point_markers = {4, 5, 6};
@@ -33,7 +33,7 @@ TEST(Domain, FlattensArcsToEqualChordsOfTwoDegrees) {
   EXPECT_NEAR(area, 90 * std::sin(std::acos(-1.0) / 90), 1e-12);
 }
 
-TEST(Domain, WithoutArcsStaysAsItIs) {
+TEST(FlatDomain, WithoutArcsStaysAsItIs) {
   Domain domain;
   domain.points = {{0, 0}, {1, 0}};
   domain.segments = {{0, 1}};

@@ -8,6 +8,7 @@
 
 #include "client/formats/domain_formats.h"
 #include "client/formats/domains/seeded.h"
+#include "tests/client/support/dxf_text.h"
 #include "tests/client/support/mesh_files.h"
 #include "tests/client/support/sample_mesh.h"
 #include "tests/client/support/shapefile_writer.h"
@@ -149,6 +150,22 @@ TEST(HostileDomain, CsvOfUtf16IsRefusedOrRead) {
     text += {c, '\0'};
   const auto path = folder.write("d.csv", text);
   damage(path, [&path] { return read_domain(path).has_value(); });
+}
+
+TEST(HostileDomain, DrawingIsRefusedOrRead) {
+  TempFolder folder;
+  const auto path = folder.write(
+      "d.dxf",
+      drawing("0 LWPOLYLINE 8 a 70 1 10 0 20 0 42 1 10 4 20 0 10 4 20 2 0 ARC 10 0 20 0 40 "
+              "1 50 30 51 200 0 INSERT 2 b 41 -1 42 2 50 30 70 2 44 3 0 ELLIPSE 10 0 20 0 "
+              "11 2 21 0 40 0.5 41 0 42 3 0 SPLINE 71 2 40 0 40 0 40 0 40 1 40 1 40 1 41 1 "
+              "41 2 41 1 10 1 20 0 10 1 20 1 10 0 20 1 0 HATCH 91 1 92 1 93 2 72 2 10 0 20 "
+              "0 40 2 50 0 51 180 73 1 72 1 10 -2 20 0 11 2 21 0 97 0 75 0 ",
+              "0 BLOCK 2 b 10 1 20 1 0 CIRCLE 10 0 20 0 40 1 0 ENDBLK "));
+  damage(path, [&path] {
+    const auto domain = read_domain(path);
+    return domain && seeded(*domain).has_value();
+  });
 }
 
 TEST(HostileDomain, ShapefileIsRefusedOrRead) {

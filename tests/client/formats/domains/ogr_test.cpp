@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <ogr_api.h>
 #include <ogr_srs_api.h>
+#include <stdlib.h>
 
 #include <map>
 
@@ -327,8 +328,9 @@ TEST_F(OgrFile, OfADrawingNeedsNoHeader) {
     EXPECT_EQ(markers(read_domain(path)).size(), 3u) << before;
     EXPECT_EQ(markers(read_domain(archive({{"plate/d.dxf", "d.dxf"}}))).size(), 3u) << before;
   }
-  EXPECT_TRUE(refusal(folder_.write("d.dxf", drawing.substr(0, 30)))
-                  .starts_with("d.dxf: is damaged, or of another format: "));
+  folder_.write("d.dxf", drawing.substr(0, 30));
+  EXPECT_EQ(refusal(archive({{"d.dxf", "d.dxf"}})),
+            "d.zip:5: expected ENDSEC of the section 'BLOCKS', found the end of the file");
 }
 
 // What is in a file decides nothing but the domain.
@@ -336,13 +338,26 @@ TEST_F(OgrFile, IsReadInTheFormatOfItsNameAlone) {
   const std::string vrt =
       "<OGRVRTDataSource><OGRVRTLayer name='d'><SrcDataSource>/etc/passwd</SrcDataSource>"
       "</OGRVRTLayer></OGRVRTDataSource>";
-  for (const char* name : {"d.gpkg", "d.kml", "d.gml", "d.fgb", "d.dxf", "d.tab"})
+  for (const char* name : {"d.gpkg", "d.kml", "d.gml", "d.fgb", "d.tab"})
     EXPECT_TRUE(refusal(folder_.write(name, vrt))
                     .starts_with(std::string(name) + ": is damaged, or of another format: "))
         << name;
   const auto remote = read_domain("/vsicurl/http://192.0.2.1/d.gpkg");
   ASSERT_FALSE(remote);
   EXPECT_EQ(remote.error().message, "/vsicurl/http://192.0.2.1/d.gpkg: No such file or directory");
+}
+
+TEST_F(OgrFile, IsTheSameWhateverTheEnvironmentAsksOfGdal) {
+  const auto path =
+      write("d.gpkg", "GPKG", {{"d", {{"CIRCULARSTRING(0 0, 1 1, 2 0, 1 -1, 0 0)"}}}});
+  const std::size_t segments = markers(read_domain(path)).size();
+  EXPECT_NEAR(static_cast<double>(segments), 90, 2);
+  for (const auto& [name, value] :
+       {std::pair{"OGR_ARC_STEPSIZE", "45"}, {"OGR_ARC_MAX_GAP", "0.5"}}) {
+    ::setenv(name, value, 1);
+    EXPECT_EQ(markers(read_domain(path)).size(), segments) << name;
+    ::unsetenv(name);
+  }
 }
 
 TEST_F(OgrFile, LeavesNothingBesideItself) {

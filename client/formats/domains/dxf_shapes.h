@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shapes of single entities of a drawing: lines with bulges, areas and points. Throws DxfFault.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "client/formats/domain.h"
+#include "client/formats/domains/dxf_curves.h"
+#include "client/formats/domains/dxf_entities.h"
+
+namespace weft::client {
+
+struct DxfShape {
+  enum class Kind { kPoint, kLine, kArea } kind = Kind::kLine;
+  // Of a line one, which ends at its first position if it is closed; of an area, those of which an
+  // odd number encloses it.
+  std::vector<std::vector<Point>> rings{};
+  // Of the segments of a line: one for each position, where the segment starts; or empty.
+  std::vector<double> bulges{};
+  // The ends of a line are computed, not in the file.
+  bool has_computed_ends = false;
+};
+
+// Whether entities of the kind have shapes, or place what has.
+bool is_drawn(std::string_view kind);
+// Whether entities of the kind say something about the drawing, or only help to draw it.
+bool is_annotation(std::string_view kind);
+
+// The shape of an entity that is drawn and no INSERT. None if it is no curve: a mesh of faces, or a
+// spline whose numbers do not belong together.
+std::optional<DxfShape> shape_of(const DxfEntity& entity, const DxfPlacement& placement);
+
+// The rings of a HATCH, whose arcs are chords.
+std::vector<std::vector<Point>> hatch_rings(const DxfEntity& hatch, const DxfPlacement& placement);
+
+}  // namespace weft::client
