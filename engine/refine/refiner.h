@@ -338,9 +338,8 @@ class Refiner {
     const Point p = corners_.split_point(
         mesh_, {a, b}, {triangle.vertex[edge], across != kNone ? apex_of(across) : kNone},
         pieces > 1 ? std::ceil(pieces / 2) / pieces : 0.5);
-    if (corners_.curvature(corners_.subsegment(mesh_, a, b)) != 0) [[unlikely]]
-      return split_arc_at(t, edge, p);
-    Outcome outcome = split_segment_at(t, edge, p);
+    const bool is_arc = corners_.curvature(corners_.subsegment(mesh_, a, b)) != 0;
+    Outcome outcome = is_arc ? split_arc_at(t, edge, p) : split_segment_at(t, edge, p);
     if (outcome != Outcome::kFlat) [[likely]]
       return outcome;
     const double x = mesh_.vertices[b].x - mesh_.vertices[a].x;
@@ -349,7 +348,8 @@ class Refiner {
         0x1p-52 * std::max(std::fabs(p.x), std::fabs(p.y)) / std::sqrt(x * x + y * y);
     for (int k = 1; k <= kNudges && outcome == Outcome::kFlat; ++k) {
       for (const double side : {k * unit, -k * unit}) {
-        outcome = split_segment_at(t, edge, {p.x - side * y, p.y + side * x});
+        const Point nudged{p.x - side * y, p.y + side * x};
+        outcome = is_arc ? try_arc_at(t, edge, nudged) : split_segment_at(t, edge, nudged);
         if (outcome != Outcome::kFlat) break;
       }
     }
@@ -368,12 +368,18 @@ class Refiner {
     return hiding ? split_segment(triangle_of(*hiding), edge_of(*hiding)) : outcome;
   }
 
-  // The edge on a segment that the last star's point lies beyond.
+  // The edge on a segment that the last star's point lies beyond, or on, to double precision.
   std::optional<HalfEdge> hiding_edge() const {
     const Ring& ring = star_.ring();
     for (std::uint32_t i = 0; i < ring.size; ++i) {
+      const RingPoint& start = ring.points[i];
       const RingPoint& end = ring.points[i + 1];
-      if (end.constrained == 0 || end.cross > 0) continue;
+      if (end.constrained == 0) continue;
+      const double x = end.x - start.x, y = end.y - start.y;
+      const double length2 = x * x + y * y;
+      const double along = -(start.x * x + start.y * y);
+      if (along <= 0 || along >= length2) continue;
+      if (end.cross > 0 && end.cross * end.cross >= quality_.precision2 * length2) continue;
       for (std::uint32_t k = 0; k < star_.cavity().size(); ++k) {
         const std::uint32_t t = star_.cavity().triangles()[k];
         for (std::uint32_t edge = 0; edge < 3; ++edge)
@@ -434,6 +440,8 @@ class Refiner {
         (closed && too_thin(mesh_, across, quality_.precision2)))
       return Outcome::kTooClose;
     const std::uint32_t subsegment = corners_.subsegment(mesh_, a, b);
+    if (corners_.curvature(subsegment) != 0 && hiding_edge()) [[unlikely]]
+      return Outcome::kFlat;
     if (!corners_.needles().keep_apart(subsegment, p)) return Outcome::kTooClose;
     const std::uint32_t near_side = closed ? star_.cavity().far_end() : ring.size;
     RingVerdict verdict = judge_side(0, near_side, p, region_bound(t));

@@ -89,7 +89,7 @@ def test_circles_that_touch_and_cross_are_meshed(tmp_path, angle):
 
 
 def test_sizes_at_markers_hold_on_arcs(tmp_path):
-    report = mesh(plate().write(tmp_path / "plate.poly"), "--edge-at", "3=0.05", "--gradation", "0.3")
+    report = mesh(plate().write(tmp_path / "plate.poly"), "--edge-at", "marker=3:0.05", "--gradation", "0.3")
     assert report["triangles"] > 1000
 
 

@@ -63,6 +63,9 @@ std::vector<Case> cases() {
   all.push_back({"circle that touches from inside", two_circles(0.5, {0.5, 0}), 42, 66});
   all.push_back({"circle that nearly fills another", two_circles(0.999, {0.001, 0}), 5562, 14357});
   all.push_back({"circle that touches from outside", two_circles(1, {2, 0}, kPi), 42, 80});
+  Pslg half_as_large = two_circles(0.5, {0.5, 0});  // parts of the one lie on chords of the other
+  add_box(half_as_large, {-2, -2}, {2, 2});
+  all.push_back({"circle of half the radius that touches", half_as_large, 90, 170});
   all.push_back({"circles that cross", two_circles(0.8, {1, 0.1}), 60, 90});
   Pslg half;
   half.points = {{-1, 0}, {1, 0}};
