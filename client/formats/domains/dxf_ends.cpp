@@ -39,9 +39,9 @@ class Positions {
       : left_(extent.left), bottom_(extent.bottom), reach_(reach) {}
 
   void add(Point p) { squares_[square(column(p), row(p))].push_back(p); }
-  std::optional<Point> nearest(Point p) const {
+  std::optional<Point> nearest(Point p, double within) const {
     std::optional<Point> best;
-    double least = reach_;
+    double least = std::min(reach_, within);
     for (std::int64_t i = column(p) - 1; i <= column(p) + 1; ++i)
       for (std::int64_t j = row(p) - 1; j <= row(p) + 1; ++j) {
         const auto found = squares_.find(square(i, j));
@@ -95,9 +95,9 @@ void join_ends(std::vector<DxfShape>& shapes) {
     if (!is_computed(shape) || !is_open(shape)) continue;
     Point& first = shape.rings[0].front();
     Point& end = shape.rings[0].back();
-    const Point to_first = positions.nearest(first).value_or(first);
-    const Point to_end = positions.nearest(end).value_or(end);
-    if (to_first == to_end) continue;
+    const double within = 1e-3 * std::hypot(end.x - first.x, end.y - first.y);
+    const Point to_first = positions.nearest(first, within).value_or(first);
+    const Point to_end = positions.nearest(end, within).value_or(end);
     first = to_first;
     end = to_end;
     positions.add(first);

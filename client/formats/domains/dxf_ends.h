@@ -9,9 +9,9 @@
 
 namespace weft::client {
 
-// Moves the computed ends of lines that are not closed to the nearest position of the file, or else
-// to an end that was computed before, within 1e-9 of the extent of the drawing. A line whose
-// two ends that would make one stays as it is. O(n) for n positions.
+// Moves the computed ends of lines that are not closed to the nearest position of the file, or of
+// an end that was computed before, within 1e-9 of the extent of the drawing and 1e-3 of the
+// distance between the line's ends. O(n) for n positions.
 void join_ends(std::vector<DxfShape>& shapes);
 
 // Sets bulges to 0 that are beyond 1e6 or between two positions nearer than 1e-12 of the extent of

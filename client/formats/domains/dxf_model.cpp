@@ -8,9 +8,9 @@
 namespace weft::client {
 namespace {
 
-constexpr int kMaxDepth = 64;                  // of blocks in blocks
-constexpr std::size_t kMostPlaced = 10000000;  // groups and positions, by blocks
-constexpr std::size_t kGroupsOfInsert = 8;     // as much work as a block that is empty
+constexpr int kMaxDepth = 64;                 // of blocks in blocks
+constexpr std::size_t kMostPlaced = 5000000;  // groups and positions, by blocks
+constexpr std::size_t kGroupsOfInsert = 8;    // as much work as a block that is empty
 
 DxfPlacement shift(Point by) {
   return {.x0 = by.x, .y0 = by.y};

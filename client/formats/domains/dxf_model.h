@@ -57,7 +57,7 @@ struct DxfModel {
 
 // The entities of the model, in their order; of a drawing that is on paper alone, those. Texts,
 // dimensions and other annotations are not read. Throws DxfFault; blocks that are placed in blocks
-// go 64 levels deep, and all blocks place at most 10 million groups of entities and positions.
+// go 64 levels deep, and all blocks place at most 5 million groups of entities and positions.
 DxfModel dxf_model(const DxfDrawing& drawing);
 
 }  // namespace weft::client

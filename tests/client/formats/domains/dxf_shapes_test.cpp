@@ -231,6 +231,12 @@ TEST(DxfShape, EndsWhereTheLineEndsThatGoesOn) {
   const Domain arcs =
       read("0 ARC 10 0 20 0 40 1 50 33.3 51 77 0 ARC 10 0 20 0 40 1 50 77 51 151.7 ");
   EXPECT_EQ(arcs.points[1], arcs.points[2]);
+  // An arc that is tiny in its drawing stays as it is.
+  const Domain tiny = read(
+      "0 LINE 10 0 20 0 11 1e6 21 0 0 LINE 10 1.0005 20 0 11 1.0005 21 -1 0 ARC 10 1 20 0 40 1e-3 "
+      "50 0 51 90 ");
+  EXPECT_EQ(tiny.points[4], (Point{1.001, 0}));
+  EXPECT_EQ(tiny.points[5], (Point{1, 1e-3}));
   // A gap that is drawn stays.
   const Domain gap = read("0 LINE 10 0 20 0 11 4 21 0 0 ARC 10 3 20 0 40 1.0001 50 0 51 45 ");
   EXPECT_EQ(gap.points[2], (Point{4.0001, 0}));

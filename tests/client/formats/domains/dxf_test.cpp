@@ -214,7 +214,7 @@ TEST_F(DxfDrawing, IsRefusedIfItsBlocksPlaceTooMuch) {
   const std::string bomb =
       of_lines + block("b", "0 INSERT 2 a" + thousand) + block("c", "0 INSERT 2 b" + thousand);
   EXPECT_TRUE(refusal(drawing("0 INSERT 2 c" + thousand, bomb))
-                  .ends_with("expected blocks that place at most 10,000,000 groups and positions, "
+                  .ends_with("expected blocks that place at most 5,000,000 groups and positions, "
                              "found more at this INSERT"));
   EXPECT_TRUE(refusal(drawing("0 INSERT 2 a 70 2000000000 71 2000000000 ", block("a", "")))
                   .ends_with("found more at this INSERT"));

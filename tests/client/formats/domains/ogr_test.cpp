@@ -330,7 +330,7 @@ TEST_F(OgrFile, OfADrawingNeedsNoHeader) {
   }
   folder_.write("d.dxf", drawing.substr(0, 30));
   EXPECT_EQ(refusal(archive({{"d.dxf", "d.dxf"}})),
-            "d.zip:5: expected ENDSEC of the section 'BLOCKS', found the end of the file");
+            "d.zip:6: expected ENDSEC of the section 'BLOCKS', found the end of the file");
 }
 
 // What is in a file decides nothing but the domain.
