@@ -166,27 +166,30 @@ bool is_a_point(const Domain& domain, const SegmentEnds& ends) {
   return ends[0] < n && ends[1] < n && domain.points[ends[0]] == domain.points[ends[1]];
 }
 
-// But for arcs, which judge_domain refuses.
+// But for arcs that end at the point where they begin, which judge_domain refuses.
 Domain without_segments_that_are_points(Domain domain) {
-  std::vector<char> is_arc(domain.segments.size(), 0);
+  std::vector<char> is_refused(domain.segments.size(), 0);
   for (const Arc& arc : domain.arcs)
-    if (arc.segment < is_arc.size() && arc.bulge != 0) is_arc[arc.segment] = 1;
+    if (arc.segment < is_refused.size() && arc.bulge != 0)
+      is_refused[arc.segment] = domain.segments[arc.segment][0] == domain.segments[arc.segment][1];
   constexpr std::uint32_t kGone = 0xffffffffu;
-  std::vector<std::uint32_t> number(is_arc.size(), kGone);
+  std::vector<std::uint32_t> number(is_refused.size(), kGone);
   const bool have_markers = domain.markers.size() == domain.segments.size();
   const bool have_areas = domain.segment_areas.size() == domain.segments.size();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < domain.segments.size(); ++i) {
-    if (!is_arc[i] && is_a_point(domain, domain.segments[i])) continue;
+    if (!is_refused[i] && is_a_point(domain, domain.segments[i])) continue;
     number[i] = static_cast<std::uint32_t>(kept);
     domain.segments[kept] = domain.segments[i];
     if (have_markers) domain.markers[kept] = domain.markers[i];
     if (have_areas) domain.segment_areas[kept] = domain.segment_areas[i];
     ++kept;
   }
-  for (Arc& arc : domain.arcs)
-    if (arc.segment < number.size()) arc.segment = number[arc.segment];
-  std::erase_if(domain.arcs, [](const Arc& arc) { return arc.segment == kGone && arc.bulge == 0; });
+  std::erase_if(domain.arcs, [&](Arc& arc) {
+    if (arc.segment >= number.size()) return false;
+    arc.segment = number[arc.segment];
+    return arc.segment == kGone;
+  });
   domain.segments.resize(kept);
   if (have_markers) domain.markers.resize(kept);
   if (have_areas) domain.segment_areas.resize(kept);

@@ -10,7 +10,7 @@
 #include "engine/base/failure.h"
 #include "engine/base/text.h"
 #include "engine/domain/arcs/arc.h"
-#include "engine/domain/arcs/chords.h"
+#include "engine/domain/arcs/flat_arcs.h"
 #include "engine/domain/domain.h"
 #include "engine/domain/simplify/simplify.h"
 #include "engine/domain/tolerance.h"
@@ -181,7 +181,7 @@ class Pipeline {
     summary_.outside = domain_.outside;
     for (Point p : domain_.vertices) summary_.box.add(p);
     if (auto error = check_extent(summary_.box)) return error;
-    box_ = box_of_arcs();
+    box_ = box_with_arcs(domain_, summary_.box);
     summary_.triangulate_seconds = clock_.lap();
     context_.end_stage("triangulation");
 
@@ -201,23 +201,19 @@ class Pipeline {
     if (flat_ || domain_.curvatures.empty()) return std::nullopt;
     flat_.emplace(Flat{flatten_arcs(request_.pslg), {}});
     auto domain = triangulate(flat_->pslg, context_);
-    if (auto error = context_.poll()) return error;
+    if (domain) {
+      flat_->domain = std::move(*domain);
+      return std::nullopt;
+    }
     // A seed may be that near to an arc that it is not on its side: then chords have to do.
-    flat_->domain = domain ? std::move(*domain) : domain_;
+    const ErrorCode code = domain.error().code;
+    if (code != ErrorCode::kSeedOutsideDomain && code != ErrorCode::kSeedOnSegment &&
+        code != ErrorCode::kEmptyDomain)
+      return domain.error();
+    flat_->domain = domain_;
     return std::nullopt;
   }
   const Domain& ground() const { return flat_ ? flat_->domain : domain_; }
-
-  // That of the domain, with all places where its arcs may have vertices.
-  Box box_of_arcs() const {
-    Box box = summary_.box;
-    for (std::size_t i = 0; i < domain_.curvatures.size(); ++i) {
-      const Point a = domain_.vertices[domain_.subsegments[i].a];
-      const Point b = domain_.vertices[domain_.subsegments[i].b];
-      box.add(control_point(a, b, bulge_of(domain_.curvatures[i], length(b - a))));
-    }
-    return box;
-  }
 
   // Makes the domain no finer than a share of its size. The size stays that of the domain as it
   // was.

@@ -11,7 +11,7 @@
 #include <utility>
 #include <variant>
 
-#include "engine/domain/arcs/chords.h"
+#include "engine/domain/arcs/flat_arcs.h"
 #include "engine/domain/domain_picture.h"
 #include "engine/parallel/mesh_plan.h"
 #include "engine/parallel/task_graph.h"

@@ -36,9 +36,8 @@ void judge_arcs(const Domain& domain, Findings& findings) {
     is_arc[arc.segment] = 1;
     if (!is_bulge(arc.bulge)) bad(" has the bulge ", arc.bulge, ", of a magnitude beyond 1e6");
     const auto [a, b] = domain.segments[arc.segment];
-    if (arc.bulge != 0 && a < domain.points.size() && b < domain.points.size() &&
-        domain.points[a] == domain.points[b])
-      bad(", of segment ", arc.segment, ", begins and ends at ", domain.points[a]);
+    if (arc.bulge != 0 && a == b)
+      bad(", of segment ", arc.segment, ", begins and ends at point ", a);
   }
 }
 

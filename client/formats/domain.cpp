@@ -2,9 +2,10 @@
 #include "client/formats/domain.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <utility>
+#include <vector>
+
+#include "checker/domain/flattened.h"
 
 namespace weft::client {
 
@@ -45,7 +46,6 @@ std::string Provenance::locate(std::size_t i) const {
 
 void flatten_arcs(Domain& domain) {
   if (domain.arcs.empty()) return;
-  constexpr double kMaxTurn = 2 * std::numbers::pi / 180;
   std::vector<Domain::Segment> segments;
   Provenance places;
   auto arc = domain.arcs.begin();
@@ -53,18 +53,11 @@ void flatten_arcs(Domain& domain) {
     Domain::Segment piece = domain.segments[s];
     const std::uint32_t last = piece.b;
     const double bulge = arc != domain.arcs.end() && arc->segment == s ? (arc++)->bulge : 0;
-    const double turn = 4 * std::atan(bulge);
-    const double count = std::ceil(std::abs(turn) / kMaxTurn * (1 - 1e-9));
     const Point a = domain.points[piece.a], b = domain.points[last];
-    for (double k = 1; k < count; ++k) {
-      // Seen from a, the point lies half of the turn that is left to the right of b.
-      const double along = std::sin(0.5 * turn * k / count) / std::sin(0.5 * turn);
-      const double aside = -0.5 * turn * (1 - k / count);
-      const double x = along * std::cos(aside), y = along * std::sin(aside);
+    for (const check::Vec2 p : check::flattened({a.x, a.y}, {b.x, b.y}, bulge)) {
       piece.b = static_cast<std::uint32_t>(domain.points.size());
       domain.point_places.add_same(piece.b, domain.segment_places, s);
-      domain.points.push_back(
-          {a.x + x * (b.x - a.x) - y * (b.y - a.y), a.y + x * (b.y - a.y) + y * (b.x - a.x)});
+      domain.points.push_back({p.x, p.y});
       places.add_same(segments.size(), domain.segment_places, s);
       segments.push_back(piece);
       piece.a = piece.b;

@@ -91,11 +91,11 @@ inline constexpr double kMaxTurnDeg = 60;
 //   kBadCoordinate      domain.points[i].x or .y, the same of domain.holes[i], domain.regions[i]
 //   kIndexOutOfRange    domain.segments[i].a or .b, domain.segment_areas[i], domain.arcs[i]
 //   kBadOption          domain.regions[i].max_area, domain.areas[i].max_area: not finite or not
-//   above
-//                       0; domain.areas[i]: its segments do not close to rings; domain.snap: not
-//                       finite or below 0; domain.arcs[i]: its bulge, or a second arc of one
-//                       segment; domain.segments[i]: its arc begins where it ends, or leaves a
-//                       point in the same direction as another segment
+//                       above 0; domain.areas[i]: its segments do not close to rings; domain.snap:
+//                       not finite or below 0; domain.arcs[i]: its bulge, a second arc of one
+//                       segment, or one that ends at the point where it begins; domain.segments[i]:
+//                       its arc is too near to something to be kept apart from it, or merging has
+//                       led it through another vertex
 //   kTooFewPoints, kCollinearPoints                domain.points
 //   kSeedOutsideDomain, kSeedOnSegment             domain.holes[i], domain.regions[i]
 //   kEmptyDomain        domain.segments if no face is enclosed, domain.holes[i] if they carve

@@ -80,7 +80,7 @@ std::optional<Error> check_arcs(const Pslg& pslg, StopPoller& poller) {
       return bad(text("the bulge is ", arc.bulge, "; its magnitude must be at most ", kMaxBulge));
     const Segment& s = pslg.segments[arc.segment];
     const Point a = pslg.points[s.a], b = pslg.points[s.b];
-    if (a == b && arc.bulge != 0)
+    if (s.a == s.b && arc.bulge != 0)
       return bad(text("the arc of segment ", arc.segment, " ends where it begins, at (", a.x, ", ",
                       a.y, "); a circle is two arcs or more"));
     const double across = std::max(std::fabs(b.x - a.x), std::fabs(b.y - a.y));

@@ -65,9 +65,10 @@ class AcuteCorners {
   // triangle.
   Point split_point(const MeshStore& mesh, Pair ends, Pair apexes, double fraction) const;
 
+  bool has_arcs() const { return !curvatures_->empty(); }
   // Of the arc that a subsegment is, from its a to its b; 0 if it is straight.
   double curvature(std::uint32_t subsegment) const {
-    return curvatures_->empty() ? 0 : (*curvatures_)[subsegment];
+    return has_arcs() ? (*curvatures_)[subsegment] : 0;
   }
   const CrossedArms& crossed_arms() const { return crossed_; }
   // The places where two of the domain's segments meet at a small angle outside of it.

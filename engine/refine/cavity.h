@@ -120,8 +120,10 @@ class Cavity {
   // Grows the cavity of a point `p` of the segment that edge `edge` of `triangle` lies on. The ring
   // is closed if the segment has triangles on both sides; `far_end()` is then the ring's index of
   // the segment's other end, and the ring starts at vertex[edge + 2]. If the segment is an arc, `p`
-  // is left of the edge, or beyond it where the domain ends.
-  Growth grow_from_segment(std::uint32_t triangle, std::uint32_t edge, Point p) {
+  // is left of the edge, or beyond it where the domain ends; and the triangle across may stay, as
+  // it must if its circumdisk does not hold `p`: then the edge is the last of the ring.
+  Growth grow_from_segment(std::uint32_t triangle, std::uint32_t edge, Point p,
+                           bool across_stays = false) {
     const Triangle& t = triangles_[triangle];
     if (!owns(t.vertex[0]) || !owns(t.vertex[1]) || !owns(t.vertex[2])) return Growth::kNotOwned;
     const __m128d origin = _mm_set_pd(p.y, p.x);
@@ -134,43 +136,29 @@ class Cavity {
       const std::uint32_t u = triangle_of(across);
       const std::uint32_t j = edge_of(across);
       if (!owns(triangles_[u].vertex[j])) return Growth::kNotOwned;
-      cavity_[cavity_size_++] = u;
-      foreign_ |= foreign(u);
-      begin_side(u, j, a, b, origin, &stack_[depth]);
-      depth += 2;
+      if (!across_stays) {
+        cavity_[cavity_size_++] = u;
+        foreign_ |= foreign(u);
+        begin_side(u, j, a, b, origin, &stack_[depth]);
+        depth += 2;
+      }
     }
     begin_side(triangle, edge, b, a, origin, &stack_[depth]);
     depth += 2;
     begin_ring(b);
     const Growth growth = grow(depth, origin, false);
     far_end_ = 0;
-    if (across != kNone && growth == Growth::kComplete) {
+    if (across == kNone || growth != Growth::kComplete) return growth;
+    if (across_stays) {
+      far_end_ = ring_.size;
+      end_ring(a, b, across);
+    } else {
       while (ring_.points[++far_end_].vertex != a.vertex) {
       }
     }
     return growth;
   }
 
-  // The same for an arc whose point is outside of the circumdisk of the triangle on the far side of
-  // the edge: that triangle stays, and the edge is part of the ring.
-  Growth grow_from_arc(std::uint32_t triangle, std::uint32_t edge, Point p) {
-    const Triangle& t = triangles_[triangle];
-    const HalfEdge across = t.neighbor[edge];
-    if (!owns(t.vertex[0]) || !owns(t.vertex[1]) || !owns(t.vertex[2]) ||
-        !owns(triangles_[triangle_of(across)].vertex[edge_of(across)]))
-      return Growth::kNotOwned;
-    const __m128d origin = _mm_set_pd(p.y, p.x);
-    const End a = end_at(t.vertex[kNext[edge]], origin);
-    const End b = end_at(t.vertex[kPrevious[edge]], origin);
-    begin_with(triangle);
-    begin_side(triangle, edge, b, a, origin, &stack_[0]);
-    begin_ring(b);
-    const Growth growth = grow(2, origin, false);
-    if (growth != Growth::kComplete) return growth;
-    far_end_ = ring_.size;
-    end_ring(a, b, across);
-    return growth;
-  }
   // The same where the domain ends at the edge, and the point is beyond it: the cavity is empty.
   Growth grow_beyond(std::uint32_t triangle, std::uint32_t edge, Point p) {
     const Triangle& t = triangles_[triangle];

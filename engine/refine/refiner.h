@@ -196,7 +196,8 @@ class Refiner {
   using Growth = typename Star<Ownership>::Growth;
 
   static constexpr std::uint32_t kMaxGrowth = 2;  // triangles that an insertion adds
-  static constexpr int kNudges = 4;  // of a point that splits a segment, to either side
+  static constexpr int kNudges = 4;     // of a point that splits a segment, to either side
+  static constexpr int kMaxHidden = 8;  // arcs in a row, each of which hides the last
 
   enum class Outcome {
     kInserted,
@@ -329,7 +330,8 @@ class Refiner {
   // Splits edge `edge` of triangle t, which lies on a segment. The next piece of the same segment
   // may be in line with the edge except for rounding; if the point is then on the wrong side of
   // that line, a triangle would be flat. So the point is moved by a few units in the last place.
-  Outcome split_segment(std::uint32_t t, std::uint32_t edge) {
+  // `hidden` arcs wait for this one.
+  Outcome split_segment(std::uint32_t t, std::uint32_t edge, int hidden = 0) {
     const Triangle& triangle = mesh_.triangles[t];
     const std::uint32_t a = triangle.vertex[kNext[edge]];
     const std::uint32_t b = triangle.vertex[kPrevious[edge]];
@@ -338,8 +340,9 @@ class Refiner {
     const Point p = corners_.split_point(
         mesh_, {a, b}, {triangle.vertex[edge], across != kNone ? apex_of(across) : kNone},
         pieces > 1 ? std::ceil(pieces / 2) / pieces : 0.5);
-    const bool is_arc = corners_.curvature(corners_.subsegment(mesh_, a, b)) != 0;
-    Outcome outcome = is_arc ? split_arc_at(t, edge, p) : split_segment_at(t, edge, p);
+    const bool is_arc =
+        corners_.has_arcs() && corners_.curvature(corners_.subsegment(mesh_, a, b)) != 0;
+    Outcome outcome = is_arc ? split_arc_at(t, edge, p, hidden) : split_segment_at(t, edge, p);
     if (outcome != Outcome::kFlat) [[likely]]
       return outcome;
     const double x = mesh_.vertices[b].x - mesh_.vertices[a].x;
@@ -360,12 +363,12 @@ class Refiner {
   // stays if its circumdisk does not hold the point; else all is as for a straight segment.
   //
   // Where arcs touch, the chord of another one may hide the point from this one: then that one is
-  // split instead.
-  [[gnu::noinline]] Outcome split_arc_at(std::uint32_t t, std::uint32_t edge, Point p) {
+  // split instead. At the limit of double precision, two may hide each other.
+  [[gnu::noinline]] Outcome split_arc_at(std::uint32_t t, std::uint32_t edge, Point p, int hidden) {
     const Outcome outcome = try_arc_at(t, edge, p);
-    if (outcome != Outcome::kFlat) return outcome;
+    if (outcome != Outcome::kFlat || hidden == kMaxHidden) return outcome;
     const auto hiding = hiding_edge();
-    return hiding ? split_segment(triangle_of(*hiding), edge_of(*hiding)) : outcome;
+    return hiding ? split_segment(triangle_of(*hiding), edge_of(*hiding), hidden + 1) : outcome;
   }
 
   // The edge on a segment that the last star's point lies beyond, or on, to double precision.
@@ -402,7 +405,7 @@ class Refiner {
     if (side > 0)
       return across == kNone || holds(triangle_of(across), p)
                  ? split_segment_at(t, edge, p)
-                 : split_segment_at(t, edge, p, star_.grow_from_arc(t, edge, p), across);
+                 : split_segment_at(t, edge, p, star_.grow_from_segment(t, edge, p, true), across);
     const HalfEdge far = half_edge(t, edge);
     if (across == kNone)
       return holds(t, p) ? split_segment_at(t, edge, p)
@@ -411,7 +414,7 @@ class Refiner {
     const std::uint32_t j = edge_of(across);
     if (!owns(mesh_.triangles[u])) return Outcome::kNotOwned;
     return holds(t, p) ? split_segment_at(u, j, p)
-                       : split_segment_at(u, j, p, star_.grow_from_arc(u, j, p), far);
+                       : split_segment_at(u, j, p, star_.grow_from_segment(u, j, p, true), far);
   }
 
   // Whether p lies in the open circumdisk of triangle t.

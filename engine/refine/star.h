@@ -39,19 +39,15 @@ class Star {
       [[unlikely]] enlarge();
     return growth;
   }
-  Growth grow_from_segment(std::uint32_t triangle, std::uint32_t edge, Point p) {
+  Growth grow_from_segment(std::uint32_t triangle, std::uint32_t edge, Point p,
+                           bool across_stays = false) {
     Growth growth;
-    while ((growth = cavity_.grow_from_segment(triangle, edge, p)) == Growth::kOverflow)
+    while ((growth = cavity_.grow_from_segment(triangle, edge, p, across_stays)) ==
+           Growth::kOverflow)
       [[unlikely]] enlarge();
     return growth;
   }
 
-  Growth grow_from_arc(std::uint32_t triangle, std::uint32_t edge, Point p) {
-    Growth growth;
-    while ((growth = cavity_.grow_from_arc(triangle, edge, p)) == Growth::kOverflow)
-      [[unlikely]] enlarge();
-    return growth;
-  }
   Growth grow_beyond(std::uint32_t triangle, std::uint32_t edge, Point p) {
     return cavity_.grow_beyond(triangle, edge, p);
   }

@@ -45,13 +45,12 @@ WEFT_API void weft_set(weft_request* request, const char* field, const char* tex
 /* x0, y0, x1, ... Call each of these three at most once. */
 WEFT_API void weft_set_points(weft_request* request, const double* xy, size_t count);
 WEFT_API void weft_set_holes(weft_request* request, const double* xy, size_t count);
-/* Segments that are arcs of circles, and the bulge of each. Call it at most
- * once. */
-WEFT_API void weft_set_arcs(weft_request* request, const uint32_t* segments, const double* bulges,
-                            size_t count);
 /* Two points each; one marker and one area each, or NULL: all 0, all WEFT_NONE. */
 WEFT_API void weft_set_segments(weft_request* request, const uint32_t* ends, const int32_t* markers,
                                 const uint32_t* areas, size_t count);
+/* Segments that are arcs of circles, and the bulge of each, at most once. */
+WEFT_API void weft_set_arcs(weft_request* request, const uint32_t* segments, const double* bulges,
+                            size_t count);
 
 /* On triangles; 0: no bound. Of both the smaller one holds. */
 typedef struct weft_bound {

@@ -31,8 +31,9 @@ inline constexpr double kMinMagnitude = 1e-100;
 inline constexpr double kMaxMagnitude = 1e50;
 // So that vertices and triangles can be numbered in 32 bits.
 inline constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 28;
-inline constexpr double kMaxBulge = 1e6;  // all but 2.3e-4 degrees of a circle
 inline constexpr std::uint64_t kMaxSegments = std::uint64_t{1} << 30;
+
+inline constexpr double kMaxBulge = 1e6;  // all but 2.3e-4 degrees of a circle
 
 struct Segment {
   std::uint32_t a = 0;  // index into Pslg::points

@@ -140,26 +140,23 @@ class Parser {
     return true;
   }
 
+  // Either of the two decides if it is `decisive`, whatever the other is.
+  static Test joined(Test left, Test right, bool decisive) {
+    return [=](const AttributeValues& values) -> Truth {
+      const Truth x = left(values);
+      const Truth y = right(values);
+      if (x == decisive || y == decisive) return decisive;
+      return x && y ? Truth(!decisive) : std::nullopt;
+    };
+  }
   Test any(int depth) {
     Test test = all(depth);
-    while (take_word("or"))
-      test = [a = std::move(test), b = all(depth)](const AttributeValues& values) -> Truth {
-        const Truth x = a(values);
-        const Truth y = b(values);
-        if (x.value_or(false) || y.value_or(false)) return true;
-        return x && y ? Truth(false) : std::nullopt;
-      };
+    while (take_word("or")) test = joined(std::move(test), all(depth), true);
     return test;
   }
   Test all(int depth) {
     Test test = single(depth);
-    while (take_word("and"))
-      test = [a = std::move(test), b = single(depth)](const AttributeValues& values) -> Truth {
-        const Truth x = a(values);
-        const Truth y = b(values);
-        if (!x.value_or(true) || !y.value_or(true)) return false;
-        return x && y ? Truth(true) : std::nullopt;
-      };
+    while (take_word("and")) test = joined(std::move(test), single(depth), false);
     return test;
   }
   static Test negated(Test test) {

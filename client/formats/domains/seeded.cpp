@@ -15,6 +15,7 @@
 #include "checker/geometry/arrangement.h"
 #include "checker/geometry/contacts.h"
 #include "checker/report.h"
+#include "client/base/text.h"
 #include "client/formats/domains/interior_point.h"
 #include "client/formats/domains/to_checker.h"
 
@@ -71,7 +72,15 @@ void add_lone_points(const Domain& domain, Domain& out) {
 
 Result<Domain> seeded(Domain domain) {
   if (domain.fill == Domain::Fill::kSeeds && domain.areas.empty()) return domain;
-  flatten_arcs(domain);
+  if (const std::size_t arcs = domain.arcs.size(); arcs > 0) {
+    flatten_arcs(domain);
+    domain.warnings.push_back(
+        {.kind = WarningKind::kNotWritten,
+         .count = arcs,
+         .text = with_separators(arcs) + (arcs == 1 ? " arc is" : " arcs are") +
+                 " written as chords of 2 degrees, because the format has no areas; a .pb file "
+                 "keeps both"});
+  }
   std::erase_if(domain.segments, [&](const Domain::Segment& segment) {
     return domain.points[segment.a] == domain.points[segment.b];
   });

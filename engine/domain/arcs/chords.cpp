@@ -131,7 +131,7 @@ class ArcCutter {
     for (std::uint32_t s = 0; s < pslg_.segments.size(); ++s) {
       poller_.step();
       const auto [a, b] = ends_of(s);
-      if (bulges_[s] == 0 && a != b) add(a, b, 0, owner(s, kNone));
+      if (bulges_[s] == 0) add(a, b, 0, owner(s, kNone));
     }
     for (std::uint32_t s = 0; s < pslg_.segments.size(); ++s)
       if (bulges_[s] != 0) add_arc(s);
@@ -151,15 +151,12 @@ class ArcCutter {
   }
 
   // An arc of more than 180 degrees is halved as it was before its ends were merged: they may be
-  // one vertex now.
+  // one vertex now, and its middle need not be.
   void add_arc(std::uint32_t segment) {
     const auto [a, b] = ends_of(segment);
     const double bulge = bulges_[segment];
     const std::uint32_t owners = owner(segment, kNone);
-    if (std::fabs(bulge) <= 1) {
-      if (a != b) add(a, b, bulge, owners);
-      return;
-    }
+    if (std::fabs(bulge) <= 1) return add(a, b, bulge, owners);
     const std::uint32_t middle = vertex_at(middle_of_arc(
         pslg_.points[pslg_.segments[segment].a], pslg_.points[pslg_.segments[segment].b], bulge));
     add(a, middle, half_bulge(bulge), owners);
@@ -175,7 +172,7 @@ class ArcCutter {
     for (double i = 1; i <= count; ++i) {
       const std::uint32_t to =
           i == count ? b : vertex_at(at_fraction(points_[a], points_[b], bulge, i / count));
-      if (from != to) add(from, to, part, owners);
+      add(from, to, part, owners);
       from = to;
     }
   }
@@ -193,6 +190,7 @@ class ArcCutter {
   }
 
   void add(std::uint32_t a, std::uint32_t b, double bulge, std::uint32_t owners) {
+    if (a == b) return;
     if (pieces_.size() >= kMaxSplits)
       throw Stopped{{ErrorCode::kLimitExceeded, "domain.arcs",
                      "the arcs have more than " + std::to_string(kMaxSplits) + " pieces"}};
@@ -241,9 +239,17 @@ class ArcCutter {
   // Cuts a piece, or what it meets, and queues it again if it still exists; does nothing if it
   // meets nothing.
   void settle(std::uint32_t piece) {
-    if ((hulls_count_ && trims_contact(piece)) || meets_point(piece) || meets_piece(piece)) {
-      if (exists_[piece]) queue_.push_back(piece);
-    }
+    const std::vector<std::uint32_t> others = near(tree_, piece);
+    // Contacts before all else, or the pieces would halve each other.
+    const bool met =
+        (hulls_count_ && std::ranges::any_of(others,
+                                             [&](std::uint32_t other) {
+                                               return other != piece && trim_contact(piece, other);
+                                             })) ||
+        meets_point(piece) || std::ranges::any_of(others, [&](std::uint32_t other) {
+          return other != piece && resolve(piece, other);
+        });
+    if (met && exists_[piece]) queue_.push_back(piece);
   }
 
   // Copies: what is queried changes.
@@ -282,18 +288,6 @@ class ArcCutter {
       halve(piece, kNone);
       return true;
     }
-    return false;
-  }
-
-  bool meets_piece(std::uint32_t piece) {
-    for (const std::uint32_t other : near(tree_, piece))
-      if (other != piece && resolve(piece, other)) return true;
-    return false;
-  }
-  // Before all else, or the pieces would halve each other.
-  bool trims_contact(std::uint32_t piece) {
-    for (const std::uint32_t other : near(tree_, piece))
-      if (other != piece && trim_contact(piece, other)) return true;
     return false;
   }
 
@@ -387,15 +381,16 @@ class ArcCutter {
     chords.pslg.points.insert(chords.pslg.points.end(), points_.begin() + first_.size(),
                               points_.end());
     std::vector<std::pair<std::uint32_t, std::uint32_t>> parts;  // segment, piece
+    std::vector<bool> is_a_point(pslg_.segments.size(), true);
     for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece) {
       if (!exists_[piece]) continue;
-      for (std::uint32_t o = owners_of_[piece]; o != kNone; o = owners_[o].next)
+      for (std::uint32_t o = owners_of_[piece]; o != kNone; o = owners_[o].next) {
         parts.emplace_back(owners_[o].segment, piece);
+        is_a_point[owners_[o].segment] = false;
+      }
     }
-    for (std::uint32_t s = 0; s < pslg_.segments.size(); ++s) {
-      const auto [a, b] = ends_of(s);
-      if (bulges_[s] == 0 && a == b) parts.emplace_back(s, kNone);
-    }
+    for (std::uint32_t s = 0; s < pslg_.segments.size(); ++s)
+      if (is_a_point[s]) parts.emplace_back(s, kNone);
     std::sort(parts.begin(), parts.end());
     chords.pslg.segments.clear();
     for (const auto& [segment, piece] : parts) {
@@ -459,44 +454,6 @@ void restore_arcs(const Chords& chords, const Pslg& input, Domain& domain, StopP
   for (std::uint32_t& point : domain.input_point)
     if (point != kNone && point >= input.points.size()) point = kNone;
   if (domain.outside.segments > 0) domain.outside.first = chords.segment[domain.outside.first];
-}
-
-Pslg flatten_arcs(const Pslg& pslg) {
-  std::vector<double> bulges(pslg.segments.size(), 0);
-  for (const Arc& arc : pslg.arcs) {
-    if (arc.segment >= bulges.size() || !(std::fabs(arc.bulge) <= kMaxBulge)) continue;
-    const Segment& s = pslg.segments[arc.segment];
-    if (std::max(s.a, s.b) < pslg.points.size()) bulges[arc.segment] = arc.bulge;
-  }
-  Pslg flat = pslg;
-  flat.arcs.clear();
-  flat.segments.clear();
-  for (std::size_t i = 0; i < pslg.segments.size(); ++i) {
-    Segment s = pslg.segments[i];
-    if (bulges[i] == 0) {
-      flat.segments.push_back(s);
-      continue;
-    }
-    const auto last = s.b;
-    const Point a = pslg.points[s.a], b = pslg.points[s.b];
-    const double turn = turn_of(std::fabs(bulges[i]));
-    const double count = std::ceil(turn / kFlatTurn * (1 - 1e-9));
-    const Point middle = middle_of_arc(a, b, bulges[i]);
-    for (double k = 1; k < count; ++k) {
-      const double fraction = k / count;
-      const Point p = fraction == 0.5 ? middle
-                      : fraction < 0.5
-                          ? at_fraction(a, middle, half_bulge(bulges[i]), 2 * fraction)
-                          : at_fraction(middle, b, half_bulge(bulges[i]), 2 * fraction - 1);
-      flat.points.push_back(p);
-      s.b = static_cast<std::uint32_t>(flat.points.size() - 1);
-      flat.segments.push_back(s);
-      s.a = s.b;
-    }
-    s.b = last;
-    flat.segments.push_back(s);
-  }
-  return flat;
 }
 
 }  // namespace weft

@@ -43,9 +43,4 @@ Chords cut_arcs(const Pslg& pslg, double max_turn, StopPoller& poller);
 // through a vertex, so that it is lost.
 void restore_arcs(const Chords& chords, const Pslg& input, Domain& domain, StopPoller& poller);
 
-// A PSLG without arcs: in their place, n = ceil(turn / kFlatTurn) equal chords. Sizes that depend
-// on the distance to segments are those of these.
-inline constexpr double kFlatTurn = 0.034906585039886591;  // 2 degrees
-Pslg flatten_arcs(const Pslg& pslg);
-
 }  // namespace weft

@@ -194,6 +194,24 @@ TEST_F(DomainFile, HolesGetSeedsAndWhatIsSharedIsWrittenOnce) {
   EXPECT_EQ(pond, 1);
 }
 
+TEST_F(DomainFile, ArcsOfAreasAreSaidToBecomeChords) {
+  Domain disk;
+  disk.points = {{1, 0}, {-1, 0}};
+  disk.segments = {{.a = 0, .b = 1, .area = 1}, {.a = 1, .b = 0, .area = 1}};
+  disk.areas.emplace_back();
+  disk.arcs = {{0, 1}, {1, 1}};
+  disk.fill = Domain::Fill::kUnion;
+  const auto domain = seeded(disk);
+  ASSERT_TRUE(domain) << domain.error().message;
+  EXPECT_EQ(domain->segments.size(), 180u);
+  ASSERT_EQ(domain->warnings.size(), 1u);
+  EXPECT_EQ(domain->warnings[0].kind, WarningKind::kNotWritten);
+  EXPECT_EQ(domain->warnings[0].count, 2u);
+  EXPECT_EQ(domain->warnings[0].text,
+            "2 arcs are written as chords of 2 degrees, because the format has no areas; a .pb "
+            "file keeps both");
+}
+
 TEST_F(DomainFile, HolesThatShareACornerGetASeedEach) {
   const auto domain = seeded(read("d.wkt",
                                   "POLYGON((0 0, 9 0, 9 9, 0 9, 0 0), (1 1, 4 1, 4 4, 1 4, 1 1),"

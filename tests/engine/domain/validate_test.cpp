@@ -93,8 +93,7 @@ TEST(Validate, NamesTheArcThatIsNone) {
   const auto expect = [](std::vector<Arc> arcs, ErrorCode code, const std::string& field,
                          const std::string& message) {
     Pslg pslg = square();
-    pslg.points.push_back(pslg.points[0]);
-    pslg.segments.push_back({0, 4});
+    pslg.segments.push_back({0, 0});
     pslg.arcs = std::move(arcs);
     expect_error(pslg, code, field, message);
   };

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/engine/domain/arcs/arc_shapes.h"
 #include "tests/engine/parallel/parallel.h"
 #include "tests/engine/refine/random_pslg.h"
 #include "tests/support/poly.h"
@@ -111,6 +112,14 @@ INSTANTIATE_TEST_SUITE_P(
         Model{"Coast", "us-east-coast.poly", "", 20, 500, 0},
         Model{"CoastGraded", "us-east-coast.poly", "1e-2*(1.5+sin(x)*cos(y))", 28, 500, 100}),
     [](const auto& info) { return info.param.name; });
+
+TEST(Parallel, ArcsGiveOneMeshAtEveryNumberOfThreads) {
+  const auto summary = expect_one_mesh({.pslg = plate_with_holes(kSanitized ? 3 : 6),
+                                        .size = kSanitized ? 2e-3 : 2e-4,
+                                        .leaf_triangles = kSanitized ? 300.0 : 3000.0});
+  ASSERT_TRUE(summary);
+  EXPECT_GE(summary->leaves.size(), 20u);
+}
 
 Box box_of(const Pslg& pslg) {
   Box box;

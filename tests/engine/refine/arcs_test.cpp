@@ -16,18 +16,6 @@
 namespace weft {
 namespace {
 
-Pslg plate_with_holes(int across) {
-  Pslg pslg;
-  add_box(pslg, {0, 0}, {static_cast<double>(across), static_cast<double>(across)});
-  for (int i = 0; i < across; ++i) {
-    for (int j = 0; j < across; ++j) {
-      add_circle(pslg, {i + 0.5, j + 0.5}, 0.3);
-      pslg.holes.push_back({i + 0.5, j + 0.5});
-    }
-  }
-  return pslg;
-}
-
 Pslg two_circles(double radius, Point centre, double from = 0) {
   Pslg pslg;
   add_circle(pslg, {0, 0}, 1);
@@ -155,14 +143,40 @@ TEST(Arcs, SizesByDistanceSeeTheArc) {
   EXPECT_GT(made.summary.triangles, 3000U);
 }
 
-TEST(Arcs, MeshesAreTheSameOnAnyNumberOfThreads) {
-  MeshRequest request{.pslg = plate_with_holes(6), .size = 2e-4, .leaf_triangles = 3000};
-  const std::string alone = outcome(mesh_on(nullptr, request));
-  EXPECT_EQ(alone.find("error"), std::string::npos) << alone;
-  for (const unsigned threads : {1U, 2U, 3U, 8U}) {
-    Arena arena(threads);
-    EXPECT_EQ(outcome(mesh_on(&arena, request)), alone) << threads;
+TEST(Arcs, RefinementEndsAtAContactHoweverSmallTheSize) {
+  for (const auto& [radius, size] : {std::pair{1.0, "max(1e-18, 0.02*((x-1)^2+y^2))"},
+                                     std::pair{1e-6, "max(1e-22, 0.02*((x-1e-6)^2+y^2))"}}) {
+    Pslg pslg;
+    add_circle(pslg, {0, 0}, radius, 2);
+    add_circle(pslg, {radius - 0.6 * radius, 0}, 0.6 * radius, 2);
+    sound({.pslg = pslg, .size = std::string(size), .allow_unrefined = true});
   }
+}
+
+TEST(Arcs, ThoseWhoseEndsRoundToOnePointAreThatPoint) {
+  for (const double length : {0.0, 1e-15}) {
+    for (const double bulge : {0.4, -1.0, 3.0, 1e3}) {
+      SCOPED_TRACE(std::to_string(length) + ", " + std::to_string(bulge));
+      Pslg pslg;
+      add_box(pslg, {-2, -2}, {2, 2});
+      pslg.points.push_back({0.5, 0.5});
+      pslg.points.push_back({0.5 + length, 0.5});
+      pslg.points.push_back({0, 1});
+      add_arc(pslg, 4, 5, bulge);
+      add_arc(pslg, 5, 6, 0.5);
+      sound({.pslg = pslg});
+    }
+  }
+}
+
+TEST(Arcs, TheBudgetHoldsForThePolylinesOfSizes) {
+  MeshRequest request{.pslg = plate_with_holes(20), .size = "1 + 0.1 * d"};
+  request.size.fields = {{.name = "d", .kind = DistanceSpec{.markers = {0}}}};
+  ForgetfulSink sink;
+  ExecutionContext context({.max_bytes = 10'000'000});
+  const auto made = generate_mesh(request, sink, context);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, ErrorCode::kBudgetExceeded);
 }
 
 TEST(Arcs, NestedArcsWithNothingBetweenThemAreRefused) {

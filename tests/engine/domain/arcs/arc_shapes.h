@@ -33,6 +33,18 @@ inline void add_circle(Pslg& pslg, Point centre, double radius, std::uint32_t ar
     add_arc(pslg, first + i, first + (i + 1) % arcs, std::tan(kPi / (2 * arcs)), marker);
 }
 
+inline Pslg plate_with_holes(int across) {
+  Pslg pslg;
+  add_box(pslg, {0, 0}, {static_cast<double>(across), static_cast<double>(across)});
+  for (int i = 0; i < across; ++i) {
+    for (int j = 0; j < across; ++j) {
+      add_circle(pslg, {i + 0.5, j + 0.5}, 0.3);
+      pslg.holes.push_back({i + 0.5, j + 0.5});
+    }
+  }
+  return pslg;
+}
+
 // A box from (-10, -10) to (10, 10) with arcs and segments of 1e-4 to 4 in it, which may cross,
 // meet, and be flat or round; with every third seed, with circles that touch.
 inline Pslg random_arcs(std::uint64_t seed) {

@@ -11,6 +11,7 @@
 
 #include "engine/domain/arcs/arc.h"
 #include "engine/domain/arcs/arc_meeting.h"
+#include "engine/domain/arcs/flat_arcs.h"
 #include "tests/engine/domain/arcs/arc_shapes.h"
 
 namespace weft {

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// What sizes and pictures see of arcs. Units: coordinates of the domain. Thread-safety: pure
+// functions.
+#pragma once
+
+#include "engine/base/geometry.h"
+#include "engine/domain/domain.h"
+#include "weft/pslg.h"
+
+namespace weft {
+
+// A PSLG without arcs: in their place, n = ceil(turn / kFlatTurn) equal chords. Sizes that depend
+// on the distance to segments are those of these. Arcs that `validate` refuses stay their chords.
+inline constexpr double kFlatTurn = 0.034906585039886591;  // 2 degrees
+Pslg flatten_arcs(const Pslg& pslg);
+
+// The box, with all places where arcs of the domain may have vertices.
+Box box_with_arcs(const Domain& domain, Box box);
+
+}  // namespace weft
