@@ -23,6 +23,9 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise
   std::vector<std::int32_t> regions;                    // one per triangle, or empty: all 0
   std::vector<Edge> edges;                              // each once, in either direction
+  // Of each edge, the bulge of the arc from a to b that it is a chord of, 0 if it is straight; or
+  // empty: not said.
+  std::vector<double> bulges;
   // Mesh vertices that represent input points: (vertex, the lowest point that it represents); or
   // empty: the checker finds them by their coordinates.
   std::vector<std::array<std::uint32_t, 2>> input_points;

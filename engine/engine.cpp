@@ -168,8 +168,9 @@ class Pipeline {
   std::optional<Error> prepare() {
     context_.enter(Stage::kTriangulate);
     // Up to twice the least angle, no triangle at the rim of an arc is cut off by it and good.
-    auto domain = triangulate(request_.pslg, context_,
-                              std::clamp(2 * request_.min_angle_deg, 40.0, kMaxTurnDeg));
+    const double max_turn_deg = std::clamp(2 * request_.min_angle_deg, 40.0, kMaxTurnDeg);
+    const double asked_deg = 360 / request_.size.points_per_circle;
+    auto domain = triangulate(request_.pslg, context_, std::min(max_turn_deg, asked_deg));
     if (!domain) return domain.error();
     domain_ = std::move(*domain);
     if (request_.simplify > 0 && !domain_.curvatures.empty())

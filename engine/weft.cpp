@@ -25,6 +25,10 @@ class Collector final : public ChunkSink {
       mesh.regions.resize(chunk.first_triangle);  // of chunks in which every id is 0
       append(chunk.regions, mesh.regions);
     }
+    if (!chunk.bulges.empty()) {
+      mesh.bulges.resize(mesh.edges.size());  // of chunks in which all edges are straight
+      append(chunk.bulges, mesh.bulges);
+    }
     append(chunk.edges, mesh.edges);
     append(chunk.input_points, mesh.input_points);
     return true;
@@ -51,6 +55,7 @@ Result<Mesh> mesh(const MeshRequest& request, Run& run) {
   if (!summary) return tl::unexpected(std::move(summary).error());
   if (!collector.mesh.regions.empty())
     collector.mesh.regions.resize(collector.mesh.triangles.size());
+  if (!collector.mesh.bulges.empty()) collector.mesh.bulges.resize(collector.mesh.edges.size());
   collector.mesh.summary = std::move(*summary);
   return std::move(collector.mesh);
 }

@@ -32,6 +32,7 @@ inline constexpr std::array kOptions = {
     Option{"size.expression", {2, 2}, Option::Kind::kText},
     Option{"size.measure", {2, 4}, Option::Kind::kChoice, kMeasures},
     Option{"size.cells_across", {2, 6}},
+    Option{"size.points_per_circle", {2, 10}},
     Option{"size.gradation", {2, 7}},
     Option{"size.gradation_within", {2, 9}, Option::Kind::kSwitch},
     Option{"quality.min_angle_deg", {3, 1}},

@@ -438,6 +438,9 @@ void read_size(Fields in, SizeSpec& size) {
       case 9:
         in.read(size.gradation_within);
         break;
+      case 10:
+        in.read(size.points_per_circle);
+        break;
       default:
         in.skip();
     }

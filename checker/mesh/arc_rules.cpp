@@ -16,7 +16,6 @@ namespace weft::check {
 namespace {
 
 constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
-constexpr double kMostTurn = 60;         // degrees
 constexpr double kTurnTolerance = 1e-9;  // of it
 constexpr double kGapTolerance = 16;     // tolerances of the chains: lengths of edges to leave out
 
@@ -128,21 +127,55 @@ std::string nearest_beside(const CircularArc& arc, Vec2 from, Vec2 to, const Mes
 }  // namespace
 
 void judge_arc_chords(const ArcChains& chains, const Mesh& mesh, const ListedEdges& listed,
-                      Findings& findings) {
+                      double max_turn, Findings& findings) {
   for (const ArcChains::Chord& chord : chains.chords) {
     const Vec2 p = mesh.vertices[chord.from], q = mesh.vertices[chord.to];
     const double rounding = 4 * chains.tolerance / std::hypot(q.x - p.x, q.y - p.y);
-    if (chord.turn() <= kMostTurn / kDegreesPerRadian * (1 + kTurnTolerance) + rounding) continue;
+    if (chord.turn() <= max_turn / kDegreesPerRadian * (1 + kTurnTolerance) + rounding) continue;
     findings.add(Rule::kChains, [&] {
       return say("segment ", chord.segment, ": the edge (", chord.from, ", ", chord.to, ") from ",
                  p, " to ", q, " turns by ", chord.turn() * kDegreesPerRadian,
-                 " degrees, more than ", kMostTurn);
+                 " degrees, more than ", max_turn);
     });
   }
   HullJudge judge(chains, mesh, listed, findings);
   judge.judge_vertices();
   judge.judge_edges();
   judge.judge_pairs();
+}
+
+void judge_arc_bulges(const ArcChains& chains, const Mesh& mesh, const ListedEdges& listed,
+                      Findings& findings) {
+  if (mesh.bulges.empty()) return;
+  // The middle may be off by as much as the ends are, on either side.
+  const double tolerance = 4 * chains.tolerance;
+  const auto middle = [&](std::uint32_t e) {
+    const Vec2 p = mesh.vertices[mesh.edges[e].a], q = mesh.vertices[mesh.edges[e].b];
+    return Vec2{(p.x + q.x) / 2 + mesh.bulges[e] / 2 * (q.y - p.y),
+                (p.y + q.y) / 2 - mesh.bulges[e] / 2 * (q.x - p.x)};
+  };
+  std::vector<char> on_arc(mesh.edges.size(), 0);
+  for (const ArcChains::Chord& chord : chains.chords) {
+    on_arc[chord.edge] = 1;
+    const CircularArc& curve = *chains.curves[chord.segment];
+    const Vec2 right = curve.at((chord.from_angle + chord.to_angle) / 2);
+    const Vec2 said = middle(chord.edge);
+    if (std::hypot(said.x - right.x, said.y - right.y) <= tolerance) continue;
+    findings.add(Rule::kChains, [&] {
+      return say("segment ", chord.segment, ": the edge (", chord.from, ", ", chord.to,
+                 ") bends through ", said, ", the middle of its arc is ", right);
+    });
+  }
+  for (std::uint32_t e = 0; e < mesh.edges.size(); ++e) {
+    if (!listed.half_edge[e] || on_arc[e] || mesh.bulges[e] == 0) continue;
+    const Mesh::Edge& edge = mesh.edges[e];
+    const Vec2 p = mesh.vertices[edge.a], q = mesh.vertices[edge.b];
+    if (std::fabs(mesh.bulges[e]) / 2 * std::hypot(q.x - p.x, q.y - p.y) <= tolerance) continue;
+    findings.add(Rule::kChains, [&] {
+      return say("the edge (", edge.a, ", ", edge.b, ") from ", p, " to ", q,
+                 " is on no arc, but bends through ", middle(e));
+    });
+  }
 }
 
 void judge_arc_crossings(const ArcChains& chains, const BentDomain& bent,

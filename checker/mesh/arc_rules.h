@@ -14,12 +14,20 @@
 
 namespace weft::check {
 
-// Each edge of a chain turns by 60 degrees at most. In its hull, between it and the tangents in its
-// ends, which holds the arc itself, there is no vertex, no other listed edge and no other hull, but
-// for common ends. So where others cross an arc, they do so in a vertex, and the chains lie to each
-// other as the arcs do. Where arcs and segments touch (tangent_curves.h), this holds of vertices
-// alone, and up to the arc.
+inline constexpr double kMostTurn = 60;  // degrees, of an edge
+
+// Each edge of a chain turns by `max_turn` degrees at most. In its hull, between it and the
+// tangents in its ends, which holds the arc itself, there is no vertex, no other listed edge and no
+// other hull, but for common ends. So where others cross an arc, they do so in a vertex, and the
+// chains lie to each other as the arcs do. Where arcs and segments touch (tangent_curves.h), this
+// holds of vertices alone, and up to the arc.
 void judge_arc_chords(const ArcChains& chains, const Mesh& mesh, const ListedEdges& listed,
+                      double max_turn, Findings& findings);
+
+// The arc that each edge is said to be a chord of, if the mesh says it, passes the middle of the
+// part of the domain's arc that lies between the edge's ends. All other edges are said to be
+// straight.
+void judge_arc_bulges(const ArcChains& chains, const Mesh& mesh, const ListedEdges& listed,
                       Findings& findings);
 
 // No segment, and no gap of an arc, that the mesh lacks comes between an edge of a chain and its

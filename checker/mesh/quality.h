@@ -33,6 +33,8 @@ struct Requirements {
   // size allows (simplification.h): then the mesh is judged against its own segments, and these
   // against the domain. 0: it may not.
   double simplify = 0;
+  // Edges on arcs turn by at most 360 degrees divided by this, and by 60.
+  double points_per_circle = 0;
   // Whether small input angles exempt (exemption.h).
   bool allow_small_input_angles = true;
   // Maximum triangles that may miss the angle or the area bound without exemption: those that the

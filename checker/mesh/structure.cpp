@@ -2,6 +2,7 @@
 #include "checker/mesh/structure.h"
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "checker/domain/domain_rules.h"
@@ -45,6 +46,11 @@ bool judge_structure(const Mesh& mesh, Findings& findings) {
     if (const Mesh::Edge& edge = mesh.edges[i]; edge.a >= vertices || edge.b >= vertices)
       bad("listed edge ", i, " joins vertices ", edge.a, " and ", edge.b, ", but there are ",
           vertices);
+  if (!mesh.bulges.empty() && mesh.bulges.size() != mesh.edges.size())
+    bad(mesh.bulges.size(), " bulges for ", mesh.edges.size(), " listed edges");
+  for (std::size_t i = 0; i < mesh.bulges.size(); ++i)
+    if (!(std::fabs(mesh.bulges[i]) <= 1))
+      bad("listed edge ", i, " has the bulge ", mesh.bulges[i], ", beyond that of half a circle");
   return findings.total(Rule::kStructure) == 0;
 }
 

@@ -87,7 +87,9 @@ Result<void> MeshReceiver::check_shape(const v1::Chunk& chunk) const {
                       (is(chunk.regions_size(), 0) || is(chunk.regions_size(), triangles)) &&
                       chunk.edges_size() % 2 == 0 &&
                       (is(chunk.edge_markers_size(), 0) || is(chunk.edge_markers_size(), edges)) &&
-                      is(chunk.edge_segments_size(), edges) && chunk.input_points_size() % 2 == 0 &&
+                      is(chunk.edge_segments_size(), edges) &&
+                      (is(chunk.edge_bulges_size(), 0) || is(chunk.edge_bulges_size(), edges)) &&
+                      chunk.input_points_size() % 2 == 0 &&
                       (is(chunk.box_size(), 0) || is(chunk.box_size(), 4));
   if (!shapes) return damaged(chunk, "has arrays whose lengths do not fit");
   return {};
@@ -115,6 +117,8 @@ Result<void> MeshReceiver::check_indices(const v1::Chunk& chunk) const {
   double finite = 0;  // NaN if any coordinate is not finite
   for (const double c : chunk.coordinates()) finite += c * 0;
   if (finite != 0) return damaged(chunk, "has a coordinate that is not finite");
+  for (const double bulge : chunk.edge_bulges())
+    if (!(std::fabs(bulge) <= 1)) return damaged(chunk, "has an edge that is no chord of an arc");
   return {};
 }
 
@@ -139,6 +143,7 @@ std::string MeshReceiver::digest_of(const v1::Chunk& chunk) {
   }
   add(std::span<const std::uint32_t>(edges_));
   add(span_of(chunk.input_points()));
+  add(span_of(chunk.edge_bulges()));
   return hash_.finish();
 }
 
@@ -152,13 +157,14 @@ Result<void> MeshReceiver::receive(const v1::Chunk& chunk) {
   mesh_hash_.add(digest.data(), digest.size());
   ++chunks_;
 
-  return spool_.append({span_of(chunk.coordinates()),
-                        span_of(chunk.triangles()),
-                        span_of(chunk.regions()),
-                        span_of(chunk.edges()),
-                        span_of(chunk.edge_markers()),
-                        span_of(chunk.input_points()),
-                        {}});
+  return spool_.append({.coordinates = span_of(chunk.coordinates()),
+                        .triangles = span_of(chunk.triangles()),
+                        .regions = span_of(chunk.regions()),
+                        .edges = span_of(chunk.edges()),
+                        .edge_markers = span_of(chunk.edge_markers()),
+                        .input_points = span_of(chunk.input_points()),
+                        .input_point_markers = {},
+                        .edge_bulges = span_of(chunk.edge_bulges())});
 }
 
 Result<void> MeshReceiver::receive(const v1::Summary& summary) {

@@ -155,6 +155,7 @@ Result<RequestOptions> with_size(const RequestOptions& given, const Domain& doma
   if (options.gradation) size->set_gradation(*options.gradation);
   size->set_gradation_within(options.gradation_within);
   if (options.cells_across) size->set_cells_across(*options.cells_across);
+  if (options.points_per_circle) size->set_points_per_circle(*options.points_per_circle);
   for (const EdgeAt& edge_at : options.edge_at) {
     const auto marker = edge_at.name.empty() ? Result<std::int32_t>(edge_at.marker)
                                              : find_marker(edge_at.name, domain.names.markers);

@@ -32,7 +32,8 @@ struct RequestOptions {
   std::optional<double> gradation{};     // that the length of edges has at most
   bool gradation_within = false;         // the domain, not across land
   std::optional<double> cells_across{};  // edges across the domain, at least about
-  std::vector<EdgeAt> edge_at{};         // lengths of edges on segments, by marker
+  std::optional<double> points_per_circle{};
+  std::vector<EdgeAt> edge_at{};    // lengths of edges on segments, by marker
   std::vector<NameOption> names{};  // of markers and regions, besides those of the domain's file
   // All of the size, with what its files hold: see with_size.
   std::shared_ptr<const v1::SizeField> size_read{};

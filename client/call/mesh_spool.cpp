@@ -89,9 +89,10 @@ template class SpooledArray<std::int32_t>;
 Result<std::unique_ptr<MeshSpool>> MeshSpool::create(const std::filesystem::path& folder,
                                                      MeshSpoolOptions options) {
   std::unique_ptr<MeshSpool> spool(new MeshSpool(folder, std::move(options)));
-  for (const auto& opened : {spool->coordinates_.open(folder), spool->triangles_.open(folder),
-                             spool->regions_.open(folder), spool->edges_.open(folder),
-                             spool->edge_markers_.open(folder), spool->input_points_.open(folder)})
+  for (const auto& opened :
+       {spool->coordinates_.open(folder), spool->triangles_.open(folder),
+        spool->regions_.open(folder), spool->edges_.open(folder), spool->edge_markers_.open(folder),
+        spool->edge_bulges_.open(folder), spool->input_points_.open(folder)})
     if (!opened) return tl::unexpected(opened.error());
   return spool;
 }
@@ -109,10 +110,13 @@ Result<void> MeshSpool::append(const MeshView& piece) {
   const auto append_rest = [&] {
     return triangles_.append(piece.triangles) &&
            append_or_zeros(regions_, piece.regions, piece.triangle_count()) &&
-           edges_.append(piece.edges) && input_points_.append(piece.input_points);
+           edges_.append(piece.edges) &&
+           append_or_zeros(edge_bulges_, piece.edge_bulges, piece.edge_count()) &&
+           input_points_.append(piece.input_points);
   };
   triangle_count_ += piece.triangle_count();
   edge_count_ += piece.edge_count();
+  has_arcs_ = has_arcs_ || !piece.edge_bulges.empty();
   if (!coordinates_.append(piece.coordinates) ||
       !append_or_zeros(edge_markers_, piece.edge_markers, piece.edge_count()) ||
       !(options_.vertices_only || append_rest()))
@@ -135,7 +139,8 @@ Result<void> MeshSpool::show(MeshView piece) {
 
 Result<MeshView> MeshSpool::view() {
   if (!(coordinates_.map(pages_) && triangles_.map(pages_) && regions_.map(pages_) &&
-        edges_.map(pages_) && edge_markers_.map(pages_) && input_points_.map(pages_)))
+        edges_.map(pages_) && edge_markers_.map(pages_) && edge_bulges_.map(pages_) &&
+        input_points_.map(pages_)))
     return failed();
   return MeshView{.coordinates = coordinates_.values(),
                   .triangles = triangles_.values(),
@@ -145,7 +150,8 @@ Result<MeshView> MeshSpool::view() {
                   .input_points = input_points_.values(),
                   .input_point_markers = {},
                   .order = 1,
-                  .pages = &pages_};
+                  .pages = &pages_,
+                  .edge_bulges = has_arcs_ ? edge_bulges_.values() : std::span<const double>()};
 }
 
 }  // namespace weft::client

@@ -74,7 +74,8 @@ class MeshSpool {
   static Result<std::unique_ptr<MeshSpool>> create(const std::filesystem::path& folder,
                                                    MeshSpoolOptions options = {});
 
-  // Appends a piece; its arrays are as MeshView has them, regions and markers empty if all are 0.
+  // Appends a piece; its arrays are as MeshView has them, regions and markers empty if all are 0,
+  // bulges one per edge or empty.
   Result<void> append(const MeshView& piece);
 
   // Returns the whole mesh, valid as long as the spool. REQUIRES: nothing is appended any more.
@@ -94,11 +95,13 @@ class MeshSpool {
   MeshSpoolOptions options_;
   std::uint64_t triangle_count_ = 0;
   std::uint64_t edge_count_ = 0;
+  bool has_arcs_ = false;
   SpooledArray<double> coordinates_;
   SpooledArray<std::uint32_t> triangles_;
   SpooledArray<std::int32_t> regions_;
   SpooledArray<std::uint32_t> edges_;
   SpooledArray<std::int32_t> edge_markers_;
+  SpooledArray<double> edge_bulges_;
   SpooledArray<std::uint32_t> input_points_;
   PagedMemory pages_;
 };

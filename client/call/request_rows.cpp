@@ -205,6 +205,11 @@ const OptionRows<Request>& size_rows() {
        "Minimum number of edges across the domain, roughly: edges are at most the local width "
        "divided by N. Best with --gradation",
        "any number", number("N", &Request::cells_across, 0.01, 1e6), "size.cells_across"},
+      {"points-per-circle", "WEFT_POINTS_PER_CIRCLE",
+       "Minimum number of vertices on a circle: edges on arcs turn by at most 360 degrees divided "
+       "by N",
+       "edges turn by at most 60 degrees", number("N", &Request::points_per_circle, 1, 1e5),
+       "size.points_per_circle"},
   });
   return rows;
 }

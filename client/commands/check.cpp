@@ -42,6 +42,7 @@ check::Mesh to_checker(const Mesh& mesh) {
     out.triangles.push_back({mesh.triangles[i], mesh.triangles[i + 1], mesh.triangles[i + 2]});
   out.regions = mesh.regions;
   out.edges = edges_of(mesh.edges, mesh.edge_markers);
+  out.bulges = mesh.edge_bulges;
   return out;
 }
 
@@ -62,6 +63,7 @@ Result<check::Requirements> requirements_of(const CheckOptions& options, const I
   requirements.min_angle_deg = options.min_angle_deg;
   requirements.allowed_unrefined = options.max_unrefined;
   requirements.simplify = options.simplify.value_or(0);
+  requirements.points_per_circle = options.size.points_per_circle.value_or(0);
   auto size = checker_size(options.size, input.domain, input.projection.get());
   if (!size) return tl::unexpected(size.error());
   requirements.size = std::move(*size);

@@ -7,6 +7,7 @@
 // ScratchArrays of its `pages`.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -44,6 +45,9 @@ struct MeshView {
   PagedMemory* pages = nullptr;  // of arrays in mapped files; null: all of it is in memory
   std::span<const VertexValues> vertex_values{};  // of order 2: one number per node
   std::span<const std::int32_t> parts{};          // one per triangle, from 0; empty: not divided
+  // Of each edge, the bulge (Domain::Arc) of the arc from its first vertex to its second that it is
+  // a chord of; edges after the last of these are straight.
+  std::span<const double> edge_bulges{};
   CoordinateUnit unit = CoordinateUnit::kUnknown;
   const Names* names = &kNoNames;  // of markers and regions; never null
 
@@ -86,14 +90,20 @@ struct Mesh {
   Names names{};                             // of markers and regions
   std::vector<std::int32_t> parts{};         // one per triangle, from 0; empty: not divided
   std::vector<Warning> warnings{};           // about the file
+  std::vector<double> edge_bulges{};         // one per edge, or empty: all are straight
   std::vector<std::int32_t> open_markers{};  // of boundaries that the file calls open
-  Faces faces{};              // while it is read: those that are no triangles (faces.h)
+  Faces faces{};  // while it is read: those that are no triangles (faces.h)
+  // While it is read: both ends of sides of triangles and of edges, and the node in their middle
+  // (middles.h); then of each vertex the node in a file of second order, or empty.
+  std::vector<std::array<std::uint32_t, 3>> middles{};
+  std::vector<std::uint32_t> nodes{};
   std::size_t cut_faces = 0;  // of these, those that became several triangles
 
   // REQUIRES: the mesh outlives the view.
   MeshView view() const {
     MeshView view{coordinates, triangles, regions, edges, edge_markers, {}, {}, 1};
     view.parts = parts;
+    view.edge_bulges = edge_bulges;
     view.names = &names;
     return view;
   }

@@ -14,6 +14,7 @@
 #include "client/formats/bed.h"
 #include "client/formats/derived/faces.h"
 #include "client/formats/derived/mesh_edges.h"
+#include "client/formats/derived/middles.h"
 #include "client/formats/derived/second_order.h"
 #include "client/formats/format_names.h"
 #include "client/formats/meshes/adcirc.h"
@@ -322,8 +323,8 @@ std::vector<std::filesystem::path> mesh_files(const DataPath& path) {
                                                        : std::vector<std::filesystem::path>{path};
 }
 
-void write_mesh(const MeshFormat& format, const MeshView& mesh, std::span<OutputFile> files,
-                const MeshWriteOptions& options) {
+std::size_t write_mesh(const MeshFormat& format, const MeshView& mesh, std::span<OutputFile> files,
+                       const MeshWriteOptions& options) {
   const Names names = names_in(format, *mesh.names);
   MeshView named = mesh;
   named.names = &names;
@@ -334,14 +335,15 @@ void write_mesh(const MeshFormat& format, const MeshView& mesh, std::span<Output
     if (options.order == 2) {
       const SecondOrderMesh second(named);
       format.write(second.view(), files, options);
-    } else {
-      format.write(named, files, options);
+      return second.straightened();
     }
+    format.write(named, files, options);
   } catch (const std::system_error& failure) {
     fail_all(failure.code().value());
   } catch (const std::bad_alloc&) {
     fail_all(ENOMEM);
   }
+  return 0;
 }
 
 Result<Mesh> read_mesh(const DataPath& path) {
@@ -367,8 +369,7 @@ Result<MeshWithValues> read_vertex_values(const std::filesystem::path& path,
     if (read->mesh.triangles.empty())
       return fail(ExitCode::kUnreadableInput, path.string() + ": has no triangles");
     NamedArray& only = read->arrays.front();
-    auto values =
-        checked(path, only.name, std::move(only.values), read->mesh.coordinates.size() / 2);
+    auto values = checked(path, only.name, std::move(only.values), read->mesh);
     if (!values) return tl::unexpected(values.error());
     return MeshWithValues{std::move(read->mesh), std::move(*values)};
   });
@@ -385,8 +386,7 @@ Result<MeshWithArrays> read_mesh_with_arrays(const DataPath& path) {
     auto read = format->read_values(path, std::nullopt);
     if (!read) return read;
     for (NamedArray& array : read->arrays)
-      array.values =
-          checked(path, array.name, std::move(array.values), read->mesh.coordinates.size() / 2);
+      array.values = checked(path, array.name, std::move(array.values), read->mesh);
     return read;
   });
 }
@@ -408,11 +408,12 @@ Result<Mesh> validated(const std::filesystem::path& path, Mesh mesh) {
       if (corner >= vertices)
         return refuse("face " + std::to_string(i) + " of more than three corners has vertex " +
                       std::to_string(corner) + " of " + std::to_string(vertices));
-  cut_faces(mesh);
   for (std::size_t i = 0; i < mesh.edges.size(); ++i)
     if (mesh.edges[i] >= vertices)
       return refuse("edge " + std::to_string(i / 2) + " has vertex " +
                     std::to_string(mesh.edges[i]) + " of " + std::to_string(vertices));
+  if (const std::string fault = take_out_middles(mesh); !fault.empty()) return refuse(fault);
+  cut_faces(mesh);
   if (!mesh.parts.empty() && mesh.parts.size() != mesh.triangles.size() / 3)
     return refuse("has parts of " + std::to_string(mesh.parts.size()) + " triangles, not of " +
                   std::to_string(mesh.triangles.size() / 3));
@@ -420,6 +421,13 @@ Result<Mesh> validated(const std::filesystem::path& path, Mesh mesh) {
     if (mesh.parts[i] < 0)
       return refuse("triangle " + std::to_string(i) + " has the part " +
                     std::to_string(mesh.parts[i]) + ", they count from 0");
+  if (!mesh.edge_bulges.empty() && mesh.edge_bulges.size() != mesh.edges.size() / 2)
+    return refuse("has bulges of " + std::to_string(mesh.edge_bulges.size()) + " edges, not of " +
+                  std::to_string(mesh.edges.size() / 2));
+  for (std::size_t i = 0; i < mesh.edge_bulges.size(); ++i)
+    if (!(std::fabs(mesh.edge_bulges[i]) <= 1))
+      return refuse("edge " + std::to_string(i) +
+                    " is no chord of an arc of at most half a circle");
   mesh.regions.resize(mesh.triangles.size() / 3);
   mesh.edge_markers.resize(mesh.edges.size() / 2);
   return mesh;

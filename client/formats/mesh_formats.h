@@ -96,9 +96,10 @@ std::vector<std::string> not_carried(const DataPath& path, const MeshView& mesh)
 std::vector<std::filesystem::path> mesh_files(const DataPath& path);
 
 // Writes the mesh into `files`, opened for mesh_files(path) in that order. Failures stay in the
-// files. REQUIRES: check_writable.
-void write_mesh(const MeshFormat& format, const MeshView& mesh, std::span<OutputFile> files,
-                const MeshWriteOptions& options = {});
+// files. Returns how many sides on arcs are straight in a mesh of second order, see second_order.h.
+// REQUIRES: check_writable.
+std::size_t write_mesh(const MeshFormat& format, const MeshView& mesh, std::span<OutputFile> files,
+                       const MeshWriteOptions& options = {});
 
 // Reads a mesh. Errors: kUsage for an extension that is unknown or only written, kUnreadableInput
 // for the rest. A mesh that was read has vertex numbers in range, finite coordinates, as many

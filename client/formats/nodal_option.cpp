@@ -22,10 +22,10 @@ constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMostLetters = 16;  // of the name of a variable in SELAFIN
 // Names that some format uses for something else, in lower case.
 constexpr std::string_view kTaken[] = {
-    "points",     "triangles",    "regions",    "edges",        "edge_markers", "parts",  // .npz
-    "marker_ids", "marker_names", "region_ids", "region_names",                           // .npz
-    "node_x",     "node_y",       "node_z",     "region",       "edge_marker",  "part",   // UGRID
-    "edge_nodes", "face_nodes",   "bottom"};  // UGRID, SELAFIN
+    "points",      "triangles",  "regions",      "edges",      "edge_markers", "parts",  // .npz
+    "edge_bulges", "marker_ids", "marker_names", "region_ids", "region_names",           // .npz
+    "node_x",      "node_y",     "node_z",       "region",     "edge_marker",  "part",   // UGRID
+    "edge_nodes",  "face_nodes", "bottom"};  // UGRID, SELAFIN
 
 bool is_name(const std::string& text) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };

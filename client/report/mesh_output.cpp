@@ -260,8 +260,13 @@ Result<void> MeshOutput::write_files(const MeshView& arrived) try {
   std::span<OutputFile> rest = files_;
   for (const auto& name : options_.files) {
     const std::size_t count = mesh_files(name).size();
-    write_mesh(*mesh_format(name), has_open_boundaries(name) ? *opened_mesh : mesh,
-               rest.first(count), writing);
+    const std::size_t straight =
+        write_mesh(*mesh_format(name), has_open_boundaries(name) ? *opened_mesh : mesh,
+                   rest.first(count), writing);
+    if (straight > 0)
+      warnings_.push_back(name.string() + ": " + with_separators(straight) +
+                          (straight == 1 ? " side on an arc is" : " sides on arcs are") +
+                          " straight, because a triangle would turn over");
     rest = rest.subspan(count);
     const auto lost = not_carried(name, mesh);
     warnings_.insert(warnings_.end(), lost.begin(), lost.end());

@@ -212,7 +212,8 @@ void weft_mesh_arrays(const weft_mesh* mesh, weft_arrays* arrays) {
       .regions = m.regions.empty() ? nullptr : m.regions.data(),
       .edges = reinterpret_cast<const std::uint32_t*>(m.edges.data()),
       .input_points = reinterpret_cast<const std::uint32_t*>(m.input_points.data()),
-      .leaves = reinterpret_cast<const double*>(m.summary.leaves.data())};
+      .leaves = reinterpret_cast<const double*>(m.summary.leaves.data()),
+      .bulges = m.bulges.empty() ? nullptr : m.bulges.data()};
   std::memcpy(arrays, &all, std::min(arrays->struct_size, sizeof all));
 }
 

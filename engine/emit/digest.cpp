@@ -36,6 +36,7 @@ Digest chunk_digest(const Chunk& chunk) {
   static_assert(sizeof(Chunk::Edge) == 16);
   sha.add(chunk.edges.data(), chunk.edges.size() * sizeof(Chunk::Edge));
   sha.add(chunk.input_points.data(), chunk.input_points.size() * 8);
+  sha.add(chunk.bulges.data(), chunk.bulges.size() * sizeof(double));
   return sha.finish();
 }
 

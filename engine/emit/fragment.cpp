@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/base/vector.h"
+#include "engine/domain/arcs/arc.h"
 #include "engine/refine/area_bound.h"
 #include "engine/refine/mapped_area.h"
 
@@ -11,9 +13,9 @@ namespace weft {
 namespace {
 
 // The most that a vertex and a triangle add to a chunk: the vertex as an input point, the triangle
-// with its region and three edges.
+// with its region and three edges and their bulges.
 constexpr std::size_t kMaxVertexBytes = 16 + 8;
-constexpr std::size_t kMaxTriangleBytes = 12 + 4 + 3 * sizeof(Chunk::Edge);
+constexpr std::size_t kMaxTriangleBytes = 12 + 4 + 3 * (sizeof(Chunk::Edge) + sizeof(double));
 
 // An edge between two triangles is written with the triangle in which it leads from its lesser end.
 bool leads_upward(Point a, Point b) {
@@ -27,7 +29,7 @@ std::uint64_t Fragment::bytes() const {
   for (const Chunk& chunk : chunks) {
     bytes += chunk.coordinates.capacity() * sizeof(double) + chunk.triangles.capacity() * 4 +
              chunk.regions.capacity() * 4 + chunk.edges.capacity() * sizeof(Chunk::Edge) +
-             chunk.input_points.capacity() * 8;
+             chunk.bulges.capacity() * sizeof(double) + chunk.input_points.capacity() * 8;
   }
   return bytes;
 }
@@ -112,11 +114,24 @@ void FragmentBuilder<AreaBound>::add_triangle(const Triangle& triangle) {
     const std::uint32_t b = triangle.vertex[kPrevious[i]];
     if (triangle.neighbor[i] != kNone && !leads_upward(mesh_.vertices[a], mesh_.vertices[b]))
       continue;
-    const Subsegment& s = domain_.subsegments[corners_.subsegment(mesh_, a, b)];
+    const std::uint32_t subsegment = corners_.subsegment(mesh_, a, b);
+    const Subsegment& s = domain_.subsegments[subsegment];
     chunk_.edges.push_back({mesh_.number_of(a), mesh_.number_of(b), s.segment, s.marker});
     bytes_ += sizeof(Chunk::Edge);
     ++fragment_.edges;
+    if (corners_.has_arcs()) add_bulge(subsegment, a, b);
   }
+}
+
+template <class AreaBound>
+void FragmentBuilder<AreaBound>::add_bulge(std::uint32_t subsegment, std::uint32_t a,
+                                           std::uint32_t b) {
+  const Subsegment& s = domain_.subsegments[subsegment];
+  const Vector chord = mesh_.vertices[b] - mesh_.vertices[a];
+  const bool forward = dot(chord, domain_.vertices[s.b] - domain_.vertices[s.a]) > 0;
+  const double bulge = bulge_of(corners_.curvature(subsegment), length(chord));
+  chunk_.bulges.push_back(forward ? bulge : -bulge);
+  bytes_ += sizeof(double);
 }
 
 template <class AreaBound>
@@ -156,8 +171,9 @@ void FragmentBuilder<AreaBound>::make_room(std::size_t bytes) {
 template <class AreaBound>
 void FragmentBuilder<AreaBound>::close_chunk() {
   add_block();
-  const auto is_zero = [](std::int32_t id) { return id == 0; };
+  const auto is_zero = [](auto value) { return value == 0; };
   if (std::all_of(chunk_.regions.begin(), chunk_.regions.end(), is_zero)) chunk_.regions.clear();
+  if (std::all_of(chunk_.bulges.begin(), chunk_.bulges.end(), is_zero)) chunk_.bulges.clear();
   chunk_.digest = chunk_digest(chunk_);
   fragment_.chunks.push_back(std::exchange(chunk_, Chunk{}));
   bytes_ = 0;

@@ -88,6 +88,7 @@ class FragmentBuilder {
   std::optional<Fragment> finish();
 
  private:
+  void add_bulge(std::uint32_t subsegment, std::uint32_t a, std::uint32_t b);
   void count_unrefined(const Triangle& triangle);
   void make_room(std::size_t bytes);
   void close_chunk();

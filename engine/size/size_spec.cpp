@@ -382,6 +382,10 @@ std::optional<Error> check_size(const SizeSpec& spec) {
     if (!(value >= 0 && std::isfinite(value)))
       return Error{ErrorCode::kBadOption, field,
                    std::string(field) + " is " + text(value) + "; it must be finite and 0 or more"};
+  if (!(spec.points_per_circle >= 0 && spec.points_per_circle <= kMaxPointsPerCircle))
+    return Error{ErrorCode::kBadOption, "size.points_per_circle",
+                 "size.points_per_circle is " + text(spec.points_per_circle) +
+                     "; it must be from 0 to " + text(kMaxPointsPerCircle)};
   if (spec.fields.size() > kMaxSizeFields)
     return Error{ErrorCode::kLimitExceeded, "size.fields",
                  "size.fields: " + std::to_string(spec.fields.size()) + " fields; the limit is " +

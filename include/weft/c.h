@@ -130,6 +130,7 @@ typedef struct weft_arrays {
   const uint32_t* edges;        /* per edge on a segment: two vertices, the segment, its marker */
   const uint32_t* input_points; /* per input point that is a vertex: the vertex, the point */
   const double* leaves;         /* boxes of the quadtree: min x, min y, max x, max y */
+  const double* bulges;         /* of each edge, as weft_set_arcs takes them, or NULL: all 0 */
 } weft_arrays;
 #define WEFT_ARRAYS \
   { .struct_size = sizeof(weft_arrays) }

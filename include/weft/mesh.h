@@ -36,17 +36,20 @@ struct Chunk {
   std::vector<std::uint32_t> triangles;  // three mesh vertices each, counter-clockwise
   std::vector<std::int32_t> regions;     // region id per triangle; empty if every id is 0
   std::vector<Edge> edges;
+  // Per edge, the bulge (Arc::bulge) of the arc from its a to its b that it is a chord of; empty if
+  // all are straight.
+  std::vector<double> bulges;
   // (mesh vertex, index of the input point) for the vertices of this chunk that are input points.
   std::vector<std::array<std::uint32_t, 2>> input_points;
   Box box;          // of this chunk's triangles
   Digest digest{};  // SHA-256 of the chunk's canonical bytes, see chunk_digest
 };
 
-// Maximum bytes of coordinates, triangles, regions, edges and input points per chunk.
+// Maximum bytes of the arrays of a chunk.
 inline constexpr std::size_t kMaxChunkBytes = std::size_t{1} << 20;
 
 // SHA-256 over, little-endian and without padding: coordinates, triangles, regions (written out
-// even when all are 0), edges (a, b, segment, marker), input_points.
+// even when all are 0), edges (a, b, segment, marker), input_points, bulges.
 Digest chunk_digest(const Chunk& chunk);
 
 // Receives the chunks in order, on the thread that called `stream`. `accept` may block: only
@@ -211,6 +214,7 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise
   std::vector<std::int32_t> regions;  // region id per triangle; empty if every id is 0
   std::vector<Chunk::Edge> edges;     // on input segments
+  std::vector<double> bulges;         // per edge, as Chunk has them; empty if all are straight
   // (mesh vertex, index of the input point) for the vertices that are input points.
   std::vector<std::array<std::uint32_t, 2>> input_points;
   Summary summary;

@@ -88,6 +88,8 @@ inline double area_of_edge(double edge) {
   return 0.4330127018922193 * edge * std::fabs(edge);
 }
 
+inline constexpr double kMaxPointsPerCircle = 1e5;
+
 struct SizeSpec {
   using Value = std::variant<std::monostate,  // no bound
                              double,          // the same everywhere, > 0
@@ -110,6 +112,9 @@ struct SizeSpec {
   bool gradation_within = false;
   // How many edges fit across the domain at least; finite. 0: any number.
   double cells_across = 0;
+  // Edges on arcs turn by at most 360 degrees divided by this; at most kMaxPointsPerCircle. 0: by
+  // 60 degrees at most.
+  double points_per_circle = 0;
   // On segments with these markers, edges are at most so long. With a gradation the wanted length
   // grows from there by it, at most.
   std::vector<SizeAt> at;  // one per marker, at most kMaxSizesAt

@@ -40,12 +40,13 @@ void make_canonical(v1::GenerateMeshRequest& request) {
   if (quality.placement() == v1::PLACEMENT_UNSPECIFIED)
     quality.set_placement(v1::PLACEMENT_LATTICE);
   v1::SizeField& size = *request.mutable_size();
-  if (size.cells_across() == 0) size.clear_cells_across();  // -0 is 0
-  if (size.gradation() == 0) size.clear_gradation();        // -0 is 0
+  if (size.cells_across() == 0) size.clear_cells_across();            // -0 is 0
+  if (size.gradation() == 0) size.clear_gradation();                  // -0 is 0
+  if (size.points_per_circle() == 0) size.clear_points_per_circle();  // -0 is 0
   // Fields that the mesh does not need are in the warnings that are kept with it.
   if (size.field_case() == v1::SizeField::FIELD_NOT_SET && size.cells_across() == 0 &&
-      size.at().empty() && size.fields().empty() && !size.gradation_within() &&
-      size.gradation() == 0) {
+      size.points_per_circle() == 0 && size.at().empty() && size.fields().empty() &&
+      !size.gradation_within() && size.gradation() == 0) {
     request.clear_size();
   } else if (size.measure() == v1::MEASURE_UNSPECIFIED) {
     size.set_measure(v1::MEASURE_AREA);

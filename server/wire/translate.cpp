@@ -87,6 +87,8 @@ void to_wire(const Chunk& chunk, v1::Chunk& message) {
     if (marked) markers.AddAlreadyReserved(edge.marker);
   }
 
+  assign(*message.mutable_edge_bulges(), chunk.bulges);
+
   auto& input_points = *message.mutable_input_points();
   input_points.Clear();
   input_points.Reserve(2 * static_cast<int>(chunk.input_points.size()));

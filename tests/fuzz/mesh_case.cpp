@@ -30,6 +30,7 @@ class PslgMaker {
   bool make() {
     read_frame();
     const std::size_t fill = bytes_.below(4);
+    has_arcs_ = fill == 3;
     pslg_.fill = fill == 1 ? Fill::kEvenOdd : fill == 2 ? Fill::kUnion : Fill::kSeeds;
     const std::size_t seeds = bytes_.byte();
     if (bytes_.below(4) != 3) add_box();
@@ -39,7 +40,7 @@ class PslgMaker {
     for (std::size_t i = 0; i < seeds / 4 % 4; ++i) add_region();
     for (const Point p : points_) pslg_.points.push_back(placed(p));
     return jitter_ == 0 && sine_ == 0 && decimals_ < 0 && (scale_ == 1 || scale_ == 1e3) &&
-           !skewed_;
+           !skewed_ && !has_arcs_;
   }
 
   double extent() const { return scale_ * (grid_ + 1); }
@@ -88,6 +89,11 @@ class PslgMaker {
     const auto marker = static_cast<std::int32_t>(pslg_.segments.size() % 5);
     pslg_.segments.push_back(
         {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), marker});
+    if (!has_arcs_) return;
+    const double bulge = bytes_.one_of<double>({0, 0, 0, 1, -1, 0.41421356237309503, -0.2, 0.05,
+                                                1e-3, -1e-6, 1e-9, -2.5, 40, 1e5});
+    if (bulge != 0)
+      pslg_.arcs.push_back({static_cast<std::uint32_t>(pslg_.segments.size() - 1), bulge});
   }
 
   void add_box() {
@@ -185,6 +191,7 @@ class PslgMaker {
   double sine_ = 0;
   int decimals_ = -1;
   bool skewed_ = false;
+  bool has_arcs_ = false;
   std::vector<Point> points_;  // in grid coordinates
 };
 
@@ -400,6 +407,7 @@ MeshCase decode_mesh_case(ByteSource bytes) {
   }
   if (rarely % 8 == 4) request.placement = Placement::kCircumcentre;
   if (rarely % 8 == 5) request.sweeps = rarely / 8 % 4;
+  if (rarely % 8 == 5 && rarely / 32 == 7) request.size.points_per_circle = 36;
   if (rarely % 8 == 6) {
     constexpr std::array<double, 4> kGradations{0.15, 0.02, 0.5, 3};
     request.size.gradation = kGradations[rarely / 8 % kGradations.size()];
@@ -431,6 +439,8 @@ std::string to_text(const MeshCase& mesh_case) {
   if (const auto* const expression = std::get_if<std::string>(&request.size.value))
     text +=
         (request.size.measure == Measure::kEdge ? " --edge '" : " --size '") + *expression + "'";
+  if (request.size.points_per_circle > 0)
+    text += print(" --points-per-circle %.17g", request.size.points_per_circle);
   if (request.size.cells_across > 0)
     text += print(" --cells-across %.17g", request.size.cells_across);
   for (const SizeAt& at : request.size.at)
@@ -465,6 +475,7 @@ std::string to_text(const MeshCase& mesh_case) {
   text += print("%zu\n", pslg.holes.size());
   for (std::size_t i = 0; i < pslg.holes.size(); ++i)
     text += print("%zu %.17g %.17g\n", i, pslg.holes[i].x, pslg.holes[i].y);
+  for (const Arc& arc : pslg.arcs) text += print("# arc=%u:%.17g\n", arc.segment, arc.bulge);
   text += print("%zu\n", pslg.regions.size());
   for (std::size_t i = 0; i < pslg.regions.size(); ++i)
     text += print("%zu %.17g %.17g %d %.17g\n", i, pslg.regions[i].at.x, pslg.regions[i].at.y,

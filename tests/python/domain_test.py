@@ -553,6 +553,28 @@ def test_arcs_are_followed_by_the_mesh(client, tmp_path):
     assert weft.mesh(domain, edge=0.02).digest == mesh.digest
 
 
+def test_sides_of_second_order_follow_arcs(client, run_weft, tmp_path):
+    path = tmp_path / "half.poly"
+    path.write_text(HALF_DISK)
+    mesh = client.mesh(weft.Domain.read(path))
+    here = weft.mesh(weft.Domain.read(path))
+    assert mesh.digest == here.digest and np.array_equal(mesh.edge_bulges, here.edge_bulges)
+    turns = 4 * np.arctan(mesh.edge_bulges)
+    assert abs(np.abs(turns).sum() - np.pi) < 1e-12 and (turns[mesh.edge_markers == 5] == 0).all()
+
+    points, triangles = mesh.second_order()
+    area = 0
+    for k in range(3):  # sides are parabolas from p through q to r
+        p, q, r = np.moveaxis(points[triangles[:, [k, 3 + k, (k + 1) % 3]]], 1, 0)
+        area += (4 * (np.cross(p, q) + np.cross(q, r)) - np.cross(p, r)).sum() / 6
+    assert abs(mesh.summary.area - np.pi / 2) > 0.03 and abs(area - np.pi / 2) < 1e-3
+
+    mesh.write(tmp_path / "half.npz")
+    again = weft.Mesh.read(tmp_path / "half.npz")
+    assert np.array_equal(again.edge_bulges, mesh.edge_bulges)
+    run_weft("check", tmp_path / "half.npz", "--domain", path)
+
+
 def test_arcs_are_checked():
     square = ([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)])
     assert weft.Domain(*square, arcs={2: 1, np.int64(0): -0.5}).arcs == {0: -0.5, 2: 1.0}

@@ -450,6 +450,7 @@ D = {"fields": {"d": weft.distance()}}
     ({"edge_at": {"inlet": -1}}, "size.at[0].max_edge", "edge_at['inlet']"),
     ({"edge": 1, "gradation": -1}, "size.gradation", "gradation"),
     ({"edge": 1, "cells_across": -1}, "size.cells_across", "cells_across"),
+    ({"points_per_circle": 1e6}, "size.points_per_circle", "points_per_circle"),
     ({"min_angle": 99}, "quality.min_angle_deg", "min_angle"),
     ({"min_edge": -1}, "quality.min_edge", "min_edge"),
     ({"optimise": 99}, "quality.optimise", "optimise"),

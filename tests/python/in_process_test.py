@@ -85,7 +85,7 @@ def test_samples_have_the_mesh_that_a_server_makes(client, path):
     {"edge": 2, "placement": "circumcentre", "optimise": 3, "min_edge": 0.1},
     {"size": 1, "max_triangles": 200},
     {"edge": "0.5 + 0.1*coast", "fields": {"coast": weft.distance()}, "gradation": 0.2},
-    {"edge": "1 + w/9", "fields": {"w": weft.width()}, "cells_across": 4, "gradation": 0.3,
+    {"edge": "1 + w/9", "fields": {"w": weft.width()}, "cells_across": 4, "points_per_circle": 20, "gradation": 0.3,
      "gradation_within": True},
     {"size": 1e9, "fields": {"p": weft.distance(points=[[1, 2]])}},
     {"edge": 0.4, "quadtree": True, "threads": 2},

@@ -133,7 +133,7 @@ bool CollectedMesh::accept(Chunk&& chunk) {
   must(chunk.first_triangle == mesh.triangles.size(), "triangles are numbered without gaps");
   must(chunk.digest == chunk_digest(chunk), "the digest is that of the chunk");
   must(chunk.coordinates.size() * 8 + chunk.triangles.size() * 4 + chunk.regions.size() * 4 +
-               chunk.edges.size() * 16 + chunk.input_points.size() * 8 <=
+               chunk.edges.size() * 16 + chunk.bulges.size() * 8 + chunk.input_points.size() * 8 <=
            kMaxChunkBytes,
        "a chunk is at most kMaxChunkBytes");
   ++chunks;
@@ -159,6 +159,9 @@ bool CollectedMesh::accept(Chunk&& chunk) {
     must(known(e.a) && known(e.b), "edges do not refer ahead");
     mesh.edges.push_back({e.a, e.b, e.marker});
   }
+  must(chunk.bulges.empty() || chunk.bulges.size() == chunk.edges.size(), "an edge has one bulge");
+  mesh.bulges.insert(mesh.bulges.end(), chunk.bulges.begin(), chunk.bulges.end());
+  mesh.bulges.resize(mesh.edges.size(), 0);
   for (const auto& pair : chunk.input_points) mesh.input_points.push_back(pair);
   return true;
 }
@@ -309,6 +312,7 @@ std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
   requirements.size = to_checker(request.size);
   requirements.min_angle_deg = request.min_angle_deg;
   requirements.simplify = request.simplify;
+  requirements.points_per_circle = request.size.points_per_circle;
   // What the engine declares it could not refine may miss its bounds, no more.
   requirements.allowed_unrefined = summary.unrefined.edge_floor + summary.unrefined.budget +
                                    summary.unrefined.without_exemption();

@@ -81,6 +81,7 @@ TEST(ReadSize, BringsItsFieldsItsMeasureAndItsGradation) {
   size.set_gradation(0.25);
   size.set_gradation_within(true);
   size.set_cells_across(3);
+  size.set_points_per_circle(36);
   size.add_at()->set_marker(-2);
   size.mutable_at(0)->set_max_edge(0.5);
   for (const char* const name : {"a", "b", "c", "d"}) size.add_fields()->set_name(name);
@@ -107,6 +108,7 @@ TEST(ReadSize, BringsItsFieldsItsMeasureAndItsGradation) {
   EXPECT_EQ(spec.gradation, 0.25);
   EXPECT_TRUE(spec.gradation_within);
   EXPECT_EQ(spec.cells_across, 3);
+  EXPECT_EQ(spec.points_per_circle, 36);
   ASSERT_EQ(spec.at.size(), 1u);
   EXPECT_EQ(spec.at[0].marker, -2);
   EXPECT_EQ(spec.at[0].max_edge, 0.5);

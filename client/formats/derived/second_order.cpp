@@ -1,14 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/formats/derived/second_order.h"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <limits>
 #include <system_error>
 #include <utility>
 
-#include "client/formats/derived/mesh_edges.h"
-
 namespace weft::client {
+namespace {
+
+struct Vector {
+  double x, y;
+  friend Vector operator-(Vector a, Vector b) { return {a.x - b.x, a.y - b.y}; }
+};
+double cross(Vector a, Vector b) {
+  return a.x * b.y - a.y * b.x;
+}
+
+}  // namespace
 
 SecondOrderMesh::SecondOrderMesh(const MeshView& mesh) : mesh_(mesh) {
   const MeshEdges edges(mesh);
@@ -50,6 +61,60 @@ SecondOrderMesh::SecondOrderMesh(const MeshView& mesh) : mesh_(mesh) {
     edges_[3 * i + 1] = mesh.edges[2 * i + 1];
     edges_[3 * i + 2] = vertices + edges.of_input_edge(i);
   }
+  if (!mesh.edge_bulges.empty()) bend(edges);
+}
+
+void SecondOrderMesh::bend(const MeshEdges& edges) {
+  enum State : std::uint8_t { kStraight, kBent, kRefused };
+  ScratchArray<std::uint8_t> state(mesh_.pages, edges.size());  // kStraight
+  const auto place = [&](std::size_t i, double bulge) {
+    const std::array<std::size_t, 3> node{edges_[3 * i], edges_[3 * i + 1], edges_[3 * i + 2]};
+    const auto at = [&](std::size_t k) -> double* { return &coordinates_[2 * node[k]]; };
+    const Vector a{at(0)[0], at(0)[1]}, b{at(1)[0], at(1)[1]};
+    at(2)[0] = a.x / 2 + b.x / 2 + bulge / 2 * (b.y - a.y);
+    at(2)[1] = a.y / 2 + b.y / 2 - bulge / 2 * (b.x - a.x);
+    state[edges.of_input_edge(i)] = bulge == 0 ? kStraight : kBent;
+  };
+  const std::span bulges = mesh_.edge_bulges;
+  for (const std::size_t i : mesh_.up_to(bulges.size()))
+    if (bulges[i] != 0) place(i, bulges[i]);
+  std::size_t before = 0;
+  do {
+    before = straightened_;
+    for (const std::size_t t : mesh_.up_to(mesh_.triangle_count())) {
+      const std::array<std::uint32_t, 3> side{edges.of_side(3 * t), edges.of_side(3 * t + 1),
+                                              edges.of_side(3 * t + 2)};
+      const auto is_bent = [&](std::uint32_t e) { return state[e] != kStraight; };
+      if (std::ranges::any_of(side, is_bent) && turns_over(t))
+        for (const std::uint32_t e : side)
+          if (is_bent(e)) state[e] = kRefused;
+    }
+    for (const std::size_t i : mesh_.up_to(bulges.size())) {
+      if (state[edges.of_input_edge(i)] != kRefused) continue;
+      place(i, 0);
+      ++straightened_;
+    }
+  } while (straightened_ != before);
+}
+
+// The coefficients are products of the derivatives in two directions, which are linear: (u1 x v1),
+// (u1 x v2 + u2 x v1) / 2 and so on, from their values at the corners.
+bool SecondOrderMesh::turns_over(std::size_t t) const {
+  std::array<Vector, 6> p;  // the corners, then the control points of the sides
+  for (std::size_t k = 0; k < 6; ++k) {
+    const std::size_t node = triangles_[6 * t + k];
+    p[k] = {coordinates_[2 * node], coordinates_[2 * node + 1]};
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector a = p[k], b = p[(k + 1) % 3];
+    p[3 + k] = {2 * p[3 + k].x - (a.x + b.x) / 2, 2 * p[3 + k].y - (a.y + b.y) / 2};
+  }
+  const std::array<Vector, 3> u{p[3] - p[0], p[1] - p[3], p[4] - p[5]};
+  const std::array<Vector, 3> v{p[5] - p[0], p[4] - p[3], p[2] - p[5]};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = i; j < 3; ++j)
+      if (!(cross(u[i], v[j]) + cross(u[j], v[i]) > 0)) return true;
+  return false;
 }
 
 MeshView SecondOrderMesh::view() const {

@@ -7,6 +7,7 @@
 
 #include "client/base/did_you_mean.h"
 #include "client/base/text.h"
+#include "client/formats/derived/middles.h"
 
 namespace weft::client {
 namespace {
@@ -55,11 +56,13 @@ MeshWithArrays with_bed_column(Mesh mesh, const std::string& name, std::vector<d
 }
 
 Result<std::vector<double>> checked(const std::filesystem::path& path, const std::string& name,
-                                    Result<std::vector<double>> values, std::size_t vertices) {
+                                    Result<std::vector<double>> values, const Mesh& mesh) {
   if (!values) return values;
   const auto refuse = [&path](const std::string& why) {
     return fail(ExitCode::kUnreadableInput, path.string() + ": " + why);
   };
+  const std::size_t vertices = mesh.coordinates.size() / 2;
+  *values = at_vertices(mesh, std::move(*values));
   if (values->size() != vertices)
     return refuse("the array " + in_quotes(name) + " has " + std::to_string(values->size()) +
                   " values for " + std::to_string(vertices) + " vertices");

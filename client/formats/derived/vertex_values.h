@@ -56,8 +56,9 @@ Result<std::vector<std::string>> chosen_arrays(const std::filesystem::path& path
 MeshWithArrays with_bed_column(Mesh mesh, const std::string& name, std::vector<double> values,
                                const std::optional<std::string>& wanted);
 
-// Ensures the promises of MeshWithValues for the array of that name, of a mesh of so many vertices.
+// Ensures the promises of MeshWithValues for the array of that name, at the nodes of the mesh's
+// file.
 Result<std::vector<double>> checked(const std::filesystem::path& path, const std::string& name,
-                                    Result<std::vector<double>> values, std::size_t vertices);
+                                    Result<std::vector<double>> values, const Mesh& mesh);
 
 }  // namespace weft::client

@@ -31,6 +31,8 @@ constexpr std::string_view kBlanks = " \t\r\n";
 constexpr std::int32_t kLine = 1;
 constexpr std::int32_t kTriangle = 2;
 constexpr std::int32_t kQuadrilateral = 3;
+constexpr std::int32_t kLineOfThree = 8;
+constexpr std::int32_t kTriangleOfSix = 9;
 constexpr std::int32_t kPoint = 15;
 
 // Thrown and caught in this file only: a format of nested counts is easiest to read without a check
@@ -427,23 +429,29 @@ class Reader {
   }
 
   static void check_type(std::int32_t type) {
-    if (type != kLine && type != kTriangle && type != kQuadrilateral && type != kPoint)
+    if (type != kLine && type != kTriangle && type != kQuadrilateral && type != kPoint &&
+        type != kLineOfThree && type != kTriangleOfSix)
       throw Malformed{"has elements of type " + std::to_string(type) +
                       ", which are no triangles, quadrilaterals, lines or points"};
   }
 
   template <class NodeTag>
   void read_element(std::int32_t type, std::int32_t group) {
-    std::array<std::uint32_t, 4> corners;
+    const bool has_middles = type == kLineOfThree || type == kTriangleOfSix;
+    if (has_middles) type -= kLineOfThree - kLine;
+    std::array<std::uint32_t, 6> corners;
     const std::size_t count = type == kPoint ? 1 : static_cast<std::size_t>(type) + 1;
-    for (std::size_t corner = 0; corner < count; ++corner) {
+    const std::size_t middles = !has_middles ? 0 : type == kLine ? 1 : 3;
+    for (std::size_t node = 0; node < count + middles; ++node) {
       const auto tag = next<NodeTag>();
-      corners[corner] = vertex(static_cast<std::make_unsigned_t<NodeTag>>(tag), "an element");
+      corners[node] = vertex(static_cast<std::make_unsigned_t<NodeTag>>(tag), "an element");
     }
     if (type == kPoint) return;
+    for (std::size_t k = 0; k < middles; ++k)
+      mesh_.middles.push_back({corners[k], corners[(k + 1) % count], corners[count + k]});
     const std::int32_t id = id_of_group(type == kLine ? 1 : 2, group);
     if (type == kQuadrilateral) {
-      mesh_.faces.add(corners, id);
+      mesh_.faces.add(std::span(corners).first(4), id);
       groups_.of_faces.push_back(group);
       return;
     }

@@ -6,6 +6,7 @@
 //   regions       (triangles,)    int32
 //   edges         (edges, 2)      uint32: the edges on input segments
 //   edge_markers  (edges,)        int32
+//   edge_bulges   (edges,)        float64, if some are chords of arcs: as domains have them
 //   parts         (triangles,)    int32, if the mesh is divided
 //   marker_ids    (names,)        int32, and
 //   marker_names  (names,)        texts: what these markers are called, if any is

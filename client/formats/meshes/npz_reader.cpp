@@ -270,7 +270,7 @@ std::vector<Out> column_values(Archive& archive, const std::string& name, std::s
 }
 
 constexpr std::string_view kMeshArrays[] = {
-    "points", "triangles",  "regions",      "edges",      "edge_markers",
+    "points", "triangles",  "regions",      "edges",      "edge_markers", "edge_bulges",
     "parts",  "marker_ids", "marker_names", "region_ids", "region_names"};
 
 void append_utf8(std::uint32_t point, std::string& out) {
@@ -326,6 +326,8 @@ Mesh mesh_of(const std::filesystem::path& path, Archive& archive) {
   if (archive.has("edges")) mesh.edges = column_values<std::uint32_t>(archive, "edges", 2);
   if (archive.has("edge_markers"))
     mesh.edge_markers = column_values<std::int32_t>(archive, "edge_markers", 1);
+  if (archive.has("edge_bulges"))
+    mesh.edge_bulges = column_values<double>(archive, "edge_bulges", 1);
   NameReader names(path.string());
   read_names(archive, NameKind::kMarker, names);
   read_names(archive, NameKind::kRegion, names);

@@ -166,6 +166,8 @@ void write_npz(const MeshView& mesh, OutputFile& file) {
   add_array(zip, "regions", "<i4", 1, mesh.regions, mesh.pages);
   add_array(zip, "edges", "<u4", 2, mesh.edges, mesh.pages);
   add_array(zip, "edge_markers", "<i4", 1, mesh.edge_markers, mesh.pages);
+  if (!mesh.edge_bulges.empty())
+    add_array(zip, "edge_bulges", "<f8", 1, mesh.edge_bulges, mesh.pages);
   if (!mesh.parts.empty()) add_array(zip, "parts", "<i4", 1, mesh.parts, mesh.pages);
   add_names(zip, "marker", mesh.names->markers);
   add_names(zip, "region", mesh.names->regions);

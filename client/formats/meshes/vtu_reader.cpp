@@ -34,12 +34,13 @@ struct Tag {
 
 using Arrays = std::map<std::string_view, VtuArray>;
 
-// VTK's numbers for the kinds of cells, of as many corners as are listed beside them; 0: any number
+// VTK's numbers for the kinds of cells, of as many nodes as are listed beside them; 0: any number
 // from `least` on.
 struct CellKind {
   std::uint64_t type;
-  std::uint64_t corners;
+  std::uint64_t nodes;
   std::uint64_t least;
+  std::size_t middles = 0;  // the last of the nodes, in the middles of its sides
 };
 constexpr std::uint64_t kVertex = 1;
 constexpr std::uint64_t kVertices = 2;
@@ -47,7 +48,8 @@ constexpr std::uint64_t kLine = 3;
 constexpr std::uint64_t kChain = 4;
 constexpr std::uint64_t kPixel = 8;
 constexpr CellKind kCells[] = {{kVertex, 1, 1}, {kVertices, 0, 1}, {kLine, 2, 2},  {kChain, 0, 2},
-                               {5, 3, 3},       {7, 0, 3},         {kPixel, 4, 4}, {9, 4, 4}};
+                               {5, 3, 3},       {7, 0, 3},         {kPixel, 4, 4}, {9, 4, 4},
+                               {21, 3, 3, 1},   {22, 6, 6, 3}};
 
 class Reader {
  public:
@@ -105,7 +107,7 @@ class Reader {
         return refuse("cell " + std::to_string(cell) + " has the type " + std::to_string(type) +
                       ", which is no vertex, line, triangle or polygon");
       if (end < first || end > corners->size() || end - first < kind->least ||
-          (kind->corners != 0 && end - first != kind->corners))
+          (kind->nodes != 0 && end - first != kind->nodes))
         return refuse("cell " + std::to_string(cell) + " has a wrong offset");
       chain.assign(corners->begin() + static_cast<std::ptrdiff_t>(first),
                    corners->begin() + static_cast<std::ptrdiff_t>(end));
@@ -115,7 +117,11 @@ class Reader {
           return refuse("cell " + std::to_string(cell) + " has vertex " + std::to_string(v) +
                         " of " + std::to_string(points_));
       if (type == kVertex || type == kVertices) continue;
-      if (type == kLine || type == kChain) {
+      const std::size_t ends = chain.size() - kind->middles;
+      for (std::size_t k = 0; k < kind->middles; ++k)
+        mesh.middles.push_back({chain[k], chain[(k + 1) % ends], chain[ends + k]});
+      chain.resize(ends);
+      if (type == kLine || type == kChain || ends == 2) {
         for (std::size_t k = 1; k < chain.size(); ++k) {
           mesh.edges.insert(mesh.edges.end(), {chain[k - 1], chain[k]});
           mesh.edge_markers.push_back(markers->empty() ? 0 : (*markers)[cell]);

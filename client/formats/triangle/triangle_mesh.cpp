@@ -46,12 +46,14 @@ Result<void> read_triangles(const std::filesystem::path& path, const NodeNumbers
   const auto count = scanner.count("the triangle count");
   if (!count) return tl::unexpected(count.error());
   std::optional<std::int64_t> attributes;
+  bool has_middles = false;
   if (!scanner.at_line_end()) {
     const auto corners = scanner.integer("the corners per triangle");
     if (!corners) return tl::unexpected(corners.error());
-    if (*corners != 3)
+    if (*corners != 3 && *corners != 6)
       return scanner.error("the corners per triangle are " + std::to_string(*corners) +
-                           ", only 3 are read");
+                           ", only 3 and 6 are read");
+    has_middles = *corners == 6;
     if (!scanner.at_line_end()) {
       const auto value = scanner.integer("the attribute count");
       if (!value) return tl::unexpected(value.error());
@@ -70,6 +72,12 @@ Result<void> read_triangles(const std::filesystem::path& path, const NodeNumbers
       const auto v = numbers.read(scanner, "a corner");
       if (!v) return tl::unexpected(v.error());
       mesh.triangles.push_back(*v);
+    }
+    for (std::size_t k = 1; has_middles && k <= 3; ++k) {  // opposite corner 0, 1, 2
+      const auto middle = numbers.read(scanner, "a node");
+      if (!middle) return tl::unexpected(middle.error());
+      const std::uint32_t* corner = &mesh.triangles[mesh.triangles.size() - 3];
+      mesh.middles.push_back({corner[k % 3], corner[(k + 1) % 3], *middle});
     }
     double attribute = 0;
     if (attributes ? *attributes > 0 : !scanner.at_line_end()) {

@@ -18,6 +18,7 @@ function optionsOf({ domain, quality, size, simplify, budget, allowUnrefined }: 
     ["gradation", size?.gradation || undefined],
     ["gradation_within", size?.gradationWithin || undefined],
     ["cells_across", size?.cellsAcross || undefined],
+    ["points_per_circle", size?.pointsPerCircle || undefined],
     ["max_triangles", budget?.maxTriangles ? Number(budget.maxTriangles) : undefined],
     ["max_seconds", budget?.maxSeconds || undefined],
     ["allow_unrefined", allowUnrefined || undefined],

@@ -170,6 +170,7 @@ class ArcCutter {
     const double part = count == 1 ? bulge : std::copysign(sine / cosine, bulge);
     std::uint32_t from = a;
     for (double i = 1; i <= count; ++i) {
+      poller_.step();
       const std::uint32_t to =
           i == count ? b : vertex_at(at_fraction(points_[a], points_[b], bulge, i / count));
       add(from, to, part, owners);

@@ -49,6 +49,37 @@ TEST(ArcRules, AnEdgeThatTurnsByMoreThan60DegreesIsAViolation) {
   expect_chains(problem, " to (1, 0) turns by 90 degrees, more than 60");
 }
 
+TEST(ArcRules, AnEdgeThatBendsAnotherWayThanItsArcIsAViolation) {
+  Problem problem = disk(6, 6).mesh(all);
+  check::Mesh& mesh = problem.mesh;
+  for (const Mesh::Edge& edge : mesh.edges) {
+    const Vec2 p = mesh.vertices[edge.a], q = mesh.vertices[edge.b];
+    mesh.bulges.push_back(std::copysign(std::tan(std::acos(-1.0) / 24), p.x * q.y - p.y * q.x));
+  }
+  EXPECT_TRUE(problem.check().ok()) << to_text(problem.check());
+  mesh.bulges[2] *= -1;
+  expect_chains(problem, " bends through ");
+  EXPECT_EQ(violated(problem.check()), Rules{Rule::kChains});
+  mesh.bulges[2] = 0;
+  expect_chains(problem, "the middle of its arc is ");
+  mesh.bulges.pop_back();
+  EXPECT_EQ(violated(problem.check()).count(Rule::kStructure), 1u);
+}
+
+TEST(ArcRules, AStraightEdgeThatBendsIsAViolation) {
+  Drawing drawing = disk(6, 6);
+  drawing.line({{-1, 0}, {0, 0}}).line({{0, 0}, {1, 0}});
+  Problem problem = drawing.mesh(all);
+  ASSERT_TRUE(problem.check().ok()) << to_text(problem.check());
+  for (const Mesh::Edge& edge : problem.mesh.edges) {
+    const Vec2 p = problem.mesh.vertices[edge.a], q = problem.mesh.vertices[edge.b];
+    const double turn = p.x * q.y - p.y * q.x;
+    problem.mesh.bulges.push_back(turn == 0 ? 0.01
+                                            : std::copysign(std::tan(std::acos(-1.0) / 24), turn));
+  }
+  expect_chains(problem, " is on no arc, but bends through ");
+}
+
 TEST(ArcRules, AnArcThatIsAStraightEdgeIsAViolation) {
   Problem problem = disk(6, 6).mesh(all);
   // A sector of the lower half disk: its arc is a single edge now.

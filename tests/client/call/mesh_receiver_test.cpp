@@ -157,8 +157,32 @@ TEST_F(Receiver, RefusesArraysOfOddLengths) {
   EXPECT_EQ(verdict_after([](Stream& s) { chunk(s, 2).add_edges(1); }), expected);
   EXPECT_EQ(verdict_after([](Stream& s) { chunk(s, 2).add_edge_markers(1); }), expected);
   EXPECT_EQ(verdict_after([](Stream& s) { chunk(s, 2).add_edge_segments(1); }), expected);
+  EXPECT_EQ(verdict_after([](Stream& s) { chunk(s, 2).add_edge_bulges(1); }), expected);
   EXPECT_EQ(verdict_after([](Stream& s) { chunk(s, 2).add_input_points(1); }), expected);
   EXPECT_EQ(verdict_after([](Stream& s) { chunk(s, 2).add_box(1); }), expected);
+}
+
+TEST_F(Receiver, KeepsTheBulgesOfEdgesFromTheFirstChunkThatHasSome) {
+  Stream stream = stream_of(square_mesh(6), 3);
+  const int edges = chunk(stream, 2).edge_segments_size();
+  for (int e = 0; e < edges; ++e) chunk(stream, 2).add_edge_bulges(e == 1 ? -0.25 : 0);
+  seal(stream);
+  const auto spool = MeshSpool::create(folder_.path()).value();
+  MeshReceiver receiver(*spool, DomainCounts{4, 4});
+  for (const auto& message : stream) ASSERT_TRUE(receiver.receive(message));
+  const std::span<const double> bulges = spool->view().value().edge_bulges;
+  ASSERT_EQ(bulges.size(), static_cast<std::size_t>(edges));
+  EXPECT_EQ(bulges[0], 0);
+  EXPECT_EQ(bulges[1], -0.25);
+}
+
+TEST_F(Receiver, RefusesAnEdgeThatIsNoChord) {
+  for (const double bulge : {1.5, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_EQ(verdict_after([bulge](Stream& s) {
+                for (int e = 0; e < chunk(s, 2).edge_segments_size(); ++e)
+                  chunk(s, 2).add_edge_bulges(bulge);
+              }),
+              "the stream is damaged: chunk 2 has an edge that is no chord of an arc");
 }
 
 TEST_F(Receiver, RefusesMessagesOutOfOrder) {

@@ -225,6 +225,54 @@ TEST_F(ExchangeFormat, SecondOrderSharesMidsideNodes) {
   EXPECT_EQ(contents_of(folder_ / "m.ele"), "2 6 1\n1 1 2 4 8 7 5 0\n2 1 4 3 9 6 7 0\n");
 }
 
+TEST_F(ExchangeFormat, SecondOrderComesBackAsEdgesOnArcs) {
+  Mesh mesh = square_mesh(8);
+  mesh.edge_bulges.assign(mesh.edge_markers.size(), 0);
+  mesh.edge_bulges[3] = 0.2;
+  mesh.edge_bulges[20] = -0.125;
+  std::vector<double> depth(mesh.coordinates.size() / 2);
+  for (std::size_t v = 0; v < depth.size(); ++v) depth[v] = static_cast<double>(v * v);
+  const VertexValues values{"depth", depth};
+  for (const auto& [name, version] :
+       {std::pair{"m.vtu", MshVersion::k41}, std::pair{"m.msh", MshVersion::k41},
+        std::pair{"m.msh", MshVersion::k22}, std::pair{"m.node", MshVersion::k41}}) {
+    SCOPED_TRACE(name);
+    std::vector<OutputFile> files;
+    for (const auto& file : mesh_files(folder_ / name))
+      files.push_back(OutputFile::create(file, {}).value());
+    MeshView view = mesh.view();
+    view.vertex_values = {&values, 1};
+    EXPECT_EQ(write_mesh(*mesh_format(name), view, files, {.order = 2, .msh_version = version}),
+              0u);
+    ASSERT_TRUE(commit(files));
+    const auto back = read_mesh_with_arrays(folder_ / name);
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(back->mesh.coordinates, mesh.coordinates);
+    EXPECT_EQ(back->mesh.triangles, mesh.triangles);
+    EXPECT_EQ(back->mesh.edges, mesh.edges);
+    EXPECT_EQ(back->mesh.edge_markers, mesh.edge_markers);
+    EXPECT_THAT(back->mesh.edge_bulges,
+                ::testing::Pointwise(::testing::DoubleNear(1e-14), mesh.edge_bulges));
+    EXPECT_TRUE(back->mesh.warnings.empty());
+    for (const NamedArray& array : back->arrays) EXPECT_EQ(array.values.value(), depth);
+  }
+}
+
+TEST_F(ExchangeFormat, BentSidesThatAreNoArcsAreToldAndStraight) {
+  // The first side bends, and is no edge; the middle of the edge is not on its bisector.
+  folder_.write("m.node", "6 2 0 0\n1 0 0\n2 1 0\n3 0 1\n4 0.5 -0.1\n5 0.5 0.6\n6 0 0.4\n");
+  folder_.write("m.ele", "1 6 0\n1 1 2 3 5 6 4\n");
+  folder_.write("m.poly", "0 2 0 1\n1 1\n1 3 1 5\n0\n");
+  const auto mesh = read_mesh(folder_ / "m.node");
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_EQ(mesh->coordinates, (std::vector<double>{0, 0, 1, 0, 0, 1}));
+  EXPECT_TRUE(mesh->edge_bulges.empty());
+  ASSERT_EQ(mesh->warnings.size(), 1u);
+  EXPECT_EQ(mesh->warnings[0].count, 3u);
+  EXPECT_EQ(mesh->warnings[0].text,
+            "3 bent sides are read as straight: only edges with a node on their bisector are arcs");
+}
+
 TEST_F(ExchangeFormat, SecondOrderIsForFormatsThatHaveIt) {
   const auto checked = check_writable("m.su2", {.order = 2});
   ASSERT_FALSE(checked);

@@ -45,6 +45,7 @@ std::string digest_of(const v1::Chunk& chunk) {
     put(bytes, chunk.edge_markers().empty() ? 0 : chunk.edge_markers(e));
   }
   for (const std::uint32_t v : chunk.input_points()) put(bytes, v);
+  for (const double bulge : chunk.edge_bulges()) put(bytes, bulge);
   return sha256(bytes);
 }
 

@@ -6,20 +6,20 @@
 #include <weft/c.h>
 
 static int faults = 0;
-#define EXPECT(holds)                                             \
-  do {                                                            \
-    if (!(holds)) {                                               \
-      fprintf(stderr, "line %d: not %s\n", __LINE__, #holds);     \
-      ++faults;                                                   \
-    }                                                             \
+#define EXPECT(holds)                                         \
+  do {                                                        \
+    if (!(holds)) {                                           \
+      fprintf(stderr, "line %d: not %s\n", __LINE__, #holds); \
+      ++faults;                                               \
+    }                                                         \
   } while (0)
 
 static const double corners[] = {0, 0, 4, 0, 4, 4, 0, 4};
 static const uint32_t sides[] = {0, 1, 1, 2, 2, 3, 3, 0};
 static const int32_t markers[] = {1, 2, 3, 4};
 
-static weft_request *square(const char *size) {
-  weft_request *request = weft_request_new();
+static weft_request* square(const char* size) {
+  weft_request* request = weft_request_new();
   weft_set_points(request, corners, 4);
   weft_set_segments(request, sides, markers, NULL, 4);
   weft_set(request, "size.expression", size);
@@ -27,40 +27,40 @@ static weft_request *square(const char *size) {
 }
 
 /* The mesh of the request, which it frees. */
-static weft_mesh *make(weft_request *request, weft_error **error) {
-  weft_mesh *mesh = weft_make(request, NULL, NULL, error);
+static weft_mesh* make(weft_request* request, weft_error** error) {
+  weft_mesh* mesh = weft_make(request, NULL, NULL, error);
   weft_request_free(request);
   return mesh;
 }
 
-static int cancel(const weft_progress *progress, void *calls) {
+static int cancel(const weft_progress* progress, void* calls) {
   EXPECT(progress->fraction >= 0 && progress->fraction <= 1);
-  ++*(int *)calls;
+  ++*(int*)calls;
   return 1;
 }
 
-static double figure(const weft_mesh *mesh, const char *path) {
+static double figure(const weft_mesh* mesh, const char* path) {
   double value = NAN;
   EXPECT(weft_figure(mesh, path, &value));
   return value;
 }
 
 static void makes_a_mesh(void) {
-  weft_error *error = NULL;
-  weft_mesh *mesh = make(square("0.01"), &error);
+  weft_error* error = NULL;
+  weft_mesh* mesh = make(square("0.01"), &error);
   EXPECT(mesh != NULL && error == NULL);
   if (mesh == NULL) return;
   weft_arrays arrays = WEFT_ARRAYS;
   weft_mesh_arrays(mesh, &arrays);
   double area = 0;
   for (size_t i = 0; i < arrays.triangle_count; ++i) {
-    const double *p[3];
+    const double* p[3];
     for (int k = 0; k < 3; ++k) {
       EXPECT(arrays.triangles[3 * i + k] < arrays.vertex_count);
       p[k] = arrays.vertices + 2 * arrays.triangles[3 * i + k];
     }
-    const double doubled = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -
-                           (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
+    const double doubled =
+        (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
     EXPECT(doubled > 0 && doubled <= 0.02 * (1 + 1e-12));
     area += doubled / 2;
   }
@@ -80,7 +80,7 @@ static void makes_a_mesh(void) {
 }
 
 static void says_what_is_wrong(void) {
-  weft_error *error = NULL;
+  weft_error* error = NULL;
   EXPECT(make(square("x +"), &error) == NULL);
   EXPECT(strcmp(weft_error_reason(error), "EXPRESSION_SYNTAX") == 0);
   EXPECT(strcmp(weft_error_field(error), "size.expression") == 0);
@@ -91,7 +91,7 @@ static void says_what_is_wrong(void) {
   EXPECT(weft_error_status(error, &size) != NULL && size > 20);
   weft_error_free(error);
 
-  weft_request *request = square("1");
+  weft_request* request = square("1");
   weft_set_points(request, NULL, 4);
   EXPECT(weft_make(request, NULL, NULL, NULL) == NULL);
   EXPECT(make(request, &error) == NULL);
@@ -104,16 +104,16 @@ static void says_what_is_wrong(void) {
 }
 
 static void names_the_option_that_it_cannot_take(void) {
-  static const char *const wrong[][2] = {{"quality.min_angle_deg", "much"},
+  static const char* const wrong[][2] = {{"quality.min_angle_deg", "much"},
                                          {"quality.optimise", "-1"},
                                          {"quality.placement", "Lattice"},
                                          {"allow_unrefined", "yes"},
                                          {"domain.points", "1"},
                                          {"nothing", "1"}};
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
-    weft_request *request = square("1");
+    weft_request* request = square("1");
     weft_set(request, wrong[i][0], wrong[i][1]);
-    weft_error *error = NULL;
+    weft_error* error = NULL;
     EXPECT(make(request, &error) == NULL);
     EXPECT(strcmp(weft_error_reason(error), "BAD_OPTION") == 0);
     EXPECT(strcmp(weft_error_field(error), wrong[i][0]) == 0);
@@ -122,9 +122,9 @@ static void names_the_option_that_it_cannot_take(void) {
 }
 
 static void is_cancelled_by_its_caller(void) {
-  weft_request *request = square("1e-7");
+  weft_request* request = square("1e-7");
   int calls = 0;
-  weft_error *error = NULL;
+  weft_error* error = NULL;
   EXPECT(weft_make(request, cancel, &calls, &error) == NULL);
   EXPECT(calls >= 1);
   EXPECT(error != NULL && strcmp(weft_error_reason(error), "CANCELLED") == 0);
@@ -132,8 +132,32 @@ static void is_cancelled_by_its_caller(void) {
   weft_request_free(request);
 }
 
+static void says_how_edges_bend(void) {
+  weft_request* request = square("1");
+  const uint32_t side = 1;
+  const double bulge = 0.4;
+  weft_set_arcs(request, &side, &bulge, 1);
+  weft_mesh* mesh = make(request, NULL);
+  EXPECT(mesh != NULL);
+  weft_arrays arrays = WEFT_ARRAYS;
+  weft_mesh_arrays(mesh, &arrays);
+  EXPECT(arrays.bulges != NULL);
+  double turn = 0;
+  for (size_t e = 0; e < arrays.edge_count; ++e) {
+    const double of_edge = 4 * atan(arrays.bulges[e]);
+    EXPECT((arrays.edges[4 * e + 2] == side) == (of_edge != 0));
+    turn += of_edge;
+  }
+  EXPECT(fabs(turn - 4 * atan(bulge)) < 1e-12);
+  weft_mesh_free(mesh);
+  mesh = make(square("1"), NULL);
+  weft_mesh_arrays(mesh, &arrays);
+  EXPECT(arrays.bulges == NULL);
+  weft_mesh_free(mesh);
+}
+
 static void fills_what_an_older_caller_does_not_know(void) {
-  weft_mesh *mesh = make(square("0.01"), NULL);
+  weft_mesh* mesh = make(square("0.01"), NULL);
   EXPECT(mesh != NULL);
   weft_arrays arrays = WEFT_ARRAYS;
   arrays.struct_size = offsetof(weft_arrays, leaves);
@@ -149,6 +173,7 @@ int main(void) {
   says_what_is_wrong();
   names_the_option_that_it_cannot_take();
   is_cancelled_by_its_caller();
+  says_how_edges_bend();
   fills_what_an_older_caller_does_not_know();
   EXPECT(strlen(weft_version()) > 0 && strlen(weft_engine_version()) > 0);
   return faults != 0;

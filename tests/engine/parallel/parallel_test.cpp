@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Parallel, ArcsGiveOneMeshAtEveryNumberOfThreads) {
   const auto summary = expect_one_mesh({.pslg = plate_with_holes(kSanitized ? 3 : 6),
                                         .size = kSanitized ? 2e-3 : 2e-4,
-                                        .leaf_triangles = kSanitized ? 300.0 : 3000.0});
+                                        .leaf_triangles = kSanitized ? 100.0 : 3000.0});
   ASSERT_TRUE(summary);
   EXPECT_GE(summary->leaves.size(), 20u);
 }

@@ -102,6 +102,25 @@ TEST(Arcs, BoundariesFollowTheArcAsTheyGetFiner) {
   }
 }
 
+// Of the triangles with a parabola through the middle of each arc for a side.
+TEST(Arcs, TheAreaOfSecondOrderIsThatOfTheCircleToTheFourthOrder) {
+  for (const auto& [edges, most] :
+       {std::pair{16, 4.94e-5}, std::pair{32, 3.1e-6}, std::pair{64, 1.94e-7}}) {
+    Pslg pslg;
+    add_circle(pslg, {0, 0}, 1, static_cast<std::uint32_t>(edges));
+    const Sound made = sound({.pslg = pslg, .min_angle_deg = 0});
+    const check::Mesh& mesh = made.mesh.mesh;
+    ASSERT_EQ(mesh.edges.size(), static_cast<std::size_t>(edges));
+    double area = area_of(made.mesh);
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+      const check::Vec2 p = mesh.vertices[mesh.edges[e].a], q = mesh.vertices[mesh.edges[e].b];
+      const double side = p.x * q.y - p.y * q.x > 0 ? 1 : -1;  // the centre is left of the edge
+      area += side * mesh.bulges[e] / 3 * ((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
+    }
+    EXPECT_NEAR(area, kPi, most * kPi) << edges;
+  }
+}
+
 TEST(Arcs, RandomDomainsKeepTheirBounds) {
   for (std::uint64_t seed = 0; seed < (kSanitized ? 30 : 150); ++seed) {
     for (const double angle : {20.0, 30.0}) {
@@ -117,6 +136,16 @@ TEST(Arcs, SizesAndSmoothingKeepToThem) {
     MeshRequest request{.pslg = random_arcs(seed), .size = "0.01 + 0.01 * (x^2 + y^2)"};
     request.sweeps = seed % 3;
     sound(request);
+  }
+}
+
+TEST(Arcs, ACircleHasAsManyVerticesAsAreAskedFor) {
+  for (const double points : {6.0, 36.0, 100.5, 1000.0}) {
+    MeshRequest request{.pslg = plate_with_holes(2)};
+    request.size.points_per_circle = points;
+    const Sound made = sound(request);
+    EXPECT_GE(made.summary.edges, 4 * std::ceil(points) + 8) << points;
+    EXPECT_LE(made.summary.edges, 4 * (points + 12) + 120) << points;
   }
 }
 

@@ -103,6 +103,11 @@ TEST(SizeSpec, LeavesRoomForCellsAcross) {
   EXPECT_FALSE(size->function().constant());
   spec.cells_across = -1;
   EXPECT_EQ(check_size(spec)->field, "size.cells_across");
+  spec.cells_across = 0;
+  for (const double wrong : {-1.0, 2e5, std::numeric_limits<double>::quiet_NaN()}) {
+    spec.points_per_circle = wrong;
+    EXPECT_EQ(check_size(spec)->field, "size.points_per_circle") << wrong;
+  }
 }
 
 TEST(SizeSpec, WithALimitToItsGradationGrowsByNoMore) {

@@ -145,6 +145,7 @@ TEST(MeshKey, IsTheSameForADefaultThatIsWrittenOut) {
   request.mutable_size()->set_measure(v1::MEASURE_AREA);
   request.mutable_size()->set_gradation(-0.0);
   request.mutable_size()->set_cells_across(-0.0);
+  request.mutable_size()->set_points_per_circle(-0.0);
   for (int i = 0; i < 4; ++i) request.mutable_domain()->add_segment_markers(0);
   EXPECT_EQ(mesh_key(request), key);
 }
@@ -226,6 +227,7 @@ INSTANTIATE_TEST_SUITE_P(
                }},
         Change{"SizeAt", [](auto& r) { r.mutable_size()->add_at(); }},
         Change{"RegionEdge", [](auto& r) { r.mutable_domain()->add_regions()->set_max_edge(1); }},
+        Change{"PointsPerCircle", [](auto& r) { r.mutable_size()->set_points_per_circle(36); }},
         Change{"CellsAcross", [](auto& r) { r.mutable_size()->set_cells_across(3); }},
         Change{"Field", [](auto& r) { r.mutable_size()->add_fields()->mutable_width(); }},
         Change{"Angle", [](auto& r) { r.mutable_quality()->set_min_angle_deg(21); }},

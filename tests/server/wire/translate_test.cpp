@@ -18,6 +18,7 @@ Chunk full_chunk() {
   chunk.triangles = {1, 2, 3, 0xfffffffe, 5, 6};
   chunk.regions = {-1, 7};
   chunk.edges = {{1, 2, 8, 0}, {2, 3, 9, -4}};
+  chunk.bulges = {0, -0.25};
   chunk.input_points = {{10, 0}, {11, 5}};
   chunk.box = {0, 1, 2, 3};
   chunk.digest.fill(0xab);
@@ -42,6 +43,7 @@ TEST(ChunkToWire, CarriesEveryArray) {
   EXPECT_EQ(vector_of(message.edges()), (std::vector<std::uint32_t>{1, 2, 2, 3}));
   EXPECT_EQ(vector_of(message.edge_markers()), (std::vector<std::int32_t>{0, -4}));
   EXPECT_EQ(vector_of(message.edge_segments()), (std::vector<std::uint32_t>{8, 9}));
+  EXPECT_EQ(vector_of(message.edge_bulges()), (std::vector<double>{0, -0.25}));
   EXPECT_EQ(vector_of(message.input_points()), (std::vector<std::uint32_t>{10, 0, 11, 5}));
   EXPECT_EQ(vector_of(message.box()), (std::vector<double>{0, 1, 2, 3}));
   EXPECT_EQ(message.sha256(), std::string(32, '\xab'));

@@ -40,5 +40,6 @@ def mesh(domain: DomainLike, size: Size = None, min_angle: float = 20, *,
         points, summary = projected.to_lonlat(points, made.input_points), projected.brought_back(summary)
     return Mesh(points=points, triangles=made.triangles, regions=made.regions, edges=made.edges,
                 edge_markers=made.edge_markers, edge_segments=made.edge_segments,
+                edge_bulges=made.edge_bulges,
                 input_points=made.input_points, summary=summary,
                 marker_names=sent.marker_names, region_names=sent.region_names)

@@ -40,7 +40,8 @@ class Arrays(ctypes.Structure):
     _fields_ = [("struct_size", c_size_t), ("vertex_count", c_size_t), ("triangle_count", c_size_t),
                 ("edge_count", c_size_t), ("input_point_count", c_size_t), ("leaf_count", c_size_t),
                 ("vertices", c_void_p), ("triangles", c_void_p), ("regions", c_void_p),
-                ("edges", c_void_p), ("input_points", c_void_p), ("leaves", c_void_p)]
+                ("edges", c_void_p), ("input_points", c_void_p), ("leaves", c_void_p),
+                ("bulges", c_void_p)]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -53,6 +54,7 @@ class Made:
     edges: npt.NDArray[np.int32]
     edge_markers: npt.NDArray[np.int32]
     edge_segments: npt.NDArray[np.int32]
+    edge_bulges: npt.NDArray[np.float64]
     input_points: npt.NDArray[np.int32]
     summary: results.Summary
 
@@ -146,5 +148,6 @@ def _made(library: Any, mesh: Any) -> Made:
         triangles=_copied(arrays.triangles, (arrays.triangle_count, 3), np.int32),
         regions=_copied(arrays.regions, (arrays.triangle_count,), np.int32),
         edges=edges[:, :2].copy(), edge_segments=edges[:, 2].copy(), edge_markers=edges[:, 3].copy(),
+        edge_bulges=_copied(arrays.bulges, (arrays.edge_count if arrays.bulges else 0,), np.float64),
         input_points=_copied(arrays.input_points, (arrays.input_point_count, 2), np.int32),
         summary=results.summary(summary))

@@ -69,6 +69,9 @@ class Mesh:
     """What markers are called, by number, as the domain or the file had it."""
     region_names: Mapping[int, str] = dataclasses.field(default_factory=dict)
     """What regions are called, by number, as the domain or the file had it."""
+    edge_bulges: Floats = dataclasses.field(default_factory=lambda: np.zeros(0))
+    """(k,) float64: of the arc from an edge's first vertex to its second that it is a chord of, as Domain.arcs
+    has them, 0 if it is straight; empty if all are."""
     values: Mapping[str, Floats] = dataclasses.field(default_factory=dict)
     """By name, (n,) float64: values at the vertices, such as depths, of a file that was read. `write`
     writes them."""
@@ -159,7 +162,8 @@ class Mesh:
 
     def second_order(self) -> tuple[Floats, Ints]:
         """The points (n + e, 2), with the middles of all edges after the vertices, and the triangles (m, 6):
-        behind the corners the middles between 1 and 2, 2 and 3, 3 and 1. As `write(order=2)` has them."""
+        behind the corners the middles between 1 and 2, 2 and 3, 3 and 1. As `write(order=2)` has them: on an
+        edge that is a chord of an arc, the middle is that of the arc, unless a triangle would turn over."""
         return _solvers.second_order(self)
 
     def to_skfem(self) -> Any:
@@ -207,7 +211,7 @@ class Mesh:
         """Writes a file in the format of its suffix, as the command line does: .vtu, .msh, .node, .14,
         .nc and all others of docs/formats.md; or else one of meshio's.
 
-        `order`: 2 writes triangles of six nodes with straight sides, to .vtu, .msh, .node, .xdmf,
+        `order`: 2 writes triangles of six nodes, with sides that follow arcs, to .vtu, .msh, .node, .xdmf,
         .exo and .e.
         `nodal`: values at the vertices, by name, besides those of `values` or instead of them: an
         array (n,), a number, or the path of a raster. `depth` is positive down, `elevation` positive
@@ -247,6 +251,7 @@ class Mesh:
         names = _npz.name_arrays(self.marker_names, self.region_names)
         suffix = path.suffix.lower()
         divided = {"parts": self.parts} if len(self.parts) and parts is None else {}
+        curved = {"edge_bulges": self.edge_bulges} if len(self.edge_bulges) else {}
         with tempfile.TemporaryDirectory(dir=path.absolute().parent, prefix=".weft-") as folder:
             part = pathlib.Path(folder) / path.name
             if suffix == ".vtu" and not (values or options or names or divided):
@@ -254,10 +259,10 @@ class Mesh:
                     _vtu.write(file, *arrays.values())
                 os.replace(part, path)
             elif suffix == ".npz" and not values and not options:
-                _npz.write(part, {**arrays, **names, **divided})
+                _npz.write(part, {**arrays, **curved, **names, **divided})
                 os.replace(part, path)
             elif values or options or _carried.program("weft"):
-                self._write_by_weft(path, part, {**arrays, **names, **divided, **values}, options)
+                self._write_by_weft(path, part, {**arrays, **curved, **names, **divided, **values}, options)
             else:
                 self._write_by_meshio(path, part)
 

@@ -13,7 +13,8 @@ import numpy.typing as npt
 
 Array = npt.NDArray[Any]
 _MESH = {"points": (np.float64, 2), "triangles": (np.int32, 3), "regions": (np.int32, 1),
-         "edges": (np.int32, 2), "edge_markers": (np.int32, 1), "parts": (np.int32, 1)}
+         "edges": (np.int32, 2), "edge_markers": (np.int32, 1), "edge_bulges": (np.float64, 1),
+         "parts": (np.int32, 1)}
 _NAMES = ("marker", "region")
 MESH_ARRAYS = (*_MESH, *(f"{kind}_{what}" for kind in _NAMES for what in ("ids", "names")))
 """The names that values at vertices cannot have."""
@@ -59,13 +60,16 @@ def read(path: str | os.PathLike[str]
             mesh[name] = np.zeros(count, np.int32)
         if len(mesh[name]) != count:
             raise ValueError(f"{name}: {len(mesh[name])} for {count}")
-    if len(mesh["parts"]) not in (0, m):
-        raise ValueError(f"parts: {len(mesh['parts'])} for {m}")
+    for name, count in (("parts", m), ("edge_bulges", k)):
+        if len(mesh[name]) not in (0, count):
+            raise ValueError(f"{name}: {len(mesh[name])} for {count}")
     for name in ("triangles", "edges"):
         if mesh[name].size and not 0 <= mesh[name].min() <= mesh[name].max() < n:
             raise ValueError(f"{name} name vertices that are not among the {n}")
     if not np.isfinite(mesh["points"]).all():
         raise ValueError("points are not finite")
+    if not (np.abs(mesh["edge_bulges"]) <= 1).all():
+        raise ValueError("edge_bulges are not of arcs of at most half a circle")
     a, b, c = (mesh["points"][mesh["triangles"][:, i]] for i in range(3))
     turned = (b - a)[:, 0] * (c - a)[:, 1] < (b - a)[:, 1] * (c - a)[:, 0]
     mesh["triangles"][turned] = mesh["triangles"][turned][:, [0, 2, 1]]

@@ -37,7 +37,7 @@ def _digest(chunk: Chunk) -> bytes:
     """The layout of Chunk.sha256."""
     edges = np.column_stack([chunk.edges, chunk.edge_segments, chunk.edge_markers])
     sha256 = hashlib.sha256()
-    for array in (chunk.points, chunk.triangles, chunk.regions, edges, chunk.input_points):
+    for array in (chunk.points, chunk.triangles, chunk.regions, edges, chunk.input_points, chunk.edge_bulges):
         sha256.update(np.ascontiguousarray(array).data)
     return sha256.digest()
 
@@ -140,6 +140,8 @@ class MeshReceiver:
                 raise _damaged(f"chunk {chunk.index} names {what} {largest} of {limit}")
         if not np.isfinite(chunk.points).all():
             raise _damaged(f"chunk {chunk.index} has a coordinate that is not finite")
+        if not (np.abs(chunk.edge_bulges) <= 1).all():
+            raise _damaged(f"chunk {chunk.index} has an edge that is no chord of an arc")
         if _digest(chunk) != chunk.sha256:
             raise _damaged(f"chunk {chunk.index} does not match its SHA-256")
         self._sha256.update(chunk.sha256)
@@ -170,6 +172,8 @@ class MeshReceiver:
         def joined(name: str, shape: tuple[int, ...], dtype: type) -> Any:
             return np.concatenate([np.empty(shape, dtype), *(getattr(p, name) for p in parts)])
 
+        bulges = (np.concatenate([p.edge_bulges if len(p.edge_bulges) else np.zeros(len(p.edges)) for p in parts])
+                  if any(len(p.edge_bulges) for p in parts) else np.zeros(0))
         points = joined("points", (0, 2), np.float64)
         input_points = joined("input_points", (0, 2), np.int32)
         if self._projected is not None:
@@ -181,6 +185,7 @@ class MeshReceiver:
             edges=joined("edges", (0, 2), np.int32),
             edge_markers=joined("edge_markers", (0,), np.int32),
             edge_segments=joined("edge_segments", (0,), np.int32),
+            edge_bulges=bulges,
             input_points=input_points,
             summary=self.summary,
             marker_names=marker_names,

@@ -46,6 +46,9 @@ class MeshOptions(TypedDict, total=False):
     cells_across: float
     """Minimum number of edges across the domain, roughly: no edge is wanted longer than the local
     width divided by it. Best with `gradation`. Default: any number."""
+    points_per_circle: float
+    """Minimum number of vertices on a circle: edges on arcs turn by at most 360 degrees divided by it.
+    Default: edges turn by at most 60 degrees."""
     lonlat: bool
     """The domain is in longitude and latitude, in degrees: it is meshed in a plane in metres, so that
     angles hold on the ground, and the points of the mesh are in longitude and latitude. Sizes are
@@ -133,6 +136,8 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
         request.size.measure = _EDGE
     if "cells_across" in options:
         request.size.cells_across = options["cells_across"]
+    if "points_per_circle" in options:
+        request.size.points_per_circle = options["points_per_circle"]
     if "gradation" in options:
         request.size.gradation = options["gradation"]
     if options.get("gradation_within"):

@@ -57,9 +57,27 @@ def to_dolfinx(mesh: Mesh, comm: Any) -> tuple[Any, Any, Any]:
 
 def second_order(mesh: Mesh) -> tuple[Any, Any]:
     sides = topology_of(mesh.triangles)
-    middles = mesh.points[sides.edges].mean(axis=1)
-    return (np.concatenate([mesh.points, middles]),
-            np.column_stack([mesh.triangles, len(mesh.points) + sides.of_side[:, [2, 0, 1]]]).astype(np.int32))
+    straight = mesh.points[sides.edges].mean(axis=1)
+    of_triangle = sides.of_side[:, [2, 0, 1]]
+    triangles = np.column_stack([mesh.triangles, len(mesh.points) + of_triangle]).astype(np.int32)
+    middles = straight.copy()
+    if len(mesh.edge_bulges):
+        chords = np.diff(mesh.points[mesh.edges], axis=1)[:, 0]
+        middles[sides.find(mesh.edges)] += mesh.edge_bulges[:, None] / 2 * np.column_stack([chords[:, 1], -chords[:, 0]])
+        while len(over := np.flatnonzero(_turn_over(np.concatenate([mesh.points, middles])[triangles])
+                                         & (middles != straight).any(axis=1)[of_triangle].any(axis=1))):
+            middles[of_triangle[over]] = straight[of_triangle[over]]
+    return np.concatenate([mesh.points, middles]), triangles
+
+
+def _turn_over(nodes: Any) -> Any:
+    """(m,): whether a coefficient of the Jacobian's determinant is not above 0; client/formats/derived/second_order.h
+    says which."""
+    a, b, c = np.moveaxis(nodes[:, :3], 1, 0)
+    ab, bc, ca = np.moveaxis(2 * nodes[:, 3:] - (nodes[:, :3] + nodes[:, [1, 2, 0]]) / 2, 1, 0)
+    u, v = np.stack([ab - a, b - ab, bc - ca]), np.stack([ca - a, bc - ab, c - ca])
+    cross = u[:, None, :, 0] * v[None, :, :, 1] - u[:, None, :, 1] * v[None, :, :, 0]
+    return (cross + cross.transpose(1, 0, 2) <= 0).any(axis=(0, 1))
 
 
 def _count(topology: Any, dimension: int) -> int:

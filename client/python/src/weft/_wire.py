@@ -49,6 +49,7 @@ class Chunk(ShortRepr):
     edge_markers: Ints
     """(k,) int32: marker per edge."""
     edge_segments: Ints
+    edge_bulges: Floats
     """(k,) int32: index of the input segment per edge; the lowest if several overlap."""
     input_points: Ints
     """(p, 2) int32: vertex number and index of the input point."""
@@ -104,7 +105,7 @@ def split(message: bytes) -> tuple[int, memoryview]:
 _INTEGERS = {1: "index", 2: "first_vertex", 3: "first_triangle"}
 _ARRAYS = {4: ("coordinates", "<f8"), 5: ("triangles", "<i4"), 6: ("regions", "<i4"),
            7: ("edges", "<i4"), 8: ("edge_markers", "<i4"), 9: ("edge_segments", "<i4"),
-           10: ("input_points", "<i4"), 11: ("box", "<f8")}
+           10: ("input_points", "<i4"), 11: ("box", "<f8"), 13: ("edge_bulges", "<f8")}
 _SHA256 = 12
 
 
@@ -141,11 +142,12 @@ def read_chunk(data: memoryview) -> Chunk:
             edge_markers=(arrays["edge_markers"] if arrays["edge_markers"].size
                           else np.zeros(edges, np.int32)),
             edge_segments=arrays["edge_segments"],
+            edge_bulges=arrays["edge_bulges"],
             input_points=arrays["input_points"].reshape(-1, 2),
             box=arrays["box"],
             sha256=sha256)
         if (len(chunk.regions), len(chunk.edge_markers), len(chunk.edge_segments)) != (count, edges, edges) \
-                or len(chunk.box) not in (0, 4):
+                or len(chunk.edge_bulges) not in (0, edges) or len(chunk.box) not in (0, 4):
             raise ValueError("has arrays whose lengths do not fit")
     except (ValueError, IndexError) as error:
         raise DamagedStream(f"the stream is damaged: chunk {integers['index']}: {error}") from None

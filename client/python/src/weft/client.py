@@ -73,6 +73,7 @@ class Client(ClientBase):
         `gradation_within`: True to measure that within the domain, around land; default: False.
         `edge_at`: {marker or its name: length of edges on these segments}, above 0; default: none.
         `cells_across`: minimum number of edges across the domain, above 0; default: any number.
+        `points_per_circle`: minimum number of vertices on a circle, above 0; default: 6.
         `min_edge`: no edge shorter than this is made, from 0; default: 0.
 
         Place:

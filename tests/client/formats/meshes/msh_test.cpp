@@ -125,8 +125,8 @@ TEST_F(Msh, RefusesWhatItCannotRead) {
   says("", "is empty");
   says(ascii_with("4.1 0 8", "3 0 8"), "has the version 3, only 4.1 and 2.2 are read");
   says(ascii_with("1 10\n", "1 11\n"), "an element names the node 11, which is missing");
-  says(ascii_with("2 1 2 1\n", "2 1 9 1\n"),
-       "has elements of type 9, which are no triangles, quadrilaterals, lines or points");
+  says(ascii_with("2 1 2 1\n", "2 1 16 1\n"),
+       "has elements of type 16, which are no triangles, quadrilaterals, lines or points");
   says(ascii_with("10\n40\n", "10\n10\n"), "has two nodes with the tag 10");
   says(ascii_with("1 3 10 40", "1 99999999 10 40"),
        "announces 99999999 items, more than the file can hold");

@@ -69,8 +69,9 @@ TEST_F(Vtu, ReadsAsciiByOthersAndDropsVertexCells) {
 
 TEST_F(Vtu, RefusesWhatIsNoTriangleMesh) {
   EXPECT_EQ(refusal(ascii_with("1 5 3<", "1 9 3<")), "cell 1 has a wrong offset");
-  EXPECT_EQ(refusal(ascii_with("1 5 3<", "1 22 3<")),
-            "cell 1 has the type 22, which is no vertex, line, triangle or polygon");
+  EXPECT_EQ(refusal(ascii_with("1 5 3<", "1 10 3<")),
+            "cell 1 has the type 10, which is no vertex, line, triangle or polygon");
+  EXPECT_EQ(refusal(ascii_with("1 5 3<", "1 22 3<")), "cell 1 has a wrong offset");
   EXPECT_EQ(refusal(ascii_with("0 0 1 2 1 2", "0 0 1 2 1 7")), "cell 2 has vertex 7 of 3");
   EXPECT_EQ(refusal(ascii_with("0 0 1 2 1 2", "0 0 1 2 1 -1")),
             "the array 'connectivity' of type 'Int32' holds a value that does not belong there");

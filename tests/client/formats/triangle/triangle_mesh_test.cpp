@@ -72,7 +72,9 @@ TEST(TriangleMesh, RefusesWhatDoesNotFit) {
   };
   EXPECT_EQ(refusal("1 3 0\n1 1 2 4\n"), "m.ele:2:7: a corner is 4, the numbers run from 1 to 3");
   EXPECT_EQ(refusal("1 6 0\n1 1 2 3 1 2 3\n"),
-            "m.ele:1:3: the corners per triangle are 6, only 3 are read");
+            "m.node: node 0 is the middle of a side, and the end of one");
+  EXPECT_EQ(refusal("1 10 0\n1 1 2 3 1 2 3\n"),
+            "m.ele:1:3: the corners per triangle are 10, only 3 and 6 are read");
   EXPECT_EQ(refusal("2 3 0\n1 1 2 3\n"), "m.ele:3: the file ends where a triangle should follow");
 }
 
