@@ -8,6 +8,11 @@
 
 namespace weft::client {
 
+// That of an equilateral triangle with edges of this length.
+inline double area_of_edge(double edge) {
+  return 0.4330127018922193 * edge * edge;
+}
+
 // The bound on the area of a triangle with this centroid, in squared units of the mesh; not
 // positive or not finite: none. Not thread-safe.
 using AreaBound = std::function<double(Point)>;

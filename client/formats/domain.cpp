@@ -44,6 +44,13 @@ std::string Provenance::locate(std::size_t i) const {
              : run->prefix + std::to_string(run->number + (i - run->first)) + run->suffix;
 }
 
+std::vector<Point> chord_corners(Point a, Point b, double bulge) {
+  std::vector<Point> corners;
+  for (const check::Vec2 p : check::flattened({a.x, a.y}, {b.x, b.y}, bulge))
+    corners.push_back({p.x, p.y});
+  return corners;
+}
+
 void flatten_arcs(Domain& domain) {
   if (domain.arcs.empty()) return;
   std::vector<Domain::Segment> segments;
@@ -53,11 +60,10 @@ void flatten_arcs(Domain& domain) {
     Domain::Segment piece = domain.segments[s];
     const std::uint32_t last = piece.b;
     const double bulge = arc != domain.arcs.end() && arc->segment == s ? (arc++)->bulge : 0;
-    const Point a = domain.points[piece.a], b = domain.points[last];
-    for (const check::Vec2 p : check::flattened({a.x, a.y}, {b.x, b.y}, bulge)) {
+    for (const Point corner : chord_corners(domain.points[piece.a], domain.points[last], bulge)) {
       piece.b = static_cast<std::uint32_t>(domain.points.size());
       domain.point_places.add_same(piece.b, domain.segment_places, s);
-      domain.points.push_back({p.x, p.y});
+      domain.points.push_back(corner);
       places.add_same(segments.size(), domain.segment_places, s);
       segments.push_back(piece);
       piece.a = piece.b;

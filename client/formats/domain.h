@@ -112,7 +112,11 @@ struct Domain {
   Provenance area_places;
 };
 
-// Replaces each arc by equal chords that turn by 2 degrees at most: for what knows no arcs.
+// The corners between `a` and `b` if the arc of that bulge becomes equal chords that turn by 2
+// degrees at most. None of a bulge of 0.
+std::vector<Point> chord_corners(Point a, Point b, double bulge);
+
+// Replaces each arc by these chords: for what knows no arcs.
 void flatten_arcs(Domain& domain);
 
 // What is meshed where polygons overlap: all that any of them covers; what an odd number of them

@@ -397,7 +397,8 @@ class Reader {
     std::vector<Point> points;
     for (std::size_t i = start; i < end; ++i) points.push_back(corners_[i].at);
     const std::string path = "the ring from line " + std::to_string(lines_[start]);
-    return builder_.ring(points, path, {}, std::span(markers_).subspan(start, end - start), false);
+    return builder_.ring(points, path, {}, std::span(markers_).subspan(start, end - start), {},
+                         false);
   }
 
   std::string name_;

@@ -134,9 +134,9 @@ class Reader {
     const std::string path = path_of(feature);
     const auto properties = properties_of(feature, path);
     if (!properties) return tl::unexpected(properties.error());
-    if (shape.kind == DxfShape::Kind::kPoint) return builder_.point(shape.rings[0][0], path);
+    if (shape.kind == DxfShape::Kind::kPoint) return builder_.point(shape.rings[0].points[0], path);
     if (shape.kind == DxfShape::Kind::kLine)
-      return builder_.line(shape.rings[0], path, *properties, {}, shape.bulges);
+      return builder_.line(shape.rings[0].points, path, *properties, {}, shape.rings[0].bulges);
     if (has_lines_) {
       if (filled_areas_++ == 0) first_filled_area_ = path;
       return {};
@@ -149,8 +149,8 @@ class Reader {
     if (area.rings.empty()) builder_.leave_out(LeftOut::kGeometry, path);
     builder_.begin_polygon(RingRoles::kByPlace);
     for (std::size_t i = 0; i < area.rings.size(); ++i)
-      if (auto added =
-              builder_.ring(area.rings[i], path + ", ring " + std::to_string(i), properties);
+      if (auto added = builder_.ring(area.rings[i].points, path + ", ring " + std::to_string(i),
+                                     properties, {}, area.rings[i].bulges);
           !added)
         return added;
     builder_.end_polygon(path, properties);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads a drawing in DXF, in text form, as AutoCAD and others write it. Arcs, circles and bulges
 // are arcs of the domain; ellipses and splines, and arcs that blocks place with unequal scales, are
-// chords that turn by 2 degrees at most.
+// chains of arcs (biarcs.h).
 //
 // Lines bound what is meshed, even those of closed polylines: every bounded face is (Fill::kSeeds).
 // Hatches, solids and faces fill it for the eye: only in a drawing without lines are they polygons.

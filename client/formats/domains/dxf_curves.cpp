@@ -8,49 +8,11 @@
 namespace weft::client {
 namespace {
 
-constexpr double kMaxTurn = 2 * std::numbers::pi / 180;  // of a chord
-constexpr int kMaxHalvings = 9;
-constexpr int kMaxDegree = 25;
+constexpr double kFullTurn = 2 * std::numbers::pi;
 
-double turn(Point a, Point b, Point c) {
-  const Point u{b.x - a.x, b.y - a.y};
-  const Point v{c.x - b.x, c.y - b.y};
-  return std::abs(std::atan2(u.x * v.y - u.y * v.x, u.x * v.x + u.y * v.y));
-}
-
-// One chord from `a` to `b` if the curve turns little between them, as three points say.
-void halve(const DxfCurve& curve, double from, Point a, double to, Point b, int halvings,
-           std::vector<Point>& points) {
-  const double middle = from + (to - from) / 2;
-  const Point m = curve(middle);
-  const Point before = curve(from + (middle - from) / 2);
-  const Point after = curve(middle + (to - middle) / 2);
-  const double turned = turn(a, before, m) + turn(before, m, after) + turn(m, after, b);
-  if (halvings == 0 || !(turned > 0.75 * kMaxTurn)) {
-    points.push_back(b);
-    return;
-  }
-  halve(curve, from, a, middle, m, halvings - 1, points);
-  halve(curve, middle, m, to, b, halvings - 1, points);
-}
-
-// C. de Boor's algorithm, in homogeneous coordinates, between the knots `span` and span + 1.
-Point point_of(const DxfSpline& spline, std::size_t span, double t) {
-  const auto degree = static_cast<std::size_t>(spline.degree);
-  std::array<std::array<double, 3>, kMaxDegree + 1> d;
-  for (std::size_t j = 0; j <= degree; ++j) {
-    const std::size_t i = span - degree + j;
-    const double w = spline.weights.empty() ? 1 : spline.weights[i];
-    d[j] = {spline.control[i].x * w, spline.control[i].y * w, w};
-  }
-  for (std::size_t r = 1; r <= degree; ++r)
-    for (std::size_t j = degree; j >= r; --j) {
-      const double low = spline.knots[span - degree + j];
-      const double share = (t - low) / (spline.knots[span + 1 + j - r] - low);
-      for (std::size_t k = 0; k < 3; ++k) d[j][k] = (1 - share) * d[j - 1][k] + share * d[j][k];
-    }
-  const auto& p = d[degree];
-  return {p[0] / p[2], p[1] / p[2]};
+// Quarters of a circle that an arc has, up to four.
+int pieces_of(double turn) {
+  return static_cast<int>(std::clamp(std::ceil(turn / (kFullTurn / 4) - 1e-9), 1.0, 4.0));
 }
 
 std::array<double, 3> cross(const std::array<double, 3>& a, const std::array<double, 3>& b) {
@@ -110,62 +72,40 @@ Point direction(double degrees) {
   }
 }
 
-void add_chords(const DxfCurve& curve, double from, double to, int pieces,
-                std::vector<Point>& points) {
-  double start = from;
-  Point a = curve(from);
-  for (int i = 1; i <= pieces; ++i) {
-    const double end = i == pieces ? to : from + (to - from) * i / pieces;
-    const Point b = curve(end);
-    halve(curve, start, a, end, b, kMaxHalvings, points);
-    start = end;
-    a = b;
-  }
-}
-
-void add_bulge_chords(Point a, Point b, double bulge, std::vector<Point>& points) {
+void add_bulge(const DxfPlacement& place, Point a, Point b, double bulge, ArcChain& chain) {
+  if (bulge == 0 || a == b || place.keeps_circles())
+    return chain.add(place(b), place.mirrors() ? -bulge : bulge);
   const double turn = 4 * std::atan(bulge);
-  // Seen from a, a point of the arc lies half of the turn that is left to the right of b.
-  const auto curve = [&](double share) {
-    const double along = std::sin(turn / 2 * share) / std::sin(turn / 2);
-    const double x = along * std::cos(turn / 2 * (1 - share));
-    const double y = -along * std::sin(turn / 2 * (1 - share));
-    return Point{a.x + x * (b.x - a.x) - y * (b.y - a.y), a.y + x * (b.y - a.y) + y * (b.x - a.x)};
+  const Point v{b.x - a.x, b.y - a.y};
+  const auto turned = [&v](double scale, double angle) {
+    const double x = scale * std::cos(angle), y = scale * std::sin(angle);
+    return Point{x * v.x - y * v.y, x * v.y + y * v.x};
   };
-  if (std::abs(turn) > kMaxTurn && a != b) {
-    add_chords(curve, 0, 1, 16, points);
-    points.back() = b;
-  } else {
-    points.push_back(b);
-  }
+  // Seen from a, a point of the arc lies half of the turn that is left to the right of b.
+  const Curve curve = [&](double share) -> CurvePoint {
+    const Point to =
+        turned(std::sin(turn / 2 * share) / std::sin(turn / 2), turn / 2 * (share - 1));
+    return {place({a.x + to.x, a.y + to.y}), place.linear(turned(1, turn * (share - 0.5)))};
+  };
+  const Point placed = place.linear(v);
+  const double height = std::max(std::abs(bulge), 1.0);  // that of the arc, in chords
+  add_biarcs(curve, 0, 1, pieces_of(std::abs(turn)), height * std::hypot(placed.x, placed.y),
+             chain);
+  chain.points.back() = place(b);
 }
 
-bool DxfSpline::is_sound() const {
-  return degree >= 1 && degree <= kMaxDegree && control.size() > static_cast<std::size_t>(degree) &&
-         knots.size() == control.size() + static_cast<std::size_t>(degree) + 1 &&
-         std::ranges::is_sorted(knots) &&
-         knots[static_cast<std::size_t>(degree)] < knots[control.size()] &&
-         (weights.empty() || weights.size() == control.size()) &&
-         std::ranges::all_of(weights, [](double w) { return w > 0; });
-}
-
-std::vector<Point> chords_of(const DxfSpline& spline) {
-  std::vector<Point> points;
-  for (auto span = static_cast<std::size_t>(spline.degree); span < spline.control.size(); ++span) {
-    const double from = spline.knots[span];
-    const double to = spline.knots[span + 1];
-    if (!(from < to)) continue;
-    const auto curve = [&spline, span](double t) { return point_of(spline, span, t); };
-    if (points.empty()) points.push_back(curve(from));
-    add_chords(curve, from, to, spline.degree == 1 ? 1 : 4, points);
-  }
-  return points;
-}
-
-Point DxfEllipse::operator()(double t) const {
-  const double c = std::cos(t);
-  const double s = std::sin(t);
-  return {centre.x + c * major.x + s * minor.x, centre.y + c * major.y + s * minor.y};
+ArcChain arcs_of(const DxfEllipse& ellipse) {
+  const auto [centre, major, minor, from, to] = ellipse;
+  const Curve curve = [centre = centre, major = major, minor = minor](double t) -> CurvePoint {
+    const double c = std::cos(t), s = std::sin(t);
+    return {{centre.x + c * major.x + s * minor.x, centre.y + c * major.y + s * minor.y},
+            {c * minor.x - s * major.x, c * minor.y - s * major.y}};
+  };
+  const double extent = 2 * std::max(std::hypot(major.x, minor.x), std::hypot(major.y, minor.y));
+  ArcChain chain({curve(from).at});
+  if (to > from) add_biarcs(curve, from, to, pieces_of(to - from), extent, chain);
+  if (to - from > kFullTurn * (1 - 1e-10)) chain.points.back() = chain.points.front();
+  return chain;
 }
 
 }  // namespace weft::client

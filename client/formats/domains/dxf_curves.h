@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The geometry of drawings: where blocks place what is in them, and curves as chords.
+// The geometry of drawings: where blocks place what is in them, and curves as arcs of circles.
 #pragma once
 
 #include <array>
-#include <functional>
-#include <optional>
-#include <vector>
 
 #include "client/formats/domain.h"
+#include "client/formats/domains/biarcs.h"
 
 namespace weft::client {
 
@@ -17,6 +15,8 @@ struct DxfPlacement {
   double x0 = 0, y0 = 0;
 
   Point operator()(Point p) const { return {xx * p.x + xy * p.y + x0, yx * p.x + yy * p.y + y0}; }
+  // Of a direction.
+  Point linear(Point v) const { return {xx * v.x + xy * v.y, yx * v.x + yy * v.y}; }
   // First `inner`, then this.
   DxfPlacement after(const DxfPlacement& inner) const;
   bool mirrors() const { return xx * yy < xy * yx; }
@@ -31,35 +31,23 @@ DxfPlacement plane_of(const std::array<double, 3>& extrusion, double height);
 // (cos, sin) of degrees; exact for multiples of 90.
 Point direction(double degrees);
 
-using DxfCurve = std::function<Point(double)>;
+// Adds what leads from the end of the chain, which is place(a), to place(b): in the plane that is
+// placed, the arc of that bulge, which may be 0. Elsewhere than `place` keeps circles, that is an
+// arc of an ellipse.
+void add_bulge(const DxfPlacement& place, Point a, Point b, double bulge, ArcChain& chain);
 
-// Adds the curve's points from one parameter to another as ends of chords, but for the first point.
-// Each chord turns by 2 degrees at most against the one before it, up to 512 chords for each
-// of `pieces` equal pieces of the parameter.
-void add_chords(const DxfCurve& curve, double from, double to, int pieces,
-                std::vector<Point>& points);
-
-// The same of an arc from `a` to `b` with this bulge, which may be 0.
-void add_bulge_chords(Point a, Point b, double bulge, std::vector<Point>& points);
-
-// A curve of B-splines, rational if there are weights.
-struct DxfSpline {
-  int degree = 3;
-  std::vector<double> knots;
-  std::vector<double> weights;  // one for each control point, or empty
-  std::vector<Point> control;
-
-  // Degrees are up to 25, weights positive, knots ascend and are as many as belong to the points.
-  bool is_sound() const;
-};
-
-// Its chords, as add_chords makes them, from its first point to its last. REQUIRES: it is sound.
-std::vector<Point> chords_of(const DxfSpline& spline);
-
-// The points of an arc of an ellipse, by its centre, its half axes and the parameter in radians.
+// An arc of an ellipse, by its centre, two half axes, which need not be its principal ones, and its
+// parameters in radians, `from` <= `to`. A whole one, from 0 to a full turn or the like, returns to
+// its first point.
 struct DxfEllipse {
   Point centre, major, minor;
-  Point operator()(double t) const;
+  double from = 0, to = 0;
+
+  DxfEllipse placed(const DxfPlacement& place) const {
+    return {place(centre), place.linear(major), place.linear(minor), from, to};
+  }
 };
+
+ArcChain arcs_of(const DxfEllipse& ellipse);
 
 }  // namespace weft::client

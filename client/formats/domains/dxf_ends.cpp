@@ -20,8 +20,8 @@ struct Extent {
 
   explicit Extent(const std::vector<DxfShape>& shapes) {
     for (const DxfShape& shape : shapes)
-      for (const std::vector<Point>& ring : shape.rings)
-        for (const Point p : ring) {
+      for (const ArcChain& ring : shape.rings)
+        for (const Point p : ring.points) {
           is_finite = is_finite && std::isfinite(p.x) && std::isfinite(p.y);
           left = std::min(left, p.x);
           right = std::max(right, p.x);
@@ -71,7 +71,8 @@ bool is_computed(const DxfShape& shape) {
 }
 
 bool is_open(const DxfShape& line) {
-  return line.rings[0].size() > 1 && line.rings[0].front() != line.rings[0].back();
+  const std::vector<Point>& points = line.rings[0].points;
+  return points.size() > 1 && points.front() != points.back();
 }
 
 }  // namespace
@@ -90,11 +91,11 @@ void join_ends(std::vector<DxfShape>& shapes) {
   };
   for (const DxfShape& shape : shapes)
     if (shape.kind == DxfShape::Kind::kLine && !shape.has_computed_ends)
-      for (const Point p : shape.rings[0]) add(p);
+      for (const Point p : shape.rings[0].points) add(p);
   for (DxfShape& shape : shapes) {
     if (!is_computed(shape) || !is_open(shape)) continue;
-    Point& first = shape.rings[0].front();
-    Point& end = shape.rings[0].back();
+    Point& first = shape.rings[0].points.front();
+    Point& end = shape.rings[0].points.back();
     const double within = 1e-3 * std::hypot(end.x - first.x, end.y - first.y);
     const Point to_first = positions.nearest(first, within).value_or(first);
     const Point to_end = positions.nearest(end, within).value_or(end);
@@ -109,18 +110,16 @@ std::vector<bool> straighten_degenerate(std::vector<DxfShape>& shapes) {
   constexpr double kMostBulge = 1e6;  // of the service
   const double least = 1e-12 * Extent(shapes).size();
   std::vector<bool> found(shapes.size(), false);
-  for (std::size_t s = 0; s < shapes.size(); ++s) {
-    std::vector<double>& bulges = shapes[s].bulges;
-    for (std::size_t i = 0; i + 1 < bulges.size(); ++i) {
-      const Point a = shapes[s].rings[0][i];
-      const Point b = shapes[s].rings[0][i + 1];
-      const bool is_sound =
-          std::hypot(b.x - a.x, b.y - a.y) > least && std::abs(bulges[i]) <= kMostBulge;
-      if (is_sound || bulges[i] == 0 || a == b) continue;
-      bulges[i] = 0;
-      found[s] = true;
-    }
-  }
+  for (std::size_t s = 0; s < shapes.size(); ++s)
+    for (auto& [points, bulges] : shapes[s].rings)
+      for (std::size_t i = 0; i + 1 < bulges.size(); ++i) {
+        const Point a = points[i], b = points[i + 1];
+        const bool is_sound =
+            std::hypot(b.x - a.x, b.y - a.y) > least && std::abs(bulges[i]) <= kMostBulge;
+        if (is_sound || bulges[i] == 0 || a == b) continue;
+        bulges[i] = 0;
+        found[s] = true;
+      }
   return found;
 }
 

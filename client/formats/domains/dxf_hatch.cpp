@@ -1,28 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 // The boundary of a HATCH: paths, each a polyline with bulges or a chain of edges of four kinds.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "client/base/text.h"
 #include "client/formats/domains/dxf_shapes.h"
+#include "client/formats/domains/spline.h"
 
 namespace weft::client {
 namespace {
 
 class Hatch {
  public:
-  explicit Hatch(const DxfEntity& hatch) : hatch_(hatch) {}
+  Hatch(const DxfEntity& hatch, const DxfPlacement& place) : hatch_(hatch), place_(place) {}
 
-  std::vector<std::vector<Point>> rings() {
+  std::vector<ArcChain> rings() {
     while (at_ < hatch_.groups.size() && hatch_.groups[at_].code != 91) ++at_;
     const int paths = take_integer(91);
-    std::vector<std::vector<Point>> all;
+    std::vector<ArcChain> all;
     for (int i = 0; i < paths && skip_to(92); ++i) {
       constexpr int kPolyline = 2;
-      std::vector<Point> ring = (take_integer(92) & kPolyline) != 0 ? polyline() : edges();
-      if (ring.empty()) continue;
-      ring.push_back(ring.front());
+      ArcChain ring = (take_integer(92) & kPolyline) != 0 ? polyline() : edges();
+      if (ring.points.empty()) continue;
+      if (ring.points.back() != ring.points.front()) ring.add(ring.points.front(), 0);
       all.push_back(std::move(ring));
     }
     return all;
@@ -56,7 +58,7 @@ class Hatch {
     return {x, take(code + 10)};
   }
 
-  std::vector<Point> polyline() {
+  ArcChain polyline() {
     take_integer(72);  // whether there are bulges
     take_integer(73);  // every ring is closed
     take_integer(93);
@@ -65,25 +67,26 @@ class Hatch {
       const Point at = take_point(10);
       corners.emplace_back(at, take(42));
     }
-    std::vector<Point> ring;
+    ArcChain ring;
     if (corners.empty()) return ring;
-    ring.push_back(corners[0].first);
+    ring = ArcChain({place_(corners[0].first)});
     for (std::size_t i = 0; i < corners.size(); ++i)
-      add_bulge_chords(corners[i].first, corners[(i + 1) % corners.size()].first, corners[i].second,
-                       ring);
+      add_bulge(place_, corners[i].first, corners[(i + 1) % corners.size()].first,
+                corners[i].second, ring);
     return ring;
   }
 
-  std::vector<Point> edges() {
-    std::vector<Point> ring;
+  ArcChain edges() {
+    ArcChain ring;
     take_integer(93);
     while (here(72) != nullptr) {
-      std::vector<Point> edge;
+      ArcChain edge;
       switch (take_integer(72)) {
-        case 1:
-          edge.push_back(take_point(10));
-          edge.push_back(take_point(11));
+        case 1: {
+          const Point from = place_(take_point(10));
+          edge = ArcChain({from, place_(take_point(11))});
           break;
+        }
         case 2:
           edge = arc();
           break;
@@ -101,49 +104,53 @@ class Hatch {
     return ring;
   }
   // Edges may run against the direction of their ring.
-  static void join(std::vector<Point>& ring, std::vector<Point> edge) {
-    if (edge.empty()) return;
-    if (!ring.empty()) {
-      const auto gap = [&ring](Point p) {
-        return std::hypot(p.x - ring.back().x, p.y - ring.back().y);
-      };
-      if (gap(edge.back()) < gap(edge.front())) std::reverse(edge.begin(), edge.end());
-      if (gap(edge.front()) <= 1e-9 * gap(edge.back())) edge.erase(edge.begin());
-    }
-    ring.insert(ring.end(), edge.begin(), edge.end());
+  static void join(ArcChain& ring, ArcChain edge) {
+    if (ring.points.empty()) std::swap(ring, edge);
+    if (edge.points.empty()) return;
+    const auto gap = [end = ring.points.back()](Point p) {
+      return std::hypot(p.x - end.x, p.y - end.y);
+    };
+    if (gap(edge.points.back()) < gap(edge.points.front())) turn_round(edge);
+    const bool meets = gap(edge.points.front()) <= 1e-9 * gap(edge.points.back());
+    if (!meets) ring.add(edge.points.front(), 0);
+    for (std::size_t i = 1; i < edge.points.size(); ++i)
+      ring.add(edge.points[i], edge.bulges[i - 1]);
+  }
+  static void turn_round(ArcChain& edge) {
+    std::ranges::reverse(edge.points);
+    std::reverse(edge.bulges.begin(), edge.bulges.end() - 1);
+    for (double& bulge : edge.bulges) bulge = -bulge;
   }
 
   // Angles go clockwise if the edge does.
-  std::vector<Point> arc() {
+  ArcChain arc() {
     const Point centre = take_point(10);
     const double radius = take(40);
     return elliptic({centre, {radius, 0}, {0, radius}});
   }
-  std::vector<Point> ellipse() {
+  ArcChain ellipse() {
     const Point centre = take_point(10);
     const Point major = take_point(11);
     const double ratio = take(40);
     return elliptic({centre, major, {-major.y * ratio, major.x * ratio}});
   }
-  std::vector<Point> elliptic(DxfEllipse curve) {
+  ArcChain elliptic(DxfEllipse curve) {
     constexpr double kDegree = std::numbers::pi / 180;
-    const double from = take(50) * kDegree;
-    double to = take(51) * kDegree;
+    curve.from = take(50) * kDegree;
+    curve.to = take(51) * kDegree;
     const bool is_clockwise = here(73) != nullptr && take_integer(73) == 0;
     if (is_clockwise) curve.minor = {-curve.minor.x, -curve.minor.y};
-    if (to < from) to += 2 * std::numbers::pi;
-    std::vector<Point> points = {curve(from)};
-    add_chords(curve, from, to, 16, points);
-    return points;
+    if (curve.to < curve.from) curve.to += 2 * std::numbers::pi;
+    return arcs_of(curve.placed(place_));
   }
 
-  std::vector<Point> spline() {
-    DxfSpline curve;
+  ArcChain spline() {
+    Spline curve;
     curve.degree = take_integer(94);
     for (const int code : {73, 74, 95, 96}) take_integer(code);
     while (here(40) != nullptr) curve.knots.push_back(take(40));
     while (here(10) != nullptr) {
-      curve.control.push_back(take_point(10));
+      curve.control.push_back(place_(take_point(10)));
       if (here(42) != nullptr) curve.weights.push_back(take(42));
     }
     if (here(97) != nullptr) {
@@ -152,20 +159,18 @@ class Hatch {
       while (here(11) != nullptr) take_point(11);
       for (const int code : {12, 13}) take_point(code);
     }
-    return curve.is_sound() ? chords_of(curve) : curve.control;
+    return curve.is_sound() ? arcs_of(curve) : ArcChain(std::move(curve.control));
   }
 
   const DxfEntity& hatch_;
+  const DxfPlacement& place_;
   std::size_t at_ = 0;
 };
 
 }  // namespace
 
-std::vector<std::vector<Point>> hatch_rings(const DxfEntity& hatch, const DxfPlacement& placement) {
-  std::vector<std::vector<Point>> rings = Hatch(hatch).rings();
-  for (std::vector<Point>& ring : rings)
-    for (Point& p : ring) p = placement(p);
-  return rings;
+std::vector<ArcChain> hatch_rings(const DxfEntity& hatch, const DxfPlacement& placement) {
+  return Hatch(hatch, placement).rings();
 }
 
 }  // namespace weft::client

@@ -76,7 +76,7 @@ class Collector {
     auto shape = shape_of(entity, level.placement);
     if (!shape) return model_.notes.add(DxfNotes::Fate::kNoCurve, entity.kind, entity.line);
     if (level.depth > 0) {
-      for (const auto& ring : shape->rings) count(ring.size(), entity);
+      for (const ArcChain& ring : shape->rings) count(ring.points.size(), entity);
       shape->has_computed_ends = true;
       feature.part = parts_++;
     }

@@ -5,11 +5,15 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <utility>
+
+#include "client/formats/domains/spline.h"
 
 namespace weft::client {
 namespace {
 
 constexpr double kFullTurn = 2 * std::numbers::pi;
+constexpr double kDegree = std::numbers::pi / 180;
 
 constexpr std::string_view kDrawn[] = {"3DFACE", "ARC",    "CIRCLE",     "ELLIPSE", "HATCH",
                                        "INSERT", "LINE",   "LWPOLYLINE", "POINT",   "POLYLINE",
@@ -26,8 +30,8 @@ constexpr std::string_view kAnnotations[] = {
     "XLINE"};
 
 // A line is closed whose ends are as near to each other as rounding brings them.
-void close(DxfShape& line, bool is_closed) {
-  std::vector<Point>& points = line.rings[0];
+void close(ArcChain& line, bool is_closed) {
+  std::vector<Point>& points = line.points;
   if (points.size() < 2) return;
   double extent = 0;
   for (const Point p : points)
@@ -38,7 +42,7 @@ void close(DxfShape& line, bool is_closed) {
     points.back() = points.front();
   } else if (is_closed) {
     points.push_back(points.front());
-    if (!line.bulges.empty()) line.bulges.push_back(0);
+    line.bulges.push_back(0);  // keeps that of the segment which closes it
   }
 }
 
@@ -47,7 +51,7 @@ DxfPlacement in_its_plane(const DxfEntity& entity, const DxfPlacement& placement
 }
 
 DxfShape straight(const DxfEntity& entity, const DxfPlacement& placement) {
-  return {.rings = {{placement(entity.point(10)), placement(entity.point(11))}}};
+  return {.rings = {ArcChain({placement(entity.point(10)), placement(entity.point(11))})}};
 }
 
 DxfShape corners(const DxfEntity& entity, const DxfPlacement& placement) {
@@ -58,7 +62,7 @@ DxfShape corners(const DxfEntity& entity, const DxfPlacement& placement) {
   // The third and fourth corner of a solid are one opposite the other.
   if (entity.has(13)) ring.insert(ring.end() - (is_face ? 0 : 1), place(entity.point(13)));
   ring.push_back(ring.front());
-  return {.kind = DxfShape::Kind::kArea, .rings = {ring}};
+  return {.kind = DxfShape::Kind::kArea, .rings = {ArcChain(std::move(ring))}};
 }
 
 DxfShape arc(const DxfEntity& entity, const DxfPlacement& placement) {
@@ -71,51 +75,43 @@ DxfShape arc(const DxfEntity& entity, const DxfPlacement& placement) {
   if (turn < 0) turn += 360;
   const bool is_full = turn == 0 && from != to;
   if (is_full) turn = 360;
+  if (!place.keeps_circles()) {
+    const DxfEllipse curve{
+        centre, {radius, 0}, {0, radius}, from * kDegree, (from + turn) * kDegree};
+    return {.rings = {arcs_of(curve.placed(place))}, .has_computed_ends = true};
+  }
   const auto at = [&](double degrees) {
     const Point u = direction(degrees);
     return place({centre.x + radius * u.x, centre.y + radius * u.y});
   };
-  DxfShape line{.rings = {{at(from)}}, .has_computed_ends = true};
-  std::vector<Point>& points = line.rings[0];
-  if (place.keeps_circles()) {
-    const int parts = turn > 180 ? 2 : 1;
-    const double bulge =
-        turn / parts == 180 ? 1 : std::tan(turn / parts / 4 * (std::numbers::pi / 180));
-    for (int i = 1; i < parts; ++i) points.push_back(at(from + turn / 2));
-    points.push_back(at(to));
-    line.bulges.assign(points.size(), place.mirrors() ? -bulge : bulge);
-  } else {
-    add_chords(at, from, from + turn, 16, points);
-    points.back() = at(to);
-  }
-  if (is_full) points.back() = points.front();
-  return line;
+  const int parts = turn > 180 ? 2 : 1;
+  double bulge = turn / parts == 180 ? 1 : std::tan(turn / parts / 4 * kDegree);
+  if (place.mirrors()) bulge = -bulge;
+  ArcChain line({at(from)});
+  if (parts == 2) line.add(at(from + turn / 2), bulge);
+  line.add(is_full ? line.points.front() : at(to), bulge);
+  return {.rings = {std::move(line)}, .has_computed_ends = true};
 }
 
 DxfShape ellipse(const DxfEntity& entity, const DxfPlacement& placement) {
-  const auto linear = [&placement](double x, double y) {
-    return Point{placement.xx * x + placement.xy * y, placement.yx * x + placement.yy * y};
-  };
   const auto m = entity.vector(11);
   const auto n = entity.extrusion();
   const double scale = entity.real(40, 1) / std::hypot(n[0], n[1], n[2]);
-  const DxfEllipse curve{placement(entity.point(10)), linear(m[0], m[1]),
-                         linear((n[1] * m[2] - n[2] * m[1]) * scale,  //
-                                (n[2] * m[0] - n[0] * m[2]) * scale)};
+  DxfEllipse curve{entity.point(10),
+                   {m[0], m[1]},
+                   {(n[1] * m[2] - n[2] * m[1]) * scale, (n[2] * m[0] - n[0] * m[2]) * scale}};
   const double from = entity.real(41);
   const double to = entity.real(42, kFullTurn);
   double turn = std::fmod(to - from, kFullTurn);
   if (turn < 0) turn += kFullTurn;
-  const bool is_full = from != to && std::min(turn, kFullTurn - turn) < 1e-9;
-  if (is_full) turn = kFullTurn;
-  DxfShape line{.rings = {{curve(from)}}, .has_computed_ends = true};
-  if (turn > 0) add_chords(curve, from, from + turn, 16, line.rings[0]);
-  if (is_full) line.rings[0].back() = line.rings[0].front();
-  return line;
+  if (from != to && std::min(turn, kFullTurn - turn) < 1e-9) turn = kFullTurn;
+  curve.from = from;
+  curve.to = from + turn;
+  return {.rings = {arcs_of(curve.placed(placement))}, .has_computed_ends = true};
 }
 
 std::optional<DxfShape> spline(const DxfEntity& entity, const DxfPlacement& placement) {
-  DxfSpline curve;
+  Spline curve;
   curve.degree = entity.integer(71, 3);
   std::vector<Point> fit;
   for (const DxfGroup& group : entity.groups) {
@@ -131,50 +127,38 @@ std::optional<DxfShape> spline(const DxfEntity& entity, const DxfPlacement& plac
     for (Point& p : *points) p = placement(p);
   DxfShape line{.has_computed_ends = true};
   if (curve.is_sound()) {
-    line.rings.push_back(chords_of(curve));
+    line.rings.push_back(arcs_of(curve));
   } else if (fit.size() >= 2) {
-    line.rings.push_back(std::move(fit));
+    line.rings.emplace_back(std::move(fit));
   } else {
     return std::nullopt;
   }
-  close(line, is_closed);
+  close(line.rings[0], is_closed);
   return line;
 }
 
 // Positions and their bulges; `flags` are those of LWPOLYLINE and POLYLINE.
-DxfShape polyline(std::vector<Point> points, std::vector<double> bulges, int flags,
-                  const DxfPlacement& place) {
-  DxfShape line{.rings = {std::move(points)}, .bulges = std::move(bulges)};
-  const bool is_closed = (flags & 1) != 0;
-  close(line, is_closed);
-  if (std::ranges::all_of(line.bulges, [](double b) { return b == 0; })) {
-    line.bulges.clear();
-  } else if (!place.keeps_circles()) {
-    std::vector<Point> chords = {line.rings[0][0]};
-    for (std::size_t i = 0; i + 1 < line.rings[0].size(); ++i)
-      add_bulge_chords(line.rings[0][i], line.rings[0][i + 1], line.bulges[i], chords);
-    line.rings[0] = std::move(chords);
-    line.bulges.clear();
-  } else if (place.mirrors()) {
-    for (double& bulge : line.bulges) bulge = -bulge;
-  }
-  for (Point& p : line.rings[0]) p = place(p);
-  return line;
+DxfShape polyline(ArcChain line, int flags, const DxfPlacement& place) {
+  close(line, (flags & 1) != 0);
+  if (line.points.empty()) return {.rings = {std::move(line)}};
+  ArcChain placed({place(line.points[0])});
+  for (std::size_t i = 0; i + 1 < line.points.size(); ++i)
+    add_bulge(place, line.points[i], line.points[i + 1], line.bulges[i], placed);
+  return {.rings = {std::move(placed)}};
 }
 
 DxfShape light_polyline(const DxfEntity& entity, const DxfPlacement& placement) {
-  std::vector<Point> points;
-  std::vector<double> bulges;
+  ArcChain line;
   for (const DxfGroup& group : entity.groups) {
     if (group.code == 10) {
-      points.push_back({entity.real_of(group), 0});
-      bulges.push_back(0);
+      line.points.push_back({entity.real_of(group), 0});
+      line.bulges.push_back(0);
     }
-    if (points.empty()) continue;
-    if (group.code == 20) points.back().y = entity.real_of(group);
-    if (group.code == 42) bulges.back() = entity.real_of(group);
+    if (line.points.empty()) continue;
+    if (group.code == 20) line.points.back().y = entity.real_of(group);
+    if (group.code == 42) line.bulges.back() = entity.real_of(group);
   }
-  return polyline(std::move(points), std::move(bulges), entity.integer(70),
+  return polyline(std::move(line), entity.integer(70),
                   in_its_plane(entity, placement, entity.real(38)));
 }
 
@@ -182,15 +166,14 @@ std::optional<DxfShape> heavy_polyline(const DxfEntity& entity, const DxfPlaceme
   constexpr int kSpatial = 8, kMesh = 16 | 64, kFrame = 16;
   const int flags = entity.integer(70);
   if ((flags & kMesh) != 0) return std::nullopt;
-  std::vector<Point> points;
-  std::vector<double> bulges;
+  ArcChain line;
   for (const DxfRecord& vertex : entity.vertices) {
     if ((vertex.integer(70) & kFrame) != 0) continue;  // of a spline, which other vertices follow
-    points.push_back(vertex.point(10));
-    bulges.push_back(vertex.real(42));
+    line.points.push_back(vertex.point(10));
+    line.bulges.push_back(vertex.real(42));
   }
   return polyline(
-      std::move(points), std::move(bulges), flags,
+      std::move(line), flags,
       (flags & kSpatial) != 0 ? placement : in_its_plane(entity, placement, entity.real(30)));
 }
 
@@ -213,7 +196,8 @@ std::optional<DxfShape> shape_of(const DxfEntity& entity, const DxfPlacement& pl
   if (kind == "ELLIPSE") return ellipse(entity, placement);
   if (kind == "SPLINE") return spline(entity, placement);
   if (kind == "POINT")
-    return DxfShape{.kind = DxfShape::Kind::kPoint, .rings = {{placement(entity.point(10))}}};
+    return DxfShape{.kind = DxfShape::Kind::kPoint,
+                    .rings = {ArcChain({placement(entity.point(10))})}};
   if (kind == "HATCH")
     return DxfShape{.kind = DxfShape::Kind::kArea,
                     .rings = hatch_rings(entity, in_its_plane(entity, placement, entity.real(30)))};

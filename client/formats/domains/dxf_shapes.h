@@ -15,10 +15,8 @@ namespace weft::client {
 struct DxfShape {
   enum class Kind { kPoint, kLine, kArea } kind = Kind::kLine;
   // Of a line one, which ends at its first position if it is closed; of an area, those of which an
-  // odd number encloses it.
-  std::vector<std::vector<Point>> rings{};
-  // Of the segments of a line: one for each position, where the segment starts; or empty.
-  std::vector<double> bulges{};
+  // odd number encloses it. Of a point, the point.
+  std::vector<ArcChain> rings{};
   // The ends of a line are computed, not in the file.
   bool has_computed_ends = false;
 };
@@ -32,7 +30,6 @@ bool is_annotation(std::string_view kind);
 // spline whose numbers do not belong together.
 std::optional<DxfShape> shape_of(const DxfEntity& entity, const DxfPlacement& placement);
 
-// The rings of a HATCH, whose arcs are chords.
-std::vector<std::vector<Point>> hatch_rings(const DxfEntity& hatch, const DxfPlacement& placement);
+std::vector<ArcChain> hatch_rings(const DxfEntity& hatch, const DxfPlacement& placement);
 
 }  // namespace weft::client

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "client/base/text.h"
+#include "client/formats/area_bound.h"
 #include "client/formats/domains/ring_on_sphere.h"
 
 namespace weft::client {
@@ -17,7 +18,7 @@ constexpr std::size_t kMostTold = 5;  // of each kind
 // The bound on areas that a feature's two properties make together.
 std::optional<double> area_bound(const GeometryProperties& properties) {
   if (!properties.max_edge) return properties.max_area;
-  const double of_edge = 0.4330127018922193 * *properties.max_edge * *properties.max_edge;
+  const double of_edge = area_of_edge(*properties.max_edge);
   return std::min(of_edge, properties.max_area.value_or(of_edge));
 }
 
@@ -62,6 +63,20 @@ bool GeometryBuilder::is_usable(Point at) {
 
 tl::unexpected<Error> GeometryBuilder::unusable(Point at, const std::string& path) const {
   return bad(path, "is " + coordinates(at.x, at.y) + ", magnitudes go up to 1e50");
+}
+
+std::vector<Point> GeometryBuilder::Chain::corners_after(std::size_t i) const {
+  return chord_corners(points[i], points[i + 1 < points.size() ? i + 1 : 0], bulges[i]);
+}
+
+std::vector<Point> GeometryBuilder::Chain::chords() const {
+  std::vector<Point> all;
+  if (std::ranges::all_of(bulges, [](double bulge) { return bulge == 0; })) return all;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    all.push_back(points[i]);
+    for (const Point corner : corners_after(i)) all.push_back(corner);
+  }
+  return all;
 }
 
 Result<GeometryBuilder::Chain> GeometryBuilder::chain(std::span<const Point> positions,
@@ -153,16 +168,20 @@ std::uint32_t GeometryBuilder::label_of(Labels& labels, NameKind kind, std::int3
   return labels.of(number);
 }
 
-void GeometryBuilder::check_crossing(const Chain& ring, const std::string& path) {
-  const std::vector<Point> plane = lonlat_ ? unrolled(ring.points, 0) : std::vector<Point>();
-  const auto crossing = find_crossing(lonlat_ ? plane : ring.points);
+void GeometryBuilder::check_crossing(const Chain& ring, std::span<const Point> corners,
+                                     const std::string& path) {
+  const std::vector<Point> plane = lonlat_ ? unrolled(corners, 0) : std::vector<Point>();
+  const auto crossing = find_crossing(lonlat_ ? plane : corners);
   polygon_crosses_ = polygon_crosses_ || crossing;
   if (!crossing || ++crossings_ > kMostTold) return;
-  const auto edge = [&ring](std::uint32_t i) {
-    i = std::min(i, static_cast<std::uint32_t>(ring.points.size() - 1));
-    const Point a = ring.points[i];
-    const Point b = ring.points[i + 1 < ring.points.size() ? i + 1 : 0];
-    return "edge " + std::to_string(ring.numbers[i]) + " from " + coordinates(a.x, a.y) + " to " +
+  std::vector<std::size_t> edges;  // whose chord each is
+  for (std::size_t i = 0; i < ring.points.size(); ++i)
+    edges.insert(edges.end(), 1 + ring.corners_after(i).size(), i);
+  const auto edge = [&](std::uint32_t chord) {
+    const std::size_t e = chord < edges.size() ? edges[chord] : ring.points.size() - 1;
+    const Point a = ring.points[e];
+    const Point b = ring.points[e + 1 < ring.points.size() ? e + 1 : 0];
+    return "edge " + std::to_string(ring.numbers[e]) + " from " + coordinates(a.x, a.y) + " to " +
            coordinates(b.x, b.y);
   };
   warn({.kind = WarningKind::kRingCrossesItself,
@@ -173,19 +192,21 @@ void GeometryBuilder::check_crossing(const Chain& ring, const std::string& path)
 
 Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::string& path,
                                    const GeometryProperties& properties,
-                                   std::span<const std::uint32_t> markers, bool is_closed) {
-  auto ring = chain(positions, path, properties, markers);
+                                   std::span<const std::uint32_t> markers,
+                                   std::span<const double> bulges, bool is_closed) {
+  auto ring = chain(positions, path, properties, markers, bulges);
   if (!ring) return tl::unexpected(ring.error());
   if (lacks_outer_ring_) return {};
-  if (is_collapsed(ring->points)) {
+  std::vector<Point>& points = ring->points;
+  const bool returns = !points.empty() && points.front() == points.back();
+  if (returns) points.pop_back();
+  std::vector<Point> chords = ring->chords();
+  if (is_collapsed(chords.empty() ? points : chords)) {
     lacks_outer_ring_ =
         ring_roles_ == RingRoles::kOuterFirst && domain_.segments.size() == polygon_start_;
     leave_out(LeftOut::kRing, path);
     return {};
   }
-  std::vector<Point>& points = ring->points;
-  const bool returns = points.front() == points.back();
-  if (returns) points.pop_back();
   // The same meridian may be there by both of its longitudes.
   const bool closes_round = lonlat_ && comes_round(points);
   if (closes_round) points.pop_back();
@@ -195,8 +216,8 @@ Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::
           .text = path + " is a ring that is not closed: it starts at " +
                   coordinates(points.front().x, points.front().y) + " and ends at " +
                   coordinates(points.back().x, points.back().y) + "; a segment closes it"});
-  check_crossing(*ring, path);
-  polygon_rings_.push_back({domain_.points.size(), points.size(), path});
+  check_crossing(*ring, chords.empty() ? points : chords, path);
+  polygon_rings_.push_back({domain_.points.size(), points.size(), path, std::move(chords)});
   return add(*ring, true, path);
 }
 
@@ -205,7 +226,10 @@ void GeometryBuilder::check_overlap() {
   std::vector<std::span<const Point>> rings;
   std::vector<std::vector<Point>> planes;
   for (const Ring& ring : polygon_rings_)
-    rings.push_back(std::span(domain_.points).subspan(ring.first_point, ring.size));
+    rings.push_back(
+        ring.chords.empty()
+            ? std::span(std::as_const(domain_).points).subspan(ring.first_point, ring.size)
+            : ring.chords);
   if (lonlat_) {
     // A polygon around a pole has no plane of degrees in which its holes are in one piece.
     if (std::ranges::any_of(rings, is_around_pole)) return;

@@ -9,6 +9,7 @@
 //   - Lines beside polygons become edges inside the domain.
 //   - Lines only: every bounded face (Fill::kSeeds).
 //   - Points become vertices.
+// Segments may be arcs; whether rings cross and overlap is told of their chords (chord_corners).
 // Positions that repeat their predecessor are dropped.
 //
 // `path` names a part in its file ("features[3].geometry.coordinates[0]"); its position i is then
@@ -86,11 +87,13 @@ class GeometryBuilder {
 
   // A polygon is the rings between these two calls.
   void begin_polygon(RingRoles roles = RingRoles::kOuterFirst);
+  // `markers`, `bulges`: as of a line, the last of them of the segment that closes the ring.
   // `is_closed`: whether the last position repeats the first in the file's format; where it does
   // not, a warning tells of it.
   Result<void> ring(std::span<const Point> positions, const std::string& path,
                     const GeometryProperties& properties,
-                    std::span<const std::uint32_t> markers = {}, bool is_closed = true);
+                    std::span<const std::uint32_t> markers = {},
+                    std::span<const double> bulges = {}, bool is_closed = true);
   void end_polygon(const std::string& path, const GeometryProperties& properties);
 
   // Returns an error if nothing was added. The builder must not be used afterwards.
@@ -106,6 +109,11 @@ class GeometryBuilder {
     std::vector<std::size_t> numbers;
     std::vector<std::uint32_t> markers;  // labels
     std::vector<double> bulges;
+
+    // Of a ring: the corners of the chords behind its position i, if an arc begins there.
+    std::vector<Point> corners_after(std::size_t i) const;
+    // All corners of a ring, whose arcs are chords; empty if it has none.
+    std::vector<Point> chords() const;
   };
 
   // A ring of the polygon, in the points of the domain.
@@ -113,6 +121,7 @@ class GeometryBuilder {
     std::size_t first_point = 0;
     std::size_t size = 0;
     std::string path;
+    std::vector<Point> chords{};  // its corners with arcs as chords, if it has arcs
   };
 
   Result<Chain> chain(std::span<const Point> positions, const std::string& path,
@@ -124,7 +133,8 @@ class GeometryBuilder {
                          const std::string& name);
   // The sixth and further ones of a kind, if there are: "3 more rings are not closed".
   void warn_of_more(WarningKind kind, std::size_t all, const char* what);
-  void check_crossing(const Chain& ring, const std::string& path);
+  // `corners`: those of the ring, arcs are chords.
+  void check_crossing(const Chain& ring, std::span<const Point> corners, const std::string& path);
   void check_overlap();  // of the rings of the polygon
   Result<void> add(const Chain& chain, bool closed, const std::string& path);
 

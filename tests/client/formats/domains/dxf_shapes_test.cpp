@@ -50,17 +50,21 @@ bool is_one_ring(const Domain& domain) {
   return true;
 }
 
-double greatest_turn(const Domain& domain) {
-  double most = 0;
-  for (std::size_t s = 0; s + 1 < domain.segments.size(); ++s) {
+// In radians, between a segment and the next; where one ends without a next, none.
+double greatest_kink(const Domain& domain) {
+  std::vector<double> bulges(domain.segments.size(), 0);
+  for (const Domain::Arc& arc : domain.arcs) bulges[arc.segment] = arc.bulge;
+  const auto direction_of = [&](std::size_t s, double turn) {
     const Point a = domain.points[domain.segments[s].a];
     const Point b = domain.points[domain.segments[s].b];
-    const Point c = domain.points[domain.segments[s + 1].b];
-    most = std::max(
-        most, std::abs(std::remainder(
-                  std::atan2(c.y - b.y, c.x - b.x) - std::atan2(b.y - a.y, b.x - a.x), 2 * kPi)));
-  }
-  return most * 180 / kPi;
+    return std::atan2(b.y - a.y, b.x - a.x) + turn * std::atan(bulges[s]);
+  };
+  double most = 0;
+  for (std::size_t s = 0; s + 1 < domain.segments.size(); ++s)
+    if (domain.points[domain.segments[s].b] == domain.points[domain.segments[s + 1].a])
+      most = std::max(
+          most, std::abs(std::remainder(direction_of(s + 1, -2) - direction_of(s, 2), 2 * kPi)));
+  return most;
 }
 
 TEST(DxfShape, OfACircleIsTwoArcs) {
@@ -167,44 +171,52 @@ TEST(DxfShape, OfABlockIsPlacedScaledMirroredAndTurned) {
   EXPECT_EQ(array.points.at(5 * 5).x, 18);
   EXPECT_EQ(array.points.at(5 * 5).y, 19);
   const Domain stretched = read("0 INSERT 2 slot 10 0 20 0 42 3 ", block);
-  EXPECT_TRUE(stretched.arcs.empty());
-  EXPECT_NEAR(area(stretched), 3 * slot, 0.01);
-  EXPECT_LE(greatest_turn(read("0 INSERT 2 c 42 3 ",
-                               "0 BLOCK 2 c 10 0 20 0 0 CIRCLE 10 0 20 0 40 1 0 ENDBLK ")),
-            2.2);
+  EXPECT_LT(stretched.arcs.size(), 100u);
+  EXPECT_NEAR(area(stretched), 3 * slot, 3e-4);
+  EXPECT_LT(greatest_kink(stretched), 1e-9);
+  const Domain circle =
+      read("0 INSERT 2 c 42 3 ", "0 BLOCK 2 c 10 0 20 0 0 CIRCLE 10 0 20 0 40 1 0 ENDBLK ");
+  EXPECT_TRUE(is_one_ring(circle));
+  EXPECT_NEAR(area(circle), 3 * kPi, 3e-4);
+  EXPECT_LT(circle.segments.size(), 100u);
 }
 
-TEST(DxfShape, OfAnEllipseIsOfShortChords) {
+TEST(DxfShape, OfAnEllipseIsOfFewArcs) {
   const Domain whole = read("0 ELLIPSE 10 1 20 1 11 4 21 0 40 0.25 41 0 42 6.283185307179586 ");
   EXPECT_TRUE(is_one_ring(whole));
-  EXPECT_NEAR(area(whole), 4 * kPi, 0.01);
-  EXPECT_LE(greatest_turn(whole), 2.2);
-  EXPECT_LT(whole.segments.size(), 1000u);
+  EXPECT_NEAR(area(whole), 4 * kPi, 3e-4);
+  EXPECT_LT(greatest_kink(whole), 1e-9);
+  EXPECT_LT(whole.segments.size(), 120u);
+  EXPECT_EQ(whole.arcs.size(), whole.segments.size());
   const Domain half = read("0 ELLIPSE 10 0 20 0 11 0 21 2 40 0.5 41 0 42 3.141592653589793 ");
   EXPECT_EQ(half.points.front(), (Point{0, 2}));
   EXPECT_NEAR(half.points.back().y, -2, 1e-15);
-  EXPECT_NEAR(area(half), kPi, 0.01);
+  EXPECT_NEAR(area(half), kPi, 1e-4);
   EXPECT_NEAR(
       area(read("0 ELLIPSE 10 0 20 0 11 0 21 2 40 0.5 41 0 42 3.141592653589793 210 0 220 0 "
                 "230 -1 ")),
-      -kPi, 0.01);
+      -kPi, 1e-4);
+  const Domain round = read("0 ELLIPSE 10 1 20 1 11 4 21 0 40 1 41 0 42 6.283185307179586 ");
+  EXPECT_EQ(round.arcs.size(), 4u);
+  EXPECT_NEAR(area(round), 16 * kPi, 1e-13);
 }
 
-TEST(DxfShape, OfASplineIsOfShortChords) {
+TEST(DxfShape, OfASplineIsOfFewArcs) {
   // A quarter of a circle as a rational curve of degree 2.
   const Domain quarter = read(
       "0 SPLINE 70 4 71 2 72 6 73 3 40 0 40 0 40 0 40 1 40 1 40 1 41 1 41 0.7071067811865476 41 1 "
       "10 "
       "1 20 0 10 1 20 1 10 0 20 1 ");
-  EXPECT_EQ(quarter.points.front(), (Point{1, 0}));
-  EXPECT_EQ(quarter.points.back(), (Point{0, 1}));
-  EXPECT_LE(greatest_turn(quarter), 2.2);
-  for (const Point p : quarter.points) EXPECT_NEAR(std::hypot(p.x, p.y), 1, 1e-15);
+  EXPECT_EQ(quarter.points, (std::vector<Point>{{1, 0}, {0, 1}}));
+  ASSERT_EQ(quarter.arcs.size(), 1u);
+  EXPECT_NEAR(quarter.arcs[0].bulge, std::tan(kPi / 8), 1e-15);
   const Domain cubic = read(
       "0 SPLINE 70 8 71 3 40 0 40 0 40 0 40 0 40 1 40 1 40 1 40 1 10 0 20 0 10 1 20 9 10 2 20 -9 "
       "10 "
       "3 20 0 ");
-  EXPECT_LE(greatest_turn(cubic), 2.5);
+  EXPECT_LT(greatest_kink(cubic), 1e-9);
+  EXPECT_LT(cubic.segments.size(), 120u);
+  EXPECT_EQ(cubic.points.back(), (Point{3, 0}));
   EXPECT_EQ(read("0 SPLINE 70 0 71 3 74 3 11 0 21 0 11 1 21 2 11 3 21 0 ").segments.size(), 2u);
   const auto torn = read_dxf_text(
       "d.dxf", drawing("0 LINE 10 0 20 0 11 1 21 0 0 SPLINE 71 3 40 0 40 1 10 0 20 0 10 1 20 1 "),
@@ -250,12 +262,13 @@ TEST(DxfShape, OfAnAreaIsAPolygonIfThereAreNoLines) {
                            "72 1 73 1 93 2 10 5 20 4 42 1 10 3 20 4 42 1 97 1 330 5 " +
                            tail);
   ASSERT_EQ(ring.areas.size(), 1u);
-  EXPECT_NEAR(area(ring), 64 + kPi, 1e-3);
+  EXPECT_NEAR(area(ring), 64 + kPi, 1e-13);
+  EXPECT_EQ(ring.arcs, (std::vector<Domain::Arc>{{4, 1}, {5, 1}}));
   const Domain edges = read(
       "0 HATCH 10 0 20 0 2 SOLID 91 1 92 1 93 2 72 2 10 0 20 0 40 2 50 0 51 180 "
       "73 1 72 1 10 -2 20 0 11 2 21 0 97 0 " +
       tail);
-  EXPECT_NEAR(area(edges), 2 * kPi, 2e-3);
+  EXPECT_NEAR(area(edges), 2 * kPi, 1e-14);
   const Domain solid = read("0 SOLID 10 0 20 0 11 2 21 0 12 0 22 1 13 2 23 1 ");
   ASSERT_EQ(solid.areas.size(), 1u);
   EXPECT_EQ(area(solid), 2);
