@@ -10,7 +10,9 @@
 #include "client/formats/derived/mesh_domain.h"
 #include "client/formats/domains/csv_rings.h"
 #include "client/formats/domains/dxf.h"
+#include "client/formats/domains/femm.h"
 #include "client/formats/domains/geojson.h"
+#include "client/formats/domains/in2d.h"
 #include "client/formats/domains/ogr.h"
 #include "client/formats/domains/shapefile.h"
 #include "client/formats/domains/wkt.h"
@@ -42,6 +44,11 @@ Result<Domain> read_poly(const std::filesystem::path& path, bool) {
   return read_triangle_poly(path);
 }
 
+template <FemmProblem kProblem>
+Result<Domain> read_model(const std::filesystem::path& path, bool) {
+  return read_femm(path, kProblem);
+}
+
 // As messages list them.
 constexpr DomainFormat kFormats[] = {
     {.extension = ".poly", .read = read_poly},
@@ -56,6 +63,11 @@ constexpr DomainFormat kFormats[] = {
     {.extension = ".kmz", .drivers = kKmz, .needs_name = true},
     {.extension = ".gml", .drivers = kGml, .driver_options = kGmlAlone},
     {.extension = ".dxf", .read_layers = read_dxf},
+    {.extension = ".in2d", .read = read_in2d},
+    {.extension = ".fem", .read = read_model<FemmProblem::kMagnetics>},
+    {.extension = ".fee", .read = read_model<FemmProblem::kElectrostatics>},
+    {.extension = ".feh", .read = read_model<FemmProblem::kHeatFlow>},
+    {.extension = ".fec", .read = read_model<FemmProblem::kCurrents>},
     {.extension = ".dgn", .drivers = kDgn},
     {.extension = ".tab", .drivers = kMapInfo, .needs_name = true},
     {.extension = ".mif", .drivers = kMapInfo, .needs_name = true},

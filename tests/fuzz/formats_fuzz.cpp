@@ -58,6 +58,8 @@ const std::vector<Format>& formats() {
       {Kind::kMesh, {".vol"}},
       {Kind::kMesh, {".mfem"}},
       {Kind::kDomain, {".dxf"}},
+      {Kind::kDomain, {".in2d"}},
+      {Kind::kDomain, {".fem"}},
   };
   return all;
 }

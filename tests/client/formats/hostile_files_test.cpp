@@ -168,6 +168,76 @@ TEST(HostileDomain, DrawingIsRefusedOrRead) {
   });
 }
 
+TEST(HostileDomain, GeometryOfNetgenIsRefusedOrRead) {
+  TempFolder folder;
+  const auto path = folder.write("d.in2d",
+                                 "splinecurves2dv2\n"
+                                 "5\n"
+                                 "points\n"
+                                 "1 -2 -2\n"
+                                 "2 2 -2\n"
+                                 "3 0 2\n"
+                                 "11 1 0\n"
+                                 "12 1 1\n"
+                                 "13 0 1\n"
+                                 "14 -1 0 2 -maxh=0.1\n"
+                                 "segments\n"
+                                 "1 0 2 1 2 -bc=3\n"
+                                 "1 0 discretepoints 3 2 -2 1.5 1 0 2 -bcname=in\n"
+                                 "1 0 3 3 14 1 -bc=wall -maxh=0.2\n"
+                                 "2 1 4 11 12 13\n"
+                                 "2 1 2 13 11 -hpref\n"
+                                 "materials\n"
+                                 "1 air -maxh=0.5\n"
+                                 "2 iron\n");
+  damage(path, [&path] {
+    const auto domain = read_domain(path);
+    return domain && seeded(*domain).has_value();
+  });
+}
+
+TEST(HostileDomain, ModelOfFemmIsRefusedOrRead) {
+  TempFolder folder;
+  const auto path = folder.write("d.fem",
+                                 "[Format]      =  4.0\n"
+                                 "[LengthUnits] =  inches\n"
+                                 "[Comment]     =  \"a # b\"\n"
+                                 "[BdryProps]   = 2\n"
+                                 "  <BeginBdry>\n"
+                                 "    <BdryName> = \"A = 0\"\n"
+                                 "    <BdryType> = 0\n"
+                                 "  <EndBdry>\n"
+                                 "  <BeginBdry>\n"
+                                 "    <BdryName> = \"seam\"\n"
+                                 "    <BdryType> = 4\n"
+                                 "  <EndBdry>\n"
+                                 "[BlockProps]  = 1\n"
+                                 "  <BeginBlock>\n"
+                                 "    <BlockName> = \"M-19 Steel\"\n"
+                                 "    <BHPoints> = 2\n"
+                                 "      0\t0\n"
+                                 "      1.5\t200\n"
+                                 "  <EndBlock>\n"
+                                 "[NumPoints] = 5\n"
+                                 "-2\t0\t0\t0\n"
+                                 "2\t0\t0\t0\n"
+                                 "-1\t-1\t0\t0\n"
+                                 "1\t-1\t0\t0\n"
+                                 "0\t1\t0\t0\n"
+                                 "[NumSegments] = 3\n"
+                                 "2\t3\t-1\t2\t0\t0\n"
+                                 "3\t4\t0.1\t0\t0\t0\n"
+                                 "4\t2\t-1\t0\t0\t0\n"
+                                 "[NumArcSegments] = 2\n"
+                                 "1\t0\t180\t2.5\t1\t0\t0\t2.5\n"
+                                 "0\t1\t90\t2.5\t1\t0\t0\t2.5\n"
+                                 "[NumHoles] = 1\n"
+                                 "0\t0\t0\n"
+                                 "[NumBlockLabels] = 1\n"
+                                 "0\t1.5\t1\t0.2\t0\t0\t0\t1\t2\n");
+  damage(path, [&path] { return read_domain(path).has_value(); });
+}
+
 TEST(HostileDomain, ShapefileIsRefusedOrRead) {
   TempFolder folder;
   write_sample_shapefile(folder / "d");
