@@ -2,6 +2,7 @@
 #include "client/formats/domains/csv_rings.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -32,7 +33,7 @@ using Separator = DelimitedText::Separator;
 // Of columns of geometries in well-known text.
 constexpr std::string_view kGeometryNames[] = {"wkt", "wkt_geom", "geom", "geometry", "the_geom"};
 
-enum class Column { kX, kY, kRing, kMarker, kGeometry, kOther };
+enum class Column { kX, kY, kRing, kMarker, kBulge, kGeometry, kOther };
 
 // In small letters. Of "Easting [m]", the unit says nothing.
 std::string without_unit(std::string_view name) {
@@ -50,11 +51,11 @@ Column column_of(std::string_view name) {
     Column column;
   };
   static constexpr Name kNames[] = {
-      {"x", Column::kX},        {"lon", Column::kX},        {"long", Column::kX},
-      {"lng", Column::kX},      {"longitude", Column::kX},  {"easting", Column::kX},
-      {"point_x", Column::kX},  {"y", Column::kY},          {"lat", Column::kY},
-      {"latitude", Column::kY}, {"northing", Column::kY},   {"point_y", Column::kY},
-      {"ring", Column::kRing},  {"marker", Column::kMarker}};
+      {"x", Column::kX},        {"lon", Column::kX},         {"long", Column::kX},
+      {"lng", Column::kX},      {"longitude", Column::kX},   {"easting", Column::kX},
+      {"point_x", Column::kX},  {"y", Column::kY},           {"lat", Column::kY},
+      {"latitude", Column::kY}, {"northing", Column::kY},    {"point_y", Column::kY},
+      {"ring", Column::kRing},  {"marker", Column::kMarker}, {"bulge", Column::kBulge}};
   const std::string known = without_unit(name);
   for (const Name& entry : kNames)
     if (entry.text == known) return entry.column;
@@ -298,10 +299,18 @@ class Reader {
       }
       ring_ = ring;
     }
+    double bulge = 0;
+    if (const std::size_t place = place_of(Column::kBulge); place != kAbsent) {
+      if (place >= record.fields.size()) return missing(record, "the bulge");
+      const auto read = read_bulge(record, place);
+      if (!read) return tl::unexpected(read.error());
+      bulge = *read;
+    }
     corner.starts_ring = starts_ring_ || corners_.empty();
     starts_ring_ = false;
     corners_.push_back(corner);
     markers_.push_back(marker);
+    bulges_.push_back(bulge);
     lines_.push_back(record.line);
     return {};
   }
@@ -360,6 +369,19 @@ class Reader {
     return builder_.marker(static_cast<std::int32_t>(whole));
   }
 
+  // None if the field is empty.
+  Result<double> read_bulge(const Record& record, std::size_t place) const {
+    const Field& field = record.fields[place];
+    const std::string_view text = trimmed(field.text);
+    if (text.empty() || is_nan_text(text)) return 0;
+    constexpr double kMostBulge = 1e6;  // of the service
+    const auto bulge = table_.real(field);
+    if (!bulge) return error(record, place, "expected the bulge, found " + in_quotes(text));
+    if (std::abs(*bulge) > kMostBulge)
+      return error(record, place, "the bulge is " + shortest(*bulge) + ", magnitudes go up to 1e6");
+    return *bulge;
+  }
+
   // Hands the corners to the builder, ring by ring.
   Result<void> add_rings() {
     const RingBreaks breaks = ring_breaks(corners_);
@@ -397,8 +419,8 @@ class Reader {
     std::vector<Point> points;
     for (std::size_t i = start; i < end; ++i) points.push_back(corners_[i].at);
     const std::string path = "the ring from line " + std::to_string(lines_[start]);
-    return builder_.ring(points, path, {}, std::span(markers_).subspan(start, end - start), {},
-                         false);
+    return builder_.ring(points, path, {}, std::span(markers_).subspan(start, end - start),
+                         std::span(bulges_).subspan(start, end - start), false);
   }
 
   std::string name_;
@@ -409,6 +431,7 @@ class Reader {
   std::uint64_t unnamed_line_ = 0;  // the first that has more columns than the two
   std::vector<RingCorner> corners_;
   std::vector<std::uint32_t> markers_;  // labels, of the corners
+  std::vector<double> bulges_;          // of the segments that begin at the corners
   std::vector<std::uint64_t> lines_;    // of the corners
   bool starts_ring_ = true;             // the next corner
   std::uint64_t open_comment_ = 0;      // the line of a comment that alone parts the next corner

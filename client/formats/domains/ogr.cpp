@@ -18,6 +18,7 @@
 #include "client/formats/domains/feature_properties.h"
 #include "client/formats/domains/geometry_builder.h"
 #include "client/formats/domains/ogr_archive.h"
+#include "client/formats/domains/three_point_arcs.h"
 #include "client/formats/files/gdal_library.h"
 #include "client/formats/mesh_formats.h"
 #include "client/formats/triangle/triangle_points.h"
@@ -29,8 +30,6 @@ constexpr int kMaxDepth = 64;  // of geometries in geometries
 
 using Dataset = std::unique_ptr<void, decltype(&GDALClose)>;
 using Feature = std::unique_ptr<std::remove_pointer_t<OGRFeatureH>, decltype(&OGR_F_Destroy)>;
-using Geometry =
-    std::unique_ptr<std::remove_pointer_t<OGRGeometryH>, decltype(&OGR_G_DestroyGeometry)>;
 using Crs = std::unique_ptr<std::remove_pointer_t<OGRSpatialReferenceH>,
                             decltype(&OSRDestroySpatialReference)>;
 
@@ -200,12 +199,7 @@ class Reader {
     if (geometry == nullptr) return {};
     const auto properties = read_properties(feature, path);
     if (!properties) return tl::unexpected(properties.error());
-    if (gdal_.OGR_G_HasCurveGeometry(geometry, FALSE) == 0)
-      return add_geometry(geometry, path, *properties, 0);
-    const Geometry linear(gdal_.OGR_G_GetLinearGeometry(geometry, 0, nullptr),
-                          gdal_.OGR_G_DestroyGeometry);
-    if (!linear) return builder_.bad(path, "has curves that GDAL does not make chords of");
-    return add_geometry(linear.get(), path, *properties, 0);
+    return add_geometry(geometry, path, *properties, 0);
   }
 
   PropertyValue value(OGRFeatureH feature, const char* property) const {
@@ -236,6 +230,48 @@ class Reader {
     return points;
   }
 
+  // A line, a circular string, or a compound curve of these.
+  Result<ArcChain> chain_of(OGRGeometryH curve, const std::string& path) const {
+    ArcChain chain;
+    std::string fault;
+    switch (gdal_.OGR_GT_Flatten(gdal_.OGR_G_GetGeometryType(curve))) {
+      case wkbCircularString:
+        if (gdal_.OGR_G_IsEmpty(curve) == 0) fault = add_three_point_arcs(points_of(curve), chain);
+        break;
+      case wkbCompoundCurve:
+        for (int i = 0; i < gdal_.OGR_G_GetGeometryCount(curve) && fault.empty(); ++i) {
+          const auto part = chain_of(gdal_.OGR_G_GetGeometryRef(curve, i), path);
+          if (!part) return part;
+          fault = append(*part, chain);
+        }
+        break;
+      default:
+        chain = ArcChain(points_of(curve));
+    }
+    if (!fault.empty()) return builder_.bad(path, fault);
+    return chain;
+  }
+
+  Result<void> add_line(OGRGeometryH line, const std::string& path,
+                        const GeometryProperties& properties) {
+    const auto chain = chain_of(line, path);
+    if (!chain) return tl::unexpected(chain.error());
+    return builder_.line(chain->points, path, properties, {}, chain->bulges);
+  }
+  Result<void> add_polygon(OGRGeometryH polygon, const std::string& path,
+                           const GeometryProperties& properties) {
+    builder_.begin_polygon();
+    for (int i = 0; i < gdal_.OGR_G_GetGeometryCount(polygon); ++i) {
+      const std::string ring = path + ", ring " + std::to_string(i);
+      const auto chain = chain_of(gdal_.OGR_G_GetGeometryRef(polygon, i), ring);
+      if (!chain) return tl::unexpected(chain.error());
+      if (auto added = builder_.ring(chain->points, ring, properties, {}, chain->bulges); !added)
+        return added;
+    }
+    builder_.end_polygon(path, properties);
+    return {};
+  }
+
   Result<void> add_geometry(OGRGeometryH geometry, const std::string& path,
                             const GeometryProperties& properties, int depth) {
     if (depth > kMaxDepth)
@@ -249,20 +285,18 @@ class Reader {
       case wkbPoint:
         return builder_.point(points_of(geometry).at(0), path);
       case wkbLineString:
-        return builder_.line(points_of(geometry), path, properties);
+      case wkbCircularString:
+      case wkbCompoundCurve:
+        return add_line(geometry, path, properties);
       case wkbPolygon:
       case wkbTriangle:
-        builder_.begin_polygon();
-        for (int i = 0; i < parts; ++i)
-          if (auto added = builder_.ring(points_of(gdal_.OGR_G_GetGeometryRef(geometry, i)),
-                                         path + ", ring " + std::to_string(i), properties);
-              !added)
-            return added;
-        builder_.end_polygon(path, properties);
-        return {};
+      case wkbCurvePolygon:
+        return add_polygon(geometry, path, properties);
       case wkbMultiPoint:
       case wkbMultiLineString:
       case wkbMultiPolygon:
+      case wkbMultiCurve:
+      case wkbMultiSurface:
       case wkbGeometryCollection:
       case wkbPolyhedralSurface:
       case wkbTIN:

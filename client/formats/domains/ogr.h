@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads a domain by OGR, GDAL's half for vectors: polygons, lines and points of any dimension,
-// whose heights and measures are dropped, and curves, as chords of at most 4 degrees. Fields
-// `marker`, `region`, `max_area` and `max_edge`, of numbers or of texts that are numbers, mean the
-// same as in GeoJSON (geojson.h). What is meshed: see geometry_builder.h. Coordinates are taken as
-// they are, longitude before latitude.
+// whose heights and measures are dropped, and arcs, where a format has them by three points each
+// (three_point_arcs.h). Curves that a driver of GDAL divides are chords of at most 4 degrees.
+// Fields `marker`, `region`, `max_area` and `max_edge`, of numbers or of texts that are numbers,
+// mean the same as in GeoJSON (geojson.h). What is meshed: see geometry_builder.h. Coordinates are
+// taken as they are, longitude before latitude.
 //
 // Only the file and those that its format keeps beside it are opened, of a ZIP archive those in it
 // (ogr_archive.h): no other format is tried, and nothing is fetched that a file names.

@@ -11,6 +11,7 @@
 #include "client/base/text.h"
 #include "client/base/words.h"
 #include "client/formats/domains/geometry_builder.h"
+#include "client/formats/domains/three_point_arcs.h"
 #include "client/formats/files/file_contents.h"
 #include "client/formats/files/number_text.h"
 #include "client/formats/triangle/triangle_points.h"
@@ -173,7 +174,44 @@ class Reader {
     must(builder_.line(positions(), place, properties_));
   }
 
-  void polygon(const std::string& path) {
+  ArcChain straight() { return ArcChain(positions()); }
+  ArcChain circular() {
+    ArcChain chain;
+    const std::string fault = add_three_point_arcs(positions(), chain);
+    if (!fault.empty()) fail_here("this circular string " + fault);
+    return chain;
+  }
+  ArcChain compound() {
+    ArcChain chain;
+    expect('(');
+    do {
+      const std::string fault = append(curve(), chain);
+      if (!fault.empty()) fail_here("this compound curve " + fault);
+    } while (take(','));
+    expect(')');
+    return chain;
+  }
+  // A curve that is part of something, whose name is left out if it is a line.
+  ArcChain curve() {
+    const std::string kind = take_kind();
+    if (kind == "CIRCULARSTRING") return circular();
+    if (kind == "COMPOUNDCURVE") return compound();
+    if (!kind.empty() && kind != "LINESTRING")
+      fail_here("expected a curve, found " + in_quotes(kind));
+    return take_empty() ? ArcChain() : straight();
+  }
+
+  void add_line(const std::string& path, ArcChain (Reader::*read)()) {
+    skip_blanks();
+    const std::string place = at_line(path);
+    const ArcChain chain = (this->*read)();
+    must(builder_.line(chain.points, place, properties_, {}, chain.bulges));
+  }
+  void circular_string(const std::string& path) { add_line(path, &Reader::circular); }
+  void compound_curve(const std::string& path) { add_line(path, &Reader::compound); }
+  void curve_part(const std::string& path) { add_line(path, &Reader::curve); }
+
+  void add_polygon(const std::string& path, ArcChain (Reader::*read)()) {
     skip_blanks();
     const std::string whole = at_line(path);
     builder_.begin_polygon();
@@ -182,21 +220,43 @@ class Reader {
     do {
       skip_blanks();
       const std::string place = at_line(path + ", ring " + std::to_string(ring++));
-      must(builder_.ring(take_empty() ? std::vector<Point>() : positions(), place, properties_));
+      const ArcChain chain = take_empty() ? ArcChain() : (this->*read)();
+      must(builder_.ring(chain.points, place, properties_, {}, chain.bulges));
     } while (take(','));
     expect(')');
     builder_.end_polygon(whole, properties_);
   }
+  void polygon(const std::string& path) { add_polygon(path, &Reader::straight); }
+  void curve_polygon(const std::string& path) { add_polygon(path, &Reader::curve); }
+  // Whose name is left out if it has no arcs.
+  void surface_part(const std::string& path) {
+    const std::string kind = take_kind();
+    if (kind == "CURVEPOLYGON") return curve_polygon(path);
+    if (!kind.empty() && kind != "POLYGON")
+      fail_here("expected a polygon, found " + in_quotes(kind));
+    polygon(path);
+  }
 
   void leave_out(const std::string& path) { builder_.leave_out(LeftOut::kGeometry, at_line(path)); }
 
-  void geometry(const std::string& path, int depth) {
+  // The name of a geometry without the tag of its dimensions: "POLYGON Z", "POLYGONZ".
+  std::string take_kind() {
     std::string kind = word();
+    for (const std::string_view tag : {"ZM", "Z", "M"})
+      if (kind.ends_with(tag)) return kind.substr(0, kind.size() - tag.size());
+    const std::string_view before = rest_;
+    const std::string tag = word();
+    if (tag != "Z" && tag != "M" && tag != "ZM") rest_ = before;
+    return kind;
+  }
+
+  void geometry(const std::string& path, int depth) {
+    std::string kind = take_kind();
     if (kind == "SRID") {
       expect('=');
       number();
       expect(';');
-      kind = word();
+      kind = take_kind();
     }
     using Part = void (Reader::*)(const std::string&);
     struct Kind {
@@ -214,18 +274,16 @@ class Reader {
         {"MULTILINESTRING", &Reader::line_string, ", line "},
         {"MULTIPOLYGON", &Reader::polygon, ", polygon "},
         {"GEOMETRYCOLLECTION", nullptr, ", geometry "},
+        {"CIRCULARSTRING", &Reader::circular_string, nullptr},
+        {"COMPOUNDCURVE", &Reader::compound_curve, nullptr},
+        {"CURVEPOLYGON", &Reader::curve_polygon, nullptr},
+        {"MULTICURVE", &Reader::curve_part, ", line "},
+        {"MULTISURFACE", &Reader::surface_part, ", polygon "},
     };
-    const auto known = std::find_if(std::begin(kKinds), std::end(kKinds), [&kind](const Kind& k) {
-      if (!kind.starts_with(k.name)) return false;
-      const std::string_view tag = std::string_view(kind).substr(k.name.size());
-      return tag.empty() || tag == "Z" || tag == "M" || tag == "ZM";
-    });
+    const auto known = std::ranges::find(kKinds, kind, &Kind::name);
     if (known == std::end(kKinds))
       fail_here("expected a geometry of well-known text, found " +
                 (kind.empty() ? found() : in_quotes(kind)));
-    const std::string_view before = rest_;
-    const std::string tag = word();
-    if (tag != "Z" && tag != "M" && tag != "ZM") rest_ = before;
     if (take_empty()) return leave_out(path);
     if (known->parts == nullptr) return (this->*known->part)(path);
     if (depth == kMaxDepth) fail_here("is nested deeper than 64 levels");

@@ -70,15 +70,12 @@
   EACH(OGR_Fld_GetNameRef)                  \
   EACH(OGR_Fld_GetType)                     \
   EACH(OGR_GT_Flatten)                      \
-  EACH(OGR_G_DestroyGeometry)               \
   EACH(OGR_G_GetGeometryCount)              \
   EACH(OGR_G_GetGeometryName)               \
   EACH(OGR_G_GetGeometryRef)                \
   EACH(OGR_G_GetGeometryType)               \
-  EACH(OGR_G_GetLinearGeometry)             \
   EACH(OGR_G_GetPointCount)                 \
   EACH(OGR_G_GetPoints)                     \
-  EACH(OGR_G_HasCurveGeometry)              \
   EACH(OGR_G_IsEmpty)                       \
   EACH(OGR_L_FindFieldIndex)                \
   EACH(OGR_L_GetFeatureCount)               \

@@ -2,6 +2,8 @@
 // Domains from well-known text, shapefiles, tables of rings and meshes, and back to .poly.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <set>
 
 #include "client/formats/derived/mesh_domain.h"
@@ -66,6 +68,83 @@ TEST_F(DomainFile, WktTellsWhereItIsWrong) {
   EXPECT_NE(refusal("d.wkt", deep).find("is nested deeper than 64 levels"), std::string::npos);
 }
 
+TEST_F(DomainFile, WktHasArcs) {
+  using Arcs = std::vector<Domain::Arc>;
+  // A half circle to the right, then a quarter to the left.
+  const Domain line =
+      read("d.wkt", "CIRCULARSTRING(0 0, 1 1, 2 0, 2.585786437626905 -1.414213562373095, 4 -2)");
+  EXPECT_EQ(line.points, (std::vector<Point>{{0, 0}, {2, 0}, {4, -2}}));
+  ASSERT_EQ(line.arcs.size(), 2u);
+  EXPECT_EQ(line.arcs[0], (Domain::Arc{0, -1}));
+  EXPECT_NEAR(line.arcs[1].bulge, std::tan(std::numbers::pi / 8), 1e-15);
+  const Domain circle = read("d.wkt", "CURVEPOLYGON Z (CIRCULARSTRING Z (-1 0 9, 1 0 9, -1 0 9))");
+  EXPECT_EQ(circle.segments.size(), 2u);
+  EXPECT_EQ(circle.arcs, (Arcs{{0, 1}, {1, 1}}));
+  EXPECT_TRUE(circle.warnings.empty());
+  ASSERT_EQ(circle.areas.size(), 1u);
+  // A slot with a round hole in it.
+  const Domain slot =
+      read("d.wkt",
+           "CURVEPOLYGON(COMPOUNDCURVE((0 -1, 4 -1), CIRCULARSTRING(4 -1, 5 0, 4 1), (4 1, 0 1),"
+           "CIRCULARSTRING(0 1, -1 0, 0 -1)), CIRCULARSTRING(1 0, 2 0.5, 3 0, 2 -0.5, 1 0))");
+  EXPECT_EQ(slot.segments.size(), 6u);
+  ASSERT_EQ(slot.arcs.size(), 4u);
+  EXPECT_EQ(slot.arcs[0], (Domain::Arc{1, 1}));
+  EXPECT_TRUE(slot.warnings.empty());
+  const Domain several =
+      read("d.wkt",
+           "MULTISURFACE(((9 0, 10 0, 9 1, 9 0)), CURVEPOLYGON(CIRCULARSTRING(-1 0, 1 0, -1 0)))"
+           "MULTICURVE((0 5, 1 5), CIRCULARSTRING(1 5, 2 6, 3 5), EMPTY, COMPOUNDCURVE((3 5, 4 5)))"
+           "CIRCULARSTRING EMPTY COMPOUNDCURVE EMPTY CURVEPOLYGON EMPTY "
+           "CIRCULARSTRING(0 9, 1 9, 5 9)");
+  EXPECT_EQ(several.areas.size(), 2u);
+  EXPECT_EQ(several.arcs, (Arcs{{3, 1}, {4, 1}, {6, -1}}));
+  ASSERT_EQ(several.warnings.size(), 1u);
+  EXPECT_EQ(several.warnings[0].count, 4u);
+}
+
+TEST_F(DomainFile, WktTellsWhereItsArcsAreWrong) {
+  const auto of_string = [this](const std::string& positions) {
+    return refusal("d.wkt", "CIRCULARSTRING(" + positions + ")");
+  };
+  const std::string place = "this circular string has ";
+  EXPECT_EQ(of_string("0 0, 1 1"),
+            "d.wkt:1:25: " + place + "2 positions; arcs by three points each have 3, 5, 7, ...");
+  EXPECT_EQ(of_string("0 0, 0 0, 1 1"),
+            "d.wkt:1:30: " + place + "an arc two of whose points are (0, 0)");
+  EXPECT_EQ(of_string("0 0, 3 0, 1 0"),
+            "d.wkt:1:30: " + place +
+                "an arc whose points lie on one line, (3, 0) outside of "
+                "the others");
+  EXPECT_EQ(refusal("d.wkt", "COMPOUNDCURVE((0 0, 1 1), (1 2, 3 3))"),
+            "d.wkt:1:37: this compound curve has a part that begins at (1, 2), where the part "
+            "before it ends at (1, 1)");
+  EXPECT_EQ(refusal("d.wkt", "COMPOUNDCURVE(POLYGON((0 0, 1 1)))"),
+            "d.wkt:1:22: expected a curve, found 'POLYGON'");
+  EXPECT_EQ(refusal("d.wkt", "MULTISURFACE(LINESTRING(0 0, 1 1))"),
+            "d.wkt:1:24: expected a polygon, found 'LINESTRING'");
+  EXPECT_EQ(refusal("d.wkt", "POLYGON(CIRCULARSTRING(0 0, 1 1, 2 0))"),
+            "d.wkt:1:9: expected '(', found 'CIRCULARSTRING'");
+}
+
+TEST_F(DomainFile, RingsOfArcsThatCrossAreToldOfByTheirEdges) {
+  const auto warning = [this](const std::string& wkt) {
+    const Domain domain = read("d.wkt", wkt);
+    EXPECT_EQ(domain.warnings.size(), 1u);
+    return domain.warnings.empty() ? "" : domain.warnings[0].text;
+  };
+  // The arc crosses the side below it, its chord does not.
+  EXPECT_EQ(
+      warning("CURVEPOLYGON(COMPOUNDCURVE((-9 0, 9 0, 9 3, 3 3), CIRCULARSTRING(3 3, 2 -1, 1 3),"
+              "(1 3, -9 3, -9 0)))"),
+      "line 1, geometry 0, ring 0 is a ring that crosses itself: edge 0 from (-9, 0) to (9, 0) "
+      "crosses edge 3 from (3, 3) to (1, 3)");
+  EXPECT_EQ(warning("CURVEPOLYGON((0 0, 4 0, 4 4, 0 4, 0 0), CIRCULARSTRING(1 1, 3 1, 1 1),"
+                    "CIRCULARSTRING(1.5 1, 2.5 1, 1.5 1))")
+                .substr(0, 74),
+            "line 1, geometry 0, ring 2 is a hole that is outside of its polygon or in ");
+}
+
 TEST_F(DomainFile, RingsOfWktAreClosedWithAWarning) {
   const Domain domain = read("d.wkt", "\nPOLYGON((0 0, 1 0, 1 1, 0 1))");
   EXPECT_EQ(domain.segments.size(), 4u);
@@ -85,6 +164,20 @@ TEST_F(DomainFile, CsvRingsEndAtBlankLinesAndAtANewNumber) {
       "d.csv", "Ring,LAT,lon,marker\n1,0,10,5\n1,0,14,6\n1,4,14,7\n2,1,11,8\n2,1,12,8\n2,2,12,8\n");
   EXPECT_EQ(named.points[1], (Point{14, 0}));
   EXPECT_EQ(markers(named), (std::vector<std::int32_t>{5, 6, 7, 8, 8, 8}));
+}
+
+TEST_F(DomainFile, CsvRingsHaveArcsByTheirBulges) {
+  const Domain slot = read("d.csv", "x,y,bulge\n0,-1,\n4,-1,1\n4,1,0\n0,1,1\n\n1,0,-1\n3,0,-1\n");
+  EXPECT_EQ(slot.segments.size(), 6u);
+  EXPECT_EQ(slot.arcs, (std::vector<Domain::Arc>{{1, 1}, {3, 1}, {4, -1}, {5, -1}}));
+  EXPECT_TRUE(slot.warnings.empty());
+  EXPECT_EQ(read("d.csv", "x;y;Bulge\n0;0;0,5\n2;0;0\n2;2;\n").arcs,
+            (std::vector<Domain::Arc>{{0, 0.5}}));
+  EXPECT_EQ(refusal("d.csv", "x,y,bulge\n0,0,b\n"), "d.csv:2:5: expected the bulge, found 'b'");
+  EXPECT_EQ(refusal("d.csv", "x,y,bulge\n0,0,2e6\n"),
+            "d.csv:2:5: the bulge is 2e+06, magnitudes go up to 1e6");
+  EXPECT_EQ(refusal("d.csv", "x,y,bulge\n0,0\n"),
+            "d.csv:2:3: the line ends where the bulge should follow");
 }
 
 TEST_F(DomainFile, CsvRingsTellWhereTheyAreWrong) {

@@ -122,14 +122,18 @@ TEST(HostileDomain, WktIsRefusedOrRead) {
   const auto path = folder.write(
       "d.wkt",
       "MULTIPOLYGON(((0 0, 4 0, 4 4, 0 4, 0 0), (1 1, 2 1, 2 2, 1 1)), ((9 0, 12 0, 9 1, 9 0)));\n"
-      "GEOMETRYCOLLECTION(LINESTRING(0.5 0.5, 3.5 0.5), POINT Z(3 3 3))\n");
+      "GEOMETRYCOLLECTION(LINESTRING(0.5 0.5, 3.5 0.5), POINT Z(3 3 3))\n"
+      "MULTISURFACE(CURVEPOLYGON(COMPOUNDCURVE((20 0, 24 0), CIRCULARSTRING(24 0, 25 1, 24 2, 22 "
+      "4, "
+      "20 2), (20 2, 20 0)), CIRCULARSTRING(21 1, 23 1, 21 1)))\n");
   damage(path, [&path] { return read_domain(path).has_value(); });
 }
 
 TEST(HostileDomain, CsvIsRefusedOrRead) {
   TempFolder folder;
-  const auto path = folder.write(
-      "d.csv", "ring,x,y,marker\n1,0,0,1\n1,4,0,2\n1,4,4,3\n2,1,1,5\n2,2,1,5\n2,2,2,5\n");
+  const auto path = folder.write("d.csv",
+                                 "ring,x,y,marker,bulge\n1,0,0,1,\n1,4,0,2,0.5\n1,4,4,3,0\n2,1,1,5,"
+                                 "0\n2,2,1,5,1\n2,2,2,5,-1\n");
   damage(path, [&path] { return read_domain(path).has_value(); });
 }
 

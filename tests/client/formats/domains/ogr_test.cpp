@@ -140,12 +140,28 @@ TEST_F(OgrFile, NamesMarkersAndRegions) {
   EXPECT_EQ(domain->names.regions.at(7), "basin");
 }
 
-TEST_F(OgrFile, HasCurvesAsChords) {
-  const auto path =
-      write("d.gpkg", "GPKG", {{"d", {{"CURVEPOLYGON(CIRCULARSTRING(-1 0, 1 0, -1 0))"}}}});
-  const auto domain = read_domain(path);
-  ASSERT_TRUE(domain) << domain.error().message;
-  EXPECT_NEAR(static_cast<double>(domain->segments.size()), 90, 2);  // of 4 degrees
+TEST_F(OgrFile, HasArcsAsTheyAre) {
+  for (const auto& [name, driver] : {std::pair{"d.gpkg", "GPKG"}, {"d.gml", "GML"}}) {
+    const auto domain = read_domain(write(
+        name, driver,
+        {{"d",
+          {{"CURVEPOLYGON(COMPOUNDCURVE((0 -1, 4 -1), CIRCULARSTRING(4 -1, 5 0, 4 1), (4 1, 0 1),"
+            "CIRCULARSTRING(0 1, -1 0, 0 -1)), CIRCULARSTRING(1 0, 2 0.5, 3 0, 2 -0.5, 1 0))"},
+           {"MULTISURFACE(((9 0, 10 0, 9 1, 9 0)))"},
+           {"MULTICURVE((0 5, 1 5), CIRCULARSTRING(1 5, 2 6, 3 5))"}}}}));
+    ASSERT_TRUE(domain) << domain.error().message;
+    EXPECT_TRUE(domain->warnings.empty());
+    EXPECT_EQ(domain->areas.size(), 2u);
+    ASSERT_EQ(domain->arcs.size(), 5u) << name;
+    EXPECT_EQ(domain->arcs[0], (Domain::Arc{1, 1}));
+    EXPECT_EQ(domain->arcs[4], (Domain::Arc{10, -1}));
+  }
+}
+
+TEST_F(OgrFile, TellsWhereItsArcsAreWrong) {
+  EXPECT_EQ(refusal(write("d.gpkg", "GPKG", {{"d", {{"CIRCULARSTRING(0 0, 3 0, 1 0)"}}}})),
+            "d.gpkg: layer 'd', feature 1 has an arc whose points lie on one line, (3, 0) outside "
+            "of the others");
 }
 
 TEST_F(OgrFile, IsReadInPartByLayerAndCondition) {
@@ -350,12 +366,13 @@ TEST_F(OgrFile, IsReadInTheFormatOfItsNameAlone) {
 TEST_F(OgrFile, IsTheSameWhateverTheEnvironmentAsksOfGdal) {
   const auto path =
       write("d.gpkg", "GPKG", {{"d", {{"CIRCULARSTRING(0 0, 1 1, 2 0, 1 -1, 0 0)"}}}});
-  const std::size_t segments = markers(read_domain(path)).size();
-  EXPECT_NEAR(static_cast<double>(segments), 90, 2);
-  for (const auto& [name, value] :
-       {std::pair{"OGR_ARC_STEPSIZE", "45"}, {"OGR_ARC_MAX_GAP", "0.5"}}) {
+  for (const auto& [name, value] : {std::pair{"OGR_ARC_STEPSIZE", "45"},
+                                    {"OGR_ARC_MAX_GAP", "0.5"},
+                                    {"OGR_STROKE_CURVE", "TRUE"}}) {
     ::setenv(name, value, 1);
-    EXPECT_EQ(markers(read_domain(path)).size(), segments) << name;
+    const auto domain = read_domain(path);
+    ASSERT_TRUE(domain) << domain.error().message;
+    EXPECT_EQ(domain->arcs, (std::vector<Domain::Arc>{{0, -1}, {1, -1}})) << name;
     ::unsetenv(name);
   }
 }
