@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/formats/domains/femm.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -15,22 +15,12 @@
 #include "client/formats/files/code_page.h"
 #include "client/formats/files/file_contents.h"
 #include "client/formats/files/line_scanner.h"
+#include "client/formats/files/malformed.h"
 #include "client/formats/files/number_text.h"
 #include "client/formats/triangle/triangle_points.h"
 
 namespace weft::client {
 namespace {
-
-// Thrown and caught in this file only.
-struct Malformed {
-  Error error;
-};
-
-template <class T>
-T must(Result<T> result) {
-  if (!result) throw Malformed{std::move(result.error())};
-  if constexpr (!std::is_void_v<T>) return std::move(*result);
-}
 
 // A text may have any character.
 constexpr LineSyntax kSyntax{.comment = '\0'};
@@ -148,8 +138,12 @@ class Reader {
     const std::int64_t number = must(scanner_.integer(what));
     if (number < 0 || number > static_cast<std::int64_t>(properties.size()))
       fail_here(std::string("there is no ") + what + " " + std::to_string(number) + " above");
-    if (number > 0) properties[static_cast<std::size_t>(number - 1)].is_used = true;
-    return static_cast<std::int32_t>(number);
+    if (number == 0) return 0;
+    // FEMM knows them by name: those of one name are one.
+    const auto first = std::ranges::find(
+        properties, properties[static_cast<std::size_t>(number - 1)].name, &Property::name);
+    first->is_used = true;
+    return static_cast<std::int32_t>(first - properties.begin()) + 1;
   }
   void add_segment(std::uint32_t a, std::uint32_t b, std::int32_t marker) {
     domain_.segment_places.extend(domain_.segments.size(), scanner_.name() + ":", scanner_.line());

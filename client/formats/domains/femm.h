@@ -5,8 +5,8 @@
 //
 // Segments and arc segments are those of the domain, by the numbers of their points, from 0; arcs
 // are arcs. A boundary property is a marker, by its place in the file, from 1, and its name; a
-// block label is a seed, its material a region, in the same way; its mesh size is the diameter of a
-// circle that is as large as triangles may be. `<No Mesh>` is a hole.
+// block label is a seed, its material a region, in the same way. Those of one name are one. A mesh
+// size is the diameter of a circle that is as large as triangles may be. `<No Mesh>` is a hole.
 //
 // Warnings: a unit of length other than metres, which coordinates keep; periodic boundary
 // properties, sizes of segments, and a label that is the default of faces without one, which have

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/formats/domains/in2d.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -17,22 +18,12 @@
 #include "client/formats/domains/spline.h"
 #include "client/formats/files/file_contents.h"
 #include "client/formats/files/line_scanner.h"
+#include "client/formats/files/malformed.h"
 #include "client/formats/files/number_text.h"
 #include "client/formats/triangle/triangle_points.h"
 
 namespace weft::client {
 namespace {
-
-// Thrown and caught in this file only.
-struct Malformed {
-  Error error;
-};
-
-template <class T>
-T must(Result<T> result) {
-  if (!result) throw Malformed{std::move(result.error())};
-  if constexpr (!std::is_void_v<T>) return std::move(*result);
-}
 
 struct Flags {
   std::optional<std::int32_t> number;  // of the boundary condition
@@ -46,8 +37,7 @@ class Reader {
 
   Result<Domain> read() {
     try {
-      must(scanner_.next_line("the header"));
-      const std::string_view header = must(scanner_.word("the header"));
+      const std::string_view header = word("the header");
       if (header == "splinecurves2dv2") {
         read_sections();
       } else if (header == "splinecurves2dnew" || header == "splinecurves2d") {
@@ -81,14 +71,18 @@ class Reader {
   [[noreturn]] void fail_here(const std::string& message) const {
     throw Malformed{scanner_.error(message).value()};
   }
-  void to_field(const char* what) { must(scanner_.to_field(what)); }
+  // Fields may go on below.
   double real(const char* what) {
-    to_field(what);
+    must(scanner_.to_field(what));
     return must(scanner_.real(what));
   }
   std::int32_t integer(const char* what) {
-    to_field(what);
+    must(scanner_.to_field(what));
     return must(scanner_.marker(what));
+  }
+  std::string_view word(const char* what) {
+    must(scanner_.to_field(what));
+    return must(scanner_.word(what));
   }
 
   void read_sections() {
@@ -122,7 +116,7 @@ class Reader {
     }
   }
   void rows(const char* what, void (Reader::*row)()) {
-    to_field(what);
+    must(scanner_.to_field(what));
     const std::uint64_t count = must(scanner_.count(what));
     for (std::uint64_t i = 0; i < count; ++i) {
       must(scanner_.next_line("a row of that section"));
@@ -177,8 +171,7 @@ class Reader {
   void segment() {
     const std::int32_t left = side("the domain on the left");
     const std::int32_t right = side("the domain on the right");
-    to_field("the type of the segment");
-    const std::string_view type = must(scanner_.word("the type of the segment"));
+    const std::string_view type = word("the type of the segment");
     const std::uint64_t line = scanner_.line();
     ArcChain chain;
     if (type == "2") {
@@ -188,10 +181,11 @@ class Reader {
       const Point from = point("the first point");
       const Point tip = point("the point where the tangents meet");
       chain = curve(from, tip, point("the last point"), type == "4");
-    } else if (type == "discretepoints") {
-      chain = polyline();
+    } else if (type == "discretepoints" || type == "bsplinepoints") {
+      chain = curve_of_points(type == "bsplinepoints");
     } else {
-      fail_here("expected a segment of type 2, 3, 4 or discretepoints, found " + in_quotes(type));
+      fail_here("expected a segment of type 2, 3, 4, discretepoints or bsplinepoints, found " +
+                in_quotes(type));
     }
     std::vector<std::uint32_t> vertices;
     for (std::size_t i = 0; i < chain.points.size(); ++i)
@@ -205,8 +199,8 @@ class Reader {
   }
   std::int32_t side(const char* what) {
     const std::int32_t number = integer(what);
-    if (number < 0) fail_here(std::string(what) + " is " + std::to_string(number));
-    return number;
+    if (number >= 0) return number;
+    fail_here(std::string(what) + " is " + std::to_string(number));
   }
 
   // Netgen's rational curve: the weight of its tip makes it an arc of a circle if it can be one.
@@ -221,15 +215,26 @@ class Reader {
                 shortest(b));
     return arcs_of(Spline{2, {0, 0, 0, 1, 1, 1}, {1, weight, 1}, {from, tip, to}});
   }
-  ArcChain polyline() {
+  ArcChain curve_of_points(bool is_spline) {
     const std::int32_t count = integer("the number of points");
-    if (count < 2) fail_here("a polyline has two points at least");
-    std::vector<Point> points;
+    if (count < 2) fail_here("a curve has two points at least");
+    const std::int32_t order = is_spline ? integer("the order of the spline") : 2;
+    if (order < 2 || order > 4 || order > count)
+      fail_here("the order is " + std::to_string(order) +
+                ", it is from 2 to 4, and at most the number of points");
+    Spline spline{.degree = order - 1};
     for (std::int32_t i = 0; i < count; ++i) {
       const double x = real("the x coordinate");
-      points.push_back({x, real("the y coordinate")});
+      spline.control.push_back({x, real("the y coordinate")});
     }
-    return ArcChain(std::move(points));
+    // Those on the next line are this segment's, too.
+    if (LineScanner ahead = scanner_;
+        scanner_.at_line_end() && ahead.try_next_line() && ahead.rest_of_line()[0] == '-')
+      scanner_ = ahead;
+    if (!is_spline) return ArcChain(std::move(spline.control));
+    for (std::int32_t i = 0; i < count + order; ++i)
+      spline.knots.push_back(std::clamp(i - order + 1, 0, count - order + 1));
+    return arcs_of(spline);
   }
 
   void add(const ArcChain& chain, const std::vector<std::uint32_t>& vertices, std::uint32_t label,
@@ -254,8 +259,7 @@ class Reader {
 
   void material() {
     const std::int32_t number = integer("the number of the domain");
-    to_field("the material");
-    const std::string_view name = must(scanner_.word("the material"));
+    const std::string_view name = word("the material");
     names_.add(NameKind::kRegion, number, name);
     if (const auto max_edge = flags().max_edge) max_edges_[number] = *max_edge;
   }

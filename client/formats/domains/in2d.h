@@ -16,11 +16,12 @@
 // its number is its region. A segment is its marker's, -bc, a number or a name, or -bcname; else 0.
 // Those between two domains are there twice, once for each. A rational curve is that of Netgen,
 // which is an arc of a circle if its tangents have one length: a type 4, where it must be; other
-// curves are followed by biarcs (spline.h). `discretepoints` are a polyline.
+// curves are followed by biarcs (spline.h). `discretepoints` are a polyline, `bsplinepoints` the
+// control points of a spline of order 2 to 4, which ends at the first and last of them.
 //
 // Warnings: flags and factors that size or refine otherwise than -maxh of a domain; points that
 // belong to nothing. Errors (kUnreadableInput) carry file:line:column: also numbers of points that
-// are not there or there twice, `bsplinepoints`, a domain whose border is not closed.
+// are not there or there twice, a domain whose border is not closed.
 #pragma once
 
 #include <filesystem>

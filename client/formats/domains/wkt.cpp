@@ -13,6 +13,7 @@
 #include "client/formats/domains/geometry_builder.h"
 #include "client/formats/domains/three_point_arcs.h"
 #include "client/formats/files/file_contents.h"
+#include "client/formats/files/malformed.h"
 #include "client/formats/files/number_text.h"
 #include "client/formats/triangle/triangle_points.h"
 
@@ -21,11 +22,6 @@ namespace {
 
 constexpr int kMaxDepth = 64;  // of collections in collections
 constexpr std::string_view kBlanks = " \t\r\n\f\v";
-
-// Thrown and caught in this file only.
-struct Malformed {
-  Error error;
-};
 
 class Reader {
  public:
@@ -59,9 +55,6 @@ class Reader {
     throw Malformed{{ExitCode::kUnreadableInput,
                      name_ + ":" + std::to_string(line()) + ":" +
                          std::to_string(before.size() - line_start + indent) + ": " + what}};
-  }
-  static void must(const Result<void>& done) {
-    if (!done) throw Malformed{done.error()};
   }
   // The number of lines up to here; counts on from the place of the last call.
   std::uint64_t line() const {

@@ -161,6 +161,16 @@ TEST_F(FemmFile, TellsOfWhatHasNoEffect) {
   EXPECT_EQ(warnings(sized, "d.fec").size(), 2u);
 }
 
+TEST_F(FemmFile, HasOneRegionOfMaterialsOfOneName) {
+  const Domain domain = read(
+      "<BeginBlock>\n<BlockName> = \"Iron\"\n<BeginBlock>\n<BlockName> = \"Air\"\n<BeginBlock>\n"
+      "<BlockName> = \"Iron\"\n[NumPoints] = 1\n0 0\n[NumBlockLabels] = 2\n1 1 3\n2 2 2\n");
+  EXPECT_EQ(domain.regions[0].id, 1);
+  EXPECT_EQ(domain.regions[1].id, 2);
+  EXPECT_EQ(domain.names.regions, (NameTable{{1, "Iron"}, {2, "Air"}}));
+  EXPECT_TRUE(domain.warnings.empty());
+}
+
 TEST_F(FemmFile, HasNamesOfWindows) {
   const Domain domain = read(
       "<BeginBdry>\n<BdryName> = \"Au\xdf"

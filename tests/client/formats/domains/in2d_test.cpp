@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -120,6 +121,26 @@ TEST_F(In2dFile, HasCurvesThatAreNoCirclesAsBiarcs) {
   EXPECT_EQ(polyline.segments.size(), 4u);
 }
 
+TEST_F(In2dFile, HasSplinesByTheirControlPoints) {
+  // A parabola from (0, 0) to (2, 0) with the tangents (1, 1) and (1, -1), and one whose flags are
+  // on the line below.
+  const auto of_spline = [&](const std::string& spline) {
+    return read(
+        "splinecurves2dv2 5\npoints\n1 0 0\n2 2 0\nsegments\n1 0 2 1 2\n1 0 bsplinepoints " +
+        spline);
+  };
+  const Domain parabola = of_spline("3 3\n2 0\n1 1\n0 0\n-bc=7\n# end\n");
+  EXPECT_GT(parabola.arcs.size(), 3u);
+  EXPECT_LT(parabola.arcs.size(), 30u);
+  for (const Domain::Arc& arc : parabola.arcs) EXPECT_GT(arc.bulge, 0);
+  EXPECT_EQ(parabola.segments.back().marker, 7);
+  double top = 0;
+  for (const Point p : parabola.points) top = std::max(top, p.y);
+  EXPECT_NEAR(top, 0.5, 1e-9);
+  EXPECT_EQ(of_spline("4 2 2 0 2 1 0 1 0 0\n").segments.size(), 4u);
+  EXPECT_FALSE(of_spline("5 4 2 0 2 1 1 1 0 1 0 0\n").arcs.empty());
+}
+
 TEST_F(In2dFile, MayHaveCountsInThePlaceOfSections) {
   const std::string corners = "0 0 1\n2 0 1\n2 1 1\n0 1 0.1\n";
   const std::string numbered = "4\n1 0 0 1\n2 2 0\n3 2 1\n4 0 1 0.1\n";
@@ -163,14 +184,14 @@ TEST_F(In2dFile, IsRefusedWithThePlaceOfItsFault) {
   EXPECT_EQ(refusal("splinecurves2dv2\n1\npoints\n1 0 1e99\n"),
             "d.in2d:4:5: the point is (0, 1e+99), magnitudes go up to 1e50");
   EXPECT_EQ(refusal(with("1 0 2 1 4\n")), "d.in2d:8:9: there is no point 4 above");
-  EXPECT_EQ(refusal(with("1 0 5 1 2\n")),
-            "d.in2d:8:5: expected a segment of type 2, 3, 4 or discretepoints, found '5'");
-  EXPECT_EQ(refusal(with("1 0 bsplinepoints 2 2 0 0 1 1\n")),
-            "d.in2d:8:5: expected a segment of type 2, 3, 4 or discretepoints, found "
-            "'bsplinepoints'");
+  EXPECT_EQ(
+      refusal(with("1 0 5 1 2\n")),
+      "d.in2d:8:5: expected a segment of type 2, 3, 4, discretepoints or bsplinepoints, found '5'");
+  EXPECT_EQ(refusal(with("1 0 bsplinepoints 2 3 0 0 1 1\n")),
+            "d.in2d:8:21: the order is 3, it is from 2 to 4, and at most the number of points");
   EXPECT_EQ(refusal(with("-1 0 2 1 2\n")), "d.in2d:8:1: the domain on the left is -1");
   EXPECT_EQ(refusal(with("1 0 discretepoints 1 0 0\n")),
-            "d.in2d:8:20: a polyline has two points at least");
+            "d.in2d:8:20: a curve has two points at least");
   EXPECT_EQ(refusal(with("1 0 3 1 2 1\n")), "d.in2d:8:11: the curve ends where it begins");
   EXPECT_EQ(refusal(with("1 0 2 1 2 x\n")), "d.in2d:8:11: expected a flag, found 'x'");
   EXPECT_EQ(refusal(with("1 0 2 1 2 -bc=\n")), "d.in2d:8:11: expected a value after -bc=");
