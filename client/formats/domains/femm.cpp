@@ -182,7 +182,10 @@ class Reader {
     region.id = property_number("material", materials_);
     if (!scanner_.at_line_end()) {
       const double diameter = real("the mesh size");
-      if (diameter > 0) region.max_area = std::numbers::pi / 4 * diameter * diameter;
+      const double area = std::numbers::pi / 4 * diameter * diameter;
+      if (diameter > 0) region.max_area = area;
+      if (diameter > 0 && !(area > 0 && std::isfinite(area)))
+        fail_here("the mesh size is " + shortest(diameter) + ", and its square no number");
     }
     // The circuit, the direction of magnetization, the group and the turns; or the group.
     const int between = problem_ == FemmProblem::kMagnetics ? 4 : 1;

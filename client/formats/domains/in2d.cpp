@@ -281,7 +281,8 @@ class Reader {
         condition(name, value, found);
       } else if (name == "-maxh") {
         found.max_edge = real_of(value);
-        if (!found.max_edge || !(*found.max_edge > 0))
+        const double area = area_of_edge(found.max_edge.value_or(0));
+        if (!(area > 0 && std::isfinite(area) && *found.max_edge > 0))
           fail_here("expected a positive number after -maxh=, found " + in_quotes(value));
       } else {
         leave_out(std::string(name));

@@ -200,6 +200,8 @@ TEST_F(FemmFile, IsRefusedWithThePlaceOfItsFault) {
             "d.fem:5:5: the arc ends where it begins");
   EXPECT_EQ(refusal(points + "[NumBlockLabels] = 1\n0 0 4\n"),
             "d.fem:5:5: there is no material 4 above");
+  EXPECT_EQ(refusal(points + "[NumBlockLabels] = 1\n0 0 0 1e-300\n"),
+            "d.fem:5:7: the mesh size is 1e-300, and its square no number");
   EXPECT_EQ(refusal("<BdryName> = \"x\"\n"),
             "d.fem:1:1: expected the beginning of a property before '<bdryname>'");
 }

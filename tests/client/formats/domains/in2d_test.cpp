@@ -197,8 +197,9 @@ TEST_F(In2dFile, IsRefusedWithThePlaceOfItsFault) {
   EXPECT_EQ(refusal(with("1 0 2 1 2 -bc=\n")), "d.in2d:8:11: expected a value after -bc=");
   EXPECT_EQ(refusal(with("1 0 2 1 2 -bc=3000000000\n")),
             "d.in2d:8:11: the boundary condition is 3000000000, it must fit in 32 bits");
-  EXPECT_EQ(refusal(with("1 0 2 1 2\n1 0 2 2 3\nmaterials\n1 x -maxh=0\n")),
-            "d.in2d:11:5: expected a positive number after -maxh=, found '0'");
+  for (const std::string size : {"0", "-1", "x", "1e-300", "1e300"})
+    EXPECT_EQ(refusal(with("1 0 2 1 2\n1 0 2 2 3\nmaterials\n1 x -maxh=" + size + "\n")),
+              "d.in2d:11:5: expected a positive number after -maxh=, found '" + size + "'");
   EXPECT_EQ(refusal(with("1 0 2 1 2\n1 0 2 2 3\n")),
             "d.in2d:4: the border of domain 1 is not closed: an odd number of its segments ends at "
             "(0, 0)");
