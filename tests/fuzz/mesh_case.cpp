@@ -90,8 +90,8 @@ class PslgMaker {
     pslg_.segments.push_back(
         {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), marker});
     if (!has_arcs_) return;
-    const double bulge = bytes_.one_of<double>({0, 0, 0, 1, -1, 0.41421356237309503, -0.2, 0.05,
-                                                1e-3, -1e-6, 1e-9, -2.5, 40, 1e5});
+    const double bulge = bytes_.one_of<double>(
+        {0, 0, 0, 1, -1, 0.41421356237309503, -0.2, 0.05, 1e-3, -1e-6, 1e-9, -2.5, 20});
     if (bulge != 0)
       pslg_.arcs.push_back({static_cast<std::uint32_t>(pslg_.segments.size() - 1), bulge});
   }

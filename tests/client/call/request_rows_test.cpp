@@ -59,6 +59,7 @@ const std::map<std::string, Sample>& samples() {
                                                     {"gradation", {"0.25"}},
                                                     {"gradation-within", {"true"}},
                                                     {"cells-across", {"3"}},
+                                                    {"points-per-circle", {"36"}},
                                                     {"min-angle", {"25"}},
                                                     {"min-edge", {"0.0010549"}},
                                                     {"placement", {"circumcentre"}},
