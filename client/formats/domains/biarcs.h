@@ -15,10 +15,10 @@
 
 namespace weft::client {
 
+// The tangent goes with the parameter, has any length, and is 0 where the curve stands still.
 struct CurvePoint {
   Point at;
-  Point
-      tangent;  // in the direction of the parameter, of any length; 0 where the curve stands still
+  Point tangent;
 };
 using Curve = std::function<CurvePoint(double)>;
 

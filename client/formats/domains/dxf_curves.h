@@ -31,8 +31,8 @@ DxfPlacement plane_of(const std::array<double, 3>& extrusion, double height);
 // (cos, sin) of degrees; exact for multiples of 90.
 Point direction(double degrees);
 
-// Adds what leads from the end of the chain, which is place(a), to place(b): in the plane that is
-// placed, the arc of that bulge, which may be 0. Elsewhere than `place` keeps circles, that is an
+// Adds an arc from the end of the chain, which is place(a), to place(b): the one from `a` to `b`
+// with this bulge, which may be 0, as it is placed. If `place` does not keep circles, that is an
 // arc of an ellipse.
 void add_bulge(const DxfPlacement& place, Point a, Point b, double bulge, ArcChain& chain);
 
