@@ -21,6 +21,7 @@ export function openBrowser() {
   return puppeteer.launch({
     executablePath: chromium,
     defaultViewport: size,
+    timeout: patience,
     protocolTimeout: 300_000,
     args: [
       ...sandbox,

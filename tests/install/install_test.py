@@ -215,7 +215,7 @@ def zsh_line(prefix, folder, typed):
 
     def wait_for(pattern):
         nonlocal said
-        until = time.monotonic() + 20
+        until = time.monotonic() + 180
         while not (found := re.search(pattern, said)):
             assert time.monotonic() < until, f"zsh does not say {pattern}: {said}"
             if select.select([terminal], [], [], 0.2)[0]:
