@@ -16,7 +16,8 @@ namespace {
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 struct Bend {
-  double along, aside;  // of the middle, from that of the chord, over half of its length
+  bool on_bisector;  // of the ends, to the rounding of coordinates
+  double height;     // of the middle over the chord, over half of its length; 0: straight
 };
 
 Bend bend_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& side) {
@@ -26,13 +27,16 @@ Bend bend_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& side) {
   const double x = at(1, 0) - at(0, 0), y = at(1, 1) - at(0, 1);
   const double off_x = at(2, 0) - (at(0, 0) / 2 + at(1, 0) / 2);
   const double off_y = at(2, 1) - (at(0, 1) / 2 + at(1, 1) / 2);
-  const double scale = 2 / (x * x + y * y);
-  // Straight sides, up to the rounding of the coordinates.
   double largest = 0;
   for (std::size_t k = 0; k < 3; ++k)
     largest = std::max({largest, std::fabs(at(k, 0)), std::fabs(at(k, 1))});
-  if (std::max(std::fabs(off_x), std::fabs(off_y)) <= 0x1p-50 * largest) return {0, 0};
-  return {scale * (off_x * x + off_y * y), scale * (off_x * y - off_y * x)};
+  const double rounding = 0x1p-50 * largest;
+  if (std::max(std::fabs(off_x), std::fabs(off_y)) <= rounding) return {true, 0};
+  constexpr double kOnBisector = 1e-9;  // of the length
+  const double length = std::sqrt(x * x + y * y);
+  const double along = (off_x * x + off_y * y) / length;
+  return {std::fabs(along) <= 4 * rounding + kOnBisector * length,
+          2 * (off_x * y - off_y * x) / (length * length)};
 }
 
 }  // namespace
@@ -60,12 +64,9 @@ std::string take_out_middles(Mesh& mesh) {
       if (is_middle[v] != 0)
         return "node " + std::to_string(v) + " is the middle of a side, and the end of one";
 
-  constexpr double kOnBisector = 1e-9;
-  std::size_t bent = 0;
-  for (const auto& side : mesh.middles) {
-    const Bend bend = bend_of(mesh, side);
-    bent += bend.along != 0 || bend.aside != 0;
-  }
+  const auto is_bent = [](const Bend& bend) { return !bend.on_bisector || bend.height != 0; };
+  auto bent = static_cast<std::size_t>(std::ranges::count_if(
+      mesh.middles, [&](const auto& side) { return is_bent(bend_of(mesh, side)); }));
   mesh.edge_bulges.assign(mesh.edges.size() / 2, 0);
   for (std::size_t e = 0; e < mesh.edge_bulges.size(); ++e) {
     const auto [low, high] = std::minmax(mesh.edges[2 * e], mesh.edges[2 * e + 1]);
@@ -73,9 +74,9 @@ std::string take_out_middles(Mesh& mesh) {
         std::lower_bound(mesh.middles.begin(), mesh.middles.end(), std::array{low, high, 0u});
     if (side == mesh.middles.end() || (*side)[0] != low || (*side)[1] != high) continue;
     const Bend bend = bend_of(mesh, *side);
-    if (std::fabs(bend.along) > kOnBisector || !(std::fabs(bend.aside) <= 1)) continue;
-    mesh.edge_bulges[e] = mesh.edges[2 * e] == low ? bend.aside : -bend.aside;
-    bent -= bend.along != 0 || bend.aside != 0;
+    if (!bend.on_bisector || !(std::fabs(bend.height) <= 1)) continue;
+    mesh.edge_bulges[e] = mesh.edges[2 * e] == low ? bend.height : -bend.height;
+    bent -= is_bent(bend);
   }
   if (std::ranges::none_of(mesh.edge_bulges, [](double bulge) { return bulge != 0; }))
     mesh.edge_bulges.clear();
