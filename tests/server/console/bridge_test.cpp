@@ -336,7 +336,11 @@ TEST(Bridge, ABrowserThatReadsNothingIsCutOff) {
   WebConnection browser(server.address(), nullptr, 1 << 16);
   browser.send(call_request(kGenerateMesh, framed(mesh_request())));
   EXPECT_TRUE(refused.wait());
-  EXPECT_ANY_THROW(browser.read_call()) << "the response is cut off";
+  // The response is cut off, unless the service notices first and ends it with an error.
+  try {
+    EXPECT_FALSE(browser.read_call().status().ok());
+  } catch (const std::exception&) {
+  }
 }
 
 TEST(Bridge, ServesTwoHundredTabsAtOnce) {
