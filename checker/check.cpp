@@ -2,6 +2,7 @@
 #include "checker/check.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -104,12 +105,28 @@ void name_as_given(const StraightDomain& straight, BentDomain& bent) {
   for (BentDomain::Beside& beside : bent.beside) beside.segment = straight.origin[beside.segment];
 }
 
+void measure_to_arcs(const ArcChains& arcs, BentDomain& bent) {
+  const auto length = [](const Domain& domain, std::uint32_t segment) {
+    const auto [a, b] = domain.segments[segment];
+    const Vec2 p = domain.points[a], q = domain.points[b];
+    return std::hypot(q.x - p.x, q.y - p.y);
+  };
+  for (std::uint32_t piece = 0; piece < bent.origin.size(); ++piece) {
+    const std::uint32_t segment = bent.origin[piece];
+    bent.beside_arc.push_back(arcs.beside[segment] * length(bent.domain, piece) /
+                              length(arcs.straight.domain, segment));
+  }
+}
+
 Match match_with(const Compared& compared, bool no_overlap, const std::vector<Jumps>& jumps,
                  std::uint64_t listed_violations) {
   const auto& [given, arcs, domain, near, mesh, half_edges, listed] = compared;
   Match match{.findings = Findings(listed_violations)};
   match.bent = bend(domain, near, mesh, listed, jumps);
-  if (arcs) name_as_given(arcs->straight, match.bent);
+  if (arcs) {
+    name_as_given(arcs->straight, match.bent);
+    measure_to_arcs(*arcs, match.bent);
+  }
   match.filled = arrange(match.bent, match.findings);
   if (!no_overlap || !match.filled) return match;
   const auto& [arrangement, roles, joined, needs] = *match.filled;

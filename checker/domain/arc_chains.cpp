@@ -247,11 +247,14 @@ class ChainFinder {
       if (bulges[s] == 0) {
         pieces.push_back({s, domain_.segments[s][0], domain_.segments[s][1]});
         result_.is_gap.push_back(0);
+        result_.beside.push_back(0);
       }
       for (; piece != pieces_.end() && piece->segment == s; ++piece) {
         if (points_[piece->from] == points_[piece->to]) continue;
         pieces.push_back({s, piece->from, piece->to});
         result_.is_gap.push_back(piece->is_gap ? 1 : 0);
+        result_.beside.push_back(piece->curve->beside(points_[piece->from], points_[piece->to],
+                                                      piece->to_angle - piece->from_angle));
       }
     }
     const std::vector<Vec2> added(

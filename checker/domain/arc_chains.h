@@ -49,6 +49,8 @@ struct ArcChains {
   StraightDomain straight;
   std::vector<std::optional<CircularArc>> curves;  // per given segment; nullopt if it is straight
   std::vector<char> is_gap;                        // per segment of the straight domain
+  // Per segment of the straight domain: the area between it and its arc (CircularArc::beside).
+  std::vector<double> beside;
   double tolerance = 0;  // how far vertices may be off arcs that others bend
   std::vector<Chord> chords;
 };

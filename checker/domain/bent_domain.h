@@ -36,6 +36,8 @@ struct BentDomain {
   // Per piece: the segment that violations name. That of the input, unless the input is itself
   // derived from a domain with arcs (arc_chains.h).
   std::vector<std::uint32_t> given;
+  // Per piece: the area between it and its arc, above 0 if that lies right of it; empty: no arcs.
+  std::vector<double> beside_arc;
   std::vector<char> is_gap;   // per piece: whether the mesh seems to lack it
   std::vector<char> is_tear;  // per piece: a gap so short that the mesh need not have it
   // Per piece: the uncertainty of its place because of merging; 0 if nothing is near.

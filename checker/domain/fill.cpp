@@ -169,11 +169,32 @@ FaceRole role_of(const Domain& domain, std::span<const std::uint32_t> covering,
   return role;
 }
 
+// Up to the arcs whose chords bound a face.
+std::vector<double> sizes_of_faces(const BentDomain& bent, const Arrangement& arrangement) {
+  std::vector<double> sizes;
+  for (const Arrangement::Face& face : arrangement.faces()) sizes.push_back(face.area);
+  if (bent.beside_arc.empty()) return sizes;
+  for (std::uint32_t e = 0; e < arrangement.edges().size(); ++e) {
+    if (arrangement.covers(e).empty()) continue;
+    const std::uint32_t piece = arrangement.covers(e)[0];
+    const auto [a, b] = bent.domain.segments[piece];
+    const Vec2 p = bent.domain.points[a], q = bent.domain.points[b];
+    const Arrangement::Edge& edge = arrangement.edges()[e];
+    const Vec2 u = arrangement.vertices().at(edge.u), v = arrangement.vertices().at(edge.v);
+    const double share = ((v.x - u.x) * (q.x - p.x) + (v.y - u.y) * (q.y - p.y)) /
+                         ((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
+    sizes[arrangement.face(2 * e)] += share * bent.beside_arc[piece];
+    sizes[arrangement.face(2 * e + 1)] -= share * bent.beside_arc[piece];
+  }
+  return sizes;
+}
+
 std::vector<FaceRole> fill_by_areas(const BentDomain& bent, const Arrangement& arrangement) {
   const auto covering = covering_areas(bent, arrangement);
+  const std::vector<double> size_of_face = sizes_of_faces(bent, arrangement);
   std::vector<double> size(bent.domain.areas.size(), 0.0);
   for (std::size_t f = 1; f < covering.size(); ++f)
-    for (const std::uint32_t a : covering[f]) size[a] += arrangement.faces()[f].area;
+    for (const std::uint32_t a : covering[f]) size[a] += size_of_face[f];
   // What rounding alone tells apart is of one size.
   for (double& each : size) {
     int exponent = 0;

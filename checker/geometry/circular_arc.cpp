@@ -59,6 +59,16 @@ Vec2 CircularArc::tangent(double angle) const {
           static_cast<double>(x_ * sine + y_ * cosine)};
 }
 
+double CircularArc::beside(Vec2 p, Vec2 q, double turn) const {
+  const long double length =
+      std::hypot(static_cast<long double>(q.x) - p.x, static_cast<long double>(q.y) - p.y);
+  const long double angle = turn;
+  // Of a sector less its triangle, over the squared radius, times 2.
+  const long double part = turn < 1e-4 ? angle * angle * angle / 6 : angle - std::sin(angle);
+  const long double radius = length / (2 * std::sin(angle / 2));
+  return static_cast<double>(sign_ * radius * radius / 2 * part);
+}
+
 double CircularArc::height(Vec2 p, Vec2 q, double turn) {
   return std::hypot(q.x - p.x, q.y - p.y) / 2 * std::tan(turn / 2);
 }

@@ -22,6 +22,10 @@ class CircularArc {
   Vec2 at(double angle) const;
   Vec2 tangent(double angle) const;  // forward, of length 1
 
+  // The area between the arc and its chord of this turn from p forward to q; above 0 if the arc
+  // lies right of it.
+  double beside(Vec2 p, Vec2 q, double turn) const;
+
   // The tangents in the ends of a chord of this turn, from p forward to q, meet in a point as high
   // over its middle as `height` says, on the side of the arc; `side` is that point with another
   // height.

@@ -170,7 +170,7 @@ Result<Carving> carve(const Arrangement& arrangement, const Pslg& pslg, StopPoll
     if (pslg.areas.empty() && pslg.fill == Fill::kEvenOdd)
       inside = find_odd_faces(arrangement, faces, graph, poller);
     else
-      covered = cover_faces(arrangement, faces, graph, pslg.areas, poller);
+      covered = cover_faces(arrangement, faces, graph, pslg, poller);
     covered.overlap.united = pslg.fill != Fill::kEvenOdd;
   }
   const std::vector<Cover>& covers = covered.of_face;

@@ -7,6 +7,10 @@
 #include <numeric>
 #include <set>
 
+#include "engine/base/vector.h"
+#include "engine/domain/arcs/arc.h"
+#include "engine/domain/arcs/flat_arcs.h"
+
 namespace weft {
 namespace {
 
@@ -65,13 +69,43 @@ void for_each_area(const Arrangement& a, std::size_t areas, std::uint32_t list,
   }
 }
 
-std::vector<double> sizes_of_faces(const Arrangement& a, const Faces& faces, StopPoller& poller) {
+// Twice what lies between an edge, of which the triangle is on the left, and the arc whose chord it
+// is: above 0 if that is part of the triangle's face.
+class BesideChords {
+ public:
+  BesideChords(const Arrangement& a, const Pslg& pslg)
+      : a_(a), pslg_(pslg), bulges_(pslg.arcs.empty() ? std::vector<double>() : bulges_of(pslg)) {}
+
+  double operator()(const Arrangement::Triangle& triangle, int edge) const {
+    if (bulges_.empty() || triangle.constraint[edge] == kNone) return 0;
+    const std::uint32_t piece = a_.constraints[triangle.constraint[edge]].segment;
+    if (bulges_[piece] == 0) return 0;
+    const Point p = a_.vertices[triangle.vertex[(edge + 1) % 3]];
+    const Point q = a_.vertices[triangle.vertex[(edge + 2) % 3]];
+    const Point from = pslg_.points[pslg_.segments[piece].a];
+    const Point to = pslg_.points[pslg_.segments[piece].b];
+    return 2 *
+           area_beside_chord(p, q, dot(q - p, to - from) > 0 ? bulges_[piece] : -bulges_[piece]);
+  }
+
+ private:
+  const Arrangement& a_;
+  const Pslg& pslg_;
+  const std::vector<double> bulges_;  // empty: all are straight
+};
+
+// Twice the areas.
+std::vector<double> sizes_of_faces(const Arrangement& a, const Faces& faces, const Pslg& pslg,
+                                   StopPoller& poller) {
+  const BesideChords beside_chord(a, pslg);
   std::vector<double> sizes(faces.count, 0.0);
   for (std::size_t t = 0; t < a.triangles.size(); ++t) {
     poller.step();
     const auto& v = a.triangles[t].vertex;
     const Point p = a.vertices[v[0]], q = a.vertices[v[1]], r = a.vertices[v[2]];
-    sizes[faces.of_triangle[t]] += (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+    double& size = sizes[faces.of_triangle[t]];
+    size += (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+    for (int edge = 0; edge < 3; ++edge) size += beside_chord(a.triangles[t], edge);
   }
   return sizes;
 }
@@ -97,7 +131,8 @@ std::vector<std::uint32_t> ranks(std::size_t count, Less&& less) {
 }  // namespace
 
 Covers cover_faces(const Arrangement& arrangement, const Faces& faces, const FaceGraph& graph,
-                   const std::vector<Area>& areas, StopPoller& poller) {
+                   const Pslg& pslg, StopPoller& poller) {
+  const std::vector<Area>& areas = pslg.areas;
   const std::vector<Move> moves = tour(faces, graph, poller);
   std::vector<std::uint32_t> open;
   const auto cross = [&](const Move& move, auto&& visit) {
@@ -108,7 +143,7 @@ Covers cover_faces(const Arrangement& arrangement, const Faces& faces, const Fac
   // An area's size is what the tour has seen when it leaves, less what it had seen when it entered.
   std::vector<bool> covers(areas.size(), false);
   std::vector<double> size(areas.size(), 0.0);
-  const std::vector<double> size_of_face = sizes_of_faces(arrangement, faces, poller);
+  const std::vector<double> size_of_face = sizes_of_faces(arrangement, faces, pslg, poller);
   double seen = 0;
   for (const Move& move : moves) {
     cross(move, [&](std::uint32_t area) {

@@ -30,8 +30,9 @@ struct Covers {
   Overlap overlap;
 };
 
-// Throws Stopped.
+// REQUIRES: the arrangement of that PSLG; its arcs are no longer than pieces of chords.h. Throws
+// Stopped.
 Covers cover_faces(const Arrangement& arrangement, const Faces& faces, const FaceGraph& graph,
-                   const std::vector<Area>& areas, StopPoller& poller);
+                   const Pslg& pslg, StopPoller& poller);
 
 }  // namespace weft

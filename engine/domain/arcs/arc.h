@@ -102,6 +102,15 @@ inline double turn_of(double bulge) {
   return scale * bulge * sum;
 }
 
+// Between an arc and its chord; above 0 if the arc lies right of the line from a to b.
+inline double area_beside_chord(Point a, Point b, double bulge) {
+  const double square = dot(b - a, b - a), height = bulge * bulge;
+  if (height < 1e-6) return square * bulge / 3;  // to 2e-7 of itself
+  const double turn = std::copysign(turn_of(std::fabs(bulge)), bulge);
+  const double sine = 4 * bulge * (1 - height) / ((1 + height) * (1 + height));
+  return square * (1 + height) * (1 + height) / (32 * height) * (turn - sine);
+}
+
 // The point after this fraction of the arc. REQUIRES: it turns by at most 180 degrees.
 inline Point at_fraction(Point a, Point b, double bulge, double fraction) {
   const double half_turn = 0.5 * turn_of(bulge);

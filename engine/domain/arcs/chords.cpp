@@ -17,6 +17,7 @@
 #include "engine/base/vector.h"
 #include "engine/domain/arcs/arc.h"
 #include "engine/domain/arcs/arc_meeting.h"
+#include "engine/domain/arcs/flat_arcs.h"
 #include "engine/domain/arrangement/arrangement.h"
 #include "engine/domain/arrangement/merging.h"
 #include "engine/domain/tolerance.h"
@@ -122,8 +123,7 @@ class ArcCutter {
   }
 
   void add_segments() {
-    bulges_.assign(pslg_.segments.size(), 0);
-    for (const Arc& arc : pslg_.arcs) bulges_[arc.segment] = arc.bulge;
+    bulges_ = bulges_of(pslg_);
     for (std::uint32_t i = 0; i < points_.size(); ++i)
       if (first_[i] == i) corners_.insert({{points_[i].x, points_[i].y}, i});
     for (const Point p : pslg_.holes) seeds_.insert({{p.x, p.y}, 0});
@@ -377,7 +377,7 @@ class ArcCutter {
   }
 
   Chords result() {
-    Chords chords{.pslg = pslg_, .segment = {}, .bulge = {}};
+    Chords chords{.pslg = pslg_, .segment = {}};
     chords.pslg.arcs.clear();
     chords.pslg.points.insert(chords.pslg.points.end(), points_.begin() + first_.size(),
                               points_.end());
@@ -400,9 +400,11 @@ class ArcCutter {
         s.a = pieces_[piece].a;
         s.b = pieces_[piece].b;
       }
+      if (piece != kNone && pieces_[piece].bulge != 0)
+        chords.pslg.arcs.push_back(
+            {static_cast<std::uint32_t>(chords.pslg.segments.size()), pieces_[piece].bulge});
       chords.pslg.segments.push_back(s);
       chords.segment.push_back(segment);
-      chords.bulge.push_back(piece == kNone ? 0 : pieces_[piece].bulge);
     }
     return chords;
   }
@@ -433,13 +435,14 @@ Chords cut_arcs(const Pslg& pslg, double max_turn, StopPoller& poller) {
 }
 
 void restore_arcs(const Chords& chords, const Pslg& input, Domain& domain, StopPoller& poller) {
+  const std::vector<double> bulges = bulges_of(chords.pslg);
   domain.curvatures.assign(domain.subsegments.size(), 0);
   for (std::size_t i = 0; i < domain.subsegments.size(); ++i) {
     poller.step();
     Subsegment& s = domain.subsegments[i];
     const std::uint32_t piece = s.segment;
     s.segment = chords.segment[piece];
-    const double bulge = chords.bulge[piece];
+    const double bulge = bulges[piece];
     if (bulge == 0) continue;
     const Segment& ends = chords.pslg.segments[piece];
     const std::uint32_t a = domain.input_point[s.a], b = domain.input_point[s.b];

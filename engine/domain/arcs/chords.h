@@ -29,9 +29,9 @@
 namespace weft {
 
 struct Chords {
-  Pslg pslg;                           // without arcs: the points of the input, then new ones
+  // The points of the input, then new ones; segments and arcs are pieces of those of the input.
+  Pslg pslg;
   std::vector<std::uint32_t> segment;  // per segment of `pslg`: that of the input
-  std::vector<double> bulge;           // per segment of `pslg`: of its arc, 0 if it is straight
 };
 
 // REQUIRES: a PSLG that `validate` accepts; max_turn, in radians, is at most pi / 2. Throws

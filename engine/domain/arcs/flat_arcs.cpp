@@ -12,6 +12,12 @@
 
 namespace weft {
 
+std::vector<double> bulges_of(const Pslg& pslg) {
+  std::vector<double> bulges(pslg.segments.size(), 0);
+  for (const Arc& arc : pslg.arcs) bulges[arc.segment] = arc.bulge;
+  return bulges;
+}
+
 Pslg flatten_arcs(const Pslg& pslg) {
   std::vector<double> bulges(pslg.segments.size(), 0);
   for (const Arc& arc : pslg.arcs) {

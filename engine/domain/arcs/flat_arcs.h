@@ -3,11 +3,16 @@
 // functions.
 #pragma once
 
+#include <vector>
+
 #include "engine/base/geometry.h"
 #include "engine/domain/domain.h"
 #include "weft/pslg.h"
 
 namespace weft {
+
+// Per segment, 0 if it is straight. REQUIRES: a PSLG that `validate` accepts.
+std::vector<double> bulges_of(const Pslg& pslg);
 
 // A PSLG without arcs: in their place, n = ceil(turn / kFlatTurn) equal chords. Sizes that depend
 // on the distance to segments are those of these. Arcs that `validate` refuses stay their chords.

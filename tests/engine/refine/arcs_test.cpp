@@ -208,6 +208,53 @@ TEST(Arcs, TheBudgetHoldsForThePolylinesOfSizes) {
   EXPECT_EQ(made.error().code, ErrorCode::kBudgetExceeded);
 }
 
+// A circle of area `area` around `centre`, region 1, and a square of area pi around (0.5, 0.1),
+// region 2, that overlap.
+Pslg circle_and_square(Point centre, double area) {
+  Pslg pslg;
+  add_circle(pslg, centre, std::sqrt(area / kPi), 3, 0.2);
+  const double half = std::sqrt(kPi) / 2;
+  add_box(pslg, {0.5 - half, 0.1 - half}, {0.5 + half, 0.1 + half});
+  for (std::size_t s = 0; s < pslg.segments.size(); ++s) pslg.segments[s].area = s < 3 ? 0 : 1;
+  pslg.areas = {{.region = 1}, {.region = 2}};
+  pslg.fill = Fill::kUnion;
+  return pslg;
+}
+
+double area_of_region(const Sound& made, std::int32_t region) {
+  double area = 0;
+  for (std::size_t t = 0; t < made.mesh.mesh.triangles.size(); ++t) {
+    if (made.mesh.mesh.regions[t] != region) continue;
+    CollectedMesh one;
+    one.mesh.vertices = made.mesh.mesh.vertices;
+    one.mesh.triangles = {made.mesh.mesh.triangles[t]};
+    area += area_of(one);
+  }
+  return area;
+}
+
+TEST(Arcs, OfAreasThatOverlapTheSmallerHasTheRegionUpToItsArcs) {
+  for (const double share : {0.98, 0.9999, 1.0001, 1.02}) {
+    const Sound made = sound({.pslg = circle_and_square({0, 0}, share * kPi), .size = 0.01});
+    // The whole of the smaller one.
+    const double whole = share < 1 ? share * kPi : kPi;
+    EXPECT_NEAR(area_of_region(made, share < 1 ? 1 : 2), whole, 0.02) << share;
+  }
+}
+
+TEST(Arcs, OfCirclesOfOneSizeTheFirstHasTheRegion) {
+  for (const double size : {1.0, 0.05, 0.01}) {
+    Pslg pslg;
+    add_circle(pslg, {0, 0}, 1, 2);
+    add_circle(pslg, {1, 0}, 1, 2);
+    for (std::size_t s = 0; s < 4; ++s) pslg.segments[s].area = s < 2 ? 0 : 1;
+    pslg.areas = {{.region = 1}, {.region = 2}};
+    pslg.fill = Fill::kUnion;
+    const Sound made = sound({.pslg = pslg, .size = size});
+    EXPECT_GT(area_of_region(made, 1), area_of_region(made, 2)) << size;
+  }
+}
+
 TEST(Arcs, NestedArcsWithNothingBetweenThemAreRefused) {
   Pslg pslg = two_circles(0.7, {0.3, 0});
   add_box(pslg, {-2, -2}, {2, 2});
