@@ -70,6 +70,7 @@ struct Domain {
   };
   // Makes a segment an arc of a circle; see arc_bulges in the protocol.
   struct Arc {
+    static constexpr double kMaxBulge = 1e6;  // that the service takes
     std::uint32_t segment = 0;
     double bulge = 0;
     friend bool operator==(const Arc&, const Arc&) = default;

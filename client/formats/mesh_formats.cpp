@@ -412,7 +412,8 @@ Result<Mesh> validated(const std::filesystem::path& path, Mesh mesh) {
     if (mesh.edges[i] >= vertices)
       return refuse("edge " + std::to_string(i / 2) + " has vertex " +
                     std::to_string(mesh.edges[i]) + " of " + std::to_string(vertices));
-  if (const std::string fault = take_out_middles(mesh); !fault.empty()) return refuse(fault);
+  if (const std::string fault = take_out_middles(path.string(), mesh); !fault.empty())
+    return refuse(fault);
   cut_faces(mesh);
   if (!mesh.parts.empty() && mesh.parts.size() != mesh.triangles.size() / 3)
     return refuse("has parts of " + std::to_string(mesh.parts.size()) + " triangles, not of " +

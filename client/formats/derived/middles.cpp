@@ -41,7 +41,7 @@ Bend bend_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& side) {
 
 }  // namespace
 
-std::string take_out_middles(Mesh& mesh) {
+std::string take_out_middles(const std::string& file, Mesh& mesh) {
   if (mesh.middles.empty()) return "";
   const auto nodes = static_cast<std::uint32_t>(mesh.coordinates.size() / 2);
   std::vector<char> is_middle(nodes, 0);
@@ -83,6 +83,7 @@ std::string take_out_middles(Mesh& mesh) {
   if (bent > 0)
     mesh.warnings.push_back(
         {.kind = WarningKind::kLeftOut,
+         .file = file,
          .count = bent,
          .text = with_separators(bent) + (bent == 1 ? " bent side is" : " bent sides are") +
                  " read as straight: only edges with a node on their bisector are arcs"});

@@ -374,10 +374,9 @@ class Reader {
     const Field& field = record.fields[place];
     const std::string_view text = trimmed(field.text);
     if (text.empty() || is_nan_text(text)) return 0;
-    constexpr double kMostBulge = 1e6;  // of the service
     const auto bulge = table_.real(field);
     if (!bulge) return error(record, place, "expected the bulge, found " + in_quotes(text));
-    if (std::abs(*bulge) > kMostBulge)
+    if (std::abs(*bulge) > Domain::Arc::kMaxBulge)
       return error(record, place, "the bulge is " + shortest(*bulge) + ", magnitudes go up to 1e6");
     return *bulge;
   }

@@ -107,15 +107,14 @@ void join_ends(std::vector<DxfShape>& shapes) {
 }
 
 std::vector<bool> straighten_degenerate(std::vector<DxfShape>& shapes) {
-  constexpr double kMostBulge = 1e6;  // of the service
   const double least = 1e-12 * Extent(shapes).size();
   std::vector<bool> found(shapes.size(), false);
   for (std::size_t s = 0; s < shapes.size(); ++s)
     for (auto& [points, bulges] : shapes[s].rings)
       for (std::size_t i = 0; i + 1 < bulges.size(); ++i) {
         const Point a = points[i], b = points[i + 1];
-        const bool is_sound =
-            std::hypot(b.x - a.x, b.y - a.y) > least && std::abs(bulges[i]) <= kMostBulge;
+        const bool is_sound = std::hypot(b.x - a.x, b.y - a.y) > least &&
+                              std::abs(bulges[i]) <= Domain::Arc::kMaxBulge;
         if (is_sound || bulges[i] == 0 || a == b) continue;
         bulges[i] = 0;
         found[s] = true;

@@ -9,8 +9,6 @@
 namespace weft::client {
 namespace {
 
-constexpr double kMostBulge = 1e6;  // of the service
-
 std::string text_of(Point at) {
   return coordinates(at.x, at.y);
 }
@@ -41,7 +39,7 @@ std::string add_three_point_arcs(std::span<const Point> positions, ArcChain& cha
     if (a == between || between == b)
       return "has an arc two of whose points are " + text_of(between);
     const double bulge = bulge_through(a, between, b);
-    if (!(std::abs(bulge) <= kMostBulge))
+    if (!(std::abs(bulge) <= Domain::Arc::kMaxBulge))
       return "has an arc whose points lie on one line, " + text_of(between) +
              " outside of the others";
     chain.add(b, bulge);

@@ -49,8 +49,9 @@ class Chunk(ShortRepr):
     edge_markers: Ints
     """(k,) int32: marker per edge."""
     edge_segments: Ints
-    edge_bulges: Floats
     """(k,) int32: index of the input segment per edge; the lowest if several overlap."""
+    edge_bulges: Floats
+    """(k,) float64: bulge of the arc that an edge is a chord of; empty if all are straight."""
     input_points: Ints
     """(p, 2) int32: vertex number and index of the input point."""
     box: Floats

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "tests/client/support/temp_folder.h"
+#include "tests/client/support/domain_text.h"
 
 namespace weft::client {
 namespace {
@@ -13,25 +13,10 @@ namespace {
 const std::vector<Point> kRectangle = {{0, 0}, {4, 0}, {4, 3}, {0, 3}};
 const std::vector<Point> kHalves = {{0.5, 0.25}, {4.5, 0.25}, {4.5, 3.25}, {0.5, 3.25}};
 
-class CsvRings : public ::testing::Test {
+class CsvRings : public DomainText {
  protected:
-  Domain read(const std::string& text) {
-    const auto domain = read_csv_rings(folder_.write("d.csv", text));
-    EXPECT_TRUE(domain) << domain.error().message << " of\n" << text;
-    return domain ? *domain : Domain{};
-  }
-  std::string refusal(const std::string& text) {
-    const auto domain = read_csv_rings(folder_.write("d.csv", text));
-    if (domain) return "it was read";
-    EXPECT_EQ(domain.error().exit, ExitCode::kUnreadableInput);
-    return domain.error().message.substr(folder_.path().string().size() + 1);
-  }
-  std::vector<std::string> warnings(const std::string& text) {
-    std::vector<std::string> out;
-    for (const std::string& warning : sentences(read(text).warnings))
-      out.push_back(warning.substr(folder_.path().string().size() + 1));
-    return out;
-  }
+  CsvRings() : DomainText("d.csv") {}
+
   // The corners of each ring.
   std::vector<std::size_t> rings(const std::string& text) {
     const Domain domain = read(text);
@@ -41,7 +26,6 @@ class CsvRings : public ::testing::Test {
         out.push_back(domain.segments[i].a - domain.segments[i].b + 1);
     return out;
   }
-  TempFolder folder_;
 };
 
 TEST_F(CsvRings, AreRefusedIfAllCommasOfNumbersMayGroupTheirDigits) {

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "client/formats/domain_formats.h"
-#include "tests/client/support/temp_folder.h"
+#include "tests/client/support/domain_text.h"
 
 namespace weft::client {
 namespace {
@@ -84,26 +83,9 @@ const std::string kLabels = R"([NumBlockLabels] = 2
 0	0.75	2	0.2	0	0	0	1	0
 )";
 
-class FemmFile : public ::testing::Test {
+class FemmFile : public DomainText {
  protected:
-  Domain read(const std::string& text, const std::string& name = "d.fem") {
-    const auto domain = read_domain(folder_.write(name, text));
-    EXPECT_TRUE(domain) << domain.error().message;
-    return domain ? *domain : Domain{};
-  }
-  std::string refusal(const std::string& text) {
-    const auto domain = read_domain(folder_.write("d.fem", text));
-    if (domain) return "it was read";
-    EXPECT_EQ(domain.error().exit, ExitCode::kUnreadableInput);
-    return domain.error().message.substr(folder_.path().string().size() + 1);
-  }
-  std::vector<std::string> warnings(const std::string& text, const std::string& name = "d.fem") {
-    std::vector<std::string> out;
-    for (const std::string& warning : sentences(read(text, name).warnings))
-      out.push_back(warning.substr(folder_.path().string().size() + 1));
-    return out;
-  }
-  TempFolder folder_;
+  FemmFile() : DomainText("d.fem") {}
 };
 
 TEST_F(FemmFile, IsItsSegmentsArcsAndLabels) {

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "client/formats/domain_formats.h"
-#include "tests/client/support/temp_folder.h"
+#include "tests/client/support/domain_text.h"
 
 namespace weft::client {
 namespace {
@@ -46,26 +45,9 @@ materials
 2 iron
 )";
 
-class In2dFile : public ::testing::Test {
+class In2dFile : public DomainText {
  protected:
-  Domain read(const std::string& text) {
-    const auto domain = read_domain(folder_.write("d.in2d", text));
-    EXPECT_TRUE(domain) << domain.error().message;
-    return domain ? *domain : Domain{};
-  }
-  std::string refusal(const std::string& text) {
-    const auto domain = read_domain(folder_.write("d.in2d", text));
-    if (domain) return "it was read";
-    EXPECT_EQ(domain.error().exit, ExitCode::kUnreadableInput);
-    return domain.error().message.substr(folder_.path().string().size() + 1);
-  }
-  std::vector<std::string> warnings(const std::string& text) {
-    std::vector<std::string> out;
-    for (const std::string& warning : sentences(read(text).warnings))
-      out.push_back(warning.substr(folder_.path().string().size() + 1));
-    return out;
-  }
-  TempFolder folder_;
+  In2dFile() : DomainText("d.in2d") {}
 };
 
 TEST_F(In2dFile, IsAnAreaForEachDomain) {
