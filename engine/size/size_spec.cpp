@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/base/text.h"
+#include "engine/domain/markers.h"
 #include "engine/domain/validate.h"
 #include "engine/size/constant_size.h"
 #include "engine/size/edge_size.h"
@@ -96,18 +97,15 @@ class Lines {
       return fail(ErrorCode::kIndexOutOfRange, path_ + ".segments[0].a",
                   path_ + ".segments[0].a is " + std::to_string(spec.segments[0][0]) +
                       ", but there are no points");
-    for (const std::int32_t marker : spec.markers)
-      if (!has(marker))
-        return fail(ErrorCode::kBadOption, path_ + ".markers",
-                    path_ + ".markers holds " + std::to_string(marker) +
-                        ", which is the marker of no segment of the domain");
+    if (const auto missing = first_without_segment(spec.markers, pslg_.segments))
+      return fail(ErrorCode::kBadOption, path_ + ".markers",
+                  path_ + ".markers holds " + std::to_string(spec.markers[*missing]) +
+                      ", which is the marker of no segment of the domain");
+    const MarkerSet wanted(spec.markers);
     std::vector<Line> lines;
-    for (const Segment& segment : pslg_.segments) {
-      const bool wanted =
-          spec.markers.empty() ||
-          std::find(spec.markers.begin(), spec.markers.end(), segment.marker) != spec.markers.end();
-      if (wanted) lines.push_back({pslg_.points[segment.a], pslg_.points[segment.b]});
-    }
+    for (const Segment& segment : pslg_.segments)
+      if (spec.markers.empty() || wanted.contains(segment.marker))
+        lines.push_back({pslg_.points[segment.a], pslg_.points[segment.b]});
     if (lines.empty())
       return fail(ErrorCode::kBadOption, path_,
                   path_ + " is the distance to the segments of the domain, which has none");
@@ -143,11 +141,6 @@ class Lines {
     if (lines.empty())
       for (const Point point : spec.points) lines.push_back({point, point});
     return lines;
-  }
-
-  bool has(std::int32_t marker) const {
-    return std::any_of(pslg_.segments.begin(), pslg_.segments.end(),
-                       [&](const Segment& segment) { return segment.marker == marker; });
   }
 
   const Pslg& pslg_;
@@ -257,12 +250,10 @@ Result<Size> with_measure(const SizeSpec::Value& value, Measure measure,
 // False, too, if some of them overlap in part, or with others of another marker.
 bool are_in_domain(const std::vector<std::int32_t>& markers, const Pslg& pslg,
                    const Domain& domain) {
-  const auto wanted = [&](std::int32_t marker) {
-    return std::find(markers.begin(), markers.end(), marker) != markers.end();
-  };
+  const MarkerSet wanted(markers);
   std::vector<std::array<double, 4>> ends;  // of each once, though rings that touch have it twice
   for (const Segment& segment : pslg.segments) {
-    if (!wanted(segment.marker)) continue;
+    if (!wanted.contains(segment.marker)) continue;
     const Point a = pslg.points[segment.a];
     const Point b = pslg.points[segment.b];
     ends.push_back(std::min(std::array{a.x, a.y, b.x, b.y}, std::array{b.x, b.y, a.x, a.y}));
@@ -274,7 +265,7 @@ bool are_in_domain(const std::vector<std::int32_t>& markers, const Pslg& pslg,
     whole += std::sqrt(distance2(Point{ax, ay}, Point{bx, by}));
   double within = 0;
   for (const Subsegment& piece : domain.subsegments)
-    if (wanted(piece.marker))
+    if (wanted.contains(piece.marker))
       within += std::sqrt(distance2(domain.vertices[piece.a], domain.vertices[piece.b]));
   return within >= whole * (1 - 1e-9);
 }
