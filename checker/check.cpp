@@ -25,6 +25,7 @@
 #include "checker/mesh/chains.h"
 #include "checker/mesh/coverage.h"
 #include "checker/mesh/delaunay.h"
+#include "checker/mesh/kept.h"
 #include "checker/mesh/overlap.h"
 #include "checker/mesh/simplification.h"
 #include "checker/mesh/simplified_parts.h"
@@ -262,6 +263,9 @@ Report judge(const Domain& domain, const Domain& given, const Mesh& mesh,
       match.emplace(best_match({domain, arcs, straight, *near, mesh, *half_edges, listed},
                                no_overlap, requirements.listed_violations));
       findings.merge(match->findings);
+      if (match->small_input_angles && requirements.keep)
+        judge_kept(mesh, match->small_input_angles->segments(),
+                   InputPoints(match->bent.domain, mesh), *requirements.keep, findings);
     }
     if (match && match->small_input_angles)
       context = {&*match->small_input_angles, match->faces, match->filled->roles};

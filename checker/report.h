@@ -33,9 +33,10 @@ enum class Rule : std::uint8_t {
   kAngle,     // no angle is below the bound, except those that small input angles exempt
   kArea,      // no triangle is larger than the size field, or its region, allows
   kLengths,   // no listed edge is longer than the size at its marker
+  kKept,      // no vertex is inside a segment that is kept, unless the domain has it
   kSimplified,  // a simplified domain is nowhere farther from the original than was asked for
 };
-inline constexpr std::size_t kRules = 17;
+inline constexpr std::size_t kRules = 18;
 
 std::string_view rule_name(Rule rule);  // "coverage"
 

@@ -113,8 +113,9 @@ class Pipeline {
     quality_ = QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(box_));
     if (request_.placement == Placement::kLattice)
       quality_.lattice = LatticeShape::for_angle(request_.min_angle_deg);
-    edge_limits_ = EdgeLimits(request_.size.at);
-    if (auto error = check_edge_limits()) return tl::unexpected(*error);
+    edge_limits_ = EdgeLimits(request_.size.at, request_.keep);
+    if (auto error = check_edge_limits(request_, edge_limits_, 2 * std::sqrt(quality_.min_length2)))
+      return tl::unexpected(*error);
     if (auto error = check_borders()) return tl::unexpected(*error);
     if (auto error = admit(bound)) return tl::unexpected(*error);
     if (!map_) return mesh(ConstantArea(bound), 0);
@@ -264,20 +265,6 @@ class Pipeline {
     return std::nullopt;
   }
 
-  // Edges on segments come out between half their limit and the whole limit.
-  std::optional<Error> check_edge_limits() const {
-    const double least = 2 * std::sqrt(quality_.min_length2);
-    for (std::size_t i = 0; i < request_.size.at.size(); ++i) {
-      const double limit = request_.size.at[i].max_edge;
-      const std::string field = "size.at[" + std::to_string(i) + "].max_edge";
-      if (limit < least)
-        return Error{ErrorCode::kBadOption, field,
-                     field + " is " + text(limit) + "; it must be at least " + text(least) +
-                         ", twice the shortest edge that refinement makes"};
-    }
-    return std::nullopt;
-  }
-
   // Refuses sizes for which refinement would not end, unless the client has said where it may.
   std::optional<Error> check_borders() {
     if (!map_ || request_.min_edge > 0 || has_triangle_cap()) return std::nullopt;
@@ -321,7 +308,8 @@ class Pipeline {
         lower_bound > static_cast<double>(MeshStore::kMaxTriangles)) {
       return over_limit(asked_by, "the size asks for at least " + count_text(lower_bound) +
                                       " triangles; a mesh with a minimum angle above " +
-                                      text(kMaxStreamingAngleDeg) + " degrees has at most " +
+                                      text(kMaxStreamingAngleDeg) +
+                                      " degrees, or with segments that are kept, has at most " +
                                       std::to_string(MeshStore::kMaxTriangles) +
                                       ", because all of it is in memory at the same time");
     }
@@ -332,13 +320,16 @@ class Pipeline {
         context_.compute([&] { return AcuteCorners::build(domain_, quality_, context_); });
     if (!corners) return corners.error();
     corners_.emplace(std::move(*corners));
-    auto narrow = context_.compute([&] {
-      return NarrowPlaces::find(
-          domain_, corners_->crossed_arms(), quality_,
-          [&](Point p) { return map_ ? map_->expected_size(p) : bound; }, context_);
-    });
-    if (!narrow) return narrow.error();
-    narrow_ = std::move(*narrow);
+    // Between segments that are kept, no angle asks for triangles.
+    if (!edge_limits_.keep_any()) {
+      auto narrow = context_.compute([&] {
+        return NarrowPlaces::find(
+            domain_, corners_->crossed_arms(), quality_,
+            [&](Point p) { return map_ ? map_->expected_size(p) : bound; }, context_);
+      });
+      if (!narrow) return narrow.error();
+      narrow_ = std::move(*narrow);
+    }
     if (!has_triangle_cap() && narrow_.lower_bound() > static_cast<double>(budget.triangle_limit))
       return too_narrow();
     lower_bound_ = std::max(lower_bound, narrow_.lower_bound());
@@ -447,7 +438,10 @@ class Pipeline {
                        .widest = narrow_.widest()};
   }
 
-  bool may_stream() const { return request_.min_angle_deg <= kMaxStreamingAngleDeg; }
+  // A triangle at a segment that is kept may be larger than leaves are.
+  bool may_stream() const {
+    return request_.min_angle_deg <= kMaxStreamingAngleDeg && !edge_limits_.keep_any();
+  }
 
   // Whether the client set a limit of its own: reaching that is no error.
   bool has_triangle_cap() const {

@@ -188,7 +188,7 @@ Estimate estimate(const MeshRequest& request, const Budget& budget) {
       std::min(by_size.triangles + triangles_by_pieces(request) + kTrianglesPerPoint * points,
                static_cast<double>(most));
   const bool may_stream = budget.max_triangles == Budget{}.max_triangles &&
-                          request.min_angle_deg <= kMaxStreamingAngleDeg;
+                          request.min_angle_deg <= kMaxStreamingAngleDeg && !request.keep;
   const std::uint64_t least = bytes_to_make(request.size, request.pslg);
   const double bytes =
       kBytesPerRun + kBytesPerPoint * points + static_cast<double>(least) +

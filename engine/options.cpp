@@ -26,6 +26,15 @@ std::optional<Error> check_options(const MeshRequest& request) {
   }
   if (!(request.simplify >= 0 && std::isfinite(request.simplify)))
     return bad("simplify", text(request.simplify), "0 or more, and finite");
+  if (request.keep && request.keep->size() > kMaxKeptMarkers) {
+    const std::string range = "at most " + std::to_string(kMaxKeptMarkers) + ", or none: all";
+    return bad("quality.keep.markers", std::to_string(request.keep->size()) + " markers",
+               range.c_str());
+  }
+  if (request.simplify > 0 && request.keep)
+    return Error{
+        ErrorCode::kBadOption, "quality.keep",
+        "quality.keep keeps segments as they are, but simplify is " + text(request.simplify)};
   return std::nullopt;
 }
 

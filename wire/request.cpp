@@ -447,6 +447,14 @@ void read_size(Fields in, SizeSpec& size) {
   size.measure = enumerator(measure, Measure::kEdge, "size.measure", "Measure");
 }
 
+void read_keep(Fields in, std::vector<std::int32_t>& markers) {
+  while (in.next())
+    if (in.number() == 1)
+      in.array(markers);
+    else
+      in.skip();
+}
+
 void read_quality(Fields in, MeshRequest& request) {
   std::int32_t placement = static_cast<std::int32_t>(request.placement) + 1;
   while (in.next()) switch (in.number()) {
@@ -461,6 +469,10 @@ void read_quality(Fields in, MeshRequest& request) {
         break;
       case 4:
         in.read(request.sweeps);
+        break;
+      case 5:
+        request.keep.emplace();
+        in.message([&](Fields keep) { read_keep(keep, *request.keep); });
         break;
       default:
         in.skip();

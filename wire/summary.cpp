@@ -74,16 +74,21 @@ class FigureFinder {
   std::optional<double> found_;
 };
 
-void show(const Unrefined& unrefined, Point at, auto& out) {
+void show(const Unrefined& unrefined, Point at, Point kept_at, auto& out) {
   out.number(1, "small_input_angle", unrefined.small_input_angle);
   out.number(2, "edge_floor", unrefined.edge_floor);
   out.number(3, "budget", unrefined.budget);
   out.number(4, "precision", unrefined.precision);
   out.number(5, "streaming", unrefined.streaming);
   out.number(6, "too_large", unrefined.too_large);
-  if (unrefined.without_exemption() == 0) return;
-  out.number(7, "x", at.x);
-  out.number(8, "y", at.y);
+  if (unrefined.without_exemption() > 0) {
+    out.number(7, "x", at.x);
+    out.number(8, "y", at.y);
+  }
+  out.number(9, "kept", unrefined.kept);
+  if (unrefined.kept == 0) return;
+  out.number(10, "kept_x", kept_at.x);
+  out.number(11, "kept_y", kept_at.y);
 }
 
 void show(const Merging& merging, auto& out) {
@@ -166,8 +171,9 @@ void show(const Summary& summary, std::uint32_t threads, auto& out) {
   out.counts(8, summary.angle_histogram);
   out.counts(9, summary.aspect_histogram);
   out.counts(10, summary.size_histogram);
-  out.message(11, "unrefined",
-              [&](auto& in) { show(summary.unrefined, summary.unrefined_at, in); });
+  out.message(11, "unrefined", [&](auto& in) {
+    show(summary.unrefined, summary.unrefined_at, summary.kept_at, in);
+  });
   out.message(12, "timings", [&](auto& in) { show_timings(summary, in); });
   out.number(13, "peak_engine_bytes", summary.peak_bytes);
   out.number(14, "insertions", summary.insertions);

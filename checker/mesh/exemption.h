@@ -28,6 +28,8 @@ class SmallInputAngles {
  public:
   SmallInputAngles(const Mesh& mesh, const ListedEdges& listed, SegmentsOfVertices segments);
 
+  const SegmentsOfVertices& segments() const { return segments_; }
+
   // `corner` is that of the smallest angle, 0 to 2; the edge opposite is the shortest.
   Exemption exemption(std::uint32_t triangle, std::uint32_t corner) const;
 

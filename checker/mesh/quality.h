@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "checker/domain/fill.h"
 #include "checker/mesh.h"
@@ -35,6 +36,9 @@ struct Requirements {
   double simplify = 0;
   // Edges on arcs turn by at most 360 degrees divided by this, and by 60.
   double points_per_circle = 0;
+  // Segments with these markers have no vertices but those of the domain; if it is empty, all have
+  // none. Default: any may have.
+  std::optional<std::vector<std::int32_t>> keep;
   // Whether small input angles exempt (exemption.h).
   bool allow_small_input_angles = true;
   // Maximum triangles that may miss the angle or the area bound without exemption: those that the

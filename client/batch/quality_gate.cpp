@@ -28,7 +28,8 @@ constexpr std::array<Figure, 6> kFigures = {{
     {"max-unrefined", false,
      [](const v1::Summary& s) {
        const v1::Unrefined& u = s.unrefined();
-       return static_cast<double>(u.edge_floor() + u.budget() + u.precision() + u.streaming());
+       return static_cast<double>(u.edge_floor() + u.kept() + u.budget() + u.precision() +
+                                  u.streaming());
      }},
 }};
 

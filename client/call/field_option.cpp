@@ -43,14 +43,10 @@ struct Filler {
   std::uint64_t most_raster_values;
   v1::NamedField& out;
 
-  Result<Warnings> operator()(const FieldOption::Distance& distance) const {
-    out.mutable_distance()->mutable_markers()->Add(distance.markers.begin(),
-                                                   distance.markers.end());
-    for (const std::string& name : distance.names) {
-      const auto marker = find_marker(name, domain.names.markers);
-      if (!marker) return tl::unexpected(marker.error());
-      out.mutable_distance()->add_markers(*marker);
-    }
+  Result<Warnings> operator()(const MarkerList& distance) const {
+    const auto markers = distance.numbers(domain.names.markers);
+    if (!markers) return tl::unexpected(markers.error());
+    out.mutable_distance()->mutable_markers()->Add(markers->begin(), markers->end());
     return Warnings();
   }
   Result<Warnings> operator()(const FieldOption::DistanceToFile& distance) const {
@@ -146,23 +142,6 @@ struct Filler {
   }
 };
 
-// "2,3" as numbers.
-std::optional<FieldOption::Distance> markers_of(const std::string& text) {
-  FieldOption::Distance distance;
-  std::size_t at = 0;
-  while (true) {
-    const std::size_t comma = std::min(text.find(',', at), text.size());
-    const std::string which = text.substr(at, comma - at);
-    if (which.empty()) return std::nullopt;
-    if (const auto marker = value_of<std::int32_t>(which))
-      distance.markers.push_back(*marker);
-    else
-      distance.names.push_back(which);
-    if (comma == text.size()) return distance;
-    at = comma + 1;
-  }
-}
-
 // Whether the text could be a path only if there were such a file.
 bool is_mere_word(const std::string& text, const std::filesystem::path& folder) {
   std::error_code ignored;
@@ -204,9 +183,9 @@ tl::expected<FieldOption, std::string> FieldOption::parse(const std::string& tex
   const std::string mesh = "mesh:";
   if (kind == "width") return field;
   if (kind == "distance") {
-    field.kind = Distance{};
+    field.kind = MarkerList{};
   } else if (kind.starts_with(marker)) {
-    auto markers = markers_of(kind.substr(marker.size()));
+    auto markers = MarkerList::parse(kind.substr(marker.size()));
     if (!markers)
       return tl::unexpected(in_quotes(kind) + " does not list markers, such as marker=2,3");
     field.kind = std::move(*markers);

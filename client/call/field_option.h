@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "client/base/error.h"
+#include "client/call/marker_list.h"
 #include "client/formats/domain.h"
 #include "client/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
@@ -20,12 +21,6 @@
 namespace weft::client {
 
 struct FieldOption {
-  // The distance to segments of the domain: to all, or to those with one of the markers, some of
-  // which may be given by name.
-  struct Distance {
-    std::vector<std::int32_t> markers{};
-    std::vector<std::string> names{};
-  };
   // The distance to the points, lines and borders of polygons of a file.
   struct DistanceToFile {
     std::filesystem::path file;
@@ -50,7 +45,8 @@ struct FieldOption {
                                                       const std::filesystem::path& folder);
 
   std::string name;
-  std::variant<Distance, DistanceToFile, Raster, OnMesh, Width> kind;
+  // A list of markers: the distance to segments of the domain, to all if it is empty.
+  std::variant<MarkerList, DistanceToFile, Raster, OnMesh, Width> kind;
 };
 
 // Reads the field's file, if it has one; of a raster what covers the domain. With a projection, the

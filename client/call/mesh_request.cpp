@@ -165,6 +165,11 @@ Result<RequestOptions> with_size(const RequestOptions& given, const Domain& doma
     at.set_marker(*marker);
     at.set_max_edge(edge_at.max_edge);
   }
+  if (options.keep) {
+    auto kept = options.keep->numbers(domain.names.markers);
+    if (!kept) return fault_at("quality.keep", options, kept.error());
+    options.kept = std::move(*kept);
+  }
   const auto rasters = std::count_if(
       options.fields.begin(), options.fields.end(),
       [](const auto& field) { return std::holds_alternative<FieldOption::Raster>(field.kind); });
@@ -208,6 +213,9 @@ v1::GenerateMeshRequest make_request(const Domain& domain, const RequestOptions&
   if (request_options.min_angle_deg)
     request.mutable_quality()->set_min_angle_deg(*request_options.min_angle_deg);
   if (request_options.min_edge) request.mutable_quality()->set_min_edge(*request_options.min_edge);
+  if (request_options.keep)
+    request.mutable_quality()->mutable_keep()->mutable_markers()->Add(request_options.kept.begin(),
+                                                                      request_options.kept.end());
   if (request_options.placement)
     request.mutable_quality()->set_placement(*request_options.placement);
   if (request_options.optimise) request.mutable_quality()->set_optimise(*request_options.optimise);

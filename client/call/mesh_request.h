@@ -15,6 +15,7 @@
 #include "client/base/error.h"
 #include "client/call/edge_at.h"
 #include "client/call/field_option.h"
+#include "client/call/marker_list.h"
 #include "client/call/name_option.h"
 #include "client/formats/domain.h"
 #include "client/geo/domain_projection.h"
@@ -40,6 +41,9 @@ struct RequestOptions {
   std::vector<std::string> warnings{};  // about these files
   std::optional<double> min_angle_deg{};
   std::optional<double> min_edge{};
+  // Segments that stay as they are, by marker; none in the list: all segments.
+  std::optional<MarkerList> keep{};
+  std::vector<std::int32_t> kept{};  // these markers as numbers: see with_size
   std::optional<v1::Placement> placement{};
   std::optional<std::uint32_t> optimise{};  // sweeps of smoothing
   std::optional<std::uint64_t> max_triangles{};

@@ -126,6 +126,10 @@ const OptionRows<Request>& other_rows() {
        "Shortest edge that refinement may make; it takes precedence over the bounds on angle and "
        "area",
        "", number("LEN", &Request::min_edge), "quality.min_edge"},
+      {"keep", "WEFT_KEEP_SEGMENTS",
+       "Segments that stay as they are, by their markers, numbers or names, or all: no new point "
+       "lies on them, and triangles there may miss their bounds",
+       "", markers_to_keep(), "quality.keep"},
       {"placement", "WEFT_PLACEMENT",
        "Where new points go in triangles that are too large: lattice follows the size and makes a "
        "third fewer triangles, circumcentre gives the mesh no preferred direction",
@@ -170,6 +174,18 @@ const OptionRows<Request>& other_rows() {
 }
 
 }  // namespace
+
+OptionValue<RequestOptions> markers_to_keep() {
+  return {"M,M", "", Arity::kOne,
+          [](const auto& texts, const auto&, Request& options) -> std::string {
+            const auto markers =
+                texts.front() == "all" ? MarkerList{} : MarkerList::parse(texts.front());
+            if (!markers)
+              return in_quotes(texts.front()) + " does not list markers, such as 2,inlet";
+            options.keep = *markers;
+            return "";
+          }};
+}
 
 const OptionRows<Request>& size_rows() {
   static const OptionRows<Request> rows = noted({

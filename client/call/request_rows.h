@@ -29,6 +29,9 @@ OptionValue<Options> fill_value(PolygonFill Options::*field) {
                         {"difference", PolygonFill::kDifference}});
 }
 
+// RequestOptions::keep.
+OptionValue<RequestOptions> markers_to_keep();
+
 // What was given for a field of the request, such as "size.fields[0].name", as errors call it:
 // "--field d", or "field d" if a manifest gave it. Empty if no option was.
 std::string option_of(std::string_view field, const RequestOptions& options);

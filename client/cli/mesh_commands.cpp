@@ -198,6 +198,12 @@ void add_check(CLI::App& app, Chosen& chosen) {
            "Share of the size to which the domain was simplified, as given to `weft mesh`", "",
            number("F", &CheckOptions::simplify)},
           options);
+  add_row(
+      check,
+      {"keep", "WEFT_KEEP_SEGMENTS",
+       "Segments that have no new points, as given to `weft mesh`; with it goes --max-unrefined",
+       "", markers_to_keep()},
+      options.size);
   add_row(check,
           {"fill", "WEFT_FILL", "What was meshed where polygons overlap, as given to `weft mesh`",
            "union", fill_value(&CheckOptions::fill)},

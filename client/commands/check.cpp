@@ -67,6 +67,11 @@ Result<check::Requirements> requirements_of(const CheckOptions& options, const I
   auto size = checker_size(options.size, input.domain, input.projection.get());
   if (!size) return tl::unexpected(size.error());
   requirements.size = std::move(*size);
+  if (options.size.keep) {
+    auto kept = options.size.keep->numbers(input.domain.names.markers);
+    if (!kept) return tl::unexpected(kept.error());
+    requirements.keep = std::move(*kept);
+  }
   return requirements;
 }
 

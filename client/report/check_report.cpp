@@ -30,6 +30,7 @@ constexpr std::array<const char*, check::kRules> kProperties = {
     "",
     "",
     "edges are at most as long as the sizes at their markers",
+    "segments that are kept have no new vertices",
     "the domain is simplified no farther than asked"};
 
 // `value` with 4 digits, or as many more as tell it from `bound`, if it is not the bound.
@@ -63,6 +64,8 @@ bool is_asked(Rule rule, const check::Report& report, const check::Requirements&
       return !is_judged(report, rule) || report.facts.worst_area_ratio.has_value();
     case Rule::kLengths:  // it is not judged if triangles may miss their bounds
       return !requirements.size.at.empty() && requirements.allowed_unrefined == 0;
+    case Rule::kKept:
+      return requirements.keep.has_value();
     case Rule::kSimplified:
       return requirements.simplify > 0;
     default:

@@ -23,6 +23,7 @@ std::uint64_t without_exemption(const v1::Unrefined& unrefined) {
 Json unrefined_json(const v1::Unrefined& unrefined) {
   Json json = {{"small_input_angle", unrefined.small_input_angle()},
                {"edge_floor", unrefined.edge_floor()},
+               {"kept", unrefined.kept()},
                {"budget", unrefined.budget()},
                {"precision", unrefined.precision()},
                {"streaming", unrefined.streaming()}};
@@ -30,6 +31,7 @@ Json unrefined_json(const v1::Unrefined& unrefined) {
     json["too_large"] = unrefined.too_large();
     json["at"] = {unrefined.x(), unrefined.y()};
   }
+  if (unrefined.kept() > 0) json["kept_at"] = {unrefined.kept_x(), unrefined.kept_y()};
   return json;
 }
 
@@ -168,13 +170,15 @@ std::string summary_text(const v1::Summary& summary) {
                 summary.max_angle_deg());
   std::string text = with_separators(summary.triangles()) + " triangles, " +
                      with_separators(summary.vertices()) + " vertices, angles " + angles + "\n";
-  const auto missed = [&text](std::uint64_t count, const char* why) {
+  const auto missed = [&text](std::uint64_t count, const std::string& why) {
     if (count > 0)
       text += with_separators(count) + (count == 1 ? " triangle misses" : " triangles miss") +
               " a bound because " + why + "\n";
   };
   missed(unrefined.small_input_angle(), "a small angle of the input forces it");
   missed(unrefined.edge_floor(), "edges would become too short");
+  missed(unrefined.kept(), "segments are kept as they are; the largest is at " +
+                               coordinates(unrefined.kept_x(), unrefined.kept_y()));
   missed(unrefined.budget(), "--max-triangles was reached");
   return text + unrefined_warning(unrefined) + merging_text(summary.merging()) +
          simplification_text(summary) + overlap_text(summary) + narrow_text(summary);

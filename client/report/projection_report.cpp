@@ -29,6 +29,11 @@ void bring_places_back(const DomainProjection& projection, v1::Summary& summary)
     unrefined.set_x(at.x);
     unrefined.set_y(at.y);
   }
+  if (v1::Unrefined& unrefined = *summary.mutable_unrefined(); unrefined.kept() > 0) {
+    const Point at = projection.to_lonlat({unrefined.kept_x(), unrefined.kept_y()});
+    unrefined.set_kept_x(at.x);
+    unrefined.set_kept_y(at.y);
+  }
   if (summary.has_outside()) {
     v1::OutsideSegments& outside = *summary.mutable_outside();
     const Point at = projection.to_lonlat({outside.x(), outside.y()});

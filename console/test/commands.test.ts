@@ -37,6 +37,14 @@ test("a request is a command with what was set, zero included, and nothing else"
   ]);
 });
 
+test("markers to keep are a list, or all", () => {
+  const kept = (markers: number[]) => make({ quality: { keep: { markers } } });
+  expect(shellCommand(kept([2, 5]))).toContain("--keep 2,5");
+  expect(shellCommand(kept([]))).toContain("--keep all");
+  expect(pythonProgram(kept([2, 5]))).toContain("keep=[2,5],");
+  expect(pythonProgram(kept([]))).toContain('keep="all",');
+});
+
 test("a request is a program in Python", () => {
   expect(pythonProgram(make({}))).toBe(
     'import weft\n\nwith weft.Client() as client:\n    mesh = client.mesh(\n        "DOMAIN.poly",\n    )\nmesh.write("mesh.vtu")\n',

@@ -244,6 +244,14 @@ void weft_add_size_at(weft_request* request, int32_t marker, double max_edge) {
   });
 }
 
+void weft_keep(weft_request* request, const int32_t* markers, size_t count) {
+  append(request, [&](pbf_writer& message) {
+    std::string keep;
+    pbf_writer(keep).add_packed_sint32(1, markers, end_of(markers, count, "quality.keep"));
+    pbf_writer(message, 3).add_message(5, keep);
+  });
+}
+
 void weft_add_distance(weft_request* request, const char* name, const int32_t* markers,
                        size_t count) {
   append_field(request, name, kDistance, [&](pbf_writer& distance) {

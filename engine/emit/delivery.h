@@ -22,6 +22,7 @@ namespace weft {
 inline Unrefined& operator+=(Unrefined& sum, const Unrefined& other) {
   sum.small_input_angle += other.small_input_angle;
   sum.edge_floor += other.edge_floor;
+  sum.kept += other.kept;
   sum.budget += other.budget;
   sum.precision += other.precision;
   sum.streaming += other.streaming;
@@ -38,6 +39,10 @@ class Delivery {
   std::optional<Error> send(Fragment&& fragment) {
     statistics_.add(fragment.statistics);
     if (summary_.unrefined.without_exemption() == 0) summary_.unrefined_at = fragment.unrefined_at;
+    if (fragment.kept_area > kept_area_) {
+      kept_area_ = fragment.kept_area;
+      summary_.kept_at = fragment.kept_at;
+    }
     summary_.unrefined += fragment.unrefined;
     summary_.edges += fragment.edges;
     for (Chunk& chunk : fragment.chunks) {
@@ -66,6 +71,7 @@ class Delivery {
   const ExecutionContext& context_;
   Summary& summary_;
   QualityStatistics statistics_;
+  double kept_area_ = 0;  // of the triangle at Summary::kept_at
   Sha256 digest_;
 };
 

@@ -137,6 +137,9 @@ void FragmentBuilder<AreaBound>::add_bulge(std::uint32_t subsegment, std::uint32
 template <class AreaBound>
 void FragmentBuilder<AreaBound>::count_unrefined(const Triangle& triangle) {
   Unrefined& count = fragment_.unrefined;
+  const Point a = mesh_.vertices[triangle.vertex[0]];
+  const Point b = mesh_.vertices[triangle.vertex[1]];
+  const Point c = mesh_.vertices[triangle.vertex[2]];
   const bool left = triangle.badness() != kGood;
   if (left && truncated_) {
     ++count.budget;
@@ -144,12 +147,15 @@ void FragmentBuilder<AreaBound>::count_unrefined(const Triangle& triangle) {
     ++count.small_input_angle;
   } else if (triangle.refusal() == Refusal::kEdgeFloor) {
     ++count.edge_floor;
-  } else {
-    if (count.without_exemption() == 0) {
-      fragment_.unrefined_at =
-          centroid(mesh_.vertices[triangle.vertex[0]], mesh_.vertices[triangle.vertex[1]],
-                   mesh_.vertices[triangle.vertex[2]]);
+  } else if (triangle.refusal() == Refusal::kKept) {
+    ++count.kept;
+    const double area = 0.5 * cross(b - a, c - a);
+    if (area > fragment_.kept_area) {
+      fragment_.kept_area = area;
+      fragment_.kept_at = centroid(a, b, c);
     }
+  } else {
+    if (count.without_exemption() == 0) fragment_.unrefined_at = centroid(a, b, c);
     ++(left ? count.streaming : count.precision);
     count.too_large += triangle.too_large();
   }

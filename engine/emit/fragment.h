@@ -42,7 +42,9 @@ struct Fragment {
   std::vector<Chunk> chunks;
   QualityStatistics statistics;
   Unrefined unrefined;
-  Point unrefined_at;  // as Summary::unrefined_at, of this fragment
+  Point unrefined_at;    // as Summary::unrefined_at, of this fragment
+  Point kept_at;         // likewise
+  double kept_area = 0;  // of that triangle
   std::uint64_t edges = 0;
 
   std::uint64_t bytes() const;  // of the memory that it points to

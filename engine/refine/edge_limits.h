@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long edges on segments may be, by the marker of the segment.
+// How long edges on segments may be, and which segments are kept as they are, by the marker of the
+// segment.
 //
 // Long pieces of segments are split before triangles are refined, into equal parts but at small
 // angles (acute_corners.h). Refinement only makes them shorter. Rounding may leave an edge longer
 // by 1e-9 of its limit and 2^-50 of its coordinates.
 //
-//   EdgeLimits limits(size.at);
+//   EdgeLimits limits(size.at, request.keep);
 //   if (limits.pieces(marker, a, b) > 1) ... the edge from a to b is too long
+//   if (limits.keep(marker)) ... no vertex is put on it
 //
 // Units: lengths of the domain. Thread-safety: immutable.
 #pragma once
@@ -14,25 +16,35 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "engine/base/geometry.h"
 #include "engine/base/vector.h"
 #include "engine/domain/domain.h"
+#include "engine/domain/markers.h"
 #include "engine/refine/storage/mesh_store.h"
-#include "engine/size/size_spec.h"
+#include "weft/error.h"
+#include "weft/weft.h"
 
 namespace weft {
 
 class EdgeLimits {
  public:
   EdgeLimits() = default;
-  // REQUIRES: lengths that are positive and finite, each for a marker of its own.
-  explicit EdgeLimits(std::vector<SizeAt> at) : at_(std::move(at)) {
+  // REQUIRES: lengths that are positive and finite, each for a marker of its own. `keep` is that of
+  // MeshRequest.
+  explicit EdgeLimits(std::vector<SizeAt> at,
+                      std::optional<std::vector<std::int32_t>> keep = std::nullopt)
+      : at_(std::move(at)), keep_all_(keep && keep->empty()) {
     std::sort(at_.begin(), at_.end(),
               [](const SizeAt& a, const SizeAt& b) { return a.marker < b.marker; });
+    if (keep) keep_.emplace(std::move(*keep));
   }
+
+  bool keep_any() const { return keep_.has_value(); }
+  bool keep(std::int32_t marker) const { return keep_ && (keep_all_ || keep_->contains(marker)); }
 
   bool empty() const { return at_.empty(); }
 
@@ -81,6 +93,14 @@ class EdgeLimits {
 
  private:
   std::vector<SizeAt> at_;  // by marker
+  std::optional<MarkerSet> keep_;
+  bool keep_all_ = false;
 };
+
+// Edges on segments come out between half their limit and the whole limit, so `least` is twice the
+// shortest edge. Errors: kBadOption for a length below it, a length at a marker that is kept, and a
+// marker to keep that no segment has. `limits` are those of the request.
+std::optional<Error> check_edge_limits(const MeshRequest& request, const EdgeLimits& limits,
+                                       double least);
 
 }  // namespace weft

@@ -16,6 +16,7 @@ QualityBounds QualityBounds::from(double min_angle_deg, double min_edge, double 
   bounds.off_centre = min_angle_deg > 0 ? 0.495 * std::sqrt((1 + cosine) / (1 - cosine)) : 0;
   bounds.min_edge2 = min_edge * min_edge;
   bounds.lens = lens_for(sine);
+  if (sine > 0) bounds.kept_lens = (1 - 2 * bounds.sin2) * (1 - 2 * bounds.sin2);
   bounds.precision2 = precision * precision;
   bounds.min_length2 = std::max(bounds.min_edge2, bounds.precision2);
   return bounds;

@@ -205,6 +205,7 @@ class Refiner {
     kNotOwned,
     kTooClose,  // an edge would be too short for the floor or for double precision
     kFlat,      // a triangle would not be counter-clockwise, or not Delaunay
+    kKept,      // the segment stays as it is
   };
 
   void refine(std::uint32_t t) {
@@ -226,6 +227,8 @@ class Refiner {
       case Outcome::kTooClose:
       case Outcome::kFlat:
         triangle.set_refusal(refusal());
+        return;
+      case Outcome::kKept:  // of segments alone
         return;
     }
   }
@@ -279,7 +282,8 @@ class Refiner {
   }
 
   // Splits the segments that t's Steiner point encroaches upon, and queues t again if it still
-  // exists. If none can be split, t stays as it is.
+  // exists. If none can be split, t stays as it is, unless there is a place beside those that are
+  // kept.
   void split_encroached(std::uint32_t t) {
     const std::uint32_t first_vertex = mesh_.triangles[t].vertex[0];
     queue_encroached();
@@ -291,8 +295,25 @@ class Refiner {
     } else if (segments_deferred_) {
       defer(t);
     } else {
-      after.set_refusal(segments_refused_);
+      const Refusal why = segments_refused_;
+      const Outcome outcome = why == Refusal::kKept ? insert_near_kept(t) : Outcome::kKept;
+      if (outcome == Outcome::kNotOwned) defer(t);
+      if (outcome != Outcome::kNotOwned && outcome != Outcome::kInserted) after.set_refusal(why);
     }
+  }
+
+  // Inserts a point for t, whose Steiner point encroaches upon nothing but segments that are kept:
+  // that point, if it leaves the angles at these segments large enough, or else one in the middle
+  // of a t that is too large.
+  [[gnu::noinline]] Outcome insert_near_kept(std::uint32_t t) {
+    near_kept_ = true;
+    Outcome outcome = insert_for(t);
+    if (outcome == Outcome::kEncroaches && mesh_.triangles[t].badness() != kSkinny) {
+      const auto [p, clearance2] = middle_beside_segments(mesh_, mesh_.triangles[t]);
+      outcome = insert_in_triangle(t, p, clearance2);
+    }
+    near_kept_ = false;
+    return outcome;
   }
 
   // `clearance2` is the least admissible squared distance from p to the vertices of its star.
@@ -320,6 +341,8 @@ class Refiner {
 
   // The lens of the Steiner points of triangle t (lens.h).
   double lens_of(std::uint32_t t) const {
+    if (near_kept_) [[unlikely]]
+      return quality_.kept_lens;
     return mesh_.triangles[t].badness() == kSkinny ? quality_.lens : kDiametralDisk;
   }
 
@@ -335,6 +358,8 @@ class Refiner {
     const Triangle& triangle = mesh_.triangles[t];
     const std::uint32_t a = triangle.vertex[kNext[edge]];
     const std::uint32_t b = triangle.vertex[kPrevious[edge]];
+    if (edge_limits_.keep_any() && edge_limits_.keep(corners_.marker(mesh_, a, b))) [[unlikely]]
+      return Outcome::kKept;
     const HalfEdge across = triangle.neighbor[edge];
     const double pieces = pieces_of(a, b);
     const Point p = corners_.split_point(
@@ -538,6 +563,8 @@ class Refiner {
       if (outcome == Outcome::kNotOwned) defer_segment(s);
       if (outcome == Outcome::kTooClose || outcome == Outcome::kFlat)
         segments_refused_ = std::max(segments_refused_, refusal());
+      if (outcome == Outcome::kKept)
+        segments_refused_ = std::max(segments_refused_, Refusal::kKept);
     }
     return any;
   }
@@ -654,9 +681,10 @@ class Refiner {
   std::vector<BadTriangle> deferred_;
   std::vector<SegmentEdge> deferred_segments_;
   std::vector<BadTriangle> migrants_;
+  bool near_kept_ = false;  // whether Steiner points may be as near to segments as angles permit
   bool segments_deferred_ = false;
   // Why segments of the last call of split_queued_segments were not split; precision takes
-  // precedence over the caller's floor.
+  // precedence over what the caller asked for.
   Refusal segments_refused_ = Refusal::kNone;
   std::optional<Error> stopped_;
   std::uint32_t until_poll_ = 1;

@@ -20,9 +20,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 
 #include "engine/base/geometry.h"
+#include "engine/base/vector.h"
 #include "engine/refine/quality_bounds.h"
+#include "engine/refine/storage/mesh_store.h"
 #include "engine/size/lattice/lattice.h"
 
 namespace weft {
@@ -71,6 +75,28 @@ inline Point steiner_point(Point a, Point b, Point c, double off_centre) {
 
 inline Point steiner_point(Point a, Point b, Point c, const QualityBounds& quality) {
   return steiner_point(a, b, c, quality.off_centre);
+}
+
+// Of a triangle that is too large and whose Steiner point would be beyond a segment or at one: a
+// point in it, away from its own edges on segments, and the squared distance that the point must
+// keep from all vertices that it would be joined to, above a quarter of the bound on areas, so that
+// refinement ends by packing.
+struct MiddlePoint {
+  Point at;
+  double clearance2;
+};
+inline MiddlePoint middle_beside_segments(const MeshStore& mesh, const Triangle& triangle) {
+  double x = 0, y = 0, sum = 0;
+  std::array<Point, 3> corner;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    corner[k] = mesh.vertices[triangle.vertex[k]];
+    const double weight = triangle.on_segment(k) ? 2 : 1;  // of the corner opposite
+    x += weight * corner[k].x;
+    y += weight * corner[k].y;
+    sum += weight;
+  }
+  const double area = 0.5 * cross(corner[1] - corner[0], corner[2] - corner[0]);
+  return {{x / sum, y / sum}, 0.25 * area};
 }
 
 // Whether a triangle that is too large takes the lattice point `nearest` instead of its

@@ -34,10 +34,10 @@ WEFT_API void weft_request_free(weft_request* request);
 
 /* Sets an option from text: a number, "true" or "false", the name of an enumerator ("circumcentre"
  * of Placement). Its field is "domain.fill", "domain.snap", "size.constant", "size.expression",
- * "size.measure", "size.cells_across", "size.gradation", "size.gradation_within",
- * "quality.min_angle_deg", "quality.min_edge", "quality.placement", "quality.optimise",
- * "budget.max_triangles", "budget.max_bytes", "budget.max_seconds", "threads", "want_quadtree",
- * "allow_unrefined" or "simplify". */
+ * "size.measure", "size.cells_across", "size.points_per_circle", "size.gradation",
+ * "size.gradation_within", "quality.min_angle_deg", "quality.min_edge", "quality.placement",
+ * "quality.optimise", "budget.max_triangles", "budget.max_bytes", "budget.max_seconds", "threads",
+ * "want_quadtree", "allow_unrefined" or "simplify". */
 WEFT_API void weft_set(weft_request* request, const char* field, const char* text);
 
 #define WEFT_NONE UINT32_MAX /* an area that a segment is no border of */
@@ -72,6 +72,9 @@ WEFT_API void weft_set_size_raster(weft_request* request, const weft_grid* grid,
                                    const double* values);
 /* The length of edges on segments with the marker. */
 WEFT_API void weft_add_size_at(weft_request* request, int32_t marker, double max_edge);
+
+/* Segments that stay as they are: those with one of the markers, all without. */
+WEFT_API void weft_keep(weft_request* request, const int32_t* markers, size_t count);
 
 /* Fields that the expression may name. The distance to the domain's segments with one of the
  * markers, all without; or to points, or to the segments between them. */

@@ -123,6 +123,7 @@ struct SizeWarning {
 struct Unrefined {
   std::uint64_t small_input_angle = 0;  // its smallest angle is forced by two segments that meet
   std::uint64_t edge_floor = 0;         // splitting it would make edges below MeshRequest::min_edge
+  std::uint64_t kept = 0;               // splitting it would split a segment that is kept
   std::uint64_t budget = 0;             // max_triangles was reached
   std::uint64_t precision = 0;          // its split would make edges too short for double precision
   std::uint64_t streaming = 0;          // its surroundings had been sent when it was to be split
@@ -130,7 +131,7 @@ struct Unrefined {
   std::uint64_t too_large = 0;
 
   std::uint64_t total() const {
-    return small_input_angle + edge_floor + budget + precision + streaming;
+    return small_input_angle + edge_floor + kept + budget + precision + streaming;
   }
   // Triangles that neither the input nor the request exempts.
   std::uint64_t without_exemption() const { return precision + streaming; }
@@ -181,6 +182,7 @@ struct Summary {
   // The centroid of the first triangle, in the order of the chunks, that misses a bound without
   // exemption; meaningless if there is none.
   Point unrefined_at;
+  Point kept_at;                             // of the largest triangle in Unrefined::kept
   Merging merging;                           // of the input, before refinement
   Overlap overlap;                           // of the input's areas
   OutsideSegments outside;                   // before simplification

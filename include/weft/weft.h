@@ -28,6 +28,7 @@ inline constexpr std::string_view kEngineVersion = "14";
 
 inline constexpr double kMaxMinAngleDeg = 36;
 inline constexpr std::uint32_t kMaxSweeps = 16;
+inline constexpr std::size_t kMaxKeptMarkers = 4096;
 
 // Where the Steiner points of triangles that are too large go.
 enum class Placement : std::uint8_t {
@@ -45,6 +46,11 @@ struct MeshRequest {
   double min_angle_deg = 20;
   // No edge shorter than this is made, in units. 0: only the floor of double precision.
   double min_edge = 0;
+  // Refinement puts no vertex on segments with these markers; if it is empty, on no segment. Of
+  // segments that overlap, the first one's marker counts.
+  // Triangles there that miss a bound for it are exempt (Unrefined::kept). Not with `simplify`, and
+  // no such marker has a size of its own. At most kMaxKeptMarkers.
+  std::optional<std::vector<std::int32_t>> keep = std::nullopt;
   Placement placement = Placement::kLattice;
   // Sweeps of smoothing, at most kMaxSweeps. Unset: two if the size makes nearly all triangles, on
   // a lattice that has few faults or in a mesh below 100,000 triangles; otherwise none.

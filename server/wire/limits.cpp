@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "server/wire/names.h"
+#include "weft/weft.h"
 
 namespace weft::server {
 namespace {
@@ -31,6 +32,7 @@ struct Amounts {
   std::uint64_t expression_bytes = 0;
   std::uint64_t raster_values = 0;
   std::uint64_t sizes_at = 0;
+  std::uint64_t kept = 0;  // markers of segments
   // Summed over all fields that the size may name.
   std::uint64_t fields = 0;
   std::uint64_t field_points = 0;
@@ -63,6 +65,9 @@ std::optional<Failure> check(const Amounts& amounts, const Limits& limits) {
           over("size.raster.values", "values", amounts.raster_values, limits.max_raster_values))
     return f;
   if (auto f = over("size.at", "markers", amounts.sizes_at, std::uint64_t{kMaxSizesAt})) return f;
+  if (auto f =
+          over("quality.keep.markers", "markers", amounts.kept, std::uint64_t{kMaxKeptMarkers}))
+    return f;
   const auto of_fields = [](std::string_view unit, std::uint64_t value, std::uint64_t limit) {
     return over("size.fields", unit, value, limit);
   };
@@ -95,6 +100,7 @@ std::optional<Failure> check_limits(const WireScan& scan, const Limits& limits) 
           scan.count(*v1::SizeField::descriptor(), v1::SizeField::kExpressionFieldNumber),
       .raster_values = scan.count(*v1::Raster::descriptor(), v1::Raster::kValuesFieldNumber),
       .sizes_at = scan.count(*v1::SizeField::descriptor(), v1::SizeField::kAtFieldNumber),
+      .kept = scan.count(*v1::Keep::descriptor(), v1::Keep::kMarkersFieldNumber),
       .fields = scan.count(*v1::SizeField::descriptor(), v1::SizeField::kFieldsFieldNumber),
       .field_points =
           scan.count(*v1::Distance::descriptor(), v1::Distance::kPointsFieldNumber) / 2 +
@@ -124,7 +130,8 @@ std::optional<Failure> check_limits(const v1::GenerateMeshRequest& request, cons
       .names = count(domain.marker_names_size(), 1) + count(domain.region_names_size(), 1),
       .expression_bytes = request.size().expression().size(),
       .raster_values = count(request.size().raster().values_size(), 1),
-      .sizes_at = count(request.size().at_size(), 1)};
+      .sizes_at = count(request.size().at_size(), 1),
+      .kept = count(request.quality().keep().markers_size(), 1)};
   for (const v1::NamedField& field : request.size().fields()) {
     amounts.fields += 1;
     amounts.field_points += count(field.distance().points_size(), 2);

@@ -56,6 +56,7 @@ TEST_F(CommandLine, PrintsOneJsonObject) {
   EXPECT_EQ(json["triangles"], 32);
   EXPECT_EQ(json["unrefined"], (nlohmann::json{{"small_input_angle", 0},
                                                {"edge_floor", 0},
+                                               {"kept", 0},
                                                {"budget", 0},
                                                {"precision", 0},
                                                {"streaming", 0}}));

@@ -72,6 +72,7 @@ def test_a_number_as_size_bounds_all_areas(client, size):
 def test_options_reach_the_server(client):
     assert client.mesh(KEY, size=0.01, max_triangles=1000).summary.unrefined.budget > 0
     assert client.mesh(KEY, size=0.01, min_edge=5).summary.unrefined.edge_floor > 0
+    assert client.mesh(KEY, size=0.01, keep="all").summary.unrefined.kept > 0
     assert client.mesh(KEY, size=0.001, quadtree=True).summary.leaf_boxes.shape[1:] == (4,)
     assert client.mesh(KEY, threads=1, no_cache=True).summary.threads == 1
     with pytest.raises(weft.DeadlineExceeded):

@@ -272,6 +272,15 @@ def test_a_mesh_is_refined_where_its_areas_say_so(judge):
     judge(fine, ring, min_angle=20)
 
 
+@pytest.mark.parametrize("switches", ["pqYa0.01", "pq30YYa0.01"])
+def test_Y_puts_no_point_on_segments(judge, switches):
+    plan = {**SQUARE, "vertices": [*SQUARE["vertices"], (1, 1), (3, 2)], "segments": [*SQUARE["segments"], (4, 5)],
+            "segment_markers": [1, 1, 1, 1, 2]}
+    made = weft.triangulate(plan, switches)
+    assert len(made["segments"]) == 5 and len(made["vertices"]) > 90
+    judge(made, plan, "--keep", "all", "--max-unrefined", 200)
+
+
 def containing(mesh, points):
     """The triangle that each point is in, or is nearest to being in."""
     a, b, c = (mesh["vertices"][mesh["triangles"][:, k]] for k in range(3))
@@ -292,7 +301,7 @@ def test_attributes_of_a_mesh_that_is_refined_stay_where_they_were():
 @pytest.mark.parametrize("switches, message", [
     ("pqx", "'x': unknown, number 3 of 'pqx'"), ("pq-", "'-': unknown"), ("q\N{ARABIC-INDIC DIGIT TWO}", "unknown"),
     ("q40", "'q40': .* from 0 to 36"), ("a0", "'a0': .* above 0"), ("a1e999", "'a1e999'"), ("o3", "'o': the order"),
-    ("pqY", "'Y': q and a"), ("pqD", "'D': .* constrained"), ("L", "'L'"), ("rc", "'c'"), ("pu", "'u'"), ("v", "'v'"),
+    ("pqD", "'D': .* constrained"), ("L", "'L'"), ("rc", "'c'"), ("pu", "'u'"), ("v", "'v'"),
     ("w", "'w'"), ("W", "'W'"), ("s", "'s'"), ("g", "'g'")])
 def test_a_switch_that_cannot_be_honoured_is_named(switches, message):
     with pytest.raises(weft.SwitchError, match=message) as caught:

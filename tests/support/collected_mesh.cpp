@@ -314,8 +314,9 @@ std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
   requirements.simplify = request.simplify;
   requirements.points_per_circle = request.size.points_per_circle;
   // What the engine declares it could not refine may miss its bounds, no more.
-  requirements.allowed_unrefined = summary.unrefined.edge_floor + summary.unrefined.budget +
-                                   summary.unrefined.without_exemption();
+  requirements.keep = request.keep;
+  requirements.allowed_unrefined = summary.unrefined.edge_floor + summary.unrefined.kept +
+                                   summary.unrefined.budget + summary.unrefined.without_exemption();
   const check::Domain domain = domain_of(request.pslg);
   const check::Report report = check::check(domain, collected.mesh, requirements);
   if (!report.ok()) return check::to_text(report);

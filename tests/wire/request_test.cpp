@@ -190,6 +190,8 @@ v1::GenerateMeshRequest full_request() {
   quality.set_min_edge(0.01);
   quality.set_placement(v1::PLACEMENT_CIRCUMCENTRE);
   quality.set_optimise(3);
+  quality.mutable_keep()->add_markers(-1);
+  quality.mutable_keep()->add_markers(300);
   v1::Budget& budget = *request.mutable_budget();
   budget.set_max_triangles(std::uint64_t{1} << 40);
   budget.set_max_bytes(11);
@@ -237,6 +239,7 @@ TEST(ReadRequest, BringsTheOptions) {
   EXPECT_EQ(request->mesh.min_edge, 0.01);
   EXPECT_EQ(request->mesh.placement, Placement::kCircumcentre);
   EXPECT_EQ(request->mesh.sweeps, 3u);
+  EXPECT_EQ(request->mesh.keep, (std::vector<std::int32_t>{-1, 300}));
   EXPECT_EQ(request->mesh.simplify, 0.75);
   EXPECT_TRUE(request->mesh.allow_unrefined);
   EXPECT_EQ(request->max_triangles, std::uint64_t{1} << 40);
@@ -254,6 +257,7 @@ TEST(ReadRequest, TakesWhatIsLeftOutForItsDefault) {
   EXPECT_EQ(request->mesh.min_angle_deg, MeshRequest{}.min_angle_deg);
   EXPECT_EQ(request->mesh.placement, Placement::kLattice);
   EXPECT_EQ(request->mesh.sweeps, std::nullopt);
+  EXPECT_EQ(request->mesh.keep, std::nullopt);
   EXPECT_EQ(request->mesh.pslg.fill, Fill::kSeeds);
 }
 

@@ -55,8 +55,9 @@ TEST(Figure, IsTheNumberThatTheMessageHas) {
   summary.vertices = 1;
   summary.area = 2.5;
   summary.streamed = true;
-  summary.unrefined = {11, 12, 13, 27, 28, 29};
+  summary.unrefined = {11, 12, 61, 13, 27, 28, 29};
   summary.unrefined_at = {30, 31};
+  summary.kept_at = {62, 63};
   summary.merging = {32, 33, 34, 35, {36, 37}, 38, {39, 40}};
   summary.overlap = {3, 0.5, true};
   summary.narrow = NarrowPlace{51, 52, {53, 54}, 55, 56, 57, 58};
@@ -66,7 +67,7 @@ TEST(Figure, IsTheNumberThatTheMessageHas) {
   v1::Summary message;
   ASSERT_TRUE(message.ParseFromString(write_summary(summary, 3)));
   EXPECT_EQ(message.GetReflection()->GetUnknownFields(message).field_count(), 0);
-  EXPECT_EQ(compare(message, summary, ""), 4 + 8 + 9 + 3 + 8 + 4 + 8 + 1);
+  EXPECT_EQ(compare(message, summary, ""), 4 + 11 + 9 + 3 + 8 + 4 + 8 + 1);
   EXPECT_EQ(figure(summary, 3, "exact_predicates"), 0);
   const auto& cuts = message.simplification().cuts();
   EXPECT_EQ(std::vector<double>(cuts.begin(), cuts.end()), (std::vector<double>{71, 72, 73, 74}));

@@ -4,13 +4,14 @@
 // `domain`, the name of the domain's file, is given, the request is whole.
 import { Measure, Placement, type GenerateMeshRequest, type NamedField } from "../gen/weft/v1/mesh_service_pb";
 
-type Value = string | number | boolean;
+type Value = string | number | boolean | number[];
 
 // In the order of the flags of `weft mesh`; the names are those of Python's options.
 function optionsOf({ domain, quality, size, simplify, budget, allowUnrefined }: GenerateMeshRequest): [string, Value][] {
   const options: [string, Value | undefined][] = [
     ["min_angle", quality?.minAngleDeg],
     ["min_edge", quality?.minEdge || undefined],
+    ["keep", quality?.keep && (quality.keep.markers.length > 0 ? quality.keep.markers : "all")],
     ["placement", quality?.placement === Placement.CIRCUMCENTRE ? "circumcentre" : undefined],
     ["optimise", quality?.optimise],
     ["snap", domain?.snap || undefined],

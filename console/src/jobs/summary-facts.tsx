@@ -46,7 +46,7 @@ export function factsOf(summary: Summary): Fact[] {
     facts.push({ name: "Triangles over the least", text: `${summary.idealRatio.toFixed(3)} times` });
   const missed = summary.unrefined;
   const misses = missed
-    ? missed.smallInputAngle + missed.edgeFloor + missed.budget + missed.precision + missed.streaming
+    ? missed.smallInputAngle + missed.edgeFloor + missed.kept + missed.budget + missed.precision + missed.streaming
     : 0n;
   facts.push({ name: "Miss a bound", text: misses === 0n ? "none" : countText(misses) });
   facts.push(

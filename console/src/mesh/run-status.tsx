@@ -28,7 +28,7 @@ function Figures({ state }: { state: RunState }) {
   if (!summary) return null;
   const missed = summary.unrefined;
   const misses = missed
-    ? missed.smallInputAngle + missed.edgeFloor + missed.budget + missed.precision + missed.streaming
+    ? missed.smallInputAngle + missed.edgeFloor + missed.kept + missed.budget + missed.precision + missed.streaming
     : 0n;
   return (
     <dl class="figures">

@@ -59,13 +59,14 @@ enum class Refusal : std::uint32_t {
   kNone = 0,
   kSmallInputAngle = 1,  // two segments of the input force it
   kEdgeFloor = 2,        // the caller's own floor on edges
-  kPrecision = 3,        // the limit of double precision, which the caller did not ask for
+  kKept = 3,             // a segment that the caller keeps as it is
+  kPrecision = 4,        // the limit of double precision, which the caller did not ask for
 };
 
 struct alignas(32) Triangle {
   std::uint32_t vertex[3];
-  // Bits 0-2: edge i lies on a segment; 3: dead; 4-5: Refusal; 6: refused though too large; 7:
-  // deferred; 8-15: Badness.
+  // Bits 0-2: edge i lies on a segment; 3: dead; 4-6: Refusal; 7: deferred, or refused though too
+  // large; 8-15: Badness.
   std::uint32_t flags;
   HalfEdge neighbor[3];
   std::uint32_t region;  // index into Domain::regions
@@ -74,14 +75,14 @@ struct alignas(32) Triangle {
   std::uint32_t segment_bits() const { return flags & 7; }
   bool dead() const { return flags >> 3 & 1; }
   Badness badness() const { return flags >> 8; }
-  Refusal refusal() const { return static_cast<Refusal>(flags >> 4 & 3); }
+  Refusal refusal() const { return static_cast<Refusal>(flags >> 4 & 7); }
   // Whether a triangle that is bad or refused is larger than its bound.
-  bool too_large() const { return badness() >= kLarge || (flags >> 6 & 1); }
+  bool too_large() const { return badness() >= kLarge || (flags >> 4 & 15) > 8; }
   // Each of these two clears what the other set, except too_large: a refused triangle is no longer
   // to be refined.
   void set_badness(Badness b) { flags = (flags & 7) | b << 8; }
   void set_refusal(Refusal why) {
-    const std::uint32_t large = too_large() ? 1u << 6 : 0;
+    const std::uint32_t large = too_large() ? 1u << 7 : 0;
     flags = (flags & 7) | static_cast<std::uint32_t>(why) << 4 | large;
   }
   // Whether the running task has deferred it: the queue may have further entries of it.

@@ -28,11 +28,11 @@ std::string fault(const std::string& text) {
 
 TEST(FieldOption, NamesAKind) {
   EXPECT_EQ(parsed("coast=distance").name, "coast");
-  EXPECT_TRUE(std::get<FieldOption::Distance>(parsed("coast=distance").kind).markers.empty());
-  const auto named = std::get<FieldOption::Distance>(parsed("c=distance:marker=inlet,4,wall").kind);
+  EXPECT_TRUE(std::get<MarkerList>(parsed("coast=distance").kind).markers.empty());
+  const auto named = std::get<MarkerList>(parsed("c=distance:marker=inlet,4,wall").kind);
   EXPECT_THAT(named.markers, ElementsAre(4));
   EXPECT_THAT(named.names, ElementsAre("inlet", "wall"));
-  EXPECT_THAT(std::get<FieldOption::Distance>(parsed("c=distance:marker=2,-3").kind).markers,
+  EXPECT_THAT(std::get<MarkerList>(parsed("c=distance:marker=2,-3").kind).markers,
               ElementsAre(2, -3));
   EXPECT_EQ(std::get<FieldOption::DistanceToFile>(parsed("c=distance:a/b.geojson").kind).file,
             "folder/a/b.geojson");

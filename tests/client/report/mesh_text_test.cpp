@@ -14,6 +14,9 @@ v1::Summary summary_with_warnings() {
   v1::Summary summary;
   v1::Unrefined& unrefined = *summary.mutable_unrefined();
   unrefined.set_edge_floor(7);
+  unrefined.set_kept(2);
+  unrefined.set_kept_x(8);
+  unrefined.set_kept_y(9);
   unrefined.set_precision(1200);
   unrefined.set_too_large(200);
   unrefined.set_x(0.5);
@@ -43,6 +46,7 @@ TEST(MeshReport, WarnsOfTrianglesWithoutExemptionAndTellsWhatWasMerged) {
   EXPECT_EQ(
       text.substr(text.find('\n') + 1),
       "7 triangles miss a bound because edges would become too short\n"
+      "2 triangles miss a bound because segments are kept as they are; the largest is at (8, 9)\n"
       "WARNING: 1,200 triangles without exemption, 200 above the bound on their area and 1,000 "
       "below the minimum angle, because double precision ends; the first is at (0.5, -3)\n"
       "merged within 0.001: 12 points moved, 1 segment bent, by 0.0007 at most, at (1, 2)\n"

@@ -131,6 +131,18 @@ TEST(CInterface, TakesRastersAndLengthsAtMarkers) {
   given.expect_same();
 }
 
+TEST(CInterface, KeepsSegments) {
+  for (const std::vector<std::int32_t>& markers : {std::vector<std::int32_t>{3}, {}}) {
+    Given given;
+    given.add_hole();
+    given.set("size.constant", "0.01");
+    weft_keep(given.get(), markers.data(), markers.size());
+    given.same.size = 0.01;
+    given.same.keep = markers;
+    given.expect_same();
+  }
+}
+
 // The checker cannot judge sizes by the width: it is given and not named.
 TEST(CInterface, TakesFieldsOfAllKinds) {
   Given given;

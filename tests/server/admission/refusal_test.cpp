@@ -173,6 +173,11 @@ INSTANTIATE_TEST_SUITE_P(
                for (int i = 0; i < 33; ++i) r.mutable_size()->add_at();
              },
              "size.at", "33 markers; this server's limit is 32"},
+        Case{"MarkersToKeep",
+             [](Request& r) {
+               for (int i = 0; i < 4097; ++i) r.mutable_quality()->mutable_keep()->add_markers(i);
+             },
+             "quality.keep.markers", "4097 markers; this server's limit is 4096"},
         Case{"Fields",
              [](Request& r) {
                for (int i = 0; i < 33; ++i) add_field(r).mutable_width();

@@ -84,8 +84,9 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   summary.angle_histogram[17] = 8;
   summary.aspect_histogram[8] = 9;
   summary.size_histogram[9] = 10;
-  summary.unrefined = {11, 12, 13, 27, 28, 29};
+  summary.unrefined = {11, 12, 61, 13, 27, 28, 29};
   summary.unrefined_at = {30, 31};
+  summary.kept_at = {62, 63};
   summary.narrow = NarrowPlace{51, 52, {53, 54}, 55, 56, 57, 58};
   summary.outside = {65, 66, {67, 68}};
   summary.simplified = Simplification{57, 58, 59, 60, 63, 64, 61, 62, {}};
@@ -141,6 +142,9 @@ TEST(SummaryToWire, CarriesEveryFigure) {
   EXPECT_EQ(message.unrefined().too_large(), 29u);
   EXPECT_EQ(message.unrefined().x(), 30);
   EXPECT_EQ(message.unrefined().y(), 31);
+  EXPECT_EQ(message.unrefined().kept(), 61u);
+  EXPECT_EQ(message.unrefined().kept_x(), 62);
+  EXPECT_EQ(message.unrefined().kept_y(), 63);
   EXPECT_EQ(message.narrow().segment(), 51u);
   EXPECT_EQ(message.narrow().other(), 52u);
   EXPECT_EQ(message.narrow().x(), 53);

@@ -10,7 +10,8 @@ _EDGE = 2  # weft.v1.Measure
 
 _ARGUMENTS = {
     "size.gradation": "gradation", "size.cells_across": "cells_across", "size.fields": "fields",
-    "size.points_per_circle": "points_per_circle", "size.at": "edge_at", "quality.min_angle_deg": "min_angle", "quality.min_edge": "min_edge",
+    "size.points_per_circle": "points_per_circle", "size.at": "edge_at", "quality.min_angle_deg": "min_angle",
+    "quality.min_edge": "min_edge", "quality.keep": "keep",
     "quality.placement": "placement", "quality.optimise": "optimise", "domain.snap": "snap",
     "simplify": "simplify",
     "budget.max_triangles": "max_triangles", "budget.max_seconds": "max_seconds",

@@ -79,6 +79,8 @@ class Projection:
         unrefined, merging = summary.unrefined, summary.merging
         if unrefined.precision + unrefined.streaming:
             unrefined = moved(unrefined, "x", "y")
+        if unrefined.kept:
+            unrefined = moved(unrefined, "kept_x", "kept_y")
         if merging.farthest:
             merging = moved(merging, "farthest_x", "farthest_y")
         if merging.vanished_faces:

@@ -7,7 +7,7 @@ import dataclasses
 import math
 import numbers
 import reprlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, TypedDict
 
 import numpy as np
@@ -61,6 +61,10 @@ class MeshOptions(TypedDict, total=False):
     """Leave the points of the mesh in metres of the projection; implies `lonlat`."""
     min_edge: float
     """No edge shorter than this is made, in the unit of the points."""
+    keep: Literal["all"] | int | str | Sequence[int] | Sequence[str] | Sequence[int | str]
+    """Segments that stay as they are: "all", or a marker or several, numbers or names of the domain's
+    `marker_names`. No new point lies on them, and triangles there may miss their bounds, which
+    `summary.unrefined.kept` counts."""
     placement: Literal["lattice", "circumcentre"]
     """Where the points go that split triangles larger than their bound: to a lattice that follows
     the size, with a third fewer triangles, or to circumcentres, which give the mesh no preferred
@@ -150,6 +154,8 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
     request.quality.min_angle_deg = min_angle
     if "min_edge" in options:
         request.quality.min_edge = options["min_edge"]
+    if "keep" in options:
+        _fill_keep(options["keep"], domain, request.quality)
     if "placement" in options:
         if options["placement"] not in _PLACEMENTS:
             raise ValueError(f"placement is {options['placement']!r}; there are "
@@ -213,6 +219,15 @@ def _fill_domain(domain: Domain, message: Any) -> None:
                           priority=area.priority, hole=area.hole)
     if domain.segment_areas.any():
         message.segment_areas.extend(domain.segment_areas.tolist())
+
+
+def _fill_keep(keep: Any, domain: Domain, quality: Any) -> None:
+    if isinstance(keep, str) and keep == "all":
+        quality.keep.SetInParent()
+        return
+    markers = [keep] if isinstance(keep, (str, numbers.Integral)) else keep
+    for marker in markers:  # no marker on the wire would mean all
+        quality.keep.markers.append(marker_of(marker, domain.marker_names))
 
 
 def _fill_fields(fields: Mapping[str, Field], domain: Domain, projected: Projection | None,

@@ -14,7 +14,7 @@ MOST_ANGLE = 36.0  # degrees; of Quality.min_angle_deg
 
 _FLAGS = {
     "p": "poly", "r": "refine", "A": "attributes", "c": "convex", "e": "edges", "n": "neighbors",
-    "j": "jettison", "Y": "keep_boundary", "B": "no_markers",
+    "j": "jettison", "Y": "keep_segments", "B": "no_markers",
     "O": "no_holes", "z": "from_zero", "P": "no_poly", "N": "no_node", "E": "no_ele",
     "I": "no_iteration", "Q": "quiet",
 }
@@ -54,7 +54,7 @@ class Switches:
     neighbors: bool = False
     jettison: bool = False
     second_order: bool = False
-    keep_boundary: bool = False
+    keep_segments: bool = False
     most_steiner: int | None = None
     """None without S."""
     no_markers: bool = False
@@ -122,7 +122,5 @@ def _take_bound(found: dict[str, bool | float | int], letter: str, number: str) 
 
 
 def _check(switches: Switches) -> None:
-    if switches.keep_boundary and switches.bounded:
-        raise SwitchError("Y", "q and a may put points on the boundary; weft cannot forbid it")
     if switches.refine and switches.convex:
         raise SwitchError("c", "a mesh that r refines keeps its boundary")

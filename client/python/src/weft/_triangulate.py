@@ -58,6 +58,8 @@ def _mesh(problem: Problem, switches: Switches) -> Mesh:
         options: MeshOptions = {"fields": problem.fields}
         if max_triangles is not None:
             options["max_triangles"] = max_triangles
+        if switches.keep_segments:
+            options["keep"] = "all"
         return _shared.mesh(problem.domain, problem.size, switches.min_angle or 0, **options)
 
     if switches.most_steiner is None or not switches.bounded:

@@ -75,6 +75,7 @@ class Client(ClientBase):
         `cells_across`: minimum number of edges across the domain, above 0; default: any number.
         `points_per_circle`: minimum number of vertices on a circle, above 0; default: 6.
         `min_edge`: no edge shorter than this is made, from 0; default: 0.
+        `keep`: markers or names of segments that stay as they are, or "all"; default: none.
 
         Place:
         `lonlat`: True if the domain is in longitude and latitude, degrees; default: False.

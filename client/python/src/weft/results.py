@@ -59,6 +59,8 @@ class Unrefined:
     """The angle is forced by two input segments."""
     edge_floor: int
     """A split would make edges below `min_edge`."""
+    kept: int
+    """A split would put a vertex on a segment that `keep` names."""
     budget: int
     """`max_triangles` was reached."""
     precision: int
@@ -73,6 +75,10 @@ class Unrefined:
     """Centroid of the first triangle in `precision` or `streaming`; 0 if there is none."""
     y: float
     """See x."""
+    kept_x: float
+    """Centroid of the largest triangle in `kept`; 0 if there is none."""
+    kept_y: float
+    """See kept_x."""
 
 
 @dataclasses.dataclass(frozen=True)
