@@ -10,7 +10,7 @@
 #     weftd    runs weftd
 #     weft     runs a weft that was compiled with geo; its own weftd needs weftd, too
 #     test     what tests/run.sh needs beyond build and geo
-#     solvers  FEniCSx and FreeFem++, 128 packages, for tests/deep.sh solvers
+#     solvers  FEniCSx, FreeFem++ and CalculiX, 130 packages, for tests/deep.sh solvers
 #     all      build, console, geo and test, the default
 set -euo pipefail
 
@@ -66,7 +66,7 @@ console=()
 command -v npm >/dev/null || console=(nodejs npm)
 test+=("${console[@]}") # the linters
 
-solvers=(python3-dolfinx freefem++)
+solvers=(python3-dolfinx freefem++ calculix-ccx)
 
 wanted=()
 for group in "${@:-all}"; do

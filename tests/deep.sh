@@ -60,7 +60,7 @@ deep_packages() {
 
 deep_solvers() {
   step "install solvers" deploy/install-deps.sh solvers &&
-    step "solvers" env PYTHONPATH=build/release/python WEFT_WEFTD=build/release/weftd PATH="$PWD/build/release:$PATH" \
+    step "solvers" env PYTHONPATH=build/release/python WEFT_WEFTD="$PWD/build/release/weftd" PATH="$PWD/build/release:$PATH" \
       /usr/bin/python3 -B tests/python/solve.py
 }
 

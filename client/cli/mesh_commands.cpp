@@ -20,7 +20,7 @@ namespace {
 constexpr char kMeshExamples[] =
     R"(.node writes Triangle's .node, .ele and .poly, .14 and .grd ADCIRC's grid,
 .gr3 SCHISM's, .nc UGRID, .slf TELEMAC's SELAFIN, .xdmf its arrays in .xdmf.bin, .foam OpenFOAM's
-constant/polyMesh beside it, .exo Exodus, .disv the grid of MODFLOW 6.
+constant/polyMesh beside it, .exo Exodus, .disv the grid of MODFLOW 6, .inp Abaqus and CalculiX.
 
 Exit codes (all of them: weft --help):
   0        every triangle is within its bounds, or exempt, and the files are written

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "client/base/text.h"
+#include "client/base/words.h"
 #include "client/formats/mesh_formats.h"
 
 namespace weft::client {
@@ -115,11 +116,18 @@ std::string foam_word(std::string_view name) {
   return (begins_well && !is_number_of(word, '_') && word != kFrontAndBack ? "" : "_") + word;
 }
 
+std::string inp_label(std::string_view name) {
+  constexpr std::size_t kLongest = 72;
+  std::string word = ascii_word(name, "_-");
+  if (!is_letter(word.front()) || is_number_of(lower_case(word), '_')) word.insert(0, "n_");
+  return word.substr(0, kLongest);
+}
+
 Names names_in(const MeshFormat& format, const Names& names) {
   Names out;
   for (const NameKind kind : {NameKind::kMarker, NameKind::kRegion})
     if (const Spelling spelling = spelling_of(format, kind))
-      out.table(kind) = spelled(names.table(kind), spelling);
+      out.table(kind) = spelled(names.table(kind), spelling, format.name_case);
   return out;
 }
 

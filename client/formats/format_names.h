@@ -31,6 +31,9 @@ std::string exodus_name(std::string_view name);
 // A word of letters, digits and _-. that does not begin with a digit, - or ., and nothing that
 // reads as "region_7", "marker_7" or kFrontAndBack.
 std::string foam_word(std::string_view name);
+// A word of letters, digits and _- that begins with a letter, of at most 72 characters so that with
+// a number behind it has no more than 80, and nothing that reads as "region_7" or "marker_7".
+std::string inp_label(std::string_view name);
 // OpenFOAM's patch of the triangles themselves.
 inline constexpr char kFrontAndBack[] = "frontAndBack";
 

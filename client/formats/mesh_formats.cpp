@@ -20,6 +20,7 @@
 #include "client/formats/meshes/adcirc.h"
 #include "client/formats/meshes/exodus.h"
 #include "client/formats/meshes/geojson_mesh.h"
+#include "client/formats/meshes/inp.h"
 #include "client/formats/meshes/medit.h"
 #include "client/formats/meshes/mfem.h"
 #include "client/formats/meshes/modflow.h"
@@ -194,6 +195,13 @@ constexpr MeshFormat kFormats[] = {
      .read = read_mfem,
      .marker_names = quotable_name,
      .region_names = quotable_name},
+    {.extension = ".inp",
+     .second_order = true,
+     .write = one_file<write_inp>,
+     .read = read_inp,
+     .marker_names = inp_label,
+     .region_names = inp_label,
+     .name_case = NameCase::kIgnored},
     {.extension = ".npz",
      .write = one_file<write_npz>,
      .read = read_npz,

@@ -70,6 +70,7 @@ struct MeshFormat {
   // How it writes the names of markers and regions; null if it does not carry them.
   Spelling marker_names = nullptr;
   Spelling region_names = nullptr;
+  NameCase name_case = NameCase::kMatters;
   bool boundary_only = false;    // whether it has the edges of the boundary alone
   bool open_boundaries = false;  // whether it tells open boundaries from land
 };

@@ -5,6 +5,7 @@
 
 #include "client/base/did_you_mean.h"
 #include "client/base/text.h"
+#include "client/base/words.h"
 
 namespace weft::client {
 namespace {
@@ -159,19 +160,22 @@ void Labels::name_all(NameKind kind, NameReader& reader) const {
   for (const std::uint32_t label : named_) reader.add(kind, all[label], *texts[label]);
 }
 
-NameTable spelled(const NameTable& table, Spelling spelling) {
+NameTable spelled(const NameTable& table, Spelling spelling, NameCase letters) {
   NameTable out;
   std::map<std::string, int> used;  // spellings, and how many names wanted each one
+  const auto key = [letters](const std::string& text) {
+    return letters == NameCase::kIgnored ? lower_case(text) : text;
+  };
   // Names that stay as they are come first, so that no other name takes their spelling.
   for (const auto& [id, name] : table)
-    if (spelling(name) == name) used[out[id] = name] = 1;
+    if (spelling(name) == name && used.try_emplace(key(name), 1).second) out[id] = name;
   for (const auto& [id, name] : table) {
     if (out.contains(id)) continue;
     const std::string first = spelling(name);
     std::string text = first;
-    for (int& wanted = used[first]; wanted++ > 0;) {
+    for (int& wanted = used[key(first)]; wanted++ > 0;) {
       text = first + "_" + std::to_string(wanted);
-      if (used.try_emplace(text, 1).second) break;
+      if (used.try_emplace(key(text), 1).second) break;
     }
     out[id] = text;
   }

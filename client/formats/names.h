@@ -109,7 +109,9 @@ class Labels {
 // How a format writes a name: the name itself, if the format can carry it.
 using Spelling = std::string (*)(std::string_view name);
 
+enum class NameCase { kMatters, kIgnored };  // of the letters of names in a format
+
 // The table as a format spells it. A spelling that another name has already gets a number: "a_b_2".
-NameTable spelled(const NameTable& table, Spelling spelling);
+NameTable spelled(const NameTable& table, Spelling spelling, NameCase letters = NameCase::kMatters);
 
 }  // namespace weft::client

@@ -88,7 +88,7 @@ const OptionRows<MeshWriteOptions>& writing_rows() {
   static const OptionRows<Writing> rows = {
       {"order", "WEFT_ORDER",
        "Order of the triangles written: 2 writes six-node triangles with straight sides, to .vtu, "
-       ".msh, .node, .xdmf, .exo and .e",
+       ".msh, .node, .xdmf, .exo, .e and .inp",
        "1", one_of(&Writing::order, {{"1", 1}, {"2", 2}})},
       {"msh-version", "WEFT_MSH_VERSION",
        "Version of .msh files: 4.1, binary, or 2.2, text, for older programs", "4.1",

@@ -31,7 +31,7 @@ from qgis.core import Qgis, QgsApplication
 
 import format_table
 from readers.by_gmsh import gmsh_bed, gmsh_msh, gmsh_msh_2, gmsh_names
-from readers.by_meshio import (meshio_2, meshio_bed, meshio_exodus, meshio_exodus_2, meshio_medit, meshio_msh,
+from readers.by_meshio import (meshio_2, meshio_bed, meshio_exodus, meshio_exodus_2, meshio_inp, meshio_inp_names, meshio_medit, meshio_msh,
                                meshio_names, meshio_stl, meshio_su2, meshio_su2_names,
                                meshio_surface, meshio_vtu)
 from readers.by_netcdf import (netcdf4_exodus, netcdf4_names, netcdf4_parts, netcdf4_ugrid,
@@ -130,6 +130,8 @@ CHECKS = [  # file, flags of weft convert, reader, check
     ("names.vol", [], NETGEN, netgen_names),
     ("plate.mfem", [], NUMPY, numpy_mfem),
     ("names.mfem", [], NUMPY, numpy_mfem_names),
+    ("plate.inp", [], MESHIO, meshio_inp),
+    ("names.inp", [], MESHIO, meshio_inp_names),
     ("plate.npz", [], NUMPY, numpy_npz),
     ("rcm.npz", ["--renumber", "rcm"], NUMPY, numpy_rcm),
     ("parts.npz", ["--parts", "4"], NUMPY, numpy_parts),

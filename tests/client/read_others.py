@@ -236,6 +236,8 @@ CASES = [  # file, kind, writer, what writes, what is expected
     # References are the numbers of curves and surfaces. The hole's curves are in no group: not there.
     ("d.mesh", "", GMSH, gmsh_model(True, 4.1), {"markers": {0, 1, 2, 3, 4, 9, 10, 11},
                                                  "regions": {1: PLATE.area, 2: 8.0}}),
+    # Lines and surfaces without a name are "PhysicalLine6", "PhysicalSurface8": names, too.
+    ("d.inp", "", GMSH, gmsh_model(True, 4.1), {"markers": {0, 1, 2}, "regions": {1: PLATE.area, 2: 8.0}}),
     ("d.vol", "", NETGEN, netgen_mesh, {"markers": {1, 2, 3}, "regions": {1: PLATE.area, 2: 8.0}}),
     ("dz.vtu", ", zlib, appended", VTK, vtk_grid("ZLib", "Appended", False, True), OF_MESH),
     ("dl.vtu", ", LZ4, appended in base64", VTK, vtk_grid("LZ4", "Appended", True, False), OF_MESH),

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the examples of docs/solvers.md with FEniCSx and FreeFem++, and FEniCSx on two processes, too; for
+"""Runs the examples of docs/solvers.md with FEniCSx, FreeFem++ and CalculiX, and FEniCSx on two processes, too; for
 tests/deep.sh, which installs them.
 
-    solve.py [PART]     PART: fenicsx or freefem; default: all of it
+    solve.py [PART]     PART: fenicsx, freefem or calculix; default: all of it
 """
 
 import os
@@ -102,13 +102,38 @@ def freefem():
     check(abs(walls - 4) < 1e-5, f"the walls are {walls:g} long")
 
 
+def highest_pull(frd):
+    """Of a file of CalculiX, the node with the highest stress in x: that stress and the node's coordinates."""
+    section, places, stresses = "", {}, {}
+    for line in frd.read_text().splitlines():
+        if line.startswith((" -4", "    2C")):
+            section = line[5:13].strip() if line.startswith(" -4") else "nodes"
+        elif line.startswith(" -1") and section in ("nodes", "STRESS"):
+            numbers = [float(line[at:at + 12]) for at in range(13, len(line), 12)]
+            (places if section == "nodes" else stresses)[int(line[3:13])] = numbers
+        elif line.startswith(" -3"):
+            section = ""
+    node = max(stresses, key=lambda number: stresses[number][0])
+    return stresses[node][0], places[node]
+
+
+def calculix():
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run(["bash", "-ec", block("CalculiX", "sh") + "ccx pull > log"], cwd=folder, check=True)
+        stress, (x, y, _) = highest_pull(pathlib.Path(folder) / "pull.frd")
+    wide = 1 - 0.1  # the width beside the hole
+    expected = 0.284 + 2/wide - 0.6*wide + 1.32*wide**2
+    check(abs(stress/expected - 1) < 0.005 and abs(x) < 0.05 and y > 0.99,
+          f"CalculiX: the stress at ({x:g}, {y:g}) is {stress:.3f} times the pull, and {expected:.3f} is expected")
+
+
 def run_all():
     """Each in a process of its own: mpirun does not start from one that has MPI."""
     part = [sys.executable, "-B", __file__]
     mpirun = ["mpirun", *(["--allow-run-as-root"] if os.geteuid() == 0 else []), "--oversubscribe", "-n", "2"]
-    for command in ([*part, "fenicsx"], [*mpirun, *part, "fenicsx"], [*part, "freefem"]):
+    for command in ([*part, "fenicsx"], [*mpirun, *part, "fenicsx"], [*part, "freefem"], [*part, "calculix"]):
         subprocess.run(command, check=True)
 
 
 if __name__ == "__main__":
-    {"fenicsx": fenicsx, "freefem": freefem, "": run_all}["".join(sys.argv[1:])]()
+    {"fenicsx": fenicsx, "freefem": freefem, "calculix": calculix, "": run_all}["".join(sys.argv[1:])]()

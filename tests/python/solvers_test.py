@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What of a mesh solvers take: groups by name, second order, meshio, scikit-fem. tests/python/solve.py solves
-with FEniCSx and FreeFem++."""
+with FEniCSx, FreeFem++ and CalculiX."""
 
 import sys
 import types

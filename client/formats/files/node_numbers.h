@@ -9,6 +9,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string_view>
 #include <unordered_map>
 
@@ -22,6 +24,15 @@ class NodeNumbers {
   // Reads the number of the next point. Error: it is that of another point, too. REQUIRES: fewer
   // than 2^32 points.
   Result<void> add(LineScanner& scanner, std::string_view what);
+
+  // The index of the point that has this number; nullopt if none has.
+  std::optional<std::uint32_t> find(std::int64_t number) const;
+
+  // Calls `act` with the index of each point whose number is first, first + step, ... and at most
+  // `last`, in any order. Takes time in the points or in the numbers, whichever are fewer.
+  // REQUIRES: step >= 1.
+  void each_of(std::int64_t first, std::int64_t last, std::int64_t step,
+               const std::function<void(std::uint32_t)>& act) const;
 
   // Reads the number of a point, as its index. Error: no point has it.
   Result<std::uint32_t> read(LineScanner& scanner, std::string_view what) const;

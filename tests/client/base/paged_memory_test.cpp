@@ -148,7 +148,7 @@ TEST_P(PagedFiles, SayThatTheyWereInterrupted) {
 
 INSTANTIATE_TEST_SUITE_P(All, PagedFiles,
                          ::testing::Values("m.vtu", "m.msh", "m.node", "m.npz", "m.edge", "m.neigh",
-                                           "m.14", "m.su2", "m.mesh", "m.vol", "m.mfem",
+                                           "m.14", "m.su2", "m.mesh", "m.vol", "m.mfem", "m.inp",
                                            "m.geojson", "m.obj", "m.off", "m.ply", "m.stl"),
                          [](const auto& info) {
                            const std::string name = info.param;

@@ -96,12 +96,12 @@ TEST_F(ExchangeFormat, OffComesBackWithItsTriangles) {
 TEST_F(ExchangeFormat, EveryFormatTakesAMeshThatIsEmpty) {
   std::filesystem::create_directories(folder_ / "constant/polyMesh");  // of .foam
   for (const char* name :
-       {"m.vtu",  "m.msh", "m.node", "m.edge",    "m.neigh", "m.14",  "m.su2", "m.2dm",
-        "m.nc",   "m.slf", "m.npz",  "m.geojson", "m.obj",   "m.off", "m.ply", "m.stl",
-        "m.xdmf", "m.exo", "m.disv", "m.foam",    "m.mesh",  "m.vol", "m.mfem"})
+       {"m.vtu",  "m.msh", "m.node", "m.edge",    "m.neigh", "m.14",  "m.su2",  "m.2dm",
+        "m.nc",   "m.slf", "m.npz",  "m.geojson", "m.obj",   "m.off", "m.ply",  "m.stl",
+        "m.xdmf", "m.exo", "m.disv", "m.foam",    "m.mesh",  "m.vol", "m.mfem", "m.inp"})
     EXPECT_TRUE(write_files(MeshView{}, folder_ / name)) << name;
   for (const char* name : {"m.vtu", "m.msh", "m.node", "m.14", "m.su2", "m.mesh", "m.npz", "m.obj",
-                           "m.off", "m.vol", "m.mfem"}) {
+                           "m.off", "m.vol", "m.mfem", "m.inp"}) {
     const auto back = read_mesh(folder_ / name);
     ASSERT_TRUE(back) << back.error().message;
     EXPECT_EQ(*back, Mesh{}) << name;
@@ -282,7 +282,7 @@ TEST_F(ExchangeFormat, SecondOrderIsForFormatsThatHaveIt) {
   EXPECT_EQ(checked.error().exit, ExitCode::kUsage);
   EXPECT_EQ(checked.error().message,
             "m.su2: the extension '.su2' is not that of a mesh of second order: .vtu, .msh, .node, "
-            ".xdmf, .exo, .e");
+            ".xdmf, .exo, .e, .inp");
 }
 
 // A unit of two triangles whose points have these lines.

@@ -67,7 +67,7 @@ TEST_P(HostileMesh, IsRefusedOrRead) {
   mesh.names.markers = {{1, "inlet"}, {2, "out & let"}, {3, "w\u00e4nd"}};
   mesh.names.regions = {{7, "fluid"}};
   for (const char* name : {"m.node", "m.vtu", "m.msh", "m.14", "m.su2", "m.mesh", "m.npz", "m.obj",
-                           "m.off", "m.2dm", "m.nc", "m.vol", "m.mfem"})
+                           "m.off", "m.2dm", "m.nc", "m.vol", "m.mfem", "m.inp"})
     ASSERT_TRUE(write_files(mesh.view(), folder / name));
   const std::filesystem::path path = folder / GetParam();
   damage(path, [&path] {
@@ -85,7 +85,7 @@ TEST_P(HostileMesh, IsRefusedOrRead) {
 INSTANTIATE_TEST_SUITE_P(Formats, HostileMesh,
                          ::testing::Values("m.node", "m.ele", "m.poly", "m.vtu", "m.msh", "m.14",
                                            "m.su2", "m.mesh", "m.npz", "m.obj", "m.off", "m.2dm",
-                                           "m.nc", "m.vol", "m.mfem"));
+                                           "m.nc", "m.vol", "m.mfem", "m.inp"));
 
 TEST(HostileMesh, OfGmsh22IsRefusedOrRead) {
   TempFolder folder;

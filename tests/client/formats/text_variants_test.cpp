@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Combine(::testing::Values("d.poly", "d.geojson", "d.json", "d.wkt", "d.csv",
                                          "features.csv", "m.node", "m.ele", "m.14", "m.grd",
                                          "m.gr3", "m.2dm", "m.su2", "m.mesh", "m.msh", "m.obj",
-                                         "m.off", "m.vol", "m.mfem"),
+                                         "m.off", "m.vol", "m.mfem", "m.inp"),
                        ::testing::Range(std::size_t{0}, std::size(kVariants))),
     [](const auto& info) {
       std::string name = std::get<0>(info.param);
@@ -159,7 +159,7 @@ TEST(TextVariant, WithoutTextIsRefusedAndSaysSo) {
   using namespace std::string_literals;
   TempFolder folder;
   for (const char* name : {"d.poly", "d.geojson", "d.wkt", "d.csv", "m.14", "m.2dm", "m.su2",
-                           "m.mesh", "m.msh", "m.obj", "m.off", "m.vol", "m.mfem"}) {
+                           "m.mesh", "m.msh", "m.obj", "m.off", "m.vol", "m.mfem", "m.inp"}) {
     for (const std::string& bytes : {""s, "\xef\xbb\xbf"s, "\xff\xfe"s, "\xfe\xff"s, "\xff\xfe\n"s,
                                      "\xff\xfe\x00\xd8"s, "\xfe\xff\xdc\x00\xdc\x00"s}) {
       const auto path = folder.write(name, bytes);
@@ -188,6 +188,8 @@ TEST(TextVariant, OfFortranHasTheSameNumbers) {
        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0.0D+00 0 0\n2 4.0D+03 0.0d0 0\n3 "
        "0 3.0+103 0\n$EndNodes\n$Elements\n1\n1 2 2 1 1 1 2 3\n$EndElements\n"},
       {"d.obj", "v 0.0D+00 0 0\nv 4.0D+03 0.0d0 0\nv 0 3.0+103 0\nf 1 2 3\n"},
+      {"d.inp",
+       "*NODE\n1, 0.0D+00, 0\n2, 4.0D+03, 0.0d0\n3, 0, 3.0+103\n*ELEMENT, TYPE=CPS3\n1, 1, 2, 3\n"},
       {"d.off", "OFF\n3 1 0\n0.0D+00 0 0\n4.0D+03 0.0d0 0\n0 3.0+103 0\n3 0 1 2\n"},
   };
   for (const auto& [name, text] : kSamples) {

@@ -64,6 +64,27 @@ def meshio_su2(path):
     equal("markers", blocks(mesh, "line", "su2:tag"), BOUNDARY)
 
 
+def meshio_inp(path):
+    mesh = meshio.read(path)
+    check_mesh(mesh.points, mesh.cells_dict["triangle"])
+    equal("regions", inp_sets(mesh.cell_sets, "region"), REGIONS)
+    # Nodes of a marker: a line has one more than edges, the ring around the hole as many, and marker 9 is two lines.
+    equal("nodes of markers", inp_sets(mesh.point_sets, "marker"),
+          {marker: edges + {5: 0, 9: 2}.get(marker, 1) for marker, edges in MARKERS.items()})
+
+
+def inp_sets(sets, kind):
+    """How many elements or nodes the sets have, by the number that their names have."""
+    return {int(name.removeprefix(kind + "_")): numpy.hstack(members).size for name, members in sets.items()}
+
+
+def meshio_inp_names(path):
+    mesh = meshio.read(path)
+    check_mesh(mesh.points, mesh.cells_dict["triangle"])
+    equal("regions", sorted(mesh.cell_sets), ["fluid", "region_7"])
+    equal("markers", sorted(mesh.point_sets), ["inlet", "marker_1", "marker_3", "marker_5", "marker_9", "outer_wall"])
+
+
 def meshio_surface(path):
     mesh = meshio.read(path)
     check_mesh(mesh.points, mesh.cells_dict["triangle"])

@@ -212,7 +212,7 @@ class Mesh:
         .nc and all others of docs/formats.md; or else one of meshio's.
 
         `order`: 2 writes triangles of six nodes, with sides that follow arcs, to .vtu, .msh, .node, .xdmf,
-        .exo and .e.
+        .exo, .e and .inp.
         `nodal`: values at the vertices, by name, besides those of `values` or instead of them: an
         array (n,), a number, or the path of a raster. `depth` is positive down, `elevation` positive
         up, both in metres.

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
+
 namespace weft::client {
 namespace {
 
@@ -41,6 +44,33 @@ TEST(NodeNumbers, AreThoseOfOnePointEach) {
             "d.txt:1:5: the node number is 2, as that of another one before it");
   EXPECT_EQ(indices("5 1 5\n"),
             "d.txt:1:5: the node number is 5, as that of another one before it");
+}
+
+// Of points with the numbers of a line, the indices of those in a range.
+std::string in_range(std::string_view text, std::int64_t first, std::int64_t last,
+                     std::int64_t step) {
+  LineScanner scanner("d.txt", text);
+  NodeNumbers numbers;
+  if (!scanner.try_next_line()) return "";
+  while (!scanner.at_line_end())
+    if (!numbers.add(scanner, "the node number")) return "";
+  std::string out;
+  numbers.each_of(first, last, step, [&out](std::uint32_t i) { out += std::to_string(i); });
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+TEST(NodeNumbers, AreFoundInRangesHoweverWide) {
+  constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  EXPECT_EQ(in_range("5 6 7 8", 5, 8, 1), "0123");
+  EXPECT_EQ(in_range("5 6 7 8", 6, 9, 2), "13");
+  EXPECT_EQ(in_range("5 6 7 8", 8, 5, 1), "");
+  EXPECT_EQ(in_range("5 6 7 8", kLeast, kMost, 2), "13");
+  EXPECT_EQ(in_range("5 6 7 8", kLeast, kMost, kMost), "");
+  EXPECT_EQ(in_range("5 6 7 8", 6, kMost, kMost - 7), "1");
+  EXPECT_EQ(in_range("9 -3 9223372036854775807", kLeast, kMost, 1), "012");
+  EXPECT_EQ(in_range("9 -3 9223372036854775807", -3, 21, 12), "01");
 }
 
 TEST(NodeNumbers, TellWhichThereAre) {

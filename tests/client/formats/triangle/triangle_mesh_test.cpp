@@ -94,7 +94,7 @@ TEST(MeshFormats, RefuseUnknownExtensions) {
   EXPECT_EQ(
       mesh.error().message,
       "m.stl: the extension '.stl' is not that of a mesh that is read: .vtu, .msh, .node, .ele, "
-      ".14, .grd, .gr3, .2dm, .nc, .slf, .su2, .mesh, .vol, .mfem, .npz, .obj, .off");
+      ".14, .grd, .gr3, .2dm, .nc, .slf, .su2, .mesh, .vol, .mfem, .inp, .npz, .obj, .off");
   const auto domain = read_domain("m.stp");
   ASSERT_FALSE(domain);
   EXPECT_EQ(domain.error().exit, ExitCode::kUsage);
