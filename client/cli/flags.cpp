@@ -113,6 +113,10 @@ void add_domain_and_request_options(CLI::App& command, DataPath& input, LayerOpt
                 "; or a mesh, to mesh its domain anew: " + read_mesh_extensions(),
             input, chosen);
   add_layers(command, layers);
+  add_request_options(command, request_options);
+}
+
+void add_request_options(CLI::App& command, RequestOptions& request_options) {
   add_rows(command, request_rows(), request_options);
 }
 
@@ -159,13 +163,13 @@ void add_domain_drawing(CLI::App& command, std::vector<std::filesystem::path>& d
   add_rows(command, drawing_rows_of_domain(), drawing);
 }
 
-void add_output(CLI::App& command, MeshOutputOptions& output) {
+void add_files(CLI::App& command, std::vector<DataPath>& files) {
   command
       .add_option(
           "-o,--output",
-          [&output](const CLI::results_t& texts) {
+          [&files](const CLI::results_t& texts) {
             for (const std::string& text : texts)
-              output.files.emplace_back(text == "-" ? kStandardOutput : text);
+              files.emplace_back(text == "-" ? kStandardOutput : text);
             return true;
           },
           "File to write, or - for standard output, may be repeated: " + written_mesh_extensions())
@@ -174,11 +178,15 @@ void add_output(CLI::App& command, MeshOutputOptions& output) {
       ->type_name("FILE");
   add_format(command, "--to",
              "Format of the file to write, whatever its name is, such as vtu; -o - needs it",
-             is_written, written_mesh_extensions(), [&output](const std::string& format) {
-               if (output.files.size() > 1)
+             is_written, written_mesh_extensions(), [&files](const std::string& format) {
+               if (files.size() > 1)
                  throw CLI::ValidationError("--to", "is the format of one file: give one -o");
-               for (DataPath& file : output.files) file.format = format;
+               for (DataPath& file : files) file.format = format;
              });
+}
+
+void add_output(CLI::App& command, MeshOutputOptions& output) {
+  add_files(command, output.files);
   add_writing(command, output.writing);
   add_drawings(command, output.drawings);
   add_rows(command, drawing_rows_of_new_mesh(), output.drawing);

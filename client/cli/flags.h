@@ -61,6 +61,7 @@ void add_converted(CLI::App& command, DataPath& file);
 // INPUT, and what its mesh must satisfy.
 void add_domain_and_request_options(CLI::App& command, DataPath& input, LayerOptions& layers,
                                     RequestOptions& request_options, Chosen& chosen);
+void add_request_options(CLI::App& command, RequestOptions& request_options);
 
 // What of the domain's file is read.
 void add_layers(CLI::App& command, LayerOptions& layers);
@@ -88,6 +89,8 @@ void add_drawing(CLI::App& command, DrawOptions& drawing);
 void add_domain_drawing(CLI::App& command, std::vector<std::filesystem::path>& drawings,
                         DrawOptions& drawing);
 
+// The files of a mesh.
+void add_files(CLI::App& command, std::vector<DataPath>& files);
 // Files to write, and drawings; and the flags of the projection.
 void add_output(CLI::App& command, MeshOutputOptions& output);
 

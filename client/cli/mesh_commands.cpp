@@ -77,6 +77,24 @@ Examples:
   weft convert coast.msh coast.nc --nodal depth=depth.tif --renumber rcm --parts 8
   weft convert coast.geojson coast.poly)";
 
+constexpr char kRemeshExamples[] =
+    R"(Vertices, triangles and edges outside stay as they are, and so do the edges between: triangles
+there may miss the bounds that are given. Values at vertices are taken over, linear inside.
+
+Examples:
+  weft remesh coast.vtu --within harbour.geojson --edge 50 -o nested.vtu
+  weft remesh fort.14 --within inlet.geojson --lonlat --edge 200 --gradation 0.2 -o finer.14
+  weft remesh key.msh --within key-way.poly --size 0.01 --min-angle 25 -o key2.msh --draw key2.png)";
+
+constexpr char kStitchExamples[] =
+    R"(Vertices, triangles and edges of the first mesh come first, with their numbers. Where an outline
+has a vertex on an edge of the other one, or meshes overlap, the first place is named and nothing is
+written.
+
+Examples:
+  weft stitch land.vtu sea.vtu -o both.vtu
+  weft stitch inner.14 outer.14 -o fort.14 --tolerance 1e-6)";
+
 constexpr char kInfoExamples[] =
     R"(The aspect ratio is the circumradius over twice the inradius: 1 if the triangle is equilateral. Bounds
 are those of the size flags, in the unit of the mesh's own coordinates; a field of distance measures
@@ -252,6 +270,66 @@ void add_convert(CLI::App& app, Chosen& chosen) {
   });
 }
 
+void add_remesh(CLI::App& app, Chosen& chosen) {
+  const auto kept = std::make_shared<RemeshOptions>();
+  RemeshOptions& options = *kept;
+  CLI::App& remesh = *app.add_subcommand("remesh", "Mesh a part of a mesh anew");
+  remesh.footer(kRemeshExamples);
+  add_input(remesh, "MESH", "Mesh: " + read_mesh_extensions(), options.mesh, chosen);
+  remesh
+      .add_option(
+          "--within", options.within,
+          "Polygons around the triangles that are meshed anew, those with all three corners "
+          "inside: " +
+              domain_extensions())
+      ->required()
+      ->type_name("POLYGONS");
+  add_layers(remesh, options.layers);
+  add_request_options(remesh, options.request_options);
+  add_server_flags(remesh, options.server, WithoutServer::kPrivate);
+  add_timeout(remesh, options.timeout_seconds, "Maximum time of the whole call, in seconds",
+              "none");
+  add_retries(remesh, options.retries);
+  add_output(remesh, options.output);
+  add_json(remesh, options.json, "Print one JSON object on standard output");
+  add_quiet(remesh, options.quiet);
+  remesh.callback([kept, &remesh, &chosen] {
+    warn_of_variables(remesh, kept->request_options);
+    chosen.run = [kept](std::stop_token stop) { return run_remesh(*kept, std::move(stop)); };
+  });
+}
+
+void add_stitch(CLI::App& app, Chosen& chosen) {
+  const auto kept = std::make_shared<StitchMeshOptions>();
+  StitchMeshOptions& options = *kept;
+  CLI::App& stitch =
+      *app.add_subcommand("stitch", "Join meshes whose outlines meet vertex by vertex");
+  stitch.footer(kStitchExamples);
+  stitch
+      .add_option(
+          "MESHES",
+          [&options](const CLI::results_t& texts) {
+            options.meshes.assign(texts.begin(), texts.end());
+            return true;
+          },
+          "Meshes, two or more, each of which meets those before it: " + read_mesh_extensions())
+      ->required()
+      ->type_name("MESH")
+      ->expected(2, CLI::detail::expected_max_vector_size)
+      ->allow_extra_args();
+  add_files(stitch, options.files);
+  add_row(stitch,
+          {"tolerance", "",
+           "Distance within which vertices of two outlines are one, in the unit of the points",
+           "1e-9 of the extent", number("D", &StitchMeshOptions::tolerance, 0, 1e50)},
+          options);
+  add_json(stitch, options.json, "Print one JSON object on standard output");
+  add_quiet(stitch, options.quiet);
+  stitch.callback([kept, &chosen] {
+    chosen.run = [kept](std::stop_token stop) { return run_stitch(*kept, std::move(stop)); };
+  });
+}
+
 void add_info(CLI::App& app, Chosen& chosen) {
   const auto kept = std::make_shared<InfoOptions>();
   CLI::App& info = *app.add_subcommand("info", "Describe a mesh or a domain");
@@ -314,6 +392,8 @@ void add_mesh_commands(CLI::App& app, Chosen& chosen) {
   add_draw(app, chosen);
   add_check(app, chosen);
   add_convert(app, chosen);
+  add_remesh(app, chosen);
+  add_stitch(app, chosen);
   add_info(app, chosen);
   add_lint(app, chosen);
 }

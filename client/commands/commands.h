@@ -94,6 +94,29 @@ struct ConvertOptions {
 };
 Result<ExitCode> run_convert(const ConvertOptions& options, std::stop_token stop);
 
+struct RemeshOptions {
+  DataPath mesh;
+  std::filesystem::path within;  // polygons
+  LayerOptions layers;           // of these
+  RequestOptions request_options;
+  MeshOutputOptions output;
+  ConnectOptions server;
+  std::optional<double> timeout_seconds;
+  std::uint32_t retries = RetryOptions{}.attempts;
+  bool json = false;
+  bool quiet = false;
+};
+Result<ExitCode> run_remesh(const RemeshOptions& options, std::stop_token stop);
+
+struct StitchMeshOptions {
+  std::vector<DataPath> meshes;  // two at least
+  std::vector<DataPath> files;   // to write
+  double tolerance = 0;          // 0: see StitchOptions
+  bool json = false;
+  bool quiet = false;
+};
+Result<ExitCode> run_stitch(const StitchMeshOptions& options, std::stop_token stop);
+
 struct InfoOptions {
   DataPath file;
   LayerOptions layers;   // of a domain

@@ -12,6 +12,7 @@
 #include "client/base/text.h"
 #include "client/call/mesh_request.h"
 #include "client/commands/commands.h"
+#include "client/formats/derived/orientation.h"
 #include "client/formats/domain_formats.h"
 #include "client/formats/domains/seeded.h"
 #include "client/formats/mesh_formats.h"
@@ -32,20 +33,6 @@ bool is_mesh_input(const DataPath& path) {
 bool is_mesh_output(const DataPath& path) {
   const MeshFormat* format = mesh_format(path);
   return format != nullptr && format->write != nullptr;
-}
-
-// Some programs number triangles clockwise; ours and most others do not.
-void turn_counter_clockwise(Mesh& mesh) {
-  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
-    const auto at = [&](std::size_t k) {
-      return &mesh.coordinates[2 * std::size_t{mesh.triangles[t + k]}];
-    };
-    const double* a = at(0);
-    const double* b = at(1);
-    const double* c = at(2);
-    if ((b[0] - a[0]) * (c[1] - a[1]) < (b[1] - a[1]) * (c[0] - a[0]))
-      std::swap(mesh.triangles[t + 1], mesh.triangles[t + 2]);
-  }
 }
 
 std::string warnings_text(const std::vector<Warning>& warnings) {

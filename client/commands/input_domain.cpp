@@ -53,8 +53,14 @@ Result<InputDomain> read_input_domain(const DataPath& path, const RequestOptions
     return tl::unexpected(named.error());
   fill_polygons(*domain, wanted.fill);
   if (as_read) as_read(*domain);
-  InputDomain input{std::move(*domain), nullptr,
-                    layers.strict ? std::filesystem::path(path) : std::filesystem::path()};
+  auto input = projected(path, std::move(*domain), options);
+  if (input && layers.strict) input->strict = path;
+  return input;
+}
+
+Result<InputDomain> projected(const std::filesystem::path& path, Domain domain,
+                              const ProjectionOptions& options) {
+  InputDomain input{std::move(domain), nullptr};
   if (!options.wanted()) {
     warn_of_degrees(path, input.domain);
     return input;

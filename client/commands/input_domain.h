@@ -34,6 +34,10 @@ Result<InputDomain> read_input_domain(const DataPath& path, const RequestOptions
                                       const ProjectionOptions& options, const LayerOptions& layers,
                                       const std::function<void(const Domain&)>& as_read = {});
 
+// The last step of that: the domain that was read from `path`, projected if the options want it.
+Result<InputDomain> projected(const std::filesystem::path& path, Domain domain,
+                              const ProjectionOptions& options);
+
 // Error (kUnreadableInput): the domain, read from `path`, cannot be in longitude and latitude: its
 // file says that it lies in a plane, or those of lonlat_extent.
 Result<void> check_lonlat(const std::filesystem::path& path, const Domain& domain);

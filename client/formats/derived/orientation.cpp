@@ -57,4 +57,17 @@ int orientation(Point a, Point b, Point c) {
   return area.sign();
 }
 
+void turn_counter_clockwise(Mesh& mesh) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    const auto at = [&](std::size_t k) {
+      return &mesh.coordinates[2 * std::size_t{mesh.triangles[t + k]}];
+    };
+    const double* a = at(0);
+    const double* b = at(1);
+    const double* c = at(2);
+    if ((b[0] - a[0]) * (c[1] - a[1]) < (b[1] - a[1]) * (c[0] - a[0]))
+      std::swap(mesh.triangles[t + 1], mesh.triangles[t + 2]);
+  }
+}
+
 }  // namespace weft::client

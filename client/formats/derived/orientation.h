@@ -5,10 +5,14 @@
 #pragma once
 
 #include "client/formats/domain.h"
+#include "client/formats/mesh.h"
 
 namespace weft::client {
 
 // 1 if a, b, c turn counter-clockwise, -1 if clockwise, 0 if they are collinear.
 int orientation(Point a, Point b, Point c);
+
+// Turns triangles that are clockwise, as some programs number them.
+void turn_counter_clockwise(Mesh& mesh);
 
 }  // namespace weft::client
