@@ -28,7 +28,7 @@ function optionsOf({ domain, quality, size, simplify, budget, allowUnrefined }: 
 }
 
 // Name and value of the size, or undefined if there is no bound. `raster` stands for a grid.
-function sizeOf<Raster>({ size }: GenerateMeshRequest, raster: Raster): [string, Value | Raster] | undefined {
+function sizeOf<Raster>({ size }: GenerateMeshRequest, raster: Raster): [string, string | number | Raster] | undefined {
   if (!size?.field.case) return undefined;
   const name = size.measure === Measure.EDGE ? "edge" : "size";
   return [name, size.field.case === "raster" ? raster : size.field.value];
