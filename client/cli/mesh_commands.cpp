@@ -314,7 +314,7 @@ void add_stitch(CLI::App& app, Chosen& chosen) {
           },
           "Meshes, two or more, each of which meets those before it: " + read_mesh_extensions())
       ->required()
-      ->type_name("MESH")
+      ->type_name("TEXT")
       ->expected(2, CLI::detail::expected_max_vector_size)
       ->allow_extra_args();
   add_files(stitch, options.files);
