@@ -471,7 +471,7 @@ void read_quality(Fields in, MeshRequest& request) {
         in.read(request.sweeps);
         break;
       case 5:
-        request.keep.emplace();
+        if (!request.keep) request.keep.emplace();
         in.message([&](Fields keep) { read_keep(keep, *request.keep); });
         break;
       default:

@@ -14,7 +14,8 @@ namespace weft::check {
 
 // Adds a violation of kKept for each vertex between two listed edges of one segment, both with one
 // of the markers, of any if there are none, that is neither an input point nor on another listed
-// edge. Of an arc, no segment has two. REQUIRES: structure holds.
+// edge. `input_points` are those of the bent domain, which has the vertices of arcs, too. REQUIRES:
+// structure holds.
 void judge_kept(const Mesh& mesh, const SegmentsOfVertices& segments,
                 const InputPoints& input_points, const std::vector<std::int32_t>& markers,
                 Findings& findings);

@@ -392,31 +392,8 @@ class Refiner {
   [[gnu::noinline]] Outcome split_arc_at(std::uint32_t t, std::uint32_t edge, Point p, int hidden) {
     const Outcome outcome = try_arc_at(t, edge, p);
     if (outcome != Outcome::kFlat || hidden == kMaxHidden) return outcome;
-    const auto hiding = hiding_edge();
+    const auto hiding = hiding_edge(mesh_, star_.cavity(), star_.ring(), quality_.precision2);
     return hiding ? split_segment(triangle_of(*hiding), edge_of(*hiding), hidden + 1) : outcome;
-  }
-
-  // The edge on a segment that the last star's point lies beyond, or on, to double precision.
-  std::optional<HalfEdge> hiding_edge() const {
-    const Ring& ring = star_.ring();
-    for (std::uint32_t i = 0; i < ring.size; ++i) {
-      const RingPoint& start = ring.points[i];
-      const RingPoint& end = ring.points[i + 1];
-      if (end.constrained == 0) continue;
-      const double x = end.x - start.x, y = end.y - start.y;
-      const double length2 = x * x + y * y;
-      const double along = -(start.x * x + start.y * y);
-      if (along <= 0 || along >= length2) continue;
-      if (end.cross > 0 && end.cross * end.cross >= quality_.precision2 * length2) continue;
-      for (std::uint32_t k = 0; k < star_.cavity().size(); ++k) {
-        const std::uint32_t t = star_.cavity().triangles()[k];
-        for (std::uint32_t edge = 0; edge < 3; ++edge)
-          if (mesh_.triangles[t].vertex[kPrevious[edge]] == end.vertex &&
-              mesh_.triangles[t].vertex[kNext[edge]] == ring.points[i].vertex)
-            return half_edge(t, edge);
-      }
-    }
-    return std::nullopt;
   }
 
   Outcome try_arc_at(std::uint32_t t, std::uint32_t edge, Point p) {
@@ -468,7 +445,8 @@ class Refiner {
         (closed && too_thin(mesh_, across, quality_.precision2)))
       return Outcome::kTooClose;
     const std::uint32_t subsegment = corners_.subsegment(mesh_, a, b);
-    if (corners_.curvature(subsegment) != 0 && hiding_edge()) [[unlikely]]
+    if (corners_.curvature(subsegment) != 0 &&
+        hiding_edge(mesh_, star_.cavity(), ring, quality_.precision2)) [[unlikely]]
       return Outcome::kFlat;
     if (!corners_.needles().keep_apart(subsegment, p)) return Outcome::kTooClose;
     const std::uint32_t near_side = closed ? star_.cavity().far_end() : ring.size;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks for what rounding may spoil: stars that do not turn left, edges that are too thin to be
-// split, and stars of points on segments that are not Delaunay.
+// split, points that an edge hides, and stars of points on segments that are not Delaunay.
 //
 // The point that splits a segment is rounded, so it lies beside the segment, by a unit in the last
 // place or so. Bowyer-Watson's lemma, that a cavity and the star of its point are Delaunay, holds
@@ -18,8 +18,8 @@
 // Thread-safety: pure functions of the ring and of what the task owns of the mesh.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
+#include <optional>
 
 #include "engine/domain/triangulation/predicates.h"
 #include "engine/refine/cavity.h"
@@ -75,6 +75,31 @@ inline bool too_thin(const MeshStore& mesh, HalfEdge h, double precision2) {
   const double along = x * (apex.x - a.x) + y * (apex.y - a.y);
   const double cross = x * (apex.y - a.y) - y * (apex.x - a.x);
   return along > 0 && along < length2 && cross * cross < precision2 * length2;
+}
+
+// The edge on a segment, among those of the ring of a cavity, that the ring's point lies beyond, or
+// nearer to than the root of `precision2`.
+template <class Ownership>
+std::optional<HalfEdge> hiding_edge(const MeshStore& mesh, const Cavity<Ownership>& cavity,
+                                    const Ring& ring, double precision2) {
+  for (std::uint32_t i = 0; i < ring.size; ++i) {
+    const RingPoint& start = ring.points[i];
+    const RingPoint& end = ring.points[i + 1];
+    if (end.constrained == 0) continue;
+    const double x = end.x - start.x, y = end.y - start.y;
+    const double length2 = x * x + y * y;
+    const double along = -(start.x * x + start.y * y);
+    if (along <= 0 || along >= length2) continue;
+    if (end.cross > 0 && end.cross * end.cross >= precision2 * length2) continue;
+    for (std::uint32_t k = 0; k < cavity.size(); ++k) {
+      const std::uint32_t t = cavity.triangles()[k];
+      for (std::uint32_t edge = 0; edge < 3; ++edge)
+        if (mesh.triangles[t].vertex[kPrevious[edge]] == end.vertex &&
+            mesh.triangles[t].vertex[kNext[edge]] == start.vertex)
+          return half_edge(t, edge);
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace weft

@@ -72,6 +72,21 @@ def test_a_patch_is_the_same_again(tmp_path: pathlib.Path, old: dict[str, np.nda
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
 
 
+def test_a_grid_in_degrees_is_meshed_anew_in_metres(tmp_path: pathlib.Path) -> None:
+    coast = MODELS / "us-east-coast.geojson"
+    run(tmp_path, "mesh", coast, "--lonlat", "--edge", 40_000, "--simplify", 1, "--nodal", "depth=10", "-o", "old.14",
+        "--quiet")
+    bight = polygon(tmp_path, (-75, 39), (-72, 39), (-72, 41.5), (-75, 41.5))
+    said = json.loads(run(tmp_path, "remesh", "old.14", "--within", bight, "--lonlat", "--edge", 8_000, "-o", "new.14",
+                          "-o", "new.npz", "--json"))
+    assert said["triangles"] > 5 * said["patch"]["triangles_before"]
+    run(tmp_path, "convert", "old.14", "old.npz", "--quiet")
+    old, new = (np.load(tmp_path / name)["points"] for name in ("old.npz", "new.npz"))
+    outside = (old < (-75, 39)).any(axis=1) | (old > (-72, 41.5)).any(axis=1)
+    assert outside.sum() > 100 and np.array_equal(new[:len(old)][outside], old[outside])
+    assert (new > (-83, 23)).all() and (new < (-61, 47)).all()
+
+
 def test_a_part_that_touches_nothing_is_meshed_anew(tmp_path: pathlib.Path) -> None:
     squares = [[[x, 0], [x + 1, 0], [x + 1, 1], [x, 1], [x, 0]] for x in (0, 2)]
     (tmp_path / "two.geojson").write_text(json.dumps({"type": "MultiPolygon", "coordinates": [[s] for s in squares]}))

@@ -399,6 +399,12 @@ MeshCase decode_mesh_case(ByteSource bytes) {
   PslgMaker maker(bytes, request.pslg);
   made.plain = maker.make();
   request.size = read_size(size_bytes, maker.extent(), request.pslg);
+  if (rarely % 8 == 0 && rarely / 32 > 3) {  // not what the corpus held before it could be asked
+    request.keep.emplace();
+    const std::size_t which = rarely / 8 % 4;
+    if (which > 0 && which <= request.pslg.segments.size())
+      request.keep->push_back(request.pslg.segments[which - 1].marker);
+  }
   if (rarely % 8 == 1) request.min_edge = maker.extent() / static_cast<double>(1 + rarely);
   if (rarely % 8 == 2) made.budget.max_triangles = rarely;
   if (rarely % 8 == 3) {
@@ -448,6 +454,8 @@ std::string to_text(const MeshCase& mesh_case) {
   if (request.size.gradation > 0) text += print(" --gradation %.17g", request.size.gradation);
   if (request.size.gradation_within) text += " --gradation-within";
   if (request.min_edge > 0) text += print(" --min-edge %.17g", request.min_edge);
+  if (request.keep)
+    text += " --keep " + (request.keep->empty() ? "all" : std::to_string(request.keep->front()));
   if (request.placement == Placement::kCircumcentre) text += " --placement circumcentre";
   if (request.sweeps) text += print(" --optimise %u", *request.sweeps);
   if (pslg.snap > 0) text += print(" --snap %.17g", pslg.snap);

@@ -453,6 +453,7 @@ D = {"fields": {"d": weft.distance()}}
     ({"points_per_circle": 1e6}, "size.points_per_circle", "points_per_circle"),
     ({"min_angle": 99}, "quality.min_angle_deg", "min_angle"),
     ({"min_edge": -1}, "quality.min_edge", "min_edge"),
+    ({"keep": [7, 8]}, "quality.keep.markers[1]", "keep"),
     ({"optimise": 99}, "quality.optimise", "optimise"),
     ({"snap": -1}, "domain.snap", "snap"),
     ({"max_seconds": -1}, "budget.max_seconds", "max_seconds"),

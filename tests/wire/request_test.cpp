@@ -267,12 +267,14 @@ TEST(ReadRequest, MergesWhatComesInParts) {
   second.mutable_domain()->add_points(9);
   second.mutable_domain()->add_points(8);
   second.mutable_quality()->set_min_edge(7);
+  second.mutable_quality()->mutable_keep()->add_markers(5);
   second.mutable_size()->set_gradation(6);
   const auto request = read_request(first.SerializeAsString() + second.SerializeAsString());
   ASSERT_TRUE(request) << request.error().message;
   EXPECT_EQ(request->mesh.pslg.points.size(), 4u);
   EXPECT_EQ(request->mesh.pslg.fill, Fill::kUnion);
   EXPECT_EQ(request->mesh.min_edge, 7);
+  EXPECT_EQ(request->mesh.keep, (std::vector<std::int32_t>{-1, 300, 5}));
   EXPECT_EQ(request->mesh.min_angle_deg, 28);
   EXPECT_EQ(request->mesh.placement, Placement::kCircumcentre);
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -24,13 +25,39 @@ Point at(std::span<const double> coordinates, std::size_t vertex) {
   return {coordinates[2 * vertex], coordinates[2 * vertex + 1]};
 }
 
-bool is_inside(const Domain& polygons, Point p) {
-  bool inside = false;
+// Per vertex: whether a ray from it to the right crosses the segments an odd number of times. A
+// line sweeps upward over the vertices, and over the segments that cross it.
+std::vector<bool> vertices_inside(const MeshView& mesh, const Domain& polygons) {
+  struct Rising {
+    Point low, high;
+  };
+  std::vector<Rising> segments;
   for (const Domain::Segment& segment : polygons.segments) {
     const Point a = polygons.points[segment.a], b = polygons.points[segment.b];
-    if ((a.y > p.y) == (b.y > p.y)) continue;
-    const double side = (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
-    if ((side > 0) == (b.y > a.y)) inside = !inside;
+    if (a.y != b.y) segments.push_back(a.y < b.y ? Rising{a, b} : Rising{b, a});
+  }
+  std::sort(segments.begin(), segments.end(),
+            [](const Rising& s, const Rising& t) { return s.low.y < t.low.y; });
+  std::vector<std::uint32_t> upward(mesh.vertex_count());
+  std::iota(upward.begin(), upward.end(), 0);
+  std::sort(upward.begin(), upward.end(), [&](std::uint32_t v, std::uint32_t w) {
+    return at(mesh.coordinates, v).y < at(mesh.coordinates, w).y;
+  });
+  std::vector<bool> inside(upward.size());
+  std::vector<Rising> crossed;
+  std::size_t next = 0;
+  for (const std::uint32_t v : upward) {
+    const Point p = at(mesh.coordinates, v);
+    for (; next < segments.size() && segments[next].low.y <= p.y; ++next)
+      crossed.push_back(segments[next]);
+    std::erase_if(crossed, [&](const Rising& s) { return s.high.y <= p.y; });
+    inside[v] = std::count_if(crossed.begin(), crossed.end(),
+                              [&](const auto& s) {
+                                return (s.high.x - s.low.x) * (p.y - s.low.y) >
+                                       (s.high.y - s.low.y) * (p.x - s.low.x);
+                              }) %
+                    2 ==
+                1;
   }
   return inside;
 }
@@ -269,7 +296,8 @@ class Locator {
  private:
   std::array<std::size_t, 2> cell_of(Point p) const {
     const auto cell = [&](double x, double low, double high) {
-      const double share = high > low ? (x - low) / (high - low) : 0;
+      const double width = high - low;  // finite and not 0, or there is one cell that counts
+      const double share = width > 0 && std::isfinite(width) ? (x - low) / width : 0;
       return static_cast<std::size_t>(
           std::clamp(share * static_cast<double>(cells_), 0.0, static_cast<double>(cells_ - 1)));
     };
@@ -296,9 +324,7 @@ class Locator {
 }  // namespace
 
 std::vector<bool> triangles_within(const MeshView& mesh, const Domain& polygons) {
-  std::vector<bool> inside(mesh.vertex_count());
-  for (std::size_t v = 0; v < inside.size(); ++v)
-    inside[v] = is_inside(polygons, at(mesh.coordinates, v));
+  const std::vector<bool> inside = vertices_inside(mesh, polygons);
   std::vector<bool> within(mesh.triangle_count());
   for (std::size_t t = 0; t < within.size(); ++t)
     within[t] = inside[mesh.triangles[3 * t]] && inside[mesh.triangles[3 * t + 1]] &&

@@ -106,7 +106,8 @@ class Near {
   Cell cell_of(Point p) const {
     constexpr double kMost = 0x1p61;  // cells; farther points are near nothing
     const auto count = [&](double x) {
-      return static_cast<std::int64_t>(std::clamp(std::floor(x / cell_), -kMost, kMost));
+      const double cells = std::floor(x / cell_);  // NaN if both are too large or too small
+      return static_cast<std::int64_t>(std::fabs(cells) < kMost ? cells : kMost);
     };
     return {count(p.x - origin_.x), count(p.y - origin_.y)};
   }

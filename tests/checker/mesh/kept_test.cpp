@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <string>
 
 #include "tests/checker/lattice.h"
@@ -35,6 +37,28 @@ TEST(KeptSegments, AVertexInsideASegmentIsAViolation) {
   EXPECT_EQ(violated(report), Rules{Rule::kKept});
   EXPECT_EQ(report.total(Rule::kKept), 3u);
   EXPECT_NE(to_text(report).find("lies on segment 0, which is kept"), std::string::npos)
+      << to_text(report);
+}
+
+// A half disk whose arc, the first segment, becomes several: the number is that of the domain.
+TEST(KeptSegments, HaveTheirNumbersBesideArcs) {
+  Problem problem;
+  problem.domain.points = {{1, 0}, {-1, 0}};
+  problem.domain.segments = {{0, 1}, {1, 0}};
+  problem.domain.arcs = {{0, 1}};
+  const double half = std::sqrt(0.5);
+  problem.mesh.vertices = {{1, 0}, {-1, 0}, {half, half}, {0, 1}, {-half, half}, {0, 0}};
+  problem.mesh.triangles = {{5, 0, 2}, {5, 2, 3}, {5, 3, 4}, {5, 4, 1}};
+  problem.mesh.regions = {0, 0, 0, 0};
+  const double bulge = std::tan(std::numbers::pi / 16);
+  problem.mesh.edges = {{0, 2}, {2, 3}, {3, 4}, {4, 1}, {1, 5}, {5, 0}};
+  problem.mesh.bulges = {bulge, bulge, bulge, bulge, 0, 0};
+  EXPECT_TRUE(problem.check().ok()) << to_text(problem.check());
+  problem.requirements.keep.emplace();
+  const Report report = problem.check();
+  EXPECT_EQ(violated(report), Rules{Rule::kKept}) << to_text(report);
+  EXPECT_NE(to_text(report).find("vertex 5 at (0, 0) lies on segment 1, which is kept"),
+            std::string::npos)
       << to_text(report);
 }
 

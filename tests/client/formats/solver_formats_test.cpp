@@ -20,20 +20,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
-// Two triangles, the edge between them, and their boundary but for the right side, which has no
-// edge.
-Mesh two_triangles() {
-  Mesh mesh;
-  mesh.coordinates = {0, 0, 1, 0, 1, 1, 0, 0.5};
-  mesh.triangles = {0, 1, 2, 0, 2, 3};
-  mesh.regions = {7, -2};
-  mesh.edges = {1, 0, 2, 3, 3, 0, 2, 0};
-  mesh.edge_markers = {2, -1, 5, 9};
-  mesh.names.markers = {{2, "the inlet"}, {9, "inside"}};
-  mesh.names.regions = {{7, "fluid"}};
-  return mesh;
-}
-
 std::string written(const Mesh& mesh, const std::string& name) {
   TempFolder folder;
   EXPECT_TRUE(write_files(mesh.view(), folder / name));

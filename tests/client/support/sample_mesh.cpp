@@ -80,6 +80,18 @@ Mesh square_mesh(std::uint32_t n) {
   return mesh;
 }
 
+Mesh two_triangles() {
+  Mesh mesh;
+  mesh.coordinates = {0, 0, 1, 0, 1, 1, 0, 0.5};
+  mesh.triangles = {0, 1, 2, 0, 2, 3};
+  mesh.regions = {7, -2};
+  mesh.edges = {1, 0, 2, 3, 3, 0, 2, 0};
+  mesh.edge_markers = {2, -1, 5, 9};
+  mesh.names.markers = {{2, "the inlet"}, {9, "inside"}};
+  mesh.names.regions = {{7, "fluid"}};
+  return mesh;
+}
+
 Domain square_domain(std::uint32_t n) {
   Domain domain;
   const double side = n;

@@ -15,6 +15,10 @@ namespace weft::client {
 
 Mesh square_mesh(std::uint32_t n);
 
+// Two triangles, the edge between them, and their boundary but for the right side, which has no
+// edge. Some regions and markers have names.
+Mesh two_triangles();
+
 // The square's outline: the domain of which square_mesh(n) is a mesh.
 Domain square_domain(std::uint32_t n);
 

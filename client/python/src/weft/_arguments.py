@@ -24,8 +24,8 @@ def argument_of(field: str, request: Any) -> str:
     """The argument of Client.mesh that the field was made of, such as `fields['coast']` of
     `size.fields[0].distance.markers`; empty if it has no other name, or the request must be known to
     tell. `request`: the GenerateMeshRequest; None or another for none."""
-    if field in _ARGUMENTS:
-        return _ARGUMENTS[field]
+    if name := _ARGUMENTS.get(field.partition(".markers[")[0]):
+        return name
     if request is None or not hasattr(request, "size"):  # such as a FetchMeshRequest
         return ""
     if element := _ELEMENT.match(field):
@@ -34,7 +34,7 @@ def argument_of(field: str, request: Any) -> str:
         if index >= len(elements):
             return ""
         if kind == "fields":
-            name: str = elements[index].name
+            name = elements[index].name
             return name if name in ("size", "edge") else f"fields[{name!r}]"
         marker = elements[index].marker
         names = {entry.id: entry.name for entry in request.domain.marker_names}

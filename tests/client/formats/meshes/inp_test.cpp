@@ -20,17 +20,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-// Two triangles, the edge between them, and their boundary but for the right side, which has no
-// edge.
-Mesh two_triangles() {
-  Mesh mesh;
-  mesh.coordinates = {0, 0, 1, 0, 1, 1, 0, 0.5};
-  mesh.triangles = {0, 1, 2, 0, 2, 3};
-  mesh.regions = {7, -2};
-  mesh.edges = {1, 0, 2, 3, 3, 0, 2, 0};
-  mesh.edge_markers = {2, -1, 2, 9};
-  mesh.names.markers = {{2, "the inlet"}, {9, "inside"}};
-  mesh.names.regions = {{7, "fluid"}};
+Mesh with_an_inlet_of_two_edges() {
+  Mesh mesh = two_triangles();
+  mesh.edge_markers[2] = 2;
   return mesh;
 }
 
@@ -70,7 +62,7 @@ std::vector<std::string> texts_of(const Mesh& mesh) {
 }
 
 TEST_F(Inp, HasRegionsAsElementSetsAndMarkersAsNodeSetsAndSurfaces) {
-  EXPECT_EQ(written(two_triangles()),
+  EXPECT_EQ(written(with_an_inlet_of_two_edges()),
             "*HEADING\nTriangle mesh of weft\n*NODE\n1, 0, 0\n2, 1, 0\n3, 1, 1\n4, 0, 0.5\n"
             "*ELEMENT, TYPE=CPS3, ELSET=region_-2\n2, 1, 3, 4\n"
             "*ELEMENT, TYPE=CPS3, ELSET=fluid\n1, 1, 2, 3\n"
@@ -81,7 +73,7 @@ TEST_F(Inp, HasRegionsAsElementSetsAndMarkersAsNodeSetsAndSurfaces) {
 }
 
 TEST_F(Inp, OfSecondOrderHasMiddlesBehindCornersAndInNodeSets) {
-  const std::string text = written(two_triangles(), 2);
+  const std::string text = written(with_an_inlet_of_two_edges(), 2);
   EXPECT_THAT(text, HasSubstr("5, 0.5, 0\n6, 0.5, 0.5\n7, 0, 0.25\n8, 1, 0.5\n9, 0.5, 0.75\n"));
   EXPECT_THAT(text, HasSubstr("*ELEMENT, TYPE=CPS6, ELSET=fluid\n1, 1, 2, 3, 5, 8, 6\n"));
   EXPECT_THAT(text, HasSubstr("*NSET, NSET=the_inlet\n1, 2, 4, 5, 7\n*SURFACE"));
@@ -96,7 +88,7 @@ TEST_F(Inp, HasAtMostSixteenNumbersInALine) {
 
 // Abaqus and CalculiX read no more of a number.
 TEST_F(Inp, HasNumbersOfAtMostTwentyCharacters) {
-  Mesh mesh = two_triangles();
+  Mesh mesh = with_an_inlet_of_two_edges();
   const double nasty[] = {-1.2345678901234567e-05,
                           -1.2345678901234567e-300,
                           -0.0012345678901234567,
@@ -162,7 +154,7 @@ TEST_F(Inp, LabelsAreWordsThatBeginWithALetter) {
 }
 
 TEST_F(Inp, LabelsDifferInMoreThanTheCaseOfLetters) {
-  Mesh mesh = two_triangles();
+  Mesh mesh = with_an_inlet_of_two_edges();
   mesh.names.markers = {{2, "Wall"}, {9, "wall"}};
   EXPECT_THAT(not_carried("m.inp", mesh.view()),
               ElementsAre("m.inp: the format cannot spell all names, it has 'wall_2' for 'wall'"));
