@@ -47,6 +47,7 @@ inline double dense_weight(const Quadtree& tree, double dense) {
 template <class AreaBound>
 class LeafRadius {
  public:
+  static constexpr bool kBoundsAreas = false;
   static constexpr double kRadiusPerSide = 0.25;
 
   // A leaf is dense from this weight on. REQUIRES: the tree outlives this, and all like it.

@@ -7,6 +7,9 @@
 //   area.begin(box);
 //   const RingVerdict verdict = area.judge(ring, 0, ring.size, p, region_bound, quality, badness);
 //
+// Of a class with kBoundsAreas, triangles that are too large have an area above a bound, so that
+// they end by packing.
+//
 // Errors: bad_size() is the first point where the size is no size; the task polls it. Not
 // thread-safe: `again` makes one for each thread.
 #pragma once
@@ -40,6 +43,8 @@ Error bad_size_error(const BadSize& bad);
 // The same bound everywhere; infinity is no bound.
 class ConstantArea {
  public:
+  static constexpr bool kBoundsAreas = true;
+
   // Bounds are multiplied by `coarseness`.
   explicit ConstantArea(double bound, double coarseness = 1)
       : bound_(bound), coarseness_(coarseness) {}

@@ -31,6 +31,11 @@ std::optional<Error> check_edge_limits(const MeshRequest& request, const EdgeLim
                                        double least) {
   if (auto error = check_lengths(request, limits, least)) return error;
   if (!request.keep) return std::nullopt;
+  for (const Arc& arc : request.pslg.arcs)
+    if (arc.bulge != 0 && limits.keep(request.pslg.segments[arc.segment].marker))
+      return Error{ErrorCode::kBadOption, "quality.keep",
+                   "quality.keep keeps straight segments, but segment " +
+                       std::to_string(arc.segment) + " is an arc"};
   const auto missing = first_without_segment(*request.keep, request.pslg.segments);
   if (!missing) return std::nullopt;
   const std::string field = "quality.keep.markers[" + std::to_string(*missing) + "]";

@@ -98,8 +98,9 @@ class EdgeLimits {
 };
 
 // Edges on segments come out between half their limit and the whole limit, so `least` is twice the
-// shortest edge. Errors: kBadOption for a length below it, a length at a marker that is kept, and a
-// marker to keep that no segment has. `limits` are those of the request.
+// shortest edge. Errors: kBadOption for a length below it, a length at a marker that is kept, an
+// arc that is to be kept, and a marker to keep that no segment has. `limits` are those of the
+// request. REQUIRES: a PSLG that `validate` accepts.
 std::optional<Error> check_edge_limits(const MeshRequest& request, const EdgeLimits& limits,
                                        double least);
 

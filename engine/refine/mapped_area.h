@@ -23,6 +23,8 @@ namespace weft {
 // the constant box of the last one, most others in such a cell (bench/README.md).
 class MappedArea {
  public:
+  static constexpr bool kBoundsAreas = true;
+
   // Bounds are multiplied by `coarseness`.
   MappedArea(const SizeFunction& function, const SizeMap& map, const LatticeMap& lattices,
              double coarseness = 1)

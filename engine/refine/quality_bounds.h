@@ -30,8 +30,9 @@ struct QualityBounds {
   double off_centre = 0;  // see steiner_point.h
   double min_edge2 = 0;   // squared floor on the length of new edges that the caller asks for
   double lens = kNoLens;  // the lens for skinny triangles (lens.h)
-  // That of points beside segments that are kept: an angle there may be the bound, and no less.
-  double kept_lens = kNoLens;
+  // That of points beside segments that are kept: an angle there may be the bound, and no less, nor
+  // below 5.7 degrees.
+  double kept_lens = kDiametralDisk;
   double precision2 = 0;   // squared length below which double precision ends
   double min_length2 = 0;  // the larger of the two
   LatticeShape lattice{};  // of the points for triangles that are too large

@@ -308,7 +308,8 @@ class Refiner {
   [[gnu::noinline]] Outcome insert_near_kept(std::uint32_t t) {
     near_kept_ = true;
     Outcome outcome = insert_for(t);
-    if (outcome == Outcome::kEncroaches && mesh_.triangles[t].badness() != kSkinny) {
+    if (AreaBound::kBoundsAreas && outcome == Outcome::kEncroaches &&
+        mesh_.triangles[t].badness() != kSkinny) {
       const auto [p, clearance2] = middle_beside_segments(mesh_, mesh_.triangles[t]);
       outcome = insert_in_triangle(t, p, clearance2);
     }
@@ -329,6 +330,9 @@ class Refiner {
 
   // Grows the star of a point for triangle t. Returns kInserted if the cavity is complete.
   Outcome grow(Star<Ownership>& star, std::uint32_t t, Point p) {
+    // That of a flat triangle may be nowhere, and before the lens is narrow it encroaches.
+    if (near_kept_ && !(std::max(std::fabs(p.x), std::fabs(p.y)) <= kMaxMagnitude)) [[unlikely]]
+      return Outcome::kEncroaches;
     const Growth growth = star.grow_from_triangle(t, p, lens_of(t));
     return growth == Growth::kComplete     ? Outcome::kInserted
            : growth == Growth::kEncroaches ? Outcome::kEncroaches
@@ -341,8 +345,8 @@ class Refiner {
 
   // The lens of the Steiner points of triangle t (lens.h).
   double lens_of(std::uint32_t t) const {
-    if (near_kept_) [[unlikely]]
-      return quality_.kept_lens;
+    if (near_kept_) [[unlikely]]  // no vertex may lie between an arc and its chord
+      return corners_.has_arcs() ? kDiametralDisk : quality_.kept_lens;
     return mesh_.triangles[t].badness() == kSkinny ? quality_.lens : kDiametralDisk;
   }
 
@@ -580,6 +584,7 @@ class Refiner {
       return false;
     if (!verdict.flat) [[likely]]
       return true;
+    if (near_kept_) return false;
     exact_ += star_.ring().size;
     return star_turns_left(mesh_, star_.ring(), p);
   }

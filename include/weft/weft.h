@@ -48,8 +48,8 @@ struct MeshRequest {
   double min_edge = 0;
   // Refinement puts no vertex on segments with these markers, at most kMaxKeptMarkers; if it is
   // empty, on no segment. Of segments that overlap, the first one's marker counts. Triangles there
-  // that miss a bound for it are exempt (Unrefined::kept). REQUIRES: simplify is 0, no such marker
-  // has a length of edges in size.at.
+  // that miss a bound for it are exempt (Unrefined::kept). REQUIRES: simplify is 0, no such segment
+  // is an arc, no such marker has a length of edges in size.at.
   std::optional<std::vector<std::int32_t>> keep = std::nullopt;
   Placement placement = Placement::kLattice;
   // Sweeps of smoothing, at most kMaxSweeps. Unset: two if the size makes nearly all triangles, on

@@ -86,7 +86,7 @@ struct alignas(32) Triangle {
     flags = (flags & 7) | static_cast<std::uint32_t>(why) << 4 | large;
   }
   // Whether the running task has deferred it: the queue may have further entries of it.
-  bool deferred() const { return flags >> 7 & 1; }
+  bool deferred() const { return (flags >> 4 & 15) == 8; }
   void set_deferred(bool on) { flags = (flags & ~(1u << 7)) | static_cast<std::uint32_t>(on) << 7; }
   void die() { flags = 1u << 3; }
 };

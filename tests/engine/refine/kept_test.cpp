@@ -96,15 +96,51 @@ TEST(Kept, AShortSegmentBesideLongOnesStays) {
   }
 }
 
-TEST(Kept, ChordsOfArcsStay) {
-  Pslg pslg;
-  add_box(pslg, {-2, -2}, {2, 2});
-  add_circle(pslg, {0, 0}, 1);
-  pslg.holes.push_back({0, 0});
-  MeshRequest request{.pslg = pslg, .size = 1e-3};
-  request.size.points_per_circle = 36;
+// Between an arc and a chord that is not split, vertices would lie.
+TEST(Kept, ArcsAreRefusedAndSplitBesideWhatIsKept) {
+  MeshRequest request{.size = 1e-2};
+  add_box(request.pslg, {-2, -2}, {2, 2});
+  for (Segment& side : request.pslg.segments) side.marker = kRim;
+  add_circle(request.pslg, {0, 0}, 1);
   request.keep.emplace();
-  EXPECT_EQ(sound(request).summary.edges, 4u + 36u);
+  const auto refused = mesh_on(nullptr, request);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message,
+            "quality.keep keeps straight segments, but segment 4 is an arc");
+  request.keep->push_back(kRim);
+  const Sound made = sound(request);
+  EXPECT_EQ(edges_with(kRim, made.mesh), 4u);
+  EXPECT_GT(made.summary.edges, 30u);
+  for (std::uint64_t seed = 0; seed < (kSanitized ? 10 : 60); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    MeshRequest random{.pslg = random_arcs(seed), .size = 0.05};
+    std::vector<bool> is_arc(random.pslg.segments.size(), false);
+    for (const Arc& arc : random.pslg.arcs) is_arc[arc.segment] = true;
+    bool any = false;
+    for (std::size_t i = 0; i < is_arc.size(); ++i) {
+      random.pslg.segments[i].marker = is_arc[i] ? 0 : kRim;
+      any |= !is_arc[i];
+    }
+    if (any) random.keep = {kRim};
+    random.sweeps = static_cast<std::uint32_t>(seed % 3);
+    sound(random);
+  }
+}
+
+// Without a bound on angles, points may be placed as near to a segment as they can be.
+TEST(Kept, NoTriangleIsFlatWithoutABoundOnAngles) {
+  for (std::uint64_t seed = 0; seed < (kSanitized ? 20 : 200); ++seed) {
+    for (const Kind& kind : kinds()) {
+      SCOPED_TRACE(std::string(kind.name) + ", seed " + std::to_string(seed));
+      Random random(seed);
+      MeshRequest request{.pslg = kind.generate(random), .min_angle_deg = 0, .leaf_triangles = 50};
+      if (seed % 2 == 0) request.size = 0.05;
+      request.keep.emplace();
+      CollectedMesh mesh;
+      const auto summary = mesh_on(nullptr, request, mesh);
+      if (summary) ASSERT_EQ(verdict(request, mesh, *summary), "");
+    }
+  }
 }
 
 // Nothing of what is kept makes a run endless, and all else keeps its bounds.
