@@ -9,9 +9,9 @@ namespace weft::check {
 namespace {
 
 constexpr std::array<std::string_view, kRules> kRuleNames = {
-    "domain",   "size",   "structure", "orientation", "conformity", "overlap",
-    "edges",    "chains", "points",    "markers",     "coverage",   "regions",
-    "delaunay", "angle",  "area",      "lengths",     "kept",       "simplified"};
+    "domain", "size",    "structure", "orientation", "conformity", "overlap",  "edges",
+    "chains", "points",  "markers",   "coverage",    "regions",    "delaunay", "angle",
+    "area",   "lengths", "kept",      "periodic",    "simplified"};
 
 std::size_t index(Rule rule) {
   return static_cast<std::size_t>(rule);

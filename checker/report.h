@@ -34,9 +34,10 @@ enum class Rule : std::uint8_t {
   kArea,      // no triangle is larger than the size field, or its region, allows
   kLengths,   // no listed edge is longer than the size at its marker
   kKept,      // no vertex is inside a segment that is kept, unless the domain has it
+  kPeriodic,  // sides that repeat each other have the same vertices and edges
   kSimplified,  // a simplified domain is nowhere farther from the original than was asked for
 };
-inline constexpr std::size_t kRules = 18;
+inline constexpr std::size_t kRules = 19;
 
 std::string_view rule_name(Rule rule);  // "coverage"
 

@@ -2,6 +2,7 @@
 // The caller's bounds on triangles, and the measures of triangles.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -39,6 +40,8 @@ struct Requirements {
   // Segments with these markers have no vertices but those of the domain; if it is empty, all have
   // none. Default: any may have.
   std::optional<std::vector<std::int32_t>> keep;
+  // Markers of sides that repeat each other.
+  std::vector<std::array<std::int32_t, 2>> periodic;
   // Whether small input angles exempt (exemption.h).
   bool allow_small_input_angles = true;
   // Maximum triangles that may miss the angle or the area bound without exemption: those that the

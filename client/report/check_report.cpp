@@ -66,6 +66,8 @@ bool is_asked(Rule rule, const check::Report& report, const check::Requirements&
       return !requirements.size.at.empty() && requirements.allowed_unrefined == 0;
     case Rule::kKept:
       return requirements.keep.has_value();
+    case Rule::kPeriodic:
+      return !requirements.periodic.empty();
     case Rule::kSimplified:
       return requirements.simplify > 0;
     default:

@@ -29,6 +29,15 @@ inline constexpr std::string_view kEngineVersion = "14";
 inline constexpr double kMaxMinAngleDeg = 36;
 inline constexpr std::uint32_t kMaxSweeps = 16;
 inline constexpr std::size_t kMaxKeptMarkers = 4096;
+inline constexpr std::size_t kMaxPeriodicPairs = 16;
+
+// Two sides of the domain that repeat each other, by the markers of their segments: a translation
+// or a rotation takes one to the other, and the inside of the domain at one to the outside at the
+// other.
+struct PeriodicPair {
+  std::int32_t from = 0;
+  std::int32_t to = 0;
+};
 
 // Where the Steiner points of triangles that are too large go.
 enum class Placement : std::uint8_t {
@@ -51,6 +60,10 @@ struct MeshRequest {
   // that miss a bound for it are exempt (Unrefined::kept). REQUIRES: simplify is 0, no such segment
   // is an arc, no such marker has a length of edges in size.at.
   std::optional<std::vector<std::int32_t>> keep = std::nullopt;
+  // Pairs of sides with the same vertices: where one has a vertex, so has the other. REQUIRES: at
+  // most kMaxPeriodicPairs, no marker twice; each side is one line of straight segments; simplify
+  // is 0, keep names none of them, and the budget does not end the mesh.
+  std::vector<PeriodicPair> periodic = {};
   Placement placement = Placement::kLattice;
   // Sweeps of smoothing, at most kMaxSweeps. Unset: two if the size makes nearly all triangles, on
   // a lattice that has few faults or in a mesh below 100,000 triangles; otherwise none.
