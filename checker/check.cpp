@@ -27,6 +27,7 @@
 #include "checker/mesh/delaunay.h"
 #include "checker/mesh/kept.h"
 #include "checker/mesh/overlap.h"
+#include "checker/mesh/periodic.h"
 #include "checker/mesh/simplification.h"
 #include "checker/mesh/simplified_parts.h"
 #include "checker/mesh/skipped_edges.h"
@@ -272,6 +273,8 @@ Report judge(const Domain& domain, const Domain& given, const Mesh& mesh,
     else
       skip({Rule::kChains, Rule::kPoints, Rule::kMarkers, Rule::kCoverage, Rule::kRegions,
             Rule::kAngle});
+    judge_periodic(mesh, *half_edges, requirements.periodic, 16 * merging_distance(domain),
+                   findings);
     half_edges.reset();
     judge_quality(given, mesh, requirements, context, report.facts, findings);
     judge_lengths(mesh, requirements, findings);
@@ -281,7 +284,7 @@ Report judge(const Domain& domain, const Domain& given, const Mesh& mesh,
     if (!sound) skip({Rule::kConformity});
     skip({Rule::kOverlap, Rule::kEdges, Rule::kChains, Rule::kPoints, Rule::kMarkers,
           Rule::kCoverage, Rule::kRegions, Rule::kDelaunay, Rule::kAngle, Rule::kArea,
-          Rule::kLengths, Rule::kSize});
+          Rule::kLengths, Rule::kPeriodic, Rule::kSize});
   }
   findings.write_to(report);
   return report;

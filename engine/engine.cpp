@@ -174,6 +174,7 @@ class Pipeline {
     auto domain = triangulate(request_.pslg, context_, std::min(max_turn_deg, asked_deg));
     if (!domain) return domain.error();
     domain_ = std::move(*domain);
+    if (auto error = find_sides(std::min(max_turn_deg, asked_deg))) return error;
     if (request_.simplify > 0 && !domain_.curvatures.empty())
       return Error{ErrorCode::kBadOption, "simplify",
                    "simplify is " + text(request_.simplify) +
@@ -196,6 +197,34 @@ class Pipeline {
     size_.emplace(std::move(*made));
     if (request_.simplify > 0) return std::nullopt;  // the map is that of the simplified domain
     return map_size();
+  }
+
+  // Finds the sides that repeat each other, and has each have the vertices of both.
+  std::optional<Error> find_sides(double max_turn_deg) {
+    if (request_.periodic.empty()) return std::nullopt;
+    if (has_triangle_cap())
+      return Error{ErrorCode::kBadOption, "quality.periodic",
+                   "quality.periodic needs a mesh that is refined to the end, but "
+                   "budget.max_triangles may end it before"};
+    const double tolerance = merge_tolerance(request_.pslg);
+    auto sides = PeriodicSides::of(request_.periodic, domain_, tolerance);
+    if (!sides) return sides.error();
+    sides_ = std::move(*sides);
+    if (!sides_.lacks_images()) return std::nullopt;
+    std::vector<std::uint32_t> origin;
+    auto domain = triangulate(sides_.with_images(request_.pslg, origin), context_, max_turn_deg);
+    if (!domain) return domain.error();
+    domain_ = std::move(*domain);
+    const std::size_t points = request_.pslg.points.size();
+    const std::size_t segments = request_.pslg.segments.size();
+    for (std::uint32_t& point : domain_.input_point)
+      if (point != kNone && point >= points) point = kNone;
+    for (Subsegment& s : domain_.subsegments)
+      if (s.segment >= segments) s.segment = origin[s.segment - segments];
+    sides = PeriodicSides::of(request_.periodic, domain_, tolerance);
+    if (!sides) return sides.error();
+    sides_ = std::move(*sides);
+    return std::nullopt;
   }
 
   // What the size sees of a domain with arcs.
@@ -309,7 +338,8 @@ class Pipeline {
       return over_limit(asked_by, "the size asks for at least " + count_text(lower_bound) +
                                       " triangles; a mesh with a minimum angle above " +
                                       text(kMaxStreamingAngleDeg) +
-                                      " degrees, or with segments that are kept, has at most " +
+                                      " degrees, with segments that are kept or with periodic "
+                                      "sides, has at most " +
                                       std::to_string(MeshStore::kMaxTriangles) +
                                       ", because all of it is in memory at the same time");
     }
@@ -320,6 +350,7 @@ class Pipeline {
         context_.compute([&] { return AcuteCorners::build(domain_, quality_, context_); });
     if (!corners) return corners.error();
     corners_.emplace(std::move(*corners));
+    corners_->share_shells(sides_.twins());
     // Between segments that are kept, no angle asks for triangles.
     if (!edge_limits_.keep_any()) {
       auto narrow = context_.compute([&] {
@@ -372,7 +403,8 @@ class Pipeline {
                   .triangles_lower_bound = lower_bound_,
                   .sweeps = sweeps(),
                   .other_bytes = size_bytes + narrow_.bytes(),
-                  .edge_limits = edge_limits_};
+                  .edge_limits = edge_limits_,
+                  .sides = sides_};
     if (has_triangle_cap()) plan.max_triangles = context_.budget().max_triangles;
     if (auto error = run_mesh(plan, area, sink_, context_, summary_)) return tl::unexpected(*error);
     summary_.engine_seconds += summary_.triangulate_seconds + summary_.size_seconds;
@@ -438,9 +470,10 @@ class Pipeline {
                        .widest = narrow_.widest()};
   }
 
-  // A triangle at a segment that is kept may be larger than leaves are.
+  // A triangle at a segment that is kept may be larger than leaves are, and sides match in the end.
   bool may_stream() const {
-    return request_.min_angle_deg <= kMaxStreamingAngleDeg && !edge_limits_.keep_any();
+    return request_.min_angle_deg <= kMaxStreamingAngleDeg && !edge_limits_.keep_any() &&
+           sides_.empty();
   }
 
   // Whether the client set a limit of its own: reaching that is no error.
@@ -468,6 +501,7 @@ class Pipeline {
   std::optional<SizeMap> map_;
   QualityBounds quality_;
   EdgeLimits edge_limits_;
+  PeriodicSides sides_;
   std::optional<AcuteCorners> corners_;  // of domain_
   NarrowPlaces narrow_;
   double lower_bound_ = 0;    // of the triangles

@@ -69,7 +69,7 @@ class LeafRun {
     if (auto error = refine_all()) return error;
     if (!stopped() && final_leaves_ < n) {
       cleaned_up_ = true;
-      if (leaves_.pending() > 0) clean_up();
+      if (leaves_.pending() > 0 || !plan_.sides.empty()) clean_up();
       if (!stage_.streams() && !stopped()) fragments_.send_vertices(root_);
       send_from(final_leaves_.exchange(n));
     }
@@ -197,8 +197,9 @@ class LeafRun {
   }
 
   void clean_up() {
-    auto error = context_.compute(
-        [&] { return time_.measure([&] { return leaves_.clean_up(final_leaves_); }); });
+    auto error = context_.compute([&] {
+      return time_.measure([&] { return leaves_.clean_up(final_leaves_, plan_.sides, root_); });
+    });
     if (error) fragments_.run().stop(*error);
     leaf_fragments_.keep_vertices_of(leaves_.clean_up_slots());
     context_.end_stage("clean-up");

@@ -2,6 +2,7 @@
 #include "engine/mesh_run.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <limits>
@@ -110,6 +111,8 @@ class MeshRun {
       refiner.begin(root_, OwnsAll{}, plan_.box);
       auto error = refiner.queue_all();
       if (!error) error = refiner.run();
+      const std::array<const Slots*, 1> all{&root_};
+      if (!error) error = plan_.sides.match(refiner, mesh_, plan_.corners, all, context_);
       alone_ = refiner.stats();
       if (!error && plan_.sweeps > 0 && !truncated_) error = smooth_alone();
       return error;

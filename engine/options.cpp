@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -9,6 +10,33 @@
 #include "weft/weft.h"
 
 namespace weft {
+
+namespace {
+
+std::optional<Error> check_periodic(const MeshRequest& request) {
+  const auto bad = [](const std::string& field, const std::string& message) {
+    return Error{ErrorCode::kBadOption, field, message};
+  };
+  if (request.periodic.size() > kMaxPeriodicPairs)
+    return bad("quality.periodic",
+               "quality.periodic has " + std::to_string(request.periodic.size()) +
+                   " pairs; it must have at most " + std::to_string(kMaxPeriodicPairs));
+  if (request.simplify > 0 && !request.periodic.empty())
+    return bad("quality.periodic", "quality.periodic needs sides as they are, but simplify is " +
+                                       text(request.simplify));
+  for (std::size_t i = 0; i < request.periodic.size() && request.keep; ++i) {
+    for (const std::int32_t marker : {request.periodic[i].from, request.periodic[i].to}) {
+      const auto& keep = *request.keep;
+      if (!keep.empty() && std::find(keep.begin(), keep.end(), marker) == keep.end()) continue;
+      const std::string field = "quality.periodic[" + std::to_string(i) + "]";
+      return bad(field, field + " splits segments with marker " + std::to_string(marker) +
+                            ", which quality.keep keeps as they are");
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
 
 std::optional<Error> check_options(const MeshRequest& request) {
   const auto bad = [](const std::string& field, const std::string& value, const char* range) {
@@ -35,7 +63,7 @@ std::optional<Error> check_options(const MeshRequest& request) {
     return Error{
         ErrorCode::kBadOption, "quality.keep",
         "quality.keep keeps segments as they are, but simplify is " + text(request.simplify)};
-  return std::nullopt;
+  return check_periodic(request);
 }
 
 std::optional<Error> check_pslg(const Pslg& pslg) {

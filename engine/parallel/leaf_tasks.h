@@ -12,7 +12,8 @@
 //                these.
 //   round 3, 4   A task refines all bad triangles that it owns. A leaf that has nothing pending and
 //                receives nothing skips these.
-//   clean-up     One task refines what is pending after the rounds. It owns all that has not been
+//   clean-up     One task refines what is pending after the rounds, and makes periodic sides match.
+//   It owns all that has not been
 //                sent: all but the halos of the leaves before `frozen`.
 //
 // A triangle that a task cannot refine, because its cavity reaches beyond the halo, migrates to the
@@ -23,7 +24,7 @@
 //   LeafTasks<ConstantArea> leaves(refinement, quality, area, tree, order, 1);
 //   leaves.seed(bad);
 //   ... leaves.refine(l, 0), ... in an order that LeafGraph permits ...
-//   if (leaves.pending() > 0) leaves.clean_up(0);
+//   if (leaves.pending() > 0) leaves.clean_up(0, {}, root);
 //
 // Errors: those of refinement (refine/refiner.h). Thread-safety: of different leaves, `refine` and
 // `smooth` may run at the same time if the leaves do not overlap, `seed` and giving back memory
@@ -47,6 +48,7 @@
 #include "engine/parallel/leaf_graph.h"
 #include "engine/parallel/leaf_order.h"
 #include "engine/parallel/quadtree.h"
+#include "engine/refine/periodic_sides.h"
 #include "engine/refine/refiner.h"
 #include "engine/refine/row_filler.h"
 #include "engine/refine/smoothing/smoother.h"
@@ -205,8 +207,10 @@ class LeafTasks {
   }
 
   // Refines triangles that are pending after the last round, without touching what the leaves
-  // before `frozen` have made. Triangles too near to these stay as they are.
-  std::optional<Error> clean_up(std::uint32_t frozen) {
+  // before `frozen` have made. Triangles too near to these stay as they are. Then makes sides
+  // match; the other triangles are in `earlier`. REQUIRES: if there are such sides, none is frozen.
+  std::optional<Error> clean_up(std::uint32_t frozen, const PeriodicSides& sides,
+                                const Slots& earlier) {
     std::vector<std::vector<std::uint32_t>> frozen_near(leaves_.size());
     for (std::uint32_t l = 0; l < leaves_.size(); ++l) {
       if (l < frozen) frozen_near[l].push_back(l);
@@ -221,6 +225,10 @@ class LeafTasks {
       for (const SegmentEdge& s : l.pending_segments) refiner.queue(s);
     }
     auto error = refiner.run();
+    std::vector<const Slots*> all{&earlier, &clean_up_slots_};
+    for (const Leaf& l : leaves_) all.push_back(&l.slots);
+    if (!error)
+      error = sides.match(refiner, refinement_.mesh, refinement_.corners, all, refinement_.context);
     clean_up_stats_ = refiner.stats();
     return error;
   }

@@ -15,6 +15,7 @@
 #include "engine/parallel/narrow_places.h"
 #include "engine/refine/acute_corners.h"
 #include "engine/refine/edge_limits.h"
+#include "engine/refine/periodic_sides.h"
 #include "engine/refine/quality_bounds.h"
 
 namespace weft {
@@ -53,6 +54,7 @@ struct MeshPlan {
   std::optional<std::uint64_t> max_triangles = std::nullopt;
   std::uint64_t other_bytes = 0;  // held by the run besides
   EdgeLimits edge_limits{};       // on segments
+  PeriodicSides sides{};          // with any, the mesh does not stream
 
   // The maximum number of full leaves in a block of the coarse mesh (coarse_blocks.h); 1 for no
   // blocks. Before the first leaf, a coarse mesh for all blocks is made, and then some hundred

@@ -163,7 +163,7 @@ Result<std::vector<CrossedArms::Sector>> AcuteCorners::find_corners(
           corners_[corner] = std::max(corners_[corner], acute ? Corner::kAcute : Corner::kShells);
           const auto sine = static_cast<float>(cross(from, to) / (length(from) * length(to)));
           for (const std::uint32_t s : arms) {
-            float& least = sines_[s][domain.subsegments[s].b == corner ? 1 : 0];
+            float& least = sine_at(s, corner);
             least = std::min(least, sine);
           }
           const double tangent = cross(from, to) / dot(from, to);
@@ -179,6 +179,16 @@ Result<std::vector<CrossedArms::Sector>> AcuteCorners::find_corners(
     }
   }
   return sharp;
+}
+
+void AcuteCorners::share_shells(const std::vector<Twins>& twins) {
+  for (const auto& [subsegments, ends] : twins) {
+    float& here = sine_at(subsegments[0], ends[0]);
+    float& there = sine_at(subsegments[1], ends[1]);
+    here = there = std::min(here, there);
+    if (!has_shells(ends[0]) && !has_shells(ends[1])) continue;
+    for (const std::uint32_t end : ends) corners_[end] = std::max(corners_[end], Corner::kShells);
+  }
 }
 
 // Two counting sorts, by the higher end and then by the lower: linear, so that they can be polled.

@@ -57,6 +57,14 @@ class AcuteCorners {
   static Result<AcuteCorners> build(const Domain& domain, const QualityBounds& quality,
                                     const ExecutionContext& context);
 
+  // A subsegment at one of its ends, and its image on a side that repeats its own.
+  struct Twins {
+    std::array<std::uint32_t, 2> subsegments;
+    std::array<std::uint32_t, 2> ends;  // vertices of the domain
+  };
+  // Has twins split alike: on the shells of the corner of either.
+  void share_shells(const std::vector<Twins>& twins);
+
   // Two vertices of the mesh.
   using Pair = std::array<std::uint32_t, 2>;
 
@@ -110,6 +118,9 @@ class AcuteCorners {
 
   Corner corner(std::uint32_t vertex) const {
     return vertex < corners_.size() ? corners_[vertex] : Corner::kPlain;
+  }
+  float& sine_at(std::uint32_t subsegment, std::uint32_t end) {
+    return sines_[subsegment][(*subsegments_)[subsegment].b == end ? 1 : 0];
   }
   bool acute(std::uint32_t vertex) const { return corner(vertex) == Corner::kAcute; }
   bool has_shells(std::uint32_t vertex) const { return corner(vertex) != Corner::kPlain; }

@@ -149,6 +149,16 @@ class Refiner {
   // A triangle of the star of the point that was placed last, which is its first vertex.
   std::uint32_t placed() const { return star_.cavity().triangles()[0]; }
 
+  // From now on, only `split` splits segments with these markers.
+  void keep(std::vector<std::int32_t> markers) { kept_ = std::move(markers); }
+
+  // Splits an edge on a straight segment at a point of it. Returns false if it no longer exists, or
+  // if that cannot be. REQUIRES: this task owns all triangles around.
+  bool split(const SegmentEdge& s, Point p) {
+    tick();
+    return is_current(s) && split_segment_near(s.triangle, s.edge, p, false) == Outcome::kInserted;
+  }
+
   // Counts what somebody else has inserted in this task's slots.
   void count(std::uint64_t vertices, std::int64_t triangles) {
     insertions_ += vertices;
@@ -362,7 +372,8 @@ class Refiner {
     const Triangle& triangle = mesh_.triangles[t];
     const std::uint32_t a = triangle.vertex[kNext[edge]];
     const std::uint32_t b = triangle.vertex[kPrevious[edge]];
-    if (edge_limits_.keep_any() && edge_limits_.keep(corners_.marker(mesh_, a, b))) [[unlikely]]
+    if ((edge_limits_.keep_any() || !kept_.empty()) && is_kept(corners_.marker(mesh_, a, b)))
+        [[unlikely]]
       return Outcome::kKept;
     const HalfEdge across = triangle.neighbor[edge];
     const double pieces = pieces_of(a, b);
@@ -371,9 +382,18 @@ class Refiner {
         pieces > 1 ? std::ceil(pieces / 2) / pieces : 0.5);
     const bool is_arc =
         corners_.has_arcs() && corners_.curvature(corners_.subsegment(mesh_, a, b)) != 0;
+    return split_segment_near(t, edge, p, is_arc, hidden);
+  }
+
+  // Splits it at p, or at a point nearby if a triangle would be flat.
+  Outcome split_segment_near(std::uint32_t t, std::uint32_t edge, Point p, bool is_arc,
+                             int hidden = 0) {
     Outcome outcome = is_arc ? split_arc_at(t, edge, p, hidden) : split_segment_at(t, edge, p);
     if (outcome != Outcome::kFlat) [[likely]]
       return outcome;
+    const Triangle& triangle = mesh_.triangles[t];
+    const std::uint32_t a = triangle.vertex[kNext[edge]];
+    const std::uint32_t b = triangle.vertex[kPrevious[edge]];
     const double x = mesh_.vertices[b].x - mesh_.vertices[a].x;
     const double y = mesh_.vertices[b].y - mesh_.vertices[a].y;
     const double unit =
@@ -533,10 +553,7 @@ class Refiner {
         defer_segment(s);
         continue;
       }
-      const Triangle& t = mesh_.triangles[s.triangle];
-      const bool current = t.vertex[kNext[s.edge]] == s.a && t.vertex[kPrevious[s.edge]] == s.b &&
-                           t.on_segment(s.edge);
-      if (!current) {
+      if (!is_current(s)) {
         any = true;
         continue;
       }
@@ -549,6 +566,17 @@ class Refiner {
         segments_refused_ = std::max(segments_refused_, Refusal::kKept);
     }
     return any;
+  }
+
+  bool is_kept(std::int32_t marker) const {
+    return edge_limits_.keep(marker) ||
+           std::find(kept_.begin(), kept_.end(), marker) != kept_.end();
+  }
+
+  bool is_current(const SegmentEdge& s) const {
+    const Triangle& t = mesh_.triangles[s.triangle];
+    return t.vertex[kNext[s.edge]] == s.a && t.vertex[kPrevious[s.edge]] == s.b &&
+           t.on_segment(s.edge);
   }
 
   // The parts that the limit of its marker asks of the edge a-b, which lies on a segment.
@@ -660,6 +688,7 @@ class Refiner {
   TriangleJudge judge_;
 
   BadTriangles bad_;
+  std::vector<std::int32_t> kept_;     // markers, besides those of edge_limits_
   std::vector<SegmentEdge> segments_;  // encroached upon; entries may be stale
   std::vector<BadTriangle> deferred_;
   std::vector<SegmentEdge> deferred_segments_;

@@ -383,6 +383,24 @@ SizeSpec read_size(ByteSource& bytes, double extent, const Pslg& pslg) {
   return size;
 }
 
+// Puts the domain into a box whose sides repeat each other.
+void add_periodic_box(MeshRequest& request) {
+  Pslg& pslg = request.pslg;
+  Box box;
+  for (const Point p : pslg.points) box.add(p);
+  if (!(box.min_x < box.max_x && box.min_y < box.max_y)) return;
+  constexpr std::int32_t kBottom = 101;
+  const auto first = static_cast<std::uint32_t>(pslg.points.size());
+  pslg.points.insert(pslg.points.end(), {{box.min_x, box.min_y},
+                                         {box.max_x, box.min_y},
+                                         {box.max_x, box.max_y},
+                                         {box.min_x, box.max_y}});
+  for (std::uint32_t i = 0; i < 4; ++i)
+    pslg.segments.push_back(
+        {first + i, first + (i + 1) % 4, kBottom + static_cast<std::int32_t>(i)});
+  request.periodic = {{kBottom, kBottom + 2}, {kBottom + 3, kBottom + 1}};
+}
+
 }  // namespace
 
 MeshCase decode_mesh_case(ByteSource bytes) {
@@ -405,6 +423,7 @@ MeshCase decode_mesh_case(ByteSource bytes) {
     if (which > 0 && which <= request.pslg.segments.size())
       request.keep->push_back(request.pslg.segments[which - 1].marker);
   }
+  if (rarely % 8 == 0 && rarely / 32 == 3) add_periodic_box(request);
   if (rarely % 8 == 1) request.min_edge = maker.extent() / static_cast<double>(1 + rarely);
   if (rarely % 8 == 2) made.budget.max_triangles = rarely;
   if (rarely % 8 == 3) {
@@ -456,6 +475,8 @@ std::string to_text(const MeshCase& mesh_case) {
   if (request.min_edge > 0) text += print(" --min-edge %.17g", request.min_edge);
   if (request.keep)
     text += " --keep " + (request.keep->empty() ? "all" : std::to_string(request.keep->front()));
+  for (const PeriodicPair& pair : request.periodic)
+    text += print(" --periodic %d:%d", pair.from, pair.to);
   if (request.placement == Placement::kCircumcentre) text += " --placement circumcentre";
   if (request.sweeps) text += print(" --optimise %u", *request.sweeps);
   if (pslg.snap > 0) text += print(" --snap %.17g", pslg.snap);

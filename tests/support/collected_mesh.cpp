@@ -315,6 +315,8 @@ std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
   requirements.points_per_circle = request.size.points_per_circle;
   // What the engine declares it could not refine may miss its bounds, no more.
   requirements.keep = request.keep;
+  for (const PeriodicPair& pair : request.periodic)
+    requirements.periodic.push_back({pair.from, pair.to});
   requirements.allowed_unrefined = summary.unrefined.edge_floor + summary.unrefined.kept +
                                    summary.unrefined.budget + summary.unrefined.without_exemption();
   const check::Domain domain = domain_of(request.pslg);
