@@ -2,16 +2,18 @@
 #include "checker/report.h"
 
 #include <algorithm>
+#include <array>
 
 #include "checker/text.h"
 
 namespace weft::check {
 namespace {
 
-constexpr std::array<std::string_view, kRules> kRuleNames = {
-    "domain", "size",    "structure", "orientation", "conformity", "overlap",  "edges",
-    "chains", "points",  "markers",   "coverage",    "regions",    "delaunay", "angle",
-    "area",   "lengths", "kept",      "periodic",    "simplified"};
+constexpr auto kRuleNames = std::to_array<std::string_view>(
+    {"domain", "size", "structure", "orientation", "conformity", "overlap", "edges", "chains",
+     "points", "markers", "coverage", "regions", "delaunay", "angle", "area", "lengths", "kept",
+     "periodic", "simplified"});
+static_assert(kRuleNames.size() == kRules);
 
 std::size_t index(Rule rule) {
   return static_cast<std::size_t>(rule);

@@ -34,6 +34,7 @@ PLACES = {
         ("docs/size.md", r"An expression may have ([\d,]+) bytes")],
     "kMaxSizeFields": [(PROTO, r"Limit: (\d+) fields, and for the arrays")],
     "kMaxFieldNameBytes": [(PROTO, r"Letters, digits and _, no digit first, at most (\d+) bytes")],
+    "kMaxPeriodicPairs": [(PROTO, r"Limit: (\d+) pairs of sides")],
     "kMaxSizesAt": [(PROTO, r"on top of the value\. Limit: (\d+) markers")],
 }
 

@@ -455,6 +455,21 @@ void read_keep(Fields in, std::vector<std::int32_t>& markers) {
       in.skip();
 }
 
+PeriodicPair read_periodic_sides(Fields in) {
+  PeriodicPair pair;
+  while (in.next()) switch (in.number()) {
+      case 1:
+        in.read(pair.from);
+        break;
+      case 2:
+        in.read(pair.to);
+        break;
+      default:
+        in.skip();
+    }
+  return pair;
+}
+
 void read_quality(Fields in, MeshRequest& request) {
   std::int32_t placement = static_cast<std::int32_t>(request.placement) + 1;
   while (in.next()) switch (in.number()) {
@@ -473,6 +488,9 @@ void read_quality(Fields in, MeshRequest& request) {
       case 5:
         if (!request.keep) request.keep.emplace();
         in.message([&](Fields keep) { read_keep(keep, *request.keep); });
+        break;
+      case 6:
+        in.message([&](Fields sides) { request.periodic.push_back(read_periodic_sides(sides)); });
         break;
       default:
         in.skip();

@@ -170,6 +170,14 @@ Result<RequestOptions> with_size(const RequestOptions& given, const Domain& doma
     if (!kept) return fault_at("quality.keep", options, kept.error());
     options.kept = std::move(*kept);
   }
+  options.repeating.clear();
+  for (const MarkerPair& pair : options.periodic) {
+    const auto sides = pair.numbers(domain.names.markers);
+    if (!sides)
+      return fault_at("quality.periodic[" + std::to_string(options.repeating.size()) + "]", options,
+                      sides.error());
+    options.repeating.push_back(*sides);
+  }
   const auto rasters = std::count_if(
       options.fields.begin(), options.fields.end(),
       [](const auto& field) { return std::holds_alternative<FieldOption::Raster>(field.kind); });
@@ -216,6 +224,11 @@ v1::GenerateMeshRequest make_request(const Domain& domain, const RequestOptions&
   if (request_options.keep)
     request.mutable_quality()->mutable_keep()->mutable_markers()->Add(request_options.kept.begin(),
                                                                       request_options.kept.end());
+  for (const auto& [from, to] : request_options.repeating) {
+    v1::PeriodicSides& sides = *request.mutable_quality()->add_periodic();
+    sides.set_from(from);
+    sides.set_to(to);
+  }
   if (request_options.placement)
     request.mutable_quality()->set_placement(*request_options.placement);
   if (request_options.optimise) request.mutable_quality()->set_optimise(*request_options.optimise);

@@ -5,6 +5,7 @@
 //   const auto request = make_request(domain, {.size = "0.01", .min_angle_deg = 30});
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "client/call/edge_at.h"
 #include "client/call/field_option.h"
 #include "client/call/marker_list.h"
+#include "client/call/marker_pairs.h"
 #include "client/call/name_option.h"
 #include "client/formats/domain.h"
 #include "client/geo/domain_projection.h"
@@ -43,7 +45,9 @@ struct RequestOptions {
   std::optional<double> min_edge{};
   // Segments that stay as they are, by marker; none in the list: all segments.
   std::optional<MarkerList> keep{};
-  std::vector<std::int32_t> kept{};  // these markers as numbers: see with_size
+  std::vector<std::int32_t> kept{};                      // these markers as numbers: see with_size
+  std::vector<MarkerPair> periodic{};                    // sides that repeat each other
+  std::vector<std::array<std::int32_t, 2>> repeating{};  // their markers as numbers: see with_size
   std::optional<v1::Placement> placement{};
   std::optional<std::uint32_t> optimise{};  // sweeps of smoothing
   std::optional<std::uint64_t> max_triangles{};

@@ -130,6 +130,10 @@ const OptionRows<Request>& other_rows() {
        "Segments that stay as they are, by their markers, numbers or names, or all: no new point "
        "lies on them, and triangles there may miss their bounds",
        "", markers_to_keep(), "quality.keep"},
+      {"periodic", "WEFT_PERIODIC",
+       "Sides that repeat each other, pairs of their markers, numbers or names: they get the same "
+       "vertices, moved or turned from the first to the second",
+       "", periodic_sides(), "quality.periodic"},
       {"placement", "WEFT_PLACEMENT",
        "Where new points go in triangles that are too large: lattice follows the size and makes a "
        "third fewer triangles, circumcentre gives the mesh no preferred direction",
@@ -183,6 +187,17 @@ OptionValue<RequestOptions> markers_to_keep() {
             if (!markers)
               return in_quotes(texts.front()) + " does not list markers, such as 2,inlet";
             options.keep = *markers;
+            return "";
+          }};
+}
+
+OptionValue<RequestOptions> periodic_sides() {
+  return {"M:M,M:M", "", Arity::kOne,
+          [](const auto& texts, const auto&, Request& options) -> std::string {
+            auto pairs = parse_marker_pairs(texts.front());
+            if (!pairs)
+              return in_quotes(texts.front()) + " is not pairs of markers, such as left:right,4:2";
+            options.periodic = std::move(*pairs);
             return "";
           }};
 }
@@ -272,6 +287,8 @@ std::string option_of(std::string_view field, const RequestOptions& options) {
     const EdgeAt& at = options.edge_at[*entry];
     return name_of(*set_by) + " marker=" + (at.name.empty() ? std::to_string(at.marker) : at.name);
   }
+  if (entry && set_by->field == "quality.periodic" && *entry < options.periodic.size())
+    return name_of(*set_by) + " " + options.periodic[*entry].text();
   return name_of(*set_by);
 }
 

@@ -31,6 +31,8 @@ OptionValue<Options> fill_value(PolygonFill Options::*field) {
 
 // RequestOptions::keep.
 OptionValue<RequestOptions> markers_to_keep();
+// RequestOptions::periodic.
+OptionValue<RequestOptions> periodic_sides();
 
 // What was given for a field of the request, such as "size.fields[0].name", as errors call it:
 // "--field d", or "field d" if a manifest gave it. Empty if no option was.

@@ -223,6 +223,10 @@ void add_check(CLI::App& app, Chosen& chosen) {
        "", markers_to_keep()},
       options.size);
   add_row(check,
+          {"periodic", "WEFT_PERIODIC", "Sides that repeat each other, as given to `weft mesh`", "",
+           periodic_sides()},
+          options.size);
+  add_row(check,
           {"fill", "WEFT_FILL", "What was meshed where polygons overlap, as given to `weft mesh`",
            "union", fill_value(&CheckOptions::fill)},
           options);

@@ -72,6 +72,11 @@ Result<check::Requirements> requirements_of(const CheckOptions& options, const I
     if (!kept) return tl::unexpected(kept.error());
     requirements.keep = std::move(*kept);
   }
+  for (const MarkerPair& pair : options.size.periodic) {
+    const auto sides = pair.numbers(input.domain.names.markers);
+    if (!sides) return tl::unexpected(sides.error());
+    requirements.periodic.push_back(*sides);
+  }
   return requirements;
 }
 

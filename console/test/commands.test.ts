@@ -45,6 +45,13 @@ test("markers to keep are a list, or all", () => {
   expect(pythonProgram(kept([]))).toContain('keep="all",');
 });
 
+test("periodic sides are pairs of markers", () => {
+  const sides = make({ quality: { periodic: [{ from: 4, to: 2 }, { from: -1, to: 3 }] } });
+  expect(shellCommand(sides)).toContain("--periodic 4:2,-1:3");
+  expect(pythonProgram(sides)).toContain("periodic=[(4,2),(-1,3)],");
+  expect(shellCommand(make({ quality: {} }))).not.toContain("periodic");
+});
+
 test("a request is a program in Python", () => {
   expect(pythonProgram(make({}))).toBe(
     'import weft\n\nwith weft.Client() as client:\n    mesh = client.mesh(\n        "DOMAIN.poly",\n    )\nmesh.write("mesh.vtu")\n',

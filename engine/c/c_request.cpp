@@ -19,6 +19,7 @@ using wire::Option;
 
 constexpr std::uint32_t kDomain = 1;
 constexpr std::uint32_t kSize = 2;
+constexpr std::uint32_t kQuality = 3;
 constexpr std::uint32_t kSizeFields = 5;
 // Kinds of fields.
 constexpr std::uint32_t kDistance = 2;
@@ -145,6 +146,7 @@ using weft::end_of;
 using weft::kDistance;
 using weft::kDomain;
 using weft::kMesh;
+using weft::kQuality;
 using weft::kRaster;
 using weft::kSize;
 using weft::kWidth;
@@ -248,7 +250,15 @@ void weft_keep(weft_request* request, const int32_t* markers, size_t count) {
   append(request, [&](pbf_writer& message) {
     std::string keep;
     pbf_writer(keep).add_packed_sint32(1, markers, end_of(markers, count, "quality.keep"));
-    pbf_writer(message, 3).add_message(5, keep);
+    pbf_writer(message, kQuality).add_message(5, keep);
+  });
+}
+
+void weft_add_periodic(weft_request* request, int32_t from, int32_t to) {
+  append_to(request, kQuality, [&](pbf_writer& quality) {
+    pbf_writer sides(quality, 6);
+    sides.add_sint32(1, from);
+    sides.add_sint32(2, to);
   });
 }
 

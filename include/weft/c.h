@@ -75,6 +75,8 @@ WEFT_API void weft_add_size_at(weft_request* request, int32_t marker, double max
 
 /* Segments that stay as they are: those with one of the markers, all without. */
 WEFT_API void weft_keep(weft_request* request, const int32_t* markers, size_t count);
+/* Sides with these markers get the same vertices; 16 pairs at most. */
+WEFT_API void weft_add_periodic(weft_request* request, int32_t from, int32_t to);
 
 /* Fields that the expression may name. The distance to the domain's segments with one of the
  * markers, all without; or to points, or to the segments between them. */

@@ -32,7 +32,8 @@ struct Amounts {
   std::uint64_t expression_bytes = 0;
   std::uint64_t raster_values = 0;
   std::uint64_t sizes_at = 0;
-  std::uint64_t kept = 0;  // markers of segments
+  std::uint64_t kept = 0;      // markers of segments
+  std::uint64_t periodic = 0;  // pairs of sides
   // Summed over all fields that the size may name.
   std::uint64_t fields = 0;
   std::uint64_t field_points = 0;
@@ -68,6 +69,9 @@ std::optional<Failure> check(const Amounts& amounts, const Limits& limits) {
   if (auto f =
           over("quality.keep.markers", "markers", amounts.kept, std::uint64_t{kMaxKeptMarkers}))
     return f;
+  if (auto f = over("quality.periodic", "pairs of sides", amounts.periodic,
+                    std::uint64_t{kMaxPeriodicPairs}))
+    return f;
   const auto of_fields = [](std::string_view unit, std::uint64_t value, std::uint64_t limit) {
     return over("size.fields", unit, value, limit);
   };
@@ -101,6 +105,7 @@ std::optional<Failure> check_limits(const WireScan& scan, const Limits& limits) 
       .raster_values = scan.count(*v1::Raster::descriptor(), v1::Raster::kValuesFieldNumber),
       .sizes_at = scan.count(*v1::SizeField::descriptor(), v1::SizeField::kAtFieldNumber),
       .kept = scan.count(*v1::Keep::descriptor(), v1::Keep::kMarkersFieldNumber),
+      .periodic = scan.count(*v1::Quality::descriptor(), v1::Quality::kPeriodicFieldNumber),
       .fields = scan.count(*v1::SizeField::descriptor(), v1::SizeField::kFieldsFieldNumber),
       .field_points =
           scan.count(*v1::Distance::descriptor(), v1::Distance::kPointsFieldNumber) / 2 +
@@ -131,7 +136,8 @@ std::optional<Failure> check_limits(const v1::GenerateMeshRequest& request, cons
       .expression_bytes = request.size().expression().size(),
       .raster_values = count(request.size().raster().values_size(), 1),
       .sizes_at = count(request.size().at_size(), 1),
-      .kept = count(request.quality().keep().markers_size(), 1)};
+      .kept = count(request.quality().keep().markers_size(), 1),
+      .periodic = count(request.quality().periodic_size(), 1)};
   for (const v1::NamedField& field : request.size().fields()) {
     amounts.fields += 1;
     amounts.field_points += count(field.distance().points_size(), 2);

@@ -454,6 +454,7 @@ D = {"fields": {"d": weft.distance()}}
     ({"min_angle": 99}, "quality.min_angle_deg", "min_angle"),
     ({"min_edge": -1}, "quality.min_edge", "min_edge"),
     ({"keep": [7, 8]}, "quality.keep.markers[1]", "keep"),
+    ({"periodic": [(7, 8)]}, "quality.periodic[0]", "periodic"),
     ({"optimise": 99}, "quality.optimise", "optimise"),
     ({"snap": -1}, "domain.snap", "snap"),
     ({"max_seconds": -1}, "budget.max_seconds", "max_seconds"),

@@ -162,6 +162,19 @@ TEST(ReadSize, WithAFaultIsRefusedByItsName) {
   EXPECT_EQ(refused(size), "size.raster.y");
 }
 
+void add_sides(v1::Quality& quality, std::int32_t from, std::int32_t to) {
+  v1::PeriodicSides& sides = *quality.add_periodic();
+  sides.set_from(from);
+  sides.set_to(to);
+}
+
+using Sides = std::vector<std::pair<std::int32_t, std::int32_t>>;
+Sides sides_of(const Request& request) {
+  Sides sides;
+  for (const PeriodicPair& pair : request.mesh.periodic) sides.emplace_back(pair.from, pair.to);
+  return sides;
+}
+
 v1::GenerateMeshRequest full_request() {
   v1::GenerateMeshRequest request;
   v1::Domain& domain = *request.mutable_domain();
@@ -192,6 +205,8 @@ v1::GenerateMeshRequest full_request() {
   quality.set_optimise(3);
   quality.mutable_keep()->add_markers(-1);
   quality.mutable_keep()->add_markers(300);
+  add_sides(quality, -4, 2);
+  add_sides(quality, 0, 3);
   v1::Budget& budget = *request.mutable_budget();
   budget.set_max_triangles(std::uint64_t{1} << 40);
   budget.set_max_bytes(11);
@@ -240,6 +255,7 @@ TEST(ReadRequest, BringsTheOptions) {
   EXPECT_EQ(request->mesh.placement, Placement::kCircumcentre);
   EXPECT_EQ(request->mesh.sweeps, 3u);
   EXPECT_EQ(request->mesh.keep, (std::vector<std::int32_t>{-1, 300}));
+  EXPECT_EQ(sides_of(*request), (Sides{{-4, 2}, {0, 3}}));
   EXPECT_EQ(request->mesh.simplify, 0.75);
   EXPECT_TRUE(request->mesh.allow_unrefined);
   EXPECT_EQ(request->max_triangles, std::uint64_t{1} << 40);
@@ -258,6 +274,7 @@ TEST(ReadRequest, TakesWhatIsLeftOutForItsDefault) {
   EXPECT_EQ(request->mesh.placement, Placement::kLattice);
   EXPECT_EQ(request->mesh.sweeps, std::nullopt);
   EXPECT_EQ(request->mesh.keep, std::nullopt);
+  EXPECT_EQ(sides_of(*request), Sides());
   EXPECT_EQ(request->mesh.pslg.fill, Fill::kSeeds);
 }
 
@@ -268,6 +285,7 @@ TEST(ReadRequest, MergesWhatComesInParts) {
   second.mutable_domain()->add_points(8);
   second.mutable_quality()->set_min_edge(7);
   second.mutable_quality()->mutable_keep()->add_markers(5);
+  add_sides(*second.mutable_quality(), 6, 7);
   second.mutable_size()->set_gradation(6);
   const auto request = read_request(first.SerializeAsString() + second.SerializeAsString());
   ASSERT_TRUE(request) << request.error().message;
@@ -275,6 +293,7 @@ TEST(ReadRequest, MergesWhatComesInParts) {
   EXPECT_EQ(request->mesh.pslg.fill, Fill::kUnion);
   EXPECT_EQ(request->mesh.min_edge, 7);
   EXPECT_EQ(request->mesh.keep, (std::vector<std::int32_t>{-1, 300, 5}));
+  EXPECT_EQ(sides_of(*request), (Sides{{-4, 2}, {0, 3}, {6, 7}}));
   EXPECT_EQ(request->mesh.min_angle_deg, 28);
   EXPECT_EQ(request->mesh.placement, Placement::kCircumcentre);
 }

@@ -4,7 +4,8 @@
 // `domain`, the name of the domain's file, is given, the request is whole.
 import { Measure, Placement, type GenerateMeshRequest, type NamedField } from "../gen/weft/v1/mesh_service_pb";
 
-type Value = string | number | boolean | number[];
+type Pair = [number, number];
+type Value = string | number | boolean | number[] | Pair[];
 
 // In the order of the flags of `weft mesh`; the names are those of Python's options.
 function optionsOf({ domain, quality, size, simplify, budget, allowUnrefined }: GenerateMeshRequest): [string, Value][] {
@@ -12,6 +13,7 @@ function optionsOf({ domain, quality, size, simplify, budget, allowUnrefined }: 
     ["min_angle", quality?.minAngleDeg],
     ["min_edge", quality?.minEdge || undefined],
     ["keep", quality?.keep && (quality.keep.markers.length > 0 ? quality.keep.markers : "all")],
+    ["periodic", quality?.periodic.length ? quality.periodic.map(({ from, to }): Pair => [from, to]) : undefined],
     ["placement", quality?.placement === Placement.CIRCUMCENTRE ? "circumcentre" : undefined],
     ["optimise", quality?.optimise],
     ["snap", domain?.snap || undefined],
@@ -35,8 +37,12 @@ function sizeOf<Raster>({ size }: GenerateMeshRequest, raster: Raster): [string,
 }
 
 const inShell = (text: string) => (/^[\w./:=+-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
-const inPython = (value: Value) =>
-  typeof value === "boolean" ? "True" : typeof value === "number" ? String(value) : JSON.stringify(value);
+const valueInShell = (value: Value) =>
+  Array.isArray(value) ? value.map((item) => (Array.isArray(item) ? item.join(":") : item)).join(",") : String(value);
+function inPython(value: Value): string {
+  if (Array.isArray(value)) return `[${value.map((item) => (Array.isArray(item) ? `(${item.join(",")})` : item)).join(",")}]`;
+  return typeof value === "boolean" ? "True" : typeof value === "number" ? String(value) : JSON.stringify(value);
+}
 
 const kinds = {
   distance: ["distance:marker=MARKERS", "weft.distance(marker=MARKERS)"],
@@ -61,7 +67,7 @@ export function shellCommand(request: GenerateMeshRequest, domain?: string): str
     words.push(`--field ${inShell(`${field.name}=${kindOf(field, domain !== undefined, 0)}`)}`);
   for (const [name, value] of optionsOf(request)) {
     const flag = `--${name.replaceAll("_", "-")}`;
-    words.push(value === true ? flag : `${flag} ${value}`);
+    words.push(value === true ? flag : `${flag} ${valueInShell(value)}`);
   }
   return words.join(" \\\n  ");
 }

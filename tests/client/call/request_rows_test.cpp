@@ -63,6 +63,7 @@ const std::map<std::string, Sample>& samples() {
                                                     {"min-angle", {"25"}},
                                                     {"min-edge", {"0.0010549"}},
                                                     {"keep", {"2,5"}},
+                                                    {"periodic", {"4:2"}},
                                                     {"placement", {"circumcentre"}},
                                                     {"optimise", {"3"}},
                                                     {"snap", {"0.0014385"}},

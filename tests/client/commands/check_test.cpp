@@ -92,6 +92,17 @@ TEST_F(WeftCheck, MeasuresDegreesInMetresIfItIsTold) {
       << out();
 }
 
+TEST_F(WeftCheck, TakesPeriodicSidesByTheNamesOfTheDomain) {
+  ASSERT_EQ(run(mesh_to("m.vtu")), 0);
+  Words check = {"check",      out_file("m.vtu"), "--domain", folder_ / "in.poly",
+                 "--periodic", "1:inlet"};
+  EXPECT_EQ(run(check), 2);
+  EXPECT_NE(err().find("no marker of the domain is named 'inlet'"), std::string::npos) << err();
+  check.back() = "1:";
+  EXPECT_EQ(run(check), 2);
+  EXPECT_NE(err().find("--periodic: '1:' is not pairs of markers"), std::string::npos) << err();
+}
+
 TEST_F(WeftCheck, TakesNoSizeThatNothingExceeds) {
   ASSERT_EQ(run(mesh_to("m.vtu")), 0);
   for (const char* size : {"nan", "-nan", "inf", "-1", "0", "1e999"}) {

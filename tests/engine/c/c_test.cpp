@@ -11,6 +11,7 @@
 #include <cstring>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/engine/domain/shapes.h"
@@ -36,11 +37,13 @@ double figure(const weft_mesh* mesh, const char* path) {
 struct Given {
   std::vector<double> points{0, 0, 4, 0, 4, 4, 0, 4, 1, 1, 2, 1, 2, 2, 1, 2};
   std::vector<std::uint32_t> segments{0, 1, 1, 2, 2, 3, 3, 0, 4, 5, 5, 6, 6, 7, 7, 4};
-  std::vector<std::int32_t> markers{1, 1, 2, 2, 3, 3, 3, 3};
+  std::vector<std::int32_t> markers;
   std::unique_ptr<weft_request, Free> request{weft_request_new()};
   MeshRequest same;
 
-  explicit Given(const std::vector<std::uint32_t>& areas = {}, weft_bound bound = {0, 0.3}) {
+  explicit Given(const std::vector<std::uint32_t>& areas = {}, weft_bound bound = {0, 0.3},
+                 std::vector<std::int32_t> of_segments = {1, 1, 2, 2, 3, 3, 3, 3})
+      : markers(std::move(of_segments)) {
     weft_set_points(get(), points.data(), points.size() / 2);
     weft_set_segments(get(), segments.data(), markers.data(),
                       areas.empty() ? nullptr : areas.data(), markers.size());
@@ -141,6 +144,17 @@ TEST(CInterface, KeepsSegments) {
     given.same.keep = markers;
     given.expect_same();
   }
+}
+
+TEST(CInterface, TakesPeriodicSides) {
+  Given given({}, {0, 0.3}, {1, 2, 4, 8, 3, 3, 3, 3});
+  given.add_hole();
+  weft_add_size_at(given.get(), 8, 0.05);
+  weft_add_periodic(given.get(), 8, 2);
+  weft_add_periodic(given.get(), 1, 4);
+  given.same.size.at = {{8, 0.05}};
+  given.same.periodic = {{8, 2}, {1, 4}};
+  given.expect_same();
 }
 
 // The checker cannot judge sizes by the width: it is given and not named.

@@ -178,6 +178,11 @@ INSTANTIATE_TEST_SUITE_P(
                for (int i = 0; i < 4097; ++i) r.mutable_quality()->mutable_keep()->add_markers(i);
              },
              "quality.keep.markers", "4097 markers; this server's limit is 4096"},
+        Case{"PeriodicSides",
+             [](Request& r) {
+               for (int i = 0; i < 17; ++i) r.mutable_quality()->add_periodic();
+             },
+             "quality.periodic", "17 pairs of sides; this server's limit is 16"},
         Case{"Fields",
              [](Request& r) {
                for (int i = 0; i < 33; ++i) add_field(r).mutable_width();

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal, Union
 import numpy as np
 import numpy.typing as npt
 
-from . import _carried, _convert, _npz, _pixels, _solvers, _vtu
+from . import _carried, _convert, _npz, _periodic, _pixels, _solvers, _vtu
 from ._groups import Groups
 from ._masked import nan_where_masked
 from ._optional import need
@@ -159,6 +159,23 @@ class Mesh:
         """By region, its name or its number: (k,) int32, the numbers of its triangles."""
         return Groups("region", self.regions, np.arange(len(self.triangles), dtype=np.int32),
                       self.region_names)
+
+    def periodic(self, a: str | int, b: str | int) -> Ints:
+        """(n, 2) int32: pairs of vertices of two sides that repeat each other, one of the side with the
+        marker `a` and its image on that with the marker `b`, in order along `a` from its lower left end.
+
+        `a`, `b`: markers, numbers or names. The motion that takes one side to the other, ends to ends and
+        vertices to vertices, is a translation or a rotation that takes the inside of the mesh to the outside; or
+        the other one of these two, if only that fits. Sides of several lines, such as those that holes cut,
+        are moved from lower left corner to lower left corner of the boxes around them.
+
+        Raises ValueError if a side is no open line, or names the first vertex that has no image within 1e-9 of
+        the extent of the mesh; KeyError if no edge has the marker.
+
+            left, right = mesh.periodic("left", "right").T
+            u[right] = u[left]
+        """
+        return _periodic.pairs(self, a, b)
 
     def second_order(self) -> tuple[Floats, Ints]:
         """The points (n + e, 2), with the middles of all edges after the vertices, and the triangles (m, 6):

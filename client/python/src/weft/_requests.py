@@ -65,6 +65,10 @@ class MeshOptions(TypedDict, total=False):
     """Segments that stay as they are: "all", or a marker or several, numbers or names of the domain's
     `marker_names`. No new point lies on them, and triangles there may miss their bounds, which
     `summary.unrefined.kept` counts."""
+    periodic: Sequence[tuple[int | str, int | str]]
+    """Sides that repeat each other, pairs of markers, numbers or names of the domain's `marker_names`:
+    `[(4, 2), ("bottom", "top")]`. Each is a line of straight segments; a translation or a rotation that takes one to
+    the other takes vertices to vertices, which `Mesh.periodic` pairs."""
     placement: Literal["lattice", "circumcentre"]
     """Where the points go that split triangles larger than their bound: to a lattice that follows
     the size, with a third fewer triangles, or to circumcentres, which give the mesh no preferred
@@ -156,6 +160,7 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
         request.quality.min_edge = options["min_edge"]
     if "keep" in options:
         _fill_keep(options["keep"], domain, request.quality)
+    _fill_periodic(options.get("periodic", ()), domain, request.quality)
     if "placement" in options:
         if options["placement"] not in _PLACEMENTS:
             raise ValueError(f"placement is {options['placement']!r}; there are "
@@ -228,6 +233,14 @@ def _fill_keep(keep: Any, domain: Domain, quality: Any) -> None:
     markers = [keep] if isinstance(keep, (str, numbers.Integral)) else keep
     for marker in markers:  # no marker on the wire would mean all
         quality.keep.markers.append(marker_of(marker, domain.marker_names))
+
+
+def _fill_periodic(pairs: Any, domain: Domain, quality: Any) -> None:
+    for i, pair in enumerate(pairs):
+        if np.shape(pair) != (2,):
+            raise ValueError(f"periodic[{i}] is {pair!r}; it must be a pair of markers, such as (4, 2)")
+        first, second = (marker_of(marker, domain.marker_names) for marker in pair)
+        quality.periodic.add(**{"from": first, "to": second})
 
 
 def _fill_fields(fields: Mapping[str, Field], domain: Domain, projected: Projection | None,

@@ -76,6 +76,7 @@ class Client(ClientBase):
         `points_per_circle`: minimum number of vertices on a circle, above 0; default: 6.
         `min_edge`: no edge shorter than this is made, from 0; default: 0.
         `keep`: markers or names of segments that stay as they are, or "all"; default: none.
+        `periodic`: pairs of markers or names of sides that get the same vertices; default: none.
 
         Place:
         `lonlat`: True if the domain is in longitude and latitude, degrees; default: False.
