@@ -30,7 +30,8 @@ TEST(MarkerPairs, HoldNumbersAndNames) {
 
 std::vector<std::array<std::int32_t, 2>> sent(const Domain& domain, const RequestOptions& options) {
   std::vector<std::array<std::int32_t, 2>> pairs;
-  for (const auto& sides : make_request(domain, options).quality().periodic())
+  const v1::GenerateMeshRequest request = make_request(domain, options);
+  for (const v1::PeriodicSides& sides : request.quality().periodic())
     pairs.push_back({sides.from(), sides.to()});
   return pairs;
 }
