@@ -10,6 +10,9 @@
 #include "engine/refine/storage/reserved_memory.h"
 
 namespace weft {
+
+constinit const std::string_view kEngineVersion = "16";
+
 namespace {
 
 // Puts the chunks together. Throws std::bad_alloc.

@@ -15,6 +15,9 @@ struct Vector {
 inline Vector operator-(Point p, Point q) {
   return {p.x - q.x, p.y - q.y};
 }
+inline Vector operator-(Vector v) {
+  return {-v.x, -v.y};
+}
 inline double dot(Vector u, Vector v) {
   return u.x * v.x + u.y * v.y;
 }

@@ -24,7 +24,7 @@
 namespace weft {
 
 // Changes whenever the same request may give other bytes.
-inline constexpr std::string_view kEngineVersion = "15";
+extern const std::string_view kEngineVersion;
 
 inline constexpr double kMaxMinAngleDeg = 36;
 inline constexpr std::uint32_t kMaxSweeps = 16;

@@ -121,9 +121,13 @@ def anchors(path: pathlib.Path) -> set[str]:
 
 
 def rewrite(path: pathlib.Path, changes: list[tuple[Block, str]]) -> None:
-    """Replaces blocks, given in the order of the page."""
+    """Replaces blocks, given in the order of the page, at once: other pages may be reading its headings."""
+    if not changes:
+        return
     lines = path.read_text().splitlines(keepends=True)
     for block, text in reversed(changes):
         first = block.line - 1
         lines[first:first + block.code.count("\n")] = [line.rstrip() + "\n" for line in text.splitlines()]
-    path.write_text("".join(lines))
+    whole = path.with_suffix(".new")
+    whole.write_text("".join(lines))
+    whole.replace(path)

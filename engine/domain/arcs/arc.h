@@ -38,6 +38,12 @@ inline Vector turned_left(Vector v, double cosine, double sine) {
   return {v.x * cosine - v.y * sine, v.x * sine + v.y * cosine};
 }
 
+// Of an arc that leaves the start of this chord along this tangent. Unlike `bulge_of`, exact to
+// rounding for half circles, too.
+inline double bulge_from_tangent(Vector tangent, Vector chord) {
+  return cross(tangent, chord) / (length(tangent) * length(chord) + dot(tangent, chord));
+}
+
 // Along the arc, as long as its chord.
 inline Vector tangent_at_start(Point a, Point b, double bulge) {
   const double scale = 1 / (1 + bulge * bulge);

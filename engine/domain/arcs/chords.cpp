@@ -213,8 +213,10 @@ class ArcCutter {
     remove(piece);
     const ArcPiece p = pieces_[piece];
     const Point at = points_[vertex];
-    add(p.a, vertex, bulge_of(p.curvature, length(at - p.from)), owners_of_[piece]);
-    add(vertex, p.b, bulge_of(p.curvature, length(p.to - at)), owners_of_[piece]);
+    add(p.a, vertex, bulge_from_tangent(tangent_at_start(p.from, p.to, p.bulge), at - p.from),
+        owners_of_[piece]);
+    add(vertex, p.b, -bulge_from_tangent(-tangent_at_end(p.from, p.to, p.bulge), at - p.to),
+        owners_of_[piece]);
   }
 
   // What keeps the piece from being halved further is named.

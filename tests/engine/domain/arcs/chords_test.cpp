@@ -111,6 +111,20 @@ TEST(Chords, ArcsThatCrossAreCutThere) {
   EXPECT_EQ(std::count_if(chords.pslg.points.begin(), chords.pslg.points.end(), top), 1);
 }
 
+TEST(Chords, AHalfCircleThatIsCutNearItsEndStaysOnItsCircle) {
+  for (const double angle : {1e-4, 1e-3, 1e-2, 0.1, 1.0}) {
+    Pslg pslg;
+    add_circle(pslg, {0, 0}, 1, 2);
+    add_segment(pslg, {std::cos(angle), std::sin(angle)}, {2, 2});
+    for (const ArcPiece& piece : pieces_of(chords_of(pslg))) {
+      if (piece.bulge == 0) continue;
+      EXPECT_NEAR(length(piece.from - Point{0, 0}), 1, 1e-14) << angle;
+      EXPECT_NEAR(length(middle_of_arc(piece.from, piece.to, piece.bulge) - Point{0, 0}), 1, 1e-14)
+          << angle;
+    }
+  }
+}
+
 TEST(Chords, AnEndOnAnArcIsAVertexOfIt) {
   Pslg pslg;
   add_circle(pslg, {0, 0}, 1);
