@@ -16,7 +16,9 @@
 #include "engine/refine/area_bound.h"
 #include "engine/refine/mapped_area.h"
 #include "engine/refine/refiner.h"
+#include "engine/refine/smoothing/equaliser.h"
 #include "engine/refine/smoothing/smoother.h"
+#include "engine/refine/smoothing/stages.h"
 
 namespace weft {
 namespace {
@@ -109,8 +111,11 @@ class MeshRun {
       Refiner<OwnsAll, AreaBound> refiner(refinement_, plan_.quality, area_,
                                           truncated_ ? *plan_.max_triangles : kNoCap);
       refiner.begin(root_, OwnsAll{}, plan_.box);
+      const bool in_stages =
+          plan_.sweeps > 0 && !truncated_ && area_.has_slack_in(plan_.box, plan_.quality.lattice);
+      if (in_stages) refiner.set_slack(kStages[0].slack);
       auto error = refiner.queue_all();
-      if (!error) error = refiner.run();
+      if (!error) error = in_stages ? refine_in_stages(refiner) : refiner.run();
       const std::array<const Slots*, 1> all{&root_};
       if (!error) error = plan_.sides.match(refiner, mesh_, plan_.corners, all, context_);
       alone_ = refiner.stats();
@@ -119,10 +124,20 @@ class MeshRun {
     });
   }
 
+  // The first vertex that may move.
+  std::uint32_t first_free() const {
+    return static_cast<std::uint32_t>(plan_.domain.vertices.size());
+  }
+
+  std::optional<Error> refine_in_stages(Refiner<OwnsAll, AreaBound>& refiner) {
+    Equaliser<OwnsAll, AreaBound> equaliser(refinement_, plan_.quality, area_.again());
+    equaliser.begin(OwnsAll{}, plan_.box, first_free(), 0);
+    return weft::refine_in_stages(refiner, equaliser, root_);
+  }
+
   std::optional<Error> smooth_alone() {
     Smoother<OwnsAll, AreaBound> smoother(refinement_, plan_.quality, area_.again());
-    smoother.begin(OwnsAll{}, plan_.box, static_cast<std::uint32_t>(plan_.domain.vertices.size()),
-                   0);
+    smoother.begin(OwnsAll{}, plan_.box, first_free(), 0);
     return smoother.run(root_, plan_.sweeps);
   }
 

@@ -71,7 +71,7 @@ class CoarseBlocks {
         order_(LeafOrder::along_sweep(tree_)),
         block_radius_(tree_, 0, area, refinement.context),
         radius_(leaves, 0, area, refinement.context),
-        tasks_(refinement, no_angles_, radius_, tree_, order_, kFirstOwner),
+        tasks_(refinement, no_angles_, radius_, tree_, order_, kFirstOwner, false),
         base_(order_.size()),
         near_(tree_, leaves),
         judged_(order_.size()),

@@ -113,7 +113,8 @@ class LeafStage {
     }
     const std::uint32_t first_owner =
         CoarseBlocks<AreaBound>::kFirstOwner + (blocks_ ? blocks_->size() : 0);
-    leaves_.emplace(refinement_, plan_.quality, area_, tree_, order_, first_owner);
+    leaves_.emplace(refinement_, plan_.quality, area_, tree_, order_, first_owner,
+                    plan_.sweeps > 0);
     if (!blocks_) leaves_->seed(coarse.bad_triangles());
     streams_ = coarse.fits() && leaves_->size() >= kStreamingLeaves && may_stream;
     return std::nullopt;

@@ -51,7 +51,9 @@
 #include "engine/refine/periodic_sides.h"
 #include "engine/refine/refiner.h"
 #include "engine/refine/row_filler.h"
+#include "engine/refine/smoothing/equaliser.h"
 #include "engine/refine/smoothing/smoother.h"
+#include "engine/refine/smoothing/stages.h"
 #include "engine/refine/storage/slots.h"
 
 namespace weft {
@@ -105,15 +107,17 @@ template <class AreaBound>
 class LeafTasks {
  public:
   // Leaf l is owner `first_owner` + l of slots; the clean-up is the owner after the last leaf.
+  // `in_stages`: the first round of a leaf refines in stages (refine/smoothing/stages.h).
   LeafTasks(const RefinementContext& refinement, const QualityBounds& quality,
             const AreaBound& area, const Quadtree& tree, const LeafOrder& order,
-            std::uint32_t first_owner)
+            std::uint32_t first_owner, bool in_stages)
       : refinement_(refinement),
         quality_(quality),
         area_(area),
         tree_(tree),
         order_(order),
         first_owner_(first_owner),
+        in_stages_(in_stages),
         leaves_(order.size()) {
     for (std::uint32_t l = 0; l < size(); ++l) leaves_[l].slots = Slots(first_owner_ + l);
     clean_up_slots_ = Slots(first_owner_ + size());
@@ -166,6 +170,10 @@ class LeafTasks {
     const Quadtree::Leaf& place = tree_.leaves()[leaf];
     const OwnsBox ownership{place.halo, LeafGraph::migrates(round) ? place.box : place.halo};
     refiner.begin(l.slots, ownership, place.halo);
+    const bool in_stages = round == 0 && has_stages(place.halo);
+    if constexpr (AreaBound::kBoundsAreas) {
+      if (in_stages) refiner.set_slack(kStages[0].slack);
+    }
     for (const BadTriangle& t : l.pending) refiner.queue(t);
     for (const SegmentEdge& s : l.pending_segments) refiner.queue(s);
     for_migrants_to(leaf, round, [&](const auto& what) {
@@ -173,7 +181,12 @@ class LeafTasks {
       return true;
     });
     if (round == 0) worker->filler.fill(refiner, l.slots, ownership, place.box, l.pending);
-    auto error = refiner.run();
+    std::optional<Error> error;
+    if constexpr (AreaBound::kBoundsAreas) {
+      error = in_stages ? refine_in_stages(*worker, leaf) : refiner.run();
+    } else {
+      error = refiner.run();
+    }
     l.pending.clear();
     l.pending_segments.clear();
     for (const BadTriangle& t : refiner.deferred()) migrate(leaf, round, t, steiner_point_of(t));
@@ -193,16 +206,11 @@ class LeafTasks {
   // overlapping leaves before it are smoothed or will not be. Does not change what the leaves
   // before `frozen` have made.
   std::optional<Error> smooth(std::uint32_t leaf, std::uint32_t sweeps, std::uint32_t frozen) {
-    std::vector<Box> others;
-    std::size_t frozen_others = 0;
-    for (const std::uint32_t other : order_.overlapping(leaf)) {
-      others.push_back(tree_.leaves()[other].halo);
-      if (other < frozen) std::swap(others.back(), others[frozen_others++]);
-    }
+    const Halos halos = halos_around(leaf, frozen);
     const Lease worker(*this);
     auto& smoother = worker->smoother;
     const Box& box = tree_.leaves()[leaf].halo;
-    smoother.begin(OwnsBoxUnfrozen{box, &others, frozen_others}, box, 0, first_owner_);
+    smoother.begin(OwnsBoxUnfrozen{box, &halos.boxes, halos.frozen}, box, 0, first_owner_);
     return smoother.run(leaves_[leaf].slots, sweeps);
   }
 
@@ -269,7 +277,7 @@ class LeafTasks {
   std::uint64_t bytes() const {
     std::uint64_t bytes = leaves_.capacity() * sizeof(Leaf) + held_.peak();
     for (const auto& w : workers_)
-      bytes += w->refiner.bytes() + w->filler.bytes() + w->smoother.bytes();
+      bytes += w->refiner.bytes() + w->filler.bytes() + w->equaliser.bytes() + w->smoother.bytes();
     return bytes;
   }
 
@@ -310,6 +318,7 @@ class LeafTasks {
   struct alignas(128) Worker {
     LeafRefiner refiner;
     RowFiller<AreaBound> filler;
+    Equaliser<OwnsBoxUnfrozen, AreaBound> equaliser;
     Smoother<OwnsBoxUnfrozen, AreaBound> smoother;
     std::thread::id last_user{};
   };
@@ -324,6 +333,7 @@ class LeafTasks {
         tasks_.workers_.push_back(std::unique_ptr<Worker>(
             new Worker{{tasks_.refinement_, tasks_.quality_, tasks_.area_.again()},
                        {tasks_.refinement_, tasks_.quality_, tasks_.area_},
+                       {tasks_.refinement_, tasks_.quality_, tasks_.area_.again()},
                        {tasks_.refinement_, tasks_.quality_, tasks_.area_.again()}}));
         tasks_.idle_.reserve(tasks_.workers_.size());  // so that giving back cannot fail
         tasks_.idle_.push_back(tasks_.workers_.back().get());
@@ -345,12 +355,39 @@ class LeafTasks {
     Lease(const Lease&) = delete;
     Lease& operator=(const Lease&) = delete;
     Worker* operator->() const { return worker_; }
+    Worker& operator*() const { return *worker_; }
 
    private:
     LeafTasks& tasks_;
     const int exceptions_ = std::uncaught_exceptions();
     Worker* worker_;
   };
+
+  // The halos that overlap that of a leaf. The first ones are those of leaves before `frozen`.
+  struct Halos {
+    std::vector<Box> boxes;
+    std::size_t frozen;
+  };
+  Halos halos_around(std::uint32_t leaf, std::uint32_t frozen) const {
+    Halos halos{{}, 0};
+    for (const std::uint32_t other : order_.overlapping(leaf)) {
+      halos.boxes.push_back(tree_.leaves()[other].halo);
+      if (other < frozen) std::swap(halos.boxes.back(), halos.boxes[halos.frozen++]);
+    }
+    return halos;
+  }
+
+  bool has_stages(const Box& box) const {
+    if constexpr (AreaBound::kBoundsAreas)
+      return in_stages_ && area_.has_slack_in(box, quality_.lattice);
+    return false;
+  }
+  std::optional<Error> refine_in_stages(Worker& worker, std::uint32_t leaf) {
+    const Halos halos = halos_around(leaf, 0);
+    const Box& box = tree_.leaves()[leaf].halo;
+    worker.equaliser.begin(OwnsBoxUnfrozen{box, &halos.boxes, 0}, box, 0, first_owner_);
+    return weft::refine_in_stages(worker.refiner, worker.equaliser, leaves_[leaf].slots);
+  }
 
   // Calls f for the triangles that migrate to this leaf from those that overlap it, as long as f
   // returns true.
@@ -425,6 +462,7 @@ class LeafTasks {
   const Quadtree& tree_;
   const LeafOrder& order_;
   const std::uint32_t first_owner_;
+  const bool in_stages_;
   std::vector<Leaf> leaves_;
   Slots clean_up_slots_;
   HeldBytes held_;  // by the vectors of the leaves

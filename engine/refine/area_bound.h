@@ -40,6 +40,14 @@ struct BadSize {
 // for, and the fields that are undefined there.
 Error bad_size_error(const BadSize& bad);
 
+// Whether bounds around one place differ by so much that one at a centroid tells little of what is
+// beside it.
+inline bool jumps(const double* bound, std::size_t n) {
+  constexpr double kJump = 4;
+  const auto [least, most] = std::minmax_element(bound, bound + n);
+  return !(*most <= kJump * *least);
+}
+
 // The same bound everywhere; infinity is no bound.
 class ConstantArea {
  public:
@@ -52,16 +60,28 @@ class ConstantArea {
   // A copy for another thread or another coarseness.
   ConstantArea again(double coarseness = 1) const { return ConstantArea(bound_, coarseness); }
 
-  // Begins a task most of whose rings lie in `box`.
-  void begin(const Box&) {}
+  // Begins a task most of whose rings lie in `box`. Bounds have no slack.
+  void begin(const Box&) { slack_ = 1; }
+
+  // From now on, bounds are multiplied by `slack`, but for places where a lattice follows the size.
+  void set_slack(double slack) { slack_ = slack; }
+  // Whether there may be such a slack somewhere in the box.
+  static bool has_slack_in(const Box&, const LatticeShape& shape) { return !shape.exists(); }
+  // Whether a lattice follows the size at p, so that there is no slack.
+  static constexpr bool fits_lattice(Point) { return false; }
+  // Whether one of the region's own bound does, where `bound` is the lesser of both.
+  static constexpr bool fits_region(double, double) { return false; }
 
   // Judges the triangles first <= i < last of the ring around p, none of which may exceed
   // `region_bound`.
   RingVerdict judge(const Ring& ring, std::uint32_t first, std::uint32_t last, Point,
                     double region_bound, const QualityBounds& quality, Badness* badness) {
     return judge_ring(ring, first, last, quality,
-                      UniformAreaBound{2 * coarseness_ * std::min(bound_, region_bound)}, badness);
+                      UniformAreaBound{2 * slack_ * coarseness_ * std::min(bound_, region_bound)},
+                      badness);
   }
+
+  static constexpr bool covers_finer(Point, Point, Point, double) { return false; }
 
   // The lattice point nearest to c. The lattice is that of the final mesh, whatever the coarseness.
   LatticePoint nearest_of_lattice(Point c, double region_bound, const LatticeShape& shape) {
@@ -89,6 +109,7 @@ class ConstantArea {
  private:
   double bound_;
   double coarseness_;
+  double slack_ = 1;
   UniformLattice lattice_;
   std::optional<BadSize> bad_size_;
 };

@@ -8,6 +8,7 @@
 namespace weft {
 
 void MappedArea::begin(const Box& box) {
+  slack_ = 1;
   box_ = Box{};
   if (const auto size = map_.uniform_size(box)) {
     box_ = box;
@@ -19,34 +20,40 @@ void MappedArea::begin(const Box& box) {
   for (Cell& cell : cells_) cell.known = false;
 }
 
-RingVerdict MappedArea::judge_by_cell(const Ring& ring, std::uint32_t first, std::uint32_t last,
-                                      Point p, double region_bound, const QualityBounds& quality,
-                                      Badness* badness) {
+MappedArea::Cell& MappedArea::cell_at(Point p) {
   constexpr double kLast = kGrid - 1;
   const auto column =
       static_cast<std::size_t>(std::clamp((p.x - grid_.min_x) * cells_per_x_, 0.0, kLast));
   const auto row =
       static_cast<std::size_t>(std::clamp((p.y - grid_.min_y) * cells_per_y_, 0.0, kLast));
-  const double width = 1 / cells_per_x_;
-  const double height = 1 / cells_per_y_;
-  const double x = grid_.min_x + static_cast<double>(column) * width;
-  const double y = grid_.min_y + static_cast<double>(row) * height;
-  const Box around{x - width, y - height, x + 2 * width, y + 2 * height};
   Cell& cell = cells_[row * kGrid + column];
   if (!cell.known) {
-    cell.place = map_.locate(around);
-    cell.size = map_.uniform_size(cell.place, around).value_or(0);
+    const double width = 1 / cells_per_x_;
+    const double height = 1 / cells_per_y_;
+    const double x = grid_.min_x + static_cast<double>(column) * width;
+    const double y = grid_.min_y + static_cast<double>(row) * height;
+    cell.around = {x - width, y - height, x + 2 * width, y + 2 * height};
+    cell.place = map_.locate(cell.around);
+    cell.size = map_.uniform_size(cell.place, cell.around).value_or(0);
     cell.known = true;
   }
+  return cell;
+}
+
+RingVerdict MappedArea::judge_by_cell(const Ring& ring, std::uint32_t first, std::uint32_t last,
+                                      Point p, double region_bound, const QualityBounds& quality,
+                                      Badness* badness) {
   double farthest2 = 0;
   for (std::uint32_t i = first; i <= last; ++i)
     farthest2 = std::max(farthest2, ring.points[i].length2);
-  if (const double room = room_in(around, p); room > 0 && farthest2 <= room * room) [[likely]] {
+  const Cell& cell = cell_at(p);
+  if (const double room = room_in(cell.around, p); room > 0 && farthest2 <= room * room)
+      [[likely]] {
     if (cell.size == 0)
       return judge_evaluated(cell.place, ring, first, last, p, region_bound, quality, badness);
-    box_ = around;
+    box_ = cell.around;
     size_ = cell.size;
-    return judge_ring(ring, first, last, quality, uniform(region_bound), badness);
+    return judge_ring(ring, first, last, quality, uniform(p, region_bound), badness);
   }
   const double reach = std::sqrt(farthest2);
   const Box ring_box{p.x - reach, p.y - reach, p.x + reach, p.y + reach};
@@ -87,16 +94,11 @@ RingVerdict MappedArea::judge_evaluated(const SizeMap::Place& place, const Ring&
       }
     }
   }
+  const double slack = slack_ == 1 || jumps(bound, n) ? 1 : slack_at(p, bound[0], region_bound);
   for (std::uint32_t i = 0; i < n; ++i)
-    bound[i] = 2 * coarseness_ * std::min(bound[i], region_bound);
-
-  struct EvaluatedBound {
-    const double* doubled;
-    std::uint32_t first;
-    __m128d two_from(std::uint32_t i) const { return _mm_loadu_pd(doubled + (i - first)); }
-  };
+    bound[i] = 2 * slack * coarseness_ * std::min(bound[i], region_bound);
   const RingVerdict verdict =
-      judge_ring(ring, first, last, quality, EvaluatedBound{bound, first}, badness);
+      judge_ring(ring, first, last, quality, DoubledBounds{bound, first}, badness);
   if (node.leaf()) return verdict;
   for (std::uint32_t i = first; i < last; ++i) {
     const double area = 0.5 * ring.points[i + 1].cross;
@@ -111,6 +113,14 @@ RingVerdict MappedArea::judge_evaluated(const SizeMap::Place& place, const Ring&
     }
   }
   return verdict;
+}
+
+bool MappedArea::covers_finer(Point a, Point b, Point c, double area) {
+  const Cell& cell = cell_at(a);
+  const SizeMap::Place& place = cell.place;
+  return !place.node->leaf() &&
+         area > SizeMap::kFeatureFactor * coarseness_ * place.node->lowest_hi &&
+         map_.covers_finer(place, {a, b, c}, area / coarseness_);
 }
 
 double MappedArea::bound_of_piece(Point c) const {

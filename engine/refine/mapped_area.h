@@ -37,14 +37,31 @@ class MappedArea {
   // A copy for another thread or another coarseness.
   MappedArea again(double coarseness = 1) const { return {function_, map_, lattices_, coarseness}; }
 
-  // Begins a task most of whose rings lie in `box`.
+  // Begins a task most of whose rings lie in `box`. Bounds have no slack.
   void begin(const Box& box);
+
+  // From now on, bounds are multiplied by `slack`, but for places where a lattice follows the size,
+  // or where the size jumps.
+  void set_slack(double slack) { slack_ = slack; }
+  // Whether there may be such a slack somewhere in the box.
+  bool has_slack_in(const Box& box, const LatticeShape&) const {
+    return !lattices_.is_faultless_in(box);
+  }
+  // Whether a lattice follows the size at p, so that there is no slack.
+  bool fits_lattice(Point p) {
+    find_lattice_cell(p);
+    return lattice_cell_->faultless();
+  }
+  // Whether one of the region's own bound does, where `bound` is the lesser of both.
+  static constexpr bool fits_region(double bound, double region_bound) {
+    return region_bound <= bound;
+  }
 
   RingVerdict judge(const Ring& ring, std::uint32_t first, std::uint32_t last, Point p,
                     double region_bound, const QualityBounds& quality, Badness* badness) {
     if (const double room = room_in(box_, p); room > 0) [[likely]] {
       const RingVerdict verdict =
-          judge_ring(ring, first, last, quality, uniform(region_bound), badness);
+          judge_ring(ring, first, last, quality, uniform(p, region_bound), badness);
       if (verdict.farthest2 <= room * room) [[likely]]
         return verdict;
     }
@@ -83,6 +100,10 @@ class MappedArea {
     return 1 + static_cast<std::uint32_t>(512 / (1 + function_.operations() / 16));
   }
 
+  // Whether a triangle of this area overlaps a place where the function is far less for certain, so
+  // that it is bad, whatever the bound at its centroid; as far as the cell of a tells.
+  bool covers_finer(Point a, Point b, Point c, double area);
+
   // The grading function at n points. REQUIRES: as SizeFunction::evaluate.
   void bounds_at(std::size_t n, const double* x, const double* y, double* bound);
 
@@ -101,8 +122,10 @@ class MappedArea {
   struct Cell {
     bool known = false;
     double size = 0;  // the function's value if it is constant; otherwise 0
+    Box around;
     SizeMap::Place place{};
   };
+  Cell& cell_at(Point p);
 
   void find_lattice_cell(Point p) {
     if (!(room_in(lattice_cell_->box, p) > 0)) [[unlikely]]
@@ -111,8 +134,13 @@ class MappedArea {
   // At the border of constant pieces: the bound at c if it is the same an edge's length away, in x
   // and in y, on at least one side; otherwise 0.
   double bound_of_piece(Point c) const;
-  UniformAreaBound uniform(double region_bound) const {
-    return {2 * coarseness_ * std::min(size_, region_bound)};
+  UniformAreaBound uniform(Point p, double region_bound) {
+    return {2 * slack_at(p, size_, region_bound) * coarseness_ * std::min(size_, region_bound)};
+  }
+  double slack_at(Point p, double bound, double region_bound) {
+    if (slack_ == 1) [[likely]]
+      return 1;
+    return fits_region(bound, region_bound) || fits_lattice(p) ? 1 : slack_;
   }
   // Judges by the cell of p; looks the ring up in the map if it reaches beyond the cells around.
   RingVerdict judge_by_cell(const Ring& ring, std::uint32_t first, std::uint32_t last, Point p,
@@ -128,6 +156,7 @@ class MappedArea {
   const LatticeMap::Cell* lattice_cell_;  // the last one asked for
   UniformLattice lattice_;
   const double coarseness_;
+  double slack_ = 1;
   Box box_;          // where the function is constant; empty at first
   double size_ = 0;  // its value there
   Box grid_;

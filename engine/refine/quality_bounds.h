@@ -40,6 +40,14 @@ struct QualityBounds {
   // Refinement makes no edge below min_edge or `precision`. REQUIRES: 0 <= min_angle_deg <=
   // kMaxMinAngleDeg.
   static QualityBounds from(double min_angle_deg, double min_edge, double precision);
+
+  // Those of the stages before the last (smoothing/stages.h): 20 degrees are enough.
+  QualityBounds eased() const {
+    constexpr double kSin2 = 0.117;  // just above 20 degrees
+    QualityBounds bounds = *this;
+    bounds.sin2 = std::min(sin2, kSin2);
+    return bounds;
+  }
 };
 
 // Triangles over the integral of 1 / bound, as they come out; and the area of most over the bound.
@@ -68,6 +76,13 @@ struct RingVerdict {
 struct UniformAreaBound {
   double doubled;
   __m128d two_from(std::uint32_t) const { return _mm_set1_pd(doubled); }
+};
+
+// One for each triangle from `first` on.
+struct DoubledBounds {
+  const double* doubled;
+  std::uint32_t first = 0;
+  __m128d two_from(std::uint32_t i) const { return _mm_loadu_pd(doubled + (i - first)); }
 };
 
 // The badness of a triangle that is larger than its bound: four levels per octave of the ratio,

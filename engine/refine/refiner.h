@@ -54,6 +54,7 @@
 #include "engine/base/context.h"
 #include "engine/domain/triangulation/predicates.h"
 #include "engine/refine/acute_corners.h"
+#include "engine/refine/area_batch.h"
 #include "engine/refine/area_bound.h"
 #include "engine/refine/bad_triangles.h"
 #include "engine/refine/cavity.h"
@@ -83,6 +84,7 @@ class Refiner {
         corners_(refinement.corners),
         regions_(refinement.regions),
         edge_limits_(refinement.edge_limits),
+        strict_(quality),
         quality_(quality),
         area_(std::move(area)),
         context_(refinement.context),
@@ -99,6 +101,7 @@ class Refiner {
   void begin(Slots& slots, const Ownership& ownership, const Box& box) {
     slots_ = &slots;
     area_.begin(box);
+    quality_ = strict_;
     ownership_ = ownership;
     star_.begin(ownership, slots.owner());
     petal_search_.begin(ownership, slots.owner());
@@ -122,6 +125,23 @@ class Refiner {
     }
   }
   void queue(const SegmentEdge& pending) { segments_.push_back(pending); }
+
+  // From now on, bounds have this slack on areas (area_bound.h) and are eased for angles, or are
+  // strict for 1.
+  void set_slack(double slack) {
+    area_.set_slack(slack);
+    quality_ = slack > 1 ? strict_.eased() : strict_;
+  }
+  // Begins a stage with less slack (smoothing/stages.h): queues the triangles that are bad now, of
+  // this task's slots and of `others`.
+  void begin_stage(double slack, const std::vector<std::uint32_t>& others) {
+    const double before = quality_.sin2;
+    set_slack(slack);
+    const bool same_angles = quality_.sin2 == before;
+    for_all_triangles([&](std::uint32_t t) { judge_again(t, same_angles); });
+    for (const std::uint32_t t : others) judge_again(t, same_angles);
+    judge_batch();
+  }
 
   // Judges every triangle and queues the bad ones; splits segments down to the limits of their
   // markers. REQUIRES: all triangles lie in the slots of this task.
@@ -624,6 +644,34 @@ class Refiner {
     if (badness != kGood) bad_.push(t, badness);
   }
 
+  // Judges a triangle that was good, or refused, before vertices moved and bounds changed. Bad ones
+  // are pending elsewhere. `same_angles`: the bound on angles has not changed.
+  void judge_again(std::uint32_t t, bool same_angles) {
+    const Triangle& triangle = mesh_.triangles[t];
+    if (triangle.dead() || triangle.deferred()) return;
+    if (triangle.badness() != kGood) return;
+    if (!same_angles || triangle.refusal() != Refusal::kNone) return judge_or_migrate(t);
+    if (batch_.add(mesh_, t)) judge_batch();
+  }
+  // Those within the bound are good: moves keep the bound on angles.
+  void judge_batch() {
+    batch_.take(area_, [this](std::uint32_t t, double doubled, double bound) {
+      const auto& v = mesh_.triangles[t].vertex;
+      if (!(doubled <= 2 * std::min(bound, region_bound(t))) ||
+          area_.covers_finer(mesh_.vertices[v[0]], mesh_.vertices[v[1]], mesh_.vertices[v[2]],
+                             0.5 * doubled))
+        judge_or_migrate(t);
+    });
+  }
+  void judge_or_migrate(std::uint32_t t) {
+    const auto& v = mesh_.triangles[t].vertex;
+    const Point at = centroid(mesh_.vertices[v[0]], mesh_.vertices[v[1]], mesh_.vertices[v[2]]);
+    if (ownership_.in_core(at.x, at.y)) return judge(t);
+    const Badness badness = judge_(mesh_, t, region_bound(t), quality_, area_);
+    mesh_.triangles[t].set_badness(badness);
+    if (badness != kGood) migrants_.push_back({t, mesh_.triangles[t].vertex[0]});
+  }
+
   template <class F>
   void for_all_triangles(F&& f) {
     slots_->for_triangles([&](std::uint32_t first, std::uint32_t last) {
@@ -673,7 +721,8 @@ class Refiner {
   const AcuteCorners& corners_;
   const std::vector<Region>& regions_;
   const EdgeLimits& edge_limits_;
-  const QualityBounds quality_;
+  const QualityBounds strict_;
+  QualityBounds quality_;  // of this stage
   AreaBound area_;
   ExecutionContext& context_;
   HeldBytes::Scope held_;
@@ -686,6 +735,7 @@ class Refiner {
   Star<Ownership> star_;
   PetalSearch<Ownership> petal_search_;
   TriangleJudge judge_;
+  AreaBatch batch_;
 
   BadTriangles bad_;
   std::vector<std::int32_t> kept_;     // markers, besides those of edge_limits_

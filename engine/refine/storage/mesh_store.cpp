@@ -86,15 +86,16 @@ Result<MeshStore> MeshStore::from(const Domain& domain, std::uint64_t max_triang
        {reserve(mesh.triangles, std::size_t{triangle_blocks} * kTriangleBlock, pages),
         reserve(mesh.vertices, vertex_slots, pages),
         reserve(mesh.triangle_owner, triangle_blocks, Pages::kSmall),
+        reserve(mesh.triangle_place, triangle_blocks, Pages::kSmall),
         reserve(mesh.vertex_blocks, vertex_blocks, Pages::kSmall),
         reserve(mesh.subsegments, vertex_slots, Pages::kSmall)}) {
     if (error) return tl::unexpected(*error);
   }
 
-  // The first blocks belong to owner 0. The memory of owners is zero at first, so nothing is
-  // written for it.
-  mesh.triangle_pool =
-      std::make_unique<BlockPool>(blocks_for(initial, kTriangleBlock), triangle_blocks);
+  // The first blocks belong to owner 0. The memory of owners is zero at first.
+  const std::uint32_t first_blocks = blocks_for(initial, kTriangleBlock);
+  mesh.triangle_pool = std::make_unique<BlockPool>(first_blocks, triangle_blocks);
+  for (std::uint32_t b = 0; b < first_blocks; ++b) mesh.triangle_place[b] = b;
   mesh.vertex_pool =
       std::make_unique<BlockPool>(blocks_for(domain.vertices.size(), kVertexBlock), vertex_blocks);
   std::copy(domain.vertices.begin(), domain.vertices.end(), mesh.vertices.data());
@@ -107,10 +108,11 @@ Result<MeshStore> MeshStore::from(const Domain& domain, std::uint64_t max_triang
   return mesh;
 }
 
-std::uint32_t MeshStore::take_triangle_block(std::uint32_t owner) {
+std::uint32_t MeshStore::take_triangle_block(std::uint32_t owner, std::uint32_t place) {
   const std::optional<std::uint32_t> block = triangle_pool->take();
   if (!block) throw_used_up(triangle_pool->capacity() << kTriangleShift);
   triangle_owner[*block] = owner;
+  triangle_place[*block] = place;
   triangles.commit_ahead(*block << kTriangleShift);
   return *block << kTriangleShift;
 }
@@ -146,7 +148,8 @@ void MeshStore::give_back_vertices(const std::vector<std::uint32_t>& first_slots
 }
 
 std::uint64_t MeshStore::bytes() const {
-  constexpr std::uint64_t kTriangles = kTriangleBlock * sizeof(Triangle) + sizeof(std::uint32_t);
+  constexpr std::uint64_t kTriangles =
+      kTriangleBlock * sizeof(Triangle) + 2 * sizeof(std::uint32_t);
   constexpr std::uint64_t kVertices = kVertexBlock * sizeof(Point) + sizeof(VertexBlock);
   return triangle_pool->peak() * kTriangles + vertex_pool->peak() * kVertices;
 }

@@ -108,6 +108,7 @@ struct MeshStore {
   VirtualArray<Triangle> triangles;
   VirtualArray<Point> vertices;
   VirtualArray<std::uint32_t> triangle_owner;  // per block
+  VirtualArray<std::uint32_t> triangle_place;  // per block, in the order in which its owner took it
   VirtualArray<VertexBlock> vertex_blocks;
   VirtualArray<std::uint32_t> subsegments;  // per vertex, see subsegment_of
   std::unique_ptr<BlockPool> triangle_pool;
@@ -123,6 +124,10 @@ struct MeshStore {
   std::uint32_t owner_of_triangle(std::uint32_t t) const {
     return triangle_owner[t >> kTriangleShift];
   }
+  // The place of a triangle's slot among its owner's: the same on every run.
+  std::uint32_t place_of_triangle(std::uint32_t t) const {
+    return triangle_place[t >> kTriangleShift] << kTriangleShift | (t & (kTriangleBlock - 1));
+  }
   const VertexBlock& block_of_vertex(std::uint32_t v) const {
     return vertex_blocks[v >> kVertexShift];
   }
@@ -137,7 +142,8 @@ struct MeshStore {
 
   // Takes a block, and returns its first slot. Thread-safe. Throws a Failure of kLimitExceeded if
   // all are taken: there are far more than `from` was asked for, or as many as can be numbered.
-  std::uint32_t take_triangle_block(std::uint32_t owner);
+  // `place`: of the block among its owner's.
+  std::uint32_t take_triangle_block(std::uint32_t owner, std::uint32_t place);
   std::uint32_t take_vertex_block(std::uint32_t owner, bool on_segment);
   // Gives back blocks, by their first slots. REQUIRES: nothing reads them any more. Thread-safe.
   void give_back_triangles(const std::vector<std::uint32_t>& first_slots);

@@ -30,7 +30,8 @@ class Slots {
 
   std::uint32_t add_triangle(MeshStore& mesh) {
     if (triangles_.next == triangles_.end) [[unlikely]] {
-      const std::uint32_t first = mesh.take_triangle_block(owner_);
+      const std::uint32_t first =
+          mesh.take_triangle_block(owner_, static_cast<std::uint32_t>(triangle_blocks_.size()));
       triangle_blocks_.push_back(first);
       triangles_ = {first, first + MeshStore::kTriangleBlock};
     }

@@ -166,6 +166,7 @@ class Surveyor {
     look.split = false;
     fit.u[0].re -= fit.above;
     cell.kind = Kind::kFit;
+    cell.exact = !small || fit.deviation() < LatticeMap::kExactFit;
     cell.map = ConformalMap(square.centre, square.half * kRootTwo, fit.u, scale_);
   }
 
@@ -267,6 +268,35 @@ std::uint32_t LatticeMap::index_at(Point p) const {
     centre.y += up ? half : -half;
   }
   return node->cell;
+}
+
+bool LatticeMap::is_faultless_in(const Box& box) const {
+  struct Square {
+    std::uint32_t node;
+    Point centre;
+    double half;
+  };
+  std::vector<Square> left{{0, centre_, half_}};
+  while (!left.empty()) {
+    const Square square = left.back();
+    left.pop_back();
+    const Node& node = nodes_[square.node];
+    if (node.first_child == 0) {
+      if (!cells_[node.cell].faultless()) return false;
+      continue;
+    }
+    const double half = 0.5 * square.half;
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const bool right = (i & 1) != 0, up = (i & 2) != 0;
+      if ((right ? box.max_x >= square.centre.x : box.min_x < square.centre.x) &&
+          (up ? box.max_y >= square.centre.y : box.min_y < square.centre.y))
+        left.push_back(
+            {node.first_child + i,
+             {square.centre.x + (right ? half : -half), square.centre.y + (up ? half : -half)},
+             half});
+    }
+  }
+  return true;
 }
 
 std::vector<LatticeMap::Contact> LatticeMap::contacts_of(std::uint32_t cell) const {

@@ -60,7 +60,11 @@ class LatticeMap {
     Kind kind = Kind::kMixed;
     double size = 0;  // kConstant: the value
     Box box;
-    ConformalMap map;  // kFit
+    ConformalMap map;    // kFit
+    bool exact = false;  // kFit: hardly any row of triangles has faults
+
+    // Whether its triangles are as large as they may be.
+    bool faultless() const { return kind == Kind::kFit ? exact : kind != Kind::kMixed; }
   };
 
   static constexpr double kGoodFit = 0.02;
@@ -69,6 +73,7 @@ class LatticeMap {
   static constexpr double kSmallRows = 16;
   static constexpr double kCoarseRows = 4;
   static constexpr double kFewRows = 2;
+  static constexpr double kExactFit = 0.005;
   static constexpr double kMissed = 1.3;
   static constexpr double kFewBends = 0.6;
   static constexpr int kMaxDepth = 24;
@@ -83,6 +88,9 @@ class LatticeMap {
 
   // The cell at p, or the nearest one.
   const Cell& locate(Point p) const { return cells_[index_at(p)]; }
+
+  // Whether all cells that meet the box are faultless.
+  bool is_faultless_in(const Box& box) const;
 
   const std::vector<Cell>& cells() const { return cells_; }
 

@@ -205,7 +205,7 @@ TEST(MeshSlots, EndWithALimitAndNotForWantOfMemory) {
   auto mesh = MeshStore::from(domain, 1, 1, ExecutionContext());
   ASSERT_TRUE(mesh);
   try {
-    for (;;) mesh->take_triangle_block(1);
+    for (;;) mesh->take_triangle_block(1, 0);
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.error().code, ErrorCode::kLimitExceeded);
     EXPECT_NE(failure.error().message.find("triangles in memory at the same time"),

@@ -33,9 +33,13 @@ MeshRequest cylinder() {
 MeshRequest key() {
   return {.pslg = read_poly(model("key.poly")), .size = "0.02*abs(y-46)+0.1"};
 }
+// Of one size, so that it is not refined in stages, in which vertices move, too.
+MeshRequest even_key() {
+  return {.pslg = read_poly(model("key.poly")), .size = 0.3};
+}
 
 TEST(Smoothing, RaisesSmallAnglesAndLowersLargeOnes) {
-  for (const MeshRequest& request : {cylinder(), key()}) {
+  for (const MeshRequest& request : {cylinder(), even_key()}) {
     const Summary rough = sound(request, 0).summary;
     const Summary once = sound(request, 1).summary;
     const Summary often = sound(request, 8).summary;
@@ -48,7 +52,7 @@ TEST(Smoothing, RaisesSmallAnglesAndLowersLargeOnes) {
 }
 
 TEST(Smoothing, MovesVerticesAndChangesNothingElse) {
-  for (const MeshRequest& request : {cylinder(), key()}) {
+  for (const MeshRequest& request : {cylinder(), even_key()}) {
     const Sound rough = sound(request, 0);
     const Sound smooth = sound(request, 3);
     EXPECT_EQ(rough.mesh.mesh.triangles, smooth.mesh.mesh.triangles);
