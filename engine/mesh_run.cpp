@@ -113,7 +113,7 @@ class MeshRun {
       refiner.begin(root_, OwnsAll{}, plan_.box);
       const bool in_stages =
           plan_.sweeps > 0 && !truncated_ && area_.has_slack_in(plan_.box, plan_.quality.lattice);
-      if (in_stages) refiner.set_slack(kStages[0].slack);
+      if (in_stages) refiner.set_stage(kFirstStage);
       auto error = refiner.queue_all();
       if (!error) error = in_stages ? refine_in_stages(refiner) : refiner.run();
       const std::array<const Slots*, 1> all{&root_};

@@ -143,7 +143,8 @@ const OptionRows<Request>& other_rows() {
        "quality.placement"},
       {"optimise", "WEFT_OPTIMISE",
        "Sweeps of smoothing: vertices around angles below 48 degrees move to where the smallest "
-       "angle around them is largest. Range: 0 to 16",
+       "angle around them is largest. Range: 0 to 16. Above 0, sizes that no lattice follows are "
+       "refined in stages before that, for fewer triangles",
        "2 if the size makes nearly all triangles, on a lattice with few faults or in a mesh below "
        "100,000 triangles; otherwise 0",
        number("N", &Request::optimise), "quality.optimise"},

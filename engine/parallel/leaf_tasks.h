@@ -172,7 +172,7 @@ class LeafTasks {
     refiner.begin(l.slots, ownership, place.halo);
     const bool in_stages = round == 0 && has_stages(place.halo);
     if constexpr (AreaBound::kBoundsAreas) {
-      if (in_stages) refiner.set_slack(kStages[0].slack);
+      if (in_stages) refiner.set_stage(kFirstStage);
     }
     for (const BadTriangle& t : l.pending) refiner.queue(t);
     for (const SegmentEdge& s : l.pending_segments) refiner.queue(s);

@@ -64,6 +64,7 @@
 #include "engine/refine/petal_search.h"
 #include "engine/refine/quality_bounds.h"
 #include "engine/refine/refinement_context.h"
+#include "engine/refine/refinement_stage.h"
 #include "engine/refine/star.h"
 #include "engine/refine/star_check.h"
 #include "engine/refine/steiner_point.h"
@@ -126,20 +127,19 @@ class Refiner {
   }
   void queue(const SegmentEdge& pending) { segments_.push_back(pending); }
 
-  // From now on, bounds have this slack on areas (area_bound.h) and are eased for angles, or are
-  // strict for 1.
-  void set_slack(double slack) {
-    area_.set_slack(slack);
-    quality_ = slack > 1 ? strict_.eased() : strict_;
+  // From now on, the bounds are those of a stage (smoothing/stages.h).
+  void set_stage(const RefinementStage& stage) {
+    area_.set_slack(stage.slack);
+    quality_ = stage.eased ? strict_.eased() : strict_;
   }
-  // Begins a stage with less slack (smoothing/stages.h): queues the triangles that are bad now, of
-  // this task's slots and of `others`.
-  void begin_stage(double slack, const std::vector<std::uint32_t>& others) {
+  // The same for one with less slack than the last: queues the triangles that are bad now, of this
+  // task's slots and of `others`.
+  void begin_stage(const RefinementStage& stage, const std::vector<std::uint32_t>& others) {
     const double before = quality_.sin2;
-    set_slack(slack);
-    const bool same_angles = quality_.sin2 == before;
-    for_all_triangles([&](std::uint32_t t) { judge_again(t, same_angles); });
-    for (const std::uint32_t t : others) judge_again(t, same_angles);
+    set_stage(stage);
+    const bool angles_hold = quality_.sin2 <= before;
+    for_all_triangles([&](std::uint32_t t) { judge_again(t, angles_hold); });
+    for (const std::uint32_t t : others) judge_again(t, angles_hold);
     judge_batch();
   }
 
@@ -645,12 +645,12 @@ class Refiner {
   }
 
   // Judges a triangle that was good, or refused, before vertices moved and bounds changed. Bad ones
-  // are pending elsewhere. `same_angles`: the bound on angles has not changed.
-  void judge_again(std::uint32_t t, bool same_angles) {
+  // are pending elsewhere. `angles_hold`: the bound on angles is not above what it was.
+  void judge_again(std::uint32_t t, bool angles_hold) {
     const Triangle& triangle = mesh_.triangles[t];
     if (triangle.dead() || triangle.deferred()) return;
     if (triangle.badness() != kGood) return;
-    if (!same_angles || triangle.refusal() != Refusal::kNone) return judge_or_migrate(t);
+    if (!angles_hold || triangle.refusal() != Refusal::kNone) return judge_or_migrate(t);
     if (batch_.add(mesh_, t)) judge_batch();
   }
   // Those within the bound are good: moves keep the bound on angles.

@@ -65,8 +65,8 @@ struct MeshRequest {
   // is 0, keep names none of them, and the budget does not end the mesh.
   std::vector<PeriodicPair> periodic = {};
   Placement placement = Placement::kLattice;
-  // Sweeps of smoothing, at most kMaxSweeps. Unset: two if the size makes nearly all triangles, on
-  // a lattice that has few faults or in a mesh below 100,000 triangles; otherwise none.
+  // Above 0: refinement in stages, then so many sweeps of smoothing, up to kMaxSweeps. Unset: 2 if
+  // the size makes nearly all triangles, on lattices with few faults or below 100,000 triangles.
   std::optional<std::uint32_t> sweeps = std::nullopt;
   // The domain is made no finer than this share of the length of edges that the size, regions and
   // sizes at markers ask for at each place, that of an equilateral triangle of the largest area.

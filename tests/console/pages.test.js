@@ -11,7 +11,7 @@ import { atEnd, folderFor, models, until, weft, Weftd } from "./weftd.js";
 
 const key = join(models, "key.poly");
 const cylinder = join(models, "cylinder.poly");
-const keySize = ["--size", "0.02*abs(y-46)+0.1"]; // 5,645 triangles
+const keySize = ["--size", "0.02*abs(y-46)+0.1"]; // 5,324 triangles
 const longSize = ["--size", "1e-5"]; // minutes
 
 let browser;
@@ -41,7 +41,7 @@ test("jobs are listed with what became of them, and filtered by it", async (t) =
   const failed = await ended(server, key, "--size", "x-1000", "--request-id", "key, wrong");
   assert.equal(failed.state, "failed");
   const page = await openPage(t, browser, `${server.url}/jobs`);
-  await textMatches(page, "tbody tr", new RegExp(`succeeded\\s+${made.id}[^]*5,645`));
+  await textMatches(page, "tbody tr", new RegExp(`succeeded\\s+${made.id}[^]*5,324`));
   await textMatches(page, "tbody tr", new RegExp(`failed\\s+${failed.id}[^]*${failed.error.reason}`));
   const long = await server.weft("submit", cylinder, ...longSize, "--request-id", "flow around a cylinder");
   await textMatches(page, "tbody tr", new RegExp(`running\\s+${long}[^]*refining, .* left`));
@@ -118,7 +118,7 @@ test("a job's page outlives a killed server, and is the same after a reload", as
 
   await page.goto(`${second.url}/job/${id}`);
   await page.reload();
-  await textMatches(page, "main", /succeeded[^]*5,645/);
+  await textMatches(page, "main", /succeeded[^]*5,324/);
   await textMatches(page, "main", /0\.02\*abs\(y-46\)\+0\.1/); // the request is kept, too
   const link = await page.$eval('main a[href^="/mesh/"]', (a) => a.getAttribute("href"));
   assert.equal(link, `/mesh/${summary.digest}`);
@@ -199,7 +199,7 @@ test("two meshes stand side by side with what differs", async (t) => {
   await textMatches(
     page,
     "main table",
-    new RegExp(`Triangles\\s+5,645\\s+${b.summary.triangles.toLocaleString("en-US")}`),
+    new RegExp(`Triangles\\s+5,324\\s+${b.summary.triangles.toLocaleString("en-US")}`),
   );
   await until("both are drawn", () => areDrawn(page, 2));
   await looksLike(page, "compare");

@@ -5,17 +5,20 @@
 // are equally large for their bounds (equaliser.h); and only what is still too large after that is
 // split by the strict bounds.
 //
-//   stage 1   splits what is above 1.3 times its bound, then two sweeps
-//   stage 2   splits what is above 1.1 times its bound, then two sweeps
-//   stage 3   splits what is above its bound
+//   stage   splits what is above     and angles below              then
+//   1       3 times its bound        the bound
+//   2       1.3 times                20 degrees, or a lesser bound   two sweeps
+//   3       1.1 times                the same                        two sweeps
+//   4       its bound                the bound
 //
-// Before stage 3, angles of 20 degrees are enough, because the sweeps widen most of those that are
-// smaller than a larger bound. The lattice (lattice.h) has no slack, nor has a place where the size
-// jumps.
+// The first stage settles the places where the domain, not the size, asks for triangles: its
+// triangles are large, so that points for skinny ones repair many. Elsewhere the sweeps widen most
+// angles below a bound of more than 20 degrees, and points would be in vain. The lattice
+// (lattice.h) has no slack, nor has a place where the size jumps.
 //
 // The distance from a triangle to the point that splits it is at most its circumradius. Halos are
-// laid out for that of the paper's equation 5, where a triangle meets its bounds; in the first two
-// stages, and after moves, it is that of 1.3 times the area at 20 degrees. A cavity that reaches
+// laid out for that of the paper's equation 5, where a triangle meets its bounds; before the last
+// stage, and after moves, it is that of a larger area and a lesser angle. A cavity that reaches
 // beyond the halo for that is deferred like any other (ownership.h): halos decide how much is
 // deferred, and never whether the mesh is right.
 #pragma once
@@ -23,28 +26,27 @@
 #include <cstdint>
 #include <optional>
 
+#include "engine/refine/refinement_stage.h"
 #include "engine/refine/storage/slots.h"
 #include "weft/error.h"
 
 namespace weft {
 
-struct RefinementStage {
-  double slack;          // of bounds on areas: a factor
-  std::uint32_t sweeps;  // after the refinement
-};
-// The strict one follows.
-inline constexpr RefinementStage kStages[] = {{1.3, 2}, {1.1, 2}};
+inline constexpr RefinementStage kFirstStage{3, false};
+inline constexpr RefinementStage kSweptStages[] = {{1.3, true}, {1.1, true}};
+inline constexpr std::uint32_t kSweeps = 2;  // after each of these
 
 // Refines what is queued in stages. REQUIRES: the refiner and the equaliser have begun the same
-// task, whose slots these are, and the refiner has judged with the slack of the first stage.
+// task, whose slots these are, and the refiner is in the first stage.
 template <class Refiner, class Equaliser>
 std::optional<Error> refine_in_stages(Refiner& refiner, Equaliser& equaliser, const Slots& slots) {
-  for (const RefinementStage& stage : kStages) {
-    if (&stage != kStages) refiner.begin_stage(stage.slack, equaliser.touched());
+  if (auto error = refiner.run()) return error;
+  for (const RefinementStage& stage : kSweptStages) {
+    refiner.begin_stage(stage, equaliser.touched());
     if (auto error = refiner.run()) return error;
-    if (auto error = equaliser.run(slots, stage.slack, stage.sweeps)) return error;
+    if (auto error = equaliser.run(slots, stage.slack, kSweeps)) return error;
   }
-  refiner.begin_stage(1, equaliser.touched());
+  refiner.begin_stage({}, equaliser.touched());
   return refiner.run();
 }
 

@@ -73,8 +73,7 @@ Stop stop_after(const Pslg& pslg, double seconds) {
 ErrorCode expect_prompt_stop(const Pslg& pslg, double seconds) {
   SCOPED_TRACE(seconds);
   Stop stop = stop_after(pslg, seconds);
-  for (int again = 0; again < 3 && stop.late > kPromptly; ++again)
-    stop = stop_after(pslg, seconds);
+  for (int again = 0; again < 3 && stop.late > kPromptly; ++again) stop = stop_after(pslg, seconds);
   EXPECT_LE(stop.late, kPromptly);
   return stop.code;
 }

@@ -75,7 +75,8 @@ class MeshOptions(TypedDict, total=False):
     direction. Default: lattice."""
     optimise: int
     """Sweeps of smoothing, 0 to 16: vertices around angles below 48 degrees move to where the
-    smallest angle around them is largest. Default: 2 if the size makes nearly all triangles, on a
+    smallest angle around them is largest. Above 0, sizes that no lattice follows are refined in
+    stages before that, for fewer triangles. Default: 2 if the size makes nearly all triangles, on a
     lattice with few faults or in a mesh below 100,000 triangles; otherwise 0."""
     snap: float
     """Merge everything of the domain that lies nearer together than this first, in the unit of the

@@ -28,7 +28,7 @@ struct Slack {
         slots(Slots::of_domain(domain)),
         refiner(refinement(), quality, ConstantArea(kArea)) {
     refiner.begin(slots, OwnsAll{}, box);
-    refiner.set_slack(1.3);
+    refiner.set_stage({1.3, false});
     EXPECT_FALSE(refiner.queue_all());
     EXPECT_FALSE(refiner.run());
   }
@@ -110,7 +110,7 @@ TEST(Equaliser, LeavesNothingTooLargeForTheNextStageToMiss) {
                                              ConstantArea(made.kArea));
   equaliser.begin(OwnsAll{}, made.box, 7, 0);
   EXPECT_FALSE(equaliser.run(made.slots, 1.3, 2));
-  made.refiner.begin_stage(1, equaliser.touched());
+  made.refiner.begin_stage({}, equaliser.touched());
   EXPECT_FALSE(made.refiner.run());
   made.for_alive([&](const Triangle& t) { EXPECT_LE(made.area(t), made.kArea); });
 }
