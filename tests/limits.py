@@ -26,7 +26,7 @@ PLACES = {
         ("docs/how-it-works.md", r"up to the (\d+) that `--min-angle`")],
     "kMaxSweeps": [
         (PROTO, r"Sweeps of smoothing, from 0 to (\d+):"),
-        ("client/call/request_rows.cpp", r'angle around them is largest\. Range: 0 to (\d+)"'),
+        ("client/call/request_rows.cpp", r'angle around them is largest\. Range: 0 to (\d+)'),
         ("client/python/src/weft/client.py", r"sweeps of smoothing, 0 to (\d+);"),
         ("client/python/src/weft/_requests.py", r"Sweeps of smoothing, 0 to (\d+):")],
     "kMaxExpressionBytes": [
