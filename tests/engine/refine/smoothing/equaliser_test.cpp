@@ -104,6 +104,33 @@ TEST(Equaliser, MakesTrianglesEquallyLarge) {
   EXPECT_TRUE(equaliser.touched().empty()) << "all are of one owner";
 }
 
+// A vertex that is not in the middle of its star, in the diametral disk of a side or of none.
+Point place_after_a_sweep(double half_side) {
+  Pslg pslg;
+  pslg.points = {{-half_side, 0}, {half_side, 0}, {1.4, 1.7}, {0, 2.6}, {-1.4, 1.7}, {0.25, 1.3}};
+  for (std::uint32_t i = 0; i < 5; ++i) pslg.segments.push_back({i, (i + 1) % 5, 0});
+  ExecutionContext context;
+  const Domain domain = *triangulate(pslg, context);
+  const QualityBounds quality = QualityBounds::from(10, 0, 1e-12);
+  const AcuteCorners corners = *AcuteCorners::build(domain, quality, context);
+  const EdgeLimits limits;
+  MeshStore mesh = *MeshStore::from(domain, 1000, 0, context);
+  Equaliser<OwnsAll, ConstantArea> equaliser({mesh, corners, domain.regions, limits, context, 0, 9},
+                                             quality, ConstantArea(2));
+  const auto free = static_cast<std::uint32_t>(
+      std::find(domain.input_point.begin(), domain.input_point.end(), 5U) -
+      domain.input_point.begin());
+  EXPECT_EQ(free + 1, domain.vertices.size()) << "or the corners would move, too";
+  equaliser.begin(OwnsAll{}, {-2, 0, 2, 3}, free, 0);
+  EXPECT_FALSE(equaliser.run(Slots::of_domain(domain), 1.3, 1));
+  return mesh.vertices[free];
+}
+
+TEST(Equaliser, KeepsVerticesOutOfTheDiametralDisksOfSegments) {
+  EXPECT_FALSE(place_after_a_sweep(0.8) == (Point{0.25, 1.3}));
+  EXPECT_EQ(place_after_a_sweep(1.5), (Point{0.25, 1.3}));
+}
+
 TEST(Equaliser, LeavesNothingTooLargeForTheNextStageToMiss) {
   Slack made;
   Equaliser<OwnsAll, ConstantArea> equaliser(made.refinement(), made.quality,
