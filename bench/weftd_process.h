@@ -13,7 +13,7 @@
 #include <memory>
 #include <string>
 
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 
 namespace weft::bench {
 
@@ -35,7 +35,7 @@ class WeftdProcess {
   bool spawn(const std::string& weftd, int threads);
   bool wait_until_ready();
 
-  client::TempFolder folder_;  // outlives the process
+  files::TempFolder folder_;  // outlives the process
   std::string unix_address_;
   std::string tcp_address_;
   pid_t pid_ = 0;

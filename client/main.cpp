@@ -13,7 +13,7 @@
 #include "client/cli/command_groups.h"
 #include "client/cli/flags.h"
 #include "client/cli/suggest.h"
-#include "client/formats/standard_streams.h"
+#include "files/formats/standard_streams.h"
 
 namespace {
 

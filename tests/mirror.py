@@ -4,8 +4,8 @@
 
     tests/mirror.py [FOLDER]     FOLDER is the root of the sources; default: the one this lies in
 
-Rules, on the x_test.cpp below tests/engine, tests/wire, tests/server, tests/client, tests/checker,
-tests/loader and tests/bench:
+Rules, on the x_test.cpp below tests/engine, tests/wire, tests/server, tests/files, tests/client,
+tests/checker, tests/loader and tests/bench:
   - The folder is that of a source folder: tests/engine/size/ tests engine/size/.
   - If a source of the room is named x, one in the same folder is: tests/engine/refine/cavity_test.cpp
     tests engine/refine/cavity.h.
@@ -18,7 +18,7 @@ import pathlib
 import re
 import sys
 
-ROOMS = ("engine", "wire", "server", "client", "checker", "loader", "bench")
+ROOMS = ("engine", "wire", "server", "files", "client", "checker", "loader", "bench")
 
 
 def fault_of(test: pathlib.PurePosixPath, text: str, folders: dict[str, set[str]]) -> str | None:

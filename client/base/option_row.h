@@ -22,7 +22,8 @@
 #include <utility>
 #include <vector>
 
-#include "client/base/text.h"
+#include "client/base/files.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 

@@ -11,7 +11,8 @@
 #include <stop_token>
 #include <thread>
 
-#include "client/base/atomic_file.h"
+#include "client/base/files.h"
+#include "files/base/atomic_file.h"
 
 namespace weft::client {
 

@@ -6,7 +6,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
-#include "client/base/text.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 namespace {

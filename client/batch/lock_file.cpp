@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "client/base/atomic_file.h"
-#include "client/base/text.h"
+#include "files/base/atomic_file.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 

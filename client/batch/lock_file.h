@@ -9,7 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "client/base/error.h"
+#include "client/base/files.h"
+#include "files/base/error.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {

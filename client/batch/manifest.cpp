@@ -7,15 +7,15 @@
 #include <map>
 #include <set>
 
-#include "client/base/did_you_mean.h"
-#include "client/base/text.h"
+#include "client/call/layer_rows.h"
+#include "client/call/projection_rows.h"
 #include "client/call/request_rows.h"
 #include "client/drawing/draw.h"
-#include "client/formats/domain_formats.h"
-#include "client/formats/files/layer_rows.h"
-#include "client/formats/mesh_formats.h"
-#include "client/geo/projection_rows.h"
 #include "client/report/output_rows.h"
+#include "files/base/did_you_mean.h"
+#include "files/base/text.h"
+#include "files/formats/domain_formats.h"
+#include "files/formats/mesh_formats.h"
 
 namespace weft::client {
 namespace {

@@ -17,11 +17,11 @@
 #include <string>
 #include <vector>
 
-#include "client/base/error.h"
 #include "client/batch/quality_gate.h"
 #include "client/call/mesh_request.h"
-#include "client/formats/files/layer_options.h"
 #include "client/report/mesh_output.h"
+#include "files/base/error.h"
+#include "files/formats/layer_options.h"
 
 namespace weft::client {
 

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "client/base/text.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 namespace {

@@ -13,7 +13,8 @@
 #include <string>
 #include <string_view>
 
-#include "client/base/error.h"
+#include "client/base/files.h"
+#include "files/base/error.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {

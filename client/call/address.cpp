@@ -9,7 +9,8 @@
 #include <initializer_list>
 #include <string_view>
 
-#include "client/base/text.h"
+#include "client/base/files.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 namespace {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "client/call/address.h"
-#include "client/formats/files/file_contents.h"
+#include "files/bytes/file_contents.h"
 
 namespace weft::client {
 namespace {

@@ -15,9 +15,9 @@
 #include <stop_token>
 #include <string>
 
-#include "client/base/error.h"
 #include "client/call/connect_options.h"
 #include "client/call/private_server.h"
+#include "files/base/error.h"
 
 namespace weft::client {
 

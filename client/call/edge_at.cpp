@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "client/base/option_row.h"
-#include "client/base/text.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 

@@ -10,11 +10,11 @@
 #include <optional>
 #include <string>
 
-#include "client/base/error.h"
 #include "client/call/job_server.h"
 #include "client/call/mesh_receiver.h"
 #include "client/call/mesh_report.h"
 #include "client/call/mesh_spool.h"
+#include "files/base/error.h"
 
 namespace weft::client {
 

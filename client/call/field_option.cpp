@@ -5,13 +5,13 @@
 #include <cmath>
 #include <utility>
 
-#include "client/base/did_you_mean.h"
 #include "client/base/option_row.h"
-#include "client/base/text.h"
-#include "client/formats/derived/vertex_values.h"
-#include "client/formats/domain_formats.h"
-#include "client/formats/domains/ogr.h"
-#include "client/formats/field_raster.h"
+#include "files/base/did_you_mean.h"
+#include "files/base/text.h"
+#include "files/formats/derived/vertex_values.h"
+#include "files/formats/domain_formats.h"
+#include "files/formats/domains/ogr.h"
+#include "files/formats/field_raster.h"
 
 namespace weft::client {
 namespace {

@@ -12,10 +12,10 @@
 #include <variant>
 #include <vector>
 
-#include "client/base/error.h"
 #include "client/call/marker_list.h"
-#include "client/formats/domain.h"
-#include "client/geo/domain_projection.h"
+#include "files/base/error.h"
+#include "files/formats/domain.h"
+#include "files/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {

@@ -20,11 +20,11 @@
 #include <string>
 #include <vector>
 
-#include "client/base/error.h"
 #include "client/call/connect_options.h"
 #include "client/call/connection.h"
 #include "client/call/connection_retry.h"
 #include "client/call/server_error.h"
+#include "files/base/error.h"
 #include "weft/v1/job_service.grpc.pb.h"
 
 namespace weft::client {

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "client/base/error.h"
-#include "client/formats/names.h"
+#include "client/base/files.h"
+#include "files/base/error.h"
+#include "files/formats/names.h"
 
 namespace weft::client {
 

@@ -16,14 +16,14 @@
 #include <stop_token>
 #include <string>
 
-#include "client/base/error.h"
 #include "client/call/connection.h"
 #include "client/call/mesh_report.h"
 #include "client/call/mesh_request.h"
 #include "client/call/mesh_spool.h"
 #include "client/call/retry.h"
-#include "client/formats/domain.h"
-#include "client/geo/domain_projection.h"
+#include "files/base/error.h"
+#include "files/formats/domain.h"
+#include "files/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {

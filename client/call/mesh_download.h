@@ -23,11 +23,11 @@
 #include <stop_token>
 #include <utility>
 
-#include "client/base/error.h"
-#include "client/base/text.h"
 #include "client/call/mesh_receiver.h"
 #include "client/call/mesh_report.h"
 #include "client/call/retry.h"
+#include "files/base/error.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 

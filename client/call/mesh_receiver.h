@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
-#include "client/base/error.h"
 #include "client/base/sha256.h"
 #include "client/call/mesh_spool.h"
+#include "files/base/error.h"
 #include "weft/v1/job_service.pb.h"
 #include "weft/v1/mesh_service.pb.h"
 

@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "client/geo/domain_projection.h"
+#include "client/base/files.h"
+#include "files/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {

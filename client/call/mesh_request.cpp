@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "client/call/request_rows.h"
-#include "client/formats/field_raster.h"
-#include "client/formats/raster.h"
+#include "files/formats/field_raster.h"
+#include "files/formats/raster.h"
 
 namespace weft::client {
 namespace {

@@ -13,14 +13,14 @@
 #include <string>
 #include <vector>
 
-#include "client/base/error.h"
 #include "client/call/edge_at.h"
 #include "client/call/field_option.h"
 #include "client/call/marker_list.h"
 #include "client/call/marker_pairs.h"
 #include "client/call/name_option.h"
-#include "client/formats/domain.h"
-#include "client/geo/domain_projection.h"
+#include "files/base/error.h"
+#include "files/formats/domain.h"
+#include "files/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {
@@ -28,7 +28,7 @@ namespace weft::client {
 // What the mesh must satisfy. DEFAULT of all optionals: the server's.
 struct RequestOptions {
   // The area of triangles or the length of edges: a number, an expression in x, y and the names of
-  // fields, or the path of a grid (formats/raster.h); both empty: no bound.
+  // fields, or the path of a grid (files/formats/raster.h); both empty: no bound.
   std::string size{};
   std::string edge{};
   std::vector<FieldOption> fields{};

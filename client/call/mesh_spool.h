@@ -16,10 +16,11 @@
 #include <stop_token>
 #include <utility>
 
-#include "client/base/atomic_file.h"
-#include "client/base/error.h"
-#include "client/base/paged_memory.h"
-#include "client/formats/mesh.h"
+#include "client/base/files.h"
+#include "files/base/atomic_file.h"
+#include "files/base/error.h"
+#include "files/base/paged_memory.h"
+#include "files/formats/mesh.h"
 
 namespace weft::client {
 

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "client/base/option_row.h"
-#include "client/base/text.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 

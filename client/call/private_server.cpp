@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "client/formats/files/file_contents.h"
+#include "files/bytes/file_contents.h"
 
 extern char** environ;
 

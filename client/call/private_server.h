@@ -24,8 +24,9 @@
 #include <stop_token>
 #include <string>
 
-#include "client/base/atomic_file.h"
-#include "client/base/error.h"
+#include "client/base/files.h"
+#include "files/base/atomic_file.h"
+#include "files/base/error.h"
 
 namespace weft::client {
 

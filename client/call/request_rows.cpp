@@ -8,12 +8,12 @@
 #include <system_error>
 #include <utility>
 
-#include "client/base/text.h"
 #include "client/call/field_path.h"
-#include "client/formats/derived/vertex_values.h"
-#include "client/formats/domain_formats.h"
-#include "client/formats/mesh_formats.h"
-#include "client/formats/raster.h"
+#include "files/base/text.h"
+#include "files/formats/derived/vertex_values.h"
+#include "files/formats/domain_formats.h"
+#include "files/formats/mesh_formats.h"
+#include "files/formats/raster.h"
 
 namespace weft::client {
 namespace {

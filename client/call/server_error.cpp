@@ -7,10 +7,10 @@
 #include <string_view>
 
 #include "client/base/option_row.h"
-#include "client/base/text.h"
 #include "client/call/address.h"
 #include "client/call/field_path.h"
 #include "client/call/request_rows.h"
+#include "files/base/text.h"
 #include "google/rpc/code.pb.h"
 #include "google/rpc/error_details.pb.h"
 

@@ -8,10 +8,10 @@
 
 #include <string>
 
-#include "client/base/error.h"
 #include "client/call/mesh_request.h"
-#include "client/formats/domain.h"
-#include "client/geo/domain_projection.h"
+#include "files/base/error.h"
+#include "files/formats/domain.h"
+#include "files/geo/domain_projection.h"
 #include "google/rpc/status.pb.h"
 
 namespace weft::client {

@@ -8,8 +8,9 @@
 #include <stop_token>
 #include <string>
 
-#include "client/base/data_path.h"
-#include "client/base/error.h"
+#include "client/base/files.h"
+#include "files/base/data_path.h"
+#include "files/base/error.h"
 
 namespace weft::client {
 

@@ -9,13 +9,13 @@
 #include <string_view>
 #include <vector>
 
-#include "client/base/words.h"
+#include "client/call/layer_rows.h"
+#include "client/call/projection_rows.h"
 #include "client/call/request_rows.h"
-#include "client/formats/domain_formats.h"
-#include "client/formats/files/layer_rows.h"
-#include "client/formats/mesh_formats.h"
-#include "client/geo/projection_rows.h"
 #include "client/report/output_rows.h"
+#include "files/base/words.h"
+#include "files/formats/domain_formats.h"
+#include "files/formats/mesh_formats.h"
 
 namespace weft::client {
 namespace {

@@ -12,9 +12,9 @@
 #include "client/base/option_row.h"
 #include "client/call/mesh_request.h"
 #include "client/cli/command_groups.h"
-#include "client/formats/files/layer_options.h"
-#include "client/geo/projection_options.h"
 #include "client/report/mesh_output.h"
+#include "files/formats/layer_options.h"
+#include "files/geo/projection_options.h"
 
 namespace weft::client {
 

@@ -8,11 +8,11 @@
 #include "client/cli/flags.h"
 #include "client/commands/commands.h"
 #include "client/commands/job_commands.h"
-#include "client/formats/domain_formats.h"
-#include "client/formats/mesh_formats.h"
-#include "client/lint/domain_lint.h"
 #include "client/report/model_report.h"
 #include "client/report/output_rows.h"
+#include "files/formats/domain_formats.h"
+#include "files/formats/mesh_formats.h"
+#include "files/lint/domain_lint.h"
 
 namespace weft::client {
 namespace {

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <string_view>
 
-#include "client/base/did_you_mean.h"
-#include "client/base/text.h"
+#include "client/base/files.h"
+#include "files/base/did_you_mean.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 namespace {

@@ -11,8 +11,8 @@
 #include "checker/size/gradation_within.h"
 #include "checker/size/size.h"
 #include "client/commands/checker_input.h"
-#include "client/formats/derived/mesh_domain.h"
-#include "client/formats/domains/to_checker.h"
+#include "files/formats/derived/mesh_domain.h"
+#include "files/formats/domains/to_checker.h"
 
 namespace weft::client {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <string>
 
-#include "client/base/error.h"
 #include "client/call/mesh_request.h"
-#include "client/formats/area_bound.h"
-#include "client/formats/mesh.h"
+#include "files/base/error.h"
+#include "files/formats/area_bound.h"
+#include "files/formats/mesh.h"
 
 namespace weft::client {
 

@@ -6,7 +6,6 @@
 #include <mutex>
 #include <thread>
 
-#include "client/base/text.h"
 #include "client/batch/batch_report.h"
 #include "client/batch/lock_file.h"
 #include "client/batch/manifest.h"
@@ -14,6 +13,7 @@
 #include "client/commands/input_domain.h"
 #include "client/commands/mesh_into.h"
 #include "client/report/mesh_text.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 namespace {

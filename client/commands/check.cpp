@@ -6,19 +6,19 @@
 #include <cstdio>
 #include <utility>
 
-#include "client/base/text.h"
 #include "client/call/mesh_request.h"
 #include "client/commands/checker_input.h"
 #include "client/commands/commands.h"
 #include "client/commands/input_domain.h"
-#include "client/formats/bed.h"
-#include "client/formats/derived/deep_boundary.h"
-#include "client/formats/derived/vertex_values.h"
-#include "client/formats/domains/to_checker.h"
-#include "client/formats/mesh_formats.h"
 #include "client/report/check_report.h"
 #include "client/report/marker_warnings.h"
 #include "client/report/model_report.h"
+#include "files/base/text.h"
+#include "files/formats/bed.h"
+#include "files/formats/derived/deep_boundary.h"
+#include "files/formats/derived/vertex_values.h"
+#include "files/formats/domains/to_checker.h"
+#include "files/formats/mesh_formats.h"
 
 namespace weft::client {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "client/base/text.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 namespace {

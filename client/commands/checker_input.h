@@ -3,10 +3,10 @@
 #pragma once
 
 #include "checker/size/size.h"
-#include "client/base/error.h"
 #include "client/call/mesh_request.h"
-#include "client/formats/domain.h"
-#include "client/geo/domain_projection.h"
+#include "files/base/error.h"
+#include "files/formats/domain.h"
+#include "files/geo/domain_projection.h"
 
 namespace weft::client {
 

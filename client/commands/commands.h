@@ -12,14 +12,14 @@
 #include <vector>
 
 #include "checker/models/model_rules.h"
-#include "client/base/data_path.h"
-#include "client/base/error.h"
 #include "client/batch/quality_gate.h"
 #include "client/call/connect_options.h"
 #include "client/call/mesh_call.h"
-#include "client/formats/files/layer_options.h"
-#include "client/geo/projection_options.h"
 #include "client/report/mesh_output.h"
+#include "files/base/data_path.h"
+#include "files/base/error.h"
+#include "files/formats/layer_options.h"
+#include "files/geo/projection_options.h"
 
 namespace weft::client {
 

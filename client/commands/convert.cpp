@@ -9,17 +9,17 @@
 #include <utility>
 #include <vector>
 
-#include "client/base/text.h"
 #include "client/call/mesh_request.h"
 #include "client/commands/commands.h"
-#include "client/formats/derived/orientation.h"
-#include "client/formats/domain_formats.h"
-#include "client/formats/domains/seeded.h"
-#include "client/formats/mesh_formats.h"
-#include "client/formats/standard_streams.h"
-#include "client/formats/triangle/triangle_poly.h"
 #include "client/report/json_line.h"
 #include "client/report/marker_warnings.h"
+#include "files/base/text.h"
+#include "files/formats/derived/orientation.h"
+#include "files/formats/domain_formats.h"
+#include "files/formats/domains/seeded.h"
+#include "files/formats/mesh_formats.h"
+#include "files/formats/standard_streams.h"
+#include "files/formats/triangle/triangle_poly.h"
 
 namespace weft::client {
 namespace {

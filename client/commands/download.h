@@ -5,13 +5,13 @@
 
 #include <string>
 
-#include "client/base/error.h"
 #include "client/call/job_server.h"
 #include "client/call/mesh_report.h"
 #include "client/commands/input_domain.h"
 #include "client/report/mesh_output.h"
 #include "client/report/mesh_text.h"
 #include "client/report/progress_bar.h"
+#include "files/base/error.h"
 
 namespace weft::client {
 

@@ -4,11 +4,11 @@
 #include <memory>
 #include <utility>
 
-#include "client/base/text.h"
 #include "client/commands/area_bound.h"
 #include "client/commands/commands.h"
-#include "client/formats/mesh_formats.h"
 #include "client/report/mesh_output.h"
+#include "files/base/text.h"
+#include "files/formats/mesh_formats.h"
 
 namespace weft::client {
 namespace {

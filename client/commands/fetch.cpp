@@ -6,10 +6,10 @@
 #include "client/commands/download.h"
 #include "client/commands/input_domain.h"
 #include "client/commands/job_commands.h"
-#include "client/formats/domain_formats.h"
-#include "client/formats/mesh_formats.h"
 #include "client/report/job_text.h"
 #include "client/report/mesh_text.h"
+#include "files/formats/domain_formats.h"
+#include "files/formats/mesh_formats.h"
 
 namespace weft::client {
 namespace {

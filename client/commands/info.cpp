@@ -7,15 +7,15 @@
 #include <span>
 #include <vector>
 
-#include "client/base/text.h"
 #include "client/commands/area_bound.h"
 #include "client/commands/commands.h"
-#include "client/formats/domain_formats.h"
-#include "client/formats/mesh_formats.h"
 #include "client/report/mesh_angles.h"
 #include "client/report/mesh_quality.h"
 #include "client/report/mesh_text.h"
 #include "client/report/quality_report.h"
+#include "files/base/text.h"
+#include "files/formats/domain_formats.h"
+#include "files/formats/mesh_formats.h"
 
 namespace weft::client {
 namespace {

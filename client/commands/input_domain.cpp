@@ -3,12 +3,12 @@
 
 #include <utility>
 
-#include "client/base/text.h"
-#include "client/formats/domain_formats.h"
-#include "client/formats/raster.h"
-#include "client/geo/lonlat_extent.h"
 #include "client/report/mesh_text.h"
 #include "client/report/projection_report.h"
+#include "files/base/text.h"
+#include "files/formats/domain_formats.h"
+#include "files/formats/raster.h"
+#include "files/geo/lonlat_extent.h"
 
 namespace weft::client {
 

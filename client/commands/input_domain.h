@@ -8,13 +8,13 @@
 #include <memory>
 #include <string>
 
-#include "client/base/error.h"
 #include "client/call/mesh_report.h"
 #include "client/call/mesh_request.h"
 #include "client/call/server_error.h"
-#include "client/formats/domain.h"
-#include "client/formats/files/layer_options.h"
-#include "client/geo/domain_projection.h"
+#include "files/base/error.h"
+#include "files/formats/domain.h"
+#include "files/formats/layer_options.h"
+#include "files/geo/domain_projection.h"
 
 namespace weft::client {
 

@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "client/base/data_path.h"
-#include "client/base/error.h"
 #include "client/call/job_server.h"
 #include "client/call/mesh_request.h"
-#include "client/formats/files/layer_options.h"
 #include "client/report/mesh_output.h"
+#include "files/base/data_path.h"
+#include "files/base/error.h"
+#include "files/formats/layer_options.h"
 
 namespace weft::client {
 

@@ -3,10 +3,10 @@
 #include <functional>
 #include <optional>
 
-#include "client/base/text.h"
 #include "client/commands/commands.h"
 #include "client/commands/job_commands.h"
 #include "client/report/job_text.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 namespace {

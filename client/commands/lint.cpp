@@ -4,13 +4,13 @@
 #include <utility>
 #include <vector>
 
-#include "client/base/text.h"
 #include "client/commands/commands.h"
 #include "client/commands/input_domain.h"
-#include "client/formats/domain_formats.h"
-#include "client/formats/mesh_formats.h"
-#include "client/lint/domain_lint.h"
 #include "client/lint/lint_report.h"
+#include "files/base/text.h"
+#include "files/formats/domain_formats.h"
+#include "files/formats/mesh_formats.h"
+#include "files/lint/domain_lint.h"
 
 namespace weft::client {
 namespace {

@@ -10,15 +10,15 @@
 #include "client/commands/input_domain.h"
 #include "client/commands/mesh_into.h"
 #include "client/drawing/draw.h"
-#include "client/formats/domain_formats.h"
-#include "client/formats/mesh_formats.h"
-#include "client/lint/domain_lint.h"
 #include "client/lint/lint_report.h"
 #include "client/lint/near_places.h"
 #include "client/report/mesh_text.h"
 #include "client/report/picture_terminal.h"
 #include "client/report/progress_bar.h"
 #include "client/report/terminal_picture.h"
+#include "files/formats/domain_formats.h"
+#include "files/formats/mesh_formats.h"
+#include "files/lint/domain_lint.h"
 
 namespace weft::client {
 namespace {

@@ -5,12 +5,12 @@
 #include <functional>
 #include <stop_token>
 
-#include "client/base/error.h"
 #include "client/call/connection.h"
 #include "client/call/mesh_call.h"
 #include "client/call/mesh_report.h"
 #include "client/commands/input_domain.h"
 #include "client/report/mesh_output.h"
+#include "files/base/error.h"
 
 namespace weft::client {
 

@@ -7,18 +7,18 @@
 #include <utility>
 #include <vector>
 
-#include "client/base/text.h"
 #include "client/call/mesh_call.h"
 #include "client/call/mesh_spool.h"
 #include "client/commands/commands.h"
 #include "client/commands/input_domain.h"
-#include "client/formats/derived/mesh_patch.h"
-#include "client/formats/derived/orientation.h"
-#include "client/formats/derived/vertex_values.h"
-#include "client/formats/domain_formats.h"
 #include "client/report/marker_warnings.h"
 #include "client/report/mesh_text.h"
 #include "client/report/progress_bar.h"
+#include "files/base/text.h"
+#include "files/formats/derived/mesh_patch.h"
+#include "files/formats/derived/orientation.h"
+#include "files/formats/derived/vertex_values.h"
+#include "files/formats/domain_formats.h"
 
 namespace weft::client {
 namespace {

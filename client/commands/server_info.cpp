@@ -5,10 +5,10 @@
 #include <chrono>
 #include <cstdio>
 
-#include "client/base/text.h"
 #include "client/call/connection.h"
 #include "client/call/server_error.h"
 #include "client/commands/commands.h"
+#include "files/base/text.h"
 #include "weft/v1/mesh_service.grpc.pb.h"
 
 namespace weft::client {

@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "client/base/text.h"
 #include "client/commands/commands.h"
-#include "client/formats/derived/orientation.h"
-#include "client/formats/derived/stitch.h"
-#include "client/formats/derived/vertex_values.h"
 #include "client/report/mesh_text.h"
+#include "files/base/text.h"
+#include "files/formats/derived/orientation.h"
+#include "files/formats/derived/stitch.h"
+#include "files/formats/derived/vertex_values.h"
 
 namespace weft::client {
 namespace {

@@ -7,7 +7,8 @@
 #include <cairo-svg.h>
 #include <cairo.h>
 
-#include "client/base/error.h"
+#include "client/base/files.h"
+#include "files/base/error.h"
 #include "loader/function_table.h"
 
 #define WEFT_CAIRO_FUNCTIONS(EACH)          \

@@ -7,7 +7,8 @@
 #include <limits>
 #include <span>
 
-#include "client/formats/domain.h"
+#include "client/base/files.h"
+#include "files/formats/domain.h"
 
 namespace weft::client {
 

@@ -13,7 +13,7 @@
 
 #include "client/drawing/colors.h"
 #include "client/drawing/drawn_triangle.h"
-#include "client/formats/area_bound.h"
+#include "files/formats/area_bound.h"
 
 namespace weft::client {
 

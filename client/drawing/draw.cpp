@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "client/base/text.h"
 #include "client/drawing/cairo_library.h"
 #include "client/drawing/clip.h"
 #include "client/drawing/coloring.h"
@@ -16,6 +15,7 @@
 #include "client/drawing/legend.h"
 #include "client/drawing/page_text.h"
 #include "client/drawing/vectors.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 namespace {

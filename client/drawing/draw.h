@@ -23,15 +23,15 @@
 #include <utility>
 #include <vector>
 
-#include "client/base/atomic_file.h"
-#include "client/base/error.h"
 #include "client/drawing/canvas.h"
 #include "client/drawing/draw_options.h"
 #include "client/drawing/image.h"
 #include "client/drawing/labels.h"
 #include "client/drawing/worst_triangles.h"
-#include "client/formats/area_bound.h"
-#include "client/formats/mesh.h"
+#include "files/base/atomic_file.h"
+#include "files/base/error.h"
+#include "files/formats/area_bound.h"
+#include "files/formats/mesh.h"
 
 namespace weft::client {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/drawing/draw.h"
-#include "client/formats/mesh_formats.h"
+#include "files/formats/mesh_formats.h"
 
 namespace weft::client {
 

@@ -5,8 +5,9 @@
 #include <array>
 #include <cstdint>
 
+#include "client/base/files.h"
 #include "client/drawing/draw_options.h"
-#include "client/formats/domain.h"
+#include "files/formats/domain.h"
 
 namespace weft::client {
 

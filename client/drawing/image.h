@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "client/base/error.h"
+#include "client/base/files.h"
+#include "files/base/error.h"
 
 namespace weft::client {
 

@@ -11,7 +11,7 @@
 #include "client/drawing/canvas.h"
 #include "client/drawing/coloring.h"
 #include "client/drawing/colors.h"
-#include "client/formats/names.h"
+#include "files/formats/names.h"
 
 // Of cairo.
 typedef struct _cairo cairo_t;

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "client/base/text.h"
 #include "client/drawing/cairo_library.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 

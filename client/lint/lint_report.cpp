@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "client/base/text.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 namespace {

@@ -4,11 +4,11 @@
 
 #include <string>
 
-#include "client/base/atomic_file.h"
 #include "client/drawing/draw.h"
-#include "client/formats/domain.h"
-#include "client/lint/domain_lint.h"
 #include "client/report/json_line.h"
+#include "files/base/atomic_file.h"
+#include "files/formats/domain.h"
+#include "files/lint/domain_lint.h"
 
 namespace weft::client {
 

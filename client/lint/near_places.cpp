@@ -5,8 +5,8 @@
 #include <array>
 #include <string_view>
 
-#include "client/base/text.h"
-#include "client/lint/domain_lint.h"
+#include "files/base/text.h"
+#include "files/lint/domain_lint.h"
 
 namespace weft::client {
 

@@ -4,8 +4,9 @@
 
 #include <string>
 
-#include "client/base/data_path.h"
-#include "client/formats/domain.h"
+#include "client/base/files.h"
+#include "files/base/data_path.h"
+#include "files/formats/domain.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {

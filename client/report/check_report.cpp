@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <array>
 
-#include "client/base/text.h"
+#include "client/base/files.h"
 #include "client/report/mesh_figures.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 namespace {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <vector>
 
-#include "client/base/text.h"
 #include "client/call/server_error.h"
 #include "client/report/mesh_text.h"
 #include "client/report/progress_bar.h"
+#include "files/base/text.h"
 #include "google/rpc/error_details.pb.h"
 
 namespace weft::client {

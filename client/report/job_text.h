@@ -6,9 +6,9 @@
 #include <span>
 #include <string>
 
-#include "client/base/error.h"
 #include "client/call/server_error.h"
 #include "client/report/json_line.h"
+#include "files/base/error.h"
 #include "weft/v1/job_service.pb.h"
 
 namespace weft::client {

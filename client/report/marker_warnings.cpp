@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "checker/geometry/box_tree.h"
-#include "client/base/text.h"
-#include "client/formats/derived/orientation.h"
+#include "files/base/text.h"
+#include "files/formats/derived/orientation.h"
 
 namespace weft::client {
 namespace {

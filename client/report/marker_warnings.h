@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "client/call/mesh_report.h"
-#include "client/formats/derived/deep_boundary.h"
-#include "client/formats/domain.h"
-#include "client/formats/mesh.h"
+#include "files/formats/derived/deep_boundary.h"
+#include "files/formats/domain.h"
+#include "files/formats/mesh.h"
 
 namespace weft::client {
 

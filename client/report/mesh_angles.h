@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "client/formats/mesh.h"
+#include "client/base/files.h"
+#include "files/formats/mesh.h"
 
 namespace weft::client {
 

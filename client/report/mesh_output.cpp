@@ -12,13 +12,13 @@
 #include <system_error>
 #include <utility>
 
-#include "client/base/text.h"
 #include "client/drawing/cairo_library.h"
-#include "client/formats/bed.h"
-#include "client/formats/derived/mesh_parts.h"
-#include "client/formats/derived/renumbered_mesh.h"
-#include "client/formats/mesh_formats.h"
 #include "client/report/marker_warnings.h"
+#include "files/base/text.h"
+#include "files/formats/bed.h"
+#include "files/formats/derived/mesh_parts.h"
+#include "files/formats/derived/renumbered_mesh.h"
+#include "files/formats/mesh_formats.h"
 
 namespace weft::client {
 namespace {

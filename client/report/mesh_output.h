@@ -22,14 +22,14 @@
 #include <utility>
 #include <vector>
 
-#include "client/base/atomic_file.h"
-#include "client/base/error.h"
 #include "client/call/mesh_spool.h"
 #include "client/drawing/draw.h"
-#include "client/formats/derived/deep_boundary.h"
-#include "client/formats/mesh.h"
-#include "client/formats/mesh_formats.h"
-#include "client/geo/domain_projection.h"
+#include "files/base/atomic_file.h"
+#include "files/base/error.h"
+#include "files/formats/derived/deep_boundary.h"
+#include "files/formats/mesh.h"
+#include "files/formats/mesh_formats.h"
+#include "files/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {

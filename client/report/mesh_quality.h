@@ -15,10 +15,11 @@
 #include <optional>
 #include <vector>
 
-#include "client/formats/area_bound.h"
-#include "client/formats/domain.h"
-#include "client/formats/mesh.h"
+#include "client/base/files.h"
 #include "client/report/mesh_figures.h"
+#include "files/formats/area_bound.h"
+#include "files/formats/domain.h"
+#include "files/formats/mesh.h"
 
 namespace weft::client {
 

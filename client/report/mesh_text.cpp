@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "client/base/text.h"
 #include "client/report/mesh_figures.h"
 #include "client/report/projection_report.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "client/call/mesh_report.h"
-#include "client/formats/domains/region_values.h"
 #include "client/report/json_line.h"
+#include "files/formats/domains/region_values.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 
-#include "client/base/text.h"
+#include "client/base/files.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 namespace {

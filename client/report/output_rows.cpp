@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "client/formats/derived/mesh_parts.h"
+#include "files/formats/derived/mesh_parts.h"
 
 namespace weft::client {
 namespace {

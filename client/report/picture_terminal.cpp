@@ -13,8 +13,8 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "client/base/atomic_file.h"
 #include "client/base/option_row.h"
+#include "files/base/atomic_file.h"
 
 namespace weft::client {
 namespace {

@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "client/base/text.h"
+#include "client/base/files.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 namespace {

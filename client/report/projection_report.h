@@ -4,8 +4,9 @@
 
 #include <string>
 
-#include "client/geo/domain_projection.h"
+#include "client/base/files.h"
 #include "client/report/json_line.h"
+#include "files/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {

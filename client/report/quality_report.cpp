@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "client/base/text.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <string>
 
-#include "client/base/error.h"
 #include "client/drawing/image.h"
 #include "client/report/picture_terminal.h"
+#include "files/base/error.h"
 
 namespace weft::client {
 

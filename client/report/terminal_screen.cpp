@@ -10,7 +10,8 @@
 #include <cerrno>
 #include <cstdint>
 
-#include "client/base/atomic_file.h"
+#include "client/base/files.h"
+#include "files/base/atomic_file.h"
 
 namespace weft::client {
 namespace {

@@ -7,10 +7,10 @@
 #include <set>
 #include <utility>
 
-#include "client/base/text.h"
 #include "client/call/server_error.h"
 #include "client/report/job_text.h"
 #include "client/report/progress_bar.h"
+#include "files/base/text.h"
 
 namespace weft::client {
 namespace {

@@ -7,8 +7,8 @@
 #include <functional>
 #include <string>
 
-#include "client/base/error.h"
 #include "client/call/job_server.h"
+#include "files/base/error.h"
 
 namespace weft::client {
 

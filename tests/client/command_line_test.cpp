@@ -11,11 +11,11 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "client/formats/mesh_formats.h"
-#include "client/geo/projection.h"
-#include "tests/client/support/sample_mesh.h"
-#include "tests/client/support/temp_folder.h"
+#include "files/formats/mesh_formats.h"
+#include "files/geo/projection.h"
 #include "tests/client/support/weft_process.h"
+#include "tests/files/support/sample_mesh.h"
+#include "tests/files/support/temp_folder.h"
 
 namespace weft::client {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <csignal>
 
-#include "client/base/atomic_file.h"
+#include "files/base/atomic_file.h"
 #include "tests/client/support/job_commands.h"
 
 namespace weft::client {

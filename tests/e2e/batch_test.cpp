@@ -33,11 +33,11 @@ class Pipeline : public ::testing::Test {
         " >out.txt 2>err.txt";
     const int status = std::system(command.c_str());
     return {.exit_code = WEXITSTATUS(status),
-            .out = client::contents_of(folder_ / "out.txt"),
-            .err = client::contents_of(folder_ / "err.txt")};
+            .out = files::contents_of(folder_ / "out.txt"),
+            .err = files::contents_of(folder_ / "err.txt")};
   }
   std::string report(const char* name) const {
-    return client::contents_of(folder_ / (std::string("weft-reports/") + name));
+    return files::contents_of(folder_ / (std::string("weft-reports/") + name));
   }
 
   Folder folder_;
@@ -50,11 +50,11 @@ TEST_F(Pipeline, LeavesMeshesReportPageAndLockFile) {
                       "0.4*hypot(x-200, y-200) + 1"})
                 .exit_code,
             0);
-  EXPECT_TRUE(client::contents_of(folder_ / "out/pipe.png").starts_with("\x89PNG"));
+  EXPECT_TRUE(files::contents_of(folder_ / "out/pipe.png").starts_with("\x89PNG"));
   EXPECT_NE(report("weft-junit.xml").find("tests=\"2\" failures=\"0\" errors=\"0\""),
             std::string::npos);
   EXPECT_NE(report("weft-summary.md").find("![pipe](<../out/pipe.png>)"), std::string::npos);
-  EXPECT_NE(client::contents_of(folder_ / "meshes.lock").find("\"pipe\""), std::string::npos);
+  EXPECT_NE(files::contents_of(folder_ / "meshes.lock").find("\"pipe\""), std::string::npos);
 }
 
 TEST_F(Pipeline, SaysWhatIsMissingIfWeftIsNotInstalled) {
@@ -66,17 +66,17 @@ TEST_F(Pipeline, SaysWhatIsMissingIfWeftIsNotInstalled) {
 
 TEST_F(Pipeline, HoldsLockedMeshesToTheirDigestsWhateverServerMakesThemAndVariablesSay) {
   ASSERT_EQ(mesh().exit_code, 0);
-  const std::string lock = client::contents_of(folder_ / "meshes.lock");
+  const std::string lock = files::contents_of(folder_ / "meshes.lock");
   const Server server;
   const Outcome outcome =
       mesh("--locked", "WEFT_MIN_ANGLE=30 WEFT_SNAP=1 WEFT_SERVER=" + server.address());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err << outcome.out;
-  EXPECT_EQ(client::contents_of(folder_ / "meshes.lock"), lock);
+  EXPECT_EQ(files::contents_of(folder_ / "meshes.lock"), lock);
 }
 
 TEST_F(Pipeline, FailsUnderLockedAndNamesTheMeshThatChanged) {
   ASSERT_EQ(mesh().exit_code, 0);
-  const std::string lock = client::contents_of(folder_ / "meshes.lock");
+  const std::string lock = files::contents_of(folder_ / "meshes.lock");
   write_manifest("0.02");
   const Outcome outcome = mesh("--locked");
   EXPECT_EQ(outcome.exit_code, 3);
@@ -84,17 +84,17 @@ TEST_F(Pipeline, FailsUnderLockedAndNamesTheMeshThatChanged) {
   EXPECT_NE(outcome.out.find("the mesh has changed"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("passed  pipe"), std::string::npos) << outcome.out;
   EXPECT_NE(report("weft-junit.xml").find("failures=\"1\""), std::string::npos);
-  EXPECT_EQ(client::contents_of(folder_ / "meshes.lock"), lock);
+  EXPECT_EQ(files::contents_of(folder_ / "meshes.lock"), lock);
 }
 
 TEST_F(Pipeline, FailsAtAGateAndKeepsTheOldLock) {
   ASSERT_EQ(mesh().exit_code, 0);
-  const std::string lock = client::contents_of(folder_ / "meshes.lock");
+  const std::string lock = files::contents_of(folder_ / "meshes.lock");
   write_manifest("0.02");
   const Outcome outcome = mesh("--require max-triangles=5000");
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_NE(outcome.out.find("more than 5000"), std::string::npos) << outcome.out;
-  EXPECT_EQ(client::contents_of(folder_ / "meshes.lock"), lock);
+  EXPECT_EQ(files::contents_of(folder_ / "meshes.lock"), lock);
 }
 
 TEST_F(Pipeline, EndsAsTheCallThatFailedAndReportsTheRest) {
@@ -130,7 +130,7 @@ TEST_F(Pipeline, FailsUnderLockedWhereAMeshIsGoneFromTheManifest) {
 
 TEST_F(Pipeline, ShowsThePageWhereGitHubLooks) {
   ASSERT_EQ(mesh("", "GITHUB_STEP_SUMMARY=page.md").exit_code, 0);
-  EXPECT_EQ(client::contents_of(folder_ / "page.md"), report("weft-summary.md"));
+  EXPECT_EQ(files::contents_of(folder_ / "page.md"), report("weft-summary.md"));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include <cstdlib>
 
 #include "client/call/mesh_call.h"
-#include "client/formats/domain_formats.h"
+#include "files/formats/domain_formats.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "tests/support/connected.h"
@@ -56,7 +56,7 @@ std::shared_ptr<grpc::Channel> connect(const std::string& address) {
 }
 
 v1::GenerateMeshRequest repeated_request(int number) {
-  static const auto domain = client::read_domain(model("cylinder.poly")).value();
+  static const auto domain = files::read_domain(model("cylinder.poly")).value();
   client::RequestOptions request_options;
   request_options.size = std::to_string(0.12 / (1 + number % 20));
   return client::make_request(domain, request_options);
@@ -64,11 +64,11 @@ v1::GenerateMeshRequest repeated_request(int number) {
 
 v1::GenerateMeshRequest mixed_request(int number) {
   struct Kind {
-    client::Domain domain;
+    files::Domain domain;
     double largest;  // size
   };
   const auto kind = [](const char* name, double largest) {
-    return Kind{client::read_domain(model(name)).value(), largest};
+    return Kind{files::read_domain(model(name)).value(), largest};
   };
   static const std::array kinds{kind("cylinder.poly", 0.4), kind("pipe.poly", 20),
                                 kind("key.poly", 0.3), kind("us-east-coast.poly", 0.1)};

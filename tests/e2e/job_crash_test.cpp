@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "client/call/mesh_call.h"
-#include "client/formats/domain_formats.h"
+#include "files/formats/domain_formats.h"
 #include "tests/e2e/fleet.h"
 #include "tests/e2e/programs.h"
 #include "tests/support/postgres.h"
@@ -209,7 +209,7 @@ TEST(JobCrash, AReplicaKilledBetweenTheLastChunkAndTheCommitLosesNoJob) {
 
 // Of 1 M triangles, or of 94 M.
 v1::GenerateMeshRequest large_request(int /*number*/) {
-  static const auto domain = client::read_domain(model("cylinder.poly")).value();
+  static const auto domain = files::read_domain(model("cylinder.poly")).value();
   const std::string triangles = std::to_string(few_or_many(1'600'000, 150'000'000));
   client::RequestOptions options;
   options.size = "((x>=0 && abs(y)<5) || (x<0 && x^2+y^2<25) ? 1200 : 1e4) / " + triangles;

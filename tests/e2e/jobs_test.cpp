@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "client/call/fetch_mesh.h"
-#include "client/geo/projection.h"
+#include "files/geo/projection.h"
 #include "tests/client/support/torn_relay.h"
 #include "tests/e2e/programs.h"
 
@@ -73,9 +73,9 @@ TEST_F(JobsByCommand, MadeWhileNobodyWaitsAreTheFilesThatMeshWrites) {
   mesh.insert(mesh.end(), request_options.begin(), request_options.end());
   ASSERT_EQ(weft(mesh).exit_code, 0);
   for (const char* extension : {".vtu", ".node", ".ele", ".poly"}) {
-    const std::string made = client::contents_of(folder_ / (std::string("m") + extension));
+    const std::string made = files::contents_of(folder_ / (std::string("m") + extension));
     EXPECT_FALSE(made.empty());
-    EXPECT_EQ(client::contents_of(folder_ / (std::string("f") + extension)), made) << extension;
+    EXPECT_EQ(files::contents_of(folder_ / (std::string("f") + extension)), made) << extension;
   }
 }
 
@@ -104,7 +104,7 @@ TEST_F(JobsByCommand, OfWhichSegmentsAreOutsideFailIfTheyAreStrict) {
 }
 
 TEST_F(JobsByCommand, InLongitudeAndLatitudeAreBroughtBackByTheDomain) {
-  if (!client::Projection::available()) GTEST_SKIP() << "built without PROJ";
+  if (!files::Projection::available()) GTEST_SKIP() << "built without PROJ";
   const std::string coast = model("us-east-coast.geojson");
   const std::string id = submit({coast, "--lonlat", "--size", "1e9"});
   ASSERT_EQ(weft({"mesh", coast, "--lonlat", "--size", "1e9", "-o", folder_ / "m.vtu"}).exit_code,
@@ -115,7 +115,7 @@ TEST_F(JobsByCommand, InLongitudeAndLatitudeAreBroughtBackByTheDomain) {
   const Outcome fetched =
       weft({"fetch", id, "--wait", "--lonlat", "--domain", coast, "-o", folder_ / "f.vtu"});
   ASSERT_EQ(fetched.exit_code, 0) << fetched.err;
-  EXPECT_EQ(client::contents_of(folder_ / "f.vtu"), client::contents_of(folder_ / "m.vtu"));
+  EXPECT_EQ(files::contents_of(folder_ / "f.vtu"), files::contents_of(folder_ / "m.vtu"));
 }
 
 TEST_F(JobsByCommand, AskedForTwiceAreMadeOnce) {
@@ -218,7 +218,7 @@ TEST_F(JobsByCommand, ArriveWholeOverAWireThatTearsAgainAndAgain) {
     auto spool = client::MeshSpool::create(folder_.path()).value();
     const auto report = client::fetch_mesh(*server, id, *spool, {});
     EXPECT_TRUE(report) << report.error().message;
-    const client::MeshView mesh = spool->view().value();
+    const files::MeshView mesh = spool->view().value();
     return std::tuple(report ? report->summary.chunks() : 0,
                       std::vector(mesh.coordinates.begin(), mesh.coordinates.end()),
                       std::vector(mesh.triangles.begin(), mesh.triangles.end()),

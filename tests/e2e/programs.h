@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 
 namespace weft::e2e {
 
-using Folder = client::TempFolder;
+using Folder = files::TempFolder;
 
 // Starts build/.../weft with these arguments; what it says goes to nobody.
 pid_t start_weft(const std::vector<std::string>& arguments);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "client/call/mesh_call.h"
-#include "client/formats/domain_formats.h"
+#include "files/formats/domain_formats.h"
 #include "tests/e2e/fleet.h"
 #include "tests/e2e/programs.h"
 
@@ -23,7 +23,7 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 
 // The pipe at its coarsest, and no two the same.
 v1::GenerateMeshRequest small_request(int number) {
-  static const auto domain = client::read_domain(model("pipe.poly")).value();
+  static const auto domain = files::read_domain(model("pipe.poly")).value();
   client::RequestOptions request_options;
   request_options.size = std::to_string(500 + number);
   return client::make_request(domain, request_options);
@@ -175,7 +175,7 @@ TEST(Soak, SlowReadersHoldLittleOfTheirMeshesInTheServersMemory) {
   const Server server({"--data", folder / "data"});
   const auto stub = v1::JobService::NewStub(connect(server.address()));
   v1::SubmitJobRequest submission;
-  const auto domain = client::read_domain(model("cylinder.poly")).value();
+  const auto domain = files::read_domain(model("cylinder.poly")).value();
   const std::string size = "0.003 / " + std::to_string(few_or_many(1, 5));
   *submission.mutable_mesh() = client::make_request(domain, {.size = size});
   v1::SubmitJobResponse submitted;
@@ -208,7 +208,7 @@ TEST(Soak, SlowReadersHoldLittleOfTheirMeshesInTheServersMemory) {
 }
 
 v1::GenerateMeshRequest cylinder_of(const std::string& size) {
-  static const auto domain = client::read_domain(model("cylinder.poly")).value();
+  static const auto domain = files::read_domain(model("cylinder.poly")).value();
   return client::make_request(domain, {.size = size});
 }
 

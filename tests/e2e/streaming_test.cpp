@@ -17,8 +17,8 @@
 #include <thread>
 
 #include "client/call/mesh_call.h"
-#include "client/formats/domain_formats.h"
-#include "client/formats/mesh_formats.h"
+#include "files/formats/domain_formats.h"
+#include "files/formats/mesh_formats.h"
 #include "tests/e2e/programs.h"
 #include "weft/v1/mesh_service.grpc.pb.h"
 
@@ -36,7 +36,7 @@ std::unique_ptr<Stub> stub_of(const Server& server) {
 
 v1::GenerateMeshRequest request_for(const std::string& domain,
                                     const client::RequestOptions& request_options) {
-  return client::make_request(client::read_domain(model(domain)).value(), request_options);
+  return client::make_request(files::read_domain(model(domain)).value(), request_options);
 }
 
 // A call read to its end.

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "tests/client/support/temp_folder.h"
 #include "tests/client/support/torn_relay.h"
 #include "tests/e2e/fleet.h"
 #include "tests/e2e/programs.h"
+#include "tests/files/support/temp_folder.h"
 
 namespace weft::e2e {
 namespace {
@@ -158,7 +158,7 @@ TEST(TornWire, WeftMeshGoesOnAsOftenAsTheWireTears) {
   ASSERT_EQ(torn.exit_code, 0) << torn.err;
   EXPECT_EQ(relay.torn(), 3u);
   EXPECT_NE(torn.err.find("trying again"), std::string::npos) << torn.err;
-  EXPECT_EQ(client::contents_of(folder / "torn.npz"), client::contents_of(folder / "whole.npz"));
+  EXPECT_EQ(files::contents_of(folder / "torn.npz"), files::contents_of(folder / "whole.npz"));
 }
 
 }  // namespace

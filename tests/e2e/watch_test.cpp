@@ -53,7 +53,7 @@ TEST_F(Watched, ShowsEveryMetricThatDashboardAndAlertsLookAt) {
   const std::set<std::string> shown = names_in(scrape_, R"((?:^|\n)([a-z_]+)[ {])");
   for (const char* file : {"/grafana-dashboard.json", "/alerts.yaml"}) {
     const std::set<std::string> wanted =
-        names_in(client::contents_of(std::string(testing::kDeploy) + file),
+        names_in(files::contents_of(std::string(testing::kDeploy) + file),
                  R"(\b((?:weft|process)_[a-z_]+)\b)");
     EXPECT_GE(wanted.size(), 8u) << file;
     for (const std::string& name : wanted)
@@ -63,7 +63,7 @@ TEST_F(Watched, ShowsEveryMetricThatDashboardAndAlertsLookAt) {
 
 TEST_F(Watched, HasADashboardThatLooksAtEveryMetricOfWeft) {
   const auto dashboard = nlohmann::json::parse(
-      client::contents_of(std::string(testing::kDeploy) + "/grafana-dashboard.json"));
+      files::contents_of(std::string(testing::kDeploy) + "/grafana-dashboard.json"));
   std::string expressions;
   for (const auto& panel : dashboard.at("panels"))
     for (const auto& target : panel.at("targets"))

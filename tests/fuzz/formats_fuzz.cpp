@@ -16,18 +16,18 @@
 #include <string_view>
 #include <vector>
 
-#include "client/formats/domain_formats.h"
-#include "client/formats/domains/seeded.h"
-#include "client/formats/mesh_formats.h"
-#include "client/formats/raster.h"
-#include "tests/client/support/temp_folder.h"
+#include "files/formats/domain_formats.h"
+#include "files/formats/domains/seeded.h"
+#include "files/formats/mesh_formats.h"
+#include "files/formats/raster.h"
+#include "tests/files/support/temp_folder.h"
 #include "tests/fuzz/byte_source.h"
 #include "tests/fuzz/law.h"
 
 namespace weft::fuzz {
 namespace {
 
-using namespace client;
+using namespace files;
 
 enum class Kind { kDomain, kMesh, kGrid };
 
@@ -90,12 +90,12 @@ std::string wrong_with(const Mesh& mesh) {
 }
 
 std::string wrong_with(const Domain& domain) {
-  const auto finite = [](client::Point p) { return std::isfinite(p.x) && std::isfinite(p.y); };
-  for (const client::Point p : domain.points)
+  const auto finite = [](files::Point p) { return std::isfinite(p.x) && std::isfinite(p.y); };
+  for (const files::Point p : domain.points)
     if (!finite(p)) return "a point that is not finite";
   for (const Domain::Segment& s : domain.segments)
     if (s.a >= domain.points.size() || s.b >= domain.points.size()) return "a segment of no point";
-  for (const client::Point p : domain.holes)
+  for (const files::Point p : domain.holes)
     if (!finite(p)) return "a hole that is not finite";
   for (const Domain::Region& r : domain.regions)
     if (!finite(r.at) || (r.max_area && !(*r.max_area > 0))) return "a region that is no region";

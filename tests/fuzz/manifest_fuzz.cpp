@@ -9,16 +9,16 @@
 #include <string_view>
 
 #include "client/batch/manifest.h"
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 #include "tests/fuzz/law.h"
 
 namespace weft::fuzz {
 namespace {
 
 void judge(const std::uint8_t* data, std::size_t size) {
-  static const client::TempFolder folder(std::filesystem::is_directory("/dev/shm")
-                                             ? std::filesystem::path("/dev/shm")
-                                             : std::filesystem::temp_directory_path());
+  static const files::TempFolder folder(std::filesystem::is_directory("/dev/shm")
+                                            ? std::filesystem::path("/dev/shm")
+                                            : std::filesystem::temp_directory_path());
   const auto file =
       folder.write("in.yaml", std::string_view(reinterpret_cast<const char*>(data), size));
   const auto must = [&](bool holds, std::string_view law, const std::string& evidence) {

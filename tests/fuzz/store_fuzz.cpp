@@ -19,7 +19,7 @@
 #include "server/store/sqlite/sqlite_store.h"
 #include "server/wire/job_wire.h"
 #include "server/wire/translate.h"
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 #include "tests/fuzz/byte_source.h"
 #include "tests/fuzz/law.h"
 
@@ -132,9 +132,9 @@ class HostileStore {
     }
   }
 
-  const client::TempFolder folder_{std::filesystem::is_directory("/dev/shm")
-                                       ? std::filesystem::path("/dev/shm")
-                                       : std::filesystem::temp_directory_path()};
+  const files::TempFolder folder_{std::filesystem::is_directory("/dev/shm")
+                                      ? std::filesystem::path("/dev/shm")
+                                      : std::filesystem::temp_directory_path()};
   const WallTime now_{std::chrono::seconds(1'700'000'000)};
   std::unique_ptr<JobStore> store_;
   sqlite3* database_ = nullptr;

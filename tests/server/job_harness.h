@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "server/store/sqlite/sqlite_store.h"
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 #include "tests/server/logged_server.h"
 #include "weft/v1/job_service.grpc.pb.h"
 
@@ -80,7 +80,7 @@ class JobServer {
   void stop() { server_.reset(); }
 
  private:
-  client::TempFolder own_folder_;
+  files::TempFolder own_folder_;
   Log log_;
   std::unique_ptr<Server> server_;
 };

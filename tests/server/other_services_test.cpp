@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "grpc/reflection/v1/reflection.pb.h"
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 #include "tests/server/harness.h"
 #include "tests/server/logged_server.h"
 #include "tests/server/raw_call.h"
@@ -62,7 +62,7 @@ TEST(Health, SaysNotServingWhileTheServerDrains) {
 
 TEST(Health, LetsNobodyTakeThePlacesOfAllWhoWatch) {
   constexpr const char* kWatch = "/grpc.health.v1.Health/Watch";
-  const client::TempFolder folder;
+  const files::TempFolder folder;
   LoggedServer server(
       {.listen = {"127.0.0.1:0", "unix:" + (folder / "s").string()}, .service = {}});
   const auto from = [&](std::size_t address) {

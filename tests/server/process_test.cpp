@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 #include "tests/server/harness.h"
 #include "tests/support/paths.h"
 
@@ -131,7 +131,7 @@ v1::GenerateMeshRequest endless_request() {
 
 class TemporaryFolder : public ::testing::Test {
  protected:
-  client::TempFolder folder_;
+  files::TempFolder folder_;
 };
 
 const std::vector<std::string> kAnyPort = {"--listen", "127.0.0.1:0"};

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 
 typedef struct pg_conn PGconn;  // of libpq-fe.h
 
@@ -62,7 +62,7 @@ class PostgresServer {
   std::string uri(const std::string& database) const;
   void clean_up_after_a_crash();
 
-  const client::TempFolder folder_;
+  const files::TempFolder folder_;
   int alive_ = -1;  // the end of a pipe: it closes when this program ends
   pid_t pid_ = -1;  // -1: it does not run
   int databases_ = 0;

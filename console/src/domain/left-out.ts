@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts what of a file is left out because nothing can be meshed of it, as
-// client/formats/domains/left_out.h does.
+// files/formats/domains/left_out.h does.
 const kinds = {
   ring: ["ring without an area", "rings without an area"],
   line: ["line without a length", "lines without a length"],

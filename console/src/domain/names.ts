@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a file calls its markers and regions, by the rules of client/formats/names.h.
+// What a file calls its markers and regions, by the rules of files/formats/names.h.
 
 import type { GenerateMeshRequest } from "../gen/weft/v1/mesh_service_pb";
 

@@ -122,7 +122,7 @@ export function readPoly(name: string, text: string): PlanarDomain {
   }
   const names = { marker: new NameReader("marker"), region: new NameReader("region") };
   const regions = readRegions(lines, names.region);
-  // As client/formats/triangle/triangle_names.h has them.
+  // As files/formats/triangle/triangle_names.h has them.
   for (const [, kind, id, called] of text.matchAll(/^# (marker|region)=(-?\d+):([^\n]*?)\t*$/gm))
     if (Number(id) === (Number(id) | 0)) names[kind as keyof typeof names].add(Number(id), called!);
   return {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a ring crosses itself, and where the rings of a polygon overlap, as client/formats/domains/ring_crossing.h
+// Where a ring crosses itself, and where the rings of a polygon overlap, as files/formats/domains/ring_crossing.h
 // finds it: for warnings alone, so without exact predicates, and not to the end in polygons of very many edges near
 // each other.
 import type { Point } from "./planar-domain";

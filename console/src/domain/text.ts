@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text as programs of any system write it, by the rules of client/formats/files/file_contents.h and
+// Text as programs of any system write it, by the rules of files/bytes/file_contents.h and
 // number_text.h.
 import { FileError } from "./file-error";
 

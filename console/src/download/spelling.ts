@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How files spell the names of markers and regions, as client/formats/format_names.h has it.
+// How files spell the names of markers and regions, as files/formats/format_names.h has it.
 import type { Names } from "../domain/names";
 
 const numbered = (name: string, between: string) =>

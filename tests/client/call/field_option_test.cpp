@@ -6,9 +6,9 @@
 
 #include "client/call/mesh_request.h"
 #include "client/call/request_rows.h"
-#include "tests/client/support/sample_mesh.h"
-#include "tests/client/support/shapefile_writer.h"
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/sample_mesh.h"
+#include "tests/files/support/shapefile_writer.h"
+#include "tests/files/support/temp_folder.h"
 
 namespace weft::client {
 namespace {

@@ -7,9 +7,9 @@
 #include "client/call/mesh_request.h"
 #include "client/report/watch_job.h"
 #include "tests/client/support/fake_jobs.h"
-#include "tests/client/support/sample_mesh.h"
-#include "tests/client/support/temp_folder.h"
 #include "tests/client/support/torn_relay.h"
+#include "tests/files/support/sample_mesh.h"
+#include "tests/files/support/temp_folder.h"
 
 namespace weft::client {
 namespace {

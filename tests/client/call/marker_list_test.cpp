@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "client/call/mesh_request.h"
-#include "tests/client/support/sample_mesh.h"
+#include "tests/files/support/sample_mesh.h"
 
 namespace weft::client {
 namespace {

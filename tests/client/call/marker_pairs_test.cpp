@@ -8,7 +8,7 @@
 
 #include "client/call/mesh_request.h"
 #include "client/call/request_rows.h"
-#include "tests/client/support/sample_mesh.h"
+#include "tests/files/support/sample_mesh.h"
 
 namespace weft::client {
 namespace {

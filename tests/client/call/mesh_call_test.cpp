@@ -11,8 +11,9 @@
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "tests/client/support/fake_service.h"
-#include "tests/client/support/sample_mesh.h"
-#include "tests/client/support/temp_folder.h"
+#include "tests/client/support/sample_stream.h"
+#include "tests/files/support/sample_mesh.h"
+#include "tests/files/support/temp_folder.h"
 
 namespace weft::client {
 namespace {

@@ -6,8 +6,9 @@
 #include <functional>
 #include <limits>
 
-#include "tests/client/support/sample_mesh.h"
-#include "tests/client/support/temp_folder.h"
+#include "tests/client/support/sample_stream.h"
+#include "tests/files/support/sample_mesh.h"
+#include "tests/files/support/temp_folder.h"
 
 namespace weft::client {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "client/call/edge_at.h"
 #include "client/call/mesh_request.h"
-#include "tests/client/support/sample_mesh.h"
+#include "tests/files/support/sample_mesh.h"
 
 namespace weft::client {
 namespace {

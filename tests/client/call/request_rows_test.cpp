@@ -9,13 +9,14 @@
 #include <map>
 
 #include "client/batch/manifest.h"
-#include "client/formats/files/layer_rows.h"
-#include "client/geo/projection.h"
-#include "client/geo/projection_rows.h"
+#include "client/call/layer_rows.h"
+#include "client/call/projection_rows.h"
 #include "client/report/output_rows.h"
+#include "files/geo/projection.h"
 #include "tests/client/support/fake_service.h"
 #include "tests/client/support/job_commands.h"
-#include "tests/client/support/sample_mesh.h"
+#include "tests/client/support/sample_stream.h"
+#include "tests/files/support/sample_mesh.h"
 
 namespace weft::client {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "client/base/text.h"
+#include "files/base/text.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 

@@ -7,7 +7,7 @@
 #include "client/batch/batch_report.h"
 #include "client/batch/lock_file.h"
 #include "client/batch/manifest.h"
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 
 namespace weft::client {
 namespace {

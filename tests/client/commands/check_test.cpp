@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "tests/client/support/temp_folder.h"
 #include "tests/client/support/weft_process.h"
+#include "tests/files/support/temp_folder.h"
 
 namespace weft::client {
 namespace {

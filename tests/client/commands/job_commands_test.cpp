@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "client/formats/mesh_formats.h"
+#include "files/formats/mesh_formats.h"
 #include "google/rpc/error_details.pb.h"
 #include "tests/client/support/job_commands.h"
-#include "tests/client/support/sample_mesh.h"
+#include "tests/files/support/sample_mesh.h"
 
 namespace weft::client {
 namespace {

@@ -12,8 +12,8 @@
 #include "client/drawing/colors.h"
 #include "client/drawing/drawn_triangle.h"
 #include "client/drawing/legend.h"
-#include "tests/client/support/sample_mesh.h"
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/sample_mesh.h"
+#include "tests/files/support/temp_folder.h"
 
 namespace weft::client {
 namespace {

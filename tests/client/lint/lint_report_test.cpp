@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "client/formats/domain_formats.h"
-#include "tests/client/lint/faulty_domains.h"
-#include "tests/client/support/temp_folder.h"
+#include "files/formats/domain_formats.h"
+#include "tests/files/lint/faulty_domains.h"
+#include "tests/files/support/temp_folder.h"
 
 namespace weft::client {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "client/formats/domain_formats.h"
-#include "tests/client/support/temp_folder.h"
+#include "files/formats/domain_formats.h"
+#include "tests/files/support/temp_folder.h"
 
 namespace weft::client {
 namespace {

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "client/report/quality_report.h"
-#include "tests/client/support/sample_mesh.h"
+#include "tests/files/support/sample_mesh.h"
 
 namespace weft::client {
 namespace {

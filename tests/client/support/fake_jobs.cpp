@@ -9,7 +9,8 @@
 
 #include "client/report/job_text.h"
 #include "google/rpc/error_details.pb.h"
-#include "tests/client/support/sample_mesh.h"
+#include "tests/client/support/sample_stream.h"
+#include "tests/files/support/sample_mesh.h"
 
 namespace weft::client {
 namespace {

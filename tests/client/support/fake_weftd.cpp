@@ -21,8 +21,10 @@
 #include <fstream>
 #include <string>
 
+#include "client/base/files.h"
 #include "tests/client/support/fake_service.h"
-#include "tests/client/support/sample_mesh.h"
+#include "tests/client/support/sample_stream.h"
+#include "tests/files/support/sample_mesh.h"
 
 namespace {
 

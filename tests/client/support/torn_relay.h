@@ -15,7 +15,8 @@
 #include <thread>
 #include <vector>
 
-#include "client/base/atomic_file.h"
+#include "client/base/files.h"
+#include "files/base/atomic_file.h"
 
 namespace weft::client {
 

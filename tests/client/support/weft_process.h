@@ -14,7 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/client/support/temp_folder.h"
+#include "client/base/files.h"
+#include "tests/files/support/temp_folder.h"
 #include "tests/support/paths.h"
 
 namespace weft::client {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "client/call/mesh_request.h"
-#include "client/formats/domain_formats.h"
+#include "files/formats/domain_formats.h"
 #include "tests/e2e/fleet.h"
 #include "tests/e2e/hostile/kinds.h"
 #include "tests/e2e/programs.h"
@@ -39,7 +39,7 @@ const v1::GenerateMeshRequest& pipe() {
     client::RequestOptions options;
     options.size = "0.4*hypot(x-200, y-200) + 1";
     options.no_cache = true;
-    return client::make_request(client::read_domain(model("pipe.poly")).value(), options);
+    return client::make_request(files::read_domain(model("pipe.poly")).value(), options);
   }();
   return request;
 }

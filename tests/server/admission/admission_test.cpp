@@ -4,7 +4,7 @@
 
 #include <thread>
 
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 #include "tests/server/job_harness.h"
 #include "tests/server/logged_server.h"
 #include "tests/server/raw_call.h"
@@ -63,7 +63,7 @@ TEST(Admission, GivesUpAMessageThatDoesNotCome) {
 }
 
 TEST(Admission, RefusesAStrangerBeforeHisMessageComes) {
-  const client::TempFolder folder;
+  const files::TempFolder folder;
   ServerOptions options = local();
   options.tokens = folder.write("tokens", "ann secret-of-ann-16\n").string();
   LoggedServer server(options);
@@ -73,7 +73,7 @@ TEST(Admission, RefusesAStrangerBeforeHisMessageComes) {
 }
 
 TEST(Admission, TellsAStrangerOfTheWholeServerWithoutReadingHisMessage) {
-  const client::TempFolder folder;
+  const files::TempFolder folder;
   ServerOptions options = local();
   options.tokens = folder.write("tokens", "ann secret-of-ann-16\n").string();
   LoggedServer server(options);
@@ -93,7 +93,7 @@ TEST(Admission, KeepsSmallRequestsSmall) {
 }
 
 TEST(Admission, CountsRefusalsThatItDoesNotLog) {
-  const client::TempFolder folder;
+  const files::TempFolder folder;
   ServerOptions options = local();
   options.tokens = folder.write("tokens", "ann secret-of-ann-16\n").string();
   options.admission.refusal_lines = 3;
@@ -197,7 +197,7 @@ TEST(Admission, RefusesACallThatCanNeverBegin) {
 }
 
 TEST(Admission, RefusesAJobThatCanNeverBegin) {
-  const client::TempFolder folder;
+  const files::TempFolder folder;
   LoggedServer server(of_160_mebibytes(), *SqliteStore::open({.folder = folder.path().string()}));
   JobClient client(channel_to(server.address(), grpc::InsecureChannelCredentials()));
   v1::SubmitJobRequest submission;

@@ -3,7 +3,7 @@
 #include "server/console/console.h"
 
 #include "server/net/caller.h"
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 #include "tests/server/console/console_server.h"
 #include "tests/server/raw_call.h"
 #include "tests/support/certificates.h"
@@ -18,12 +18,12 @@ using weft::testing::TestCertificate;
 
 class ConsoleTokens : public ::testing::Test {
  protected:
-  static ServerOptions options(const client::TempFolder& folder) {
+  static ServerOptions options(const files::TempFolder& folder) {
     ServerOptions options = with_console();
     options.tokens = folder.write("tokens", "ann secret-of-ann-16\n").string();
     return options;
   }
-  const client::TempFolder folder_;
+  const files::TempFolder folder_;
   ConsoleServer server_{empty_mesh(), options(folder_)};
   const std::string mesh_ = valid_request().SerializeAsString();
 };
@@ -172,7 +172,7 @@ class ConsoleTls : public ::testing::Test {
     return context;
   }
 
-  const client::TempFolder folder_;
+  const files::TempFolder folder_;
   const TestCa ca_{"a CA"};
   const TestCa clients_{"a CA of clients"};
 };

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 #include "tests/server/logged_server.h"
 #include "tests/support/certificates.h"
 #include "tests/support/event.h"
@@ -40,7 +40,7 @@ class DeafListener {
 };
 
 TEST(Answers, AServerAtEachOfItsAddresses) {
-  const client::TempFolder folder;
+  const files::TempFolder folder;
   const std::string socket = "unix:" + (folder / "s").string();
   LoggedServer server({.listen = {"127.0.0.1:0", socket}, .service = {}});
   for (const std::string& address : server->addresses())
@@ -48,7 +48,7 @@ TEST(Answers, AServerAtEachOfItsAddresses) {
 }
 
 TEST(Answers, AServerThatEncryptsAndWantsCertificates) {
-  const client::TempFolder folder;
+  const files::TempFolder folder;
   const TestCa ca("a CA");
   const TestCertificate own = ca.issue({.common_name = "weftd", .names = {"IP:127.0.0.1"}});
   LoggedServer server({.listen = {"127.0.0.1:0"},

@@ -232,7 +232,7 @@ TEST_F(FetchedMesh, IsReadNoFurtherAheadThanThereIsMemory) {
 }
 
 TEST(JobAttempts, ThatWereCutShortByAStopDoNotCount) {
-  const client::TempFolder folder;
+  const files::TempFolder folder;
   {
     // Claimed and put back as by servers that stop, more often than there are attempts.
     const auto store = SqliteStore::open({.folder = folder.path().string()}).value();

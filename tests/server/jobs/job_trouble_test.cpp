@@ -184,7 +184,7 @@ TEST(JobTrouble, JobsThatEndOrAreCancelledLoseNoLease) {
 }
 
 TEST(JobTrouble, AServerThatStopsPutsItsJobsBack) {
-  const client::TempFolder folder;
+  const files::TempFolder folder;
   Event begun;
   std::string id;
   {
@@ -328,7 +328,7 @@ TEST(JobTrouble, AMeshThatIsNoLongerKeptIsGoneByThatName) {
 }
 
 // Flips a bit in the last chunk that was stored.
-void flip_a_bit(const client::TempFolder& folder) {
+void flip_a_bit(const files::TempFolder& folder) {
   sqlite3* database = nullptr;
   ASSERT_EQ(sqlite3_open((folder / "weft.db").c_str(), &database), SQLITE_OK);
   sqlite3_busy_timeout(database, 10'000);
@@ -343,7 +343,7 @@ void flip_a_bit(const client::TempFolder& folder) {
 }
 
 TEST(JobTrouble, AMeshThatTheStoreHasDamagedIsMadeAnew) {
-  const client::TempFolder folder;
+  const files::TempFolder folder;
   JobServer server(engine_of_chunks(3), quick_jobs(), folder.path().string());
   JobClient client = server.client();
   const std::string id = client.submit(valid_request());
@@ -370,7 +370,7 @@ TEST(JobTrouble, AMeshThatTheStoreHasDamagedIsMadeAnew) {
 }
 
 TEST(JobTrouble, AMeshThatIsMadeInSpiteOfAKeptOneMendsItsChunks) {
-  const client::TempFolder folder;
+  const files::TempFolder folder;
   JobServer server(engine_of_chunks(3), quick_jobs(), folder.path().string());
   JobClient client = server.client();
   const std::string id = client.submit(valid_request());

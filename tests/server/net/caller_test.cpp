@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "server/store/sqlite/sqlite_store.h"
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 #include "tests/server/logged_server.h"
 #include "tests/server/raw_call.h"
 #include "weft/v1/job_service.grpc.pb.h"
@@ -20,7 +20,7 @@ using grpc::StatusCode;
 // A server that knows the tokens of ann and bob.
 class Tokens : public ::testing::Test {
  protected:
-  const client::TempFolder folder_;
+  const files::TempFolder folder_;
   LoggedServer server_{
       {.listen = {"127.0.0.1:0"},
        .service = {},
@@ -117,7 +117,7 @@ class SharedOrNot : public ::testing::TestWithParam<bool> {
     return raw_unary(channel_, path.c_str(), request.SerializeAsString(), token).second;
   }
 
-  const client::TempFolder folder_;
+  const files::TempFolder folder_;
   LoggedServer server_{
       {.listen = {"127.0.0.1:0"},
        .service = {.cache_bytes = 1 << 20, .share_across_clients = GetParam()},
@@ -239,7 +239,7 @@ TEST(TraceId, IsEmptyWhereTheHeaderIsMalformed) {
 }
 
 TEST(RevokedTokens, EndTheStreamsOfTheirCallers) {
-  const client::TempFolder folder;
+  const files::TempFolder folder;
   const auto tokens = folder.write("tokens", "ann secret-of-ann-16\nbob secret-of-bob-16\n");
   LoggedServer server(
       {.listen = {"127.0.0.1:0"}, .service = {}, .tokens = tokens.string()},

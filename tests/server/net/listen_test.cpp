@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 #include "tests/server/harness.h"
 
 namespace weft::server {
@@ -34,7 +34,7 @@ class ListenOnUnixSocket : public ::testing::Test {
         make_logger("off"));
   }
 
-  client::TempFolder folder_;
+  files::TempFolder folder_;
   fs::path path_;
   std::string address_;
 };

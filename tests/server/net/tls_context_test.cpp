@@ -10,7 +10,7 @@
 
 #include <filesystem>
 
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 #include "tests/server/logged_server.h"
 #include "tests/server/raw_call.h"
 #include "tests/support/certificates.h"
@@ -47,7 +47,7 @@ class Tls : public ::testing::Test {
     return channel_to(server.address(), grpc::SslCredentials({trusted.pem(), own.key, own.pem}));
   }
 
-  client::TempFolder folder_;
+  files::TempFolder folder_;
   const TestCa ca_{"a CA"};
   const TestCa other_ca_{"another CA"};
 };

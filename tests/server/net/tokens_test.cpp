@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 #include "tests/server/logged_server.h"
 
 namespace weft::server {
@@ -73,7 +73,7 @@ class TokenFiles : public ::testing::Test {
     return TokenFile::open(path_, log_.logger(), std::chrono::milliseconds(5)).value();
   }
 
-  client::TempFolder folder_;
+  files::TempFolder folder_;
   const std::filesystem::path path_ = folder_ / "tokens";
   testing::Log log_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/observe/machine.h"
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ class Kernel {
   Machine read(std::uint32_t allowed) const { return read_machine(root_.path(), allowed); }
 
  private:
-  client::TempFolder root_;
+  files::TempFolder root_;
 };
 
 TEST(Machine, WithoutCgroupsGrantsTheAffinityMaskAndAllMemory) {

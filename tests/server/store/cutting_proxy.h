@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 
 namespace weft::server {
 
@@ -28,7 +28,7 @@ class CuttingProxy {
   void accept_all();
   void serve(int client);
 
-  const client::TempFolder folder_;
+  const files::TempFolder folder_;
   std::string server_;  // the path of its socket
   std::string uri_;
   int listening_ = -1;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A domain from a GeoJSON object, by the rules of client/formats/domains/geojson.h: the same file
+"""A domain from a GeoJSON object, by the rules of files/formats/domains/geojson.h: the same file
 gives the same request, and so the same mesh, as on the command line.
 """
 
@@ -24,7 +24,7 @@ from .errors import DomainError
 Points = npt.NDArray[np.float64]
 
 
-# As client/formats/domains/left_out.h has it.
+# As files/formats/domains/left_out.h has it.
 _LEFT_OUT = {"ring without an area": "rings without an area",
              "line without a length": "lines without a length",
              "empty geometry": "empty geometries"}

@@ -62,7 +62,7 @@ def _fault(name: str) -> str:
 
 class FileNames:
     """Names that a file has: `table`, by number. What cannot be a name, or would be there twice, is
-    left out with a WeftWarning, as client/formats/names.h does it."""
+    left out with a WeftWarning, as files/formats/names.h does it."""
 
     def __init__(self, kind: str, file: str) -> None:
         self.table: dict[int, str] = {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""NumPy's archive of arrays, as client/formats/meshes/npz.h has it."""
+"""NumPy's archive of arrays, as files/formats/meshes/npz.h has it."""
 
 from __future__ import annotations
 

@@ -17,8 +17,8 @@ from ._text import read_text, shortest, without_fortran
 from ._warning import warn
 from .errors import DomainError
 
-_ARC = re.compile(r"# arc=(.*)")  # see client/formats/triangle/triangle_arcs.h
-_NAME = re.compile(r"# (marker|region)=(-?[0-9]+):(.*)")  # see client/formats/triangle/triangle_names.h
+_ARC = re.compile(r"# arc=(.*)")  # see files/formats/triangle/triangle_arcs.h
+_NAME = re.compile(r"# (marker|region)=(-?[0-9]+):(.*)")  # see files/formats/triangle/triangle_names.h
 _DOUBTFUL = re.compile(r"[0-9],[0-9]")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rasters in a plane, by the rules of client/formats/rasters/projected_window.cpp; PROJ is called
+"""Rasters in a plane, by the rules of files/formats/rasters/projected_window.cpp; PROJ is called
 through pyproj."""
 
 from __future__ import annotations

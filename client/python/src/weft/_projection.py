@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Domains in longitude and latitude: into a plane in metres, and their meshes back.
 
-By the rules of client/geo/, with the same choice of a projection, so that the same file gives the
+By the rules of files/geo/, with the same choice of a projection, so that the same file gives the
 same mesh as `weft mesh --lonlat` does, bit for bit if pyproj has the same version of PROJ. PROJ is
 called through pyproj.
 """
@@ -195,7 +195,7 @@ class Projection:
 
 
 class _Extent:
-    """Where on the Earth the points lie: client/geo/lonlat_extent.h."""
+    """Where on the Earth the points lie: files/geo/lonlat_extent.h."""
 
     def __init__(self, domain: Domain) -> None:
         if not len(domain.points):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An open raster file, by the rules of client/formats/rasters/gdal_source.cpp."""
+"""An open raster file, by the rules of files/formats/rasters/gdal_source.cpp."""
 
 from __future__ import annotations
 

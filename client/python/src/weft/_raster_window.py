@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What of a raster file a box needs, by the rules of client/formats/rasters/raster_window.cpp: the
+"""What of a raster file a box needs, by the rules of files/formats/rasters/raster_window.cpp: the
 same file and box give the same nodes and values as on the command line."""
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where a ring crosses itself, and where the rings of a polygon overlap, as
-client/formats/domains/ring_crossing.h finds it: for warnings alone, so without exact predicates, and not to the
+files/formats/domains/ring_crossing.h finds it: for warnings alone, so without exact predicates, and not to the
 end in polygons of very many edges near each other."""
 
 from __future__ import annotations

@@ -71,7 +71,7 @@ def second_order(mesh: Mesh) -> tuple[Any, Any]:
 
 
 def _turn_over(nodes: Any) -> Any:
-    """(m,): whether a coefficient of the Jacobian's determinant is not above 0; client/formats/derived/second_order.h
+    """(m,): whether a coefficient of the Jacobian's determinant is not above 0; files/formats/derived/second_order.h
     says which."""
     a, b, c = np.moveaxis(nodes[:, :3], 1, 0)
     ab, bc, ca = np.moveaxis(2 * nodes[:, 3:] - (nodes[:, :3] + nodes[:, [1, 2, 0]]) / 2, 1, 0)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text of files, as client/formats/files/file_contents.h and number_text.h read it, and numbers in
-messages, as client/base/text.h writes them."""
+"""Text of files, as files/bytes/file_contents.h and number_text.h read it, and numbers in
+messages, as files/base/text.h writes them."""
 
 from __future__ import annotations
 

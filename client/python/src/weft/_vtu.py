@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes VTK's unstructured grid, the same bytes as client/formats/meshes/vtu_writer.cpp: XML with raw
+"""Writes VTK's unstructured grid, the same bytes as files/formats/meshes/vtu_writer.cpp: XML with raw
 appended data, the triangles and then the edges on input segments as lines, cell data `region` and
 `marker`.
 """

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "server/store/sqlite/sqlite_store.h"
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 #include "tests/server/store/backend.h"
 
 namespace weft::server {
@@ -33,7 +33,7 @@ class SqliteBackend final : public Backend {
   }
 
  private:
-  const client::TempFolder folder_{folder_for_tests()};
+  const files::TempFolder folder_{folder_for_tests()};
   std::atomic<std::chrono::microseconds> ahead_{std::chrono::microseconds(0)};
 };
 

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "server/store/sqlite/sqlite.h"
-#include "tests/client/support/temp_folder.h"
+#include "tests/files/support/temp_folder.h"
 #include "tests/server/store/store_test.h"
 
 namespace weft::server {
@@ -33,7 +33,7 @@ class SqliteTest : public testing::Test {
   }
 
  private:
-  const client::TempFolder temp_{folder_for_tests()};
+  const files::TempFolder temp_{folder_for_tests()};
 };
 
 TEST_F(SqliteTest, TheFolderIsMadeForItsOwnerAlone) {

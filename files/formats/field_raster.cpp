@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "files/formats/field_raster.h"
+
+#include <algorithm>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include "files/formats/raster.h"
+#include "files/formats/rasters/projected_window.h"
+#include "files/formats/rasters/raster_source.h"
+#include "files/formats/rasters/raster_window.h"
+
+namespace weft::files {
+namespace {
+
+// An ESRI ASCII grid, as raster.h reads it.
+class AsciiSource final : public RasterSource {
+ public:
+  AsciiSource(const std::filesystem::path& path, Raster raster) : raster_(std::move(raster)) {
+    shape_.name = path.string();
+    shape_.grids.push_back(
+        {raster_.x, raster_.y, raster_.dx, raster_.dy, raster_.columns, raster_.rows});
+  }
+
+  Result<void> read(std::size_t, const RasterPart& part, float* out, std::size_t stride) override {
+    for (std::size_t j = 0; j < part.rows; ++j) {
+      const auto row = raster_.values.begin() +
+                       static_cast<std::ptrdiff_t>((part.row + j) * raster_.columns + part.column);
+      std::transform(row, row + part.columns, out + j * stride, field_value);
+    }
+    return {};
+  }
+
+  bool is_in(const CoordinateSystem&) const override { return true; }
+
+  Result<std::unique_ptr<PlaneToRaster>> from_plane(const std::string&) override {
+    return fail(ExitCode::kInternal, shape_.name + ": was not opened with GDAL");
+  }
+
+ private:
+  Raster raster_;
+};
+
+Result<std::unique_ptr<RasterSource>> open_ascii(const std::filesystem::path& path,
+                                                 const std::string& band) {
+  if (!band.empty() && band != "1")
+    return fail(ExitCode::kUnreadableInput, path.string() + ": has one band, not a band " + band);
+  auto raster = read_raster(path, RasterValues::kAny);
+  if (!raster) return tl::unexpected(raster.error());
+  return std::make_unique<AsciiSource>(path, std::move(*raster));
+}
+
+Result<std::unique_ptr<RasterSource>> open(const std::filesystem::path& path,
+                                           const std::string& band) {
+  if (auto found = must_be_raster_file(path); !found) return tl::unexpected(found.error());
+  return is_raster_path(path) ? open_ascii(path, band) : open_with_gdal(path, band);
+}
+
+}  // namespace
+
+Result<void> must_be_raster_file(const std::filesystem::path& path) {
+  std::error_code problem;
+  if (path.string().starts_with("/vsi") || std::filesystem::exists(path, problem)) return {};
+  return fail(ExitCode::kUnreadableInput,
+              path.string() + ": " + (problem ? problem.message() : "no such file"));
+}
+
+Result<FieldRaster> read_field_raster(const std::filesystem::path& path, const std::string& band,
+                                      const RasterBox& box, std::uint64_t max_values) {
+  const auto source = open(path, band);
+  if (!source) return tl::unexpected(source.error());
+  return read_window(**source, box, max_values);
+}
+
+Result<FieldRaster> read_field_raster_in(const std::filesystem::path& path, const std::string& band,
+                                         const RasterBox& box, const CoordinateSystem& system,
+                                         std::uint64_t max_values) {
+  const auto source = open(path, band);
+  if (!source) return tl::unexpected(source.error());
+  if ((*source)->is_in(system)) return read_window(**source, box, max_values);
+  return read_projected_window(**source, box, system.definition, max_values);
+}
+
+Result<FieldRaster> read_field_raster_projected(const std::filesystem::path& path,
+                                                const std::string& band, const RasterBox& box,
+                                                const std::string& crs, std::uint64_t max_values) {
+  if (auto found = must_be_raster_file(path); !found) return tl::unexpected(found.error());
+  const auto source = open_with_gdal(path, band);
+  if (!source) return tl::unexpected(source.error());
+  return read_projected_window(**source, box, crs, max_values);
+}
+
+RasterPath split_raster_path(std::string_view text) {
+  std::error_code ignored;
+  for (std::size_t colon = text.find(':'); colon != std::string_view::npos;
+       colon = text.find(':', colon + 1))
+    if (const std::filesystem::path file = text.substr(0, colon);
+        std::filesystem::is_regular_file(file, ignored))
+      return {file, std::string(text.substr(colon + 1))};
+  return {text, ""};
+}
+
+}  // namespace weft::files

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "files/geo/domain_projection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <utility>
+
+#include "files/base/text.h"
+#include "files/geo/lonlat_extent.h"
+
+namespace weft::files {
+namespace {
+
+constexpr double kStraight = 1e-3;  // of the length of a piece
+constexpr std::size_t kMostPieces = 4096;
+constexpr std::size_t kMostAdded = 1'000'000;
+constexpr std::size_t kMostSamples = 1000;
+
+// On the sphere, in degrees; exact enough for points that are close.
+double distance_deg(Point a, Point b) {
+  const double across = std::cos(a.y * std::numbers::pi / 180);
+  const double x = longitude_step(a.x, b.x) * across;
+  const double y = b.y - a.y;
+  return std::sqrt(x * x + y * y);
+}
+
+// Projects points of one domain.
+class Projecting {
+ public:
+  Projecting(const Projection& projection, const LonLatExtent& extent)
+      : projection_(projection), extent_(extent) {}
+
+  // Without what `checked` checks.
+  Point forward(Point lonlat) const {
+    return projection_.forward({extent_.unwrapped(lonlat.x), lonlat.y});
+  }
+  // Returns an error if the projection does not map the point there and back.
+  Result<Point> checked(Point lonlat, const Provenance& places, std::size_t i) const {
+    constexpr double kNear = 1e-7;  // degrees: a centimetre
+    const Point at = forward(lonlat);
+    if (std::isfinite(at.x) && std::isfinite(at.y)) {
+      const Point back = projection_.inverse(at);
+      if (distance_deg(lonlat, back) <= kNear) return at;
+    }
+    const std::string place = places.locate(i);
+    return fail(ExitCode::kUnreadableInput,
+                (place.empty() ? "" : place + ": ") + coordinates(lonlat.x, lonlat.y) +
+                    " is outside of what " + in_quotes(projection_.name()) + " projects");
+  }
+
+ private:
+  const Projection& projection_;
+  const LonLatExtent& extent_;
+};
+
+// A point of the segment from a to b, at 0 to 1.
+Point on_segment(Point a, Point b, double at) {
+  return {a.x + longitude_step(a.x, b.x) * at, a.y + (b.y - a.y) * at};
+}
+
+// Whether the segment from a to b, divided into so many pieces, is straight enough in the plane.
+bool are_straight(const Projecting& projecting, Point a, Point b, std::size_t pieces) {
+  Point from = projecting.forward(a);
+  for (std::size_t piece = 0; piece < pieces; ++piece) {
+    const auto place = [&](double within) {
+      const double at = (static_cast<double>(piece) + within) / static_cast<double>(pieces);
+      return projecting.forward(on_segment(a, b, at));
+    };
+    const Point to = place(1);
+    const double dx = to.x - from.x;
+    const double dy = to.y - from.y;
+    for (const double within : {0.25, 0.5, 0.75}) {
+      const Point at = place(within);
+      const double away = std::abs((at.x - from.x) * dy - (at.y - from.y) * dx);
+      if (!(away <= kStraight * (dx * dx + dy * dy))) return false;
+    }
+    from = to;
+  }
+  return true;
+}
+
+// The number of pieces of a segment; 1 if it is straight enough.
+std::size_t pieces_of(const Projecting& projecting, Point a, Point b) {
+  // A turn by this many degrees bends a segment by less than kStraight of its length.
+  constexpr double kShort = 0.3;
+  const double steep = std::tan(std::max(std::abs(a.y), std::abs(b.y)) * std::numbers::pi / 180);
+  if (std::abs(longitude_step(a.x, b.x)) + std::abs(b.y - a.y) * std::max(1.0, steep) < kShort)
+    return 1;
+  std::size_t pieces = 1;
+  while (pieces < kMostPieces && !are_straight(projecting, a, b, pieces)) pieces *= 2;
+  return pieces;
+}
+
+// Divides segments that are not straight in the plane. `lonlat` are the points of the domain.
+Result<void> divide(Domain& domain, std::vector<Point>& lonlat, const Projecting& projecting) {
+  const std::size_t segments = domain.segments.size();
+  std::size_t added = 0;
+  for (std::size_t i = 0; i < segments; ++i) {
+    const Domain::Segment whole = domain.segments[i];
+    Point a = lonlat[whole.a];
+    Point b = lonlat[whole.b];
+    const std::size_t pieces = pieces_of(projecting, a, b);
+    if (pieces == 1) continue;
+    added += pieces - 1;
+    if (added > kMostAdded)
+      return fail(ExitCode::kUnreadableInput,
+                  domain.segment_places.locate(i) +
+                      ": the domain has so many long segments that more than " +
+                      with_separators(kMostAdded) + " points would have to be added on them");
+    // Two segments between the same points get the same points, whatever their directions.
+    const bool turned = std::pair(b.x, b.y) < std::pair(a.x, a.y);
+    if (turned) std::swap(a, b);
+    std::uint32_t from = whole.a;
+    for (std::size_t piece = 1; piece < pieces; ++piece) {
+      const std::size_t step = turned ? pieces - piece : piece;
+      const Point at = on_segment(a, b, static_cast<double>(step) / static_cast<double>(pieces));
+      const auto to = static_cast<std::uint32_t>(lonlat.size());
+      domain.point_places.add_same(to, domain.segment_places, i);
+      lonlat.push_back(at);
+      const Domain::Segment part{from, to, whole.marker, whole.area};
+      if (piece == 1) {
+        domain.segments[i] = part;
+      } else {
+        domain.segment_places.add_same(domain.segments.size(), domain.segment_places, i);
+        domain.segments.push_back(part);
+      }
+      from = to;
+    }
+    domain.segment_places.add_same(domain.segments.size(), domain.segment_places, i);
+    domain.segments.push_back({from, whole.b, whole.marker, whole.area});
+  }
+  if (!domain.point_markers.empty()) domain.point_markers.resize(lonlat.size());
+  return {};
+}
+
+Projection::Distortion distortion_over(const Projection& projection,
+                                       const std::vector<Point>& lonlat, Point centre) {
+  Projection::Distortion all = projection.distortion_at(centre);
+  const std::size_t stride = 1 + (lonlat.size() - 1) / kMostSamples;
+  for (std::size_t i = 0; i < lonlat.size(); i += stride) {
+    const auto here = projection.distortion_at(lonlat[i]);
+    all.least_scale = std::fmin(all.least_scale, here.least_scale);
+    all.greatest_scale = std::fmax(all.greatest_scale, here.greatest_scale);
+    all.angle_deg = std::fmax(all.angle_deg, here.angle_deg);
+  }
+  return all;
+}
+
+Result<Projection> projection_for(const Domain& domain, const LonLatExtent& extent,
+                                  const std::string& crs) {
+  if (!crs.empty()) return Projection::make(crs);
+  const auto suitable = suitable_projection(domain, extent);
+  if (!suitable) return tl::unexpected(suitable.error());
+  return Projection::make(*suitable);
+}
+
+}  // namespace
+
+Result<DomainProjection> DomainProjection::project(Domain& domain,
+                                                   const ProjectionOptions& options) {
+  if (!Projection::available())
+    return fail(ExitCode::kUsage,
+                "this weft was built without PROJ, which projects longitude and latitude");
+  flatten_arcs(domain);  // what is a circle in degrees is none in the plane
+  const auto extent = lonlat_extent(domain);
+  if (!extent) return tl::unexpected(extent.error());
+  auto projection = projection_for(domain, *extent, options.crs);
+  if (!projection) return tl::unexpected(projection.error());
+  DomainProjection made(std::move(*projection));
+  made.to_metres_ = options.to_metres;
+  made.jumps_ = extent->jumps;
+  const auto [west, east] =
+      std::minmax_element(domain.points.begin(), domain.points.end(),
+                          [](const Point& a, const Point& b) { return a.x < b.x; });
+  made.middle_ = (west->x + east->x) / 2;
+  made.lonlat_ = std::move(domain.points);
+  made.distortion_ = distortion_over(made.projection_, made.lonlat_, extent->centre);
+
+  const Projecting projecting(made.projection_, *extent);
+  const std::size_t in_file = made.lonlat_.size();
+  if (auto ok = divide(domain, made.lonlat_, projecting); !ok) return tl::unexpected(ok.error());
+  for (std::size_t i = in_file; i < made.lonlat_.size(); ++i)
+    made.lonlat_[i] = made.as_in_file(made.lonlat_[i]);
+  domain.points.clear();
+  domain.points.reserve(made.lonlat_.size());
+  for (std::size_t i = 0; i < made.lonlat_.size(); ++i) {
+    const auto at = projecting.checked(made.lonlat_[i], domain.point_places, i);
+    if (!at) return tl::unexpected(at.error());
+    domain.points.push_back(*at);
+  }
+  made.metres_ = domain.points;
+  for (std::size_t i = 0; i < domain.holes.size(); ++i) {
+    const auto at = projecting.checked(domain.holes[i], domain.hole_places, i);
+    if (!at) return tl::unexpected(at.error());
+    domain.holes[i] = *at;
+  }
+  for (std::size_t i = 0; i < domain.regions.size(); ++i) {
+    const auto at = projecting.checked(domain.regions[i].at, domain.region_places, i);
+    if (!at) return tl::unexpected(at.error());
+    domain.regions[i].at = *at;
+  }
+  return made;
+}
+
+std::vector<std::string> DomainProjection::warnings() const {
+  std::vector<std::string> all;
+  char text[128];
+  if (distortion_.angle_deg > 0.01) {
+    std::snprintf(text, sizeof text, "is not conformal: angles on the ground differ by up to %.2f",
+                  distortion_.angle_deg);
+    all.push_back(in_quotes(name()) + " " + text + " degrees from those in the plane");
+  }
+  if (distortion_.least_scale < 0.95 || distortion_.greatest_scale > 1.05) {
+    std::snprintf(text, sizeof text, "lengths in the plane are %.3f to %.3f of those on the ground",
+                  distortion_.least_scale, distortion_.greatest_scale);
+    all.push_back(std::string(text) + ", and so are edges where a size asks for them");
+  }
+  if (jumps_ && !to_metres_)
+    all.push_back(
+        "longitudes jump by 360 degrees at the date line, as they do in the domain, and so do "
+        "triangles there; --to-metres writes the mesh without a jump");
+  return all;
+}
+
+Point DomainProjection::to_lonlat(Point metres) const {
+  return as_in_file(projection_.inverse(metres));
+}
+
+Point DomainProjection::as_in_file(Point lonlat) const {
+  if (lonlat.x <= middle_ - 180) lonlat.x += 360;
+  if (lonlat.x > middle_ + 180) lonlat.x -= 360;
+  return lonlat;
+}
+
+Result<ScratchArray<double>> DomainProjection::to_lonlat(const MeshView& mesh) const {
+  ScratchArray<double> lonlat(mesh.pages, mesh.coordinates.size());
+  for (const std::size_t i : mesh.up_to(mesh.vertex_count())) {
+    const Point metres{mesh.coordinates[2 * i], mesh.coordinates[2 * i + 1]};
+    const Point at = to_lonlat(metres);
+    if (!std::isfinite(at.x) || !std::isfinite(at.y))
+      return fail(ExitCode::kInternal, in_quotes(name()) + " cannot bring the vertex at " +
+                                           coordinates(metres.x, metres.y) + " back");
+    lonlat[2 * i] = at.x;
+    lonlat[2 * i + 1] = at.y;
+  }
+  Jumps jumps(mesh.pages);
+  for (const std::size_t i : mesh.up_to(mesh.input_points.size() / 2)) {
+    const std::size_t vertex = mesh.input_points[2 * i];
+    const std::size_t point = mesh.input_points[2 * i + 1];
+    jumps.to(2 * vertex);
+    if (point >= metres_.size() ||
+        metres_[point] != Point{mesh.coordinates[2 * vertex], mesh.coordinates[2 * vertex + 1]})
+      continue;
+    lonlat[2 * vertex] = lonlat_[point].x;
+    lonlat[2 * vertex + 1] = lonlat_[point].y;
+  }
+  return lonlat;
+}
+
+}  // namespace weft::files
