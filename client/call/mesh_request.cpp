@@ -11,6 +11,7 @@
 #include "client/call/request_rows.h"
 #include "files/formats/field_raster.h"
 #include "files/formats/raster.h"
+#include "files/message/domain_message.h"
 
 namespace weft::client {
 namespace {
@@ -22,71 +23,6 @@ std::optional<double> as_number(const std::string& text) {
   if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
     return std::nullopt;
   return value;
-}
-
-void fill(const NameTable& table, google::protobuf::RepeatedPtrField<v1::Name>& out) {
-  for (const auto& [id, text] : table) {
-    v1::Name& name = *out.Add();
-    name.set_id(id);
-    name.set_name(text);
-  }
-}
-
-v1::Fill to_wire(Domain::Fill fill) {
-  switch (fill) {
-    case Domain::Fill::kSeeds:
-      return v1::FILL_SEEDS;
-    case Domain::Fill::kEvenOdd:
-      return v1::FILL_EVEN_ODD;
-    case Domain::Fill::kUnion:
-      return v1::FILL_UNION;
-  }
-  return v1::FILL_UNSPECIFIED;
-}
-
-void fill(const Domain& domain, v1::Domain& out) {
-  auto* points = out.mutable_points();
-  points->Reserve(static_cast<int>(2 * domain.points.size()));
-  for (const Point& point : domain.points) {
-    points->AddAlreadyReserved(point.x);
-    points->AddAlreadyReserved(point.y);
-  }
-  bool marked = false;
-  auto* segments = out.mutable_segments();
-  segments->Reserve(static_cast<int>(2 * domain.segments.size()));
-  for (const Domain::Segment& segment : domain.segments) {
-    segments->AddAlreadyReserved(segment.a);
-    segments->AddAlreadyReserved(segment.b);
-    marked |= segment.marker != 0;
-  }
-  if (marked)
-    for (const Domain::Segment& segment : domain.segments) out.add_segment_markers(segment.marker);
-  for (const Domain::Arc& arc : domain.arcs) {
-    out.add_arc_segments(arc.segment);
-    out.add_arc_bulges(arc.bulge);
-  }
-  for (const Point& hole : domain.holes) {
-    out.add_holes(hole.x);
-    out.add_holes(hole.y);
-  }
-  for (const Domain::Region& region : domain.regions) {
-    v1::Region& seed = *out.add_regions();
-    seed.set_x(region.at.x);
-    seed.set_y(region.at.y);
-    seed.set_id(region.id);
-    if (region.max_area) seed.set_max_area(*region.max_area);
-  }
-  fill(domain.names.markers, *out.mutable_marker_names());
-  fill(domain.names.regions, *out.mutable_region_names());
-  out.set_fill(to_wire(domain.fill));
-  if (domain.areas.empty()) return;
-  for (const Domain::Area& given : domain.areas) {
-    v1::Area& area = *out.add_areas();
-    if (given.region) area.set_region(*given.region);
-    if (given.max_area) area.set_max_area(*given.max_area);
-    area.set_hole(given.is_hole);
-  }
-  for (const Domain::Segment& segment : domain.segments) out.add_segment_areas(segment.area);
 }
 
 v1::SizeField to_size(const std::string& text) {
@@ -214,7 +150,7 @@ Names names_of(const v1::Domain& domain) {
 
 v1::GenerateMeshRequest make_request(const Domain& domain, const RequestOptions& request_options) {
   v1::GenerateMeshRequest request;
-  fill(domain, *request.mutable_domain());
+  request.mutable_domain()->ParseFromString(domain_message(domain));
   v1::SizeField size =
       request_options.size_read ? *request_options.size_read : to_size(request_options.size);
   if (size.ByteSizeLong() != 0) *request.mutable_size() = std::move(size);

@@ -69,6 +69,10 @@ The engine of weftd as a shared library with an interface for C, which python3-w
 loads to make meshes without a server.")
 set(CPACK_DEBIAN_LIBWEFT0_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBWEFT0_PACKAGE_SHLIBDEPS ON)
+get_property(loaded_later GLOBAL PROPERTY weft_packages_of_libweft.so.0)
+list(JOIN loaded_later ", " loaded_later)
+set(CPACK_DEBIAN_LIBWEFT0_PACKAGE_DEPENDS "${loaded_later}")
+set(CPACK_DEBIAN_LIBWEFT0_PACKAGE_SUGGESTS libgdal32)
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libweft-dev)
 set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "Meshes of planar domains, with guaranteed angles: development files

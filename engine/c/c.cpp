@@ -10,20 +10,15 @@
 #include <condition_variable>
 #include <cstring>
 #include <mutex>
-#include <new>
 #include <thread>
 
 #include "engine/base/arena.h"
+#include "engine/c/c_error.h"
 #include "engine/c/c_request.h"
 #include "weft/weft.h"
 #include "wire/errors.h"
 #include "wire/request.h"
 #include "wire/summary.h"
-
-struct weft_error {
-  weft::Error error;
-  std::string status;  // as a message
-};
 
 struct weft_mesh {
   weft::Mesh mesh;
@@ -125,30 +120,14 @@ Result<weft_mesh*> make(std::string_view bytes, const Watcher& watcher) {
   return finish(watcher.on_progress != nullptr ? watched(run, watcher, work) : work(), threads);
 }
 
+}  // namespace
+
 weft_error* error_of(const Error& what) try {
   return new weft_error{what, wire::write_status(wire::failure_of(what), "")};
 } catch (const std::bad_alloc&) {
   return nullptr;
 }
 
-// The mesh that `make` makes, or null and its error.
-template <class F>
-weft_mesh* made_by(F&& make, weft_error** error) {
-  const auto tell = [&](const Error& what) -> weft_mesh* {
-    if (error != nullptr) *error = error_of(what);
-    return nullptr;
-  };
-  try {
-    const Result<weft_mesh*> made = make();
-    return made ? *made : tell(made.error());
-  } catch (const std::bad_alloc&) {
-    return tell({ErrorCode::kOutOfMemory, "", "memory ran out"});
-  } catch (const std::exception& e) {
-    return tell({ErrorCode::kInternal, "", e.what()});
-  }
-}
-
-}  // namespace
 }  // namespace weft
 
 extern "C" {
@@ -159,13 +138,13 @@ weft_mesh* weft_make(const weft_request* request, weft_on_progress* on_progress,
     if (request->fault) return tl::unexpected(*request->fault);
     return weft::make(request->bytes, {on_progress, user});
   };
-  return weft::made_by(make, error);
+  return weft::made_by<weft_mesh>(make, error);
 }
 
 weft_mesh* weft_make_message(const void* bytes, size_t size, weft_on_progress* on_progress,
                              void* user, weft_error** error) {
   const std::string_view message(static_cast<const char*>(bytes), size);
-  return weft::made_by([&] { return weft::make(message, {on_progress, user}); }, error);
+  return weft::made_by<weft_mesh>([&] { return weft::make(message, {on_progress, user}); }, error);
 }
 
 void weft_mesh_free(weft_mesh* mesh) {

@@ -208,6 +208,14 @@ void weft_set_arcs(weft_request* request, const uint32_t* segments, const double
   });
 }
 
+void weft_set_domain(weft_request* request, const weft_domain* domain) {
+  append(request, [&](pbf_writer& message) {
+    size_t size = 0;
+    const void* bytes = weft_domain_message(domain, &size);
+    message.add_message(kDomain, static_cast<const char*>(bytes), size);
+  });
+}
+
 void weft_add_region(weft_request* request, double x, double y, int32_t id, weft_bound bound) {
   append_to(request, kDomain, [&](pbf_writer& domain) {
     pbf_writer region(domain, 5);

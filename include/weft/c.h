@@ -11,6 +11,8 @@
  *   weft_mesh *mesh = weft_make(request, NULL, NULL, &error);
  *   weft_request_free(request);
  *
+ * `weft_read_domain` and `weft_set_domain` take the points and segments from a file.
+ *
  * Nothing that is given is kept. Thread-safe: any number of threads may call at the same time, for
  * requests of their own. A child process that fork makes may call, too, unless a call was at work
  * at that time. Functions that free take NULL. */
@@ -92,6 +94,43 @@ WEFT_API void weft_add_mesh(weft_request* request, const char* name, const doubl
                             size_t triangle_count);
 WEFT_API void weft_add_width(weft_request* request, const char* name);
 
+typedef struct weft_error weft_error;
+
+/* How a file is read; what is NULL has its default. Later versions add fields at the end alone:
+ * `struct_size` is what the caller was compiled with. */
+typedef struct weft_file_options {
+  size_t struct_size;
+  const char* format; /* an extension, ".geojson"; default: that of the path */
+  const char* layer;  /* by its name; default: the only one that holds anything */
+  const char* where;  /* which features, as an SQL expression of attributes; default: all */
+} weft_file_options;
+#define WEFT_FILE_OPTIONS \
+  { .struct_size = sizeof(weft_file_options) }
+
+/* A domain from a file of a format that docs/formats.md lists, or NULL and, unless `error` is NULL,
+ * what is wrong, as `weft mesh` says it; the error's field is "path" or "options". `options` may be
+ * NULL. Coordinates are those of the file. */
+typedef struct weft_domain weft_domain;
+WEFT_API weft_domain* weft_read_domain(const char* path, const weft_file_options* options,
+                                       weft_error** error);
+WEFT_API void weft_domain_free(weft_domain* domain);
+/* Instead of points, segments, holes, arcs, regions and areas. Sets the fill, too. */
+WEFT_API void weft_set_domain(weft_request* request, const weft_domain* domain);
+
+/* What the functions below give lives as long as the domain. The bytes of a weft.v1.Domain. */
+WEFT_API const void* weft_domain_message(const weft_domain* domain, size_t* size);
+/* What is odd in the file: a sentence, and in `kind`, unless that is NULL, its kind, such as
+ * "open-ring". NULL: there are no more than `index`. */
+WEFT_API const char* weft_domain_warning(const weft_domain* domain, size_t index,
+                                         const char** kind);
+/* Whether the file says that its coordinates are longitudes and latitudes, or those of a plane.
+ * Returns 0, and leaves the value alone, if it says neither. */
+WEFT_API int weft_domain_is_geographic(const weft_domain* domain, int* is_geographic);
+/* The ids of regions that stand for another number in the file, and that number; returns how many.
+ */
+WEFT_API size_t weft_domain_region_values(const weft_domain* domain, const int32_t** ids,
+                                          const double** values);
+
 typedef struct weft_progress {
   int32_t stage; /* 0 queued, 1 triangulate, 2 size, 3 refine, 4 done */
   uint64_t triangles, expected_triangles;
@@ -101,7 +140,6 @@ typedef struct weft_progress {
  * short; what is not 0 cancels. */
 typedef int weft_on_progress(const weft_progress* progress, void* user);
 
-typedef struct weft_error weft_error;
 typedef struct weft_mesh weft_mesh;
 
 /* The mesh, or NULL and, unless `error` is NULL, what is wrong. `on_progress` may be NULL. A short

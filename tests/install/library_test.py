@@ -95,8 +95,8 @@ def configured_without(packages, folder):
 
 
 # As CMake finds them; those that pkg-config finds, such as gRPC, are looked for in the cache.
-OF_THE_PROGRAMS = ("Protobuf", "PostgreSQL", "SQLite3", "fmt", "spdlog", "CLI11", "ZLIB", "nlohmann_json",
-                   "prometheus-cpp", "pugixml", "yaml-cpp")
+OF_THE_PROGRAMS = ("Protobuf", "PostgreSQL", "SQLite3", "fmt", "spdlog", "CLI11", "prometheus-cpp", "pugixml",
+                   "yaml-cpp")
 
 
 def test_the_library_configures_without_what_only_the_programs_need(tmp_path):

@@ -121,6 +121,16 @@ static void names_the_option_that_it_cannot_take(void) {
   }
 }
 
+static void reads_files(void) {
+  weft_error* error = NULL;
+  weft_file_options options = WEFT_FILE_OPTIONS;
+  options.format = ".poly";
+  EXPECT(weft_read_domain("/nowhere/no.txt", &options, &error) == NULL);
+  EXPECT(strcmp(weft_error_field(error), "path") == 0);
+  EXPECT(strstr(weft_error_message(error), "/nowhere/no.txt") != NULL);
+  weft_error_free(error);
+}
+
 static void is_cancelled_by_its_caller(void) {
   weft_request* request = square("1e-7");
   int calls = 0;
@@ -172,6 +182,7 @@ int main(void) {
   makes_a_mesh();
   says_what_is_wrong();
   names_the_option_that_it_cannot_take();
+  reads_files();
   is_cancelled_by_its_caller();
   says_how_edges_bend();
   fills_what_an_older_caller_does_not_know();

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// A domain as the protocol spells it, weft.v1.Domain, for the command line and libweft alike.
+#pragma once
+
+#include <string>
+
+#include "files/formats/domain.h"
+
+namespace weft::files {
+
+// The bytes of the message. Places, warnings, markers of points and the coordinate system have no
+// field there.
+std::string domain_message(const Domain& domain);
+
+}  // namespace weft::files
