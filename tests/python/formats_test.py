@@ -15,6 +15,7 @@ import pytest
 import shapely.geometry
 import weft
 from conftest import KEY, KEY_SIZE
+from weft import _library
 
 ARRAYS = ("points", "triangles", "regions", "edges", "edge_markers")
 
@@ -262,13 +263,23 @@ def test_a_raster_that_is_missing_is_named(mesh, tmp_path):
 
 
 def test_without_the_program_an_error_says_that_it_is_needed(mesh, tmp_path, without_weft):
-    (tmp_path / "a.wkt").write_text(SQUARE.wkt)
-    with pytest.raises(weft.DomainError, match="needs the program weft"):
-        weft.Domain.read(tmp_path / "a.wkt")
     with pytest.raises(weft.MeshFileError, match="needs the program weft"):
         weft.Mesh.read(tmp_path / "a.msh")
     with pytest.raises(weft.MeshFileError, match="needs the program weft"):
         mesh.write(tmp_path / "a.vtu", order=2)
+
+
+def test_domains_are_read_by_the_library_or_the_program(mesh, tmp_path, without_weft, monkeypatch):
+    (tmp_path / "a.wkt").write_text(SQUARE.wkt)
+    assert len(weft.Domain.read(tmp_path / "a.wkt").points) == 8
+    mesh.write(tmp_path / "mesh.vtu")
+    assert len(weft.Domain.read(tmp_path / "mesh.vtu").segments)
+
+    def missing():
+        raise weft.MissingPackage("no library")
+    monkeypatch.setattr(_library, "_library", missing)
+    with pytest.raises(weft.DomainError, match="needs the program weft"):
+        weft.Domain.read(tmp_path / "a.wkt")
 
 
 def test_without_the_program_npz_vtu_and_formats_of_meshio_are_there(mesh, tmp_path, without_weft):

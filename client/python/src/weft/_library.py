@@ -9,6 +9,8 @@ from __future__ import annotations
 import ctypes
 import dataclasses
 import functools
+import os
+import pathlib
 import time
 from collections.abc import Callable
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_size_t, c_uint64, c_void_p
@@ -18,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _carried, _protocol, errors, results
-from .errors import MissingPackage
+from .errors import DomainError, MissingPackage
 
 _NAME = "libweft.so.0"
 _STAGES = ("queued", "triangulate", "size", "refine", "emit")
@@ -71,10 +73,20 @@ def _library() -> Any:
     library.weft_make_message.restype = c_void_p
     library.weft_mesh_arrays.argtypes = [c_void_p, POINTER(Arrays)]
     library.weft_mesh_arrays.restype = None
-    for name in ("mesh_free", "error_free"):
+    library.weft_read_domain.argtypes = [c_char_p, c_void_p, POINTER(c_void_p)]
+    library.weft_read_domain.restype = c_void_p
+    library.weft_domain_warning.argtypes = [c_void_p, c_size_t, c_void_p]
+    library.weft_domain_warning.restype = c_char_p
+    library.weft_domain_is_geographic.argtypes = [c_void_p, POINTER(c_int)]
+    library.weft_domain_region_values.argtypes = [c_void_p, POINTER(POINTER(c_int32)), POINTER(POINTER(c_double))]
+    library.weft_domain_region_values.restype = c_size_t
+    for name in ("error_message", "error_field"):
+        getattr(library, f"weft_{name}").argtypes = [c_void_p]
+        getattr(library, f"weft_{name}").restype = c_char_p
+    for name in ("mesh_free", "error_free", "domain_free"):
         getattr(library, f"weft_{name}").argtypes = [c_void_p]
         getattr(library, f"weft_{name}").restype = None
-    for name in ("mesh_summary", "error_status"):
+    for name in ("mesh_summary", "error_status", "domain_message"):
         getattr(library, f"weft_{name}").argtypes = [c_void_p, POINTER(c_size_t)]
         getattr(library, f"weft_{name}").restype = c_void_p
     return library
@@ -151,3 +163,46 @@ def _made(library: Any, mesh: Any) -> Made:
         edge_bulges=_copied(arrays.bulges, (arrays.edge_count if arrays.bulges else 0,), np.float64),
         input_points=_copied(arrays.input_points, (arrays.input_point_count, 2), np.int32),
         summary=results.summary(summary))
+
+
+@dataclasses.dataclass(frozen=True)
+class ReadDomain:
+    """What a file of a domain holds."""
+
+    message: bytes
+    """A weft.v1.Domain."""
+    warnings: list[str]
+    geographic: bool | None
+    """Whether the file says that it is in longitude and latitude, or in a plane; None: neither."""
+    region_values: dict[int, float]
+
+
+def read_domain(path: pathlib.Path) -> ReadDomain:
+    """Raises MissingPackage, DomainError, and OSError if the file cannot be opened."""
+    library = _library()
+    error = c_void_p()
+    domain = library.weft_read_domain(os.fsencode(path), None, ctypes.byref(error))
+    if domain is None:
+        try:
+            if library.weft_error_field(error) == b"path":
+                open(path, "rb").close()  # an OSError says more to those who catch it
+            raise DomainError(library.weft_error_message(error).decode(errors="replace"))
+        finally:
+            library.weft_error_free(error)
+    try:
+        return _read(library, domain)
+    finally:
+        library.weft_domain_free(domain)
+
+
+def _read(library: Any, domain: Any) -> ReadDomain:
+    warnings: list[str] = []
+    while sentence := library.weft_domain_warning(domain, len(warnings), None):
+        warnings.append(sentence.decode(errors="replace"))
+    geographic = c_int()
+    known = library.weft_domain_is_geographic(domain, ctypes.byref(geographic))
+    ids, values = POINTER(c_int32)(), POINTER(c_double)()
+    count = library.weft_domain_region_values(domain, ctypes.byref(ids), ctypes.byref(values))
+    return ReadDomain(_bytes_of(library.weft_domain_message, domain), warnings,
+                      bool(geographic.value) if known else None,
+                      {ids[i]: values[i] for i in range(count)})

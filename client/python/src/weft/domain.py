@@ -18,12 +18,12 @@ from typing import Any, Literal, Union
 import numpy as np
 import numpy.typing as npt
 
-from . import _convert, _geojson, _names, _poly, _protocol
+from . import _convert, _geojson, _library, _names, _poly, _protocol
 from ._masked import refuse_masked
 from ._short import ShortRepr
 from ._text import read_text
 from ._warning import warn
-from .errors import DomainError
+from .errors import DomainError, MissingPackage
 
 Fill = Literal["seeds", "even-odd", "union"]
 _FILLS: dict[int, Fill] = {1: "seeds", 2: "even-odd", 3: "union"}  # of weft.v1.Fill
@@ -174,32 +174,43 @@ class Domain(ShortRepr):
 
     @staticmethod
     def read(path: str | os.PathLike[str]) -> Domain:
-        """From a file of a format that the command line knows: .poly (Triangle), .geojson or .json,
-        which are read here; .wkt, .shp, .csv, meshes and all others are read by the program weft,
-        which is in the package or in the PATH. See docs/formats.md. A WeftWarning
-        says what is odd in it.
+        """From a file of a format that the command line knows: .poly (Triangle), .geojson, .wkt, .shp, .csv,
+        meshes and others, see docs/formats.md. The library libweft.so reads it, which is in the package or in the
+        system's path; without it, .poly, .geojson and .json are read here, all others by the program weft. A
+        WeftWarning says what is odd in it.
 
-        Raises DomainError if its contents make no sense, its format is unknown, or the program is
-        needed and missing; OSError if it cannot be read.
+        Raises DomainError if its contents make no sense, its format is unknown, or the library and the program
+        are needed and missing; OSError if it cannot be read.
         """
         path = pathlib.Path(path)
-        suffix = path.suffix.lower()
         try:
-            if suffix == ".poly":
-                return Domain(**_poly.read(path, Region))
-            if suffix in (".geojson", ".json"):
-                return Domain(**_geojson.read(json.loads(read_text(path)), Area, str(path)))
-        except ValueError as error:
-            raise DomainError(f"{path}: {error}") from None
-        with tempfile.TemporaryDirectory(prefix="weft-") as folder:
-            message = pathlib.Path(folder) / "domain.pb"
-            try:
-                converted = _convert.convert(path, message, error=DomainError)
-            except _convert.Refused as refused:
-                raise DomainError(str(refused)) from None
-            for sentence in converted.warnings:
-                warn(sentence)
-            return dataclasses.replace(_of_message(message.read_bytes()), geographic=converted.geographic)
+            read = _library.read_domain(path)
+        except MissingPackage:
+            return _read_without_library(path)
+        for sentence in read.warnings:
+            warn(sentence)
+        return dataclasses.replace(_of_message(read.message), geographic=read.geographic,
+                                   region_values=read.region_values)
+
+
+def _read_without_library(path: pathlib.Path) -> Domain:
+    suffix = path.suffix.lower()
+    try:
+        if suffix == ".poly":
+            return Domain(**_poly.read(path, Region))
+        if suffix in (".geojson", ".json"):
+            return Domain(**_geojson.read(json.loads(read_text(path)), Area, str(path)))
+    except ValueError as error:
+        raise DomainError(f"{path}: {error}") from None
+    with tempfile.TemporaryDirectory(prefix="weft-") as folder:
+        message = pathlib.Path(folder) / "domain.pb"
+        try:
+            converted = _convert.convert(path, message, error=DomainError)
+        except _convert.Refused as refused:
+            raise DomainError(str(refused)) from None
+        for sentence in converted.warnings:
+            warn(sentence)
+        return dataclasses.replace(_of_message(message.read_bytes()), geographic=converted.geographic)
 
 
 DomainLike = Union[Domain, str, "os.PathLike[str]", dict[str, Any], npt.NDArray[Any],
