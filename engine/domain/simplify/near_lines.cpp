@@ -47,11 +47,24 @@ NearLines::NearLines(const LineGraph& graph, StopPoller& poller) {
 }
 
 double NearLines::distance(Point p, double within, Marker marker) const {
+  std::size_t line = kNoLine;
+  return distance(p, within, marker, 0, line);
+}
+
+double NearLines::distance(Point p, double within, Marker marker, double enough,
+                           std::size_t& line) const {
   double least = within;
+  const auto try_line = [&](std::size_t i) {
+    const double off = distance_to_segment(p, lines_[i].a, lines_[i].b);
+    if (!(off < least)) return;
+    least = off;
+    line = i;
+  };
+  if (line != kNoLine) try_line(line);
   std::array<std::size_t, 128> stack;
   std::size_t depth = 0;
   stack[depth++] = 1;
-  while (depth > 0) {
+  while (depth > 0 && least > enough) {
     const std::size_t node = stack[--depth];
     if (!(distance2(p, box_[node]) < least * least)) continue;
     if (node < leaves_) {
@@ -62,20 +75,21 @@ double NearLines::distance(Point p, double within, Marker marker) const {
     }
     const std::size_t first = (node - leaves_) * kLeaf;
     for (std::size_t i = first; i < first + kLeaf && i < lines_.size(); ++i)
-      if (!marker || *marker == lines_[i].marker)
-        least = std::min(least, distance_to_segment(p, lines_[i].a, lines_[i].b));
+      if (!marker || *marker == lines_[i].marker) try_line(i);
   }
   return least;
 }
 
 bool NearLines::holds_near(const std::array<Point, 3>& triangle, double within,
                            Marker marker) const {
+  constexpr double kRounding = 0x1p-50;  // of a sum
   int looks = 0;
+  std::size_t line = kNoLine;
   const auto look = [&](auto&& self, Point a, Point b, Point c) -> bool {
     const Point centre = centroid(a, b, c);
     const double radius = std::sqrt(std::max(
         {weft::distance2(centre, a), weft::distance2(centre, b), weft::distance2(centre, c)}));
-    const double off = distance(centre, within, marker);
+    const double off = distance(centre, within, marker, within - radius - kRounding * within, line);
     if (off + radius <= within) return true;
     if (off >= within || radius < kPrecision * within || ++looks > kMostLooks) return false;
     const Point ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);

@@ -43,6 +43,13 @@ class NearLines {
     std::int32_t marker;
   };
 
+  // The distance of p to the nearest line, or to one that is at most `enough` away; `within` if
+  // none is nearer than that. Tries `line` first, unless that is kNoLine, and sets it to what it
+  // finds.
+  double distance(Point p, double within, Marker marker, double enough, std::size_t& line) const;
+
+  static constexpr std::size_t kNoLine = ~std::size_t{0};
+
   std::vector<Marked> lines_;  // in the order of the leaves
   std::size_t leaves_ = 1;     // as in PointTree
   std::vector<Box> box_;
