@@ -72,6 +72,11 @@ class Scene {
   std::shared_ptr<grpc::Channel> channel() const {
     grpc::ChannelArguments own;
     own.SetInt("grpc.use_local_subchannel_pool", 1);
+    // All come from one address, whose connections the server closes if they are too many. So an
+    // honest caller's may be among them, and it calls again, as `weft` does.
+    own.SetServiceConfigJSON(R"({"methodConfig": [{"name": [{}], "retryPolicy": {
+        "maxAttempts": 5, "initialBackoff": "0.05s", "maxBackoff": "1s", "backoffMultiplier": 2,
+        "retryableStatusCodes": ["UNAVAILABLE"]}}]})");
     return grpc::CreateCustomChannel(
         target().address,
         encrypted_ ? grpc::SslCredentials({ca_.pem(), "", ""}) : grpc::InsecureChannelCredentials(),
