@@ -18,7 +18,7 @@ PROTO = "proto/weft/v1/mesh_service.proto"
 PLACES = {
     "kMaxMinAngleDeg": [
         (PROTO, r"Lower bound on every angle, in degrees, from 0 to (\d+)\."),
-        ("client/call/request_rows.cpp", r"Minimum angle of every triangle, in degrees\. Range: 0 to (\d+)"),
+        (PROTO, r"Minimum angle of every triangle, in degrees\. Range: 0 to (\d+)"),
         ("client/python/src/weft/client.py", r"lower bound on every angle, degrees, 0 to (\d+);"),
         ("console/src/mesh/mesh-form.tsx", r'max="(\d+)" step="0\.5" aria-label="Smallest angle'),
         ("README.md", r"minimum angle is 20 degrees unless you say otherwise, and (\d+) at most"),
@@ -26,9 +26,7 @@ PLACES = {
         ("docs/how-it-works.md", r"up to the (\d+) that `--min-angle`")],
     "kMaxSweeps": [
         (PROTO, r"Sweeps of smoothing, from 0 to (\d+):"),
-        ("client/call/request_rows.cpp", r'angle around them is largest\. Range: 0 to (\d+)'),
-        ("client/python/src/weft/client.py", r"sweeps of smoothing, 0 to (\d+);"),
-        ("client/python/src/weft/_requests.py", r"Sweeps of smoothing, 0 to (\d+):")],
+        (PROTO, r'around them is largest\. Range: 0 to (\d+)')],
     "kMaxExpressionBytes": [
         (PROTO, r"Limits: (\d+) bytes, 256 levels"),
         ("docs/size.md", r"An expression may have ([\d,]+) bytes")],

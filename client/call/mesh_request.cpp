@@ -75,6 +75,25 @@ Result<bool> fill_fields(const Domain& domain, const DomainProjection* projectio
   return true;
 }
 
+// What is asked of segments by their markers.
+Result<void> fill_sides(const Domain& domain, RequestOptions& options) {
+  if (options.keep) {
+    const auto kept = options.keep->numbers(domain.names.markers);
+    if (!kept) return fault_at("quality.keep", options, kept.error());
+    options.asked.mutable_quality()->mutable_keep()->mutable_markers()->Assign(kept->begin(),
+                                                                               kept->end());
+  }
+  for (std::size_t i = 0; i < options.periodic.size(); ++i) {
+    const auto sides = options.periodic[i].numbers(domain.names.markers);
+    if (!sides)
+      return fault_at("quality.periodic[" + std::to_string(i) + "]", options, sides.error());
+    v1::PeriodicSides& pair = *options.asked.mutable_quality()->add_periodic();
+    pair.set_from(sides->front());
+    pair.set_to(sides->back());
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<RequestOptions> with_size(const RequestOptions& given, const Domain& domain,
@@ -88,10 +107,7 @@ Result<RequestOptions> with_size(const RequestOptions& given, const Domain& doma
   auto size = read_size(by_edge ? options.edge : options.size);
   if (!size) return fault_at("size", options, size.error());
   if (by_edge) size->set_measure(v1::MEASURE_EDGE);
-  if (options.gradation) size->set_gradation(*options.gradation);
-  size->set_gradation_within(options.gradation_within);
-  if (options.cells_across) size->set_cells_across(*options.cells_across);
-  if (options.points_per_circle) size->set_points_per_circle(*options.points_per_circle);
+  size->MergeFrom(given.asked.size());
   for (const EdgeAt& edge_at : options.edge_at) {
     const auto marker = edge_at.name.empty() ? Result<std::int32_t>(edge_at.marker)
                                              : find_marker(edge_at.name, domain.names.markers);
@@ -101,19 +117,7 @@ Result<RequestOptions> with_size(const RequestOptions& given, const Domain& doma
     at.set_marker(*marker);
     at.set_max_edge(edge_at.max_edge);
   }
-  if (options.keep) {
-    auto kept = options.keep->numbers(domain.names.markers);
-    if (!kept) return fault_at("quality.keep", options, kept.error());
-    options.kept = std::move(*kept);
-  }
-  options.repeating.clear();
-  for (const MarkerPair& pair : options.periodic) {
-    const auto sides = pair.numbers(domain.names.markers);
-    if (!sides)
-      return fault_at("quality.periodic[" + std::to_string(options.repeating.size()) + "]", options,
-                      sides.error());
-    options.repeating.push_back(*sides);
-  }
+  if (auto filled = fill_sides(domain, options); !filled) return tl::unexpected(filled.error());
   const auto rasters = std::count_if(
       options.fields.begin(), options.fields.end(),
       [](const auto& field) { return std::holds_alternative<FieldOption::Raster>(field.kind); });
@@ -125,7 +129,7 @@ Result<RequestOptions> with_size(const RequestOptions& given, const Domain& doma
     if (!fits) return tl::unexpected(fits.error());
     if (*fits) break;
   }
-  options.size_read = std::make_shared<const v1::SizeField>(std::move(*size));
+  if (size->ByteSizeLong() != 0) *options.asked.mutable_size() = std::move(*size);
   return options;
 }
 
@@ -149,35 +153,10 @@ Names names_of(const v1::Domain& domain) {
 }
 
 v1::GenerateMeshRequest make_request(const Domain& domain, const RequestOptions& request_options) {
-  v1::GenerateMeshRequest request;
-  request.mutable_domain()->ParseFromString(domain_message(domain));
-  v1::SizeField size =
-      request_options.size_read ? *request_options.size_read : to_size(request_options.size);
-  if (size.ByteSizeLong() != 0) *request.mutable_size() = std::move(size);
-  if (request_options.min_angle_deg)
-    request.mutable_quality()->set_min_angle_deg(*request_options.min_angle_deg);
-  if (request_options.min_edge) request.mutable_quality()->set_min_edge(*request_options.min_edge);
-  if (request_options.keep)
-    request.mutable_quality()->mutable_keep()->mutable_markers()->Add(request_options.kept.begin(),
-                                                                      request_options.kept.end());
-  for (const auto& [from, to] : request_options.repeating) {
-    v1::PeriodicSides& sides = *request.mutable_quality()->add_periodic();
-    sides.set_from(from);
-    sides.set_to(to);
-  }
-  if (request_options.placement)
-    request.mutable_quality()->set_placement(*request_options.placement);
-  if (request_options.optimise) request.mutable_quality()->set_optimise(*request_options.optimise);
-  if (request_options.max_triangles)
-    request.mutable_budget()->set_max_triangles(*request_options.max_triangles);
-  if (request_options.max_seconds)
-    request.mutable_budget()->set_max_seconds(*request_options.max_seconds);
-  if (request_options.threads) request.set_threads(*request_options.threads);
-  if (request_options.snap) request.mutable_domain()->set_snap(*request_options.snap);
-  if (request_options.simplify) request.set_simplify(*request_options.simplify);
-  request.set_allow_unrefined(request_options.allow_unrefined);
-  request.set_want_quadtree(request_options.quadtree);
-  request.set_no_cache(request_options.no_cache);
+  v1::GenerateMeshRequest request = request_options.asked;
+  request.mutable_domain()->MergeFromString(domain_message(domain));
+  if (!request_options.size.empty() && request.size().field_case() == v1::SizeField::FIELD_NOT_SET)
+    request.mutable_size()->MergeFrom(to_size(request_options.size));
   return request;
 }
 

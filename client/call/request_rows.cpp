@@ -14,6 +14,7 @@
 #include "files/formats/domain_formats.h"
 #include "files/formats/mesh_formats.h"
 #include "files/formats/raster.h"
+#include "wire/named_options.h"
 
 namespace weft::client {
 namespace {
@@ -118,63 +119,52 @@ OptionValue<Request> names() {
           }};
 }
 
+// One that weft.v1 names, with a value that it has for a text.
+OptionRow<Request> named(const wire::NamedOption& option) {
+  const v1::Option& text = option.annotation;
+  return {text.name(),
+          text.variable(),
+          text.about(),
+          text.default_(),
+          {text.unit(), option.range(), option.is_switch() ? Arity::kSwitch : Arity::kOne,
+           [&option](const auto& texts, const auto&, Request& options) -> std::string {
+             const std::string fault = set(option, texts.front(), options.asked);
+             return fault.empty() ? "" : in_quotes(texts.front()) + " is not " + fault;
+           }},
+          option.path};
+}
+
+// Those whose fields begin so. The quadtree is asked for by what draws it.
+void add_named(std::string_view part, OptionRows<Request>& rows) {
+  for (const wire::NamedOption& option : wire::named_options())
+    if (option.path.starts_with(part) && option.path != "want_quadtree")
+      rows.push_back(named(option));
+}
+
 const OptionRows<Request>& other_rows() {
-  static const OptionRows<Request> rows = noted({
-      {"min-angle", "WEFT_MIN_ANGLE", "Minimum angle of every triangle, in degrees. Range: 0 to 36",
-       "20", number("DEG", &Request::min_angle_deg), "quality.min_angle_deg"},
-      {"min-edge", "WEFT_MIN_EDGE",
-       "Shortest edge that refinement may make; it takes precedence over the bounds on angle and "
-       "area",
-       "", number("LEN", &Request::min_edge), "quality.min_edge"},
-      {"keep", "WEFT_KEEP_SEGMENTS",
-       "Segments that stay as they are, by their markers, numbers or names, or all: no new point "
-       "lies on them, and triangles there may miss their bounds",
-       "", markers_to_keep(), "quality.keep"},
-      {"periodic", "WEFT_PERIODIC",
-       "Sides that repeat each other, pairs of their markers, numbers or names: they get the same "
-       "vertices, moved or turned from the first to the second",
-       "", periodic_sides(), "quality.periodic"},
-      {"placement", "WEFT_PLACEMENT",
-       "Where new points go in triangles that are too large: lattice follows the size and makes a "
-       "third fewer triangles, circumcentre gives the mesh no preferred direction",
-       "lattice",
-       one_of(&Request::placement,
-              {{"lattice", v1::PLACEMENT_LATTICE}, {"circumcentre", v1::PLACEMENT_CIRCUMCENTRE}}),
-       "quality.placement"},
-      {"optimise", "WEFT_OPTIMISE",
-       "Sweeps of smoothing: vertices around angles below 48 degrees move to where the smallest "
-       "angle around them is largest. Range: 0 to 16. Above 0, sizes that no lattice follows are "
-       "refined in stages before that, for fewer triangles",
-       "2 if the size makes nearly all triangles, on a lattice with few faults or in a mesh below "
-       "100,000 triangles; otherwise 0",
-       number("N", &Request::optimise), "quality.optimise"},
-      {"snap", "WEFT_SNAP",
-       "First merge points and segments of the domain that are nearer together than this",
-       "only what double precision cannot keep apart", number("D", &Request::snap), "domain.snap"},
-      {"simplify", "WEFT_SIMPLIFY",
-       "Make the domain no finer than this share of the length of edges that the size asks for at "
-       "each place: smaller islands are dropped, narrower inlets, channels and spits closed or "
-       "opened, corners taken out, nothing moves farther than that",
-       "every segment is meshed as it is", number("F", &Request::simplify), "simplify"},
-      {"fill", "WEFT_FILL",
-       "What is meshed where polygons overlap: union all that any of them covers, even-odd what an "
-       "odd "
-       "number of them covers, difference the first less the others",
-       "union", fill_value(&Request::fill), "domain.fill"},
-      {"allow-unrefined", "WEFT_ALLOW_UNREFINED",
-       "Accept a mesh with triangles that miss a bound although neither the domain nor a flag "
-       "forces them to",
-       "such a mesh is an error", on_or_off(&Request::allow_unrefined), "allow_unrefined"},
-      {"max-triangles", "WEFT_CLIENT_MAX_TRIANGLES", "Stop refining at this number of triangles",
-       "", number("N", &Request::max_triangles, 1), "budget.max_triangles"},
-      {"max-seconds", "WEFT_CLIENT_MAX_SECONDS", "Maximum time of work, after which the call fails",
-       "", number("S", &Request::max_seconds, 0.001, 1e9), "budget.max_seconds"},
-      {"threads", "WEFT_CLIENT_THREADS",
-       "Threads of the server that compute; the mesh does not depend on them", "all",
-       number("N", &Request::threads, 1), "threads"},
-      {"no-cache", "WEFT_NO_CACHE", "Make the mesh again, even if the server has it", "",
-       on_or_off(&Request::no_cache), "no_cache"},
-  });
+  static const OptionRows<Request> rows = [] {
+    OptionRows<Request> all;
+    add_named("quality.", all);
+    const OptionRows<Request> special = {
+        {"keep", "WEFT_KEEP_SEGMENTS",
+         "Segments that stay as they are, by their markers, numbers or names, or all: no new point "
+         "lies on them, and triangles there may miss their bounds",
+         "", markers_to_keep(), "quality.keep"},
+        {"periodic", "WEFT_PERIODIC",
+         "Sides that repeat each other, pairs of their markers, numbers or names: they get the "
+         "same vertices, moved or turned from the first to the second",
+         "", periodic_sides(), "quality.periodic"},
+        {"fill", "WEFT_FILL",
+         "What is meshed where polygons overlap: union all that any of them covers, even-odd what "
+         "an odd number of them covers, difference the first less the others",
+         "union", fill_value(&Request::fill), "domain.fill"}};
+    all.insert(all.end(), special.begin(), special.end());
+    add_named("domain.", all);
+    for (const wire::NamedOption& option : wire::named_options())
+      if (option.part == nullptr && option.path != "want_quadtree") all.push_back(named(option));
+    add_named("budget.", all);
+    return noted(std::move(all));
+  }();
   return rows;
 }
 
@@ -204,45 +194,35 @@ OptionValue<RequestOptions> periodic_sides() {
 }
 
 const OptionRows<Request>& size_rows() {
-  static const OptionRows<Request> rows = noted({
-      {"size", "",
-       "Maximum area of a triangle, taken at its centroid: a number, an expression in x, y and "
-       "the names of fields, or a grid of areas in an .asc file (ESRI ASCII)",
-       "no bound", size(&Request::size), "size"},
-      {"edge", "",
-       "Wanted length of edges, instead of --size. A triangle's area is at most that of an "
-       "equilateral triangle with this edge, evaluated at its centroid. A number, an expression or "
-       "a grid of lengths, as for --size",
-       "no bound", size(&Request::edge), "size"},
-      {"field", "",
-       "A field that --edge or --size may name. KIND is distance, to all segments; "
-       "distance:marker=2,inlet, to those with a marker, by number or by name; distance:FILE, to "
-       "the points and lines of a "
-       "domain file; width, the domain's local width; mesh:FILE[:ARRAY], values at the vertices of "
-       "an earlier mesh; or FILE[:BAND], the values of a raster. May be repeated",
-       "", fields(), "size.fields"},
-      {"edge-at", "",
-       "Maximum length LEN of edges on segments with the marker M, a number or a name. With "
-       "--gradation G, the length grows from there by at most G per unit of distance. May be "
-       "repeated, once per marker",
-       "", edge_at(), "size.at"},
-      {"gradation", "WEFT_GRADATION",
-       "Maximum growth of the length of edges per unit of distance; a size that grows faster is "
-       "lowered. 0.15 is common",
-       "no limit", number("G", &Request::gradation, 0.001, 1000), "size.gradation"},
-      {"gradation-within", "WEFT_GRADATION_WITHIN",
-       "Measure distances for --gradation within the domain, around land, instead of across it", "",
-       on_or_off(&Request::gradation_within), "size.gradation_within"},
-      {"cells-across", "WEFT_CELLS_ACROSS",
-       "Minimum number of edges across the domain, roughly: edges are at most the local width "
-       "divided by N. Best with --gradation",
-       "any number", number("N", &Request::cells_across, 0.01, 1e6), "size.cells_across"},
-      {"points-per-circle", "WEFT_POINTS_PER_CIRCLE",
-       "Minimum number of vertices on a circle: edges on arcs turn by at most 360 degrees divided "
-       "by N",
-       "edges turn by at most 60 degrees", number("N", &Request::points_per_circle, 1, 1e5),
-       "size.points_per_circle"},
-  });
+  static const OptionRows<Request> rows = [] {
+    OptionRows<Request> all = {
+        {"size", "",
+         "Maximum area of a triangle, taken at its centroid: a number, an expression in x, y and "
+         "the names of fields, or a grid of areas in an .asc file (ESRI ASCII)",
+         "no bound", size(&Request::size), "size"},
+        {"edge", "",
+         "Wanted length of edges, instead of --size. A triangle's area is at most that of an "
+         "equilateral triangle with this edge, evaluated at its centroid. A number, an expression "
+         "or "
+         "a grid of lengths, as for --size",
+         "no bound", size(&Request::edge), "size"},
+        {"field", "",
+         "A field that --edge or --size may name. KIND is distance, to all segments; "
+         "distance:marker=2,inlet, to those with a marker, by number or by name; distance:FILE, to "
+         "the points and lines of a "
+         "domain file; width, the domain's local width; mesh:FILE[:ARRAY], values at the vertices "
+         "of "
+         "an earlier mesh; or FILE[:BAND], the values of a raster. May be repeated",
+         "", fields(), "size.fields"},
+        {"edge-at", "",
+         "Maximum length LEN of edges on segments with the marker M, a number or a name. With "
+         "--gradation G, the length grows from there by at most G per unit of distance. May be "
+         "repeated, once per marker",
+         "", edge_at(), "size.at"},
+    };
+    add_named("size.", all);
+    return noted(std::move(all));
+  }();
   return rows;
 }
 

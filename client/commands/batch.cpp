@@ -42,7 +42,7 @@ Result<MeshReport> make_mesh(const BatchMesh& mesh, const Connection& connection
   if (!input) return tl::unexpected(input.error());
   auto request_options = with_size(mesh.request_options, input->domain, input->projection.get());
   if (!request_options) return tl::unexpected(request_options.error());
-  request_options->quadtree = mesh.output.draw_quadtree;
+  request_options->asked.set_want_quadtree(mesh.output.draw_quadtree);
   std::optional<MeshOutput> output;
   if (!mesh.output.empty()) {
     MeshOutputOptions wanted = mesh.output;

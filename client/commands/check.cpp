@@ -63,7 +63,7 @@ Result<check::Requirements> requirements_of(const CheckOptions& options, const I
   requirements.min_angle_deg = options.min_angle_deg;
   requirements.allowed_unrefined = options.max_unrefined;
   requirements.simplify = options.simplify.value_or(0);
-  requirements.points_per_circle = options.size.points_per_circle.value_or(0);
+  requirements.points_per_circle = options.size.asked.size().points_per_circle();
   auto size = checker_size(options.size, input.domain, input.projection.get());
   if (!size) return tl::unexpected(size.error());
   requirements.size = std::move(*size);
@@ -106,7 +106,7 @@ Result<void> judge_by_domain(const CheckOptions& options, const check::Mesh& mes
   const auto input = read_input_domain(options.domain, wanted, options.projection, options.layers);
   if (!input) return tl::unexpected(input.error());
   print_warnings(sentences(input->domain.warnings));
-  if (options.size.cells_across)
+  if (options.size.asked.size().cells_across() > 0)
     print_warnings({"--cells-across is not judged: the checker knows no widths"});
   const auto requirements = requirements_of(options, *input);
   if (!requirements) return tl::unexpected(requirements.error());

@@ -68,7 +68,7 @@ Result<check::SizeSpec> checker_size(const RequestOptions& options, const Domain
                                      const DomainProjection* projection) {
   const auto read = with_size(options, domain, projection);
   if (!read) return tl::unexpected(read.error());
-  const v1::SizeField& size = *read->size_read;
+  const v1::SizeField& size = read->asked.size();
   const std::string& text = options.edge.empty() ? options.size : options.edge;
   double number = 0;
   const char* const end = text.data() + text.size();

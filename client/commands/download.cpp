@@ -54,9 +54,9 @@ Result<MeshReport> download(JobServer& server, const v1::Job& job, const InputDo
   }
   if (auto ok = add_outside_warning(input, *report); !ok) return tl::unexpected(ok.error());
   // 0 if the job has no such budget, or an earlier version of the server stored its mesh.
-  if (const std::uint64_t budget = report->summary.request().budget().max_triangles(); budget != 0)
-    if (auto warning = budget_warning(report->summary, budget))
-      add_warnings({std::move(*warning)}, *report);
+  if (auto warning =
+          budget_warning(report->summary, report->summary.request().budget().max_triangles()))
+    add_warnings({std::move(*warning)}, *report);
   add_marker_warnings(*mesh, output.options().writing.open_boundaries,
                       input != nullptr ? &input->domain : nullptr, *report);
   if (output.drawing() != nullptr) progress.say("drawing");

@@ -46,7 +46,7 @@ class Picture {
 
 // What cannot be judged, the server will refuse.
 void print_faults(const Domain& domain, const MeshOptions& options) {
-  const double snap = options.request_options.snap.value_or(0);
+  const double snap = options.request_options.asked.domain().snap();
   const auto lint = lint_domain(domain, options.input,
                                 {.snap = std::isfinite(snap) && snap > 0 ? snap : 0,
                                  .lonlat = options.output.projection.wanted()});
@@ -96,7 +96,7 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
             std::fprintf(stderr, "weft: %s\n", what.c_str());
           },
       .projection = input->projection.get()};
-  request_options->quadtree = options.output.draw_quadtree;
+  request_options->asked.set_want_quadtree(options.output.draw_quadtree);
   const auto received = [&] {
     times.received = MeshTimes::Clock::now();
     if (output->drawing() != nullptr) progress.say("drawing");

@@ -39,7 +39,8 @@ Result<MeshReport> mesh_into(const Connection& connection, const InputDomain& in
   add_projection(input, *report);
   add_warnings(sentences(input.domain.warnings), *report);
   if (auto ok = add_outside_warning(&input, *report); !ok) return tl::unexpected(ok.error());
-  if (auto warning = budget_warning(report->summary, request_options.max_triangles))
+  if (auto warning =
+          budget_warning(report->summary, request_options.asked.budget().max_triangles()))
     add_warnings({std::move(*warning)}, *report);
   add_warnings(request_options.warnings, *report);
   if (output == nullptr) return report;

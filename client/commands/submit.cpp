@@ -53,12 +53,12 @@ Result<v1::Job> submit(JobServer& server, const InputDomain& input, const Submit
   auto request_options = with_size(options.request_options, domain, input.projection.get());
   if (!request_options) return tl::unexpected(request_options.error());
   warn(request_options->warnings, options.quiet);
-  request_options->quadtree = options.output.draw_quadtree;
-  request_options->no_cache = false;  // a job has its own field for this
+  request_options->asked.set_want_quadtree(options.output.draw_quadtree);
+  request_options->asked.clear_no_cache();  // a job has its own field for this
   v1::SubmitJobRequest request;
   *request.mutable_mesh() = make_request(domain, *request_options);
   request.set_request_id(options.request_id.empty() ? random_request_id() : options.request_id);
-  request.set_no_cache(options.request_options.no_cache);
+  request.set_no_cache(options.request_options.asked.no_cache());
   auto job = server.submit(request, origin_of(input, &options.request_options));
   if (job) return job;
   Error error = job.error();

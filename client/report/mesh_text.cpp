@@ -135,11 +135,10 @@ Json summary_json(const v1::Summary& summary) {
   return json;
 }
 
-std::optional<std::string> budget_warning(const v1::Summary& summary,
-                                          std::optional<std::uint64_t> max_triangles) {
-  if (!max_triangles || summary.triangles() <= *max_triangles) return std::nullopt;
+std::optional<std::string> budget_warning(const v1::Summary& summary, std::uint64_t max_triangles) {
+  if (max_triangles == 0 || summary.triangles() <= max_triangles) return std::nullopt;
   return "the mesh has " + counted(summary.triangles(), "triangle") + ", more than the " +
-         with_separators(*max_triangles) +
+         with_separators(max_triangles) +
          " of --max-triangles, because the domain alone, without refinement, has that many";
 }
 

@@ -53,9 +53,8 @@ std::string region_values_text(std::span<const RegionValue> values);
 Json region_values_json(std::span<const RegionValue> values);
 
 // A warning if the mesh has more triangles than `max_triangles` of its budget, because the domain's
-// own triangulation is never reduced; nullopt if it has not.
-std::optional<std::string> budget_warning(const v1::Summary& summary,
-                                          std::optional<std::uint64_t> max_triangles);
+// own triangulation is never reduced; nullopt if it has not. 0: no budget.
+std::optional<std::string> budget_warning(const v1::Summary& summary, std::uint64_t max_triangles);
 
 // summary_text, a line on where the time went, one on the projection if there is one, and one line
 // per warning.

@@ -27,11 +27,11 @@ test("a request is a command with what was set, zero included, and nothing else"
     "weft mesh DOMAIN.poly -o mesh.vtu",
     "--edge 'min(500 + 0.15*coast, '\\''x'\\'')'",
     "--field coast=distance:marker=MARKERS",
+    "--gradation 0.15",
+    "--gradation-within",
     "--min-angle 0",
     "--placement circumcentre",
     "--optimise 0",
-    "--gradation 0.15",
-    "--gradation-within",
     "--max-triangles 5000",
     "--allow-unrefined",
   ]);

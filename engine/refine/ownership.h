@@ -6,8 +6,8 @@
 // owns the two common vertices, reads the third, and writes the link to the new neighbour.
 // Concurrent tasks own disjoint boxes, and two tasks cannot each own two of three vertices. So at
 // any time at most one task may touch a triangle, and the mesh needs no lock and no atomic.
-// Vertices move only in smoothing (smoother.h): by a task that owns all vertices around, and within
-// the boxes that they are in.
+// Vertices move only in equalising and smoothing (vertex_star.h): by a task that owns all vertices
+// around, and within the boxes that they are in.
 //
 // That each insertion is that of the sequential algorithm follows by induction over the moments at
 // which cavities are replaced, of all tasks in one order. Let the mesh be constrained Delaunay

@@ -138,8 +138,9 @@ TEST(StreamedQuadtree, IsSentWhereItIsWantedAndCoversTheDomain) {
   const Server server;
   const auto stub = stub_of(server);
   const Stream without = call(*stub, request_for("us-east-coast.poly", {.size = "1e-3"}));
-  const Stream with =
-      call(*stub, request_for("us-east-coast.poly", {.size = "1e-3", .quadtree = true}));
+  v1::GenerateMeshRequest wanted = request_for("us-east-coast.poly", {.size = "1e-3"});
+  wanted.set_want_quadtree(true);
+  const Stream with = call(*stub, wanted);
   EXPECT_GT(without.summary.leaves(), 20u);
   EXPECT_EQ(without.summary.leaf_boxes_size(), 0);
   EXPECT_EQ(with.summary.leaves(), without.summary.leaves());

@@ -2,31 +2,45 @@
 // A request as what a person would type to ask for it again. The server keeps no arrays of a request,
 // so the domain's file, and those of rasters and fields, are names in capitals to be filled in; if
 // `domain`, the name of the domain's file, is given, the request is whole.
-import { Measure, Placement, type GenerateMeshRequest, type NamedField } from "../gen/weft/v1/mesh_service_pb";
+import { getOption, hasOption, type DescField } from "@bufbuild/protobuf";
+import { reflect, type ReflectMessage } from "@bufbuild/protobuf/reflect";
+import {
+  GenerateMeshRequestSchema,
+  Measure,
+  option,
+  type GenerateMeshRequest,
+  type NamedField,
+} from "../gen/weft/v1/mesh_service_pb";
 
 type Pair = [number, number];
 type Value = string | number | boolean | number[] | Pair[];
 
-// In the order of the flags of `weft mesh`; the names are those of Python's options.
-function optionsOf({ domain, quality, size, simplify, budget, allowUnrefined }: GenerateMeshRequest): [string, Value][] {
-  const options: [string, Value | undefined][] = [
-    ["min_angle", quality?.minAngleDeg],
-    ["min_edge", quality?.minEdge || undefined],
-    ["keep", quality?.keep && (quality.keep.markers.length > 0 ? quality.keep.markers : "all")],
-    ["periodic", quality?.periodic.length ? quality.periodic.map(({ from, to }): Pair => [from, to]) : undefined],
-    ["placement", quality?.placement === Placement.CIRCUMCENTRE ? "circumcentre" : undefined],
-    ["optimise", quality?.optimise],
-    ["snap", domain?.snap || undefined],
-    ["simplify", simplify || undefined],
-    ["gradation", size?.gradation || undefined],
-    ["gradation_within", size?.gradationWithin || undefined],
-    ["cells_across", size?.cellsAcross || undefined],
-    ["points_per_circle", size?.pointsPerCircle || undefined],
-    ["max_triangles", budget?.maxTriangles ? Number(budget.maxTriangles) : undefined],
-    ["max_seconds", budget?.maxSeconds || undefined],
-    ["allow_unrefined", allowUnrefined || undefined],
-  ];
-  return options.filter((option): option is [string, Value] => option[1] !== undefined);
+// They change no mesh.
+const ofTheRun = ["threads", "want_quadtree", "no_cache"];
+
+function valueOf(field: DescField, value: unknown): Value {
+  if (field.fieldKind === "enum") return name(field.enum.value[value as number].localName);
+  return typeof value === "bigint" ? Number(value) : (value as number | boolean);
+}
+
+const name = (text: string) => text.toLowerCase().replaceAll("-", "_");
+
+// Those that are set of the options of a message that the protocol names, as Python calls them.
+function namedOptions(message: ReflectMessage): [string, Value][] {
+  return message.fields.flatMap((field): [string, Value][] => {
+    if (!message.isSet(field)) return [];
+    if (field.fieldKind === "message") return namedOptions(message.get(field));
+    if (!hasOption(field, option) || ofTheRun.includes(field.name)) return [];
+    return [[name(getOption(field, option).name || field.name), valueOf(field, message.get(field))]];
+  });
+}
+
+function optionsOf(request: GenerateMeshRequest): [string, Value][] {
+  const options = namedOptions(reflect(GenerateMeshRequestSchema, request));
+  const { keep, periodic = [] } = request.quality ?? {};
+  if (keep) options.push(["keep", keep.markers.length > 0 ? keep.markers : "all"]);
+  if (periodic.length > 0) options.push(["periodic", periodic.map(({ from, to }): Pair => [from, to])]);
+  return options;
 }
 
 // Name and value of the size, or undefined if there is no bound. `raster` stands for a grid.

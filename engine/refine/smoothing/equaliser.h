@@ -4,7 +4,7 @@
 //
 //   Equaliser<OwnsAll, ConstantArea> equaliser(refinement, quality, ConstantArea(1e-3));
 //   equaliser.begin(OwnsAll{}, box, domain.vertices.size(), 0);
-//   std::optional<Error> stopped = equaliser.run(slots, {1.3, 2});   // two sweeps
+//   std::optional<Error> stopped = equaliser.run(slots, 1.3, 2);   // two sweeps
 //
 // A vertex stays where it is where a lattice follows the size, because there triangles are as large
 // as they may be; where the size jumps, because a bound at a centroid tells little there; and where

@@ -287,7 +287,7 @@ TEST_F(Sizes, OnAnEarlierMeshAreProjectedAsTheDomainIs) {
     const auto read = with_size(options, domain, &*projection);
     ASSERT_TRUE(read) << read.error().message;
     const Point first = to_metres ? Point{1, 1} : projection->to_plane({1, 1});
-    const auto& vertices = read->size_read->fields(0).mesh().vertices();
+    const auto& vertices = read->asked.size().fields(0).mesh().vertices();
     EXPECT_EQ(vertices[0], first.x);
     EXPECT_EQ(vertices[1], first.y);
   }

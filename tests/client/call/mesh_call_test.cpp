@@ -168,11 +168,6 @@ TEST_F(ClientMeshCall, DoesNotGoOnWithAnotherEngine) {
             "the stream is damaged: it was resumed by engine 2, engine 1 had begun it");
 }
 
-TEST(MeshRequest, AsksForTheQuadtreeWhereItIsWished) {
-  EXPECT_FALSE(make_request(square_domain(1), {}).want_quadtree());
-  EXPECT_TRUE(make_request(square_domain(1), {.quadtree = true}).want_quadtree());
-}
-
 TEST(MeshRequest, CarriesTheDomainAndTheWishes) {
   Domain domain = square_domain(2);
   domain.holes = {{1, 1.5}};
@@ -180,17 +175,11 @@ TEST(MeshRequest, CarriesTheDomainAndTheWishes) {
   domain.fill = Domain::Fill::kUnion;
   domain.segments[2].area = 1;
   domain.areas = {{5, 0.5}, {std::nullopt, std::nullopt, true}};
-  const auto request = make_request(domain, {.size = "x + 1",
-                                             .min_angle_deg = 0,
-                                             .min_edge = 0.5,
-                                             .placement = v1::PLACEMENT_CIRCUMCENTRE,
-                                             .optimise = 0,
-                                             .max_triangles = 7,
-                                             .max_seconds = 2,
-                                             .threads = 3,
-                                             .snap = 0.25,
-                                             .simplify = 0.75,
-                                             .allow_unrefined = true});
+  RequestOptions options{.size = "x + 1"};
+  options.asked.mutable_quality()->set_min_angle_deg(0);
+  options.asked.mutable_domain()->set_snap(0.25);
+  options.asked.mutable_size()->set_gradation(0.5);
+  const auto request = make_request(domain, options);
   EXPECT_EQ(request.domain().points_size(), 8);
   EXPECT_EQ(request.domain().points(4), 2);
   EXPECT_EQ(request.domain().segments(7), 0u);
@@ -207,18 +196,9 @@ TEST(MeshRequest, CarriesTheDomainAndTheWishes) {
   EXPECT_EQ(request.domain().segment_areas_size(), 4);
   EXPECT_EQ(request.domain().segment_areas(2), 1u);
   EXPECT_EQ(request.size().expression(), "x + 1");
+  EXPECT_EQ(request.size().gradation(), 0.5);
   EXPECT_TRUE(request.quality().has_min_angle_deg());
-  EXPECT_EQ(request.quality().min_edge(), 0.5);
-  EXPECT_EQ(request.quality().placement(), v1::PLACEMENT_CIRCUMCENTRE);
-  EXPECT_TRUE(request.quality().has_optimise());
-  EXPECT_FALSE(make_request(domain, {}).quality().has_optimise());
-  EXPECT_EQ(request.budget().max_triangles(), 7u);
-  EXPECT_EQ(request.budget().max_seconds(), 2);
-  EXPECT_EQ(request.threads(), 3u);
   EXPECT_EQ(request.domain().snap(), 0.25);
-  EXPECT_EQ(request.simplify(), 0.75);
-  EXPECT_TRUE(request.allow_unrefined());
-  EXPECT_FALSE(make_request(domain, {}).allow_unrefined());
 }
 
 TEST(MeshRequest, TakesANumberAsAConstantSizeAndLeavesDefaultsToTheServer) {

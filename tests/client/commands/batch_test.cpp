@@ -97,17 +97,16 @@ meshes:
   EXPECT_EQ(a.name, "a");
   EXPECT_EQ(a.input, folder_ / "in/a.poly");
   EXPECT_EQ(a.request_options.size, "x + 1");
-  EXPECT_EQ(a.request_options.min_angle_deg, 25);
-  EXPECT_EQ(a.request_options.min_edge, 0.5);
-  EXPECT_EQ(a.request_options.placement, v1::PLACEMENT_CIRCUMCENTRE);
-  EXPECT_FALSE(meshes->back().request_options.placement);
-  EXPECT_EQ(a.request_options.optimise, 3u);
-  EXPECT_FALSE(meshes->back().request_options.optimise);
-  EXPECT_EQ(a.request_options.snap, 0.125);
-  EXPECT_TRUE(a.request_options.allow_unrefined);
-  EXPECT_FALSE(meshes->back().request_options.allow_unrefined);
-  EXPECT_EQ(a.request_options.max_triangles, 9u);
-  EXPECT_EQ(a.request_options.max_seconds, 4);
+  const v1::GenerateMeshRequest& asked = a.request_options.asked;
+  EXPECT_EQ(asked.quality().min_angle_deg(), 25);
+  EXPECT_EQ(asked.quality().min_edge(), 0.5);
+  EXPECT_EQ(asked.quality().placement(), v1::PLACEMENT_CIRCUMCENTRE);
+  EXPECT_EQ(asked.quality().optimise(), 3u);
+  EXPECT_EQ(asked.domain().snap(), 0.125);
+  EXPECT_TRUE(asked.allow_unrefined());
+  EXPECT_EQ(asked.budget().max_triangles(), 9u);
+  EXPECT_EQ(asked.budget().max_seconds(), 4);
+  EXPECT_EQ(meshes->back().request_options.asked.ByteSizeLong(), 0u);
   EXPECT_EQ(a.output.files.back(), folder_ / "o/a.msh");
   EXPECT_EQ(a.output.drawings.front(), folder_ / "a.png");
   EXPECT_EQ(a.output.drawing.color, DrawColor::kAngle);
@@ -126,8 +125,8 @@ meshes:
   - {name: b, input: b.poly, min-angle: 20, require: {min-angle: 20}}
 )");
   ASSERT_TRUE(meshes) << meshes.error().message;
-  EXPECT_EQ(meshes->front().request_options.min_angle_deg, 30);
-  EXPECT_EQ(meshes->back().request_options.min_angle_deg, 20);
+  EXPECT_EQ(meshes->front().request_options.asked.quality().min_angle_deg(), 30);
+  EXPECT_EQ(meshes->back().request_options.asked.quality().min_angle_deg(), 20);
   EXPECT_EQ(meshes->back().gates.size(), 2u);
   for (const QualityGate& gate : meshes->back().gates)
     EXPECT_EQ(gate.violation(summary_of(11, 20)).has_value(), gate.figure() == "max-triangles");

@@ -181,7 +181,7 @@ TEST(MeshReport, TellsTheAttributesThatIdsStandFor) {
 TEST(BudgetWarning, IsOfAMeshWithMoreTrianglesThanWereAllowed) {
   v1::Summary summary;
   summary.set_triangles(9580);
-  EXPECT_EQ(budget_warning(summary, std::nullopt), std::nullopt);
+  EXPECT_EQ(budget_warning(summary, 0), std::nullopt);
   EXPECT_EQ(budget_warning(summary, 9580), std::nullopt);
   EXPECT_EQ(budget_warning(summary, 1000),
             "the mesh has 9,580 triangles, more than the 1,000 of --max-triangles, because the "

@@ -38,7 +38,7 @@ const v1::GenerateMeshRequest& pipe() {
   static const v1::GenerateMeshRequest request = [] {
     client::RequestOptions options;
     options.size = "0.4*hypot(x-200, y-200) + 1";
-    options.no_cache = true;
+    options.asked.set_no_cache(true);
     return client::make_request(files::read_domain(model("pipe.poly")).value(), options);
   }();
   return request;

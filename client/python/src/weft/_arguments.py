@@ -6,16 +6,11 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from . import _options
+
 _EDGE = 2  # weft.v1.Measure
 
-_ARGUMENTS = {
-    "size.gradation": "gradation", "size.cells_across": "cells_across", "size.fields": "fields",
-    "size.points_per_circle": "points_per_circle", "size.at": "edge_at", "quality.min_angle_deg": "min_angle",
-    "quality.min_edge": "min_edge", "quality.keep": "keep", "quality.periodic": "periodic",
-    "quality.placement": "placement", "quality.optimise": "optimise", "domain.snap": "snap",
-    "simplify": "simplify",
-    "budget.max_triangles": "max_triangles", "budget.max_seconds": "max_seconds",
-}
+_OTHERS = {"size.fields": "fields", "size.at": "edge_at", "quality.keep": "keep", "quality.periodic": "periodic"}
 _ENTRY = re.compile(r"(\.markers|(?<=quality\.periodic))\[.*")
 _ELEMENT = re.compile(r"size\.(fields|at)\[(\d+)\]")
 _VALUE = re.compile(r"size($|\.constant|\.expression|\.raster|\.measure)")
@@ -25,8 +20,12 @@ def argument_of(field: str, request: Any) -> str:
     """The argument of Client.mesh that the field was made of, such as `fields['coast']` of
     `size.fields[0].distance.markers`; empty if it has no other name, or the request must be known to
     tell. `request`: the GenerateMeshRequest; None or another for none."""
-    if name := _ARGUMENTS.get(_ENTRY.sub("", field)):
+    field_of_option = _ENTRY.sub("", field)
+    if name := _OTHERS.get(field_of_option):
         return name
+    for name, option in _options.by_keyword().items():
+        if option.path == field_of_option:
+            return name
     if request is None or not hasattr(request, "size"):  # such as a FetchMeshRequest
         return ""
     if element := _ELEMENT.match(field):

@@ -44,6 +44,14 @@ def message(name: str) -> Any:
     return _class_of(_pool.FindMessageTypeByName(name))
 
 
+def annotation(field: Any) -> Any:
+    """The weft.v1.Option of a field; None if it is no option."""
+    # The class of the field's options is not of our pool, which alone knows the extension.
+    options = message("google.protobuf.FieldOptions").FromString(field.GetOptions().SerializeToString())
+    extension = _pool.FindExtensionByName("weft.v1.option")
+    return options.Extensions[extension] if options.HasExtension(extension) else None
+
+
 def enum(name: str) -> Any:
     """The descriptor of an enum: `values_by_name`, `values_by_number`."""
     return _pool.FindEnumTypeByName(name)

@@ -12,7 +12,7 @@ from typing import Any, Literal, TypedDict
 
 import numpy as np
 
-from . import _protocol
+from . import _options, _protocol
 from ._names import marker_of
 from ._projection import Projection
 from ._raster_window import MOST_VALUES
@@ -33,22 +33,10 @@ class MeshOptions(TypedDict, total=False):
     Raster or a function of lengths."""
     fields: Mapping[str, Field]
     """What `edge` or `size` may name besides x and y: see distance, raster, on_mesh and width."""
-    gradation: float
-    """Maximum growth of the length of edges per unit of distance; a size that grows faster is
-    lowered. Default: no limit."""
-    gradation_within: bool
-    """Whether distances for `gradation` are measured within the domain, around land, instead of
-    across it. Default: False."""
     edge_at: Mapping[int, float] | Mapping[str, float] | Mapping[int | str, float]
     """Maximum length of edges on segments, by their marker, a number or a name of the domain's
     `marker_names`: `{2: 500, "inlet": 100}`. With `gradation`, lengths
     grow from there by at most that."""
-    cells_across: float
-    """Minimum number of edges across the domain, roughly: no edge is wanted longer than the local
-    width divided by it. Best with `gradation`. Default: any number."""
-    points_per_circle: float
-    """Minimum number of vertices on a circle: edges on arcs turn by at most 360 degrees divided by it.
-    Default: edges turn by at most 60 degrees."""
     lonlat: bool
     """The domain is in longitude and latitude, in degrees: it is meshed in a plane in metres, so that
     angles hold on the ground, and the points of the mesh are in longitude and latitude. Sizes are
@@ -59,8 +47,6 @@ class MeshOptions(TypedDict, total=False):
     conformal one whose scale varies least over the domain."""
     to_metres: bool
     """Leave the points of the mesh in metres of the projection; implies `lonlat`."""
-    min_edge: float
-    """No edge shorter than this is made, in the unit of the points."""
     keep: Literal["all"] | int | str | Sequence[int] | Sequence[str] | Sequence[int | str]
     """Segments that stay as they are: "all", or a marker or several, numbers or names of the domain's
     `marker_names`. No new point lies on them, and triangles there may miss their bounds, which
@@ -69,40 +55,25 @@ class MeshOptions(TypedDict, total=False):
     """Sides that repeat each other, pairs of markers, numbers or names of the domain's `marker_names`:
     `[(4, 2), ("bottom", "top")]`. Each is a line of straight segments; a translation or a rotation that takes one to
     the other takes vertices to vertices, which `Mesh.periodic` pairs."""
+    # The others are explained by help(weft.Client.mesh), from the protocol.
+    gradation: float
+    gradation_within: bool
+    cells_across: float
+    points_per_circle: float
+    min_edge: float
     placement: Literal["lattice", "circumcentre"]
-    """Where the points go that split triangles larger than their bound: to a lattice that follows
-    the size, with a third fewer triangles, or to circumcentres, which give the mesh no preferred
-    direction. Default: lattice."""
     optimise: int
-    """Sweeps of smoothing, 0 to 16: vertices around angles below 48 degrees move to where the
-    smallest angle around them is largest. Above 0, sizes that no lattice follows are refined in
-    stages before that, for fewer triangles. Default: 2 if the size makes nearly all triangles, on a
-    lattice with few faults or in a mesh below 100,000 triangles; otherwise 0."""
     snap: float
-    """Merge everything of the domain that lies nearer together than this first, in the unit of the
-    points; `summary.merging` tells what moved."""
     simplify: float
-    """Make the domain no finer than this share of the length of edges that the size asks for at each
-    place: smaller islands are dropped, narrower inlets, channels and spits closed or opened, corners
-    taken out; `summary.simplification` tells what was done. Default: 0, every segment is meshed as it
-    is."""
     allow_unrefined: bool
-    """Take a mesh with triangles that miss a bound although nothing exempts them, instead of
-    BoundsNotMet."""
     max_triangles: int
-    """Refinement stops here and gives the mesh that it has."""
     max_seconds: float
-    """Maximum seconds of work; beyond it, DeadlineExceeded."""
     threads: int
-    """Maximum threads that compute; the mesh does not depend on it. Default: all of the server."""
     quadtree: bool
-    """Whether `summary.leaf_boxes` is filled."""
     no_cache: bool
-    """Make the mesh again, even if the server has it in its cache."""
 
 
 _Request = _protocol.message("weft.v1.GenerateMeshRequest")
-_PLACEMENTS = {"lattice": 1, "circumcentre": 2}
 _EDGE = 2
 _FILL_NUMBERS = {name: number for number, name in _FILLS.items()}
 
@@ -143,42 +114,18 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
     _fill_size(asked, domain, request.size, lengths=lengths)
     if lengths:
         request.size.measure = _EDGE
-    if "cells_across" in options:
-        request.size.cells_across = options["cells_across"]
-    if "points_per_circle" in options:
-        request.size.points_per_circle = options["points_per_circle"]
-    if "gradation" in options:
-        request.size.gradation = options["gradation"]
-    if options.get("gradation_within"):
-        if "gradation" not in options:
-            raise ValueError("gradation_within needs gradation, whose distances it is about")
-        request.size.gradation_within = True
+    if options.get("gradation_within") and "gradation" not in options:
+        raise ValueError("gradation_within needs gradation, whose distances it is about")
     for marker, max_edge in options.get("edge_at", {}).items():
         request.size.at.add(marker=marker_of(marker, domain.marker_names), max_edge=max_edge)
     _fill_fields(fields, domain, projected, request.size.fields)
-    request.quality.min_angle_deg = min_angle
-    if "min_edge" in options:
-        request.quality.min_edge = options["min_edge"]
     if "keep" in options:
         _fill_keep(options["keep"], domain, request.quality)
     _fill_periodic(options.get("periodic", ()), domain, request.quality)
-    if "placement" in options:
-        if options["placement"] not in _PLACEMENTS:
-            raise ValueError(f"placement is {options['placement']!r}; there are "
-                             f"{', '.join(_PLACEMENTS)}")
-        request.quality.placement = _PLACEMENTS[options["placement"]]
-    if "optimise" in options:
-        request.quality.optimise = options["optimise"]
-    request.domain.snap = options.get("snap", 0)
-    request.simplify = options.get("simplify", 0)
-    request.allow_unrefined = options.get("allow_unrefined", False)
-    if "max_triangles" in options:
-        request.budget.max_triangles = options["max_triangles"]
-    if "max_seconds" in options:
-        request.budget.max_seconds = options["max_seconds"]
-    request.threads = options.get("threads", 0)
-    request.want_quadtree = options.get("quadtree", False)
-    request.no_cache = options.get("no_cache", False)
+    values: dict[str, object] = {"min_angle": min_angle, **options}
+    for name, option in _options.by_keyword().items():
+        if name in values:
+            option.set(request, values[name])
     return request
 
 

@@ -13,6 +13,7 @@ import grpc
 
 from . import _jobs, _protocol, errors, results
 from ._channel import ClientBase, StreamBase
+from ._options import documented
 from ._receiver import MeshReceiver
 from ._requests import MeshOptions, job_request, stream_request
 from ._wire import Chunk
@@ -52,6 +53,7 @@ class Client(ClientBase):
     def __exit__(self, *exception: object) -> None:
         self.close()
 
+    @documented
     def mesh(self, domain: DomainLike, size: Size = None, min_angle: float = 20, *,
              on_progress: Callable[[Progress], object] | None = None, timeout: float | None = None,
              **options: Unpack[MeshOptions]) -> Mesh:
@@ -69,12 +71,7 @@ class Client(ClientBase):
         Size, in units of the domain (metres with `lonlat`):
         `edge`: length of edges, instead of `size` and of the same kinds; default: none.
         `fields`: {name: Field} that `edge` or `size` may name; default: none.
-        `gradation`: maximum growth of edges per unit of distance, above 0; default: no limit.
-        `gradation_within`: True to measure that within the domain, around land; default: False.
         `edge_at`: {marker or its name: length of edges on these segments}, above 0; default: none.
-        `cells_across`: minimum number of edges across the domain, above 0; default: any number.
-        `points_per_circle`: minimum number of vertices on a circle, above 0; default: 6.
-        `min_edge`: no edge shorter than this is made, from 0; default: 0.
         `keep`: markers or names of segments that stay as they are, or "all"; default: none.
         `periodic`: pairs of markers or names of sides that get the same vertices; default: none.
 
@@ -82,22 +79,9 @@ class Client(ClientBase):
         `lonlat`: True if the domain is in longitude and latitude, degrees; default: False.
         `crs`: name of the projection, implies `lonlat`; default: the one that distorts least.
         `to_metres`: leave the mesh in metres of the projection, implies `lonlat`; default: False.
-        `snap`: merge what lies nearer together than this, units of the domain, from 0; default: 0.
-        `simplify`: make the domain no finer than this share of the size there, from 0; default: 0.
 
-        Triangles:
-        `placement`: "lattice" or "circumcentre", where points go; default: "lattice".
-        `optimise`: sweeps of smoothing, 0 to 16; default: 0 or 2, see MeshOptions.
-        `allow_unrefined`: take a mesh that misses a bound; default: False, which raises BoundsNotMet.
-
-        Work:
-        `max_triangles`: refinement stops here, from 1; default: the server's limit.
-        `max_seconds`: maximum seconds of work, above 0, beyond it DeadlineExceeded; default: the
-        server's limit.
-        `threads`: maximum threads that compute, from 1; default: all of the server. The mesh does not
-        depend on it.
-        `quadtree`: whether `summary.leaf_boxes` is filled; default: False.
-        `no_cache`: make the mesh again even if the server has it; default: False.
+        Others, in units of the domain:
+        {options}
 
         Raises InvalidRequest with the field at fault, DomainError before that if it is known here.
         A WeftWarning says where a function was sampled too coarsely, see Raster.adaptive; that a
