@@ -26,6 +26,7 @@
 #include "checker/mesh/coverage.h"
 #include "checker/mesh/delaunay.h"
 #include "checker/mesh/kept.h"
+#include "checker/mesh/layers.h"
 #include "checker/mesh/overlap.h"
 #include "checker/mesh/periodic.h"
 #include "checker/mesh/simplification.h"
@@ -224,6 +225,19 @@ void judge_without_mesh(const Domain& domain, Findings& findings) {
   arrange(bent, findings);
 }
 
+// A mesh with layers, as it is judged.
+struct Layered {
+  Layered(const Mesh& given, const HalfEdges& half_edges, const ListedEdges& all,
+          std::vector<bool> layers)
+      : is_layer(std::move(layers)),
+        mesh(without_regions_of_layers(given, half_edges, all, is_layer)),
+        listed(with_edges_of_layers(half_edges, all, is_layer)) {}
+
+  std::vector<bool> is_layer;
+  Mesh mesh;           // its regions are those of the domain
+  ListedEdges listed;  // and the edges of layers
+};
+
 // The sizes are those of the domain as it was given: they may refer to segments that are points.
 Report judge(const Domain& domain, const Domain& given, const Mesh& mesh,
              const Requirements& requirements) {
@@ -246,7 +260,11 @@ Report judge(const Domain& domain, const Domain& given, const Mesh& mesh,
   if (sound) half_edges.emplace(mesh);
   if (sound && half_edges->judge_conformity(findings)) {
     const ListedEdges listed = find_listed_edges(mesh, *half_edges, findings);
-    judge_delaunay(mesh, *half_edges, listed, findings);
+    std::optional<Layered> layered;
+    if (!requirements.layers.empty())
+      layered.emplace(mesh, *half_edges, listed,
+                      judge_layers(mesh, *half_edges, listed, requirements.layers, findings));
+    judge_delaunay(mesh, *half_edges, layered ? layered->listed : listed, findings);
     const bool no_overlap = judge_overlap(mesh, *half_edges, listed, findings);
     std::optional<ArcChains> arcs;
     if (is_well_formed && !domain.arcs.empty()) {
@@ -261,15 +279,22 @@ Report judge(const Domain& domain, const Domain& given, const Mesh& mesh,
     if (near) {
       judge_named_points(domain, *near, mesh, findings);
       if (near->any) judge_chain_ends(domain, *near, mesh, listed, findings);
-      match.emplace(best_match({domain, arcs, straight, *near, mesh, *half_edges, listed},
-                               no_overlap, requirements.listed_violations));
+      match.emplace(best_match(
+          {domain, arcs, straight, *near, layered ? layered->mesh : mesh, *half_edges, listed},
+          no_overlap, requirements.listed_violations));
       findings.merge(match->findings);
       if (match->small_input_angles && requirements.keep)
         judge_kept(mesh, match->small_input_angles->segments(),
                    InputPoints(match->bent.domain, mesh), *requirements.keep, findings);
     }
+    if (layered && match && match->small_input_angles) {
+      SegmentsOfVertices segments = match->small_input_angles->segments();
+      add_lines_of_layers(mesh, *half_edges, layered->is_layer, segments);
+      match->small_input_angles.emplace(mesh, layered->listed, std::move(segments));
+    }
     if (match && match->small_input_angles)
-      context = {&*match->small_input_angles, match->faces, match->filled->roles};
+      context = {&*match->small_input_angles, match->faces, match->filled->roles,
+                 layered ? &layered->is_layer : nullptr};
     else
       skip({Rule::kChains, Rule::kPoints, Rule::kMarkers, Rule::kCoverage, Rule::kRegions,
             Rule::kAngle});
@@ -284,7 +309,7 @@ Report judge(const Domain& domain, const Domain& given, const Mesh& mesh,
     if (!sound) skip({Rule::kConformity});
     skip({Rule::kOverlap, Rule::kEdges, Rule::kChains, Rule::kPoints, Rule::kMarkers,
           Rule::kCoverage, Rule::kRegions, Rule::kDelaunay, Rule::kAngle, Rule::kArea,
-          Rule::kLengths, Rule::kPeriodic, Rule::kSize});
+          Rule::kLengths, Rule::kPeriodic, Rule::kLayers, Rule::kSize});
   }
   findings.write_to(report);
   return report;

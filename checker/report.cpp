@@ -10,9 +10,9 @@ namespace weft::check {
 namespace {
 
 constexpr auto kRuleNames = std::to_array<std::string_view>(
-    {"domain", "size", "structure", "orientation", "conformity", "overlap", "edges", "chains",
-     "points", "markers", "coverage", "regions", "delaunay", "angle", "area", "lengths", "kept",
-     "periodic", "simplified"});
+    {"domain", "size",    "structure", "orientation", "conformity", "overlap",   "edges",
+     "chains", "points",  "markers",   "coverage",    "regions",    "delaunay",  "angle",
+     "area",   "lengths", "kept",      "periodic",    "layers",     "simplified"});
 static_assert(kRuleNames.size() == kRules);
 
 std::size_t index(Rule rule) {

@@ -35,9 +35,10 @@ enum class Rule : std::uint8_t {
   kLengths,   // no listed edge is longer than the size at its marker
   kKept,      // no vertex is inside a segment that is kept, unless the domain has it
   kPeriodic,  // sides that repeat each other have the same vertices and edges
+  kLayers,    // layers along walls are columns of rows of the heights that were asked for
   kSimplified,  // a simplified domain is nowhere farther from the original than was asked for
 };
-inline constexpr std::size_t kRules = 19;
+inline constexpr std::size_t kRules = 20;
 
 std::string_view rule_name(Rule rule);  // "coverage"
 

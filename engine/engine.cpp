@@ -16,6 +16,8 @@
 #include "engine/domain/tolerance.h"
 #include "engine/emit/bounds_error.h"
 #include "engine/gradation_mesh.h"
+#include "engine/layers/layer_filler.h"
+#include "engine/layers/layer_plan.h"
 #include "engine/mesh_run.h"
 #include "engine/parallel/narrow_places.h"
 #include "engine/refine/acute_corners.h"
@@ -113,7 +115,7 @@ class Pipeline {
     quality_ = QualityBounds::from(request_.min_angle_deg, request_.min_edge, precision_of(box_));
     if (request_.placement == Placement::kLattice)
       quality_.lattice = LatticeShape::for_angle(request_.min_angle_deg);
-    edge_limits_ = EdgeLimits(request_.size.at, request_.keep);
+    edge_limits_ = EdgeLimits(sizes_at(), request_.keep);
     if (auto error = check_edge_limits(request_, edge_limits_, 2 * std::sqrt(quality_.min_length2)))
       return tl::unexpected(*error);
     if (auto error = check_borders()) return tl::unexpected(*error);
@@ -185,6 +187,7 @@ class Pipeline {
     for (Point p : domain_.vertices) summary_.box.add(p);
     if (auto error = check_extent(summary_.box)) return error;
     box_ = box_with_arcs(domain_, summary_.box);
+    if (auto error = lay_out_layers()) return error;
     summary_.triangulate_seconds = clock_.lap();
     context_.end_stage("triangulation");
 
@@ -225,6 +228,31 @@ class Pipeline {
     if (!sides) return sides.error();
     sides_ = std::move(*sides);
     return std::nullopt;
+  }
+
+  // Makes holes of the domain where layers will be.
+  std::optional<Error> lay_out_layers() {
+    if (request_.layers.empty()) return std::nullopt;
+    if (!domain_.curvatures.empty())
+      return Error{ErrorCode::kBadOption, "quality.layers",
+                   "quality.layers need a domain of straight segments, but it has arcs"};
+    auto plan = LayerPlan::of(request_.layers, domain_, merge_tolerance(request_.pslg), context_);
+    if (!plan) return plan.error();
+    auto domain = triangulate(plan->with_holes(request_.pslg, request_.layers), context_);
+    if (!domain) return domain.error();
+    if (auto error = plan->check(request_.pslg, domain_, *domain)) return error;
+    layers_.emplace(std::move(domain_), std::move(*plan), request_, sink_);
+    domain_ = std::move(*domain);
+    return std::nullopt;
+  }
+
+  // The lengths of edges at markers, for the line on which layers end.
+  std::vector<SizeAt> sizes_at() const {
+    std::vector<SizeAt> sizes = request_.size.at;
+    if (layers_)
+      for (SizeAt& at : sizes)
+        at.max_edge *= layers_->plan.least_stretch(at.marker, layers_->domain);
+    return sizes;
   }
 
   // What the size sees of a domain with arcs.
@@ -402,11 +430,14 @@ class Pipeline {
                   .leaf_triangles = request_.leaf_triangles.value_or(leaf_triangles_for(by_size_)),
                   .triangles_lower_bound = lower_bound_,
                   .sweeps = sweeps(),
-                  .other_bytes = size_bytes + narrow_.bytes(),
+                  .other_bytes = size_bytes + narrow_.bytes() + bytes_of_layers(),
                   .edge_limits = edge_limits_,
                   .sides = sides_};
     if (has_triangle_cap()) plan.max_triangles = context_.budget().max_triangles;
-    if (auto error = run_mesh(plan, area, sink_, context_, summary_)) return tl::unexpected(*error);
+    ChunkSink& sink = layers_ ? layers_->filler : sink_;
+    if (auto error = run_mesh(plan, area, sink, context_, summary_)) return tl::unexpected(*error);
+    if (layers_)
+      if (auto error = layers_->filler.finish(context_, summary_)) return tl::unexpected(*error);
     summary_.engine_seconds += summary_.triangulate_seconds + summary_.size_seconds;
     summary_.size_warnings = size_warnings(request_.size, summary_.box, summary_.least_bound);
     summary_.narrow = costly_place();
@@ -440,15 +471,26 @@ class Pipeline {
     return by_size_ < kSmall || static_cast<double>(lattices_) < kFewFaults * kFewFaults * by_size_;
   }
 
+  // A segment of the request, also for those on which layers end.
+  std::uint32_t segment_of(std::uint32_t segment) const {
+    return layers_ ? layers_->plan.segment_of(segment, request_.pslg, layers_->domain) : segment;
+  }
+
+  // What the filler keeps of a mesh: coordinates, in a vector that grows.
+  std::uint64_t bytes_of_layers() const {
+    constexpr double kBytesPerTriangle = 2 * sizeof(Point) / 2.0;
+    return layers_ ? static_cast<std::uint64_t>(kBytesPerTriangle * std::min(expected_, 1e12)) : 0;
+  }
+
   Error too_narrow() const {
     const NarrowPlaces::Costliest& worst = *narrow_.costliest();
     return {ErrorCode::kLimitExceeded, "quality.min_angle_deg",
             "the minimum angle asks for at least " + count_text(narrow_.lower_bound()) +
                 " triangles where the domain is narrow, more than the limit of " +
                 std::to_string(context_.budget().triangle_limit) +
-                "; the most of them between segments " + std::to_string(worst.segment) + " and " +
-                std::to_string(worst.other) + ", " + text(worst.width) + " apart at (" +
-                text(worst.at.x) + ", " + text(worst.at.y) + ")",
+                "; the most of them between segments " + std::to_string(segment_of(worst.segment)) +
+                " and " + std::to_string(segment_of(worst.other)) + ", " + text(worst.width) +
+                " apart at (" + text(worst.at.x) + ", " + text(worst.at.y) + ")",
             worst.at};
   }
 
@@ -461,8 +503,8 @@ class Pipeline {
     const double in_all = std::max(least, narrow_.lower_bound());
     if (summary_.triangles < kMany || in_all < kLargePart * triangles || !worst)
       return std::nullopt;
-    return NarrowPlace{.segment = worst->segment,
-                       .other = worst->other,
+    return NarrowPlace{.segment = segment_of(worst->segment),
+                       .other = segment_of(worst->other),
                        .at = worst->at,
                        .width = worst->width,
                        .triangles = std::min(least, triangles),
@@ -490,6 +532,18 @@ class Pipeline {
     Domain domain;
   };
 
+  // Layers, and the domain as it was before they made holes in it.
+  struct LaidOut {
+    LaidOut(Domain&& before, LayerPlan&& made, const MeshRequest& request, ChunkSink& sink)
+        : domain(std::move(before)),
+          plan(std::move(made)),
+          filler(request.layers, request.pslg, domain, plan, sink) {}
+
+    Domain domain;
+    LayerPlan plan;
+    LayerFiller filler;
+  };
+
   const MeshRequest& request_;
   ChunkSink& sink_;
   ExecutionContext& context_;
@@ -502,6 +556,7 @@ class Pipeline {
   QualityBounds quality_;
   EdgeLimits edge_limits_;
   PeriodicSides sides_;
+  std::optional<LaidOut> layers_;
   std::optional<AcuteCorners> corners_;  // of domain_
   NarrowPlaces narrow_;
   double lower_bound_ = 0;    // of the triangles

@@ -36,6 +36,42 @@ std::optional<Error> check_periodic(const MeshRequest& request) {
   return std::nullopt;
 }
 
+std::optional<Error> check_layers(const MeshRequest& request) {
+  const auto bad = [](const std::string& message) {
+    return Error{ErrorCode::kBadOption, message.substr(0, message.find(' ')), message};
+  };
+  if (request.layers.empty()) return std::nullopt;
+  if (request.layers.size() > kMaxLayers)
+    return bad("quality.layers has " + std::to_string(request.layers.size()) +
+               " entries; it must have at most " + std::to_string(kMaxLayers));
+  if (request.simplify > 0)
+    return bad("quality.layers lie along walls as they are, but simplify is " +
+               text(request.simplify));
+  if (!request.periodic.empty()) return bad("quality.layers exclude quality.periodic");
+  for (std::size_t i = 0; i < request.layers.size(); ++i) {
+    const Layers& layers = request.layers[i];
+    const std::string field = "quality.layers[" + std::to_string(i) + "]";
+    if (!(layers.first > 0 && std::isfinite(layers.first)))
+      return bad(field + ".first is " + text(layers.first) + "; it must be above 0, and finite");
+    if (!(layers.ratio >= 1 && layers.ratio <= kMaxLayerRatio))
+      return bad(field + ".ratio is " + text(layers.ratio) + "; it must be from 1 to " +
+                 text(kMaxLayerRatio));
+    if (!(layers.rows >= 1 && layers.rows <= kMaxLayerRows))
+      return bad(field + ".rows is " + std::to_string(layers.rows) + "; it must be from 1 to " +
+                 std::to_string(kMaxLayerRows));
+    const std::string marker = std::to_string(layers.marker);
+    for (std::size_t k = 0; k < i; ++k)
+      if (request.layers[k].marker == layers.marker)
+        return bad(field + ".marker is " + marker + ", which other layers have");
+    if (!request.keep) continue;
+    const auto& keep = *request.keep;
+    if (keep.empty() || std::find(keep.begin(), keep.end(), layers.marker) != keep.end())
+      return bad(field + " splits segments with marker " + marker +
+                 ", which quality.keep keeps as they are");
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Error> check_options(const MeshRequest& request) {
@@ -63,7 +99,8 @@ std::optional<Error> check_options(const MeshRequest& request) {
     return Error{
         ErrorCode::kBadOption, "quality.keep",
         "quality.keep keeps segments as they are, but simplify is " + text(request.simplify)};
-  return check_periodic(request);
+  if (auto error = check_periodic(request)) return error;
+  return check_layers(request);
 }
 
 std::optional<Error> check_pslg(const Pslg& pslg) {

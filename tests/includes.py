@@ -25,7 +25,7 @@ import re
 import sys
 
 LAYERS = {
-    "engine": ["base", "domain", "size", "refine", "parallel", "emit", "leaf_run.*", "mesh_run.*",
+    "engine": ["base", "domain", "size", "refine", "parallel", "emit", "layers", "leaf_run.*", "mesh_run.*",
                "gradation_mesh.*", "engine.*", "estimate.*", "options.*", "run.*", "weft.*", "c"],
     "server": ["version.*", "stop_events.*", "store", "wire", "run", "observe", "net", "admission",
                "services", "front", "console", "jobs", "mesh", "server_options.*", "server_info.*",

@@ -470,6 +470,31 @@ PeriodicPair read_periodic_sides(Fields in) {
   return pair;
 }
 
+Layers read_layers(Fields in) {
+  Layers layers{.ratio = 0, .rows = 0};
+  while (in.next()) switch (in.number()) {
+      case 1:
+        in.read(layers.marker);
+        break;
+      case 2:
+        in.read(layers.first);
+        break;
+      case 3:
+        in.read(layers.ratio);
+        break;
+      case 4:
+        in.read(layers.rows);
+        break;
+      case 5:
+        in.read(layers.region);
+        break;
+      default:
+        in.skip();
+    }
+  if (layers.ratio == 0) layers.ratio = 1;
+  return layers;
+}
+
 void read_quality(Fields in, MeshRequest& request) {
   std::int32_t placement = static_cast<std::int32_t>(request.placement) + 1;
   while (in.next()) switch (in.number()) {
@@ -491,6 +516,9 @@ void read_quality(Fields in, MeshRequest& request) {
         break;
       case 6:
         in.message([&](Fields sides) { request.periodic.push_back(read_periodic_sides(sides)); });
+        break;
+      case 7:
+        in.message([&](Fields layers) { request.layers.push_back(read_layers(layers)); });
         break;
       default:
         in.skip();

@@ -113,6 +113,14 @@ void show(const Overlap& overlap, auto& out) {
   out.number(3, "united", overlap.united);
 }
 
+void show(const LayerSummary& layers, auto& out) {
+  out.number(1, "triangles", layers.triangles);
+  out.number(2, "least_thickness", layers.least_thickness);
+  out.number(3, "x", layers.at.x);
+  out.number(4, "y", layers.at.y);
+  out.number(5, "cut", layers.cut);
+}
+
 void show(const Simplification& simplified, auto& out) {
   out.number(1, "points", simplified.points);
   out.number(2, "islands", simplified.islands);
@@ -197,6 +205,7 @@ void show(const Summary& summary, std::uint32_t threads, auto& out) {
   if (summary.narrow) out.message(33, "narrow", [&](auto& in) { show(*summary.narrow, in); });
   if (summary.simplified)
     out.message(34, "simplification", [&](auto& in) { show(*summary.simplified, in); });
+  if (summary.layers) out.message(36, "layers", [&](auto& in) { show(*summary.layers, in); });
   if (summary.outside.segments > 0)
     out.message(35, "outside", [&](auto& in) { show(summary.outside, in); });
 }

@@ -94,6 +94,7 @@ class QualityJudge {
       const std::array<Vec2, 3> corners = corners_of(t);
       const Shape shape = shape_of(corners);
       area.add(shape.area);
+      if (context_.is_layer != nullptr && (*context_.is_layer)[t]) continue;
       quality.add(shape.quality);
       cotangents.push_back(shape.largest_cotangent);
       largest_cotangent = std::max(largest_cotangent, shape.largest_cotangent);

@@ -12,6 +12,7 @@
 #include "checker/domain/fill.h"
 #include "checker/mesh.h"
 #include "checker/mesh/exemption.h"
+#include "checker/mesh/layers.h"
 #include "checker/report.h"
 #include "checker/size/size.h"
 
@@ -42,6 +43,8 @@ struct Requirements {
   std::optional<std::vector<std::int32_t>> keep;
   // Markers of sides that repeat each other.
   std::vector<std::array<std::int32_t, 2>> periodic;
+  // Layers along walls; the bounds on triangles are not for theirs.
+  std::vector<LayerRows> layers;
   // Whether small input angles exempt (exemption.h).
   bool allow_small_input_angles = true;
   // Maximum triangles that may miss the angle or the area bound without exemption: those that the
@@ -55,8 +58,9 @@ struct Requirements {
 // then an angle that might be exempt is not judged, and no region bounds an area.
 struct QualityContext {
   const SmallInputAngles* small_input_angles = nullptr;
-  std::span<const std::uint32_t> faces;  // per triangle
-  std::span<const FaceRole> roles;       // per face
+  std::span<const std::uint32_t> faces;         // per triangle
+  std::span<const FaceRole> roles;              // per face
+  const std::vector<bool>* is_layer = nullptr;  // per triangle: only its area counts
 };
 
 // Adds violations of kSize, kAngle and kArea, and fills in the measures of `facts`.

@@ -91,6 +91,12 @@ Result<void> fill_sides(const Domain& domain, RequestOptions& options) {
     pair.set_from(sides->front());
     pair.set_to(sides->back());
   }
+  for (std::size_t i = 0; i < options.layers.size(); ++i) {
+    auto layers = options.layers[i].message(domain.names.markers);
+    if (!layers)
+      return fault_at("quality.layers[" + std::to_string(i) + "]", options, layers.error());
+    *options.asked.mutable_quality()->add_layers() = std::move(*layers);
+  }
   return {};
 }
 

@@ -12,6 +12,7 @@
 
 #include "client/call/edge_at.h"
 #include "client/call/field_option.h"
+#include "client/call/layers_option.h"
 #include "client/call/marker_list.h"
 #include "client/call/marker_pairs.h"
 #include "client/call/name_option.h"
@@ -34,6 +35,7 @@ struct RequestOptions {
   // Segments that stay as they are, by marker; none in the list: all segments.
   std::optional<MarkerList> keep{};
   std::vector<MarkerPair> periodic{};  // sides that repeat each other
+  std::vector<LayersOption> layers{};  // along walls
   PolygonFill fill = PolygonFill::kUnion;
   // All other options (wire/named_options.h); of the above what with_size has read.
   v1::GenerateMeshRequest asked{};

@@ -77,46 +77,27 @@ OptionValue<Request> size(std::string Request::*field) {
           }};
 }
 
-OptionValue<Request> fields() {
-  return {"NAME=KIND", "", Arity::kList,
-          [](const auto& texts, const auto& folder, Request& options) -> std::string {
-            std::vector<FieldOption> fields;
+// Texts that `parse` reads, one after the other.
+template <class Item, class Parse>
+OptionValue<Request> list(std::string unit, std::vector<Item> Request::*field, Parse parse) {
+  return {std::move(unit), "", Arity::kList,
+          [field, parse](const auto& texts, const auto& folder, Request& options) -> std::string {
+            std::vector<Item> all;
             for (const std::string& text : texts) {
-              auto field = FieldOption::parse(text, folder);
-              if (!field) return field.error();
-              fields.push_back(std::move(*field));
-            }
-            options.fields = std::move(fields);
-            return "";
-          }};
-}
-
-OptionValue<Request> edge_at() {
-  return {"marker=M:LEN", "", Arity::kList,
-          [](const auto& texts, const auto&, Request& options) -> std::string {
-            std::vector<EdgeAt> all;
-            for (const std::string& text : texts) {
-              const auto one = EdgeAt::parse(text);
-              if (!one) return one.error();
-              all.push_back(*one);
-            }
-            options.edge_at = std::move(all);
-            return "";
-          }};
-}
-
-OptionValue<Request> names() {
-  return {"KIND=ID:NAME", "", Arity::kList,
-          [](const auto& texts, const auto&, Request& options) -> std::string {
-            std::vector<NameOption> all;
-            for (const std::string& text : texts) {
-              auto one = NameOption::parse(text);
+              auto one = parse(text, folder);
               if (!one) return one.error();
               all.push_back(std::move(*one));
             }
-            options.names = std::move(all);
+            options.*field = std::move(all);
             return "";
           }};
+}
+
+// The same for texts that name no files.
+template <class Item>
+OptionValue<Request> list(std::string unit, std::vector<Item> Request::*field) {
+  return list(std::move(unit), field,
+              [](const std::string& text, const auto&) { return Item::parse(text); });
 }
 
 // One that weft.v1 names, with a value that it has for a text.
@@ -154,6 +135,12 @@ const OptionRows<Request>& other_rows() {
          "Sides that repeat each other, pairs of their markers, numbers or names: they get the "
          "same vertices, moved or turned from the first to the second",
          "", periodic_sides(), "quality.periodic"},
+        {"layers", "",
+         "Rows of thin triangles along the segments with the marker M, a number or a name: the row "
+         "at the wall is H high, each other Q times as high as the one before (Q is 1 if it is "
+         "left "
+         "out). They are the region ID, or one of their own. May be repeated",
+         "", wall_layers(), "quality.layers"},
         {"fill", "WEFT_FILL",
          "What is meshed where polygons overlap: union all that any of them covers, even-odd what "
          "an odd number of them covers, difference the first less the others",
@@ -193,6 +180,10 @@ OptionValue<RequestOptions> periodic_sides() {
           }};
 }
 
+OptionValue<RequestOptions> wall_layers() {
+  return list("M:first=H,ratio=Q,rows=N,region=ID", &Request::layers);
+}
+
 const OptionRows<Request>& size_rows() {
   static const OptionRows<Request> rows = [] {
     OptionRows<Request> all = {
@@ -213,12 +204,12 @@ const OptionRows<Request>& size_rows() {
          "domain file; width, the domain's local width; mesh:FILE[:ARRAY], values at the vertices "
          "of "
          "an earlier mesh; or FILE[:BAND], the values of a raster. May be repeated",
-         "", fields(), "size.fields"},
+         "", list("NAME=KIND", &Request::fields, FieldOption::parse), "size.fields"},
         {"edge-at", "",
          "Maximum length LEN of edges on segments with the marker M, a number or a name. With "
          "--gradation G, the length grows from there by at most G per unit of distance. May be "
          "repeated, once per marker",
-         "", edge_at(), "size.at"},
+         "", list("marker=M:LEN", &Request::edge_at), "size.at"},
     };
     add_named("size.", all);
     return noted(std::move(all));
@@ -231,7 +222,7 @@ const OptionRows<Request>& name_rows() {
       {"names", "",
        "Name a marker or a region: marker=2:inlet, region=1:fluid. Replaces the name in the file, "
        "if there is one. May be repeated",
-       "", names()},
+       "", list("KIND=ID:NAME", &Request::names)},
   };
   return rows;
 }
@@ -270,6 +261,8 @@ std::string option_of(std::string_view field, const RequestOptions& options) {
   }
   if (entry && set_by->field == "quality.periodic" && *entry < options.periodic.size())
     return name_of(*set_by) + " " + options.periodic[*entry].text();
+  if (entry && set_by->field == "quality.layers" && *entry < options.layers.size())
+    return name_of(*set_by) + " " + options.layers[*entry].marker;
   return name_of(*set_by);
 }
 

@@ -33,6 +33,8 @@ OptionValue<Options> fill_value(PolygonFill Options::*field) {
 OptionValue<RequestOptions> markers_to_keep();
 // RequestOptions::periodic.
 OptionValue<RequestOptions> periodic_sides();
+// RequestOptions::layers.
+OptionValue<RequestOptions> wall_layers();
 
 // What was given for a field of the request, such as "size.fields[0].name", as errors call it:
 // "--field d", or "field d" if a manifest gave it. Empty if no option was.

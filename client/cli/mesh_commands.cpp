@@ -226,6 +226,8 @@ void add_check(CLI::App& app, Chosen& chosen) {
           {"periodic", "WEFT_PERIODIC", "Sides that repeat each other, as given to `weft mesh`", "",
            periodic_sides()},
           options.size);
+  add_row(check, {"layers", "", "Layers along walls, as given to `weft mesh`", "", wall_layers()},
+          options.size);
   add_row(check,
           {"fill", "WEFT_FILL", "What was meshed where polygons overlap, as given to `weft mesh`",
            "union", fill_value(&CheckOptions::fill)},

@@ -58,6 +58,14 @@ std::vector<double> depths_of(const MeshWithArrays& read) {
   return {};
 }
 
+// What layers have that are given no region.
+std::int32_t own_region(const Domain& domain) {
+  std::int32_t highest = 0;
+  for (const auto& region : domain.regions) highest = std::max(highest, region.id);
+  for (const auto& area : domain.areas) highest = std::max(highest, area.region.value_or(0));
+  return highest < INT32_MAX ? highest + 1 : highest;
+}
+
 Result<check::Requirements> requirements_of(const CheckOptions& options, const InputDomain& input) {
   check::Requirements requirements;
   requirements.min_angle_deg = options.min_angle_deg;
@@ -76,6 +84,13 @@ Result<check::Requirements> requirements_of(const CheckOptions& options, const I
     const auto sides = pair.numbers(input.domain.names.markers);
     if (!sides) return tl::unexpected(sides.error());
     requirements.periodic.push_back(*sides);
+  }
+  for (const LayersOption& option : options.size.layers) {
+    const auto layers = option.message(input.domain.names.markers);
+    if (!layers) return tl::unexpected(layers.error());
+    requirements.layers.push_back(
+        {layers->marker(), layers->first(), layers->ratio() == 0 ? 1 : layers->ratio(),
+         layers->rows(), layers->has_region() ? layers->region() : own_region(input.domain)});
   }
   return requirements;
 }

@@ -14,19 +14,27 @@ namespace {
 using check::Rule;
 
 // What is true if a rule holds. Angles and areas have figures instead.
-constexpr auto kProperties = std::to_array<const char*>(
-    {"the domain is well formed", "the size is positive and finite at every centroid",
-     "corners, regions and coordinates are valid", "triangles are counter-clockwise",
-     "an edge has at most two triangles, one on each side", "triangles do not overlap",
-     "the edges listed are those on segments", "segments are chains of edges",
-     "points of the domain are vertices", "edges carry the markers of their segments",
-     "the triangles cover the domain and nothing else",
-     "triangles carry the regions that they lie in",
-     "the triangulation is Delaunay, but for the edges on segments", "", "",
-     "edges are at most as long as the sizes at their markers",
-     "segments that are kept have no new vertices",
-     "sides that repeat each other have the same vertices",
-     "the domain is simplified no farther than asked"});
+constexpr auto kProperties =
+    std::to_array<const char*>({"the domain is well formed",
+                                "the size is positive and finite at every centroid",
+                                "corners, regions and coordinates are valid",
+                                "triangles are counter-clockwise",
+                                "an edge has at most two triangles, one on each side",
+                                "triangles do not overlap",
+                                "the edges listed are those on segments",
+                                "segments are chains of edges",
+                                "points of the domain are vertices",
+                                "edges carry the markers of their segments",
+                                "the triangles cover the domain and nothing else",
+                                "triangles carry the regions that they lie in",
+                                "the triangulation is Delaunay, but for the edges on segments",
+                                "",
+                                "",
+                                "edges are at most as long as the sizes at their markers",
+                                "segments that are kept have no new vertices",
+                                "sides that repeat each other have the same vertices",
+                                "layers are columns of rows of the heights that were asked for",
+                                "the domain is simplified no farther than asked"});
 static_assert(kProperties.size() == check::kRules);
 
 // `value` with 4 digits, or as many more as tell it from `bound`, if it is not the bound.
@@ -64,6 +72,8 @@ bool is_asked(Rule rule, const check::Report& report, const check::Requirements&
       return requirements.keep.has_value();
     case Rule::kPeriodic:
       return !requirements.periodic.empty();
+    case Rule::kLayers:
+      return !requirements.layers.empty();
     case Rule::kSimplified:
       return requirements.simplify > 0;
     default:

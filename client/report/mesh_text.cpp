@@ -73,6 +73,15 @@ std::string rounded(double distance) {
   return digits(distance, 3);
 }
 
+Json layers_json(const v1::Summary& summary) {
+  if (!summary.has_layers()) return nullptr;
+  const v1::LayerSummary& layers = summary.layers();
+  return {{"triangles", layers.triangles()},
+          {"least_thickness", layers.least_thickness()},
+          {"at", {layers.x(), layers.y()}},
+          {"cut", layers.cut()}};
+}
+
 Json simplification_json(const v1::Summary& summary) {
   if (!summary.has_simplification()) return nullptr;
   const v1::Simplification& made = summary.simplification();
@@ -114,6 +123,7 @@ Json summary_json(const v1::Summary& summary) {
                {"outside", outside_json(summary)},
                {"narrow", narrow_json(summary)},
                {"simplification", simplification_json(summary)},
+               {"layers", layers_json(summary)},
                {"digest", hex(summary.sha256())},
                {"engine_version", summary.engine_version()},
                {"threads", summary.threads()},
@@ -180,7 +190,8 @@ std::string summary_text(const v1::Summary& summary) {
                                coordinates(unrefined.kept_x(), unrefined.kept_y()));
   missed(unrefined.budget(), "--max-triangles was reached");
   return text + unrefined_warning(unrefined) + merging_text(summary.merging()) +
-         simplification_text(summary) + overlap_text(summary) + narrow_text(summary);
+         simplification_text(summary) + layers_text(summary) + overlap_text(summary) +
+         narrow_text(summary);
 }
 
 std::string warnings_text(const v1::Summary& summary) {
@@ -237,6 +248,16 @@ std::string simplification_text(const v1::Summary& summary) {
          counted(made.cut_off(), "water") + " behind them dropped, " +
          counted(made.straits(), "strait") + " kept, area " + (made.area() > 0 ? "+" : "") +
          rounded(made.area()) + ", no line moved by more than " + rounded(made.farthest()) + "\n";
+}
+
+std::string layers_text(const v1::Summary& summary) {
+  if (!summary.has_layers()) return "";
+  const v1::LayerSummary& layers = summary.layers();
+  const std::string text = "layers: " + counted(layers.triangles(), "triangle");
+  if (layers.cut() == 0) return text + "\n";
+  return text + ", thinner than asked for at " + counted(layers.cut(), "corner") +
+         " for want of room, the least " + rounded(layers.least_thickness()) + " thick at " +
+         coordinates(layers.x(), layers.y()) + "\n";
 }
 
 // Two digits, rounded up.

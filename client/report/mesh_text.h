@@ -42,6 +42,8 @@ std::string merging_text(const v1::Merging& merging);
 // dropped, 1 strait kept, area +3.73e+08, no line moved by more than 1e+03\n"; empty if the domain
 // was not to be simplified.
 std::string simplification_text(const v1::Summary& summary);
+// How many triangles are in layers, and where they are thinner than they should be; empty without.
+std::string layers_text(const v1::Summary& summary);
 // How many polygons overlap on how large an area; empty if it is no more than rounding makes.
 std::string overlap_text(const v1::Summary& summary);
 // Which two segments cost many triangles, and what merges them; empty if none do.

@@ -46,6 +46,12 @@ void bring_places_back(const DomainProjection& projection, v1::Summary& summary)
     narrow.set_x(at.x);
     narrow.set_y(at.y);
   }
+  if (summary.has_layers()) {
+    v1::LayerSummary& layers = *summary.mutable_layers();
+    const Point at = projection.to_lonlat({layers.x(), layers.y()});
+    layers.set_x(at.x);
+    layers.set_y(at.y);
+  }
   for (int i = 0; i + 1 < summary.simplification().cuts_size(); i += 2) {
     v1::Simplification& simplified = *summary.mutable_simplification();
     const Point at = projection.to_lonlat({simplified.cuts(i), simplified.cuts(i + 1)});

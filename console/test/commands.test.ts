@@ -52,6 +52,14 @@ test("periodic sides are pairs of markers", () => {
   expect(shellCommand(make({ quality: {} }))).not.toContain("periodic");
 });
 
+test("layers are rows of a marker", () => {
+  const layers = make({ quality: { layers: [{ marker: 4, first: 0.01, ratio: 1.2, rows: 5 }, { marker: -1, first: 1, rows: 2, region: 3 }] } });
+  expect(shellCommand(layers)).toContain("--layers 4:first=0.01,rows=5,ratio=1.2 \\\n  --layers -1:first=1,rows=2,region=3");
+  expect(pythonProgram(layers)).toContain(
+    "layers={4: weft.Layers(first=0.01, rows=5, ratio=1.2), -1: weft.Layers(first=1, rows=2, region=3)},",
+  );
+});
+
 test("a request is a program in Python", () => {
   expect(pythonProgram(make({}))).toBe(
     'import weft\n\nwith weft.Client() as client:\n    mesh = client.mesh(\n        "DOMAIN.poly",\n    )\nmesh.write("mesh.vtu")\n',

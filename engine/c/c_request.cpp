@@ -270,6 +270,18 @@ void weft_add_periodic(weft_request* request, int32_t from, int32_t to) {
   });
 }
 
+void weft_add_layers(weft_request* request, int32_t marker, double first, double ratio,
+                     uint32_t rows, const int32_t* region) {
+  append_to(request, kQuality, [&](pbf_writer& quality) {
+    pbf_writer layers(quality, 7);
+    layers.add_sint32(1, marker);
+    layers.add_double(2, first);
+    layers.add_double(3, ratio);
+    layers.add_uint32(4, rows);
+    if (region != nullptr) layers.add_sint32(5, *region);
+  });
+}
+
 void weft_add_distance(weft_request* request, const char* name, const int32_t* markers,
                        size_t count) {
   append_field(request, name, kDistance, [&](pbf_writer& distance) {

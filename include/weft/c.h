@@ -77,6 +77,10 @@ WEFT_API void weft_add_size_at(weft_request* request, int32_t marker, double max
 
 /* Segments that stay as they are: those with one of the markers, all without. */
 WEFT_API void weft_keep(weft_request* request, const int32_t* markers, size_t count);
+/* Rows of thin triangles along the segments with the marker, 16 times at most. `region` may be
+ * NULL. */
+WEFT_API void weft_add_layers(weft_request* request, int32_t marker, double first, double ratio,
+                              uint32_t rows, const int32_t* region);
 /* Sides with these markers get the same vertices; 16 pairs at most. */
 WEFT_API void weft_add_periodic(weft_request* request, int32_t from, int32_t to);
 

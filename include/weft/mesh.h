@@ -149,6 +149,14 @@ struct NarrowPlace {
   double widest = 0;     // nine tenths of these lie where segments are no further apart
 };
 
+// The layers along walls, and what was cut of them.
+struct LayerSummary {
+  std::uint64_t triangles = 0;
+  double least_thickness = 0;  // but for layers that end in a point
+  Point at;                    // at the wall there
+  std::uint64_t cut = 0;       // places at walls where they are thinner than was asked for
+};
+
 struct Summary {
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
@@ -187,6 +195,9 @@ struct Summary {
   Overlap overlap;                           // of the input's areas
   OutsideSegments outside;                   // before simplification
   std::optional<Simplification> simplified;  // unless MeshRequest::simplify is 0
+  // If MeshRequest::layers has some. What is above on triangles, from min_angle_deg to kept_at, is
+  // of those outside of layers.
+  std::optional<LayerSummary> layers;
   // The costliest one, if it has at least a fifth of a mesh of a thousand triangles or more.
   std::optional<NarrowPlace> narrow;
 

@@ -30,6 +30,9 @@ inline constexpr double kMaxMinAngleDeg = 36;
 inline constexpr std::uint32_t kMaxSweeps = 16;
 inline constexpr std::size_t kMaxKeptMarkers = 4096;
 inline constexpr std::size_t kMaxPeriodicPairs = 16;
+inline constexpr std::size_t kMaxLayers = 16;
+inline constexpr std::uint32_t kMaxLayerRows = 200;
+inline constexpr double kMaxLayerRatio = 10;
 
 // Two sides of the domain that repeat each other, by the markers of their segments: a translation
 // or a rotation takes one to the other, and the inside of the domain at one to the outside at the
@@ -37,6 +40,17 @@ inline constexpr std::size_t kMaxPeriodicPairs = 16;
 struct PeriodicPair {
   std::int32_t from = 0;
   std::int32_t to = 0;
+};
+
+// Rows of thin triangles along the segments with a marker, which are straight and on the boundary
+// of the domain. They are no thicker than there is room for.
+struct Layers {
+  std::int32_t marker = 0;
+  double first = 0;        // height of the row at the wall, > 0
+  double ratio = 1;        // of the heights of each row and the one before, 1 to kMaxLayerRatio
+  std::uint32_t rows = 1;  // 1 to kMaxLayerRows
+  // Of their triangles; unset: one more than the highest of the domain, at least 1.
+  std::optional<std::int32_t> region = std::nullopt;
 };
 
 // Where the Steiner points of triangles that are too large go.
@@ -64,6 +78,11 @@ struct MeshRequest {
   // most kMaxPeriodicPairs, no marker twice; each side is one line of straight segments; simplify
   // is 0, keep names none of them, and the budget does not end the mesh.
   std::vector<PeriodicPair> periodic = {};
+  // At most kMaxLayers, of one marker each; walls that meet have the same rows. Bounds hold outside
+  // of layers; they are cut to 0.4 of the way to what is opposite, and end on the next side where
+  // that makes 45 to 135 degrees with the wall, else in a point. REQUIRES: the domain has no arcs;
+  // simplify is 0, periodic is empty, keep names none of the markers.
+  std::vector<Layers> layers = {};
   Placement placement = Placement::kLattice;
   // Above 0: refinement in stages, then so many sweeps of smoothing, up to kMaxSweeps. Unset: 2 if
   // the size makes nearly all triangles, on lattices with few faults or below 100,000 triangles.

@@ -34,6 +34,7 @@ struct Amounts {
   std::uint64_t sizes_at = 0;
   std::uint64_t kept = 0;      // markers of segments
   std::uint64_t periodic = 0;  // pairs of sides
+  std::uint64_t layers = 0;
   // Summed over all fields that the size may name.
   std::uint64_t fields = 0;
   std::uint64_t field_points = 0;
@@ -72,6 +73,8 @@ std::optional<Failure> check(const Amounts& amounts, const Limits& limits) {
   if (auto f = over("quality.periodic", "pairs of sides", amounts.periodic,
                     std::uint64_t{kMaxPeriodicPairs}))
     return f;
+  if (auto f = over("quality.layers", "layers", amounts.layers, std::uint64_t{kMaxLayers}))
+    return f;
   const auto of_fields = [](std::string_view unit, std::uint64_t value, std::uint64_t limit) {
     return over("size.fields", unit, value, limit);
   };
@@ -106,6 +109,7 @@ std::optional<Failure> check_limits(const WireScan& scan, const Limits& limits) 
       .sizes_at = scan.count(*v1::SizeField::descriptor(), v1::SizeField::kAtFieldNumber),
       .kept = scan.count(*v1::Keep::descriptor(), v1::Keep::kMarkersFieldNumber),
       .periodic = scan.count(*v1::Quality::descriptor(), v1::Quality::kPeriodicFieldNumber),
+      .layers = scan.count(*v1::Quality::descriptor(), v1::Quality::kLayersFieldNumber),
       .fields = scan.count(*v1::SizeField::descriptor(), v1::SizeField::kFieldsFieldNumber),
       .field_points =
           scan.count(*v1::Distance::descriptor(), v1::Distance::kPointsFieldNumber) / 2 +
@@ -137,7 +141,8 @@ std::optional<Failure> check_limits(const v1::GenerateMeshRequest& request, cons
       .raster_values = count(request.size().raster().values_size(), 1),
       .sizes_at = count(request.size().at_size(), 1),
       .kept = count(request.quality().keep().markers_size(), 1),
-      .periodic = count(request.quality().periodic_size(), 1)};
+      .periodic = count(request.quality().periodic_size(), 1),
+      .layers = count(request.quality().layers_size(), 1)};
   for (const v1::NamedField& field : request.size().fields()) {
     amounts.fields += 1;
     amounts.field_points += count(field.distance().points_size(), 2);

@@ -39,6 +39,8 @@ void make_canonical(v1::GenerateMeshRequest& request) {
   if (!quality.has_min_angle_deg()) quality.set_min_angle_deg(MeshRequest{}.min_angle_deg);
   if (quality.placement() == v1::PLACEMENT_UNSPECIFIED)
     quality.set_placement(v1::PLACEMENT_LATTICE);
+  for (v1::Layers& layers : *quality.mutable_layers())
+    if (layers.ratio() == 0) layers.set_ratio(1);
   v1::SizeField& size = *request.mutable_size();
   if (size.cells_across() == 0) size.clear_cells_across();            // -0 is 0
   if (size.gradation() == 0) size.clear_gradation();                  // -0 is 0

@@ -424,6 +424,11 @@ MeshCase decode_mesh_case(ByteSource bytes) {
       request.keep->push_back(request.pslg.segments[which - 1].marker);
   }
   if (rarely % 8 == 0 && rarely / 32 == 3) add_periodic_box(request);
+  if (rarely % 8 == 4 && rarely / 64 == 3 && !request.pslg.segments.empty()) {
+    const std::size_t which = rarely / 8 % request.pslg.segments.size();
+    const double first = maker.extent() / static_cast<double>(8 + rarely % 64 * 16);
+    request.layers = {{request.pslg.segments[which].marker, first, 1.3, 3, 99}};
+  }
   if (rarely % 8 == 1) request.min_edge = maker.extent() / static_cast<double>(1 + rarely);
   if (rarely % 8 == 2) made.budget.max_triangles = rarely;
   if (rarely % 8 == 3) {
@@ -477,6 +482,9 @@ std::string to_text(const MeshCase& mesh_case) {
     text += " --keep " + (request.keep->empty() ? "all" : std::to_string(request.keep->front()));
   for (const PeriodicPair& pair : request.periodic)
     text += print(" --periodic %d:%d", pair.from, pair.to);
+  for (const Layers& layers : request.layers)
+    text += print(" --layers %d:first=%.17g,ratio=%.17g,rows=%u,region=%d", layers.marker,
+                  layers.first, layers.ratio, layers.rows, layers.region.value_or(0));
   if (request.placement == Placement::kCircumcentre) text += " --placement circumcentre";
   if (request.sweeps) text += print(" --optimise %u", *request.sweeps);
   if (pslg.snap > 0) text += print(" --snap %.17g", pslg.snap);

@@ -455,6 +455,7 @@ D = {"fields": {"d": weft.distance()}}
     ({"min_edge": -1}, "quality.min_edge", "min_edge"),
     ({"keep": [7, 8]}, "quality.keep.markers[1]", "keep"),
     ({"periodic": [(7, 8)]}, "quality.periodic[0]", "periodic"),
+    ({"layers": {7: weft.Layers(1, 5), 8: weft.Layers(-1, 5)}}, "quality.layers[1].first", "layers"),
     ({"optimise": 99}, "quality.optimise", "optimise"),
     ({"snap": -1}, "domain.snap", "snap"),
     ({"max_seconds": -1}, "budget.max_seconds", "max_seconds"),

@@ -303,6 +303,27 @@ double region_rounding(const MeshRequest& request, const check::Domain& domain,
   return bounded > 0 ? unsure / bounded : 0;
 }
 
+std::vector<check::LayerRows> layers_of(const MeshRequest& request) {
+  std::int32_t highest = 0;
+  for (const RegionSeed& seed : request.pslg.regions) highest = std::max(highest, seed.id);
+  for (const Area& area : request.pslg.areas) highest = std::max(highest, area.region.value_or(0));
+  std::vector<check::LayerRows> all;
+  for (const Layers& layers : request.layers)
+    all.push_back({layers.marker, layers.first, layers.ratio, layers.rows,
+                   layers.region.value_or(highest + 1)});
+  return all;
+}
+
+check::Mesh without(const std::vector<check::LayerRows>& layers, const check::Mesh& mesh) {
+  check::Mesh rest = mesh;
+  rest.triangles.clear();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (std::none_of(layers.begin(), layers.end(),
+                     [&](const auto& rows) { return rows.region == mesh.regions[t]; }))
+      rest.triangles.push_back(mesh.triangles[t]);
+  return rest;
+}
+
 }  // namespace
 
 std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
@@ -319,6 +340,7 @@ std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
     requirements.periodic.push_back({pair.from, pair.to});
   requirements.allowed_unrefined = summary.unrefined.edge_floor + summary.unrefined.kept +
                                    summary.unrefined.budget + summary.unrefined.without_exemption();
+  requirements.layers = layers_of(request);
   const check::Domain domain = domain_of(request.pslg);
   const check::Report report = check::check(domain, collected.mesh, requirements);
   if (!report.ok()) return check::to_text(report);
@@ -344,7 +366,12 @@ std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
   if (summary.triangles != report.facts.triangles) return "the summary miscounts triangles";
   if (summary.vertices != report.facts.vertices) return "the summary miscounts vertices";
   if (summary.edges != report.facts.edges) return "the summary miscounts edges";
-  const double angle_error = angle_rounding(collected.mesh);
+  const check::Mesh outside = without(requirements.layers, collected.mesh);
+  if (request.layers.empty() != !summary.layers.has_value() ||
+      (summary.layers &&
+       summary.layers->triangles != collected.mesh.triangles.size() - outside.triangles.size()))
+    return "the summary miscounts the triangles of layers";
+  const double angle_error = angle_rounding(outside);
   if (!near(summary.min_angle_deg, report.facts.min_angle_deg, angle_error))
     return "the summary has another smallest angle";
   if (!near(summary.max_angle_deg, report.facts.max_angle_deg, angle_error))
@@ -352,7 +379,7 @@ std::string verdict(const MeshRequest& request, const CollectedMesh& collected,
   if (std::fabs(summary.area - report.facts.area) >
       1e-9 * report.facts.area + area_rounding(collected.mesh))
     return "the summary has another area";
-  if (auto wrong = miscounted(request, collected.mesh, summary); !wrong.empty()) return wrong;
+  if (auto wrong = miscounted(request, outside, summary); !wrong.empty()) return wrong;
   for (const auto& [vertex, point] : collected.mesh.input_points) {
     if (vertex >= collected.mesh.vertices.size() || point >= request.pslg.points.size())
       return "an input point is out of range";

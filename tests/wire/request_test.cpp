@@ -218,6 +218,29 @@ v1::GenerateMeshRequest full_request() {
   return request;
 }
 
+TEST(ReadRequest, BringsLayers) {
+  v1::GenerateMeshRequest request = full_request();
+  v1::Layers& full = *request.mutable_quality()->add_layers();
+  full.set_marker(-2);
+  full.set_first(0.5);
+  full.set_ratio(1.25);
+  full.set_rows(7);
+  full.set_region(0);
+  request.mutable_quality()->add_layers()->set_first(1);
+  const auto read = read_request(request.SerializeAsString());
+  ASSERT_TRUE(read);
+  const std::vector<Layers>& layers = read->mesh.layers;
+  ASSERT_EQ(layers.size(), 2u);
+  EXPECT_EQ(layers[0].marker, -2);
+  EXPECT_EQ(layers[0].first, 0.5);
+  EXPECT_EQ(layers[0].ratio, 1.25);
+  EXPECT_EQ(layers[0].rows, 7u);
+  EXPECT_EQ(layers[0].region, 0);
+  EXPECT_EQ(layers[1].ratio, 1) << "the default";
+  EXPECT_EQ(layers[1].rows, 0u) << "which the engine refuses";
+  EXPECT_FALSE(layers[1].region);
+}
+
 TEST(ReadRequest, BringsTheDomain) {
   const auto request = read_request(full_request().SerializeAsString());
   ASSERT_TRUE(request) << request.error().message;

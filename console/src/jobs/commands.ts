@@ -9,6 +9,7 @@ import {
   Measure,
   option,
   type GenerateMeshRequest,
+  type Layers,
   type NamedField,
 } from "../gen/weft/v1/mesh_service_pb";
 
@@ -42,6 +43,18 @@ function optionsOf(request: GenerateMeshRequest): [string, Value][] {
   if (periodic.length > 0) options.push(["periodic", periodic.map(({ from, to }): Pair => [from, to])]);
   return options;
 }
+
+// Name and value of what layers have besides their marker.
+function rowsOf({ first, ratio, rows, region }: Layers): [string, number][] {
+  const all: [string, number | undefined][] = [
+    ["first", first],
+    ["rows", rows],
+    ["ratio", ratio || undefined],
+    ["region", region],
+  ];
+  return all.filter((entry): entry is [string, number] => entry[1] !== undefined);
+}
+const rowsText = (layers: Layers, between: string) => rowsOf(layers).map((row) => row.join("=")).join(between);
 
 // Name and value of the size, or undefined if there is no bound. `raster` stands for a grid.
 function sizeOf<Raster>({ size }: GenerateMeshRequest, raster: Raster): [string, string | number | Raster] | undefined {
@@ -79,6 +92,7 @@ export function shellCommand(request: GenerateMeshRequest, domain?: string): str
   if (size) words.push(`--${size[0]} ${inShell(String(size[1]))}`);
   for (const field of request.size?.fields ?? [])
     words.push(`--field ${inShell(`${field.name}=${kindOf(field, domain !== undefined, 0)}`)}`);
+  for (const layers of request.quality?.layers ?? []) words.push(`--layers ${layers.marker}:${rowsText(layers, ",")}`);
   for (const [name, value] of optionsOf(request)) {
     const flag = `--${name.replaceAll("_", "-")}`;
     words.push(value === true ? flag : `${flag} ${valueInShell(value)}`);
@@ -94,6 +108,11 @@ export function pythonProgram(request: GenerateMeshRequest, domain?: string): st
   if (fields.length > 0) {
     const items = fields.map((field) => `${inPython(field.name)}: ${kindOf(field, domain !== undefined, 1)}`);
     given.push(`fields={${items.join(", ")}}`);
+  }
+  const layers = request.quality?.layers ?? [];
+  if (layers.length > 0) {
+    const items = layers.map((each) => `${each.marker}: weft.Layers(${rowsText(each, ", ")})`);
+    given.push(`layers={${items.join(", ")}}`);
   }
   for (const [name, value] of optionsOf(request)) given.push(`${name}=${inPython(value)}`);
   return `import weft

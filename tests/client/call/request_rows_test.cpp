@@ -65,6 +65,7 @@ const std::map<std::string, Sample>& samples() {
                                                     {"min-edge", {"0.0010549"}},
                                                     {"keep", {"2,5"}},
                                                     {"periodic", {"4:2"}},
+                                                    {"layers", {"4:first=0.125,rows=2"}},
                                                     {"placement", {"circumcentre"}},
                                                     {"optimise", {"3"}},
                                                     {"snap", {"0.0014385"}},

@@ -103,6 +103,18 @@ TEST_F(WeftCheck, TakesPeriodicSidesByTheNamesOfTheDomain) {
   EXPECT_NE(err().find("--periodic: '1:' is not pairs of markers"), std::string::npos) << err();
 }
 
+TEST_F(WeftCheck, JudgesLayersByTheNamesOfTheDomain) {
+  ASSERT_EQ(run(mesh_to("m.vtu")), 0);
+  Words check = {"check",    out_file("m.vtu"),        "--domain", folder_ / "in.poly",
+                 "--layers", "wall:first=0.125,rows=2"};
+  EXPECT_EQ(run(check), 2);
+  EXPECT_NE(err().find("no marker of the domain is named 'wall'"), std::string::npos) << err();
+  check.back() = "1:first=0.125,rows=2";
+  EXPECT_EQ(run(check), 3);
+  EXPECT_NE(out().find("has an edge with marker 1, but is not of the region"), std::string::npos)
+      << out();
+}
+
 TEST_F(WeftCheck, TakesNoSizeThatNothingExceeds) {
   ASSERT_EQ(run(mesh_to("m.vtu")), 0);
   for (const char* size : {"nan", "-nan", "inf", "-1", "0", "1e999"}) {

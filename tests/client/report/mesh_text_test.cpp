@@ -178,6 +178,22 @@ TEST(MeshReport, TellsTheAttributesThatIdsStandFor) {
   EXPECT_TRUE(region_values_text(many).ends_with("region 20 = 20.5\nand 3 more regions\n"));
 }
 
+TEST(LayersText, SaysWhereTheyAreThinner) {
+  v1::Summary summary;
+  EXPECT_EQ(layers_text(summary), "");
+  EXPECT_TRUE(summary_json(summary)["layers"].is_null());
+  v1::LayerSummary& layers = *summary.mutable_layers();
+  layers.set_triangles(3470);
+  EXPECT_EQ(layers_text(summary), "layers: 3,470 triangles\n");
+  layers.set_cut(2);
+  layers.set_least_thickness(0.25);
+  layers.set_x(1);
+  EXPECT_EQ(layers_text(summary),
+            "layers: 3,470 triangles, thinner than asked for at 2 corners for want of room, the "
+            "least 0.25 thick at (1, 0)\n");
+  EXPECT_EQ(summary_json(summary)["layers"]["at"], Json({1, 0}));
+}
+
 TEST(BudgetWarning, IsOfAMeshWithMoreTrianglesThanWereAllowed) {
   v1::Summary summary;
   summary.set_triangles(9580);

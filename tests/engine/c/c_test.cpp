@@ -146,6 +146,17 @@ TEST(CInterface, KeepsSegments) {
   }
 }
 
+TEST(CInterface, TakesLayers) {
+  Given given;
+  given.add_hole();
+  given.set("size.constant", "0.01");
+  const std::int32_t region = 5;
+  weft_add_layers(given.get(), 3, 0.01, 1.5, 2, &region);
+  given.same.size = 0.01;
+  given.same.layers = {{3, 0.01, 1.5, 2, 5}};
+  given.expect_same();
+}
+
 TEST(CInterface, TakesPeriodicSides) {
   Given given({}, {0, 0.3}, {1, 2, 4, 8, 3, 3, 3, 3});
   given.add_hole();

@@ -150,6 +150,16 @@ TEST(MeshKey, IsTheSameForADefaultThatIsWrittenOut) {
   EXPECT_EQ(mesh_key(request), key);
 }
 
+TEST(MeshKey, TakesLayersWithoutARatioForThoseOfOneHeight) {
+  v1::GenerateMeshRequest request;
+  v1::Layers& layers = *request.mutable_quality()->add_layers();
+  const std::string key = mesh_key(request);
+  layers.set_ratio(1);
+  EXPECT_EQ(mesh_key(request), key);
+  layers.set_ratio(1.2);
+  EXPECT_NE(mesh_key(request), key);
+}
+
 // Regions have bounds of their own, from which a gradation grows.
 TEST(MeshKey, HasWhatASizeWithoutAValueSays) {
   const auto key_of = [](void (*change)(v1::SizeField&)) {
@@ -230,6 +240,7 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"PointsPerCircle", [](auto& r) { r.mutable_size()->set_points_per_circle(36); }},
         Change{"CellsAcross", [](auto& r) { r.mutable_size()->set_cells_across(3); }},
         Change{"Field", [](auto& r) { r.mutable_size()->add_fields()->mutable_width(); }},
+        Change{"Layers", [](auto& r) { r.mutable_quality()->add_layers(); }},
         Change{"Angle", [](auto& r) { r.mutable_quality()->set_min_angle_deg(21); }},
         Change{"Simplify", [](auto& r) { r.set_simplify(0.5); }},
         Change{"Snap", [](auto& r) { r.mutable_domain()->set_snap(1e-3); }},

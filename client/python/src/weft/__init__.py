@@ -18,7 +18,7 @@ beside the modules that these share, whose names begin with an underscore.
 from . import aio
 from ._in_process import mesh
 from ._mesh import Mesh
-from ._requests import MeshOptions
+from ._requests import Layers, MeshOptions
 from ._target import TLS
 from ._triangulate import triangulate
 from ._version import __version__
@@ -32,14 +32,14 @@ from .errors import (AlreadyExists, BoundsNotMet, Cancelled, DamagedStream, Dead
 from .fields import Field, distance, on_mesh, raster, width
 from .local import LocalServer, local
 from .quality import Quality
-from .results import (Accepted, Job, JobState, Merging, NarrowPlace, OutsideSegments, Progress, ServerInfo,
+from .results import (Accepted, Job, JobState, LayerSummary, Merging, NarrowPlace, OutsideSegments, Progress, ServerInfo,
                       ServerLimits, Simplification, SizeWarning, Summary, Timings, Unrefined)
 from .size import Raster, Size
 
 __all__ = [
     "Accepted", "AlreadyExists", "Area", "BoundsNotMet", "Cancelled", "Chunk", "Client",
     "DamagedStream", "DeadlineExceeded", "Domain", "DomainError", "DomainLike", "FailedPrecondition", "Field",
-    "FieldViolation", "InvalidRequest", "Job", "JobState", "LimitExceeded", "LocalServer",
+    "FieldViolation", "InvalidRequest", "Job", "JobState", "LayerSummary", "Layers", "LimitExceeded", "LocalServer",
     "LocalServerError", "Merging", "Mesh", "MeshFileError", "MeshOptions", "MeshStream",
     "MissingPackage", "NarrowPlace", "NotFound", "OutsideSegments", "Progress", "Quality", "Raster", "Region",
     "ServerError", "ServerInfo", "ServerLimits", "Simplification", "Size", "SizeWarning", "Summary", "SwitchError",

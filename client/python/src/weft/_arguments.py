@@ -10,8 +10,9 @@ from . import _options
 
 _EDGE = 2  # weft.v1.Measure
 
-_OTHERS = {"size.fields": "fields", "size.at": "edge_at", "quality.keep": "keep", "quality.periodic": "periodic"}
-_ENTRY = re.compile(r"(\.markers|(?<=quality\.periodic))\[.*")
+_OTHERS = {"size.fields": "fields", "size.at": "edge_at", "quality.keep": "keep", "quality.periodic": "periodic",
+           "quality.layers": "layers"}
+_ENTRY = re.compile(r"(\.markers|(?<=quality\.periodic)|(?<=quality\.layers))\[.*")
 _ELEMENT = re.compile(r"size\.(fields|at)\[(\d+)\]")
 _VALUE = re.compile(r"size($|\.constant|\.expression|\.raster|\.measure)")
 

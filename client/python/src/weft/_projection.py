@@ -92,7 +92,8 @@ class Projection:
         return dataclasses.replace(
             summary, unrefined=unrefined, merging=merging, simplification=simplification,
             narrow=summary.narrow and moved(summary.narrow, "x", "y"),
-            outside=summary.outside and moved(summary.outside, "x", "y"))
+            outside=summary.outside and moved(summary.outside, "x", "y"),
+            layers=summary.layers and moved(summary.layers, "x", "y"))
 
     def field(self, field: Field) -> Field:
         """The field in the plane: its points are in longitude and latitude, those of an earlier

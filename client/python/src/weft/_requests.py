@@ -24,6 +24,20 @@ from .fields import Field, FileField, RasterField, check_is_field, is_field
 from .size import Raster, Size
 
 
+@dataclasses.dataclass(frozen=True)
+class Layers:
+    """Rows of thin triangles along a wall, no thicker than there is room for; see docs/sides.md."""
+
+    first: float
+    """Height of the row at the wall, in the unit of the points, above 0."""
+    rows: int
+    """Number of rows, 1 to 200."""
+    ratio: float = 1
+    """Height of each row over that of the one before, 1 to 10."""
+    region: int | None = None
+    """Id of the region of their triangles; None: one of their own."""
+
+
 class MeshOptions(TypedDict, total=False):
     """What else a mesh may be asked for; the defaults are the server's."""
 
@@ -55,6 +69,9 @@ class MeshOptions(TypedDict, total=False):
     """Sides that repeat each other, pairs of markers, numbers or names of the domain's `marker_names`:
     `[(4, 2), ("bottom", "top")]`. Each is a line of straight segments; a translation or a rotation that takes one to
     the other takes vertices to vertices, which `Mesh.periodic` pairs."""
+    layers: Mapping[int, Layers] | Mapping[str, Layers] | Mapping[int | str, Layers]
+    """Layers along walls, by their marker, a number or a name of the domain's `marker_names`. Bounds on
+    angles and sizes hold outside of them."""
     # The others are explained by help(weft.Client.mesh), from the protocol.
     gradation: float
     gradation_within: bool
@@ -122,6 +139,8 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
     if "keep" in options:
         _fill_keep(options["keep"], domain, request.quality)
     _fill_periodic(options.get("periodic", ()), domain, request.quality)
+    for marker, layers in options.get("layers", {}).items():
+        request.quality.layers.add(marker=marker_of(marker, domain.marker_names), **dataclasses.asdict(layers))
     values: dict[str, object] = {"min_angle": min_angle, **options}
     for name, option in _options.by_keyword().items():
         if name in values:

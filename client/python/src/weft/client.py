@@ -74,6 +74,7 @@ class Client(ClientBase):
         `edge_at`: {marker or its name: length of edges on these segments}, above 0; default: none.
         `keep`: markers or names of segments that stay as they are, or "all"; default: none.
         `periodic`: pairs of markers or names of sides that get the same vertices; default: none.
+        `layers`: {marker or its name: Layers} of walls with rows of thin triangles; default: none.
 
         Place:
         `lonlat`: True if the domain is in longitude and latitude, degrees; default: False.

@@ -144,6 +144,21 @@ class OutsideSegments:
 
 
 @dataclasses.dataclass(frozen=True)
+class LayerSummary:
+    """The layers along walls."""
+
+    triangles: int
+    least_thickness: float
+    """Of the thinnest layers that do not end in a point, in the unit of the points."""
+    x: float
+    """Of a corner of the wall where they are."""
+    y: float
+    """See x."""
+    cut: int
+    """Corners of walls where layers are thinner than was asked for, because there is no room."""
+
+
+@dataclasses.dataclass(frozen=True)
 class Simplification:
     """What `simplify` did to the domain."""
 
@@ -232,6 +247,9 @@ class Summary:
     """None if there are none."""
     simplification: Simplification | None
     """Only with `simplify`."""
+    layers: LayerSummary | None
+    """Only with `layers`. Angles, quality, histograms, ideal_ratio and unrefined are of the triangles
+    outside of layers; counts and the area are of all."""
     timings: Timings
     peak_engine_bytes: int
     insertions: int
@@ -346,6 +364,7 @@ def summary(message: Any) -> Summary:
                  outside=_take(OutsideSegments, message.outside) if message.HasField("outside") else None,
                  simplification=(_simplification(message.simplification)
                                  if message.HasField("simplification") else None),
+                 layers=_take(LayerSummary, message.layers) if message.HasField("layers") else None,
                  timings=_take(Timings, message.timings),
                  leaf_boxes=np.array(message.leaf_boxes, np.float64).reshape(-1, 4),
                  digest=message.sha256.hex(),
