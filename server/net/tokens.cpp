@@ -178,12 +178,12 @@ void TokenFile::look() {
     return;
   }
   if (!*table) return;
-  log_->info("event=tokens_read path={} tokens={}", log_value(path_.string()), (*table)->size());
-  auto fresh = std::make_shared<const TokenTable>(std::move(**table));
+  const auto fresh = std::make_shared<const TokenTable>(std::move(**table));
   {
     std::lock_guard lock(mutex_);
-    table_ = std::move(fresh);
+    table_ = fresh;
   }
+  log_->info("event=tokens_read path={} tokens={}", log_value(path_.string()), fresh->size());
   std::lock_guard lock(calling_);
   if (listener_) listener_();
 }
