@@ -65,9 +65,6 @@ std::vector<std::uint32_t> ranks_by_start(
   });
 }
 
-// Up to so many leaves their first round and smoothing are ordered by intervals.
-constexpr std::size_t kFewLeaves = 256;
-
 }  // namespace
 
 LeafOrder::LeafOrder(const Quadtree& tree) : overlapping_(tree.overlapping()) {

@@ -37,6 +37,8 @@ class LeafOrder {
  public:
   enum Phase : std::uint8_t { kFirstRound, kLaterRounds, kSmoothing };
   static constexpr std::size_t kPhases = 3;
+  // Up to so many leaves, short chains matter more than memory.
+  static constexpr std::size_t kFewLeaves = 256;
 
   LeafOrder() = default;
   explicit LeafOrder(const Quadtree& tree);
