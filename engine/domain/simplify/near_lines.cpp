@@ -109,6 +109,12 @@ bool NearLines::find_near(const Asked& asked) const {
   constexpr double kRounding = 0x1p-50;  // of a sum
   int looks = 0;
   std::size_t line = kNoLine;
+  // The distance to one line is convex: no point of a triangle is farther than all corners.
+  const auto is_near_line = [&](std::size_t l, const std::array<Point, 3>& corners) {
+    return std::all_of(corners.begin(), corners.end(), [&](Point p) {
+      return distance_to_segment(p, lines_[l].a, lines_[l].b) <= (1 - kPrecision) * within;
+    });
+  };
   const auto look = [&](auto&& self, Point a, Point b, Point c) -> bool {
     const Point centre = centroid(a, b, c);
     const double radius = std::sqrt(std::max(
@@ -116,6 +122,7 @@ bool NearLines::find_near(const Asked& asked) const {
     const double off =
         distance(centre, within, asked.marker, within - radius - kRounding * within, line);
     if (off + radius <= within) return true;
+    if (off < within && is_near_line(line, {a, b, c})) return true;
     if (off >= within || radius < kPrecision * within || ++looks > kMostLooks) return false;
     const Point ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
     return self(self, ab, bc, ca) && self(self, a, ab, ca) && self(self, ab, b, bc) &&

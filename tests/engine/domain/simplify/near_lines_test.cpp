@@ -63,6 +63,17 @@ TEST(NearLines, HoldsTrianglesNear) {
   EXPECT_FALSE(near.holds_near({Point{4, -2}, {6, -2}, {5, 2}}, 1));
 }
 
+// Far more disks than are looked at would cover it.
+TEST(NearLines, HoldsATriangleAlongALineHoweverLong) {
+  const ExecutionContext context;
+  StopPoller poller(context);
+  LineGraph graph = one_line();
+  graph.points[1] = {1e5, 0};
+  const NearLines near(graph, poller);
+  EXPECT_TRUE(near.holds_near({Point{0, 0.9}, {1e5, 0.9}, {5e4, -0.9}}, 1));
+  EXPECT_FALSE(near.holds_near({Point{0, 0.9}, {1e5, 0.9}, {5e4, -1.1}}, 1));
+}
+
 // Many questions share a place in what is remembered.
 TEST(NearLines, TakesNoTriangleForAnother) {
   const ExecutionContext context;
