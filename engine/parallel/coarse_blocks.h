@@ -13,6 +13,9 @@
 //   if (blocks.fit()) BlockGraph::add(blocks.order(), blocks.near(), graph);
 //   ... blocks.refine(b, 0), blocks.refine(b, 1), blocks.judge(b), blocks.seed(l, leaves) ...
 //
+// The blocks of many leaves are ordered along the sweep, so that the first ones are done soon;
+// those of few leaves so that chains of blocks that wait for one another are short.
+//
 // A block has two rounds, in both of which bad triangles outside the block migrate. The second
 // leaves few triangles, which the leaves refine.
 //
@@ -68,7 +71,8 @@ class CoarseBlocks {
         area_(area),
         leaves_(leaves),
         tree_(blocks_over(leaves, box, weight)),
-        order_(LeafOrder::along_sweep(tree_)),
+        order_(leaves.leaves().size() <= LeafOrder::kFewLeaves ? LeafOrder(tree_)
+                                                               : LeafOrder::along_sweep(tree_)),
         block_radius_(tree_, 0, area, refinement.context),
         radius_(leaves, 0, area, refinement.context),
         tasks_(refinement, no_angles_, radius_, tree_, order_, kFirstOwner, false),

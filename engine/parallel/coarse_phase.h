@@ -140,7 +140,9 @@ class CoarsePhase {
 
   std::vector<Run> runs() const {
     std::vector<Run> result;
+    constexpr std::uint32_t kMost = 32;  // slots: with pieces, each has many samples
     slots_.for_triangles([&](std::uint32_t first, std::uint32_t last) {
+      for (; last - first > kMost; first += kMost) result.push_back({first, first + kMost});
       result.push_back({first, last});
     });
     return result;
