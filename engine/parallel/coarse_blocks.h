@@ -2,11 +2,11 @@
 // Makes the coarse mesh of a mesh with many leaves block by block, so that the first leaves are
 // refined and sent before most of the coarse mesh is made.
 //
-// A block is a node of the leaves' quadtree, with some dozens of leaves below it. Blocks are the
-// leaves of a coarser tree of the same boxes, and are refined as leaves are (leaf_tasks.h), by
-// tasks of the same graph: first one thread refines the coarse mesh as a whole for the blocks, then
-// each block is refined for its leaves (leaf_radius.h). The leaves refine what a block's rounds
-// leave.
+// A block is a node of the leaves' quadtree, with a dozen to some dozens of leaves below it. Blocks
+// are the leaves of a coarser tree of the same boxes, and are refined as leaves are (leaf_tasks.h),
+// by tasks of the same graph: first one thread refines the coarse mesh as a whole for the blocks,
+// then each block is refined for its leaves (leaf_radius.h). The leaves refine what a block's
+// rounds leave.
 //
 //   CoarseBlocks<ConstantArea> blocks(refinement, quality, area, tree, box, 1e6);
 //   if (auto error = blocks.begin(slots, box)) return error;
