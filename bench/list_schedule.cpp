@@ -38,6 +38,7 @@ class ListScheduling {
     const int most_threads = std::min(threads, 1 << 20);
     ahead_ = fragments_ahead(most_threads);
     begun_ahead_ = fragments_begun(fragments, most_threads);
+    ranks_ = rank_tasks(size(), graph.edges, graph.needs, graph.costs, most_threads);
     const auto period = static_cast<std::uint32_t>(graph.name.period());
     undone_.resize(size() / period + 1, period);
     has_begun_.resize(undone_.size(), 0);
@@ -88,12 +89,13 @@ class ListScheduling {
   bool skipped(std::uint32_t task) const { return graph_.skipped_by[task] != kNone; }
 
   std::uint64_t keyed(std::uint32_t task) const {
-    return graph_.needs.empty() ? task : std::uint64_t{graph_.needs[task]} << 32 | task;
+    return ranks_.of.empty() ? task : std::uint64_t{ranks_.of[task]} << 32 | task;
   }
 
   bool may_begin() const {
     if (ready_.empty()) return false;
-    return running_ == 0 || ready_.top() >> 32 <= std::uint64_t{next_fragment_} + begun_ahead_;
+    return running_ == 0 || !ranks_.hold ||
+           ready_.top() >> 32 <= std::uint64_t{next_fragment_} + begun_ahead_;
   }
   std::size_t group_of(std::uint32_t task) const { return task / graph_.name.period(); }
 
@@ -145,6 +147,7 @@ class ListScheduling {
   std::vector<char> done_;
   std::uint32_t ahead_ = 0;
   std::uint32_t begun_ahead_ = 0;
+  TaskRanks ranks_;
   std::vector<std::uint32_t> undone_;  // tasks, per group
   std::vector<char> has_begun_;        // per group
   std::uint32_t begun_ = 0;            // groups that are not done

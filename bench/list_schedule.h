@@ -2,12 +2,12 @@
 // How the recorded tasks of a stage would go on other numbers of threads.
 //
 // The rules are those of GraphRun (engine/parallel/task_graph.h): a task is ready when all that it
-// waits for are done; a free thread takes the ready task that is needed first, and of equal ones
-// the one with the lowest number; what waits for a skipped task waits for the one that skipped it;
-// fragments wait for room as fragments_ahead says, and tasks that later fragments need as
-// fragments_begun says, for a reader who takes fragments at once. A task takes the seconds that
-// were recorded, so what threads do to each other (memory bandwidth, caches, clock rates, the
-// scheduler's lock) is not seen.
+// waits for are done; a free thread takes the ready task that is needed first, or the one with the
+// most costly chain after it, and of equal ones the one with the lowest number; what waits for a
+// skipped task waits for the one that skipped it; fragments wait for room as fragments_ahead says,
+// and tasks that later fragments need as fragments_begun says, for a reader who takes fragments at
+// once. A task takes the seconds that were recorded, so what threads do to each other (memory
+// bandwidth, caches, clock rates, the scheduler's lock) is not seen.
 #pragma once
 
 #include <cstdint>

@@ -22,6 +22,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -58,7 +59,8 @@ struct Trace {
     // The tasks that build the fragments, in the order in which fragments are sent. Each waits
     // until the fragment fragments_ahead(threads) before its own has been sent.
     std::vector<std::uint32_t> fragment_tasks;
-    std::vector<std::uint32_t> needs = {};  // of TaskGraph::set_needs
+    std::vector<std::uint32_t> needs = {};     // of TaskGraph::set_needs
+    std::span<const std::uint8_t> costs = {};  // of TaskGraph::set_costs
   };
 
   struct Stage {
@@ -94,10 +96,14 @@ struct Trace {
 
   // Begins a stage that is a graph. The time that the trace itself takes here is left out.
   void begin_graph(const GraphName& name, std::size_t tasks, const std::vector<TaskEdge>& edges,
-                   const std::vector<std::uint32_t>& needs) {
-    graph_ = Graph{
-        name, std::vector<double>(tasks, 0.0), std::vector<std::uint32_t>(tasks, kNone), edges, {},
-        needs};
+                   const std::vector<std::uint32_t>& needs, std::span<const std::uint8_t> costs) {
+    graph_ = Graph{name,
+                   std::vector<double>(tasks, 0.0),
+                   std::vector<std::uint32_t>(tasks, kNone),
+                   edges,
+                   {},
+                   needs,
+                   costs};
     start();
   }
   void add_fragment(std::uint32_t task) { graph_->fragment_tasks.push_back(task); }

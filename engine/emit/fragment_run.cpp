@@ -27,7 +27,7 @@ void FragmentRun::run(const Trace::GraphName& name, TaskGraph graph, std::uint32
   run_ = &run;
   if (trace) {
     trace->end_stage("graph building");
-    trace->begin_graph(name, graph.size(), graph.edges(), graph.needs());
+    trace->begin_graph(name, graph.size(), graph.edges(), graph.needs(), graph.costs());
     for (std::uint32_t fragment = first; fragment < last; ++fragment)
       trace->add_fragment(task_of_fragment(fragment));
   }

@@ -19,6 +19,7 @@ Result<TaskGraph> BlockGraph::of_run(const LeafOrder& leaves, bool streams, bool
                                      const ExecutionContext& context) {
   TaskGraph graph((leaves.size() + (blocks ? blocks->size() : 0)) * LeafGraph::kTasks);
   LeafGraph::add_refinement(leaves, graph);
+  if (leaves.size() <= LeafOrder::kFewLeaves) graph.set_costs(LeafGraph::kCosts);
   if (!streams) return graph;
   if (auto error = context.poll()) return tl::unexpected(*error);
   LeafGraph::add_emission(leaves, graph, smooths);

@@ -2,16 +2,19 @@
 // Makes the coarse mesh of a mesh with many leaves block by block, so that the first leaves are
 // refined and sent before most of the coarse mesh is made.
 //
-// A block is a node of the leaves' quadtree, with some dozens of leaves below it. Blocks are the
-// leaves of a coarser tree of the same boxes, and are refined as leaves are (leaf_tasks.h), by
-// tasks of the same graph: first one thread refines the coarse mesh as a whole for the blocks, then
-// each block is refined for its leaves (leaf_radius.h). The leaves refine what a block's rounds
-// leave.
+// A block is a node of the leaves' quadtree, with a dozen to some dozens of leaves below it. Blocks
+// are the leaves of a coarser tree of the same boxes, and are refined as leaves are (leaf_tasks.h),
+// by tasks of the same graph: first one thread refines the coarse mesh as a whole for the blocks,
+// then each block is refined for its leaves (leaf_radius.h). The leaves refine what a block's
+// rounds leave.
 //
 //   CoarseBlocks<ConstantArea> blocks(refinement, quality, area, tree, box, 1e6);
 //   if (auto error = blocks.begin(slots, box)) return error;
 //   if (blocks.fit()) BlockGraph::add(blocks.order(), blocks.near(), graph);
 //   ... blocks.refine(b, 0), blocks.refine(b, 1), blocks.judge(b), blocks.seed(l, leaves) ...
+//
+// The blocks of many leaves are ordered along the sweep, so that the first ones are done soon;
+// those of few leaves so that chains of blocks that wait for one another are short.
 //
 // A block has two rounds, in both of which bad triangles outside the block migrate. The second
 // leaves few triangles, which the leaves refine.
@@ -68,7 +71,8 @@ class CoarseBlocks {
         area_(area),
         leaves_(leaves),
         tree_(blocks_over(leaves, box, weight)),
-        order_(LeafOrder::along_sweep(tree_)),
+        order_(leaves.leaves().size() <= LeafOrder::kFewLeaves ? LeafOrder(tree_)
+                                                               : LeafOrder::along_sweep(tree_)),
         block_radius_(tree_, 0, area, refinement.context),
         radius_(leaves, 0, area, refinement.context),
         tasks_(refinement, no_angles_, radius_, tree_, order_, kFirstOwner, false),

@@ -84,13 +84,19 @@ class CoarsePhase {
     // These two are independent.
     refinement_.context.for_each(2, [&](std::size_t which) {
       if (which == 0) error = refine(radius, box);
-      if (which == 1) order_ = LeafOrder(tree);
+      if (which == 1) order_ = order_of(tree, area_);
     });
     refinement_.context.end_stage("leaf radius");
     if (error) return error;
     error = judge(tree, box);
     refinement_.context.end_stage("seeding");
     return error;
+  }
+
+  // The order of a tree's leaves: rows may fill those where the size is one value.
+  static LeafOrder order_of(const Quadtree& tree, const AreaBound& area) {
+    return LeafOrder(
+        tree, [&](const Quadtree::Leaf& leaf) { return area.uniform_bound(leaf.box).has_value(); });
   }
 
   // Whether the criterion of the circumradius applies to all leaves.
@@ -140,7 +146,9 @@ class CoarsePhase {
 
   std::vector<Run> runs() const {
     std::vector<Run> result;
+    constexpr std::uint32_t kMost = 32;  // slots: with pieces, each has many samples
     slots_.for_triangles([&](std::uint32_t first, std::uint32_t last) {
+      for (; last - first > kMost; first += kMost) result.push_back({first, first + kMost});
       result.push_back({first, last});
     });
     return result;

@@ -47,6 +47,8 @@ struct LeafGraph {
       "leaves",
       {"round 1", "round 2", "round 3", "round 4", "check pending", "check settled", "smooth",
        "number", "export", "emit"}};
+  // About how long each takes, in tenths of round 1: smoothing and building a fragment take half.
+  static constexpr std::uint8_t kCosts[kTasks] = {10, 1, 1, 1, 1, 1, 5, 1, 1, 5};
 
   static std::uint32_t round(std::uint32_t leaf, std::uint32_t round) {
     return leaf * kTasks + round;

@@ -24,10 +24,12 @@ std::vector<std::uint32_t> ranks(const std::vector<Quadtree::Leaf>& leaves, Key 
 }
 
 // The place of each leaf if all are sorted by when they begin, by colouring of intervals: from the
-// heaviest leaf on, each begins at the earliest time at which no overlapping leaf is at work.
+// heaviest leaf on, and those with rows before the others, each begins at the earliest time at
+// which no overlapping leaf is at work.
 std::vector<std::uint32_t> ranks_by_start(
     const std::vector<Quadtree::Leaf>& leaves,
-    const std::vector<std::vector<std::uint32_t>>& overlapping) {
+    const std::vector<std::vector<std::uint32_t>>& overlapping,
+    const LeafOrder::MayHaveRows& may_have_rows) {
   constexpr double kLeastWork = 0.02;  // of the mean: every task costs something
   struct Interval {
     double begin;
@@ -44,6 +46,8 @@ std::vector<std::uint32_t> ranks_by_start(
   std::stable_sort(
       heaviest_first.begin(), heaviest_first.end(),
       [&](std::uint32_t a, std::uint32_t b) { return leaves[a].weight > leaves[b].weight; });
+  std::stable_partition(heaviest_first.begin(), heaviest_first.end(),
+                        [&](std::uint32_t l) { return may_have_rows(leaves[l]); });
   std::vector<std::optional<double>> begin(leaves.size());
   std::vector<Interval> busy;
   for (const std::uint32_t leaf : heaviest_first) {
@@ -65,17 +69,15 @@ std::vector<std::uint32_t> ranks_by_start(
   });
 }
 
-// Up to so many leaves their first round and smoothing are ordered by intervals.
-constexpr std::size_t kFewLeaves = 256;
-
 }  // namespace
 
-LeafOrder::LeafOrder(const Quadtree& tree) : overlapping_(tree.overlapping()) {
+LeafOrder::LeafOrder(const Quadtree& tree, const MayHaveRows& may_have_rows)
+    : overlapping_(tree.overlapping()) {
   const auto& leaves = tree.leaves();
   rank_[kLaterRounds] =
       ranks(leaves, [](const Quadtree::Leaf& l) { return std::tuple(l.depth, l.across & 1); });
   if (leaves.size() <= kFewLeaves) {
-    rank_[kFirstRound] = ranks_by_start(leaves, overlapping_);
+    rank_[kFirstRound] = ranks_by_start(leaves, overlapping_, may_have_rows);
     rank_[kSmoothing] = rank_[kFirstRound];
     return;
   }

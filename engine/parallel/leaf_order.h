@@ -5,7 +5,9 @@
 //
 //   - The first round has nearly all the work. If there are at most 256 leaves, each, the heaviest
 //     first, is given the earliest time at which no overlapping leaf is at work, and the earlier
-//     one comes first: the heaviest chain of leaves that wait for one another is short. If there
+//     one comes first: the heaviest chain of leaves that wait for one another is short. Those that
+//     rows of a lattice may fill (refine/row_filler.h) choose before the rest, because vertices of
+//     others that went first would be in the way of the rows. If there
 //     are more, the larger leaf comes first, and among equal leaves the one of the lower colour, of
 //     four colours in blocks of two by two: chains matter less, and memory more.
 //   - Later rounds take little time. Equal leaves are ordered by the parity of their row, and then
@@ -27,6 +29,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "engine/parallel/quadtree.h"
@@ -37,9 +40,15 @@ class LeafOrder {
  public:
   enum Phase : std::uint8_t { kFirstRound, kLaterRounds, kSmoothing };
   static constexpr std::size_t kPhases = 3;
+  // Up to so many leaves, short chains matter more than memory.
+  static constexpr std::size_t kFewLeaves = 256;
 
   LeafOrder() = default;
-  explicit LeafOrder(const Quadtree& tree);
+  // `may_have_rows` says which leaves rows may fill. DEFAULT: all or none.
+  using MayHaveRows = std::function<bool(const Quadtree::Leaf&)>;
+  explicit LeafOrder(
+      const Quadtree& tree,
+      const MayHaveRows& may_have_rows = [](const Quadtree::Leaf&) { return true; });
   // A different order: along the sweep in all phases.
   static LeafOrder along_sweep(const Quadtree& tree);
 

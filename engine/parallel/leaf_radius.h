@@ -54,7 +54,7 @@ class LeafRadius {
   LeafRadius(const Quadtree& tree, double dense, const AreaBound& area,
              const ExecutionContext& context)
       : tree_(&tree), area_(area.again()) {
-    constexpr std::size_t kAtOnce = 512;
+    constexpr std::size_t kAtOnce = 32;
     const auto& leaves = tree.leaves();
     const auto is_dense = [&](std::uint32_t l) { return leaves[l].weight >= dense; };
     std::vector<Near> near(leaves.size());

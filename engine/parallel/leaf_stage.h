@@ -129,7 +129,7 @@ class LeafStage {
     if ((error = context.poll())) return error;
     context.for_each(2, [&](std::size_t which) {
       if (which == 0) error = blocks_->begin(root_, plan_.box);
-      if (which == 1) order_ = LeafOrder(tree_);
+      if (which == 1) order_ = CoarsePhase<AreaBound>::order_of(tree_, area_);
     });
     context.end_stage("blocks");
     if (!error) error = context.poll();

@@ -59,12 +59,16 @@ struct MeshPlan {
   // The maximum number of full leaves in a block of the coarse mesh (coarse_blocks.h); 1 for no
   // blocks. Before the first leaf, a coarse mesh for all blocks is made, and then some hundred
   // blocks near the first one. Together these are least if a block grows as the root of the mesh.
-  // Smaller blocks leave too many slots unused.
+  // Smaller blocks leave too many slots unused. A mesh of few leaves has small blocks all the same,
+  // so that many threads soon have work.
   double leaves_per_block() const {
-    constexpr double kFewest = 256;  // leaves
+    constexpr double kFewest = 32;  // leaves
+    constexpr double kFew = 256;
+    constexpr double kLeastOfFew = 6;
     constexpr double kLeast = 16;
     const double leaves = expected_by_size / leaf_triangles;
-    return leaves < kFewest ? 1 : std::max(kLeast, std::sqrt(0.025 * leaves));
+    if (leaves < kFewest) return 1;
+    return std::max(leaves < kFew ? kLeastOfFew : kLeast, std::sqrt(0.025 * leaves));
   }
 
   // Whether leaves pay. Up to some 60,000 triangles that the bound on angles makes, one task is

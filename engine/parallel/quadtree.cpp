@@ -185,12 +185,22 @@ Result<Quadtree> Quadtree::build(const Box& domain, std::vector<Sample> samples,
     const std::int64_t side = std::int64_t{2} << (kMaxDepth - depth);  // in halves of cells
     const std::int64_t x0 = x * side;
     const std::int64_t y0 = y * side;
-    const Box halo =
-        grid.box(x0 - side / 2, y0 - side / 2, x0 + side + side / 2, y0 + side + side / 2);
+    const auto is_split = [&](std::int64_t i, std::int64_t j) {
+      return splits.contains(
+          depth, morton(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j)));
+    };
+    // The margin on a side, where the neighbour is the node (i, j).
+    const bool leaf = !is_split(x, y);
+    const auto margin = [&](std::int64_t i, std::int64_t j) {
+      const bool outside = std::min(i, j) < 0 || std::max(i, j) >= std::int64_t{1} << depth;
+      return leaf && !outside && is_split(i, j) ? side / 4 : side / 2;
+    };
+    const Box halo = grid.box(x0 - margin(x - 1, y), y0 - margin(x, y - 1),
+                              x0 + side + margin(x + 1, y), y0 + side + margin(x, y + 1));
     const Box centre = grid.box(x0 + side / 2, y0 + side / 2, x0 + side / 2, y0 + side / 2);
     tree.nodes_[index] = {{centre.min_x, centre.min_y}, halo, 0, 0};
     const auto code = morton(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y));
-    if (!splits.contains(depth, code)) {
+    if (leaf) {
       tree.nodes_[index].leaf = static_cast<std::uint32_t>(tree.leaves_.size());
       const unsigned shift = 2 * (kMaxDepth - depth);
       double weight = 0;

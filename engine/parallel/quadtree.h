@@ -10,6 +10,10 @@
 // this order (leaf_order.h). A line across the sweep cuts leaves that must be in memory at the same
 // time, so the sweep goes in the direction in which the largest weight of these is smaller.
 //
+// The buffer zone around a leaf is half as wide as the leaf; where smaller leaves share a side with
+// it, half as wide as these. The coarse mesh follows the smaller leaves there (leaf_radius.h), so a
+// wider zone would defer no less, and would have the leaf wait for more of them.
+//
 // Borders between boxes are computed from integers, so boxes that touch share the same doubles.
 //
 // Units: coordinates of the domain; weights are triangles of the final mesh. Thread-safety:
@@ -40,7 +44,7 @@ class Quadtree {
 
   struct Leaf {
     Box box;         // half-open
-    Box halo;        // with the buffer zone around it, half of its side wide
+    Box halo;        // with the buffer zone around it
     double weight;   // of the samples in it
     unsigned depth;  // its side is that of the square over 2^depth
     // Its position among the squares of its depth, in the direction of the sweep and across it.

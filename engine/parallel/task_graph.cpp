@@ -3,8 +3,56 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace weft {
+namespace {
+
+// Per task, the cost of the most costly chain of tasks that begins with it.
+std::vector<std::uint32_t> chains_from(std::size_t tasks, const std::vector<TaskEdge>& edges,
+                                       std::span<const std::uint8_t> costs) {
+  std::vector<std::uint32_t> first(tasks + 1, 0);  // per task, and one more: into `before`
+  std::vector<std::uint32_t> afters(tasks, 0);
+  for (const TaskEdge& e : edges) {
+    ++first[e.after + 1];
+    ++afters[e.before];
+  }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> before(edges.size());
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  for (const TaskEdge& e : edges) before[next[e.after]++] = e.before;
+
+  std::vector<std::uint32_t> chain(tasks, 0);  // at first without the task itself
+  std::vector<std::uint32_t> last;             // tasks all of whose chains are known
+  for (std::uint32_t t = 0; t < tasks; ++t) {
+    if (afters[t] == 0) last.push_back(t);
+  }
+  while (!last.empty()) {
+    const std::uint32_t t = last.back();
+    last.pop_back();
+    chain[t] += costs[t % costs.size()];
+    for (std::uint32_t i = first[t]; i < first[t + 1]; ++i) {
+      const std::uint32_t b = before[i];
+      chain[b] = std::max(chain[b], chain[t]);
+      if (--afters[b] == 0) last.push_back(b);
+    }
+  }
+  return chain;
+}
+
+}  // namespace
+
+TaskRanks rank_tasks(std::size_t tasks, const std::vector<TaskEdge>& edges,
+                     const std::vector<std::uint32_t>& needs, std::span<const std::uint8_t> costs,
+                     int threads) {
+  if (costs.empty() || threads == 1) return {needs};
+  const std::uint32_t last = needs.empty() ? 0 : *std::max_element(needs.begin(), needs.end());
+  if (last >= fragments_begun(last + 1, threads)) return {needs};
+  std::vector<std::uint32_t> ranks = chains_from(tasks, edges, costs);
+  const std::uint32_t longest = ranks.empty() ? 0 : *std::max_element(ranks.begin(), ranks.end());
+  for (std::uint32_t& rank : ranks) rank = longest - rank;
+  return {std::move(ranks), false};
+}
 
 GraphRun::GraphRun(const TaskGraph& graph, Arena* arena, int threads, Task task)
     : arena_(arena),
@@ -13,7 +61,7 @@ GraphRun::GraphRun(const TaskGraph& graph, Arena* arena, int threads, Task task)
       first_successor_(graph.size() + 1, 0),
       successors_(graph.edges_.size()),
       waits_for_(graph.size()),
-      needs_(graph.needs_),
+      ranks_(rank_tasks(graph.size(), graph.edges_, graph.needs_, graph.costs_, threads)),
       skipped_(graph.size(), 0) {
   for (const auto& e : graph.edges_) ++first_successor_[e.before + 1];
   std::partial_sum(first_successor_.begin(), first_successor_.end(), first_successor_.begin());
@@ -29,7 +77,7 @@ GraphRun::GraphRun(const TaskGraph& graph, Arena* arena, int threads, Task task)
 }
 
 std::uint64_t GraphRun::bytes() const {
-  return (first_successor_.capacity() + successors_.capacity() + needs_.capacity()) *
+  return (first_successor_.capacity() + successors_.capacity() + ranks_.of.capacity()) *
              sizeof(std::uint32_t) +
          waits_for_.capacity() * sizeof(waits_for_[0]) + skipped_.capacity() +
          first_successor_.capacity() * sizeof(Ready::value_type);
@@ -90,6 +138,7 @@ bool GraphRun::step() {
 // held.
 bool GraphRun::may_begin(int others) const {
   if (ready_.empty() || stopping_) return false;
+  if (!ranks_.hold) return true;
   const std::uint64_t fragment = ready_.top() >> 32;
   if (!waiting_ || notified_) return fragment <= while_away_;
   return fragment <= while_waiting_ || others == 0;

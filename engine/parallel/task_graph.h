@@ -12,6 +12,10 @@
 // is needed first runs first (TaskGraph::set_needs), then the one with the lowest number. There is
 // no barrier: a slow or preempted task holds back only what depends on it.
 //
+// The chains (`set_costs`): if so many threads may work that the hold would let all tasks begin,
+// the task with the most costly chain of tasks after it runs first instead, and nothing is held.
+// Which tasks are done in which order does not change their results.
+//
 // The hold (`begin_up_to`): tasks that make fragments which leave in order keep their results in
 // memory until these have left. So a task that is needed only by fragments far ahead of the next
 // one does not begin while the caller of `step` does something else, such as sending a fragment: a
@@ -34,12 +38,14 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <queue>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -62,10 +68,14 @@ class TaskGraph {
   // Per task, the first fragment that needs it, if the tasks make fragments that leave in order.
   // DEFAULT: the first fragment needs all tasks.
   void set_needs(std::vector<std::uint32_t> needs) { needs_ = std::move(needs); }
+  // About how long each kind of task takes, at least 1; kinds repeat with the tasks' numbers. For
+  // few tasks only, whose results may all be in memory. DEFAULT: chains do not matter.
+  void set_costs(std::span<const std::uint8_t> costs) { costs_ = costs; }
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(waits_for_.size()); }
   const std::vector<TaskEdge>& edges() const { return edges_; }
   const std::vector<std::uint32_t>& needs() const { return needs_; }  // empty if not set
+  std::span<const std::uint8_t> costs() const { return costs_; }      // likewise
 
  private:
   friend class GraphRun;
@@ -73,7 +83,17 @@ class TaskGraph {
   std::vector<std::uint32_t> waits_for_;
   std::vector<TaskEdge> edges_;
   std::vector<std::uint32_t> needs_;
+  std::span<const std::uint8_t> costs_;
 };
+
+// In which order ready tasks run.
+struct TaskRanks {
+  std::vector<std::uint32_t> of;  // per task: the lowest first; empty if all are equal
+  bool hold = true;               // ranks are fragments, which may be too far ahead
+};
+TaskRanks rank_tasks(std::size_t tasks, const std::vector<TaskEdge>& edges,
+                     const std::vector<std::uint32_t>& needs, std::span<const std::uint8_t> costs,
+                     int threads);
 
 // Runs the tasks of a graph on at most `threads` threads of an arena; without an arena, on the
 // caller's thread, in `step`.
@@ -119,7 +139,7 @@ class GraphRun {
   void notify();
 
  private:
-  // Each entry is a pair in one word: the first fragment that needs a task, and the task.
+  // Each entry is a pair in one word: the rank of a task, and the task.
   using Ready = std::priority_queue<std::uint64_t, std::vector<std::uint64_t>, std::greater<>>;
   static constexpr std::chrono::milliseconds kSlice{2};
 
@@ -130,7 +150,7 @@ class GraphRun {
   void run(std::uint32_t task);
   void finish(std::uint32_t task);
   std::uint64_t keyed(std::uint32_t task) const {
-    return needs_.empty() ? task : std::uint64_t{needs_[task]} << 32 | task;
+    return ranks_.of.empty() ? task : std::uint64_t{ranks_.of[task]} << 32 | task;
   }
   bool may_begin(int others) const;
   std::uint32_t take_ready();
@@ -144,7 +164,7 @@ class GraphRun {
   std::vector<std::uint32_t> first_successor_;  // per task, and one more: into successors_
   std::vector<std::uint32_t> successors_;
   std::vector<std::atomic<std::uint32_t>> waits_for_;
-  const std::vector<std::uint32_t> needs_;
+  const TaskRanks ranks_;
   std::vector<char> skipped_;  // per task, written before the task can become ready
 
   std::mutex mutex_;  // guards all below

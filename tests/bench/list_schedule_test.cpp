@@ -46,6 +46,13 @@ TEST(ListSchedule, TheReadyTaskThatIsNeededFirstGoesFirst) {
   EXPECT_DOUBLE_EQ(schedule(graph, 2, 0).seconds, 3);
 }
 
+TEST(ListSchedule, TheReadyTaskWithTheMostCostlyChainGoesFirst) {
+  constexpr std::uint8_t kCosts[] = {1};
+  auto graph = graph_of({1, 1, 1, 2}, {{2, 3}});
+  graph.costs = kCosts;
+  EXPECT_DOUBLE_EQ(schedule(graph, 2, 0).seconds, 3);
+}
+
 TEST(ListSchedule, WhatWaitsForASkippedTaskWaitsForTheOneThatSkippedIt) {
   // Task 1 would have waited for 2; 3 waits for 1, which 0 skips.
   auto graph = graph_of({1, 0, 5, 1}, {{0, 1}, {2, 1}, {1, 3}});

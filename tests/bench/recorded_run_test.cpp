@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string_view>
 
 #include "bench/list_schedule.h"
 #include "engine/engine.h"
@@ -17,11 +18,11 @@ struct Discard : ChunkSink {
 };
 
 // A square of about 30,000 triangles in some 100 leaves.
-MeshRequest square() {
+MeshRequest square(double leaf_triangles = 500) {
   return {.pslg = {.points = {{0, 0}, {1, 0}, {1, 1}, {0, 1}},
                    .segments = {{0, 1}, {1, 2}, {2, 3}, {3, 0}}},
           .size = 5e-5,
-          .leaf_triangles = 500};
+          .leaf_triangles = leaf_triangles};
 }
 
 struct Recording {
@@ -30,12 +31,12 @@ struct Recording {
   double seconds = 0;
 };
 
-void run_square(Recording& run) {
+void run_square(Recording& run, double leaf_triangles = 500) {
   Discard sink;
   ExecutionContext context;
   context.set_trace(run.trace);
   const auto start = Trace::Clock::now();
-  const auto summary = generate_mesh(square(), sink, context);
+  const auto summary = generate_mesh(square(leaf_triangles), sink, context);
   run.seconds = std::chrono::duration<double>(Trace::Clock::now() - start).count();
   ASSERT_TRUE(summary) << summary.error().message;
   run.summary = *summary;
@@ -45,6 +46,21 @@ const Trace::Graph& leaves_of(const Trace& trace) {
   const auto stage = std::find_if(trace.stages.begin(), trace.stages.end(),
                                   [](const Trace::Stage& s) { return s.graph.has_value(); });
   return *stage->graph;
+}
+
+bool has_stage(const Trace& trace, std::string_view name) {
+  return std::any_of(trace.stages.begin(), trace.stages.end(),
+                     [&](const Trace::Stage& s) { return s.name == name; });
+}
+
+TEST(RecordedRun, MakesTheCoarseMeshOfManyLeavesInBlocks) {
+  Recording many;
+  run_square(many);
+  EXPECT_TRUE(has_stage(many.trace, "blocks"));
+  Recording few;
+  run_square(few, 2000);
+  EXPECT_GT(few.summary.leaves.size(), 8u);
+  EXPECT_FALSE(has_stage(few.trace, "blocks"));
 }
 
 TEST(RecordedRun, StagesAddUpToTheRunAndNoMore) {

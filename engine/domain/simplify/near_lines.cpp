@@ -2,6 +2,7 @@
 #include "engine/domain/simplify/near_lines.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "engine/domain/arrangement/snapping.h"
@@ -37,6 +38,7 @@ NearLines::NearLines(const LineGraph& graph, StopPoller& poller) {
         {graph.points[graph.lines[l].a], graph.points[graph.lines[l].b], graph.lines[l].marker});
   while (leaves_ * kLeaf < lines_.size()) leaves_ *= 2;
   box_.resize(2 * leaves_);
+  known_.resize(kLeaf * leaves_);
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     box_[leaves_ + i / kLeaf].add(lines_[i].a);
     box_[leaves_ + i / kLeaf].add(lines_[i].b);
@@ -80,23 +82,53 @@ double NearLines::distance(Point p, double within, Marker marker, double enough,
   return least;
 }
 
+std::size_t NearLines::place_of(const Asked& asked) const {
+  std::uint64_t hash = std::bit_cast<std::uint64_t>(asked.within);
+  for (const Point p : asked.triangle) {
+    for (const double c : {p.x, p.y}) {
+      hash = 0x9e3779b97f4a7c15 * (hash ^ std::bit_cast<std::uint64_t>(c));
+      hash ^= hash >> 32;
+    }
+  }
+  return hash % known_.size();
+}
+
 bool NearLines::holds_near(const std::array<Point, 3>& triangle, double within,
                            Marker marker) const {
+  Asked asked{triangle, within, marker};
+  Asked& known = known_[place_of(asked)];
+  if (!known.is_for(asked)) {
+    asked.is_near = find_near(asked);
+    known = asked;
+  }
+  return known.is_near;
+}
+
+bool NearLines::find_near(const Asked& asked) const {
+  const double within = asked.within;
   constexpr double kRounding = 0x1p-50;  // of a sum
   int looks = 0;
   std::size_t line = kNoLine;
+  // The distance to one line is convex: no point of a triangle is farther than all corners.
+  const auto is_near_line = [&](std::size_t l, const std::array<Point, 3>& corners) {
+    return std::all_of(corners.begin(), corners.end(), [&](Point p) {
+      return distance_to_segment(p, lines_[l].a, lines_[l].b) <= (1 - kPrecision) * within;
+    });
+  };
   const auto look = [&](auto&& self, Point a, Point b, Point c) -> bool {
     const Point centre = centroid(a, b, c);
     const double radius = std::sqrt(std::max(
         {weft::distance2(centre, a), weft::distance2(centre, b), weft::distance2(centre, c)}));
-    const double off = distance(centre, within, marker, within - radius - kRounding * within, line);
+    const double off =
+        distance(centre, within, asked.marker, within - radius - kRounding * within, line);
     if (off + radius <= within) return true;
+    if (off < within && is_near_line(line, {a, b, c})) return true;
     if (off >= within || radius < kPrecision * within || ++looks > kMostLooks) return false;
     const Point ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
     return self(self, ab, bc, ca) && self(self, a, ab, ca) && self(self, ab, b, bc) &&
            self(self, ca, bc, c);
   };
-  return look(look, triangle[0], triangle[1], triangle[2]);
+  return look(look, asked.triangle[0], asked.triangle[1], asked.triangle[2]);
 }
 
 double NearLines::farthest(Point a, Point b, double within) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Distances to the lines of the original domain: a tree of boxes over the lines along a Hilbert
-// curve.
+// curve. Simplification goes over the domain several times and finds most triangles as they were,
+// so what was found of a triangle is remembered. Not thread-safe.
 #pragma once
 
 #include <array>
@@ -42,6 +43,17 @@ class NearLines {
     Point a, b;
     std::int32_t marker;
   };
+  struct Asked {
+    std::array<Point, 3> triangle{};
+    double within = -1;
+    Marker marker{};
+    bool is_near = false;
+    bool is_for(const Asked& other) const {
+      return triangle == other.triangle && within == other.within && marker == other.marker;
+    }
+  };
+  std::size_t place_of(const Asked& asked) const;
+  bool find_near(const Asked& asked) const;
 
   // The distance of p to the nearest line, or to one that is at most `enough` away; `within` if
   // none is nearer than that. Tries `line` first, unless that is kNoLine, and sets it to what it
@@ -53,6 +65,7 @@ class NearLines {
   std::vector<Marked> lines_;  // in the order of the leaves
   std::size_t leaves_ = 1;     // as in PointTree
   std::vector<Box> box_;
+  mutable std::vector<Asked> known_;  // what holds_near found, the last one for each place
 };
 
 }  // namespace weft

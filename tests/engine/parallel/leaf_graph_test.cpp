@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "engine/parallel/block_graph.h"
@@ -71,6 +72,20 @@ TEST(LeafGraph, HasNoTasksThatWaitForOneAnother) {
       EXPECT_EQ(one_order(graph.tasks).size(), graph.tasks.size()) << seed;
     }
   }
+}
+
+TEST(LeafGraph, KnowsWhatTasksCostIfThereAreFewLeaves) {
+  const ExecutionContext context;
+  const auto costs = [&](double target) {
+    std::vector<Quadtree::Sample> samples;
+    for (int i = 0; i < 1024; ++i)
+      samples.push_back({{(i % 32 + 0.5) / 32, (i / 32 + 0.5) / 32}, 1});
+    const LeafOrder order(Quadtree::build({0, 0, 1, 1}, std::move(samples), target));
+    const auto graph = BlockGraph::of_run(order, true, true, nullptr, nullptr, context);
+    return std::pair(order.size(), graph->costs().size());
+  };
+  EXPECT_EQ(costs(4), std::pair(256u, std::size_t{LeafGraph::kTasks}));
+  EXPECT_EQ(costs(1), std::pair(1024u, std::size_t{0}));
 }
 
 TEST(LeafGraph, KnowsTheFirstFragmentThatWaitsForATask) {

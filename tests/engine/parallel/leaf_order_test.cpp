@@ -56,6 +56,24 @@ TEST(LeafOrder, OfFewLeavesHasShortChains) {
   }
 }
 
+TEST(LeafOrder, LetsLeavesWithRowsChooseFirst) {
+  const Quadtree tree = tree_of(300, 1);
+  const auto& leaves = tree.leaves();
+  int choose_later = 0;
+  for (std::uint32_t leaf = 0; leaf < leaves.size(); ++leaf) {
+    const auto is_first = [&](const LeafOrder& order) {
+      const auto& others = order.overlapping(leaf);
+      return std::all_of(others.begin(), others.end(), [&](std::uint32_t other) {
+        return order.before(leaf, other, LeafOrder::kFirstRound);
+      });
+    };
+    choose_later += !is_first(LeafOrder(tree));
+    EXPECT_TRUE(
+        is_first(LeafOrder(tree, [&](const Quadtree::Leaf& l) { return &l == &leaves[leaf]; })));
+  }
+  EXPECT_GT(choose_later, 50);
+}
+
 TEST(LeafOrder, OfManyLeavesSmoothsAlongTheSweep) {
   const Quadtree tree = tree_of(50, 1);
   ASSERT_GT(tree.leaves().size(), 256u);

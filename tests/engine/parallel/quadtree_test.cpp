@@ -225,15 +225,33 @@ TEST_P(Quadtrees, KnowWhichLeavesTouch) {
   });
 }
 
-TEST_P(Quadtrees, GrowLeavesByHalfOfTheirSide) {
+// The part that two intervals share.
+double shared(double min_a, double max_a, double min_b, double max_b) {
+  return std::min(max_a, max_b) - std::max(min_a, min_b);
+}
+
+TEST_P(Quadtrees, GrowLeavesByHalfOfTheLeastSideBesideThem) {
   for_trees([](const Tree& tree) {
-    for (const auto& leaf : tree.quadtree.leaves()) {
-      const double half = 0.5 * leaf.side();
-      const double slack = 1e-3 * leaf.side();
-      EXPECT_NEAR(leaf.halo.min_x, leaf.box.min_x - half, slack);
-      EXPECT_NEAR(leaf.halo.min_y, leaf.box.min_y - half, slack);
-      EXPECT_NEAR(leaf.halo.max_x, leaf.box.max_x + half, slack);
-      EXPECT_NEAR(leaf.halo.max_y, leaf.box.max_y + half, slack);
+    const auto& leaves = tree.quadtree.leaves();
+    for (std::uint32_t a = 0; a < leaves.size(); ++a) {
+      const Box& box = leaves[a].box;
+      double left = leaves[a].side(), right = left, below = left, above = left;
+      for (const std::uint32_t b : tree.quadtree.touching(a)) {
+        const Box& other = leaves[b].box;
+        const double side = leaves[b].side();
+        const bool beside = shared(box.min_y, box.max_y, other.min_y, other.max_y) > 0;
+        const bool along = shared(box.min_x, box.max_x, other.min_x, other.max_x) > 0;
+        if (beside && other.max_x == box.min_x) left = std::min(left, side);
+        if (beside && other.min_x == box.max_x) right = std::min(right, side);
+        if (along && other.max_y == box.min_y) below = std::min(below, side);
+        if (along && other.min_y == box.max_y) above = std::min(above, side);
+      }
+      const Box& halo = leaves[a].halo;
+      const double slack = 1e-3 * leaves[a].side();
+      EXPECT_NEAR(halo.min_x, box.min_x - 0.5 * left, slack);
+      EXPECT_NEAR(halo.max_x, box.max_x + 0.5 * right, slack);
+      EXPECT_NEAR(halo.min_y, box.min_y - 0.5 * below, slack);
+      EXPECT_NEAR(halo.max_y, box.max_y + 0.5 * above, slack);
     }
   });
 }

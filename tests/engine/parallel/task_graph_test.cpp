@@ -212,6 +212,46 @@ TEST(TaskGraph, RunsTheReadyTaskThatIsNeededFirst) {
   EXPECT_EQ(ran, (std::vector<std::uint32_t>{5, 4, 0, 2, 3, 1}));
 }
 
+// A chain of three short tasks, 1 to 3, beside a long one and one that waits for 3.
+constexpr std::uint8_t kLongFirst[] = {5, 2, 2, 2, 1};
+TaskGraph chain_beside_a_long_task() {
+  TaskGraph graph(5);
+  graph.add_dependency(1, 2);
+  graph.add_dependency(2, 3);
+  graph.add_dependency(3, 4);
+  graph.set_needs({0, 1, 1, 1, 1});
+  graph.set_costs(kLongFirst);
+  return graph;
+}
+
+TEST(TaskGraph, RanksTasksByTheCostOfTheChainsAfterThem) {
+  const TaskGraph graph = chain_beside_a_long_task();
+  const TaskRanks ranks = rank_tasks(5, graph.edges(), graph.needs(), graph.costs(), 2);
+  EXPECT_EQ(ranks.of, (std::vector<std::uint32_t>{2, 0, 2, 4, 6}));
+  EXPECT_FALSE(ranks.hold);
+}
+
+TEST(TaskGraph, RanksTasksByNeedIfOneThreadWorksOrTheHoldWouldKeepSomeBack) {
+  TaskGraph graph = chain_beside_a_long_task();
+  EXPECT_EQ(rank_tasks(5, graph.edges(), graph.needs(), graph.costs(), 1).of, graph.needs());
+  const std::uint32_t far = 1000;
+  ASSERT_LT(fragments_begun(far + 1, 2), far);
+  graph.set_needs({0, 1, 2, 3, far});
+  const TaskRanks ranks = rank_tasks(5, graph.edges(), graph.needs(), graph.costs(), 2);
+  EXPECT_EQ(ranks.of, graph.needs());
+  EXPECT_TRUE(ranks.hold);
+}
+
+TEST(TaskGraph, HoldsNothingIfTasksRunByTheirChains) {
+  Arena arena(2);
+  std::atomic<std::uint32_t> ran{0};
+  GraphRun run(chain_beside_a_long_task(), &arena, 2, [&](std::uint32_t) { ++ran; });
+  run.start();  // the fragments that may begin are up to 0, and 2 to 4 are needed by the next
+  while (ran < 5 && run.idle_since() == std::nullopt) std::this_thread::yield();
+  while (run.idle_since() == std::nullopt) std::this_thread::yield();
+  EXPECT_EQ(ran, 5u);
+}
+
 // Ten tasks that wait for nothing; each is needed by the fragment of its number.
 TaskGraph ten_needed_in_turn() {
   TaskGraph graph(10);

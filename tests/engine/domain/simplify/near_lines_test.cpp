@@ -63,6 +63,40 @@ TEST(NearLines, HoldsTrianglesNear) {
   EXPECT_FALSE(near.holds_near({Point{4, -2}, {6, -2}, {5, 2}}, 1));
 }
 
+// Far more disks than are looked at would cover it.
+TEST(NearLines, HoldsATriangleAlongALineHoweverLong) {
+  const ExecutionContext context;
+  StopPoller poller(context);
+  LineGraph graph = one_line();
+  graph.points[1] = {1e5, 0};
+  const NearLines near(graph, poller);
+  EXPECT_TRUE(near.holds_near({Point{0, 0.9}, {1e5, 0.9}, {5e4, -0.9}}, 1));
+  EXPECT_FALSE(near.holds_near({Point{0, 0.9}, {1e5, 0.9}, {5e4, -1.1}}, 1));
+}
+
+// Many questions share a place in what is remembered.
+TEST(NearLines, TakesNoTriangleForAnother) {
+  const ExecutionContext context;
+  StopPoller poller(context);
+  std::mt19937 random(7);
+  LineGraph graph = random_lines(random, 20);
+  for (std::size_t l = 0; l < graph.lines.size(); l += 2) graph.lines[l].marker = 3;
+  const NearLines near(graph, poller);
+  int yes = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const auto corner = [&] { return graph.points[random() % 3]; };
+    const std::array<Point, 3> triangle{corner(), corner(), corner()};
+    const double within = random() % 2 == 0 ? 0.3 : 0.1;
+    const NearLines::Marker marker =
+        random() % 2 == 0 ? std::nullopt : NearLines::Marker(random() % 2 == 0 ? 3 : 0);
+    const bool is_near = near.holds_near(triangle, within, marker);
+    ASSERT_EQ(is_near, NearLines(graph, poller).holds_near(triangle, within, marker)) << i;
+    yes += is_near;
+  }
+  EXPECT_GT(yes, 1000);
+  EXPECT_LT(yes, 19'000);
+}
+
 TEST(NearLines, BoundsTheFarthestPoint) {
   const ExecutionContext context;
   StopPoller poller(context);

@@ -217,7 +217,7 @@ TEST(Simplify, ClosesAMoatHoweverLong) {
   pslg.holes = {{20, 15}};
   const Made made = simplified(pslg, 1);
   EXPECT_EQ(made.changes.straits, 0u);
-  EXPECT_NEAR(area(made.domain), 800, 25);  // its own shores move, too
+  EXPECT_NEAR(area(made.domain), 800, 45);  // its own shores move by up to half of the length, too
 }
 
 TEST(Simplify, CutsAChannelThatIsHardlyNarrower) {

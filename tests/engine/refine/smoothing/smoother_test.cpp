@@ -28,7 +28,7 @@ Sound sound(MeshRequest request, std::optional<std::uint32_t> sweeps) {
 MeshRequest cylinder() {
   return {.pslg = read_poly(model("cylinder.poly")),
           .size = "(x>=0 && abs(y)<5) || (x<0 && x^2+y^2<25) ? 1.2e-2 : 1e-1",
-          .leaf_triangles = 2'000};
+          .leaf_triangles = 1'500};
 }
 MeshRequest key() {
   return {.pslg = read_poly(model("key.poly")), .size = "0.02*abs(y-46)+0.1"};
@@ -119,7 +119,7 @@ TEST(Smoothing, KeepsAllLawsOfRoundedFloorPlans) {
     MeshRequest request{.pslg = floor_plan({seed, kOffsets[seed % 3], decimals}),
                         .size = 0.1,
                         .min_angle_deg = seed % 2 == 0 ? 20.0 : 33.0,
-                        .leaf_triangles = 200};
+                        .leaf_triangles = 1'500};
     if (seed % 4 == 0) request.size = {};
     EXPECT_NE(sound(request, 4).summary.digest, sound(request, 0).summary.digest);
   }
