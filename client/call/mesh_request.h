@@ -10,13 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "client/call/edge_at.h"
+#include "client/base/files.h"
 #include "client/call/field_option.h"
-#include "client/call/marker_list.h"
-#include "client/call/marker_pairs.h"
-#include "client/call/name_option.h"
 #include "files/base/error.h"
 #include "files/formats/domain.h"
+#include "files/formats/edge_at.h"
+#include "files/formats/marker_list.h"
+#include "files/formats/marker_pairs.h"
+#include "files/formats/name_option.h"
 #include "files/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
 

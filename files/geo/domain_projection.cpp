@@ -204,6 +204,42 @@ Result<DomainProjection> DomainProjection::project(Domain& domain,
   return made;
 }
 
+Result<void> check_lonlat(const std::filesystem::path& path, const Domain& domain) {
+  if (const auto& system = domain.system; system && !system->geographic)
+    return fail(ExitCode::kUnreadableInput,
+                path.string() + ": its coordinate system, " + in_quotes(system->name) +
+                    ", is a plane: leave out --lonlat, --crs and --to-metres, or bring it into "
+                    "longitude and latitude with ogr2ogr -t_srs EPSG:4326");
+  const auto extent = lonlat_extent(domain);
+  if (extent) return {};
+  const std::string& message = extent.error().message;
+  const std::string file = path.string() + ": ";
+  return fail(extent.error().exit, (message.starts_with(file) ? "" : file) + message);
+}
+
+void warn_of_degrees(const std::filesystem::path& path, Domain& domain) {
+  if (!domain.system || !domain.system->geographic) return;
+  domain.warnings.push_back(
+      {.kind = WarningKind::kCoordinates,
+       .file = path.string(),
+       .text = "its coordinates are longitudes and latitudes (" + domain.system->name +
+               "): lengths, areas and angles are those of degrees; --lonlat has them on the "
+               "ground"});
+}
+
+Result<std::shared_ptr<const DomainProjection>> DomainProjection::project_file(
+    const std::filesystem::path& path, Domain& domain, const ProjectionOptions& options) {
+  if (!options.wanted()) {
+    warn_of_degrees(path, domain);
+    return nullptr;
+  }
+  if (auto ok = check_lonlat(path, domain); !ok) return tl::unexpected(ok.error());
+  auto projection = project(domain, options);
+  if (!projection)
+    return fail(projection.error().exit, path.string() + ": " + projection.error().message);
+  return std::make_shared<const DomainProjection>(std::move(*projection));
+}
+
 std::vector<std::string> DomainProjection::warnings() const {
   std::vector<std::string> all;
   char text[128];
