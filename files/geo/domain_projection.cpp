@@ -16,6 +16,7 @@ namespace {
 constexpr double kStraight = 1e-3;  // of the length of a piece
 constexpr std::size_t kMostPieces = 4096;
 constexpr std::size_t kMostAdded = 1'000'000;
+constexpr std::size_t kMostArcs = 10'000;  // each becomes up to 180 chords
 constexpr std::size_t kMostSamples = 1000;
 
 // On the sphere, in degrees; exact enough for points that are close.
@@ -163,6 +164,10 @@ Result<DomainProjection> DomainProjection::project(Domain& domain,
   if (!Projection::available())
     return fail(ExitCode::kUsage,
                 "this weft was built without PROJ, which projects longitude and latitude");
+  if (domain.arcs.size() > kMostArcs)
+    return fail(ExitCode::kUnreadableInput,
+                "the domain has " + with_separators(domain.arcs.size()) + " arcs, of which " +
+                    with_separators(kMostArcs) + " are projected at most");
   flatten_arcs(domain);  // what is a circle in degrees is none in the plane
   const auto extent = lonlat_extent(domain);
   if (!extent) return tl::unexpected(extent.error());

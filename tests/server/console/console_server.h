@@ -33,6 +33,7 @@ class ConsoleServer {
   }
   Server* operator->() { return server_.get(); }
   const std::string& address() const { return address_; }
+  std::string http_address() const { return server_->http_address(); }
   const Log& log() const { return log_; }
   std::shared_ptr<grpc::Channel> channel() const {
     return channel_to(server_->addresses().front(), grpc::InsecureChannelCredentials());
