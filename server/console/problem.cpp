@@ -116,6 +116,8 @@ Problem problem_of(const grpc::Status& status) {
       if (detail.Is<google::rpc::RetryInfo>()) problem.retry = true;
     }
   if (problem.reason.empty()) problem.reason = code_name(status.error_code());
+  if (status.error_code() == grpc::UNIMPLEMENTED)
+    problem.detail = "this server does not keep jobs: it has neither --data nor --store";
   problem.status = status_of(status.error_code(), problem.reason);
   return problem;
 }

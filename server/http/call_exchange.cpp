@@ -7,8 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "server/console/problem.h"
-
 namespace weft::server {
 namespace {
 
@@ -27,23 +25,27 @@ std::string json_of(const google::protobuf::Message& message) {
 
 }  // namespace
 
-CallExchange::CallExchange(ExchangeParts& parts, std::string method, std::string request,
-                           std::unique_ptr<google::protobuf::Message> response, Visit& visit)
+CallExchange::CallExchange(ExchangeParts& parts, std::vector<UnaryCall> calls, Metadata metadata,
+                           std::shared_ptr<Client> answers_to, CallWords words)
     : parts_(parts),
-      method_(std::move(method)),
-      request_(std::move(request)),
-      response_(std::move(response)),
-      metadata_(std::move(visit.metadata)),
-      answers_to_(std::move(visit.answers_to)) {}
+      calls_(std::move(calls)),
+      metadata_(std::move(metadata)),
+      words_(std::move(words)),
+      answers_to_(std::move(answers_to)) {}
 
 void CallExchange::body_ended() {
+  begin_next();
+}
+
+void CallExchange::begin_next() {
+  const UnaryCall& call = calls_[next_++];
   auto pass = parts_.context.calls.enter();
   if (!pass) return;
-  call_ = BridgeCall::start(parts_.context.stub, method_, metadata_, std::nullopt,
+  call_ = BridgeCall::start(parts_.context.stub, call.method, metadata_, std::nullopt,
                             parts_.context.io, std::move(*pass),
                             std::shared_ptr<BridgeCall::Listener>(shared_from_this(), this));
   call_->read();
-  const grpc::Slice slice(request_);
+  const grpc::Slice slice(call.request);
   call_->write({&slice, 1});
 }
 
@@ -53,15 +55,22 @@ void CallExchange::wrote(bool) {
 
 void CallExchange::received(grpc::ByteBuffer message) {
   grpc::ProtoBufferReader reader(&message);
-  response_->ParseFromZeroCopyStream(&reader);
+  calls_[next_ - 1].response->ParseFromZeroCopyStream(&reader);
   if (call_ != nullptr) call_->read();
 }
 
 void CallExchange::ended(const grpc::Status& status, const Metadata&) {
   call_.reset();
-  Answer answer{.head = status.ok()
-                            ? make_page(http::status::ok, "application/json", json_of(*response_))
-                            : problem_page(problem_of(status))};
+  if (status.ok() && next_ < calls_.size()) return begin_next();
+  Answer answer;
+  if (status.ok()) {
+    const auto& message = *calls_.back().response;
+    answer.head = make_page(http::status::ok, "application/json", json_of(message));
+    if (words_.dress) words_.dress(answer.head, message);
+  } else {
+    Problem problem = problem_of(status);
+    answer.head = problem_page(words_.explain ? words_.explain(std::move(problem)) : problem);
+  }
   answer.head.set(http::field::cache_control, "no-store");
   if (const auto client = std::exchange(answers_to_, nullptr)) client->answer(std::move(answer));
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "files/formats/domain_formats.h"
+#include "files/lint/lint_json.h"
 #include "files/message/domain_message.h"
 
 namespace weft::server {
@@ -15,23 +16,34 @@ namespace {
 // In degrees and in metres.
 constexpr std::uint64_t kBytesOfProjectedPoint = 2 * sizeof(files::Point);
 
-// The bytes of `options` with the domain, without a message of its own for it.
-std::string request_of(const files::Domain& domain, v1::GenerateMeshRequest& options) {
-  using google::protobuf::io::CodedOutputStream;
-  constexpr char kDomain = 1 << 3 | 2;  // the tag of GenerateMeshRequest.domain
-  const std::string more = options.domain().SerializeAsString();  // such as `snap`
-  options.clear_domain();
-  const std::string message = files::domain_message(domain);
-  std::uint8_t length[10];
-  const auto* const end =
-      CodedOutputStream::WriteVarint64ToArray(message.size() + more.size(), length);
-  std::string request(1, kDomain);
-  request.reserve(message.size() + more.size() + options.ByteSizeLong() + 16);
-  request.append(reinterpret_cast<const char*>(length), static_cast<std::size_t>(end - length));
-  request += message;
-  request += more;
-  options.AppendToString(&request);
-  return request;
+// A file that is open as long as this is, and what it holds.
+struct Opened {
+  files::FileDescriptor file;
+  files::DataPath path;
+  FileTexts texts;
+  files::Domain domain;
+};
+
+Outcome<Opened> open_domain(DomainFile file, const MeshWish& wish,
+                            const std::filesystem::path& folder) {
+  auto nameless = files::open_unlinked(folder);
+  if (!nameless || !files::write_all(nameless->get(), file.bytes.data(), file.bytes.size()))
+    return tl::unexpected(Problem{
+        .status = 507, .reason = "STORE_FULL", .detail = "the server has no room for the file"});
+  file.bytes = {};
+  Opened opened{.file = std::move(*nameless)};
+  opened.path = std::filesystem::path("/proc/self/fd/" + std::to_string(opened.file.get()));
+  opened.path.format = file.extension;
+  opened.texts = FileTexts(opened.path.string(), file.name);
+  auto domain = files::read_own_domain(
+      opened.path,
+      {.lonlat = wish.projection.wanted(), .even_odd = wish.fill == files::PolygonFill::kEvenOdd});
+  if (!domain) return tl::unexpected(opened.texts.problem(domain.error()));
+  if (const auto named = files::set_names(wish.names, domain->names); !named)
+    return tl::unexpected(Problem{
+        .status = 400, .reason = "BAD_OPTION", .detail = named.error().message, .field = "names"});
+  opened.domain = std::move(*domain);
+  return opened;
 }
 
 }  // namespace
@@ -62,48 +74,69 @@ Problem FileTexts::problem(const files::Error& error) const {
   return problem;
 }
 
+std::string with_part(unsigned field, const std::string& message, const std::string& rest) {
+  using google::protobuf::io::CodedOutputStream;
+  std::uint8_t length[10];
+  const auto* const end = CodedOutputStream::WriteVarint64ToArray(message.size(), length);
+  std::string whole(1, static_cast<char>(field << 3 | 2));
+  whole.reserve(message.size() + rest.size() + 16);
+  whole.append(reinterpret_cast<const char*>(length), static_cast<std::size_t>(end - length));
+  return whole.append(message).append(rest);
+}
+
 Outcome<SentDomain> read_domain_file(DomainFile file, MeshWish wish,
                                      const std::filesystem::path& folder) {
-  const auto open = files::open_unlinked(folder);
-  if (!open) return tl::unexpected(FileTexts(folder.string(), "server").problem(open.error()));
-  if (!files::write_all(open->get(), file.bytes.data(), file.bytes.size()))
-    return tl::unexpected(Problem{
-        .status = 507, .reason = "STORE_FULL", .detail = "the server has no room for the file"});
-  file.bytes = {};
-  files::DataPath path = std::filesystem::path("/proc/self/fd/" + std::to_string(open->get()));
-  path.format = file.extension;
-  const FileTexts texts(path.string(), file.name);
-  auto domain = files::read_own_domain(
-      path,
-      {.lonlat = wish.projection.wanted(), .even_odd = wish.fill == files::PolygonFill::kEvenOdd});
-  if (!domain) return tl::unexpected(texts.problem(domain.error()));
-  if (const auto named = files::set_names(wish.names, domain->names); !named)
-    return tl::unexpected(Problem{
-        .status = 400, .reason = "BAD_OPTION", .detail = named.error().message, .field = "names"});
-  files::fill_polygons(*domain, wish.fill);
-  if (auto problem = complete(domain->names.markers, wish)) return tl::unexpected(*problem);
-  auto projection = files::DomainProjection::project_file(path, *domain, wish.projection);
+  auto opened = open_domain(std::move(file), wish, folder);
+  if (!opened) return tl::unexpected(opened.error());
+  files::Domain& domain = opened->domain;
+  const FileTexts& texts = opened->texts;
+  files::fill_polygons(domain, wish.fill);
+  if (auto problem = complete(domain.names.markers, wish)) return tl::unexpected(*problem);
+  auto projection = files::DomainProjection::project_file(opened->path, domain, wish.projection);
   if (!projection) return tl::unexpected(texts.problem(projection.error()));
 
   SentDomain sent{.projection = std::move(*projection), .writing = std::move(wish.writing)};
-  for (const std::string& warning : files::sentences(domain->warnings))
+  for (const std::string& warning : files::sentences(domain.warnings))
     sent.warnings.push_back(texts(warning));
   if (sent.projection != nullptr)
     for (const std::string& warning : sent.projection->warnings())
       sent.warnings.push_back(texts(warning));
-  sent.request = request_of(*domain, wish.request);
-  sent.bytes = (sent.projection == nullptr ? 0 : domain->points.size() * kBytesOfProjectedPoint) +
-               domain->point_markers.size() * sizeof(std::int32_t);
+  const std::string part =
+      files::domain_message(domain) + wish.request.domain().SerializeAsString();  // its `snap`
+  wish.request.clear_domain();
+  sent.request = with_part(v1::GenerateMeshRequest::kDomainFieldNumber, part,
+                           wish.request.SerializeAsString());
+  sent.bytes = (sent.projection == nullptr ? 0 : domain.points.size() * kBytesOfProjectedPoint) +
+               domain.point_markers.size() * sizeof(std::int32_t);
   for (const files::Provenance* const places :
-       {&domain->point_places, &domain->segment_places, &domain->hole_places,
-        &domain->region_places, &domain->area_places})
+       {&domain.point_places, &domain.segment_places, &domain.hole_places, &domain.region_places,
+        &domain.area_places})
     sent.bytes += places->bytes();
-  sent.domain = std::move(*domain);
+  sent.domain = std::move(domain);
   sent.domain.points = {};
   sent.domain.segments = {};
   sent.domain.arcs = {};
   sent.texts = texts;
   return sent;
+}
+
+Outcome<std::string> lint_domain_file(DomainFile file, MeshWish wish,
+                                      const std::filesystem::path& folder) {
+  auto opened = open_domain(std::move(file), wish, folder);
+  if (!opened) return tl::unexpected(opened.error());
+  files::Domain& domain = opened->domain;
+  if (!wish.projection.wanted())
+    files::warn_of_degrees(opened->path, domain);
+  else if (const auto ok = files::check_lonlat(opened->path, domain); !ok)
+    return tl::unexpected(opened->texts.problem(ok.error()));
+  files::fill_polygons(domain, wish.fill);
+  const auto lint = files::lint_domain(
+      domain, opened->path,
+      {.snap = wish.request.domain().snap(), .lonlat = wish.projection.wanted()});
+  if (!lint) return tl::unexpected(opened->texts.problem(lint.error()));
+  using Json = nlohmann::ordered_json;
+  return opened->texts(files::lint_json(*lint).dump(-1, ' ', true, Json::error_handler_t::replace) +
+                       "\n");
 }
 
 // Measured, of files that hold nothing but what takes most of their format. Rings with arcs are
@@ -118,8 +151,13 @@ std::uint64_t bytes_to_read(const DomainFile& file) {
   return 48 * size + chords(128);
 }
 
+// Arcs are judged by chords, all at once.
+std::uint64_t bytes_to_lint(const DomainFile& file) {
+  const bool has_arcs = file.extension != ".geojson" && file.extension != ".json";
+  return bytes_to_read(file) + (has_arcs ? 3000 : 100) * file.bytes.size();
+}
+
 Problem located(Problem problem, const SentDomain& sent, const Query& query) {
-  problem.detail = sent.texts(problem.detail);
   if (problem.field.empty()) return problem;
   problem.place = sent.texts(files::locate_field(problem.field, sent.domain));
   if (std::string parameter = parameter_of(problem.field, query); !parameter.empty())

@@ -52,8 +52,16 @@ struct SentDomain {
 Outcome<SentDomain> read_domain_file(DomainFile file, MeshWish wish,
                                      const std::filesystem::path& folder);
 
-// The bytes that reading a file of so many may take at most.
+// The faults of the domain in the file, as JSON. Problems: as above.
+Outcome<std::string> lint_domain_file(DomainFile file, MeshWish wish,
+                                      const std::filesystem::path& folder);
+
+// The bytes that reading the file, and finding its faults, may take at most.
 std::uint64_t bytes_to_read(const DomainFile& file);
+std::uint64_t bytes_to_lint(const DomainFile& file);
+
+// A message of two parts: `field` is the number of one that is a message, `rest` has the others.
+std::string with_part(unsigned field, const std::string& message, const std::string& rest);
 
 // The problem that the server has with the domain, or with another part of the request, with the
 // place in the file or the parameter that is at fault.

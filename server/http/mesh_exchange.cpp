@@ -15,9 +15,6 @@ namespace {
 
 namespace http = boost::beast::http;
 
-constexpr std::string_view kNamed = "/v1/mesh/";  // then the name of the file
-constexpr const char* kGenerateMesh = "/weft.v1.MeshService/GenerateMesh";
-
 // Files that are read with so much memory are read in some milliseconds, without asking for it.
 constexpr std::uint64_t kBytesOfShortFile = std::uint64_t{4} << 20;
 // Meshes that are written in some milliseconds.
@@ -48,6 +45,25 @@ std::string hexadecimal(const std::string& bytes) {
   return text;
 }
 
+void warn(std::vector<std::string> warnings, Response& head) {
+  if (warnings.size() > kMostWarnings) {
+    const std::size_t more = warnings.size() - (kMostWarnings - 1);
+    warnings.resize(kMostWarnings - 1);
+    warnings.push_back(fmt::format("{} more warnings", more));
+  }
+  for (const std::string& warning : warnings) head.insert("Weft-Warning", one_line(warning));
+}
+
+// The names that a stored request has.
+files::Names names_of(const v1::Domain& domain) {
+  files::NameReader names("the job");
+  for (const v1::Name& name : domain.marker_names())
+    names.add(files::NameKind::kMarker, name.id(), name.name());
+  for (const v1::Name& name : domain.region_names())
+    names.add(files::NameKind::kRegion, name.id(), name.name());
+  return names.take();
+}
+
 grpc::ByteBuffer buffer_of(std::string bytes) {
   auto* const owned = new std::string(std::move(bytes));
   const grpc::Slice slice(
@@ -58,9 +74,10 @@ grpc::ByteBuffer buffer_of(std::string bytes) {
 
 }  // namespace
 
-MeshExchange::MeshExchange(ExchangeParts& parts, MeshWish wish, Query query, Visit& visit,
-                           std::unique_ptr<Meshes::Place> place)
+MeshExchange::MeshExchange(ExchangeParts& parts, Purpose purpose, MeshWish wish, Query query,
+                           Visit& visit, std::unique_ptr<Meshes::Place> place)
     : parts_(parts),
+      purpose_(purpose),
       wish_(std::move(wish)),
       query_(std::move(query)),
       client_(visit.client),
@@ -70,38 +87,45 @@ MeshExchange::MeshExchange(ExchangeParts& parts, MeshWish wish, Query query, Vis
       content_type_(view(visit.headers[http::field::content_type])),
       held_(parts.context.budget) {}
 
-Outcome<std::shared_ptr<MeshExchange>> MeshExchange::open(ExchangeParts& parts,
-                                                          const Target& target, Visit& visit) {
-  auto wish = read_wish(target.query);
+Outcome<std::shared_ptr<MeshExchange>> MeshExchange::open(ExchangeParts& parts, Purpose purpose,
+                                                          ParameterUses uses, const Query& query,
+                                                          const std::string& word, Visit& visit) {
+  const auto refuse = [](unsigned status, const char* reason, std::string detail,
+                         std::string field = "") {
+    return tl::unexpected(Problem{.status = status,
+                                  .reason = reason,
+                                  .detail = std::move(detail),
+                                  .field = std::move(field),
+                                  .retry = status == 429});
+  };
+  auto wish = read_wish(query, uses);
   if (!wish) return tl::unexpected(wish.error());
-  const std::string_view accept = view(visit.headers[http::field::accept]);
-  if (wish->to.empty()) wish->to = format_wanted(accept);
-  if (wish->to.empty())
-    return tl::unexpected(
-        Problem{.status = 406,
-                .reason = "UNKNOWN_FORMAT",
-                .detail = "nothing of Accept is a format of meshes; the parameter `format` names "
-                          "one: " +
-                          fmt::format("{}", fmt::join(written_formats(), ", "))});
-  const files::DataPath mesh = std::filesystem::path("mesh" + wish->to);
-  if (const auto writable = files::check_writable(mesh, wish->writing); !writable)
-    return tl::unexpected(Problem{.status = 400,
-                                  .reason = "BAD_OPTION",
-                                  .detail = writable.error().message,
-                                  .field = "order"});
+  if (purpose == Purpose::kMesh || purpose == Purpose::kStored) {
+    const std::string_view accept = view(visit.headers[http::field::accept]);
+    if (wish->to.empty()) wish->to = format_wanted(accept);
+    if (wish->to.empty())
+      return refuse(406, "UNKNOWN_FORMAT",
+                    "nothing of Accept is a format of meshes; the parameter `format` names one: " +
+                        fmt::format("{}", fmt::join(written_formats(), ", ")));
+    const files::DataPath mesh = std::filesystem::path("mesh" + wish->to);
+    if (const auto writable = files::check_writable(mesh, wish->writing); !writable)
+      return refuse(400, "BAD_OPTION", writable.error().message, "order");
+  }
+  if (purpose == Purpose::kJob && wish->projection.wanted() && !wish->projection.to_metres)
+    return refuse(400, "BAD_OPTION",
+                  "a job is kept without its projection, so its mesh is in metres: give to_metres, "
+                  "too",
+                  "lonlat");
+  const std::string_view told = view(visit.headers[http::field::content_length]);
+  std::uint64_t length = 0;
+  std::from_chars(told.data(), told.data() + told.size(), length);
   auto place = parts.meshes.enter(visit.client);
   if (place == nullptr)
-    return tl::unexpected(Problem{.status = 429,
-                                  .reason = "QUEUE_FULL",
-                                  .detail = "too many meshes are on their way over HTTP",
-                                  .retry = true});
+    return refuse(429, "QUEUE_FULL", "too many meshes are on their way over HTTP");
   std::shared_ptr<MeshExchange> exchange(
-      new MeshExchange(parts, std::move(*wish), target.query, visit, std::move(place)));
-  if (target.path.starts_with(kNamed))
-    exchange->file_.name = harmless_name(target.path.substr(kNamed.size()));
-  std::uint64_t length = 0;
-  const std::string_view told = view(visit.headers[http::field::content_length]);
-  std::from_chars(told.data(), told.data() + told.size(), length);
+      new MeshExchange(parts, purpose, std::move(*wish), query, visit, std::move(place)));
+  (purpose == Purpose::kStored ? exchange->job_ : exchange->file_.name) =
+      purpose == Purpose::kStored ? word : harmless_name(word);
   if (length > parts.context.most_request_bytes) return tl::unexpected(exchange->too_large());
   return exchange;
 }
@@ -130,9 +154,14 @@ bool MeshExchange::is_large() const {
 // ---- the file ----
 
 bool MeshExchange::take(std::string_view bytes) {
+  const std::size_t most = parts_.context.most_request_bytes;
   const std::size_t size = file_.bytes.size() + bytes.size();
-  if (size > parts_.context.most_request_bytes) return refuse(too_large()), false;
-  if (!held_.hold(size)) return refuse(out_of_memory()), false;
+  if (size > most) return refuse(too_large()), false;
+  if (size > file_.bytes.capacity()) {
+    const std::size_t room = std::max(size, std::min(2 * file_.bytes.capacity(), most));
+    if (!held_.hold(room)) return refuse(out_of_memory()), false;
+    file_.bytes.reserve(room);
+  }
   file_.bytes += bytes;
   return true;
 }
@@ -144,6 +173,7 @@ void MeshExchange::body_late() {
 }
 
 void MeshExchange::body_ended() {
+  if (purpose_ == Purpose::kStored) return begin_fetch();
   file_.extension =
       wish_.from.empty() ? format_read(file_.name, content_type_, file_.bytes) : wish_.from;
   if (file_.extension.empty())
@@ -156,49 +186,108 @@ void MeshExchange::body_ended() {
     file_.name = "domain" + file_.extension;
   else
     stem_ = std::filesystem::path(file_.name).stem().string();
-  std::shared_ptr<MemoryBudget::Reservation> reading;
-  if (const std::uint64_t bytes = bytes_to_read(file_); bytes > kBytesOfShortFile) {
+  const bool linted = purpose_ == Purpose::kLint;
+  const std::uint64_t needed = linted ? bytes_to_lint(file_) : bytes_to_read(file_);
+  std::shared_ptr<MemoryBudget::Reservation> memory;
+  if (needed > kBytesOfShortFile) {
     auto reserved = parts_.memory.reserve(
-        {.estimate = bytes, .client = client_, .purpose = MemoryBudget::Purpose::kInput});
+        {.estimate = needed, .client = client_, .purpose = MemoryBudget::Purpose::kInput});
     if (!reserved) return refuse(out_of_memory());
-    reading = std::make_shared<MemoryBudget::Reservation>(std::move(*reserved));
+    memory = std::make_shared<MemoryBudget::Reservation>(std::move(*reserved));
   }
+  if (linted) return lint(std::move(memory));
   struct Begun {
     SentDomain sent;
     std::shared_ptr<files::MeshSpool> spool;
   };
-  const bool is_long = bytes_to_read(file_) > kBytesOfShortFile;
   work(
-      is_long,
+      memory != nullptr,
       [file = std::move(file_), wish = wish_, folder = parts_.folder, stop = stop_.get_token(),
-       reading = std::move(reading)]() mutable -> Outcome<Begun> {
+       is_mesh = purpose_ == Purpose::kMesh, memory]() mutable -> Outcome<Begun> {
         auto sent = read_domain_file(std::move(file), std::move(wish), folder);
         if (!sent) return tl::unexpected(sent.error());
+        if (!is_mesh) return Begun{std::move(*sent), nullptr};
         auto spool = make_spool(folder, stop);
         if (!spool) return tl::unexpected(spool.error());
         return Begun{std::move(*sent), std::move(*spool)};
       },
       [](MeshExchange& self, Begun begun) {
-        self.begin_call(std::move(begun.sent), std::move(begun.spool));
+        self.begin(std::move(begun.sent), std::move(begun.spool));
+      });
+}
+
+void MeshExchange::lint(std::shared_ptr<void> memory) {
+  const bool is_long = memory != nullptr;
+  work(
+      is_long,
+      [file = std::move(file_), wish = wish_, folder = parts_.folder,
+       memory = std::move(memory)]() mutable {
+        return lint_domain_file(std::move(file), std::move(wish), folder);
+      },
+      [](MeshExchange& self, const std::string& json) {
+        Answer answer{.head = make_page(http::status::ok, "application/json", json)};
+        answer.head.set(http::field::cache_control, "no-store");
+        if (const auto client = std::exchange(self.answers_to_, nullptr))
+          client->answer(std::move(answer));
       });
 }
 
 // ---- the call ----
 
-void MeshExchange::begin_call(SentDomain sent, std::shared_ptr<files::MeshSpool> spool) {
+void MeshExchange::begin(SentDomain sent, std::shared_ptr<files::MeshSpool> spool) {
   if (sent.request.size() > parts_.context.most_request_bytes) return refuse(too_large());
   if (!held_.hold(sent.request.size() + sent.bytes)) return refuse(out_of_memory());
   std::string request = std::move(sent.request);
   sent_ = std::make_shared<const SentDomain>(std::move(sent));
   spool_ = std::move(spool);
+  if (purpose_ == Purpose::kJob) return begin_job(std::move(request));
+  begin_stream("/weft.v1.MeshService/GenerateMesh", std::move(request));
+}
+
+void MeshExchange::begin_job(std::string mesh) {
+  v1::SubmitJobRequest job;
+  job.set_request_id(wish_.request_id);
+  job.set_no_cache(wish_.request.no_cache());
+  std::vector<UnaryCall> calls;
+  calls.push_back({"/weft.v1.JobService/SubmitJob", with_part(1, mesh, job.SerializeAsString()),
+                   std::make_unique<v1::SubmitJobResponse>()});
+  submission_ = std::make_shared<CallExchange>(
+      parts_, std::move(calls), metadata_, std::exchange(answers_to_, nullptr),
+      CallWords{
+          .dress =
+              [sent = sent_](Response& head, const auto& message) {
+                head.result(http::status::created);
+                const auto& made = dynamic_cast<const v1::SubmitJobResponse&>(message);
+                head.set(http::field::location, "/v1/jobs/" + made.job().id());
+                warn(sent->warnings, head);
+              },
+          .explain = [sent = sent_, query = query_](
+                         Problem problem) { return located(std::move(problem), *sent, query); }});
+  submission_->body_ended();
+}
+
+void MeshExchange::begin_fetch() {
+  work(
+      false,
+      [folder = parts_.folder, stop = stop_.get_token()] { return make_spool(folder, stop); },
+      [](MeshExchange& self, std::shared_ptr<files::MeshSpool> spool) {
+        v1::FetchMeshRequest request;
+        request.set_id(self.job_);
+        self.spool_ = std::move(spool);
+        self.sent_ = std::make_shared<const SentDomain>();
+        self.begin_stream("/weft.v1.JobService/FetchMesh", request.SerializeAsString());
+      });
+}
+
+void MeshExchange::begin_stream(const char* method, std::string request) {
   auto pass = parts_.context.calls.enter();
   if (!pass) return refuse({.status = 503, .reason = "STOPPING", .retry = true});
   std::optional<std::chrono::system_clock::time_point> deadline;
   if (wish_.timeout)
     deadline = std::chrono::system_clock::now() +
                std::chrono::milliseconds(static_cast<std::int64_t>(*wish_.timeout * 1000));
-  call_ = BridgeCall::start(parts_.context.stub, kGenerateMesh, metadata_, deadline,
-                            parts_.context.io, std::move(*pass),
+  call_ = BridgeCall::start(parts_.context.stub, method, metadata_, deadline, parts_.context.io,
+                            std::move(*pass),
                             std::shared_ptr<BridgeCall::Listener>(shared_from_this(), this));
   call_->read();
   call_->write(buffer_of(std::move(request)));
@@ -224,6 +313,17 @@ void MeshExchange::ended(const grpc::Status& status, const Metadata&) {
   if (!status.ok()) return refuse(located(problem_of(status), *sent_, query_));
   if (!summary_)
     return refuse({.status = 500, .reason = "INTERNAL", .detail = "the mesh has no summary"});
+  if (purpose_ == Purpose::kStored) {
+    SentDomain kept{.writing = wish_.writing};
+    kept.domain.names = names_of(summary_->request().domain());
+    summary_->clear_request();
+    if (const auto found = find_open_boundaries(kept.writing, kept.domain.names.markers); !found)
+      return refuse({.status = 400,
+                     .reason = "BAD_OPTION",
+                     .detail = found.error().message,
+                     .field = "open_boundary"});
+    sent_ = std::make_shared<const SentDomain>(std::move(kept));
+  }
   write_file();
 }
 
@@ -248,12 +348,7 @@ void MeshExchange::answer(MeshFile file) {
   head.set("Weft-Sha256", hexadecimal(summary_->sha256()));
   std::vector<std::string> warnings = sent_->warnings;
   warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
-  if (warnings.size() > kMostWarnings) {
-    const std::size_t more = warnings.size() - (kMostWarnings - 1);
-    warnings.resize(kMostWarnings - 1);
-    warnings.push_back(fmt::format("{} more warnings", more));
-  }
-  for (const std::string& warning : warnings) head.insert("Weft-Warning", one_line(warning));
+  warn(std::move(warnings), head);
   if (const auto client = std::exchange(answers_to_, nullptr)) client->answer(std::move(answer));
 }
 
@@ -268,6 +363,7 @@ void MeshExchange::refuse(const Problem& problem) {
 
 void MeshExchange::drop() {
   answers_to_ = nullptr;
+  if (submission_ != nullptr) submission_->drop();
   stop_.request_stop();
   if (const auto call = std::exchange(call_, nullptr)) call->drop();
 }

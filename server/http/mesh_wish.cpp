@@ -21,6 +21,7 @@ namespace {
 using files::in_quotes;
 using files::value_of;
 using Type = Parameter::Type;
+using Use = ParameterUse;
 
 std::string read_switch(const std::string& text, bool& value) {
   constexpr std::string_view kOn[] = {"", "true", "1", "on", "yes"};
@@ -79,6 +80,7 @@ std::vector<Parameter> own_parameters() {
        "Wanted length of edges: a number, or an expression in x and y; excludes size",
        {},
        false,
+       Use::kDomain,
        "size",
        [](const std::string& text, MeshWish& wish) {
          return read_size(text, v1::MEASURE_EDGE, wish);
@@ -90,6 +92,7 @@ std::vector<Parameter> own_parameters() {
        "edge",
        {},
        false,
+       Use::kDomain,
        "size",
        [](const std::string& text, MeshWish& wish) {
          return read_size(text, v1::MEASURE_AREA, wish);
@@ -99,6 +102,7 @@ std::vector<Parameter> own_parameters() {
        "Maximum length of edges on segments with a marker, a number or a name: marker=2:500",
        {},
        true,
+       Use::kDomain,
        "size.at",
        [](const std::string& text, MeshWish& wish) {
          const auto one = files::EdgeAt::parse(text);
@@ -110,6 +114,7 @@ std::vector<Parameter> own_parameters() {
        "Segments that stay as they are, by their markers, numbers or names: 2,inlet, or all",
        {},
        false,
+       Use::kDomain,
        "quality.keep",
        [](const std::string& text, MeshWish& wish) {
          wish.keep = text == "all" ? files::MarkerList{} : files::MarkerList::parse(text);
@@ -120,6 +125,7 @@ std::vector<Parameter> own_parameters() {
        "Sides that repeat each other, pairs of their markers, numbers or names: left:right,4:2",
        {},
        false,
+       Use::kDomain,
        "quality.periodic",
        [](const std::string& text, MeshWish& wish) {
          auto pairs = files::parse_marker_pairs(text);
@@ -132,6 +138,7 @@ std::vector<Parameter> own_parameters() {
        "Name of a marker or a region: marker=2:inlet or region=1:fluid",
        {},
        true,
+       Use::kDomain,
        "",
        [](const std::string& text, MeshWish& wish) {
          const auto one = files::NameOption::parse(text);
@@ -144,6 +151,7 @@ std::vector<Parameter> own_parameters() {
        "them covers, or the first less the others. Default: union",
        {"union", "even-odd", "difference"},
        false,
+       Use::kDomain,
        "domain.fill",
        one_of(&MeshWish::fill, {{"union", PolygonFill::kUnion},
                                 {"even-odd", PolygonFill::kEvenOdd},
@@ -154,6 +162,7 @@ std::vector<Parameter> own_parameters() {
        "metres",
        {},
        false,
+       Use::kDomain,
        "",
        [](const std::string& text, MeshWish& wish) {
          return read_switch(text, wish.projection.lonlat);
@@ -164,6 +173,7 @@ std::vector<Parameter> own_parameters() {
        "Default: the conformal one whose scale varies least over the domain",
        {},
        false,
+       Use::kDomain,
        "",
        read_crs},
       {"to_metres",
@@ -171,6 +181,7 @@ std::vector<Parameter> own_parameters() {
        "Write the mesh in metres of the projection; implies lonlat",
        {},
        false,
+       Use::kDomain,
        "",
        [](const std::string& text, MeshWish& wish) {
          return read_switch(text, wish.projection.to_metres);
@@ -178,13 +189,13 @@ std::vector<Parameter> own_parameters() {
       {"from", Type::kText,
        "Format of the domain's file. Default: that of the name in the path, of Content-Type, or "
        "what the file looks like",
-       read_formats(), false, "",
+       read_formats(), false, Use::kDomain, "",
        [](const std::string& text, MeshWish& wish) {
          wish.from = "." + text;
          return "";
        }},
       {"format", Type::kText, "Format of the mesh's file. Default: what Accept asks for, or vtu",
-       written_formats(), false, "",
+       written_formats(), false, Use::kFile, "",
        [](const std::string& text, MeshWish& wish) {
          wish.to = "." + text;
          return "";
@@ -194,6 +205,7 @@ std::vector<Parameter> own_parameters() {
        "2: triangles of six nodes, for formats that have them. Default: 1",
        {"1", "2"},
        false,
+       Use::kFile,
        "",
        [](const std::string& text, MeshWish& wish) {
          wish.writing.order = text == "2" ? 2 : 1;
@@ -204,6 +216,7 @@ std::vector<Parameter> own_parameters() {
        "Version of .msh files. Default: 4.1",
        {"2.2", "4.1"},
        false,
+       Use::kFile,
        "",
        [](const std::string& text, MeshWish& wish) {
          wish.writing.msh_version = text == "2.2" ? MshVersion::k22 : MshVersion::k41;
@@ -214,6 +227,7 @@ std::vector<Parameter> own_parameters() {
        "Markers of open boundaries in files of ADCIRC and SCHISM, numbers or names: 2,inlet",
        {},
        false,
+       Use::kFile,
        "",
        [](const std::string& text, MeshWish& wish) {
          const auto list = files::MarkerList::parse(text);
@@ -227,12 +241,25 @@ std::vector<Parameter> own_parameters() {
        "Seconds after which the request is given up",
        {},
        false,
+       Use::kWaiting,
        "",
        [](const std::string& text, MeshWish& wish) {
          constexpr double kMost = 1e9;
          wish.timeout = value_of<double>(text);
          const bool good = wish.timeout && *wish.timeout > 0 && *wish.timeout <= kMost;
          return good ? "" : in_quotes(text) + " is not in the range above 0 to 1e9";
+       }},
+      {"request_id",
+       Type::kText,
+       "A name for the job, unique among those of the client: the same request with it again finds "
+       "the same job",
+       {},
+       false,
+       Use::kJob,
+       "",
+       [](const std::string& text, MeshWish& wish) {
+         wish.request_id = text;
+         return "";
        }},
   };
   return all;
@@ -261,7 +288,14 @@ Parameter named(const wire::NamedOption& option) {
     const std::string fault = wire::set(option, value, wish.request);
     return fault.empty() ? "" : in_quotes(given) + " is not " + fault;
   };
-  return {with_underscores(option.name()), type_of(option), about, {}, false, option.path, read};
+  return {with_underscores(option.name()),
+          type_of(option),
+          about,
+          {},
+          false,
+          Use::kDomain,
+          option.path,
+          read};
 }
 
 Problem bad_parameter(const std::string& name, const std::string& why) {
@@ -293,12 +327,21 @@ const std::vector<Parameter>& mesh_parameters() {
   return all;
 }
 
-tl::expected<MeshWish, Problem> read_wish(const Query& query) {
+std::vector<const Parameter*> parameters_for(ParameterUses uses) {
+  std::vector<const Parameter*> some;
+  for (const Parameter& parameter : mesh_parameters())
+    if ((static_cast<ParameterUses>(parameter.use) & uses) != 0) some.push_back(&parameter);
+  return some;
+}
+
+tl::expected<MeshWish, Problem> read_wish(const Query& query, ParameterUses uses) {
   MeshWish wish;
   std::set<const Parameter*> given;
   for (const auto& [name, text] : query) {
     const Parameter* const parameter = find_parameter(name);
     if (parameter == nullptr) return tl::unexpected(no_such_parameter(name));
+    if ((static_cast<ParameterUses>(parameter->use) & uses) == 0)
+      return tl::unexpected(bad_parameter(name, "is of no use here"));
     if (!given.insert(parameter).second && !parameter->repeats)
       return tl::unexpected(bad_parameter(name, "is given twice"));
     const auto& choices = parameter->choices;

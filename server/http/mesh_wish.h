@@ -30,6 +30,7 @@ struct MeshWish {
   std::string from{};                 // ".geojson"; empty: what the file looks like
   std::string to{};                   // ".vtu"; empty: what Accept wants
   std::optional<double> timeout{};    // seconds
+  std::string request_id{};           // of a job
   files::PolygonFill fill = files::PolygonFill::kUnion;
   files::ProjectionOptions projection{};
   files::MeshWriteOptions writing{};
@@ -39,6 +40,15 @@ struct MeshWish {
   std::vector<files::NameOption> names{};
 };
 
+// What a parameter is for, in bits of ParameterUses.
+enum class ParameterUse : unsigned {
+  kDomain = 1,   // and what its mesh must satisfy
+  kFile = 2,     // of the mesh
+  kWaiting = 4,  // for it
+  kJob = 8,      // that is kept
+};
+using ParameterUses = unsigned;
+
 struct Parameter {
   enum class Type { kSwitch, kNumber, kCount, kText };
 
@@ -47,18 +57,21 @@ struct Parameter {
   std::string about;  // a sentence without a full stop
   std::vector<std::string> choices{};
   bool repeats = false;
+  ParameterUse use = ParameterUse::kDomain;
   std::string field{};  // of the request, that it sets; empty: none that an error names
   // Sets it, and returns what is wrong with the text, or "".
   std::function<std::string(const std::string& text, MeshWish& wish)> read{};
 };
 
 const std::vector<Parameter>& mesh_parameters();
+// Those of some uses.
+std::vector<const Parameter*> parameters_for(ParameterUses uses);
 
 using Query = std::vector<std::pair<std::string, std::string>>;
 
-// Error: 400 for a parameter that there is not, is given twice, or has another form; 406 and 415
-// for a format that is not written, or not read, here.
-tl::expected<MeshWish, Problem> read_wish(const Query& query);
+// Error: 400 for a parameter that there is not for these uses, is given twice, or has another form;
+// 406 and 415 for a format that is not written, or not read, here.
+tl::expected<MeshWish, Problem> read_wish(const Query& query, ParameterUses uses);
 
 // Finds the markers by the names that the domain has; returns what is wrong.
 std::optional<Problem> complete(const files::NameTable& markers, MeshWish& wish);

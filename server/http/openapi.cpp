@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "server/http/mesh_wish.h"
 #include "server/version.h"
 
 namespace weft::server {
@@ -53,17 +52,16 @@ Json file_json() {
 
 Json operation(const RouteText& route) {
   Json made{{"summary", route.about}, {"parameters", path_parameters(route.path)}};
-  const bool mesh = route.answer == RouteText::Answer::kMesh;
-  if (mesh) {
-    for (const Parameter& parameter : mesh_parameters())
-      made["parameters"].push_back(parameter_json(parameter));
+  for (const Parameter* const parameter : parameters_for(route.uses))
+    made["parameters"].push_back(parameter_json(*parameter));
+  if ((route.uses & static_cast<ParameterUses>(ParameterUse::kDomain)) != 0)
     made["requestBody"] = {{"required", true}, {"content", file_json()}};
-  }
-  const Json ok = mesh ? file_json() : Json{{"application/json", Json::object()}};
+  const Json ok = route.is_mesh ? file_json() : Json{{"application/json", Json::object()}};
   const Json problem{
       {"application/problem+json", {{"schema", {{"$ref", "#/components/schemas/Problem"}}}}}};
-  made["responses"] = {{"200", {{"description", mesh ? "The mesh" : "JSON"}, {"content", ok}}},
-                       {"default", {{"description", "A problem"}, {"content", problem}}}};
+  made["responses"] = {
+      {"2XX", {{"description", route.is_mesh ? "The mesh" : "JSON"}, {"content", ok}}},
+      {"default", {{"description", "A problem"}, {"content", problem}}}};
   return made;
 }
 

@@ -37,7 +37,7 @@ void judge(const std::uint8_t* data, std::size_t size) {
   must(format.empty() || std::ranges::find(read, format.substr(1)) != read.end(), "format", format);
   (void)format_wanted(text);
   if (!target) return;
-  auto wish = read_wish(target->query);
+  auto wish = read_wish(target->query, ~ParameterUses{});
   if (!wish) {
     const Problem& problem = wish.error();
     must(!problem.detail.empty() && !problem.field.empty() &&

@@ -25,8 +25,9 @@ inline EngineFn empty_mesh() {
 class ConsoleServer {
  public:
   explicit ConsoleServer(EngineFn engine = empty_mesh(),
-                         const ServerOptions& options = with_console()) {
-    auto started = Server::start(options, std::move(engine), log_.logger());
+                         const ServerOptions& options = with_console(),
+                         std::unique_ptr<JobStore> store = nullptr) {
+    auto started = Server::start(options, std::move(engine), log_.logger(), std::move(store));
     if (!started) throw std::runtime_error(started.error());
     server_ = std::move(*started);
     address_ = server_->console_address();

@@ -11,13 +11,13 @@ namespace weft::server {
 namespace {
 
 MeshWish wish_of(const Query& query) {
-  auto wish = read_wish(query);
+  auto wish = read_wish(query, ~ParameterUses{});
   EXPECT_TRUE(wish) << wish.error().detail;
   return wish.value();
 }
 
 Problem problem_with(const Query& query) {
-  const auto wish = read_wish(query);
+  const auto wish = read_wish(query, ~ParameterUses{});
   EXPECT_FALSE(wish);
   return wish ? Problem{} : wish.error();
 }

@@ -6,10 +6,13 @@
 #include <atomic>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 
 #include "files/formats/mesh_formats.h"
+#include "server/http/exchange_parts.h"
 #include "server/http/mesh_wish.h"
+#include "server/store/sqlite/sqlite_store.h"
 #include "tests/files/support/temp_folder.h"
 #include "tests/server/console/console_server.h"
 #include "tests/server/raw_call.h"
@@ -257,6 +260,116 @@ TEST(HttpMesh, OutlivesTheStartOfADrain) {
   drain.join();
 }
 
+TEST(HttpMesh, IsReadToItsEndWhileTheServerDrains) {
+  ConsoleServer server(
+      [](const auto&, ChunkSink& sink, auto&) { return send_chunks(sink, 40, kMaxChunkBytes); },
+      with_http());
+  WebConnection client(server.http_address(), nullptr, 64 << 10);
+  client.send(request("PUT", "/v1/mesh", {}, kSquare));
+  const WebResponse head = client.read_head();
+  ASSERT_EQ(head.status, 200);
+  std::thread drain([&] { server->drain(kPatience); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));  // more than others are given
+  const std::string rest = client.read_body(std::stoul(head.header("content-length")));
+  EXPECT_GT(rest.size(), 40u << 19);
+  drain.join();
+}
+
+TEST(HttpMeshes, AreSharedByClients) {
+  Workers workers(2);
+  const auto meshes = std::make_shared<Meshes>(4, 0.75, workers);
+  std::vector<std::unique_ptr<Meshes::Place>> places;
+  for (int i = 0; i < 3; ++i) places.push_back(meshes->enter("ann"));
+  EXPECT_EQ(meshes->enter("ann"), nullptr);
+  places.push_back(meshes->enter("bob"));
+  ASSERT_NE(places.back(), nullptr);
+  EXPECT_EQ(meshes->enter("cid"), nullptr);
+  places.erase(places.begin());
+  EXPECT_NE(meshes->enter("ann"), nullptr);
+  // One of two threads is left to others, whatever ann's work is.
+  EXPECT_EQ(places[0]->for_work(true), places[0]->for_work(true));
+  EXPECT_NE(places[0]->for_work(true), places.back()->for_work(true));
+  workers.finish();
+  meshes->close();
+}
+
+TEST(HttpMeshes, HoldTheirBytes) {
+  ByteBudget budget(10);
+  {
+    HeldBytes held(budget);
+    EXPECT_TRUE(held.hold(8));
+    EXPECT_FALSE(held.hold(11));
+    EXPECT_TRUE(held.hold(4));
+    EXPECT_TRUE(budget.take(6));
+    EXPECT_FALSE(budget.take(1));
+  }
+  EXPECT_TRUE(budget.take(4));
+}
+
+class HttpJobs : public ::testing::Test {
+ protected:
+  HttpJobs()
+      : server_(stream, with_http(), SqliteStore::open({.folder = folder_.path()}).value()) {}
+
+  const files::TempFolder folder_;
+  ConsoleServer server_;
+};
+
+TEST_F(HttpJobs, AreMadeSeenReadAndDeleted) {
+  const WebResponse made =
+      send(server_, "POST", "/v1/jobs?edge=0.1&request_id=mine&from=poly&names=marker=2:inlet",
+           "4 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n4 1\n1 1 2 2\n2 2 3 3\n3 3 4 3\n4 4 1 3\n0\n");
+  ASSERT_EQ(made.status, 201) << made.body;
+  const std::string path = made.header("location");
+  EXPECT_EQ(path, "/v1/jobs/" + Json::parse(made.body)["job"]["id"].get<std::string>());
+  EXPECT_TRUE(eventually([&] {
+    return Json::parse(send(server_, "GET", path).body)["job"]["state"] == "JOB_STATE_SUCCEEDED";
+  }));
+  EXPECT_EQ(Json::parse(send(server_, "GET", "/v1/jobs").body)["jobs"][0]["request_id"], "mine");
+  const WebResponse fetched = send(server_, "GET", path + "/mesh?format=msh");
+  ASSERT_EQ(fetched.status, 200) << fetched.body;
+  const files::Mesh mesh = mesh_in(fetched, ".msh");
+  EXPECT_EQ(std::to_string(mesh.triangles.size() / 3), fetched.header("weft-triangles"));
+  EXPECT_EQ(mesh.names.markers, (files::NameTable{{2, "inlet"}}));
+  problem_in(send(server_, "GET", path + "/mesh?format=14&open_boundary=outlet"), 400,
+             "BAD_OPTION");
+  EXPECT_EQ(send(server_, "GET", path + "/mesh?format=14&open_boundary=inlet").status, 200);
+  EXPECT_EQ(send(server_, "DELETE", path).status, 200);
+  problem_in(send(server_, "GET", path), 404, "NO_SUCH_JOB");
+  problem_in(send(server_, "GET", path + "/mesh"), 404, "NO_SUCH_JOB");
+}
+
+TEST_F(HttpJobs, SayWhatIsWrong) {
+  problem_in(send(server_, "GET", "/v1/jobs/1"), 400, "BAD_OPTION");
+  const Json option =
+      problem_in(send(server_, "POST", "/v1/jobs?edge=-1", kSquare), 400, "BAD_SIZE_VALUE");
+  EXPECT_EQ(option["errors"][0]["field"], "edge");
+  for (const char* useless : {"format=vtu", "order=2", "timeout=5"})
+    problem_in(send(server_, "POST", "/v1/jobs?" + std::string(useless), kSquare), 400,
+               "BAD_OPTION");
+  problem_in(send(server_, "POST", "/v1/jobs?lonlat&edge=9000", kSquare), 400, "BAD_OPTION");
+  problem_in(send(server_, "GET", "/v1/jobs/1/mesh?edge=1"), 400, "BAD_OPTION");
+  ConsoleServer without(stream, with_http());
+  const Json none = problem_in(send(without, "POST", "/v1/jobs", kSquare), 501, "UNIMPLEMENTED");
+  EXPECT_TRUE(has(none["detail"], "--store")) << none;
+}
+
+TEST(HttpLint, FindsFaults) {
+  ConsoleServer server(stream, with_http());
+  const std::string yard =
+      "5 2 0 0\n1 0 0\n2 40 0\n3 40 40\n4 0 40\n5 0 0.01\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 5\n0\n";
+  const WebResponse found = send(server, "POST", "/v1/lint?from=poly", yard);
+  ASSERT_EQ(found.status, 200) << found.body;
+  const Json lint = Json::parse(found.body);
+  EXPECT_EQ(lint["file"], "domain.poly");
+  EXPECT_EQ(lint["counts"]["gap"], 1) << lint;
+  EXPECT_EQ(lint["findings"][0]["at"].size(), 2u);
+  EXPECT_FALSE(has(found.body, "/proc/"));
+  EXPECT_EQ(Json::parse(send(server, "POST", "/v1/lint?from=poly&snap=0.02", yard).body)["faults"],
+            0);
+  problem_in(send(server, "POST", "/v1/lint?from=poly", "x"), 400, "UNREADABLE_FILE");
+}
+
 TEST(HttpTokens, AreAskedForBeforeAFileIsRead) {
   const files::TempFolder folder;
   ServerOptions options = with_http();
@@ -296,8 +409,21 @@ TEST(HttpRoutes, AreDescribed) {
   const Json all = Json::parse(described.body);
   EXPECT_EQ(all["openapi"], "3.1.0");
   const Json& put = all["paths"]["/v1/mesh"]["put"];
-  EXPECT_EQ(put["parameters"].size(), mesh_parameters().size());
-  EXPECT_TRUE(all["paths"].contains("/v1/info"));
+  const auto names = [](const Json& operation) {
+    std::set<std::string> all_names;
+    for (const Json& parameter : operation["parameters"])
+      all_names.insert(parameter["name"].get<std::string>());
+    return all_names;
+  };
+  std::set<std::string> known;
+  for (const Parameter& parameter : mesh_parameters()) known.insert(parameter.name);
+  known.erase("request_id");
+  EXPECT_EQ(names(put), known);
+  EXPECT_EQ(
+      names(all["paths"]["/v1/jobs/{id}/mesh"]["get"]),
+      (std::set<std::string>{"id", "format", "order", "msh_version", "open_boundary", "timeout"}));
+  EXPECT_TRUE(put.contains("requestBody"));
+  EXPECT_TRUE(all["paths"]["/v1/jobs/{id}"].contains("delete"));
 }
 
 TEST(HttpDoor, MayBeThatOfTheConsole) {
