@@ -249,7 +249,7 @@ TEST(HttpMesh, OutlivesTheStartOfADrain) {
   WebConnection late(server.http_address());
   late.send(request("PUT", "/v1/mesh", {{"Content-Length", "100"}}));
   ASSERT_TRUE(working.wait());
-  std::thread drain([&] { server->drain(kPatience); });
+  std::jthread drain([&] { server->drain(kPatience); });
   EXPECT_TRUE(eventually([&] {
     return raw_unary(server.channel(), "/grpc.health.v1.Health/Check", "").second == "\x08\x02";
   }));
@@ -257,7 +257,6 @@ TEST(HttpMesh, OutlivesTheStartOfADrain) {
   problem_in(late.read_response(), 503, "STOPPING");
   go.set();
   EXPECT_EQ(client.read_response().status, 200);
-  drain.join();
 }
 
 TEST(HttpMesh, IsReadToItsEndWhileTheServerDrains) {
@@ -268,11 +267,10 @@ TEST(HttpMesh, IsReadToItsEndWhileTheServerDrains) {
   client.send(request("PUT", "/v1/mesh", {}, kSquare));
   const WebResponse head = client.read_head();
   ASSERT_EQ(head.status, 200);
-  std::thread drain([&] { server->drain(kPatience); });
+  std::jthread drain([&] { server->drain(kPatience); });
   std::this_thread::sleep_for(std::chrono::milliseconds(400));  // more than others are given
   const std::string rest = client.read_body(std::stoul(head.header("content-length")));
   EXPECT_GT(rest.size(), 40u << 19);
-  drain.join();
 }
 
 TEST(HttpMeshes, AreSharedByClients) {
