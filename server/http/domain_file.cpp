@@ -93,7 +93,14 @@ Outcome<SentDomain> read_domain_file(DomainFile file, MeshWish wish,
   files::fill_polygons(domain, wish.fill);
   if (auto problem = complete(domain.names.markers, wish)) return tl::unexpected(*problem);
   auto projection = files::DomainProjection::project_file(opened->path, domain, wish.projection);
-  if (!projection) return tl::unexpected(texts.problem(projection.error()));
+  if (!projection) {
+    Problem problem = texts.problem(projection.error());
+    if (projection.error().exit == files::ExitCode::kUsage) {
+      problem.reason = "BAD_OPTION";
+      problem.field = "crs";
+    }
+    return tl::unexpected(std::move(problem));
+  }
 
   SentDomain sent{.projection = std::move(*projection), .writing = std::move(wish.writing)};
   for (const std::string& warning : files::sentences(domain.warnings))

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <utility>
 
+#include "files/base/text.h"
 #include "server/http/formats.h"
 
 namespace weft::server {
@@ -43,6 +44,24 @@ std::string hexadecimal(const std::string& bytes) {
   std::string text;
   for (const char c : bytes) text += fmt::format("{:02x}", static_cast<unsigned char>(c));
   return text;
+}
+
+// What the mesh is not, though it was asked for.
+void add_warnings(const v1::Summary& summary, const SentDomain& sent, std::uint64_t most_triangles,
+                  std::vector<std::string>& warnings) {
+  if (summary.has_outside()) {
+    const v1::OutsideSegments& outside = summary.outside();
+    files::Point at{outside.x(), outside.y()};
+    if (sent.projection != nullptr && !sent.projection->to_metres())
+      at = sent.projection->to_lonlat(at);
+    warnings.push_back(fmt::format("segments outside of what is meshed: {}, the first at {}",
+                                   outside.segments(), files::coordinates(at.x, at.y)));
+  }
+  const v1::Unrefined& unrefined = summary.unrefined();
+  if (const std::uint64_t count = unrefined.precision() + unrefined.streaming(); count > 0)
+    warnings.push_back(fmt::format("triangles that miss a bound without exemption: {}", count));
+  if (most_triangles > 0 && summary.triangles() > most_triangles)
+    warnings.push_back("the domain alone, without refinement, has more than max_triangles");
 }
 
 void warn(std::vector<std::string> warnings, Response& head) {
@@ -348,6 +367,7 @@ void MeshExchange::answer(MeshFile file) {
   head.set("Weft-Sha256", hexadecimal(summary_->sha256()));
   std::vector<std::string> warnings = sent_->warnings;
   warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
+  add_warnings(*summary_, *sent_, wish_.request.budget().max_triangles(), warnings);
   warn(std::move(warnings), head);
   if (const auto client = std::exchange(answers_to_, nullptr)) client->answer(std::move(answer));
 }

@@ -110,6 +110,22 @@ TEST(HttpMesh, IsInDegreesOfItsDomain) {
   EXPECT_FALSE(has(degrees.header("weft-warning"), "/proc/"));
 }
 
+TEST(HttpMesh, SaysWhatItIsNot) {
+  ConsoleServer server(stream, with_http());
+  const std::string yard =
+      "6 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n5 5 5\n6 6 6\n"
+      "5 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n5 5 6\n0\n";
+  const WebResponse outside = send(server, "PUT", "/v1/mesh?edge=0.5&from=poly", yard);
+  EXPECT_EQ(outside.header("weft-warning"),
+            "segments outside of what is meshed: 1, the first at (5, 5)");
+  const WebResponse more = send(server, "PUT", "/v1/mesh?edge=0.01&max_triangles=1", kSquare);
+  EXPECT_TRUE(has(more.header("weft-warning"), "more than max_triangles")) << more.body;
+  EXPECT_EQ(send(server, "PUT", "/v1/mesh?edge=0.5", kSquare).header("weft-warning"), "");
+  const Json degrees =
+      problem_in(send(server, "PUT", "/v1/mesh?crs=EPSG:4326&edge=9", kSquare), 400, "BAD_OPTION");
+  EXPECT_EQ(degrees["errors"][0]["field"], "crs");
+}
+
 TEST(HttpMesh, SaysWhatIsWrongWithAFileAndWhere) {
   ConsoleServer server(stream, with_http());
   const Json file = problem_in(send(server, "PUT", "/v1/mesh/coast.geojson",
