@@ -267,7 +267,8 @@ std::optional<std::string> Server::start_console(const ServerOptions& options) {
            [&](SessionContext& context) {
              return make_routes(context, {.memory = memory_,
                                           .folder = folder,
-                                          .client_share = options.service.client_share});
+                                          .client_share = options.service.client_share,
+                                          .log = log_});
            },
        .log = log_});
   if (!console) return console.error();

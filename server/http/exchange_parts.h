@@ -14,6 +14,8 @@
 #include "server/console/frames.h"
 #include "server/console/session.h"
 #include "server/http/workers.h"
+#include "server/observe/bounded_log.h"
+#include "server/observe/log.h"
 #include "server/run/memory_budget.h"
 
 namespace weft::server {
@@ -112,11 +114,29 @@ class HeldBytes {
   std::uint64_t bytes_ = 0;
 };
 
+// Of requests that were refused before they became a call, which has a line of its own.
+class RefusalLog {
+ public:
+  explicit RefusalLog(Logger log) : log_(std::move(log)), lines_(log_, "http_refused", kLines) {}
+  void note(const std::string& client, const Problem& problem) {
+    lines_.flush_suppressed();
+    if (!lines_.allow()) return;
+    log_->info("event=http_refused client={} status={} reason={} field={}", log_value(client),
+               problem.status, problem.reason, log_value(problem.field));
+  }
+
+ private:
+  static constexpr std::uint64_t kLines = 20;  // in a second
+  const Logger log_;
+  BoundedLog lines_;
+};
+
 struct ExchangeParts {
   SessionContext& context;
   MemoryBudget& memory;
   std::filesystem::path folder;  // of nameless files
   Meshes& meshes;
+  RefusalLog refusals;
 };
 
 }  // namespace weft::server

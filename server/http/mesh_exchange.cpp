@@ -376,6 +376,7 @@ void MeshExchange::answer(MeshFile file) {
 
 void MeshExchange::refuse(const Problem& problem) {
   stop_.request_stop();
+  if (sent_ == nullptr) parts_.refusals.note(client_, problem);
   if (const auto call = std::exchange(call_, nullptr)) call->drop();
   if (const auto client = std::exchange(answers_to_, nullptr))
     client->answer({.head = problem_page(problem)});

@@ -33,8 +33,9 @@ template <Purpose kPurpose>
 Opened open_mesh(ExchangeParts& parts, const Route& route, const Query& query,
                  const std::string& word, Visit& visit) {
   auto opened = MeshExchange::open(parts, kPurpose, route.text.uses, query, word, visit);
-  if (!opened) return tl::unexpected(problem_page(opened.error()));
-  return std::move(*opened);
+  if (opened) return std::move(*opened);
+  parts.refusals.note(visit.client, opened.error());
+  return tl::unexpected(problem_page(opened.error()));
 }
 
 // A call about the job that the word names.
@@ -153,7 +154,7 @@ class AllRoutes final : public Routes {
   AllRoutes(SessionContext& context, const RouteOptions& options)
       : workers_(options.threads),
         meshes_(std::make_shared<Meshes>(options.meshes, options.client_share, workers_)),
-        parts_{context, options.memory, options.folder, *meshes_} {}
+        parts_{context, options.memory, options.folder, *meshes_, RefusalLog(options.log)} {}
   ~AllRoutes() override {
     workers_.finish();
     meshes_->close();

@@ -13,6 +13,7 @@
 
 #include "server/console/exchange.h"
 #include "server/console/session.h"
+#include "server/observe/log.h"
 #include "server/run/memory_budget.h"
 
 namespace weft::server {
@@ -23,6 +24,7 @@ struct RouteOptions {
   std::size_t meshes = 128;      // on their way at the same time
   std::size_t threads = 2;       // that read and write large files; at least 2
   double client_share = 1;       // of these and of the meshes, for one client
+  Logger log;
 };
 
 // What is wrong with the folder; empty if nothing is.

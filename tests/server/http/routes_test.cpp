@@ -134,6 +134,9 @@ TEST(HttpMesh, SaysWhatIsWrongWithAFileAndWhere) {
   EXPECT_TRUE(has(file["detail"], "coast.geojson:3:")) << file;
   EXPECT_FALSE(has(file["detail"], "/proc/")) << file;
   EXPECT_EQ(file["errors"][0]["line"], 3);
+  EXPECT_TRUE(
+      server.log().contains("event=http_refused client=ipv4:127.0.0.1 status=400 "
+                            "reason=UNREADABLE_FILE"));
   const Json far =
       problem_in(send(server, "PUT", "/v1/mesh?edge=0.1&from=poly",
                       "3 2 0 0\n1 0 0\n2 1 0\n3 0 1\n3 0\n1 1 2\n2 2 3\n3 3 1\n1\n1 9 9\n"),
