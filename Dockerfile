@@ -76,7 +76,8 @@ VOLUME /var/lib/weft
 # system may be read-only.
 ENV WEFT_LISTEN=0.0.0.0:7421,unix:/var/lib/weft/socket \
     WEFT_METRICS=0.0.0.0:9421 \
-    WEFT_DATA=/var/lib/weft
+    WEFT_DATA=/var/lib/weft \
+    TMPDIR=/var/lib/weft
 EXPOSE 7421 9421
 # Over the socket in WEFT_LISTEN, which needs neither certificates nor tokens.
 HEALTHCHECK --interval=10s --timeout=3s --start-period=5s CMD ["weftd", "--health"]

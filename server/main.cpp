@@ -43,6 +43,7 @@ void write_addresses(std::ostream& out, const Server& server) {
   for (const std::string& address : server.addresses()) out << address << '\n';
   if (!server.metrics_address().empty()) out << "metrics=" << server.metrics_address() << '\n';
   if (!server.console_address().empty()) out << "console=" << server.console_address() << '\n';
+  if (!server.http_address().empty()) out << "http=" << server.http_address() << '\n';
   out.flush();
 }
 

@@ -214,6 +214,10 @@ void add_listening(Flags& flags, Options& options) {
   flags.value("--console", server.console.address, "HOST:PORT",
               "Serve the console for browsers at this address, over HTTP, and gRPC-Web. Encrypted "
               "with --tls-cert; otherwise requires --insecure if other machines can reach it");
+  flags.value("--http", server.console.http, "HOST:PORT",
+              "Serve meshes over HTTP at this address: the file of a domain in, that of its mesh "
+              "out. May be the address of --console. Encrypted with --tls-cert; otherwise requires "
+              "--insecure if other machines can reach it");
   flags
       .value("--console-origin", server.console.origins, "ORIGIN",
              "Origin of pages that may call by gRPC-Web, such as https://example.org; its host is "
@@ -226,7 +230,8 @@ void add_listening(Flags& flags, Options& options) {
   flags.value("--port-file", options.port_file, "FILE",
               "Write the bound addresses to this file, - for the standard output, once the server "
               "listens: one per line, that of --metrics as "
-              "metrics=HOST:PORT, and that of --console as console=HOST:PORT");
+              "metrics=HOST:PORT, that of --console as console=HOST:PORT, and that of --http as "
+              "http=HOST:PORT");
 }
 
 void add_work(Flags& flags, Options& options, Given& given) {
@@ -412,10 +417,11 @@ void settle(const Given& given, Options& options) {
   service.patience.stall_timeout = to_duration(given.stall_timeout);
   options.server.admission.request_timeout = to_duration(given.request_timeout);
   const bool identified = !options.server.tokens.empty() || !options.server.tls.client_ca.empty();
-  const std::string& console = options.server.console.address;
+  const ConsoleOptions& console = options.server.console;
   const bool local =
       std::all_of(options.server.listen.begin(), options.server.listen.end(), is_local) &&
-      (console.empty() || is_local(console));
+      (console.address.empty() || is_local(console.address)) &&
+      (console.http.empty() || is_local(console.http));
   if (given.share_across_clients->count() == 0) service.share_across_clients = !identified;
   if (given.client_share->count() == 0)
     service.client_share = identified || !local ? kDefaultClientShare : 1;

@@ -9,9 +9,11 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
+#include "server/http/routes.h"
 #include "server/net/connections.h"
 #include "server/net/listen.h"
 #include "server/run/memory_estimate.h"
@@ -241,23 +243,41 @@ std::optional<std::string> Server::listen(const ServerOptions& options) {
 }
 
 std::optional<std::string> Server::start_console(const ServerOptions& options) {
-  if (options.console.address.empty()) return std::nullopt;
+  if (!options.console.wanted()) return std::nullopt;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path();
+  if (const std::string fault = folder_fault(folder);
+      !options.console.http.empty() && !fault.empty())
+    return "--http needs a folder for files that vanish, TMPDIR: " + fault;
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);  // messages come from this server itself
-  auto console = Console::start(options.console,
-                                {.channel = server_->InProcessChannel(arguments),
-                                 .authenticator = authenticator_,
-                                 .secret = console_secret_,
-                                 .metrics = [this] { return metrics_.text(); },
-                                 .tls = options.tls,
-                                 .insecure = options.insecure,
-                                 .most_request_bytes = options.service.limits.max_request_bytes,
-                                 .request_bytes = plan_memory(options).received,
-                                 .stall_timeout = std::chrono::duration_cast<milliseconds>(
-                                     options.service.patience.stall_timeout),
-                                 .log = log_});
+  auto console = Console::start(
+      options.console,
+      {.channel = server_->InProcessChannel(arguments),
+       .authenticator = authenticator_,
+       .secret = console_secret_,
+       .metrics = [this] { return metrics_.text(); },
+       .tls = options.tls,
+       .insecure = options.insecure,
+       .most_request_bytes = options.service.limits.max_request_bytes,
+       .request_bytes = plan_memory(options).received,
+       .stall_timeout =
+           std::chrono::duration_cast<milliseconds>(options.service.patience.stall_timeout),
+       .body_timeout = std::chrono::duration_cast<milliseconds>(options.admission.request_timeout),
+       .routes =
+           [&](SessionContext& context) {
+             return make_routes(context, {.memory = memory_,
+                                          .folder = folder,
+                                          .client_share = options.service.client_share,
+                                          .log = log_});
+           },
+       .log = log_});
   if (!console) return console.error();
   console_ = std::move(*console);
+  if (!http_address().empty())
+    log_->info("event=serving_http security={} tokens={} address={}",
+               security_of(http_address(), options.tls), tokens_ ? "yes" : "no",
+               log_value(http_address()));
+  if (console_address().empty()) return std::nullopt;
   log_->info("event=serving_console security={} tokens={} application={} address={}",
              security_of(console_->address(), options.tls), tokens_ ? "yes" : "no",
              options.console.assets.empty() ? "no" : "yes", log_value(console_->address()));
@@ -293,7 +313,10 @@ void Server::drain(std::chrono::steady_clock::duration at_most) {
     if (job_service() != nullptr) job_service()->stop_all();
     empty_by(std::chrono::steady_clock::now() + kLastWords);
   }
-  if (console_ != nullptr) console_->stop(std::chrono::steady_clock::now() + kOthersGrace);
+  if (console_ != nullptr) {
+    const auto grace = std::chrono::steady_clock::now() + kOthersGrace;
+    console_->stop(grace, std::max(end, grace));
+  }
   if (front_ != nullptr) front_->stop_accepting();
   server_->Shutdown(std::chrono::system_clock::now() + kOthersGrace);
   server_->Wait();

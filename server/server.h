@@ -55,8 +55,9 @@ class Server {
   // Where metrics are shown, as bound; empty: nowhere.
   std::string metrics_address() const { return endpoint_ ? endpoint_->address() : ""; }
 
-  // Where the console is served, as bound; empty: nowhere.
+  // Where the console and HTTP are served, as bound; empty: nowhere.
   std::string console_address() const { return console_ ? console_->address() : ""; }
+  std::string http_address() const { return console_ ? console_->http_address() : ""; }
 
   // Health says NOT_SERVING, new calls get UNAVAILABLE, open ones may finish; those that do not
   // within `at_most` are ended with UNAVAILABLE. Then closes all connections and removes the socket

@@ -41,8 +41,8 @@ struct ServerOptions {
 };
 
 struct MemoryPlan {
-  // Messages that are being received; those of the console once more. Those that wait to be parsed,
-  // and requests that wait for their run, have as much of `runs`.
+  // Messages that are being received; those of the console and of HTTP once more. Those that wait
+  // to be parsed, and requests that wait for their run, have as much of `runs`.
   std::uint64_t received = 0;
   std::uint64_t kept = 0;  // pages that runs which have ended leave for later ones
   std::uint64_t runs = 0;  // and for requests that wait for theirs; the rest

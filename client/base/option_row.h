@@ -12,7 +12,6 @@
 
 #include <CLI/TypeTools.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -24,6 +23,7 @@
 
 #include "client/base/files.h"
 #include "files/base/text.h"
+#include "files/base/value_of.h"
 
 namespace weft::client {
 
@@ -64,23 +64,6 @@ struct OptionRow {
 
 template <class Options>
 using OptionRows = std::vector<OptionRow<Options>>;
-
-// The value of a text; nullopt if it has another form. Numbers are rounded to the nearest, counts
-// may be hexadecimal.
-template <class T>
-std::optional<T> value_of(const std::string& text) {
-  T value{};
-  if constexpr (std::is_same_v<T, double>) {
-    char* end = nullptr;
-    value = std::strtod(text.c_str(), &end);
-    if (text.empty() || end != text.c_str() + text.size()) return std::nullopt;
-  } else {
-    // Of an unsigned number, lexical_cast takes a minus for a wrap.
-    if (std::is_unsigned_v<T> && text.find('-') != std::string::npos) return std::nullopt;
-    if (!CLI::detail::lexical_cast(text, value)) return std::nullopt;
-  }
-  return value;
-}
 
 template <class Target>
 struct Numeric {
@@ -133,9 +116,10 @@ template <class Options>
 OptionValue<Options> on_or_off(bool Options::*field) {
   return {"", "", Arity::kSwitch,
           [=](const auto& texts, const auto&, Options& options) -> std::string {
-            const auto value = value_of<bool>(texts.front());
-            if (!value) return in_quotes(texts.front()) + " is not true or false";
-            options.*field = *value;
+            bool value = false;
+            if (!CLI::detail::lexical_cast(texts.front(), value))
+              return in_quotes(texts.front()) + " is not true or false";
+            options.*field = value;
             return "";
           }};
 }

@@ -13,7 +13,7 @@
 #include "client/call/job_server.h"
 #include "client/call/mesh_receiver.h"
 #include "client/call/mesh_report.h"
-#include "client/call/mesh_spool.h"
+#include "files/message/mesh_spool.h"
 #include "files/base/error.h"
 
 namespace weft::client {

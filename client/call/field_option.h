@@ -12,9 +12,10 @@
 #include <variant>
 #include <vector>
 
-#include "client/call/marker_list.h"
+#include "client/base/files.h"
 #include "files/base/error.h"
 #include "files/formats/domain.h"
+#include "files/formats/marker_list.h"
 #include "files/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
 

@@ -19,7 +19,7 @@
 #include "client/call/connection.h"
 #include "client/call/mesh_report.h"
 #include "client/call/mesh_request.h"
-#include "client/call/mesh_spool.h"
+#include "files/message/mesh_spool.h"
 #include "client/call/retry.h"
 #include "files/base/error.h"
 #include "files/formats/domain.h"

@@ -18,9 +18,10 @@
 #include <string>
 #include <vector>
 
+#include "client/base/files.h"
 #include "client/base/sha256.h"
-#include "client/call/mesh_spool.h"
 #include "files/base/error.h"
+#include "files/message/mesh_spool.h"
 #include "weft/v1/job_service.pb.h"
 #include "weft/v1/mesh_service.pb.h"
 

@@ -75,6 +75,14 @@ Result<bool> fill_fields(const Domain& domain, const DomainProjection* projectio
   return true;
 }
 
+void fill(std::int32_t marker, const WallLayers& layers, v1::Layers& message) {
+  message.set_marker(marker);
+  message.set_first(layers.first);
+  message.set_ratio(layers.ratio);
+  message.set_rows(layers.rows);
+  if (layers.region) message.set_region(*layers.region);
+}
+
 // What is asked of segments by their markers.
 Result<void> fill_sides(const Domain& domain, RequestOptions& options) {
   if (options.keep) {
@@ -92,10 +100,11 @@ Result<void> fill_sides(const Domain& domain, RequestOptions& options) {
     pair.set_to(sides->back());
   }
   for (std::size_t i = 0; i < options.layers.size(); ++i) {
-    auto layers = options.layers[i].message(domain.names.markers);
-    if (!layers)
-      return fault_at("quality.layers[" + std::to_string(i) + "]", options, layers.error());
-    *options.asked.mutable_quality()->add_layers() = std::move(*layers);
+    const WallLayers& layers = options.layers[i];
+    const auto marker = layers.number(domain.names.markers);
+    if (!marker)
+      return fault_at("quality.layers[" + std::to_string(i) + "]", options, marker.error());
+    fill(*marker, layers, *options.asked.mutable_quality()->add_layers());
   }
   return {};
 }

@@ -10,14 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "client/call/edge_at.h"
+#include "client/base/files.h"
 #include "client/call/field_option.h"
-#include "client/call/layers_option.h"
-#include "client/call/marker_list.h"
-#include "client/call/marker_pairs.h"
-#include "client/call/name_option.h"
 #include "files/base/error.h"
 #include "files/formats/domain.h"
+#include "files/formats/edge_at.h"
+#include "files/formats/marker_list.h"
+#include "files/formats/marker_pairs.h"
+#include "files/formats/name_option.h"
+#include "files/formats/wall_layers.h"
 #include "files/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
 
@@ -35,7 +36,7 @@ struct RequestOptions {
   // Segments that stay as they are, by marker; none in the list: all segments.
   std::optional<MarkerList> keep{};
   std::vector<MarkerPair> periodic{};  // sides that repeat each other
-  std::vector<LayersOption> layers{};  // along walls
+  std::vector<WallLayers> layers{};    // along walls
   PolygonFill fill = PolygonFill::kUnion;
   // All other options (wire/named_options.h); of the above what with_size has read.
   v1::GenerateMeshRequest asked{};

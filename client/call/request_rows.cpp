@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "client/call/field_path.h"
+#include "files/message/field_path.h"
 #include "files/base/text.h"
 #include "files/formats/derived/vertex_values.h"
 #include "files/formats/domain_formats.h"

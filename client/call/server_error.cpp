@@ -6,11 +6,11 @@
 #include <optional>
 #include <string_view>
 
-#include "client/base/option_row.h"
 #include "client/call/address.h"
-#include "client/call/field_path.h"
 #include "client/call/request_rows.h"
 #include "files/base/text.h"
+#include "files/base/value_of.h"
+#include "files/message/domain_message.h"
 #include "google/rpc/code.pb.h"
 #include "google/rpc/error_details.pb.h"
 
@@ -74,20 +74,6 @@ std::string on_the_globe(const google::rpc::ErrorInfo& info, const DomainProject
 }
 
 }  // namespace
-
-std::string locate_field(const std::string& field, const Domain& domain) {
-  struct List {
-    std::string_view name;
-    const Provenance& places;
-  };
-  for (const auto& [list, places] :
-       {List{"domain.points", domain.point_places}, List{"domain.segments", domain.segment_places},
-        List{"domain.holes", domain.hole_places}, List{"domain.regions", domain.region_places},
-        List{"domain.areas", domain.area_places},
-        List{"domain.segment_areas", domain.segment_places}})
-    if (const auto index = index_in(field, list)) return places.locate(*index);
-  return "";
-}
 
 std::string reason_of(const google::rpc::Status& status) {
   const google::rpc::ErrorInfo info = info_of(status);

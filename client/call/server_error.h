@@ -38,7 +38,4 @@ std::string reason_of(const google::rpc::Status& status);
 // The status of a call, with its details.
 google::rpc::Status rich_status(const grpc::Status& status);
 
-// The place in the file of what `field` names, as in "domain.segments[17].b"; empty if unknown.
-std::string locate_field(const std::string& field, const Domain& domain);
-
 }  // namespace weft::client

@@ -85,12 +85,11 @@ Result<check::Requirements> requirements_of(const CheckOptions& options, const I
     if (!sides) return tl::unexpected(sides.error());
     requirements.periodic.push_back(*sides);
   }
-  for (const LayersOption& option : options.size.layers) {
-    const auto layers = option.message(input.domain.names.markers);
-    if (!layers) return tl::unexpected(layers.error());
-    requirements.layers.push_back(
-        {layers->marker(), layers->first(), layers->ratio() == 0 ? 1 : layers->ratio(),
-         layers->rows(), layers->has_region() ? layers->region() : own_region(input.domain)});
+  for (const WallLayers& layers : options.size.layers) {
+    const auto marker = layers.number(input.domain.names.markers);
+    if (!marker) return tl::unexpected(marker.error());
+    requirements.layers.push_back({*marker, layers.first, layers.ratio, layers.rows,
+                                   layers.region.value_or(own_region(input.domain))});
   }
   return requirements;
 }

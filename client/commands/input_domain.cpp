@@ -5,35 +5,10 @@
 
 #include "client/report/mesh_text.h"
 #include "client/report/projection_report.h"
-#include "files/base/text.h"
 #include "files/formats/domain_formats.h"
 #include "files/formats/raster.h"
-#include "files/geo/lonlat_extent.h"
 
 namespace weft::client {
-
-Result<void> check_lonlat(const std::filesystem::path& path, const Domain& domain) {
-  if (const auto& system = domain.system; system && !system->geographic)
-    return fail(ExitCode::kUnreadableInput,
-                path.string() + ": its coordinate system, " + in_quotes(system->name) +
-                    ", is a plane: leave out --lonlat, --crs and --to-metres, or bring it into "
-                    "longitude and latitude with ogr2ogr -t_srs EPSG:4326");
-  const auto extent = lonlat_extent(domain);
-  if (extent) return {};
-  const std::string& message = extent.error().message;
-  const std::string file = path.string() + ": ";
-  return fail(extent.error().exit, (message.starts_with(file) ? "" : file) + message);
-}
-
-void warn_of_degrees(const std::filesystem::path& path, Domain& domain) {
-  if (!domain.system || !domain.system->geographic) return;
-  domain.warnings.push_back(
-      {.kind = WarningKind::kCoordinates,
-       .file = path.string(),
-       .text = "its coordinates are longitudes and latitudes (" + domain.system->name +
-               "): lengths, areas and angles are those of degrees; --lonlat has them on the "
-               "ground"});
-}
 
 Result<InputDomain> read_input_domain(const DataPath& path, const RequestOptions& wanted,
                                       const ProjectionOptions& options, const LayerOptions& layers,
@@ -61,15 +36,9 @@ Result<InputDomain> read_input_domain(const DataPath& path, const RequestOptions
 Result<InputDomain> projected(const std::filesystem::path& path, Domain domain,
                               const ProjectionOptions& options) {
   InputDomain input{std::move(domain), nullptr};
-  if (!options.wanted()) {
-    warn_of_degrees(path, input.domain);
-    return input;
-  }
-  if (auto ok = check_lonlat(path, input.domain); !ok) return tl::unexpected(ok.error());
-  auto projection = DomainProjection::project(input.domain, options);
-  if (!projection)
-    return fail(projection.error().exit, path.string() + ": " + projection.error().message);
-  input.projection = std::make_shared<const DomainProjection>(std::move(*projection));
+  auto projection = DomainProjection::project_file(path, input.domain, options);
+  if (!projection) return tl::unexpected(projection.error());
+  input.projection = std::move(*projection);
   return input;
 }
 

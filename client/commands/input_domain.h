@@ -38,14 +38,6 @@ Result<InputDomain> read_input_domain(const DataPath& path, const RequestOptions
 Result<InputDomain> projected(const std::filesystem::path& path, Domain domain,
                               const ProjectionOptions& options);
 
-// Error (kUnreadableInput): the domain, read from `path`, cannot be in longitude and latitude: its
-// file says that it lies in a plane, or those of lonlat_extent.
-Result<void> check_lonlat(const std::filesystem::path& path, const Domain& domain);
-
-// Adds a warning to a domain that is not projected if its file says that it is in longitude and
-// latitude.
-void warn_of_degrees(const std::filesystem::path& path, Domain& domain);
-
 // `options` may be null. The origin refers to both.
 RequestOrigin origin_of(const InputDomain& input, const RequestOptions* options = nullptr);
 

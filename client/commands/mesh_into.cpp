@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "client/call/mesh_spool.h"
+#include "files/message/mesh_spool.h"
 #include "client/report/marker_warnings.h"
 #include "client/report/mesh_text.h"
 

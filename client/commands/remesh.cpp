@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "client/call/mesh_call.h"
-#include "client/call/mesh_spool.h"
+#include "files/message/mesh_spool.h"
 #include "client/commands/commands.h"
 #include "client/commands/input_domain.h"
 #include "client/report/marker_warnings.h"

@@ -26,20 +26,6 @@ std::string count_text(const Lint& lint) {
   return text + "\n";
 }
 
-Json position(Point p) {
-  return Json::array({p.x, p.y});
-}
-
-// What a finding has besides its place.
-Json properties_of(const Finding& finding) {
-  Json json = {{"kind", finding.kind}, {"text", finding.text}};
-  if (!finding.warning.empty()) json["warning"] = finding.warning;
-  if (!finding.remedy.empty()) json["remedy"] = finding.remedy;
-  if (finding.measure) json["measure"] = *finding.measure;
-  if (!finding.offenders.empty()) json["offenders"] = finding.offenders;
-  return json;
-}
-
 Json geometry_of(const Finding& finding) {
   if (!finding.at) return nullptr;
   if (!finding.to) return {{"type", "Point"}, {"coordinates", position(*finding.at)}};
@@ -66,20 +52,6 @@ std::string lint_text(const Lint& lint) {
   }
   if (!lint.complete) text += std::string(kTooMany) + "\n";
   return text + count_text(lint);
-}
-
-Json lint_json(const Lint& lint) {
-  Json json = {{"file", lint.file}, {"faults", lint.total}, {"complete", lint.complete}};
-  json["counts"] = Json::object();
-  for (const auto& [kind, total] : lint.counts) json["counts"][kind] = total;
-  json["findings"] = Json::array();
-  for (const Finding& finding : lint.findings) {
-    Json one = properties_of(finding);
-    if (finding.at) one["at"] = position(*finding.at);
-    if (finding.to) one["to"] = position(*finding.to);
-    json["findings"].push_back(std::move(one));
-  }
-  return json;
 }
 
 void write_lint_layer(const Lint& lint, OutputFile& file) {

@@ -9,13 +9,12 @@
 #include "files/base/atomic_file.h"
 #include "files/formats/domain.h"
 #include "files/lint/domain_lint.h"
+#include "files/lint/lint_json.h"
 
 namespace weft::client {
 
 // A line for each finding, at most 20 of a kind, and one that counts.
 std::string lint_text(const Lint& lint);
-
-Json lint_json(const Lint& lint);
 
 // A layer for geographic information systems: a point or a line for each finding.
 void write_lint_layer(const Lint& lint, OutputFile& file);

@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "client/call/mesh_spool.h"
+#include "files/message/mesh_spool.h"
 #include "client/drawing/draw.h"
 #include "files/base/atomic_file.h"
 #include "files/base/error.h"

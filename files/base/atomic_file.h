@@ -102,6 +102,9 @@ class OutputFile {
   const std::filesystem::path& target() const { return target_; }
   // In bytes. REQUIRES: finished.
   std::uint64_t size() const;
+  // The file itself, without a name: it vanishes with the descriptor. REQUIRES: finished; nothing
+  // else is called any more.
+  FileDescriptor take() { return std::move(fd_); }
   // An existing folder, on the file system of the target: its own, or the nearest above it.
   const std::filesystem::path& folder() const { return folder_; }
 

@@ -37,6 +37,12 @@ const Provenance::Run* Provenance::run_of(std::size_t i) const {
   return after == runs_.begin() ? nullptr : &*std::prev(after);
 }
 
+std::size_t Provenance::bytes() const {
+  std::size_t bytes = runs_.capacity() * sizeof(Run);
+  for (const Run& run : runs_) bytes += run.prefix.capacity() + run.suffix.capacity();
+  return bytes;
+}
+
 std::string Provenance::locate(std::size_t i) const {
   const Run* const run = run_of(i);
   return run == nullptr

@@ -35,6 +35,8 @@ class Provenance {
   void add_same(std::size_t first, const Provenance& other, std::size_t i);
   // Empty if the element's place is not known.
   std::string locate(std::size_t i) const;
+  // Of memory.
+  std::size_t bytes() const;
 
  private:
   struct Run {

@@ -27,6 +27,8 @@ struct DomainFormat {
   bool is_archive = false;  // of files in other formats: ogr_archive.h
   bool needs_name = false;  // to be read: there are files beside it, or a library asks for the name
 
+  // Whether weft's own reader reads it, from its file alone.
+  bool is_own() const { return (read != nullptr || read_layers != nullptr) && !needs_name; }
   bool has_layers() const { return drivers != nullptr || read_layers != nullptr || is_archive; }
 };
 
@@ -38,6 +40,12 @@ const DomainFormat* domain_format(const DataPath& path);
 // and attributes if `layers` wants some; kUnreadableInput for the rest, and for a domain with
 // warnings if it is to be strict.
 Result<Domain> read_domain(const DataPath& path, const LayerOptions& layers = {});
+
+// Reads a stranger's file: by weft's own readers alone, which open no other file. Errors: kUsage
+// for the extension of another format.
+Result<Domain> read_own_domain(const DataPath& path, const LayerOptions& layers = {});
+// ".poly, .geojson, ...": their extensions.
+std::string own_domain_extensions();
 
 // Whether the extension is that of a domain, or of a mesh that can be read as one.
 bool is_domain_path(const DataPath& path);

@@ -16,6 +16,7 @@ namespace {
 constexpr double kStraight = 1e-3;  // of the length of a piece
 constexpr std::size_t kMostPieces = 4096;
 constexpr std::size_t kMostAdded = 1'000'000;
+constexpr std::size_t kMostArcs = 10'000;  // each becomes up to 180 chords
 constexpr std::size_t kMostSamples = 1000;
 
 // On the sphere, in degrees; exact enough for points that are close.
@@ -163,6 +164,10 @@ Result<DomainProjection> DomainProjection::project(Domain& domain,
   if (!Projection::available())
     return fail(ExitCode::kUsage,
                 "this weft was built without PROJ, which projects longitude and latitude");
+  if (domain.arcs.size() > kMostArcs)
+    return fail(ExitCode::kUnreadableInput,
+                "the domain has " + with_separators(domain.arcs.size()) + " arcs, of which " +
+                    with_separators(kMostArcs) + " are projected at most");
   flatten_arcs(domain);  // what is a circle in degrees is none in the plane
   const auto extent = lonlat_extent(domain);
   if (!extent) return tl::unexpected(extent.error());
@@ -202,6 +207,42 @@ Result<DomainProjection> DomainProjection::project(Domain& domain,
     domain.regions[i].at = *at;
   }
   return made;
+}
+
+Result<void> check_lonlat(const std::filesystem::path& path, const Domain& domain) {
+  if (const auto& system = domain.system; system && !system->geographic)
+    return fail(ExitCode::kUnreadableInput,
+                path.string() + ": its coordinate system, " + in_quotes(system->name) +
+                    ", is a plane: leave out --lonlat, --crs and --to-metres, or bring it into "
+                    "longitude and latitude with ogr2ogr -t_srs EPSG:4326");
+  const auto extent = lonlat_extent(domain);
+  if (extent) return {};
+  const std::string& message = extent.error().message;
+  const std::string file = path.string() + ": ";
+  return fail(extent.error().exit, (message.starts_with(file) ? "" : file) + message);
+}
+
+void warn_of_degrees(const std::filesystem::path& path, Domain& domain) {
+  if (!domain.system || !domain.system->geographic) return;
+  domain.warnings.push_back(
+      {.kind = WarningKind::kCoordinates,
+       .file = path.string(),
+       .text = "its coordinates are longitudes and latitudes (" + domain.system->name +
+               "): lengths, areas and angles are those of degrees; --lonlat has them on the "
+               "ground"});
+}
+
+Result<std::shared_ptr<const DomainProjection>> DomainProjection::project_file(
+    const std::filesystem::path& path, Domain& domain, const ProjectionOptions& options) {
+  if (!options.wanted()) {
+    warn_of_degrees(path, domain);
+    return nullptr;
+  }
+  if (auto ok = check_lonlat(path, domain); !ok) return tl::unexpected(ok.error());
+  auto projection = project(domain, options);
+  if (!projection)
+    return fail(projection.error().exit, path.string() + ": " + projection.error().message);
+  return std::make_shared<const DomainProjection>(std::move(*projection));
 }
 
 std::vector<std::string> DomainProjection::warnings() const {

@@ -19,6 +19,8 @@
 // Not thread-safe.
 #pragma once
 
+#include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +34,14 @@
 
 namespace weft::files {
 
+// Error (kUnreadableInput): the domain, read from `path`, cannot be in longitude and latitude: its
+// file says that it lies in a plane, or those of lonlat_extent.
+Result<void> check_lonlat(const std::filesystem::path& path, const Domain& domain);
+
+// Adds a warning to a domain that is not projected if its file says that it is in longitude and
+// latitude.
+void warn_of_degrees(const std::filesystem::path& path, Domain& domain);
+
 class DomainProjection {
  public:
   // Projects the points, holes and regions of the domain; areas of regions stay as they are, in
@@ -39,6 +49,11 @@ class DomainProjection {
   // kUnreadableInput for a point that the projection does not take there and back, or more than
   // 1,000,000 added points. After an error, the domain is of no use.
   static Result<DomainProjection> project(Domain& domain, const ProjectionOptions& options);
+
+  // The same for a domain that was read from `path`, which errors name; null if no projection is
+  // wanted, and warn_of_degrees. Errors: those of check_lonlat, too.
+  static Result<std::shared_ptr<const DomainProjection>> project_file(
+      const std::filesystem::path& path, Domain& domain, const ProjectionOptions& options);
 
   const std::string& name() const { return projection_.name(); }
   // Over the points of the domain, or some thousand of them if there are more, and in its middle.

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <protozero/pbf_writer.hpp>
+#include <string_view>
 #include <vector>
+
+#include "files/message/field_path.h"
 
 namespace weft::files {
 namespace {
@@ -97,6 +100,20 @@ std::string domain_message(const Domain& domain) {
   add_areas(message, domain);
   add_arcs(message, domain.arcs);
   return bytes;
+}
+
+std::string locate_field(const std::string& field, const Domain& domain) {
+  struct List {
+    std::string_view name;
+    const Provenance& places;
+  };
+  for (const auto& [list, places] :
+       {List{"domain.points", domain.point_places}, List{"domain.segments", domain.segment_places},
+        List{"domain.holes", domain.hole_places}, List{"domain.regions", domain.region_places},
+        List{"domain.areas", domain.area_places},
+        List{"domain.segment_areas", domain.segment_places}})
+    if (const auto index = index_in(field, list)) return places.locate(*index);
+  return "";
 }
 
 }  // namespace weft::files

@@ -12,4 +12,7 @@ namespace weft::files {
 // field there.
 std::string domain_message(const Domain& domain);
 
+// The place in the file of what `field` names, as in "domain.segments[17].b"; empty if unknown.
+std::string locate_field(const std::string& field, const Domain& domain);
+
 }  // namespace weft::files

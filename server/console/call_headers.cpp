@@ -22,7 +22,8 @@ bool is_legal(const std::string& key, const std::string& value) {
          (key.ends_with("-bin") || grpc_header_nonbin_value_is_legal(slice(value)) != 0);
 }
 
-// nullopt if a header cannot be metadata.
+}  // namespace
+
 std::optional<Metadata> metadata_in(const Headers& request) {
   Metadata metadata;
   for (const auto& field : request) {
@@ -39,8 +40,6 @@ std::optional<Metadata> metadata_in(const Headers& request) {
   }
   return metadata;
 }
-
-}  // namespace
 
 std::string lower_case(std::string_view text) {
   std::string out(text);
@@ -65,9 +64,7 @@ tl::expected<CallHeaders, Refusal> read_call_headers(const Headers& request) {
                        std::chrono::duration_cast<std::chrono::system_clock::duration>(*time);
   }
   auto metadata = metadata_in(request);
-  if (!metadata)
-    return tl::unexpected(
-        Refusal{http::status::bad_request, "a header cannot be metadata of a call"});
+  if (!metadata) return tl::unexpected(Refusal{http::status::bad_request, kNoMetadata});
   headers.metadata = std::move(*metadata);
   return headers;
 }

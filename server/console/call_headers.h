@@ -24,6 +24,10 @@ struct Refusal {
   std::string why;  // a sentence without its end
 };
 
+// Those of the headers that are metadata of a call; nullopt if one cannot be.
+std::optional<Metadata> metadata_in(const Headers& request);
+inline constexpr const char* kNoMetadata = "a header cannot be metadata of a call";
+
 tl::expected<CallHeaders, Refusal> read_call_headers(const Headers& request);
 
 std::string lower_case(std::string_view text);

@@ -35,8 +35,7 @@ constexpr std::chrono::milliseconds kBetweenLooks{10};
 
 class Console::Listener {
  public:
-  Listener(const ConsoleOptions& options, ConsoleParts parts, OriginRules rules,
-           std::optional<TlsContext> tls)
+  Listener(const ConsoleOptions& options, ConsoleParts parts, std::optional<TlsContext> tls)
       : most_connections_(options.connections),
         log_(parts.log),
         channel_(std::move(parts.channel)),
@@ -49,26 +48,34 @@ class Console::Listener {
                  .secret = std::move(parts.secret),
                  .assets = options.assets,
                  .metrics = std::move(parts.metrics),
-                 .rules = std::move(rules),
-                 .times = {options.header_timeout, options.idle_timeout, parts.stall_timeout},
+                 .times = {options.header_timeout, options.idle_timeout, parts.stall_timeout,
+                           parts.body_timeout},
                  .most_request_bytes = parts.most_request_bytes,
-                 .budget = ByteBudget(parts.request_bytes)} {}
+                 .budget = ByteBudget(parts.request_bytes)} {
+    if (!options.http.empty()) routes_ = parts.routes(context_);
+    context_.routes = routes_.get();
+  }
   ~Listener() {
-    stop(Clock::now());
+    stop(Clock::now(), Clock::now());
     io_.stop();
     if (thread_.joinable()) thread_.join();
   }
 
-  tl::expected<void, std::string> listen(const std::string& address) {
+  // Returns the address, as bound. Call before `start`.
+  tl::expected<std::string, std::string> listen(const std::string& address, Door door) {
     auto acceptor = Acceptor::listen(address, io_);
     if (!acceptor) return tl::unexpected(acceptor.error());
-    acceptor_ = std::move(*acceptor);
-    address_ = bound_address(address, acceptor_->port());
-    acceptor_->start([this](tcp::socket socket) { open(std::move(socket)); });
-    thread_ = std::thread([this] { io_.run(); });
-    return {};
+    doors_.push_back(std::move(door));
+    acceptors_.push_back(std::move(*acceptor));
+    return bound_address(address, acceptors_.back()->port());
   }
-  const std::string& address() const { return address_; }
+  void start() {
+    auto door = doors_.begin();
+    for (const auto& acceptor : acceptors_)
+      acceptor->start(
+          [this, &through = *door++](tcp::socket socket) { open(std::move(socket), through); });
+    thread_ = std::thread([this] { io_.run(); });
+  }
 
   void reload() {
     asio::post(io_, [this] {
@@ -76,14 +83,15 @@ class Console::Listener {
     });
   }
 
-  void stop(Clock::time_point end) {
+  void stop(Clock::time_point end, Clock::time_point exchanges_end) {
     if (!thread_.joinable() || std::exchange(stopped_, true)) return;
-    asio::post(io_, [this, end] {
-      acceptor_->close();
+    asio::post(io_, [this, end, exchanges_end] {
+      for (const auto& acceptor : acceptors_) acceptor->close();
       context_.stopping = true;
       for (Session* const session : std::vector(context_.open.begin(), context_.open.end()))
         session->finish();
       stop_end_ = end;
+      exchanges_end_ = exchanges_end;
       wait_for_sessions();
     });
     all_closed_.get_future().wait();
@@ -91,19 +99,18 @@ class Console::Listener {
   }
 
  private:
-  void open(tcp::socket socket) {
+  void open(tcp::socket socket, const Door& door) {
     if (context_.open.size() >= most_connections_) {
       const auto longest = std::find_if(context_.open.begin(), context_.open.end(),
                                         [](const Session* session) { return session->idle(); });
       if (longest == context_.open.end()) return;
       (*longest)->close();
     }
-    make_session(std::move(socket), tls_ ? tls_->current() : nullptr, context_)->start();
+    make_session(std::move(socket), tls_ ? tls_->current() : nullptr, door, context_)->start();
   }
   void wait_for_sessions() {
-    if (Clock::now() >= stop_end_)
-      for (Session* const session : std::vector(context_.open.begin(), context_.open.end()))
-        session->close();
+    for (Session* const session : std::vector(context_.open.begin(), context_.open.end()))
+      if (Clock::now() >= (session->exchanging() ? exchanges_end_ : stop_end_)) session->close();
     if (context_.open.empty()) return all_closed_.set_value();
     timer_.expires_after(kBetweenLooks);
     timer_.async_wait([this](error_code) { wait_for_sessions(); });
@@ -117,58 +124,68 @@ class Console::Listener {
   DrainGate calls_;  // calls that gRPC still has
   bool stopped_ = false;
   Clock::time_point stop_end_;
+  Clock::time_point exchanges_end_;
   std::promise<void> all_closed_;  // after `stop`
-  std::string address_;
+  std::list<Door> doors_;
   SessionContext context_;  // used by sessions, which end with the io_context at the latest
   asio::io_context io_{1};
   // Keeps the thread running, because calls that were dropped may end there after the last session.
   const asio::executor_work_guard<asio::io_context::executor_type> work_{io_.get_executor()};
-  std::unique_ptr<Acceptor> acceptor_;
+  std::unique_ptr<Routes> routes_;                    // may be null
+  std::vector<std::unique_ptr<Acceptor>> acceptors_;  // one per door
   asio::steady_timer timer_{io_};
   std::thread thread_;
 };
 
 tl::expected<std::unique_ptr<Console>, std::string> Console::start(const ConsoleOptions& options,
                                                                    ConsoleParts parts) {
-  const auto refuse = [&options](const std::string& reason) {
-    return tl::unexpected(
-        fmt::format("cannot serve the console on {}: {}", options.address, reason));
-  };
-  const auto where = split_host_port(options.address);
-  if (!where) return refuse("not of the form HOST:PORT");
   const bool encrypts = !parts.tls.certificate.empty();
-  if (!encrypts && !parts.insecure && !is_local(options.address))
-    return refuse(
-        "other machines can connect there, and it would be unencrypted: give --tls-cert and "
-        "--tls-key, or --insecure to do it anyway");
   std::optional<TlsContext> tls;
   if (encrypts) {
     auto opened = TlsContext::open(parts.tls, TlsProtocol::kHttp1, parts.log);
     if (!opened) return tl::unexpected(opened.error());
     tls = std::move(*opened);
   }
-  OriginRules rules{.tls = encrypts, .host = where->host, .origins = options.origins};
-  auto listener =
-      std::make_unique<Listener>(options, std::move(parts), std::move(rules), std::move(tls));
-  if (const auto listens = listener->listen(options.address); !listens)
-    return refuse(listens.error());
-  return std::unique_ptr<Console>(new Console(std::move(listener)));
+  const bool insecure = parts.insecure;
+  auto console = std::unique_ptr<Console>(
+      new Console(std::make_unique<Listener>(options, std::move(parts), std::move(tls))));
+  const bool shared = options.http == options.address;
+  const auto serve = [&](const std::string& address, Door door,
+                         const char* what) -> tl::expected<std::string, std::string> {
+    if (address.empty()) return "";
+    const auto refuse = [&](const std::string& reason) {
+      return tl::unexpected(fmt::format("cannot serve {} on {}: {}", what, address, reason));
+    };
+    const auto where = split_host_port(address);
+    if (!where) return refuse("not of the form HOST:PORT");
+    if (!encrypts && !insecure && !is_local(address))
+      return refuse(
+          "other machines can connect there, and it would be unencrypted: give --tls-cert and "
+          "--tls-key, or --insecure to do it anyway");
+    door.rules = {.tls = encrypts, .host = where->host, .origins = options.origins};
+    auto bound = console->listener_->listen(address, std::move(door));
+    return bound ? bound : refuse(bound.error());
+  };
+  const auto pages = serve(options.address, {.console = true, .files = shared}, "the console");
+  if (!pages) return tl::unexpected(pages.error());
+  const auto files = shared ? pages : serve(options.http, {.files = true}, "HTTP");
+  if (!files) return tl::unexpected(files.error());
+  console->address_ = *pages;
+  console->http_address_ = *files;
+  console->listener_->start();
+  return console;
 }
 
 Console::Console(std::unique_ptr<Listener> listener) noexcept : listener_(std::move(listener)) {}
 
 Console::~Console() = default;
 
-const std::string& Console::address() const {
-  return listener_->address();
-}
-
 void Console::reload() {
   listener_->reload();
 }
 
-void Console::stop(Clock::time_point end) {
-  listener_->stop(end);
+void Console::stop(Clock::time_point end, Clock::time_point exchanges_end) {
+  listener_->stop(end, exchanges_end);
 }
 
 }  // namespace weft::server

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The console's web server: the application in a browser, and gRPC-Web for every service of the
-// server, on one port over HTTP/1.1.
+// The web server, over HTTP/1.1: the console, which is the application in a browser and gRPC-Web
+// for every service of the server, and the routes of server/http/, on one port or on one each.
 //
 //   auto console = Console::start({.address = "127.0.0.1:0"}, {.channel = ..., ...});
 //   if (!console) return complain(console.error());
@@ -10,6 +10,7 @@
 //   POST /package.Service/Method   a call, of the type application/grpc-web+proto
 //   GET  /metrics                  what --metrics shows, for whoever may call
 //   GET  /, /jobs, /mesh/...       the application
+//   /v1/...                        what the routes answer (exchange.h)
 //
 // A call's bytes pass to the server through a channel within the process, so tokens, limits,
 // deadlines, metrics and the log are those of gRPC. What is different: browsers open six
@@ -43,13 +44,19 @@
 
 namespace weft::server {
 
+class Routes;
+struct SessionContext;
+
 struct ConsoleOptions {
   std::string address{};               // HOST:PORT; empty: there is no console
+  std::string http{};                  // HOST:PORT of the routes; empty: there are none
   std::vector<std::string> origins{};  // whose pages may call, see request_rules.h
   std::span<const Asset> assets{};     // of the application; empty: gRPC-Web only
   std::chrono::milliseconds header_timeout = std::chrono::seconds(10);
   std::chrono::milliseconds idle_timeout = std::chrono::seconds(75);
   std::size_t connections = 512;
+
+  bool wanted() const { return !address.empty() || !http.empty(); }
 };
 
 struct ConsoleParts {
@@ -62,6 +69,9 @@ struct ConsoleParts {
   std::uint64_t most_request_bytes = 0;       // of one message
   std::uint64_t request_bytes = 0;            // of messages on their way in, together
   std::chrono::milliseconds stall_timeout{};  // of a browser that reads nothing
+  std::chrono::milliseconds body_timeout{};   // of the body of an exchange
+  // Makes the routes, which end before what it is given.
+  std::function<std::unique_ptr<Routes>(SessionContext&)> routes{};
   Logger log;
 };
 
@@ -75,20 +85,25 @@ class Console {
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
-  // As bound.
-  const std::string& address() const;
+  // As bound; empty: there is none.
+  const std::string& address() const { return address_; }
+  const std::string& http_address() const { return http_address_; }
 
   // Reads the certificates again for the next connection.
   void reload();
 
   // Accepts no more connections, closes idle ones and lets responses at work be written until
-  // `end`; then closes all, which cancels their calls. Returns when no call is open.
-  void stop(std::chrono::steady_clock::time_point end);
+  // `end`, those of exchanges until `exchanges_end`; then closes all, which cancels their calls.
+  // Returns when no call is open.
+  void stop(std::chrono::steady_clock::time_point end,
+            std::chrono::steady_clock::time_point exchanges_end);
 
  private:
   class Listener;
   explicit Console(std::unique_ptr<Listener> listener) noexcept;
 
+  std::string address_;
+  std::string http_address_;
   std::unique_ptr<Listener> listener_;
 };
 

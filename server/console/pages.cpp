@@ -81,7 +81,7 @@ std::optional<Response> asset_page(std::span<const Asset> assets, std::string_vi
 Response preflight_answer(PageOrigin origin, const Headers& request) {
   Response response = make_page(http::status::no_content, kPlainText, "");
   if (origin == PageOrigin::kListed) {
-    response.set(http::field::access_control_allow_methods, "GET, HEAD, POST");
+    response.set(http::field::access_control_allow_methods, "GET, HEAD, POST, PUT, DELETE");
     response.set(http::field::access_control_allow_headers,
                  request[http::field::access_control_request_headers]);
     response.set(http::field::access_control_max_age, "7200");

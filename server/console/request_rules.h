@@ -27,7 +27,7 @@ enum class PageOrigin {
 
 struct OriginRules {
   bool tls = false;
-  std::string host{};                  // of --console, without port and brackets
+  std::string host{};                  // of the address, without port and brackets
   std::vector<std::string> origins{};  // SCHEME://HOST[:PORT], as browsers write them
 
   // `host` is the header.

@@ -2,7 +2,9 @@
 #include "server/console/session.h"
 
 #include <netinet/tcp.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -24,6 +26,7 @@
 #include "server/console/call_body.h"
 #include "server/console/call_headers.h"
 #include "server/console/pages.h"
+#include "server/console/problem.h"
 #include "server/console/transport.h"
 #include "server/net/peer.h"
 
@@ -44,10 +47,13 @@ constexpr std::chrono::seconds kLinger{5};
 
 class HttpSession final : public Session,
                           public BridgeCall::Listener,
+                          public Exchange::Client,
                           public std::enable_shared_from_this<HttpSession> {
  public:
-  HttpSession(tcp::socket socket, std::shared_ptr<asio::ssl::context> tls, SessionContext& context)
+  HttpSession(tcp::socket socket, std::shared_ptr<asio::ssl::context> tls, const Door& door,
+              SessionContext& context)
       : context_(context),
+        door_(door),
         peer_(peer_of(socket)),
         transport_(std::move(socket), std::move(tls)),
         timer_(context.io),
@@ -58,6 +64,7 @@ class HttpSession final : public Session,
   void close() override;
   void finish() override;
   bool idle() const override { return state_ == State::kIdle || state_ == State::kHeader; }
+  bool exchanging() const override { return exchange_ != nullptr || file_.is_open(); }
 
  private:
   enum class State { kIdle, kHeader, kAnswering, kLingering, kClosed };
@@ -83,8 +90,15 @@ class HttpSession final : public Session,
   std::optional<std::string_view> authorization() const;
   void response_written();
 
+  // One exchange.
+  void begin_exchange();
+  void answer(Answer answer) override;
+  void write_file();
+
   // One call.
   void begin_call();
+  Metadata identity() const;
+  void want_body();
   void continue_body();
   void read_body();
   void take_body();
@@ -99,6 +113,7 @@ class HttpSession final : public Session,
   std::string response_head() const;
 
   SessionContext& context_;
+  const Door& door_;
   const std::string peer_;
   Transport transport_;
   asio::steady_timer timer_;
@@ -112,6 +127,12 @@ class HttpSession final : public Session,
   std::optional<Response> response_;
   PageOrigin origin_ = PageOrigin::kOwn;
   bool keep_ = true;  // the connection, after this response
+
+  std::shared_ptr<Exchange> exchange_;
+  std::string response_head_;     // of a file
+  files::FileDescriptor file_;    // that is being written
+  std::uint64_t file_bytes_ = 0;  // left of it
+  off_t file_at_ = 0;
 
   std::shared_ptr<BridgeCall> call_;
   std::optional<CallBody> body_;
@@ -151,6 +172,8 @@ void HttpSession::close() {
   error_code ignored;
   transport_.socket().close(ignored);
   if (const auto call = std::exchange(call_, nullptr)) call->drop();
+  if (const auto exchange = std::exchange(exchange_, nullptr)) exchange->drop();
+  file_.reset();
 }
 
 void HttpSession::finish() {
@@ -250,17 +273,17 @@ void HttpSession::dispatch() {
   keep_ = request.keep_alive() && !context_.stopping;
   if (request.version() != 11)
     return refuse(http::status::http_version_not_supported, "this server speaks HTTP/1.1");
-  if (request.count(http::field::host) != 1 ||
-      !context_.rules.knows_host(header(http::field::host)))
+  if (request.count(http::field::host) != 1 || !door_.rules.knows_host(header(http::field::host)))
     return refuse(http::status::misdirected_request,
                   "the console is not known by this name: --console-origin can add it");
-  origin_ = context_.rules.judge(header(http::field::origin), header(http::field::host));
+  origin_ = door_.rules.judge(header(http::field::origin), header(http::field::host));
   const http::verb method = request.method();
   const std::string_view target = view(request.target());
   if (origin_ == PageOrigin::kForeign)
     return refuse(http::status::forbidden,
                   "pages of other origins may not call: --console-origin can allow it");
   if (method == http::verb::options) return respond(preflight_answer(origin_, request));
+  if (door_.files && (!door_.console || target.starts_with("/v1/"))) return begin_exchange();
   if (method == http::verb::post) {
     if (!is_method_path(target)) return refuse(http::status::not_found, "there is no such method");
     return begin_call();
@@ -303,7 +326,7 @@ void HttpSession::answer_page() {
 void HttpSession::respond(Response response) {
   secure(response);
   if (parser_ && parser_->is_header_done()) {
-    allow_origin(context_.rules, origin_, parser_->get(), response);
+    allow_origin(door_.rules, origin_, parser_->get(), response);
     if (!parser_->is_done()) keep_ = false;
   }
   response.keep_alive(keep_);
@@ -326,16 +349,98 @@ void HttpSession::response_written() {
   next_request();
 }
 
+// ---- one exchange ----
+
+void HttpSession::begin_exchange() {
+  const auto& request = parser_->get();
+  const auto name = context_.authenticator.token_name(authorization());
+  if (!name)
+    return respond(
+        problem_page({.status = 401, .reason = "UNAUTHENTICATED", .detail = name.error().message}));
+  auto metadata = metadata_in(request);
+  if (!metadata) return refuse(http::status::bad_request, kNoMetadata);
+  const Metadata mine = identity();
+  metadata->insert(metadata->end(), mine.begin(), mine.end());
+  const Caller caller{.name = name->empty() ? certificate_name_ : *name, .peer = peer_};
+  auto opened = context_.routes->open({.method = request.method(),
+                                       .target = std::string(view(request.target())),
+                                       .headers = request,
+                                       .metadata = std::move(*metadata),
+                                       .client = caller.client(),
+                                       .answers_to = shared_from_this()});
+  if (!opened) return respond(std::move(opened.error()));
+  exchange_ = std::move(*opened);
+  body_wanted_ = false;
+  writing_ = false;
+  if (!exchange_->wants_body()) {
+    timer_.cancel();
+    if (parser_->is_done()) watch();
+    return exchange_->body_ended();
+  }
+  timer_.expires_after(context_.times.body);
+  timer_.async_wait([weak = weak_from_this()](error_code error) {
+    const auto self = weak.lock();
+    if (self && !error && self->exchange_) self->exchange_->body_late();
+  });
+  want_body();
+}
+
+void HttpSession::answer(Answer answer) {
+  if (state_ != State::kAnswering || !exchange_) return;
+  exchange_.reset();
+  body_wanted_ = false;
+  if (!answer.file.is_open()) return respond(std::move(answer.head));
+  if (!parser_->is_done()) keep_ = false;
+  secure(answer.head);
+  allow_origin(door_.rules, origin_, parser_->get(), answer.head);
+  answer.head.keep_alive(keep_);
+  answer.head.content_length(answer.file_bytes);
+  file_ = std::move(answer.file);
+  file_bytes_ = answer.file_bytes;
+  file_at_ = 0;
+  window_.resize(kWindow);
+  std::ostringstream text;
+  text << answer.head.base();
+  response_head_ = text.str();
+  write_out({asio::buffer(response_head_)});
+}
+
+void HttpSession::write_file() {
+  if (file_bytes_ == 0) {
+    file_.reset();
+    return response_written();
+  }
+  const ssize_t size =
+      ::pread(file_.get(), window_.data(), std::min<std::uint64_t>(kWindow, file_bytes_), file_at_);
+  if (size <= 0) return close();  // the disk's fault; the client sees that bytes are missing
+  file_at_ += size;
+  file_bytes_ -= static_cast<std::uint64_t>(size);
+  write_out({asio::buffer(window_.data(), static_cast<std::size_t>(size))});
+}
+
 // ---- one call ----
+
+Metadata HttpSession::identity() const {
+  Metadata metadata{{std::string(kConsoleSecret), context_.secret},
+                    {std::string(kConsolePeer), peer_}};
+  if (!certificate_name_.empty())
+    metadata.emplace_back(std::string(kConsoleName), certificate_name_);
+  return metadata;
+}
+
+void HttpSession::want_body() {
+  body_wanted_ = true;
+  if (lower_case(header(http::field::expect)) == "100-continue") return continue_body();
+  read_body();
+}
 
 void HttpSession::begin_call() {
   const auto& request = parser_->get();
   auto headers = read_call_headers(request);
   if (!headers) return refuse(headers.error().status, headers.error().why);
   Metadata& metadata = headers->metadata;
-  metadata.emplace_back(kConsoleSecret, context_.secret);
-  metadata.emplace_back(kConsolePeer, peer_);
-  if (!certificate_name_.empty()) metadata.emplace_back(kConsoleName, certificate_name_);
+  const Metadata mine = identity();
+  metadata.insert(metadata.end(), mine.begin(), mine.end());
   auto pass = context_.calls.enter();
   if (!pass) return close();
   timer_.cancel();  // from here on the call's own limits hold
@@ -347,10 +452,9 @@ void HttpSession::begin_call() {
   call_->read();
   // As over gRPC, the message of an unknown caller is not read: the server refuses the call by its
   // headers.
-  body_wanted_ = context_.authenticator.token_name(authorization()).has_value();
-  if (!body_wanted_) return call_->end_writing();
-  if (lower_case(header(http::field::expect)) == "100-continue") return continue_body();
-  read_body();
+  if (context_.authenticator.token_name(authorization())) return want_body();
+  body_wanted_ = false;
+  call_->end_writing();
 }
 
 void HttpSession::continue_body() {
@@ -360,7 +464,7 @@ void HttpSession::continue_body() {
                     [self = shared_from_this()](error_code error, std::size_t) {
                       self->writing_ = false;
                       if (error) return self->close();
-                      self->write_next();
+                      if (!self->exchange_) self->write_next();
                       self->read_body();
                     });
 }
@@ -381,6 +485,10 @@ void HttpSession::read_body() {
         if (!self->body_wanted_ || self->state_ == State::kClosed) return;
         if (error && error != http::error::need_buffer) return self->close();
         const std::size_t size = self->window_.size() - self->parser_->get().body().size;
+        if (self->exchange_) {
+          if (self->exchange_->take({self->window_.data(), size})) self->read_body();
+          return;
+        }
         if (const auto failure = self->body_->add({self->window_.data(), size}))
           return self->body_failed(*failure);
         self->take_body();
@@ -401,6 +509,12 @@ void HttpSession::wrote(bool) {
 }
 
 void HttpSession::body_ended() {
+  if (exchange_) {
+    body_wanted_ = false;
+    timer_.cancel();
+    watch();
+    return exchange_->body_ended();
+  }
   if (const auto failure = body_->end()) return body_failed(*failure);
   body_wanted_ = false;
   call_->end_writing();
@@ -440,7 +554,7 @@ std::string HttpSession::response_head() const {
                                                              : "application/grpc-web+proto");
   response.set(http::field::transfer_encoding, "chunked");
   response.set(http::field::cache_control, "no-store");
-  allow_origin(context_.rules, origin_, parser_->get(), response);
+  allow_origin(door_.rules, origin_, parser_->get(), response);
   response.keep_alive(keep_);
   std::ostringstream text;
   text << response.base();
@@ -469,6 +583,7 @@ void HttpSession::write_out(std::vector<asio::const_buffer> buffers) {
         if (self->state_ == State::kClosed) return;
         if (error) return self->close();
         self->timer_.cancel();
+        if (self->file_.is_open()) return self->write_file();
         if (!self->answer_->over()) return self->write_next();
         self->response_written();
       });
@@ -477,8 +592,8 @@ void HttpSession::write_out(std::vector<asio::const_buffer> buffers) {
 }  // namespace
 
 std::shared_ptr<Session> make_session(tcp::socket socket, std::shared_ptr<asio::ssl::context> tls,
-                                      SessionContext& context) {
-  return std::make_shared<HttpSession>(std::move(socket), std::move(tls), context);
+                                      const Door& door, SessionContext& context) {
+  return std::make_shared<HttpSession>(std::move(socket), std::move(tls), door, context);
 }
 
 }  // namespace weft::server

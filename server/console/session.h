@@ -2,7 +2,8 @@
 // One connection of a browser: HTTP/1.1, one request after the other. Only console.cpp uses it.
 //
 // Reads no further ahead than one window of a body, and holds at most two messages of a response:
-// one that is being written, and the next. A browser that reads nothing therefore stops the call.
+// one that is being written, and the next; of a file, one window. A browser that reads nothing
+// therefore stops the call.
 // Thread-safety: none; everything runs on the console's thread.
 #pragma once
 
@@ -21,6 +22,7 @@
 
 #include "server/console/assets.h"
 #include "server/console/bridge_call.h"
+#include "server/console/exchange.h"
 #include "server/console/frames.h"
 #include "server/console/request_rules.h"
 #include "server/net/caller.h"
@@ -32,6 +34,14 @@ struct SessionTimes {
   std::chrono::milliseconds header;  // for the handshake, and for one request's header
   std::chrono::milliseconds idle;    // between two requests
   std::chrono::milliseconds stall;   // without a byte of a response read by the browser
+  std::chrono::milliseconds body;    // of an exchange, from its header to its end
+};
+
+// One of the addresses that are listened on.
+struct Door {
+  bool console = false;  // leads to pages and calls
+  bool files = false;    // leads to the routes
+  OriginRules rules{};
 };
 
 class Session {
@@ -44,6 +54,8 @@ class Session {
   virtual void finish() = 0;
   // Whether it waits for a request, or for the rest of one's header.
   virtual bool idle() const = 0;
+  // Whether it has, or writes the answer of, an exchange.
+  virtual bool exchanging() const = 0;
 };
 
 // What all sessions share. Outlives them.
@@ -55,17 +67,18 @@ struct SessionContext {
   std::string secret;  // see caller.h
   std::span<const Asset> assets;
   std::function<std::string()> metrics;
-  OriginRules rules;
   SessionTimes times;
   std::uint64_t most_request_bytes;
   ByteBudget budget;
+  Routes* routes = nullptr;    // of doors that lead to files
   std::list<Session*> open{};  // the longest idle first
   bool stopping = false;
 };
 
-// `tls` is null for an unencrypted connection. The session keeps itself alive.
+// `tls` is null for an unencrypted connection. The door outlives the session, which keeps itself
+// alive.
 std::shared_ptr<Session> make_session(boost::asio::ip::tcp::socket socket,
                                       std::shared_ptr<boost::asio::ssl::context> tls,
-                                      SessionContext& context);
+                                      const Door& door, SessionContext& context);
 
 }  // namespace weft::server

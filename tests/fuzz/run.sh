@@ -12,13 +12,13 @@ set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit
 minutes=${1:-1}
 targets=("${@:2}")
-((${#targets[@]})) || targets=(console engine expression formats manifest store wire)
+((${#targets[@]})) || targets=(console engine expression formats http manifest store wire)
 
 # About as many inputs as one core runs in a minute.
-declare -A inputs=([console]=1500000 [engine]=3000 [expression]=120000 [formats]=100000 [manifest]=50000
+declare -A inputs=([console]=1500000 [engine]=3000 [expression]=120000 [formats]=100000 [http]=300000 [manifest]=50000
   [store]=20000 [wire]=150000)
 # The longest inputs that make sense, in bytes.
-declare -A longest=([console]=200 [engine]=160 [expression]=120 [formats]=2500 [manifest]=600 [store]=400 [wire]=400)
+declare -A longest=([console]=200 [engine]=160 [expression]=120 [formats]=2500 [http]=300 [manifest]=600 [store]=400 [wire]=400)
 
 fuzz() {
   local target=$1 corpus=build/asan/corpus/$1 found=build/asan/found log=build/asan/$1.log

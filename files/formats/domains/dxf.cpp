@@ -173,7 +173,10 @@ class Reader {
                  "are"});
   }
 
+  // Not of a drawing of so many arcs that their chords take gigabytes and minutes.
   void warn_of_nested_outlines(Domain& domain) const {
+    constexpr std::size_t kMostArcs = 5000;
+    if (domain.arcs.size() > kMostArcs) return;
     Domain flat = domain;
     flatten_arcs(flat);
     const std::vector<std::size_t> nested = nested_outlines(flat);

@@ -71,7 +71,9 @@ std::vector<Point> GeometryBuilder::Chain::corners_after(std::size_t i) const {
 
 std::vector<Point> GeometryBuilder::Chain::chords() const {
   std::vector<Point> all;
-  if (std::ranges::all_of(bulges, [](double bulge) { return bulge == 0; })) return all;
+  constexpr std::ptrdiff_t kMostArcs = 10'000;  // more would take gigabytes, for a warning
+  const auto arcs = std::ranges::count_if(bulges, [](double bulge) { return bulge != 0; });
+  if (arcs == 0 || arcs > kMostArcs) return all;
   for (std::size_t i = 0; i < points.size(); ++i) {
     all.push_back(points[i]);
     for (const Point corner : corners_after(i)) all.push_back(corner);

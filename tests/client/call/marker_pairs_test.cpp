@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client/call/marker_pairs.h"
+// Pairs of markers, as texts and in requests.
+#include "files/formats/marker_pairs.h"
 
 #include <gtest/gtest.h>
 

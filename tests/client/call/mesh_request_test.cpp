@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "client/call/request_rows.h"
 #include "tests/files/support/sample_mesh.h"
 #include "tests/files/support/temp_folder.h"
 
@@ -25,6 +26,24 @@ TEST(RasterOfARequest, IsTheOneThatItsSizeNames) {
   EXPECT_EQ(raster.rows(), 2u);
   EXPECT_EQ((std::vector<double>{raster.values().begin(), raster.values().end()}),
             (std::vector<double>{1, 2, 3, 4, 5, 6}));
+}
+
+TEST(LayersOfARequest, HaveTheNumbersOfTheirMarkers) {
+  Domain domain = square_domain(1);
+  domain.names.markers = {{3, "wall"}};
+  RequestOptions given;
+  ASSERT_EQ(wall_layers().read({"wall:first=1,rows=2", "-4:first=2,rows=3"}, "", given), "");
+  const auto options = with_size(given, domain);
+  ASSERT_TRUE(options) << options.error().message;
+  const auto request = make_request(domain, *options);
+  ASSERT_EQ(request.quality().layers_size(), 2);
+  EXPECT_EQ(request.quality().layers(0).marker(), 3);
+  EXPECT_EQ(request.quality().layers(1).marker(), -4);
+  EXPECT_EQ(request.quality().layers(1).rows(), 3u);
+  ASSERT_EQ(wall_layers().read({"wal:first=1,rows=2"}, "", given), "");
+  given.given = {"layers"};
+  EXPECT_EQ(with_size(given, domain).error().message,
+            "--layers wal: no marker of the domain is named 'wal': did you mean `wall`?");
 }
 
 }  // namespace

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client/call/name_option.h"
+// Names and lengths by marker, as texts and in requests.
+#include "files/formats/name_option.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "client/call/edge_at.h"
 #include "client/call/mesh_request.h"
+#include "files/formats/edge_at.h"
 #include "tests/files/support/sample_mesh.h"
 
 namespace weft::client {

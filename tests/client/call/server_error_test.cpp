@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "files/base/text.h"
+#include "files/message/domain_message.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 

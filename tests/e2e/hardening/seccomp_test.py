@@ -78,7 +78,7 @@ def certificate(tmp_path: pathlib.Path) -> pathlib.Path:
 def server(tmp_path: pathlib.Path, certificate: pathlib.Path) -> Iterator[Server]:
     server = Server(tmp_path, "--data", tmp_path / "data", "--listen", "localhost:0",
                     "--tls-cert", certificate, "--tls-key", tmp_path / "key.pem",
-                    "--metrics", "127.0.0.1:0", "--console", "127.0.0.1:0")
+                    "--metrics", "127.0.0.1:0", "--console", "127.0.0.1:0", "--http", "127.0.0.1:0")
     yield server
     server.process.kill()
     server.process.wait()
@@ -137,6 +137,19 @@ def test_the_console_is_served(server: Server, certificate: pathlib.Path) -> Non
                                   {"Content-Type": "application/grpc-web+proto"})
     with urllib.request.urlopen(call, context=trusting) as answer:
         assert b"grpc-status: 0\r\n" in answer.read()
+
+
+def test_meshes_come_over_http(server: Server, certificate: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    port = next(line for line in server.addresses if line.startswith("http=")).rsplit(":", 1)[1]
+    trusting = ssl.create_default_context(cafile=str(certificate))
+    server.weft("mesh", KEY[0], "--size", 0.01, "--quiet", "-o", tmp_path / "mesh.vtu")
+    call = urllib.request.Request(f"https://localhost:{port}/v1/mesh?size=0.01&from=poly", KEY[0].read_bytes())
+    with urllib.request.urlopen(call, context=trusting) as answer:
+        assert answer.read() == (tmp_path / "mesh.vtu").read_bytes()
+    coast = SOURCE / "tests" / "models" / "us-east-coast.geojson"
+    call = urllib.request.Request(f"https://localhost:{port}/v1/mesh?edge=50000&lonlat", coast.read_bytes())
+    with urllib.request.urlopen(call, context=trusting) as answer:
+        assert answer.status == 200
 
 
 def test_the_health_check_of_the_image_works_under_the_profile(server: Server) -> None:

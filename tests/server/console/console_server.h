@@ -25,14 +25,16 @@ inline EngineFn empty_mesh() {
 class ConsoleServer {
  public:
   explicit ConsoleServer(EngineFn engine = empty_mesh(),
-                         const ServerOptions& options = with_console()) {
-    auto started = Server::start(options, std::move(engine), log_.logger());
+                         const ServerOptions& options = with_console(),
+                         std::unique_ptr<JobStore> store = nullptr) {
+    auto started = Server::start(options, std::move(engine), log_.logger(), std::move(store));
     if (!started) throw std::runtime_error(started.error());
     server_ = std::move(*started);
     address_ = server_->console_address();
   }
   Server* operator->() { return server_.get(); }
   const std::string& address() const { return address_; }
+  std::string http_address() const { return server_->http_address(); }
   const Log& log() const { return log_; }
   std::shared_ptr<grpc::Channel> channel() const {
     return channel_to(server_->addresses().front(), grpc::InsecureChannelCredentials());

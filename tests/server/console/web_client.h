@@ -73,6 +73,8 @@ class WebConnection {
   void send(std::string_view bytes);
   // Status line and headers; a status of 0 if the server closed the connection.
   WebResponse read_head();
+  // So many bytes of the response whose head has been read.
+  std::string read_body(std::size_t bytes) { return take(bytes); }
   // With its body. REQUIRES: the response is not one to HEAD.
   WebResponse read_response();
   // A frame of the response whose head has been read; nullopt after the last.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client/call/mesh_spool.h"
+#include "files/message/mesh_spool.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "tests/files/support/sample_mesh.h"
 #include "tests/files/support/temp_folder.h"
 
-namespace weft::client {
+namespace weft::files {
 namespace {
 
 // The pieces of square_mesh(n), a row each; vertices come with the row above them.
@@ -88,4 +88,4 @@ TEST(MeshSpool, ShowsEachPieceWithAllVerticesSoFar) {
 }
 
 }  // namespace
-}  // namespace weft::client
+}  // namespace weft::files

@@ -7,11 +7,10 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "client/base/files.h"
 #include "files/base/error.h"
 #include "files/formats/names.h"
 
-namespace weft::client {
+namespace weft::files {
 
 struct NameOption {
   NameKind kind = NameKind::kMarker;
@@ -26,4 +25,4 @@ struct NameOption {
 // have the same name.
 Result<void> set_names(std::span<const NameOption> options, Names& names);
 
-}  // namespace weft::client
+}  // namespace weft::files

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client/call/marker_pairs.h"
+#include "files/formats/marker_pairs.h"
 
 #include <algorithm>
 
-#include "client/base/option_row.h"
+#include "files/base/value_of.h"
 
-namespace weft::client {
+namespace weft::files {
 namespace {
 
 Result<std::int32_t> number_of(const std::string& marker, const NameTable& names) {
@@ -38,4 +38,4 @@ std::optional<std::vector<MarkerPair>> parse_marker_pairs(const std::string& tex
   return pairs;
 }
 
-}  // namespace weft::client
+}  // namespace weft::files

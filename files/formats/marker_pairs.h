@@ -8,11 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "client/base/files.h"
 #include "files/base/error.h"
 #include "files/formats/names.h"
 
-namespace weft::client {
+namespace weft::files {
 
 struct MarkerPair {
   std::string from;
@@ -28,4 +27,4 @@ struct MarkerPair {
 // colon are given by number.
 std::optional<std::vector<MarkerPair>> parse_marker_pairs(const std::string& text);
 
-}  // namespace weft::client
+}  // namespace weft::files

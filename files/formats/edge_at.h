@@ -6,7 +6,7 @@
 #include <string>
 #include <tl/expected.hpp>
 
-namespace weft::client {
+namespace weft::files {
 
 struct EdgeAt {
   std::int32_t marker = 0;
@@ -17,4 +17,4 @@ struct EdgeAt {
   static tl::expected<EdgeAt, std::string> parse(const std::string& text);
 };
 
-}  // namespace weft::client
+}  // namespace weft::files

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client/call/marker_list.h"
+#include "files/formats/marker_list.h"
 
 #include <algorithm>
 
-#include "client/base/option_row.h"
+#include "files/base/value_of.h"
 
-namespace weft::client {
+namespace weft::files {
 
 std::optional<MarkerList> MarkerList::parse(const std::string& text) {
   MarkerList list;
@@ -33,4 +33,4 @@ Result<std::vector<std::int32_t>> MarkerList::numbers(const NameTable& names_of_
   return all;
 }
 
-}  // namespace weft::client
+}  // namespace weft::files

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client/call/mesh_spool.h"
+#include "files/message/mesh_spool.h"
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -10,21 +10,22 @@
 #include <string>
 #include <system_error>
 
-namespace weft::client {
+namespace weft::files {
 
 template <class T>
 void SpooledArray<T>::Unmap::operator()(T* address) const {
-  ::munmap(address, kInMemory);
+  ::munmap(address, bytes);
 }
 
 template <class T>
-Result<void> SpooledArray<T>::open(const std::filesystem::path& folder) {
+Result<void> SpooledArray<T>::open(const std::filesystem::path& folder, std::size_t in_memory) {
   auto file = open_unlinked(folder);
   if (!file) return tl::unexpected(file.error());
   file_ = std::move(*file);
-  void* room = ::mmap(nullptr, kInMemory, PROT_READ | PROT_WRITE,
+  in_memory_ = in_memory;
+  void* room = ::mmap(nullptr, in_memory, PROT_READ | PROT_WRITE,
                       MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (room != MAP_FAILED) memory_.reset(static_cast<T*>(room));
+  if (room != MAP_FAILED) memory_ = {static_cast<T*>(room), Unmap{in_memory}};
   return {};
 }
 
@@ -40,7 +41,7 @@ bool SpooledArray<T>::spill(std::size_t size) {
 template <class T>
 bool SpooledArray<T>::append(std::span<const T> values) {
   const std::size_t before = std::exchange(size_, size_ + values.size());
-  if (memory_ && size_ * sizeof(T) <= kInMemory) {
+  if (memory_ && size_ * sizeof(T) <= in_memory_) {
     std::copy(values.begin(), values.end(), memory_.get() + before);
     return true;
   }
@@ -51,7 +52,7 @@ bool SpooledArray<T>::append(std::span<const T> values) {
 template <class T>
 bool SpooledArray<T>::append_zeros(std::size_t count) {
   const std::size_t before = std::exchange(size_, size_ + count);
-  if (memory_ && size_ * sizeof(T) <= kInMemory) return true;
+  if (memory_ && size_ * sizeof(T) <= in_memory_) return true;
   if (memory_ && !spill(before)) return false;
   return ::lseek(file_.get(), static_cast<off_t>(count * sizeof(T)), SEEK_CUR) >= 0;
 }
@@ -89,10 +90,12 @@ template class SpooledArray<std::int32_t>;
 Result<std::unique_ptr<MeshSpool>> MeshSpool::create(const std::filesystem::path& folder,
                                                      MeshSpoolOptions options) {
   std::unique_ptr<MeshSpool> spool(new MeshSpool(folder, std::move(options)));
+  const std::size_t in_memory = spool->options_.in_memory;
   for (const auto& opened :
-       {spool->coordinates_.open(folder), spool->triangles_.open(folder),
-        spool->regions_.open(folder), spool->edges_.open(folder), spool->edge_markers_.open(folder),
-        spool->edge_bulges_.open(folder), spool->input_points_.open(folder)})
+       {spool->coordinates_.open(folder, in_memory), spool->triangles_.open(folder, in_memory),
+        spool->regions_.open(folder, in_memory), spool->edges_.open(folder, in_memory),
+        spool->edge_markers_.open(folder, in_memory), spool->edge_bulges_.open(folder, in_memory),
+        spool->input_points_.open(folder, in_memory)})
     if (!opened) return tl::unexpected(opened.error());
   return spool;
 }
@@ -154,4 +157,4 @@ Result<MeshView> MeshSpool::view() {
                   .edge_bulges = has_arcs_ ? edge_bulges_.values() : std::span<const double>()};
 }
 
-}  // namespace weft::client
+}  // namespace weft::files

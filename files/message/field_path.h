@@ -8,7 +8,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace weft::client {
+namespace weft::files {
 
 // Whether `path` names the field `field`, or something in it.
 inline bool is_within(std::string_view path, std::string_view field) {
@@ -29,4 +29,4 @@ inline std::optional<std::size_t> index_in(std::string_view path, std::string_vi
   return index;
 }
 
-}  // namespace weft::client
+}  // namespace weft::files

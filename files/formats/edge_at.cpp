@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client/call/edge_at.h"
+#include "files/formats/edge_at.h"
 
 #include <cmath>
 
-#include "client/base/option_row.h"
+#include "files/base/value_of.h"
 #include "files/base/text.h"
 
-namespace weft::client {
+namespace weft::files {
 
 tl::expected<EdgeAt, std::string> EdgeAt::parse(const std::string& text) {
   const std::string start = "marker=";
@@ -22,4 +22,4 @@ tl::expected<EdgeAt, std::string> EdgeAt::parse(const std::string& text) {
                         " is not a marker and a positive length, such as marker=2:500");
 }
 
-}  // namespace weft::client
+}  // namespace weft::files

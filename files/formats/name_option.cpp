@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client/call/name_option.h"
+#include "files/formats/name_option.h"
 
 #include <set>
 
-#include "client/base/option_row.h"
+#include "files/base/value_of.h"
 #include "files/base/text.h"
 
-namespace weft::client {
+namespace weft::files {
 
 tl::expected<NameOption, std::string> NameOption::parse(const std::string& text) {
   const std::size_t equals = text.find('=');
@@ -38,4 +38,4 @@ Result<void> set_names(std::span<const NameOption> options, Names& names) {
   return {};
 }
 
-}  // namespace weft::client
+}  // namespace weft::files

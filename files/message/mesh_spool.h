@@ -16,21 +16,18 @@
 #include <stop_token>
 #include <utility>
 
-#include "client/base/files.h"
 #include "files/base/atomic_file.h"
 #include "files/base/error.h"
 #include "files/base/paged_memory.h"
 #include "files/formats/mesh.h"
 
-namespace weft::client {
+namespace weft::files {
 
-// An array of T, on disk if it is larger than kInMemory bytes. Appended to, and mapped.
+// An array of T, on disk if it is larger than `in_memory` bytes. Appended to, and mapped.
 template <class T>
 class SpooledArray {
  public:
-  static constexpr std::size_t kInMemory = std::size_t{16} << 20;
-
-  Result<void> open(const std::filesystem::path& folder);
+  Result<void> open(const std::filesystem::path& folder, std::size_t in_memory);
   // Both return false with errno set on failure. Zeros take no room: they are untouched pages or a
   // hole in the file.
   bool append(std::span<const T> values);
@@ -44,13 +41,15 @@ class SpooledArray {
 
  private:
   struct Unmap {
+    std::size_t bytes = 0;
     void operator()(T* address) const;
   };
   // Moves the first `size` values to the file.
   bool spill(std::size_t size);
 
   FileDescriptor file_;
-  std::unique_ptr<T, Unmap> memory_;  // room for kInMemory bytes; null: all is in the file
+  std::size_t in_memory_ = 0;
+  std::unique_ptr<T, Unmap> memory_;  // room for in_memory_ bytes; null: all is in the file
   std::size_t size_ = 0;
   const T* values_ = nullptr;
   std::size_t mapped_ = 0;  // values
@@ -68,6 +67,9 @@ struct MeshSpoolOptions {
   // vertices so far; may be empty. The spans are valid during the call.
   std::function<void(const MeshView&)> on_piece{};
   std::stop_token stop{};  // ends loops over the view, see paged_memory.h
+  // Bytes of each array that stay in memory, and those of PagedMemory.
+  std::size_t in_memory = std::size_t{16} << 20;
+  std::size_t small = PagedMemory::kSmall;
 };
 
 class MeshSpool {
@@ -88,7 +90,9 @@ class MeshSpool {
 
  private:
   MeshSpool(std::filesystem::path folder, MeshSpoolOptions options)
-      : folder_(std::move(folder)), options_(std::move(options)), pages_(folder_, options_.stop) {}
+      : folder_(std::move(folder)),
+        options_(std::move(options)),
+        pages_(folder_, options_.stop, options_.small) {}
   tl::unexpected<Error> failed() const;
   Result<void> show(MeshView piece);
 
@@ -107,4 +111,4 @@ class MeshSpool {
   PagedMemory pages_;
 };
 
-}  // namespace weft::client
+}  // namespace weft::files

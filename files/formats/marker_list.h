@@ -7,11 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "client/base/files.h"
 #include "files/base/error.h"
 #include "files/formats/names.h"
 
-namespace weft::client {
+namespace weft::files {
 
 struct MarkerList {
   std::vector<std::int32_t> markers{};
@@ -23,4 +22,4 @@ struct MarkerList {
   Result<std::vector<std::int32_t>> numbers(const NameTable& names_of_markers) const;
 };
 
-}  // namespace weft::client
+}  // namespace weft::files

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/http/domain_file.h"
+
+#include <google/protobuf/io/coded_stream.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "files/formats/domain_formats.h"
+#include "files/lint/lint_json.h"
+#include "files/message/domain_message.h"
+
+namespace weft::server {
+namespace {
+
+// In degrees and in metres.
+constexpr std::uint64_t kBytesOfProjectedPoint = 2 * sizeof(files::Point);
+
+// A file that is open as long as this is, and what it holds.
+struct Opened {
+  files::FileDescriptor file;
+  files::DataPath path;
+  FileTexts texts;
+  files::Domain domain;
+};
+
+Outcome<Opened> open_domain(DomainFile file, const MeshWish& wish,
+                            const std::filesystem::path& folder) {
+  auto nameless = files::open_unlinked(folder);
+  if (!nameless || !files::write_all(nameless->get(), file.bytes.data(), file.bytes.size()))
+    return tl::unexpected(Problem{
+        .status = 507, .reason = "STORE_FULL", .detail = "the server has no room for the file"});
+  file.bytes = {};
+  Opened opened{.file = std::move(*nameless)};
+  opened.path = std::filesystem::path("/proc/self/fd/" + std::to_string(opened.file.get()));
+  opened.path.format = file.extension;
+  opened.texts = FileTexts(opened.path.string(), file.name);
+  auto domain = files::read_own_domain(
+      opened.path,
+      {.lonlat = wish.projection.wanted(), .even_odd = wish.fill == files::PolygonFill::kEvenOdd});
+  if (!domain) return tl::unexpected(opened.texts.problem(domain.error()));
+  if (const auto named = files::set_names(wish.names, domain->names); !named)
+    return tl::unexpected(Problem{
+        .status = 400, .reason = "BAD_OPTION", .detail = named.error().message, .field = "names"});
+  opened.domain = std::move(*domain);
+  return opened;
+}
+
+}  // namespace
+
+std::string FileTexts::operator()(std::string text) const {
+  const auto replace = [&text](std::string_view from, std::string_view to) {
+    if (from.empty()) return;
+    for (auto at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+  };
+  replace(path_, name_);
+  replace(" --", " ");
+  return text;
+}
+
+Problem FileTexts::problem(const files::Error& error) const {
+  Problem problem{.status = 400, .reason = "UNREADABLE_FILE", .detail = (*this)(error.message)};
+  // "coast.geojson:3:14: expected a number"
+  if (problem.detail.starts_with(name_))
+    problem.place = problem.detail.substr(0, problem.detail.find(": "));
+  if (error.exit == files::ExitCode::kUnwritableOutput) {
+    problem.status = 507;
+    problem.reason = "STORE_FULL";
+  } else if (error.exit == files::ExitCode::kInternal) {
+    problem.status = 501;
+    problem.reason = "UNIMPLEMENTED";
+  }
+  return problem;
+}
+
+std::string with_part(unsigned field, const std::string& message, const std::string& rest) {
+  using google::protobuf::io::CodedOutputStream;
+  std::uint8_t length[10];
+  const auto* const end = CodedOutputStream::WriteVarint64ToArray(message.size(), length);
+  std::string whole(1, static_cast<char>(field << 3 | 2));
+  whole.reserve(message.size() + rest.size() + 16);
+  whole.append(reinterpret_cast<const char*>(length), static_cast<std::size_t>(end - length));
+  return whole.append(message).append(rest);
+}
+
+Outcome<SentDomain> read_domain_file(DomainFile file, MeshWish wish,
+                                     const std::filesystem::path& folder) {
+  auto opened = open_domain(std::move(file), wish, folder);
+  if (!opened) return tl::unexpected(opened.error());
+  files::Domain& domain = opened->domain;
+  const FileTexts& texts = opened->texts;
+  files::fill_polygons(domain, wish.fill);
+  if (auto problem = complete(domain.names.markers, wish)) return tl::unexpected(*problem);
+  auto projection = files::DomainProjection::project_file(opened->path, domain, wish.projection);
+  if (!projection) {
+    Problem problem = texts.problem(projection.error());
+    if (projection.error().exit == files::ExitCode::kUsage) {
+      problem.reason = "BAD_OPTION";
+      problem.field = "crs";
+    }
+    return tl::unexpected(std::move(problem));
+  }
+
+  SentDomain sent{.projection = std::move(*projection), .writing = std::move(wish.writing)};
+  for (const std::string& warning : files::sentences(domain.warnings))
+    sent.warnings.push_back(texts(warning));
+  if (sent.projection != nullptr)
+    for (const std::string& warning : sent.projection->warnings())
+      sent.warnings.push_back(texts(warning));
+  const std::string part =
+      files::domain_message(domain) + wish.request.domain().SerializeAsString();  // its `snap`
+  wish.request.clear_domain();
+  sent.request = with_part(v1::GenerateMeshRequest::kDomainFieldNumber, part,
+                           wish.request.SerializeAsString());
+  sent.bytes = (sent.projection == nullptr ? 0 : domain.points.size() * kBytesOfProjectedPoint) +
+               domain.point_markers.size() * sizeof(std::int32_t);
+  for (const files::Provenance* const places :
+       {&domain.point_places, &domain.segment_places, &domain.hole_places, &domain.region_places,
+        &domain.area_places})
+    sent.bytes += places->bytes();
+  sent.domain = std::move(domain);
+  sent.domain.points = {};
+  sent.domain.segments = {};
+  sent.domain.arcs = {};
+  sent.texts = texts;
+  return sent;
+}
+
+Outcome<std::string> lint_domain_file(DomainFile file, MeshWish wish,
+                                      const std::filesystem::path& folder) {
+  auto opened = open_domain(std::move(file), wish, folder);
+  if (!opened) return tl::unexpected(opened.error());
+  files::Domain& domain = opened->domain;
+  if (!wish.projection.wanted())
+    files::warn_of_degrees(opened->path, domain);
+  else if (const auto ok = files::check_lonlat(opened->path, domain); !ok)
+    return tl::unexpected(opened->texts.problem(ok.error()));
+  files::fill_polygons(domain, wish.fill);
+  const auto lint = files::lint_domain(
+      domain, opened->path,
+      {.snap = wish.request.domain().snap(), .lonlat = wish.projection.wanted()});
+  if (!lint) return tl::unexpected(opened->texts.problem(lint.error()));
+  using Json = nlohmann::ordered_json;
+  return opened->texts(files::lint_json(*lint).dump(-1, ' ', true, Json::error_handler_t::replace) +
+                       "\n");
+}
+
+// Measured, of files that hold nothing but what takes most of their format. Rings with arcs are
+// judged by chords, up to 10,000 arcs at a time; blocks of drawings are placed up to 5,000,000
+// times.
+std::uint64_t bytes_to_read(const DomainFile& file) {
+  const std::uint64_t size = file.bytes.size();
+  const auto chords = [size](std::uint64_t most) { return std::min(1500 * size, most << 20); };
+  if (file.extension == ".geojson" || file.extension == ".json" || file.extension == ".poly")
+    return 40 * size;
+  if (file.extension == ".dxf") return (std::uint64_t{128} << 20) + 512 * size + chords(256);
+  return 48 * size + chords(128);
+}
+
+// Arcs are judged by chords, all at once.
+std::uint64_t bytes_to_lint(const DomainFile& file) {
+  const bool has_arcs = file.extension != ".geojson" && file.extension != ".json";
+  return bytes_to_read(file) + (has_arcs ? 3000 : 100) * file.bytes.size();
+}
+
+Problem located(Problem problem, const SentDomain& sent, const Query& query) {
+  if (problem.field.empty()) return problem;
+  problem.place = sent.texts(files::locate_field(problem.field, sent.domain));
+  if (std::string parameter = parameter_of(problem.field, query); !parameter.empty())
+    problem.field = std::move(parameter);
+  return problem;
+}
+
+}  // namespace weft::server

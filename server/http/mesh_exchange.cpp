@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/http/mesh_exchange.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <utility>
+
+#include "files/base/text.h"
+#include "server/http/formats.h"
+
+namespace weft::server {
+namespace {
+
+namespace http = boost::beast::http;
+
+// Files that are read with so much memory are read in some milliseconds, without asking for it.
+constexpr std::uint64_t kBytesOfShortFile = std::uint64_t{4} << 20;
+// Meshes that are written in some milliseconds.
+constexpr std::uint64_t kShortMesh = 50'000;
+constexpr std::size_t kMostWarnings = 16;
+
+// The name of a file, from what may be any text.
+std::string harmless_name(const std::string& text) {
+  constexpr std::size_t kMost = 100;
+  std::string name = std::filesystem::path(text).filename().string().substr(0, kMost);
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '-') c = '_';
+  return name;
+}
+
+// A header's value: one line of ASCII.
+std::string one_line(std::string text) {
+  constexpr std::size_t kMost = 400;
+  if (text.size() > kMost) text.resize(kMost);
+  for (char& c : text)
+    if (c < ' ' || c > '~') c = c == '\n' ? ' ' : '?';
+  return text;
+}
+
+std::string hexadecimal(const std::string& bytes) {
+  std::string text;
+  for (const char c : bytes) text += fmt::format("{:02x}", static_cast<unsigned char>(c));
+  return text;
+}
+
+// What the mesh is not, though it was asked for.
+void add_warnings(const v1::Summary& summary, const SentDomain& sent, std::uint64_t most_triangles,
+                  std::vector<std::string>& warnings) {
+  if (summary.has_outside()) {
+    const v1::OutsideSegments& outside = summary.outside();
+    files::Point at{outside.x(), outside.y()};
+    if (sent.projection != nullptr && !sent.projection->to_metres())
+      at = sent.projection->to_lonlat(at);
+    warnings.push_back(fmt::format("segments outside of what is meshed: {}, the first at {}",
+                                   outside.segments(), files::coordinates(at.x, at.y)));
+  }
+  const v1::Unrefined& unrefined = summary.unrefined();
+  if (const std::uint64_t count = unrefined.precision() + unrefined.streaming(); count > 0)
+    warnings.push_back(fmt::format("triangles that miss a bound without exemption: {}", count));
+  if (most_triangles > 0 && summary.triangles() > most_triangles)
+    warnings.push_back("the domain alone, without refinement, has more than max_triangles");
+}
+
+void warn(std::vector<std::string> warnings, Response& head) {
+  if (warnings.size() > kMostWarnings) {
+    const std::size_t more = warnings.size() - (kMostWarnings - 1);
+    warnings.resize(kMostWarnings - 1);
+    warnings.push_back(fmt::format("{} more warnings", more));
+  }
+  for (const std::string& warning : warnings) head.insert("Weft-Warning", one_line(warning));
+}
+
+// The names that a stored request has.
+files::Names names_of(const v1::Domain& domain) {
+  files::NameReader names("the job");
+  for (const v1::Name& name : domain.marker_names())
+    names.add(files::NameKind::kMarker, name.id(), name.name());
+  for (const v1::Name& name : domain.region_names())
+    names.add(files::NameKind::kRegion, name.id(), name.name());
+  return names.take();
+}
+
+grpc::ByteBuffer buffer_of(std::string bytes) {
+  auto* const owned = new std::string(std::move(bytes));
+  const grpc::Slice slice(
+      owned->data(), owned->size(), [](void* text) { delete static_cast<std::string*>(text); },
+      owned);
+  return {&slice, 1};
+}
+
+}  // namespace
+
+MeshExchange::MeshExchange(ExchangeParts& parts, Purpose purpose, MeshWish wish, Query query,
+                           Visit& visit, std::unique_ptr<Meshes::Place> place)
+    : parts_(parts),
+      purpose_(purpose),
+      wish_(std::move(wish)),
+      query_(std::move(query)),
+      client_(visit.client),
+      metadata_(std::move(visit.metadata)),
+      place_(std::move(place)),
+      answers_to_(std::move(visit.answers_to)),
+      content_type_(view(visit.headers[http::field::content_type])),
+      held_(parts.context.budget) {}
+
+Outcome<std::shared_ptr<MeshExchange>> MeshExchange::open(ExchangeParts& parts, Purpose purpose,
+                                                          ParameterUses uses, const Query& query,
+                                                          const std::string& word, Visit& visit) {
+  const auto refuse = [](unsigned status, const char* reason, std::string detail,
+                         std::string field = "") {
+    return tl::unexpected(Problem{.status = status,
+                                  .reason = reason,
+                                  .detail = std::move(detail),
+                                  .field = std::move(field),
+                                  .retry = status == 429});
+  };
+  auto wish = read_wish(query, uses);
+  if (!wish) return tl::unexpected(wish.error());
+  if (purpose == Purpose::kMesh || purpose == Purpose::kStored) {
+    const std::string_view accept = view(visit.headers[http::field::accept]);
+    if (wish->to.empty()) wish->to = format_wanted(accept);
+    if (wish->to.empty())
+      return refuse(406, "UNKNOWN_FORMAT",
+                    "nothing of Accept is a format of meshes; the parameter `format` names one: " +
+                        fmt::format("{}", fmt::join(written_formats(), ", ")));
+    const files::DataPath mesh = std::filesystem::path("mesh" + wish->to);
+    if (const auto writable = files::check_writable(mesh, wish->writing); !writable)
+      return refuse(400, "BAD_OPTION", writable.error().message, "order");
+  }
+  if (purpose == Purpose::kJob && wish->projection.wanted() && !wish->projection.to_metres)
+    return refuse(400, "BAD_OPTION",
+                  "a job is kept without its projection, so its mesh is in metres: give to_metres, "
+                  "too",
+                  "lonlat");
+  const std::string_view told = view(visit.headers[http::field::content_length]);
+  std::uint64_t length = 0;
+  std::from_chars(told.data(), told.data() + told.size(), length);
+  auto place = parts.meshes.enter(visit.client);
+  if (place == nullptr)
+    return refuse(429, "QUEUE_FULL", "too many meshes are on their way over HTTP");
+  std::shared_ptr<MeshExchange> exchange(
+      new MeshExchange(parts, purpose, std::move(*wish), query, visit, std::move(place)));
+  (purpose == Purpose::kStored ? exchange->job_ : exchange->file_.name) =
+      purpose == Purpose::kStored ? word : harmless_name(word);
+  if (length > parts.context.most_request_bytes) return tl::unexpected(exchange->too_large());
+  return exchange;
+}
+
+Problem MeshExchange::too_large() const {
+  return {.status = 413,
+          .reason = "LIMIT_EXCEEDED",
+          .detail = fmt::format("the file has more than {} bytes, which this server takes",
+                                parts_.context.most_request_bytes)};
+}
+
+template <class Task, class Then>
+void MeshExchange::work(bool is_long, Task task, Then then) {
+  Workers::run(place_->for_work(is_long), parts_.context.io, std::move(task),
+               [self = shared_from_this(), then = std::move(then)](auto outcome) mutable {
+                 if (self->answers_to_ == nullptr) return;
+                 if (!outcome) return self->refuse(outcome.error());
+                 then(*self, std::move(*outcome));
+               });
+}
+
+bool MeshExchange::is_large() const {
+  return spool_->triangles() > kShortMesh;
+}
+
+// ---- the file ----
+
+bool MeshExchange::take(std::string_view bytes) {
+  const std::size_t most = parts_.context.most_request_bytes;
+  const std::size_t size = file_.bytes.size() + bytes.size();
+  if (size > most) return refuse(too_large()), false;
+  if (size > file_.bytes.capacity()) {
+    const std::size_t room = std::max(size, std::min(2 * file_.bytes.capacity(), most));
+    if (!held_.hold(room)) return refuse(out_of_memory()), false;
+    file_.bytes.reserve(room);
+  }
+  file_.bytes += bytes;
+  return true;
+}
+
+void MeshExchange::body_late() {
+  refuse({.status = 408,
+          .reason = "DEADLINE_EXCEEDED",
+          .detail = "the file did not arrive within --request-timeout"});
+}
+
+void MeshExchange::body_ended() {
+  if (purpose_ == Purpose::kStored) return begin_fetch();
+  file_.extension =
+      wish_.from.empty() ? format_read(file_.name, content_type_, file_.bytes) : wish_.from;
+  if (file_.extension.empty())
+    return refuse({.status = 415,
+                   .reason = "UNKNOWN_FORMAT",
+                   .detail = "the file looks like none of the formats that are read here; the "
+                             "parameter `from` names one: " +
+                             fmt::format("{}", fmt::join(read_formats(), ", "))});
+  if (file_.name.empty())
+    file_.name = "domain" + file_.extension;
+  else
+    stem_ = std::filesystem::path(file_.name).stem().string();
+  const bool linted = purpose_ == Purpose::kLint;
+  const std::uint64_t needed = linted ? bytes_to_lint(file_) : bytes_to_read(file_);
+  std::shared_ptr<MemoryBudget::Reservation> memory;
+  if (needed > kBytesOfShortFile) {
+    auto reserved = parts_.memory.reserve(
+        {.estimate = needed, .client = client_, .purpose = MemoryBudget::Purpose::kInput});
+    if (!reserved) return refuse(out_of_memory());
+    memory = std::make_shared<MemoryBudget::Reservation>(std::move(*reserved));
+  }
+  if (linted) return lint(std::move(memory));
+  struct Begun {
+    SentDomain sent;
+    std::shared_ptr<files::MeshSpool> spool;
+  };
+  work(
+      memory != nullptr,
+      [file = std::move(file_), wish = wish_, folder = parts_.folder, stop = stop_.get_token(),
+       is_mesh = purpose_ == Purpose::kMesh, memory]() mutable -> Outcome<Begun> {
+        auto sent = read_domain_file(std::move(file), std::move(wish), folder);
+        if (!sent) return tl::unexpected(sent.error());
+        if (!is_mesh) return Begun{std::move(*sent), nullptr};
+        auto spool = make_spool(folder, stop);
+        if (!spool) return tl::unexpected(spool.error());
+        return Begun{std::move(*sent), std::move(*spool)};
+      },
+      [](MeshExchange& self, Begun begun) {
+        self.begin(std::move(begun.sent), std::move(begun.spool));
+      });
+}
+
+void MeshExchange::lint(std::shared_ptr<void> memory) {
+  const bool is_long = memory != nullptr;
+  work(
+      is_long,
+      [file = std::move(file_), wish = wish_, folder = parts_.folder,
+       memory = std::move(memory)]() mutable {
+        return lint_domain_file(std::move(file), std::move(wish), folder);
+      },
+      [](MeshExchange& self, const std::string& json) {
+        Answer answer{.head = make_page(http::status::ok, "application/json", json)};
+        answer.head.set(http::field::cache_control, "no-store");
+        if (const auto client = std::exchange(self.answers_to_, nullptr))
+          client->answer(std::move(answer));
+      });
+}
+
+// ---- the call ----
+
+void MeshExchange::begin(SentDomain sent, std::shared_ptr<files::MeshSpool> spool) {
+  if (sent.request.size() > parts_.context.most_request_bytes) return refuse(too_large());
+  if (!held_.hold(sent.request.size() + sent.bytes)) return refuse(out_of_memory());
+  std::string request = std::move(sent.request);
+  sent_ = std::make_shared<const SentDomain>(std::move(sent));
+  spool_ = std::move(spool);
+  if (purpose_ == Purpose::kJob) return begin_job(std::move(request));
+  begin_stream("/weft.v1.MeshService/GenerateMesh", std::move(request));
+}
+
+void MeshExchange::begin_job(std::string mesh) {
+  v1::SubmitJobRequest job;
+  job.set_request_id(wish_.request_id);
+  job.set_no_cache(wish_.request.no_cache());
+  std::vector<UnaryCall> calls;
+  calls.push_back({"/weft.v1.JobService/SubmitJob", with_part(1, mesh, job.SerializeAsString()),
+                   std::make_unique<v1::SubmitJobResponse>()});
+  submission_ = std::make_shared<CallExchange>(
+      parts_, std::move(calls), metadata_, std::exchange(answers_to_, nullptr),
+      CallWords{
+          .dress =
+              [sent = sent_](Response& head, const auto& message) {
+                head.result(http::status::created);
+                const auto& made = dynamic_cast<const v1::SubmitJobResponse&>(message);
+                head.set(http::field::location, "/v1/jobs/" + made.job().id());
+                warn(sent->warnings, head);
+              },
+          .explain = [sent = sent_, query = query_](
+                         Problem problem) { return located(std::move(problem), *sent, query); }});
+  submission_->body_ended();
+}
+
+void MeshExchange::begin_fetch() {
+  work(
+      false,
+      [folder = parts_.folder, stop = stop_.get_token()] { return make_spool(folder, stop); },
+      [](MeshExchange& self, std::shared_ptr<files::MeshSpool> spool) {
+        v1::FetchMeshRequest request;
+        request.set_id(self.job_);
+        self.spool_ = std::move(spool);
+        self.sent_ = std::make_shared<const SentDomain>();
+        self.begin_stream("/weft.v1.JobService/FetchMesh", request.SerializeAsString());
+      });
+}
+
+void MeshExchange::begin_stream(const char* method, std::string request) {
+  auto pass = parts_.context.calls.enter();
+  if (!pass) return refuse({.status = 503, .reason = "STOPPING", .retry = true});
+  std::optional<std::chrono::system_clock::time_point> deadline;
+  if (wish_.timeout)
+    deadline = std::chrono::system_clock::now() +
+               std::chrono::milliseconds(static_cast<std::int64_t>(*wish_.timeout * 1000));
+  call_ = BridgeCall::start(parts_.context.stub, method, metadata_, deadline, parts_.context.io,
+                            std::move(*pass),
+                            std::shared_ptr<BridgeCall::Listener>(shared_from_this(), this));
+  call_->read();
+  call_->write(buffer_of(std::move(request)));
+}
+
+void MeshExchange::wrote(bool) {
+  held_.hold(sent_->bytes);
+  if (call_ != nullptr) call_->end_writing();
+}
+
+void MeshExchange::received(grpc::ByteBuffer message) {
+  work(
+      is_large(),
+      [spool = spool_, message = std::move(message)] { return take_message(message, *spool); },
+      [](MeshExchange& self, std::optional<v1::Summary> summary) {
+        if (summary) self.summary_ = std::move(summary);
+        if (self.call_ != nullptr) self.call_->read();
+      });
+}
+
+void MeshExchange::ended(const grpc::Status& status, const Metadata&) {
+  call_.reset();
+  if (!status.ok()) return refuse(located(problem_of(status), *sent_, query_));
+  if (!summary_)
+    return refuse({.status = 500, .reason = "INTERNAL", .detail = "the mesh has no summary"});
+  if (purpose_ == Purpose::kStored) {
+    SentDomain kept{.writing = wish_.writing};
+    kept.domain.names = names_of(summary_->request().domain());
+    summary_->clear_request();
+    if (const auto found = find_open_boundaries(kept.writing, kept.domain.names.markers); !found)
+      return refuse({.status = 400,
+                     .reason = "BAD_OPTION",
+                     .detail = found.error().message,
+                     .field = "open_boundary"});
+    sent_ = std::make_shared<const SentDomain>(std::move(kept));
+  }
+  write_file();
+}
+
+void MeshExchange::write_file() {
+  work(
+      is_large(),
+      [spool = std::move(spool_), sent = sent_, to = wish_.to, folder = parts_.folder,
+       stop = stop_.get_token()] { return write_mesh_file(*spool, *sent, to, folder, stop); },
+      [](MeshExchange& self, MeshFile file) { self.answer(std::move(file)); });
+}
+
+void MeshExchange::answer(MeshFile file) {
+  Answer answer{.head = make_page(http::status::ok, media_type(wish_.to), ""),
+                .file = std::move(file.file),
+                .file_bytes = file.bytes};
+  Response& head = answer.head;
+  head.set(http::field::cache_control, "no-store");
+  head.set(http::field::content_disposition,
+           fmt::format("attachment; filename=\"{}{}\"", stem_, wish_.to));
+  head.set("Weft-Vertices", std::to_string(summary_->vertices()));
+  head.set("Weft-Triangles", std::to_string(summary_->triangles()));
+  head.set("Weft-Sha256", hexadecimal(summary_->sha256()));
+  std::vector<std::string> warnings = sent_->warnings;
+  warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
+  add_warnings(*summary_, *sent_, wish_.request.budget().max_triangles(), warnings);
+  warn(std::move(warnings), head);
+  if (const auto client = std::exchange(answers_to_, nullptr)) client->answer(std::move(answer));
+}
+
+// ---- the end ----
+
+void MeshExchange::refuse(const Problem& problem) {
+  stop_.request_stop();
+  if (sent_ == nullptr) parts_.refusals.note(client_, problem);
+  if (const auto call = std::exchange(call_, nullptr)) call->drop();
+  if (const auto client = std::exchange(answers_to_, nullptr))
+    client->answer({.head = problem_page(problem)});
+}
+
+void MeshExchange::drop() {
+  answers_to_ = nullptr;
+  if (submission_ != nullptr) submission_->drop();
+  stop_.request_stop();
+  if (const auto call = std::exchange(call_, nullptr)) call->drop();
+}
+
+}  // namespace weft::server

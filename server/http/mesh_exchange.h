@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// A request whose body is the file of a domain, or whose answer is that of a mesh, or both.
+//
+// The body is read into memory, bounded as a message of gRPC is, and becomes the request of a call
+// within the process, which is admitted as every other. The chunks of a mesh go to nameless files,
+// and from there, once all are there, into the file that is sent. What takes long is done by the
+// workers.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "server/console/bridge_call.h"
+#include "server/console/exchange.h"
+#include "server/http/call_exchange.h"
+#include "server/http/domain_file.h"
+#include "server/http/exchange_parts.h"
+#include "server/http/mesh_file.h"
+#include "server/http/mesh_wish.h"
+
+namespace weft::server {
+
+class MeshExchange final : public Exchange,
+                           private BridgeCall::Listener,
+                           public std::enable_shared_from_this<MeshExchange> {
+ public:
+  enum class Purpose {
+    kMesh,    // a domain in, its mesh out; `word` is the name of the file, or empty
+    kJob,     // a domain in, a job out
+    kLint,    // a domain in, its faults out
+    kStored,  // the mesh of a job out; `word` is its id
+  };
+
+  // Problems: those of read_wish; 406 for an Accept of nothing that is written; 413 and 429 before
+  // the body.
+  static Outcome<std::shared_ptr<MeshExchange>> open(ExchangeParts& parts, Purpose purpose,
+                                                     ParameterUses uses, const Query& query,
+                                                     const std::string& word, Visit& visit);
+
+  bool wants_body() const override { return purpose_ != Purpose::kStored; }
+  bool take(std::string_view bytes) override;
+  void body_ended() override;
+  void body_late() override;
+  void drop() override;
+
+ private:
+  MeshExchange(ExchangeParts& parts, Purpose purpose, MeshWish wish, Query query, Visit& visit,
+               std::unique_ptr<Meshes::Place> place);
+
+  template <class Task, class Then>
+  void work(bool is_long, Task task, Then then);
+  // Whether work on the whole mesh takes long.
+  bool is_large() const;
+  void lint(std::shared_ptr<void> memory);
+  void begin(SentDomain sent, std::shared_ptr<files::MeshSpool> spool);
+  void begin_job(std::string mesh);
+  void begin_fetch();
+  void begin_stream(const char* method, std::string request);
+  void wrote(bool ok) override;
+  void received(grpc::ByteBuffer message) override;
+  void ended(const grpc::Status& status, const Metadata& trailers) override;
+  void write_file();
+  void answer(MeshFile file);
+  // Ends the call, if there is one.
+  void refuse(const Problem& problem);
+  Problem too_large() const;
+
+  ExchangeParts& parts_;
+  const Purpose purpose_;
+  MeshWish wish_;
+  const Query query_;
+  const std::string client_;
+  const Metadata metadata_;
+  const std::unique_ptr<Meshes::Place> place_;
+  std::shared_ptr<Client> answers_to_;  // null once it has its answer, or is gone
+  std::string content_type_;
+  std::string job_;            // whose mesh it is
+  std::string stem_ = "mesh";  // of the name of the file that is sent
+  HeldBytes held_;
+  DomainFile file_;
+  std::stop_source stop_;
+
+  std::shared_ptr<const SentDomain> sent_;
+  std::shared_ptr<files::MeshSpool> spool_;
+  std::optional<v1::Summary> summary_;
+  std::shared_ptr<BridgeCall> call_;
+  std::shared_ptr<CallExchange> submission_;
+};
+
+}  // namespace weft::server

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Meshes by curl: the lines that docs/http.md has, and what they meet on the way."""
+from __future__ import annotations
+
+import concurrent.futures
+import json
+import os
+import pathlib
+import subprocess
+import time
+
+import pytest
+
+MODELS = pathlib.Path(__file__).parents[1] / "models"
+WEFT, WEFTD = os.environ["WEFT_BINARY"], os.environ["WEFT_WEFTD"]
+COAST = MODELS / "us-east-coast.geojson"
+KEY = MODELS / "key.poly"
+
+
+class Server:
+    """A weftd with --http, until the block ends."""
+
+    def __init__(self, folder: pathlib.Path, *flags: str):
+        self.folder, self.flags = folder, flags
+
+    def __enter__(self) -> Server:
+        ports = self.folder / "ports"
+        ports.unlink(missing_ok=True)
+        self.log = open(self.folder / "weftd.log", "w+")
+        self.process = subprocess.Popen([WEFTD, "--listen", "127.0.0.1:0", "--http", "127.0.0.1:0", "--port-file", ports,
+                                         *self.flags], stderr=self.log)
+        while not ports.exists():
+            assert self.process.poll() is None, self.text()
+            time.sleep(0.01)
+        lines = ports.read_text().split()
+        self.grpc = lines[0]
+        self.http = next(line.removeprefix("http=") for line in lines if line.startswith("http="))
+        return self
+
+    def text(self) -> str:
+        return (self.folder / "weftd.log").read_text()
+
+    def waits_for(self, words: str, seconds: float) -> bool:
+        end = time.monotonic() + seconds
+        while words not in self.text() and time.monotonic() < end:
+            time.sleep(0.01)
+        return words in self.text()
+
+    def __exit__(self, *_: object) -> None:
+        self.process.terminate()
+        assert self.process.wait(60) == 0
+        self.log.close()
+
+
+def curl(folder: pathlib.Path, *words: object) -> tuple[int, str]:
+    """The status of the answer, and what else curl prints."""
+    done = subprocess.run(["curl", "-s", "-w", "\n%{http_code}", *map(str, words)], capture_output=True, text=True,
+                          cwd=folder)
+    body, _, status = done.stdout.rpartition("\n")
+    return int(status), body
+
+
+def test_a_mesh_is_that_of_weft_mesh(tmp_path):
+    with Server(tmp_path) as server:
+        url = f"http://{server.http}/v1/mesh"
+        assert curl(tmp_path, "-T", COAST, url + "?edge=20000&lonlat&format=vtu", "-o", "coast.vtu")[0] == 200
+        subprocess.run([WEFT, "mesh", "--server", server.grpc, COAST, "--edge", "20000", "--lonlat", "-o", "flags.vtu",
+                        "-q"], cwd=tmp_path, check=True)
+        assert (tmp_path / "coast.vtu").read_bytes() == (tmp_path / "flags.vtu").read_bytes()
+        assert curl(tmp_path, "--data-binary", f"@{KEY}", url + "?size=0.01&min-angle=30&format=msh", "-OJ")[0] == 200
+        checked = subprocess.run([WEFT, "check", "mesh.msh", "--domain", KEY, "--size", "0.01", "--min-angle", "30"],
+                                 cwd=tmp_path, capture_output=True, text=True)
+        assert checked.returncode == 0, checked.stdout + checked.stderr
+        status, body = curl(tmp_path, f"http://{server.http}/v1/info")
+        assert status == 200 and json.loads(body)["engine_version"]
+
+
+def test_a_bad_file_is_told_with_its_place(tmp_path):
+    (tmp_path / "bad.geojson").write_text('{"type": "Polygon",\n"coordinates": [[[0, 0], [1, 0], [x, 1]]]}')
+    with Server(tmp_path) as server:
+        status, body = curl(tmp_path, "-T", "bad.geojson", f"http://{server.http}/v1/mesh/")
+        assert status == 400
+        problem = json.loads(body)
+        assert problem["reason"] == "UNREADABLE_FILE" and problem["detail"].startswith("bad.geojson:2:")
+        assert problem["errors"][0]["line"] == 2
+
+
+def test_tokens_and_certificates_are_those_of_grpc(tmp_path):
+    (tmp_path / "tokens").write_text("ann 0123456789abcdef\n")
+    (tmp_path / "tokens").chmod(0o600)
+    subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", "key.pem", "-out", "cert.pem",
+                    "-days", "2", "-subj", "/CN=localhost", "-addext", "subjectAltName=IP:127.0.0.1"], cwd=tmp_path,
+                   check=True, capture_output=True)
+    with Server(tmp_path, "--tls-cert", str(tmp_path / "cert.pem"), "--tls-key", str(tmp_path / "key.pem"), "--tokens",
+                str(tmp_path / "tokens")) as server:
+        line = ["--cacert", "cert.pem", "-T", KEY, f"https://{server.http}/v1/mesh?size=0.1"]
+        assert curl(tmp_path, *line)[0] == 401
+        assert curl(tmp_path, "-H", "Authorization: Bearer 0123456789abcdef", "-o", "key.vtu", *line)[0] == 200
+        assert "client=ann" in server.text()
+
+
+def test_what_is_too_large_is_refused(tmp_path):
+    with Server(tmp_path, "--max-request-bytes", "1MiB") as server:
+        (tmp_path / "large.csv").write_text("0,0\n" * (1 << 19))
+        status, body = curl(tmp_path, "-T", "large.csv", f"http://{server.http}/v1/mesh")
+        assert status == 413 and "1048576 bytes" in json.loads(body)["detail"]
+
+
+def test_a_client_that_goes_away_ends_its_run(tmp_path):
+    with Server(tmp_path) as server:
+        client = subprocess.Popen(["curl", "-s", "-T", KEY, f"http://{server.http}/v1/mesh?size=2e-7", "-o",
+                                   tmp_path / "key.vtu"])
+        assert server.waits_for("event=call_started", 10)
+        time.sleep(0.2)
+        client.kill()
+        client.wait()
+        assert server.waits_for("reason=CANCELLED", 1), server.text()
+
+
+def test_many_at_once_are_all_the_same(tmp_path):
+    with Server(tmp_path, "--cache-bytes", "0") as server:
+        line = ["-T", KEY, f"http://{server.http}/v1/mesh?size=0.1&format=msh"]
+        with concurrent.futures.ThreadPoolExecutor(64) as clients:
+            done = list(clients.map(lambda i: curl(tmp_path, *line, "-o", f"{i}.msh"), range(64)))
+        assert {status for status, _ in done} == {200}
+        assert len({(tmp_path / f"{i}.msh").read_bytes() for i in range(64)}) == 1
+        assert not [name for name in os.listdir(f"/proc/{server.process.pid}/fd") if int(name) > 2
+                    and "(deleted)" in os.readlink(f"/proc/{server.process.pid}/fd/{name}")]
+
+
+if __name__ == "__main__":
+    raise SystemExit(pytest.main([__file__]))
