@@ -186,8 +186,8 @@ Result<Quadtree> Quadtree::build(const Box& domain, std::vector<Sample> samples,
     const std::int64_t x0 = x * side;
     const std::int64_t y0 = y * side;
     const auto is_split = [&](std::int64_t i, std::int64_t j) {
-      return splits.contains(
-          depth, morton(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j)));
+      return splits.contains(depth,
+                             morton(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j)));
     };
     // The margin on a side, where the neighbour is the node (i, j).
     const bool leaf = !is_split(x, y);
