@@ -73,6 +73,10 @@ std::string_view word_of(NameKind kind) {
   return kind == NameKind::kMarker ? "marker" : "region";
 }
 
+bool is_plain_text(std::string_view text) {
+  return text_fault(text) == TextFault::kNone;
+}
+
 std::string name_fault(std::string_view name) {
   if (name.empty()) return "is empty";
   if (name.size() > kLongestName)

@@ -52,6 +52,9 @@ Result<std::int32_t> find_marker(std::string_view name, const NameTable& markers
 // "marker", "region".
 std::string_view word_of(NameKind kind);
 
+// Whether a text is UTF-8 without control characters.
+bool is_plain_text(std::string_view text);
+
 // What is wrong with a text as a name, "is empty"; empty if nothing is.
 std::string name_fault(std::string_view name);
 

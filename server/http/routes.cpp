@@ -163,9 +163,11 @@ class AllRoutes final : public Routes {
   Opened open(Visit visit) override {
     const auto target = parse_target(visit.target);
     if (!target)
-      return refuse({.status = 400,
-                     .reason = "MALFORMED_REQUEST",
-                     .detail = "a percent sign in the target is not followed by a byte"});
+      return refuse(
+          {.status = 400,
+           .reason = "MALFORMED_REQUEST",
+           .detail =
+               "the target is not UTF-8 with percent signs before two hexadecimal digits each"});
     std::string allowed;
     for (const Route& route : kRoutes) {
       const auto word = word_in(target->path, route.text.path);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "files/formats/names.h"
+
 namespace weft::server {
 namespace {
 
@@ -17,11 +19,11 @@ std::optional<std::string> decoded(std::string_view text) {
     unsigned byte = 0;
     if (text.size() - i < 3) return std::nullopt;
     const char* const digits = text.data() + i + 1;
-    if (std::from_chars(digits, digits + 2, byte, 16).ptr != digits + 2 || byte == 0)
-      return std::nullopt;
+    if (std::from_chars(digits, digits + 2, byte, 16).ptr != digits + 2) return std::nullopt;
     bytes += static_cast<char>(byte);
     i += 2;
   }
+  if (!files::is_plain_text(bytes)) return std::nullopt;
   return bytes;
 }
 

@@ -20,7 +20,8 @@ struct Target {
   std::vector<std::pair<std::string, std::string>> query;  // in its order, decoded
 };
 
-// nullopt: a percent sign is not followed by two hexadecimal digits, or a byte is 0.
+// nullopt: a percent sign is not followed by two hexadecimal digits, or what is decoded is not
+// UTF-8 without control characters.
 std::optional<Target> parse_target(std::string_view text);
 
 }  // namespace weft::server

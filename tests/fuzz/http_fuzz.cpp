@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a client of --http sends: the target of a request, then, after a line feed, the first bytes
 // of a file. Asserts:
-//   path       a target that is decoded has no byte 0, and is not longer than it was
+//   path       a target that is decoded is UTF-8 without control characters, not longer than it was
 //   wish       parameters are taken, or refused with a sentence and a status of 400, 406 or 415
 //   request    what is taken can be sent, and read again
 //   format     the format of the file is one that is read here, or none
@@ -30,8 +30,7 @@ void judge(const std::uint8_t* data, std::size_t size) {
   const std::string_view file = bytes.substr(std::min(line + 1, size));
   const auto target = parse_target(text);
   const std::string path = target ? target->path : "";
-  must(path.size() <= text.size() && (path.find('\0') == path.npos || text.find('\0') != text.npos),
-       "path", path);
+  must(path.size() <= text.size() && files::is_plain_text(path), "path", path);
   const std::string format = format_read(path, "", file);
   const auto read = read_formats();
   must(format.empty() || std::ranges::find(read, format.substr(1)) != read.end(), "format", format);
