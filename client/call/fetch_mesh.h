@@ -13,8 +13,8 @@
 #include "client/call/job_server.h"
 #include "client/call/mesh_receiver.h"
 #include "client/call/mesh_report.h"
-#include "files/message/mesh_spool.h"
 #include "files/base/error.h"
+#include "files/message/mesh_spool.h"
 
 namespace weft::client {
 

@@ -19,11 +19,11 @@
 #include "client/call/connection.h"
 #include "client/call/mesh_report.h"
 #include "client/call/mesh_request.h"
-#include "files/message/mesh_spool.h"
 #include "client/call/retry.h"
 #include "files/base/error.h"
 #include "files/formats/domain.h"
 #include "files/geo/domain_projection.h"
+#include "files/message/mesh_spool.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {

@@ -8,12 +8,12 @@
 #include <system_error>
 #include <utility>
 
-#include "files/message/field_path.h"
 #include "files/base/text.h"
 #include "files/formats/derived/vertex_values.h"
 #include "files/formats/domain_formats.h"
 #include "files/formats/mesh_formats.h"
 #include "files/formats/raster.h"
+#include "files/message/field_path.h"
 #include "wire/named_options.h"
 
 namespace weft::client {

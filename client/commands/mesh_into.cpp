@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "files/message/mesh_spool.h"
 #include "client/report/marker_warnings.h"
 #include "client/report/mesh_text.h"
+#include "files/message/mesh_spool.h"
 
 namespace weft::client {
 

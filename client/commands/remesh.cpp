@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "client/call/mesh_call.h"
-#include "files/message/mesh_spool.h"
 #include "client/commands/commands.h"
 #include "client/commands/input_domain.h"
 #include "client/report/marker_warnings.h"
@@ -19,6 +18,7 @@
 #include "files/formats/derived/orientation.h"
 #include "files/formats/derived/vertex_values.h"
 #include "files/formats/domain_formats.h"
+#include "files/message/mesh_spool.h"
 
 namespace weft::client {
 namespace {

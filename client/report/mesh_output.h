@@ -22,7 +22,6 @@
 #include <utility>
 #include <vector>
 
-#include "files/message/mesh_spool.h"
 #include "client/drawing/draw.h"
 #include "files/base/atomic_file.h"
 #include "files/base/error.h"
@@ -30,6 +29,7 @@
 #include "files/formats/mesh.h"
 #include "files/formats/mesh_formats.h"
 #include "files/geo/domain_projection.h"
+#include "files/message/mesh_spool.h"
 #include "weft/v1/mesh_service.pb.h"
 
 namespace weft::client {

@@ -160,9 +160,9 @@ Result<Domain> read_domain(const DataPath& path, const LayerOptions& layers) {
 Result<Domain> read_own_domain(const DataPath& path, const LayerOptions& layers) {
   const DomainFormat* const format = domain_format(path);
   if (format == nullptr || !format->is_own() || layers.wanted())
-    return fail(ExitCode::kUsage, in_quotes(extension_of(path)) +
-                                      " is not a format that is read here: " +
-                                      own_domain_extensions());
+    return fail(ExitCode::kUsage,
+                in_quotes(extension_of(path)) +
+                    " is not a format that is read here: " + own_domain_extensions());
   return read_domain(path, layers);
 }
 

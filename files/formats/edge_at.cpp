@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "files/base/value_of.h"
 #include "files/base/text.h"
+#include "files/base/value_of.h"
 
 namespace weft::files {
 
