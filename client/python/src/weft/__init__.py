@@ -18,6 +18,7 @@ beside the modules that these share, whose names begin with an underscore.
 from . import aio
 from ._in_process import mesh
 from ._mesh import Mesh
+from ._patches import stitch
 from ._requests import Layers, MeshOptions
 from ._target import TLS
 from ._triangulate import triangulate
@@ -44,5 +45,5 @@ __all__ = [
     "MissingPackage", "NarrowPlace", "NotFound", "OutsideSegments", "Progress", "Quality", "Raster", "Region",
     "ServerError", "ServerInfo", "ServerLimits", "Simplification", "Size", "SizeWarning", "Summary", "SwitchError",
     "TLS", "Timings", "Unauthenticated", "Unavailable", "Unrefined", "WeftError", "WeftWarning", "__version__", "aio",
-    "distance", "local", "mesh", "on_mesh", "raster", "triangulate", "width",
+    "distance", "local", "mesh", "on_mesh", "raster", "stitch", "triangulate", "width",
 ]

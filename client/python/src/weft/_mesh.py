@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal, Union
 import numpy as np
 import numpy.typing as npt
 
-from . import _carried, _convert, _npz, _periodic, _pixels, _solvers, _vtu
+from . import _carried, _convert, _npz, _patches, _periodic, _pixels, _solvers, _vtu
 from ._groups import Groups
 from ._masked import nan_where_masked
 from ._optional import need
@@ -176,6 +176,21 @@ class Mesh:
             u[right] = u[left]
         """
         return _periodic.pairs(self, a, b)
+
+    def remesh(self, within: Any, size: float | str | None = None, min_angle: float = 20, **options: Any) -> Mesh:
+        """The mesh with a part of it meshed anew: the triangles whose corners are all within polygons. The
+        triangles outside, their vertices, regions, edges and values stay as they are. By the program weft,
+        which is in the package or in the PATH.
+
+        `within`: the path of a file of polygons, a GeoJSON object, a shapely geometry, or arrays (n, 2) of
+        rings. `size`: upper bound on areas, a number or an expression in x and y. `options`: `edge`, a length
+        instead, `edge_at`, `keep`, `lonlat`, and the options of Client.mesh that are one value.
+
+        Raises DomainError for what `weft remesh` refuses, MeshFileError without the program.
+
+            finer = mesh.remesh([(0, 0), (10, 0), (10, 5), (0, 5)], edge=0.1)
+        """
+        return _patches.remesh(self, within, {"size": size, "min_angle": min_angle, **options})
 
     def second_order(self) -> tuple[Floats, Ints]:
         """The points (n + e, 2), with the middles of all edges after the vertices, and the triangles (m, 6):
