@@ -476,10 +476,12 @@ class Pipeline {
     return layers_ ? layers_->plan.segment_of(segment, request_.pslg, layers_->domain) : segment;
   }
 
-  // What the filler keeps of a mesh: coordinates, in a vector that grows.
+  // The domain as it was, and what the filler keeps of a mesh: coordinates, in a vector that grows.
   std::uint64_t bytes_of_layers() const {
     constexpr double kBytesPerTriangle = 2 * sizeof(Point) / 2.0;
-    return layers_ ? static_cast<std::uint64_t>(kBytesPerTriangle * std::min(expected_, 1e12)) : 0;
+    return layers_ ? layers_->domain.bytes() +
+                         static_cast<std::uint64_t>(kBytesPerTriangle * std::min(expected_, 1e12))
+                   : 0;
   }
 
   Error too_narrow() const {

@@ -9,7 +9,6 @@
 #include <iterator>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <utility>
 
 #include "engine/base/text.h"
@@ -22,7 +21,12 @@ using Triangle = std::array<Point, 3>;
 using TreeBox = bg::model::box<bg::model::point<double, 2, bg::cs::cartesian>>;
 using Tree = bg::index::rtree<std::pair<TreeBox, std::uint32_t>, bg::index::quadratic<16>>;
 
-constexpr double kMostOfWidth = 0.4;    // that layers take
+constexpr double kMostOfWidth = 0.4;                      // that layers take
+constexpr double kToOthers = 0.5 / kMostOfWidth;          // how much thicker they would meet
+constexpr double kToObstacles = 1 / kMostOfWidth;         // what is opposite
+constexpr std::size_t kMostWalls = std::size_t{1} << 20;  // edges
+constexpr std::uint64_t kBytesPerEdge = 100;              // of the boundary
+constexpr std::uint64_t kBytesPerWall = 1000;             // with its corners, and boxes in trees
 constexpr double kMostOfEdge = 0.4;     // by which a corner shifts a spoke along it
 constexpr double kMostGrowth = 0.5;     // of the thickness, over the length of an edge
 constexpr double kShrink = 0.8;         // in a round, where layers are too thick
@@ -129,7 +133,8 @@ class LayerPlanner {
   Result<LayerPlan> run() {
     if (auto error = find_walls()) return tl::unexpected(*error);
     if (auto error = find_corners()) return tl::unexpected(*error);
-    find_obstacles();
+    if (auto error = find_patches()) return tl::unexpected(*error);
+    if (auto error = find_obstacles()) return tl::unexpected(*error);
     if (auto error = make_room()) return tl::unexpected(*error);
     return plan();
   }
@@ -176,13 +181,11 @@ class LayerPlanner {
   }
 
   std::optional<Error> find_walls() {
-    std::unordered_map<std::uint64_t, std::uint32_t> edge_of;
-    const auto key = [](std::uint32_t triangle, std::uint32_t side) {
-      return 3 * std::uint64_t{triangle} + side;
-    };
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> places;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> places;  // triangles and sides, sorted
+    std::size_t walls = 0;
     std::vector<bool> has_wall(layers_.size());
     for (std::uint32_t t = 0; t < domain_.triangles.size(); ++t) {
+      if (auto error = poll(t)) return error;
       const Domain::Triangle& triangle = domain_.triangles[t];
       for (std::uint32_t i = 0; i < 3; ++i) {
         if (triangle.subsegment[i] == kNone) continue;
@@ -195,8 +198,10 @@ class LayerPlanner {
                          " lies inside of the domain, and layers are on its boundary,",
                      at(a));
         }
-        if (layers != kNone) has_wall[layers] = true;
-        edge_of.emplace(key(t, i), static_cast<std::uint32_t>(edges_.size()));
+        if (layers != kNone) {
+          has_wall[layers] = true;
+          ++walls;
+        }
         places.emplace_back(t, i);
         edges_.push_back({.a = a, .b = b, .subsegment = triangle.subsegment[i], .layers = layers});
       }
@@ -207,14 +212,24 @@ class LayerPlanner {
                      "quality.layers[" + std::to_string(i) +
                          "]: no segment of the domain has the marker " +
                          std::to_string(layers_[i].marker)};
+    if (walls > kMostWalls)
+      return Error{ErrorCode::kLimitExceeded, "quality.layers",
+                   "quality.layers: walls have " + std::to_string(walls) +
+                       " edges; layers are laid along " + std::to_string(kMostWalls) + " at most"};
+    if (auto error = context_.need_bytes(
+            domain_.bytes() + kBytesPerEdge * edges_.size() + kBytesPerWall * walls,
+            "the plan of layers"))
+      return error;
     for (std::uint32_t e = 0; e < edges_.size(); ++e) {
+      if (auto error = poll(e)) return error;
       auto [t, i] = places[e];
       while (true) {  // around the end of the edge
         const std::uint32_t onwards = (i + 1) % 3;
         const Domain::Triangle& triangle = domain_.triangles[t];
         const std::uint32_t next = triangle.neighbor[onwards];
         if (next == kNone) {
-          edges_[e].next = edge_of.at(key(t, onwards));
+          const auto found = std::lower_bound(places.begin(), places.end(), std::pair(t, onwards));
+          edges_[e].next = static_cast<std::uint32_t>(found - places.begin());
           break;
         }
         if (triangle.subsegment[onwards] != kNone) edges_[e].inner = triangle.subsegment[onwards];
@@ -315,31 +330,63 @@ class LayerPlanner {
     return add(std::move(corner));
   }
 
-  void find_obstacles() {
-    std::vector<bool> is_joined(domain_.vertices.size());
-    std::vector<bool> is_wall(domain_.subsegments.size());
-    for (const std::uint32_t w : walls_) is_wall[edges_[w].subsegment] = true;
-    for (std::uint32_t s = 0; s < domain_.subsegments.size(); ++s) {
-      const Subsegment& subsegment = domain_.subsegments[s];
-      is_joined[subsegment.a] = is_joined[subsegment.b] = true;
-      if (!is_wall[s]) obstacles_.push_back({{at(subsegment.a), at(subsegment.b)}, s});
-    }
-    for (std::uint32_t v = 0; v < domain_.vertices.size(); ++v)
-      if (!is_joined[v]) obstacles_.push_back({{at(v), at(v)}, kNone});
-    std::vector<std::pair<TreeBox, std::uint32_t>> boxes;
-    for (std::uint32_t i = 0; i < obstacles_.size(); ++i)
-      boxes.emplace_back(box_of(obstacles_[i].ends), i);
-    obstacle_tree_ = Tree(boxes);
+  std::optional<Error> find_patches() {
+    const auto last_spoke = [this](std::uint32_t corner) {
+      return static_cast<std::uint32_t>(std::max<std::size_t>(corners_[corner].spokes.size(), 1) -
+                                        1);
+    };
     for (const std::uint32_t w : walls_) {
+      if (auto error = poll(w)) return error;
       const Edge& edge = edges_[w];
-      const auto last_spoke = [this](std::uint32_t corner) {
-        return static_cast<std::uint32_t>(std::max<std::size_t>(corners_[corner].spokes.size(), 1) -
-                                          1);
-      };
       patches_.push_back({edge.first, edge.last, last_spoke(edge.first), 0, w});
       for (std::uint32_t i = 0; i < last_spoke(edge.last); ++i)
         patches_.push_back({edge.last, edge.last, i, i + 1, kNone});
     }
+    return std::nullopt;
+  }
+
+  // What layers as thick as they are asked for may come near.
+  std::optional<Error> find_obstacles() {
+    std::vector<bool> is_joined(domain_.vertices.size());
+    std::vector<bool> is_wall(domain_.subsegments.size());
+    for (const std::uint32_t w : walls_) is_wall[edges_[w].subsegment] = true;
+    const Tree patches = tree_of_patches(kToObstacles);
+    const auto add = [&](const std::array<Point, 2>& ends, std::uint32_t subsegment) {
+      if (patches.qbegin(bg::index::intersects(box_of(ends))) != patches.qend())
+        obstacles_.push_back({ends, subsegment});
+    };
+    for (std::uint32_t s = 0; s < domain_.subsegments.size(); ++s) {
+      if (auto error = poll(s)) return error;
+      const Subsegment& subsegment = domain_.subsegments[s];
+      is_joined[subsegment.a] = is_joined[subsegment.b] = true;
+      if (!is_wall[s]) add({at(subsegment.a), at(subsegment.b)}, s);
+    }
+    for (std::uint32_t v = 0; v < domain_.vertices.size(); ++v) {
+      if (auto error = poll(v)) return error;
+      if (!is_joined[v]) add({at(v), at(v)}, kNone);
+    }
+    std::vector<std::pair<TreeBox, std::uint32_t>> boxes;
+    for (std::uint32_t i = 0; i < obstacles_.size(); ++i)
+      boxes.emplace_back(box_of(obstacles_[i].ends), i);
+    obstacle_tree_ = Tree(boxes);
+    return context_.poll();
+  }
+
+  TreeBox box_of_patch(const Patch& patch, double factor) const {
+    const auto [t, u] = triangles(patch, factor);
+    return box_of(std::array{t[0], t[1], t[2], u[2]});
+  }
+  Tree tree_of_patches(double factor) const {
+    std::vector<std::pair<TreeBox, std::uint32_t>> boxes;
+    for (std::uint32_t i = 0; i < patches_.size(); ++i)
+      boxes.emplace_back(box_of_patch(patches_[i], factor), i);
+    return Tree(boxes);
+  }
+
+  // In long loops.
+  std::optional<Error> poll(std::size_t step) const {
+    constexpr std::size_t kStepsPerPoll = 1024;
+    return step % kStepsPerPoll == 0 ? context_.poll() : std::nullopt;
   }
 
   double thickness(const Corner& corner, std::uint32_t layers) const {
@@ -371,7 +418,6 @@ class LayerPlanner {
 
   // Makes layers thinner until there is room for all of them.
   std::optional<Error> make_room() {
-    constexpr double kToOthers = 0.5 / kMostOfWidth, kToObstacles = 1 / kMostOfWidth;
     while (true) {
       even_out();
       if (auto error = check_thickness()) return error;
@@ -379,19 +425,13 @@ class LayerPlanner {
       const auto mark = [&](const Patch& patch) {
         is_tight[patch.first] = is_tight[patch.last] = true;
       };
-      std::vector<std::pair<TreeBox, std::uint32_t>> boxes;
+      const Tree tree = tree_of_patches(kToOthers);
       for (std::uint32_t i = 0; i < patches_.size(); ++i) {
-        const auto [t, u] = triangles(patches_[i], kToOthers);
-        boxes.emplace_back(box_of(std::array{t[0], t[1], t[2], u[2]}), i);
-      }
-      const Tree tree(boxes);
-      for (std::uint32_t i = 0; i < patches_.size(); ++i) {
-        if (i % 256 == 0)
-          if (auto error = context_.poll()) return error;
+        if (auto error = poll(i)) return error;
         const Patch& patch = patches_[i];
         if (!is_convex(patch)) mark(patch);
-        for (auto near = tree.qbegin(bg::index::intersects(boxes[i].first)); near != tree.qend();
-             ++near) {
+        for (auto near = tree.qbegin(bg::index::intersects(box_of_patch(patch, kToOthers)));
+             near != tree.qend(); ++near) {
           const Patch& other = patches_[near->second];
           if (near->second <= i || other.first == patch.last || other.last == patch.first ||
               other.first == patch.first || other.last == patch.last)
@@ -402,9 +442,8 @@ class LayerPlanner {
             mark(other);
           }
         }
-        const auto [t, u] = triangles(patch, kToObstacles);
-        const TreeBox box = box_of(std::array{t[0], t[1], t[2], u[2]});
-        for (auto near = obstacle_tree_.qbegin(bg::index::intersects(box));
+        for (auto near =
+                 obstacle_tree_.qbegin(bg::index::intersects(box_of_patch(patch, kToObstacles)));
              near != obstacle_tree_.qend(); ++near) {
           const Obstacle& obstacle = obstacles_[near->second];
           if (obstacle.subsegment != kNone && (obstacle.subsegment == corners_[patch.first].side ||

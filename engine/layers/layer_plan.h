@@ -22,7 +22,8 @@
 //   auto plan = LayerPlan::of(request.layers, domain, tolerance, context);
 //   triangulate(plan->with_holes(pslg, request.layers), context);
 //
-// Errors: kBadOption with the field quality.layers[i]. Immutable.
+// Errors: kBadOption with the field quality.layers[i]; kLimitExceeded for more than a million edges
+// of walls; kBudgetExceeded; what stopped the context. Immutable.
 #pragma once
 
 #include <cstdint>

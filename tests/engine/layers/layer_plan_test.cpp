@@ -64,5 +64,17 @@ TEST(LayerPlan, RefusesWhatCannotHaveLayersByName) {
             "quality.layers[0] | quality.layers[0]: there is no room for");
 }
 
+TEST(LayerPlan, StaysWithinTheBytesOfARun) {
+  Pslg pslg = square();
+  for (Segment& segment : pslg.segments) segment.marker = 1;
+  const MeshRequest request{.pslg = pslg, .size = 1.0, .layers = {{1, 0.01, 1.2, 3}}};
+  ForgetfulSink sink;
+  ExecutionContext context({.max_bytes = 4000});
+  const auto summary = generate_mesh(request, sink, context);
+  ASSERT_FALSE(summary);
+  EXPECT_EQ(summary.error().code, ErrorCode::kBudgetExceeded);
+  EXPECT_EQ(summary.error().message.substr(0, 18), "the plan of layers") << summary.error().message;
+}
+
 }  // namespace
 }  // namespace weft
