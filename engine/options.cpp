@@ -59,6 +59,12 @@ std::optional<Error> check_layers(const MeshRequest& request) {
     if (!(layers.rows >= 1 && layers.rows <= kMaxLayerRows))
       return bad(field + ".rows is " + std::to_string(layers.rows) + "; it must be from 1 to " +
                  std::to_string(kMaxLayerRows));
+    double thickness = 0, height = layers.first;
+    for (std::uint32_t row = 0; row < layers.rows; ++row, height *= layers.ratio)
+      thickness += height;
+    if (!(thickness <= kMaxMagnitude))
+      return bad(field + " is " + text(thickness) + " thick; it must be at most " +
+                 text(kMaxMagnitude));
     const std::string marker = std::to_string(layers.marker);
     for (std::size_t k = 0; k < i; ++k)
       if (request.layers[k].marker == layers.marker)

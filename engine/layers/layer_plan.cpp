@@ -133,6 +133,7 @@ class LayerPlanner {
   Result<LayerPlan> run() {
     if (auto error = find_walls()) return tl::unexpected(*error);
     if (auto error = find_corners()) return tl::unexpected(*error);
+    bound_thickness();
     if (auto error = find_patches()) return tl::unexpected(*error);
     if (auto error = find_obstacles()) return tl::unexpected(*error);
     if (auto error = make_room()) return tl::unexpected(*error);
@@ -328,6 +329,17 @@ class LayerPlanner {
       if (share > kMostOfEdge) corner.scale = kMostOfEdge / share;
     }
     return add(std::move(corner));
+  }
+
+  // No layers are thicker than the domain is wide.
+  void bound_thickness() {
+    Box box;
+    for (const Point p : domain_.vertices) box.add(p);
+    const double most = std::max(box.width(), box.height());
+    for (const std::uint32_t w : walls_)
+      for (const std::uint32_t c : {edges_[w].first, edges_[w].last})
+        corners_[c].scale =
+            std::min(corners_[c].scale, most / thickness_of(layers_[edges_[w].layers]));
   }
 
   std::optional<Error> find_patches() {

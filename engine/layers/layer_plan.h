@@ -15,9 +15,9 @@
 // they are as thick beside it. At the end of a wall it lies on the next side, if that makes 45 to
 // 135 degrees with the wall; else the layers end in a point.
 //
-// Thickness is cut until layers take at most 0.4 of the way to another wall's layers' wall, or to
-// anything else, until corners shift no spoke by more than 0.4 of an edge, and until it grows by at
-// most half of the length of each edge.
+// Layers are made thinner until they take at most 0.4 of the way to what is opposite, until corners
+// shift no spoke by more than 0.4 of an edge, and until the thickness grows by at most half of the
+// length of each edge.
 //
 //   auto plan = LayerPlan::of(request.layers, domain, tolerance, context);
 //   triangulate(plan->with_holes(pslg, request.layers), context);

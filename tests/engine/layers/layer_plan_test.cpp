@@ -32,6 +32,15 @@ TEST(LayerPlan, RefusesWhatCannotHaveLayersByName) {
   request.layers = {{1, 0.01, 0.5, 3}};
   EXPECT_EQ(refusal(request),
             "quality.layers[0].ratio | quality.layers[0].ratio is 0.5; it must be from 1 to 10");
+  request.layers = {{1, 1e40, 10, 200}};
+  EXPECT_EQ(refusal(request),
+            "quality.layers[0] | quality.layers[0] is 1.1111111111111112e+239 thick; it "
+            "must be at most 1e+50");
+  request.layers = {{1, 1e30, 2, 20}};
+  EXPECT_EQ(refusal(request), "");
+  request.layers = {{1, 0.01, 10, 40}};
+  EXPECT_EQ(refusal(request).substr(0, 59),
+            "quality.layers[0] | quality.layers[0]: there is no room for");
   request.layers = {{1, 0.01, 1, 0}};
   EXPECT_EQ(refusal(request),
             "quality.layers[0].rows | quality.layers[0].rows is 0; it must be from 1 to 200");
