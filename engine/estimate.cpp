@@ -50,6 +50,10 @@ constexpr double kBytesPerLeaf = 2700;
 // Full ones. With fewer, nearly all leaves may have begun before much is sent, if a thread stands
 // still for a while.
 constexpr double kFewestLeaves = 128;
+// The strip of a mesh of up to about so many leaves is this much larger where the size varies: they
+// are done in the order of the shortest chains (parallel/leaf_order.h), not along the sweep.
+constexpr double kFewLeaves = 256;
+constexpr double kMoreOfFewLeaves = 1.4;
 // Of fragments that are built and wait for their reader, per triangle. If the reader stalls, so
 // many full leaves wait: fragments_ahead, each of which is about .6 of the largest.
 constexpr double kBytesOfWaiting = 22;
@@ -160,12 +164,14 @@ double triangles_by_pieces(const MeshRequest& request) {
 
 // Bytes of a mesh that is held as a whole, or, if it may stream, of the strip that is held; and of
 // its fragments that wait for their reader.
-double bytes_of_mesh(double triangles, double of_leaf, bool may_stream) {
+double bytes_of_mesh(double triangles, double of_leaf, bool may_stream, bool varies) {
   const double whole = kBytesPerTriangle * triangles;
   const double waiting = kBytesOfWaiting * std::min(triangles, full_leaves_waiting() * of_leaf);
   const double leaves = triangles / of_leaf;
   if (!may_stream || leaves < kFewestLeaves) return whole + waiting;
-  const double strip = kBytesOfStrip * std::sqrt(triangles * of_leaf) + kBytesPerLeaf * leaves;
+  const double strip = kBytesOfStrip * std::sqrt(triangles * of_leaf) *
+                           (varies && leaves < kFewLeaves ? kMoreOfFewLeaves : 1) +
+                       kBytesPerLeaf * leaves;
   return std::min(whole, strip) + waiting;
 }
 
@@ -194,7 +200,7 @@ Estimate estimate(const MeshRequest& request, const Budget& budget) {
       kBytesPerRun + kBytesPerPoint * points + static_cast<double>(least) +
       bytes_of_lattices(by_size) +
       bytes_of_mesh(triangles, request.leaf_triangles.value_or(leaf_triangles_for(triangles)),
-                    may_stream);
+                    may_stream, by_size.varies);
   return {at_most(most, triangles), at_most(budget.max_bytes, bytes), least};
 }
 
