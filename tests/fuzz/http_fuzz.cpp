@@ -48,7 +48,7 @@ void judge(const std::uint8_t* data, std::size_t size) {
   if (const auto problem = complete({{2, "inlet"}}, *wish))
     return must(!problem->detail.empty(), "wish", problem->field);
   v1::GenerateMeshRequest again;
-  must(again.ParseFromString(wish->request.SerializeAsString()), "request", text.data());
+  must(again.ParseFromString(wish->request.SerializeAsString()), "request", std::string(text));
 }
 
 }  // namespace
